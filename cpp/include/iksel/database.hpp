@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Joint samples of a robot with their poses and Jacobian pseudo-inverses, under a KD-tree.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "iksel/export.hpp"
+#include "iksel/options.hpp"
+#include "iksel/robot.hpp"
+
+namespace iksel {
+
+struct DatabaseData;
+
+/// Called now and then by the thread that builds, with samples done and samples in all. An exception
+/// it throws ends the build and reaches the caller.
+using Progress = std::function<void(std::size_t done, std::size_t total)>;
+
+/// An immutable set of samples (q_i, x_i, J_i^+); copies are cheap and share the data. Safe to use
+/// from many threads at once.
+class IKSEL_EXPORT Database {
+ public:
+  /// Samples the joint limits and computes pose, Jacobian (by KDL) and pseudo-inverse of every sample.
+  /// Poses are of the tip link, without the TCP. Throws InvalidArgumentError on bad options,
+  /// DatabaseError if the samples would not fit.
+  static Database build(const Robot& robot, const DatabaseOptions& options = {},
+                        const Progress& progress = {});
+
+  /// Maps a file read-only; processes that load one file share its memory. Throws DatabaseIoError,
+  /// DatabaseCorruptError or DatabaseMismatchError (format version, byte order).
+  static Database load(const std::filesystem::path& path);
+  /// Writes beside `path` and renames, so that a crash leaves the old file or the new one. Throws
+  /// DatabaseIoError; the old file is then untouched.
+  void save(const std::filesystem::path& path) const;
+
+  /// The content of a file, for pickling and sending.
+  [[nodiscard]] std::string to_bytes() const;
+  static Database from_bytes(const std::string& bytes);
+
+  /// Options it was built with (`threads` as given then).
+  [[nodiscard]] const DatabaseOptions& options() const;
+  [[nodiscard]] std::size_t size() const;
+  [[nodiscard]] int dof() const;
+  /// Dimension of the KD-tree's key.
+  [[nodiscard]] int key_dimension() const;
+  /// Bytes of samples, keys and pseudo-inverses.
+  [[nodiscard]] std::size_t bytes() const;
+  /// Robot::chain_hash of the robot it belongs to.
+  [[nodiscard]] std::uint64_t chain_hash() const;
+
+  /// Sample i: joint values [rad or m], T_base_tip of the tip link, pseudo-inverse (dof x 6).
+  [[nodiscard]] JointVector q(std::size_t i) const;
+  [[nodiscard]] Pose pose(std::size_t i) const;
+  [[nodiscard]] Eigen::MatrixXd pseudo_inverse(std::size_t i) const;
+
+  /// Indices of the k samples whose keys are nearest to that of T_base_tip (of the tip link), nearest
+  /// first.
+  [[nodiscard]] std::vector<std::size_t> nearest(const Pose& T_base_tip, std::size_t k) const;
+
+  /// For the library itself.
+  [[nodiscard]] const DatabaseData& data() const { return *data_; }
+
+ private:
+  explicit Database(std::shared_ptr<const DatabaseData> data);
+  std::shared_ptr<const DatabaseData> data_;
+};
+
+/// Points per joint of the paper's grid, and how it is cut down for more than 7 joints: see
+/// database/sampling.cpp.
+IKSEL_EXPORT std::vector<int> grid_counts(int dof, Scale scale);
+
+}  // namespace iksel

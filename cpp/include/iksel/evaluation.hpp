@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The paper's experiment protocol: success and time over random reachable targets.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "iksel/export.hpp"
+#include "iksel/solver.hpp"
+
+namespace iksel {
+
+/// Outcome of `evaluate`. Times are per solve call, failures included [us].
+struct Evaluation {
+  std::size_t targets = 0;
+  std::uint64_t seed = 0;
+  std::size_t solved = 0;
+  /// Results that say success and are none, by KDL's FK and the limits. Always to be 0.
+  std::size_t false_success = 0;
+  double success_percent = 0;
+  double mean_us = 0, std_us = 0, min_us = 0, max_us = 0, median_us = 0, p99_us = 0;
+  double mean_attempts = 0, mean_iterations = 0;
+  /// Mean time of one KDL forward kinematics plus one KDL Jacobian on the same robot [us].
+  double kdl_fk_jac_us = 0;
+  /// mean_us / kdl_fk_jac_us: how speed is compared between machines.
+  double ratio = 0;
+  /// Mean time per stage [us], from a second pass over the same targets; zero unless asked for.
+  double query_us = 0, rank_us = 0, iterate_us = 0, reselect_us = 0;
+};
+
+/// Solves `targets` poses FK(q), q uniform inside the limits, one after another on the calling
+/// thread, timing each solve. With `stages`, a second pass takes the time of each stage.
+IKSEL_EXPORT Evaluation evaluate(const Solver& solver, std::size_t targets, std::uint64_t seed,
+                                 bool stages = false, const Progress& progress = {});
+
+/// Mean time of one KDL FK plus one KDL Jacobian over random configurations [us].
+IKSEL_EXPORT double time_kdl_fk_jacobian(const Robot& robot, std::size_t calls = 20'000);
+
+}  // namespace iksel

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// All of the library.
+#pragma once
+
+#include "iksel/database.hpp"    // IWYU pragma: export
+#include "iksel/error.hpp"       // IWYU pragma: export
+#include "iksel/evaluation.hpp"  // IWYU pragma: export
+#include "iksel/options.hpp"     // IWYU pragma: export
+#include "iksel/result.hpp"      // IWYU pragma: export
+#include "iksel/robot.hpp"       // IWYU pragma: export
+#include "iksel/solver.hpp"      // IWYU pragma: export
+#include "iksel/types.hpp"       // IWYU pragma: export
+#include "iksel/version.hpp"     // IWYU pragma: export

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Every choice of the pipeline query -> rank -> iterate -> re-select, with its one default.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "iksel/export.hpp"
+#include "iksel/types.hpp"
+
+namespace iksel {
+
+/// How the joint samples of a database are spread over the limits.
+enum class Sampling {
+  grid,             ///< Cartesian product of interior points (the paper)
+  cvt,              ///< centroidal Voronoi tessellation, MacQueen updates (the paper's revision)
+  low_discrepancy,  ///< additive recurrence R_d (generalised golden ratio)
+  random,           ///< uniform, seeded
+};
+
+/// Size of a grid, and of other samplings whose `samples` is 0 (paper, Table "KDTree sizes").
+enum class Scale { small, medium, large };
+
+/// How the KD-tree's key writes the rotation of a pose (paper, footnote 1).
+enum class RotationKey {
+  rotation_vector,  ///< 3 numbers [rad]
+  quaternion,       ///< 4 numbers (w, x, y, z), w >= 0
+  matrix,           ///< 9 numbers
+  euler,            ///< 3 numbers, roll-pitch-yaw [rad]
+};
+
+/// How a database is built.
+struct IKSEL_EXPORT DatabaseOptions {
+  Sampling sampling = Sampling::low_discrepancy;
+  /// Counts of a grid; for the other samplings only if `samples` is 0.
+  Scale scale = Scale::medium;
+  /// Number of samples unless `sampling` is grid; 0 takes the grid's count at `scale`.
+  std::size_t samples = 10'000;
+  RotationKey rotation_key = RotationKey::rotation_vector;
+  /// Length that one unit of the rotation key counts as in the tree's distance [m].
+  double rotation_weight = 1.0;
+  /// Singular values below this part of the largest are cut off in the pseudo-inverses.
+  double pinv_cutoff = 1e-4;
+  /// Updates of MacQueen's method (cvt only).
+  std::size_t cvt_updates = 1'000'000;
+  /// Seed of the random, cvt and low_discrepancy samplings.
+  std::uint64_t seed = 0;
+  /// Threads that build; 0: one per core. The result has the same bits for any number.
+  int threads = 0;
+
+  /// The paper's: grid, medium, rotation vectors, unweighted.
+  [[nodiscard]] static DatabaseOptions paper();
+  /// Throws InvalidArgumentError naming the first option out of range.
+  void validate() const;
+};
+
+/// How the neighbours of a target are put in order.
+enum class Ranking {
+  nearest,           ///< distance of the keys, Eq. (2)
+  joint_adjustment,  ///< norm of J^+ (x_target - x_i), Eq. (5)
+};
+
+/// The rotation part of x_target - x_i in Eq. (4).
+enum class RotationDifference {
+  rotation_vector,  ///< w_target - w_i, as in the paper
+  geodesic,         ///< rotvec(R_target R_i^T), the same error that iterations reduce
+};
+
+/// One scheme of numerical iteration (paper, Table II; formulas in iteration/schemes.hpp).
+enum class Iteration {
+  dls,      ///< damped least squares; truncated least squares if `damping` is 0
+  pinv,     ///< truncated pseudo-inverse
+  pinv_rr,  ///< as pinv; restarts at random on a limit violation or local minimum
+  cwln,     ///< clamping weighted least-norm (Huang et al. 2016)
+  cwpi,     ///< as cwln with the truncated pseudo-inverse
+  lm,       ///< Levenberg-Marquardt with the limits inside the step
+};
+
+/// Which seed follows a failed one.
+enum class Reselection {
+  none,      ///< give up after the first
+  next,      ///< the next in the ranking
+  farthest,  ///< the candidate farthest in joint space from the failed ones (the paper)
+};
+
+/// Whether an attempt is given up when both errors have grown.
+enum class GrowthStop {
+  by_scheme,  ///< as in the paper: yes for dls and pinv, no for the others
+  on,
+  off,
+};
+
+/// All settings of a Solver. `SolverOptions{}` is the recommended preset, `paper()` the paper.
+struct IKSEL_EXPORT SolverOptions {
+  /// An answer's position is at most this far from the target's [m].
+  double position_tolerance = 1e-6;
+  /// An answer's rotation vector error is at most this long [rad].
+  double rotation_tolerance = 1e-6;
+
+  /// Database that a solver builds for itself when it is given none.
+  DatabaseOptions database;
+
+  /// Neighbours asked from the KD-tree (k).
+  int neighbours = 200;
+  Ranking ranking = Ranking::joint_adjustment;
+  RotationDifference rotation_difference = RotationDifference::geodesic;
+  /// Rank candidates whose predicted q + J^+ e leaves the limits behind all others.
+  bool limit_aware = true;
+  /// Best candidates kept after ranking.
+  int candidates = 100;
+
+  Reselection reselection = Reselection::farthest;
+  /// Seeds tried at most: 1 + the number of re-selections (#ReA). Given seeds come on top.
+  int max_attempts = 100;
+
+  Iteration iteration = Iteration::lm;
+  /// Steps per attempt at most.
+  int max_iterations = 20;
+  /// dls: added to J J^T [mixed units]; 0: truncated least squares. lm: factor on |e|^2.
+  double damping = 1e-3;
+  /// Singular values below this part of the largest are cut off (truncated solves).
+  double pinv_cutoff = 1e-4;
+  /// The error fed to one step is shortened to at most this: position [m] and rotation [rad].
+  double position_clamp = 0.1;
+  double rotation_clamp = 0.3141592653589793;
+  GrowthStop growth_stop = GrowthStop::by_scheme;
+  /// An attempt ends when |sum of the step| is below this (dls, pinv, pinv_rr) [rad or m].
+  double min_step = 1e-6;
+  /// Part of a joint's range, at each end, in which cwln and cwpi hold it back.
+  double limit_margin = 0.1;
+
+  /// Bring joints with a range of more than 2 pi inside their limits by whole turns.
+  bool whole_turns = true;
+  Kinematics kinematics = Kinematics::kernel;
+  /// Seed of random restarts (pinv_rr).
+  std::uint64_t seed = 0;
+
+  /// The paper's setting: medium grid, k = 200, best 20, Eq. (5), one re-selection, DLS, 1e-4 m and
+  /// 1e-3 rad.
+  [[nodiscard]] static SolverOptions paper();
+  /// Throws InvalidArgumentError naming the first option out of range.
+  void validate() const;
+};
+
+}  // namespace iksel

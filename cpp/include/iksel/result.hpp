@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a solve gives back.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "iksel/export.hpp"
+#include "iksel/types.hpp"
+
+namespace iksel {
+
+/// Why a solve ended.
+enum class Status : std::uint8_t {
+  solved,          ///< q reaches the target within both tolerances and lies inside the limits
+  not_converged,   ///< no attempt reached the tolerances within the allowed work
+  outside_limits,  ///< attempts reached the target, but only with joints outside their limits
+  out_of_reach,    ///< the target's position is farther away than the arm is long; nothing was tried
+};
+
+/// Lower-case name of a status.
+IKSEL_EXPORT const char* to_string(Status status);
+
+/// Answer to one target. Everything in it is measured on the returned q, not predicted.
+struct Result {
+  Status status = Status::not_converged;
+  /// Joint values [rad or m]; empty unless solved, so that no other q can be taken for an answer.
+  JointVector q;
+  /// |p_target - p(q)| [m]; NaN unless solved.
+  double position_error;
+  /// Length of rotvec(R_target R(q)^T) [rad]; NaN unless solved.
+  double rotation_error;
+  /// Seeds tried.
+  int attempts = 0;
+  /// Iteration steps over all attempts.
+  int iterations = 0;
+
+  [[nodiscard]] bool success() const { return status == Status::solved; }
+};
+
+/// Answers to many targets as arrays; row i belongs to target i. The pointers are the caller's.
+struct BatchView {
+  double* q;               ///< (n, dof) row by row; NaN where not solved
+  std::uint8_t* status;    ///< (n) values of Status
+  double* position_error;  ///< (n) [m]; NaN where not solved
+  double* rotation_error;  ///< (n) [rad]; NaN where not solved
+  std::int32_t* attempts;
+  std::int32_t* iterations;
+};
+
+}  // namespace iksel

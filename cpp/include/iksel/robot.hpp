@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A robot arm: the serial chain between two links of a URDF.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "iksel/export.hpp"
+#include "iksel/types.hpp"
+
+namespace iksel {
+
+class ChainModel;
+
+/// How a degree of freedom moves.
+enum class JointType {
+  revolute,    ///< turns between limits [rad]
+  continuous,  ///< turns without limits [rad]
+  prismatic,   ///< slides between limits [m]
+};
+
+/// What to take out of a URDF.
+struct RobotOptions {
+  /// Link the poses are relative to; empty: the root link.
+  std::string base_link;
+  /// Link whose pose is solved for; empty: the one link without children, if there is just one.
+  std::string tip_link;
+  /// T_tip_tcp: tool centre point appended to the tip link. Poses, FK and IK are then of the TCP.
+  StoredPose tcp = StoredPose::Identity();
+  /// Joints held at a value [rad or m]; they are no degrees of freedom.
+  std::map<std::string, double> locked_joints;
+  /// Narrow the position limits to the URDF's safety_controller soft limits where there are any.
+  bool soft_limits = false;
+};
+
+/// An immutable serial chain with its limits; copies are cheap and share the data. Safe to use from
+/// many threads at once.
+class IKSEL_EXPORT Robot {
+ public:
+  /// Reads a URDF file. Throws UrdfError (file, XML, joint type, limits), UnknownNameError (links,
+  /// locked joints).
+  static Robot from_urdf_file(const std::filesystem::path& path, const RobotOptions& options = {});
+  /// Parses URDF text. Throws as from_urdf_file.
+  static Robot from_urdf_string(const std::string& xml, const RobotOptions& options = {});
+
+  /// The same chain with another tool T_tip_tcp; databases built for one serve the other.
+  [[nodiscard]] Robot with_tcp(const Pose& T_tip_tcp) const;
+
+  [[nodiscard]] const std::string& name() const;
+  [[nodiscard]] const std::string& base_link() const;
+  [[nodiscard]] const std::string& tip_link() const;
+  /// The URDF text and options this robot was made of (base and tip link filled in).
+  [[nodiscard]] const std::string& urdf() const;
+  [[nodiscard]] const RobotOptions& options() const;
+  /// T_tip_tcp.
+  [[nodiscard]] Pose tcp() const;
+
+  /// Degrees of freedom, 1 to kMaxDof. The vectors below have that length, base to tip.
+  [[nodiscard]] int dof() const;
+  [[nodiscard]] const std::vector<std::string>& joint_names() const;
+  [[nodiscard]] const std::vector<JointType>& joint_types() const;
+  /// Position limits [rad or m], both inside; infinite for continuous joints.
+  [[nodiscard]] const JointVector& lower() const;
+  [[nodiscard]] const JointVector& upper() const;
+  /// Velocity limits [rad/s or m/s]; infinite where the URDF has none.
+  [[nodiscard]] const JointVector& velocity_limit() const;
+  /// Limits of the safety controller; the position limits where the URDF has none.
+  [[nodiscard]] const JointVector& soft_lower() const;
+  [[nodiscard]] const JointVector& soft_upper() const;
+  [[nodiscard]] bool within_limits(const JointVector& q) const;
+
+  /// T_base_tip (of the TCP, if there is one) at q. Throws InvalidArgumentError if q has not dof
+  /// elements or one is not finite.
+  [[nodiscard]] Pose fk(const JointVector& q, Kinematics kinematics = Kinematics::kernel) const;
+  /// Geometric Jacobian at q, 6 x dof. Throws as fk.
+  [[nodiscard]] Jacobian jacobian(const JointVector& q,
+                                  Kinematics kinematics = Kinematics::kernel) const;
+
+  /// n configurations uniform inside the limits (continuous joints in [-pi, pi)), one per row. The
+  /// same seed gives the same numbers everywhere.
+  [[nodiscard]] Eigen::MatrixXd random_configurations(std::size_t n, std::uint64_t seed) const;
+
+  /// No pose whose origin lies farther than this from `reach_centre` can be reached [m].
+  [[nodiscard]] double reach() const;
+  /// A point on the first joint's axis, in the base frame [m].
+  [[nodiscard]] Eigen::Vector3d reach_centre() const;
+
+  /// Hash over the structure and numbers of the chain up to the tip link: equal for chains that may
+  /// share a database. The TCP and names are not part of it.
+  [[nodiscard]] std::uint64_t chain_hash() const;
+
+  /// For the library itself: the flattened chain.
+  [[nodiscard]] const ChainModel& model() const { return *model_; }
+
+ private:
+  explicit Robot(std::shared_ptr<const ChainModel> model);
+  std::shared_ptr<const ChainModel> model_;
+};
+
+/// The rotation vector and position differences of two poses: [p_target - p; rotvec(R_target R^T)].
+IKSEL_EXPORT Eigen::Matrix<double, 6, 1> pose_error(const Pose& target, const Pose& pose);
+
+/// Throws InvalidArgumentError unless `pose` is finite and rigid (R^T R = I to 1e-6, det R > 0);
+/// `name` names the culprit in the message.
+IKSEL_EXPORT void check_pose(const Pose& pose, const char* name = "pose");
+
+}  // namespace iksel

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The pipeline query -> rank -> iterate -> re-select.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "iksel/database.hpp"
+#include "iksel/export.hpp"
+#include "iksel/options.hpp"
+#include "iksel/result.hpp"
+#include "iksel/robot.hpp"
+
+namespace iksel {
+
+/// Time spent in each stage of one or more solves [ns].
+struct StageTimes {
+  double query = 0;
+  double rank = 0;
+  double iterate = 0;
+  double reselect = 0;
+};
+
+/// Solves inverse kinematics for one robot. Immutable; copies share the data. Safe to use from many
+/// threads at once, and the same input gives the same bits from any of them. Solving allocates
+/// nothing on the heap as long as no more threads solve at once than the machine has cores.
+class IKSEL_EXPORT Solver {
+ public:
+  /// Builds a database by `options.database`. Throws InvalidArgumentError on options out of range.
+  explicit Solver(const Robot& robot, const SolverOptions& options = {});
+  /// Uses a given database. Throws DatabaseMismatchError if it belongs to another chain.
+  Solver(const Robot& robot, const SolverOptions& options, const Database& database);
+
+  [[nodiscard]] const Robot& robot() const;
+  [[nodiscard]] const SolverOptions& options() const;
+  [[nodiscard]] const Database& database() const;
+
+  /// Joint values that put the tip (the TCP, if there is one) at T_base_tip. Throws
+  /// InvalidArgumentError if the pose is not rigid; a pose that cannot be solved is no error but a
+  /// status.
+  [[nodiscard]] Result solve(const Pose& T_base_tip) const;
+  /// As above; iterates from `seed` first, then from the database's. The seed may lie outside the
+  /// limits. Throws InvalidArgumentError if it has not dof finite elements.
+  [[nodiscard]] Result solve(const Pose& T_base_tip, const JointVector& seed) const;
+  /// As solve, adding the time of each stage to `times`.
+  [[nodiscard]] Result solve(const Pose& T_base_tip, StageTimes& times) const;
+
+  /// Solves many targets; result i belongs to target i and has the bits that solve() gives. `threads`
+  /// = 0 takes one per core. Throws InvalidArgumentError naming the first bad pose, before any is
+  /// solved.
+  [[nodiscard]] std::vector<Result> solve_batch(const std::vector<Pose>& T_base_tip,
+                                                int threads = 0) const;
+  /// The same over `count` 4x4 matrices, row by row, into arrays that the caller owns.
+  void solve_batch(const double* T_base_tip, std::size_t count, const BatchView& out,
+                   int threads = 0) const;
+
+ private:
+  struct Impl;
+  std::shared_ptr<const Impl> impl_;
+};
+
+}  // namespace iksel

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The conventions of the whole library, stated once:
+//   * A pose is base -> tip, written T_base_tip: it takes coordinates in the tip frame to coordinates
+//     in the base frame. Lengths are metres, angles radians.
+//   * A twist is [linear; angular] in base axes, taken at the tip origin; a Jacobian maps joint
+//     velocities to it.
+//   * The rotation error between a target and a pose is the rotation vector of R_target * R^T.
+//   * Quaternions in helpers are (w, x, y, z).
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace iksel {
+
+/// Most joints (degrees of freedom) a chain may have.
+inline constexpr int kMaxDof = 32;
+
+/// Joint values [rad or m], one per degree of freedom, base to tip. Holds its storage inside, so that
+/// it is never on the heap; unaligned, so that its layout does not depend on the caller's SIMD flags.
+using JointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::DontAlign, kMaxDof, 1>;
+
+/// Geometric Jacobian, 6 x dof: rows [linear; angular] in base axes at the tip.
+using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::DontAlign, 6, kMaxDof>;
+
+/// Rigid transform, here always T_base_tip or a part of it.
+using Pose = Eigen::Isometry3d;
+
+/// A pose as a struct member: unaligned for the same reason as JointVector. Converts to Pose.
+using StoredPose = Eigen::Transform<double, 3, Eigen::Isometry, Eigen::DontAlign>;
+
+/// Which implementation computes forward kinematics and Jacobians; they agree to 1e-12.
+enum class Kinematics {
+  kernel,  ///< the library's flattened chain (default)
+  kdl,     ///< Orocos KDL, the reference
+};
+
+}  // namespace iksel

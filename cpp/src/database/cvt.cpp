@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Centroidal Voronoi tessellation by MacQueen's method (the sampling of the paper's revision).
+//
+// MacQueen draws one random point after another and moves the generator nearest to it to the mean of
+// all points it has drawn so far. Here the nearest generators are looked up for a round of draws at a
+// time, against the generators as they stood before the round, and the moves are then made in order:
+// rounds are spread over threads and give the same bits for any number of them.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <nanoflann.hpp>
+#include <vector>
+
+#include "database/sampling.hpp"
+#include "math/random.hpp"
+#include "util/parallel.hpp"
+
+namespace iksel {
+namespace {
+
+/// Joint samples as nanoflann sees them.
+struct Generators {
+  const std::vector<double>* values;
+  std::size_t dof;
+
+  [[nodiscard]] std::size_t kdtree_get_point_count() const { return values->size() / dof; }
+  [[nodiscard]] double kdtree_get_pt(std::size_t index, std::size_t i) const {
+    return (*values)[index * dof + i];
+  }
+  template <typename Box>
+  bool kdtree_get_bbox(Box& /*box*/) const {
+    return false;
+  }
+};
+
+using Tree = nanoflann::KDTreeSingleIndexAdaptor<
+    nanoflann::L2_Simple_Adaptor<double, Generators, double, std::uint32_t>, Generators, -1,
+    std::uint32_t>;
+
+}  // namespace
+
+void refine_by_cvt(const ChainModel& model, const DatabaseOptions& options,
+                   std::vector<double>& samples,
+                   const std::function<void(std::size_t)>& on_progress) {
+  const auto dof = static_cast<std::size_t>(model.dof);
+  const std::size_t count = samples.size() / dof;
+
+  // Distances are taken in radians; slides are scaled so that the arm's reach counts as a radian.
+  std::vector<double> lower(dof);
+  std::vector<double> range(dof);
+  std::vector<double> scale(dof, 1.0);
+  for (std::size_t j = 0; j < dof; ++j) {
+    const int joint = static_cast<int>(j);
+    if (model.joint_types[j] == JointType::prismatic) scale[j] = 1.0 / std::max(model.reach, 1e-9);
+    lower[j] = model.sample_lower(joint) * scale[j];
+    range[j] = (model.sample_upper(joint) - model.sample_lower(joint)) * scale[j];
+  }
+  for (std::size_t i = 0; i < samples.size(); ++i) samples[i] *= scale[i % dof];
+
+  // A generator should rarely be drawn twice in a round, and the tree not be built too often.
+  const std::size_t round = std::max<std::size_t>(1, std::min(options.cvt_updates, count / 4 + 1));
+  std::vector<double> draws(round * dof);
+  std::vector<std::uint32_t> nearest(round);
+  std::vector<std::uint32_t> hits(count, 1);
+  const int threads = resolve_threads(options.threads);
+
+  for (std::size_t first = 0; first < options.cvt_updates; first += round) {
+    const std::size_t size = std::min(round, options.cvt_updates - first);
+    const Generators generators{&samples, dof};
+    const Tree tree(static_cast<int>(dof), generators,
+                    nanoflann::KDTreeSingleIndexAdaptorParams(16));
+    const auto look_up = [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        Random random = Random::stream(options.seed + 1, first + i);
+        for (std::size_t j = 0; j < dof; ++j) {
+          draws[i * dof + j] = lower[j] + range[j] * random.uniform();
+        }
+        double distance = 0;
+        tree.knnSearch(&draws[i * dof], 1, &nearest[i], &distance);
+      }
+    };
+    parallel_for(
+        size, 1024, threads, [&] { return look_up; },
+        [&](std::size_t done) { on_progress(first + done); });
+    for (std::size_t i = 0; i < size; ++i) {
+      const std::uint32_t g = nearest[i];
+      const double share = 1.0 / ++hits[g];
+      for (std::size_t j = 0; j < dof; ++j) {
+        double& value = samples[g * dof + j];
+        value += share * (draws[i * dof + j] - value);
+      }
+    }
+  }
+  for (std::size_t i = 0; i < samples.size(); ++i) samples[i] /= scale[i % dof];
+}
+
+}  // namespace iksel

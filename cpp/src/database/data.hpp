@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The arrays behind a Database. They lie in memory as in a file: a header, the keys, the records.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include "database/kd_tree.hpp"
+#include "iksel/options.hpp"
+
+namespace iksel {
+
+/// A block of bytes, on the heap or mapped from a file, aligned to 64 bytes at least.
+class Block {
+ public:
+  Block() = default;
+  Block(const Block&) = delete;
+  Block& operator=(const Block&) = delete;
+  virtual ~Block() = default;
+  [[nodiscard]] virtual const unsigned char* data() const = 0;
+  [[nodiscard]] virtual std::size_t size() const = 0;
+};
+
+struct DatabaseData {
+  DatabaseOptions options;
+  int dof = 0;
+  int key_dim = 0;
+  std::size_t size = 0;
+  std::uint64_t chain_hash = 0;
+  /// Header, keys and records, as in a file.
+  std::shared_ptr<const Block> block;
+  /// size x key_dim, in the order of the tree, so that neighbours lie close together.
+  const double* keys = nullptr;
+  /// size x record_length: x_i = [position; rotation vector] of the tip link (6), q_i (dof), J_i^+
+  /// column by column (dof x 6).
+  const double* records = nullptr;
+  KdTree tree;
+
+  [[nodiscard]] static std::size_t record_length(int dof) {
+    return 6 + 7 * static_cast<std::size_t>(dof);
+  }
+  [[nodiscard]] const double* record(std::size_t i) const {
+    return records + i * record_length(dof);
+  }
+  [[nodiscard]] const double* x(std::size_t i) const { return record(i); }
+  [[nodiscard]] const double* q(std::size_t i) const { return record(i) + 6; }
+  [[nodiscard]] const double* pseudo_inverse(std::size_t i) const { return record(i) + 6 + dof; }
+};
+
+}  // namespace iksel

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "iksel/database.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "database/data.hpp"
+#include "database/file.hpp"
+#include "database/key.hpp"
+#include "iksel/error.hpp"
+#include "math/rotation.hpp"
+
+namespace iksel {
+namespace {
+
+void check_index(std::size_t i, std::size_t size) {
+  if (i >= size) {
+    throw InvalidArgumentError("sample index " + std::to_string(i) + " is not in 0 .. " +
+                               std::to_string(size - 1));
+  }
+}
+
+}  // namespace
+
+Database::Database(std::shared_ptr<const DatabaseData> data) : data_(std::move(data)) {}
+
+Database Database::load(const std::filesystem::path& path) {
+  return Database(
+      std::make_shared<DatabaseData>(read_block(map_file(path), "'" + path.string() + "'")));
+}
+
+void Database::save(const std::filesystem::path& path) const { write_file(path, *data_->block); }
+
+std::string Database::to_bytes() const {
+  return {reinterpret_cast<const char*>(data_->block->data()), data_->block->size()};
+}
+
+Database Database::from_bytes(const std::string& bytes) {
+  const std::size_t payload = bytes.size() > kHeaderSize ? bytes.size() - kHeaderSize : 0;
+  if (payload == 0) throw DatabaseCorruptError("database bytes: truncated, less than a header");
+  auto block = std::make_shared<HeapBlock>(payload);
+  std::memcpy(block->writable(), bytes.data(), bytes.size());
+  return Database(std::make_shared<DatabaseData>(read_block(std::move(block), "bytes")));
+}
+
+const DatabaseOptions& Database::options() const { return data_->options; }
+std::size_t Database::size() const { return data_->size; }
+int Database::dof() const { return data_->dof; }
+int Database::key_dimension() const { return data_->key_dim; }
+std::size_t Database::bytes() const { return data_->block->size(); }
+std::uint64_t Database::chain_hash() const { return data_->chain_hash; }
+
+JointVector Database::q(std::size_t i) const {
+  check_index(i, size());
+  return Eigen::Map<const Eigen::VectorXd>(data_->q(i), dof());
+}
+
+Pose Database::pose(std::size_t i) const {
+  check_index(i, size());
+  const double* x = data_->x(i);
+  Pose pose = Pose::Identity();
+  pose.translation() = Eigen::Map<const Eigen::Vector3d>(x);
+  pose.linear() = from_rotation_vector(Eigen::Map<const Eigen::Vector3d>(x + 3));
+  return pose;
+}
+
+Eigen::MatrixXd Database::pseudo_inverse(std::size_t i) const {
+  check_index(i, size());
+  return Eigen::Map<const Eigen::MatrixXd>(data_->pseudo_inverse(i), dof(), 6);
+}
+
+std::vector<std::size_t> Database::nearest(const Pose& T_base_tip, std::size_t k) const {
+  check_pose(T_base_tip);
+  double key[kMaxKeyDimension];
+  make_key(options(), T_base_tip, key);
+  std::vector<Neighbour> neighbours(std::min(k, size()));
+  std::vector<std::size_t> indices;
+  if (neighbours.empty()) return indices;
+  data_->tree.nearest(key, neighbours.size(), neighbours.data());
+  std::sort(neighbours.begin(), neighbours.end());
+  for (const Neighbour& neighbour : neighbours) indices.push_back(neighbour.index);
+  return indices;
+}
+
+}  // namespace iksel

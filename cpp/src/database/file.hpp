@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The file format: a fixed header, then keys and records as they lie in memory.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "database/data.hpp"
+
+namespace iksel {
+
+inline constexpr std::size_t kHeaderSize = 256;
+
+/// Room for the header and `payload` bytes, on the heap, to be filled by the caller.
+class HeapBlock final : public Block {
+ public:
+  explicit HeapBlock(std::size_t payload);
+  ~HeapBlock() override;
+  [[nodiscard]] const unsigned char* data() const override { return bytes_; }
+  [[nodiscard]] std::size_t size() const override { return size_; }
+  [[nodiscard]] unsigned char* writable() { return bytes_; }
+
+ private:
+  unsigned char* bytes_;
+  std::size_t size_;
+};
+
+/// Writes the header for `data`, whose payload stands behind it already.
+void write_header(const DatabaseData& data, unsigned char* block, std::size_t size);
+
+/// Checks a block (magic, byte order, version, sizes, checksums) and points `DatabaseData` into it.
+/// `name` names it in errors.
+DatabaseData read_block(std::shared_ptr<const Block> block, const std::string& name);
+
+/// Maps a file read-only.
+std::shared_ptr<const Block> map_file(const std::filesystem::path& path);
+
+/// Writes beside `path`, syncs and renames.
+void write_file(const std::filesystem::path& path, const Block& block);
+
+}  // namespace iksel

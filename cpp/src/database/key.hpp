@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The point that stands for a pose in the KD-tree: position [m], then the weighted rotation.
+#pragma once
+
+#include "iksel/options.hpp"
+#include "iksel/types.hpp"
+#include "math/rotation.hpp"
+
+namespace iksel {
+
+inline constexpr int kMaxKeyDimension = 12;
+
+inline int key_dimension(RotationKey key) {
+  switch (key) {
+    case RotationKey::quaternion:
+      return 7;
+    case RotationKey::matrix:
+      return 12;
+    case RotationKey::rotation_vector:
+    case RotationKey::euler:
+      break;
+  }
+  return 6;
+}
+
+inline void make_key(const DatabaseOptions& options, const Pose& pose, double* key) {
+  const Eigen::Matrix3d R = pose.linear();
+  const auto write = [&](double* at, const auto& values, double weight) {
+    for (Eigen::Index i = 0; i < values.size(); ++i) at[i] = weight * values.data()[i];
+  };
+  const Eigen::Vector3d position = pose.translation();
+  write(key, position, 1.0);
+  switch (options.rotation_key) {
+    case RotationKey::rotation_vector:
+      return write(key + 3, to_rotation_vector(R), options.rotation_weight);
+    case RotationKey::quaternion:
+      return write(key + 3, to_quaternion_wxyz(R), options.rotation_weight);
+    case RotationKey::matrix:
+      return write(key + 3, R, options.rotation_weight);
+    case RotationKey::euler:
+      return write(key + 3, to_roll_pitch_yaw(R), options.rotation_weight);
+  }
+}
+
+}  // namespace iksel

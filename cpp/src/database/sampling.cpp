@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "database/sampling.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "iksel/database.hpp"
+#include "math/random.hpp"
+
+namespace iksel {
+namespace {
+
+/// Most joints for which the paper gives grid sizes.
+constexpr int kPaperDof = 7;
+
+std::size_t product(const std::vector<int>& counts) {
+  std::size_t all = 1;
+  for (const int count : counts) all *= static_cast<std::size_t>(count);
+  return all;
+}
+
+/// k_i = int(linspace(N, 4, dof, endpoint=False)[i])
+std::vector<int> paper_counts(int dof, Scale scale) {
+  int most = 8;
+  if (scale == Scale::small) most = 6;
+  if (scale == Scale::large) most = 10;
+  std::vector<int> counts(static_cast<std::size_t>(dof));
+  for (int i = 0; i < dof; ++i) {
+    counts[static_cast<std::size_t>(i)] =
+        static_cast<int>(most + static_cast<double>(i) * (4.0 - most) / dof);
+  }
+  return counts;
+}
+
+void fill_grid(const ChainModel& model, const DatabaseOptions& options,
+               std::vector<double>& samples) {
+  const std::vector<int> counts = grid_counts(model.dof, options.scale);
+  const auto dof = static_cast<std::size_t>(model.dof);
+  for (std::size_t i = 0; i < samples.size() / dof; ++i) {
+    std::size_t rest = i;
+    for (std::size_t j = dof; j-- > 0;) {
+      const auto count = static_cast<std::size_t>(counts[j]);
+      const auto step = static_cast<double>(rest % count + 1);
+      rest /= count;
+      const double lower = model.sample_lower(static_cast<int>(j));
+      const double upper = model.sample_upper(static_cast<int>(j));
+      // linspace(lower, upper, count + 2) without its ends
+      samples[i * dof + j] = lower + (upper - lower) * (step / static_cast<double>(count + 1));
+    }
+  }
+}
+
+void fill_random(const ChainModel& model, std::uint64_t seed, std::vector<double>& samples) {
+  Random random(seed);
+  const auto dof = static_cast<std::size_t>(model.dof);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const int joint = static_cast<int>(i % dof);
+    samples[i] = random.uniform(model.sample_lower(joint), model.sample_upper(joint));
+  }
+}
+
+/// R_d: the additive recurrence by the powers of 1 / phi, phi the real root of x^(d+1) = x + 1
+/// (M. Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018), shifted by the seed.
+void fill_low_discrepancy(const ChainModel& model, std::uint64_t seed,
+                          std::vector<double>& samples) {
+  const int dof = model.dof;
+  double phi = 2.0;
+  for (int i = 0; i < 64; ++i) phi = std::pow(1.0 + phi, 1.0 / (dof + 1));
+  Random random(seed);
+  for (int j = 0; j < dof; ++j) {
+    const double alpha = std::pow(1.0 / phi, j + 1);
+    const double shift = random.uniform();
+    const double lower = model.sample_lower(j);
+    const double upper = model.sample_upper(j);
+    double index = 0;
+    for (std::size_t i = static_cast<std::size_t>(j); i < samples.size();
+         i += static_cast<std::size_t>(dof)) {
+      const double x = shift + alpha * ++index;
+      samples[i] = lower + (upper - lower) * (x - std::floor(x));
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<int> grid_counts(int dof, Scale scale) {
+  std::vector<int> counts = paper_counts(dof, scale);
+  if (dof > kPaperDof) {
+    // The paper stops at 7 joints, and the product would explode: lower the largest count, the last
+    // of equals first, until there are no more samples than the paper has for 7 joints.
+    const std::size_t most = product(paper_counts(kPaperDof, scale));
+    while (product(counts) > most) {
+      auto largest = counts.begin();
+      for (auto it = counts.begin(); it != counts.end(); ++it) {
+        if (*it >= *largest) largest = it;
+      }
+      if (*largest == 1) break;
+      --*largest;
+    }
+  }
+  return counts;
+}
+
+std::size_t sample_count(const ChainModel& model, const DatabaseOptions& options) {
+  if (options.sampling == Sampling::grid || options.samples == 0) {
+    return product(grid_counts(model.dof, options.scale));
+  }
+  return options.samples;
+}
+
+std::vector<double> make_samples(const ChainModel& model, const DatabaseOptions& options,
+                                 const std::function<void(std::size_t)>& on_progress) {
+  std::vector<double> samples(sample_count(model, options) * static_cast<std::size_t>(model.dof));
+  switch (options.sampling) {
+    case Sampling::grid:
+      fill_grid(model, options, samples);
+      break;
+    case Sampling::low_discrepancy:
+      fill_low_discrepancy(model, options.seed, samples);
+      break;
+    case Sampling::random:
+      fill_random(model, options.seed, samples);
+      break;
+    case Sampling::cvt:
+      fill_random(model, options.seed, samples);
+      refine_by_cvt(model, options, samples, on_progress);
+      break;
+  }
+  return samples;
+}
+
+}  // namespace iksel

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "iteration/iterate.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "iteration/schemes.hpp"
+#include "math/rotation.hpp"
+
+namespace iksel {
+namespace {
+
+/// [position; rotation vector] error of a pose against the target.
+Vector6 error_vector(const Pose& target, const Pose& pose) {
+  Vector6 e;
+  e << target.translation() - pose.translation(),
+      to_rotation_vector(target.linear() * pose.linear().transpose());
+  return e;
+}
+
+/// Shortens the two halves of an error to the clamps.
+void clamp_error(Vector6& e, double position, double rotation, const SolverOptions& options) {
+  if (position > options.position_clamp) e.head<3>() *= options.position_clamp / position;
+  if (rotation > options.rotation_clamp) e.tail<3>() *= options.rotation_clamp / rotation;
+}
+
+void random_configuration(const ChainModel& model, Random& random, JointVector& q) {
+  for (int i = 0; i < model.dof; ++i) {
+    q[i] = random.uniform(model.sample_lower(i), model.sample_upper(i));
+  }
+}
+
+bool stops_on_growth(const SolverOptions& options) {
+  if (options.growth_stop != GrowthStop::by_scheme) return options.growth_stop == GrowthStop::on;
+  return options.iteration == Iteration::dls || options.iteration == Iteration::pinv;
+}
+
+bool stops_on_small_step(Iteration iteration) {
+  return iteration == Iteration::dls || iteration == Iteration::pinv ||
+         iteration == Iteration::pinv_rr;
+}
+
+JointVector make_step(const IterationContext& context, const JointVector& q,
+                      const JacobianMatrix& J, const Vector6& e) {
+  const SolverOptions& options = context.options;
+  switch (options.iteration) {
+    case Iteration::dls:
+      return dls_step(J, e, options);
+    case Iteration::pinv:
+    case Iteration::pinv_rr:
+      return pinv_step(J, e, options);
+    case Iteration::cwln:
+      return cwln_step(context.model, q, J, e, options);
+    case Iteration::cwpi:
+      return cwpi_step(context.model, q, J, e, options);
+    case Iteration::lm:
+      break;
+  }
+  return lm_step(context.model, q, J, e, options);
+}
+
+/// What follows a step besides adding it; true if the attempt goes on.
+void after_step(const IterationContext& context, JointVector& q) {
+  constexpr double kTwoPi = 6.28318530717958647692;
+  if (context.options.iteration == Iteration::pinv_rr &&
+      !context.model.within_limits(q.data())) {
+    random_configuration(context.model, context.random, q);
+  } else if (context.options.iteration == Iteration::cwln) {
+    for (int i = 0; i < context.model.dof; ++i) {
+      if (context.model.joint_types[static_cast<std::size_t>(i)] != JointType::prismatic) {
+        q[i] = std::remainder(q[i], kTwoPi);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void measure_error(const ChainModel& model, const Pose& target, const JointVector& q,
+                   double& position_error, double& rotation_error) {
+  const Vector6 e = error_vector(target, model.fk(q.data()));
+  position_error = e.head<3>().norm();
+  rotation_error = e.tail<3>().norm();
+}
+
+Outcome iterate(const IterationContext& context, JointVector& q, int& steps) {
+  const ChainModel& model = context.model;
+  const SolverOptions& options = context.options;
+  const bool growth_stop = stops_on_growth(options);
+  const bool small_step_stop = stops_on_small_step(options.iteration);
+  Outcome outcome = Outcome::failed;
+  double last_position = std::numeric_limits<double>::infinity();
+  double last_rotation = std::numeric_limits<double>::infinity();
+  Pose pose;
+  Jacobian J;
+
+  for (int step = 0;; ++step) {
+    if (context.kdl != nullptr) {
+      pose = context.kdl->fk(q);
+      J = context.kdl->jacobian(q);
+    } else {
+      model.fk_jacobian(q.data(), pose, J, false);
+    }
+    Vector6 e = error_vector(context.tip_target, pose);
+    const double position = e.head<3>().norm();
+    const double rotation = e.tail<3>().norm();  // the same at the TCP
+    const double tcp_position =
+        (context.target.translation() - pose * Eigen::Vector3d(model.tcp.translation())).norm();
+
+    if (tcp_position < options.position_tolerance && rotation < options.rotation_tolerance) {
+      if (options.whole_turns) model.wrap_into_limits(q.data());
+      if (model.within_limits(q.data())) return Outcome::solved;
+      outcome = Outcome::outside_limits;
+      // Only the paper's first two schemes go on from here; the others have nothing left to gain.
+      if (options.iteration == Iteration::cwln || options.iteration == Iteration::cwpi ||
+          options.iteration == Iteration::lm) {
+        return outcome;
+      }
+    }
+    if (growth_stop && position > last_position && rotation > last_rotation) return outcome;
+    last_position = position;
+    last_rotation = rotation;
+    if (step == options.max_iterations) return outcome;
+
+    if (options.iteration != Iteration::lm) clamp_error(e, position, rotation, options);
+    const JointVector adjustment = make_step(context, q, J, e);
+    ++steps;
+    if (!adjustment.allFinite()) return outcome;
+    if (small_step_stop && std::abs(adjustment.sum()) < options.min_step) {
+      if (options.iteration != Iteration::pinv_rr) return outcome;
+      random_configuration(model, context.random, q);
+      continue;
+    }
+    q += adjustment;
+    after_step(context, q);
+  }
+}
+
+}  // namespace iksel

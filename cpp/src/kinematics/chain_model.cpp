@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kinematics/chain_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "iksel/error.hpp"
+#include "math/hash.hpp"
+
+namespace iksel {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kTwoPi = 2.0 * kPi;
+
+Frame<double> to_frame(const Eigen::Isometry3d& T) {
+  Frame<double> f;
+  for (int i = 0; i < 3; ++i) {
+    f.x[i] = T.linear()(i, 0);
+    f.y[i] = T.linear()(i, 1);
+    f.z[i] = T.linear()(i, 2);
+    f.p[i] = T.translation()[i];
+  }
+  return f;
+}
+
+/// Rotation that takes z to the unit vector `axis`; the identity where it is z already.
+Eigen::Isometry3d turn_z_to(const Eigen::Vector3d& axis) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  if ((axis - Eigen::Vector3d::UnitZ()).norm() > 0) {
+    T.linear() =
+        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis).toRotationMatrix();
+  }
+  return T;
+}
+
+Eigen::Isometry3d rotation_z(double angle) {
+  return Eigen::Isometry3d(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()));
+}
+
+/// R = Rz(first) Rx(alpha) Rz(last), with sin(alpha) >= 0.
+struct EulerZxz {
+  double first, cos_alpha, sin_alpha, last;
+
+  explicit EulerZxz(const Eigen::Matrix3d& R) {
+    // For alpha near 0 or pi `first` is ill defined; any value serves, as the rest is taken from what
+    // it leaves of R.
+    const bool aligned = std::hypot(R(0, 2), R(1, 2)) < 1e-12;
+    first = aligned ? 0.0 : std::atan2(R(0, 2), -R(1, 2));
+    const Eigen::Matrix3d rest = rotation_z(-first).linear() * R;  // Rx(alpha) Rz(last)
+    const double alpha = std::atan2(-rest(1, 2), rest(2, 2));
+    cos_alpha = std::cos(alpha);
+    sin_alpha = std::sin(alpha);
+    last = std::atan2(-rest(0, 1), rest(0, 0));
+  }
+};
+
+}  // namespace
+
+Pose to_pose(const Frame<double>& f) {
+  Pose pose;
+  pose.matrix() << f.x[0], f.y[0], f.z[0], f.p[0], f.x[1], f.y[1], f.z[1], f.p[1], f.x[2], f.y[2],
+      f.z[2], f.p[2], 0, 0, 0, 1;
+  return pose;
+}
+
+ChainModel::ChainModel(std::string urdf_xml, const RobotOptions& options_in)
+    : urdf(std::move(urdf_xml)), options(options_in) {
+  check_pose(Pose(options.tcp), "tcp");
+  spec = read_chain(urdf, options);
+  dof = static_cast<int>(spec.variables.size());
+  for (JointVector* v : {&lower, &upper, &velocity, &soft_lower, &soft_upper}) v->resize(dof);
+  for (int i = 0; i < dof; ++i) {
+    const ChainVariable& variable = spec.variables[i];
+    joint_names.push_back(variable.name);
+    joint_types.push_back(variable.type);
+    lower[i] = variable.lower;
+    upper[i] = variable.upper;
+    velocity[i] = variable.velocity;
+    soft_lower[i] = variable.soft_lower;
+    soft_upper[i] = variable.soft_upper;
+  }
+  flatten();
+  measure_reach();
+  hash = compute_hash();
+  set_tool(Pose(options.tcp));
+}
+
+std::shared_ptr<const ChainModel> ChainModel::with_tcp(const Pose& T_tip_tcp) const {
+  check_pose(T_tip_tcp, "tcp");
+  auto copy = std::make_shared<ChainModel>(*this);
+  copy->options.tcp = T_tip_tcp;
+  copy->set_tool(T_tip_tcp);
+  return copy;
+}
+
+std::unique_ptr<KdlChain> ChainModel::make_kdl(bool with_tool) const {
+  return std::make_unique<KdlChain>(spec.joints, dof, with_tool ? Pose(tcp) : Pose::Identity());
+}
+
+void ChainModel::flatten() {
+  // `constant` gathers all that lies between two motions; `turn` is the constant rotation about z
+  // that the previous motion can take over.
+  Eigen::Isometry3d constant = Eigen::Isometry3d::Identity();
+  for (const ChainJoint& joint : spec.joints) {
+    if (joint.fixed) {
+      constant = constant * joint.before * joint.after;
+      continue;
+    }
+    if (kernel.joints.size() == kMaxMovingJoints) {
+      throw UrdfError("the chain has more than " + std::to_string(kMaxMovingJoints) +
+                      " moving joints, mimic joints included");
+    }
+    const Eigen::Isometry3d align = turn_z_to(joint.axis);
+    constant = constant * joint.before * align;
+
+    KernelJoint k{};
+    k.variable = joint.variable;
+    k.multiplier = joint.multiplier;
+    k.offset = joint.offset;
+    k.prismatic = joint.prismatic;
+    k.cos_turn = 1;
+    if (kernel.joints.empty()) {
+      kernel.base = to_frame(constant);
+      k.cos_alpha = 1;
+    } else {
+      // Behind the previous motion stands Trans(p) Rz(first) Rx(alpha) Rz(last). Rz(first) goes to
+      // the previous joint, so p is seen from a frame turned by it; Rz(last) stays with this joint.
+      const EulerZxz euler(constant.linear());
+      KernelJoint& previous = kernel.joints.back();
+      const Eigen::Vector3d p = rotation_z(-euler.first).linear() * constant.translation();
+      for (int i = 0; i < 3; ++i) k.p[i] = p[i];
+      k.cos_alpha = euler.cos_alpha;
+      k.sin_alpha = euler.sin_alpha;
+      if (previous.prismatic) {
+        const double turn = std::atan2(previous.sin_turn, previous.cos_turn) + euler.first;
+        previous.cos_turn = std::cos(turn);
+        previous.sin_turn = std::sin(turn);
+      } else {
+        previous.offset += euler.first;
+      }
+      if (k.prismatic) {
+        k.cos_turn = std::cos(euler.last);
+        k.sin_turn = std::sin(euler.last);
+      } else {
+        k.offset += euler.last;
+      }
+    }
+    kernel.joints.push_back(k);
+    constant = align.inverse() * joint.after;
+  }
+  kernel.flange = to_frame(constant);
+}
+
+void ChainModel::set_tool(const Pose& T_tip_tcp) {
+  tcp = T_tip_tcp;
+  tcp_inverse = T_tip_tcp.inverse();
+  kernel.tip = to_frame(to_pose(kernel.flange) * T_tip_tcp);
+}
+
+void ChainModel::measure_reach() {
+  // The triangle inequality over the constant offsets and the slides; the tool is added by callers.
+  reach_centre = Eigen::Vector3d(kernel.base.p[0], kernel.base.p[1], kernel.base.p[2]);
+  reach = 0;
+  bool first = true;
+  for (const KernelJoint& k : kernel.joints) {
+    if (!first) reach += Eigen::Vector3d(k.p[0], k.p[1], k.p[2]).norm();
+    first = false;
+    if (k.prismatic) {
+      const double low = k.variable < 0 ? 0 : k.multiplier * lower[k.variable];
+      const double high = k.variable < 0 ? 0 : k.multiplier * upper[k.variable];
+      reach += std::max(std::abs(low + k.offset), std::abs(high + k.offset));
+    }
+  }
+  const Frame<double>& f = kernel.flange;
+  reach += Eigen::Vector3d(f.p[0], f.p[1], f.p[2]).norm();
+}
+
+std::uint64_t ChainModel::compute_hash() const {
+  // Over what the URDF says, so that the kernel may change its frames without old files going stale.
+  Hash64 hasher;
+  const auto add_transform = [&](const Eigen::Isometry3d& T) {
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 4; ++column) hasher.add(T(row, column));
+    }
+  };
+  for (const ChainJoint& joint : spec.joints) {
+    add_transform(joint.before);
+    add_transform(joint.after);
+    for (const bool flag : {joint.fixed, joint.prismatic}) {
+      hasher.add(static_cast<std::uint64_t>(flag));
+    }
+    for (int i = 0; i < 3; ++i) hasher.add(joint.axis[i]);
+    hasher.add(static_cast<std::uint64_t>(joint.variable + 1));
+    hasher.add(joint.multiplier);
+    hasher.add(joint.offset);
+  }
+  for (int i = 0; i < dof; ++i) {
+    hasher.add(lower[i]);
+    hasher.add(upper[i]);
+  }
+  return hasher.value();
+}
+
+Pose ChainModel::fk(const double* q) const { return to_pose(forward(kernel, q)); }
+
+void ChainModel::fk_jacobian(const double* q, Pose& pose, Jacobian& jacobian,
+                             bool with_tool) const {
+  jacobian.resize(6, dof);
+  const Frame<double>& end = with_tool ? kernel.tip : kernel.flange;
+  pose = to_pose(forward_jacobian(kernel, end, dof, q, jacobian.data()));
+}
+
+bool ChainModel::within_limits(const double* q) const {
+  for (int i = 0; i < dof; ++i) {
+    // Written so that NaN is outside.
+    if (!(q[i] >= lower[i] && q[i] <= upper[i])) return false;
+  }
+  return true;
+}
+
+void ChainModel::wrap_into_limits(double* q) const {
+  for (int i = 0; i < dof; ++i) {
+    if (joint_types[i] == JointType::prismatic) continue;
+    if (joint_types[i] == JointType::continuous) {
+      // Any value is allowed; a principal one is what users expect.
+      if (std::abs(q[i]) > kPi) q[i] = std::remainder(q[i], kTwoPi);
+    } else if (q[i] < lower[i]) {
+      const double wrapped = q[i] + kTwoPi * std::ceil((lower[i] - q[i]) / kTwoPi);
+      if (wrapped <= upper[i]) q[i] = wrapped;
+    } else if (q[i] > upper[i]) {
+      const double wrapped = q[i] - kTwoPi * std::ceil((q[i] - upper[i]) / kTwoPi);
+      if (wrapped >= lower[i]) q[i] = wrapped;
+    }
+  }
+}
+
+double ChainModel::sample_lower(int joint) const {
+  return joint_types[joint] == JointType::continuous ? -kPi : lower[joint];
+}
+
+double ChainModel::sample_upper(int joint) const {
+  return joint_types[joint] == JointType::continuous ? kPi : upper[joint];
+}
+
+}  // namespace iksel

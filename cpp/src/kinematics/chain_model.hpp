@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Everything the library knows of one chain: what the URDF says, flattened once for the kernels.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "iksel/robot.hpp"
+#include "kinematics/kdl_chain.hpp"
+#include "kinematics/kernel.hpp"
+#include "urdf/chain_spec.hpp"
+
+namespace iksel {
+
+class ChainModel {
+ public:
+  ChainModel(std::string urdf, const RobotOptions& options);
+  /// The same chain with another tool.
+  [[nodiscard]] std::shared_ptr<const ChainModel> with_tcp(const Pose& T_tip_tcp) const;
+
+  [[nodiscard]] std::unique_ptr<KdlChain> make_kdl(bool with_tool = true) const;
+
+  [[nodiscard]] Pose fk(const double* q) const;
+  /// Pose and Jacobian of the TCP, or of the tip link if not `with_tool`.
+  void fk_jacobian(const double* q, Pose& pose, Jacobian& jacobian, bool with_tool = true) const;
+
+  /// True if every joint lies inside its limits, both ends included.
+  [[nodiscard]] bool within_limits(const double* q) const;
+  /// Brings joints whose range exceeds 2 pi inside the limits by whole turns, to the nearest turn;
+  /// others are left alone.
+  void wrap_into_limits(double* q) const;
+  /// Range that samples and random configurations are taken from: the limits, or [-pi, pi).
+  [[nodiscard]] double sample_lower(int joint) const;
+  [[nodiscard]] double sample_upper(int joint) const;
+
+  int dof;
+  std::string urdf;
+  RobotOptions options;
+  ChainSpec spec;
+  std::vector<std::string> joint_names;
+  std::vector<JointType> joint_types;
+  JointVector lower, upper, velocity, soft_lower, soft_upper;
+  KernelChain kernel;
+  /// T_tip_tcp and its inverse.
+  StoredPose tcp, tcp_inverse;
+  Eigen::Matrix<double, 3, 1, Eigen::DontAlign> reach_centre;
+  double reach;
+  std::uint64_t hash;
+
+ private:
+  void flatten();
+  void set_tool(const Pose& T_tip_tcp);
+  void measure_reach();
+  [[nodiscard]] std::uint64_t compute_hash() const;
+};
+
+/// Frame of the kernel as a pose.
+Pose to_pose(const Frame<double>& frame);
+
+}  // namespace iksel

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Forward kinematics and the Jacobian of a flattened chain, for any number type T: a double, or a SIMD
+// pack that holds one configuration per lane.
+//
+// Every joint frame has its motion axis on z. A frame may be turned about its own z by a constant that
+// the joint angle takes over, so each constant rotation between two joints (Euler angles ZXZ) shrinks
+// to a single Rx(alpha):
+//   T_base_tip = base * prod_k [ Trans(p_k) Rx(alpha_k) Rz(angle_k) Tz(slide_k) ] * tip
+// This is Denavit and Hartenberg's idea without their common normal, which is ill defined for axes
+// that are nearly parallel.
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+namespace iksel {
+
+struct KernelJoint {
+  double p[3];  ///< from the previous joint's frame [m]
+  double cos_alpha, sin_alpha;
+  double multiplier, offset;  ///< motion = multiplier * q[variable] + offset [rad or m]
+  double cos_turn, sin_turn;  ///< constant angle_k of a prismatic joint
+  int variable;               ///< -1: the motion is `offset`
+  bool prismatic;
+};
+
+/// Rotation by columns and position, for T = double or a pack.
+template <typename T>
+struct Frame {
+  T x[3], y[3], z[3], p[3];
+};
+
+struct KernelChain {
+  Frame<double> base;
+  std::vector<KernelJoint> joints;
+  Frame<double> tip;     ///< last joint -> TCP
+  Frame<double> flange;  ///< last joint -> tip link
+};
+
+inline void sincos(double angle, double& sine, double& cosine) {
+  sine = std::sin(angle);
+  cosine = std::cos(angle);
+}
+
+/// Most joints that move on a chain (mimic joints come on top of the degrees of freedom).
+inline constexpr int kMaxMovingJoints = 64;
+
+/// z axes and origins of the joint frames, as the Jacobian needs them.
+template <typename T>
+struct JointAxes {
+  T axis[kMaxMovingJoints][3];
+  T origin[kMaxMovingJoints][3];
+};
+
+/// (u, v) <- (c u + s v, c v - s u): turns two columns of a rotation about the third.
+template <typename T, typename C>
+inline void turn_columns(T (&u)[3], T (&v)[3], const C& c, const C& s) {
+  for (int i = 0; i < 3; ++i) {
+    const T a = u[i];
+    u[i] = c * a + s * v[i];
+    v[i] = c * v[i] - s * a;
+  }
+}
+
+/// frame <- frame * local, for a constant `local`.
+template <typename T>
+inline void append(Frame<T>& frame, const Frame<double>& local) {
+  const Frame<T> f = frame;
+  for (int i = 0; i < 3; ++i) {
+    frame.x[i] = f.x[i] * local.x[0] + f.y[i] * local.x[1] + f.z[i] * local.x[2];
+    frame.y[i] = f.x[i] * local.y[0] + f.y[i] * local.y[1] + f.z[i] * local.y[2];
+    frame.z[i] = f.x[i] * local.z[0] + f.y[i] * local.z[1] + f.z[i] * local.z[2];
+    frame.p[i] = f.p[i] + f.x[i] * local.p[0] + f.y[i] * local.p[1] + f.z[i] * local.p[2];
+  }
+}
+
+/// Pose of the last joint's frame; `axes` may be null.
+template <typename T>
+inline Frame<T> forward_to_last_joint(const KernelChain& chain, const T* q, JointAxes<T>* axes) {
+  Frame<T> f;
+  for (int i = 0; i < 3; ++i) {
+    f.x[i] = T(chain.base.x[i]);
+    f.y[i] = T(chain.base.y[i]);
+    f.z[i] = T(chain.base.z[i]);
+    f.p[i] = T(chain.base.p[i]);
+  }
+  int k = 0;
+  for (const KernelJoint& joint : chain.joints) {
+    for (int i = 0; i < 3; ++i) {
+      f.p[i] += f.x[i] * joint.p[0] + f.y[i] * joint.p[1] + f.z[i] * joint.p[2];
+    }
+    turn_columns(f.y, f.z, joint.cos_alpha, joint.sin_alpha);
+    const T motion =
+        joint.variable < 0 ? T(joint.offset) : q[joint.variable] * joint.multiplier + joint.offset;
+    if (axes != nullptr) {
+      for (int i = 0; i < 3; ++i) axes->axis[k][i] = f.z[i];
+    }
+    if (joint.prismatic) {
+      turn_columns(f.x, f.y, joint.cos_turn, joint.sin_turn);
+      for (int i = 0; i < 3; ++i) f.p[i] += f.z[i] * motion;
+    } else {
+      T sine;
+      T cosine;
+      sincos(motion, sine, cosine);
+      turn_columns(f.x, f.y, cosine, sine);
+    }
+    if (axes != nullptr) {
+      for (int i = 0; i < 3; ++i) axes->origin[k][i] = f.p[i];
+    }
+    ++k;
+  }
+  return f;
+}
+
+/// Pose of the TCP.
+template <typename T>
+inline Frame<T> forward(const KernelChain& chain, const T* q) {
+  Frame<T> f = forward_to_last_joint<T>(chain, q, nullptr);
+  append(f, chain.tip);
+  return f;
+}
+
+/// Pose of `end` (chain.tip or chain.flange), and its Jacobian column by column:
+/// jacobian[6 * variable + row], `dof` columns.
+template <typename T>
+inline Frame<T> forward_jacobian(const KernelChain& chain, const Frame<double>& end, int dof,
+                                 const T* q, T* jacobian) {
+  JointAxes<T> axes;
+  Frame<T> f = forward_to_last_joint(chain, q, &axes);
+  append(f, end);
+  for (int i = 0; i < 6 * dof; ++i) jacobian[i] = T(0.0);
+  int k = 0;
+  for (const KernelJoint& joint : chain.joints) {
+    if (joint.variable >= 0) {
+      T* column = jacobian + 6 * joint.variable;
+      const T* z = axes.axis[k];
+      const double m = joint.multiplier;
+      if (joint.prismatic) {
+        for (int i = 0; i < 3; ++i) column[i] += z[i] * m;
+      } else {
+        const T* o = axes.origin[k];
+        const T r[3] = {f.p[0] - o[0], f.p[1] - o[1], f.p[2] - o[2]};
+        column[0] += (z[1] * r[2] - z[2] * r[1]) * m;
+        column[1] += (z[2] * r[0] - z[0] * r[2]) * m;
+        column[2] += (z[0] * r[1] - z[1] * r[0]) * m;
+        for (int i = 0; i < 3; ++i) column[3 + i] += z[i] * m;
+      }
+    }
+    ++k;
+  }
+  return f;
+}
+
+}  // namespace iksel

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "iksel/robot.hpp"
+
+#include <utility>
+
+#include "error_check.hpp"
+#include "kinematics/chain_model.hpp"
+#include "math/random.hpp"
+#include "math/rotation.hpp"
+#include "urdf/parse.hpp"
+
+namespace iksel {
+
+Robot::Robot(std::shared_ptr<const ChainModel> model) : model_(std::move(model)) {}
+
+Robot Robot::from_urdf_file(const std::filesystem::path& path, const RobotOptions& options) {
+  return from_urdf_string(read_urdf_file(path), options);
+}
+
+Robot Robot::from_urdf_string(const std::string& xml, const RobotOptions& options) {
+  return Robot(std::make_shared<ChainModel>(xml, options));
+}
+
+Robot Robot::with_tcp(const Pose& T_tip_tcp) const { return Robot(model_->with_tcp(T_tip_tcp)); }
+
+const std::string& Robot::name() const { return model_->spec.robot_name; }
+const std::string& Robot::base_link() const { return model_->options.base_link; }
+const std::string& Robot::tip_link() const { return model_->options.tip_link; }
+const std::string& Robot::urdf() const { return model_->urdf; }
+const RobotOptions& Robot::options() const { return model_->options; }
+Pose Robot::tcp() const { return Pose(model_->tcp); }
+int Robot::dof() const { return model_->dof; }
+const std::vector<std::string>& Robot::joint_names() const { return model_->joint_names; }
+const std::vector<JointType>& Robot::joint_types() const { return model_->joint_types; }
+const JointVector& Robot::lower() const { return model_->lower; }
+const JointVector& Robot::upper() const { return model_->upper; }
+const JointVector& Robot::velocity_limit() const { return model_->velocity; }
+const JointVector& Robot::soft_lower() const { return model_->soft_lower; }
+const JointVector& Robot::soft_upper() const { return model_->soft_upper; }
+
+bool Robot::within_limits(const JointVector& q) const {
+  check_joints(q, dof(), "q");
+  return model_->within_limits(q.data());
+}
+
+Pose Robot::fk(const JointVector& q, Kinematics kinematics) const {
+  check_joints(q, dof(), "q");
+  if (kinematics == Kinematics::kdl) return model_->make_kdl()->fk(q);
+  return model_->fk(q.data());
+}
+
+Jacobian Robot::jacobian(const JointVector& q, Kinematics kinematics) const {
+  check_joints(q, dof(), "q");
+  if (kinematics == Kinematics::kdl) return model_->make_kdl()->jacobian(q);
+  Pose pose;
+  Jacobian J;
+  model_->fk_jacobian(q.data(), pose, J);
+  return J;
+}
+
+Eigen::MatrixXd Robot::random_configurations(std::size_t n, std::uint64_t seed) const {
+  Eigen::MatrixXd q(static_cast<Eigen::Index>(n), dof());
+  Random random(seed);
+  for (Eigen::Index row = 0; row < q.rows(); ++row) {
+    for (int i = 0; i < dof(); ++i) {
+      q(row, i) = random.uniform(model_->sample_lower(i), model_->sample_upper(i));
+    }
+  }
+  return q;
+}
+
+double Robot::reach() const { return model_->reach + model_->tcp.translation().norm(); }
+Eigen::Vector3d Robot::reach_centre() const { return model_->reach_centre; }
+std::uint64_t Robot::chain_hash() const { return model_->hash; }
+
+Eigen::Matrix<double, 6, 1> pose_error(const Pose& target, const Pose& pose) {
+  Eigen::Matrix<double, 6, 1> error;
+  error << target.translation() - pose.translation(),
+      to_rotation_vector(target.linear() * pose.linear().transpose());
+  return error;
+}
+
+}  // namespace iksel

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Conversions between rotation matrices and vectors of numbers, robust at angles 0 and pi.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cmath>
+
+namespace iksel {
+
+/// Unit quaternion (w, x, y, z) of R with w >= 0.
+inline Eigen::Vector4d to_quaternion_wxyz(const Eigen::Matrix3d& R) {
+  const Eigen::Quaterniond q(R);
+  const double sign = q.w() < 0 ? -1.0 : 1.0;
+  return sign * Eigen::Vector4d(q.w(), q.x(), q.y(), q.z());
+}
+
+/// Rotation vector of R, length in [0, pi] [rad]. By way of the quaternion, which keeps full precision
+/// at both ends of the range.
+inline Eigen::Vector3d to_rotation_vector(const Eigen::Matrix3d& R) {
+  const Eigen::Vector4d q = to_quaternion_wxyz(R);
+  const Eigen::Vector3d v = q.tail<3>();
+  const double sine = v.norm();
+  // 2 atan2(s, w) / s -> 2 / w for s -> 0.
+  const double factor = sine > 1e-12 ? 2.0 * std::atan2(sine, q[0]) / sine : 2.0 / q[0];
+  return factor * v;
+}
+
+/// Rotation matrix of a rotation vector [rad] (Rodrigues).
+inline Eigen::Matrix3d from_rotation_vector(const Eigen::Vector3d& w) {
+  const double angle = w.norm();
+  if (angle < 1e-300) return Eigen::Matrix3d::Identity();
+  return Eigen::AngleAxisd(angle, w / angle).toRotationMatrix();
+}
+
+/// Roll, pitch, yaw [rad] with R = Rz(yaw) Ry(pitch) Rx(roll), pitch in [-pi/2, pi/2].
+inline Eigen::Vector3d to_roll_pitch_yaw(const Eigen::Matrix3d& R) {
+  const double cosine = std::hypot(R(0, 0), R(1, 0));
+  const double pitch = std::atan2(-R(2, 0), cosine);
+  if (cosine < 1e-12) return {std::atan2(-R(1, 2), R(1, 1)), pitch, 0.0};
+  return {std::atan2(R(2, 1), R(2, 2)), pitch, std::atan2(R(1, 0), R(0, 0))};
+}
+
+}  // namespace iksel

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Query and rank: the seeds for one target, best first; and re-selection among them.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "database/data.hpp"
+#include "iksel/options.hpp"
+#include "kinematics/chain_model.hpp"
+
+namespace iksel {
+
+/// A database sample as a seed; the lowest rank comes first.
+struct Candidate {
+  double score;         ///< squared norm of Eq. (2) or Eq. (5)
+  std::uint32_t index;  ///< of the sample
+  bool leaves_limits;   ///< q + J^+ e is outside (only asked if limit_aware)
+
+  friend bool operator<(const Candidate& a, const Candidate& b) {
+    if (a.leaves_limits != b.leaves_limits) return b.leaves_limits;
+    return a.score != b.score ? a.score < b.score : a.index < b.index;
+  }
+};
+
+/// Picks seeds for one target. Memory is taken at construction, none later.
+class Selection {
+ public:
+  Selection(const ChainModel& model, const DatabaseData& data, const SolverOptions& options);
+
+  /// The neighbours of T_base_flange (the tip link, without the tool).
+  void query(const Pose& T_base_flange);
+  /// Puts the neighbours in order and keeps the best.
+  void rank();
+  /// The seed of the next attempt (0, 1, ...), dof values; null when there is none left.
+  const double* next_seed(int attempt);
+
+ private:
+  void score(Candidate& candidate, const double* x) const;
+  void bring_farthest_forward(int attempt);
+
+  const ChainModel& model_;
+  const DatabaseData& data_;
+  const SolverOptions& options_;
+  Pose target_;
+  double target_x_[6];
+  std::vector<Neighbour> neighbours_;
+  std::vector<Candidate> candidates_;
+  std::size_t found_ = 0;
+  std::size_t kept_ = 0;
+  JointVector sum_of_failed_;
+};
+
+}  // namespace iksel

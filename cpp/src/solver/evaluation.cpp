@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "iksel/evaluation.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "iksel/error.hpp"
+#include "kinematics/chain_model.hpp"
+#include "math/pseudo_inverse.hpp"
+
+namespace iksel {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double microseconds(Clock::duration duration) {
+  return std::chrono::duration<double, std::micro>(duration).count();
+}
+
+/// By KDL and the limits, with nothing of the solver's own.
+bool is_solution(KdlChain& kdl, const Solver& solver, const Pose& target, const JointVector& q) {
+  // FK in doubles is good to 1e-14 or so, which is what two implementations may differ by.
+  constexpr double kRounding = 1e-13;
+  if (q.size() != solver.robot().dof() || !q.allFinite()) return false;
+  const Eigen::Matrix<double, 6, 1> e = pose_error(target, kdl.fk(q));
+  return e.head<3>().norm() <= solver.options().position_tolerance + kRounding &&
+         e.tail<3>().norm() <= solver.options().rotation_tolerance + kRounding &&
+         solver.robot().within_limits(q);
+}
+
+/// Value at the quantile of sorted times.
+double quantile(const std::vector<double>& sorted, double part) {
+  const double position = part * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<std::size_t>(position);
+  const std::size_t above = std::min(below + 1, sorted.size() - 1);
+  return sorted[below] + (position - static_cast<double>(below)) * (sorted[above] - sorted[below]);
+}
+
+}  // namespace
+
+double time_kdl_fk_jacobian(const Robot& robot, std::size_t calls) {
+  const std::unique_ptr<KdlChain> kdl = robot.model().make_kdl();
+  constexpr std::size_t kDistinct = 256;
+  const Eigen::MatrixXd q = robot.random_configurations(kDistinct, 0);
+  std::vector<JointVector> configurations;
+  for (Eigen::Index i = 0; i < q.rows(); ++i) configurations.emplace_back(q.row(i));
+  volatile double sink = 0;
+  const auto start = Clock::now();
+  for (std::size_t i = 0; i < calls; ++i) {
+    sink = sink + kdl->fk_and_jacobian(configurations[i % kDistinct]);
+  }
+  return microseconds(Clock::now() - start) / static_cast<double>(calls);
+}
+
+Evaluation evaluate(const Solver& solver, std::size_t targets, std::uint64_t seed, bool stages,
+                    const Progress& progress) {
+  if (targets == 0) throw InvalidArgumentError("targets: at least 1 is needed");
+  const Robot& robot = solver.robot();
+  const std::unique_ptr<KdlChain> kdl = robot.model().make_kdl();
+  const Eigen::MatrixXd q = robot.random_configurations(targets, seed);
+  std::vector<Pose> poses;
+  poses.reserve(targets);
+  for (Eigen::Index i = 0; i < q.rows(); ++i) poses.push_back(kdl->fk(q.row(i)));
+
+  Evaluation out;
+  out.targets = targets;
+  out.seed = seed;
+  // The yardstick is taken before and after, so that a machine that speeds up or slows down meanwhile
+  // does not tilt the ratio.
+  const double kdl_before = time_kdl_fk_jacobian(robot);
+  const std::size_t warm_up = std::min<std::size_t>(targets, 200);
+  for (std::size_t i = 0; i < warm_up; ++i) static_cast<void>(solver.solve(poses[i]));
+
+  std::vector<double> times(targets);
+  double attempts = 0;
+  double iterations = 0;
+  for (std::size_t i = 0; i < targets; ++i) {
+    const auto start = Clock::now();
+    const Result result = solver.solve(poses[i]);
+    times[i] = microseconds(Clock::now() - start);
+    attempts += result.attempts;
+    iterations += result.iterations;
+    if (result.success()) {
+      ++out.solved;
+      if (!is_solution(*kdl, solver, poses[i], result.q)) ++out.false_success;
+    }
+    if (progress && i % 1024 == 0) progress(i, targets);
+  }
+  out.kdl_fk_jac_us = 0.5 * (kdl_before + time_kdl_fk_jacobian(robot));
+
+  const auto n = static_cast<double>(targets);
+  out.success_percent = 100.0 * static_cast<double>(out.solved) / n;
+  out.mean_us = std::accumulate(times.begin(), times.end(), 0.0) / n;
+  double squares = 0;
+  for (const double t : times) squares += (t - out.mean_us) * (t - out.mean_us);
+  out.std_us = std::sqrt(squares / n);
+  std::sort(times.begin(), times.end());
+  out.min_us = times.front();
+  out.max_us = times.back();
+  out.median_us = quantile(times, 0.5);
+  out.p99_us = quantile(times, 0.99);
+  out.mean_attempts = attempts / n;
+  out.mean_iterations = iterations / n;
+  out.ratio = out.mean_us / out.kdl_fk_jac_us;
+
+  if (stages) {
+    StageTimes total;
+    for (const Pose& pose : poses) static_cast<void>(solver.solve(pose, total));
+    out.query_us = total.query / n / 1e3;
+    out.rank_us = total.rank / n / 1e3;
+    out.iterate_us = total.iterate / n / 1e3;
+    out.reselect_us = total.reselect / n / 1e3;
+  }
+  if (progress) progress(targets, targets);
+  return out;
+}
+
+}  // namespace iksel

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "iksel/solver.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <limits>
+#include <thread>
+#include <utility>
+
+#include "error_check.hpp"
+#include "iksel/error.hpp"
+#include "solver/solver_impl.hpp"
+
+namespace iksel {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// Adds the time since the last lap to one stage; does nothing if there is nobody to tell.
+class StageClock {
+ public:
+  explicit StageClock(bool runs) : runs_(runs) {
+    if (runs_) last_ = Clock::now();
+  }
+  void lap(double* stage) {
+    if (!runs_) return;
+    const auto now = Clock::now();
+    *stage += std::chrono::duration<double, std::nano>(now - last_).count();
+    last_ = now;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  bool runs_;
+  Clock::time_point last_;
+};
+
+std::string hex(std::uint64_t value) {
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
+  return text;
+}
+
+void check_fits(const Robot& robot, const Database& database) {
+  if (database.chain_hash() == robot.chain_hash() && database.dof() == robot.dof()) return;
+  throw DatabaseMismatchError("the database (" + std::to_string(database.dof()) +
+                              " joints, chain hash " + hex(database.chain_hash()) +
+                              ") was built for another chain than robot '" + robot.name() + "' (" +
+                              std::to_string(robot.dof()) + " joints, chain hash " +
+                              hex(robot.chain_hash()) + ")");
+}
+
+}  // namespace
+
+Workspace::Workspace(const ChainModel& model, const DatabaseData& data,
+                     const SolverOptions& options)
+    : selection(model, data, options) {
+  if (options.kinematics == Kinematics::kdl) kdl = model.make_kdl(false);
+}
+
+Solver::Impl::Impl(const Robot& robot_in, const SolverOptions& options_in,
+                   const Database& database_in)
+    : robot(robot_in), options(options_in), database(database_in) {
+  check_fits(robot, database);
+  const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
+  for (std::size_t i = 0; i < std::min(cores, kPlaces); ++i) {
+    idle_[i] = new Workspace(robot.model(), database.data(), options);
+  }
+}
+
+Solver::Impl::~Impl() {
+  for (auto& place : idle_) delete place.load();
+}
+
+Solver::Impl::Lease::Lease(const Impl& solver) : solver_(solver), workspace_(nullptr) {
+  for (auto& place : solver_.idle_) {
+    if (place.load(std::memory_order_relaxed) == nullptr) continue;
+    workspace_ = place.exchange(nullptr, std::memory_order_acquire);
+    if (workspace_ != nullptr) return;
+  }
+  workspace_ = new Workspace(solver.robot.model(), solver.database.data(), solver.options);
+}
+
+Solver::Impl::Lease::~Lease() {
+  for (auto& place : solver_.idle_) {
+    Workspace* expected = nullptr;
+    if (place.compare_exchange_strong(expected, workspace_, std::memory_order_release,
+                                      std::memory_order_relaxed)) {
+      return;
+    }
+  }
+  delete workspace_;
+}
+
+Result Solver::Impl::solve(const Pose& T_base_tip, const JointVector* seed, Workspace& workspace,
+                           StageTimes* times) const {
+  const ChainModel& model = robot.model();
+  StageTimes ignored;
+  StageTimes& stages = times != nullptr ? *times : ignored;
+  StageClock clock(times != nullptr);
+
+  Result result;
+  result.position_error = result.rotation_error = kNan;
+  const double distance = (T_base_tip.translation() - robot.reach_centre()).norm();
+  if (distance > robot.reach() + options.position_tolerance) {
+    result.status = Status::out_of_reach;
+    return result;
+  }
+
+  Random random(options.seed);
+  const Pose tip_target = T_base_tip * Pose(model.tcp_inverse);
+  const IterationContext context{model,  options, T_base_tip, tip_target, workspace.kdl.get(),
+                                 random};
+  JointVector q;
+  const auto attempt = [&](const double* from) {
+    q = Eigen::Map<const Eigen::VectorXd>(from, model.dof);
+    ++result.attempts;
+    const Outcome outcome = iterate(context, q, result.iterations);
+    if (outcome == Outcome::outside_limits) result.status = Status::outside_limits;
+    // Nothing is a success by hearsay: the q that goes out is measured itself.
+    if (outcome == Outcome::solved) result = finish(result, T_base_tip, q);
+    return result.success();
+  };
+
+  if (seed != nullptr && attempt(seed->data())) {
+    clock.lap(&stages.iterate);
+    return result;
+  }
+
+  Selection& selection = workspace.selection;
+  clock.lap(&stages.iterate);
+  selection.query(tip_target);
+  clock.lap(&stages.query);
+  selection.rank();
+  clock.lap(&stages.rank);
+  for (int i = 0; i < options.max_attempts; ++i) {
+    const double* from = selection.next_seed(i);
+    clock.lap(&stages.reselect);
+    if (from == nullptr) break;
+    const bool solved = attempt(from);
+    clock.lap(&stages.iterate);
+    if (solved) break;
+  }
+  return result;
+}
+
+Result Solver::Impl::finish(Result result, const Pose& target, const JointVector& q) const {
+  double position = kNan;
+  double rotation = kNan;
+  measure_error(robot.model(), target, q, position, rotation);
+  if (position <= options.position_tolerance && rotation <= options.rotation_tolerance &&
+      robot.model().within_limits(q.data())) {
+    result.status = Status::solved;
+    result.q = q;
+    result.position_error = position;
+    result.rotation_error = rotation;
+  }
+  return result;
+}
+
+Solver::Solver(const Robot& robot, const SolverOptions& options) {
+  options.validate();
+  impl_ = std::make_shared<Impl>(robot, options, Database::build(robot, options.database));
+}
+
+Solver::Solver(const Robot& robot, const SolverOptions& options, const Database& database) {
+  options.validate();
+  impl_ = std::make_shared<Impl>(robot, options, database);
+}
+
+const Robot& Solver::robot() const { return impl_->robot; }
+const SolverOptions& Solver::options() const { return impl_->options; }
+const Database& Solver::database() const { return impl_->database; }
+
+Result Solver::solve(const Pose& T_base_tip) const {
+  check_pose(T_base_tip);
+  const Impl::Lease lease(*impl_);
+  return impl_->solve(T_base_tip, nullptr, lease.get(), nullptr);
+}
+
+Result Solver::solve(const Pose& T_base_tip, const JointVector& seed) const {
+  check_pose(T_base_tip);
+  check_joints(seed, robot().dof(), "seed");
+  const Impl::Lease lease(*impl_);
+  return impl_->solve(T_base_tip, &seed, lease.get(), nullptr);
+}
+
+Result Solver::solve(const Pose& T_base_tip, StageTimes& times) const {
+  check_pose(T_base_tip);
+  const Impl::Lease lease(*impl_);
+  return impl_->solve(T_base_tip, nullptr, lease.get(), &times);
+}
+
+}  // namespace iksel

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the URDF says of a chain, joint by joint, before any kinematics is made of it.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <string>
+#include <vector>
+
+#include "iksel/robot.hpp"
+
+namespace iksel {
+
+/// One joint on the way from base to tip: first the constant transform `before`, then the motion by
+/// `multiplier * q[variable] + offset` about or along `axis`, then `after`.
+struct ChainJoint {
+  std::string name;
+  Eigen::Isometry3d before = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d after = Eigen::Isometry3d::Identity();
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
+  bool fixed = false;
+  bool prismatic = false;
+  int variable = -1;
+  double multiplier = 1.0;
+  double offset = 0.0;
+};
+
+/// One degree of freedom.
+struct ChainVariable {
+  std::string name;
+  JointType type = JointType::revolute;
+  double lower = 0, upper = 0;
+  double soft_lower = 0, soft_upper = 0;
+  double velocity = 0;
+};
+
+struct ChainSpec {
+  std::string robot_name;
+  std::vector<ChainJoint> joints;
+  std::vector<ChainVariable> variables;
+};
+
+/// Reads the chain that `options` choose; fills in their base and tip link where they are empty.
+ChainSpec read_chain(const std::string& urdf_xml, RobotOptions& options);
+
+}  // namespace iksel

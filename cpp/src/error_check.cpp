@@ -29,8 +29,7 @@ void check_rigid(const Eigen::Matrix4d& T, const char* name, std::ptrdiff_t inde
     fail(name, index, row.str());
   }
   const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
-  const double error =
-      (R.transpose() * R - Eigen::Matrix3d::Identity()).lpNorm<Eigen::Infinity>();
+  const double error = (R.transpose() * R - Eigen::Matrix3d::Identity()).lpNorm<Eigen::Infinity>();
   if (error > kRigidTolerance) {
     std::ostringstream what;
     what << "not a rotation: R^T R differs from the identity by " << error << " (at most "

@@ -25,8 +25,8 @@ std::string list_names(const Map& map) {
 /// Throws InvalidArgumentError unless q has `dof` finite elements.
 void check_joints(const JointVector& q, int dof, const char* name);
 
-/// Throws InvalidArgumentError unless the row-major 4x4 matrix is a rigid transform; `index` >= 0 is
-/// named in the message.
+/// Throws InvalidArgumentError unless the row-major 4x4 matrix is a rigid transform; `index` >= 0
+/// is named in the message.
 void check_matrix(const double* row_major, const char* name, std::ptrdiff_t index = -1);
 
 /// Pose of a row-major 4x4 matrix.

@@ -18,17 +18,17 @@ namespace iksel {
 
 struct DatabaseData;
 
-/// Called now and then by the thread that builds, with samples done and samples in all. An exception
-/// it throws ends the build and reaches the caller.
+/// Called now and then by the thread that builds, with samples done and samples in all. An
+/// exception it throws ends the build and reaches the caller.
 using Progress = std::function<void(std::size_t done, std::size_t total)>;
 
 /// An immutable set of samples (q_i, x_i, J_i^+); copies are cheap and share the data. Safe to use
 /// from many threads at once.
 class IKSEL_EXPORT Database {
  public:
-  /// Samples the joint limits and computes pose, Jacobian (by KDL) and pseudo-inverse of every sample.
-  /// Poses are of the tip link, without the TCP. Throws InvalidArgumentError on bad options,
-  /// DatabaseError if the samples would not fit.
+  /// Samples the joint limits and computes pose, Jacobian (by KDL) and pseudo-inverse of every
+  /// sample. Poses are of the tip link, without the TCP. Throws InvalidArgumentError on bad
+  /// options, DatabaseError if the samples would not fit.
   static Database build(const Robot& robot, const DatabaseOptions& options = {},
                         const Progress& progress = {});
 
@@ -59,8 +59,8 @@ class IKSEL_EXPORT Database {
   [[nodiscard]] Pose pose(std::size_t i) const;
   [[nodiscard]] Eigen::MatrixXd pseudo_inverse(std::size_t i) const;
 
-  /// Indices of the k samples whose keys are nearest to that of T_base_tip (of the tip link), nearest
-  /// first.
+  /// Indices of the k samples whose keys are nearest to that of T_base_tip (of the tip link),
+  /// nearest first.
   [[nodiscard]] std::vector<std::size_t> nearest(const Pose& T_base_tip, std::size_t k) const;
 
   /// For the library itself.

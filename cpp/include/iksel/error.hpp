@@ -27,8 +27,8 @@ class IKSEL_EXPORT UnknownNameError : public UrdfError {
   using UrdfError::UrdfError;
 };
 
-/// An argument of the wrong size or value: a pose that is not rigid, a non-finite number, a q of the
-/// wrong length, an option out of range.
+/// An argument of the wrong size or value: a pose that is not rigid, a non-finite number, a q of
+/// the wrong length, an option out of range.
 class IKSEL_EXPORT InvalidArgumentError : public Error {
  public:
   using Error::Error;

@@ -16,7 +16,7 @@ enum class Status : std::uint8_t {
   solved,          ///< q reaches the target within both tolerances and lies inside the limits
   not_converged,   ///< no attempt reached the tolerances within the allowed work
   outside_limits,  ///< attempts reached the target, but only with joints outside their limits
-  out_of_reach,    ///< the target's position is farther away than the arm is long; nothing was tried
+  out_of_reach,  ///< the target's position is farther away than the arm is long; nothing was tried
 };
 
 /// Lower-case name of a status.

@@ -47,9 +47,9 @@ class IKSEL_EXPORT Solver {
   /// As solve, adding the time of each stage to `times`.
   [[nodiscard]] Result solve(const Pose& T_base_tip, StageTimes& times) const;
 
-  /// Solves many targets; result i belongs to target i and has the bits that solve() gives. `threads`
-  /// = 0 takes one per core. Throws InvalidArgumentError naming the first bad pose, before any is
-  /// solved.
+  /// Solves many targets; result i belongs to target i and has the bits that solve() gives.
+  /// `threads` = 0 takes one per core. Throws InvalidArgumentError naming the first bad pose,
+  /// before any is solved.
   [[nodiscard]] std::vector<Result> solve_batch(const std::vector<Pose>& T_base_tip,
                                                 int threads = 0) const;
   /// The same over `count` 4x4 matrices, row by row, into arrays that the caller owns.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The conventions of the whole library, stated once:
-//   * A pose is base -> tip, written T_base_tip: it takes coordinates in the tip frame to coordinates
+//   * A pose is base -> tip, written T_base_tip: it takes coordinates in the tip frame to
+//   coordinates
 //     in the base frame. Lengths are metres, angles radians.
 //   * A twist is [linear; angular] in base axes, taken at the tip origin; a Jacobian maps joint
 //     velocities to it.
@@ -16,8 +17,9 @@ namespace iksel {
 /// Most joints (degrees of freedom) a chain may have.
 inline constexpr int kMaxDof = 32;
 
-/// Joint values [rad or m], one per degree of freedom, base to tip. Holds its storage inside, so that
-/// it is never on the heap; unaligned, so that its layout does not depend on the caller's SIMD flags.
+/// Joint values [rad or m], one per degree of freedom, base to tip. Holds its storage inside, so
+/// that it is never on the heap; unaligned, so that its layout does not depend on the caller's SIMD
+/// flags.
 using JointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::DontAlign, kMaxDof, 1>;
 
 /// Geometric Jacobian, 6 x dof: rows [linear; angular] in base axes at the tip.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Centroidal Voronoi tessellation by MacQueen's method (the sampling of the paper's revision).
 //
-// MacQueen draws one random point after another and moves the generator nearest to it to the mean of
-// all points it has drawn so far. Here the nearest generators are looked up for a round of draws at a
-// time, against the generators as they stood before the round, and the moves are then made in order:
-// rounds are spread over threads and give the same bits for any number of them.
+// MacQueen draws one random point after another and moves the generator nearest to it to the mean
+// of all points it has drawn so far. Here the nearest generators are looked up for a round of draws
+// at a time, against the generators as they stood before the round, and the moves are then made in
+// order: rounds are spread over threads and give the same bits for any number of them.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

@@ -9,8 +9,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
-#include <cstdio>
 #include <cstddef>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <new>
@@ -99,8 +99,7 @@ class Descriptor {
 
 }  // namespace
 
-HeapBlock::HeapBlock(std::size_t payload)
-    : bytes_(nullptr), size_(kHeaderSize + payload) {
+HeapBlock::HeapBlock(std::size_t payload) : bytes_(nullptr), size_(kHeaderSize + payload) {
   const std::size_t rounded = (size_ + kAlignment - 1) / kAlignment * kAlignment;
   bytes_ = static_cast<unsigned char*>(std::aligned_alloc(kAlignment, rounded));
   if (bytes_ == nullptr) throw std::bad_alloc();
@@ -216,12 +215,11 @@ std::shared_ptr<const Block> map_file(const std::filesystem::path& path) {
 void write_file(const std::filesystem::path& path, const Block& block) {
   // A name of our own in the same folder, so that the rename is atomic.
   static std::atomic<unsigned> counter{0};
-  const std::string temporary = path.string() + "." + std::to_string(::getpid()) + "-" +
-                                std::to_string(counter++) + ".tmp";
+  const std::string temporary =
+      path.string() + "." + std::to_string(::getpid()) + "-" + std::to_string(counter++) + ".tmp";
   Descriptor file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
   if (file.get() < 0) {
-    throw DatabaseIoError("cannot write database '" + path.string() +
-                          "': " + system_error(errno));
+    throw DatabaseIoError("cannot write database '" + path.string() + "': " + system_error(errno));
   }
   const auto fail = [&](const char* what) {
     const int error = errno;
@@ -233,8 +231,8 @@ void write_file(const std::filesystem::path& path, const Block& block) {
   std::size_t written = 0;
   while (written < block.size()) {
     constexpr std::size_t kPiece = 1U << 30U;
-    const ssize_t n = ::write(file.get(), block.data() + written,
-                              std::min(kPiece, block.size() - written));
+    const ssize_t n =
+        ::write(file.get(), block.data() + written, std::min(kPiece, block.size() - written));
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) fail("write");
     written += static_cast<std::size_t>(n);

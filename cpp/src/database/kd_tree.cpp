@@ -27,8 +27,8 @@ struct Points {
   }
 };
 
-/// Keeps the k nearest in a max-heap: nanoflann's own result set keeps them sorted, which costs more
-/// than the search itself for k = 200.
+/// Keeps the k nearest in a max-heap: nanoflann's own result set keeps them sorted, which costs
+/// more than the search itself for k = 200.
 class HeapResult {
  public:
   using DistanceType = double;

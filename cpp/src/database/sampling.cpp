@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numeric>
 
 #include "iksel/database.hpp"
 #include "math/random.hpp"
@@ -13,10 +15,9 @@ namespace {
 /// Most joints for which the paper gives grid sizes.
 constexpr int kPaperDof = 7;
 
-std::size_t product(const std::vector<int>& counts) {
-  std::size_t all = 1;
-  for (const int count : counts) all *= static_cast<std::size_t>(count);
-  return all;
+/// In doubles: 4^32 does not fit an integer.
+double product(const std::vector<int>& counts) {
+  return std::accumulate(counts.begin(), counts.end(), 1.0, std::multiplies<>());
 }
 
 /// k_i = int(linspace(N, 4, dof, endpoint=False)[i])
@@ -60,7 +61,8 @@ void fill_random(const ChainModel& model, std::uint64_t seed, std::vector<double
 }
 
 /// R_d: the additive recurrence by the powers of 1 / phi, phi the real root of x^(d+1) = x + 1
-/// (M. Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018), shifted by the seed.
+/// (M. Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018), shifted by the
+/// seed.
 void fill_low_discrepancy(const ChainModel& model, std::uint64_t seed,
                           std::vector<double>& samples) {
   const int dof = model.dof;
@@ -88,7 +90,7 @@ std::vector<int> grid_counts(int dof, Scale scale) {
   if (dof > kPaperDof) {
     // The paper stops at 7 joints, and the product would explode: lower the largest count, the last
     // of equals first, until there are no more samples than the paper has for 7 joints.
-    const std::size_t most = product(paper_counts(kPaperDof, scale));
+    const double most = product(paper_counts(kPaperDof, scale));
     while (product(counts) > most) {
       auto largest = counts.begin();
       for (auto it = counts.begin(); it != counts.end(); ++it) {
@@ -103,7 +105,7 @@ std::vector<int> grid_counts(int dof, Scale scale) {
 
 std::size_t sample_count(const ChainModel& model, const DatabaseOptions& options) {
   if (options.sampling == Sampling::grid || options.samples == 0) {
-    return product(grid_counts(model.dof, options.scale));
+    return static_cast<std::size_t>(product(grid_counts(model.dof, options.scale)));
   }
   return options.samples;
 }

@@ -23,8 +23,8 @@ inline JointVector pinv_step(const JacobianMatrix& J, const Vector6& e,
   return TruncatedSvd(J, options.pinv_cutoff).inverse() * e;
 }
 
-/// Weight of each joint in cwln and cwpi: 1 inside, falling as 3 s^2 - 2 s^3 to 0 over the margin at
-/// each end of the range, s the distance to the limit over the margin (Huang et al. 2016).
+/// Weight of each joint in cwln and cwpi: 1 inside, falling as 3 s^2 - 2 s^3 to 0 over the margin
+/// at each end of the range, s the distance to the limit over the margin (Huang et al. 2016).
 inline JointVector joint_weights(const ChainModel& model, const JointVector& q, double margin) {
   JointVector weights = JointVector::Ones(model.dof);
   for (int i = 0; i < model.dof; ++i) {
@@ -40,7 +40,8 @@ inline JointVector joint_weights(const ChainModel& model, const JointVector& q, 
   return weights;
 }
 
-/// Pull-back towards mid-range, c = -(I - W) phi, phi_i = 0.1 (2 q_i - lo_i - hi_i) / (hi_i - lo_i).
+/// Pull-back towards mid-range, c = -(I - W) phi, phi_i = 0.1 (2 q_i - lo_i - hi_i) / (hi_i -
+/// lo_i).
 inline JointVector pull_back(const ChainModel& model, const JointVector& q,
                              const JointVector& weights) {
   constexpr double kGain = 0.1;
@@ -76,15 +77,16 @@ inline JointVector cwpi_step(const ChainModel& model, const JointVector& q, cons
   return c + root.cwiseProduct(y);
 }
 
-/// True where a joint has limits that count: a range of 2 pi or more is left free and wrapped later.
+/// True where a joint has limits that count: a range of 2 pi or more is left free and wrapped
+/// later.
 inline bool limits_count(const ChainModel& model, int i) {
   constexpr double kTwoPi = 6.28318530717958647692;
   return model.joint_types[static_cast<std::size_t>(i)] == JointType::prismatic ||
          model.upper[i] - model.lower[i] < kTwoPi;
 }
 
-/// lm: J^T (J J^T + damping |e|^2 I)^-1 e with the columns of joints that stand at a limit and would
-/// leave it set to zero, and the step cut off at the limits.
+/// lm: J^T (J J^T + damping |e|^2 I)^-1 e with the columns of joints that stand at a limit and
+/// would leave it set to zero, and the step cut off at the limits.
 inline JointVector lm_step(const ChainModel& model, const JointVector& q, const JacobianMatrix& J,
                            const Vector6& e, const SolverOptions& options) {
   JacobianMatrix active = J;

@@ -44,8 +44,8 @@ struct EulerZxz {
   double first, cos_alpha, sin_alpha, last;
 
   explicit EulerZxz(const Eigen::Matrix3d& R) {
-    // For alpha near 0 or pi `first` is ill defined; any value serves, as the rest is taken from what
-    // it leaves of R.
+    // For alpha near 0 or pi `first` is ill defined; any value serves, as the rest is taken from
+    // what it leaves of R.
     const bool aligned = std::hypot(R(0, 2), R(1, 2)) < 1e-12;
     first = aligned ? 0.0 : std::atan2(R(0, 2), -R(1, 2));
     const Eigen::Matrix3d rest = rotation_z(-first).linear() * R;  // Rx(alpha) Rz(last)
@@ -178,7 +178,8 @@ void ChainModel::measure_reach() {
 }
 
 std::uint64_t ChainModel::compute_hash() const {
-  // Over what the URDF says, so that the kernel may change its frames without old files going stale.
+  // Over what the URDF says, so that the kernel may change its frames without old files going
+  // stale.
   Hash64 hasher;
   const auto add_transform = [&](const Eigen::Isometry3d& T) {
     for (int row = 0; row < 3; ++row) {

@@ -22,7 +22,8 @@ KDL::Chain to_kdl_chain(const std::vector<ChainJoint>& joints, const Pose& T_tip
   KDL::Chain chain;
   for (const ChainJoint& joint : joints) {
     if (joint.fixed) {
-      chain.addSegment(KDL::Segment(KDL::Joint(KDL::Joint::None), to_kdl(joint.before * joint.after)));
+      chain.addSegment(
+          KDL::Segment(KDL::Joint(KDL::Joint::None), to_kdl(joint.before * joint.after)));
       continue;
     }
     // The segment's motion happens at the end of `before`; KDL wants the axis in the frame ahead of

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Forward kinematics and the Jacobian of a flattened chain, for any number type T: a double, or a SIMD
-// pack that holds one configuration per lane.
+// Forward kinematics and the Jacobian of a flattened chain, for any number type T: a double, or a
+// SIMD pack that holds one configuration per lane.
 //
-// Every joint frame has its motion axis on z. A frame may be turned about its own z by a constant that
-// the joint angle takes over, so each constant rotation between two joints (Euler angles ZXZ) shrinks
-// to a single Rx(alpha):
+// Every joint frame has its motion axis on z. A frame may be turned about its own z by a constant
+// that the joint angle takes over, so each constant rotation between two joints (Euler angles ZXZ)
+// shrinks to a single Rx(alpha):
 //   T_base_tip = base * prod_k [ Trans(p_k) Rx(alpha_k) Rz(angle_k) Tz(slide_k) ] * tip
 // This is Denavit and Hartenberg's idea without their common normal, which is ill defined for axes
 // that are nearly parallel.

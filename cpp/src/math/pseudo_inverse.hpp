@@ -16,11 +16,14 @@ using PseudoInverse = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::DontAlign,
 /// 6 x dof, as Eigen's decompositions want it.
 using JacobianMatrix = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, kMaxDof>;
 
-/// Singular value decomposition of a Jacobian with singular values under `cutoff` * largest cut off.
+/// Singular value decomposition of a Jacobian with singular values under `cutoff` * largest cut
+/// off.
 class TruncatedSvd {
  public:
   TruncatedSvd(const JacobianMatrix& J, double cutoff)
-      : svd_(J, Eigen::ComputeThinU | Eigen::ComputeThinV) {
+      // Full U, which is 6 x 6 for any arm: a thin one does not fit the type for fewer than 6
+      // joints.
+      : svd_(J, Eigen::ComputeFullU | Eigen::ComputeThinV) {
     const auto& sigma = svd_.singularValues();
     inverse_sigma_.resize(sigma.size());
     for (Eigen::Index i = 0; i < sigma.size(); ++i) {
@@ -31,13 +34,14 @@ class TruncatedSvd {
   /// J^+ e, the least-squares step of least norm.
   [[nodiscard]] JointVector solve(const Vector6& e) const {
     const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1> scaled =
-        inverse_sigma_.cwiseProduct(svd_.matrixU().transpose() * e);
+        inverse_sigma_.cwiseProduct(svd_.matrixU().leftCols(inverse_sigma_.size()).transpose() * e);
     return svd_.matrixV() * scaled;
   }
 
   /// J^+.
   [[nodiscard]] PseudoInverse inverse() const {
-    return svd_.matrixV() * inverse_sigma_.asDiagonal() * svd_.matrixU().transpose();
+    return svd_.matrixV() * inverse_sigma_.asDiagonal() *
+           svd_.matrixU().leftCols(inverse_sigma_.size()).transpose();
   }
 
  private:

@@ -12,7 +12,8 @@ class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
 
-  /// Independent stream number `stream` of a seed, e.g. one per sample, so that threads do not matter.
+  /// Independent stream number `stream` of a seed, e.g. one per sample, so that threads do not
+  /// matter.
   static Random stream(std::uint64_t seed, std::uint64_t stream) {
     Random mixer(seed ^ (stream * 0xD1B54A32D192ED03ULL));
     return Random(mixer.next());

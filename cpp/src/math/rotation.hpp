@@ -15,8 +15,8 @@ inline Eigen::Vector4d to_quaternion_wxyz(const Eigen::Matrix3d& R) {
   return sign * Eigen::Vector4d(q.w(), q.x(), q.y(), q.z());
 }
 
-/// Rotation vector of R, length in [0, pi] [rad]. By way of the quaternion, which keeps full precision
-/// at both ends of the range.
+/// Rotation vector of R, length in [0, pi] [rad]. By way of the quaternion, which keeps full
+/// precision at both ends of the range.
 inline Eigen::Vector3d to_rotation_vector(const Eigen::Matrix3d& R) {
   const Eigen::Vector4d q = to_quaternion_wxyz(R);
   const Eigen::Vector3d v = q.tail<3>();

@@ -100,7 +100,8 @@ void Selection::bring_farthest_forward(int attempt) {
   // Of the candidates not tried yet, the one with the largest |m q - sum of the m failed q|.
   const auto dof = model_.dof;
   const auto position = static_cast<std::size_t>(attempt);
-  sum_of_failed_ += Eigen::Map<const Eigen::VectorXd>(data_.q(candidates_[position - 1].index), dof);
+  sum_of_failed_ +=
+      Eigen::Map<const Eigen::VectorXd>(data_.q(candidates_[position - 1].index), dof);
   std::size_t best = position;
   double best_distance = -1;
   for (std::size_t i = position; i < kept_; ++i) {

@@ -44,11 +44,10 @@ std::string hex(std::uint64_t value) {
 
 void check_fits(const Robot& robot, const Database& database) {
   if (database.chain_hash() == robot.chain_hash() && database.dof() == robot.dof()) return;
-  throw DatabaseMismatchError("the database (" + std::to_string(database.dof()) +
-                              " joints, chain hash " + hex(database.chain_hash()) +
-                              ") was built for another chain than robot '" + robot.name() + "' (" +
-                              std::to_string(robot.dof()) + " joints, chain hash " +
-                              hex(robot.chain_hash()) + ")");
+  throw DatabaseMismatchError(
+      "the database (" + std::to_string(database.dof()) + " joints, chain hash " +
+      hex(database.chain_hash()) + ") was built for another chain than robot '" + robot.name() +
+      "' (" + std::to_string(robot.dof()) + " joints, chain hash " + hex(robot.chain_hash()) + ")");
 }
 
 }  // namespace
@@ -110,7 +109,7 @@ Result Solver::Impl::solve(const Pose& T_base_tip, const JointVector* seed, Work
 
   Random random(options.seed);
   const Pose tip_target = T_base_tip * Pose(model.tcp_inverse);
-  const IterationContext context{model,  options, T_base_tip, tip_target, workspace.kdl.get(),
+  const IterationContext context{model, options, T_base_tip, tip_target, workspace.kdl.get(),
                                  random};
   JointVector q;
   const auto attempt = [&](const double* from) {

@@ -33,8 +33,8 @@ class ChainReader {
     if (options_.tip_link.empty()) options_.tip_link = only_leaf();
     for (const auto& [name, value] : options_.locked_joints) {
       if (!model_.joints_.count(name)) {
-        throw UnknownNameError("locked joint '" + name + "' is not in the URDF; it has: " +
-                               list_names(model_.joints_));
+        throw UnknownNameError("locked joint '" + name +
+                               "' is not in the URDF; it has: " + list_names(model_.joints_));
       }
       if (!std::isfinite(value)) {
         throw InvalidArgumentError("locked joint '" + name + "': its value is not finite");
@@ -162,8 +162,9 @@ class ChainReader {
       const urdf::JointMimic& mimic = *motion.source->mimic;
       const auto it = model_.joints_.find(mimic.joint_name);
       if (it == model_.joints_.end()) {
-        throw UnknownNameError("joint '" + motion.source->name + "' mimics '" + mimic.joint_name +
-                               "', which is not in the URDF; it has: " + list_names(model_.joints_));
+        throw UnknownNameError(
+            "joint '" + motion.source->name + "' mimics '" + mimic.joint_name +
+            "', which is not in the URDF; it has: " + list_names(model_.joints_));
       }
       if (steps > model_.joints_.size()) {
         throw UrdfError("joint '" + joint.name + "' mimics itself through a circle of joints");
@@ -200,7 +201,8 @@ class ChainReader {
   ChainVariable make_variable(const urdf::Joint& joint) const {
     ChainVariable variable;
     variable.name = joint.name;
-    variable.velocity = joint.limits && joint.limits->velocity > 0 ? joint.limits->velocity : kInfinity;
+    variable.velocity =
+        joint.limits && joint.limits->velocity > 0 ? joint.limits->velocity : kInfinity;
     if (joint.type == urdf::Joint::CONTINUOUS) {
       // Safety limits of continuous joints are placeholders in practice (0, 0).
       variable.type = JointType::continuous;

@@ -14,8 +14,8 @@
 namespace iksel {
 namespace {
 
-/// While it lives, console_bridge's messages are collected instead of printed. console_bridge has one
-/// handler for the whole process, so only one collector lives at a time.
+/// While it lives, console_bridge's messages are collected instead of printed. console_bridge has
+/// one handler for the whole process, so only one collector lives at a time.
 class MessageCollector : public console_bridge::OutputHandler {
  public:
   MessageCollector() : lock_(mutex()), level_(console_bridge::getLogLevel()) {

@@ -25,9 +25,9 @@ inline int resolve_threads(int threads) {
   return threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-/// Calls make_worker() once on each thread, and the worker it returns with (begin, end) of one chunk
-/// after another. `on_progress(done)` runs on the calling thread, which works too. The first exception
-/// of a worker or of on_progress stops all and is thrown again here.
+/// Calls make_worker() once on each thread, and the worker it returns with (begin, end) of one
+/// chunk after another. `on_progress(done)` runs on the calling thread, which works too. The first
+/// exception of a worker or of on_progress stops all and is thrown again here.
 template <typename MakeWorker, typename OnProgress>
 void parallel_for(std::size_t count, std::size_t chunk, int threads, const MakeWorker& make_worker,
                   const OnProgress& on_progress) {

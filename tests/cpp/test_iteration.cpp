@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Each scheme: what its step is, and that it converges from near by.
+#include <gtest/gtest.h>
+
+#include <Eigen/QR>
+
+#include "iksel/iksel.hpp"
+#include "iteration/iterate.hpp"
+#include "iteration/schemes.hpp"
+#include "robots.hpp"
+
+namespace {
+
+using iksel::Iteration;
+using iksel::JacobianMatrix;
+using iksel::JointVector;
+using iksel::Pose;
+using iksel::Robot;
+using iksel::SolverOptions;
+using iksel::Vector6;
+
+Vector6 random_error(iksel::Random& random) {
+  Vector6 e;
+  for (int i = 0; i < 6; ++i) e[i] = random.uniform(-0.1, 0.1);
+  return e;
+}
+
+TEST(Steps, AgreeWithEigensOtherDecomposition) {
+  iksel::Random random(iksel_test::seed());
+  for (const auto& c : iksel_test::all_robots()) {
+    const Robot robot = iksel_test::load(c);
+    const Eigen::MatrixXd q = robot.random_configurations(20, iksel_test::seed());
+    for (Eigen::Index i = 0; i < q.rows(); ++i) {
+      const JacobianMatrix J = robot.jacobian(q.row(i));
+      const Vector6 e = random_error(random);
+      SolverOptions options;
+      options.damping = 0;
+      options.pinv_cutoff = 0;
+      const Eigen::VectorXd expected =
+          Eigen::MatrixXd(J).completeOrthogonalDecomposition().solve(e);
+      const double scale = 1e-6 * std::max(1.0, expected.norm());
+      if (expected.norm() > 100) continue;  // nearly singular
+      EXPECT_LT((iksel::dls_step(J, e, options) - expected).norm(), scale) << c.name;
+      EXPECT_LT((iksel::pinv_step(J, e, options) - expected).norm(), scale);
+      options.damping = 0.01;
+      const Eigen::MatrixXd A =
+          J.transpose() * J + 0.01 * Eigen::MatrixXd::Identity(robot.dof(), robot.dof());
+      const Eigen::VectorXd damped = A.ldlt().solve(J.transpose() * e);
+      EXPECT_LT((iksel::dls_step(J, e, options) - damped).norm(), 1e-9);
+    }
+  }
+}
+
+TEST(Steps, TruncationIgnoresTheSingularDirection) {
+  // Two equal columns and five directions: one singular value is zero up to rounding.
+  JacobianMatrix J = JacobianMatrix::Identity(6, 6);
+  J.col(5) = J.col(4) * (1 + 1e-9);
+  J(5, 5) = 1e-6;
+  const Vector6 e = Vector6::Ones();
+  SolverOptions options;
+  options.damping = 0;
+  EXPECT_LT(iksel::dls_step(J, e, options).norm(), 10);
+  options.pinv_cutoff = 0;
+  EXPECT_GT(iksel::dls_step(J, e, options).norm(), 1e4);
+}
+
+TEST(Steps, ClampingWeightsFallToZeroAtTheLimits) {
+  const Robot robot = iksel_test::load(iksel_test::paper_robots()[0]);
+  const auto& model = robot.model();
+  const JointVector range = robot.upper() - robot.lower();
+  const auto weight = [&](double part) {
+    const JointVector q = robot.lower() + part * range;
+    return iksel::joint_weights(model, q, 0.1)[2];
+  };
+  EXPECT_EQ(weight(0.5), 1);
+  EXPECT_EQ(weight(0.11), 1);
+  EXPECT_NEAR(weight(0.05), 0.5, 1e-12);
+  EXPECT_NEAR(weight(0.95), 0.5, 1e-12);
+  EXPECT_NEAR(weight(0.025), 3.0 / 16 - 2.0 / 64, 1e-12);
+  EXPECT_EQ(weight(0.0), 0);
+  EXPECT_EQ(weight(1.2), 0);
+}
+
+TEST(Steps, CwlnWithAllWeightsOneIsLeastNorm) {
+  const Robot robot = iksel_test::load(iksel_test::paper_robots()[3]);
+  const JointVector middle = 0.5 * (robot.lower() + robot.upper());
+  JointVector q = middle;
+  for (int i = 0; i < robot.dof(); ++i) q[i] += 0.2 * (i % 2 == 0 ? 1 : -1);
+  const JacobianMatrix J = robot.jacobian(q);
+  iksel::Random random(iksel_test::seed());
+  const Vector6 e = random_error(random);
+  const JointVector expected = iksel::pinv_step(J, e, SolverOptions::paper());
+  EXPECT_LT((iksel::cwln_step(robot.model(), q, J, e, SolverOptions::paper()) - expected).norm(),
+            1e-5);
+  EXPECT_LT((iksel::cwpi_step(robot.model(), q, J, e, SolverOptions::paper()) - expected).norm(),
+            1e-9);
+}
+
+TEST(Steps, CwlnPullsAJointBackFromItsLimit) {
+  const Robot robot = iksel_test::load(iksel_test::paper_robots()[3]);
+  JointVector q = 0.5 * (robot.lower() + robot.upper());
+  q[3] = robot.upper()[3];
+  const JacobianMatrix J = robot.jacobian(q);
+  const JointVector step =
+      iksel::cwln_step(robot.model(), q, J, Vector6::Zero(), SolverOptions::paper());
+  EXPECT_LT(step[3], 0);
+}
+
+TEST(Steps, LmNeverLeavesTheLimits) {
+  iksel::Random random(iksel_test::seed());
+  for (const auto& c : iksel_test::paper_robots()) {
+    const Robot robot = iksel_test::load(c);
+    const Eigen::MatrixXd q = robot.random_configurations(200, iksel_test::seed());
+    for (Eigen::Index i = 0; i < q.rows(); ++i) {
+      JointVector at = q.row(i);
+      at[1] = i % 2 == 0 ? robot.lower()[1] : robot.upper()[1];
+      const Vector6 e = 5 * random_error(random);
+      const JointVector goal =
+          at + iksel::lm_step(robot.model(), at, robot.jacobian(at), e, SolverOptions{});
+      for (int j = 0; j < robot.dof(); ++j) {
+        if (!iksel::limits_count(robot.model(), j)) continue;
+        EXPECT_GE(goal[j], robot.lower()[j] - 1e-12);
+        EXPECT_LE(goal[j], robot.upper()[j] + 1e-12);
+      }
+    }
+  }
+}
+
+class Schemes : public testing::TestWithParam<std::tuple<Iteration, iksel::Kinematics>> {};
+
+TEST_P(Schemes, ConvergeFromNearBy) {
+  const auto [scheme, kinematics] = GetParam();
+  const Robot robot = iksel_test::load(iksel_test::paper_robots()[3]);
+  SolverOptions options = SolverOptions::paper();
+  options.iteration = scheme;
+  options.max_iterations = 30;
+  iksel::Random random(iksel_test::seed());
+  const auto kdl = robot.model().make_kdl(false);
+  int solved = 0;
+  constexpr int kCases = 200;
+  // Well inside the limits, where no scheme is hindered.
+  for (int i = 0; i < kCases; ++i) {
+    JointVector q(robot.dof());
+    for (int j = 0; j < robot.dof(); ++j) {
+      const double range = robot.upper()[j] - robot.lower()[j];
+      q[j] = random.uniform(robot.lower()[j] + 0.2 * range, robot.upper()[j] - 0.2 * range);
+    }
+    const Pose target = robot.fk(q);
+    const Pose tip_target = target * robot.tcp().inverse();
+    for (int j = 0; j < robot.dof(); ++j) q[j] += random.uniform(-0.1, 0.1);
+    const iksel::IterationContext context{
+        robot.model(),
+        options,
+        target,
+        tip_target,
+        kinematics == iksel::Kinematics::kdl ? kdl.get() : nullptr,
+        random};
+    int steps = 0;
+    if (iksel::iterate(context, q, steps) != iksel::Outcome::solved) continue;
+    ++solved;
+    EXPECT_LE(steps, 30);
+    double position = 1;
+    double rotation = 1;
+    iksel::measure_error(robot.model(), target, q, position, rotation);
+    EXPECT_LT(position, 1e-4);
+    EXPECT_LT(rotation, 1e-3);
+  }
+  EXPECT_GE(solved, kCases * 9 / 10);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, Schemes,
+    testing::Combine(testing::Values(Iteration::dls, Iteration::pinv, Iteration::pinv_rr,
+                                     Iteration::cwln, Iteration::cwpi, Iteration::lm),
+                     testing::Values(iksel::Kinematics::kernel, iksel::Kinematics::kdl)));
+
+}  // namespace

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// FK and Jacobian: kernel against KDL, both against finite differences.
+#include <gtest/gtest.h>
+
+#include <iksel/iksel.hpp>
+
+#include "robots.hpp"
+
+namespace {
+
+using iksel::Jacobian;
+using iksel::JointVector;
+using iksel::Kinematics;
+using iksel::Pose;
+using iksel::Robot;
+
+class AllRobots : public testing::TestWithParam<iksel_test::RobotCase> {};
+
+TEST_P(AllRobots, KernelEqualsKdl) {
+  const Robot robot = iksel_test::load(GetParam());
+  const Eigen::MatrixXd q = robot.random_configurations(iksel_test::cases(300), iksel_test::seed());
+  for (Eigen::Index i = 0; i < q.rows(); ++i) {
+    const JointVector at = q.row(i);
+    const Pose kernel = robot.fk(at);
+    const Pose kdl = robot.fk(at, Kinematics::kdl);
+    EXPECT_LT((kernel.matrix() - kdl.matrix()).lpNorm<Eigen::Infinity>(), 1e-12);
+    const Jacobian difference = robot.jacobian(at) - robot.jacobian(at, Kinematics::kdl);
+    EXPECT_LT(difference.lpNorm<Eigen::Infinity>(), 1e-12);
+  }
+}
+
+TEST_P(AllRobots, JacobianIsTheDerivative) {
+  const Robot robot = iksel_test::load(GetParam());
+  const Eigen::MatrixXd q = robot.random_configurations(20, iksel_test::seed());
+  constexpr double kStep = 1e-6;
+  for (Eigen::Index i = 0; i < q.rows(); ++i) {
+    const JointVector at = q.row(i);
+    const Jacobian J = robot.jacobian(at);
+    for (int j = 0; j < robot.dof(); ++j) {
+      JointVector forward = at;
+      JointVector backward = at;
+      forward[j] += kStep;
+      backward[j] -= kStep;
+      const Eigen::Matrix<double, 6, 1> twist =
+          iksel::pose_error(robot.fk(forward), robot.fk(backward)) / (2 * kStep);
+      EXPECT_LT((twist - J.col(j)).lpNorm<Eigen::Infinity>(), 1e-8) << "joint " << j;
+    }
+  }
+}
+
+TEST_P(AllRobots, NothingLiesBeyondTheReach) {
+  const Robot robot = iksel_test::load(GetParam());
+  const Eigen::MatrixXd q = robot.random_configurations(500, iksel_test::seed());
+  for (Eigen::Index i = 0; i < q.rows(); ++i) {
+    EXPECT_LE((robot.fk(q.row(i)).translation() - robot.reach_centre()).norm(),
+              robot.reach() + 1e-12);
+  }
+}
+
+TEST_P(AllRobots, ToolMovesThePoseAndNotTheHash) {
+  const Robot robot = iksel_test::load(GetParam());
+  Pose tool = Pose::Identity();
+  tool.translate(Eigen::Vector3d(0.1, -0.2, 0.3))
+      .rotate(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()));
+  const Robot with_tool = robot.with_tcp(tool);
+  EXPECT_EQ(robot.chain_hash(), with_tool.chain_hash());
+  const Eigen::MatrixXd q = robot.random_configurations(10, iksel_test::seed());
+  for (Eigen::Index i = 0; i < q.rows(); ++i) {
+    const Pose bare = robot.with_tcp(Pose::Identity()).fk(q.row(i));
+    EXPECT_LT(((bare * tool).matrix() - with_tool.fk(q.row(i)).matrix()).norm(), 1e-12);
+    EXPECT_LT(((bare * tool).matrix() - with_tool.fk(q.row(i), Kinematics::kdl).matrix()).norm(),
+              1e-12);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Robots, AllRobots, testing::ValuesIn(iksel_test::all_robots()),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+TEST(RandomConfigurations, AreInsideTheLimitsAndRepeat) {
+  const Robot robot = iksel_test::load(iksel_test::all_robots()[5]);  // with a continuous joint
+  const Eigen::MatrixXd q = robot.random_configurations(1000, 3);
+  EXPECT_EQ(q, robot.random_configurations(1000, 3));
+  EXPECT_NE(q, robot.random_configurations(1000, 4));
+  for (Eigen::Index i = 0; i < q.rows(); ++i) EXPECT_TRUE(robot.within_limits(q.row(i)));
+}
+
+TEST(Robot, RefusesAConfigurationOfTheWrongLength) {
+  const Robot robot = iksel_test::load(iksel_test::paper_robots()[0]);
+  EXPECT_THROW(robot.fk(JointVector::Zero(5)), iksel::InvalidArgumentError);
+  EXPECT_THROW(robot.jacobian(JointVector::Constant(6, std::nan(""))), iksel::InvalidArgumentError);
+}
+
+}  // namespace

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Solving takes nothing from the heap once the solver stands. The heap is watched by this program's
+// own malloc, in front of the C library's.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstddef>
+#include <iksel/iksel.hpp>
+
+#include "robots.hpp"
+
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+
+namespace {
+std::atomic<bool> watching{false};
+std::atomic<int> allocations{0};
+
+void count() {
+  if (watching.load(std::memory_order_relaxed)) ++allocations;
+}
+}  // namespace
+
+extern "C" {
+void* __libc_malloc(std::size_t size);
+void* __libc_calloc(std::size_t n, std::size_t size);
+void* __libc_realloc(void* p, std::size_t size);
+void* __libc_memalign(std::size_t alignment, std::size_t size);
+
+void* malloc(std::size_t size) {
+  count();
+  return __libc_malloc(size);
+}
+void* calloc(std::size_t n, std::size_t size) {
+  count();
+  return __libc_calloc(n, size);
+}
+void* realloc(void* p, std::size_t size) {
+  count();
+  return __libc_realloc(p, size);
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  count();
+  return __libc_memalign(alignment, size);
+}
+int posix_memalign(void** out, std::size_t alignment, std::size_t size) {
+  count();
+  *out = __libc_memalign(alignment, size);
+  return *out == nullptr ? 12 : 0;
+}
+}
+
+namespace {
+
+TEST(NoAllocation, TheWatchSeesAllocations) {
+  allocations = 0;
+  watching = true;
+  const auto p = std::make_unique<std::vector<int>>(1000);
+  watching = false;
+  EXPECT_GE(allocations.load(), 2);
+}
+
+class Schemes : public testing::TestWithParam<iksel::Iteration> {};
+
+TEST_P(Schemes, SolveWithoutTheHeap) {
+  for (const auto& c : iksel_test::paper_robots()) {
+    const iksel::Robot robot = iksel_test::load(c);
+    iksel::SolverOptions options = iksel::SolverOptions::paper();
+    options.database.scale = iksel::Scale::small;
+    options.iteration = GetParam();
+    options.max_attempts = 10;
+    options.rotation_difference = iksel::RotationDifference::geodesic;
+    options.limit_aware = true;
+    options.whole_turns = true;
+    const iksel::Solver solver(robot, options);
+    const Eigen::MatrixXd q = robot.random_configurations(100, iksel_test::seed());
+    std::vector<iksel::Pose> targets;
+    for (Eigen::Index i = 0; i < q.rows(); ++i) targets.push_back(robot.fk(q.row(i)));
+    const iksel::JointVector seed = iksel::JointVector::Zero(robot.dof());
+
+    allocations = 0;
+    watching = true;
+    int solved = 0;
+    for (const iksel::Pose& target : targets) {
+      solved += solver.solve(target).success();
+      solved += solver.solve(target, seed).success();
+    }
+    watching = false;
+    EXPECT_EQ(allocations.load(), 0) << c.name;
+    EXPECT_GT(solved, 50);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Schemes,
+                         testing::Values(iksel::Iteration::dls, iksel::Iteration::pinv,
+                                         iksel::Iteration::pinv_rr, iksel::Iteration::cwln,
+                                         iksel::Iteration::cwpi, iksel::Iteration::lm));
+
+}  // namespace
+
+#else
+
+TEST(NoAllocation, CannotBeWatchedHere) { GTEST_SKIP() << "needs glibc and no sanitizer"; }
+
+#endif

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Many threads on one solver give bit for bit what one gives. Built with the thread sanitizer too.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <iksel/iksel.hpp>
+#include <thread>
+
+#include "robots.hpp"
+
+namespace {
+
+using iksel::Pose;
+using iksel::Result;
+using iksel::Robot;
+using iksel::Solver;
+using iksel::SolverOptions;
+
+std::vector<Pose> random_targets(const Robot& robot, std::size_t n) {
+  const Eigen::MatrixXd q = robot.random_configurations(n, iksel_test::seed());
+  std::vector<Pose> targets;
+  for (Eigen::Index i = 0; i < q.rows(); ++i) targets.push_back(robot.fk(q.row(i)));
+  return targets;
+}
+
+void expect_same(const Result& a, const Result& b) {
+  EXPECT_EQ(a.status, b.status);
+  ASSERT_EQ(a.q.size(), b.q.size());
+  for (Eigen::Index i = 0; i < a.q.size(); ++i) EXPECT_EQ(a.q[i], b.q[i]);
+  EXPECT_EQ(a.attempts, b.attempts);
+  EXPECT_EQ(a.iterations, b.iterations);
+  if (a.success()) {
+    EXPECT_EQ(a.position_error, b.position_error);
+    EXPECT_EQ(a.rotation_error, b.rotation_error);
+  }
+}
+
+std::vector<SolverOptions> presets() {
+  SolverOptions paper = SolverOptions::paper();
+  paper.database.scale = iksel::Scale::small;
+  SolverOptions random_restarts = paper;
+  random_restarts.iteration = iksel::Iteration::pinv_rr;
+  SolverOptions kdl = paper;
+  kdl.kinematics = iksel::Kinematics::kdl;
+  return {SolverOptions{}, paper, random_restarts, kdl};
+}
+
+TEST(Threads, BatchGivesTheBitsOfALoop) {
+  for (const auto& c : iksel_test::paper_robots()) {
+    const Robot robot = iksel_test::load(c);
+    const auto targets = random_targets(robot, 300);
+    for (const SolverOptions& options : presets()) {
+      const Solver solver(robot, options);
+      std::vector<Result> loop;
+      for (const Pose& target : targets) loop.push_back(solver.solve(target));
+      for (const int threads : {1, 2, 8}) {
+        const std::vector<Result> batch = solver.solve_batch(targets, threads);
+        ASSERT_EQ(batch.size(), loop.size());
+        for (std::size_t i = 0; i < loop.size(); ++i) expect_same(batch[i], loop[i]);
+      }
+    }
+  }
+}
+
+TEST(Threads, EightThreadsShareOneSolver) {
+  const Robot robot = iksel_test::load(iksel_test::paper_robots()[3]);
+  const auto targets = random_targets(robot, 400);
+  for (const SolverOptions& options : presets()) {
+    const Solver solver(robot, options);
+    std::vector<Result> alone;
+    for (const Pose& target : targets) alone.push_back(solver.solve(target));
+    std::vector<std::vector<Result>> shared(8);
+    std::vector<std::thread> threads;
+    for (std::size_t t = 0; t < shared.size(); ++t) {
+      threads.emplace_back([&, t] {
+        // Each in another order, so that no two are in step.
+        shared[t].resize(targets.size());
+        for (std::size_t k = 0; k < targets.size(); ++k) {
+          const std::size_t i = (k * 7 + t * 53) % targets.size();
+          shared[t][i] = solver.solve(targets[i]);
+        }
+      });
+    }
+    for (std::thread& thread : threads) thread.join();
+    for (const auto& results : shared) {
+      for (std::size_t i = 0; i < alone.size(); ++i) expect_same(results[i], alone[i]);
+    }
+  }
+}
+
+TEST(Threads, KinematicsOfOneRobotAreShared) {
+  const Robot robot = iksel_test::load(iksel_test::paper_robots()[3]);
+  const Eigen::MatrixXd q = robot.random_configurations(500, iksel_test::seed());
+  std::vector<std::thread> threads;
+  std::atomic<int> wrong{0};
+  for (int t = 0; t < 8; ++t) {
+    threads.emplace_back([&] {
+      for (Eigen::Index i = 0; i < q.rows(); ++i) {
+        const iksel::Jacobian J =
+            robot.jacobian(q.row(i)) - robot.jacobian(q.row(i), iksel::Kinematics::kdl);
+        if (J.lpNorm<Eigen::Infinity>() > 1e-12) ++wrong;
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(wrong.load(), 0);
+}
+
+}  // namespace

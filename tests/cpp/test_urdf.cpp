@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a URDF may hold, and what is said of one that cannot be used.
+#include <gtest/gtest.h>
+
+#include <iksel/iksel.hpp>
+#include <string>
+
+#include "robots.hpp"
+
+namespace {
+
+using iksel::JointVector;
+using iksel::Kinematics;
+using iksel::Pose;
+using iksel::Robot;
+using iksel::RobotOptions;
+
+std::string joint(const std::string& name, const std::string& type, const std::string& parent,
+                  const std::string& child, const std::string& inside) {
+  return "<joint name='" + name + "' type='" + type + "'><parent link='" + parent +
+         "'/><child link='" + child + "'/>" + inside + "</joint>";
+}
+
+std::string robot_xml(const std::string& joints) {
+  std::string links;
+  for (const char* link : {"a", "b", "c", "d", "e"}) {
+    if (joints.find("link='" + std::string(link) + "'") != std::string::npos) {
+      links += "<link name='" + std::string(link) + "'/>";
+    }
+  }
+  return "<?xml version='1.0'?><robot name='test'>" + links + joints + "</robot>";
+}
+
+const std::string kTurn =
+    "<origin xyz='0.1 0.2 0.3' rpy='0.1 0.2 0.3'/><axis xyz='0 1 0'/>"
+    "<limit lower='-1' upper='2' effort='0' velocity='3'/>";
+
+std::string tree() {
+  // b is below a, c and d are both below b.
+  return robot_xml(joint("ab", "revolute", "a", "b", kTurn) +
+                   joint("bc", "revolute", "b", "c",
+                         "<origin xyz='0 0 0.4' rpy='0.3 0 0'/><axis xyz='1 1 0'/>"
+                         "<limit lower='-2' upper='2' effort='0' velocity='0'/>") +
+                   joint("bd", "prismatic", "b", "d",
+                         "<origin xyz='0.5 0 0' rpy='0 0.4 0'/><axis xyz='0 0 2'/>"
+                         "<limit lower='-0.1' upper='0.2' effort='0' velocity='1'/>"));
+}
+
+Robot load(const std::string& xml, const std::string& base, const std::string& tip) {
+  RobotOptions options;
+  options.base_link = base;
+  options.tip_link = tip;
+  return Robot::from_urdf_string(xml, options);
+}
+
+/// Message of the Error that loading throws; fails the test if there is none or more than a line.
+template <typename Error = iksel::UrdfError>
+std::string refusal(const std::string& xml, const std::string& base, const std::string& tip) {
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  std::string message;
+  try {
+    load(xml, base, tip);
+    ADD_FAILURE() << "was accepted";
+  } catch (const Error& error) {
+    message = error.what();
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(message.find('\n'), std::string::npos);
+  return message;
+}
+
+void expect_mentions(const std::string& text, const std::vector<std::string>& words) {
+  for (const std::string& word : words) {
+    EXPECT_NE(text.find(word), std::string::npos) << "'" << word << "' is not in: " << text;
+  }
+}
+
+TEST(Urdf, ChainDownTheTree) {
+  const Robot robot = load(tree(), "a", "c");
+  EXPECT_EQ(robot.dof(), 2);
+  EXPECT_EQ(robot.joint_names(), (std::vector<std::string>{"ab", "bc"}));
+  EXPECT_EQ(robot.lower()[0], -1);
+  EXPECT_EQ(robot.upper()[0], 2);
+  EXPECT_EQ(robot.velocity_limit()[0], 3);
+  EXPECT_TRUE(std::isinf(robot.velocity_limit()[1]));  // 0 means none
+}
+
+TEST(Urdf, ChainUpAndDownTheTreeIsTheInverseOfTheOther) {
+  const Robot there = load(tree(), "c", "d");
+  const Robot back = load(tree(), "d", "c");
+  EXPECT_EQ(there.joint_names(), (std::vector<std::string>{"bc", "bd"}));
+  EXPECT_EQ(there.joint_types()[1], iksel::JointType::prismatic);
+  const Eigen::MatrixXd q = there.random_configurations(100, iksel_test::seed());
+  for (Eigen::Index i = 0; i < q.rows(); ++i) {
+    const JointVector at = q.row(i);
+    const JointVector reversed = at.reverse();
+    for (const Kinematics kinematics : {Kinematics::kernel, Kinematics::kdl}) {
+      const Pose product = there.fk(at, kinematics) * back.fk(reversed, kinematics);
+      EXPECT_LT((product.matrix() - Eigen::Matrix4d::Identity()).norm(), 1e-13);
+    }
+    // By the two ways down from b.
+    const JointVector zero = JointVector::Zero(1);
+    JointVector first(2);
+    first << 0, at[0];
+    JointVector second(2);
+    second << 0, at[1];
+    const Pose T_a_c = load(tree(), "a", "c").fk(first);
+    const Pose T_a_d = load(tree(), "a", "d").fk(second);
+    EXPECT_LT((there.fk(at).matrix() - (T_a_c.inverse() * T_a_d).matrix()).norm(), 1e-13);
+  }
+}
+
+TEST(Urdf, MimicJointFollowsItsSource) {
+  const std::string follower =
+      "<origin xyz='0 0 0.4'/><axis xyz='1 0 0'/><limit lower='-9' upper='9' effort='0' "
+      "velocity='1'/><mimic joint='ab' multiplier='-0.5' offset='0.25'/>";
+  const Robot robot = load(robot_xml(joint("ab", "revolute", "a", "b", kTurn) +
+                                     joint("bc", "revolute", "b", "c", follower)),
+                           "a", "c");
+  const Robot free = load(
+      robot_xml(joint("ab", "revolute", "a", "b", kTurn) +
+                joint("bc", "revolute", "b", "c", follower.substr(0, follower.find("<mimic")))),
+      "a", "c");
+  ASSERT_EQ(robot.dof(), 1);
+  const Eigen::MatrixXd q = robot.random_configurations(100, iksel_test::seed());
+  for (Eigen::Index i = 0; i < q.rows(); ++i) {
+    const JointVector at = q.row(i);
+    JointVector both(2);
+    both << at[0], -0.5 * at[0] + 0.25;
+    EXPECT_LT((robot.fk(at).matrix() - free.fk(both).matrix()).norm(), 1e-13);
+    EXPECT_LT((robot.fk(at, Kinematics::kdl).matrix() - free.fk(both).matrix()).norm(), 1e-13);
+    const iksel::Jacobian J = free.jacobian(both);
+    for (const Kinematics kinematics : {Kinematics::kernel, Kinematics::kdl}) {
+      EXPECT_LT((robot.jacobian(at, kinematics).col(0) - (J.col(0) - 0.5 * J.col(1))).norm(),
+                1e-13);
+    }
+  }
+}
+
+TEST(Urdf, LimitsOfAMimicJointNarrowItsSource) {
+  const std::string follower =
+      "<axis xyz='1 0 0'/><limit lower='-0.1' upper='0.3' effort='0' velocity='1'/>"
+      "<mimic joint='ab' multiplier='-0.5'/>";
+  const Robot robot = load(robot_xml(joint("ab", "revolute", "a", "b", kTurn) +
+                                     joint("bc", "revolute", "b", "c", follower)),
+                           "a", "c");
+  EXPECT_NEAR(robot.lower()[0], -0.6, 1e-15);
+  EXPECT_NEAR(robot.upper()[0], 0.2, 1e-15);
+  EXPECT_NEAR(robot.velocity_limit()[0], 2.0, 1e-15);
+}
+
+TEST(Urdf, MimicOfAJointOffTheChainIsDrivenByIt) {
+  const std::string follower =
+      "<axis xyz='1 0 0'/><limit lower='-9' upper='9' effort='0' velocity='1'/>"
+      "<mimic joint='ab'/>";
+  const Robot robot = load(robot_xml(joint("ab", "revolute", "a", "b", kTurn) +
+                                     joint("ac", "revolute", "a", "c", follower)),
+                           "a", "c");
+  EXPECT_EQ(robot.joint_names(), (std::vector<std::string>{"ab"}));
+}
+
+TEST(Urdf, CircleOfMimicsIsRefused) {
+  const auto mimic = [](const char* source) {
+    return "<axis xyz='1 0 0'/><limit lower='-9' upper='9' effort='0' velocity='1'/><mimic "
+           "joint='" +
+           std::string(source) + "'/>";
+  };
+  expect_mentions(refusal(robot_xml(joint("ab", "revolute", "a", "b", mimic("bc")) +
+                                    joint("bc", "revolute", "b", "c", mimic("ab"))),
+                          "a", "c"),
+                  {"ab", "circle"});
+}
+
+TEST(Urdf, LockedJointIsNoDegreeOfFreedom) {
+  RobotOptions options;
+  options.base_link = "a";
+  options.tip_link = "c";
+  options.locked_joints["bc"] = 0.7;
+  const Robot locked = Robot::from_urdf_string(tree(), options);
+  ASSERT_EQ(locked.joint_names(), (std::vector<std::string>{"ab"}));
+  JointVector both(2);
+  both << 0.4, 0.7;
+  const JointVector one = JointVector::Constant(1, 0.4);
+  const Pose expected = load(tree(), "a", "c").fk(both);
+  EXPECT_LT((locked.fk(one).matrix() - expected.matrix()).norm(), 1e-14);
+  EXPECT_LT((locked.fk(one, Kinematics::kdl).matrix() - expected.matrix()).norm(), 1e-14);
+
+  options.locked_joints["nothing"] = 0;
+  EXPECT_THROW(Robot::from_urdf_string(tree(), options), iksel::UnknownNameError);
+}
+
+TEST(Urdf, SoftLimitsAreReadAndUsedOnRequest) {
+  const std::string soft =
+      "<axis xyz='1 0 0'/><limit lower='-2' upper='2' effort='0' velocity='1'/>"
+      "<safety_controller soft_lower_limit='-1.5' soft_upper_limit='3' k_velocity='1'/>";
+  const std::string xml = robot_xml(joint("ab", "revolute", "a", "b", soft));
+  RobotOptions options;
+  const Robot hard = Robot::from_urdf_string(xml, options);
+  EXPECT_EQ(hard.lower()[0], -2);
+  EXPECT_EQ(hard.soft_lower()[0], -1.5);
+  EXPECT_EQ(hard.soft_upper()[0], 2);  // never wider than the hard limit
+  options.soft_limits = true;
+  const Robot narrowed = Robot::from_urdf_string(xml, options);
+  EXPECT_EQ(narrowed.lower()[0], -1.5);
+  EXPECT_EQ(narrowed.upper()[0], 2);
+  EXPECT_NE(hard.chain_hash(), narrowed.chain_hash());
+}
+
+TEST(Urdf, BaseAndTipHaveDefaults) {
+  const Robot robot = Robot::from_urdf_string(robot_xml(joint("ab", "revolute", "a", "b", kTurn)));
+  EXPECT_EQ(robot.base_link(), "a");
+  EXPECT_EQ(robot.tip_link(), "b");
+  EXPECT_EQ(robot.options().tip_link, "b");
+  // Two leaves: which one is meant must be said.
+  expect_mentions(refusal(tree(), "", ""), {"c", "d", "tip"});
+}
+
+TEST(Urdf, NamesTheUnknownLinkAndTheKnownOnes) {
+  expect_mentions(refusal<iksel::UnknownNameError>(tree(), "a", "tool0"),
+                  {"tip link 'tool0'", "a, b, c, d"});
+  expect_mentions(refusal<iksel::UnknownNameError>(tree(), "world", "c"),
+                  {"base link 'world'", "a, b, c, d"});
+}
+
+TEST(Urdf, RefusesWhatCannotBeSolved) {
+  expect_mentions(refusal(robot_xml(joint("ab", "floating", "a", "b", "")), "a", "b"),
+                  {"'ab'", "floating"});
+  expect_mentions(
+      refusal(robot_xml(joint("ab", "planar", "a", "b", "<axis xyz='0 0 1'/>")), "a", "b"),
+      {"'ab'", "planar"});
+  expect_mentions(refusal(robot_xml(joint("ab", "fixed", "a", "b", "")), "a", "b"),
+                  {"no movable joint"});
+  expect_mentions(refusal(tree(), "a", "a"), {"no movable joint"});
+}
+
+TEST(Urdf, RefusesUnusableLimits) {
+  const auto limits = [](const std::string& lower, const std::string& upper) {
+    return robot_xml(joint("ab", "revolute", "a", "b",
+                           "<axis xyz='0 0 1'/><limit lower='" + lower + "' upper='" + upper +
+                               "' effort='0' velocity='1'/>"));
+  };
+  expect_mentions(refusal(limits("1", "-1"), "a", "b"), {"ab", "limits", "1", "-1"});
+  expect_mentions(refusal(limits("1", "1"), "a", "b"), {"ab", "limits"});
+  expect_mentions(refusal(limits("nan", "1"), "a", "b"), {"ab"});
+  expect_mentions(
+      refusal(robot_xml(joint("ab", "revolute", "a", "b", "<axis xyz='0 0 1'/>")), "a", "b"),
+      {"ab"});
+}
+
+TEST(Urdf, RefusesAZeroAxis) {
+  expect_mentions(refusal(robot_xml(joint("ab", "revolute", "a", "b",
+                                          "<axis xyz='0 0 0'/><limit lower='-1' upper='1' "
+                                          "effort='0' velocity='1'/>")),
+                          "a", "b"),
+                  {"ab", "axis"});
+}
+
+TEST(Urdf, RefusesTextThatDoesNotParse) {
+  for (const char* text :
+       {"", "not xml", "<robot name='x'>", "<robot name='x'/>", "<robot><link name='a'/></robot>",
+        "<mesh/>", "<robot name='x'><link name='a'/><link name='b'/></robot>"}) {
+    EXPECT_FALSE(refusal(text, "a", "b").empty()) << text;
+  }
+}
+
+TEST(Urdf, NamesAFileThatIsNotThere) {
+  try {
+    Robot::from_urdf_file("no/such/file.urdf");
+    FAIL();
+  } catch (const iksel::UrdfError& error) {
+    expect_mentions(error.what(), {"no/such/file.urdf"});
+  }
+  EXPECT_THROW(Robot::from_urdf_file("/"), iksel::UrdfError);
+}
+
+TEST(Urdf, UpToThirtyTwoJoints) {
+  const auto snake = [](int n) {
+    std::string links = "<link name='l0'/>";
+    std::string joints;
+    for (int i = 0; i < n; ++i) {
+      const std::string from = "l" + std::to_string(i);
+      const std::string to = "l" + std::to_string(i + 1);
+      links += "<link name='" + to + "'/>";
+      joints += joint("j" + std::to_string(i), "revolute", from, to,
+                      std::string("<origin xyz='0 0 0.1'/><axis xyz='") +
+                          (i % 2 == 0 ? "0 0 1" : "0 1 0") +
+                          "'/><limit lower='-2' upper='2' effort='0' velocity='1'/>");
+    }
+    return "<robot name='snake'>" + links + joints + "</robot>";
+  };
+  const Robot robot = Robot::from_urdf_string(snake(32));
+  ASSERT_EQ(robot.dof(), 32);
+  const Eigen::MatrixXd q = robot.random_configurations(20, iksel_test::seed());
+  for (Eigen::Index i = 0; i < q.rows(); ++i) {
+    EXPECT_LT((robot.fk(q.row(i)).matrix() - robot.fk(q.row(i), Kinematics::kdl).matrix()).norm(),
+              1e-12);
+  }
+  expect_mentions(refusal(snake(33), "l0", "l33"), {"33", "32"});
+  EXPECT_EQ(Robot::from_urdf_string(snake(1)).dof(), 1);
+}
+
+}  // namespace

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// numpy arrays to poses and joint values and back. A double array in C order is read in place;
+// other layouts and real types are converted once; anything else is an InvalidArgumentError that
+// says which argument it was, what it got and what it expected.
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <Eigen/Core>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "iksel/error.hpp"
+#include "iksel/types.hpp"
+#include "python_types.hpp"
+
+namespace iksel::python {
+
+/// Aligned doubles in C order, made by conversion if need be.
+using DoubleArray = py::array_t<double, py::array::c_style | py::array::forcecast |
+                                            py::detail::npy_api::NPY_ARRAY_ALIGNED_>;
+
+using RowMajorPose = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// "(3, 4)", as numpy writes a shape.
+inline std::string shape_text(const py::array& array) {
+  return py::cast<std::string>(py::str(array.attr("shape")));
+}
+
+[[noreturn]] inline void throw_wrong_shape(const char* name, const std::string& expected,
+                                           const py::array& got, const char* hint = "") {
+  throw InvalidArgumentError(std::string(name) + ": expected " + expected + ", got shape " +
+                             shape_text(got) + hint);
+}
+
+inline DoubleArray convert_to_doubles(py::handle value, const char* name) {
+  const auto array = py::array::ensure(value);
+  if (!array) throw_wrong_type(name, "an array of real numbers", value);
+  const char kind = array.dtype().kind();
+  if (kind != 'f' && kind != 'i' && kind != 'u') {
+    throw InvalidArgumentError(std::string(name) + ": expected real numbers, got dtype " +
+                               py::cast<std::string>(py::str(array.dtype())));
+  }
+  auto doubles = DoubleArray::ensure(array);
+  if (!doubles) throw_wrong_type(name, "an array of real numbers", value);
+  return doubles;
+}
+
+/// The array itself if it is aligned doubles in C order, a converted one otherwise.
+inline DoubleArray as_doubles(py::handle value, const char* name) {
+  constexpr int kInPlace =
+      py::array::c_style | static_cast<int>(py::detail::npy_api::NPY_ARRAY_ALIGNED_);
+  if (py::detail::npy_api::get().PyArray_Check_(value.ptr())) {
+    const auto* array = py::detail::array_proxy(value.ptr());
+    if ((array->flags & kInPlace) == kInPlace && py::isinstance<DoubleArray>(value)) {
+      return py::reinterpret_borrow<DoubleArray>(value);
+    }
+  }
+  return convert_to_doubles(value, name);
+}
+
+/// A (4, 4) array as a pose. Its last row is checked here; that the rest is rigid is checked by
+/// what uses the pose.
+inline Pose as_pose(py::handle value, const char* name) {
+  const DoubleArray array = as_doubles(value, name);
+  if (array.ndim() != 2 || array.shape(0) != 4 || array.shape(1) != 4) {
+    throw_wrong_shape(name, "a (4, 4) array", array);
+  }
+  Pose pose;
+  pose.matrix() = Eigen::Map<const RowMajorPose>(array.data());
+  constexpr double kTolerance = 1e-6;
+  if (!((pose.matrix().row(3) - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() <=
+        kTolerance)) {
+    throw InvalidArgumentError(std::string(name) + ": expected (0, 0, 0, 1) as the last row, got " +
+                               py::cast<std::string>(py::str(array.attr("tolist")()[py::int_(3)])));
+  }
+  return pose;
+}
+
+/// An (N, 4, 4) array. That its poses are rigid is checked by Solver::solve_batch.
+inline DoubleArray as_poses(py::handle value, const char* name) {
+  DoubleArray array = as_doubles(value, name);
+  if (array.ndim() != 3 || array.shape(1) != 4 || array.shape(2) != 4) {
+    const bool single = array.ndim() == 2 && array.shape(0) == 4 && array.shape(1) == 4;
+    throw_wrong_shape(name, "an (N, 4, 4) array", array,
+                      single ? "; solve() takes a single pose" : "");
+  }
+  return array;
+}
+
+inline void check_finite(const double* values, int dof, const std::string& name) {
+  for (int i = 0; i < dof; ++i) {
+    if (!std::isfinite(values[i])) {
+      throw InvalidArgumentError(name + ": expected finite numbers, got " +
+                                 std::to_string(values[i]) + " at joint " + std::to_string(i));
+    }
+  }
+}
+
+/// A (dof,) array of finite numbers as joint values.
+inline JointVector as_joints(py::handle value, int dof, const char* name) {
+  const DoubleArray array = as_doubles(value, name);
+  if (array.ndim() != 1 || array.shape(0) != dof) {
+    throw_wrong_shape(name, "a (" + std::to_string(dof) + ",) array", array);
+  }
+  check_finite(array.data(), dof, name);
+  return Eigen::Map<const Eigen::VectorXd>(array.data(), dof);
+}
+
+/// Applies `function(const JointVector&, double* out)` to a (dof,) array, giving an array of shape
+/// `item`, or to every row of an (N, dof) array, giving (N, *item) with the GIL released.
+template <class Function>
+py::array_t<double> map_joints(py::handle value, int dof, const char* name,
+                               const std::vector<py::ssize_t>& item, const Function& function) {
+  const DoubleArray array = as_doubles(value, name);
+  const bool single = array.ndim() == 1;
+  if ((!single && array.ndim() != 2) || array.shape(array.ndim() - 1) != dof) {
+    const std::string n = std::to_string(dof);
+    throw_wrong_shape(name, "a (" + n + ",) or (N, " + n + ") array", array);
+  }
+  const double* in = array.data();
+  if (single) {
+    check_finite(in, dof, name);
+    py::array_t<double> out(item);
+    function(JointVector(Eigen::Map<const Eigen::VectorXd>(in, dof)), out.mutable_data());
+    return out;
+  }
+
+  const py::ssize_t rows = array.shape(0);
+  std::vector<py::ssize_t> shape = {rows};
+  py::ssize_t item_size = 1;
+  for (const py::ssize_t extent : item) {
+    shape.push_back(extent);
+    item_size *= extent;
+  }
+  py::array_t<double> out(shape);
+  double* to = out.mutable_data();
+  {
+    const py::gil_scoped_release release;
+    JointVector q(dof);
+    for (py::ssize_t row = 0; row < rows; ++row, in += dof, to += item_size) {
+      if (!Eigen::Map<const Eigen::VectorXd>(in, dof).allFinite()) {
+        check_finite(in, dof, std::string(name) + "[" + std::to_string(row) + "]");
+      }
+      q = Eigen::Map<const Eigen::VectorXd>(in, dof);
+      function(q, to);
+    }
+  }
+  return out;
+}
+
+/// A (4, 4) array of its own.
+inline py::array_t<double> to_array(const Pose& pose) {
+  py::array_t<double> array({4, 4});
+  Eigen::Map<RowMajorPose>(array.mutable_data()) = pose.matrix();
+  return array;
+}
+
+/// A (size,) array of its own.
+inline py::array_t<double> to_array(const JointVector& values) {
+  return py::array_t<double>(values.size(), values.data());
+}
+
+/// A C-ordered array of its own.
+inline py::array_t<double> to_array(const Eigen::MatrixXd& matrix) {
+  py::array_t<double> array({matrix.rows(), matrix.cols()});
+  Eigen::Map<RowMajorMatrix>(array.mutable_data(), matrix.rows(), matrix.cols()) = matrix;
+  return array;
+}
+
+/// A read-only array over values that live as long as `owner`.
+inline py::array_t<double> read_only_view(const JointVector& values, py::handle owner) {
+  py::array_t<double> array(values.size(), values.data(), owner);
+  py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+  return array;
+}
+
+}  // namespace iksel::python

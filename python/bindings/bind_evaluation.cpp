@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "iksel/evaluation.hpp"
+
+#include <pybind11/stl.h>
+
+#include <optional>
+
+#include "bindings.hpp"
+#include "fields.hpp"
+#include "progress.hpp"
+
+namespace iksel::python {
+
+template <>
+struct FieldTable<Evaluation> {
+  using E = Evaluation;
+  static constexpr const char* kName = "Evaluation";
+  static constexpr const char* kDoc = "Outcome of `evaluate`. Times include failures.";
+  static constexpr auto fields() {
+    return std::make_tuple(
+        field("targets", &E::targets, "Targets tried."),
+        field("seed", &E::seed, "Seed of the targets."),
+        field("solved", &E::solved, "Targets solved."),
+        field("false_success", &E::false_success,
+              "Results that say success and are none, by KDL's FK and the limits; always 0."),
+        field("success_percent", &E::success_percent, "100 solved / targets."),
+        field("mean_us", &E::mean_us, "Mean time per solve [us]."),
+        field("std_us", &E::std_us, "Standard deviation of the time [us]."),
+        field("min_us", &E::min_us, "Shortest time [us]."),
+        field("max_us", &E::max_us, "Longest time [us]."),
+        field("median_us", &E::median_us, "Median time [us]."),
+        field("p99_us", &E::p99_us, "99th percentile of the time [us]."),
+        field("mean_attempts", &E::mean_attempts, "Mean number of seeds tried."),
+        field("mean_iterations", &E::mean_iterations, "Mean number of iteration steps."),
+        field("kdl_fk_jac_us", &E::kdl_fk_jac_us,
+              "Mean time of one KDL FK plus one KDL Jacobian on the same robot [us]."),
+        field("ratio", &E::ratio,
+              "mean_us / kdl_fk_jac_us: how speed is compared between machines."),
+        field("query_us", &E::query_us, "Mean time of the KD-tree query [us]; 0 unless asked for."),
+        field("rank_us", &E::rank_us, "Mean time of the ranking [us]; 0 unless asked for."),
+        field("iterate_us", &E::iterate_us,
+              "Mean time of the iterations [us]; 0 unless asked for."),
+        field("reselect_us", &E::reselect_us,
+              "Mean time of the re-selections [us]; 0 unless asked for."));
+  }
+};
+
+namespace {
+
+Evaluation evaluate_solver(const Solver& solver, const Loose<std::size_t>& targets,
+                           const Loose<std::uint64_t>& seed, const Loose<bool>& stages,
+                           const std::optional<ProgressCallable>& progress) {
+  const auto count = from_python<std::size_t>(targets, "targets");
+  const auto number = from_python<std::uint64_t>(seed, "seed");
+  const auto with_stages = from_python<bool>(stages, "stages");
+  const Progress report = make_progress(progress);
+  const py::gil_scoped_release release;
+  return evaluate(solver, count, number, with_stages, report);
+}
+
+}  // namespace
+
+void bind_evaluation(py::module_& m) {
+  bind_fields<Evaluation>(m, /*writable=*/false);
+  m.def("evaluate", &evaluate_solver, py::arg("solver"), py::arg("targets"), py::arg("seed"),
+        py::arg("stages") = false, py::arg("progress") = py::none(),
+        R"(The paper's experiment protocol: success and time over random reachable targets.
+
+Solves poses FK(q), q uniform inside the limits, one after another on this thread with the GIL
+released, timing each solve inside C++.
+
+Args:
+    solver: what to evaluate.
+    targets: number of targets.
+    seed: seed of the targets.
+    stages: take the time of each stage in a second pass.
+    progress: called now and then with (targets done, targets in all). What it raises ends the
+        evaluation. Ctrl-C works.)");
+  m.def(
+      "time_kdl_fk_jacobian", [](const Robot& robot) { return time_kdl_fk_jacobian(robot); },
+      py::arg("robot"), py::call_guard<py::gil_scoped_release>(),
+      "Mean time of one KDL FK plus one KDL Jacobian over random configurations [us].");
+}
+
+}  // namespace iksel::python

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pybind11/stl.h>
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "array_checks.hpp"
+#include "bindings.hpp"
+#include "enums.hpp"
+#include "iksel/robot.hpp"
+
+namespace iksel::python {
+
+namespace {
+
+std::map<std::string, double> as_joint_values(const JointValues& value, const char* name) {
+  if (!py::hasattr(value, "keys")) throw_wrong_type(name, "a mapping of names to numbers", value);
+  std::map<std::string, double> joints;
+  for (const auto& [key, number] : py::dict(py::object(value))) {
+    if (!py::isinstance<py::str>(key)) throw_wrong_type(name, "joint names as keys", key);
+    const auto joint = py::cast<std::string>(key);
+    const std::string culprit = std::string(name) + "['" + joint + "']";
+    joints[joint] = from_python<double>(number, culprit.c_str());
+  }
+  return joints;
+}
+
+Pose as_rigid_pose(const ArrayLike& value, const char* name) {
+  Pose pose = as_pose(value, name);
+  check_pose(pose, name);
+  return pose;
+}
+
+bool is_xml(const std::string& text) {
+  const auto start = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
+  return start != std::string::npos && text[start] == '<';
+}
+
+Robot from_urdf(const PathLike& path_or_xml, const std::string& base_link,
+                const std::string& tip_link, const std::optional<ArrayLike>& tcp,
+                const std::optional<JointValues>& locked_joints, const Loose<bool>& soft_limits) {
+  RobotOptions options;
+  options.base_link = base_link;
+  options.tip_link = tip_link;
+  if (tcp) options.tcp = as_rigid_pose(*tcp, "tcp");
+  if (locked_joints) options.locked_joints = as_joint_values(*locked_joints, "locked_joints");
+  options.soft_limits = from_python<bool>(soft_limits, "soft_limits");
+
+  if (py::isinstance<py::str>(path_or_xml)) {
+    const auto text = py::cast<std::string>(path_or_xml);
+    if (is_xml(text)) return Robot::from_urdf_string(text, options);
+  }
+  return Robot::from_urdf_file(as_path(path_or_xml, "path_or_xml"), options);
+}
+
+py::array_t<double> fk(const Robot& self, const ArrayLike& q, const Loose<Kinematics>& kinematics) {
+  const auto how = from_python<Kinematics>(kinematics, "kinematics");
+  return map_joints(q, self.dof(), "q", {4, 4}, [&](const JointVector& joints, double* out) {
+    Eigen::Map<RowMajorPose>{out} = self.fk(joints, how).matrix();
+  });
+}
+
+py::array_t<double> jacobian(const Robot& self, const ArrayLike& q,
+                             const Loose<Kinematics>& kinematics) {
+  const auto how = from_python<Kinematics>(kinematics, "kinematics");
+  const int dof = self.dof();
+  return map_joints(q, dof, "q", {6, dof}, [&](const JointVector& joints, double* out) {
+    Eigen::Map<RowMajorMatrix>(out, 6, dof) = self.jacobian(joints, how);
+  });
+}
+
+std::string robot_repr(const Robot& self) {
+  return "Robot(" + py::cast<std::string>(py::repr(py::str(self.name()))) +
+         ", dof=" + std::to_string(self.dof()) + ", base_link='" + self.base_link() +
+         "', tip_link='" + self.tip_link() + "')";
+}
+
+py::tuple robot_state(const Robot& self) {
+  const RobotOptions& options = self.options();
+  return py::make_tuple(self.urdf(), options.base_link, options.tip_link, to_array(self.tcp()),
+                        options.locked_joints, options.soft_limits);
+}
+
+Robot robot_from_state(const py::tuple& state) {
+  RobotOptions options;
+  options.base_link = py::cast<std::string>(state[1]);
+  options.tip_link = py::cast<std::string>(state[2]);
+  options.tcp = as_pose(state[3], "tcp");
+  options.locked_joints = py::cast<std::map<std::string, double>>(state[4]);
+  options.soft_limits = py::cast<bool>(state[5]);
+  return Robot::from_urdf_string(py::cast<std::string>(state[0]), options);
+}
+
+/// A read-only property over one of the robot's joint vectors, without a copy.
+void def_joint_vector(py::class_<Robot>& cls, const char* name,
+                      const JointVector& (Robot::*get)() const, const char* doc) {
+  cls.def_property_readonly(
+      name,
+      [get](const Robot& self) {
+        return read_only_view((self.*get)(), py::cast(self, py::return_value_policy::reference));
+      },
+      doc);
+}
+
+void bind_chain(py::class_<Robot>& cls) {
+  cls.def_property_readonly("name", &Robot::name, "Name in the URDF.");
+  cls.def_property_readonly("base_link", &Robot::base_link, "Link the poses are relative to.");
+  cls.def_property_readonly("tip_link", &Robot::tip_link, "Link whose pose is solved for.");
+  cls.def_property_readonly("urdf", &Robot::urdf, "The URDF text this robot was made of.");
+  cls.def_property_readonly(
+      "locked_joints", [](const Robot& self) { return self.options().locked_joints; },
+      "Joints held at a value [rad or m], by name.");
+  cls.def_property_readonly(
+      "soft_limits", [](const Robot& self) { return self.options().soft_limits; },
+      "Whether the limits are narrowed to the safety controller's.");
+  cls.def_property_readonly(
+      "tcp", [](const Robot& self) { return to_array(self.tcp()); },
+      "T_tip_tcp, the tool centre point in the tip link's frame, (4, 4).");
+  cls.def_property_readonly("dof", &Robot::dof, "Degrees of freedom.");
+  cls.def_property_readonly("joint_names", &Robot::joint_names,
+                            "Names of the degrees of freedom, base to tip.");
+  cls.def_property_readonly("joint_types", &Robot::joint_types,
+                            "How each degree of freedom moves, base to tip.");
+  def_joint_vector(cls, "lower", &Robot::lower,
+                   "Lower position limits [rad or m], (dof,); -inf for continuous joints.");
+  def_joint_vector(cls, "upper", &Robot::upper,
+                   "Upper position limits [rad or m], (dof,); inf for continuous joints.");
+  def_joint_vector(cls, "velocity_limit", &Robot::velocity_limit,
+                   "Velocity limits [rad/s or m/s], (dof,); inf where the URDF has none.");
+  def_joint_vector(cls, "soft_lower", &Robot::soft_lower,
+                   "Lower limits of the safety controller [rad or m], (dof,); `lower` where the "
+                   "URDF has none.");
+  def_joint_vector(cls, "soft_upper", &Robot::soft_upper,
+                   "Upper limits of the safety controller [rad or m], (dof,); `upper` where the "
+                   "URDF has none.");
+  cls.def_property_readonly("reach", &Robot::reach,
+                            "No pose farther than this from `reach_centre` can be reached [m].");
+  cls.def_property_readonly(
+      "reach_centre", [](const Robot& self) { return to_array(JointVector(self.reach_centre())); },
+      "A point on the first joint's axis, in the base frame [m], (3,).");
+  cls.def_property_readonly(
+      "chain_hash", &Robot::chain_hash,
+      "Hash of the chain up to the tip link: equal for chains that may share a database.");
+}
+
+}  // namespace
+
+void bind_robot(py::module_& m) {
+  bind_enum<JointType>(m);
+  bind_enum<Kinematics>(m);
+
+  const RobotOptions defaults;
+  const Loose<Kinematics> kernel = py::str(enum_name(Kinematics::kernel));
+  py::class_<Robot> cls(m, "Robot",
+                        "An immutable serial chain between two links of a URDF, with its limits. "
+                        "Safe to use from many threads at once.");
+  cls.def_static("from_urdf", &from_urdf, py::arg("path_or_xml"),
+                 py::arg("base_link") = defaults.base_link, py::arg("tip_link") = defaults.tip_link,
+                 py::arg("tcp") = py::none(), py::arg("locked_joints") = py::none(),
+                 py::arg("soft_limits") = defaults.soft_limits,
+                 R"(Reads the chain between two links of a URDF.
+
+Args:
+    path_or_xml: a path, or the URDF text itself (a str whose first character is '<').
+    base_link: link the poses are relative to; empty: the root link.
+    tip_link: link whose pose is solved for; empty: the one link without children.
+    tcp: T_tip_tcp, (4, 4): tool centre point. Poses, FK and IK are then of the TCP.
+    locked_joints: joints held at a value [rad or m]; they are no degrees of freedom.
+    soft_limits: narrow the limits to the URDF's safety_controller where there is one.
+
+Raises:
+    UrdfError: the file, the XML, a joint type or a limit is no good.
+    UnknownNameError: no such link or joint.
+    InvalidArgumentError: tcp is no rigid transform.)");
+  bind_chain(cls);
+  cls.def(
+      "with_tcp",
+      [](const Robot& self, const ArrayLike& tcp) {
+        return self.with_tcp(as_rigid_pose(tcp, "tcp"));
+      },
+      py::arg("tcp"),
+      "The same chain with another tool T_tip_tcp, (4, 4). Databases built for one serve the "
+      "other.");
+  cls.def(
+      "within_limits",
+      [](const Robot& self, const ArrayLike& q) {
+        return self.within_limits(as_joints(q, self.dof(), "q"));
+      },
+      py::arg("q"), "Whether q, (dof,) [rad or m], lies inside the position limits.");
+  cls.def("fk", &fk, py::arg("q"), py::arg("kinematics") = kernel,
+          R"(Forward kinematics: T_base_tip (of the TCP, if there is one).
+
+Args:
+    q: joint values [rad or m], (dof,) or (N, dof).
+    kinematics: what computes it.
+
+Returns:
+    (4, 4), or (N, 4, 4) with the GIL released.
+
+Raises:
+    InvalidArgumentError: wrong shape or dtype, or a number that is not finite.)");
+  cls.def("jacobian", &jacobian, py::arg("q"), py::arg("kinematics") = kernel,
+          R"(Geometric Jacobian: rows [linear; angular] in base axes at the tip.
+
+Args:
+    q: joint values [rad or m], (dof,) or (N, dof).
+    kinematics: what computes it.
+
+Returns:
+    (6, dof), or (N, 6, dof) with the GIL released.
+
+Raises:
+    InvalidArgumentError: wrong shape or dtype, or a number that is not finite.)");
+  cls.def(
+      "random_configurations",
+      [](const Robot& self, const Loose<std::size_t>& n, const Loose<std::uint64_t>& seed) {
+        return to_array(self.random_configurations(from_python<std::size_t>(n, "n"),
+                                                   from_python<std::uint64_t>(seed, "seed")));
+      },
+      py::arg("n"), py::arg("seed"),
+      "n configurations uniform inside the limits (continuous joints in [-pi, pi)), (n, dof). The "
+      "same seed gives the same numbers everywhere.");
+  cls.def("__repr__", &robot_repr);
+  cls.def("__copy__", [](const Robot& self) { return self; });
+  cls.def(
+      "__deepcopy__", [](const Robot& self, const py::dict&) { return self; }, py::arg("memo"));
+  cls.def(py::pickle(&robot_state, &robot_from_state));
+
+  m.def(
+      "pose_error",
+      [](const ArrayLike& target, const ArrayLike& pose) {
+        return to_array(
+            JointVector(pose_error(as_rigid_pose(target, "target"), as_rigid_pose(pose, "pose"))));
+      },
+      py::arg("target"), py::arg("pose"),
+      "[p_target - p; rotvec(R_target R^T)] of two (4, 4) poses [m, rad], (6,).");
+}
+
+}  // namespace iksel::python

@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "array_checks.hpp"
+#include "bindings.hpp"
+#include "iksel/solver.hpp"
+#include "option_fields.hpp"
+#include "progress.hpp"
+
+namespace iksel::python {
+
+namespace {
+
+using OptionalJoints = py::typing::Optional<py::array_t<double>>;
+
+/// A Result whose q becomes an array when it is first asked for.
+struct PyResult {
+  Result result;
+  py::object q;
+
+  OptionalJoints joints() {
+    if (!q) q = result.success() ? py::object(to_array(result.q)) : py::object(py::none());
+    return py::reinterpret_borrow<OptionalJoints>(q);
+  }
+};
+
+/// The arrays of a batch.
+struct PyBatchResult {
+  py::array_t<double> q;
+  py::array_t<bool> success;
+  py::array_t<std::uint8_t> status;
+  py::array_t<double> position_error;
+  py::array_t<double> rotation_error;
+  py::array_t<std::int32_t> attempts;
+  py::array_t<std::int32_t> iterations;
+
+  [[nodiscard]] py::ssize_t size() const { return status.shape(0); }
+
+  [[nodiscard]] py::ssize_t solved() const {
+    const bool* first = success.data();
+    return std::count(first, first + size(), true);
+  }
+
+  [[nodiscard]] PyResult row(const Loose<py::ssize_t>& index) const {
+    auto i = from_python<py::ssize_t>(index, "i");
+    if (i < 0) i += size();
+    if (i < 0 || i >= size()) {
+      throw py::index_error("row " + std::to_string(i) + " of " + std::to_string(size()));
+    }
+    PyResult out;
+    out.result.status = static_cast<Status>(status.at(i));
+    if (out.result.success()) {
+      out.result.q = Eigen::Map<const Eigen::VectorXd>(q.data(i), q.shape(1));
+    }
+    out.result.position_error = position_error.at(i);
+    out.result.rotation_error = rotation_error.at(i);
+    out.result.attempts = attempts.at(i);
+    out.result.iterations = iterations.at(i);
+    return out;
+  }
+};
+
+Solver make_solver(const Robot& robot, const std::optional<SolverOptions>& given,
+                   const std::optional<Database>& database) {
+  const SolverOptions options = given.value_or(SolverOptions{});
+  options.validate();
+  // Built here and not by Solver, so that Ctrl-C ends a long build.
+  const std::optional<ProgressCallable> no_callable;
+  const Progress interruptible = make_progress(no_callable);
+  const py::gil_scoped_release release;
+  return Solver(robot, options,
+                database ? *database : Database::build(robot, options.database, interruptible));
+}
+
+PyResult solve(const Solver& self, const ArrayLike& pose, const std::optional<ArrayLike>& seed) {
+  const Pose target = as_pose(pose, "pose");
+  if (!seed) return {self.solve(target), {}};
+  return {self.solve(target, as_joints(*seed, self.robot().dof(), "seed")), {}};
+}
+
+PyBatchResult solve_batch(const Solver& self, const ArrayLike& poses, const Loose<int>& threads) {
+  const DoubleArray targets = as_poses(poses, "poses");
+  const auto thread_count = from_python<int>(threads, "threads");
+  const py::ssize_t n = targets.shape(0);
+  const py::ssize_t dof = self.robot().dof();
+  PyBatchResult out{py::array_t<double>({n, dof}), py::array_t<bool>(n),
+                    py::array_t<std::uint8_t>(n),  py::array_t<double>(n),
+                    py::array_t<double>(n),        py::array_t<std::int32_t>(n),
+                    py::array_t<std::int32_t>(n)};
+  const BatchView view{out.q.mutable_data(),
+                       out.status.mutable_data(),
+                       out.position_error.mutable_data(),
+                       out.rotation_error.mutable_data(),
+                       out.attempts.mutable_data(),
+                       out.iterations.mutable_data()};
+  bool* success = out.success.mutable_data();
+  const double* in = targets.data();
+  {
+    const py::gil_scoped_release release;
+    self.solve_batch(in, static_cast<std::size_t>(n), view, thread_count);
+    std::transform(view.status, view.status + n, success, [](std::uint8_t status) {
+      return static_cast<Status>(status) == Status::solved;
+    });
+  }
+  return out;
+}
+
+std::string scientific(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+std::string result_repr(const PyResult& self) {
+  const Result& r = self.result;
+  return std::string("Result(") + enum_name(r.status) +
+         ", position_error=" + scientific(r.position_error) +
+         ", rotation_error=" + scientific(r.rotation_error) +
+         ", attempts=" + std::to_string(r.attempts) +
+         ", iterations=" + std::to_string(r.iterations) + ")";
+}
+
+void bind_result(py::module_& m) {
+  py::class_<PyResult> cls(m, "Result",
+                           "Answer to one target. Everything in it is measured on the returned q.");
+  cls.def_property_readonly(
+      "success", [](const PyResult& self) { return self.result.success(); },
+      "Whether q reaches the target within both tolerances and lies inside the limits.");
+  cls.def_property_readonly(
+      "status", [](const PyResult& self) { return self.result.status; }, "Why the solve ended.");
+  cls.def_property_readonly("q", &PyResult::joints,
+                            "Joint values [rad or m], (dof,); None unless solved.");
+  cls.def_property_readonly(
+      "position_error", [](const PyResult& self) { return self.result.position_error; },
+      "Distance to the target [m]; NaN unless solved.");
+  cls.def_property_readonly(
+      "rotation_error", [](const PyResult& self) { return self.result.rotation_error; },
+      "Length of the rotation vector to the target [rad]; NaN unless solved.");
+  cls.def_property_readonly(
+      "attempts", [](const PyResult& self) { return self.result.attempts; }, "Seeds tried.");
+  cls.def_property_readonly(
+      "iterations", [](const PyResult& self) { return self.result.iterations; },
+      "Iteration steps over all attempts.");
+  cls.def("__repr__", &result_repr);
+  cls.def(py::pickle(
+      [](PyResult& self) {
+        const Result& r = self.result;
+        return py::make_tuple(enum_name(r.status), self.joints(), r.position_error,
+                              r.rotation_error, r.attempts, r.iterations);
+      },
+      [](const py::tuple& state) {
+        PyResult self;
+        self.result.status = from_python<Status>(state[0], "status");
+        self.q = state[1];
+        self.result.position_error = py::cast<double>(state[2]);
+        self.result.rotation_error = py::cast<double>(state[3]);
+        self.result.attempts = py::cast<int>(state[4]);
+        self.result.iterations = py::cast<int>(state[5]);
+        return self;
+      }));
+}
+
+void bind_batch_result(py::module_& m) {
+  using B = PyBatchResult;
+  py::class_<B> cls(m, "BatchResult",
+                    "Answers to many targets as arrays; row i belongs to target i. Indexing gives "
+                    "a Result.");
+  cls.def_readonly("q", &B::q, "Joint values [rad or m], (N, dof); NaN where not solved.");
+  cls.def_readonly("success", &B::success, "Whether each target is solved, (N,).");
+  cls.def_readonly("status", &B::status, "Values of Status, (N,).");
+  cls.def_readonly("position_error", &B::position_error,
+                   "Distances to the targets [m], (N,); NaN where not solved.");
+  cls.def_readonly("rotation_error", &B::rotation_error,
+                   "Lengths of the rotation vectors to the targets [rad], (N,); NaN where not "
+                   "solved.");
+  cls.def_readonly("attempts", &B::attempts, "Seeds tried, (N,).");
+  cls.def_readonly("iterations", &B::iterations, "Iteration steps over all attempts, (N,).");
+  cls.def_property_readonly("solved", &B::solved, "Number of targets solved.");
+  cls.def(
+      "statuses",
+      [](const B& self) {
+        std::vector<Status> statuses;
+        statuses.reserve(static_cast<std::size_t>(self.size()));
+        for (py::ssize_t i = 0; i < self.size(); ++i) {
+          statuses.push_back(static_cast<Status>(self.status.at(i)));
+        }
+        return statuses;
+      },
+      "`status` as members of Status.");
+  cls.def("__len__", &B::size);
+  cls.def("__getitem__", &B::row, py::arg("i"));
+  cls.def("__iter__", [](const py::object& self) {
+    return py::reinterpret_steal<py::typing::Iterator<PyResult>>(PySeqIter_New(self.ptr()));
+  });
+  cls.def("__repr__", [](const B& self) {
+    return "BatchResult(" + std::to_string(self.solved()) + " of " + std::to_string(self.size()) +
+           " solved)";
+  });
+  cls.def(py::pickle(
+      [](const B& self) {
+        return py::make_tuple(self.q, self.success, self.status, self.position_error,
+                              self.rotation_error, self.attempts, self.iterations);
+      },
+      [](const py::tuple& state) {
+        B self{
+            state[0].cast<py::array_t<double>>(),       state[1].cast<py::array_t<bool>>(),
+            state[2].cast<py::array_t<std::uint8_t>>(), state[3].cast<py::array_t<double>>(),
+            state[4].cast<py::array_t<double>>(),       state[5].cast<py::array_t<std::int32_t>>(),
+            state[6].cast<py::array_t<std::int32_t>>()};
+        return self;
+      }));
+}
+
+}  // namespace
+
+void bind_solver(py::module_& m) {
+  bind_enum<Status>(m);
+  bind_result(m);
+  bind_batch_result(m);
+
+  py::class_<Solver> cls(m, "Solver",
+                         "Solves inverse kinematics for one robot. Immutable, safe to use from "
+                         "many threads at once; the same input gives the same bits.");
+  cls.def(py::init(&make_solver), py::arg("robot"), py::arg("options") = py::none(),
+          py::arg("database") = py::none(),
+          R"(Uses a database, or builds one by `options.database` if it is given none.
+
+Args:
+    robot: the chain to solve for.
+    options: SolverOptions() if None.
+    database: built for the same chain; its TCP may differ.
+
+Raises:
+    InvalidArgumentError: an option out of range.
+    DatabaseMismatchError: the database belongs to another chain.)");
+  cls.def_property_readonly("robot", &Solver::robot, "The robot it solves for.");
+  cls.def_property_readonly(
+      "options", [](const Solver& self) { return self.options(); }, "A copy of its options.");
+  cls.def_property_readonly("database", &Solver::database, "The database it selects seeds from.");
+  cls.def("solve", &solve, py::arg("pose"), py::arg("seed") = py::none(),
+          R"(Joint values that put the tip (the TCP, if there is one) at a pose.
+
+Args:
+    pose: T_base_tip, (4, 4) [m].
+    seed: joint values to iterate from first, (dof,) [rad or m]; may lie outside the limits.
+
+Returns:
+    A Result. A pose that cannot be solved is no error but a status.
+
+Raises:
+    InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, or a number that is
+        not finite.)");
+  cls.def("solve_batch", &solve_batch, py::arg("poses"), py::arg("threads") = 0,
+          R"(Solves many targets with the GIL released; row i has the bits that solve() gives.
+
+Args:
+    poses: T_base_tip, (N, 4, 4) [m]. Doubles in C order are read in place.
+    threads: 0: one per core.
+
+Raises:
+    InvalidArgumentError: wrong shape or dtype, or a bad pose; the first is named, and none is
+        solved.)");
+  cls.def("__repr__", [](const Solver& self) {
+    return "Solver(" + py::cast<std::string>(py::repr(py::cast(self.robot()))) + ", " +
+           to_repr(self.options()) + ")";
+  });
+  cls.def("__copy__", [](const Solver& self) { return self; });
+  cls.def(
+      "__deepcopy__", [](const Solver& self, const py::dict&) { return self; }, py::arg("memo"));
+  cls.def(py::pickle(
+      [](const Solver& self) {
+        return py::make_tuple(self.robot(), self.options(), self.database());
+      },
+      [](const py::tuple& state) {
+        return Solver(py::cast<const Robot&>(state[0]), py::cast<const SolverOptions&>(state[1]),
+                      py::cast<const Database&>(state[2]));
+      }));
+}
+
+}  // namespace iksel::python

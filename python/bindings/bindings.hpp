@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One function per bound noun; module.cpp calls them in order.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace iksel::python {
+
+void bind_errors(pybind11::module_& m);
+void bind_robot(pybind11::module_& m);
+void bind_options(pybind11::module_& m);
+void bind_database(pybind11::module_& m);
+void bind_solver(pybind11::module_& m);
+void bind_evaluation(pybind11::module_& m);
+
+}  // namespace iksel::python

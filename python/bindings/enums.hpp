@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The C++ enums as Python enums: one table of names per enum, from which the Python class, the
+// parsing of names and the error messages follow.
+#pragma once
+
+#include <pybind11/native_enum.h>
+#include <pybind11/pybind11.h>
+
+#include <string>
+
+#include "iksel/options.hpp"
+#include "iksel/result.hpp"
+#include "iksel/robot.hpp"
+
+namespace iksel::python {
+
+namespace py = pybind11;
+
+template <class E>
+struct EnumValue {
+  const char* name;
+  E value;
+  const char* doc;
+};
+
+/// Specialised for every bound enum: kName, kDoc, kValues.
+template <class E>
+struct EnumTable;
+
+template <>
+struct EnumTable<Kinematics> {
+  static constexpr const char* kName = "Kinematics";
+  static constexpr const char* kDoc =
+      "Which implementation computes forward kinematics and Jacobians; they agree to 1e-12.";
+  static constexpr EnumValue<Kinematics> kValues[] = {
+      {"kernel", Kinematics::kernel, "the library's flattened chain"},
+      {"kdl", Kinematics::kdl, "Orocos KDL, the reference"},
+  };
+};
+
+template <>
+struct EnumTable<JointType> {
+  static constexpr const char* kName = "JointType";
+  static constexpr const char* kDoc = "How a degree of freedom moves.";
+  static constexpr EnumValue<JointType> kValues[] = {
+      {"revolute", JointType::revolute, "turns between limits [rad]"},
+      {"continuous", JointType::continuous, "turns without limits [rad]"},
+      {"prismatic", JointType::prismatic, "slides between limits [m]"},
+  };
+};
+
+template <>
+struct EnumTable<Sampling> {
+  static constexpr const char* kName = "Sampling";
+  static constexpr const char* kDoc =
+      "How the joint samples of a database are spread over the limits.";
+  static constexpr EnumValue<Sampling> kValues[] = {
+      {"grid", Sampling::grid, "Cartesian product of interior points (the paper)"},
+      {"cvt", Sampling::cvt, "centroidal Voronoi tessellation, MacQueen updates"},
+      {"low_discrepancy", Sampling::low_discrepancy, "additive recurrence R_d"},
+      {"random", Sampling::random, "uniform, seeded"},
+  };
+};
+
+template <>
+struct EnumTable<Scale> {
+  static constexpr const char* kName = "Scale";
+  static constexpr const char* kDoc =
+      "Size of a grid, and of other samplings whose `samples` is 0 (paper, database sizes).";
+  static constexpr EnumValue<Scale> kValues[] = {
+      {"small", Scale::small, "12,000 samples for 6 joints"},
+      {"medium", Scale::medium, "40,320 samples for 6 joints"},
+      {"large", Scale::large, "151,200 samples for 6 joints"},
+  };
+};
+
+template <>
+struct EnumTable<RotationKey> {
+  static constexpr const char* kName = "RotationKey";
+  static constexpr const char* kDoc =
+      "How the KD-tree's key writes the rotation of a pose (paper, footnote 1).";
+  static constexpr EnumValue<RotationKey> kValues[] = {
+      {"rotation_vector", RotationKey::rotation_vector, "3 numbers [rad]"},
+      {"quaternion", RotationKey::quaternion, "4 numbers (w, x, y, z), w >= 0"},
+      {"matrix", RotationKey::matrix, "9 numbers"},
+      {"euler", RotationKey::euler, "3 numbers, roll-pitch-yaw [rad]"},
+  };
+};
+
+template <>
+struct EnumTable<Ranking> {
+  static constexpr const char* kName = "Ranking";
+  static constexpr const char* kDoc = "How the neighbours of a target are put in order.";
+  static constexpr EnumValue<Ranking> kValues[] = {
+      {"nearest", Ranking::nearest, "distance of the keys, Eq. (2) of the paper"},
+      {"joint_adjustment", Ranking::joint_adjustment,
+       "norm of J^+ (x_target - x_i), Eq. (5) of the paper"},
+  };
+};
+
+template <>
+struct EnumTable<RotationDifference> {
+  static constexpr const char* kName = "RotationDifference";
+  static constexpr const char* kDoc =
+      "The rotation part of x_target - x_i in Eq. (4) of the paper.";
+  static constexpr EnumValue<RotationDifference> kValues[] = {
+      {"rotation_vector", RotationDifference::rotation_vector, "w_target - w_i, as in the paper"},
+      {"geodesic", RotationDifference::geodesic,
+       "rotvec(R_target R_i^T), the same error that iterations reduce"},
+  };
+};
+
+template <>
+struct EnumTable<Iteration> {
+  static constexpr const char* kName = "Iteration";
+  static constexpr const char* kDoc = "One scheme of numerical iteration (paper, Table II).";
+  static constexpr EnumValue<Iteration> kValues[] = {
+      {"dls", Iteration::dls, "damped least squares; truncated least squares if `damping` is 0"},
+      {"pinv", Iteration::pinv, "truncated pseudo-inverse"},
+      {"pinv_rr", Iteration::pinv_rr,
+       "as pinv; restarts at random on a limit violation or local minimum"},
+      {"cwln", Iteration::cwln, "clamping weighted least-norm (Huang et al. 2016)"},
+      {"cwpi", Iteration::cwpi, "as cwln with the truncated pseudo-inverse"},
+      {"lm", Iteration::lm, "Levenberg-Marquardt with the limits inside the step"},
+  };
+};
+
+template <>
+struct EnumTable<Reselection> {
+  static constexpr const char* kName = "Reselection";
+  static constexpr const char* kDoc = "Which seed follows a failed one.";
+  static constexpr EnumValue<Reselection> kValues[] = {
+      {"none", Reselection::none, "give up after the first"},
+      {"next", Reselection::next, "the next in the ranking"},
+      {"farthest", Reselection::farthest,
+       "the candidate farthest in joint space from the failed ones (the paper)"},
+  };
+};
+
+template <>
+struct EnumTable<GrowthStop> {
+  static constexpr const char* kName = "GrowthStop";
+  static constexpr const char* kDoc = "Whether an attempt is given up when both errors have grown.";
+  static constexpr EnumValue<GrowthStop> kValues[] = {
+      {"by_scheme", GrowthStop::by_scheme, "as in the paper: yes for dls and pinv, no for others"},
+      {"on", GrowthStop::on, "always"},
+      {"off", GrowthStop::off, "never"},
+  };
+};
+
+template <>
+struct EnumTable<Status> {
+  static constexpr const char* kName = "Status";
+  static constexpr const char* kDoc = "Why a solve ended.";
+  static constexpr EnumValue<Status> kValues[] = {
+      {"solved", Status::solved,
+       "q reaches the target within both tolerances and lies inside the limits"},
+      {"not_converged", Status::not_converged,
+       "no attempt reached the tolerances within the allowed work"},
+      {"outside_limits", Status::outside_limits,
+       "attempts reached the target, but only with joints outside their limits"},
+      {"out_of_reach", Status::out_of_reach,
+       "the target's position is farther away than the arm is long; nothing was tried"},
+  };
+};
+
+/// All names of an enum, for messages: "grid, cvt, random".
+template <class E>
+std::string enum_names() {
+  std::string names;
+  for (const auto& entry : EnumTable<E>::kValues) {
+    names += (names.empty() ? "" : ", ") + std::string(entry.name);
+  }
+  return names;
+}
+
+/// Name of a value; "?" if it is none of the enum's.
+template <class E>
+const char* enum_name(E value) {
+  for (const auto& entry : EnumTable<E>::kValues) {
+    if (entry.value == value) return entry.name;
+  }
+  return "?";
+}
+
+/// Makes the Python enum; to come before any function that takes or returns it.
+template <class E>
+void bind_enum(py::module_& m) {
+  py::native_enum<E> binding(m, EnumTable<E>::kName, "enum.Enum", EnumTable<E>::kDoc);
+  for (const auto& entry : EnumTable<E>::kValues) binding.value(entry.name, entry.value, entry.doc);
+  binding.finalize();
+}
+
+}  // namespace iksel::python

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bindings.hpp"
+#include "iksel/version.hpp"
+
+PYBIND11_MODULE(iksel_cpp, m) {
+  m.doc() =
+      "IKSel: inverse kinematics from precomputed seeds.\n\n"
+      "A pose is base -> tip, a (4, 4) homogeneous matrix; lengths are metres, angles radians. A\n"
+      "twist is [linear; angular] in base axes at the tip. The method is that of \"IKSel: "
+      "Selecting\n"
+      "Good Seed Joint Values for Fast Numerical Inverse Kinematics Iterations\" (Yuan, Wan, "
+      "Harada,\n"
+      "2025), called the paper below.";
+  m.attr("__version__") = iksel::kVersion;
+  iksel::python::bind_errors(m);
+  iksel::python::bind_robot(m);
+  iksel::python::bind_options(m);
+  iksel::python::bind_database(m);
+  iksel::python::bind_solver(m);
+  iksel::python::bind_evaluation(m);
+}

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Arguments that are converted by hand, so that a bad one is named in the error, and the types they
+// have in signatures and stubs.
+#pragma once
+
+#include <pybind11/pybind11.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <type_traits>
+
+#include "enums.hpp"
+#include "iksel/error.hpp"
+#include "iksel/options.hpp"
+
+namespace iksel::python {
+
+inline bool is_any_object(PyObject* /*object*/) { return true; }
+
+/// Anything that numpy turns into an array: see array_checks.hpp.
+class ArrayLike : public py::object {
+  PYBIND11_OBJECT_DEFAULT(ArrayLike, object, is_any_object)
+};
+
+/// A path, or any other text where there is a choice.
+class PathLike : public py::object {
+  PYBIND11_OBJECT_DEFAULT(PathLike, object, is_any_object)
+};
+
+/// Joint names and values.
+class JointValues : public py::object {
+  PYBIND11_OBJECT_DEFAULT(JointValues, object, is_any_object)
+};
+
+/// Something that `from_python<T>` turns into a T.
+template <class T>
+class Loose : public py::object {
+  PYBIND11_OBJECT_DEFAULT(Loose, object, is_any_object)
+};
+
+/// "'abc' (str)", for messages.
+inline std::string describe(py::handle value) {
+  std::string text = py::cast<std::string>(py::repr(value));
+  constexpr std::size_t kLongest = 60;
+  if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
+  return text + " (" + Py_TYPE(value.ptr())->tp_name + ")";
+}
+
+[[noreturn]] inline void throw_wrong_type(const char* name, const std::string& expected,
+                                          py::handle got) {
+  throw InvalidArgumentError(std::string(name) + ": expected " + expected + ", got " +
+                             describe(got));
+}
+
+inline std::filesystem::path as_path(const PathLike& value, const char* name) {
+  if (!py::isinstance<py::str>(value) && !py::hasattr(value, "__fspath__")) {
+    throw_wrong_type(name, "a path", value);
+  }
+  return py::cast<std::filesystem::path>(value);
+}
+
+/// Converts an argument or option; throws InvalidArgumentError naming it. Specialised for the
+/// option structs in fields.hpp.
+template <class T, class Enable = void>
+struct FromPython;
+
+template <class T>
+T from_python(py::handle value, const char* name) {
+  return FromPython<T>::convert(value, name);
+}
+
+template <>
+struct FromPython<bool> {
+  static bool convert(py::handle value, const char* name) {
+    if (value.ptr() == Py_True) return true;
+    if (value.ptr() == Py_False) return false;
+    if (!py::isinstance(value, py::module_::import("numpy").attr("bool_"))) {
+      throw_wrong_type(name, "True or False", value);
+    }
+    return PyObject_IsTrue(value.ptr()) == 1;
+  }
+};
+
+template <class T>
+struct FromPython<T, std::enable_if_t<std::is_floating_point_v<T>>> {
+  static T convert(py::handle value, const char* name) {
+    if (PyBool_Check(value.ptr())) throw_wrong_type(name, "a number", value);
+    const double number = PyFloat_AsDouble(value.ptr());
+    if (number == -1.0 && PyErr_Occurred() != nullptr) {
+      PyErr_Clear();
+      throw_wrong_type(name, "a number", value);
+    }
+    return static_cast<T>(number);
+  }
+};
+
+template <class T>
+struct FromPython<T, std::enable_if_t<std::is_integral_v<T>>> {
+  static T convert(py::handle value, const char* name) {
+    if (PyBool_Check(value.ptr()) || PyIndex_Check(value.ptr()) == 0) {
+      throw_wrong_type(name, "an int", value);
+    }
+    py::detail::make_caster<T> caster;
+    if (!caster.load(value, /*convert=*/true)) {
+      throw InvalidArgumentError(std::string(name) + ": expected an int from " +
+                                 std::to_string(std::numeric_limits<T>::min()) + " to " +
+                                 std::to_string(std::numeric_limits<T>::max()) + ", got " +
+                                 describe(value));
+    }
+    return py::detail::cast_op<T>(caster);
+  }
+};
+
+/// A member of the Python enum, or its name.
+template <class T>
+struct FromPython<T, std::enable_if_t<std::is_enum_v<T>>> {
+  static T convert(py::handle value, const char* name) {
+    py::detail::make_caster<T> caster;
+    if (caster.load(value, /*convert=*/false)) return py::detail::cast_op<T&>(caster);
+    if (py::isinstance<py::str>(value)) {
+      const auto text = py::cast<std::string>(value);
+      for (const auto& entry : EnumTable<T>::kValues) {
+        if (text == entry.name) return entry.value;
+      }
+    }
+    throw_wrong_type(name, "one of " + enum_names<T>(), value);
+  }
+};
+
+}  // namespace iksel::python
+
+namespace pybind11::detail {
+
+template <>
+struct handle_type_name<iksel::python::ArrayLike> {
+  static constexpr auto name = const_name("numpy.typing.ArrayLike");
+};
+
+template <>
+struct handle_type_name<iksel::python::PathLike> {
+  static constexpr auto name = const_name("str | os.PathLike[str]");
+};
+
+template <>
+struct handle_type_name<iksel::python::JointValues> {
+  static constexpr auto name = const_name("collections.abc.Mapping[str, float]");
+};
+
+template <class T>
+struct handle_type_name<iksel::python::Loose<T>> {
+  static constexpr auto describe() {
+    if constexpr (std::is_enum_v<T>) {
+      return make_caster<T>::name + const_name(" | str");
+    } else if constexpr (std::is_class_v<T>) {
+      return make_caster<T>::name + const_name(" | collections.abc.Mapping[str, object]");
+    } else if constexpr (std::is_same_v<T, bool>) {
+      return const_name("bool");
+    } else if constexpr (std::is_integral_v<T>) {
+      return const_name("int");
+    } else {
+      return const_name("float");
+    }
+  }
+  static constexpr auto name = describe();
+};
+
+}  // namespace pybind11::detail

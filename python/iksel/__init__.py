@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Fast numerical inverse kinematics by selecting good seeds.
+
+    import iksel
+
+    robot = iksel.load_robot("ur3")
+    solver = iksel.Solver(robot)
+    result = solver.solve(robot.fk([0.3, -1.2, 1.5, -0.4, 0.9, 0.0]))
+    if result.success:
+        print(result.q)
+
+A pose is a 4x4 matrix T_base_tip; lengths are metres, angles radians.
+"""
+
+from __future__ import annotations
+
+try:
+    import iksel_cpp as _core
+except ImportError as _error:
+    raise ImportError(
+        "iksel needs its compiled extension module iksel_cpp, which could not be "
+        f"imported ({_error}). Install the package ('pip install .' at the top of the "
+        "repository) for this Python; the source tree alone is not enough."
+    ) from _error
+
+from iksel_cpp import (
+    BatchResult,
+    Database,
+    DatabaseCorruptError,
+    DatabaseError,
+    DatabaseIoError,
+    DatabaseMismatchError,
+    DatabaseOptions,
+    Error,
+    Evaluation,
+    GrowthStop,
+    InvalidArgumentError,
+    Iteration,
+    JointType,
+    Kinematics,
+    Ranking,
+    Reselection,
+    Result,
+    Robot,
+    RotationDifference,
+    RotationKey,
+    Sampling,
+    Scale,
+    Solver,
+    SolverOptions,
+    Status,
+    UnknownNameError,
+    UrdfError,
+    evaluate,
+    time_kdl_fk_jacobian,
+)
+
+from iksel._manifest import RobotInfo
+from iksel.pose import (
+    check_pose,
+    euler_from_pose,
+    is_rigid,
+    pose_error,
+    pose_from_euler,
+    pose_from_matrix,
+    pose_from_quaternion,
+    pose_from_rotation_vector,
+    quaternion_from_pose,
+    rotation_vector_from_pose,
+)
+from iksel.robots import load_robot, robot_info, robot_names
+
+__version__: str = _core.__version__
+
+__all__ = [
+    "BatchResult",
+    "Database",
+    "DatabaseCorruptError",
+    "DatabaseError",
+    "DatabaseIoError",
+    "DatabaseMismatchError",
+    "DatabaseOptions",
+    "Error",
+    "Evaluation",
+    "GrowthStop",
+    "InvalidArgumentError",
+    "Iteration",
+    "JointType",
+    "Kinematics",
+    "Ranking",
+    "Reselection",
+    "Result",
+    "Robot",
+    "RobotInfo",
+    "RotationDifference",
+    "RotationKey",
+    "Sampling",
+    "Scale",
+    "Solver",
+    "SolverOptions",
+    "Status",
+    "UnknownNameError",
+    "UrdfError",
+    "__version__",
+    "check_pose",
+    "euler_from_pose",
+    "evaluate",
+    "is_rigid",
+    "load_robot",
+    "pose_error",
+    "pose_from_euler",
+    "pose_from_matrix",
+    "pose_from_quaternion",
+    "pose_from_rotation_vector",
+    "quaternion_from_pose",
+    "robot_info",
+    "robot_names",
+    "rotation_vector_from_pose",
+    "time_kdl_fk_jacobian",
+]

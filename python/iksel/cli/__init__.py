@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The command line: iksel robots | info | solve | build | evaluate.
+
+Exit status: 0 done or solved, 1 no solution, 2 bad input (one line on stderr), 130
+interrupted, 141 the reader of the output went away.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from typing import TYPE_CHECKING
+
+from iksel_cpp import Error
+
+from iksel import __version__
+from iksel.cli import build, evaluate, info, robots, solve
+from iksel.cli._parser import EXIT_BAD_INPUT, Parser, error_line
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+EXIT_INTERRUPTED = 130
+EXIT_BROKEN_PIPE = 141
+
+COMMANDS = (robots, info, solve, build, evaluate)
+
+EXAMPLES = """\
+examples:
+  iksel robots
+  iksel info ur3
+  iksel solve ur3 --pose 0.2 0.15 0.3 0 3.1416 0
+  iksel solve arm.urdf --base base_link --tip tool0 --from-q 0 -1 1 0 0.5 0
+  iksel build panda -o panda.iksel --samples 40000
+  iksel evaluate ur3 --preset paper --targets 10000 --seed 1 --json
+"""
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line.
+
+    Args:
+        argv: Arguments without the program's name; None: those of the process.
+
+    Returns:
+        The exit status.
+    """
+    try:
+        code = _run(argv)
+        sys.stdout.flush()
+    except KeyboardInterrupt:
+        return EXIT_INTERRUPTED
+    except BrokenPipeError:
+        _drop_output()
+        return EXIT_BROKEN_PIPE
+    except OSError as error:
+        _drop_output()
+        return _report(f"cannot write the output: {error}")
+    return code
+
+
+def make_parser() -> Parser:
+    """The parser of the whole command line."""
+    parser = Parser(
+        prog="iksel",
+        description="Fast numerical inverse kinematics. Lengths are metres, angles "
+        "radians; a pose is that of the tip (or tool) in the base link's frame.",
+        epilog=EXAMPLES,
+    )
+    parser.add_argument("--version", action="version", version=f"iksel {__version__}")
+    commands = parser.add_subparsers(
+        title="commands", metavar="COMMAND", dest="command", required=True
+    )
+    for command in COMMANDS:
+        command.add_parser(commands)
+    return parser
+
+
+def _run(argv: Sequence[str] | None) -> int:
+    try:
+        arguments = make_parser().parse_args(argv)
+        return int(arguments.run(arguments))
+    except SystemExit as stop:
+        return int(stop.code or 0)
+    except Error as error:
+        return _report(str(error))
+    except MemoryError:
+        return _report("not enough memory")
+
+
+def _report(message: str) -> int:
+    sys.stderr.write(error_line(message))
+    return EXIT_BAD_INPUT
+
+
+def _drop_output() -> None:
+    """Send what is still to be written nowhere, lest the interpreter fail at exit."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

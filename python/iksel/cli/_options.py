@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A flag for every field of SolverOptions and DatabaseOptions, made from the fields."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from iksel_cpp import DatabaseOptions, InvalidArgumentError, SolverOptions
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+Options = DatabaseOptions | SolverOptions
+
+PRESETS = ("default", "paper")
+
+# Fields whose plain flag would mean two things in one command.
+_SOLVER_FLAGS = {"seed": "--solver-seed"}
+_DATABASE_FLAGS = {
+    "pinv_cutoff": "--database-pinv-cutoff",
+    "seed": "--database-seed",
+    "threads": "--database-threads",
+}
+_SOLVER, _DATABASE = "solver.", "database."
+
+
+def add_preset(parser: argparse.ArgumentParser) -> None:
+    """Add --preset."""
+    parser.add_argument(
+        "--preset",
+        choices=PRESETS,
+        default="default",
+        help="the settings that the flags below start from (default: %(default)s)",
+    )
+
+
+def add_solver_options(parser: argparse.ArgumentParser) -> None:
+    """Add --preset, --database, and a flag for every solver and database field."""
+    add_preset(parser)
+    parser.add_argument(
+        "--database",
+        type=Path,
+        metavar="FILE",
+        help="use a database made by 'iksel build' instead of building one",
+    )
+    group = parser.add_argument_group("solver options")
+    _add_fields(group, SolverOptions, _SOLVER, _SOLVER_FLAGS)
+    add_database_options(parser)
+
+
+def add_database_options(parser: argparse.ArgumentParser) -> None:
+    """Add a flag for every database field."""
+    group = parser.add_argument_group("database options")
+    _add_fields(group, DatabaseOptions, _DATABASE, _DATABASE_FLAGS)
+
+
+def solver_options(arguments: argparse.Namespace) -> SolverOptions:
+    """The preset with the given flags on top.
+
+    Raises:
+        InvalidArgumentError: A value out of range, or database flags where a database
+            is given.
+    """
+    changes = _given(arguments, _DATABASE)
+    if changes and arguments.database is not None:
+        flags = ", ".join(_flag(name, _DATABASE_FLAGS) for name in changes)
+        raise InvalidArgumentError(
+            f"{flags}: cannot be used with --database, whose file has its own settings"
+        )
+    paper = arguments.preset == "paper"
+    options = SolverOptions.paper() if paper else SolverOptions()
+    database = options.database.replace(**changes)
+    return options.replace(database=database, **_given(arguments, _SOLVER))
+
+
+def database_options(arguments: argparse.Namespace) -> DatabaseOptions:
+    """The preset's database with the given flags on top.
+
+    Raises:
+        InvalidArgumentError: A value out of range.
+    """
+    paper = arguments.preset == "paper"
+    options = DatabaseOptions.paper() if paper else SolverOptions().database
+    return options.replace(**_given(arguments, _DATABASE))
+
+
+def overrides(arguments: argparse.Namespace) -> dict[str, Any]:
+    """The fields that flags changed from the preset; database fields as database.x."""
+    database = _given(arguments, _DATABASE)
+    return {
+        **_given(arguments, _SOLVER),
+        **{_DATABASE + name: value for name, value in database.items()},
+    }
+
+
+def _given(arguments: argparse.Namespace, prefix: str) -> dict[str, Any]:
+    """The fields under `prefix` whose flag was used."""
+    return {
+        name.removeprefix(prefix): value
+        for name, value in vars(arguments).items()
+        if name.startswith(prefix)
+    }
+
+
+def _flag(field: str, renamed: Mapping[str, str]) -> str:
+    return renamed.get(field, "--" + field.replace("_", "-"))
+
+
+def _add_fields(
+    group: argparse._ArgumentGroup,
+    options: type[Options],
+    prefix: str,
+    renamed: Mapping[str, str],
+) -> None:
+    """A flag per field of `options`; those that are not used leave no trace."""
+    defaults, paper = options().to_dict(), options.paper().to_dict()
+    for field, default in defaults.items():
+        if isinstance(default, dict):
+            continue
+        text = f"{getattr(options, field).__doc__} ({_presets(default, paper[field])})"
+        group.add_argument(
+            _flag(field, renamed),
+            dest=prefix + field,
+            default=argparse.SUPPRESS,
+            help=text.replace("%", "%%"),
+            **_kind(options, field, default),
+        )
+
+
+def _presets(default: object, paper: object) -> str:
+    same = default == paper
+    return f"default: {default}" if same else f"default: {default}, paper: {paper}"
+
+
+def _kind(options: type[Options], field: str, default: object) -> dict[str, Any]:
+    """How argparse reads a field with that default."""
+    if isinstance(default, bool):
+        return {"action": argparse.BooleanOptionalAction}
+    if isinstance(default, str):
+        members = type(getattr(options(), field)).__members__
+        return {"choices": list(members)}
+    whole = isinstance(default, int)
+    return {"type": int if whole else float, "metavar": "N" if whole else "X"}

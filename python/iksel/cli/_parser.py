@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""argparse with one-line errors, and numbers in arguments."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from typing import TYPE_CHECKING, Any, NoReturn
+
+from iksel_cpp import InvalidArgumentError
+
+from iksel.pose import check_pose, pose_from_euler, pose_from_quaternion
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from iksel._arrays import FloatArray
+
+EXIT_BAD_INPUT = 2
+
+POSE_METAVAR = "NUMBER"
+POSE_FORMS = (
+    "6 numbers x y z roll pitch yaw, 7 numbers x y z qw qx qy qz, or 16 numbers, "
+    "a 4x4 matrix row by row [m, rad]"
+)
+
+# argparse knows -1 and -1.5 as numbers, but not -1e-3, nor a list such as -1,2,3.
+_STARTS_AS_NUMBER = re.compile(r"-(\.?\d|inf|nan)", re.IGNORECASE)
+_SEPARATORS = re.compile(r"[\s,;\[\]()]+")
+
+
+def error_line(message: str) -> str:
+    """An error message as the one line that stderr gets."""
+    return f"iksel: error: {' '.join(message.split())}\n"
+
+
+class Parser(argparse.ArgumentParser):
+    """An ArgumentParser whose errors are one line."""
+
+    def __init__(self, **settings: Any) -> None:
+        """Take the settings of argparse.ArgumentParser."""
+        settings.setdefault("allow_abbrev", False)
+        settings.setdefault("formatter_class", argparse.RawDescriptionHelpFormatter)
+        super().__init__(**settings)
+        self._negative_number_matcher = _STARTS_AS_NUMBER
+
+    def error(self, message: str) -> NoReturn:
+        """Print one line instead of the usage and exit."""
+        self.exit(EXIT_BAD_INPUT, error_line(f"{message} (see {self.prog} --help)"))
+
+
+def count(text: str) -> int:
+    """An argument that is a whole number from 1."""
+    value = int(text)
+    if value < 1:
+        raise argparse.ArgumentTypeError(f"{text} is less than 1")
+    return value
+
+
+def seed(text: str) -> int:
+    """An argument that is a seed, a whole number from 0 to 2^64 - 1."""
+    value = int(text)
+    if not 0 <= value < 2**64:
+        raise argparse.ArgumentTypeError(f"{text} is not between 0 and 2^64 - 1")
+    return value
+
+
+def parse_numbers(flag: str, words: Sequence[str]) -> list[float]:
+    """Numbers that are given as separate arguments, as one in quotes, or with commas.
+
+    Raises:
+        InvalidArgumentError: A word is no number.
+    """
+    text = " ".join(words)
+    try:
+        return [float(word) for word in _SEPARATORS.split(text) if word]
+    except ValueError:
+        raise InvalidArgumentError(f"{flag}: not all numbers in {text!r}") from None
+
+
+def parse_joints(flag: str, words: Sequence[str], joints: Sequence[str]) -> list[float]:
+    """One number per joint.
+
+    Raises:
+        InvalidArgumentError: Not numbers, or not as many as there are joints.
+    """
+    values = parse_numbers(flag, words)
+    if len(values) != len(joints):
+        raise InvalidArgumentError(
+            f"{flag}: expected {len(joints)} numbers, one per joint "
+            f"({', '.join(joints)}), got {len(values)}"
+        )
+    return values
+
+
+def parse_pose(flag: str, words: Sequence[str]) -> FloatArray:
+    """A pose in one of POSE_FORMS as a (4, 4) matrix.
+
+    Raises:
+        InvalidArgumentError: Not numbers, another count, or not rigid.
+    """
+    numbers = parse_numbers(flag, words)
+    try:
+        if len(numbers) == 6:
+            return pose_from_euler(numbers[:3], numbers[3:])
+        if len(numbers) == 7:
+            return pose_from_quaternion(numbers[:3], numbers[3:])
+        if len(numbers) == 16:
+            return check_pose([numbers[i : i + 4] for i in range(0, 16, 4)])
+    except InvalidArgumentError as error:
+        raise InvalidArgumentError(f"{flag}: {error}") from None
+    raise InvalidArgumentError(f"{flag}: expected {POSE_FORMS}; got {len(numbers)}")

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The ROBOT argument: a built-in name, or a URDF file with its links."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from iksel_cpp import InvalidArgumentError, Robot, UnknownNameError, UrdfError
+
+from iksel.cli._parser import POSE_METAVAR, parse_numbers, parse_pose
+from iksel.robots import load_robot, robot_info, robot_names
+
+if TYPE_CHECKING:
+    import argparse
+
+URDF_SUFFIXES = (".urdf", ".xml")
+
+
+def add_robot(parser: argparse.ArgumentParser) -> None:
+    """Add ROBOT and the flags that change it."""
+    parser.add_argument(
+        "robot",
+        metavar="ROBOT",
+        help="a built-in robot (see 'iksel robots') or the path of a URDF file",
+    )
+    group = parser.add_argument_group("robot")
+    group.add_argument(
+        "--base",
+        metavar="LINK",
+        help="link that poses are relative to (default: a file's root link)",
+    )
+    group.add_argument(
+        "--tip",
+        metavar="LINK",
+        help="link whose pose is meant (default: a file's only end link)",
+    )
+    group.add_argument(
+        "--tcp",
+        nargs="+",
+        metavar=POSE_METAVAR,
+        help="tool in the tip link's frame, written as for 'solve --pose', or 'none' "
+        "(default: a built-in robot's own, else none)",
+    )
+    group.add_argument(
+        "--lock",
+        action="append",
+        default=[],
+        metavar="JOINT=VALUE",
+        help="hold a joint at a value [rad or m]; may be repeated",
+    )
+    group.add_argument(
+        "--soft-limits",
+        action="store_true",
+        help="narrow the joint limits to the URDF's soft limits",
+    )
+
+
+def load(arguments: argparse.Namespace) -> Robot:
+    """The robot that the arguments of add_robot describe.
+
+    Raises:
+        UnknownNameError: Neither a built-in robot nor a file, or no such link or joint.
+        UrdfError: The file cannot be read or used.
+        InvalidArgumentError: A tool or locked joint that makes no sense.
+    """
+    settings: dict[str, Any] = {
+        "locked_joints": dict(map(_lock, arguments.lock)),
+        "soft_limits": arguments.soft_limits,
+    }
+    if arguments.tcp is not None:
+        none = arguments.tcp == ["none"]
+        settings["tcp"] = None if none else parse_pose("--tcp", arguments.tcp)
+    name = arguments.robot
+    if is_built_in(name):
+        return load_robot(
+            name, base_link=arguments.base, tip_link=arguments.tip, **settings
+        )
+    return Robot.from_urdf(
+        _urdf_path(name),
+        base_link=arguments.base or "",
+        tip_link=arguments.tip or "",
+        **settings,
+    )
+
+
+def is_built_in(name: str) -> bool:
+    """Whether a ROBOT argument is the name of a built-in robot."""
+    return name in robot_names()
+
+
+def _urdf_path(name: str) -> Path:
+    """The path that a ROBOT argument is, if it does not look like a mistyped name."""
+    path = Path(name)
+    if path.suffix == ".xacro":
+        raise UrdfError(f"{name} is a xacro file; expand it: xacro {name} > robot.urdf")
+    if os.sep in name or path.suffix in URDF_SUFFIXES or path.exists():
+        return path
+    try:
+        robot_info(name)
+    except UnknownNameError as error:
+        raise UnknownNameError(f"{error}; or give the path of a URDF file") from None
+    return path
+
+
+def _lock(text: str) -> tuple[str, float]:
+    """Name and value of one --lock."""
+    joint, equals, value = text.rpartition("=")
+    numbers = parse_numbers(f"--lock {text}", [value]) if equals else []
+    if not joint or len(numbers) != 1:
+        raise InvalidArgumentError(f"--lock: expected JOINT=VALUE, got {text!r}")
+    return joint, numbers[0]

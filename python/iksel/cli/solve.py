@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""iksel solve: joint values for one pose."""
+
+from __future__ import annotations
+
+import math
+import time
+from typing import TYPE_CHECKING, Any
+
+from iksel_cpp import Database, Solver
+
+from iksel.cli._options import add_solver_options, solver_options
+from iksel.cli._output import add_json, number, print_json, print_pairs, print_table
+from iksel.cli._parser import POSE_FORMS, POSE_METAVAR, parse_joints, parse_pose
+from iksel.cli._robot import add_robot, load
+from iksel.cli.info import pose_text
+
+if TYPE_CHECKING:
+    import argparse
+
+    from iksel_cpp import Result, Robot
+
+EXIT_SOLVED, EXIT_NO_SOLUTION = 0, 1
+
+EXAMPLES = """\
+examples:
+  iksel solve ur3 --pose 0.2 0.15 0.3 0 3.1416 0
+  iksel solve ur3 --pose 0.2 0.15 0.3 0 0 1 0 --json
+  iksel solve panda --from-q 0 -0.5 0 -2 0 1.6 0.8 --preset paper --max-attempts 6
+  iksel solve arm.urdf --base base_link --tip tool0 --tcp 0 0 0.1 0 0 0 --from-q 0 0 0 0
+
+exit status: 0 solved, 1 no solution, 2 bad input
+"""
+
+
+def add_parser(commands: Any) -> None:
+    """Add the command."""
+    parser = commands.add_parser(
+        "solve",
+        usage="iksel solve ROBOT (--pose ... | --from-q ...) [options]",
+        help="find joint values for one pose",
+        description="Find joint values that put the tip (or tool) at a pose.",
+        epilog=EXAMPLES,
+    )
+    add_robot(parser)
+    target = parser.add_mutually_exclusive_group(required=True)
+    target.add_argument("--pose", nargs="+", metavar=POSE_METAVAR, help=POSE_FORMS)
+    target.add_argument(
+        "--from-q",
+        nargs="+",
+        metavar="Q",
+        help="take the pose at these joint values [rad or m] as the target",
+    )
+    parser.add_argument(
+        "--seed-q",
+        nargs="+",
+        metavar="Q",
+        help="joint values to start the first attempt from [rad or m]",
+    )
+    add_json(parser)
+    add_solver_options(parser)
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Solve and print the answer."""
+    robot = load(arguments)
+    joints = robot.joint_names
+    if arguments.pose is not None:
+        target = parse_pose("--pose", arguments.pose)
+    else:
+        target = robot.fk(parse_joints("--from-q", arguments.from_q, joints))
+    seed = arguments.seed_q and parse_joints("--seed-q", arguments.seed_q, joints)
+    options = solver_options(arguments)
+    database = arguments.database and Database.load(arguments.database)
+    solver = Solver(robot, options, database)
+
+    # The first call also fetches the database into the caches: time the second.
+    solver.solve(target, seed=seed)
+    start = time.perf_counter()
+    result = solver.solve(target, seed=seed)
+    time_us = (time.perf_counter() - start) * 1e6
+
+    report = {
+        "robot": robot.name,
+        "preset": arguments.preset,
+        "joint_names": joints,
+        "target": target,
+        "success": result.success,
+        "status": result.status.name,
+        "q": result.q,
+        "position_error": result.position_error,
+        "rotation_error": result.rotation_error,
+        "attempts": result.attempts,
+        "iterations": result.iterations,
+        "time_us": time_us,
+    }
+    if arguments.json:
+        print_json(report)
+    else:
+        print_text(robot, result, report)
+    return EXIT_SOLVED if result.success else EXIT_NO_SOLUTION
+
+
+def print_text(robot: Robot, result: Result, report: dict[str, Any]) -> None:
+    """Print the answer for people."""
+    rows = [
+        ("robot", f"{robot.name}, {robot.base_link} -> {robot.tip_link}"),
+        ("target", pose_text(report["target"])),
+        ("status", result.status.name),
+        ("attempts", str(result.attempts)),
+        ("iterations", str(result.iterations)),
+        ("time", f"{number(report['time_us'], 1)} us"),
+    ]
+    if result.q is not None:
+        rows += [
+            ("position error", f"{result.position_error:.3g} m"),
+            ("rotation error", f"{result.rotation_error:.3g} rad"),
+        ]
+    print_pairs(rows)
+    if result.q is None:
+        return
+    print()
+    print_table(
+        ("joint", "rad or m", "deg"),
+        [
+            (
+                name,
+                number(value, 9),
+                "" if kind.name == "prismatic" else number(math.degrees(value), 4),
+            )
+            for name, kind, value in zip(
+                robot.joint_names, robot.joint_types, result.q.tolist(), strict=True
+            )
+        ],
+    )

@@ -1,0 +1,278 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Poses from and to quaternions, rotation vectors and Euler angles.
+
+A pose is a 4x4 homogeneous matrix T_base_tip: it takes coordinates in the tip frame to
+coordinates in the base frame; lengths are metres, angles radians. Quaternions are
+(w, x, y, z). Every function works on one pose or on arrays of them: leading axes are
+kept, and those of two arguments are broadcast against each other.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from iksel import _rotations as rotations
+from iksel._arrays import (
+    BoolArray,
+    FloatArray,
+    as_floats,
+    broadcast_leading,
+    first_index,
+    index_text,
+    reject,
+)
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+RIGID_TOLERANCE = 1e-6
+"""Largest element of |R^T R - I| that still counts as rigid, as in the C++ core."""
+
+UNIT_TOLERANCE = 1e-3
+"""Largest deviation of a quaternion's norm from 1 that is normalised away."""
+
+
+def pose_from_matrix(position: npt.ArrayLike, rotation: npt.ArrayLike) -> FloatArray:
+    """Pose from a position and a rotation matrix.
+
+    Args:
+        position: Origin of the tip in the base frame, (..., 3) [m].
+        rotation: R_base_tip, (..., 3, 3); its columns are the tip's axes.
+
+    Returns:
+        T_base_tip, (..., 4, 4).
+
+    Raises:
+        InvalidArgumentError: Wrong shape, not finite, or no rotation.
+    """
+    matrix = as_floats("rotation", rotation, (3, 3))
+    pose = _assemble(position, "rotation", matrix)
+    _require("rotation", matrix, _rotation_problem(matrix))
+    return pose
+
+
+def pose_from_quaternion(
+    position: npt.ArrayLike, quaternion_wxyz: npt.ArrayLike
+) -> FloatArray:
+    """Pose from a position and a quaternion.
+
+    Args:
+        position: Origin of the tip in the base frame, (..., 3) [m].
+        quaternion_wxyz: Rotation as (w, x, y, z), (..., 4). A norm up to 1e-3 away
+            from 1 is normalised; q and -q are the same rotation.
+
+    Returns:
+        T_base_tip, (..., 4, 4).
+
+    Raises:
+        InvalidArgumentError: Wrong shape, not finite, or not of unit length.
+    """
+    name = "quaternion_wxyz"
+    q = as_floats(name, quaternion_wxyz, (4,))
+    with np.errstate(over="ignore"):
+        norm = np.linalg.norm(q, axis=-1)
+    off = ~(np.abs(norm - 1.0) <= UNIT_TOLERANCE)
+    if off.any():
+        index = first_index(off)
+        got = f"{norm[index]} at index {index_text(index)}" if index else norm[index]
+        reject(name, f"expected norm 1 within {UNIT_TOLERANCE}, got {got}")
+    return _assemble(position, name, rotations.from_quaternion(q / norm[..., None]))
+
+
+def pose_from_rotation_vector(
+    position: npt.ArrayLike, rotation_vector: npt.ArrayLike
+) -> FloatArray:
+    """Pose from a position and a rotation vector (axis times angle).
+
+    Args:
+        position: Origin of the tip in the base frame, (..., 3) [m].
+        rotation_vector: Axis times angle in the base frame, (..., 3) [rad].
+
+    Returns:
+        T_base_tip, (..., 4, 4).
+
+    Raises:
+        InvalidArgumentError: Wrong shape or not finite.
+    """
+    vector = as_floats("rotation_vector", rotation_vector, (3,))
+    q = rotations.quaternion_from_vector(vector)
+    return _assemble(position, "rotation_vector", rotations.from_quaternion(q))
+
+
+def pose_from_euler(position: npt.ArrayLike, rpy: npt.ArrayLike) -> FloatArray:
+    """Pose from a position and roll, pitch, yaw as in a URDF: R = Rz(y) Ry(p) Rx(r).
+
+    Args:
+        position: Origin of the tip in the base frame, (..., 3) [m].
+        rpy: Roll, pitch and yaw, (..., 3) [rad].
+
+    Returns:
+        T_base_tip, (..., 4, 4).
+
+    Raises:
+        InvalidArgumentError: Wrong shape or not finite.
+    """
+    angles = as_floats("rpy", rpy, (3,))
+    return _assemble(position, "rpy", rotations.from_euler(angles))
+
+
+def quaternion_from_pose(pose: npt.ArrayLike) -> FloatArray:
+    """Rotation of a pose as a unit quaternion (w, x, y, z) with w >= 0.
+
+    Args:
+        pose: T_base_tip, (..., 4, 4).
+
+    Returns:
+        Quaternions, (..., 4). At w = 0 the first of x, y, z that is not 0 is positive.
+
+    Raises:
+        InvalidArgumentError: Wrong shape, not finite, or not rigid.
+    """
+    return rotations.quaternion_from_matrix(check_pose(pose)[..., :3, :3])
+
+
+def rotation_vector_from_pose(pose: npt.ArrayLike) -> FloatArray:
+    """Rotation of a pose as axis times angle, the angle in [0, pi].
+
+    Args:
+        pose: T_base_tip, (..., 4, 4).
+
+    Returns:
+        Rotation vectors in the base frame, (..., 3) [rad].
+
+    Raises:
+        InvalidArgumentError: Wrong shape, not finite, or not rigid.
+    """
+    q = rotations.quaternion_from_matrix(check_pose(pose)[..., :3, :3])
+    return rotations.vector_from_quaternion(q)
+
+
+def euler_from_pose(pose: npt.ArrayLike) -> FloatArray:
+    """Rotation of a pose as roll, pitch, yaw of a URDF: R = Rz(y) Ry(p) Rx(r).
+
+    Args:
+        pose: T_base_tip, (..., 4, 4).
+
+    Returns:
+        Roll in [-pi, pi], pitch in [-pi/2, pi/2] and yaw in [-pi, pi], (..., 3) [rad].
+        Where the pitch is +-pi/2, only roll and yaw together are determined; the
+        returned ones still give the same rotation.
+
+    Raises:
+        InvalidArgumentError: Wrong shape, not finite, or not rigid.
+    """
+    return rotations.euler_from_matrix(check_pose(pose)[..., :3, :3])
+
+
+def is_rigid(
+    pose: npt.ArrayLike, tolerance: float = RIGID_TOLERANCE
+) -> np.bool_ | BoolArray:
+    """Whether poses are finite and rigid: R^T R = I, det R > 0, last row 0 0 0 1.
+
+    Args:
+        pose: Matrices, (..., 4, 4); elements may be NaN or infinite.
+        tolerance: Largest element of |R^T R - I|.
+
+    Returns:
+        One truth value per pose, of the leading shape.
+
+    Raises:
+        InvalidArgumentError: Not numbers of shape (..., 4, 4).
+    """
+    matrix = as_floats("pose", pose, (4, 4), finite=False)
+    problems = _pose_problems(matrix, tolerance)
+    return ~np.logical_or.reduce(list(problems.values()))
+
+
+def check_pose(pose: npt.ArrayLike, name: str = "pose") -> FloatArray:
+    """Check that poses are finite and rigid.
+
+    Args:
+        pose: T_base_tip, (..., 4, 4).
+        name: Name of the argument, for the error message.
+
+    Returns:
+        `pose` as float64, (..., 4, 4).
+
+    Raises:
+        InvalidArgumentError: Wrong shape, not finite or not rigid; the message says
+            which pose and why.
+    """
+    matrix = as_floats(name, pose, (4, 4))
+    _require(name, matrix, _pose_problems(matrix, RIGID_TOLERANCE))
+    return matrix
+
+
+def pose_error(
+    target: npt.ArrayLike, pose: npt.ArrayLike
+) -> tuple[FloatArray, FloatArray]:
+    """How far `pose` is from `target`.
+
+    Args:
+        target: T_base_target, (..., 4, 4).
+        pose: T_base_tip, (..., 4, 4).
+
+    Returns:
+        The distance of the origins [m] and the angle of R_target R^T, in [0, pi]
+        [rad]; each of the leading shape.
+
+    Raises:
+        InvalidArgumentError: Wrong shape, not finite, or not rigid.
+    """
+    a, b = broadcast_leading(
+        ("target", "pose"),
+        (check_pose(target, "target"), check_pose(pose, "pose")),
+        (2, 2),
+    )
+    distance = np.linalg.norm(a[..., :3, 3] - b[..., :3, 3], axis=-1)
+    between = a[..., :3, :3] @ np.swapaxes(b[..., :3, :3], -1, -2)
+    vector = rotations.vector_from_quaternion(rotations.quaternion_from_matrix(between))
+    return np.asarray(distance), np.asarray(np.linalg.norm(vector, axis=-1))
+
+
+def _assemble(position: npt.ArrayLike, name: str, rotation: FloatArray) -> FloatArray:
+    """T from a position (..., 3) that is still to be checked and R (..., 3, 3)."""
+    p, r = broadcast_leading(
+        ("position", name), (as_floats("position", position, (3,)), rotation), (1, 2)
+    )
+    pose = np.zeros((*p.shape[:-1], 4, 4))
+    pose[..., :3, :3] = r
+    pose[..., :3, 3] = p
+    pose[..., 3, 3] = 1.0
+    return pose
+
+
+def _rotation_problem(
+    rotation: FloatArray, tolerance: float = RIGID_TOLERANCE
+) -> dict[str, BoolArray]:
+    """For each way not to be a rotation, which matrices are so."""
+    with np.errstate(invalid="ignore", over="ignore"):
+        gram = np.swapaxes(rotation, -1, -2) @ rotation - np.eye(3)
+        reflection = np.linalg.det(rotation) < 0
+    return {
+        f"R^T R differs from the identity by more than {tolerance}": np.asarray(
+            ~(np.abs(gram).max(axis=(-2, -1)) <= tolerance)
+        ),
+        "det R is negative (a reflection)": np.asarray(reflection),
+    }
+
+
+def _pose_problems(pose: FloatArray, tolerance: float) -> dict[str, BoolArray]:
+    """For each way not to be rigid, which poses are so."""
+    row = (pose[..., 3, :] == np.array([0.0, 0.0, 0.0, 1.0])).all(axis=-1)
+    return {
+        "the last row is not (0, 0, 0, 1)": np.asarray(~row),
+        "the position is not finite": ~np.isfinite(pose[..., :3, 3]).all(axis=-1),
+        **_rotation_problem(pose[..., :3, :3], tolerance),
+    }
+
+
+def _require(name: str, matrix: FloatArray, problems: dict[str, BoolArray]) -> None:
+    """Raise about the first of `problems` that any of `matrix` (..., n, n) has."""
+    for problem, bad in problems.items():
+        if bad.any():
+            index = first_index(bad)
+            which = f"{name}[{', '.join(map(str, index))}]" if index else name
+            reject(which, f"not rigid, {problem}: {matrix[index].tolist()}")

@@ -1,0 +1,1079 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""
+IKSel: inverse kinematics from precomputed seeds.
+
+A pose is base -> tip, a (4, 4) homogeneous matrix; lengths are metres, angles radians. A
+twist is [linear; angular] in base axes at the tip. The method is that of "IKSel: Selecting
+Good Seed Joint Values for Fast Numerical Inverse Kinematics Iterations" (Yuan, Wan, Harada,
+2025), called the paper below.
+"""
+from __future__ import annotations
+import builtins
+import collections.abc
+import enum
+import numpy
+import numpy.typing
+import os
+import typing
+__all__: list[str] = ['BatchResult', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'Kinematics', 'Ranking', 'Reselection', 'Result', 'Robot', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'Solver', 'SolverOptions', 'Status', 'UnknownNameError', 'UrdfError', 'evaluate', 'grid_counts', 'pose_error', 'time_kdl_fk_jacobian']
+class Error(Exception):
+    """
+    Base of every exception of the library.
+    """
+class UrdfError(Error):
+    """
+    A URDF that cannot be read, parsed or turned into a chain.
+    """
+class UnknownNameError(UrdfError):
+    """
+    A link or joint name that the URDF does not have.
+    """
+class InvalidArgumentError(Error, ValueError):
+    """
+    An argument of the wrong type, shape or value: a pose that is not rigid, a non-finite number, an option out of range.
+    """
+class DatabaseError(Error):
+    """
+    A database that cannot be built, read, written or trusted.
+    """
+class DatabaseIoError(DatabaseError):
+    """
+    A database file that cannot be opened, read or written.
+    """
+class DatabaseCorruptError(DatabaseError):
+    """
+    A database file that is truncated, corrupted, or no database at all.
+    """
+class DatabaseMismatchError(DatabaseError):
+    """
+    An intact database that does not fit: other robot, other format version, other byte order.
+    """
+class JointType(enum.Enum):
+    """
+    How a degree of freedom moves.
+    """
+    continuous = 1
+    prismatic = 2
+    revolute = 0
+class Kinematics(enum.Enum):
+    """
+    Which implementation computes forward kinematics and Jacobians; they agree to 1e-12.
+    """
+    kdl = 1
+    kernel = 0
+class Robot:
+    """
+    An immutable serial chain between two links of a URDF, with its limits. Safe to use from many threads at once.
+    """
+    @staticmethod
+    def from_urdf(path_or_xml: str | os.PathLike[str], base_link: str = '', tip_link: str = '', tcp: numpy.typing.ArrayLike | None = None, locked_joints: collections.abc.Mapping[str, float] | None = None, soft_limits: bool = False) -> Robot:
+        """
+        Reads the chain between two links of a URDF.
+
+        Args:
+            path_or_xml: a path, or the URDF text itself (a str whose first character is '<').
+            base_link: link the poses are relative to; empty: the root link.
+            tip_link: link whose pose is solved for; empty: the one link without children.
+            tcp: T_tip_tcp, (4, 4): tool centre point. Poses, FK and IK are then of the TCP.
+            locked_joints: joints held at a value [rad or m]; they are no degrees of freedom.
+            soft_limits: narrow the limits to the URDF's safety_controller where there is one.
+
+        Raises:
+            UrdfError: the file, the XML, a joint type or a limit is no good.
+            UnknownNameError: no such link or joint.
+            InvalidArgumentError: tcp is no rigid transform.
+        """
+    def __copy__(self) -> Robot:
+        ...
+    def __deepcopy__(self, memo: dict[int, object]) -> Robot:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def fk(self, q: numpy.typing.ArrayLike, kinematics: Kinematics | str = 'kernel') -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Forward kinematics: T_base_tip (of the TCP, if there is one).
+
+        Args:
+            q: joint values [rad or m], (dof,) or (N, dof).
+            kinematics: what computes it.
+
+        Returns:
+            (4, 4), or (N, 4, 4) with the GIL released.
+
+        Raises:
+            InvalidArgumentError: wrong shape or dtype, or a number that is not finite.
+        """
+    def jacobian(self, q: numpy.typing.ArrayLike, kinematics: Kinematics | str = 'kernel') -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Geometric Jacobian: rows [linear; angular] in base axes at the tip.
+
+        Args:
+            q: joint values [rad or m], (dof,) or (N, dof).
+            kinematics: what computes it.
+
+        Returns:
+            (6, dof), or (N, 6, dof) with the GIL released.
+
+        Raises:
+            InvalidArgumentError: wrong shape or dtype, or a number that is not finite.
+        """
+    def random_configurations(self, n: int, seed: int) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        n configurations uniform inside the limits (continuous joints in [-pi, pi)), (n, dof). The same seed gives the same numbers everywhere.
+        """
+    def with_tcp(self, tcp: numpy.typing.ArrayLike) -> Robot:
+        """
+        The same chain with another tool T_tip_tcp, (4, 4). Databases built for one serve the other.
+        """
+    def within_limits(self, q: numpy.typing.ArrayLike) -> bool:
+        """
+        Whether q, (dof,) [rad or m], lies inside the position limits.
+        """
+    @property
+    def base_link(self) -> str:
+        """
+        Link the poses are relative to.
+        """
+    @property
+    def chain_hash(self) -> int:
+        """
+        Hash of the chain up to the tip link: equal for chains that may share a database.
+        """
+    @property
+    def dof(self) -> int:
+        """
+        Degrees of freedom.
+        """
+    @property
+    def joint_names(self) -> list[str]:
+        """
+        Names of the degrees of freedom, base to tip.
+        """
+    @property
+    def joint_types(self) -> list[JointType]:
+        """
+        How each degree of freedom moves, base to tip.
+        """
+    @property
+    def locked_joints(self) -> dict[str, float]:
+        """
+        Joints held at a value [rad or m], by name.
+        """
+    @property
+    def lower(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Lower position limits [rad or m], (dof,); -inf for continuous joints.
+        """
+    @property
+    def name(self) -> str:
+        """
+        Name in the URDF.
+        """
+    @property
+    def reach(self) -> float:
+        """
+        No pose farther than this from `reach_centre` can be reached [m].
+        """
+    @property
+    def reach_centre(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        A point on the first joint's axis, in the base frame [m], (3,).
+        """
+    @property
+    def soft_limits(self) -> bool:
+        """
+        Whether the limits are narrowed to the safety controller's.
+        """
+    @property
+    def soft_lower(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Lower limits of the safety controller [rad or m], (dof,); `lower` where the URDF has none.
+        """
+    @property
+    def soft_upper(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Upper limits of the safety controller [rad or m], (dof,); `upper` where the URDF has none.
+        """
+    @property
+    def tcp(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        T_tip_tcp, the tool centre point in the tip link's frame, (4, 4).
+        """
+    @property
+    def tip_link(self) -> str:
+        """
+        Link whose pose is solved for.
+        """
+    @property
+    def upper(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Upper position limits [rad or m], (dof,); inf for continuous joints.
+        """
+    @property
+    def urdf(self) -> str:
+        """
+        The URDF text this robot was made of.
+        """
+    @property
+    def velocity_limit(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Velocity limits [rad/s or m/s], (dof,); inf where the URDF has none.
+        """
+class Sampling(enum.Enum):
+    """
+    How the joint samples of a database are spread over the limits.
+    """
+    cvt = 1
+    grid = 0
+    low_discrepancy = 2
+    random = 3
+class Scale(enum.Enum):
+    """
+    Size of a grid, and of other samplings whose `samples` is 0 (paper, database sizes).
+    """
+    large = 2
+    medium = 1
+    small = 0
+class RotationKey(enum.Enum):
+    """
+    How the KD-tree's key writes the rotation of a pose (paper, footnote 1).
+    """
+    euler = 3
+    matrix = 2
+    quaternion = 1
+    rotation_vector = 0
+class Ranking(enum.Enum):
+    """
+    How the neighbours of a target are put in order.
+    """
+    joint_adjustment = 1
+    nearest = 0
+class RotationDifference(enum.Enum):
+    """
+    The rotation part of x_target - x_i in Eq. (4) of the paper.
+    """
+    geodesic = 1
+    rotation_vector = 0
+class Iteration(enum.Enum):
+    """
+    One scheme of numerical iteration (paper, Table II).
+    """
+    cwln = 3
+    cwpi = 4
+    dls = 0
+    lm = 5
+    pinv = 1
+    pinv_rr = 2
+class Reselection(enum.Enum):
+    """
+    Which seed follows a failed one.
+    """
+    farthest = 2
+    next = 1
+    none = 0
+class GrowthStop(enum.Enum):
+    """
+    Whether an attempt is given up when both errors have grown.
+    """
+    by_scheme = 0
+    off = 2
+    on = 1
+class DatabaseOptions:
+    """
+    How a database is built. Enums may be given by name, as in sampling='grid'.
+    """
+    __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
+    @staticmethod
+    def paper() -> DatabaseOptions:
+        """
+        The paper's: grid, medium, rotation vectors, unweighted.
+        """
+    def __eq__(self, other: object) -> bool:
+        ...
+    def __init__(self, *, sampling: Sampling | str = 'low_discrepancy', scale: Scale | str = 'medium', samples: int = 10000, rotation_key: RotationKey | str = 'rotation_vector', rotation_weight: float = 1.0, pinv_cutoff: float = 0.0001, cvt_updates: int = 1000000, seed: int = 0, threads: int = 0) -> None:
+        """
+        Fields that are not given keep their default.
+
+        Args:
+            sampling: How the samples are spread over the limits.
+            scale: Counts of a grid; for the other samplings only if `samples` is 0.
+            samples: Number of samples unless `sampling` is grid; 0 takes the grid's count at `scale`.
+            rotation_key: How the KD-tree's key writes a rotation.
+            rotation_weight: Length that one unit of the rotation key counts as in the tree's distance [m].
+            pinv_cutoff: Singular values below this part of the largest are cut off in the pseudo-inverses.
+            cvt_updates: Updates of MacQueen's method (cvt only).
+            seed: Seed of the random, cvt and low_discrepancy samplings.
+            threads: Threads that build; 0: one per core. The result has the same bits for any number.
+
+        Raises:
+            TypeError: a keyword that is no field.
+            InvalidArgumentError: a value of the wrong type or out of range.
+        """
+    def __repr__(self) -> str:
+        ...
+    def replace(self, *, sampling: Sampling | str = ..., scale: Scale | str = ..., samples: int = ..., rotation_key: RotationKey | str = ..., rotation_weight: float = ..., pinv_cutoff: float = ..., cvt_updates: int = ..., seed: int = ..., threads: int = ...) -> DatabaseOptions:
+        """
+        A copy in which the given fields have another value.
+
+        Args:
+            sampling: How the samples are spread over the limits.
+            scale: Counts of a grid; for the other samplings only if `samples` is 0.
+            samples: Number of samples unless `sampling` is grid; 0 takes the grid's count at `scale`.
+            rotation_key: How the KD-tree's key writes a rotation.
+            rotation_weight: Length that one unit of the rotation key counts as in the tree's distance [m].
+            pinv_cutoff: Singular values below this part of the largest are cut off in the pseudo-inverses.
+            cvt_updates: Updates of MacQueen's method (cvt only).
+            seed: Seed of the random, cvt and low_discrepancy samplings.
+            threads: Threads that build; 0: one per core. The result has the same bits for any number.
+
+        Raises:
+            TypeError: a keyword that is no field.
+            InvalidArgumentError: a value of the wrong type or out of range.
+        """
+    def to_dict(self) -> dict[str, typing.Any]:
+        """
+        All fields by name as plain Python data, with the names of enums in their place.
+        """
+    def validate(self) -> None:
+        """
+        Raises InvalidArgumentError naming the first option out of range.
+        """
+    @property
+    def cvt_updates(self) -> int:
+        """
+        Updates of MacQueen's method (cvt only).
+        """
+    @cvt_updates.setter
+    def cvt_updates(self, value: int) -> None:
+        ...
+    @property
+    def pinv_cutoff(self) -> float:
+        """
+        Singular values below this part of the largest are cut off in the pseudo-inverses.
+        """
+    @pinv_cutoff.setter
+    def pinv_cutoff(self, value: float) -> None:
+        ...
+    @property
+    def rotation_key(self) -> RotationKey:
+        """
+        How the KD-tree's key writes a rotation.
+        """
+    @rotation_key.setter
+    def rotation_key(self, value: RotationKey | str) -> None:
+        ...
+    @property
+    def rotation_weight(self) -> float:
+        """
+        Length that one unit of the rotation key counts as in the tree's distance [m].
+        """
+    @rotation_weight.setter
+    def rotation_weight(self, value: float) -> None:
+        ...
+    @property
+    def samples(self) -> int:
+        """
+        Number of samples unless `sampling` is grid; 0 takes the grid's count at `scale`.
+        """
+    @samples.setter
+    def samples(self, value: int) -> None:
+        ...
+    @property
+    def sampling(self) -> Sampling:
+        """
+        How the samples are spread over the limits.
+        """
+    @sampling.setter
+    def sampling(self, value: Sampling | str) -> None:
+        ...
+    @property
+    def scale(self) -> Scale:
+        """
+        Counts of a grid; for the other samplings only if `samples` is 0.
+        """
+    @scale.setter
+    def scale(self, value: Scale | str) -> None:
+        ...
+    @property
+    def seed(self) -> int:
+        """
+        Seed of the random, cvt and low_discrepancy samplings.
+        """
+    @seed.setter
+    def seed(self, value: int) -> None:
+        ...
+    @property
+    def threads(self) -> int:
+        """
+        Threads that build; 0: one per core. The result has the same bits for any number.
+        """
+    @threads.setter
+    def threads(self, value: int) -> None:
+        ...
+class SolverOptions:
+    """
+    All settings of a Solver. SolverOptions() is the recommended preset, SolverOptions.paper() the paper. Enums may be given by name, as in iteration='dls'.
+    """
+    __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
+    @staticmethod
+    def paper() -> SolverOptions:
+        """
+        The paper's setting: medium grid, k = 200, best 20, Eq. (5), one re-selection, DLS, 1e-4 m and 1e-3 rad.
+        """
+    def __eq__(self, other: object) -> bool:
+        ...
+    def __init__(self, *, position_tolerance: float = 1e-06, rotation_tolerance: float = 1e-06, database: DatabaseOptions | collections.abc.Mapping[str, typing.Any] = ..., neighbours: int = 200, ranking: Ranking | str = 'joint_adjustment', rotation_difference: RotationDifference | str = 'geodesic', limit_aware: bool = True, candidates: int = 100, reselection: Reselection | str = 'farthest', max_attempts: int = 100, iteration: Iteration | str = 'lm', max_iterations: int = 20, damping: float = 0.001, pinv_cutoff: float = 0.0001, position_clamp: float = 0.1, rotation_clamp: float = 0.3141592653589793, growth_stop: GrowthStop | str = 'by_scheme', min_step: float = 1e-06, limit_margin: float = 0.1, whole_turns: bool = True, kinematics: Kinematics | str = 'kernel', seed: int = 0) -> None:
+        """
+        Fields that are not given keep their default.
+
+        Args:
+            position_tolerance: An answer's position is at most this far from the target's [m].
+            rotation_tolerance: An answer's rotation vector error is at most this long [rad].
+            database: Database that a solver builds for itself when it is given none.
+            neighbours: Neighbours asked from the KD-tree (k).
+            ranking: How the neighbours are put in order.
+            rotation_difference: The rotation part of x_target - x_i in Eq. (4).
+            limit_aware: Rank candidates whose predicted q + J^+ e leaves the limits behind all others.
+            candidates: Best candidates kept after ranking.
+            reselection: Which seed follows a failed one.
+            max_attempts: Seeds tried at most: 1 + the number of re-selections. Given seeds come on top.
+            iteration: Scheme of numerical iteration.
+            max_iterations: Steps per attempt at most.
+            damping: dls: added to J J^T; 0: truncated least squares. lm: factor on |e|^2.
+            pinv_cutoff: Singular values below this part of the largest are cut off (truncated solves).
+            position_clamp: The position error fed to one step is shortened to at most this [m].
+            rotation_clamp: The rotation error fed to one step is shortened to at most this [rad].
+            growth_stop: Whether an attempt is given up when both errors have grown.
+            min_step: An attempt ends when |sum of the step| is below this (dls, pinv, pinv_rr) [rad or m].
+            limit_margin: Part of a joint's range, at each end, in which cwln and cwpi hold it back.
+            whole_turns: Bring joints with a range of more than 2 pi inside their limits by whole turns.
+            kinematics: What computes FK and Jacobians.
+            seed: Seed of random restarts (pinv_rr).
+
+        Raises:
+            TypeError: a keyword that is no field.
+            InvalidArgumentError: a value of the wrong type or out of range.
+        """
+    def __repr__(self) -> str:
+        ...
+    def replace(self, *, position_tolerance: float = ..., rotation_tolerance: float = ..., database: DatabaseOptions | collections.abc.Mapping[str, typing.Any] = ..., neighbours: int = ..., ranking: Ranking | str = ..., rotation_difference: RotationDifference | str = ..., limit_aware: bool = ..., candidates: int = ..., reselection: Reselection | str = ..., max_attempts: int = ..., iteration: Iteration | str = ..., max_iterations: int = ..., damping: float = ..., pinv_cutoff: float = ..., position_clamp: float = ..., rotation_clamp: float = ..., growth_stop: GrowthStop | str = ..., min_step: float = ..., limit_margin: float = ..., whole_turns: bool = ..., kinematics: Kinematics | str = ..., seed: int = ...) -> SolverOptions:
+        """
+        A copy in which the given fields have another value.
+
+        Args:
+            position_tolerance: An answer's position is at most this far from the target's [m].
+            rotation_tolerance: An answer's rotation vector error is at most this long [rad].
+            database: Database that a solver builds for itself when it is given none.
+            neighbours: Neighbours asked from the KD-tree (k).
+            ranking: How the neighbours are put in order.
+            rotation_difference: The rotation part of x_target - x_i in Eq. (4).
+            limit_aware: Rank candidates whose predicted q + J^+ e leaves the limits behind all others.
+            candidates: Best candidates kept after ranking.
+            reselection: Which seed follows a failed one.
+            max_attempts: Seeds tried at most: 1 + the number of re-selections. Given seeds come on top.
+            iteration: Scheme of numerical iteration.
+            max_iterations: Steps per attempt at most.
+            damping: dls: added to J J^T; 0: truncated least squares. lm: factor on |e|^2.
+            pinv_cutoff: Singular values below this part of the largest are cut off (truncated solves).
+            position_clamp: The position error fed to one step is shortened to at most this [m].
+            rotation_clamp: The rotation error fed to one step is shortened to at most this [rad].
+            growth_stop: Whether an attempt is given up when both errors have grown.
+            min_step: An attempt ends when |sum of the step| is below this (dls, pinv, pinv_rr) [rad or m].
+            limit_margin: Part of a joint's range, at each end, in which cwln and cwpi hold it back.
+            whole_turns: Bring joints with a range of more than 2 pi inside their limits by whole turns.
+            kinematics: What computes FK and Jacobians.
+            seed: Seed of random restarts (pinv_rr).
+
+        Raises:
+            TypeError: a keyword that is no field.
+            InvalidArgumentError: a value of the wrong type or out of range.
+        """
+    def to_dict(self) -> dict[str, typing.Any]:
+        """
+        All fields by name as plain Python data, with the names of enums in their place.
+        """
+    def validate(self) -> None:
+        """
+        Raises InvalidArgumentError naming the first option out of range.
+        """
+    @property
+    def candidates(self) -> int:
+        """
+        Best candidates kept after ranking.
+        """
+    @candidates.setter
+    def candidates(self, value: int) -> None:
+        ...
+    @property
+    def damping(self) -> float:
+        """
+        dls: added to J J^T; 0: truncated least squares. lm: factor on |e|^2.
+        """
+    @damping.setter
+    def damping(self, value: float) -> None:
+        ...
+    @property
+    def database(self) -> DatabaseOptions:
+        """
+        Database that a solver builds for itself when it is given none.
+        """
+    @database.setter
+    def database(self, value: DatabaseOptions | collections.abc.Mapping[str, typing.Any]) -> None:
+        ...
+    @property
+    def growth_stop(self) -> GrowthStop:
+        """
+        Whether an attempt is given up when both errors have grown.
+        """
+    @growth_stop.setter
+    def growth_stop(self, value: GrowthStop | str) -> None:
+        ...
+    @property
+    def iteration(self) -> Iteration:
+        """
+        Scheme of numerical iteration.
+        """
+    @iteration.setter
+    def iteration(self, value: Iteration | str) -> None:
+        ...
+    @property
+    def kinematics(self) -> Kinematics:
+        """
+        What computes FK and Jacobians.
+        """
+    @kinematics.setter
+    def kinematics(self, value: Kinematics | str) -> None:
+        ...
+    @property
+    def limit_aware(self) -> bool:
+        """
+        Rank candidates whose predicted q + J^+ e leaves the limits behind all others.
+        """
+    @limit_aware.setter
+    def limit_aware(self, value: bool) -> None:
+        ...
+    @property
+    def limit_margin(self) -> float:
+        """
+        Part of a joint's range, at each end, in which cwln and cwpi hold it back.
+        """
+    @limit_margin.setter
+    def limit_margin(self, value: float) -> None:
+        ...
+    @property
+    def max_attempts(self) -> int:
+        """
+        Seeds tried at most: 1 + the number of re-selections. Given seeds come on top.
+        """
+    @max_attempts.setter
+    def max_attempts(self, value: int) -> None:
+        ...
+    @property
+    def max_iterations(self) -> int:
+        """
+        Steps per attempt at most.
+        """
+    @max_iterations.setter
+    def max_iterations(self, value: int) -> None:
+        ...
+    @property
+    def min_step(self) -> float:
+        """
+        An attempt ends when |sum of the step| is below this (dls, pinv, pinv_rr) [rad or m].
+        """
+    @min_step.setter
+    def min_step(self, value: float) -> None:
+        ...
+    @property
+    def neighbours(self) -> int:
+        """
+        Neighbours asked from the KD-tree (k).
+        """
+    @neighbours.setter
+    def neighbours(self, value: int) -> None:
+        ...
+    @property
+    def pinv_cutoff(self) -> float:
+        """
+        Singular values below this part of the largest are cut off (truncated solves).
+        """
+    @pinv_cutoff.setter
+    def pinv_cutoff(self, value: float) -> None:
+        ...
+    @property
+    def position_clamp(self) -> float:
+        """
+        The position error fed to one step is shortened to at most this [m].
+        """
+    @position_clamp.setter
+    def position_clamp(self, value: float) -> None:
+        ...
+    @property
+    def position_tolerance(self) -> float:
+        """
+        An answer's position is at most this far from the target's [m].
+        """
+    @position_tolerance.setter
+    def position_tolerance(self, value: float) -> None:
+        ...
+    @property
+    def ranking(self) -> Ranking:
+        """
+        How the neighbours are put in order.
+        """
+    @ranking.setter
+    def ranking(self, value: Ranking | str) -> None:
+        ...
+    @property
+    def reselection(self) -> Reselection:
+        """
+        Which seed follows a failed one.
+        """
+    @reselection.setter
+    def reselection(self, value: Reselection | str) -> None:
+        ...
+    @property
+    def rotation_clamp(self) -> float:
+        """
+        The rotation error fed to one step is shortened to at most this [rad].
+        """
+    @rotation_clamp.setter
+    def rotation_clamp(self, value: float) -> None:
+        ...
+    @property
+    def rotation_difference(self) -> RotationDifference:
+        """
+        The rotation part of x_target - x_i in Eq. (4).
+        """
+    @rotation_difference.setter
+    def rotation_difference(self, value: RotationDifference | str) -> None:
+        ...
+    @property
+    def rotation_tolerance(self) -> float:
+        """
+        An answer's rotation vector error is at most this long [rad].
+        """
+    @rotation_tolerance.setter
+    def rotation_tolerance(self, value: float) -> None:
+        ...
+    @property
+    def seed(self) -> int:
+        """
+        Seed of random restarts (pinv_rr).
+        """
+    @seed.setter
+    def seed(self, value: int) -> None:
+        ...
+    @property
+    def whole_turns(self) -> bool:
+        """
+        Bring joints with a range of more than 2 pi inside their limits by whole turns.
+        """
+    @whole_turns.setter
+    def whole_turns(self, value: bool) -> None:
+        ...
+class Database:
+    """
+    An immutable set of samples (q_i, x_i, J_i^+) of a robot under a KD-tree. Safe to use from many threads at once.
+    """
+    @staticmethod
+    def build(robot: Robot, options: DatabaseOptions = ..., progress: collections.abc.Callable[[int, int], typing.Any] | None = None) -> Database:
+        """
+        Samples the joint limits and computes pose, Jacobian and pseudo-inverse.
+
+        Args:
+            robot: the chain; its TCP plays no part.
+            options: how to sample.
+            progress: called now and then with (samples done, samples in all). What it raises ends
+                the build. The GIL is released between calls, and Ctrl-C works.
+
+        Raises:
+            InvalidArgumentError: an option out of range.
+            DatabaseError: more samples than fit.
+        """
+    @staticmethod
+    def from_bytes(content: builtins.bytes) -> Database:
+        """
+        The database that `to_bytes` wrote. Raises as `load`.
+        """
+    @staticmethod
+    def load(path: str | os.PathLike[str]) -> Database:
+        """
+        Maps a file read-only; processes that load one file share its memory.
+
+        Raises:
+            DatabaseIoError: the file cannot be read.
+            DatabaseCorruptError: the file is damaged or no database.
+            DatabaseMismatchError: another format version or byte order.
+        """
+    def __copy__(self) -> Database:
+        ...
+    def __deepcopy__(self, memo: dict[int, object]) -> Database:
+        ...
+    def __len__(self) -> int:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def nearest(self, pose: numpy.typing.ArrayLike, k: int) -> numpy.typing.NDArray[numpy.int64]:
+        """
+        Indices of the k samples whose keys are nearest to that of a (4, 4) pose of the tip link, nearest first; Eq. (2) of the paper.
+        """
+    def pose(self, i: int) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        T_base_tip of sample i, of the tip link without the TCP, (4, 4).
+        """
+    def pseudo_inverse(self, i: int) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        J^+ of sample i, as in Eq. (4) of the paper, (dof, 6).
+        """
+    def q(self, i: int) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Joint values of sample i [rad or m], (dof,).
+        """
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """
+        Writes beside `path` and renames, so that a crash leaves the old file or the new one.
+
+        Raises:
+            DatabaseIoError: the file cannot be written; an old one is untouched.
+        """
+    def to_bytes(self) -> builtins.bytes:
+        """
+        The content of a file, for sending.
+        """
+    @property
+    def bytes(self) -> int:
+        """
+        Bytes of samples, keys and pseudo-inverses.
+        """
+    @property
+    def chain_hash(self) -> int:
+        """
+        Robot.chain_hash of the robot it belongs to.
+        """
+    @property
+    def dof(self) -> int:
+        """
+        Degrees of freedom of its robot.
+        """
+    @property
+    def key_dimension(self) -> int:
+        """
+        Dimension of the KD-tree's key.
+        """
+    @property
+    def options(self) -> DatabaseOptions:
+        """
+        A copy of the options it was built with.
+        """
+    @property
+    def size(self) -> int:
+        """
+        Number of samples.
+        """
+class Status(enum.Enum):
+    """
+    Why a solve ended.
+    """
+    not_converged = 1
+    out_of_reach = 3
+    outside_limits = 2
+    solved = 0
+class Result:
+    """
+    Answer to one target. Everything in it is measured on the returned q.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def attempts(self) -> int:
+        """
+        Seeds tried.
+        """
+    @property
+    def iterations(self) -> int:
+        """
+        Iteration steps over all attempts.
+        """
+    @property
+    def position_error(self) -> float:
+        """
+        Distance to the target [m]; NaN unless solved.
+        """
+    @property
+    def q(self) -> numpy.typing.NDArray[numpy.float64] | None:
+        """
+        Joint values [rad or m], (dof,); None unless solved.
+        """
+    @property
+    def rotation_error(self) -> float:
+        """
+        Length of the rotation vector to the target [rad]; NaN unless solved.
+        """
+    @property
+    def status(self) -> Status:
+        """
+        Why the solve ended.
+        """
+    @property
+    def success(self) -> bool:
+        """
+        Whether q reaches the target within both tolerances and lies inside the limits.
+        """
+class BatchResult:
+    """
+    Answers to many targets as arrays; row i belongs to target i. Indexing gives a Result.
+    """
+    def __getitem__(self, i: int) -> Result:
+        ...
+    def __iter__(self) -> collections.abc.Iterator[Result]:
+        ...
+    def __len__(self) -> int:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def statuses(self) -> list[Status]:
+        """
+        `status` as members of Status.
+        """
+    @property
+    def attempts(self) -> numpy.typing.NDArray[numpy.int32]:
+        """
+        Seeds tried, (N,).
+        """
+    @property
+    def iterations(self) -> numpy.typing.NDArray[numpy.int32]:
+        """
+        Iteration steps over all attempts, (N,).
+        """
+    @property
+    def position_error(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Distances to the targets [m], (N,); NaN where not solved.
+        """
+    @property
+    def q(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Joint values [rad or m], (N, dof); NaN where not solved.
+        """
+    @property
+    def rotation_error(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Lengths of the rotation vectors to the targets [rad], (N,); NaN where not solved.
+        """
+    @property
+    def solved(self) -> int:
+        """
+        Number of targets solved.
+        """
+    @property
+    def status(self) -> numpy.typing.NDArray[numpy.uint8]:
+        """
+        Values of Status, (N,).
+        """
+    @property
+    def success(self) -> numpy.typing.NDArray[numpy.bool_]:
+        """
+        Whether each target is solved, (N,).
+        """
+class Solver:
+    """
+    Solves inverse kinematics for one robot. Immutable, safe to use from many threads at once; the same input gives the same bits.
+    """
+    def __copy__(self) -> Solver:
+        ...
+    def __deepcopy__(self, memo: dict[int, object]) -> Solver:
+        ...
+    def __init__(self, robot: Robot, options: SolverOptions | None = None, database: Database | None = None) -> None:
+        """
+        Uses a database, or builds one by `options.database` if it is given none.
+
+        Args:
+            robot: the chain to solve for.
+            options: SolverOptions() if None.
+            database: built for the same chain; its TCP may differ.
+
+        Raises:
+            InvalidArgumentError: an option out of range.
+            DatabaseMismatchError: the database belongs to another chain.
+        """
+    def __repr__(self) -> str:
+        ...
+    def solve(self, pose: numpy.typing.ArrayLike, seed: numpy.typing.ArrayLike | None = None) -> Result:
+        """
+        Joint values that put the tip (the TCP, if there is one) at a pose.
+
+        Args:
+            pose: T_base_tip, (4, 4) [m].
+            seed: joint values to iterate from first, (dof,) [rad or m]; may lie outside the limits.
+
+        Returns:
+            A Result. A pose that cannot be solved is no error but a status.
+
+        Raises:
+            InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, or a number that is
+                not finite.
+        """
+    def solve_batch(self, poses: numpy.typing.ArrayLike, threads: int = 0) -> BatchResult:
+        """
+        Solves many targets with the GIL released; row i has the bits that solve() gives.
+
+        Args:
+            poses: T_base_tip, (N, 4, 4) [m]. Doubles in C order are read in place.
+            threads: 0: one per core.
+
+        Raises:
+            InvalidArgumentError: wrong shape or dtype, or a bad pose; the first is named, and none is
+                solved.
+        """
+    @property
+    def database(self) -> Database:
+        """
+        The database it selects seeds from.
+        """
+    @property
+    def options(self) -> SolverOptions:
+        """
+        A copy of its options.
+        """
+    @property
+    def robot(self) -> Robot:
+        """
+        The robot it solves for.
+        """
+class Evaluation:
+    """
+    Outcome of `evaluate`. Times include failures.
+    """
+    __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
+    def __eq__(self, other: object) -> bool:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def to_dict(self) -> dict[str, typing.Any]:
+        """
+        All fields by name as plain Python data, with the names of enums in their place.
+        """
+    @property
+    def false_success(self) -> int:
+        """
+        Results that say success and are none, by KDL's FK and the limits; always 0.
+        """
+    @property
+    def iterate_us(self) -> float:
+        """
+        Mean time of the iterations [us]; 0 unless asked for.
+        """
+    @property
+    def kdl_fk_jac_us(self) -> float:
+        """
+        Mean time of one KDL FK plus one KDL Jacobian on the same robot [us].
+        """
+    @property
+    def max_us(self) -> float:
+        """
+        Longest time [us].
+        """
+    @property
+    def mean_attempts(self) -> float:
+        """
+        Mean number of seeds tried.
+        """
+    @property
+    def mean_iterations(self) -> float:
+        """
+        Mean number of iteration steps.
+        """
+    @property
+    def mean_us(self) -> float:
+        """
+        Mean time per solve [us].
+        """
+    @property
+    def median_us(self) -> float:
+        """
+        Median time [us].
+        """
+    @property
+    def min_us(self) -> float:
+        """
+        Shortest time [us].
+        """
+    @property
+    def p99_us(self) -> float:
+        """
+        99th percentile of the time [us].
+        """
+    @property
+    def query_us(self) -> float:
+        """
+        Mean time of the KD-tree query [us]; 0 unless asked for.
+        """
+    @property
+    def rank_us(self) -> float:
+        """
+        Mean time of the ranking [us]; 0 unless asked for.
+        """
+    @property
+    def ratio(self) -> float:
+        """
+        mean_us / kdl_fk_jac_us: how speed is compared between machines.
+        """
+    @property
+    def reselect_us(self) -> float:
+        """
+        Mean time of the re-selections [us]; 0 unless asked for.
+        """
+    @property
+    def seed(self) -> int:
+        """
+        Seed of the targets.
+        """
+    @property
+    def solved(self) -> int:
+        """
+        Targets solved.
+        """
+    @property
+    def std_us(self) -> float:
+        """
+        Standard deviation of the time [us].
+        """
+    @property
+    def success_percent(self) -> float:
+        """
+        100 solved / targets.
+        """
+    @property
+    def targets(self) -> int:
+        """
+        Targets tried.
+        """
+def evaluate(solver: Solver, targets: int, seed: int, stages: bool = False, progress: collections.abc.Callable[[int, int], typing.Any] | None = None) -> Evaluation:
+    """
+    The paper's experiment protocol: success and time over random reachable targets.
+
+    Solves poses FK(q), q uniform inside the limits, one after another on this thread with the GIL
+    released, timing each solve inside C++.
+
+    Args:
+        solver: what to evaluate.
+        targets: number of targets.
+        seed: seed of the targets.
+        stages: take the time of each stage in a second pass.
+        progress: called now and then with (targets done, targets in all). What it raises ends the
+            evaluation. Ctrl-C works.
+    """
+def grid_counts(dof: int, scale: Scale | str) -> list[int]:
+    """
+    Points per joint of the paper's grid, base to tip.
+    """
+def pose_error(target: numpy.typing.ArrayLike, pose: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    [p_target - p; rotvec(R_target R^T)] of two (4, 4) poses [m, rad], (6,).
+    """
+def time_kdl_fk_jacobian(robot: Robot) -> float:
+    """
+    Mean time of one KDL FK plus one KDL Jacobian over random configurations [us].
+    """
+__version__: str

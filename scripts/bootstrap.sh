@@ -1,0 +1,122 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Installs what IKSel needs, and IKSel itself into a virtual environment.
+#
+# Usage: scripts/bootstrap.sh [--dev] [--lint] [--apt-only]
+#
+#   --dev       also what tests, benchmarks and the extra [dev] need
+#   --lint      also clang-format, clang-tidy and shellcheck
+#   --apt-only  only the system's packages, no virtual environment
+#
+# System packages come from apt; those that are there already are left alone. The virtual environment
+# is .venv, or $IKSEL_VENV; it is made with python3, or $IKSEL_PYTHON. Nothing is reinstalled while
+# the sources are unchanged.
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+apt_only=false dev=false lint=false
+for option in "$@"; do
+  case $option in
+    --apt-only) apt_only=true ;;
+    --dev) dev=true ;;
+    --lint) lint=true ;;
+    -h | --help) usage && exit ;;
+    *) unknown_option "$option" ;;
+  esac
+done
+
+base_python=${IKSEL_PYTHON:-python3}
+
+want_command() { # COMMAND PACKAGE
+  command -v "$1" >/dev/null || missing+=("$2")
+}
+
+want_library() { # PKG-CONFIG-NAME PACKAGE
+  pkg-config --exists "$1" 2>/dev/null || missing+=("$2")
+}
+
+# Puts the packages of what is not there into the array `missing`.
+find_missing() {
+  missing=()
+  want_command g++ g++
+  want_command cmake cmake
+  command -v ninja >/dev/null || want_command make ninja-build
+  want_command pkg-config pkg-config
+  want_library eigen3 libeigen3-dev
+  want_library libxxhash libxxhash-dev
+  want_library nanoflann libnanoflann-dev
+  want_library orocos-kdl liborocos-kdl-dev
+  want_library urdfdom liburdfdom-dev
+  if ! $apt_only; then find_missing_python; fi
+  if $dev; then
+    want_library benchmark libbenchmark-dev
+    want_library gtest libgtest-dev
+  fi
+  if $lint; then
+    want_command clang-format clang-format
+    want_command clang-tidy clang-tidy
+    want_command shellcheck shellcheck
+  fi
+}
+
+find_missing_python() {
+  if ! command -v "$base_python" >/dev/null; then
+    missing+=(python3 python3-dev python3-venv)
+    return
+  fi
+  "$base_python" -c 'import ensurepip, venv' 2>/dev/null || missing+=(python3-venv)
+  "$base_python" - <<'PYTHON' || missing+=(python3-dev)
+import pathlib, sys, sysconfig
+sys.exit(not (pathlib.Path(sysconfig.get_path("include")) / "Python.h").exists())
+PYTHON
+}
+
+install_missing() {
+  find_missing
+  if ((${#missing[@]} == 0)); then return; fi
+  local list="${missing[*]}" as_root=()
+  if ! command -v apt-get >/dev/null; then
+    die "apt is not available; install the equivalents of these Debian packages and run again: $list"
+  fi
+  if ((EUID != 0)); then
+    command -v sudo >/dev/null || die "run this as root and start again: apt-get install $list"
+    as_root=(sudo)
+    sudo -v || die "no rights to install packages; have installed: $list"
+  fi
+  as_root+=(env DEBIAN_FRONTEND=noninteractive apt-get)
+  quietly "updating the package lists" "${as_root[@]}" update
+  quietly "installing $list" "${as_root[@]}" install -y --no-install-recommends "${missing[@]}"
+  find_missing
+  if ((${#missing[@]} > 0)); then
+    die "installed, but not found on the search paths: ${missing[*]}"
+  fi
+}
+
+# A hash over what the installed package is made of.
+source_hash() {
+  local inputs=(CMakeLists.txt pyproject.toml README.md LICENSE cpp python)
+  find "${inputs[@]}" -type f ! -path '*/examples/*' ! -path '*/__pycache__/*' -print0 |
+    LC_ALL=C sort -z | xargs -0 sha256sum | sha256sum | cut -d ' ' -f 1
+}
+
+install_project() {
+  if ! "$python" -m pip --version >/dev/null 2>&1; then
+    quietly "making the virtual environment $venv" "$base_python" -m venv --clear "$venv"
+  fi
+  local stamp=$venv/iksel.stamp target=. state
+  if $dev; then target='.[dev]'; fi
+  state="$(source_hash) $("$python" -V)"
+  # Once the extra is there, it stays there.
+  if [[ -f $stamp ]] && { [[ $(<"$stamp") == "$state $target" ]] ||
+    [[ $(<"$stamp") == "$state .[dev]" ]]; }; then
+    return
+  fi
+  if [[ -f $stamp ]] && grep -qF '.[dev]' "$stamp"; then target='.[dev]'; fi
+  rm -f "$stamp"
+  quietly "installing iksel into $venv" "$python" -m pip install "$target"
+  printf '%s\n' "$state $target" >"$stamp"
+}
+
+install_missing
+if ! $apt_only; then
+  install_project
+fi

@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# shellcheck shell=bash
+# What the scripts share: sourced by them, never run.
+set -euo pipefail
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+venv=$(realpath -m "${IKSEL_VENV:-$root/.venv}")
+# shellcheck disable=SC2034  # for the scripts that source this file
+python=$venv/bin/python
+export IKSEL_VENV=$venv
+cd "$root"
+
+: "${CMAKE_BUILD_PARALLEL_LEVEL:=$(nproc)}"
+: "${CTEST_PARALLEL_LEVEL:=$CMAKE_BUILD_PARALLEL_LEVEL}"
+export CMAKE_BUILD_PARALLEL_LEVEL CTEST_PARALLEL_LEVEL
+if command -v ninja >/dev/null; then
+  export CMAKE_GENERATOR=${CMAKE_GENERATOR:-Ninja}
+fi
+if command -v ccache >/dev/null; then
+  export CMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER:-ccache}
+fi
+
+die() {
+  printf '%s: %s\n' "$(basename "$0")" "$1" >&2
+  exit "${2:-1}"
+}
+
+# The comment at the head of the running script is its help.
+usage() {
+  sed -n '3,${/^#/!q;s/^# \{0,1\}//p}' "$0"
+}
+
+unknown_option() {
+  usage >&2
+  die "unknown option '$1'" 2
+}
+
+step() {
+  printf '\n== %s\n' "$1"
+}
+
+# quietly WHAT COMMAND...: the output goes to a file, and is shown only if the command fails.
+quietly() {
+  local what=$1 log
+  shift
+  mkdir -p build
+  log=build/$(basename "$0" .sh).log
+  printf '%s ...\n' "$what"
+  if ! "$@" >"$log" 2>&1 </dev/null; then
+    cat "$log" >&2
+    die "$what: failed; the output above is also in $log"
+  fi
+}
+
+# Configures, builds and tests a preset of CMakePresets.json; more arguments go to ctest.
+build_and_test() {
+  local preset=$1
+  shift
+  step "build ($preset)"
+  cmake --preset "$preset" >/dev/null
+  cmake --build --preset "$preset"
+  step "ctest ($preset)"
+  ctest --preset "$preset" "$@"
+}

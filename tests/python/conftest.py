@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the tests share: robots and solvers made once, and the number of random cases."""
+
+from __future__ import annotations
+
+import functools
+import os
+
+import hypothesis
+import pytest
+
+import iksel
+
+CASES = int(os.environ.get("IKSEL_TEST_CASES", "200"))
+
+hypothesis.settings.register_profile(
+    "iksel", deadline=None, max_examples=CASES, print_blob=True
+)
+hypothesis.settings.load_profile("iksel")
+
+
+def pytest_report_header() -> str:
+    """Say how many random cases run and how to change that."""
+    return f"iksel: {CASES} random cases per test (IKSEL_TEST_CASES)"
+
+
+@functools.cache
+def _load(name: str) -> iksel.Robot:
+    return iksel.load_robot(name)
+
+
+@functools.cache
+def _solve(name: str, preset: str) -> iksel.Solver:
+    paper = preset == "paper"
+    options = iksel.SolverOptions.paper() if paper else iksel.SolverOptions()
+    return iksel.Solver(_load(name), options)
+
+
+class Made:
+    """Built-in robots and their solvers, each made once."""
+
+    def robot(self, name: str) -> iksel.Robot:
+        """The built-in robot of that name."""
+        return _load(name)
+
+    def solver(self, name: str, preset: str = "default") -> iksel.Solver:
+        """A solver of the preset 'default' or 'paper'."""
+        return _solve(name, preset)
+
+
+@pytest.fixture(scope="session")
+def made() -> Made:
+    """Robots and solvers that the tests share."""
+    return Made()
+
+
+@pytest.fixture(scope="session")
+def cases() -> int:
+    """Number of random cases that a test tries."""
+    return CASES

@@ -1,0 +1,426 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Laws of solving: what says success is one, and the same input gives the same bits."""
+
+from __future__ import annotations
+
+import math
+import re
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+import iksel
+
+NAMES = iksel.robot_names()
+# One of each kind: the paper's, whole turns, continuous joints, 5, 7 and 10 joints.
+SOME = ["cvr038", "ur3_wrs", "irb14050", "gen3_6dof", "xarm5", "pr2_right_arm"]
+SCHEMES = [kind.name for kind in iksel.Iteration]
+RESULT_FIELDS = (
+    "q",
+    "success",
+    "status",
+    "position_error",
+    "rotation_error",
+    "attempts",
+    "iterations",
+)
+
+seeds = pytest.mark.parametrize("seed", [1, 2])
+
+
+def targets(robot: iksel.Robot, n: int, seed: int) -> np.ndarray:
+    return robot.fk(robot.random_configurations(n, seed))
+
+
+def check_answers(
+    solver: iksel.Solver, poses: np.ndarray, batch: iksel.BatchResult
+) -> float:
+    """Check all that a batch says by KDL; the part that is solved."""
+    robot, options = solver.robot, solver.options
+    solved = np.asarray(batch.success)
+    np.testing.assert_array_equal(np.isnan(batch.q).all(axis=1), ~solved)
+    np.testing.assert_array_equal(np.isnan(batch.q).any(axis=1), ~solved)
+    np.testing.assert_array_equal(np.isnan(batch.position_error), ~solved)
+    np.testing.assert_array_equal(np.isnan(batch.rotation_error), ~solved)
+    np.testing.assert_array_equal(solved, batch.status == iksel.Status.solved.value)
+    q = batch.q[solved]
+    assert (q >= robot.lower).all()
+    assert (q <= robot.upper).all()
+    reached = robot.fk(q, kinematics="kdl")
+    position, rotation = iksel.pose_error(poses[solved], reached)
+    assert (position <= options.position_tolerance + 1e-12).all()
+    assert (rotation <= options.rotation_tolerance + 1e-12).all()
+    np.testing.assert_allclose(
+        batch.position_error[solved], position, rtol=0, atol=1e-12
+    )
+    np.testing.assert_allclose(
+        batch.rotation_error[solved], rotation, rtol=0, atol=1e-12
+    )
+    assert (batch.attempts <= options.max_attempts).all()
+    assert (batch.iterations <= batch.attempts * options.max_iterations).all()
+    return float(solved.mean())
+
+
+def assert_same_batch(a: iksel.BatchResult, b: iksel.BatchResult) -> None:
+    for field in RESULT_FIELDS:
+        np.testing.assert_array_equal(getattr(a, field), getattr(b, field), field)
+
+
+def assert_same_result(a: iksel.Result, b: iksel.Result) -> None:
+    for field in RESULT_FIELDS:
+        np.testing.assert_array_equal(getattr(a, field), getattr(b, field), field)
+
+
+@seeds
+@pytest.mark.parametrize("name", NAMES)
+def test_default_preset_solves_reachable_targets(
+    made, cases: int, name: str, seed: int
+) -> None:
+    solver = made.solver(name)
+    poses = targets(solver.robot, cases, seed)
+    assert check_answers(solver, poses, solver.solve_batch(poses)) >= 0.995
+
+
+@seeds
+@pytest.mark.parametrize("name", ["cvr038", "cvrb1213", "ur3_wrs", "ur5", "vs060"])
+def test_paper_preset_answers_are_answers(
+    made, cases: int, name: str, seed: int
+) -> None:
+    solver = made.solver(name, "paper")
+    poses = targets(solver.robot, cases, seed)
+    assert check_answers(solver, poses, solver.solve_batch(poses)) >= 0.6
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("name", ["cvr038", "gen3_6dof", "xarm5"])
+def test_every_scheme_gives_answers(made, cases: int, name: str, scheme: str) -> None:
+    options = iksel.SolverOptions.paper().replace(iteration=scheme)
+    database = made.solver(name).database
+    solver = iksel.Solver(made.robot(name), options, database)
+    poses = targets(solver.robot, cases, 3)
+    assert check_answers(solver, poses, solver.solve_batch(poses)) > 0.3
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"ranking": "nearest"},
+        {"rotation_difference": "rotation_vector"},
+        {"limit_aware": False},
+        {"reselection": "none"},
+        {"reselection": "next"},
+        {"kinematics": "kdl"},
+        {"whole_turns": False},
+        {"growth_stop": "on"},
+        {"neighbours": 1, "candidates": 1},
+        {"neighbours": 1_000_000, "candidates": 1_000_000},
+        {"candidates": 3, "max_attempts": 50},
+        {"max_iterations": 1},
+        {"position_tolerance": 1e-9, "rotation_tolerance": 1e-9},
+        {"position_tolerance": 1e-2, "rotation_tolerance": 1e-1},
+    ],
+    ids=str,
+)
+@pytest.mark.parametrize("name", ["ur3_wrs", "pr2_right_arm"])
+def test_every_option_gives_answers(made, name: str, change) -> None:
+    few = iksel.DatabaseOptions(samples=2000)
+    options = iksel.SolverOptions(database=few, **change)
+    solver = iksel.Solver(made.robot(name), options)
+    poses = targets(solver.robot, 50, 4)
+    check_answers(solver, poses, solver.solve_batch(poses))
+
+
+@pytest.mark.parametrize("sampling", [kind.name for kind in iksel.Sampling])
+@pytest.mark.parametrize("key", [kind.name for kind in iksel.RotationKey])
+def test_every_database_gives_answers(made, sampling: str, key: str) -> None:
+    database = iksel.DatabaseOptions(
+        sampling=sampling, scale="small", samples=2000, rotation_key=key, cvt_updates=5000
+    )
+    solver = iksel.Solver(made.robot("cvr038"), iksel.SolverOptions(database=database))
+    poses = targets(solver.robot, 50, 5)
+    assert check_answers(solver, poses, solver.solve_batch(poses)) >= 0.9
+
+
+@pytest.mark.parametrize("preset", ["default", "paper"])
+@pytest.mark.parametrize("name", ["cvr038", "ur3_wrs", "gen3_6dof"])
+def test_batch_is_the_loop_bit_for_bit(made, name: str, preset: str) -> None:
+    solver = made.solver(name, preset)
+    poses = targets(solver.robot, 60, 6)
+    poses[::7, :3, 3] += 5.0
+    batch = solver.solve_batch(poses, threads=2)
+    for i, pose in enumerate(poses):
+        one = solver.solve(pose)
+        row = batch[i]
+        assert_same_result(one, row)
+        if one.q is not None:
+            np.testing.assert_array_equal(one.q, batch.q[i])
+
+
+@pytest.mark.parametrize("scheme", ["lm", "dls", "pinv_rr"])
+@pytest.mark.parametrize("name", ["cvr038", "irb14050"])
+def test_threads_and_order_change_no_bit(made, name: str, scheme: str) -> None:
+    options = iksel.SolverOptions(iteration=scheme, max_attempts=4)
+    solver = iksel.Solver(made.robot(name), options, made.solver(name).database)
+    poses = targets(solver.robot, 101, 7)
+    one = solver.solve_batch(poses, threads=1)
+    for threads in (2, 8, 0):
+        assert_same_batch(one, solver.solve_batch(poses, threads=threads))
+    order = np.random.default_rng(7).permutation(len(poses))
+    shuffled = solver.solve_batch(poses[order], threads=2)
+    np.testing.assert_array_equal(shuffled.q, one.q[order])
+    np.testing.assert_array_equal(shuffled.iterations, one.iterations[order])
+
+
+def test_one_solver_serves_many_python_threads(made) -> None:
+    solver = made.solver("panda")
+    poses = targets(solver.robot, 100, 8)
+    alone = [solver.solve(pose) for pose in poses]
+    with ThreadPoolExecutor(8) as pool:
+        together = list(pool.map(solver.solve, poses))
+    for a, b in zip(alone, together, strict=True):
+        assert_same_result(a, b)
+
+
+def test_two_solvers_of_the_same_make_agree(made) -> None:
+    robot = made.robot("ur3")
+    poses = targets(robot, 50, 9)
+    first, second = (iksel.Solver(robot).solve_batch(poses) for _ in range(2))
+    assert_same_batch(first, second)
+
+
+@pytest.mark.parametrize("name", SOME)
+def test_unreachable_poses_have_a_status(made, name: str) -> None:
+    solver = made.solver(name)
+    direction = np.array([1.0, 2.0, -2.0]) / 3.0
+    for far in (1.01 * solver.robot.reach, 100.0, 1e12, 1e300):
+        position = solver.robot.reach_centre + far * direction
+        result = solver.solve(iksel.pose_from_euler(position, [0.1, 0.2, 0.3]))
+        assert result.status == iksel.Status.out_of_reach
+        assert not result.success
+        assert result.q is None
+        assert math.isnan(result.position_error)
+        assert math.isnan(result.rotation_error)
+        assert result.attempts == result.iterations == 0
+
+
+@pytest.mark.parametrize(
+    ("name", "preset"),
+    [*((name, "default") for name in SOME), ("cvr038", "paper"), ("ur3_wrs", "paper")],
+)
+def test_work_is_bounded_where_there_is_no_solution(
+    made, name: str, preset: str
+) -> None:
+    solver = made.solver(name, preset)
+    # Inside the base, hand pointing down: no arm gets there.
+    pose = iksel.pose_from_euler(solver.robot.reach_centre, [0.0, math.pi / 2, 0.0])
+    result = solver.solve(pose)
+    assert result.attempts <= solver.options.max_attempts
+    assert result.iterations <= result.attempts * solver.options.max_iterations
+    if not result.success:
+        assert result.q is None
+        assert result.status != iksel.Status.out_of_reach
+
+
+def test_limits_are_told_from_failure(made) -> None:
+    # A target that only configurations outside the limits reach.
+    robot = made.robot("valkyrie_right_arm")
+    wide = iksel.Robot.from_urdf(
+        re.sub(r'lower="[^"]*" upper="[^"]*"', 'lower="-3.1" upper="3.1"', robot.urdf),
+        base_link=robot.base_link,
+        tip_link=robot.tip_link,
+    )
+    q = wide.random_configurations(200, 10)
+    outside = ((q < robot.lower - 0.3) | (q > robot.upper + 0.3)).any(axis=1)
+    options = iksel.SolverOptions(iteration="dls", max_attempts=20)
+    solver = iksel.Solver(robot, options, made.solver("valkyrie_right_arm").database)
+    batch = solver.solve_batch(wide.fk(q[outside]))
+    assert (batch.status == iksel.Status.outside_limits.value).any()
+    check_answers(solver, wide.fk(q[outside]), batch)
+
+
+@pytest.mark.parametrize("name", SOME)
+def test_a_seed_that_solves_is_the_answer(made, name: str) -> None:
+    solver = made.solver(name)
+    for q in solver.robot.random_configurations(20, 11):
+        result = solver.solve(solver.robot.fk(q), seed=q)
+        assert result.success
+        assert result.attempts == 1
+        np.testing.assert_allclose(result.q, q, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("name", ["ur3", "cvr038", "gen3_6dof"])
+def test_seeds_near_the_answer_stay_near(made, name: str) -> None:
+    solver = made.solver(name)
+    random = np.random.default_rng(12)
+    near = 0
+    for q in solver.robot.random_configurations(50, 12):
+        seed = q + random.normal(0.0, 0.01, solver.robot.dof)
+        result = solver.solve(solver.robot.fk(q), seed=seed)
+        assert result.success
+        near += bool(np.abs(result.q - q).max() < 0.5)
+    assert near >= 40
+
+
+@pytest.mark.parametrize("name", ["ur3", "cvrb1213", "panda", "gen3_6dof"])
+def test_seeds_may_lie_outside_the_limits(made, name: str) -> None:
+    solver = made.solver(name)
+    for q in solver.robot.random_configurations(20, 13):
+        for shift in (2 * math.pi, -4 * math.pi, 50.0):
+            result = solver.solve(solver.robot.fk(q), seed=q + shift)
+            assert result.success
+            assert solver.robot.within_limits(result.q)
+
+
+def test_whole_turns_bring_answers_inside(made) -> None:
+    # Two turns beyond the limits; the wide joints of a UR3 allow +-1 turn.
+    solver = made.solver("ur3")
+    for q in solver.robot.random_configurations(20, 14):
+        turned = q.copy()
+        turned[0] += 2 * math.pi * (2 if q[0] > 0 else -2)
+        result = solver.solve(solver.robot.fk(q), seed=turned)
+        assert result.attempts == 1
+        assert result.success
+        turns = (result.q - turned) / (2 * math.pi)
+        np.testing.assert_allclose(turns, np.round(turns), rtol=0, atol=1e-8)
+        assert round(turns[0]) != 0
+
+
+def test_continuous_joints_come_back_as_principal_values(made) -> None:
+    solver = made.solver("gen3_6dof")
+    free = np.isinf(solver.robot.upper)
+    assert free.any()
+    for q in solver.robot.random_configurations(20, 15):
+        seed = q + np.where(free, 6 * math.pi, 0.0)
+        result = solver.solve(solver.robot.fk(q), seed=seed)
+        assert result.success
+        assert np.abs(result.q[free]).max() <= math.pi
+    batch = solver.solve_batch(targets(solver.robot, 100, 16))
+    assert np.nanmax(np.abs(batch.q[:, free])) <= math.pi
+
+
+@pytest.mark.parametrize("name", ["cvr038", "irb14050"])
+def test_tools_share_a_database(made, name: str) -> None:
+    tool = iksel.pose_from_euler([0.05, 0.02, 0.1], [0.4, -0.3, 0.2])
+    robot = made.robot(name).with_tcp(tool)
+    solver = iksel.Solver(robot, database=made.solver(name).database)
+    poses = targets(robot, 100, 17)
+    assert check_answers(solver, poses, solver.solve_batch(poses)) >= 0.99
+
+
+def test_array_layouts_give_the_same_bits(made) -> None:
+    solver = made.solver("ur3")
+    poses = targets(solver.robot, 20, 18)
+    plain = solver.solve_batch(poses)
+    strided = np.empty((40, 4, 4))
+    strided[::2] = poses
+    unaligned = np.frombuffer(b"x" + poses.tobytes(), dtype=np.uint8)[1:]
+    for same in (
+        np.asfortranarray(poses),
+        strided[::2],
+        poses.tolist(),
+        poses.astype(poses.dtype.newbyteorder()),
+        unaligned.view(np.float64).reshape(poses.shape),
+    ):
+        assert_same_batch(plain, solver.solve_batch(same))
+
+
+def test_no_targets_have_no_answers(made) -> None:
+    solver = made.solver("ur3")
+    batch = solver.solve_batch(np.empty((0, 4, 4)))
+    assert len(batch) == 0
+    assert batch.q.shape == (0, 6)
+
+
+def test_arguments_are_not_changed(made) -> None:
+    solver = made.solver("ur3")
+    pose = targets(solver.robot, 1, 19)[0]
+    q = solver.robot.random_configurations(1, 19)[0]
+    pose_before, q_before = pose.copy(), q.copy()
+    solver.solve(pose, seed=q)
+    np.testing.assert_array_equal(pose, pose_before)
+    np.testing.assert_array_equal(q, q_before)
+    with pytest.raises(ValueError, match="read-only"):
+        solver.robot.lower[0] = 0.0
+
+
+def bad_poses() -> dict[str, object]:
+    nan, sheared, row = np.eye(4), np.eye(4), np.eye(4)
+    nan[1, 3] = math.nan
+    sheared[0, 1] = 0.1
+    row[3, 0] = 0.5
+    return {
+        "NaN": nan,
+        "sheared": sheared,
+        "last row": row,
+        "mirrored": np.diag([1.0, 1.0, -1.0, 1.0]),
+        "3x3": np.eye(3),
+        "flat": np.eye(4).ravel(),
+        "text": "pose",
+        "nothing": None,
+        "complex": np.eye(4, dtype=complex),
+    }
+
+
+@pytest.mark.parametrize("culprit", bad_poses())
+def test_bad_poses_are_refused(made, culprit: str) -> None:
+    solver, pose = made.solver("ur3"), bad_poses()[culprit]
+    with pytest.raises(iksel.InvalidArgumentError, match="^pose"):
+        solver.solve(pose)
+    with pytest.raises(iksel.InvalidArgumentError, match="^poses"):
+        solver.solve_batch(pose)
+
+
+@pytest.mark.parametrize("culprit", ["NaN", "sheared", "last row", "mirrored"])
+def test_the_first_bad_pose_of_a_batch_is_named(made, culprit: str) -> None:
+    poses = np.tile(np.eye(4), (9, 1, 1))
+    poses[5] = poses[7] = bad_poses()[culprit]
+    with pytest.raises(iksel.InvalidArgumentError, match=r"^poses\[5\]"):
+        made.solver("ur3").solve_batch(poses, threads=2)
+
+
+@pytest.mark.parametrize(
+    "seed", [[0.0] * 5, [[0.0] * 6], [0, 0, 0, 0, 0, math.inf], "seed", 1.0]
+)
+def test_bad_seeds_are_refused(made, seed) -> None:
+    with pytest.raises(iksel.InvalidArgumentError, match="^seed"):
+        made.solver("ur3").solve(np.eye(4), seed=seed)
+
+
+@pytest.mark.parametrize("threads", [-1, 10**9, 1.5, "two", None])
+def test_bad_thread_counts_are_refused(made, threads) -> None:
+    with pytest.raises(iksel.InvalidArgumentError, match="threads"):
+        made.solver("ur3").solve_batch(np.tile(np.eye(4), (2, 1, 1)), threads=threads)
+
+
+@pytest.mark.parametrize(
+    ("options", "culprit"),
+    [
+        ({"position_tolerance": 0.0}, "position_tolerance"),
+        ({"position_tolerance": math.nan}, "position_tolerance"),
+        ({"rotation_tolerance": -1.0}, "rotation_tolerance"),
+        ({"neighbours": 0}, "neighbours"),
+        ({"candidates": -1}, "candidates"),
+        ({"max_attempts": 0}, "max_attempts"),
+        ({"max_iterations": 2.5}, "max_iterations"),
+        ({"damping": "small"}, "damping"),
+        ({"whole_turns": 1}, "whole_turns"),
+        ({"seed": -1}, "seed"),
+        ({"iteration": "newton"}, "iteration.*dls.*lm"),
+        ({"ranking": 3}, "ranking.*nearest.*joint_adjustment"),
+        ({"database": {"sampling": "sobol"}}, "sampling.*grid.*cvt"),
+        ({"database": {"threads": -2}}, "threads"),
+        ({"database": {"rotation_weight": 0.0}}, "rotation_weight"),
+    ],
+    ids=str,
+)
+def test_bad_options_are_named(options, culprit: str) -> None:
+    with pytest.raises(iksel.InvalidArgumentError, match=culprit):
+        iksel.SolverOptions(**options)
+    with pytest.raises(iksel.InvalidArgumentError, match=culprit):
+        iksel.SolverOptions().replace(**options)
+
+
+def test_unknown_options_list_the_known() -> None:
+    with pytest.raises(TypeError, match="max_attempts"):
+        iksel.SolverOptions(attempts=3)

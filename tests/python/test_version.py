@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""One version everywhere, and a package that exports what it says."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import iksel
+import iksel_cpp
+
+ROOT = Path(__file__).parents[2]
+
+# Where each file says the version, first match.
+PLACES = {
+    "CMakeLists.txt": r"project\(iksel VERSION ([0-9.]+)",
+    "CHANGELOG.md": r"(?m)^## \[?([0-9][0-9.]*)",
+    "CITATION.cff": r"(?m)^version: [\"']?([0-9.]+)",
+}
+
+
+def test_package_extension_and_metadata_agree() -> None:
+    assert re.fullmatch(r"\d+\.\d+\.\d+", iksel.__version__)
+    assert iksel_cpp.__version__ == iksel.__version__
+    assert importlib.metadata.version("iksel") == iksel.__version__
+
+
+@pytest.mark.parametrize("name", PLACES)
+def test_files_agree(name: str) -> None:
+    path = ROOT / name
+    if not path.is_file():
+        pytest.skip(f"no {name} beside the tests")
+    found = re.search(PLACES[name], path.read_text(encoding="utf-8"))
+    assert found, f"{name} says no version"
+    assert found[1] == iksel.__version__
+
+
+def test_all_is_there_sorted_and_complete() -> None:
+    assert list(iksel.__all__) == sorted(set(iksel.__all__))
+    for name in iksel.__all__:
+        assert getattr(iksel, name) is not None
+    errors = {
+        name
+        for name in dir(iksel_cpp)
+        if isinstance(getattr(iksel_cpp, name), type)
+        and issubclass(getattr(iksel_cpp, name), Exception)
+    }
+    assert errors <= set(iksel.__all__)
+
+
+def test_every_public_thing_is_documented() -> None:
+    for name in iksel.__all__:
+        thing = getattr(iksel, name)
+        if name != "__version__":
+            assert thing.__doc__, name
+
+
+def test_a_missing_extension_is_explained() -> None:
+    program = "import sys; sys.modules['iksel_cpp'] = None; import iksel"
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 1
+    assert "iksel needs its compiled extension module iksel_cpp" in done.stderr
+    assert "pip install" in done.stderr

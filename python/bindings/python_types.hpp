@@ -131,6 +131,7 @@ struct FromPython<T, std::enable_if_t<std::is_enum_v<T>>> {
 
 }  // namespace iksel::python
 
+// NOLINTBEGIN(readability-identifier-naming): pybind11 looks for `name`.
 namespace pybind11::detail {
 
 template <>
@@ -167,3 +168,4 @@ struct handle_type_name<iksel::python::Loose<T>> {
 };
 
 }  // namespace pybind11::detail
+// NOLINTEND(readability-identifier-naming)

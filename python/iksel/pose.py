@@ -23,12 +23,15 @@ from iksel._arrays import (
     index_text,
     reject,
 )
+from iksel._rigid import (
+    RIGID_TOLERANCE,
+    pose_problems,
+    require_none,
+    rotation_problems,
+)
 
 if TYPE_CHECKING:
     import numpy.typing as npt
-
-RIGID_TOLERANCE = 1e-6
-"""Largest element of |R^T R - I| that still counts as rigid, as in the C++ core."""
 
 UNIT_TOLERANCE = 1e-3
 """Largest deviation of a quaternion's norm from 1 that is normalised away."""
@@ -49,7 +52,7 @@ def pose_from_matrix(position: npt.ArrayLike, rotation: npt.ArrayLike) -> FloatA
     """
     matrix = as_floats("rotation", rotation, (3, 3))
     pose = _assemble(position, "rotation", matrix)
-    _require("rotation", matrix, _rotation_problem(matrix))
+    require_none("rotation", matrix, rotation_problems(matrix))
     return pose
 
 
@@ -182,8 +185,9 @@ def is_rigid(
         InvalidArgumentError: Not numbers of shape (..., 4, 4).
     """
     matrix = as_floats("pose", pose, (4, 4), finite=False)
-    problems = _pose_problems(matrix, tolerance)
-    return ~np.logical_or.reduce(list(problems.values()))
+    problems = list(pose_problems(matrix, tolerance).values())
+    rigid: np.bool_ | BoolArray = ~np.logical_or.reduce(problems)
+    return rigid
 
 
 def check_pose(pose: npt.ArrayLike, name: str = "pose") -> FloatArray:
@@ -201,7 +205,7 @@ def check_pose(pose: npt.ArrayLike, name: str = "pose") -> FloatArray:
             which pose and why.
     """
     matrix = as_floats(name, pose, (4, 4))
-    _require(name, matrix, _pose_problems(matrix, RIGID_TOLERANCE))
+    require_none(name, matrix, pose_problems(matrix))
     return matrix
 
 
@@ -242,37 +246,3 @@ def _assemble(position: npt.ArrayLike, name: str, rotation: FloatArray) -> Float
     pose[..., :3, 3] = p
     pose[..., 3, 3] = 1.0
     return pose
-
-
-def _rotation_problem(
-    rotation: FloatArray, tolerance: float = RIGID_TOLERANCE
-) -> dict[str, BoolArray]:
-    """For each way not to be a rotation, which matrices are so."""
-    with np.errstate(invalid="ignore", over="ignore"):
-        gram = np.swapaxes(rotation, -1, -2) @ rotation - np.eye(3)
-        reflection = np.linalg.det(rotation) < 0
-    return {
-        f"R^T R differs from the identity by more than {tolerance}": np.asarray(
-            ~(np.abs(gram).max(axis=(-2, -1)) <= tolerance)
-        ),
-        "det R is negative (a reflection)": np.asarray(reflection),
-    }
-
-
-def _pose_problems(pose: FloatArray, tolerance: float) -> dict[str, BoolArray]:
-    """For each way not to be rigid, which poses are so."""
-    row = (pose[..., 3, :] == np.array([0.0, 0.0, 0.0, 1.0])).all(axis=-1)
-    return {
-        "the last row is not (0, 0, 0, 1)": np.asarray(~row),
-        "the position is not finite": ~np.isfinite(pose[..., :3, 3]).all(axis=-1),
-        **_rotation_problem(pose[..., :3, :3], tolerance),
-    }
-
-
-def _require(name: str, matrix: FloatArray, problems: dict[str, BoolArray]) -> None:
-    """Raise about the first of `problems` that any of `matrix` (..., n, n) has."""
-    for problem, bad in problems.items():
-        if bad.any():
-            index = first_index(bad)
-            which = f"{name}[{', '.join(map(str, index))}]" if index else name
-            reject(which, f"not rigid, {problem}: {matrix[index].tolist()}")

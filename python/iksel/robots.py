@@ -69,8 +69,9 @@ def load_robot(
     info = robot_info(name)
     tip = info.tip_link if tip_link is None else tip_link
     if isinstance(tcp, str) and tcp == FROM_MANIFEST:
-        has_tool = info.tcp_xyz is not None and tip == info.tip_link
-        tcp = pose_from_euler(info.tcp_xyz, info.tcp_rpy) if has_tool else None
+        tcp = None
+        if info.tcp_xyz is not None and tip == info.tip_link:
+            tcp = pose_from_euler(info.tcp_xyz, info.tcp_rpy)
     return Robot.from_urdf(
         urdf_text(info),
         base_link=info.base_link if base_link is None else base_link,

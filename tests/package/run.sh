@@ -26,7 +26,7 @@ run() { # COMMAND...: quiet unless it fails
 build_outside() { # SOURCE FOLDER CMAKE-ARGUMENT...
   local source=$1 folder=$2
   shift 2
-  run cmake -S "$source" -B "$folder" -DCMAKE_BUILD_TYPE=Release "$@"
+  run cmake -S "$source" -B "$folder" "$@"
   run cmake --build "$folder" --parallel "${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}"
 }
 
@@ -49,15 +49,17 @@ public_headers() { # PREFIX: each compiles alone, twice in a row, and shows only
 }
 
 installed() { # PREFIX KIND
-  build_outside package/find_package "consumer-$2" -DCMAKE_PREFIX_PATH="$1"
+  build_outside package/find_package "consumer-$2" -DCMAKE_PREFIX_PATH="$1" \
+    -DCMAKE_BUILD_TYPE=Release
   "./consumer-$2/consumer"
   # A program with other SIMD flags than the library: Eigen's types must not change their layout.
   if grep -qw avx2 /proc/cpuinfo; then
     build_outside package/find_package "consumer-$2-avx2" -DCMAKE_PREFIX_PATH="$1" \
-      -DCMAKE_CXX_STANDARD=20 -DCMAKE_CXX_FLAGS='-mavx2 -mfma'
+      -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_STANDARD=20 -DCMAKE_CXX_FLAGS='-mavx2 -mfma'
     "./consumer-$2-avx2/consumer"
   fi
-  build_outside examples "examples-$2" -DCMAKE_PREFIX_PATH="$1"
+  build_outside examples "examples-$2" -DCMAKE_PREFIX_PATH="$1" \
+    -DCMAKE_BUILD_TYPE=Release
   "./examples-$2/01_solve" >/dev/null
   echo "find_package works with the $2 library"
 }
@@ -66,8 +68,9 @@ run cmake --install "$build" --prefix "$work/static"
 public_headers "$work/static"
 installed "$work/static" static
 
+# Without optimisation, which builds faster and has Eigen's assertions on.
 build_outside package/add_subdirectory subdirectory -DIKSEL_SOURCE_DIR="$root" \
-  -DIKSEL_INSTALL=ON -DBUILD_SHARED_LIBS=ON
+  -DIKSEL_INSTALL=ON -DBUILD_SHARED_LIBS=ON -DCMAKE_BUILD_TYPE=Debug
 ./subdirectory/consumer
 echo "add_subdirectory works"
 

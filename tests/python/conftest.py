@@ -1,15 +1,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the tests share: robots and solvers made once, and the number of random cases."""
+"""What tests share: robots and solvers made once, the number of random cases."""
 
 from __future__ import annotations
 
 import functools
 import os
+import shlex
 
 import hypothesis
 import pytest
+from command_line import Output, Run
 
 import iksel
+from iksel import cli
 
 CASES = int(os.environ.get("IKSEL_TEST_CASES", "200"))
 
@@ -58,3 +61,19 @@ def made() -> Made:
 def cases() -> int:
     """Number of random cases that a test tries."""
     return CASES
+
+
+@pytest.fixture
+def run(capfd: pytest.CaptureFixture[str]) -> Run:
+    """Run the command line in this process; one string is split as a shell would."""
+
+    def run_(*arguments: object) -> Output:
+        words = [str(word) for word in arguments]
+        if len(words) == 1:
+            words = shlex.split(words[0])
+        capfd.readouterr()
+        code = cli.main(words)
+        out, err = capfd.readouterr()
+        return Output(code, out, err)
+
+    return run_

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Databases: what is in them, the same bits for any threads, and files that go wrong."""
+"""Databases: what is in them, bits and threads, and files that go wrong."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ import sys
 import textwrap
 from pathlib import Path
 
+import iksel_cpp
 import numpy as np
 import pytest
 
 import iksel
-import iksel_cpp
 
 SAMPLINGS = [kind.name for kind in iksel.Sampling]
 KEYS = [kind.name for kind in iksel.RotationKey]

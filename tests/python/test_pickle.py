@@ -96,7 +96,8 @@ def test_copies(made) -> None:
     expected = solver.solve(pose).q
     for how in (copy.copy, copy.deepcopy):
         np.testing.assert_array_equal(how(solver).solve(pose).q, expected)
-        np.testing.assert_array_equal(how(solver.robot).fk(expected), solver.robot.fk(expected))
+        pose_again = how(solver.robot).fk(expected)
+        np.testing.assert_array_equal(pose_again, solver.robot.fk(expected))
         assert how(solver.options) == solver.options
         assert len(how(solver.database)) == len(solver.database)
 

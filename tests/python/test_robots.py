@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every built-in robot: known answers, agreement with KDL, and laws of its kinematics."""
+"""Every built-in robot: known answers, agreement with KDL, laws of kinematics."""
 
 from __future__ import annotations
 
@@ -74,7 +74,8 @@ def test_batch_is_the_loop_bit_for_bit(made, name: str) -> None:
     robot = made.robot(name)
     q = robot.random_configurations(20, SEED + 2)
     for function in (robot.fk, robot.jacobian):
-        np.testing.assert_array_equal(function(q), np.stack([function(row) for row in q]))
+        one_by_one = np.stack([function(row) for row in q])
+        np.testing.assert_array_equal(function(q), one_by_one)
 
 
 @each_robot
@@ -163,9 +164,8 @@ def test_locked_joints_are_held(made) -> None:
     q[:, 2] = 0.4
     free = np.delete(q, 2, axis=1)
     np.testing.assert_allclose(locked.fk(free), robot.fk(q), rtol=0, atol=1e-14)
-    np.testing.assert_allclose(
-        locked.jacobian(free), np.delete(robot.jacobian(q), 2, axis=2), rtol=0, atol=1e-14
-    )
+    without = np.delete(robot.jacobian(q), 2, axis=2)
+    np.testing.assert_allclose(locked.jacobian(free), without, rtol=0, atol=1e-14)
     np.testing.assert_allclose(
         locked.fk(free), locked.fk(free, kinematics="kdl"), rtol=0, atol=1e-12
     )
@@ -180,7 +180,7 @@ def test_soft_limits_narrow_the_limits(made) -> None:
 
 @pytest.mark.parametrize(
     ("name", "hint"),
-    [("ur3f", "did you mean ur3"), ("PANDA", "did you mean panda"), ("zzz", "built-in")],
+    [("ur3f", "mean ur3"), ("PANDA", "mean panda"), ("zzz", "built-in")],
 )
 def test_unknown_robots_get_suggestions(name: str, hint: str) -> None:
     for function in (iksel.load_robot, iksel.robot_info):

@@ -9,10 +9,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+import iksel_cpp
 import pytest
 
 import iksel
-import iksel_cpp
 
 ROOT = Path(__file__).parents[2]
 

@@ -79,7 +79,7 @@ def numbers(values: Iterable[float], digits: int = 6) -> str:
 class Progress:
     """A progress bar on stderr; as a context, the callback for the core, or None."""
 
-    def __init__(self, label: str, show: bool | None) -> None:
+    def __init__(self, label: str, *, show: bool | None) -> None:
         """Show the bar, or not; None: if stderr is a terminal."""
         self._label = label
         self._show = sys.stderr.isatty() if show is None else show

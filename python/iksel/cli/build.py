@@ -55,7 +55,7 @@ def run(arguments: argparse.Namespace) -> int:
     robot = load(arguments)
     options = database_options(arguments)
     start = time.perf_counter()
-    with Progress(f"building {robot.name}", arguments.progress) as progress:
+    with Progress(f"building {robot.name}", show=arguments.progress) as progress:
         database = Database.build(robot, options, progress)
     build_s = time.perf_counter() - start
     database.save(arguments.output)

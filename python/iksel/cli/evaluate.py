@@ -76,7 +76,7 @@ def run(arguments: argparse.Namespace) -> int:
     options = solver_options(arguments)
     database, build_s = _database(arguments, robot, options)
     solver = Solver(robot, options, database)
-    with Progress("solving", arguments.progress) as progress:
+    with Progress("solving", show=arguments.progress) as progress:
         figures = iksel_cpp.evaluate(
             solver, arguments.targets, arguments.seed, arguments.stages, progress
         ).to_dict()
@@ -110,17 +110,15 @@ def print_text(report: dict[str, Any]) -> None:
     ]
     build_s = report["build_s"]
     origin = "from file" if build_s is None else f"built in {build_s:.3f} s"
+    position, rotation = report["position_tolerance"], report["rotation_tolerance"]
+    tolerance = f"{position:g} m, {rotation:g} rad"
     print_pairs(
         [
             ("robot", report["robot"]),
             ("preset", report["preset"] + (f" with {changed}" if changed else "")),
             ("database", f"{report['database_samples']:,} samples, {origin}"),
             ("targets", f"{report['targets']:,}, seed {report['seed']}"),
-            (
-                "tolerance",
-                f"{report['position_tolerance']:g} m, "
-                f"{report['rotation_tolerance']:g} rad",
-            ),
+            ("tolerance", tolerance),
             ("threads", f"{report['threads']}, SIMD {report['simd']}"),
             ("solved", f"{report['solved']:,}, {report['success_percent']:.3f} %"),
             ("false successes", str(report["false_success"])),
@@ -145,6 +143,6 @@ def _database(
     if arguments.database is not None:
         return Database.load(arguments.database), None
     start = time.perf_counter()
-    with Progress(f"building {robot.name}", arguments.progress) as progress:
+    with Progress(f"building {robot.name}", show=arguments.progress) as progress:
         database = Database.build(robot, options.database, progress)
     return database, time.perf_counter() - start

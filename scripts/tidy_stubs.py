@@ -40,11 +40,6 @@ def tidy(text: str) -> str:
         "__hash__: typing.ClassVar[None] = None  # type: ignore[assignment]",
     )
     text = re.sub(r"(?<=memo: )dict\b", "dict[int, object]", text)
-    # Database.bytes hides the type inside its class.
-    text = re.sub(r"(?<=: |> )bytes\b(?=[):])", "builtins.bytes", text)
-    text = text.replace(
-        "import collections.abc", "import builtins\nimport collections.abc"
-    )
     # The name that numpy 1 has too.
     text = text.replace("numpy.bool]", "numpy.bool_]")
     text = re.sub(r"^(__version__: str) = .*$", r"\1", text, flags=re.MULTILINE)

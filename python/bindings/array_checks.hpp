@@ -63,8 +63,7 @@ inline DoubleArray as_doubles(py::handle value, const char* name) {
   return convert_to_doubles(value, name);
 }
 
-/// A (4, 4) array as a pose. Its last row is checked here; that the rest is rigid is checked by
-/// what uses the pose.
+/// A (4, 4) array as a pose. That it is rigid is checked by what uses the pose.
 inline Pose as_pose(py::handle value, const char* name) {
   const DoubleArray array = as_doubles(value, name);
   if (array.ndim() != 2 || array.shape(0) != 4 || array.shape(1) != 4) {
@@ -72,12 +71,6 @@ inline Pose as_pose(py::handle value, const char* name) {
   }
   Pose pose;
   pose.matrix() = Eigen::Map<const RowMajorPose>(array.data());
-  constexpr double kTolerance = 1e-6;
-  if (!((pose.matrix().row(3) - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() <=
-        kTolerance)) {
-    throw InvalidArgumentError(std::string(name) + ": expected (0, 0, 0, 1) as the last row, got " +
-                               py::cast<std::string>(py::str(array.attr("tolist")()[py::int_(3)])));
-  }
   return pose;
 }
 

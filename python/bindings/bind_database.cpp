@@ -139,7 +139,7 @@ Raises:
   cls.def_property_readonly("dof", &Database::dof, "Degrees of freedom of its robot.");
   cls.def_property_readonly("key_dimension", &Database::key_dimension,
                             "Dimension of the KD-tree's key.");
-  cls.def_property_readonly("bytes", &Database::bytes,
+  cls.def_property_readonly("nbytes", &Database::bytes,
                             "Bytes of samples, keys and pseudo-inverses.");
   cls.def_property_readonly("chain_hash", &Database::chain_hash,
                             "Robot.chain_hash of the robot it belongs to.");

@@ -100,11 +100,13 @@ PyBatchResult solve_batch(const Solver& self, const ArrayLike& poses, const Loos
                        out.rotation_error.mutable_data(),
                        out.attempts.mutable_data(),
                        out.iterations.mutable_data()};
+  const std::optional<ProgressCallable> no_callable;
+  const Progress interruptible = make_progress(no_callable);
   bool* success = out.success.mutable_data();
   const double* in = targets.data();
   {
     const py::gil_scoped_release release;
-    self.solve_batch(in, static_cast<std::size_t>(n), view, thread_count);
+    self.solve_batch(in, static_cast<std::size_t>(n), view, thread_count, interruptible);
     std::transform(view.status, view.status + n, success, [](std::uint8_t status) {
       return static_cast<Status>(status) == Status::solved;
     });

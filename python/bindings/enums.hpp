@@ -7,6 +7,7 @@
 #include <pybind11/pybind11.h>
 
 #include <string>
+#include <type_traits>
 
 #include "iksel/options.hpp"
 #include "iksel/result.hpp"
@@ -186,7 +187,9 @@ const char* enum_name(E value) {
 /// Makes the Python enum; to come before any function that takes or returns it.
 template <class E>
 void bind_enum(py::module_& m) {
-  py::native_enum<E> binding(m, EnumTable<E>::kName, "enum.Enum", EnumTable<E>::kDoc);
+  // Statuses stand as numbers in batch results, and compare with them.
+  constexpr const char* kBase = std::is_same_v<E, Status> ? "enum.IntEnum" : "enum.Enum";
+  py::native_enum<E> binding(m, EnumTable<E>::kName, kBase, EnumTable<E>::kDoc);
   for (const auto& entry : EnumTable<E>::kValues) binding.value(entry.name, entry.value, entry.doc);
   binding.finalize();
 }

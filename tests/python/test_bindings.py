@@ -680,7 +680,7 @@ def test_database_facts(robot, database):
     assert len(database) == database.size == 2000
     assert database.dof == robot.dof
     assert database.chain_hash == robot.chain_hash
-    assert database.bytes > 2000 * 8 * (6 + 6 + 36)
+    assert database.nbytes > 2000 * 8 * (6 + 6 + 36)
     assert database.key_dimension == 6
     text = "Database(2000 samples, dof=6, DatabaseOptions(samples=2000))"
     assert repr(database) == text

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
+#include <limits>
 
 #include "iksel/export.hpp"
 #include "iksel/types.hpp"
@@ -28,9 +28,9 @@ struct Result {
   /// Joint values [rad or m]; empty unless solved, so that no other q can be taken for an answer.
   JointVector q;
   /// |p_target - p(q)| [m]; NaN unless solved.
-  double position_error;
+  double position_error = std::numeric_limits<double>::quiet_NaN();
   /// Length of rotvec(R_target R(q)^T) [rad]; NaN unless solved.
-  double rotation_error;
+  double rotation_error = std::numeric_limits<double>::quiet_NaN();
   /// Seeds tried.
   int attempts = 0;
   /// Iteration steps over all attempts.

@@ -52,9 +52,10 @@ class IKSEL_EXPORT Solver {
   /// before any is solved.
   [[nodiscard]] std::vector<Result> solve_batch(const std::vector<Pose>& T_base_tip,
                                                 int threads = 0) const;
-  /// The same over `count` 4x4 matrices, row by row, into arrays that the caller owns.
+  /// The same over `count` 4x4 matrices, row by row, into arrays that the caller owns. An exception
+  /// of `progress` ends the batch and reaches the caller.
   void solve_batch(const double* T_base_tip, std::size_t count, const BatchView& out,
-                   int threads = 0) const;
+                   int threads = 0, const Progress& progress = {}) const;
 
  private:
   struct Impl;

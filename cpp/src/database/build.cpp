@@ -34,12 +34,8 @@ void fill_record(KdlChain& kdl, const double* sample, int dof, double cutoff, do
       TruncatedSvd(kdl.jacobian(q), cutoff).inverse();
 }
 
-}  // namespace
-
-Database Database::build(const Robot& robot, const DatabaseOptions& options,
-                         const Progress& progress) {
-  options.validate();
-  const ChainModel& model = robot.model();
+std::shared_ptr<DatabaseData> build_data(const ChainModel& model, const DatabaseOptions& options,
+                                         const Progress& progress) {
   const auto data = std::make_shared<DatabaseData>();
   data->options = options;
   data->dof = model.dof;
@@ -65,25 +61,21 @@ Database Database::build(const Robot& robot, const DatabaseOptions& options,
 
   // Keys first: the tree made of them tells the order in which everything is then stored.
   std::vector<double> keys(data->size * key_dim);
-  parallel_for(data->size, kChunk, threads, [&] {
-    return [&, kdl = std::shared_ptr<KdlChain>(model.make_kdl(false))](std::size_t begin,
-                                                                       std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const JointVector q = Eigen::Map<const Eigen::VectorXd>(&samples[i * dof], model.dof);
-        make_key(options, kdl->fk(q), &keys[i * key_dim]);
-      }
-    };
-  });
+  parallel_for(
+      data->size, kChunk, threads,
+      [&] {
+        return [&, kdl = std::shared_ptr<KdlChain>(model.make_kdl(false))](std::size_t begin,
+                                                                           std::size_t end) {
+          for (std::size_t i = begin; i < end; ++i) {
+            const JointVector q = Eigen::Map<const Eigen::VectorXd>(&samples[i * dof], model.dof);
+            make_key(options, kdl->fk(q), &keys[i * key_dim]);
+          }
+        };
+      },
+      [&](std::size_t) { report(updates); });
   const std::vector<std::uint32_t> order = KdTree(keys.data(), data->size, data->key_dim).order();
 
-  std::shared_ptr<HeapBlock> block;
-  try {
-    block = std::make_shared<HeapBlock>(data->size * (key_dim + length) * sizeof(double));
-  } catch (const std::bad_alloc&) {
-    throw DatabaseError("no memory for a database of " + std::to_string(data->size) + " samples (" +
-                        std::to_string(data->size * (key_dim + length) * sizeof(double) >> 20U) +
-                        " MiB)");
-  }
+  const auto block = std::make_shared<HeapBlock>(data->size * (key_dim + length) * sizeof(double));
   auto* payload = reinterpret_cast<double*>(block->writable() + kHeaderSize);
   double* records = payload + data->size * key_dim;
   for (std::size_t i = 0; i < data->size; ++i) {
@@ -108,7 +100,20 @@ Database Database::build(const Robot& robot, const DatabaseOptions& options,
   data->tree = KdTree(data->keys, data->size, data->key_dim);
   data->block = block;
   report(total);
-  return Database(data);
+  return data;
+}
+
+}  // namespace
+
+Database Database::build(const Robot& robot, const DatabaseOptions& options,
+                         const Progress& progress) {
+  options.validate();
+  try {
+    return Database(build_data(robot.model(), options, progress));
+  } catch (const std::bad_alloc&) {
+    throw DatabaseError("no memory for a database of " +
+                        std::to_string(sample_count(robot.model(), options)) + " samples");
+  }
 }
 
 }  // namespace iksel

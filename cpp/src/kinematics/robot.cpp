@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "error_check.hpp"
+#include "iksel/error.hpp"
 #include "kinematics/chain_model.hpp"
 #include "math/random.hpp"
 #include "math/rotation.hpp"
@@ -14,7 +15,15 @@ namespace iksel {
 Robot::Robot(std::shared_ptr<const ChainModel> model) : model_(std::move(model)) {}
 
 Robot Robot::from_urdf_file(const std::filesystem::path& path, const RobotOptions& options) {
-  return from_urdf_string(read_urdf_file(path), options);
+  const std::string where = "URDF file '" + path.string() + "': ";
+  const std::string xml = read_urdf_file(path);
+  try {
+    return from_urdf_string(xml, options);
+  } catch (const UnknownNameError& error) {
+    throw UnknownNameError(where + error.what());
+  } catch (const UrdfError& error) {
+    throw UrdfError(where + error.what());
+  }
 }
 
 Robot Robot::from_urdf_string(const std::string& xml, const RobotOptions& options) {

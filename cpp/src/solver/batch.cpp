@@ -46,19 +46,22 @@ std::vector<Result> Solver::solve_batch(const std::vector<Pose>& T_base_tip, int
 }
 
 void Solver::solve_batch(const double* T_base_tip, std::size_t count, const BatchView& out,
-                         int threads) const {
+                         int threads, const Progress& progress) const {
   threads = resolve_threads(threads);
   for (std::size_t i = 0; i < count; ++i) {
     check_matrix(T_base_tip + 16 * i, "poses", static_cast<std::ptrdiff_t>(i));
   }
   const int dof = robot().dof();
-  parallel_for(count, kChunk, threads, [&] {
+  const auto make_worker = [&] {
     return [&, lease = std::make_shared<Impl::Lease>(*impl_)](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         write_row(impl_->solve(to_pose(T_base_tip + 16 * i), nullptr, lease->get(), nullptr), i,
                   dof, out);
       }
     };
+  };
+  parallel_for(count, kChunk, threads, make_worker, [&](std::size_t done) {
+    if (progress) progress(done, count);
   });
 }
 

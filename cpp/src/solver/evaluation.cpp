@@ -63,7 +63,10 @@ Evaluation evaluate(const Solver& solver, std::size_t targets, std::uint64_t see
   const Eigen::MatrixXd q = robot.random_configurations(targets, seed);
   std::vector<Pose> poses;
   poses.reserve(targets);
-  for (Eigen::Index i = 0; i < q.rows(); ++i) poses.push_back(kdl->fk(q.row(i)));
+  for (Eigen::Index i = 0; i < q.rows(); ++i) {
+    poses.push_back(kdl->fk(q.row(i)));
+    if (progress && i % 65536 == 0) progress(0, targets);
+  }
 
   Evaluation out;
   out.targets = targets;

@@ -100,7 +100,6 @@ Result Solver::Impl::solve(const Pose& T_base_tip, const JointVector* seed, Work
   StageClock clock(times != nullptr);
 
   Result result;
-  result.position_error = result.rotation_error = kNan;
   const double distance = (T_base_tip.translation() - robot.reach_centre()).norm();
   if (distance > robot.reach() + options.position_tolerance) {
     result.status = Status::out_of_reach;

@@ -4,6 +4,7 @@
 #include <console_bridge/console.h>
 #include <urdf_parser/urdf_parser.h>
 
+#include <algorithm>
 #include <exception>
 #include <fstream>
 #include <mutex>
@@ -50,6 +51,35 @@ class MessageCollector : public console_bridge::OutputHandler {
   std::string text_;
 };
 
+/// A URDF needs half a dozen levels. urdfdom's XML parser calls itself for each level and would run
+/// out of stack on text made to be deep.
+constexpr int kMaxDepth = 200;
+
+/// Depth of the deepest element of XML text, as far as its tags tell.
+int xml_depth(const std::string& xml) {
+  const auto skip_to = [&](std::size_t from, const char* end) {
+    const std::size_t at = xml.find(end, from);
+    return at == std::string::npos ? xml.size() : at;
+  };
+  int depth = 0;
+  int deepest = 0;
+  for (std::size_t i = xml.find('<'); i < xml.size(); i = xml.find('<', i + 1)) {
+    if (xml.compare(i, 4, "<!--") == 0) {
+      i = skip_to(i, "-->");
+    } else if (xml.compare(i, 9, "<![CDATA[") == 0) {
+      i = skip_to(i, "]]>");
+    } else if (xml.compare(i, 2, "</") == 0) {
+      --depth;
+    } else if (xml.compare(i, 2, "<?") != 0 && xml.compare(i, 2, "<!") != 0) {
+      const std::size_t end = skip_to(i, ">");
+      deepest = std::max(deepest, ++depth);
+      if (xml[end - 1] == '/') --depth;
+    }
+    if (i >= xml.size()) break;
+  }
+  return deepest;
+}
+
 /// One line out of many, so that an error stays one line.
 std::string one_line(std::string text) {
   for (char& c : text) {
@@ -74,6 +104,10 @@ std::string read_urdf_file(const std::filesystem::path& path) {
 }
 
 urdf::ModelInterfaceSharedPtr parse_urdf(const std::string& xml) {
+  if (xml_depth(xml) > kMaxDepth) {
+    throw UrdfError("URDF does not parse: its elements are nested deeper than " +
+                    std::to_string(kMaxDepth) + " levels");
+  }
   urdf::ModelInterfaceSharedPtr model;
   std::string messages;
   {

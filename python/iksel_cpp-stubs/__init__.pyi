@@ -8,7 +8,6 @@ Good Seed Joint Values for Fast Numerical Inverse Kinematics Iterations" (Yuan, 
 2025), called the paper below.
 """
 from __future__ import annotations
-import builtins
 import collections.abc
 import enum
 import numpy
@@ -692,7 +691,7 @@ class Database:
             DatabaseError: more samples than fit.
         """
     @staticmethod
-    def from_bytes(content: builtins.bytes) -> Database:
+    def from_bytes(content: bytes) -> Database:
         """
         The database that `to_bytes` wrote. Raises as `load`.
         """
@@ -737,14 +736,9 @@ class Database:
         Raises:
             DatabaseIoError: the file cannot be written; an old one is untouched.
         """
-    def to_bytes(self) -> builtins.bytes:
+    def to_bytes(self) -> bytes:
         """
         The content of a file, for sending.
-        """
-    @property
-    def bytes(self) -> int:
-        """
-        Bytes of samples, keys and pseudo-inverses.
         """
     @property
     def chain_hash(self) -> int:
@@ -762,6 +756,11 @@ class Database:
         Dimension of the KD-tree's key.
         """
     @property
+    def nbytes(self) -> int:
+        """
+        Bytes of samples, keys and pseudo-inverses.
+        """
+    @property
     def options(self) -> DatabaseOptions:
         """
         A copy of the options it was built with.
@@ -771,7 +770,7 @@ class Database:
         """
         Number of samples.
         """
-class Status(enum.Enum):
+class Status(enum.IntEnum):
     """
     Why a solve ended.
     """
@@ -779,6 +778,8 @@ class Status(enum.Enum):
     out_of_reach = 3
     outside_limits = 2
     solved = 0
+    def __format__(self, format_spec):
+        ...
 class Result:
     """
     Answer to one target. Everything in it is measured on the returned q.

@@ -54,6 +54,7 @@ find_missing() {
   if $lint; then
     want_command clang-format clang-format
     want_command clang-tidy clang-tidy
+    want_command git git
     want_command shellcheck shellcheck
   fi
 }

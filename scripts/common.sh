@@ -52,13 +52,12 @@ quietly() {
   fi
 }
 
-# Configures, builds and tests a preset of CMakePresets.json; more arguments go to ctest.
+# Configures, builds and tests a preset of CMakePresets.json.
 build_and_test() {
   local preset=$1
-  shift
   step "build ($preset)"
   cmake --preset "$preset" >/dev/null
   cmake --build --preset "$preset"
   step "ctest ($preset)"
-  ctest --preset "$preset" "$@"
+  ctest --preset "$preset"
 }

@@ -4,7 +4,9 @@
 #
 # Usage: scripts/test.sh [--quick]
 #
-#   --quick  skip the tests marked slow and the packages built outside the tree
+#   --quick  300 random cases per C++ test, no pytest marked slow, no programs outside the tree
+#
+# IKSEL_TEST_CASES and IKSEL_TEST_SEED set the number of random cases and their seed.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 quick=false
@@ -16,17 +18,17 @@ for option in "$@"; do
   esac
 done
 
-skip_ctest=() skip_pytest=()
+selection=()
 if $quick; then
-  skip_ctest=(--label-exclude slow)
-  skip_pytest=(-m 'not slow')
+  export IKSEL_TEST_CASES=${IKSEL_TEST_CASES:-300}
+  selection=(-m 'not slow')
 fi
 
 scripts/bootstrap.sh --dev
-build_and_test dev "${skip_ctest[@]}"
+build_and_test dev
 
 step pytest
-"$python" -m pytest "${skip_pytest[@]}"
+"$python" -m pytest "${selection[@]}"
 
 step "examples: C++ and Python print the same"
 tests/package/compare_examples.sh build/release/cpp/examples "$python"

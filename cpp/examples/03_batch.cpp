@@ -16,7 +16,8 @@ void run() {
   const auto robot = iksel::Robot::from_urdf_file(IKSEL_ROBOTS_DIR "/ur3.urdf", links);
 
   std::vector<iksel::Pose> targets;
-  for (const auto& q : robot.random_configurations(1000, /*seed=*/1).rowwise()) {
+  const auto configurations = robot.random_configurations(1000, /*seed=*/1);
+  for (const auto& q : configurations.rowwise()) {
     targets.push_back(robot.fk(q.transpose()));
   }
 

@@ -30,6 +30,7 @@ struct FieldTable<Evaluation> {
         field("max_us", &E::max_us, "Longest time [us]."),
         field("median_us", &E::median_us, "Median time [us]."),
         field("p99_us", &E::p99_us, "99th percentile of the time [us]."),
+        field("p999_us", &E::p999_us, "99.9th percentile of the time [us]."),
         field("mean_attempts", &E::mean_attempts, "Mean number of seeds tried."),
         field("mean_iterations", &E::mean_iterations, "Mean number of iteration steps."),
         field("kdl_fk_jac_us", &E::kdl_fk_jac_us,
@@ -80,6 +81,13 @@ Args:
       "time_kdl_fk_jacobian", [](const Robot& robot) { return time_kdl_fk_jacobian(robot); },
       py::arg("robot"), py::call_guard<py::gil_scoped_release>(),
       "Mean time of one KDL FK plus one KDL Jacobian over random configurations [us].");
+  m.def("simd_level", &simd_level,
+        R"(The instruction set whose lanes solve on this machine.
+
+avx512, avx2, sse2, neon or scalar; the environment variable IKSEL_SIMD forces one.
+
+Raises:
+    InvalidArgumentError: IKSEL_SIMD asks for one that is not to be had.)");
 }
 
 }  // namespace iksel::python

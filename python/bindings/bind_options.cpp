@@ -7,6 +7,7 @@ namespace iksel::python {
 void bind_options(py::module_& m) {
   bind_enum<Sampling>(m);
   bind_enum<Scale>(m);
+  bind_enum<KeyScheme>(m);
   bind_enum<RotationKey>(m);
   bind_enum<Ranking>(m);
   bind_enum<RotationDifference>(m);

@@ -76,6 +76,17 @@ struct EnumTable<Scale> {
 };
 
 template <>
+struct EnumTable<KeyScheme> {
+  static constexpr const char* kName = "KeyScheme";
+  static constexpr const char* kDoc = "What of a pose the database's key holds.";
+  static constexpr EnumValue<KeyScheme> kValues[] = {
+      {"full", KeyScheme::full, "position and rotation (the paper)"},
+      {"reduced", KeyScheme::reduced,
+       "what the first and last joint cannot change, so that they need no samples"},
+  };
+};
+
+template <>
 struct EnumTable<RotationKey> {
   static constexpr const char* kName = "RotationKey";
   static constexpr const char* kDoc =

@@ -37,6 +37,7 @@ from iksel_cpp import (
     InvalidArgumentError,
     Iteration,
     JointType,
+    KeyScheme,
     Kinematics,
     Ranking,
     Reselection,
@@ -52,6 +53,7 @@ from iksel_cpp import (
     UnknownNameError,
     UrdfError,
     evaluate,
+    simd_level,
     time_kdl_fk_jacobian,
 )
 
@@ -86,6 +88,7 @@ __all__ = [
     "InvalidArgumentError",
     "Iteration",
     "JointType",
+    "KeyScheme",
     "Kinematics",
     "Ranking",
     "Reselection",
@@ -116,5 +119,6 @@ __all__ = [
     "robot_info",
     "robot_names",
     "rotation_vector_from_pose",
+    "simd_level",
     "time_kdl_fk_jacobian",
 ]

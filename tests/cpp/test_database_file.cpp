@@ -85,8 +85,10 @@ TEST_F(DatabaseFile, AnyFlippedByteIsRefused) {
   const std::string good = make(60).to_bytes();
   iksel::Random random(iksel_test::seed());
   // Every byte of the header, then random ones of the content.
-  for (std::size_t trial = 0; trial < 256 + 1000; ++trial) {
-    const std::size_t at = trial < 256 ? trial : 256 + random.next() % (good.size() - 256);
+  constexpr std::size_t kHeader = 512;
+  for (std::size_t trial = 0; trial < kHeader + 1000; ++trial) {
+    const std::size_t at =
+        trial < kHeader ? trial : kHeader + random.next() % (good.size() - kHeader);
     std::string bad = good;
     bad[at] = static_cast<char>(bad[at] ^ static_cast<char>(1 + random.next() % 255));
     EXPECT_THROW(Database::from_bytes(bad), iksel::DatabaseError) << "byte " << at;

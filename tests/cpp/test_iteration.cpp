@@ -135,7 +135,7 @@ TEST_P(Schemes, ConvergeFromNearBy) {
   options.iteration = scheme;
   options.max_iterations = 30;
   iksel::Random random(iksel_test::seed());
-  const auto kdl = robot.model().make_kdl(false);
+  const auto kdl = robot.model().make_kdl(Pose::Identity());
   int solved = 0;
   constexpr int kCases = 200;
   // Well inside the limits, where no scheme is hindered.

@@ -61,6 +61,7 @@ DatabaseOptions small(Sampling sampling) {
   options.scale = Scale::small;
   options.cvt_updates = 20'000;
   options.seed = 7;
+  options.key_scheme = iksel::KeyScheme::full;
   return options;
 }
 

@@ -28,6 +28,8 @@ struct Bench {
   Database database = [this] {
     iksel::DatabaseOptions o;
     o.samples = 4000;
+    o.key_scheme = iksel::KeyScheme::full;
+    o.rotation_weight = 1;
     return Database::build(robot, o);
   }();
   Robot bare = robot.with_tcp(iksel::Pose::Identity());

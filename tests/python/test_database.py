@@ -17,7 +17,9 @@ import iksel
 
 SAMPLINGS = [kind.name for kind in iksel.Sampling]
 KEYS = [kind.name for kind in iksel.RotationKey]
-SMALL = iksel.DatabaseOptions(samples=300, cvt_updates=3000, scale="small")
+SMALL = iksel.DatabaseOptions(
+    samples=300, cvt_updates=3000, scale="small", key_scheme="full"
+)
 
 
 def arrays(database: iksel.Database) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -225,7 +227,11 @@ def test_built_in_another_process_has_the_same_bits(database, tmp_path: Path) ->
 
 def test_options_are_in_the_file(made, tmp_path: Path) -> None:
     options = SMALL.replace(
-        sampling="random", rotation_key="matrix", rotation_weight=0.3, seed=7
+        sampling="random",
+        key_scheme="full",
+        rotation_key="matrix",
+        rotation_weight=0.3,
+        seed=7,
     )
     database = iksel.Database.build(made.robot("ur3"), options)
     database.save(tmp_path / "file")

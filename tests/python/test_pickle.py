@@ -50,7 +50,7 @@ def test_options(protocol: int) -> None:
         iksel.SolverOptions.paper(),
         iksel.SolverOptions(iteration="cwpi", database={"sampling": "cvt", "seed": 5}),
         iksel.DatabaseOptions.paper(),
-        iksel.DatabaseOptions(rotation_key="matrix", samples=3),
+        iksel.DatabaseOptions(key_scheme="full", rotation_key="matrix", samples=3),
     ):
         other = again(options, protocol)
         assert other == options

@@ -134,7 +134,9 @@ def test_every_option_gives_answers(made, name: str, change) -> None:
 @pytest.mark.parametrize("sampling", [kind.name for kind in iksel.Sampling])
 @pytest.mark.parametrize("key", [kind.name for kind in iksel.RotationKey])
 def test_every_database_gives_answers(made, sampling: str, key: str) -> None:
-    few = iksel.DatabaseOptions(samples=2000, scale="small", cvt_updates=5000)
+    few = iksel.DatabaseOptions(
+        samples=2000, scale="small", cvt_updates=5000, key_scheme="full"
+    )
     database = few.replace(sampling=sampling, rotation_key=key)
     solver = iksel.Solver(made.robot("cvr038"), iksel.SolverOptions(database=database))
     poses = targets(solver.robot, 50, 5)

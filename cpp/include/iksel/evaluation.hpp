@@ -18,7 +18,7 @@ struct Evaluation {
   /// Results that say success and are none, by KDL's FK and the limits. Always to be 0.
   std::size_t false_success = 0;
   double success_percent = 0;
-  double mean_us = 0, std_us = 0, min_us = 0, max_us = 0, median_us = 0, p99_us = 0;
+  double mean_us = 0, std_us = 0, min_us = 0, max_us = 0, median_us = 0, p99_us = 0, p999_us = 0;
   double mean_attempts = 0, mean_iterations = 0;
   /// Mean time of one KDL forward kinematics plus one KDL Jacobian on the same robot [us].
   double kdl_fk_jac_us = 0;

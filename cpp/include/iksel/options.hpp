@@ -21,6 +21,12 @@ enum class Sampling {
 /// Size of a grid, and of other samplings whose `samples` is 0 (paper, Table "KDTree sizes").
 enum class Scale { small, medium, large };
 
+/// What of a pose the database's key holds.
+enum class KeyScheme {
+  full,     ///< all of it: position and rotation (the paper)
+  reduced,  ///< what the first and last joint cannot change, so that they need no samples
+};
+
 /// How the KD-tree's key writes the rotation of a pose (paper, footnote 1).
 enum class RotationKey {
   rotation_vector,  ///< 3 numbers [rad]
@@ -35,10 +41,14 @@ struct IKSEL_EXPORT DatabaseOptions {
   /// Counts of a grid; for the other samplings only if `samples` is 0.
   Scale scale = Scale::medium;
   /// Number of samples unless `sampling` is grid; 0 takes the grid's count at `scale`.
-  std::size_t samples = 10'000;
+  std::size_t samples = 2'000;
+  /// A chain with mimic joints has a full key whatever is asked for.
+  KeyScheme key_scheme = KeyScheme::reduced;
+  /// Only for the full key.
   RotationKey rotation_key = RotationKey::rotation_vector;
-  /// Length that one unit of the rotation key counts as in the tree's distance [m].
-  double rotation_weight = 1.0;
+  /// Length that one unit of the key's rotation part counts as in the tree's distance [m]; 0: a
+  /// quarter of the reach.
+  double rotation_weight = 0.0;
   /// Singular values below this part of the largest are cut off in the pseudo-inverses.
   double pinv_cutoff = 1e-4;
   /// Updates of MacQueen's method (cvt only).
@@ -73,7 +83,8 @@ enum class Iteration {
   pinv_rr,  ///< as pinv; restarts at random on a limit violation or local minimum
   cwln,     ///< clamping weighted least-norm (Huang et al. 2016)
   cwpi,     ///< as cwln with the truncated pseudo-inverse
-  lm,       ///< Levenberg-Marquardt with the limits inside the step
+  lm,       ///< Levenberg-Marquardt with the limits inside the step; over a reduced database many
+            ///< seeds at once, one per SIMD lane, which ranks and re-selects by nearness only
 };
 
 /// Which seed follows a failed one.
@@ -100,7 +111,7 @@ struct IKSEL_EXPORT SolverOptions {
   /// Database that a solver builds for itself when it is given none.
   DatabaseOptions database;
 
-  /// Neighbours asked from the KD-tree (k).
+  /// Neighbours asked from the KD-tree (k); solving in lanes takes them in widening stages.
   int neighbours = 200;
   Ranking ranking = Ranking::joint_adjustment;
   RotationDifference rotation_difference = RotationDifference::geodesic;
@@ -111,7 +122,7 @@ struct IKSEL_EXPORT SolverOptions {
 
   Reselection reselection = Reselection::farthest;
   /// Seeds tried at most: 1 + the number of re-selections (#ReA). Given seeds come on top.
-  int max_attempts = 100;
+  int max_attempts = 1024;
 
   Iteration iteration = Iteration::lm;
   /// Steps per attempt at most.

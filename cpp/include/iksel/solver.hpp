@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "iksel/database.hpp"
@@ -14,6 +13,10 @@
 #include "iksel/robot.hpp"
 
 namespace iksel {
+
+/// The instruction set whose lanes solve on this machine: avx512, avx2, sse2, neon or scalar. The
+/// environment variable IKSEL_SIMD forces one. Throws InvalidArgumentError if it is not to be had.
+IKSEL_EXPORT const char* simd_level();
 
 /// Time spent in each stage of one or more solves [ns].
 struct StageTimes {

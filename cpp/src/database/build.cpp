@@ -4,6 +4,8 @@
 #include <limits>
 #include <memory>
 #include <new>
+#include <utility>
+#include <vector>
 
 #include "database/data.hpp"
 #include "database/file.hpp"
@@ -21,27 +23,86 @@ namespace {
 
 constexpr std::size_t kChunk = 512;
 
-/// x, q and J^+ of one sample.
-void fill_record(KdlChain& kdl, const double* sample, int dof, double cutoff, double* record) {
-  const JointVector q = Eigen::Map<const Eigen::VectorXd>(sample, dof);
-  const Pose pose = kdl.fk(q);
-  Eigen::Map<Eigen::Vector3d> position(record);
-  Eigen::Map<Eigen::Vector3d> rotation(record + 3);
-  position = pose.translation();
-  rotation = to_rotation_vector(pose.linear());
-  Eigen::Map<Eigen::VectorXd>(record + 6, dof) = q;
-  Eigen::Map<Eigen::MatrixXd>(record + 6 + dof, dof, 6) =
-      TruncatedSvd(kdl.jacobian(q), cutoff).inverse();
-}
+/// What the samples of one database are made with, by one thread.
+class SampleMaker {
+ public:
+  SampleMaker(const ChainModel& model, const DatabaseOptions& options, double weight,
+              const Reduction* reduction)
+      : options_(options),
+        reduction_(reduction),
+        model_(model),
+        weight_(weight),
+        base_inverse_(to_pose(model.kernel.base).inverse()),
+        // Reduced samples are taken at the last joint's frame instead of the tip link.
+        kdl_(model.make_kdl(reduction != nullptr ? to_pose(model.kernel.flange).inverse()
+                                                 : Pose::Identity())) {}
+
+  /// All joint values of a sample that has those of the sample space.
+  [[nodiscard]] JointVector complete(const double* sample) const {
+    JointVector q(model_.dof);
+    for (int j = 0; j < model_.dof; ++j) {
+      const bool left_out = reduction_ != nullptr && reduction_->leaves_out(j);
+      q[j] = left_out ? -model_.kernel.joints[static_cast<std::size_t>(j)].offset : *sample++;
+    }
+    return q;
+  }
+
+  void make_key(const double* sample, double* key) {
+    const Pose pose = pose_of(complete(sample));
+    if (reduction_ != nullptr) {
+      reduction_->make_key(pose, key);
+    } else {
+      iksel::make_key(options_, weight_, pose, key);
+    }
+  }
+
+  /// x, q and J^+.
+  void make_record(const double* sample, double* record) {
+    const JointVector q = complete(sample);
+    const Pose pose = pose_of(q);
+    Eigen::Map<Eigen::Vector3d> position(record);
+    Eigen::Map<Eigen::Vector3d> rotation(record + 3);
+    position = pose.translation();
+    rotation = to_rotation_vector(pose.linear());
+    Eigen::Map<Eigen::VectorXd>(record + 6, model_.dof) = q;
+    JacobianMatrix J = kdl_->jacobian(q);
+    if (reduction_ != nullptr) {
+      J.topRows<3>() = base_inverse_.linear() * J.topRows<3>().eval();
+      J.bottomRows<3>() = base_inverse_.linear() * J.bottomRows<3>().eval();
+    }
+    Eigen::Map<Eigen::MatrixXd>(record + 6 + model_.dof, model_.dof, 6) =
+        TruncatedSvd(J, options_.pinv_cutoff).inverse();
+  }
+
+ private:
+  Pose pose_of(const JointVector& q) {
+    const Pose pose = kdl_->fk(q);
+    return reduction_ != nullptr ? base_inverse_ * pose : pose;
+  }
+
+  const DatabaseOptions& options_;
+  const Reduction* reduction_;
+  const ChainModel& model_;
+  double weight_;
+  Pose base_inverse_;
+  std::unique_ptr<KdlChain> kdl_;
+};
 
 std::shared_ptr<DatabaseData> build_data(const ChainModel& model, const DatabaseOptions& options,
                                          const Progress& progress) {
   const auto data = std::make_shared<DatabaseData>();
   data->options = options;
+  if (!is_simple(model)) data->options.key_scheme = KeyScheme::full;
   data->dof = model.dof;
-  data->key_dim = iksel::key_dimension(options.rotation_key);
   data->chain_hash = model.hash;
-  data->size = sample_count(model, options);
+  data->weight = rotation_weight(options, model.reach);
+  data->key_dim = iksel::key_dimension(options.rotation_key);
+  if (data->options.key_scheme == KeyScheme::reduced) {
+    data->reduction = std::make_shared<Reduction>(Reduction::of(model, data->weight));
+    data->key_dim = data->reduction->key_dimension();
+  }
+  const SampleSpace space = sample_space(model, data->reduction.get());
+  data->size = sample_count(space, options);
   if (data->size > std::numeric_limits<std::uint32_t>::max()) {
     throw DatabaseError("a database of " + std::to_string(data->size) +
                         " samples is too large; at most 4294967295 are possible");
@@ -53,26 +114,25 @@ std::shared_ptr<DatabaseData> build_data(const ChainModel& model, const Database
   };
   report(0);
 
-  const std::vector<double> samples = make_samples(model, options, report);
-  const auto dof = static_cast<std::size_t>(model.dof);
+  const std::vector<double> samples = make_samples(space, options, report);
+  const std::size_t width = space.dof();
   const auto key_dim = static_cast<std::size_t>(data->key_dim);
   const std::size_t length = DatabaseData::record_length(model.dof);
   const int threads = resolve_threads(options.threads);
+  const auto make_worker = [&] {
+    return std::make_shared<SampleMaker>(model, data->options, data->weight, data->reduction.get());
+  };
 
   // Keys first: the tree made of them tells the order in which everything is then stored.
   std::vector<double> keys(data->size * key_dim);
-  parallel_for(
-      data->size, kChunk, threads,
-      [&] {
-        return [&, kdl = std::shared_ptr<KdlChain>(model.make_kdl(false))](std::size_t begin,
-                                                                           std::size_t end) {
-          for (std::size_t i = begin; i < end; ++i) {
-            const JointVector q = Eigen::Map<const Eigen::VectorXd>(&samples[i * dof], model.dof);
-            make_key(options, kdl->fk(q), &keys[i * key_dim]);
-          }
-        };
-      },
-      [&](std::size_t) { report(updates); });
+  const auto make_key_worker = [&] {
+    return [&, maker = make_worker()](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        maker->make_key(&samples[i * width], &keys[i * key_dim]);
+      }
+    };
+  };
+  parallel_for(data->size, kChunk, threads, make_key_worker, [&](std::size_t) { report(updates); });
   const std::vector<std::uint32_t> order = KdTree(keys.data(), data->size, data->key_dim).order();
 
   const auto block = std::make_shared<HeapBlock>(data->size * (key_dim + length) * sizeof(double));
@@ -84,21 +144,16 @@ std::shared_ptr<DatabaseData> build_data(const ChainModel& model, const Database
   parallel_for(
       data->size, kChunk, threads,
       [&] {
-        return [&, kdl = std::shared_ptr<KdlChain>(model.make_kdl(false))](std::size_t begin,
-                                                                           std::size_t end) {
+        return [&, maker = make_worker()](std::size_t begin, std::size_t end) {
           for (std::size_t i = begin; i < end; ++i) {
-            fill_record(*kdl, &samples[order[i] * dof], model.dof, options.pinv_cutoff,
-                        records + i * length);
+            maker->make_record(&samples[order[i] * width], records + i * length);
           }
         };
       },
       [&](std::size_t done) { report(updates + done); });
 
   write_header(*data, block->writable(), block->size());
-  data->keys = payload;
-  data->records = records;
-  data->tree = KdTree(data->keys, data->size, data->key_dim);
-  data->block = block;
+  data->use(block);
   report(total);
   return data;
 }
@@ -108,12 +163,13 @@ std::shared_ptr<DatabaseData> build_data(const ChainModel& model, const Database
 Database Database::build(const Robot& robot, const DatabaseOptions& options,
                          const Progress& progress) {
   options.validate();
+  std::shared_ptr<const DatabaseData> data;
   try {
-    return Database(build_data(robot.model(), options, progress));
+    data = build_data(robot.model(), options, progress);
   } catch (const std::bad_alloc&) {
-    throw DatabaseError("no memory for a database of " +
-                        std::to_string(sample_count(robot.model(), options)) + " samples");
+    throw DatabaseError("no memory for the samples of the database; ask for fewer");
   }
+  return Database(std::move(data));
 }
 
 }  // namespace iksel

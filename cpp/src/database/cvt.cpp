@@ -39,21 +39,20 @@ using Tree = nanoflann::KDTreeSingleIndexAdaptor<
 
 }  // namespace
 
-void refine_by_cvt(const ChainModel& model, const DatabaseOptions& options,
+void refine_by_cvt(const SampleSpace& space, const DatabaseOptions& options,
                    std::vector<double>& samples,
                    const std::function<void(std::size_t)>& on_progress) {
-  const auto dof = static_cast<std::size_t>(model.dof);
+  const std::size_t dof = space.dof();
   const std::size_t count = samples.size() / dof;
 
   // Distances are taken in radians; slides are scaled so that the arm's reach counts as a radian.
   std::vector<double> lower(dof);
   std::vector<double> range(dof);
-  std::vector<double> scale(dof, 1.0);
+  std::vector<double> scale(dof);
   for (std::size_t j = 0; j < dof; ++j) {
-    const int joint = static_cast<int>(j);
-    if (model.joint_types[j] == JointType::prismatic) scale[j] = 1.0 / std::max(model.reach, 1e-9);
-    lower[j] = model.sample_lower(joint) * scale[j];
-    range[j] = (model.sample_upper(joint) - model.sample_lower(joint)) * scale[j];
+    scale[j] = 1.0 / space.unit[j];
+    lower[j] = space.lower[j] * scale[j];
+    range[j] = (space.upper[j] - space.lower[j]) * scale[j];
   }
   for (std::size_t i = 0; i < samples.size(); ++i) samples[i] *= scale[i % dof];
 

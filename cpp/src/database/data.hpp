@@ -7,6 +7,8 @@
 #include <memory>
 
 #include "database/kd_tree.hpp"
+#include "database/leaf_tree.hpp"
+#include "database/reduction.hpp"
 #include "iksel/options.hpp"
 
 namespace iksel {
@@ -28,6 +30,8 @@ struct DatabaseData {
   int key_dim = 0;
   std::size_t size = 0;
   std::uint64_t chain_hash = 0;
+  /// Length that a unit of the key's rotation part counts [m].
+  double weight = 0;
   /// Header, keys and records, as in a file.
   std::shared_ptr<const Block> block;
   /// size x key_dim, in the order of the tree, so that neighbours lie close together.
@@ -36,6 +40,15 @@ struct DatabaseData {
   /// column by column (dof x 6).
   const double* records = nullptr;
   KdTree tree;
+  /// Not null: the key is reduced, and x_i and J_i^+ are those of the pose Y of reduction.hpp.
+  std::shared_ptr<const Reduction> reduction;
+  /// Only over a reduced key.
+  LeafTree leaves;
+
+  /// Key of a pose of the tip link.
+  void make_key(const Pose& T_base_tip, double* key) const;
+  /// Takes keys and records from a block, and makes the trees over them.
+  void use(std::shared_ptr<const Block> with);
 
   [[nodiscard]] static std::size_t record_length(int dof) {
     return 6 + 7 * static_cast<std::size_t>(dof);

@@ -23,6 +23,14 @@ void check_index(std::size_t i, std::size_t size) {
 
 }  // namespace
 
+void DatabaseData::make_key(const Pose& T_base_tip, double* key) const {
+  if (reduction) {
+    reduction->make_key(reduction->reduce(T_base_tip), key);
+  } else {
+    iksel::make_key(options, weight, T_base_tip, key);
+  }
+}
+
 Database::Database(std::shared_ptr<const DatabaseData> data) : data_(std::move(data)) {}
 
 Database Database::load(const std::filesystem::path& path) {
@@ -62,6 +70,10 @@ Pose Database::pose(std::size_t i) const {
   Pose pose = Pose::Identity();
   pose.translation() = Eigen::Map<const Eigen::Vector3d>(x);
   pose.linear() = from_rotation_vector(Eigen::Map<const Eigen::Vector3d>(x + 3));
+  if (data_->reduction) {
+    const Reduction::Parameters& p = data_->reduction->parameters();
+    return Pose(p.base_inverse).inverse() * pose * Pose(p.flange_inverse).inverse();
+  }
   return pose;
 }
 
@@ -73,7 +85,7 @@ Eigen::MatrixXd Database::pseudo_inverse(std::size_t i) const {
 std::vector<std::size_t> Database::nearest(const Pose& T_base_tip, std::size_t k) const {
   check_pose(T_base_tip);
   double key[kMaxKeyDimension];
-  make_key(options(), T_base_tip, key);
+  data_->make_key(T_base_tip, key);
   std::vector<Neighbour> neighbours(std::min(k, size()));
   std::vector<std::size_t> indices;
   if (neighbours.empty()) return indices;

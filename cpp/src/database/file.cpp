@@ -41,15 +41,21 @@ struct Header {
   std::uint32_t sampling;
   std::uint32_t scale;
   std::uint32_t rotation_key;
-  std::uint32_t unused;
+  std::uint32_t key_scheme;
   std::uint64_t option_samples;
   std::uint64_t cvt_updates;
   std::uint64_t seed;
   double rotation_weight;
   double pinv_cutoff;
+  // The reduction (zero for a full key) and the weight that its key really has.
+  std::uint32_t left;
+  std::uint32_t right;
+  double weight;
+  double base_inverse[12];
+  double flange_inverse[12];
   std::uint64_t payload_size;
   std::uint64_t payload_checksum;
-  unsigned char reserved[136];
+  unsigned char reserved[184];
   std::uint64_t header_checksum;
 };
 static_assert(sizeof(Header) == kHeaderSize);
@@ -60,6 +66,16 @@ std::uint64_t header_checksum(const Header& header) {
 
 [[noreturn]] void corrupt(const std::string& name, const std::string& what) {
   throw DatabaseCorruptError("database " + name + ": " + what);
+}
+
+void store_pose(const StoredPose& pose, double* to) {
+  for (int i = 0; i < 12; ++i) to[i] = pose(i % 3, i / 3);
+}
+
+StoredPose load_pose(const double* from) {
+  StoredPose pose = StoredPose::Identity();
+  for (int i = 0; i < 12; ++i) pose(i % 3, i / 3) = from[i];
+  return pose;
 }
 
 std::string system_error(int error) { return std::strerror(error); }
@@ -107,6 +123,14 @@ HeapBlock::HeapBlock(std::size_t payload) : bytes_(nullptr), size_(kHeaderSize +
 
 HeapBlock::~HeapBlock() { std::free(bytes_); }
 
+void DatabaseData::use(std::shared_ptr<const Block> with) {
+  block = std::move(with);
+  keys = reinterpret_cast<const double*>(block->data() + kHeaderSize);
+  records = keys + size * static_cast<std::size_t>(key_dim);
+  tree = KdTree(keys, size, key_dim);
+  if (reduction) leaves = LeafTree(*this);
+}
+
 void write_header(const DatabaseData& data, unsigned char* block, std::size_t size) {
   Header header{};
   std::memcpy(header.magic, kMagic, sizeof kMagic);
@@ -119,11 +143,20 @@ void write_header(const DatabaseData& data, unsigned char* block, std::size_t si
   header.sampling = static_cast<std::uint32_t>(data.options.sampling);
   header.scale = static_cast<std::uint32_t>(data.options.scale);
   header.rotation_key = static_cast<std::uint32_t>(data.options.rotation_key);
+  header.key_scheme = static_cast<std::uint32_t>(data.options.key_scheme);
   header.option_samples = data.options.samples;
   header.cvt_updates = data.options.cvt_updates;
   header.seed = data.options.seed;
   header.rotation_weight = data.options.rotation_weight;
   header.pinv_cutoff = data.options.pinv_cutoff;
+  header.weight = data.weight;
+  if (data.reduction) {
+    const Reduction::Parameters& p = data.reduction->parameters();
+    header.left = static_cast<std::uint32_t>(p.left);
+    header.right = static_cast<std::uint32_t>(p.right);
+    store_pose(p.base_inverse, header.base_inverse);
+    store_pose(p.flange_inverse, header.flange_inverse);
+  }
   header.payload_size = size - kHeaderSize;
   header.payload_checksum = checksum(block + kHeaderSize, size - kHeaderSize);
   header.header_checksum = header_checksum(header);
@@ -154,6 +187,7 @@ DatabaseData read_block(std::shared_ptr<const Block> block, const std::string& n
   data.options.sampling = static_cast<Sampling>(header.sampling);
   data.options.scale = static_cast<Scale>(header.scale);
   data.options.rotation_key = static_cast<RotationKey>(header.rotation_key);
+  data.options.key_scheme = static_cast<KeyScheme>(header.key_scheme);
   data.options.samples = header.option_samples;
   data.options.cvt_updates = header.cvt_updates;
   data.options.seed = header.seed;
@@ -164,11 +198,23 @@ DatabaseData read_block(std::shared_ptr<const Block> block, const std::string& n
   data.size = header.samples;
   data.chain_hash = header.chain_hash;
 
+  data.weight = header.weight;
+  if (data.options.key_scheme == KeyScheme::reduced) {
+    Reduction::Parameters p;
+    p.left = static_cast<lanes::Side>(header.left);
+    p.right = static_cast<lanes::Side>(header.right);
+    p.dof = data.dof;
+    p.weight = header.weight;
+    p.base_inverse = load_pose(header.base_inverse);
+    p.flange_inverse = load_pose(header.flange_inverse);
+    data.reduction = std::make_shared<Reduction>(p);
+  }
+
   // A header with a right checksum was written by this code, yet nothing is read by its sizes until
   // they are known to be consistent.
   const bool sizes_fit =
-      header.dof >= 1 && header.dof <= static_cast<std::uint32_t>(kMaxDof) &&
-      data.key_dim == key_dimension(data.options.rotation_key) && header.samples >= 1 &&
+      header.dof >= 1 && header.dof <= static_cast<std::uint32_t>(kMaxDof) && header.key_dim >= 1 &&
+      header.key_dim <= static_cast<std::uint32_t>(kMaxKeyDimension) && header.samples >= 1 &&
       header.samples <= header.payload_size / sizeof(double) &&
       header.payload_size == header.samples * sizeof(double) *
                                  (header.key_dim + DatabaseData::record_length(data.dof));
@@ -181,10 +227,7 @@ DatabaseData read_block(std::shared_ptr<const Block> block, const std::string& n
   if (checksum(payload, header.payload_size) != header.payload_checksum) {
     corrupt(name, "its content fails its checksum");
   }
-  data.keys = reinterpret_cast<const double*>(payload);
-  data.records = data.keys + data.size * static_cast<std::size_t>(data.key_dim);
-  data.tree = KdTree(data.keys, data.size, data.key_dim);
-  data.block = std::move(block);
+  data.use(std::move(block));
   return data;
 }
 

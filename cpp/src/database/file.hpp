@@ -10,7 +10,7 @@
 
 namespace iksel {
 
-inline constexpr std::size_t kHeaderSize = 256;
+inline constexpr std::size_t kHeaderSize = 512;
 
 /// Room for the header and `payload` bytes, on the heap, to be filled by the caller.
 class HeapBlock final : public Block {

@@ -93,10 +93,16 @@ class NanoflannIndex final : public KdTree::Index {
 std::shared_ptr<const KdTree::Index> make_index(const double* points, std::size_t count,
                                                 int dimension) {
   switch (dimension) {
+    case 5:
+      return std::make_shared<NanoflannIndex<5>>(points, count);
     case 6:
       return std::make_shared<NanoflannIndex<6>>(points, count);
     case 7:
       return std::make_shared<NanoflannIndex<7>>(points, count);
+    case 8:
+      return std::make_shared<NanoflannIndex<8>>(points, count);
+    case 9:
+      return std::make_shared<NanoflannIndex<9>>(points, count);
     case 12:
       return std::make_shared<NanoflannIndex<12>>(points, count);
     default:

@@ -23,22 +23,28 @@ inline int key_dimension(RotationKey key) {
   return 6;
 }
 
-inline void make_key(const DatabaseOptions& options, const Pose& pose, double* key) {
+/// The weight that the options mean.
+inline double rotation_weight(const DatabaseOptions& options, double reach) {
+  return options.rotation_weight > 0 ? options.rotation_weight : 0.25 * reach;
+}
+
+/// The full key.
+inline void make_key(const DatabaseOptions& options, double weight, const Pose& pose, double* key) {
   const Eigen::Matrix3d R = pose.linear();
-  const auto write = [&](double* at, const auto& values, double weight) {
-    for (Eigen::Index i = 0; i < values.size(); ++i) at[i] = weight * values.data()[i];
+  const auto write = [&](double* at, const auto& values, double scale) {
+    for (Eigen::Index i = 0; i < values.size(); ++i) at[i] = scale * values.data()[i];
   };
   const Eigen::Vector3d position = pose.translation();
   write(key, position, 1.0);
   switch (options.rotation_key) {
     case RotationKey::rotation_vector:
-      return write(key + 3, to_rotation_vector(R), options.rotation_weight);
+      return write(key + 3, to_rotation_vector(R), weight);
     case RotationKey::quaternion:
-      return write(key + 3, to_quaternion_wxyz(R), options.rotation_weight);
+      return write(key + 3, to_quaternion_wxyz(R), weight);
     case RotationKey::matrix:
-      return write(key + 3, R, options.rotation_weight);
+      return write(key + 3, R, weight);
     case RotationKey::euler:
-      return write(key + 3, to_roll_pitch_yaw(R), options.rotation_weight);
+      return write(key + 3, to_roll_pitch_yaw(R), weight);
   }
 }
 

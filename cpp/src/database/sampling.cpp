@@ -33,52 +33,48 @@ std::vector<int> paper_counts(int dof, Scale scale) {
   return counts;
 }
 
-void fill_grid(const ChainModel& model, const DatabaseOptions& options,
+void fill_grid(const SampleSpace& space, const DatabaseOptions& options,
                std::vector<double>& samples) {
-  const std::vector<int> counts = grid_counts(model.dof, options.scale);
-  const auto dof = static_cast<std::size_t>(model.dof);
+  const std::vector<int> counts = grid_counts(static_cast<int>(space.dof()), options.scale);
+  const std::size_t dof = space.dof();
   for (std::size_t i = 0; i < samples.size() / dof; ++i) {
     std::size_t rest = i;
     for (std::size_t j = dof; j-- > 0;) {
       const auto count = static_cast<std::size_t>(counts[j]);
       const auto step = static_cast<double>(rest % count + 1);
       rest /= count;
-      const double lower = model.sample_lower(static_cast<int>(j));
-      const double upper = model.sample_upper(static_cast<int>(j));
+      const double lower = space.lower[j];
+      const double upper = space.upper[j];
       // linspace(lower, upper, count + 2) without its ends
       samples[i * dof + j] = lower + (upper - lower) * (step / static_cast<double>(count + 1));
     }
   }
 }
 
-void fill_random(const ChainModel& model, std::uint64_t seed, std::vector<double>& samples) {
+void fill_random(const SampleSpace& space, std::uint64_t seed, std::vector<double>& samples) {
   Random random(seed);
-  const auto dof = static_cast<std::size_t>(model.dof);
+  const std::size_t dof = space.dof();
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    const int joint = static_cast<int>(i % dof);
-    samples[i] = random.uniform(model.sample_lower(joint), model.sample_upper(joint));
+    samples[i] = random.uniform(space.lower[i % dof], space.upper[i % dof]);
   }
 }
 
 /// R_d: the additive recurrence by the powers of 1 / phi, phi the real root of x^(d+1) = x + 1
 /// (M. Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018), shifted by the
 /// seed.
-void fill_low_discrepancy(const ChainModel& model, std::uint64_t seed,
+void fill_low_discrepancy(const SampleSpace& space, std::uint64_t seed,
                           std::vector<double>& samples) {
-  const int dof = model.dof;
+  const std::size_t dof = space.dof();
   double phi = 2.0;
-  for (int i = 0; i < 64; ++i) phi = std::pow(1.0 + phi, 1.0 / (dof + 1));
+  for (int i = 0; i < 64; ++i) phi = std::pow(1.0 + phi, 1.0 / static_cast<double>(dof + 1));
   Random random(seed);
-  for (int j = 0; j < dof; ++j) {
-    const double alpha = std::pow(1.0 / phi, j + 1);
+  for (std::size_t j = 0; j < dof; ++j) {
+    const double alpha = std::pow(1.0 / phi, static_cast<double>(j + 1));
     const double shift = random.uniform();
-    const double lower = model.sample_lower(j);
-    const double upper = model.sample_upper(j);
     double index = 0;
-    for (std::size_t i = static_cast<std::size_t>(j); i < samples.size();
-         i += static_cast<std::size_t>(dof)) {
+    for (std::size_t i = j; i < samples.size(); i += dof) {
       const double x = shift + alpha * ++index;
-      samples[i] = lower + (upper - lower) * (x - std::floor(x));
+      samples[i] = space.lower[j] + (space.upper[j] - space.lower[j]) * (x - std::floor(x));
     }
   }
 }
@@ -103,29 +99,42 @@ std::vector<int> grid_counts(int dof, Scale scale) {
   return counts;
 }
 
-std::size_t sample_count(const ChainModel& model, const DatabaseOptions& options) {
+SampleSpace sample_space(const ChainModel& model, const Reduction* reduction) {
+  SampleSpace space;
+  for (int j = 0; j < model.dof; ++j) {
+    if (reduction != nullptr && reduction->leaves_out(j)) continue;
+    space.lower.push_back(model.sample_lower(j));
+    space.upper.push_back(model.sample_upper(j));
+    const bool slides = model.joint_types[static_cast<std::size_t>(j)] == JointType::prismatic;
+    space.unit.push_back(slides ? std::max(model.reach, 1e-9) : 1.0);
+  }
+  return space;
+}
+
+std::size_t sample_count(const SampleSpace& space, const DatabaseOptions& options) {
   if (options.sampling == Sampling::grid || options.samples == 0) {
-    return static_cast<std::size_t>(product(grid_counts(model.dof, options.scale)));
+    return static_cast<std::size_t>(
+        product(grid_counts(static_cast<int>(space.dof()), options.scale)));
   }
   return options.samples;
 }
 
-std::vector<double> make_samples(const ChainModel& model, const DatabaseOptions& options,
+std::vector<double> make_samples(const SampleSpace& space, const DatabaseOptions& options,
                                  const std::function<void(std::size_t)>& on_progress) {
-  std::vector<double> samples(sample_count(model, options) * static_cast<std::size_t>(model.dof));
+  std::vector<double> samples(sample_count(space, options) * space.dof());
   switch (options.sampling) {
     case Sampling::grid:
-      fill_grid(model, options, samples);
+      fill_grid(space, options, samples);
       break;
     case Sampling::low_discrepancy:
-      fill_low_discrepancy(model, options.seed, samples);
+      fill_low_discrepancy(space, options.seed, samples);
       break;
     case Sampling::random:
-      fill_random(model, options.seed, samples);
+      fill_random(space, options.seed, samples);
       break;
     case Sampling::cvt:
-      fill_random(model, options.seed, samples);
-      refine_by_cvt(model, options, samples, on_progress);
+      fill_random(space, options.seed, samples);
+      refine_by_cvt(space, options, samples, on_progress);
       break;
   }
   return samples;

@@ -5,21 +5,34 @@
 #include <functional>
 #include <vector>
 
+#include "database/reduction.hpp"
 #include "iksel/options.hpp"
 #include "kinematics/chain_model.hpp"
 
 namespace iksel {
 
-/// Number of samples that the options ask for.
-std::size_t sample_count(const ChainModel& model, const DatabaseOptions& options);
+/// The joints that samples are spread over, and their ranges.
+struct SampleSpace {
+  std::vector<double> lower, upper;
+  /// Length in the joint's own unit that counts as 1 rad between samples.
+  std::vector<double> unit;
 
-/// Joint samples, dof values each, one after another. `on_progress` is called with the number of
-/// updates done (cvt only).
-std::vector<double> make_samples(const ChainModel& model, const DatabaseOptions& options,
+  [[nodiscard]] std::size_t dof() const { return lower.size(); }
+};
+
+/// All joints, or those that `reduction` does not leave out.
+SampleSpace sample_space(const ChainModel& model, const Reduction* reduction);
+
+/// Number of samples that the options ask for.
+std::size_t sample_count(const SampleSpace& space, const DatabaseOptions& options);
+
+/// Joint samples, space.dof() values each, one after another. `on_progress` is called with the
+/// number of updates done (cvt only).
+std::vector<double> make_samples(const SampleSpace& space, const DatabaseOptions& options,
                                  const std::function<void(std::size_t)>& on_progress);
 
 /// Centroidal Voronoi tessellation of the joint limits, starting from `samples`.
-void refine_by_cvt(const ChainModel& model, const DatabaseOptions& options,
+void refine_by_cvt(const SampleSpace& space, const DatabaseOptions& options,
                    std::vector<double>& samples,
                    const std::function<void(std::size_t)>& on_progress);
 

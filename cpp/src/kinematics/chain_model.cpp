@@ -95,8 +95,8 @@ std::shared_ptr<const ChainModel> ChainModel::with_tcp(const Pose& T_tip_tcp) co
   return copy;
 }
 
-std::unique_ptr<KdlChain> ChainModel::make_kdl(bool with_tool) const {
-  return std::make_unique<KdlChain>(spec.joints, dof, with_tool ? Pose(tcp) : Pose::Identity());
+std::unique_ptr<KdlChain> ChainModel::make_kdl(const Pose& T_tip_end) const {
+  return std::make_unique<KdlChain>(spec.joints, dof, T_tip_end);
 }
 
 void ChainModel::flatten() {

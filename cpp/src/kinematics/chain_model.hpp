@@ -21,7 +21,9 @@ class ChainModel {
   /// The same chain with another tool.
   [[nodiscard]] std::shared_ptr<const ChainModel> with_tcp(const Pose& T_tip_tcp) const;
 
-  [[nodiscard]] std::unique_ptr<KdlChain> make_kdl(bool with_tool = true) const;
+  /// KDL's chain to the TCP, or to another frame behind the tip link.
+  [[nodiscard]] std::unique_ptr<KdlChain> make_kdl() const { return make_kdl(Pose(tcp)); }
+  [[nodiscard]] std::unique_ptr<KdlChain> make_kdl(const Pose& T_tip_end) const;
 
   [[nodiscard]] Pose fk(const double* q) const;
   /// Pose and Jacobian of the TCP, or of the tip link if not `with_tool`.

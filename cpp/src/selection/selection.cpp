@@ -6,10 +6,15 @@
 #include <utility>
 
 #include "database/key.hpp"
+#include "lanes/kernels.hpp"
 #include "math/pseudo_inverse.hpp"
 #include "math/rotation.hpp"
 
 namespace iksel {
+
+using lanes::LaneReduction;
+using lanes::LaneTarget;
+
 namespace {
 
 constexpr double kTwoPi = 6.28318530717958647692;
@@ -21,27 +26,33 @@ Selection::Selection(const ChainModel& model, const DatabaseData& data,
     : model_(model),
       data_(data),
       options_(options),
+      chain_{},
       neighbours_(std::min<std::size_t>(static_cast<std::size_t>(options.neighbours), data.size)),
-      candidates_(neighbours_.size()) {}
+      candidates_(neighbours_.size()) {
+  if (data.reduction) {
+    chain_ = make_lane_chain(model);
+    seeds_.resize(neighbours_.size() * static_cast<std::size_t>(model.dof));
+  }
+}
 
 void Selection::query(const Pose& T_base_flange) {
-  target_ = T_base_flange;
+  target_ = data_.reduction ? data_.reduction->reduce(T_base_flange) : T_base_flange;
   Eigen::Map<Eigen::Vector3d> position(target_x_);
   Eigen::Map<Eigen::Vector3d> rotation(target_x_ + 3);
   position = target_.translation();
   rotation = to_rotation_vector(target_.linear());
   double key[kMaxKeyDimension];
-  make_key(data_.options, target_, key);
+  data_.make_key(T_base_flange, key);
   found_ = data_.tree.nearest(key, neighbours_.size(), neighbours_.data());
 }
 
 void Selection::rank() {
+  if (data_.reduction) prepare_seeds();
   for (std::size_t i = 0; i < found_; ++i) {
     Candidate& candidate = candidates_[i];
-    candidate = {neighbours_[i].distance, neighbours_[i].index, false};
-    if (options_.ranking == Ranking::joint_adjustment || options_.limit_aware) {
-      score(candidate, data_.record(candidate.index));
-    }
+    candidate = {neighbours_[i].distance, neighbours_[i].index, static_cast<std::uint32_t>(i),
+                 false};
+    if (options_.ranking == Ranking::joint_adjustment || options_.limit_aware) score(candidate);
   }
   kept_ = std::min(found_, static_cast<std::size_t>(options_.candidates));
   const auto begin = candidates_.begin();
@@ -50,13 +61,55 @@ void Selection::rank() {
   sum_of_failed_.setZero(model_.dof);
 }
 
-void Selection::score(Candidate& candidate, const double* x) const {
-  // Eq. (4): the joint adjustment that the sample's own pseudo-inverse predicts.
-  Vector6 e = Eigen::Map<const Vector6>(target_x_) - Eigen::Map<const Vector6>(x);
-  if (options_.rotation_difference == RotationDifference::geodesic) {
-    const Eigen::Matrix3d R = from_rotation_vector(Eigen::Map<const Eigen::Vector3d>(x + 3));
-    e.tail<3>() = to_rotation_vector(target_.linear() * R.transpose());
+void Selection::prepare_seeds() {
+  const LaneTarget target = make_lane_target(target_);
+  const LaneReduction reduction = data_.reduction->for_lanes();
+  const auto dof = static_cast<std::size_t>(model_.dof);
+  double group[lanes::group_rows(kMaxDof) * lanes::kGroup];
+  double seeds[kMaxDof * lanes::kGroup];
+  std::size_t kept = 0;
+  for (std::size_t first = 0; first < found_; first += lanes::kGroup) {
+    const std::size_t count = std::min<std::size_t>(lanes::kGroup, found_ - first);
+    for (std::size_t s = 0; s < lanes::kGroup; ++s) {
+      write_to_group(data_, neighbours_[first + std::min(s, count - 1)].index, static_cast<int>(s),
+                     group);
+    }
+    const unsigned valid = lanes::kernels_scalar.prepare(chain_, target, reduction, group, seeds);
+    for (std::size_t s = 0; s < count; ++s) {
+      if ((valid >> s & 1U) == 0) continue;
+      neighbours_[kept] = neighbours_[first + s];
+      for (std::size_t j = 0; j < dof; ++j) seeds_[kept * dof + j] = seeds[j * lanes::kGroup + s];
+      ++kept;
+    }
   }
+  found_ = kept;
+}
+
+const double* Selection::seed_of(const Candidate& candidate) const {
+  return data_.reduction ? &seeds_[candidate.place * static_cast<std::size_t>(model_.dof)]
+                         : data_.q(candidate.index);
+}
+
+Vector6 Selection::error_of(const Candidate& candidate) const {
+  const double* x = data_.x(candidate.index);
+  Vector6 e = Eigen::Map<const Vector6>(target_x_) - Eigen::Map<const Vector6>(x);
+  const bool geodesic = options_.rotation_difference == RotationDifference::geodesic;
+  if (!geodesic && !data_.reduction) return e;
+  // A reduced sample has its first and last joint at zero: the target is brought there too.
+  const Pose target =
+      data_.reduction ? data_.reduction->without_outer_joints(target_, chain_, seed_of(candidate))
+                      : target_;
+  const Eigen::Matrix3d R = from_rotation_vector(Eigen::Map<const Eigen::Vector3d>(x + 3));
+  e.head<3>() = target.translation() - Eigen::Map<const Eigen::Vector3d>(x);
+  e.tail<3>() = geodesic ? to_rotation_vector(target.linear() * R.transpose())
+                         : Eigen::Vector3d(to_rotation_vector(target.linear()) -
+                                           Eigen::Map<const Eigen::Vector3d>(x + 3));
+  return e;
+}
+
+void Selection::score(Candidate& candidate) const {
+  // Eq. (4): the joint adjustment that the sample's own pseudo-inverse predicts.
+  const Vector6 e = error_of(candidate);
   const double* pseudo_inverse = data_.pseudo_inverse(candidate.index);
   double adjustment[kMaxDof];
   const int dof = model_.dof;
@@ -71,7 +124,7 @@ void Selection::score(Candidate& candidate, const double* x) const {
     candidate.score = sum;
   }
   if (options_.limit_aware) {
-    const double* q = data_.q(candidate.index);
+    const double* q = seed_of(candidate);
     for (int i = 0; i < dof; ++i) {
       const double predicted = q[i] + adjustment[i];
       // A whole turn or more of range can always be wrapped.
@@ -93,19 +146,18 @@ const double* Selection::next_seed(int attempt) {
   if (attempt > 0 && options_.reselection == Reselection::farthest) {
     bring_farthest_forward(attempt);
   }
-  return data_.q(candidates_[position].index);
+  return seed_of(candidates_[position]);
 }
 
 void Selection::bring_farthest_forward(int attempt) {
   // Of the candidates not tried yet, the one with the largest |m q - sum of the m failed q|.
   const auto dof = model_.dof;
   const auto position = static_cast<std::size_t>(attempt);
-  sum_of_failed_ +=
-      Eigen::Map<const Eigen::VectorXd>(data_.q(candidates_[position - 1].index), dof);
+  sum_of_failed_ += Eigen::Map<const Eigen::VectorXd>(seed_of(candidates_[position - 1]), dof);
   std::size_t best = position;
   double best_distance = -1;
   for (std::size_t i = position; i < kept_; ++i) {
-    const double* q = data_.q(candidates_[i].index);
+    const double* q = seed_of(candidates_[i]);
     double distance = 0;
     for (int j = 0; j < dof; ++j) {
       const double d = attempt * q[j] - sum_of_failed_[j];

@@ -15,6 +15,7 @@ namespace iksel {
 struct Candidate {
   double score;         ///< squared norm of Eq. (2) or Eq. (5)
   std::uint32_t index;  ///< of the sample
+  std::uint32_t place;  ///< among the neighbours
   bool leaves_limits;   ///< q + J^+ e is outside (only asked if limit_aware)
 
   friend bool operator<(const Candidate& a, const Candidate& b) {
@@ -36,14 +37,25 @@ class Selection {
   const double* next_seed(int attempt);
 
  private:
-  void score(Candidate& candidate, const double* x) const;
+  void score(Candidate& candidate) const;
+  /// Error from sample to target, in the frame that the sample's pseudo-inverse is made for.
+  [[nodiscard]] Eigen::Matrix<double, 6, 1> error_of(const Candidate& candidate) const;
+  /// Joint values to start from: the sample's, with the joints that a reduced key leaves out set
+  /// for this target.
+  [[nodiscard]] const double* seed_of(const Candidate& candidate) const;
+  /// Makes the seeds of all neighbours of a reduced key; drops those outside the limits.
+  void prepare_seeds();
   void bring_farthest_forward(int attempt);
 
   const ChainModel& model_;
   const DatabaseData& data_;
   const SolverOptions& options_;
+  /// Pose of the tip link, or Y of reduction.hpp.
   Pose target_;
   double target_x_[6];
+  // Only for a reduced key.
+  lanes::LaneChain chain_;
+  std::vector<double> seeds_;
   std::vector<Neighbour> neighbours_;
   std::vector<Candidate> candidates_;
   std::size_t found_ = 0;

@@ -105,6 +105,7 @@ Evaluation evaluate(const Solver& solver, std::size_t targets, std::uint64_t see
   out.max_us = times.back();
   out.median_us = quantile(times, 0.5);
   out.p99_us = quantile(times, 0.99);
+  out.p999_us = quantile(times, 0.999);
   out.mean_attempts = attempts / n;
   out.mean_iterations = iterations / n;
   out.ratio = out.mean_us / out.kdl_fk_jac_us;

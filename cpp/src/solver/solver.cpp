@@ -55,7 +55,10 @@ void check_fits(const Robot& robot, const Database& database) {
 Workspace::Workspace(const ChainModel& model, const DatabaseData& data,
                      const SolverOptions& options)
     : selection(model, data, options) {
-  if (options.kinematics == Kinematics::kdl) kdl = model.make_kdl(false);
+  if (solves_in_lanes(model, data, options)) {
+    lanes = std::make_unique<LaneSearch>(model, data, options, lanes::choose_kernels());
+  }
+  if (options.kinematics == Kinematics::kdl) kdl = model.make_kdl(Pose::Identity());
 }
 
 Solver::Impl::Impl(const Robot& robot_in, const SolverOptions& options_in,
@@ -106,8 +109,17 @@ Result Solver::Impl::solve(const Pose& T_base_tip, const JointVector* seed, Work
     return result;
   }
 
-  Random random(options.seed);
   const Pose tip_target = T_base_tip * Pose(model.tcp_inverse);
+  if (workspace.lanes) {
+    workspace.lanes->run(tip_target, seed, result.attempts, result.iterations, [&](JointVector& q) {
+      model.wrap_into_limits(q.data());
+      result = finish(result, T_base_tip, q);
+      return result.success();
+    });
+    return result;
+  }
+
+  Random random(options.seed);
   const IterationContext context{model, options, T_base_tip, tip_target, workspace.kdl.get(),
                                  random};
   JointVector q;

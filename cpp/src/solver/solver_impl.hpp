@@ -9,6 +9,7 @@
 #include "iksel/solver.hpp"
 #include "iteration/iterate.hpp"
 #include "selection/selection.hpp"
+#include "solver/lane_search.hpp"
 
 namespace iksel {
 
@@ -19,6 +20,8 @@ struct Workspace {
   Selection selection;
   /// Only if the options iterate by KDL, whose objects are not safe to share.
   std::unique_ptr<KdlChain> kdl;
+  /// Only if the options solve in lanes.
+  std::unique_ptr<LaneSearch> lanes;
 };
 
 struct Solver::Impl {

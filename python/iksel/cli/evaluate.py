@@ -90,7 +90,7 @@ def run(arguments: argparse.Namespace) -> int:
         "position_tolerance": options.position_tolerance,
         "rotation_tolerance": options.rotation_tolerance,
         "threads": 1,
-        "simd": getattr(iksel_cpp, "simd_level", "scalar"),
+        "simd": iksel_cpp.simd_level(),
         "database_samples": len(database),
         "build_s": build_s,
     }

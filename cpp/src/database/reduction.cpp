@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "database/reduction.hpp"
+
+#include <cmath>
+
+namespace iksel {
+namespace {
+
+using lanes::Side;
+
+constexpr double kPi = 3.14159265358979323846;
+
+Side side_of(const KernelJoint& joint) {
+  return joint.prismatic ? Side::translation : Side::rotation;
+}
+
+}  // namespace
+
+bool is_simple(const ChainModel& model) {
+  if (model.kernel.joints.size() != static_cast<std::size_t>(model.dof)) return false;
+  for (int j = 0; j < model.dof; ++j) {
+    const KernelJoint& joint = model.kernel.joints[static_cast<std::size_t>(j)];
+    if (joint.variable != j || joint.multiplier != 1.0) return false;
+  }
+  return true;
+}
+
+lanes::LaneChain make_lane_chain(const ChainModel& model) {
+  lanes::LaneChain chain{};
+  chain.n = model.dof;
+  const Frame<double>& tip = model.kernel.tip;
+  chain.lever = std::sqrt(tip.p[0] * tip.p[0] + tip.p[1] * tip.p[1] + tip.p[2] * tip.p[2]);
+  for (int j = 0; j < model.dof; ++j) {
+    const KernelJoint& from = model.kernel.joints[static_cast<std::size_t>(j)];
+    lanes::LaneJoint& to = chain.joint[j];
+    for (int i = 0; i < 3; ++i) to.p[i] = from.p[i];
+    to.cos_alpha = from.cos_alpha;
+    to.sin_alpha = from.sin_alpha;
+    to.cos_turn = from.cos_turn;
+    to.sin_turn = from.sin_turn;
+    to.offset = from.offset;
+    to.prismatic = from.prismatic;
+    const bool continuous = model.joint_types[static_cast<std::size_t>(j)] == JointType::continuous;
+    // A principal angle just off its interval is still the same angle.
+    to.lower = continuous ? -kPi - 1e-9 : model.lower[j];
+    to.upper = continuous ? kPi + 1e-9 : model.upper[j];
+    to.limited = from.prismatic || (!continuous && to.upper - to.lower < 2 * kPi);
+  }
+  return chain;
+}
+
+lanes::LaneTarget make_lane_target(const Pose& Y) {
+  lanes::LaneTarget target{};
+  for (int i = 0; i < 3; ++i) {
+    target.x[i] = Y(i, 0);
+    target.y[i] = Y(i, 1);
+    target.z[i] = Y(i, 2);
+    target.p[i] = Y(i, 3);
+  }
+  return target;
+}
+
+Reduction Reduction::of(const ChainModel& model, double weight) {
+  Parameters p;
+  p.dof = model.dof;
+  p.weight = weight;
+  p.base_inverse = to_pose(model.kernel.base).inverse();
+  p.flange_inverse = to_pose(model.kernel.flange).inverse();
+  // At least one joint must be left to sample.
+  if (is_simple(model) && model.dof >= 3) {
+    p.left = side_of(model.kernel.joints.front());
+    p.right = side_of(model.kernel.joints.back());
+    // Two slides mix: the foot moves along neither coordinate then.
+    if (p.left == Side::translation && p.right == Side::translation) p.right = Side::none;
+  }
+  return Reduction(p);
+}
+
+int Reduction::key_dimension() const {
+  return (p_.left == Side::none ? 3 : 2) + (p_.right == Side::rotation ? 3 : 6);
+}
+
+bool Reduction::leaves_out(int joint) const {
+  return (joint == 0 && p_.left != Side::none) || (joint == p_.dof - 1 && p_.right != Side::none);
+}
+
+Pose Reduction::reduce(const Pose& T_base_tip) const {
+  return Pose(p_.base_inverse) * T_base_tip * Pose(p_.flange_inverse);
+}
+
+Pose Reduction::without_outer_joints(const Pose& Y, const lanes::LaneChain& chain,
+                                     const double* q) const {
+  const auto undo = [](Side side, double motion) -> Pose {
+    Pose T = Pose::Identity();
+    if (side == Side::rotation) T.rotate(Eigen::AngleAxisd(-motion, Eigen::Vector3d::UnitZ()));
+    if (side == Side::translation) T.translation().z() = -motion;
+    return T;
+  };
+  const int last = p_.dof - 1;
+  return undo(p_.left, q[0] + chain.joint[0].offset) * Y *
+         undo(p_.right, q[last] + chain.joint[last].offset);
+}
+
+void Reduction::make_key(const Pose& Y, double* key) const {
+  const Eigen::Matrix3d R = Y.linear();
+  const Eigen::Vector3d axis = R.col(2);
+  Eigen::Vector3d point = Y.translation();
+  if (p_.right == Side::translation) point -= point.dot(axis) * axis;
+  double c = 1;
+  double s = 0;
+  const double rho = std::hypot(point[0], point[1]);
+  if (p_.left == Side::rotation && rho > 1e-12) {
+    c = point[0] / rho;
+    s = point[1] / rho;
+  }
+  int k = 0;
+  const auto push_axis = [&](const Eigen::Vector3d& v) {
+    key[k++] = p_.weight * (c * v[0] + s * v[1]);
+    key[k++] = p_.weight * (c * v[1] - s * v[0]);
+    key[k++] = p_.weight * v[2];
+  };
+  if (p_.left == Side::rotation) {
+    key[k++] = rho;
+    key[k++] = point[2];
+  } else {
+    key[k++] = point[0];
+    key[k++] = point[1];
+    if (p_.left == Side::none) key[k++] = point[2];
+  }
+  push_axis(axis);
+  if (p_.right != Side::rotation) push_axis(R.col(0));
+}
+
+}  // namespace iksel

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "error_check.hpp"
+#include "iksel/error.hpp"
+#include "iksel/solver.hpp"
+#include "lanes/kernels.hpp"
+
+namespace iksel {
+namespace lanes {
+namespace {
+
+/// Widest first.
+std::vector<const LaneKernels*> available() {
+  std::vector<const LaneKernels*> kernels;
+#if defined(IKSEL_X86)
+  __builtin_cpu_init();
+  if (__builtin_cpu_supports("avx512f")) kernels.push_back(&kernels_avx512);
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
+    kernels.push_back(&kernels_avx2);
+  }
+  kernels.push_back(&kernels_sse2);
+#elif defined(IKSEL_NEON)
+  kernels.push_back(&kernels_neon);
+#endif
+  kernels.push_back(&kernels_scalar);
+  return kernels;
+}
+
+}  // namespace
+
+const LaneKernels& choose_kernels() {
+  const auto kernels = available();
+  const char* asked = std::getenv("IKSEL_SIMD");
+  if (asked == nullptr || *asked == '\0') return *kernels.front();
+  std::vector<std::string> names;
+  for (const LaneKernels* k : kernels) {
+    if (std::string(asked) == k->name) return *k;
+    names.emplace_back(k->name);
+  }
+  throw InvalidArgumentError("IKSEL_SIMD: '" + std::string(asked) +
+                             "' is not to be had on this machine; it has: " + list_names(names));
+}
+
+}  // namespace lanes
+
+const char* simd_level() { return lanes::choose_kernels().name; }
+
+}  // namespace iksel

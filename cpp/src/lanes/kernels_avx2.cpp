@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Compiled for this instruction set alone: see lane_math.hpp for what must stay out of here.
+#include "lanes/kernels.hpp"
+#include "lanes/lane_kernel.hpp"
+
+namespace iksel {
+namespace lanes {
+
+const LaneKernels kernels_avx2 =
+    make_kernels<xsimd::batch<double, xsimd::fma3<xsimd::avx2>>>("avx2");
+
+}  // namespace lanes
+}  // namespace iksel

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Compiled for this instruction set alone: see lane_math.hpp for what must stay out of here.
+#include "lanes/kernels.hpp"
+#include "lanes/lane_kernel.hpp"
+
+namespace iksel {
+namespace lanes {
+
+const LaneKernels kernels_avx512 = make_kernels<xsimd::batch<double, xsimd::avx512f>>("avx512");
+
+}  // namespace lanes
+}  // namespace iksel

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Compiled for this instruction set alone: see lane_math.hpp for what must stay out of here.
+#include "lanes/kernels.hpp"
+#include "lanes/lane_kernel.hpp"
+
+namespace iksel {
+namespace lanes {
+
+const LaneKernels kernels_sse2 = make_kernels<xsimd::batch<double, xsimd::sse2>>("sse2");
+
+}  // namespace lanes
+}  // namespace iksel

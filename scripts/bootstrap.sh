@@ -39,13 +39,14 @@ find_missing() {
   missing=()
   want_command g++ g++
   want_command cmake cmake
-  command -v ninja >/dev/null || want_command make ninja-build
+  want_command make make
   want_command pkg-config pkg-config
   want_library eigen3 libeigen3-dev
   want_library libxxhash libxxhash-dev
   want_library nanoflann libnanoflann-dev
   want_library orocos-kdl liborocos-kdl-dev
   want_library urdfdom liburdfdom-dev
+  want_library xsimd libxsimd-dev
   if ! $apt_only; then find_missing_python; fi
   if $dev; then
     want_library benchmark libbenchmark-dev

@@ -2,7 +2,8 @@
 """Fills the marked blocks of README.md: examples, the robots, measured results.
 
 A block stands between `<!-- NAME -->` and `<!-- end NAME -->`. Nothing between the two
-marks is written by hand. With --check, nothing is changed and a stale block is an error.
+marks is written by hand. With --check, nothing is changed and a stale block is an
+error.
 """
 
 import argparse
@@ -27,7 +28,10 @@ def code(path: str, language: str) -> str:
 def robots() -> str:
     """One row per robot of the manifest."""
     manifest = tomllib.loads((ROOT / "cpp/robots/robots.toml").read_text("utf-8"))
-    rows = ["| name | maker | joints | numbers from | licence |", "|---|---|---|---|---|"]
+    rows = [
+        "| name | maker | joints | numbers from | licence |",
+        "|---|---|---|---|---|",
+    ]
     for name, robot in manifest["robots"].items():
         source = robot["source"].split(" @ ")[0].split(":")[0]
         rows.append(
@@ -48,8 +52,8 @@ def conditions(report: dict[str, Any]) -> str:
     """The line that says how the figures came about."""
     row = report["rows"][0]
     return (
-        f"{row['targets']:,} targets per robot, seed {row['seed']}, uniform in the joint "
-        f"limits; tolerance {row['position_tolerance']:g} m and "
+        f"{row['targets']:,} targets per robot, seed {row['seed']}, uniform in the "
+        f"joint limits; tolerance {row['position_tolerance']:g} m and "
         f"{row['rotation_tolerance']:g} rad; failures included in the times; "
         f"{row['threads']} thread, SIMD level {row['simd']}, {report['cpu']} "
         f"({report['cores']} cores). Made by `{report['command']}`."

@@ -10,9 +10,10 @@ import iksel_cpp
 PICKLING = re.compile(
     r"    def __(?:get|set)state__\(.*\) -> .*:\n        \.\.\.\n",
 )
-# The signature that typeshed gives to a __new__ of enum.Enum does not fit.
-ENUM_NEW = re.compile(
-    r"    @classmethod\n    def __new__\(cls, value\):\n        \.\.\.\n",
+# What every enum has from enum.Enum, listed anew without types.
+ENUM_METHODS = re.compile(
+    r"    @classmethod\n    def __new__\(cls, value\):\n        \.\.\.\n"
+    r"|    def __format__\(self, format_spec\):\n        \.\.\.\n",
 )
 ENUM_MEMBER = re.compile(r"    (\w+): typing\.ClassVar\[(\w+)\]")
 
@@ -29,7 +30,7 @@ def enum_member(match: re.Match[str]) -> str:
 def tidy(text: str) -> str:
     """The stub without private parts, and with the types that only Python knows."""
     text = PICKLING.sub("", text)
-    text = ENUM_NEW.sub("", text)
+    text = ENUM_METHODS.sub("", text)
     text = ENUM_MEMBER.sub(enum_member, text)
     text = text.replace(
         "def __eq__(self, other: typing.Any) -> typing.Any:",

@@ -7,8 +7,9 @@ cpp/examples/01_solve.cpp prints the same.
 
 import sys
 
-import iksel
 import numpy as np
+
+import iksel
 
 
 def show(name, matrix):
@@ -18,9 +19,7 @@ def show(name, matrix):
 
 
 if len(sys.argv) > 1:
-    robot = iksel.Robot.from_urdf(
-        sys.argv[1], base_link="base_link", tip_link="tool0"
-    )
+    robot = iksel.Robot.from_urdf(sys.argv[1], base_link="base_link", tip_link="tool0")
 else:
     robot = iksel.load_robot("ur3")
 
@@ -33,8 +32,8 @@ result = solver.solve(target)
 if not result.success:
     sys.exit(f"no solution: {result.status.name}")
 
-# Not always the joint values from above: a UR3 has up to eight answers per pose, and more
-# by whole turns.
+# Not always the joint values from above: a UR3 has up to eight answers per pose, and
+# more by whole turns.
 show("target", target)
 show("q [rad]", [result.q])
 print(f"position error [m]   {result.position_error:.9f}")

@@ -8,8 +8,9 @@ import sys
 import tempfile
 from pathlib import Path
 
-import iksel
 import numpy as np
+
+import iksel
 
 
 def show_progress(done, total):
@@ -25,8 +26,8 @@ with tempfile.TemporaryDirectory() as folder:
     file = Path(folder) / "ur3.iksel"
     iksel.Database.build(robot, options.database, show_progress).save(file)
 
-    # Loading maps the file into memory: it takes no time, and processes share it. A file
-    # that is damaged or belongs to another robot is refused.
+    # Loading maps the file into memory: it takes no time, and processes share it. A
+    # file that is damaged or belongs to another robot is refused.
     database = iksel.Database.load(file)
     solver = iksel.Solver(robot, options, database)
     print(f"samples {len(database)}")

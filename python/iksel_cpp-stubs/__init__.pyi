@@ -14,7 +14,7 @@ import numpy
 import numpy.typing
 import os
 import typing
-__all__: list[str] = ['BatchResult', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'Kinematics', 'Ranking', 'Reselection', 'Result', 'Robot', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'Solver', 'SolverOptions', 'Status', 'UnknownNameError', 'UrdfError', 'evaluate', 'grid_counts', 'pose_error', 'time_kdl_fk_jacobian']
+__all__: list[str] = ['BatchResult', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'KeyScheme', 'Kinematics', 'Ranking', 'Reselection', 'Result', 'Robot', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'Solver', 'SolverOptions', 'Status', 'UnknownNameError', 'UrdfError', 'evaluate', 'grid_counts', 'pose_error', 'simd_level', 'time_kdl_fk_jacobian']
 class Error(Exception):
     """
     Base of every exception of the library.
@@ -233,6 +233,12 @@ class Scale(enum.Enum):
     large = 2
     medium = 1
     small = 0
+class KeyScheme(enum.Enum):
+    """
+    What of a pose the database's key holds.
+    """
+    full = 0
+    reduced = 1
 class RotationKey(enum.Enum):
     """
     How the KD-tree's key writes the rotation of a pose (paper, footnote 1).
@@ -289,7 +295,7 @@ class DatabaseOptions:
         """
     def __eq__(self, other: object) -> bool:
         ...
-    def __init__(self, *, sampling: Sampling | str = 'low_discrepancy', scale: Scale | str = 'medium', samples: int = 10000, rotation_key: RotationKey | str = 'rotation_vector', rotation_weight: float = 1.0, pinv_cutoff: float = 0.0001, cvt_updates: int = 1000000, seed: int = 0, threads: int = 0) -> None:
+    def __init__(self, *, sampling: Sampling | str = 'low_discrepancy', scale: Scale | str = 'medium', samples: int = 2000, key_scheme: KeyScheme | str = 'reduced', rotation_key: RotationKey | str = 'rotation_vector', rotation_weight: float = 0.0, pinv_cutoff: float = 0.0001, cvt_updates: int = 1000000, seed: int = 0, threads: int = 0) -> None:
         """
         Fields that are not given keep their default.
 
@@ -297,8 +303,9 @@ class DatabaseOptions:
             sampling: How the samples are spread over the limits.
             scale: Counts of a grid; for the other samplings only if `samples` is 0.
             samples: Number of samples unless `sampling` is grid; 0 takes the grid's count at `scale`.
-            rotation_key: How the KD-tree's key writes a rotation.
-            rotation_weight: Length that one unit of the rotation key counts as in the tree's distance [m].
+            key_scheme: What of a pose the key holds; a chain with mimic joints has a full key always.
+            rotation_key: How a full key writes a rotation.
+            rotation_weight: Length that one unit of the key's rotation part counts as in the tree's distance [m]; 0: a quarter of the reach.
             pinv_cutoff: Singular values below this part of the largest are cut off in the pseudo-inverses.
             cvt_updates: Updates of MacQueen's method (cvt only).
             seed: Seed of the random, cvt and low_discrepancy samplings.
@@ -310,7 +317,7 @@ class DatabaseOptions:
         """
     def __repr__(self) -> str:
         ...
-    def replace(self, *, sampling: Sampling | str = ..., scale: Scale | str = ..., samples: int = ..., rotation_key: RotationKey | str = ..., rotation_weight: float = ..., pinv_cutoff: float = ..., cvt_updates: int = ..., seed: int = ..., threads: int = ...) -> DatabaseOptions:
+    def replace(self, *, sampling: Sampling | str = ..., scale: Scale | str = ..., samples: int = ..., key_scheme: KeyScheme | str = ..., rotation_key: RotationKey | str = ..., rotation_weight: float = ..., pinv_cutoff: float = ..., cvt_updates: int = ..., seed: int = ..., threads: int = ...) -> DatabaseOptions:
         """
         A copy in which the given fields have another value.
 
@@ -318,8 +325,9 @@ class DatabaseOptions:
             sampling: How the samples are spread over the limits.
             scale: Counts of a grid; for the other samplings only if `samples` is 0.
             samples: Number of samples unless `sampling` is grid; 0 takes the grid's count at `scale`.
-            rotation_key: How the KD-tree's key writes a rotation.
-            rotation_weight: Length that one unit of the rotation key counts as in the tree's distance [m].
+            key_scheme: What of a pose the key holds; a chain with mimic joints has a full key always.
+            rotation_key: How a full key writes a rotation.
+            rotation_weight: Length that one unit of the key's rotation part counts as in the tree's distance [m]; 0: a quarter of the reach.
             pinv_cutoff: Singular values below this part of the largest are cut off in the pseudo-inverses.
             cvt_updates: Updates of MacQueen's method (cvt only).
             seed: Seed of the random, cvt and low_discrepancy samplings.
@@ -346,6 +354,14 @@ class DatabaseOptions:
     def cvt_updates(self, value: int) -> None:
         ...
     @property
+    def key_scheme(self) -> KeyScheme:
+        """
+        What of a pose the key holds; a chain with mimic joints has a full key always.
+        """
+    @key_scheme.setter
+    def key_scheme(self, value: KeyScheme | str) -> None:
+        ...
+    @property
     def pinv_cutoff(self) -> float:
         """
         Singular values below this part of the largest are cut off in the pseudo-inverses.
@@ -356,7 +372,7 @@ class DatabaseOptions:
     @property
     def rotation_key(self) -> RotationKey:
         """
-        How the KD-tree's key writes a rotation.
+        How a full key writes a rotation.
         """
     @rotation_key.setter
     def rotation_key(self, value: RotationKey | str) -> None:
@@ -364,7 +380,7 @@ class DatabaseOptions:
     @property
     def rotation_weight(self) -> float:
         """
-        Length that one unit of the rotation key counts as in the tree's distance [m].
+        Length that one unit of the key's rotation part counts as in the tree's distance [m]; 0: a quarter of the reach.
         """
     @rotation_weight.setter
     def rotation_weight(self, value: float) -> None:
@@ -421,7 +437,7 @@ class SolverOptions:
         """
     def __eq__(self, other: object) -> bool:
         ...
-    def __init__(self, *, position_tolerance: float = 1e-06, rotation_tolerance: float = 1e-06, database: DatabaseOptions | collections.abc.Mapping[str, typing.Any] = ..., neighbours: int = 200, ranking: Ranking | str = 'joint_adjustment', rotation_difference: RotationDifference | str = 'geodesic', limit_aware: bool = True, candidates: int = 100, reselection: Reselection | str = 'farthest', max_attempts: int = 100, iteration: Iteration | str = 'lm', max_iterations: int = 20, damping: float = 0.001, pinv_cutoff: float = 0.0001, position_clamp: float = 0.1, rotation_clamp: float = 0.3141592653589793, growth_stop: GrowthStop | str = 'by_scheme', min_step: float = 1e-06, limit_margin: float = 0.1, whole_turns: bool = True, kinematics: Kinematics | str = 'kernel', seed: int = 0) -> None:
+    def __init__(self, *, position_tolerance: float = 1e-06, rotation_tolerance: float = 1e-06, database: DatabaseOptions | collections.abc.Mapping[str, typing.Any] = ..., neighbours: int = 200, ranking: Ranking | str = 'joint_adjustment', rotation_difference: RotationDifference | str = 'geodesic', limit_aware: bool = True, candidates: int = 100, reselection: Reselection | str = 'farthest', max_attempts: int = 1024, iteration: Iteration | str = 'lm', max_iterations: int = 20, damping: float = 0.001, pinv_cutoff: float = 0.0001, position_clamp: float = 0.1, rotation_clamp: float = 0.3141592653589793, growth_stop: GrowthStop | str = 'by_scheme', min_step: float = 1e-06, limit_margin: float = 0.1, whole_turns: bool = True, kinematics: Kinematics | str = 'kernel', seed: int = 0) -> None:
         """
         Fields that are not given keep their default.
 
@@ -429,7 +445,7 @@ class SolverOptions:
             position_tolerance: An answer's position is at most this far from the target's [m].
             rotation_tolerance: An answer's rotation vector error is at most this long [rad].
             database: Database that a solver builds for itself when it is given none.
-            neighbours: Neighbours asked from the KD-tree (k).
+            neighbours: Neighbours asked from the KD-tree (k); lanes take them in widening stages.
             ranking: How the neighbours are put in order.
             rotation_difference: The rotation part of x_target - x_i in Eq. (4).
             limit_aware: Rank candidates whose predicted q + J^+ e leaves the limits behind all others.
@@ -463,7 +479,7 @@ class SolverOptions:
             position_tolerance: An answer's position is at most this far from the target's [m].
             rotation_tolerance: An answer's rotation vector error is at most this long [rad].
             database: Database that a solver builds for itself when it is given none.
-            neighbours: Neighbours asked from the KD-tree (k).
+            neighbours: Neighbours asked from the KD-tree (k); lanes take them in widening stages.
             ranking: How the neighbours are put in order.
             rotation_difference: The rotation part of x_target - x_i in Eq. (4).
             limit_aware: Rank candidates whose predicted q + J^+ e leaves the limits behind all others.
@@ -586,7 +602,7 @@ class SolverOptions:
     @property
     def neighbours(self) -> int:
         """
-        Neighbours asked from the KD-tree (k).
+        Neighbours asked from the KD-tree (k); lanes take them in widening stages.
         """
     @neighbours.setter
     def neighbours(self, value: int) -> None:
@@ -778,8 +794,6 @@ class Status(enum.IntEnum):
     out_of_reach = 3
     outside_limits = 2
     solved = 0
-    def __format__(self, format_spec):
-        ...
 class Result:
     """
     Answer to one target. Everything in it is measured on the returned q.
@@ -1001,6 +1015,11 @@ class Evaluation:
         Shortest time [us].
         """
     @property
+    def p999_us(self) -> float:
+        """
+        99.9th percentile of the time [us].
+        """
+    @property
     def p99_us(self) -> float:
         """
         99th percentile of the time [us].
@@ -1072,6 +1091,15 @@ def grid_counts(dof: int, scale: Scale | str) -> list[int]:
 def pose_error(target: numpy.typing.ArrayLike, pose: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
     """
     [p_target - p; rotvec(R_target R^T)] of two (4, 4) poses [m, rad], (6,).
+    """
+def simd_level() -> str:
+    """
+    The instruction set whose lanes solve on this machine.
+
+    avx512, avx2, sse2, neon or scalar; the environment variable IKSEL_SIMD forces one.
+
+    Raises:
+        InvalidArgumentError: IKSEL_SIMD asks for one that is not to be had.
     """
 def time_kdl_fk_jacobian(robot: Robot) -> float:
     """

@@ -77,7 +77,7 @@ TEST_P(Kinds, SeedOfAPosesOwnSampleIsItsSolution) {
       iksel::write_to_group(data, i, slot, group.data());
     }
     std::vector<double> seeds(static_cast<std::size_t>(robot.dof() * iksel::lanes::kGroup));
-    const unsigned valid = iksel::lanes::kernels_scalar.prepare(
+    const unsigned valid = iksel::lanes::kKernelsScalar.prepare(
         chain, iksel::make_lane_target(Y), data.reduction->for_lanes(), group.data(), seeds.data());
     EXPECT_EQ(valid, 255U);
     for (int j = 0; j < robot.dof(); ++j) {

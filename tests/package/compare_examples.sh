@@ -6,7 +6,7 @@
 set -euo pipefail
 
 binaries=$(cd "$1" && pwd)
-python=${2:-python3}
+python=$(realpath -s "$(command -v "${2:-python3}")")
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 
 work=$(mktemp -d)

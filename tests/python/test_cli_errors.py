@@ -73,7 +73,7 @@ BAD = [
     ("build ur3 -o absent/file --samples 50", "absent/file.*No such file"),
     ("build ur3 -o . --samples 50", "database '.'"),
     ("build ur3 -o x --max-attempts 3", "unrecognized arguments"),
-    ("build ur3 -o x --rotation-weight 0", "rotation_weight"),
+    ("build ur3 -o x --rotation-weight=-1", "rotation_weight"),
     ("evaluate ur3 --targets 0", "--targets: 0 is less than 1"),
     ("evaluate ur3 --targets 1.5", "--targets"),
     ("evaluate ur3 --seed -1", "--seed: -1 is not between 0 and"),

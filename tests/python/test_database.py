@@ -93,7 +93,7 @@ def test_grid_has_the_papers_counts(scale: str, dof: int, counts: list[int]) -> 
 
 def test_grid_has_the_papers_points(made) -> None:
     robot = made.robot("cvr038")
-    options = iksel.DatabaseOptions(sampling="grid", scale="small")
+    options = iksel.DatabaseOptions.paper().replace(scale="small")
     q = arrays(iksel.Database.build(robot, options))[0]
     assert len(q) == 12_000
     for i, count in enumerate([6, 5, 5, 5, 4, 4]):
@@ -218,7 +218,9 @@ def test_built_in_another_process_has_the_same_bits(database, tmp_path: Path) ->
         import sys
         import iksel
 
-        options = iksel.DatabaseOptions(samples=300, cvt_updates=3000, scale="small")
+        options = iksel.DatabaseOptions(
+            samples=300, cvt_updates=3000, scale="small", key_scheme="full"
+        )
         iksel.Database.build(iksel.load_robot("ur3"), options).save(sys.argv[1])
     """
     run_python(program, path)

@@ -96,8 +96,10 @@ def test_paper_preset_answers_are_answers(
 @pytest.mark.parametrize("name", ["cvr038", "gen3_6dof", "xarm5"])
 def test_every_scheme_gives_answers(made, cases: int, name: str, scheme: str) -> None:
     options = iksel.SolverOptions.paper().replace(iteration=scheme)
-    database = made.solver(name).database
-    solver = iksel.Solver(made.robot(name), options, database)
+    full = iksel.DatabaseOptions.paper().replace(
+        sampling="low_discrepancy", samples=10_000
+    )
+    solver = iksel.Solver(made.robot(name), options.replace(database=full))
     poses = targets(solver.robot, cases, 3)
     assert check_answers(solver, poses, solver.solve_batch(poses)) > 0.3
 

@@ -113,7 +113,7 @@ def test_bad_thread_counts_are_refused(made, threads) -> None:
         ({"ranking": 3}, "ranking.*nearest.*joint_adjustment"),
         ({"database": {"sampling": "sobol"}}, "sampling.*grid.*cvt"),
         ({"database": {"threads": -2}}, "threads"),
-        ({"database": {"rotation_weight": 0.0}}, "rotation_weight"),
+        ({"database": {"rotation_weight": -1.0}}, "rotation_weight"),
     ],
     ids=str,
 )

@@ -57,7 +57,7 @@ class IKSEL_EXPORT Database {
   /// Sample i: joint values [rad or m], T_base_tip of the tip link, pseudo-inverse (dof x 6).
   [[nodiscard]] JointVector q(std::size_t i) const;
   [[nodiscard]] Pose pose(std::size_t i) const;
-  [[nodiscard]] Eigen::MatrixXd pseudo_inverse(std::size_t i) const;
+  [[nodiscard]] Matrix pseudo_inverse(std::size_t i) const;
 
   /// Indices of the k samples whose keys are nearest to that of T_base_tip (of the tip link),
   /// nearest first.

@@ -82,7 +82,7 @@ class IKSEL_EXPORT Robot {
 
   /// n configurations uniform inside the limits (continuous joints in [-pi, pi)), one per row. The
   /// same seed gives the same numbers everywhere.
-  [[nodiscard]] Eigen::MatrixXd random_configurations(std::size_t n, std::uint64_t seed) const;
+  [[nodiscard]] Matrix random_configurations(std::size_t n, std::uint64_t seed) const;
 
   /// No pose whose origin lies farther than this from `reach_centre` can be reached [m].
   [[nodiscard]] double reach() const;

@@ -25,6 +25,10 @@ using JointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::DontAlign, k
 /// Geometric Jacobian, 6 x dof: rows [linear; angular] in base axes at the tip.
 using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::DontAlign, 6, kMaxDof>;
 
+/// A matrix on the heap. Unaligned too: what the library allocates, the caller's Eigen must be able
+/// to free, and with other SIMD flags it would free aligned memory in another way.
+using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::DontAlign>;
+
 /// Rigid transform, here always T_base_tip or a part of it.
 using Pose = Eigen::Isometry3d;
 

@@ -4,7 +4,6 @@
 #include <limits>
 #include <memory>
 #include <new>
-#include <utility>
 #include <vector>
 
 #include "database/data.hpp"
@@ -88,9 +87,9 @@ class SampleMaker {
   std::unique_ptr<KdlChain> kdl_;
 };
 
-std::shared_ptr<DatabaseData> build_data(const ChainModel& model, const DatabaseOptions& options,
-                                         const Progress& progress) {
-  const auto data = std::make_shared<DatabaseData>();
+/// Fills `data`; its size is known as soon as memory is asked for.
+void build_data(const ChainModel& model, const DatabaseOptions& options, const Progress& progress,
+                const std::shared_ptr<DatabaseData>& data) {
   data->options = options;
   if (!is_simple(model)) data->options.key_scheme = KeyScheme::full;
   data->dof = model.dof;
@@ -155,7 +154,6 @@ std::shared_ptr<DatabaseData> build_data(const ChainModel& model, const Database
   write_header(*data, block->writable(), block->size());
   data->use(block);
   report(total);
-  return data;
 }
 
 }  // namespace
@@ -163,13 +161,13 @@ std::shared_ptr<DatabaseData> build_data(const ChainModel& model, const Database
 Database Database::build(const Robot& robot, const DatabaseOptions& options,
                          const Progress& progress) {
   options.validate();
-  std::shared_ptr<const DatabaseData> data;
+  const auto data = std::make_shared<DatabaseData>();
   try {
-    data = build_data(robot.model(), options, progress);
+    build_data(robot.model(), options, progress, data);
   } catch (const std::bad_alloc&) {
-    throw DatabaseError("no memory for the samples of the database; ask for fewer");
+    throw DatabaseError("no memory for a database of " + std::to_string(data->size) + " samples");
   }
-  return Database(std::move(data));
+  return Database(data);
 }
 
 }  // namespace iksel

@@ -77,7 +77,7 @@ Pose Database::pose(std::size_t i) const {
   return pose;
 }
 
-Eigen::MatrixXd Database::pseudo_inverse(std::size_t i) const {
+Matrix Database::pseudo_inverse(std::size_t i) const {
   check_index(i, size());
   return Eigen::Map<const Eigen::MatrixXd>(data_->pseudo_inverse(i), dof(), 6);
 }

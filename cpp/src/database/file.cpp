@@ -115,7 +115,7 @@ class Descriptor {
 
 }  // namespace
 
-HeapBlock::HeapBlock(std::size_t payload) : bytes_(nullptr), size_(kHeaderSize + payload) {
+HeapBlock::HeapBlock(std::size_t payload) : size_(kHeaderSize + payload) {
   const std::size_t rounded = (size_ + kAlignment - 1) / kAlignment * kAlignment;
   bytes_ = static_cast<unsigned char*>(std::aligned_alloc(kAlignment, rounded));
   if (bytes_ == nullptr) throw std::bad_alloc();

@@ -16,13 +16,15 @@ inline constexpr std::size_t kHeaderSize = 512;
 class HeapBlock final : public Block {
  public:
   explicit HeapBlock(std::size_t payload);
+  HeapBlock(const HeapBlock&) = delete;
+  HeapBlock& operator=(const HeapBlock&) = delete;
   ~HeapBlock() override;
   [[nodiscard]] const unsigned char* data() const override { return bytes_; }
   [[nodiscard]] std::size_t size() const override { return size_; }
   [[nodiscard]] unsigned char* writable() { return bytes_; }
 
  private:
-  unsigned char* bytes_;
+  unsigned char* bytes_ = nullptr;
   std::size_t size_;
 };
 

@@ -80,9 +80,10 @@ LeafTree::LeafTree(const DatabaseData& data)
       for (std::size_t d = 0; d < dim; ++d) mean[d] += data.keys[order[i] * dim + d];
     }
     for (double& m : mean) m /= static_cast<double>(bounds[leaf + 1] - bounds[leaf]);
-    Neighbour nearest[lanes::kGroup];
-    const std::size_t found = data.tree.nearest(mean, lanes::kGroup, nearest);
-    std::sort(nearest, nearest + found);
+    std::vector<Neighbour> nearest(lanes::kGroup);
+    const std::size_t found = data.tree.nearest(mean, nearest.size(), nearest.data());
+    nearest.resize(found);
+    std::sort(nearest.begin(), nearest.end());
     for (int slot = 0; slot < lanes::kGroup; ++slot) {
       // A database smaller than a group repeats itself.
       const std::size_t index = nearest[static_cast<std::size_t>(slot) % found].index;

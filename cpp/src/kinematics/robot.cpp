@@ -67,8 +67,8 @@ Jacobian Robot::jacobian(const JointVector& q, Kinematics kinematics) const {
   return J;
 }
 
-Eigen::MatrixXd Robot::random_configurations(std::size_t n, std::uint64_t seed) const {
-  Eigen::MatrixXd q(static_cast<Eigen::Index>(n), dof());
+Matrix Robot::random_configurations(std::size_t n, std::uint64_t seed) const {
+  Matrix q(static_cast<Eigen::Index>(n), dof());
   Random random(seed);
   for (Eigen::Index row = 0; row < q.rows(); ++row) {
     for (int i = 0; i < dof(); ++i) {

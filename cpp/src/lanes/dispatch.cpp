@@ -17,15 +17,15 @@ std::vector<const LaneKernels*> available() {
   std::vector<const LaneKernels*> kernels;
 #if defined(IKSEL_X86)
   __builtin_cpu_init();
-  if (__builtin_cpu_supports("avx512f")) kernels.push_back(&kernels_avx512);
+  if (__builtin_cpu_supports("avx512f")) kernels.push_back(&kKernelsAvx512);
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
-    kernels.push_back(&kernels_avx2);
+    kernels.push_back(&kKernelsAvx2);
   }
-  kernels.push_back(&kernels_sse2);
+  kernels.push_back(&kKernelsSse2);
 #elif defined(IKSEL_NEON)
-  kernels.push_back(&kernels_neon);
+  kernels.push_back(&kKernelsNeon);
 #endif
-  kernels.push_back(&kernels_scalar);
+  kernels.push_back(&kKernelsScalar);
   return kernels;
 }
 

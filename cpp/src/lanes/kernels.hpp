@@ -4,21 +4,19 @@
 
 #include "lanes/lane_types.hpp"
 
-namespace iksel {
-namespace lanes {
+namespace iksel::lanes {
 
-extern const LaneKernels kernels_scalar;
+extern const LaneKernels kKernelsScalar;
 #if defined(IKSEL_X86)
-extern const LaneKernels kernels_sse2;
-extern const LaneKernels kernels_avx2;
-extern const LaneKernels kernels_avx512;
+extern const LaneKernels kKernelsSse2;
+extern const LaneKernels kKernelsAvx2;
+extern const LaneKernels kKernelsAvx512;
 #elif defined(IKSEL_NEON)
-extern const LaneKernels kernels_neon;
+extern const LaneKernels kKernelsNeon;
 #endif
 
 /// The widest that this processor has, or what the environment variable IKSEL_SIMD asks for. Throws
 /// InvalidArgumentError if that is unknown or not to be had here.
 const LaneKernels& choose_kernels();
 
-}  // namespace lanes
-}  // namespace iksel
+}  // namespace iksel::lanes

@@ -3,11 +3,9 @@
 #include "lanes/kernels.hpp"
 #include "lanes/lane_kernel.hpp"
 
-namespace iksel {
-namespace lanes {
+namespace iksel::lanes {
 
-const LaneKernels kernels_avx2 =
+const LaneKernels kKernelsAvx2 =
     make_kernels<xsimd::batch<double, xsimd::fma3<xsimd::avx2>>>("avx2");
 
-}  // namespace lanes
-}  // namespace iksel
+}  // namespace iksel::lanes

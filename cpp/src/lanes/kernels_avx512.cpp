@@ -3,10 +3,8 @@
 #include "lanes/kernels.hpp"
 #include "lanes/lane_kernel.hpp"
 
-namespace iksel {
-namespace lanes {
+namespace iksel::lanes {
 
-const LaneKernels kernels_avx512 = make_kernels<xsimd::batch<double, xsimd::avx512f>>("avx512");
+const LaneKernels kKernelsAvx512 = make_kernels<xsimd::batch<double, xsimd::avx512f>>("avx512");
 
-}  // namespace lanes
-}  // namespace iksel
+}  // namespace iksel::lanes

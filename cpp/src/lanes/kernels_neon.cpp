@@ -3,10 +3,8 @@
 #include "lanes/kernels.hpp"
 #include "lanes/lane_kernel.hpp"
 
-namespace iksel {
-namespace lanes {
+namespace iksel::lanes {
 
-const LaneKernels kernels_neon = make_kernels<xsimd::batch<double, xsimd::neon64>>("neon");
+const LaneKernels kKernelsNeon = make_kernels<xsimd::batch<double, xsimd::neon64>>("neon");
 
-}  // namespace lanes
-}  // namespace iksel
+}  // namespace iksel::lanes

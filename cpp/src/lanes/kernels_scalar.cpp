@@ -2,10 +2,8 @@
 #include "lanes/kernels.hpp"
 #include "lanes/lane_kernel.hpp"
 
-namespace iksel {
-namespace lanes {
+namespace iksel::lanes {
 
-const LaneKernels kernels_scalar = make_kernels<double>("scalar");
+const LaneKernels kKernelsScalar = make_kernels<double>("scalar");
 
-}  // namespace lanes
-}  // namespace iksel
+}  // namespace iksel::lanes

@@ -3,10 +3,8 @@
 #include "lanes/kernels.hpp"
 #include "lanes/lane_kernel.hpp"
 
-namespace iksel {
-namespace lanes {
+namespace iksel::lanes {
 
-const LaneKernels kernels_sse2 = make_kernels<xsimd::batch<double, xsimd::sse2>>("sse2");
+const LaneKernels kKernelsSse2 = make_kernels<xsimd::batch<double, xsimd::sse2>>("sse2");
 
-}  // namespace lanes
-}  // namespace iksel
+}  // namespace iksel::lanes

@@ -5,8 +5,7 @@
 #include "lanes/lane_math.hpp"
 #include "lanes/lane_types.hpp"
 
-namespace iksel {
-namespace lanes {
+namespace iksel::lanes {
 
 /// (u, v) <- (c u + s v, c v - s u)
 template <typename T, typename C>
@@ -307,5 +306,4 @@ constexpr LaneKernels make_kernels(const char* name) {
           prepare_seeds<T>};
 }
 
-}  // namespace lanes
-}  // namespace iksel
+}  // namespace iksel::lanes

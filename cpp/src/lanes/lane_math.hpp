@@ -8,8 +8,7 @@
 
 #include <xsimd/xsimd.hpp>
 
-namespace iksel {
-namespace lanes {
+namespace iksel::lanes {
 
 template <typename T>
 struct Lanes {
@@ -93,5 +92,4 @@ inline T rough_atan2(const T& y, const T& x) {
   return select(y < T(0.0), T(0.0) - a, a);
 }
 
-}  // namespace lanes
-}  // namespace iksel
+}  // namespace iksel::lanes

@@ -3,8 +3,7 @@
 // different instruction sets agree on them.
 #pragma once
 
-namespace iksel {
-namespace lanes {
+namespace iksel::lanes {
 
 inline constexpr int kMaxJoints = 32;
 /// Seeds that a leaf or a stage of neighbours hands over at a time; a multiple of every pack's
@@ -82,5 +81,4 @@ struct LaneKernels {
   PrepareSeeds prepare;
 };
 
-}  // namespace lanes
-}  // namespace iksel
+}  // namespace iksel::lanes

@@ -74,7 +74,7 @@ void Selection::prepare_seeds() {
       write_to_group(data_, neighbours_[first + std::min(s, count - 1)].index, static_cast<int>(s),
                      group);
     }
-    const unsigned valid = lanes::kernels_scalar.prepare(chain_, target, reduction, group, seeds);
+    const unsigned valid = lanes::kKernelsScalar.prepare(chain_, target, reduction, group, seeds);
     for (std::size_t s = 0; s < count; ++s) {
       if ((valid >> s & 1U) == 0) continue;
       neighbours_[kept] = neighbours_[first + s];

@@ -23,7 +23,6 @@ LaneSearch::LaneSearch(const ChainModel& model, const DatabaseData& data,
                     options.max_iterations},
       reduction_(data.reduction->for_lanes()),
       target_{},
-      key_{},
       neighbours_(std::min<std::size_t>(static_cast<std::size_t>(options.neighbours), data.size)),
       group_(static_cast<std::size_t>(lanes::group_rows(model.dof) * lanes::kGroup)),
       // Room for a pack that starts at the last seed.

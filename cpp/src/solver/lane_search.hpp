@@ -11,6 +11,7 @@
 #include "kinematics/chain_model.hpp"
 #include "lanes/kernels.hpp"
 #include "math/random.hpp"
+#include "solver/stage_clock.hpp"
 
 namespace iksel {
 
@@ -26,8 +27,8 @@ class LaneSearch {
   /// Calls `accept(q)` for every converged q until it says true, or the work bound is reached.
   /// `seed` may be null. Counts seeds and pack iterations.
   template <typename Accept>
-  bool run(const Pose& tip_target, const JointVector* seed, int& attempts, int& iterations,
-           const Accept& accept);
+  bool run(const Pose& tip_target, const JointVector* seed, StageClock& clock, int& attempts,
+           int& iterations, const Accept& accept);
 
  private:
   void set_target(const Pose& tip_target);
@@ -45,7 +46,7 @@ class LaneSearch {
   lanes::LaneOptions lane_options_;
   lanes::LaneReduction reduction_;
   lanes::LaneTarget target_;
-  double key_[12];
+  double key_[12] = {};
   std::vector<Neighbour> neighbours_;
   std::vector<double> group_;
   std::vector<double> seeds_;
@@ -54,8 +55,8 @@ class LaneSearch {
 template <typename Accept>
 bool LaneSearch::solve_seeds(int count, int& attempts, int& iterations, const Accept& accept) {
   JointVector q(model_.dof);
+  count = std::min(count, options_.max_attempts - attempts);
   for (int first = 0; first < count; first += kernels_.lanes) {
-    if (attempts >= options_.max_attempts) return false;
     // A pack that is not full repeats its first seed.
     for (int s = count; s < first + kernels_.lanes; ++s) {
       for (int j = 0; j < model_.dof; ++j) {
@@ -73,8 +74,14 @@ bool LaneSearch::solve_seeds(int count, int& attempts, int& iterations, const Ac
 }
 
 template <typename Accept>
-bool LaneSearch::run(const Pose& tip_target, const JointVector* seed, int& attempts,
-                     int& iterations, const Accept& accept) {
+bool LaneSearch::run(const Pose& tip_target, const JointVector* seed, StageClock& clock,
+                     int& attempts, int& iterations, const Accept& accept) {
+  const auto iterate = [&](int count) {
+    clock.lap(&StageTimes::rank);
+    const bool solved = solve_seeds(count, attempts, iterations, accept);
+    clock.lap(&StageTimes::iterate);
+    return solved;
+  };
   set_target(tip_target);
   if (seed != nullptr) {
     for (int j = 0; j < model_.dof; ++j) {
@@ -82,9 +89,11 @@ bool LaneSearch::run(const Pose& tip_target, const JointVector* seed, int& attem
           std::min(std::max((*seed)[j], chain_.joint[j].limited ? model_.lower[j] : (*seed)[j]),
                    chain_.joint[j].limited ? model_.upper[j] : (*seed)[j]);
     }
-    if (solve_seeds(1, attempts, iterations, accept)) return true;
+    if (iterate(1)) return true;
   }
-  if (solve_seeds(prepare(data_.leaves.group(key_)), attempts, iterations, accept)) return true;
+  const double* leaf = data_.leaves.group(key_);
+  clock.lap(&StageTimes::query);
+  if (iterate(prepare(leaf))) return true;
 
   // Widening stages: each asks for four times as many and tries those it has not tried yet.
   std::size_t done = 0;
@@ -93,13 +102,14 @@ bool LaneSearch::run(const Pose& tip_target, const JointVector* seed, int& attem
        k = std::min(4 * k, most)) {
     const std::size_t found = data_.tree.nearest(key_, std::min(k, data_.size), neighbours_.data());
     std::sort(neighbours_.begin(), neighbours_.begin() + static_cast<std::ptrdiff_t>(found));
+    clock.lap(&StageTimes::query);
     for (; done < found; done += lanes::kGroup) {
       for (int slot = 0; slot < lanes::kGroup; ++slot) {
         const std::size_t i = std::min(done + static_cast<std::size_t>(slot), found - 1);
         write_to_group(data_, neighbours_[i].index, slot, group_.data());
       }
       if (attempts >= options_.max_attempts) return false;
-      if (solve_seeds(prepare(group_.data()), attempts, iterations, accept)) return true;
+      if (iterate(prepare(group_.data()))) return true;
     }
     done = found;
   }
@@ -112,7 +122,7 @@ bool LaneSearch::run(const Pose& tip_target, const JointVector* seed, int& attem
             random.uniform(model_.sample_lower(j), model_.sample_upper(j));
       }
     }
-    if (solve_seeds(lanes::kGroup, attempts, iterations, accept)) return true;
+    if (iterate(lanes::kGroup)) return true;
   }
   return false;
 }

@@ -2,7 +2,6 @@
 #include "iksel/solver.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <limits>
 #include <thread>
@@ -11,30 +10,12 @@
 #include "error_check.hpp"
 #include "iksel/error.hpp"
 #include "solver/solver_impl.hpp"
+#include "solver/stage_clock.hpp"
 
 namespace iksel {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-/// Adds the time since the last lap to one stage; does nothing if there is nobody to tell.
-class StageClock {
- public:
-  explicit StageClock(bool runs) : runs_(runs) {
-    if (runs_) last_ = Clock::now();
-  }
-  void lap(double* stage) {
-    if (!runs_) return;
-    const auto now = Clock::now();
-    *stage += std::chrono::duration<double, std::nano>(now - last_).count();
-    last_ = now;
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  bool runs_;
-  Clock::time_point last_;
-};
 
 std::string hex(std::uint64_t value) {
   char text[17];
@@ -75,7 +56,7 @@ Solver::Impl::~Impl() {
   for (auto& place : idle_) delete place.load();
 }
 
-Solver::Impl::Lease::Lease(const Impl& solver) : solver_(solver), workspace_(nullptr) {
+Solver::Impl::Lease::Lease(const Impl& solver) : solver_(solver) {
   for (auto& place : solver_.idle_) {
     if (place.load(std::memory_order_relaxed) == nullptr) continue;
     workspace_ = place.exchange(nullptr, std::memory_order_acquire);
@@ -98,9 +79,7 @@ Solver::Impl::Lease::~Lease() {
 Result Solver::Impl::solve(const Pose& T_base_tip, const JointVector* seed, Workspace& workspace,
                            StageTimes* times) const {
   const ChainModel& model = robot.model();
-  StageTimes ignored;
-  StageTimes& stages = times != nullptr ? *times : ignored;
-  StageClock clock(times != nullptr);
+  StageClock clock(times);
 
   Result result;
   const double distance = (T_base_tip.translation() - robot.reach_centre()).norm();
@@ -111,11 +90,12 @@ Result Solver::Impl::solve(const Pose& T_base_tip, const JointVector* seed, Work
 
   const Pose tip_target = T_base_tip * Pose(model.tcp_inverse);
   if (workspace.lanes) {
-    workspace.lanes->run(tip_target, seed, result.attempts, result.iterations, [&](JointVector& q) {
-      model.wrap_into_limits(q.data());
-      result = finish(result, T_base_tip, q);
-      return result.success();
-    });
+    workspace.lanes->run(tip_target, seed, clock, result.attempts, result.iterations,
+                         [&](JointVector& q) {
+                           model.wrap_into_limits(q.data());
+                           result = finish(result, T_base_tip, q);
+                           return result.success();
+                         });
     return result;
   }
 
@@ -134,22 +114,22 @@ Result Solver::Impl::solve(const Pose& T_base_tip, const JointVector* seed, Work
   };
 
   if (seed != nullptr && attempt(seed->data())) {
-    clock.lap(&stages.iterate);
+    clock.lap(&StageTimes::iterate);
     return result;
   }
 
   Selection& selection = workspace.selection;
-  clock.lap(&stages.iterate);
+  clock.lap(&StageTimes::iterate);
   selection.query(tip_target);
-  clock.lap(&stages.query);
+  clock.lap(&StageTimes::query);
   selection.rank();
-  clock.lap(&stages.rank);
+  clock.lap(&StageTimes::rank);
   for (int i = 0; i < options.max_attempts; ++i) {
     const double* from = selection.next_seed(i);
-    clock.lap(&stages.reselect);
+    clock.lap(&StageTimes::reselect);
     if (from == nullptr) break;
     const bool solved = attempt(from);
-    clock.lap(&stages.iterate);
+    clock.lap(&StageTimes::iterate);
     if (solved) break;
   }
   return result;

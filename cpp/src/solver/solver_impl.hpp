@@ -45,7 +45,7 @@ struct Solver::Impl {
 
    private:
     const Impl& solver_;
-    Workspace* workspace_;
+    Workspace* workspace_ = nullptr;
   };
 
   Robot robot;

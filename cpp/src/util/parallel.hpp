@@ -56,10 +56,11 @@ void parallel_for(std::size_t count, std::size_t chunk, int threads, const MakeW
   };
 
   const std::size_t chunks = (count + chunk - 1) / chunk;
-  const int helpers =
-      static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(threads), chunks)) - 1;
+  const std::size_t workers =
+      std::max<std::size_t>(1, std::min(static_cast<std::size_t>(threads), chunks));
   std::vector<std::thread> pool;
-  for (int i = 0; i < helpers; ++i) pool.emplace_back(run, false);
+  pool.reserve(workers - 1);
+  for (std::size_t i = 1; i < workers; ++i) pool.emplace_back(run, false);
   run(true);
   for (std::thread& thread : pool) thread.join();
   if (failure) std::rethrow_exception(failure);

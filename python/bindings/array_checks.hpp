@@ -159,7 +159,7 @@ inline py::array_t<double> to_array(const JointVector& values) {
 }
 
 /// A C-ordered array of its own.
-inline py::array_t<double> to_array(const Eigen::MatrixXd& matrix) {
+inline py::array_t<double> to_array(const Matrix& matrix) {
   py::array_t<double> array({matrix.rows(), matrix.cols()});
   Eigen::Map<RowMajorMatrix>(array.mutable_data(), matrix.rows(), matrix.cols()) = matrix;
   return array;

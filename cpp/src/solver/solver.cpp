@@ -90,12 +90,14 @@ Result Solver::Impl::solve(const Pose& T_base_tip, const JointVector* seed, Work
 
   const Pose tip_target = T_base_tip * Pose(model.tcp_inverse);
   if (workspace.lanes) {
-    workspace.lanes->run(tip_target, seed, clock, result.attempts, result.iterations,
-                         [&](JointVector& q) {
-                           model.wrap_into_limits(q.data());
-                           result = finish(result, T_base_tip, q);
-                           return result.success();
-                         });
+    Work work;
+    workspace.lanes->run(tip_target, seed, clock, work, [&](JointVector& q) {
+      model.wrap_into_limits(q.data());
+      result = finish(result, T_base_tip, q);
+      return result.success() ? Verdict::stop : Verdict::refine;
+    });
+    result.attempts = work.attempts;
+    result.iterations = work.iterations;
     return result;
   }
 

@@ -47,10 +47,15 @@ LaneSearch::LaneSearch(const ChainModel& model, const DatabaseData& data,
       neighbours_(std::min<std::size_t>(static_cast<std::size_t>(options.neighbours), data.size)),
       group_(static_cast<std::size_t>(lanes::group_rows(model.dof) * lanes::kGroup)) {}
 
-void LaneSearch::set_target(const Pose& tip_target) {
+Pose LaneSearch::set_query(const Pose& tip_target) {
   const Pose Y = data_.reduction->reduce(tip_target);
   data_.reduction->make_key(Y, key_);
   seed_target_ = make_seed_target(Y);
+  return Y;
+}
+
+void LaneSearch::set_target(const Pose& tip_target) {
+  const Pose Y = set_query(tip_target);
   for (int lane = 0; lane < kernels_.lanes; ++lane) set_lane_target(lane, Y);
 }
 

@@ -48,10 +48,19 @@ class LaneSearch {
   template <typename Load, typename Accept>
   bool iterate(int count, Work& work, const Load& load, const Accept& accept);
 
+  /// One target per lane, each with its best seed alone; a lane takes the next target as soon as
+  /// it is through with one. `next(Pose& tip_target)` gives the index of a target, or -1 at the
+  /// end; `settle(index, q, iterations) -> bool` is told the q of a target that arrived, or null if
+  /// it did not within the patience for one seed, and says whether it need not be iterated further.
+  template <typename Next, typename Settle>
+  void stream(const Next& next, const Settle& settle);
+
   void set_target(const Pose& tip_target);
   void load_seed(int lane, const double* q);
 
  private:
+  /// Y of a target, whose seeds and leaf are asked for next.
+  Pose set_query(const Pose& tip_target);
   /// Of the group's seeds, by rank.
   void load_ranked(int rank, int lane);
   void set_lane_target(int lane, const Pose& Y);
@@ -127,6 +136,54 @@ bool LaneSearch::iterate(int count, Work& work, const Load& load, const Accept& 
     }
   }
   return false;
+}
+
+template <typename Next, typename Settle>
+void LaneSearch::stream(const Next& next, const Settle& settle) {
+  const int lanes = kernels_.lanes;
+  const int patience = std::min(kPatience, options_.max_iterations);
+  int index[lanes::kWidth];
+  int age[lanes::kWidth] = {};
+  unsigned alive = 0;
+  const auto refill = [&](int lane) {
+    Pose target;
+    index[lane] = next(target);
+    if (index[lane] < 0) {
+      alive &= ~(1U << static_cast<unsigned>(lane));
+      return;
+    }
+    set_lane_target(lane, set_query(target));
+    kernels_.prepare(seed_chain_, seed_target_, data_.leaves.group(key_), seeds_);
+    load_ranked(0, lane);
+    age[lane] = 0;
+    alive |= 1U << static_cast<unsigned>(lane);
+  };
+  for (int lane = 0; lane < lanes; ++lane) refill(lane);
+  while (alive != 0) {
+    int budget = patience;
+    for (int lane = 0; lane < lanes; ++lane) {
+      if ((alive >> static_cast<unsigned>(lane) & 1U) != 0) {
+        budget = std::min(budget, patience - age[lane]);
+      }
+    }
+    const lanes::PackResult result = advance_(chain_, lane_options_, alive, budget, pack_);
+    for (int lane = 0; lane < lanes; ++lane) {
+      const unsigned bit = 1U << static_cast<unsigned>(lane);
+      if ((alive & bit) == 0) continue;
+      age[lane] += result.iterations;
+      if ((result.done & bit) != 0) {
+        JointVector q(model_.dof);
+        for (int j = 0; j < model_.dof; ++j) q[j] = pack_.q[j][lane];
+        if (settle(index[lane], &q, age[lane])) {
+          refill(lane);
+          continue;
+        }
+      }
+      if (age[lane] < patience) continue;
+      settle(index[lane], nullptr, age[lane]);
+      refill(lane);
+    }
+  }
 }
 
 template <typename Accept>

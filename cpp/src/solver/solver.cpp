@@ -82,8 +82,7 @@ Result Solver::Impl::solve(const Pose& T_base_tip, const JointVector* seed, Work
   StageClock clock(times);
 
   Result result;
-  const double distance = (T_base_tip.translation() - robot.reach_centre()).norm();
-  if (distance > robot.reach() + options.position_tolerance) {
+  if (out_of_reach(T_base_tip)) {
     result.status = Status::out_of_reach;
     return result;
   }
@@ -135,6 +134,11 @@ Result Solver::Impl::solve(const Pose& T_base_tip, const JointVector* seed, Work
     if (solved) break;
   }
   return result;
+}
+
+bool Solver::Impl::out_of_reach(const Pose& T_base_tip) const {
+  const double distance = (T_base_tip.translation() - robot.reach_centre()).norm();
+  return distance > robot.reach() + options.position_tolerance;
 }
 
 Result Solver::Impl::finish(Result result, const Pose& target, const JointVector& q) const {

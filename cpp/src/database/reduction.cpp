@@ -126,7 +126,7 @@ void Reduction::make_key(const Pose& Y, double* key) const {
   if (p_.right == Side::translation) point -= point.dot(axis) * axis;
   double c = 1;
   double s = 0;
-  const double rho = std::hypot(point[0], point[1]);
+  const double rho = std::sqrt(point[0] * point[0] + point[1] * point[1]);
   if (p_.left == Side::rotation && rho > 1e-12) {
     c = point[0] / rho;
     s = point[1] / rho;

@@ -13,6 +13,8 @@
 #include <cmath>
 #include <vector>
 
+#include "math/sincos.hpp"
+
 namespace iksel {
 
 struct KernelJoint {
@@ -37,9 +39,14 @@ struct KernelChain {
   Frame<double> flange;  ///< last joint -> tip link
 };
 
-inline void sincos(double angle, double& sine, double& cosine) {
-  sine = std::sin(angle);
-  cosine = std::cos(angle);
+/// For angles of any size.
+inline void safe_sincos(double angle, double& sine, double& cosine) {
+  if (std::abs(angle) <= kSincosRange) {
+    sincos(angle, sine, cosine);
+  } else {
+    sine = std::sin(angle);
+    cosine = std::cos(angle);
+  }
 }
 
 /// Most joints that move on a chain (mimic joints come on top of the degrees of freedom).
@@ -84,25 +91,31 @@ inline Frame<T> forward_to_last_joint(const KernelChain& chain, const T* q, Join
     f.z[i] = T(chain.base.z[i]);
     f.p[i] = T(chain.base.p[i]);
   }
+  // The joints' sines first: they do not depend on each other.
+  T sine[kMaxMovingJoints];
+  T cosine[kMaxMovingJoints];
+  T motion[kMaxMovingJoints];
   int k = 0;
+  for (const KernelJoint& joint : chain.joints) {
+    motion[k] =
+        joint.variable < 0 ? T(joint.offset) : q[joint.variable] * joint.multiplier + joint.offset;
+    if (!joint.prismatic) safe_sincos(motion[k], sine[k], cosine[k]);
+    ++k;
+  }
+  k = 0;
   for (const KernelJoint& joint : chain.joints) {
     for (int i = 0; i < 3; ++i) {
       f.p[i] += f.x[i] * joint.p[0] + f.y[i] * joint.p[1] + f.z[i] * joint.p[2];
     }
     turn_columns(f.y, f.z, joint.cos_alpha, joint.sin_alpha);
-    const T motion =
-        joint.variable < 0 ? T(joint.offset) : q[joint.variable] * joint.multiplier + joint.offset;
     if (axes != nullptr) {
       for (int i = 0; i < 3; ++i) axes->axis[k][i] = f.z[i];
     }
     if (joint.prismatic) {
       turn_columns(f.x, f.y, joint.cos_turn, joint.sin_turn);
-      for (int i = 0; i < 3; ++i) f.p[i] += f.z[i] * motion;
+      for (int i = 0; i < 3; ++i) f.p[i] += f.z[i] * motion[k];
     } else {
-      T sine;
-      T cosine;
-      sincos(motion, sine, cosine);
-      turn_columns(f.x, f.y, cosine, sine);
+      turn_columns(f.x, f.y, cosine[k], sine[k]);
     }
     if (axes != nullptr) {
       for (int i = 0; i < 3; ++i) axes->origin[k][i] = f.p[i];

@@ -40,8 +40,8 @@ class LaneSearch {
   /// Calls `accept(JointVector& q) -> Verdict` for every q that arrives until it says stop (then
   /// true), or the work bound is reached. `seed` may be null.
   template <typename Accept>
-  bool run(const Pose& tip_target, const JointVector* seed, StageClock& clock, Work& work,
-           const Accept& accept);
+  bool search(const Pose& T_base_tcp, const JointVector* seed, StageClock& clock, Work& work,
+              const Accept& accept);
 
   /// Iterates `count` seeds for the target that was set, most lanes at a time;
   /// `load(k, lane)` puts seed k into a lane.
@@ -49,18 +49,18 @@ class LaneSearch {
   bool iterate(int count, Work& work, const Load& load, const Accept& accept);
 
   /// One target per lane, each with its best seed alone; a lane takes the next target as soon as
-  /// it is through with one. `next(Pose& tip_target)` gives the index of a target, or -1 at the
+  /// it is through with one. `next(Pose& T_base_tcp)` gives the index of a target, or -1 at the
   /// end; `settle(index, q, iterations) -> bool` is told the q of a target that arrived, or null if
   /// it did not within the patience for one seed, and says whether it need not be iterated further.
   template <typename Next, typename Settle>
   void stream(const Next& next, const Settle& settle);
 
-  void set_target(const Pose& tip_target);
+  void set_target(const Pose& T_base_tcp);
   void load_seed(int lane, const double* q);
 
  private:
   /// Y of a target, whose seeds and leaf are asked for next.
-  Pose set_query(const Pose& tip_target);
+  Pose set_query(const Pose& T_base_tcp);
   /// Of the group's seeds, by rank.
   void load_ranked(int rank, int lane);
   void set_lane_target(int lane, const Pose& Y);
@@ -69,6 +69,7 @@ class LaneSearch {
   const DatabaseData& data_;
   const SolverOptions& options_;
   const lanes::LaneKernels& kernels_;
+  Pose base_inverse_, tcp_inverse_;  ///< Y = base_inverse T_base_tcp tcp_inverse
   lanes::Advance advance_;
   lanes::LaneChain chain_;
   lanes::LaneOptions lane_options_;
@@ -187,8 +188,8 @@ void LaneSearch::stream(const Next& next, const Settle& settle) {
 }
 
 template <typename Accept>
-bool LaneSearch::run(const Pose& tip_target, const JointVector* seed, StageClock& clock, Work& work,
-                     const Accept& accept) {
+bool LaneSearch::search(const Pose& T_base_tcp, const JointVector* seed, StageClock& clock,
+                        Work& work, const Accept& accept) {
   const auto iterate_ranked = [&](int count) {
     clock.lap(&StageTimes::rank);
     const bool solved = iterate(
@@ -196,7 +197,7 @@ bool LaneSearch::run(const Pose& tip_target, const JointVector* seed, StageClock
     clock.lap(&StageTimes::iterate);
     return solved;
   };
-  set_target(tip_target);
+  set_target(T_base_tcp);
   if (seed != nullptr) {
     const auto load = [&](int, int lane) { load_seed(lane, seed->data()); };
     if (iterate(1, work, load, accept)) return true;

@@ -64,7 +64,9 @@ struct Solver::Impl {
 
  private:
   [[nodiscard]] bool out_of_reach(const Pose& T_base_tip) const;
-  Result finish(Result result, const Pose& target, const JointVector& q) const;
+  /// Nothing is a success by hearsay: measures q itself, and only if that reaches the target inside
+  /// the limits, makes it the result.
+  bool finish(const Pose& target, const JointVector& q, Result& result) const;
 
   /// Workspaces that lie idle; a null is a place to put one back. More solves at once than places
   /// make their own.
@@ -84,15 +86,11 @@ void Solver::Impl::solve_many(std::size_t first, std::size_t last, Workspace& wo
   // Those that the best seed alone does not solve are solved one by one afterwards.
   std::bitset<kMany> open;
   std::size_t at = first;
-  const auto next = [&](Pose& tip_target) -> int {
+  const auto next = [&](Pose& T_base_tip) -> int {
     for (; at < last; ++at) {
-      const Pose T_base_tip = target(at);
-      if (out_of_reach(T_base_tip)) {
-        open.set(at - first);
-        continue;
-      }
-      tip_target = T_base_tip * Pose(robot.model().tcp_inverse);
-      return static_cast<int>(at++ - first);
+      T_base_tip = target(at);
+      if (!out_of_reach(T_base_tip)) return static_cast<int>(at++ - first);
+      open.set(at - first);
     }
     return -1;
   };
@@ -106,8 +104,7 @@ void Solver::Impl::solve_many(std::size_t first, std::size_t last, Workspace& wo
     Result result;
     result.attempts = 1;
     result.iterations = iterations;
-    result = finish(result, target(first + index), *q);
-    if (!result.success()) return false;
+    if (!finish(target(first + index), *q, result)) return false;
     settle(first + index, result);
     return true;
   });

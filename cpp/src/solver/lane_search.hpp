@@ -48,12 +48,12 @@ class LaneSearch {
   template <typename Load, typename Accept>
   bool iterate(int count, Work& work, const Load& load, const Accept& accept);
 
-  /// One target per lane, each with its best seed alone; a lane takes the next target as soon as
-  /// it is through with one. `next(Pose& T_base_tcp)` gives the index of a target, or -1 at the
-  /// end; `settle(index, q, iterations) -> bool` is told the q of a target that arrived, or null if
-  /// it did not within the patience for one seed, and says whether it need not be iterated further.
-  template <typename Next, typename Settle>
-  void stream(const Next& next, const Settle& settle);
+  /// One target per lane, each with its kStreamSeeds best seeds one after the other; a lane takes
+  /// the next target as soon as it is through with one. `next() -> int` gives the index of a
+  /// target, or -1 at the end, and `target(index)` its T_base_tcp. `settle(index, q, work) -> bool`
+  /// is told the q of a target that arrived, and says whether it is good; or null if no seed was.
+  template <typename Next, typename Target, typename Settle>
+  void stream(const Next& next, const Target& target, const Settle& settle);
 
   void set_target(const Pose& T_base_tcp);
   void load_seed(int lane, const double* q);
@@ -84,6 +84,8 @@ class LaneSearch {
 
 /// A seed that is still far off after so many iterations is given up: few such come home.
 inline constexpr int kPatience = 8;
+/// Seeds that a target of a batch is given before it is solved by itself.
+inline constexpr int kStreamSeeds = 2;
 /// Squared error that counts as far off [mixed units].
 inline constexpr double kFarOff2 = 1e-4;
 
@@ -139,50 +141,60 @@ bool LaneSearch::iterate(int count, Work& work, const Load& load, const Accept& 
   return false;
 }
 
-template <typename Next, typename Settle>
-void LaneSearch::stream(const Next& next, const Settle& settle) {
+template <typename Next, typename Target, typename Settle>
+void LaneSearch::stream(const Next& next, const Target& target, const Settle& settle) {
   const int lanes = kernels_.lanes;
   const int patience = std::min(kPatience, options_.max_iterations);
-  int index[lanes::kWidth];
-  int age[lanes::kWidth] = {};
+  const int most_seeds = std::min(kStreamSeeds, options_.max_attempts);
+  struct {
+    int index;  ///< of the target; -1: none
+    int age;    ///< iterations of the seed
+    Work work;
+  } at[lanes::kWidth] = {};
   unsigned alive = 0;
-  const auto refill = [&](int lane) {
-    Pose target;
-    index[lane] = next(target);
-    if (index[lane] < 0) {
-      alive &= ~(1U << static_cast<unsigned>(lane));
-      return;
-    }
-    set_lane_target(lane, set_query(target));
+  const auto load = [&](int lane) {
+    set_lane_target(lane, set_query(target(at[lane].index)));
     kernels_.prepare(seed_chain_, seed_target_, data_.leaves.group(key_), seeds_);
-    load_ranked(0, lane);
-    age[lane] = 0;
-    alive |= 1U << static_cast<unsigned>(lane);
+    load_ranked(at[lane].work.attempts++, lane);
+    at[lane].age = 0;
+  };
+  const auto refill = [&](int lane) {
+    at[lane] = {next(), 0, {}};
+    if (at[lane].index < 0) {
+      alive &= ~(1U << static_cast<unsigned>(lane));
+    } else {
+      alive |= 1U << static_cast<unsigned>(lane);
+      load(lane);
+    }
   };
   for (int lane = 0; lane < lanes; ++lane) refill(lane);
   while (alive != 0) {
     int budget = patience;
     for (int lane = 0; lane < lanes; ++lane) {
       if ((alive >> static_cast<unsigned>(lane) & 1U) != 0) {
-        budget = std::min(budget, patience - age[lane]);
+        budget = std::min(budget, patience - at[lane].age);
       }
     }
     const lanes::PackResult result = advance_(chain_, lane_options_, alive, budget, pack_);
     for (int lane = 0; lane < lanes; ++lane) {
-      const unsigned bit = 1U << static_cast<unsigned>(lane);
-      if ((alive & bit) == 0) continue;
-      age[lane] += result.iterations;
-      if ((result.done & bit) != 0) {
+      if ((alive >> static_cast<unsigned>(lane) & 1U) == 0) continue;
+      at[lane].age += result.iterations;
+      at[lane].work.iterations += result.iterations;
+      if ((result.done >> static_cast<unsigned>(lane) & 1U) != 0) {
         JointVector q(model_.dof);
         for (int j = 0; j < model_.dof; ++j) q[j] = pack_.q[j][lane];
-        if (settle(index[lane], &q, age[lane])) {
+        if (settle(at[lane].index, &q, at[lane].work)) {
           refill(lane);
           continue;
         }
       }
-      if (age[lane] < patience) continue;
-      settle(index[lane], nullptr, age[lane]);
-      refill(lane);
+      if (at[lane].age < patience) continue;
+      if (at[lane].work.attempts < most_seeds) {
+        load(lane);
+      } else {
+        settle(at[lane].index, nullptr, at[lane].work);
+        refill(lane);
+      }
     }
   }
 }

@@ -168,6 +168,11 @@ const Robot& Solver::robot() const { return impl_->robot; }
 const SolverOptions& Solver::options() const { return impl_->options; }
 const Database& Solver::database() const { return impl_->database; }
 
+std::size_t Solver::work_bound() const {
+  return static_cast<std::size_t>(options().max_attempts) *
+         static_cast<std::size_t>(options().max_iterations);
+}
+
 Result Solver::solve(const Pose& T_base_tip) const {
   check_pose(T_base_tip);
   const Impl::Lease lease(*impl_);

@@ -83,18 +83,20 @@ void Solver::Impl::solve_many(std::size_t first, std::size_t last, Workspace& wo
     }
     return;
   }
-  // Those that the best seed alone does not solve are solved one by one afterwards.
+  // Those that their best seeds do not solve are solved one by one afterwards.
   std::bitset<kMany> open;
   std::size_t at = first;
-  const auto next = [&](Pose& T_base_tip) -> int {
+  const auto next = [&]() -> int {
     for (; at < last; ++at) {
-      T_base_tip = target(at);
-      if (!out_of_reach(T_base_tip)) return static_cast<int>(at++ - first);
+      if (!out_of_reach(target(at))) return static_cast<int>(at++ - first);
       open.set(at - first);
     }
     return -1;
   };
-  workspace.lanes->stream(next, [&](int offset, JointVector* q, int iterations) {
+  const auto target_at = [&](int offset) -> decltype(auto) {
+    return target(first + static_cast<std::size_t>(offset));
+  };
+  workspace.lanes->stream(next, target_at, [&](int offset, JointVector* q, const Work& work) {
     const auto index = static_cast<std::size_t>(offset);
     if (q == nullptr) {
       open.set(index);
@@ -102,8 +104,8 @@ void Solver::Impl::solve_many(std::size_t first, std::size_t last, Workspace& wo
     }
     robot.model().wrap_into_limits(q->data());
     Result result;
-    result.attempts = 1;
-    result.iterations = iterations;
+    result.attempts = work.attempts;
+    result.iterations = work.iterations;
     if (!finish(target(first + index), *q, result)) return false;
     settle(first + index, result);
     return true;

@@ -7,6 +7,7 @@
 
 #include "database/key.hpp"
 #include "lanes/kernels.hpp"
+#include "math/constants.hpp"
 #include "math/pseudo_inverse.hpp"
 #include "math/rotation.hpp"
 
@@ -14,12 +15,6 @@ namespace iksel {
 
 using lanes::LaneReduction;
 using lanes::LaneTarget;
-
-namespace {
-
-constexpr double kTwoPi = 6.28318530717958647692;
-
-}  // namespace
 
 Selection::Selection(const ChainModel& model, const DatabaseData& data,
                      const SolverOptions& options)

@@ -37,7 +37,9 @@ void expect_same(const Result& a, const Result& b) {
 
 std::vector<SolverOptions> presets() {
   SolverOptions paper = SolverOptions::paper();
-  paper.database.scale = iksel::Scale::small;
+  // What threads do to each other does not depend on the size of the database.
+  paper.database.sampling = iksel::Sampling::random;
+  paper.database.samples = 2000;
   SolverOptions random_restarts = paper;
   random_restarts.iteration = iksel::Iteration::pinv_rr;
   SolverOptions kdl = paper;
@@ -48,7 +50,7 @@ std::vector<SolverOptions> presets() {
 TEST(Threads, BatchGivesTheBitsOfALoop) {
   for (const auto& c : iksel_test::paper_robots()) {
     const Robot robot = iksel_test::load(c);
-    const auto targets = random_targets(robot, 300);
+    const auto targets = random_targets(robot, iksel_test::cases(300));
     for (const SolverOptions& options : presets()) {
       const Solver solver(robot, options);
       std::vector<Result> loop;
@@ -64,7 +66,7 @@ TEST(Threads, BatchGivesTheBitsOfALoop) {
 
 TEST(Threads, EightThreadsShareOneSolver) {
   const Robot robot = iksel_test::load(iksel_test::paper_robots()[3]);
-  const auto targets = random_targets(robot, 400);
+  const auto targets = random_targets(robot, iksel_test::cases(400));
   for (const SolverOptions& options : presets()) {
     const Solver solver(robot, options);
     std::vector<Result> alone;
@@ -90,7 +92,7 @@ TEST(Threads, EightThreadsShareOneSolver) {
 
 TEST(Threads, KinematicsOfOneRobotAreShared) {
   const Robot robot = iksel_test::load(iksel_test::paper_robots()[3]);
-  const Eigen::MatrixXd q = robot.random_configurations(500, iksel_test::seed());
+  const Eigen::MatrixXd q = robot.random_configurations(iksel_test::cases(500), iksel_test::seed());
   std::vector<std::thread> threads;
   std::atomic<int> wrong{0};
   for (int t = 0; t < 8; ++t) {

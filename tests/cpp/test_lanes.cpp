@@ -86,14 +86,15 @@ TEST(Levels, AnUnknownOneIsRefusedByName) {
 }
 
 TEST(Levels, EachSolvesEverythingItCanReach) {
+  const auto n = static_cast<std::size_t>(iksel_test::cases(2000));
   for (const std::string& level : levels()) {
     const ForcedLevel forced(level);
     ASSERT_EQ(iksel::simd_level(), level);
     for (const auto& c : iksel_test::all_robots()) {
       const Robot robot = iksel_test::load(c);
       if (robot.dof() < 6) continue;
-      const iksel::Evaluation e = iksel::evaluate(iksel::Solver(robot), 2000, iksel_test::seed());
-      EXPECT_EQ(e.solved, 2000U) << level << " " << c.name << " seed " << iksel_test::seed();
+      const iksel::Evaluation e = iksel::evaluate(iksel::Solver(robot), n, iksel_test::seed());
+      EXPECT_EQ(e.solved, n) << level << " " << c.name << " seed " << iksel_test::seed();
       EXPECT_EQ(e.false_success, 0U) << level << " " << c.name;
     }
   }
@@ -104,7 +105,8 @@ TEST(Levels, EachGivesTheSameBitsForAnyNumberOfThreads) {
     const ForcedLevel forced(level);
     const Robot robot = iksel_test::load(iksel_test::paper_robots()[3]);
     const iksel::Solver solver(robot);
-    const Eigen::MatrixXd q = robot.random_configurations(2000, iksel_test::seed());
+    const Eigen::MatrixXd q =
+        robot.random_configurations(iksel_test::cases(2000), iksel_test::seed());
     std::vector<Pose> targets;
     for (Eigen::Index i = 0; i < q.rows(); ++i) targets.push_back(robot.fk(q.row(i)));
     const auto one = solver.solve_batch(targets, 1);

@@ -39,7 +39,9 @@ void expect_same(const Result& a, const Result& b) {
 
 std::vector<SolverOptions> presets() {
   SolverOptions paper = SolverOptions::paper();
-  paper.database.scale = iksel::Scale::small;
+  // What threads do to each other does not depend on the size of the database.
+  paper.database.sampling = iksel::Sampling::random;
+  paper.database.samples = 2000;
   SolverOptions random_restarts = paper;
   random_restarts.iteration = iksel::Iteration::pinv_rr;
   SolverOptions kdl = paper;
@@ -51,7 +53,7 @@ std::vector<SolverOptions> presets() {
 TEST(Threads, BatchGivesTheSameBits) {
   for (const auto& c : iksel_test::paper_robots()) {
     const Robot robot = iksel_test::load(c);
-    const auto targets = random_targets(robot, 600);
+    const auto targets = random_targets(robot, iksel_test::cases(600));
     for (const SolverOptions& options : presets()) {
       const Solver solver(robot, options);
       std::vector<Result> expected;
@@ -75,7 +77,7 @@ TEST(Threads, BatchInLanesAnswersEachTargetByItself) {
   for (const auto& c : iksel_test::paper_robots()) {
     const Robot robot = iksel_test::load(c);
     const Solver solver(robot);
-    auto targets = random_targets(robot, 600);
+    auto targets = random_targets(robot, iksel_test::cases(600));
     for (std::size_t i = 0; i < targets.size(); i += 7) targets[i].translation() *= 3;  // too far
     const std::vector<Result> batch = solver.solve_batch(targets, 1);
     std::vector<std::size_t> order(targets.size());
@@ -100,7 +102,7 @@ TEST(Threads, BatchInLanesAnswersEachTargetByItself) {
 
 TEST(Threads, EightThreadsShareOneSolver) {
   const Robot robot = iksel_test::load(iksel_test::paper_robots()[3]);
-  const auto targets = random_targets(robot, 400);
+  const auto targets = random_targets(robot, iksel_test::cases(400));
   for (const SolverOptions& options : presets()) {
     const Solver solver(robot, options);
     std::vector<Result> alone;
@@ -126,7 +128,7 @@ TEST(Threads, EightThreadsShareOneSolver) {
 
 TEST(Threads, KinematicsOfOneRobotAreShared) {
   const Robot robot = iksel_test::load(iksel_test::paper_robots()[3]);
-  const Eigen::MatrixXd q = robot.random_configurations(500, iksel_test::seed());
+  const Eigen::MatrixXd q = robot.random_configurations(iksel_test::cases(500), iksel_test::seed());
   std::vector<std::thread> threads;
   std::atomic<int> wrong{0};
   for (int t = 0; t < 8; ++t) {

@@ -3,12 +3,12 @@
 
 #include <cmath>
 
+#include "math/constants.hpp"
+
 namespace iksel {
 namespace {
 
 using lanes::Side;
-
-constexpr double kPi = 3.14159265358979323846;
 
 Side side_of(const KernelJoint& joint) {
   return joint.prismatic ? Side::translation : Side::rotation;

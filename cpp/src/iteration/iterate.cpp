@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "iteration/schemes.hpp"
+#include "math/constants.hpp"
 #include "math/rotation.hpp"
 
 namespace iksel {
@@ -61,7 +62,6 @@ JointVector make_step(const IterationContext& context, const JointVector& q,
 
 /// What follows a step besides adding it; true if the attempt goes on.
 void after_step(const IterationContext& context, JointVector& q) {
-  constexpr double kTwoPi = 6.28318530717958647692;
   if (context.options.iteration == Iteration::pinv_rr && !context.model.within_limits(q.data())) {
     random_configuration(context.model, context.random, q);
   } else if (context.options.iteration == Iteration::cwln) {

@@ -22,7 +22,7 @@ struct KernelJoint {
   double cos_alpha, sin_alpha;
   double multiplier, offset;  ///< motion = multiplier * q[variable] + offset [rad or m]
   double cos_turn, sin_turn;  ///< constant angle_k of a prismatic joint
-  int variable;               ///< -1: the motion is `offset`
+  int variable;
   bool prismatic;
 };
 
@@ -97,8 +97,7 @@ inline Frame<T> forward_to_last_joint(const KernelChain& chain, const T* q, Join
   T motion[kMaxMovingJoints];
   int k = 0;
   for (const KernelJoint& joint : chain.joints) {
-    motion[k] =
-        joint.variable < 0 ? T(joint.offset) : q[joint.variable] * joint.multiplier + joint.offset;
+    motion[k] = q[joint.variable] * joint.multiplier + joint.offset;
     if (!joint.prismatic) safe_sincos(motion[k], sine[k], cosine[k]);
     ++k;
   }
@@ -144,20 +143,18 @@ inline Frame<T> forward_jacobian(const KernelChain& chain, const Frame<double>& 
   for (int i = 0; i < 6 * dof; ++i) jacobian[i] = T(0.0);
   int k = 0;
   for (const KernelJoint& joint : chain.joints) {
-    if (joint.variable >= 0) {
-      T* column = jacobian + 6 * joint.variable;
-      const T* z = axes.axis[k];
-      const double m = joint.multiplier;
-      if (joint.prismatic) {
-        for (int i = 0; i < 3; ++i) column[i] += z[i] * m;
-      } else {
-        const T* o = axes.origin[k];
-        const T r[3] = {f.p[0] - o[0], f.p[1] - o[1], f.p[2] - o[2]};
-        column[0] += (z[1] * r[2] - z[2] * r[1]) * m;
-        column[1] += (z[2] * r[0] - z[0] * r[2]) * m;
-        column[2] += (z[0] * r[1] - z[1] * r[0]) * m;
-        for (int i = 0; i < 3; ++i) column[3 + i] += z[i] * m;
-      }
+    T* column = jacobian + 6 * joint.variable;
+    const T* z = axes.axis[k];
+    const double m = joint.multiplier;
+    if (joint.prismatic) {
+      for (int i = 0; i < 3; ++i) column[i] += z[i] * m;
+    } else {
+      const T* o = axes.origin[k];
+      const T r[3] = {f.p[0] - o[0], f.p[1] - o[1], f.p[2] - o[2]};
+      column[0] += (z[1] * r[2] - z[2] * r[1]) * m;
+      column[1] += (z[2] * r[0] - z[0] * r[2]) * m;
+      column[2] += (z[0] * r[1] - z[1] * r[0]) * m;
+      for (int i = 0; i < 3; ++i) column[3 + i] += z[i] * m;
     }
     ++k;
   }

@@ -1090,7 +1090,7 @@ def grid_counts(dof: int, scale: Scale | str) -> list[int]:
     """
 def pose_error(target: numpy.typing.ArrayLike, pose: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
     """
-    [p_target - p; rotvec(R_target R^T)] of two (4, 4) poses [m, rad], (6,).
+    [p_target - p; rotvec(R_target R^T)] of two (4, 4) poses [m, rad], (6,); or of each pair from two (N, 4, 4) arrays, (N, 6).
     """
 def simd_level() -> str:
     """

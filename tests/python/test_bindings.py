@@ -230,9 +230,9 @@ def test_rows_equal_single_calls(robot, joints, kinematics):
 
 
 def test_batch_equals_loop(robot, poses):
-    options = iksel.SolverOptions.paper()
+    options = core.SolverOptions.paper()
     options.database.scale = "small"
-    solver = iksel.Solver(robot, options)
+    solver = core.Solver(robot, options)
     batch = solver.solve_batch(poses)
     assert len(batch) == len(poses)
     for pose, row, status in zip(poses, batch, batch.statuses(), strict=True):

@@ -58,8 +58,8 @@ class IKSEL_EXPORT Solver {
   /// Solves many targets; result i belongs to target i and has the same bits whatever the number
   /// of threads and whatever else is in the batch. It has the bits that solve() gives, but for
   /// seeds in lanes: there a target has a lane to itself, and the answer may be another of its
-  /// solutions, within the same tolerances. `threads` = 0 takes one per core. Throws InvalidArgumentError naming the first bad pose,
-  /// before any is solved.
+  /// solutions, within the same tolerances. `threads` = 0 takes one per core. Throws
+  /// InvalidArgumentError naming the first bad pose, before any is solved.
   [[nodiscard]] std::vector<Result> solve_batch(const std::vector<Pose>& T_base_tip,
                                                 int threads = 0) const;
   /// The same over `count` 4x4 matrices, row by row, into arrays that the caller owns. An exception

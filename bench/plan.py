@@ -1,0 +1,388 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a report measures: jobs of cells, in two sizes.
+
+Times are taken with nothing else running, so timed jobs go one after another. A job is
+one process.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import iksel
+from bench.arms import PAPER_ARMS, RIVAL_ARMS
+from bench.cells import CEILING_ATTEMPTS
+from bench.rivals import RIVALS
+
+if TYPE_CHECKING:
+    from bench.store import Settings
+
+SEED = 1
+"""Seed of all targets."""
+
+SECTIONS = ("paper", "rivals", "robots")
+"""What --only takes."""
+
+SELECTIONS: dict[str, dict[str, Any]] = {
+    "Eq. (5), farthest": {},
+    "Eq. (5), in order": {"reselection": "next"},
+    "Eq. (2), in order": {"ranking": "nearest", "reselection": "next"},
+}
+"""The three methods of the paper's figures, as changes to the paper preset."""
+
+ROTATION_KEYS = ("rotation_vector", "matrix", "euler", "quaternion")
+
+
+@dataclass(frozen=True)
+class Size:
+    """How much is measured."""
+
+    paper: int
+    """Targets of the paper's tables."""
+    figure: int
+    """Targets for the times of the figures."""
+    figure_attempts: tuple[int, ...]
+    """#ReA that the figures' times are taken at."""
+    cvt_scales: tuple[str, ...]
+    """Sizes of the databases that are also sampled by CVT."""
+    rivals: dict[str, int]
+    """Targets per kind for a solver whose share is 1."""
+    robots: int
+    """Targets for the table of all robots."""
+    batch: int
+    """Poses in a batch."""
+    artefact: int
+    """Queries looked at for singular samples."""
+    share: float = 10.0
+    """Largest share that a solver may have."""
+
+
+FULL = Size(
+    paper=10_000,
+    figure=2_000,
+    figure_attempts=tuple(range(1, 21)),
+    cvt_scales=("small", "medium", "large"),
+    rivals={
+        "uniform": 2_000,
+        "near_limits": 1_000,
+        "near_singular": 1_000,
+        "lines": 1_000,
+        "unreachable": 100,
+    },
+    robots=20_000,
+    batch=10_000,
+    artefact=1_000,
+)
+
+QUICK = Size(
+    paper=1_000,
+    figure=200,
+    figure_attempts=(1, 3, 5, 10, 20),
+    cvt_scales=("small",),
+    rivals={
+        "uniform": 100,
+        "near_limits": 40,
+        "near_singular": 40,
+        "lines": 40,
+        "unreachable": 5,
+    },
+    robots=2_000,
+    batch=2_000,
+    artefact=200,
+)
+
+
+@dataclass(frozen=True)
+class Job:
+    """Cells measured by one process."""
+
+    name: str
+    section: str
+    robot: str
+    cells: list[Settings]
+    timed: bool = True
+    seconds: float = 1.0
+    """About how long it takes, for the progress bar."""
+
+
+def plan(size: Size, robots: list[str] | None, only: list[str] | None) -> list[Job]:
+    """All jobs of a report, those without times first.
+
+    Args:
+        size: How much.
+        robots: Keep only these robots; None: all.
+        only: Keep only these sections and solvers; None: all.
+    """
+    jobs = [*_target_jobs(size), *_paper_jobs(size), *_rival_jobs(size)]
+    jobs += _robot_jobs(size)
+    if robots is not None:
+        jobs = [job for job in jobs if job.robot in robots]
+    if only is not None:
+        jobs = [job for job in jobs if not job.timed or _wanted(job, only)]
+        sections = {job.section for job in jobs if job.timed}
+        jobs = [job for job in jobs if job.timed or job.section in sections]
+    return sorted(jobs, key=lambda job: job.timed)
+
+
+def _wanted(job: Job, only: list[str]) -> bool:
+    return job.section in only or any(cell.get("rival") in only for cell in job.cells)
+
+
+def rival_count(size: Size, name: str, kind: str) -> int:
+    """Targets of a kind for a solver."""
+    share = min(RIVALS[name].share, size.share)
+    return max(1, round(size.rivals[kind] * share))
+
+
+def paper_cell(
+    robot: str, size: Size, overrides: dict[str, Any], count: int | None = None
+) -> Settings:
+    """The paper preset with some options changed, by iksel.evaluate."""
+    return {
+        "cell": "evaluate",
+        "robot": robot,
+        "preset": "paper",
+        "overrides": overrides,
+        "count": size.paper if count is None else count,
+        "seed": SEED,
+    }
+
+
+def attempts_cell(robot: str, size: Size, overrides: dict[str, Any]) -> Settings:
+    """Success after each number of attempts."""
+    return {**paper_cell(robot, size, overrides), "cell": "attempts"}
+
+
+def curve_cell(
+    robot: str, size: Size, sampling: dict[str, Any], selection: str
+) -> Settings:
+    """Success over #ReA 1 to 20."""
+    changes = {**sampling, **SELECTIONS[selection], "max_attempts": 21}
+    return attempts_cell(robot, size, changes)
+
+
+def ceiling_cell(robot: str, size: Size, sampling: dict[str, Any]) -> Settings:
+    """Success after 100 attempts."""
+    many = {"max_attempts": CEILING_ATTEMPTS, "candidates": CEILING_ATTEMPTS}
+    return attempts_cell(robot, size, {**sampling, **many})
+
+
+def sampling_of(name: str, scale: str = "medium") -> dict[str, Any]:
+    """Overrides for a grid or CVT of a scale; the preset's own are left out."""
+    changes: dict[str, Any] = {}
+    if name == "cvt":
+        changes = {"database.sampling": "cvt", "database.samples": 0}
+    if scale != "medium":
+        changes["database.scale"] = scale
+    return changes
+
+
+def ablation_2(scheme: str) -> dict[str, Any]:
+    """Overrides of a row of Table II; a note after the name is another reading."""
+    name, _, note = scheme.partition(", ")
+    changes: dict[str, Any] = {} if name == "dls" else {"iteration": name}
+    return {**changes, **ABLATION_2_NOTES.get(note, {})}
+
+
+ABLATION_2_NOTES: dict[str, dict[str, Any]] = {
+    "6 steps": {"max_iterations": 6},
+    "growth stop on": {"growth_stop": "on"},
+}
+
+ABLATION_2_ROWS = (
+    "dls",
+    "pinv",
+    "pinv_rr",
+    "pinv_rr, 6 steps",
+    "cwln",
+    "cwpi",
+    "cwpi, growth stop on",
+)
+
+ABLATION_3_ROWS: dict[str, dict[str, Any]] = {
+    "Eq. (2)": {"ranking": "nearest", "reselection": "next"},
+    "Eq. (2), farthest": {"ranking": "nearest"},
+    "Eq. (5)": {},
+    "#ReA 3": {"max_attempts": 4},
+    "#ReA 5": {"max_attempts": 6},
+    "#ReA 10": {"max_attempts": 11},
+    "#ReA 20": {"max_attempts": 21},
+}
+
+
+def figure_cell(robot: str, size: Size, selection: str, rea: int) -> Settings:
+    """Mean and deviation of the time at one #ReA."""
+    changes = {**SELECTIONS[selection], "max_attempts": rea + 1}
+    return paper_cell(robot, size, changes, size.figure)
+
+
+def artefact_cell(robot: str, size: Size, overrides: dict[str, Any]) -> Settings:
+    """Singular samples that rank first."""
+    return {**paper_cell(robot, size, overrides, size.artefact), "cell": "artefact"}
+
+
+ARTEFACT_ROWS: dict[str, dict[str, Any]] = {
+    "grid, small": sampling_of("grid", "small"),
+    "grid, medium": sampling_of("grid"),
+    "grid, large": sampling_of("grid", "large"),
+    "cvt, small": sampling_of("cvt", "small"),
+    "low_discrepancy, medium": {
+        "database.sampling": "low_discrepancy",
+        "database.samples": 0,
+    },
+}
+
+
+def seeds_cell(robot: str, size: Size) -> Settings:
+    """IK-Geo's solutions as seeds of the paper's iteration."""
+    count = min(size.paper, 2_000)
+    cell = paper_cell(robot, size, {}, count)
+    return {**cell, "cell": "seeds", "rival": "IK-Geo", "kind": "uniform"}
+
+
+def _paper_jobs(size: Size) -> list[Job]:
+    jobs = []
+    for robot in PAPER_ARMS:
+        for sampling in ("grid", "cvt"):
+            scales = ("small", "medium", "large")
+            if sampling == "cvt":
+                scales = size.cvt_scales  # type: ignore[assignment]
+            cells = _table_cells(robot, size, sampling, scales)
+            seconds = len(cells) * size.paper * 2e-4 + 2
+            untimed = [cell for cell in cells if cell["cell"] == "attempts"]
+            timed = [cell for cell in cells if cell["cell"] != "attempts"]
+            name = f"paper {PAPER_ARMS[robot]} {sampling}"
+            jobs.append(Job(name, "paper", robot, timed, seconds=seconds))
+            jobs.append(
+                Job(f"{name}, curves", "paper", robot, untimed, timed=False, seconds=8)
+            )
+        figure = [
+            figure_cell(robot, size, selection, rea)
+            for selection in SELECTIONS
+            for rea in size.figure_attempts
+        ]
+        seconds = len(figure) * (size.figure * 3e-4 + 0.1)
+        name = f"paper {PAPER_ARMS[robot]} figures"
+        jobs.append(Job(name, "paper", robot, figure, seconds=seconds))
+        keys = [
+            attempts_cell(robot, size, {"database.rotation_key": key})
+            for key in ROTATION_KEYS
+        ]
+        name = f"paper {PAPER_ARMS[robot]} rotation keys"
+        jobs.append(Job(name, "paper", robot, keys, timed=False, seconds=10))
+    cells = [artefact_cell("ur3_wrs", size, row) for row in ARTEFACT_ROWS.values()]
+    name = "paper UR3 grid artefact"
+    jobs.append(Job(name, "paper", "ur3_wrs", cells, timed=False, seconds=40))
+    for robot in ("cvr038", "cvrb1213", "ur3_wrs"):
+        cells = [seeds_cell(robot, size)]
+        name = f"paper {PAPER_ARMS[robot]} IK-Geo as seed"
+        jobs.append(Job(name, "paper", robot, cells, seconds=20))
+    return jobs
+
+
+def _table_cells(
+    robot: str, size: Size, sampling: str, scales: tuple[str, ...]
+) -> list[Settings]:
+    """The cells of the three ablations with one sampling, each once."""
+    cells = [paper_cell(robot, size, sampling_of(sampling, scale)) for scale in scales]
+    if "medium" in scales:
+        base = sampling_of(sampling)
+        for scheme in ABLATION_2_ROWS:
+            cells.append(paper_cell(robot, size, {**base, **ablation_2(scheme)}))
+        for row in ABLATION_3_ROWS.values():
+            cells.append(paper_cell(robot, size, {**base, **row}))
+        cells += [curve_cell(robot, size, base, name) for name in SELECTIONS]
+        cells.append(ceiling_cell(robot, size, base))
+        cwln = {**base, **ablation_2("cwln")}
+        cells.append(attempts_cell(robot, size, cwln))
+    # One option changed from the preset may be none: rows of two tables are one cell.
+    return [cell for i, cell in enumerate(cells) if cell not in cells[:i]]
+
+
+def _target_jobs(size: Size) -> list[Job]:
+    jobs = []
+    for robot in RIVAL_ARMS:
+        for kind in size.rivals:
+            counts = sorted({rival_count(size, name, kind) for name in RIVALS})
+            cells = [target_cell(robot, kind, count) for count in counts]
+            seconds = sum(counts) * (1.5e-3 if kind == "near_singular" else 1e-4)
+            job = Job(
+                f"targets {robot} {kind}",
+                "rivals",
+                robot,
+                cells,
+                timed=False,
+                seconds=seconds + 1,
+            )
+            jobs.append(job)
+    return jobs
+
+
+def target_cell(robot: str, kind: str, count: int) -> Settings:
+    """Targets, made once for all solvers with that count."""
+    return {
+        "cell": "targets",
+        "robot": robot,
+        "kind": kind,
+        "count": count,
+        "seed": SEED,
+    }
+
+
+def rival_cell(robot: str, name: str, kind: str, size: Size) -> Settings:
+    """One solver on one kind of targets."""
+    count = rival_count(size, name, kind)
+    return {**target_cell(robot, kind, count), "cell": "rival", "rival": name}
+
+
+def batch_cell(robot: str, name: str, threads: int, size: Size) -> Settings:
+    """Many poses in one call."""
+    cell = target_cell(robot, "uniform", size.batch)
+    return {**cell, "cell": "batch", "rival": name, "threads": threads}
+
+
+BATCHES = (("ur3_wrs", "EAIK"), *((robot, "IKSel") for robot in RIVAL_ARMS))
+"""Robots and solvers of the batches."""
+
+BATCH_THREADS = (1, 2)
+
+
+def _rival_jobs(size: Size) -> list[Job]:
+    jobs = []
+    for robot in RIVAL_ARMS:
+        for name in RIVALS:
+            cells = [rival_cell(robot, name, kind, size) for kind in size.rivals]
+            seconds = 2 + 2e-3 * sum(size.rivals.values())
+            job = Job(f"{name} on {robot}", "rivals", robot, cells, seconds=seconds)
+            jobs.append(job)
+    for robot, name in BATCHES:
+        cells = [batch_cell(robot, name, threads, size) for threads in BATCH_THREADS]
+        job = Job(f"{name} in batches on {robot}", "rivals", robot, cells, seconds=3)
+        jobs.append(job)
+    return jobs
+
+
+def all_robots() -> list[str]:
+    """The built-in robots that have at least 6 joints."""
+    return [name for name in iksel.robot_names() if iksel.robot_info(name).dof >= 6]
+
+
+def robot_cell(robot: str, size: Size) -> Settings:
+    """The default preset by iksel.evaluate, with the time of each stage."""
+    return {
+        "cell": "evaluate",
+        "robot": robot,
+        "preset": "default",
+        "overrides": {},
+        "count": size.robots,
+        "seed": SEED,
+        "stages": True,
+    }
+
+
+def _robot_jobs(size: Size) -> list[Job]:
+    return [
+        Job(f"default on {robot}", "robots", robot, [robot_cell(robot, size)])
+        for robot in all_robots()
+    ]

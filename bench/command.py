@@ -105,7 +105,8 @@ def _report(options: argparse.Namespace, given: list[str]) -> int:
     failures = run_jobs(jobs, store, WORK)
     command = " ".join(["python -m bench", *given])
     seconds = time.monotonic() - begin
-    report = collect(jobs, store, size, command, seconds, failures)
+    report = collect(jobs, store, size, command=command, seconds=seconds)
+    report["failures"] = failures
     save_report(report, output)
     render(report, output)
     for name, reason in failures.items():

@@ -58,7 +58,7 @@ def cpu_name() -> str:
 
 
 def commit() -> str:
-    """The checkout's commit, with a + if tracked files outside bench/ differ from it."""
+    """The checkout's commit; with a + if files outside bench/ differ from it."""
     revision = _git("rev-parse", "--short=10", "HEAD")
     if not revision:
         return "unknown"
@@ -77,7 +77,7 @@ def _git(*arguments: str) -> str:
 
 @functools.cache
 def fingerprint() -> str:
-    """Changes whenever a stored figure would no longer be that of this machine and code.
+    """Changes when a stored figure would no longer be this machine's and code's.
 
     Made of the installed core, the measuring files, the interpreter and the processor.
     """

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-NONE = "–"
+NONE = "\N{EN DASH}"
 """What stands where there is no figure."""
 
 
@@ -40,4 +40,4 @@ def percent(part: float, whole: float, digits: int = 2) -> str:
 
 def signed(value: float, digits: int = 2) -> str:
     """A difference with its sign."""
-    return f"{value:+.{digits}f}".replace("-", "−")
+    return f"{value:+.{digits}f}".replace("-", "\N{MINUS SIGN}")

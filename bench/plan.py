@@ -288,10 +288,9 @@ def _table_cells(
     cells = [paper_cell(robot, size, sampling_of(sampling, scale)) for scale in scales]
     if "medium" in scales:
         base = sampling_of(sampling)
-        for scheme in ABLATION_2_ROWS:
-            cells.append(paper_cell(robot, size, {**base, **ablation_2(scheme)}))
-        for row in ABLATION_3_ROWS.values():
-            cells.append(paper_cell(robot, size, {**base, **row}))
+        rows = [ablation_2(scheme) for scheme in ABLATION_2_ROWS]
+        rows += ABLATION_3_ROWS.values()
+        cells += [paper_cell(robot, size, {**base, **row}) for row in rows]
         cells += [curve_cell(robot, size, base, name) for name in SELECTIONS]
         cells.append(ceiling_cell(robot, size, base))
         cwln = {**base, **ablation_2("cwln")}

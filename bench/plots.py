@@ -11,7 +11,7 @@ from bench import plan
 from bench.arms import PAPER_ARMS, RIVAL_ARMS
 from bench.paper.published import ROBOTS
 from bench.rivals import RIVALS
-from bench.sections.paper import curve
+from bench.sections.ablations import curve
 from bench.timing import QUANTILES
 
 if TYPE_CHECKING:
@@ -125,7 +125,7 @@ def _success_over_time(view: View, plt: Any) -> Any:
 
 def _legend(figure: Any, panels: Any) -> None:
     """One legend for all panels."""
-    entries = {}
+    entries: dict[str, Any] = {}
     for axes in panels.flat:
         handles, labels = axes.get_legend_handles_labels()
         entries.update(zip(labels, handles, strict=True))

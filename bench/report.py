@@ -27,14 +27,9 @@ DIGITS = 6
 
 
 def collect(
-    jobs: list[Job],
-    store: Store,
-    size: Size,
-    command: str,
-    seconds: float,
-    failures: dict[str, str],
+    jobs: list[Job], store: Store, size: Size, *, command: str, seconds: float
 ) -> Report:
-    """All results of some jobs as plain data."""
+    """All results of some jobs as plain data, and what they were made on."""
     cells = {}
     for job in jobs:
         for settings in job.cells:
@@ -55,7 +50,7 @@ def collect(
         "size": asdict(size),
         "versions": {name: version for name, (version, _) in versions.items()},
         "installed": {name: there for name, (_, there) in versions.items()},
-        "failures": failures,
+        "failures": {},
         "cells": list(cells.values()),
     }
 
@@ -99,19 +94,15 @@ def render(report: Report, folder: Path) -> None:
 
 def _head(report: Report) -> str:
     facts = report["machine"]
-    return "\n\n".join(
-        [
-            "# Results",
-            "Generated; nothing in here is written by hand.",
-            f"Made by `{report['command']}` in {report['seconds']} s (results that were "
-            "there already not counted), with IKSel "
-            f"{facts['iksel']} (lanes: {facts['simd']}) at commit {facts['commit']}, "
-            f"Python {facts['python']}, numpy {facts['numpy']}, on {facts['cpu']}, "
-            f"{facts['cores']} cores, {facts['system']}. "
-            "Times move from machine to machine; what is compared here was timed in the "
-            "same run.",
-        ]
+    made = (
+        f"Made by `{report['command']}` in {report['seconds']} s (results that were "
+        f"there already not counted), with IKSel {facts['iksel']} (lanes: "
+        f"{facts['simd']}) at commit {facts['commit']}, Python {facts['python']}, "
+        f"numpy {facts['numpy']}, on {facts['cpu']}, {facts['cores']} cores, "
+        f"{facts['system']}. Times move from machine to machine; what is compared "
+        "here was timed in the same run."
     )
+    return f"# Results\n\nGenerated; nothing in here is written by hand.\n\n{made}"
 
 
 def _tail(report: Report) -> str:

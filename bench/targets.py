@@ -15,7 +15,6 @@ unreachable    farther from the first joint than the arm is long.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,6 +23,7 @@ from bench.check import errors
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from pathlib import Path
 
     from bench.arms import Arm
     from bench.chain import Array, Chain
@@ -125,7 +125,7 @@ def smallest_singular_values(chain: Chain, q: Array) -> Array:
     """Smallest singular value of the Jacobian (of its 6 rows) at each row of q."""
     _, jacobian = chain.fk_jacobian(q)
     squares = np.linalg.eigvalsh(jacobian @ jacobian.transpose(0, 2, 1))[:, 0]
-    return np.sqrt(np.maximum(squares, 0.0))
+    return np.asarray(np.sqrt(np.maximum(squares, 0.0)))
 
 
 def singular_threshold(arm: Arm, seed: int) -> float:

@@ -21,7 +21,7 @@ class View:
     def __init__(self, report: Report) -> None:
         """Index the cells."""
         self.report = report
-        fields = {
+        fields: dict[str, Any] = {
             name: tuple(value) if isinstance(value, list) else value
             for name, value in report["size"].items()
         }

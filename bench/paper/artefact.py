@@ -31,7 +31,8 @@ def singular_first(solver: iksel.Solver, poses: Array) -> dict[str, Any]:
     database, options = solver.database, solver.options
     ranks = _ranks(solver)
     full = min(6, database.dof)
-    first = among = 0
+    first = 0
+    among = 0.0
     for pose in poses:
         target = _key(pose)
         near = database.nearest(pose, options.neighbours)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""An arm as the analytic solvers want it: axes and offsets at the zero configuration."""
+"""An arm as the analytic solvers want it: axes and offsets at zero joint values."""
 
 from __future__ import annotations
 

@@ -102,8 +102,8 @@ class Baseline(Rival):
         with tempfile.TemporaryDirectory() as folder:
             problem, answers = Path(folder) / "problem", Path(folder) / "answers"
             write_problem(problem, self._arm, targets)
-            command = [PROGRAM, self.solver, problem, answers, *self.options]
-            subprocess.run(command, check=True)
+            command = [str(PROGRAM), self.solver, str(problem), str(answers)]
+            subprocess.run([*command, *self.options], check=True)
             table = np.loadtxt(answers, ndmin=2)
         solved = table[:, 0] != 0
         q = table[:, 2:]
@@ -142,8 +142,8 @@ class KdlLma(Baseline):
     solver = "kdl_lma"
     options = ("--tolerance", "1e-6", "--starts", "20")
     settings = (
-        "ChainIkSolverPos_LMA, unit weights, 100 iterations, 20 random starts, wrapped, "
-        "1e-6 m and rad"
+        "ChainIkSolverPos_LMA, unit weights, 100 iterations, 20 random starts, "
+        "wrapped, 1e-6 m and rad"
     )
 
 

@@ -48,7 +48,7 @@ class Pinocchio(PythonRival):
         return (self._pin.SE3(pose[:3, :3], pose[:3, 3]), start)
 
     def call(self, *arguments: Any) -> Any:
-        """Newton with damping in the tip's frame, started anew where it does not end."""
+        """Damped Newton in the tip's frame, started anew where it does not end."""
         target, q = arguments
         for _ in range(STARTS):
             found = self._search(target, q)

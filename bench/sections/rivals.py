@@ -71,15 +71,15 @@ def _conditions(view: View) -> str:
     )
     return (
         f"{counts['uniform']:,} targets per robot uniform in the joint limits, seed 1 "
-        f"({shares}), the same for all; "
-        "one after another in one process per solver, on one thread where "
-        "the solver lets us choose; times are of each call, failures included, and from "
-        "Python unless the table of settings says C++. An answer is right if bench's own "
-        f"forward kinematics is within {POSITION_TOLERANCE:g} m and "
-        f"{ROTATION_TOLERANCE:g} rad of the target and it lies inside the limits (of an "
-        "analytic solver's branches, one has to be). Solvers that need a start all get "
-        "the same random one. Their tolerances are set so that their answers can pass: "
-        "some defaults are of a squared error."
+        f"({shares}), the same for all; one after another in one process per solver, "
+        "on one thread where the solver lets us choose; times are of each call, "
+        "failures included, and from Python unless the table of settings says C++. "
+        "An answer is right if bench's own forward kinematics is within "
+        f"{POSITION_TOLERANCE:g} m and {ROTATION_TOLERANCE:g} rad of the target and "
+        "it lies inside the limits (of an analytic solver's branches, one has to "
+        "be). Solvers that need a start all get the same random one. Their "
+        "tolerances are set so that their answers can pass: some defaults are of a "
+        "squared error."
     )
 
 
@@ -139,9 +139,9 @@ def _verdicts(view: View) -> list[str]:
         (robot, name), least = min(numerical.items(), key=lambda item: item[1])
         below = sorted(key for key, f in numerical.items() if f < TIMES_FASTER)
         lines.append(
-            f"Against numerical rivals IKSel is at least {least:.1f} times faster in the "
-            f"mean ({name} on `{robot}` comes closest); {TIMES_FASTER:.0f} times was the "
-            "aim"
+            f"Against numerical rivals IKSel is at least {least:.1f} times faster in "
+            f"the mean ({name} on `{robot}` comes closest); {TIMES_FASTER:.0f} times "
+            "was the aim"
             + (
                 ", missed against "
                 + ", ".join(

@@ -29,8 +29,10 @@ def text(view: View) -> str:
                     for name in ("mean_us", "median_us", "p99_us", "max_us")
                 ),
                 f"{cell['ratio']:.2f}",
-                f"{cell['query_us']:.2f} / {cell['rank_us']:.2f} / "
-                f"{cell['iterate_us']:.2f}",
+                " / ".join(
+                    f"{cell[name]:.2f}"
+                    for name in ("query_us", "rank_us", "iterate_us")
+                ),
             ]
         )
     if not rows:
@@ -46,13 +48,11 @@ def text(view: View) -> str:
         "ratio",
         "query / seeds / iterate",
     ]
-    return "\n\n".join(
-        [
-            "## Every robot, default preset",
-            f"{view.size.robots:,} targets per robot, seed 1, 1e-6 m and 1e-6 rad, timed "
-            "inside C++ on one thread. *ratio* is the mean over the time of one KDL "
-            "forward kinematics plus Jacobian on the same robot in the same run: how times "
-            "compare between machines.",
-            table(header, rows),
-        ]
+    conditions = (
+        f"{view.size.robots:,} targets per robot, seed 1, 1e-6 m and 1e-6 rad, timed "
+        "inside C++ on one thread. *ratio* is the mean over the time of one KDL forward "
+        "kinematics plus Jacobian on the same robot in the same run: how times compare "
+        "between machines."
     )
+    title = "## Every robot, default preset"
+    return f"{title}\n\n{conditions}\n\n{table(header, rows)}"

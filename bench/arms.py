@@ -10,7 +10,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import iksel
-from bench.chain import Chain, chain_from_urdf, chain_joints
+from bench.chain import (
+    MOVING,
+    Chain,
+    chain_from_urdf,
+    chain_joints,
+    joint_origin,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -48,29 +54,31 @@ def load_arm(name: str) -> Arm:
 def chain_urdf(robot: iksel.Robot) -> str:
     """A URDF that has only the joints from base to tip, and the tool as a last link.
 
-    Rivals parse whole files; what is not on the chain would be theirs to ignore.
+    Rivals parse whole files; what is not on the chain would be theirs to ignore. All
+    that is fixed behind the last joint that moves is one joint: OptIK composes two
+    wrongly. There are no safety controllers: pytracik takes them for limits of 0.
     """
     root = ET.Element("robot", name=robot.name)
     ET.SubElement(root, "link", name=robot.base_link)
-    for joint in chain_joints(robot.urdf, robot.base_link, robot.tip_link):
+    joints = chain_joints(robot.urdf, robot.base_link, robot.tip_link)
+    tool = robot.tcp
+    while joints[-1].attrib["type"] not in MOVING:
+        tool = joint_origin(joints.pop()) @ tool
+    last = ""
+    for joint in map(copy.deepcopy, joints):
         child = joint.find("child")
         assert child is not None
-        ET.SubElement(root, "link", name=child.attrib["link"])
-        # pytracik reads a safety_controller as limits of 0; the others leave it alone.
-        moving = copy.deepcopy(joint)
-        for controller in moving.findall("safety_controller"):
-            moving.remove(controller)
-        root.append(moving)
+        last = child.attrib["link"]
+        for controller in joint.findall("safety_controller"):
+            joint.remove(controller)
+        ET.SubElement(root, "link", name=last)
+        root.append(joint)
     ET.SubElement(root, "link", name=TCP_LINK)
-    tool = ET.SubElement(root, "joint", name="bench_tcp_joint", type="fixed")
-    ET.SubElement(tool, "parent", link=robot.tip_link)
-    ET.SubElement(tool, "child", link=TCP_LINK)
-    ET.SubElement(
-        tool,
-        "origin",
-        xyz=_words(robot.tcp[:3, 3]),
-        rpy=_words(iksel.euler_from_pose(robot.tcp)),
-    )
+    fixed = ET.SubElement(root, "joint", name="bench_tcp_joint", type="fixed")
+    ET.SubElement(fixed, "parent", link=last)
+    ET.SubElement(fixed, "child", link=TCP_LINK)
+    rpy = _words(iksel.euler_from_pose(tool))
+    ET.SubElement(fixed, "origin", xyz=_words(tool[:3, 3]), rpy=rpy)
     return ET.tostring(root, encoding="unicode")
 
 

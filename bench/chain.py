@@ -127,7 +127,7 @@ def chain_from_urdf(urdf: str, base_link: str, tip_link: str, tcp: Array) -> Cha
     offsets, prismatic, lower, upper = [], [], [], []
     pending = np.eye(4)
     for joint in chain_joints(urdf, base_link, tip_link):
-        pending = pending @ _origin(joint)
+        pending = pending @ joint_origin(joint)
         kind = joint.attrib["type"]
         if kind not in MOVING:
             continue
@@ -158,7 +158,7 @@ def _numbers(
     return np.array([float(word) for word in element.attrib[key].split()])
 
 
-def _origin(joint: ET.Element) -> Array:
+def joint_origin(joint: ET.Element) -> Array:
     """The transform of a joint's origin, R = Rz(yaw) Ry(pitch) Rx(roll)."""
     element = joint.find("origin")
     roll, pitch, yaw = _numbers(element, "rpy", (0.0, 0.0, 0.0))

@@ -19,8 +19,8 @@ POSITION_TOLERANCE = 1e-5
 """An answer's position is at most this far from the target's [m]."""
 ROTATION_TOLERANCE = 1e-5
 """An answer's rotation is at most this far from the target's [rad]."""
-LIMIT_SLACK = 1e-9
-"""Rounding allowed at a joint limit [rad or m]: whole turns are added in doubles."""
+LIMIT_SLACK = 1e-6
+"""Rounding allowed at a joint limit [rad or m]: TRAC-IK keeps limits as floats."""
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ one process.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import iksel
@@ -23,6 +23,8 @@ SEED = 1
 
 SECTIONS = ("paper", "rivals", "robots")
 """What --only takes."""
+
+ABLATION_1_SCALES = ("small", "medium", "large")
 
 SELECTIONS: dict[str, dict[str, Any]] = {
     "Eq. (5), farthest": {},
@@ -78,8 +80,8 @@ FULL = Size(
 QUICK = Size(
     paper=1_000,
     figure=200,
-    figure_attempts=(1, 3, 5, 10, 20),
-    cvt_scales=("small",),
+    figure_attempts=(1, 5, 20),
+    cvt_scales=(),
     rivals={
         "uniform": 100,
         "near_limits": 40,
@@ -99,11 +101,8 @@ class Job:
 
     name: str
     section: str
-    robot: str
     cells: list[Settings]
     timed: bool = True
-    seconds: float = 1.0
-    """About how long it takes, for the progress bar."""
 
 
 def plan(size: Size, robots: list[str] | None, only: list[str] | None) -> list[Job]:
@@ -114,19 +113,43 @@ def plan(size: Size, robots: list[str] | None, only: list[str] | None) -> list[J
         robots: Keep only these robots; None: all.
         only: Keep only these sections and solvers; None: all.
     """
-    jobs = [*_target_jobs(size), *_paper_jobs(size), *_rival_jobs(size)]
-    jobs += _robot_jobs(size)
-    if robots is not None:
-        jobs = [job for job in jobs if job.robot in robots]
-    if only is not None:
-        jobs = [job for job in jobs if not job.timed or _wanted(job, only)]
-        sections = {job.section for job in jobs if job.timed}
-        jobs = [job for job in jobs if job.timed or job.section in sections]
+    jobs = [*_paper_jobs(size), *_rival_jobs(size), _robots_job(size)]
+    jobs = [_kept(job, robots, only) for job in jobs]
+    jobs = [*_target_jobs(jobs), *(job for job in jobs if job.cells)]
     return sorted(jobs, key=lambda job: job.timed)
 
 
-def _wanted(job: Job, only: list[str]) -> bool:
-    return job.section in only or any(cell.get("rival") in only for cell in job.cells)
+def _kept(job: Job, robots: list[str] | None, only: list[str] | None) -> Job:
+    """The job with the cells that were asked for."""
+    cells = [
+        cell
+        for cell in job.cells
+        if (robots is None or cell["robot"] in robots)
+        and (only is None or job.section in only or cell.get("rival") in only)
+    ]
+    return replace(job, cells=cells)
+
+
+SECONDS_PER_TARGET = {
+    "evaluate": 2e-4,
+    "attempts": 1e-4,
+    "rival": 2e-3,
+    "targets": 1e-4,
+    "batch": 1e-5,
+    "artefact": 1e-2,
+    "seeds": 5e-3,
+}
+
+
+def seconds(cell: Settings) -> float:
+    """About how long a cell takes, for the progress bar."""
+    database = {"medium": 1.0, "small": 0.3, "large": 5.0}
+    overrides = cell.get("overrides", {})
+    fixed = database[overrides.get("database.scale", "medium")]
+    if overrides.get("database.sampling") == "cvt":
+        fixed *= 3.0
+    per_target: float = SECONDS_PER_TARGET[cell["cell"]]
+    return 0.2 + fixed / 5.0 + float(cell["count"]) * per_target
 
 
 def rival_count(size: Size, name: str, kind: str) -> int:
@@ -243,41 +266,31 @@ def seeds_cell(robot: str, size: Size) -> Settings:
 
 def _paper_jobs(size: Size) -> list[Job]:
     jobs = []
-    for robot in PAPER_ARMS:
+    for robot, short in PAPER_ARMS.items():
         for sampling in ("grid", "cvt"):
-            scales = ("small", "medium", "large")
-            if sampling == "cvt":
-                scales = size.cvt_scales  # type: ignore[assignment]
+            scales = ABLATION_1_SCALES if sampling == "grid" else size.cvt_scales
             cells = _table_cells(robot, size, sampling, scales)
-            seconds = len(cells) * size.paper * 2e-4 + 2
-            untimed = [cell for cell in cells if cell["cell"] == "attempts"]
+            curves = [cell for cell in cells if cell["cell"] == "attempts"]
             timed = [cell for cell in cells if cell["cell"] != "attempts"]
-            name = f"paper {PAPER_ARMS[robot]} {sampling}"
-            jobs.append(Job(name, "paper", robot, timed, seconds=seconds))
-            jobs.append(
-                Job(f"{name}, curves", "paper", robot, untimed, timed=False, seconds=8)
-            )
+            name = f"paper, {short}, {sampling}"
+            jobs.append(Job(f"{name}, curves", "paper", curves, timed=False))
+            jobs.append(Job(name, "paper", timed))
         figure = [
             figure_cell(robot, size, selection, rea)
             for selection in SELECTIONS
             for rea in size.figure_attempts
         ]
-        seconds = len(figure) * (size.figure * 3e-4 + 0.1)
-        name = f"paper {PAPER_ARMS[robot]} figures"
-        jobs.append(Job(name, "paper", robot, figure, seconds=seconds))
+        jobs.append(Job(f"paper, {short}, figures", "paper", figure))
         keys = [
             attempts_cell(robot, size, {"database.rotation_key": key})
             for key in ROTATION_KEYS
         ]
-        name = f"paper {PAPER_ARMS[robot]} rotation keys"
-        jobs.append(Job(name, "paper", robot, keys, timed=False, seconds=10))
-    cells = [artefact_cell("ur3_wrs", size, row) for row in ARTEFACT_ROWS.values()]
-    name = "paper UR3 grid artefact"
-    jobs.append(Job(name, "paper", "ur3_wrs", cells, timed=False, seconds=40))
-    for robot in ("cvr038", "cvrb1213", "ur3_wrs"):
-        cells = [seeds_cell(robot, size)]
-        name = f"paper {PAPER_ARMS[robot]} IK-Geo as seed"
-        jobs.append(Job(name, "paper", robot, cells, seconds=20))
+        name = f"paper, {short}, rotation keys"
+        jobs.append(Job(name, "paper", keys, timed=False))
+    artefact = [artefact_cell("ur3_wrs", size, row) for row in ARTEFACT_ROWS.values()]
+    jobs.append(Job("paper, grid artefact", "paper", artefact, timed=False))
+    seeded = [seeds_cell(robot, size) for robot in ("cvr038", "cvrb1213", "ur3_wrs")]
+    jobs.append(Job("paper, IK-Geo as seed", "paper", seeded))
     return jobs
 
 
@@ -299,23 +312,20 @@ def _table_cells(
     return [cell for i, cell in enumerate(cells) if cell not in cells[:i]]
 
 
-def _target_jobs(size: Size) -> list[Job]:
-    jobs = []
-    for robot in RIVAL_ARMS:
-        for kind in size.rivals:
-            counts = sorted({rival_count(size, name, kind) for name in RIVALS})
-            cells = [target_cell(robot, kind, count) for count in counts]
-            seconds = sum(counts) * (1.5e-3 if kind == "near_singular" else 1e-4)
-            job = Job(
-                f"targets {robot} {kind}",
-                "rivals",
-                robot,
-                cells,
-                timed=False,
-                seconds=seconds + 1,
-            )
-            jobs.append(job)
-    return jobs
+def _target_jobs(jobs: list[Job]) -> list[Job]:
+    """One job per robot for the targets that other jobs read."""
+    wanted: dict[str, list[Settings]] = {}
+    for job in jobs:
+        for cell in job.cells:
+            if "kind" in cell:
+                made = target_cell(cell["robot"], cell["kind"], cell["count"])
+                cells = wanted.setdefault(cell["robot"], [])
+                if made not in cells:
+                    cells.append(made)
+    return [
+        Job(f"targets, {robot}", "targets", cells, timed=False)
+        for robot, cells in wanted.items()
+    ]
 
 
 def target_cell(robot: str, kind: str, count: int) -> Settings:
@@ -348,18 +358,24 @@ BATCH_THREADS = (1, 2)
 
 
 def _rival_jobs(size: Size) -> list[Job]:
-    jobs = []
-    for robot in RIVAL_ARMS:
-        for name in RIVALS:
-            cells = [rival_cell(robot, name, kind, size) for kind in size.rivals]
-            seconds = 2 + 2e-3 * sum(size.rivals.values())
-            job = Job(f"{name} on {robot}", "rivals", robot, cells, seconds=seconds)
-            jobs.append(job)
-    for robot, name in BATCHES:
-        cells = [batch_cell(robot, name, threads, size) for threads in BATCH_THREADS]
-        job = Job(f"{name} in batches on {robot}", "rivals", robot, cells, seconds=3)
-        jobs.append(job)
-    return jobs
+    jobs = [
+        Job(
+            name,
+            "rivals",
+            [
+                rival_cell(robot, name, kind, size)
+                for robot in RIVAL_ARMS
+                for kind in size.rivals
+            ],
+        )
+        for name in RIVALS
+    ]
+    batches = [
+        batch_cell(robot, name, threads, size)
+        for robot, name in BATCHES
+        for threads in BATCH_THREADS
+    ]
+    return [*jobs, Job("batches", "rivals", batches)]
 
 
 def all_robots() -> list[str]:
@@ -380,8 +396,6 @@ def robot_cell(robot: str, size: Size) -> Settings:
     }
 
 
-def _robot_jobs(size: Size) -> list[Job]:
-    return [
-        Job(f"default on {robot}", "robots", robot, [robot_cell(robot, size)])
-        for robot in all_robots()
-    ]
+def _robots_job(size: Size) -> Job:
+    cells = [robot_cell(robot, size) for robot in all_robots()]
+    return Job("every robot", "robots", cells)

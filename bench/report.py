@@ -22,6 +22,9 @@ if TYPE_CHECKING:
     from bench.store import Store
     from bench.view import Report
 
+PLOTTED = "uniform"
+"""Targets whose distributions are kept for the plots."""
+
 DIGITS = 6
 """Significant digits of the figures that are kept."""
 
@@ -36,6 +39,8 @@ def collect(
             result = store.load(settings)
             if result is not None and settings["cell"] != "targets":
                 key = json.dumps(settings, sort_keys=True)
+                if settings.get("kind", PLOTTED) != PLOTTED:
+                    result = _without_quantiles(result)
                 cells[key] = {"settings": settings, "result": _rounded(result)}
     versions = {}
     for name, rival in RIVALS.items():
@@ -111,6 +116,10 @@ def _tail(report: Report) -> str:
         return ""
     lines = [f"- {name}: {reason}" for name, reason in failures.items()]
     return "\n".join(["## Failed", "", *lines])
+
+
+def _without_quantiles(result: dict[str, Any]) -> dict[str, Any]:
+    return {k: v for k, v in result.items() if not k.endswith("quantiles_us")}
 
 
 def _rounded(value: Any) -> Any:

@@ -10,52 +10,65 @@ import sys
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING, Self, TextIO
 
-from bench.machine import ROOT, fingerprint
+from bench.machine import ROOT
+from bench.plan import seconds
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from bench.plan import Job
-    from bench.store import Store
+    from bench.store import Settings, Store
 
 BAR_WIDTH = 24
 LIMIT_S = 900.0
-"""A worker that takes longer is ended."""
+"""A worker that takes longer is ended [s]."""
 
 
 class Bar:
     """One line on stderr: how far, how long, what now."""
 
-    def __init__(self, total: float, stream: TextIO = sys.stderr) -> None:
-        """A bar that is full at `total`."""
-        self._total = max(total, 1e-9)
-        self._done = 0.0
-        self._begin = time.monotonic()
+    def __init__(self, cells: list[Settings], store: Store, stream: TextIO) -> None:
+        """A bar over cells, of which the store has some already."""
+        self._missing = [cell for cell in cells if not store.has(cell)]
+        self._total = max(sum(map(seconds, self._missing)), 1e-9)
+        self._store = store
         self._stream = stream
-        self._lock = threading.Lock()
+        self._begin = time.monotonic()
+        self._what = ""
+        self._end = threading.Event()
+        self._thread = threading.Thread(target=self._watch, daemon=True)
 
-    def begin(self, what: str) -> None:
-        """Say what comes next."""
-        with self._lock:
-            self._draw(what)
+    def __enter__(self) -> Self:
+        """Begin to watch the store."""
+        self._thread.start()
+        return self
 
-    def advance(self, part: float, what: str) -> None:
-        """So much is done."""
-        with self._lock:
-            self._done += part
-            self._draw(what)
+    def __exit__(self, *exception: object) -> None:
+        """Draw the bar for the last time."""
+        self._end.set()
+        self._thread.join()
+        self._draw()
+        if self._stream.isatty():
+            self._stream.write("\n")
 
-    def _draw(self, what: str) -> None:
-        part = min(self._done / self._total, 1.0)
+    def say(self, what: str) -> None:
+        """What is being measured now."""
+        self._what = what
+
+    def _watch(self) -> None:
+        while not self._end.wait(1.0 if self._stream.isatty() else 15.0):
+            self._draw()
+
+    def _draw(self) -> None:
+        left = [cell for cell in self._missing if not self._store.has(cell)]
+        part = 1.0 - sum(map(seconds, left)) / self._total
         bar = "#" * int(part * BAR_WIDTH)
         passed = time.monotonic() - self._begin
-        line = f"[{bar:<{BAR_WIDTH}}] {part:4.0%} {passed:5.0f} s  {what}"
-        if self._stream.isatty():
-            self._stream.write(f"\r\033[K{line[:110]}")
-        else:
-            self._stream.write(line + "\n")
+        line = f"[{bar:<{BAR_WIDTH}}] {part:4.0%} {passed:5.0f} s  {self._what}"
+        before, after = ("\r\033[K", "") if self._stream.isatty() else ("", "\n")
+        self._stream.write(f"{before}{line[:100]}{after}")
         self._stream.flush()
 
 
@@ -65,40 +78,51 @@ def run_jobs(jobs: list[Job], store: Store, folder: Path) -> dict[str, str]:
     Jobs without times run on all cores at once, the others alone, one by one.
 
     Returns:
-        Why jobs failed, by their names; what they had done by then is kept.
+        Why cells failed, by their job and robot; all others are in the store.
     """
-    missing = [
-        job for job in jobs if not all(store.has(settings) for settings in job.cells)
-    ]
-    bar = Bar(sum(job.seconds for job in missing))
     failures: dict[str, str] = {}
+    cells = [cell for job in jobs for cell in job.cells]
+    with Bar(cells, store, sys.stderr) as bar:
 
-    def work(job: Job) -> None:
-        bar.begin(job.name)
-        reason = run_job(job, store, folder)
-        if reason:
-            failures[job.name] = reason
-        bar.advance(job.seconds, job.name)
+        def work(job: Job) -> None:
+            bar.say(job.name)
+            failures.update(run_job(job, store, folder))
 
-    with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
-        list(pool.map(work, [job for job in missing if not job.timed]))
-    for job in missing:
-        if job.timed:
-            work(job)
-    if missing and sys.stderr.isatty():
-        sys.stderr.write("\n")
+        with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
+            list(pool.map(work, [job for job in jobs if not job.timed]))
+        for job in jobs:
+            if job.timed:
+                work(job)
     return failures
 
 
-def run_job(job: Job, store: Store, folder: Path) -> str:
-    """Measure a job in a process of its own; why it failed, or ""."""
-    task = {
-        "folder": str(store.folder),
-        "fingerprint": fingerprint(),
-        "cells": [cell for cell in job.cells if not store.has(cell)],
-    }
+def run_job(job: Job, store: Store, folder: Path) -> dict[str, str]:
+    """Measure a job in processes of its own; why cells failed.
+
+    A cell that ends its process is left out, and another process does the rest.
+    """
     log = folder / "logs" / (job.name.replace(" ", "-").replace("/", "-") + ".txt")
     log.parent.mkdir(parents=True, exist_ok=True)
+    failures: dict[str, str] = {}
+    left = [cell for cell in job.cells if not store.has(cell)]
+    while left:
+        reason = _run_worker(left, store, log)
+        missing = [cell for cell in left if not store.has(cell)]
+        if missing:
+            culprit, *missing = missing
+            kind = culprit.get("kind", culprit["cell"])
+            failures[f"{job.name}, {culprit['robot']}, {kind}"] = reason
+        left = missing
+    return failures
+
+
+def _run_worker(cells: list[Settings], store: Store, log: Path) -> str:
+    """Feed one worker; why it failed, or ""."""
+    task = {
+        "folder": str(store.folder),
+        "fingerprint": store.fingerprint,
+        "cells": cells,
+    }
     paths = [str(ROOT), os.environ.get("PYTHONPATH", "")]
     environment = {
         **os.environ,
@@ -123,7 +147,5 @@ def run_job(job: Job, store: Store, folder: Path) -> str:
             )
         except subprocess.TimeoutExpired:
             return f"ended after {LIMIT_S:.0f} s"
-    if done.returncode == 0:
-        return ""
     tail = log.read_text(encoding="utf-8", errors="replace").strip().splitlines()
     return f"exit status {done.returncode}: {tail[-1] if tail else 'no output'}"

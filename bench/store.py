@@ -20,11 +20,11 @@ class Store:
     def __init__(self, folder: Path, fingerprint: str) -> None:
         """Results of another fingerprint are as good as none."""
         self.folder = folder
-        self._fingerprint = fingerprint
+        self.fingerprint = fingerprint
 
     def path(self, settings: Settings) -> Path:
         """The cell's file."""
-        key = json.dumps([self._fingerprint, settings], sort_keys=True)
+        key = json.dumps([self.fingerprint, settings], sort_keys=True)
         name = hashlib.sha256(key.encode()).hexdigest()[:20]
         return self.folder / f"{name}.json"
 
@@ -50,7 +50,7 @@ class Store:
         self.path(settings).unlink(missing_ok=True)
 
 
-def write_json(path: Path, content: object, indent: int | None = None) -> None:
+def write_json(path: Path, content: object, *, indent: int | None = None) -> None:
     """Write beside the file and rename."""
     path.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.NamedTemporaryFile(

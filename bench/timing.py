@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 WARM_UP = 20
 """Calls before the first timed one."""
 
-QUANTILES = np.unique(
-    np.concatenate([np.linspace(0.0, 0.99, 100), 1.0 - np.logspace(-2, -5, 31), [1.0]])
+QUANTILES = np.concatenate(
+    [np.linspace(0.0, 0.98, 50), [0.99, 0.995, 0.998, 0.999, 0.9995, 0.9999, 1.0]]
 )
 """The quantiles of a latency distribution that are kept for the plots."""
 

@@ -50,9 +50,9 @@ def text(view: View) -> str:
     ]
     conditions = (
         f"{view.size.robots:,} targets per robot, seed 1, 1e-6 m and 1e-6 rad, timed "
-        "inside C++ on one thread. *ratio* is the mean over the time of one KDL forward "
-        "kinematics plus Jacobian on the same robot in the same run: how times compare "
-        "between machines."
+        "inside C++ on one thread. *ratio* is the mean over the time of one KDL "
+        "forward kinematics plus Jacobian on the same robot in the same run: how "
+        "times compare between machines."
     )
     title = "## Every robot, default preset"
     return f"{title}\n\n{conditions}\n\n{table(header, rows)}"

@@ -72,7 +72,7 @@ FULL = Size(
         "lines": 1_000,
         "unreachable": 100,
     },
-    robots=20_000,
+    robots=100_000,
     batch=10_000,
     artefact=1_000,
 )

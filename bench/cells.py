@@ -123,9 +123,9 @@ def attempts(settings: Settings) -> dict[str, Any]:
     """
     solver = make_solver(settings)
     arm = load_arm(settings["robot"])
-    poses = arm.chain.fk(
-        arm.robot.random_configurations(settings["count"], settings["seed"])
-    )
+    q = arm.robot.random_configurations(settings["count"], settings["seed"])
+    # To the last bit the targets of iksel.evaluate.
+    poses = arm.robot.fk(q, iksel.Kinematics.kdl)
     result = solver.solve_batch(poses)
     longest = solver.options.max_attempts
     by_attempt = np.bincount(result.attempts[result.success], minlength=longest + 1)

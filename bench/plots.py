@@ -132,7 +132,7 @@ def _legend(figure: Any, panels: Any) -> None:
     figure.legend(
         entries.values(),
         entries.keys(),
-        loc="outside lower center",
+        loc="outside upper center",
         ncols=5,
         frameon=False,
     )

@@ -41,9 +41,15 @@ class Store:
         """Whether there is a file for the cell."""
         return self.path(settings).exists()
 
-    def save(self, settings: Settings, result: dict[str, Any]) -> None:
-        """Keep a result; an interruption leaves the old file or the new one."""
-        write_json(self.path(settings), {"settings": settings, "result": result})
+    def save(
+        self, settings: Settings, result: dict[str, Any], seconds: float = 0.0
+    ) -> None:
+        """Keep a result and how long it took.
+
+        An interruption leaves the old file or the new one.
+        """
+        content = {"settings": settings, "seconds": seconds, "result": result}
+        write_json(self.path(settings), content)
 
     def forget(self, settings: Settings) -> None:
         """Remove a result."""

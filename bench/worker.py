@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import sys
+import time
 import warnings
 from pathlib import Path
 
@@ -25,7 +26,9 @@ def main() -> None:
     store = Store(Path(job["folder"]), job["fingerprint"])
     for settings in job["cells"]:
         if not store.has(settings):
-            store.save(settings, CELLS[settings["cell"]](settings))
+            begin = time.monotonic()
+            result = CELLS[settings["cell"]](settings)
+            store.save(settings, result, seconds=time.monotonic() - begin)
 
 
 if __name__ == "__main__":

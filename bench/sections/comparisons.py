@@ -59,8 +59,9 @@ def _trac_ik(view: View) -> list[str]:
             ),
             table(["TRAC-IK", *HEADER], rows),
             (
-                "The published rates are those of a search that was ended early: the "
-                "same search reaches them in a small part of its 5 ms, and goes on."
+                "Ended at the times in the second row of each, these searches have the "
+                "published rates; a limit on time or restarts that is not stated would "
+                "explain them."
             ),
         ]
     if ours:
@@ -170,7 +171,7 @@ def _artefact(view: View) -> list[str]:
             "With some counts the grid has samples exactly on q3 = 0 or q5 = 0, "
             "where a UR3 is singular. The truncated pseudo-inverse leaves out the "
             "direction that would take long, so Eq. (5) puts these samples first. "
-            "Other samplings have none."
+            "Samplings that are not aligned with the set have few, and near it only."
         ),
         table(header, rows),
     ]

@@ -206,9 +206,9 @@ def artefact(settings: Settings) -> dict[str, Any]:
 
 
 def seeds(settings: Settings) -> dict[str, Any]:
-    """Solutions of another solver as seeds of the paper's iteration."""
+    """Solutions of another solver as the only seeds of the paper's iteration."""
     solver: Any = make_solver(settings)
-    if "seeds" not in (type(solver).solve.__doc__ or ""):
+    if "database_seeds" not in (type(solver).solve.__doc__ or ""):
         return {"unsupported": "this iksel has no Solver.solve(pose, seeds=...)"}
     arm = load_arm(settings["robot"])
     try:
@@ -220,11 +220,14 @@ def seeds(settings: Settings) -> dict[str, Any]:
     done = len(run.answers)
     direct = judge(arm.chain, goals.poses[:done], run.answers)
     times = np.array(run.times_ns, dtype=float)
-    answers = []
+    answers: list[list[Any]] = []
     for i, found in enumerate(run.answers):
-        given = np.array(found) if found else np.empty((0, arm.chain.dof))
+        if not found:
+            answers.append([])
+            continue
+        given = np.array(found)
         begin = time.perf_counter_ns()
-        result = solver.solve(goals.poses[i], seeds=given)
+        result = solver.solve(goals.poses[i], seeds=given, database_seeds=False)
         times[i] += time.perf_counter_ns() - begin
         answers.append([result.q] if result.success else [])
     tolerance = solver.options.position_tolerance, solver.options.rotation_tolerance

@@ -64,7 +64,7 @@ FULL = Size(
     paper=10_000,
     figure=2_000,
     figure_attempts=tuple(range(1, 21)),
-    cvt_scales=("small", "medium", "large"),
+    cvt_scales=("small", "medium"),
     rivals={
         "uniform": 2_000,
         "near_limits": 1_000,
@@ -245,16 +245,13 @@ def artefact_cell(robot: str, size: Size, overrides: dict[str, Any]) -> Settings
     return {**paper_cell(robot, size, overrides, size.artefact), "cell": "artefact"}
 
 
-ARTEFACT_ROWS: dict[str, dict[str, Any]] = {
-    "grid, small": sampling_of("grid", "small"),
-    "grid, medium": sampling_of("grid"),
-    "grid, large": sampling_of("grid", "large"),
-    "cvt, small": sampling_of("cvt", "small"),
-    "low_discrepancy, medium": {
-        "database.sampling": "low_discrepancy",
-        "database.samples": 0,
-    },
-}
+def artefact_rows(size: Size) -> dict[str, dict[str, Any]]:
+    """Overrides of the databases that are searched for singular samples."""
+    rows = {f"grid, {scale}": sampling_of("grid", scale) for scale in ABLATION_1_SCALES}
+    for scale in dict.fromkeys(("small", *size.cvt_scales)):
+        rows[f"cvt, {scale}"] = sampling_of("cvt", scale)
+    even = {"database.sampling": "low_discrepancy", "database.samples": 0}
+    return {**rows, "low_discrepancy, medium": even}
 
 
 def seeds_cell(robot: str, size: Size) -> Settings:
@@ -287,7 +284,8 @@ def _paper_jobs(size: Size) -> list[Job]:
         ]
         name = f"paper, {short}, rotation keys"
         jobs.append(Job(name, "paper", keys, timed=False))
-    artefact = [artefact_cell("ur3_wrs", size, row) for row in ARTEFACT_ROWS.values()]
+    rows = artefact_rows(size).values()
+    artefact = [artefact_cell("ur3_wrs", size, row) for row in rows]
     jobs.append(Job("paper, grid artefact", "paper", artefact, timed=False))
     seeded = [seeds_cell(robot, size) for robot in ("cvr038", "cvrb1213", "ur3_wrs")]
     jobs.append(Job("paper, IK-Geo as seed", "paper", seeded))

@@ -34,16 +34,13 @@ def singular_first(solver: iksel.Solver, poses: Array) -> dict[str, Any]:
     first = 0
     among = 0.0
     for pose in poses:
-        target = _key(pose)
         near = database.nearest(pose, options.neighbours)
-        adjustments = [
-            np.linalg.norm(
-                database.pseudo_inverse(i) @ (target - _key(database.pose(i)))
-            )
-            for i in near
-        ]
+        inverses = np.array([database.pseudo_inverse(i) for i in near])
+        differences = _keys(pose) - _keys(np.array([database.pose(i) for i in near]))
+        adjustments = np.einsum("kij,kj->ki", inverses, differences)
+        best = near[int(np.argmin(np.linalg.norm(adjustments, axis=1)))]
         among += float(np.mean(ranks[near] < full))
-        first += int(ranks[near[int(np.argmin(adjustments))]] < full)
+        first += int(ranks[best] < full)
     result = solver.solve_batch(poses)
     return {
         "samples": len(database),
@@ -55,9 +52,10 @@ def singular_first(solver: iksel.Solver, poses: Array) -> dict[str, Any]:
     }
 
 
-def _key(pose: Array) -> Array:
-    """[position; rotation vector], as the paper writes a pose."""
-    return np.concatenate([pose[:3, 3], iksel.rotation_vector_from_pose(pose)])
+def _keys(poses: Array) -> Array:
+    """[position; rotation vector], as the paper writes poses, (..., 4, 4)."""
+    rotations = iksel.rotation_vector_from_pose(poses)
+    return np.concatenate([poses[..., :3, 3], rotations], axis=-1)
 
 
 def _ranks(solver: iksel.Solver) -> Array:

@@ -32,7 +32,7 @@ class IkGeo(PythonRival):
     name = "IK-Geo"
     distribution = "ik-geo"
     settings = "the family that fits, all branches; limits are not its business"
-    limit_s = 20.0
+    limit_s = 3.0
 
     def __init__(self, arm: Arm) -> None:
         """Choose the family."""

@@ -137,7 +137,7 @@ def _rotation(view: View) -> list[str]:
 
 def _artefact(view: View) -> list[str]:
     rows = []
-    for label, overrides in plan.ARTEFACT_ROWS.items():
+    for label, overrides in plan.artefact_rows(view.size).items():
         cell = view.get(plan.artefact_cell("ur3_wrs", view.size, overrides))
         if cell is not None:
             rows.append(

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // baselines SOLVER PROBLEM ANSWERS [--tolerance X] [--time-limit S] [--starts N] [--seed N]
 //
-// Solves every target of a problem file (problem.hpp) one after another and writes one line for each:
-// whether it was solved, the time [ns], the configuration. bench/rivals/kdl.py runs it.
+// Solves every target of a problem file (problem.hpp) one after another and writes one line for
+// each: whether it was solved, the time [ns], the configuration. bench/rivals/kdl.py runs it.
 #include <algorithm>
 #include <cstdio>
 #include <map>
@@ -52,8 +52,8 @@ int run(int argc, char** argv) {
   const Problem problem = read_problem(argv[2]);
   const Settings settings = read_settings(argc, argv);
   const auto solver = make->second(problem, settings);
-  const auto limit =
-      std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(settings.time_limit));
+  const auto limit = std::chrono::duration_cast<Clock::duration>(
+      std::chrono::duration<double>(settings.time_limit));
 
   struct Answer {
     bool solved;

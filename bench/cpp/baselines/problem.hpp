@@ -2,10 +2,10 @@
 // What a baseline is given: a chain, its limits, targets and starts. Metres and radians.
 #pragma once
 
+#include <cstdint>
 #include <kdl/chain.hpp>
 #include <kdl/frames.hpp>
 #include <kdl/jntarray.hpp>
-#include <cstdint>
 #include <random>
 #include <string>
 #include <vector>
@@ -24,9 +24,9 @@ struct Problem {
   [[nodiscard]] unsigned dof() const { return lower.rows(); }
 };
 
-/// Reads the text that bench/rivals/kdl.py writes: dof; dof + 1 constant transforms (row-major 3x4);
-/// per joint prismatic (0 or 1), lower and upper limit; the number of targets; per target a transform
-/// and a start. Throws std::runtime_error.
+/// Reads the text that bench/rivals/kdl.py writes: dof; dof + 1 constant transforms (row-major
+/// 3x4); per joint prismatic (0 or 1), lower and upper limit; the number of targets; per target a
+/// transform and a start. Throws std::runtime_error.
 Problem read_problem(const std::string& path);
 
 /// Configurations uniform inside the limits; continuous joints in [-pi, pi).

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Newton and SLSQP at once, each on a thread of its own; the first answer ends both (Beeson and Ames
-// 2015). The second thread is kept between targets, so that its start is not in anybody's time.
+// Newton and SLSQP at once, each on a thread of its own; the first answer ends both (Beeson and
+// Ames 2015). The second thread is kept between targets, so that its start is not in anybody's
+// time.
 #include <condition_variable>
 #include <mutex>
 #include <thread>

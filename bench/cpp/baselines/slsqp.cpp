@@ -60,7 +60,8 @@ class Slsqp final : public Solver {
   }
 
  private:
-  /// |e|^2 with e = [p_target - p; rotation vector of R_target R^T]; its gradient is -2 J^T e, exactly.
+  /// |e|^2 with e = [p_target - p; rotation vector of R_target R^T]; its gradient is -2 J^T e,
+  /// exactly.
   static double objective(const std::vector<double>& x, std::vector<double>& gradient, void* self) {
     auto& s = *static_cast<Slsqp*>(self);
     if (s.stop_->now()) throw nlopt::forced_stop();

@@ -102,7 +102,11 @@ def _report(options: argparse.Namespace, given: list[str]) -> int:
         whole = not (options.quick or options.robots or options.only)
         output = BENCH if whole else WORK / "quick"
     begin = time.monotonic()
-    failures = run_jobs(jobs, store, WORK)
+    try:
+        failures = run_jobs(jobs, store, WORK)
+    except KeyboardInterrupt:
+        sys.stderr.write("bench: interrupted; the same command goes on from here\n")
+        return 130
     command = " ".join(["python -m bench", *given])
     seconds = time.monotonic() - begin
     report = collect(jobs, store, size, command=command, seconds=seconds)

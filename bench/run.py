@@ -83,20 +83,29 @@ def run_jobs(jobs: list[Job], store: Store, folder: Path) -> dict[str, str]:
     failures: dict[str, str] = {}
     cells = [cell for job in jobs for cell in job.cells]
     with Bar(cells, store, sys.stderr) as bar:
+        stop = threading.Event()
 
         def work(job: Job) -> None:
             bar.say(job.name)
-            failures.update(run_job(job, store, folder))
+            failures.update(run_job(job, store, folder, stop))
 
-        with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
-            list(pool.map(work, [job for job in jobs if not job.timed]))
-        for job in jobs:
-            if job.timed:
-                work(job)
+        pool = ThreadPoolExecutor(os.cpu_count() or 1)
+        try:
+            for future in [pool.submit(work, job) for job in jobs if not job.timed]:
+                future.result()
+            for job in jobs:
+                if job.timed:
+                    work(job)
+        finally:
+            # Ctrl-C ends the workers; no others are to be started for what they left.
+            stop.set()
+            pool.shutdown(cancel_futures=True)
     return failures
 
 
-def run_job(job: Job, store: Store, folder: Path) -> dict[str, str]:
+def run_job(
+    job: Job, store: Store, folder: Path, stop: threading.Event
+) -> dict[str, str]:
     """Measure a job in processes of its own; why cells failed.
 
     A cell that ends its process is left out, and another process does the rest.
@@ -105,7 +114,7 @@ def run_job(job: Job, store: Store, folder: Path) -> dict[str, str]:
     log.parent.mkdir(parents=True, exist_ok=True)
     failures: dict[str, str] = {}
     left = [cell for cell in job.cells if not store.has(cell)]
-    while left:
+    while left and not stop.is_set():
         reason = _run_worker(left, store, log)
         missing = [cell for cell in left if not store.has(cell)]
         if missing:

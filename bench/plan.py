@@ -16,6 +16,8 @@ from bench.cells import CEILING_ATTEMPTS
 from bench.rivals import RIVALS
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from bench.store import Settings
 
 SEED = 1
@@ -105,27 +107,39 @@ class Job:
     timed: bool = True
 
 
-def plan(size: Size, robots: list[str] | None, only: list[str] | None) -> list[Job]:
+def plan(
+    size: Size,
+    robots: Collection[str] | None,
+    only: Collection[str] | None,
+    rivals: Collection[str] = tuple(RIVALS),
+) -> list[Job]:
     """All jobs of a report, those without times first.
 
     Args:
         size: How much.
         robots: Keep only these robots; None: all.
         only: Keep only these sections and solvers; None: all.
+        rivals: The solvers that can be had.
     """
     jobs = [*_paper_jobs(size), *_rival_jobs(size), _robots_job(size)]
-    jobs = [_kept(job, robots, only) for job in jobs]
+    jobs = [_kept(job, robots, only, rivals) for job in jobs]
     jobs = [*_target_jobs(jobs), *(job for job in jobs if job.cells)]
     return sorted(jobs, key=lambda job: job.timed)
 
 
-def _kept(job: Job, robots: list[str] | None, only: list[str] | None) -> Job:
+def _kept(
+    job: Job,
+    robots: Collection[str] | None,
+    only: Collection[str] | None,
+    rivals: Collection[str],
+) -> Job:
     """The job with the cells that were asked for."""
     cells = [
         cell
         for cell in job.cells
         if (robots is None or cell["robot"] in robots)
         and (only is None or job.section in only or cell.get("rival") in only)
+        and ("rival" not in cell or cell["rival"] in rivals)
     ]
     return replace(job, cells=cells)
 

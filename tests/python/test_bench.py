@@ -168,6 +168,12 @@ class TestStore:
         assert store.load({**settings, "count": 2}) is None
         assert Store(tmp_path, "b").load(settings) is None
 
+    def test_another_version_of_a_rival_is_measured_again(self, tmp_path):
+        settings = {"cell": "rival", "rival": "EAIK"}
+        Store(tmp_path, "a", {"EAIK": "1", "OptIK": "1"}).save(settings, {"y": 1})
+        assert Store(tmp_path, "a", {"EAIK": "1", "OptIK": "2"}).has(settings)
+        assert not Store(tmp_path, "a", {"EAIK": "2"}).has(settings)
+
     def test_damaged_file_is_no_result(self, tmp_path):
         store = Store(tmp_path, "a")
         store.save({"cell": "x"}, {"y": 1})
@@ -223,6 +229,11 @@ class TestPlan:
         cells = [cell for job in jobs if job.timed for cell in job.cells]
         assert {cell["rival"] for cell in cells} == {"EAIK"}
         assert {cell["robot"] for cell in cells} == {"ur3_wrs"}
+
+    def test_rivals_that_are_not_there_are_left_out(self):
+        jobs = plan.plan(plan.QUICK, None, None, ["IKSel", "EAIK"])
+        cells = [cell for job in jobs for cell in job.cells]
+        assert {cell.get("rival", "EAIK") for cell in cells} == {"IKSel", "EAIK"}
 
     def test_worker_measures_a_cell(self, tmp_path):
         """One real cell through a real process."""

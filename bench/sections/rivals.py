@@ -247,10 +247,8 @@ def _batch_verdict(view: View) -> list[str]:
     if ours is None or theirs is None:
         return []
     factor = theirs["us_per_pose"] / ours["us_per_pose"]
-    return [
-        f"{OURS} on `{robot}` in batches, one thread: {factor:.1f} times as fast as "
-        f"{name}."
-    ]
+    where = f"{OURS} on `{robot}` in batches, one thread"
+    return [f"{where}: {factor:.1f} times as fast as {name}."]
 
 
 def _settings(view: View) -> str:

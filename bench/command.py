@@ -12,7 +12,7 @@ from bench import plan
 from bench.arms import RIVAL_ARMS
 from bench.cells import WORK
 from bench.guard import guard
-from bench.machine import fingerprint
+from bench.machine import fingerprint, stale
 from bench.report import (
     collect,
     installed_rivals,
@@ -108,6 +108,10 @@ def _report(options: argparse.Namespace, given: list[str]) -> int:
     if output is None:
         whole = not (options.quick or options.robots or options.only)
         output = BENCH if whole else WORK / "quick"
+    if stale():
+        sys.stderr.write(
+            "bench: cpp/ or python/ has changed since this iksel was installed\n"
+        )
     begin = time.monotonic()
     try:
         failures = run_jobs(jobs, store, WORK)

@@ -122,6 +122,8 @@ def _head(report: Report) -> str:
         f"{facts['system']}. Times move from machine to machine; what is compared "
         "here was timed in the same run."
     )
+    if facts.get("stale"):
+        made += " The sources have changed since this IKSel was built and installed."
     return f"# Results\n\nGenerated; nothing in here is written by hand.\n\n{made}"
 
 

@@ -51,6 +51,11 @@ def text(view: View) -> str:
             continue
         parts.append(_enough(view, kind))
     parts += [
+        "### Reachable positions, random rotations",
+        "Some have no solution, and a solver has to find that out.",
+        _rights_and_times(view, "any_rotation"),
+    ]
+    parts += [
         "### Out of reach: mean (p99) in µs until a solver says so",
         _times(view, "unreachable"),
         _unreachable_claims(view),

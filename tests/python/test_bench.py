@@ -19,7 +19,7 @@ from bench.store import Store
 ARMS = ("cvrb1213", "ur3_wrs", "panda")
 COUNT = 30
 SEED = 7
-REACHABLE = [kind for kind in targets.KINDS if kind != "unreachable"]
+REACHABLE = ["uniform", "near_limits", "near_singular", "lines"]
 
 
 @pytest.fixture(params=ARMS)
@@ -105,6 +105,19 @@ class TestTargets:
             assert np.abs(steps - steps[0]).max() < 1e-12
             length = np.linalg.norm(line[-1, :3, 3] - line[0, :3, 3])
             assert length == pytest.approx(targets.LINE_LENGTH)
+
+    def test_any_rotation(self, arm):
+        poses = targets.make_targets(arm, "any_rotation", COUNT, SEED).poses
+        reachable = targets.make_targets(arm, "uniform", COUNT, SEED).poses
+        assert np.array_equal(poses[:, :3, 3], reachable[:, :3, 3])
+        rotations = poses[:, :3, :3]
+        unit = rotations @ rotations.transpose(0, 2, 1)
+        assert np.abs(unit - np.eye(3)).max() < 1e-12
+        assert np.linalg.det(rotations).min() > 0
+        # Uniform over all rotations: angles between two have a mean of pi/2 + 2/pi.
+        many = targets.make_targets(arm, "any_rotation", 2_000, SEED).poses[:, :3, :3]
+        angles = check.rotation_distance(many[:1_000], many[1_000:])
+        assert angles.mean() == pytest.approx(np.pi / 2 + 2 / np.pi, abs=0.1)
 
     def test_unreachable(self, arm):
         made = targets.make_targets(arm, "unreachable", COUNT, SEED)

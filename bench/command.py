@@ -12,8 +12,14 @@ from bench import plan
 from bench.arms import RIVAL_ARMS
 from bench.cells import WORK
 from bench.guard import guard
-from bench.machine import fingerprint
-from bench.report import collect, load_report, render, save_report
+from bench.machine import fingerprint, stale
+from bench.report import (
+    collect,
+    installed_rivals,
+    load_report,
+    render,
+    save_report,
+)
 from bench.rivals import RIVALS
 from bench.run import run_jobs
 from bench.store import Store
@@ -88,11 +94,12 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _report(options: argparse.Namespace, given: list[str]) -> int:
     size = plan.QUICK if options.quick else plan.FULL
-    jobs = plan.plan(size, options.robots, options.only)
+    versions = installed_rivals()
+    jobs = plan.plan(size, options.robots, options.only, versions)
     if not jobs:
         sys.stderr.write("bench: nothing to do for these robots and parts\n")
         return 2
-    store = Store(WORK / "cells", fingerprint())
+    store = Store(WORK / "cells", fingerprint(), versions)
     if options.fresh:
         for job in jobs:
             for cell in job.cells:
@@ -101,6 +108,10 @@ def _report(options: argparse.Namespace, given: list[str]) -> int:
     if output is None:
         whole = not (options.quick or options.robots or options.only)
         output = BENCH if whole else WORK / "quick"
+    if stale():
+        sys.stderr.write(
+            "bench: cpp/ or python/ has changed since this iksel was installed\n"
+        )
     begin = time.monotonic()
     try:
         failures = run_jobs(jobs, store, WORK)

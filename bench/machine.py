@@ -42,6 +42,7 @@ def facts() -> dict[str, Any]:
         "iksel": iksel_cpp.__version__,
         "simd": iksel_cpp.simd_level(),
         "commit": commit(),
+        "stale": stale(),
     }
 
 
@@ -64,6 +65,13 @@ def commit() -> str:
         return "unknown"
     changed = _git("status", "--porcelain", "--untracked-files=no", "--", ":!bench")
     return revision + ("+" if changed else "")
+
+
+def stale() -> bool:
+    """Whether cpp/ or python/ have changed since the installed core was built."""
+    changed = _git("log", "-1", "--format=%ct", "--", "cpp", "python")
+    built = Path(iksel_cpp.__file__).stat().st_mtime
+    return bool(changed) and float(changed) > built
 
 
 def _git(*arguments: str) -> str:

@@ -16,6 +16,8 @@ from bench.cells import CEILING_ATTEMPTS
 from bench.rivals import RIVALS
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from bench.store import Settings
 
 SEED = 1
@@ -70,6 +72,7 @@ FULL = Size(
         "near_limits": 1_000,
         "near_singular": 1_000,
         "lines": 1_000,
+        "any_rotation": 100,
         "unreachable": 100,
     },
     robots=100_000,
@@ -87,6 +90,7 @@ QUICK = Size(
         "near_limits": 40,
         "near_singular": 40,
         "lines": 40,
+        "any_rotation": 5,
         "unreachable": 5,
     },
     robots=2_000,
@@ -105,27 +109,39 @@ class Job:
     timed: bool = True
 
 
-def plan(size: Size, robots: list[str] | None, only: list[str] | None) -> list[Job]:
+def plan(
+    size: Size,
+    robots: Collection[str] | None,
+    only: Collection[str] | None,
+    rivals: Collection[str] = tuple(RIVALS),
+) -> list[Job]:
     """All jobs of a report, those without times first.
 
     Args:
         size: How much.
         robots: Keep only these robots; None: all.
         only: Keep only these sections and solvers; None: all.
+        rivals: The solvers that can be had.
     """
     jobs = [*_paper_jobs(size), *_rival_jobs(size), _robots_job(size)]
-    jobs = [_kept(job, robots, only) for job in jobs]
+    jobs = [_kept(job, robots, only, rivals) for job in jobs]
     jobs = [*_target_jobs(jobs), *(job for job in jobs if job.cells)]
     return sorted(jobs, key=lambda job: job.timed)
 
 
-def _kept(job: Job, robots: list[str] | None, only: list[str] | None) -> Job:
+def _kept(
+    job: Job,
+    robots: Collection[str] | None,
+    only: Collection[str] | None,
+    rivals: Collection[str],
+) -> Job:
     """The job with the cells that were asked for."""
     cells = [
         cell
         for cell in job.cells
         if (robots is None or cell["robot"] in robots)
         and (only is None or job.section in only or cell.get("rival") in only)
+        and ("rival" not in cell or cell["rival"] in rivals)
     ]
     return replace(job, cells=cells)
 

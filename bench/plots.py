@@ -36,7 +36,7 @@ COLOURS = {
     "IK-Geo": "#7f7f7f",
     "Robotics Toolbox": "#1f77b4",
     "OptIK": "#2ca02c",
-    "TRAC-IK": "#ff7f0e",
+    "TRAC-IK (pytracik)": "#ff7f0e",
     "Pinocchio": "#9467bd",
     "TRAC-IK style": "#bcbd22",
     "KDL Newton + restarts": "#17becf",

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
@@ -42,22 +43,36 @@ def collect(
                 if settings.get("kind", PLOTTED) != PLOTTED:
                     result = _without_quantiles(result)
                 cells[key] = {"settings": settings, "result": _rounded(result)}
-    versions = {}
-    for name, rival in RIVALS.items():
-        try:
-            versions[name] = (rival.version(), True)
-        except UnsupportedError as reason:
-            versions[name] = (f"skipped: {reason}", False)
     return {
         "machine": machine.facts(),
         "command": command,
         "seconds": round(seconds),
         "size": asdict(size),
-        "versions": {name: version for name, (version, _) in versions.items()},
-        "installed": {name: there for name, (_, there) in versions.items()},
+        "versions": store.versions,
+        "missing": missing_rivals(),
         "failures": {},
         "cells": list(cells.values()),
     }
+
+
+def installed_rivals() -> dict[str, str]:
+    """Versions of the solvers that can be had here, by name."""
+    versions = {}
+    for name, rival in RIVALS.items():
+        with contextlib.suppress(UnsupportedError):
+            versions[name] = rival.version()
+    return versions
+
+
+def missing_rivals() -> dict[str, str]:
+    """Why the others cannot be had, by name."""
+    reasons = {}
+    for name, rival in RIVALS.items():
+        try:
+            rival.version()
+        except UnsupportedError as reason:
+            reasons[name] = str(reason)
+    return reasons
 
 
 def save_report(report: Report, folder: Path) -> None:
@@ -107,6 +122,8 @@ def _head(report: Report) -> str:
         f"{facts['system']}. Times move from machine to machine; what is compared "
         "here was timed in the same run."
     )
+    if facts.get("stale"):
+        made += " The sources have changed since this IKSel was built and installed."
     return f"# Results\n\nGenerated; nothing in here is written by hand.\n\n{made}"
 
 

@@ -130,6 +130,7 @@ def _run_worker(cells: list[Settings], store: Store, log: Path) -> str:
     task = {
         "folder": str(store.folder),
         "fingerprint": store.fingerprint,
+        "versions": store.versions,
         "cells": cells,
     }
     paths = [str(ROOT), os.environ.get("PYTHONPATH", "")]

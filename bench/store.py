@@ -17,14 +17,18 @@ Settings = dict[str, Any]
 class Store:
     """One file per cell in a folder."""
 
-    def __init__(self, folder: Path, fingerprint: str) -> None:
-        """Results of another fingerprint are as good as none."""
+    def __init__(
+        self, folder: Path, fingerprint: str, versions: dict[str, str] | None = None
+    ) -> None:
+        """Results of another fingerprint, or version of the rival, are not found."""
         self.folder = folder
         self.fingerprint = fingerprint
+        self.versions = versions or {}
 
     def path(self, settings: Settings) -> Path:
         """The cell's file."""
-        key = json.dumps([self.fingerprint, settings], sort_keys=True)
+        version = self.versions.get(settings.get("rival", ""), "")
+        key = json.dumps([self.fingerprint, version, settings], sort_keys=True)
         name = hashlib.sha256(key.encode()).hexdigest()[:20]
         return self.folder / f"{name}.json"
 

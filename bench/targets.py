@@ -9,6 +9,8 @@ near_singular  the Jacobian's smallest singular value is in the lowest 1 % (line
                in metres, angular in radians).
 lines          runs of poses on straight Cartesian lines, the rotation held; each pose
                has a configuration inside the limits.
+any_rotation   positions as in uniform, rotations uniform over all; some have no
+               solution.
 unreachable    farther from the first joint than the arm is long.
 """
 
@@ -19,6 +21,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+import iksel
 from bench.check import errors
 
 if TYPE_CHECKING:
@@ -53,8 +56,8 @@ class Targets:
     starts: Array
     """Where a solver that needs a start begins, uniform in the limits, (N, dof)."""
     witnesses: Array
-    """A configuration inside the limits that reaches each pose, (N, dof); NaN for
-    unreachable ones. No solver sees it."""
+    """A configuration inside the limits that reaches each pose, (N, dof); NaN where
+    none is known. No solver sees it."""
 
     def __len__(self) -> int:
         return len(self.poses)
@@ -248,11 +251,20 @@ def _unreachable(arm: Arm, count: int, seed: int) -> tuple[Array, Array]:
     return poses, np.full((count, chain.dof), np.nan)
 
 
+def _any_rotation(arm: Arm, count: int, seed: int) -> tuple[Array, Array]:
+    poses = arm.chain.fk(arm.robot.random_configurations(count, seed))
+    quaternions = np.random.default_rng(seed).normal(size=(count, 4))
+    quaternions /= np.linalg.norm(quaternions, axis=1, keepdims=True)
+    poses = iksel.pose_from_quaternion(poses[:, :3, 3], quaternions)
+    return poses, np.full((count, arm.chain.dof), np.nan)
+
+
 KINDS: dict[str, Callable[[Arm, int, int], tuple[Array, Array]]] = {
     "uniform": _uniform,
     "near_limits": _near_limits,
     "near_singular": _near_singular,
     "lines": _lines,
+    "any_rotation": _any_rotation,
     "unreachable": _unreachable,
 }
 """How the poses and witnesses of each kind are made."""

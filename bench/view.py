@@ -12,7 +12,8 @@ if TYPE_CHECKING:
     from bench.store import Settings
 
 Report = dict[str, Any]
-"""machine, command, seconds, size, versions, failures, and cells: settings, result."""
+"""machine, command, seconds, size, versions, missing, failures, and cells: settings,
+result."""
 
 
 class View:

@@ -23,7 +23,7 @@ def main() -> None:
     from bench.cells import CELLS  # noqa: PLC0415 - after the filter
     from bench.store import Store  # noqa: PLC0415
 
-    store = Store(Path(job["folder"]), job["fingerprint"])
+    store = Store(Path(job["folder"]), job["fingerprint"], job["versions"])
     for settings in job["cells"]:
         if not store.has(settings):
             begin = time.monotonic()

@@ -26,6 +26,11 @@ class IkselDefault(PythonRival):
         self._solver = iksel.Solver(arm.robot, self.options())
         self.call = self._solver.solve  # type: ignore[method-assign]
 
+    @classmethod
+    def version(cls) -> str:
+        """Of the module that is measured."""
+        return iksel.__version__
+
     @staticmethod
     def options() -> iksel.SolverOptions:
         """The settings."""

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 class TracIk(PythonRival):
     """TRAC-IK in a wheel without ROS."""
 
-    name = "TRAC-IK"
+    name = "TRAC-IK (pytracik)"
     distribution = "pytracik"
     settings = "Speed, 5 ms, epsilon 1e-6, random start"
 

@@ -32,19 +32,16 @@ def parts(view: View) -> list[str]:
 def _trac_ik(view: View) -> list[str]:
     ours = _nearest_rows(view, published.BESIDE_TRAC_IK)
     rows = []
-    for label, name in (
-        ("TRAC-IK style in C++", "TRAC-IK style"),
-        ("pytracik", "TRAC-IK"),
-    ):
+    for name in ("TRAC-IK style", "TRAC-IK (pytracik)"):
         cells = [
             view.get(plan.rival_cell(robot, name, "uniform", view.size))
             for robot in ROBOTS
         ]
         if any(cells):
-            rows.append([label, *(_trac_cell(cell, i) for i, cell in enumerate(cells))])
+            rows.append([name, *(_trac_cell(cell, i) for i, cell in enumerate(cells))])
             rows.append(
                 [
-                    f"{label}: time after which the published rate was reached, µs",
+                    f"{name}: time after which the published rate was reached, µs",
                     *(_time_to(cell, i) for i, cell in enumerate(cells)),
                 ]
             )
@@ -184,7 +181,8 @@ def _ik_geo(view: View) -> list[str]:
         cell = view.get(settings)
         theirs = [published.IK_GEO[how].get(robot) for how in ("direct", "as seed")]
         if cell is None:
-            reasons.append(f"`{robot}`: {view.why_not(settings)}")
+            missing = view.report["missing"].get("IK-Geo")
+            reasons.append(f"`{robot}`: {missing or view.why_not(settings)}")
             continue
         rows.append(
             [

@@ -46,10 +46,15 @@ def text(view: View) -> str:
         "![Latency of each solver](plots/latency.svg)",
     ]
     for kind, title in KIND_TITLES.items():
-        parts += [f"### {title}", "Right answers in percent.", _rights(view, kind)]
+        parts += [f"### {title}", _rights_and_times(view, kind)]
         if kind == "lines":
             continue
         parts.append(_enough(view, kind))
+    parts += [
+        "### Reachable positions, random rotations",
+        "Some have no solution, and a solver has to find that out.",
+        _rights_and_times(view, "any_rotation"),
+    ]
     parts += [
         "### Out of reach: mean (p99) in µs until a solver says so",
         _times(view, "unreachable"),
@@ -117,6 +122,15 @@ def _rights(view: View, kind: str) -> str:
 
     note = "(n false): answers claimed that are none."
     return table(_header("solver"), _cells(view, kind, show)) + "\n\n" + note
+
+
+def _rights_and_times(view: View, kind: str) -> str:
+    def show(cell: dict[str, Any]) -> str:
+        right = percent(cell["right"], cell["count"])
+        false = f" ({cell['false_claims']} false)" if cell["false_claims"] else ""
+        return f"{right}{false}; {microseconds(cell['mean_us'])}"
+
+    return table(_header("right answers in %; mean in µs"), _cells(view, kind, show))
 
 
 def factors(view: View) -> dict[tuple[str, str], float]:
@@ -226,13 +240,28 @@ def _batches(view: View) -> str:
             )
     header = [f"µs per pose, {view.size.batch:,} poses"]
     header += [f"{threads} thread" + "s" * (threads > 1) for threads in BATCH_THREADS]
-    return table([*header, "right %"], rows)
+    return "\n\n".join([table([*header, "right %"], rows), *_batch_verdict(view)])
+
+
+def _batch_verdict(view: View) -> list[str]:
+    robot, name = BATCHES[0]
+    ours, theirs = (
+        view.get(batch_cell(robot, solver, BATCH_THREADS[0], view.size))
+        for solver in (OURS, name)
+    )
+    if ours is None or theirs is None:
+        return []
+    factor = theirs["us_per_pose"] / ours["us_per_pose"]
+    where = f"{OURS} on `{robot}` in batches, one thread"
+    return [f"{where}: {factor:.1f} times as fast as {name}."]
 
 
 def _settings(view: View) -> str:
     rows = []
     for name, rival in RIVALS.items():
-        version = view.report["versions"][name]
+        version = view.report["versions"].get(name)
+        if version is None:
+            version = f"skipped: {view.report['missing'][name]}"
         rows.append([name, version, rival.measured, rival.settings])
     lines = [
         "| solver | version | timed | settings |",
@@ -246,7 +275,6 @@ def _settings(view: View) -> str:
             for robot in RIVAL_ARMS
             if (why := view.why_not(rival_cell(robot, name, "uniform", view.size)))
             and why != "not measured"
-            and view.report["installed"][name]
         }
     )
     if refused:

@@ -19,7 +19,7 @@ from bench.store import Store
 ARMS = ("cvrb1213", "ur3_wrs", "panda")
 COUNT = 30
 SEED = 7
-REACHABLE = [kind for kind in targets.KINDS if kind != "unreachable"]
+REACHABLE = ["uniform", "near_limits", "near_singular", "lines"]
 
 
 @pytest.fixture(params=ARMS)
@@ -106,6 +106,19 @@ class TestTargets:
             length = np.linalg.norm(line[-1, :3, 3] - line[0, :3, 3])
             assert length == pytest.approx(targets.LINE_LENGTH)
 
+    def test_any_rotation(self, arm):
+        poses = targets.make_targets(arm, "any_rotation", COUNT, SEED).poses
+        reachable = targets.make_targets(arm, "uniform", COUNT, SEED).poses
+        assert np.array_equal(poses[:, :3, 3], reachable[:, :3, 3])
+        rotations = poses[:, :3, :3]
+        unit = rotations @ rotations.transpose(0, 2, 1)
+        assert np.abs(unit - np.eye(3)).max() < 1e-12
+        assert np.linalg.det(rotations).min() > 0
+        # Uniform over all rotations: angles between two have a mean of pi/2 + 2/pi.
+        many = targets.make_targets(arm, "any_rotation", 2_000, SEED).poses[:, :3, :3]
+        angles = check.rotation_distance(many[:1_000], many[1_000:])
+        assert angles.mean() == pytest.approx(np.pi / 2 + 2 / np.pi, abs=0.1)
+
     def test_unreachable(self, arm):
         made = targets.make_targets(arm, "unreachable", COUNT, SEED)
         origin = arm.chain.offsets[0, :3, 3]
@@ -168,6 +181,12 @@ class TestStore:
         assert store.load({**settings, "count": 2}) is None
         assert Store(tmp_path, "b").load(settings) is None
 
+    def test_another_version_of_a_rival_is_measured_again(self, tmp_path):
+        settings = {"cell": "rival", "rival": "EAIK"}
+        Store(tmp_path, "a", {"EAIK": "1", "OptIK": "1"}).save(settings, {"y": 1})
+        assert Store(tmp_path, "a", {"EAIK": "1", "OptIK": "2"}).has(settings)
+        assert not Store(tmp_path, "a", {"EAIK": "2"}).has(settings)
+
     def test_damaged_file_is_no_result(self, tmp_path):
         store = Store(tmp_path, "a")
         store.save({"cell": "x"}, {"y": 1})
@@ -223,6 +242,11 @@ class TestPlan:
         cells = [cell for job in jobs if job.timed for cell in job.cells]
         assert {cell["rival"] for cell in cells} == {"EAIK"}
         assert {cell["robot"] for cell in cells} == {"ur3_wrs"}
+
+    def test_rivals_that_are_not_there_are_left_out(self):
+        jobs = plan.plan(plan.QUICK, None, None, ["IKSel", "EAIK"])
+        cells = [cell for job in jobs for cell in job.cells]
+        assert {cell.get("rival", "EAIK") for cell in cells} == {"IKSel", "EAIK"}
 
     def test_worker_measures_a_cell(self, tmp_path):
         """One real cell through a real process."""

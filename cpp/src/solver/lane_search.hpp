@@ -25,13 +25,32 @@ class LaneSearch {
              const lanes::LaneKernels& kernels);
 
   /// Calls `accept(q)` for every converged q until it says true, or the work bound is reached.
-  /// `seed` may be null. Counts seeds and pack iterations.
+  /// `seed` may be null. Counts seeds and pack iterations. `go_on()` is asked after each group of
+  /// seeds; false ends the search.
+  template <typename Accept, typename GoOn>
+  bool run(const Pose& tip_target, const JointVector* seed, StageClock& clock, int& attempts,
+           int& iterations, const Accept& accept, const GoOn& go_on);
   template <typename Accept>
   bool run(const Pose& tip_target, const JointVector* seed, StageClock& clock, int& attempts,
-           int& iterations, const Accept& accept);
+           int& iterations, const Accept& accept) {
+    return run(tip_target, seed, clock, attempts, iterations, accept, [] { return true; });
+  }
+
+  void set_target(const Pose& tip_target);
+  template <typename Accept>
+  bool iterate_seed(const double* q, int& attempts, int& iterations, const Accept& accept) {
+    load_seed(q);
+    return solve_seeds(1, attempts, iterations, accept);
+  }
 
  private:
-  void set_target(const Pose& tip_target);
+  void load_seed(const double* q) {
+    for (int j = 0; j < model_.dof; ++j) {
+      seeds_[static_cast<std::size_t>(j * lanes::kGroup)] =
+          std::min(std::max(q[j], chain_.joint[j].limited ? model_.lower[j] : q[j]),
+                   chain_.joint[j].limited ? model_.upper[j] : q[j]);
+    }
+  }
   /// The seeds of a group that lie inside the limits, moved to the front; how many.
   int prepare(const double* group);
   template <typename Accept>
@@ -73,9 +92,9 @@ bool LaneSearch::solve_seeds(int count, int& attempts, int& iterations, const Ac
   return false;
 }
 
-template <typename Accept>
+template <typename Accept, typename GoOn>
 bool LaneSearch::run(const Pose& tip_target, const JointVector* seed, StageClock& clock,
-                     int& attempts, int& iterations, const Accept& accept) {
+                     int& attempts, int& iterations, const Accept& accept, const GoOn& go_on) {
   const auto iterate = [&](int count) {
     clock.lap(&StageTimes::rank);
     const bool solved = solve_seeds(count, attempts, iterations, accept);
@@ -84,16 +103,13 @@ bool LaneSearch::run(const Pose& tip_target, const JointVector* seed, StageClock
   };
   set_target(tip_target);
   if (seed != nullptr) {
-    for (int j = 0; j < model_.dof; ++j) {
-      seeds_[static_cast<std::size_t>(j * lanes::kGroup)] =
-          std::min(std::max((*seed)[j], chain_.joint[j].limited ? model_.lower[j] : (*seed)[j]),
-                   chain_.joint[j].limited ? model_.upper[j] : (*seed)[j]);
-    }
+    load_seed(seed->data());
     if (iterate(1)) return true;
   }
   const double* leaf = data_.leaves.group(key_);
   clock.lap(&StageTimes::query);
   if (iterate(prepare(leaf))) return true;
+  if (!go_on()) return false;
 
   // Widening stages: each asks for four times as many and tries those it has not tried yet.
   std::size_t done = 0;
@@ -110,6 +126,7 @@ bool LaneSearch::run(const Pose& tip_target, const JointVector* seed, StageClock
       }
       if (attempts >= options_.max_attempts) return false;
       if (iterate(prepare(group_.data()))) return true;
+      if (!go_on()) return false;
     }
     done = found;
   }
@@ -123,6 +140,7 @@ bool LaneSearch::run(const Pose& tip_target, const JointVector* seed, StageClock
       }
     }
     if (iterate(lanes::kGroup)) return true;
+    if (!go_on()) return false;
   }
   return false;
 }

@@ -9,6 +9,8 @@
 #include "iksel/solver.hpp"
 #include "iteration/iterate.hpp"
 #include "selection/selection.hpp"
+#include "solver/explore.hpp"
+#include "solver/found.hpp"
 #include "solver/lane_search.hpp"
 
 namespace iksel {
@@ -22,6 +24,8 @@ struct Workspace {
   std::unique_ptr<KdlChain> kdl;
   /// Only if the options solve in lanes.
   std::unique_ptr<LaneSearch> lanes;
+  /// Of solves with wishes.
+  Found found;
 };
 
 struct Solver::Impl {
@@ -33,6 +37,11 @@ struct Solver::Impl {
   /// The whole pipeline for one valid target; `seed` and `times` may be null.
   Result solve(const Pose& T_base_tip, const JointVector* seed, Workspace& workspace,
                StageTimes* times) const;
+
+  /// The whole pipeline for one valid target with wishes.
+  Result solve(const Pose& T_base_tip, const SolveRequest& request, Workspace& workspace) const;
+  Solutions solve_all(const Pose& T_base_tip, const AllOptions& all, const SolveRequest& request,
+                      Workspace& workspace) const;
 
   /// A workspace of this solver, given back when it goes.
   class Lease {
@@ -53,6 +62,13 @@ struct Solver::Impl {
   Database database;
 
  private:
+  class Judge;
+  /// Collects solutions in workspace.found.
+  void explore(Exploration& search, Workspace& workspace) const;
+  void explore_in_lanes(Exploration& search, const Pose& tip_target, LaneSearch& lanes,
+                        FunctionRef<bool(JointVector&)> accept, FunctionRef<bool()> go_on) const;
+  void explore_one_by_one(Exploration& search, const Pose& tip_target, Workspace& workspace,
+                          FunctionRef<bool(JointVector&)> accept, FunctionRef<bool()> go_on) const;
   Result finish(Result result, const Pose& target, const JointVector& q) const;
 
   /// Workspaces that lie idle; a null is a place to put one back. More solves at once than places

@@ -2,6 +2,7 @@
 #include "solver/explore.hpp"
 
 #include <algorithm>
+#include <vector>
 
 #include "solver/given_seeds.hpp"
 #include "solver/solver_impl.hpp"
@@ -27,19 +28,27 @@ void Solver::Impl::explore(Exploration& search, Workspace& workspace) const {
 
   const Deadline deadline(search.request.deadline);
   const auto accept = [&](JointVector& q) {
+    double position = 0;
+    double rotation = 0;
+    measure_error(model, search.T_base_tip, q, position, rotation);
+    if (!(position <= options.position_tolerance && rotation <= options.rotation_tolerance)) {
+      return Verdict::refine;
+    }
     model.wrap_into_limits(q.data());
-    const Result measured = finish(Result{}, search.T_base_tip, q);
-    if (!measured.success()) return false;
+    if (!model.within_limits(q.data())) {
+      search.status = Status::outside_limits;
+      return Verdict::next;
+    }
     if (search.request.near) {
       take_nearest_turns(model, *search.request.near, q);
     } else {
       take_first_turns(model, q);
     }
     found.add(q, search.min_distance);
-    return false;
+    return Verdict::next;
   };
   const auto go_on = [&] {
-    if (search.enough()) return false;
+    if (search.enough(search.work.attempts)) return false;
     search.out_of_time = deadline.passed();
     return !search.out_of_time;
   };
@@ -54,29 +63,37 @@ void Solver::Impl::explore(Exploration& search, Workspace& workspace) const {
 }
 
 void Solver::Impl::explore_in_lanes(Exploration& search, const Pose& tip_target, LaneSearch& lanes,
-                                    FunctionRef<bool(JointVector&)> accept,
+                                    FunctionRef<Verdict(JointVector&)> accept,
                                     FunctionRef<bool()> go_on) const {
   lanes.set_target(tip_target);
+  Work& work = search.work;
+  const auto iterate_seeds = [&](const double* const* seeds, int count) {
+    lanes.iterate(
+        count, work, [&](int k, int lane) { lanes.load_seed(lane, seeds[k]); }, accept);
+  };
   if (search.request.near) {
-    lanes.iterate_seed(search.request.near->data(), search.attempts, search.iterations, accept);
+    const double* near = search.request.near->data();
+    iterate_seeds(&near, 1);
   }
   if (!search.request.seeds.empty()) {
     GivenSeeds given(robot.model(), options, tip_target, search.request.seeds);
-    int k = 0;
-    while (search.attempts < options.max_attempts) {
-      const double* seed = given.next(k++);
-      if (seed == nullptr) break;
-      lanes.iterate_seed(seed, search.attempts, search.iterations, accept);
-      if (k % kStage == 0 && !go_on()) return;
+    std::vector<const double*> order;
+    while (const double* seed = given.next(static_cast<int>(order.size()))) order.push_back(seed);
+    const int count = static_cast<int>(order.size());
+    for (int first = 0; first < count; first += lanes::kGroup) {
+      iterate_seeds(&order[static_cast<std::size_t>(first)],
+                    std::min(lanes::kGroup, count - first));
+      if (!go_on()) return;
     }
   }
   if (!go_on() || !search.request.database_seeds) return;
   StageClock clock(nullptr);
-  lanes.run(tip_target, nullptr, clock, search.attempts, search.iterations, accept, go_on);
+  lanes.run(tip_target, nullptr, clock, work, accept, go_on);
 }
 
 void Solver::Impl::explore_one_by_one(Exploration& search, const Pose& tip_target,
-                                      Workspace& workspace, FunctionRef<bool(JointVector&)> accept,
+                                      Workspace& workspace,
+                                      FunctionRef<Verdict(JointVector&)> accept,
                                       FunctionRef<bool()> go_on) const {
   const ChainModel& model = robot.model();
   Random random(options.seed);
@@ -84,15 +101,15 @@ void Solver::Impl::explore_one_by_one(Exploration& search, const Pose& tip_targe
                                  random};
   const auto attempt = [&](const double* from) {
     JointVector q = Eigen::Map<const Eigen::VectorXd>(from, model.dof);
-    ++search.attempts;
-    const Outcome outcome = iterate(context, q, search.iterations);
+    ++search.work.attempts;
+    const Outcome outcome = iterate(context, q, search.work.iterations);
     if (outcome == Outcome::outside_limits) search.status = Status::outside_limits;
     if (outcome == Outcome::solved) accept(q);
   };
 
   if (search.request.near) attempt(search.request.near->data());
-  const int on_top = search.attempts;
-  const auto left = [&] { return search.attempts - on_top < options.max_attempts; };
+  const int on_top = search.work.attempts;
+  const auto left = [&] { return search.work.attempts - on_top < options.max_attempts; };
   const auto try_all = [&](auto& seeds) {
     for (int k = 0; left(); ++k) {
       if (k % kStage == 0 && !go_on()) return false;

@@ -8,6 +8,7 @@
 
 #include "iksel/result.hpp"
 #include "solver/found.hpp"
+#include "solver/lane_search.hpp"
 #include "util/function_ref.hpp"
 
 namespace iksel {
@@ -38,11 +39,10 @@ struct Exploration {
   /// Solutions nearer than this in every joint are one.
   double min_distance;
   /// Asked between the groups of seeds; true ends the search.
-  FunctionRef<bool()> enough;
+  FunctionRef<bool(int attempts)> enough;
 
   Status status = Status::not_converged;  ///< solved if anything was found
-  int attempts = 0;
-  int iterations = 0;
+  Work work = {};
   bool out_of_time = false;
 };
 
@@ -50,17 +50,16 @@ struct Exploration {
 /// new.
 class Saturation {
  public:
-  explicit Saturation(int patience) : patience_(patience) {}
   bool reached(std::size_t found, int attempts) {
     if (found > found_) {
       found_ = found;
       last_ = attempts;
     }
-    return found_ > 0 && attempts - last_ >= patience_;
+    return found_ > 0 && attempts - last_ >= kSeeds;
   }
 
  private:
-  int patience_;
+  static constexpr int kSeeds = 64;
   std::size_t found_ = 0;
   int last_ = 0;
 };

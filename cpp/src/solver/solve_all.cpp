@@ -13,8 +13,6 @@
 namespace iksel {
 namespace {
 
-/// Seeds in a row without a new branch after which there is most likely none.
-constexpr int kPatience = 64;
 /// Solutions of a redundant arm from which the asked for are spread: so many for each.
 constexpr std::size_t kChoice = 4;
 /// Copies by whole turns looked at, at most.
@@ -121,20 +119,18 @@ Solutions Solver::Impl::solve_all(const Pose& T_base_tip, const AllOptions& all,
   const bool redundant = model.dof > 6;
   const auto most = static_cast<std::size_t>(all.max);
   Found& found = workspace.found;
-  Saturation saturation(kPatience);
-  Exploration* running = nullptr;
-  const auto enough = [&] {
+  Saturation saturation;
+  const auto enough = [&](int attempts) {
     if (redundant && found.size() >= std::max<std::size_t>(kChoice * most, 64)) return true;
-    return saturation.reached(found.size(), running->attempts);
+    return saturation.reached(found.size(), attempts);
   };
-  Exploration search{T_base_tip, request, all.min_distance, FunctionRef<bool()>(enough)};
-  running = &search;
+  Exploration search{T_base_tip, request, all.min_distance, FunctionRef<bool(int)>(enough)};
   explore(search, workspace);
 
   Solutions solutions;
   solutions.status = search.status;
-  solutions.attempts = search.attempts;
-  solutions.iterations = search.iterations;
+  solutions.attempts = search.work.attempts;
+  solutions.iterations = search.work.iterations;
 
   const JointMove move(model.dof, request);
   const JointVector from = request.near ? *request.near : middle_of_limits(model);
@@ -167,8 +163,8 @@ Solutions Solver::Impl::solve_all(const Pose& T_base_tip, const AllOptions& all,
     Result result = finish(Result{}, T_base_tip, copy.q);
     if (!result.success()) continue;
     if (request.near) result.move = move.length(copy.q - from);
-    result.attempts = search.attempts;
-    result.iterations = search.iterations;
+    result.attempts = search.work.attempts;
+    result.iterations = search.work.iterations;
     solutions.all.push_back(result);
   }
   if (solutions.all.empty()) {

@@ -12,8 +12,6 @@
 namespace iksel {
 namespace {
 
-/// Seeds in a row without a new branch after which there is most likely none.
-constexpr int kPatience = 64;
 /// Seeds for a redundant arm, whose solutions never end.
 constexpr int kRedundantSeeds = 64;
 /// The nearest solutions of a redundant arm that slide.
@@ -203,7 +201,7 @@ class Solver::Impl::Judge {
   const SolveRequest& request_;
   Found& found_;
   JointMove move_;
-  Saturation saturation_{kPatience};
+  Saturation saturation_;
   std::array<bool, Found::kMost> kept_{};
   std::size_t asked_ = 0;
   std::size_t first_kept_ = 0;
@@ -212,10 +210,8 @@ class Solver::Impl::Judge {
 Result Solver::Impl::solve(const Pose& T_base_tip, const SolveRequest& request,
                            Workspace& workspace) const {
   Judge judge(*this, T_base_tip, request, workspace.found);
-  Exploration* running = nullptr;
-  const auto enough = [&] { return judge.look(running->attempts); };
-  Exploration search{T_base_tip, request, kSame, FunctionRef<bool()>(enough)};
-  running = &search;
+  const auto enough = [&](int attempts) { return judge.look(attempts); };
+  Exploration search{T_base_tip, request, kSame, FunctionRef<bool(int)>(enough)};
   explore(search, workspace);
 
   Result result;
@@ -231,8 +227,8 @@ Result Solver::Impl::solve(const Pose& T_base_tip, const SolveRequest& request,
     result.status = search.status;
   }
   if (!result.success() && search.out_of_time) result.status = Status::out_of_time;
-  result.attempts = search.attempts;
-  result.iterations = search.iterations;
+  result.attempts = search.work.attempts;
+  result.iterations = search.work.iterations;
   return result;
 }
 

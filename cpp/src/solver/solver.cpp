@@ -82,20 +82,21 @@ Result Solver::Impl::solve(const Pose& T_base_tip, const JointVector* seed, Work
   StageClock clock(times);
 
   Result result;
-  const double distance = (T_base_tip.translation() - robot.reach_centre()).norm();
-  if (distance > robot.reach() + options.position_tolerance) {
+  if (out_of_reach(T_base_tip)) {
     result.status = Status::out_of_reach;
     return result;
   }
 
   const Pose tip_target = T_base_tip * Pose(model.tcp_inverse);
   if (workspace.lanes) {
-    workspace.lanes->run(tip_target, seed, clock, result.attempts, result.iterations,
-                         [&](JointVector& q) {
-                           model.wrap_into_limits(q.data());
-                           result = finish(result, T_base_tip, q);
-                           return result.success();
-                         });
+    Work work;
+    workspace.lanes->run(tip_target, seed, clock, work, [&](JointVector& q) {
+      model.wrap_into_limits(q.data());
+      result = finish(result, T_base_tip, q);
+      return result.success() ? Verdict::stop : Verdict::refine;
+    });
+    result.attempts = work.attempts;
+    result.iterations = work.iterations;
     return result;
   }
 
@@ -133,6 +134,11 @@ Result Solver::Impl::solve(const Pose& T_base_tip, const JointVector* seed, Work
     if (solved) break;
   }
   return result;
+}
+
+bool Solver::Impl::out_of_reach(const Pose& T_base_tip) const {
+  const double distance = (T_base_tip.translation() - robot.reach_centre()).norm();
+  return distance > robot.reach() + options.position_tolerance;
 }
 
 Result Solver::Impl::finish(Result result, const Pose& target, const JointVector& q) const {

@@ -26,7 +26,9 @@ void Solver::Impl::explore(Exploration& search, Workspace& workspace) const {
     return;
   }
 
-  const Deadline deadline(search.request.deadline);
+  const SolveRequest& request = search.request;
+  const JointMove move(model.dof, request);
+  const Deadline deadline(request.deadline);
   const auto accept = [&](JointVector& q) {
     double position = 0;
     double rotation = 0;
@@ -39,12 +41,15 @@ void Solver::Impl::explore(Exploration& search, Workspace& workspace) const {
       search.status = Status::outside_limits;
       return Verdict::next;
     }
-    if (search.request.near) {
-      take_nearest_turns(model, *search.request.near, q);
+    double cost = 0;
+    if (request.near) {
+      take_nearest_turns(model, *request.near, q);
+      // What a filter has been asked about stays as it is.
+      if (!request.filter) cost = move.length(q - *request.near);
     } else {
       take_first_turns(model, q);
     }
-    found.add(q, search.min_distance);
+    found.add(q, cost, search.min_distance);
     return Verdict::next;
   };
   const auto go_on = [&] {

@@ -240,6 +240,9 @@ Raises:
   cls.def_property_readonly(
       "options", [](const Solver& self) { return self.options(); }, "A copy of its options.");
   cls.def_property_readonly("database", &Solver::database, "The database it selects seeds from.");
+  cls.def_property_readonly("work_bound", &Solver::work_bound,
+                            "Most iteration steps that one solve without given seeds can spend, "
+                            "over all its seeds: max_attempts * max_iterations.");
   cls.def("solve", &solve, py::arg("pose"), py::arg("seed") = py::none(),
           R"(Joint values that put the tip (the TCP, if there is one) at a pose.
 
@@ -255,7 +258,12 @@ Raises:
         not finite.)");
   bind_requests(m, cls);
   cls.def("solve_batch", &solve_batch, py::arg("poses"), py::arg("threads") = 0,
-          R"(Solves many targets with the GIL released; row i has the bits that solve() gives.
+          R"(Solves many targets with the GIL released; row i belongs to target i.
+
+A row has the same bits whatever the number of threads and whatever else is in the batch. Its
+status is that of solve(), and so are its bits, but for seeds in SIMD lanes (the default preset):
+there a target has a lane to itself, and the answer may be another of its solutions, within the
+same tolerances.
 
 Args:
     poses: T_base_tip, (N, 4, 4) [m]. Doubles in C order are read in place.

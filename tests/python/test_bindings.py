@@ -229,7 +229,10 @@ def test_rows_equal_single_calls(robot, joints, kinematics):
         np.testing.assert_array_equal(rows, single)
 
 
-def test_batch_equals_loop(solver, poses):
+def test_batch_equals_loop(robot, poses):
+    options = iksel.SolverOptions.paper()
+    options.database.scale = "small"
+    solver = iksel.Solver(robot, options)
     batch = solver.solve_batch(poses)
     assert len(batch) == len(poses)
     for pose, row, status in zip(poses, batch, batch.statuses(), strict=True):
@@ -241,6 +244,14 @@ def test_batch_equals_loop(solver, poses):
         np.testing.assert_array_equal(row.q, single.q)
         np.testing.assert_equal(row.position_error, single.position_error)
         np.testing.assert_equal(row.rotation_error, single.rotation_error)
+
+
+def test_batch_in_lanes_solves_what_a_loop_solves(robot, solver, poses):
+    batch = solver.solve_batch(poses)
+    for pose, row in zip(poses, batch, strict=True):
+        assert row.status is solver.solve(pose).status
+        if row.success:
+            np.testing.assert_allclose(robot.fk(row.q), pose, atol=3e-6)
 
 
 @pytest.mark.parametrize("threads", [1, 2, 5])

@@ -41,6 +41,11 @@ class IKSEL_EXPORT Solver {
   [[nodiscard]] const SolverOptions& options() const;
   [[nodiscard]] const Database& database() const;
 
+  /// Most iteration steps that one solve without given seeds can spend, over all its seeds:
+  /// max_attempts * max_iterations. A step of a whole pack of lanes counts once in
+  /// Result::iterations, so that solves in lanes stay below this by the number of lanes.
+  [[nodiscard]] std::size_t work_bound() const;
+
   /// Joint values that put the tip (the TCP, if there is one) at T_base_tip. Throws
   /// InvalidArgumentError if the pose is not rigid; a pose that cannot be solved is no error but a
   /// status.
@@ -59,8 +64,10 @@ class IKSEL_EXPORT Solver {
   [[nodiscard]] Solutions solve_all(const Pose& T_base_tip, const AllOptions& options = {},
                                     const SolveRequest& request = {}) const;
 
-  /// Solves many targets; result i belongs to target i and has the bits that solve() gives.
-  /// `threads` = 0 takes one per core. Throws InvalidArgumentError naming the first bad pose,
+  /// Solves many targets; result i belongs to target i and has the same bits whatever the number
+  /// of threads and whatever else is in the batch. It has the bits that solve() gives, but for
+  /// seeds in lanes: there a target has a lane to itself, and the answer may be another of its
+  /// solutions, within the same tolerances. `threads` = 0 takes one per core. Throws InvalidArgumentError naming the first bad pose,
   /// before any is solved.
   [[nodiscard]] std::vector<Result> solve_batch(const std::vector<Pose>& T_base_tip,
                                                 int threads = 0) const;

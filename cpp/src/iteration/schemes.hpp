@@ -6,6 +6,7 @@
 
 #include "iksel/options.hpp"
 #include "kinematics/chain_model.hpp"
+#include "math/constants.hpp"
 #include "math/pseudo_inverse.hpp"
 
 namespace iksel {
@@ -80,7 +81,6 @@ inline JointVector cwpi_step(const ChainModel& model, const JointVector& q, cons
 /// True where a joint has limits that count: a range of 2 pi or more is left free and wrapped
 /// later.
 inline bool limits_count(const ChainModel& model, int i) {
-  constexpr double kTwoPi = 6.28318530717958647692;
   return model.joint_types[static_cast<std::size_t>(i)] == JointType::prismatic ||
          model.upper[i] - model.lower[i] < kTwoPi;
 }

@@ -7,16 +7,11 @@
 
 #include "database/key.hpp"
 #include "lanes/kernels.hpp"
+#include "math/constants.hpp"
 #include "math/pseudo_inverse.hpp"
 #include "math/rotation.hpp"
 
 namespace iksel {
-
-namespace {
-
-constexpr double kTwoPi = 6.28318530717958647692;
-
-}  // namespace
 
 Selection::Selection(const ChainModel& model, const DatabaseData& data,
                      const SolverOptions& options)

@@ -86,6 +86,7 @@ Evaluation evaluate(const Solver& solver, std::size_t targets, std::uint64_t see
     times[i] = microseconds(Clock::now() - start);
     attempts += result.attempts;
     iterations += result.iterations;
+    out.max_iterations = std::max(out.max_iterations, result.iterations);
     if (result.success()) {
       ++out.solved;
       if (!is_solution(*kdl, solver, poses[i], result.q)) ++out.false_success;

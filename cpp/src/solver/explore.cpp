@@ -14,14 +14,32 @@ namespace {
 /// Seeds between two looks at what was found, where they are iterated one by one.
 constexpr int kStage = 8;
 
+/// A seed whose first step ends this near to a solution would end there itself.
+constexpr double kCaught = 0.2;
+
+struct Steering {
+  Found& found;
+  FunctionRef<bool()> ask;
+  double caught;
+
+  [[nodiscard]] bool go_on() const { return ask(); }
+  [[nodiscard]] bool skips(const lanes::SeedPack& seeds, int slot) const {
+    struct Column {
+      const lanes::SeedPack& seeds;
+      int slot;
+      double operator[](int joint) const { return static_cast<double>(seeds.q[joint][slot]); }
+    };
+    return found.is_near_known(Column{seeds, slot}, caught);
+  }
+};
+
 }  // namespace
 
 void Solver::Impl::explore(Exploration& search, Workspace& workspace) const {
   const ChainModel& model = robot.model();
   Found& found = workspace.found;
   found.clear();
-  const double distance = (search.T_base_tip.translation() - robot.reach_centre()).norm();
-  if (distance > robot.reach() + options.position_tolerance) {
+  if (out_of_reach(search.T_base_tip)) {
     search.status = Status::out_of_reach;
     return;
   }
@@ -32,7 +50,7 @@ void Solver::Impl::explore(Exploration& search, Workspace& workspace) const {
   const auto accept = [&](JointVector& q) {
     double position = 0;
     double rotation = 0;
-    measure_error(model, search.T_base_tip, q, position, rotation);
+    measure_error(model, search.T_base_tip, q.data(), position, rotation);
     if (!(position <= options.position_tolerance && rotation <= options.rotation_tolerance)) {
       return Verdict::refine;
     }
@@ -58,19 +76,19 @@ void Solver::Impl::explore(Exploration& search, Workspace& workspace) const {
     return !search.out_of_time;
   };
 
-  const Pose tip_target = search.T_base_tip * Pose(model.tcp_inverse);
   if (workspace.lanes) {
-    explore_in_lanes(search, tip_target, *workspace.lanes, accept, go_on);
+    explore_in_lanes(search, workspace, accept, go_on);
   } else {
-    explore_one_by_one(search, tip_target, workspace, accept, go_on);
+    explore_one_by_one(search, workspace, accept, go_on);
   }
   if (found.size() > 0) search.status = Status::solved;
 }
 
-void Solver::Impl::explore_in_lanes(Exploration& search, const Pose& tip_target, LaneSearch& lanes,
+void Solver::Impl::explore_in_lanes(Exploration& search, Workspace& workspace,
                                     FunctionRef<Verdict(JointVector&)> accept,
                                     FunctionRef<bool()> go_on) const {
-  lanes.set_target(tip_target);
+  LaneSearch& lanes = *workspace.lanes;
+  lanes.set_target(search.T_base_tip);
   Work& work = search.work;
   const auto iterate_seeds = [&](const double* const* seeds, int count) {
     lanes.iterate(
@@ -81,6 +99,7 @@ void Solver::Impl::explore_in_lanes(Exploration& search, const Pose& tip_target,
     iterate_seeds(&near, 1);
   }
   if (!search.request.seeds.empty()) {
+    const Pose tip_target = search.T_base_tip * Pose(robot.model().tcp_inverse);
     GivenSeeds given(robot.model(), options, tip_target, search.request.seeds);
     std::vector<const double*> order;
     while (const double* seed = given.next(static_cast<int>(order.size()))) order.push_back(seed);
@@ -92,15 +111,16 @@ void Solver::Impl::explore_in_lanes(Exploration& search, const Pose& tip_target,
     }
   }
   if (!go_on() || !search.request.database_seeds) return;
+  const Steering steering{workspace.found, go_on, robot.dof() > 6 ? 0.0 : kCaught};
   StageClock clock(nullptr);
-  lanes.run(tip_target, nullptr, clock, work, accept, go_on);
+  lanes.search(search.T_base_tip, nullptr, clock, work, accept, steering);
 }
 
-void Solver::Impl::explore_one_by_one(Exploration& search, const Pose& tip_target,
-                                      Workspace& workspace,
+void Solver::Impl::explore_one_by_one(Exploration& search, Workspace& workspace,
                                       FunctionRef<Verdict(JointVector&)> accept,
                                       FunctionRef<bool()> go_on) const {
   const ChainModel& model = robot.model();
+  const Pose tip_target = search.T_base_tip * Pose(model.tcp_inverse);
   Random random(options.seed);
   const IterationContext context{model, options, search.T_base_tip, tip_target, workspace.kdl.get(),
                                  random};

@@ -18,7 +18,10 @@ class Found {
   static constexpr std::size_t kMost = 1024;
 
   explicit Found(const ChainModel& model)
-      : model_(model), q_(kMost * static_cast<std::size_t>(model.dof)), cost_(kMost) {}
+      : model_(model),
+        q_(kMost * static_cast<std::size_t>(model.dof)),
+        cost_(kMost),
+        hits_(kMost) {}
 
   void clear() { size_ = 0; }
 
@@ -27,11 +30,24 @@ class Found {
   /// one of smaller cost stays, at the place of the first.
   void add(const JointVector& q, double cost, double min_distance) {
     for (std::size_t i = 0; i < size_; ++i) {
-      if (distance_without_turns(model_, this->q(i), q.data()) >= min_distance) continue;
+      if (distance_without_turns(model_, this->q(i), q, min_distance) >= min_distance) continue;
       if (cost < cost_[i]) put(i, q, cost);
       return;
     }
-    if (size_ < kMost) put(size_++, q, cost);
+    if (size_ == kMost) return;
+    put(size_++, q, cost);
+  }
+
+  /// True if q lies within `radius` of a solution in every
+  /// joint.
+  template <typename Q>
+  [[nodiscard]] bool is_near_known(const Q& q, double radius) const {
+    for (std::size_t i = 0; i < size_; ++i) {
+      if (distance_without_turns(model_, this->q(i), q, radius) < radius) {
+        return true;
+      }
+    }
+    return false;
   }
 
   [[nodiscard]] std::size_t size() const { return size_; }

@@ -5,11 +5,6 @@
 #include <cmath>
 
 namespace iksel {
-namespace {
-
-constexpr double kTwoPi = 6.28318530717958647692;
-
-}  // namespace
 
 void take_nearest_turns(const ChainModel& model, const JointVector& near, JointVector& q) {
   for (int j = 0; j < model.dof; ++j) {
@@ -23,7 +18,6 @@ void take_nearest_turns(const ChainModel& model, const JointVector& near, JointV
 }
 
 void take_first_turns(const ChainModel& model, JointVector& q) {
-  constexpr double kPi = kTwoPi / 2;
   for (int j = 0; j < model.dof; ++j) {
     if (!has_whole_turns(model, j)) continue;
     const double lower = std::isfinite(model.lower[j]) ? model.lower[j] : -kPi;
@@ -45,16 +39,6 @@ bool take_next_turns(const ChainModel& model, JointVector& q) {
     if (q[j] < model.lower[j]) q[j] += kTwoPi;
   }
   return false;
-}
-
-double distance_without_turns(const ChainModel& model, const double* a, const double* b) {
-  double largest = 0;
-  for (int j = 0; j < model.dof; ++j) {
-    double d = a[j] - b[j];
-    if (has_whole_turns(model, j)) d = std::remainder(d, kTwoPi);
-    largest = std::max(largest, std::abs(d));
-  }
-  return largest;
 }
 
 JointVector middle_of_limits(const ChainModel& model) {

@@ -2,6 +2,9 @@
 // How far joints move between configurations, whole turns considered.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "iksel/request.hpp"
 #include "iteration/schemes.hpp"
 #include "kinematics/chain_model.hpp"
@@ -45,8 +48,21 @@ void take_first_turns(const ChainModel& model, JointVector& q);
 /// leaves q at the first. Starts from take_first_turns.
 bool take_next_turns(const ChainModel& model, JointVector& q);
 
-/// The largest difference of a joint; whole turns are none.
-double distance_without_turns(const ChainModel& model, const double* a, const double* b);
+/// The largest difference of a joint, whole turns counting nothing; or anything not below `bound`
+/// if it is not below.
+template <typename A, typename B>
+double distance_without_turns(const ChainModel& model, const A& a, const B& b, double bound) {
+  double largest = 0;
+  for (int j = 0; j < model.dof; ++j) {
+    double d = std::abs(a[j] - b[j]);
+    if (d >= bound && has_whole_turns(model, j)) {
+      d = std::abs(d - kTwoPi * static_cast<double>(static_cast<long>(d / kTwoPi + 0.5)));
+    }
+    largest = std::max(largest, d);
+    if (largest >= bound) return largest;
+  }
+  return largest;
+}
 
 /// The middle of the limits; 0 where there are none.
 JointVector middle_of_limits(const ChainModel& model);

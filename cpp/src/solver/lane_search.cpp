@@ -38,6 +38,8 @@ LaneSearch::LaneSearch(const ChainModel& model, const DatabaseData& data,
       data_(data),
       options_(options),
       kernels_(kernels),
+      base_inverse_(data.reduction->parameters().base_inverse),
+      tcp_inverse_(Pose(model.tcp_inverse) * Pose(data.reduction->parameters().flange_inverse)),
       advance_(kernels.advance[model.dof <= 10 ? model.dof : 0]),
       chain_(make_lane_chain(model)),
       lane_options_(make_lane_options(model, options)),
@@ -47,15 +49,15 @@ LaneSearch::LaneSearch(const ChainModel& model, const DatabaseData& data,
       neighbours_(std::min<std::size_t>(static_cast<std::size_t>(options.neighbours), data.size)),
       group_(static_cast<std::size_t>(lanes::group_rows(model.dof) * lanes::kGroup)) {}
 
-Pose LaneSearch::set_query(const Pose& tip_target) {
-  const Pose Y = data_.reduction->reduce(tip_target);
+Pose LaneSearch::set_query(const Pose& T_base_tcp) {
+  const Pose Y = base_inverse_ * T_base_tcp * tcp_inverse_;
   data_.reduction->make_key(Y, key_);
   seed_target_ = make_seed_target(Y);
   return Y;
 }
 
-void LaneSearch::set_target(const Pose& tip_target) {
-  const Pose Y = set_query(tip_target);
+void LaneSearch::set_target(const Pose& T_base_tcp) {
+  const Pose Y = set_query(T_base_tcp);
   for (int lane = 0; lane < kernels_.lanes; ++lane) set_lane_target(lane, Y);
 }
 

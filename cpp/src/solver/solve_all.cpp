@@ -73,7 +73,7 @@ void spread(const ChainModel& model, std::size_t count, std::vector<Copy>& copie
     std::size_t farthest = chosen;
     for (std::size_t i = chosen; i < copies.size(); ++i) {
       const double d =
-          distance_without_turns(model, copies[chosen - 1].q.data(), copies[i].q.data());
+          distance_without_turns(model, copies[chosen - 1].q, copies[i].q, distance[i]);
       distance[i] = std::min(distance[i], d);
       if (distance[i] > distance[farthest]) farthest = i;
     }
@@ -122,7 +122,7 @@ Solutions Solver::Impl::solve_all(const Pose& T_base_tip, const AllOptions& all,
   Saturation saturation;
   const auto enough = [&](int attempts) {
     if (redundant && found.size() >= std::max<std::size_t>(kChoice * most, 64)) return true;
-    return saturation.reached(found.size(), attempts);
+    return saturation.reached(found, attempts);
   };
   Exploration search{T_base_tip, request, all.min_distance, FunctionRef<bool(int)>(enough)};
   explore(search, workspace);
@@ -160,8 +160,8 @@ Solutions Solver::Impl::solve_all(const Pose& T_base_tip, const AllOptions& all,
   }
 
   for (const Copy& copy : copies) {
-    Result result = finish(Result{}, T_base_tip, copy.q);
-    if (!result.success()) continue;
+    Result result;
+    if (!finish(T_base_tip, copy.q, result)) continue;
     if (request.near) result.move = move.length(copy.q - from);
     result.attempts = search.work.attempts;
     result.iterations = search.work.iterations;

@@ -104,7 +104,7 @@ class Solver::Impl::Judge {
     if (!request_.near) return first_kept_ < found_.size();
     const bool redundant = model_.dof > 6;
     if (redundant) return first_kept_ < found_.size() && attempts >= kRedundantSeeds;
-    return first_kept_ < found_.size() && saturation_.reached(found_.size(), attempts);
+    return first_kept_ < found_.size() && saturation_.reached(found_, attempts);
   }
 
   /// The best of what passed; false if nothing did.
@@ -217,8 +217,7 @@ Result Solver::Impl::solve(const Pose& T_base_tip, const SolveRequest& request,
   Result result;
   JointVector q;
   if (search.status == Status::solved) {
-    result = judge.answer(q) ? finish(result, T_base_tip, q) : result;
-    if (result.success()) {
+    if (judge.answer(q) && finish(T_base_tip, q, result)) {
       if (request.near) result.move = JointMove(robot.dof(), request).length(q - *request.near);
     } else {
       result.status = Status::rejected;

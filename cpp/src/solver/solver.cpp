@@ -87,19 +87,18 @@ Result Solver::Impl::solve(const Pose& T_base_tip, const JointVector* seed, Work
     return result;
   }
 
-  const Pose tip_target = T_base_tip * Pose(model.tcp_inverse);
   if (workspace.lanes) {
     Work work;
-    workspace.lanes->run(tip_target, seed, clock, work, [&](JointVector& q) {
+    workspace.lanes->search(T_base_tip, seed, clock, work, [&](JointVector& q) {
       model.wrap_into_limits(q.data());
-      result = finish(result, T_base_tip, q);
-      return result.success() ? Verdict::stop : Verdict::refine;
+      return finish(T_base_tip, q, result) ? Verdict::stop : Verdict::refine;
     });
     result.attempts = work.attempts;
     result.iterations = work.iterations;
     return result;
   }
 
+  const Pose tip_target = T_base_tip * Pose(model.tcp_inverse);
   Random random(options.seed);
   const IterationContext context{model, options, T_base_tip, tip_target, workspace.kdl.get(),
                                  random};
@@ -110,8 +109,7 @@ Result Solver::Impl::solve(const Pose& T_base_tip, const JointVector* seed, Work
     const Outcome outcome = iterate(context, q, result.iterations);
     if (outcome == Outcome::outside_limits) result.status = Status::outside_limits;
     // Nothing is a success by hearsay: the q that goes out is measured itself.
-    if (outcome == Outcome::solved) result = finish(result, T_base_tip, q);
-    return result.success();
+    return outcome == Outcome::solved && finish(T_base_tip, q, result);
   };
 
   if (seed != nullptr && attempt(seed->data())) {
@@ -141,18 +139,19 @@ bool Solver::Impl::out_of_reach(const Pose& T_base_tip) const {
   return distance > robot.reach() + options.position_tolerance;
 }
 
-Result Solver::Impl::finish(Result result, const Pose& target, const JointVector& q) const {
+bool Solver::Impl::finish(const Pose& target, const JointVector& q, Result& result) const {
   double position = kNan;
   double rotation = kNan;
-  measure_error(robot.model(), target, q, position, rotation);
-  if (position <= options.position_tolerance && rotation <= options.rotation_tolerance &&
-      robot.model().within_limits(q.data())) {
-    result.status = Status::solved;
-    result.q = q;
-    result.position_error = position;
-    result.rotation_error = rotation;
+  measure_error(robot.model(), target, q.data(), position, rotation);
+  if (!(position <= options.position_tolerance && rotation <= options.rotation_tolerance &&
+        robot.model().within_limits(q.data()))) {
+    return false;
   }
-  return result;
+  result.status = Status::solved;
+  result.q = q;
+  result.position_error = position;
+  result.rotation_error = rotation;
+  return true;
 }
 
 Solver::Solver(const Robot& robot, const SolverOptions& options) {
@@ -168,6 +167,11 @@ Solver::Solver(const Robot& robot, const SolverOptions& options, const Database&
 const Robot& Solver::robot() const { return impl_->robot; }
 const SolverOptions& Solver::options() const { return impl_->options; }
 const Database& Solver::database() const { return impl_->database; }
+
+std::size_t Solver::work_bound() const {
+  return static_cast<std::size_t>(options().max_attempts) *
+         static_cast<std::size_t>(options().max_iterations);
+}
 
 Result Solver::solve(const Pose& T_base_tip) const {
   check_pose(T_base_tip);

@@ -76,12 +76,14 @@ struct Solver::Impl {
   class Judge;
   /// Collects solutions in workspace.found.
   void explore(Exploration& search, Workspace& workspace) const;
-  void explore_in_lanes(Exploration& search, const Pose& tip_target, LaneSearch& lanes,
+  void explore_in_lanes(Exploration& search, Workspace& workspace,
                         FunctionRef<Verdict(JointVector&)> accept, FunctionRef<bool()> go_on) const;
-  void explore_one_by_one(Exploration& search, const Pose& tip_target, Workspace& workspace,
+  void explore_one_by_one(Exploration& search, Workspace& workspace,
                           FunctionRef<Verdict(JointVector&)> accept,
                           FunctionRef<bool()> go_on) const;
-  Result finish(Result result, const Pose& target, const JointVector& q) const;
+  /// Nothing is a success by hearsay: measures q itself, and only if that reaches the target inside
+  /// the limits, makes it the result.
+  bool finish(const Pose& target, const JointVector& q, Result& result) const;
 
   /// Workspaces that lie idle; a null is a place to put one back. More solves at once than places
   /// make their own.
@@ -98,22 +100,20 @@ void Solver::Impl::solve_many(std::size_t first, std::size_t last, Workspace& wo
     }
     return;
   }
-  // Those that the best seed alone does not solve are solved one by one afterwards.
+  // Those that their best seeds do not solve are solved one by one afterwards.
   std::bitset<kMany> open;
   std::size_t at = first;
-  const auto next = [&](Pose& tip_target) -> int {
+  const auto next = [&]() -> int {
     for (; at < last; ++at) {
-      const Pose T_base_tip = target(at);
-      if (out_of_reach(T_base_tip)) {
-        open.set(at - first);
-        continue;
-      }
-      tip_target = T_base_tip * Pose(robot.model().tcp_inverse);
-      return static_cast<int>(at++ - first);
+      if (!out_of_reach(target(at))) return static_cast<int>(at++ - first);
+      open.set(at - first);
     }
     return -1;
   };
-  workspace.lanes->stream(next, [&](int offset, JointVector* q, int iterations) {
+  const auto target_at = [&](int offset) -> decltype(auto) {
+    return target(first + static_cast<std::size_t>(offset));
+  };
+  workspace.lanes->stream(next, target_at, [&](int offset, JointVector* q, const Work& work) {
     const auto index = static_cast<std::size_t>(offset);
     if (q == nullptr) {
       open.set(index);
@@ -121,10 +121,9 @@ void Solver::Impl::solve_many(std::size_t first, std::size_t last, Workspace& wo
     }
     robot.model().wrap_into_limits(q->data());
     Result result;
-    result.attempts = 1;
-    result.iterations = iterations;
-    result = finish(result, target(first + index), *q);
-    if (!result.success()) return false;
+    result.attempts = work.attempts;
+    result.iterations = work.iterations;
+    if (!finish(target(first + index), *q, result)) return false;
     settle(first + index, result);
     return true;
   });

@@ -25,6 +25,13 @@ _DATABASE_FLAGS = {
 }
 _SOLVER, _DATABASE = "solver.", "database."
 
+# Who names a scale means the paper's databases, which have their sizes from it.
+_WITH_SCALE = {"sampling": "grid", "key_scheme": "full", "samples": 0}
+_NOTES = {
+    "scale": "; unless other flags say otherwise, with --sampling grid "
+    "--key-scheme full, as in the paper"
+}
+
 
 def add_preset(parser: argparse.ArgumentParser) -> None:
     """Add --preset."""
@@ -43,7 +50,8 @@ def add_solver_options(parser: argparse.ArgumentParser) -> None:
         "--database",
         type=Path,
         metavar="FILE",
-        help="use a database made by 'iksel build' instead of building one",
+        help="use a database made by 'iksel build' instead of building one; over one "
+        "with a full key seeds are iterated one by one, not in SIMD lanes",
     )
     group = parser.add_argument_group("solver options")
     _add_fields(group, SolverOptions, _SOLVER, _SOLVER_FLAGS)
@@ -63,9 +71,10 @@ def solver_options(arguments: argparse.Namespace) -> SolverOptions:
         InvalidArgumentError: A value out of range, or database flags where a database
             is given.
     """
-    changes = _given(arguments, _DATABASE)
+    changes = _database_changes(arguments)
     if changes and arguments.database is not None:
-        flags = ", ".join(_flag(name, _DATABASE_FLAGS) for name in changes)
+        given = _given(arguments, _DATABASE)
+        flags = ", ".join(_flag(name, _DATABASE_FLAGS) for name in given)
         raise InvalidArgumentError(
             f"{flags}: cannot be used with --database, whose file has its own settings"
         )
@@ -83,16 +92,33 @@ def database_options(arguments: argparse.Namespace) -> DatabaseOptions:
     """
     paper = arguments.preset == "paper"
     options = DatabaseOptions.paper() if paper else SolverOptions().database
-    return options.replace(**_given(arguments, _DATABASE))
+    return options.replace(**_database_changes(arguments))
 
 
 def overrides(arguments: argparse.Namespace) -> dict[str, Any]:
     """The fields that flags changed from the preset; database fields as database.x."""
-    database = _given(arguments, _DATABASE)
+    database = _database_changes(arguments)
     return {
         **_given(arguments, _SOLVER),
         **{_DATABASE + name: value for name, value in database.items()},
     }
+
+
+def _database_changes(arguments: argparse.Namespace) -> dict[str, Any]:
+    """The database fields that the flags change from the preset.
+
+    Raises:
+        InvalidArgumentError: Two sizes at once.
+    """
+    given = _given(arguments, _DATABASE)
+    if "scale" not in given:
+        return given
+    if given.get("samples") and getattr(arguments, "database", None) is None:
+        raise InvalidArgumentError(
+            f"--samples {given['samples']}: cannot be used with --scale "
+            f"{given['scale']}, which has a size of its own"
+        )
+    return {**_WITH_SCALE, **given}
 
 
 def _given(arguments: argparse.Namespace, prefix: str) -> dict[str, Any]:
@@ -119,7 +145,9 @@ def _add_fields(
     for field, default in defaults.items():
         if isinstance(default, dict):
             continue
-        text = f"{getattr(options, field).__doc__} ({_presets(default, paper[field])})"
+        note = _NOTES.get(field, "") if options is DatabaseOptions else ""
+        doc = getattr(options, field).__doc__
+        text = f"{doc}{note} ({_presets(default, paper[field])})"
         group.add_argument(
             _flag(field, renamed),
             dest=prefix + field,

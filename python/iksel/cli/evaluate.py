@@ -91,6 +91,7 @@ def run(arguments: argparse.Namespace) -> int:
         "rotation_tolerance": options.rotation_tolerance,
         "threads": 1,
         "simd": iksel_cpp.simd_level(),
+        "work_bound": solver.work_bound,
         "database_samples": len(database),
         "build_s": build_s,
     }
@@ -106,7 +107,7 @@ def print_text(report: dict[str, Any]) -> None:
     changed = ", ".join(f"{k}={v}" for k, v in report["overrides"].items())
     times = [
         (name, report[f"{name}_us"])
-        for name in ("mean", "std", "min", "median", "p99", "max")
+        for name in ("mean", "std", "min", "median", "p99", "p999", "max")
     ]
     build_s = report["build_s"]
     origin = "from file" if build_s is None else f"built in {build_s:.3f} s"
@@ -123,7 +124,11 @@ def print_text(report: dict[str, Any]) -> None:
             ("solved", f"{report['solved']:,}, {report['success_percent']:.3f} %"),
             ("false successes", str(report["false_success"])),
             ("attempts", f"{report['mean_attempts']:.2f} on average"),
-            ("iterations", f"{report['mean_iterations']:.2f} on average"),
+            (
+                "iterations",
+                f"{report['mean_iterations']:.2f} on average, {report['max_iterations']} "
+                f"at most, bound {report['work_bound']}",
+            ),
             *((f"{name} time", f"{value:10.2f} us") for name, value in times),
             *(
                 (f"  {key.removesuffix('_us')}", f"{report[key]:10.2f} us")

@@ -19,6 +19,9 @@ namespace iksel {
 /// environment variable IKSEL_SIMD forces one. Throws InvalidArgumentError if it is not to be had.
 IKSEL_EXPORT const char* simd_level();
 
+struct PathOptions;
+struct PathResult;
+
 /// Time spent in each stage of one or more solves [ns].
 struct StageTimes {
   double query = 0;
@@ -64,11 +67,17 @@ class IKSEL_EXPORT Solver {
   [[nodiscard]] Solutions solve_all(const Pose& T_base_tip, const AllOptions& options = {},
                                     const SolveRequest& request = {}) const;
 
+  /// Joint values along a path of poses, by a choice among the solutions of all waypoints that
+  /// makes the whole way in joint space short. Throws InvalidArgumentError naming a bad pose or
+  /// option.
+  [[nodiscard]] PathResult solve_path(const std::vector<Pose>& T_base_tip,
+                                      const PathOptions& options) const;
+
   /// Solves many targets; result i belongs to target i and has the same bits whatever the number
   /// of threads and whatever else is in the batch. It has the bits that solve() gives, but for
   /// seeds in lanes: there a target has a lane to itself, and the answer may be another of its
-  /// solutions, within the same tolerances. `threads` = 0 takes one per core. Throws InvalidArgumentError naming the first bad pose,
-  /// before any is solved.
+  /// solutions, within the same tolerances. `threads` = 0 takes one per core. Throws
+  /// InvalidArgumentError naming the first bad pose, before any is solved.
   [[nodiscard]] std::vector<Result> solve_batch(const std::vector<Pose>& T_base_tip,
                                                 int threads = 0) const;
   /// The same over `count` 4x4 matrices, row by row, into arrays that the caller owns. An exception
@@ -77,6 +86,7 @@ class IKSEL_EXPORT Solver {
                    int threads = 0, const Progress& progress = {}) const;
 
  private:
+  friend class Tracker;
   struct Impl;
   std::shared_ptr<const Impl> impl_;
 };

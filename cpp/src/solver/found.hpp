@@ -18,10 +18,7 @@ class Found {
   static constexpr std::size_t kMost = 1024;
 
   explicit Found(const ChainModel& model)
-      : model_(model),
-        q_(kMost * static_cast<std::size_t>(model.dof)),
-        cost_(kMost),
-        hits_(kMost) {}
+      : model_(model), q_(kMost * static_cast<std::size_t>(model.dof)), cost_(kMost) {}
 
   void clear() { size_ = 0; }
 

@@ -45,40 +45,39 @@ JointVector make_slide_step(const ChainModel& model, const JointVector& q, const
   return step;
 }
 
-/// Brings q back onto the pose, to a hundredth of the tolerances. False if it does not come back.
-bool correct(const ChainModel& model, const SolverOptions& options, const Pose& T_base_tip,
-             JointVector& q) {
-  constexpr int kCorrections = 8;
-  Pose pose;
-  Jacobian J;
-  for (int i = 0;; ++i) {
-    model.fk_jacobian(q.data(), pose, J);
-    const Vector6 e = pose_error(T_base_tip, pose);
-    const double position = e.head<3>().norm();
-    const double rotation = e.tail<3>().norm();
-    if (position <= 0.01 * options.position_tolerance &&
-        rotation <= 0.01 * options.rotation_tolerance) {
-      return model.within_limits(q.data());
-    }
-    if (i == kCorrections) {
-      return position <= options.position_tolerance && rotation <= options.rotation_tolerance &&
-             model.within_limits(q.data());
-    }
-    q += lm_step(model, q, J, e, options);
-  }
-}
-
 void clamp(const ChainModel& model, JointVector& q) {
   q = q.cwiseMax(model.lower).cwiseMin(model.upper);
 }
 
 }  // namespace
 
+bool converge(const ChainModel& model, const SolverOptions& options, const Pose& T_base_tip,
+              int most, JointVector& q) {
+  Pose pose;
+  Jacobian J;
+  // The default damping, whatever the scheme of the solver is.
+  const SolverOptions damped;
+  for (int i = 0;; ++i) {
+    model.fk_jacobian(q.data(), pose, J);
+    const Vector6 e = pose_error(T_base_tip, pose);
+    const double position = e.head<3>().norm();
+    const double rotation = e.tail<3>().norm();
+    if (i == most || (position <= 0.01 * options.position_tolerance &&
+                      rotation <= 0.01 * options.rotation_tolerance)) {
+      return position <= options.position_tolerance && rotation <= options.rotation_tolerance &&
+             model.within_limits(q.data());
+    }
+    q += lm_step(model, q, J, e, damped);
+    if (!q.allFinite()) return false;
+  }
+}
+
 int slide(const ChainModel& model, const SolverOptions& options, const Pose& T_base_tip,
           const JointCost& cost, int most, JointVector& q) {
   /// Longest step of a joint, within which the pose stays near enough to be corrected [rad or m].
   constexpr double kLongest = 0.5;
   constexpr double kSettled = 1e-7;
+  constexpr int kCorrections = 8;
   JointVector gradient(model.dof);
   JointVector curvature(model.dof);
   Pose pose;
@@ -95,7 +94,7 @@ int slide(const ChainModel& model, const SolverOptions& options, const Pose& T_b
     for (int halving = 0; halving < 8 && !better; ++halving, scale /= 2) {
       JointVector next = q + scale * step;
       clamp(model, next);
-      if (!correct(model, options, T_base_tip, next)) continue;
+      if (!converge(model, options, T_base_tip, kCorrections, next)) continue;
       const double next_value = cost(next, nullptr, nullptr);
       if (!(next_value < value)) continue;
       better = true;

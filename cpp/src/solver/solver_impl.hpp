@@ -71,6 +71,12 @@ struct Solver::Impl {
   /// Most targets of one solve_many.
   static constexpr std::size_t kMany = 256;
 
+  PathResult solve_path(const std::vector<Pose>& T_base_tip, const PathOptions& path,
+                        Workspace& workspace) const;
+  /// Nothing is a success by hearsay: measures q itself, and only if that reaches the target inside
+  /// the limits, makes it the result.
+  bool finish(const Pose& target, const JointVector& q, Result& result) const;
+
  private:
   [[nodiscard]] bool out_of_reach(const Pose& T_base_tip) const;
   class Judge;
@@ -81,9 +87,6 @@ struct Solver::Impl {
   void explore_one_by_one(Exploration& search, Workspace& workspace,
                           FunctionRef<Verdict(JointVector&)> accept,
                           FunctionRef<bool()> go_on) const;
-  /// Nothing is a success by hearsay: measures q itself, and only if that reaches the target inside
-  /// the limits, makes it the result.
-  bool finish(const Pose& target, const JointVector& q, Result& result) const;
 
   /// Workspaces that lie idle; a null is a place to put one back. More solves at once than places
   /// make their own.

@@ -11,9 +11,6 @@
 namespace iksel {
 namespace {
 
-/// Seeds between two looks at what was found, where they are iterated one by one.
-constexpr int kStage = 8;
-
 /// A seed whose first step ends this near to a solution would end there itself.
 constexpr double kCaught = 0.2;
 
@@ -61,7 +58,7 @@ void Solver::Impl::explore(Exploration& search, Workspace& workspace) const {
     }
     double cost = 0;
     if (request.near) {
-      take_nearest_turns(model, *request.near, q);
+      take_turns_near(*request.near, search.T_base_tip, q);
       // What a filter has been asked about stays as it is.
       if (!request.filter) cost = move.length(q - *request.near);
     } else {
@@ -82,6 +79,22 @@ void Solver::Impl::explore(Exploration& search, Workspace& workspace) const {
     explore_one_by_one(search, workspace, accept, go_on);
   }
   if (found.size() > 0) search.status = Status::solved;
+}
+
+void Solver::Impl::take_turns_near(const JointVector& near, const Pose& T_base_tip,
+                                   JointVector& q) const {
+  const ChainModel& model = robot.model();
+  // An answer at a limit lies outside by rounding as often as not. Held to the limit it need not be
+  // a whole turn away.
+  JointVector held = q;
+  if (take_nearest_turns(model, near, options.rotation_tolerance, held)) {
+    Result measured;
+    if (finish(T_base_tip, held, measured)) {
+      q = held;
+      return;
+    }
+  }
+  take_nearest_turns(model, near, 0, q);
 }
 
 void Solver::Impl::explore_in_lanes(Exploration& search, Workspace& workspace,
@@ -137,7 +150,7 @@ void Solver::Impl::explore_one_by_one(Exploration& search, Workspace& workspace,
   const auto left = [&] { return search.work.attempts - on_top < options.max_attempts; };
   const auto try_all = [&](auto& seeds) {
     for (int k = 0; left(); ++k) {
-      if (k % kStage == 0 && !go_on()) return false;
+      if (!go_on()) return false;
       const double* seed = seeds(k);
       if (seed == nullptr) return true;
       attempt(seed);

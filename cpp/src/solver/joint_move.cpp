@@ -6,15 +6,22 @@
 
 namespace iksel {
 
-void take_nearest_turns(const ChainModel& model, const JointVector& near, JointVector& q) {
+bool take_nearest_turns(const ChainModel& model, const JointVector& near, double slack,
+                        JointVector& q) {
+  bool held = false;
   for (int j = 0; j < model.dof; ++j) {
     if (!has_whole_turns(model, j)) continue;
+    const double lower = model.lower[j] - slack;
+    const double upper = model.upper[j] + slack;
     double value = q[j] + kTwoPi * std::round((near[j] - q[j]) / kTwoPi);
-    // One turn to either side is as near or nearer only if this one lies outside.
-    if (value > model.upper[j]) value -= kTwoPi * std::ceil((value - model.upper[j]) / kTwoPi);
-    if (value < model.lower[j]) value += kTwoPi * std::ceil((model.lower[j] - value) / kTwoPi);
-    if (value >= model.lower[j] && value <= model.upper[j]) q[j] = value;
+    // The nearest turn of all lies outside: then the nearest inside.
+    if (value > upper) value -= kTwoPi * std::ceil((value - upper) / kTwoPi);
+    if (value < lower) value += kTwoPi * std::ceil((lower - value) / kTwoPi);
+    if (value < lower || value > upper) continue;
+    q[j] = std::min(std::max(value, model.lower[j]), model.upper[j]);
+    held = held || q[j] != value;
   }
+  return held;
 }
 
 void take_first_turns(const ChainModel& model, JointVector& q) {

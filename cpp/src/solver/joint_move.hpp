@@ -37,8 +37,10 @@ class JointMove {
 };
 
 /// Brings each joint with whole turns to the turn nearest to `near` inside the limits; q lies
-/// inside them before and after.
-void take_nearest_turns(const ChainModel& model, const JointVector& near, JointVector& q);
+/// inside them before and after. A turn that lies outside by no more than `slack` [rad] is taken
+/// too, and the joint held to the limit. True if one was.
+bool take_nearest_turns(const ChainModel& model, const JointVector& near, double slack,
+                        JointVector& q);
 
 /// Brings each joint with whole turns to the first turn inside the limits, or to [-pi, pi) if there
 /// are none.

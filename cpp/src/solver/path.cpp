@@ -72,10 +72,25 @@ class PathSearch {
 
   /// What the candidates of the layer before lead to at the next pose.
   void add_continuations(const Pose& pose, const Layer& before, Layer& layer) const {
+    // Copies by whole turns lead to copies: only one of them is iterated.
+    constexpr double kCopy = 1e-11;
+    std::vector<JointVector> origins;
+    std::vector<JointVector> moves;
     for (std::size_t i = 0; i < before.size(); ++i) {
-      JointVector q = before.at(i);
-      if (!converge(model_, solver_options_, pose, kSteps, q)) continue;
-      layer.add(q);
+      const JointVector from = before.at(i);
+      std::size_t same = 0;
+      while (same < origins.size() &&
+             distance_without_turns(model_, origins[same], from, kCopy) >= kCopy) {
+        ++same;
+      }
+      if (same == origins.size()) {
+        JointVector q = from;
+        if (!converge(model_, solver_options_, pose, kSteps, q)) continue;
+        origins.push_back(from);
+        moves.emplace_back(q - from);
+      }
+      const JointVector q = from + moves[same];
+      if (model_.within_limits(q.data())) layer.add(q);
     }
   }
 
@@ -92,7 +107,7 @@ class PathSearch {
         continue;
       }
       for (std::size_t k = 0; k < before->size(); ++k) {
-        take_nearest_turns(model_, before->at(k), q);
+        take_nearest_turns(model_, before->at(k), 0, q);
         layer.add(q);
       }
     }
@@ -110,7 +125,7 @@ class PathSearch {
   }
 
   /// The cheapest way to each candidate; keeps the cheapest, and those only that can be reached.
-  void connect(const Layer* before, Layer& layer) const {
+  void connect(const Layer* before, Layer& layer) {
     struct Edge {
       double cost;
       std::size_t parent;
@@ -121,6 +136,7 @@ class PathSearch {
       Edge best{before == nullptr ? 0.0 : kInfinity, 0, i};
       const JointVector q = layer.at(i);
       for (std::size_t k = 0; before != nullptr && k < before->size(); ++k) {
+        if (before->cost[k] >= best.cost) continue;
         const JointVector difference = q - before->at(k);
         if (too_far(difference, longest_)) continue;
         const double cost = before->cost[k] + move_.length(difference);
@@ -130,9 +146,10 @@ class PathSearch {
     }
     std::stable_sort(edges.begin(), edges.end(),
                      [](const Edge& a, const Edge& b) { return a.cost < b.cost; });
-    // Before the first step all cost the same, and all are needed.
-    const auto most = static_cast<std::size_t>(options_.candidates);
+    // Without a start all candidates of the first waypoint cost the same, and all are needed.
+    const std::size_t most = std::max(static_cast<std::size_t>(options_.candidates), first_layer_);
     if (before != nullptr && edges.size() > most) edges.resize(most);
+    if (before == nullptr) first_layer_ = edges.size();
     Layer kept{layer.dof, {}, {}, {}};
     for (const Edge& edge : edges) {
       const JointVector q = layer.at(edge.index);
@@ -182,6 +199,8 @@ class PathSearch {
   SolveRequest request_;
   JointMove move_;
   JointVector longest_;
+  /// Candidates of the first waypoint, if the path has no start.
+  std::size_t first_layer_ = 0;
 };
 
 }  // namespace
@@ -206,7 +225,7 @@ PathResult Solver::Impl::solve_path(const std::vector<Pose>& T_base_tip, const P
                                     Workspace& workspace) const {
   const ChainModel& model = robot.model();
   const auto dof = static_cast<std::size_t>(model.dof);
-  const PathSearch search(model, options, path);
+  PathSearch search(model, options, path);
   const Layer start = path.start
                           ? Layer{dof, {path.start->data(), path.start->data() + dof}, {0.0}, {0}}
                           : Layer{dof, {}, {}, {}};

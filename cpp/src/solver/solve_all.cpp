@@ -146,7 +146,7 @@ Solutions Solver::Impl::solve_all(const Pose& T_base_tip, const AllOptions& all,
         add(q, i);
       } while (copies.size() < kMostCopies && take_next_turns(model, q));
     } else {
-      take_nearest_turns(model, from, q);
+      take_turns_near(from, T_base_tip, q);
       add(q, i);
     }
   }

@@ -82,6 +82,8 @@ struct Solver::Impl {
   class Judge;
   /// Collects solutions in workspace.found.
   void explore(Exploration& search, Workspace& workspace) const;
+  /// Brings a solution to the turns nearest to `near`.
+  void take_turns_near(const JointVector& near, const Pose& T_base_tip, JointVector& q) const;
   void explore_in_lanes(Exploration& search, Workspace& workspace,
                         FunctionRef<Verdict(JointVector&)> accept, FunctionRef<bool()> go_on) const;
   void explore_one_by_one(Exploration& search, Workspace& workspace,

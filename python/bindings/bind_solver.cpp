@@ -257,6 +257,7 @@ Raises:
     InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, or a number that is
         not finite.)");
   bind_requests(m, cls);
+  bind_path(m, cls);
   cls.def("solve_batch", &solve_batch, py::arg("poses"), py::arg("threads") = 0,
           R"(Solves many targets with the GIL released; row i belongs to target i.
 

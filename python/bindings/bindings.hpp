@@ -17,6 +17,7 @@ void bind_database(pybind11::module_& m);
 void bind_solver(pybind11::module_& m);
 /// The methods of Solver that take wishes.
 void bind_requests(pybind11::module_& m, pybind11::class_<Solver>& solver);
+void bind_path(pybind11::module_& m, pybind11::class_<Solver>& solver);
 void bind_evaluation(pybind11::module_& m);
 
 }  // namespace iksel::python

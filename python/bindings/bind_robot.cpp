@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>
@@ -30,6 +31,29 @@ Pose as_rigid_pose(const ArrayLike& value, const char* name) {
   Pose pose = as_pose(value, name);
   check_pose(pose, name);
   return pose;
+}
+
+/// Row i of the result: the error between poses[i] and targets[i].
+py::array_t<double> pose_errors(const DoubleArray& targets, const DoubleArray& poses) {
+  if (poses.ndim() != 3 || !std::equal(targets.shape(), targets.shape() + 3, poses.shape())) {
+    throw_wrong_shape("pose", "as many poses as targets, shape " + shape_text(targets), poses);
+  }
+  const py::ssize_t rows = poses.shape(0);
+  py::array_t<double> out({rows, py::ssize_t{6}});
+  double* to = out.mutable_data();
+  const double* target = targets.data();
+  const double* pose = poses.data();
+  const py::gil_scoped_release release;
+  Pose a;
+  Pose b;
+  for (py::ssize_t row = 0; row < rows; ++row, target += 16, pose += 16, to += 6) {
+    a.matrix() = Eigen::Map<const RowMajorPose>(target);
+    b.matrix() = Eigen::Map<const RowMajorPose>(pose);
+    check_pose(a, ("target[" + std::to_string(row) + "]").c_str());
+    check_pose(b, ("pose[" + std::to_string(row) + "]").c_str());
+    Eigen::Map<Eigen::Matrix<double, 6, 1>>{to} = pose_error(a, b);
+  }
+  return out;
 }
 
 bool is_xml(const std::string& text) {
@@ -229,12 +253,17 @@ Raises:
 
   m.def(
       "pose_error",
-      [](const ArrayLike& target, const ArrayLike& pose) {
+      [](const ArrayLike& target, const ArrayLike& pose) -> py::array_t<double> {
+        const DoubleArray targets = as_doubles(target, "target");
+        if (targets.ndim() == 3) {
+          return pose_errors(as_poses(targets, "target"), as_doubles(pose, "pose"));
+        }
         return to_array(
             JointVector(pose_error(as_rigid_pose(target, "target"), as_rigid_pose(pose, "pose"))));
       },
       py::arg("target"), py::arg("pose"),
-      "[p_target - p; rotvec(R_target R^T)] of two (4, 4) poses [m, rad], (6,).");
+      "[p_target - p; rotvec(R_target R^T)] of two (4, 4) poses [m, rad], (6,); or of each pair "
+      "from two (N, 4, 4) arrays, (N, 6).");
 }
 
 }  // namespace iksel::python

@@ -230,9 +230,9 @@ def test_rows_equal_single_calls(robot, joints, kinematics):
 
 
 def test_batch_equals_loop(robot, poses):
-    options = iksel.SolverOptions.paper()
+    options = core.SolverOptions.paper()
     options.database.scale = "small"
-    solver = iksel.Solver(robot, options)
+    solver = core.Solver(robot, options)
     batch = solver.solve_batch(poses)
     assert len(batch) == len(poses)
     for pose, row, status in zip(poses, batch, batch.statuses(), strict=True):
@@ -872,6 +872,14 @@ def test_pose_error_is_zero_only_between_equals(poses):
     moved[2, 3] += 0.25
     error = core.pose_error(moved, poses[0])
     np.testing.assert_allclose(error, [0, 0, 0.25, 0, 0, 0], atol=1e-12)
+    rows = core.pose_error(poses, poses[::-1])
+    assert rows.shape == (len(poses), 6)
+    for row, target, pose in zip(rows, poses, poses[::-1], strict=True):
+        np.testing.assert_array_equal(row, core.pose_error(target, pose))
+    with pytest.raises(core.InvalidArgumentError, match="as many poses as targets"):
+        core.pose_error(poses, poses[1:])
+    with pytest.raises(core.InvalidArgumentError, match=r"pose: .*\(4, 4\)"):
+        core.pose_error(poses[0], poses)
 
 
 def test_grid_counts_are_the_papers():

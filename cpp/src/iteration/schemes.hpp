@@ -2,6 +2,7 @@
 // One step of each iteration scheme: the joint adjustment for an error e at q (paper, Table II).
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <cmath>
 
 #include "iksel/options.hpp"

@@ -9,7 +9,6 @@
 
 #include "iksel/error.hpp"
 #include "kinematics/chain_model.hpp"
-#include "math/pseudo_inverse.hpp"
 
 namespace iksel {
 namespace {

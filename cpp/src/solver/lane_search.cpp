@@ -50,7 +50,7 @@ LaneSearch::LaneSearch(const ChainModel& model, const DatabaseData& data,
       group_(static_cast<std::size_t>(lanes::group_rows(model.dof) * lanes::kGroup)) {}
 
 Pose LaneSearch::set_query(const Pose& T_base_tcp) {
-  const Pose Y = base_inverse_ * T_base_tcp * tcp_inverse_;
+  Pose Y = base_inverse_ * T_base_tcp * tcp_inverse_;
   data_.reduction->make_key(Y, key_);
   seed_target_ = make_seed_target(Y);
   return Y;

@@ -177,6 +177,7 @@ void LaneSearch::stream(const Next& next, const Target& target, const Settle& se
     }
   };
   for (int lane = 0; lane < lanes; ++lane) refill(lane);
+  // NOLINTNEXTLINE(bugprone-infinite-loop): refill() ends it.
   while (alive != 0) {
     int budget = patience;
     for (int lane = 0; lane < lanes; ++lane) {

@@ -124,11 +124,8 @@ def print_text(report: dict[str, Any]) -> None:
             ("solved", f"{report['solved']:,}, {report['success_percent']:.3f} %"),
             ("false successes", str(report["false_success"])),
             ("attempts", f"{report['mean_attempts']:.2f} on average"),
-            (
-                "iterations",
-                f"{report['mean_iterations']:.2f} on average, {report['max_iterations']} "
-                f"at most, bound {report['work_bound']}",
-            ),
+            ("iterations", f"{report['mean_iterations']:.2f} on average"),
+            ("  most", f"{report['max_iterations']}, bound {report['work_bound']}"),
             *((f"{name} time", f"{value:10.2f} us") for name, value in times),
             *(
                 (f"  {key.removesuffix('_us')}", f"{report[key]:10.2f} us")

@@ -228,7 +228,10 @@ def _learned() -> str:
     return "\n\n".join(
         [
             "### Not run: learned seeds",
-            "Published only; the trained models are not public.",
+            (
+                "Published only: the authors trained these models for their robots. "
+                "`Solver.solve(pose, seeds=...)` takes what such a model gives."
+            ),
             table(["success %", *HEADER], rows),
         ]
     )

@@ -13,23 +13,11 @@
 #include "iksel/solver.hpp"
 #include "option_fields.hpp"
 #include "progress.hpp"
+#include "py_result.hpp"
 
 namespace iksel::python {
 
 namespace {
-
-using OptionalJoints = py::typing::Optional<py::array_t<double>>;
-
-/// A Result whose q becomes an array when it is first asked for.
-struct PyResult {
-  Result result;
-  py::object q;
-
-  OptionalJoints joints() {
-    if (!q) q = result.success() ? py::object(to_array(result.q)) : py::object(py::none());
-    return py::reinterpret_borrow<OptionalJoints>(q);
-  }
-};
 
 /// The arrays of a batch.
 struct PyBatchResult {
@@ -146,6 +134,9 @@ void bind_result(py::module_& m) {
       "rotation_error", [](const PyResult& self) { return self.result.rotation_error; },
       "Length of the rotation vector to the target [rad]; NaN unless solved.");
   cls.def_property_readonly(
+      "move", [](const PyResult& self) { return self.result.move; },
+      "Length of the move from `near`, by its norm and weights; NaN without one.");
+  cls.def_property_readonly(
       "attempts", [](const PyResult& self) { return self.result.attempts; }, "Seeds tried.");
   cls.def_property_readonly(
       "iterations", [](const PyResult& self) { return self.result.iterations; },
@@ -155,7 +146,7 @@ void bind_result(py::module_& m) {
       [](PyResult& self) {
         const Result& r = self.result;
         return py::make_tuple(enum_name(r.status), self.joints(), r.position_error,
-                              r.rotation_error, r.attempts, r.iterations);
+                              r.rotation_error, r.attempts, r.iterations, r.move);
       },
       [](const py::tuple& state) {
         PyResult self;
@@ -165,6 +156,7 @@ void bind_result(py::module_& m) {
         self.result.rotation_error = py::cast<double>(state[3]);
         self.result.attempts = py::cast<int>(state[4]);
         self.result.iterations = py::cast<int>(state[5]);
+        self.result.move = py::cast<double>(state[6]);
         return self;
       }));
 }
@@ -224,6 +216,8 @@ void bind_batch_result(py::module_& m) {
 
 void bind_solver(py::module_& m) {
   bind_enum<Status>(m);
+  bind_enum<MoveNorm>(m);
+  bind_enum<SolutionOrder>(m);
   bind_result(m);
   bind_batch_result(m);
 
@@ -262,6 +256,8 @@ Returns:
 Raises:
     InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, or a number that is
         not finite.)");
+  bind_requests(m, cls);
+  bind_path(m, cls);
   cls.def("solve_batch", &solve_batch, py::arg("poses"), py::arg("threads") = 0,
           R"(Solves many targets with the GIL released; row i belongs to target i.
 

@@ -10,6 +10,7 @@
 #include <type_traits>
 
 #include "iksel/options.hpp"
+#include "iksel/request.hpp"
 #include "iksel/result.hpp"
 #include "iksel/robot.hpp"
 
@@ -173,6 +174,34 @@ struct EnumTable<Status> {
        "attempts reached the target, but only with joints outside their limits"},
       {"out_of_reach", Status::out_of_reach,
        "the target's position is farther away than the arm is long; nothing was tried"},
+      {"rejected", Status::rejected,
+       "attempts reached the target inside the limits, but the filter refused each"},
+      {"out_of_time", Status::out_of_time, "the deadline passed before an answer was found"},
+      {"too_fast", Status::too_fast,
+       "answers exist, but joints would have to move faster than their velocity limits"},
+  };
+};
+
+template <>
+struct EnumTable<MoveNorm> {
+  static constexpr const char* kName = "MoveNorm";
+  static constexpr const char* kDoc = "How the length of a joint move is measured.";
+  static constexpr EnumValue<MoveNorm> kValues[] = {
+      {"two", MoveNorm::two, "root of the sum of squares"},
+      {"max", MoveNorm::max, "the largest joint's"},
+  };
+};
+
+template <>
+struct EnumTable<SolutionOrder> {
+  static constexpr const char* kName = "SolutionOrder";
+  static constexpr const char* kDoc = "In which order solve_all gives its solutions.";
+  static constexpr EnumValue<SolutionOrder> kValues[] = {
+      {"move", SolutionOrder::move,
+       "the smallest move first: from `near`, or else from the middle of the limits"},
+      {"limit_distance", SolutionOrder::limit_distance,
+       "the largest distance from the limits first, relative to each joint's range"},
+      {"manipulability", SolutionOrder::manipulability, "the largest sqrt(det(J J^T)) first"},
   };
 };
 

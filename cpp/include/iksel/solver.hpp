@@ -9,6 +9,7 @@
 #include "iksel/database.hpp"
 #include "iksel/export.hpp"
 #include "iksel/options.hpp"
+#include "iksel/request.hpp"
 #include "iksel/result.hpp"
 #include "iksel/robot.hpp"
 
@@ -17,6 +18,9 @@ namespace iksel {
 /// The instruction set whose lanes solve on this machine: avx512, avx2, sse2, neon or scalar. The
 /// environment variable IKSEL_SIMD forces one. Throws InvalidArgumentError if it is not to be had.
 IKSEL_EXPORT const char* simd_level();
+
+struct PathOptions;
+struct PathResult;
 
 /// Time spent in each stage of one or more solves [ns].
 struct StageTimes {
@@ -54,6 +58,20 @@ class IKSEL_EXPORT Solver {
   [[nodiscard]] Result solve(const Pose& T_base_tip, const JointVector& seed) const;
   /// As solve, adding the time of each stage to `times`.
   [[nodiscard]] Result solve(const Pose& T_base_tip, StageTimes& times) const;
+  /// As solve, with wishes. Without any it is solve(T_base_tip).
+  [[nodiscard]] Result solve(const Pose& T_base_tip, const SolveRequest& request) const;
+
+  /// Every distinct solution inside the limits that is found within the bounds on work: all
+  /// branches of an arm with as many joints as the pose has directions, a spread over the families
+  /// of a redundant one. Throws as solve.
+  [[nodiscard]] Solutions solve_all(const Pose& T_base_tip, const AllOptions& options = {},
+                                    const SolveRequest& request = {}) const;
+
+  /// Joint values along a path of poses, by a choice among the solutions of all waypoints that
+  /// makes the whole way in joint space short. Throws InvalidArgumentError naming a bad pose or
+  /// option.
+  [[nodiscard]] PathResult solve_path(const std::vector<Pose>& T_base_tip,
+                                      const PathOptions& options) const;
 
   /// Solves many targets; result i belongs to target i and has the same bits whatever the number
   /// of threads and whatever else is in the batch. It has the bits that solve() gives, but for
@@ -68,6 +86,7 @@ class IKSEL_EXPORT Solver {
                    int threads = 0, const Progress& progress = {}) const;
 
  private:
+  friend class Tracker;
   struct Impl;
   std::shared_ptr<const Impl> impl_;
 };

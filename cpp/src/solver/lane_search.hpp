@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <type_traits>
 #include <vector>
 
 #include "database/data.hpp"
@@ -37,11 +38,19 @@ class LaneSearch {
   LaneSearch(const ChainModel& model, const DatabaseData& data, const SolverOptions& options,
              const lanes::LaneKernels& kernels);
 
+  /// Leaves a search to itself.
+  struct Unsteered {
+    /// Asked after each group of the database's seeds; false ends the search.
+    static bool go_on() { return true; }
+    /// Whether a seed of the database, whose first step is made, need not be iterated.
+    static bool skips(const lanes::SeedPack& /*seeds*/, int /*slot*/) { return false; }
+  };
+
   /// Calls `accept(JointVector& q) -> Verdict` for every q that arrives until it says stop (then
   /// true), or the work bound is reached. `seed` may be null.
-  template <typename Accept>
+  template <typename Accept, typename Steering = Unsteered>
   bool search(const Pose& T_base_tcp, const JointVector* seed, StageClock& clock, Work& work,
-              const Accept& accept);
+              const Accept& accept, const Steering& steering = {});
 
   /// Iterates `count` seeds for the target that was set, most lanes at a time;
   /// `load(k, lane)` puts seed k into a lane.
@@ -200,11 +209,21 @@ void LaneSearch::stream(const Next& next, const Target& target, const Settle& se
   }
 }
 
-template <typename Accept>
+template <typename Accept, typename Steering>
 bool LaneSearch::search(const Pose& T_base_tcp, const JointVector* seed, StageClock& clock,
-                        Work& work, const Accept& accept) {
+                        Work& work, const Accept& accept, const Steering& steering) {
+  constexpr bool kSteered = !std::is_same_v<Steering, Unsteered>;
   const auto iterate_ranked = [&](int count) {
     clock.lap(&StageTimes::rank);
+    if constexpr (kSteered) {
+      int kept = 0;
+      for (int k = 0; k < count; ++k) {
+        const unsigned char slot = seeds_.order[k];
+        if (!steering.skips(seeds_, slot)) seeds_.order[kept++] = slot;
+      }
+      work.attempts += count - kept;
+      count = kept;
+    }
     const bool solved = iterate(
         count, work, [this](int k, int lane) { load_ranked(k, lane); }, accept);
     clock.lap(&StageTimes::iterate);
@@ -220,6 +239,7 @@ bool LaneSearch::search(const Pose& T_base_tcp, const JointVector* seed, StageCl
   clock.lap(&StageTimes::query);
   kernels_.prepare(seed_chain_, seed_target_, leaf, seeds_);
   if (iterate_ranked(lanes::kGroup)) return true;
+  if (!steering.go_on()) return false;
 
   // Widening stages: each asks for four times as many and tries those it has not tried yet.
   std::size_t done = 0;
@@ -237,7 +257,7 @@ bool LaneSearch::search(const Pose& T_base_tcp, const JointVector* seed, StageCl
       }
       kernels_.prepare(seed_chain_, seed_target_, group_.data(), seeds_);
       if (iterate_ranked(lanes::kGroup)) return true;
-      if (work.attempts >= options_.max_attempts) return false;
+      if (!steering.go_on() || work.attempts >= options_.max_attempts) return false;
     }
     done = found;
   }
@@ -248,7 +268,12 @@ bool LaneSearch::search(const Pose& T_base_tcp, const JointVector* seed, StageCl
       pack_.q[j][lane] = random.uniform(model_.sample_lower(j), model_.sample_upper(j));
     }
   };
-  const bool solved = iterate(options_.max_attempts - work.attempts, work, load_random, accept);
+  bool solved = false;
+  while (!solved && work.attempts < options_.max_attempts) {
+    const int left = options_.max_attempts - work.attempts;
+    solved = iterate(kSteered ? std::min(left, lanes::kGroup) : left, work, load_random, accept);
+    if (!steering.go_on()) break;
+  }
   clock.lap(&StageTimes::iterate);
   return solved;
 }

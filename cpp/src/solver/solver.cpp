@@ -35,7 +35,7 @@ void check_fits(const Robot& robot, const Database& database) {
 
 Workspace::Workspace(const ChainModel& model, const DatabaseData& data,
                      const SolverOptions& options)
-    : selection(model, data, options) {
+    : selection(model, data, options), found(model) {
   if (solves_in_lanes(model, data, options)) {
     lanes = std::make_unique<LaneSearch>(model, data, options, lanes::choose_kernels());
   }

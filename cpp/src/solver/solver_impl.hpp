@@ -10,6 +10,8 @@
 #include "iksel/solver.hpp"
 #include "iteration/iterate.hpp"
 #include "selection/selection.hpp"
+#include "solver/explore.hpp"
+#include "solver/found.hpp"
 #include "solver/lane_search.hpp"
 
 namespace iksel {
@@ -23,6 +25,8 @@ struct Workspace {
   std::unique_ptr<KdlChain> kdl;
   /// Only if the options solve in lanes.
   std::unique_ptr<LaneSearch> lanes;
+  /// Of solves with wishes.
+  Found found;
 };
 
 struct Solver::Impl {
@@ -40,6 +44,11 @@ struct Solver::Impl {
   template <typename Target, typename Settle>
   void solve_many(std::size_t first, std::size_t last, Workspace& workspace, const Target& target,
                   const Settle& settle) const;
+
+  /// The whole pipeline for one valid target with wishes.
+  Result solve(const Pose& T_base_tip, const SolveRequest& request, Workspace& workspace) const;
+  Solutions solve_all(const Pose& T_base_tip, const AllOptions& all, const SolveRequest& request,
+                      Workspace& workspace) const;
 
   /// A workspace of this solver, given back when it goes.
   class Lease {
@@ -62,11 +71,24 @@ struct Solver::Impl {
   /// Most targets of one solve_many.
   static constexpr std::size_t kMany = 256;
 
- private:
-  [[nodiscard]] bool out_of_reach(const Pose& T_base_tip) const;
+  PathResult solve_path(const std::vector<Pose>& T_base_tip, const PathOptions& path,
+                        Workspace& workspace) const;
   /// Nothing is a success by hearsay: measures q itself, and only if that reaches the target inside
   /// the limits, makes it the result.
   bool finish(const Pose& target, const JointVector& q, Result& result) const;
+
+ private:
+  [[nodiscard]] bool out_of_reach(const Pose& T_base_tip) const;
+  class Judge;
+  /// Collects solutions in workspace.found.
+  void explore(Exploration& search, Workspace& workspace) const;
+  /// Brings a solution to the turns nearest to `near`.
+  void take_turns_near(const JointVector& near, const Pose& T_base_tip, JointVector& q) const;
+  void explore_in_lanes(Exploration& search, Workspace& workspace,
+                        FunctionRef<Verdict(JointVector&)> accept, FunctionRef<bool()> go_on) const;
+  void explore_one_by_one(Exploration& search, Workspace& workspace,
+                          FunctionRef<Verdict(JointVector&)> accept,
+                          FunctionRef<bool()> go_on) const;
 
   /// Workspaces that lie idle; a null is a place to put one back. More solves at once than places
   /// make their own.

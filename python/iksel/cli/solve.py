@@ -7,7 +7,7 @@ import math
 import time
 from typing import TYPE_CHECKING, Any
 
-from iksel_cpp import Database, Solver
+from iksel_cpp import Database, InvalidArgumentError, Solver
 
 from iksel.cli._options import add_solver_options, solver_options
 from iksel.cli._output import add_json, number, print_json, print_pairs, print_table
@@ -20,12 +20,16 @@ if TYPE_CHECKING:
 
     from iksel_cpp import Result, Robot
 
+    from iksel._arrays import FloatArray
+
 EXIT_SOLVED, EXIT_NO_SOLUTION = 0, 1
 
 EXAMPLES = """\
 examples:
   iksel solve ur3 --pose 0.2 0.15 0.3 0 3.1416 0
   iksel solve ur3 --pose 0.2 0.15 0.3 0 0 1 0 --json
+  iksel solve ur3 --pose 0.2 0.15 0.3 0 3.1416 0 --near 0 -1 1 0 1 0
+  iksel solve ur3 --pose 0.2 0.15 0.3 0 3.1416 0 --all
   iksel solve panda --from-q 0 -0.5 0 -2 0 1.6 0.8 --preset paper --max-attempts 6
   iksel solve arm.urdf --base base_link --tip tool0 --tcp 0 0 0.1 0 0 0 --from-q 0 0 0 0
 
@@ -57,6 +61,19 @@ def add_parser(commands: Any) -> None:
         metavar="Q",
         help="joint values to start the first attempt from [rad or m]",
     )
+    parser.add_argument(
+        "--near",
+        nargs="+",
+        metavar="Q",
+        help="joint values to stay near [rad or m]: gives the solution with the "
+        "smallest joint move",
+    )
+    parser.add_argument(
+        "--all",
+        action="store_true",
+        help="give every distinct solution, nearest first (with --near: to that, else "
+        "to the middle of the limits)",
+    )
     add_json(parser)
     add_solver_options(parser)
     parser.set_defaults(run=run)
@@ -70,15 +87,26 @@ def run(arguments: argparse.Namespace) -> int:
         target = parse_pose("--pose", arguments.pose)
     else:
         target = robot.fk(parse_joints("--from-q", arguments.from_q, joints))
+    near = arguments.near and parse_joints("--near", arguments.near, joints)
+    if arguments.seed_q and (near or arguments.all):
+        raise InvalidArgumentError("--seed-q: cannot be used with --near or --all")
     seed = arguments.seed_q and parse_joints("--seed-q", arguments.seed_q, joints)
     options = solver_options(arguments)
     database = arguments.database and Database.load(arguments.database)
     solver = Solver(robot, options, database)
 
+    if arguments.all:
+        return run_all(solver, target, near, arguments)
+
+    def solve() -> Result:
+        if near:
+            return solver.solve(target, near=near)
+        return solver.solve(target, seed=seed)
+
     # The first call also fetches the database into the caches: time the second.
-    solver.solve(target, seed=seed)
+    solve()
     start = time.perf_counter()
-    result = solver.solve(target, seed=seed)
+    result = solve()
     time_us = (time.perf_counter() - start) * 1e6
 
     report = {
@@ -91,6 +119,7 @@ def run(arguments: argparse.Namespace) -> int:
         "q": result.q,
         "position_error": result.position_error,
         "rotation_error": result.rotation_error,
+        "move": result.move,
         "attempts": result.attempts,
         "iterations": result.iterations,
         "time_us": time_us,
@@ -100,6 +129,47 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         print_text(robot, result, report)
     return EXIT_SOLVED if result.success else EXIT_NO_SOLUTION
+
+
+def run_all(
+    solver: Solver, target: FloatArray, near: list[float] | None, arguments: Any
+) -> int:
+    """Find every distinct solution and print them."""
+    robot = solver.robot
+    start = time.perf_counter()
+    found = solver.solve_all(target, near=near)
+    report = {
+        "robot": robot.name,
+        "preset": arguments.preset,
+        "joint_names": robot.joint_names,
+        "target": target,
+        "success": found.success,
+        "status": found.status.name,
+        "q": found.q,
+        "position_error": found.position_error,
+        "rotation_error": found.rotation_error,
+        "move": found.move,
+        "attempts": found.attempts,
+        "iterations": found.iterations,
+        "time_us": (time.perf_counter() - start) * 1e6,
+    }
+    if arguments.json:
+        print_json(report)
+    else:
+        print_pairs(
+            [
+                ("robot", f"{robot.name}, {robot.base_link} -> {robot.tip_link}"),
+                ("target", pose_text(target)),
+                ("status", found.status.name),
+                ("solutions", str(len(found))),
+            ]
+        )
+        if found.success:
+            print()
+            print_table(
+                robot.joint_names, [[number(x, 6) for x in q] for q in found.q.tolist()]
+            )
+    return EXIT_SOLVED if found.success else EXIT_NO_SOLUTION
 
 
 def print_text(robot: Robot, result: Result, report: dict[str, Any]) -> None:
@@ -117,6 +187,8 @@ def print_text(robot: Robot, result: Result, report: dict[str, Any]) -> None:
             ("position error", f"{result.position_error:.3g} m"),
             ("rotation error", f"{result.rotation_error:.3g} rad"),
         ]
+    if math.isfinite(result.move):
+        rows.append(("joint move", f"{result.move:.4g} rad or m"))
     print_pairs(rows)
     if result.q is None:
         return

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "solver/explore.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "solver/given_seeds.hpp"
+#include "solver/solver_impl.hpp"
+#include "solver/stage_clock.hpp"
+
+namespace iksel {
+namespace {
+
+/// A seed whose first step ends this near to a solution would end there itself.
+constexpr double kCaught = 0.2;
+
+struct Steering {
+  Found& found;
+  FunctionRef<bool()> ask;
+  double caught;
+
+  [[nodiscard]] bool go_on() const { return ask(); }
+  [[nodiscard]] bool skips(const lanes::SeedPack& seeds, int slot) const {
+    struct Column {
+      const lanes::SeedPack& seeds;
+      int slot;
+      double operator[](int joint) const { return static_cast<double>(seeds.q[joint][slot]); }
+    };
+    return found.is_near_known(Column{seeds, slot}, caught);
+  }
+};
+
+}  // namespace
+
+void Solver::Impl::explore(Exploration& search, Workspace& workspace) const {
+  const ChainModel& model = robot.model();
+  Found& found = workspace.found;
+  found.clear();
+  if (out_of_reach(search.T_base_tip)) {
+    search.status = Status::out_of_reach;
+    return;
+  }
+
+  const SolveRequest& request = search.request;
+  const JointMove move(model.dof, request);
+  const Deadline deadline(request.deadline);
+  const auto accept = [&](JointVector& q) {
+    double position = 0;
+    double rotation = 0;
+    measure_error(model, search.T_base_tip, q.data(), position, rotation);
+    if (!(position <= options.position_tolerance && rotation <= options.rotation_tolerance)) {
+      return Verdict::refine;
+    }
+    model.wrap_into_limits(q.data());
+    if (!model.within_limits(q.data())) {
+      search.status = Status::outside_limits;
+      return Verdict::next;
+    }
+    double cost = 0;
+    if (request.near) {
+      take_turns_near(*request.near, search.T_base_tip, q);
+      // What a filter has been asked about stays as it is.
+      if (!request.filter) cost = move.length(q - *request.near);
+    } else {
+      take_first_turns(model, q);
+    }
+    found.add(q, cost, search.min_distance);
+    return Verdict::next;
+  };
+  const auto go_on = [&] {
+    if (search.enough(search.work.attempts)) return false;
+    search.out_of_time = deadline.passed();
+    return !search.out_of_time;
+  };
+
+  if (workspace.lanes) {
+    explore_in_lanes(search, workspace, accept, go_on);
+  } else {
+    explore_one_by_one(search, workspace, accept, go_on);
+  }
+  if (found.size() > 0) search.status = Status::solved;
+}
+
+void Solver::Impl::take_turns_near(const JointVector& near, const Pose& T_base_tip,
+                                   JointVector& q) const {
+  const ChainModel& model = robot.model();
+  // An answer at a limit lies outside by rounding as often as not. Held to the limit it need not be
+  // a whole turn away.
+  JointVector held = q;
+  if (take_nearest_turns(model, near, options.rotation_tolerance, held)) {
+    Result measured;
+    if (finish(T_base_tip, held, measured)) {
+      q = held;
+      return;
+    }
+  }
+  take_nearest_turns(model, near, 0, q);
+}
+
+void Solver::Impl::explore_in_lanes(Exploration& search, Workspace& workspace,
+                                    FunctionRef<Verdict(JointVector&)> accept,
+                                    FunctionRef<bool()> go_on) const {
+  LaneSearch& lanes = *workspace.lanes;
+  lanes.set_target(search.T_base_tip);
+  Work& work = search.work;
+  const auto iterate_seeds = [&](const double* const* seeds, int count) {
+    lanes.iterate(
+        count, work, [&](int k, int lane) { lanes.load_seed(lane, seeds[k]); }, accept);
+  };
+  if (search.request.near) {
+    const double* near = search.request.near->data();
+    iterate_seeds(&near, 1);
+  }
+  if (!search.request.seeds.empty()) {
+    const Pose tip_target = search.T_base_tip * Pose(robot.model().tcp_inverse);
+    GivenSeeds given(robot.model(), options, tip_target, search.request.seeds);
+    std::vector<const double*> order;
+    while (const double* seed = given.next(static_cast<int>(order.size()))) order.push_back(seed);
+    const int count = static_cast<int>(order.size());
+    for (int first = 0; first < count; first += lanes::kGroup) {
+      iterate_seeds(&order[static_cast<std::size_t>(first)],
+                    std::min(lanes::kGroup, count - first));
+      if (!go_on()) return;
+    }
+  }
+  if (!go_on() || !search.request.database_seeds) return;
+  const Steering steering{workspace.found, go_on, robot.dof() > 6 ? 0.0 : kCaught};
+  StageClock clock(nullptr);
+  lanes.search(search.T_base_tip, nullptr, clock, work, accept, steering);
+}
+
+void Solver::Impl::explore_one_by_one(Exploration& search, Workspace& workspace,
+                                      FunctionRef<Verdict(JointVector&)> accept,
+                                      FunctionRef<bool()> go_on) const {
+  const ChainModel& model = robot.model();
+  const Pose tip_target = search.T_base_tip * Pose(model.tcp_inverse);
+  Random random(options.seed);
+  const IterationContext context{model, options, search.T_base_tip, tip_target, workspace.kdl.get(),
+                                 random};
+  const auto attempt = [&](const double* from) {
+    JointVector q = Eigen::Map<const Eigen::VectorXd>(from, model.dof);
+    ++search.work.attempts;
+    const Outcome outcome = iterate(context, q, search.work.iterations);
+    if (outcome == Outcome::outside_limits) search.status = Status::outside_limits;
+    if (outcome == Outcome::solved) accept(q);
+  };
+
+  if (search.request.near) attempt(search.request.near->data());
+  const int on_top = search.work.attempts;
+  const auto left = [&] { return search.work.attempts - on_top < options.max_attempts; };
+  const auto try_all = [&](auto& seeds) {
+    for (int k = 0; left(); ++k) {
+      if (!go_on()) return false;
+      const double* seed = seeds(k);
+      if (seed == nullptr) return true;
+      attempt(seed);
+    }
+    return false;
+  };
+
+  if (!search.request.seeds.empty()) {
+    GivenSeeds given(model, options, tip_target, search.request.seeds);
+    const auto next = [&](int k) { return given.next(k); };
+    if (!try_all(next)) {
+      go_on();
+      return;
+    }
+  }
+  if (search.request.database_seeds) {
+    Selection& selection = workspace.selection;
+    selection.query(tip_target);
+    selection.rank();
+    const auto next = [&](int k) { return selection.next_seed(k); };
+    try_all(next);
+  }
+  // What the last seeds found is looked at too.
+  go_on();
+}
+
+}  // namespace iksel

@@ -9,5 +9,6 @@
 #include "iksel/result.hpp"      // IWYU pragma: export
 #include "iksel/robot.hpp"       // IWYU pragma: export
 #include "iksel/solver.hpp"      // IWYU pragma: export
+#include "iksel/task.hpp"        // IWYU pragma: export
 #include "iksel/types.hpp"       // IWYU pragma: export
 #include "iksel/version.hpp"     // IWYU pragma: export

@@ -40,8 +40,9 @@ bool stops_on_small_step(Iteration iteration) {
          iteration == Iteration::pinv_rr;
 }
 
+/// `squared_error` is what lm damps by.
 JointVector make_step(const IterationContext& context, const JointVector& q,
-                      const JacobianMatrix& J, const Vector6& e) {
+                      const JacobianMatrix& J, const Vector6& e, double squared_error) {
   const SolverOptions& options = context.options;
   switch (options.iteration) {
     case Iteration::dls:
@@ -56,7 +57,39 @@ JointVector make_step(const IterationContext& context, const JointVector& q,
     case Iteration::lm:
       break;
   }
-  return lm_step(context.model, q, J, e, options);
+  return lm_step(context.model, q, J, e, options, squared_error);
+}
+
+/// A step that brings the deviation d (its Jacobian J) into the box. Parts inside the box ask for
+/// nothing, unless the step would take them out of it: then they are to stay at the bound.
+JointVector make_task_step(const IterationContext& context, const JointVector& q,
+                           const JacobianMatrix& J, const Vector6& d, const Vector6& e) {
+  const Vector6& lower = context.task->aim_lower();
+  const Vector6& upper = context.task->aim_upper();
+  const double squared_error = e.squaredNorm();
+  Vector6 asked = e;
+  JacobianMatrix rows = J;
+  bool active[6];
+  for (int i = 0; i < 6; ++i) {
+    active[i] = e[i] != 0 || lower[i] == upper[i];
+    if (!active[i]) rows.row(i).setZero();
+  }
+  for (int round = 0;; ++round) {
+    JointVector step = make_step(context, q, rows, asked, squared_error);
+    constexpr int kRounds = 3;
+    if (round == kRounds) return step;
+    bool changed = false;
+    for (int i = 0; i < 6; ++i) {
+      if (active[i]) continue;
+      const double goal = d[i] + J.row(i).dot(step);
+      if (goal >= lower[i] && goal <= upper[i]) continue;
+      active[i] = true;
+      changed = true;
+      rows.row(i) = J.row(i);
+      asked[i] = (goal < lower[i] ? lower[i] : upper[i]) - d[i];
+    }
+    if (!changed) return step;
+  }
 }
 
 /// What follows a step besides adding it; true if the attempt goes on.
@@ -92,19 +125,31 @@ Outcome iterate(const IterationContext& context, JointVector& q, int& steps) {
   double last_rotation = std::numeric_limits<double>::infinity();
   Pose pose;
   Jacobian J;
+  const TaskSpace* task = context.task;
 
   for (int step = 0;; ++step) {
     if (context.kdl != nullptr) {
       pose = context.kdl->fk(q);
       J = context.kdl->jacobian(q);
     } else {
-      model.fk_jacobian(q.data(), pose, J, false);
+      model.fk_jacobian(q.data(), pose, J, task != nullptr);
     }
-    Vector6 e = error_vector(context.tip_target, pose);
+    JacobianMatrix rows = J;
+    Vector6 d;
+    Vector6 e;
+    if (task == nullptr) {
+      e = error_vector(context.tip_target, pose);
+    } else {
+      d = task->deviation(context.target, pose, rows);
+      e = d.cwiseMax(task->aim_lower()).cwiseMin(task->aim_upper()) - d;
+    }
     const double position = e.head<3>().norm();
     const double rotation = e.tail<3>().norm();  // the same at the TCP
     const double tcp_position =
-        (context.target.translation() - pose * Eigen::Vector3d(model.tcp.translation())).norm();
+        task != nullptr
+            ? position
+            : (context.target.translation() - pose * Eigen::Vector3d(model.tcp.translation()))
+                  .norm();
 
     if (tcp_position < options.position_tolerance && rotation < options.rotation_tolerance) {
       if (options.whole_turns) model.wrap_into_limits(q.data());
@@ -122,7 +167,9 @@ Outcome iterate(const IterationContext& context, JointVector& q, int& steps) {
     if (step == options.max_iterations) return outcome;
 
     if (options.iteration != Iteration::lm) clamp_error(e, position, rotation, options);
-    const JointVector adjustment = make_step(context, q, J, e);
+    const JointVector adjustment = task != nullptr
+                                       ? make_task_step(context, q, rows, d, e)
+                                       : make_step(context, q, rows, e, e.squaredNorm());
     ++steps;
     if (!adjustment.allFinite()) return outcome;
     if (small_step_stop && std::abs(adjustment.sum()) < options.min_step) {

@@ -35,7 +35,15 @@ Selection::Selection(const ChainModel& model, const DatabaseData& data,
   }
 }
 
-void Selection::query(const Pose& T_base_flange) {
+void Selection::query(const Pose& T_base_flange) { query(T_base_flange, neighbours_.size()); }
+
+std::size_t Selection::nearest_seeds(const Pose& T_base_flange, std::size_t k) {
+  query(T_base_flange, std::min(k, neighbours_.size()));
+  if (data_.reduction) prepare_seeds();
+  return found_;
+}
+
+void Selection::query(const Pose& T_base_flange, std::size_t k) {
   target_ = data_.reduction ? data_.reduction->reduce(T_base_flange) : T_base_flange;
   Eigen::Map<Eigen::Vector3d> position(target_x_);
   Eigen::Map<Eigen::Vector3d> rotation(target_x_ + 3);
@@ -43,7 +51,7 @@ void Selection::query(const Pose& T_base_flange) {
   rotation = to_rotation_vector(target_.linear());
   double key[kMaxKeyDimension];
   data_.make_key(T_base_flange, key);
-  found_ = data_.tree.nearest(key, neighbours_.size(), neighbours_.data());
+  found_ = data_.tree.nearest(key, k, neighbours_.data());
 }
 
 void Selection::rank() {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "iksel/error.hpp"
+#include "iteration/task_space.hpp"
 #include "kinematics/chain_model.hpp"
 #include "math/pseudo_inverse.hpp"
 
@@ -25,9 +26,14 @@ bool is_solution(KdlChain& kdl, const Solver& solver, const Pose& target, const 
   // FK in doubles is good to 1e-14 or so, which is what two implementations may differ by.
   constexpr double kRounding = 1e-13;
   if (q.size() != solver.robot().dof() || !q.allFinite()) return false;
-  const Eigen::Matrix<double, 6, 1> e = pose_error(target, kdl.fk(q));
-  return e.head<3>().norm() <= solver.options().position_tolerance + kRounding &&
-         e.tail<3>().norm() <= solver.options().rotation_tolerance + kRounding &&
+  const SolverOptions& options = solver.options();
+  Eigen::Matrix<double, 6, 1> e = pose_error(target, kdl.fk(q));
+  if (!options.task.is_full_pose()) {
+    const TaskSpace task(options.task, options.position_tolerance, options.rotation_tolerance);
+    e = task.outside(task.deviation(target, kdl.fk(q)));
+  }
+  return e.head<3>().norm() <= options.position_tolerance + kRounding &&
+         e.tail<3>().norm() <= options.rotation_tolerance + kRounding &&
          solver.robot().within_limits(q);
 }
 

@@ -35,7 +35,7 @@ void check_fits(const Robot& robot, const Database& database) {
 
 Workspace::Workspace(const ChainModel& model, const DatabaseData& data,
                      const SolverOptions& options)
-    : selection(model, data, options) {
+    : selection(model, data, options), tasks(model, data, options, selection) {
   if (solves_in_lanes(model, data, options)) {
     lanes = std::make_unique<LaneSearch>(model, data, options, lanes::choose_kernels());
   }
@@ -44,7 +44,10 @@ Workspace::Workspace(const ChainModel& model, const DatabaseData& data,
 
 Solver::Impl::Impl(const Robot& robot_in, const SolverOptions& options_in,
                    const Database& database_in)
-    : robot(robot_in), options(options_in), database(database_in) {
+    : robot(robot_in),
+      options(options_in),
+      database(database_in),
+      task(options.task, options.position_tolerance, options.rotation_tolerance) {
   check_fits(robot, database);
   const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
   for (std::size_t i = 0; i < std::min(cores, kPlaces); ++i) {
@@ -78,13 +81,32 @@ Solver::Impl::Lease::~Lease() {
 
 Result Solver::Impl::solve(const Pose& T_base_tip, const JointVector* seed, Workspace& workspace,
                            StageTimes* times) const {
+  return solve(T_base_tip, task, seed, workspace, times);
+}
+
+Result Solver::Impl::solve(const Pose& T_base_tip, const TaskSpace& task_of_call,
+                           const JointVector* seed, Workspace& workspace, StageTimes* times) const {
   const ChainModel& model = robot.model();
   StageClock clock(times);
 
   Result result;
-  const double distance = (T_base_tip.translation() - robot.reach_centre()).norm();
+  const bool full_pose = task_of_call.is_full_pose();
+  const double distance = full_pose ? (T_base_tip.translation() - robot.reach_centre()).norm()
+                                    : task_of_call.distance_from(T_base_tip, robot.reach_centre());
   if (distance > robot.reach() + options.position_tolerance) {
     result.status = Status::out_of_reach;
+    return result;
+  }
+
+  if (!full_pose) {
+    bool outside_limits = false;
+    const bool solved =
+        workspace.tasks.run(T_base_tip, task_of_call, seed, clock, result.attempts,
+                            result.iterations, outside_limits, [&](const JointVector& q) {
+                              result = finish(result, task_of_call, T_base_tip, q);
+                              return result.success();
+                            });
+    if (!solved && outside_limits) result.status = Status::outside_limits;
     return result;
   }
 
@@ -93,7 +115,7 @@ Result Solver::Impl::solve(const Pose& T_base_tip, const JointVector* seed, Work
     workspace.lanes->run(tip_target, seed, clock, result.attempts, result.iterations,
                          [&](JointVector& q) {
                            model.wrap_into_limits(q.data());
-                           result = finish(result, T_base_tip, q);
+                           result = finish(result, task_of_call, T_base_tip, q);
                            return result.success();
                          });
     return result;
@@ -109,7 +131,7 @@ Result Solver::Impl::solve(const Pose& T_base_tip, const JointVector* seed, Work
     const Outcome outcome = iterate(context, q, result.iterations);
     if (outcome == Outcome::outside_limits) result.status = Status::outside_limits;
     // Nothing is a success by hearsay: the q that goes out is measured itself.
-    if (outcome == Outcome::solved) result = finish(result, T_base_tip, q);
+    if (outcome == Outcome::solved) result = finish(result, task_of_call, T_base_tip, q);
     return result.success();
   };
 
@@ -135,10 +157,15 @@ Result Solver::Impl::solve(const Pose& T_base_tip, const JointVector* seed, Work
   return result;
 }
 
-Result Solver::Impl::finish(Result result, const Pose& target, const JointVector& q) const {
+Result Solver::Impl::finish(Result result, const TaskSpace& task_of_call, const Pose& target,
+                            const JointVector& q) const {
   double position = kNan;
   double rotation = kNan;
-  measure_error(robot.model(), target, q, position, rotation);
+  if (task_of_call.is_full_pose()) {
+    measure_error(robot.model(), target, q, position, rotation);
+  } else {
+    task_of_call.measure(target, robot.model().fk(q.data()), position, rotation);
+  }
   if (position <= options.position_tolerance && rotation <= options.rotation_tolerance &&
       robot.model().within_limits(q.data())) {
     result.status = Status::solved;

@@ -10,6 +10,7 @@
 #include "iteration/iterate.hpp"
 #include "selection/selection.hpp"
 #include "solver/lane_search.hpp"
+#include "solver/task_search.hpp"
 
 namespace iksel {
 
@@ -18,6 +19,7 @@ struct Workspace {
   Workspace(const ChainModel& model, const DatabaseData& data, const SolverOptions& options);
 
   Selection selection;
+  TaskSearch tasks;
   /// Only if the options iterate by KDL, whose objects are not safe to share.
   std::unique_ptr<KdlChain> kdl;
   /// Only if the options solve in lanes.
@@ -33,6 +35,9 @@ struct Solver::Impl {
   /// The whole pipeline for one valid target; `seed` and `times` may be null.
   Result solve(const Pose& T_base_tip, const JointVector* seed, Workspace& workspace,
                StageTimes* times) const;
+  /// As above, for a task of its own.
+  Result solve(const Pose& T_base_tip, const TaskSpace& task_of_call, const JointVector* seed,
+               Workspace& workspace, StageTimes* times) const;
 
   /// A workspace of this solver, given back when it goes.
   class Lease {
@@ -51,9 +56,12 @@ struct Solver::Impl {
   Robot robot;
   SolverOptions options;
   Database database;
+  /// options.task.
+  TaskSpace task;
 
  private:
-  Result finish(Result result, const Pose& target, const JointVector& q) const;
+  Result finish(Result result, const TaskSpace& task_of_call, const Pose& target,
+                const JointVector& q) const;
 
   /// Workspaces that lie idle; a null is a place to put one back. More solves at once than places
   /// make their own.

@@ -173,6 +173,11 @@ struct EnumTable<Status> {
        "attempts reached the target, but only with joints outside their limits"},
       {"out_of_reach", Status::out_of_reach,
        "the target's position is farther away than the arm is long; nothing was tried"},
+      {"rejected", Status::rejected,
+       "attempts reached the target inside the limits, but the filter refused each"},
+      {"out_of_time", Status::out_of_time, "the deadline passed before an answer was found"},
+      {"too_fast", Status::too_fast,
+       "answers exist, but joints would have to move faster than their velocity limits"},
   };
 };
 

@@ -59,12 +59,12 @@ TEST(LaneMath, SincosIsPreciseOverManyTurns) {
 TEST(LaneMath, RoughAtan2IsGoodEnoughForSeeds) {
   iksel::Random random(iksel_test::seed());
   for (int i = 0; i < 10'000; ++i) {
-    const double y = random.uniform(-1, 1);
-    const double x = random.uniform(-1, 1);
+    const auto y = static_cast<float>(random.uniform(-1, 1));
+    const auto x = static_cast<float>(random.uniform(-1, 1));
     EXPECT_NEAR(lanes::rough_atan2(y, x), std::atan2(y, x), 2e-5);
   }
   for (const auto& [y, x] :
-       {std::pair(0.0, 1.0), {0.0, -1.0}, {1.0, 0.0}, {-1.0, 0.0}, {0.0, 0.0}}) {
+       {std::pair(0.0F, 1.0F), {0.0F, -1.0F}, {1.0F, 0.0F}, {-1.0F, 0.0F}, {0.0F, 0.0F}}) {
     EXPECT_NEAR(lanes::rough_atan2(y, x), std::atan2(y, x), 2e-5) << y << " " << x;
   }
 }
@@ -115,34 +115,95 @@ TEST(Levels, EachGivesTheSameBitsForAnyNumberOfThreads) {
   }
 }
 
-/// A pack of seeds near a solution converges to it, whichever kernel iterates.
-TEST(Kernels, FixedAndAnyNumberOfJointsAgree) {
-  const auto& kernels = lanes::choose_kernels();
-  const Robot robot = iksel_test::load(iksel_test::paper_robots()[3]).with_tcp(Pose::Identity());
-  const iksel::Reduction reduction = iksel::Reduction::of(robot.model(), 1);
-  const auto chain = iksel::make_lane_chain(robot.model());
-  const lanes::LaneOptions options{1e-9, 1e-9, 1e-3, 30};
-  const Eigen::MatrixXd q = robot.random_configurations(300, iksel_test::seed());
-  iksel::Random random(iksel_test::seed());
-  for (Eigen::Index i = 0; i < q.rows(); ++i) {
-    const auto target = iksel::make_lane_target(reduction.reduce(robot.fk(q.row(i))));
-    std::vector<double> seeds(static_cast<std::size_t>(robot.dof() * lanes::kGroup));
-    for (int j = 0; j < robot.dof(); ++j) {
-      for (int s = 0; s < lanes::kGroup; ++s) {
-        seeds[static_cast<std::size_t>(j * lanes::kGroup + s)] =
-            q(i, j) + random.uniform(-0.05, 0.05);
+/// Numbers of the iteration for one tolerance on both errors, without a tool.
+lanes::LaneOptions lane_options(double tolerance) {
+  lanes::LaneOptions options{};
+  options.damping = 1e-3;
+  options.position2 = options.rotation2 = tolerance * tolerance;
+  options.last_step2 = tolerance;
+  options.last_error2 = 16 * tolerance;
+  return options;
+}
+
+void set_target(lanes::LanePack& pack, int lane, const Pose& Y) {
+  for (int i = 0; i < 3; ++i) {
+    pack.target[i][lane] = Y(i, 3);
+    for (int c = 0; c < 3; ++c) pack.target[3 + 3 * c + i][lane] = Y(i, c);
+  }
+}
+
+/// Every lane of a pack with a target and a seed near its solution gets there, by the kernel for
+/// its number of joints and by the one for any number.
+TEST(Kernels, EveryLaneReachesItsOwnTarget) {
+  const double tolerance = 1e-9;
+  const lanes::LaneOptions options = lane_options(tolerance);
+  for (const std::string& level : levels()) {
+    const ForcedLevel forced(level);
+    const auto& kernels = lanes::choose_kernels();
+    const Robot robot = iksel_test::load(iksel_test::paper_robots()[3]).with_tcp(Pose::Identity());
+    const int n = robot.dof();
+    const iksel::Reduction reduction = iksel::Reduction::of(robot.model(), 1);
+    const auto chain = iksel::make_lane_chain(robot.model());
+    iksel::Random random(iksel_test::seed());
+    int arrived = 0;
+    for (int round = 0; round < 100; ++round) {
+      const Eigen::MatrixXd q =
+          robot.random_configurations(static_cast<std::size_t>(kernels.lanes), 1000U + round);
+      lanes::LanePack pack{};
+      for (int lane = 0; lane < kernels.lanes; ++lane) {
+        set_target(pack, lane, reduction.reduce(robot.fk(q.row(lane))));
+        for (int j = 0; j < n; ++j) pack.q[j][lane] = q(lane, j) + random.uniform(-0.03, 0.03);
+      }
+      for (const int size : {n, 0}) {
+        lanes::LanePack work = pack;
+        auto watched = (1U << static_cast<unsigned>(kernels.lanes)) - 1;
+        for (int used = 0; watched != 0 && used < 60;) {
+          const auto result = kernels.advance[size](chain, options, watched, 60 - used, work);
+          EXPECT_EQ(result.done & ~watched, 0U);
+          used += result.iterations;
+          for (int lane = 0; lane < kernels.lanes; ++lane) {
+            if ((result.done >> static_cast<unsigned>(lane) & 1U) == 0) continue;
+            JointVector found(n);
+            for (int j = 0; j < n; ++j) found[j] = work.q[j][lane];
+            const auto e = iksel::pose_error(robot.fk(q.row(lane)), robot.fk(found));
+            EXPECT_LT(e.norm(), 10 * tolerance) << level << " round " << round;
+            ++arrived;
+          }
+          watched &= ~result.done;
+        }
       }
     }
-    JointVector fixed(robot.dof());
-    JointVector any(robot.dof());
-    const auto a = kernels.solve[robot.dof()](chain, target, options, seeds.data(), fixed.data());
-    const auto b = kernels.solve[0](chain, target, options, seeds.data(), any.data());
-    EXPECT_EQ(a.lane, b.lane);
-    EXPECT_EQ(a.iterations, b.iterations);
-    if (a.lane < 0) continue;
-    EXPECT_LT((fixed - any).norm(), 1e-9);
-    const auto e = iksel::pose_error(robot.fk(q.row(i)), robot.fk(fixed));
-    EXPECT_LT(e.norm(), 3e-9);
+    EXPECT_GT(arrived, 100 * 2 * kernels.lanes * 95 / 100) << level;
+  }
+}
+
+/// What a lane does depends on nothing in the other lanes: packs may be mixed at will.
+TEST(Kernels, ALaneIsBlindToTheOthers) {
+  const lanes::LaneOptions options = lane_options(1e-9);
+  for (const std::string& level : levels()) {
+    const ForcedLevel forced(level);
+    const auto& kernels = lanes::choose_kernels();
+    const Robot robot = iksel_test::load(iksel_test::paper_robots()[0]);
+    const int n = robot.dof();
+    const auto chain = iksel::make_lane_chain(robot.model());
+    const iksel::Reduction reduction = iksel::Reduction::of(robot.model(), 1);
+    for (unsigned round = 0; round < 50; ++round) {
+      const Eigen::MatrixXd q = robot.random_configurations(2 * lanes::kWidth, 77 + round);
+      lanes::LanePack pack{};
+      for (int lane = 0; lane < kernels.lanes; ++lane) {
+        set_target(pack, lane, reduction.reduce(robot.fk(q.row(lane))));
+        for (int j = 0; j < n; ++j) pack.q[j][lane] = q(lanes::kWidth + lane, j);
+      }
+      lanes::LanePack alone = pack;
+      for (int lane = 1; lane < kernels.lanes; ++lane) {
+        for (auto& row : alone.target) row[lane] = row[0];
+        for (int j = 0; j < n; ++j) alone.q[j][lane] = alone.q[j][0];
+      }
+      kernels.advance[n](chain, options, 0, 12, pack);
+      kernels.advance[n](chain, options, 0, 12, alone);
+      for (int j = 0; j < n; ++j) EXPECT_EQ(pack.q[j][0], alone.q[j][0]) << level;
+      EXPECT_EQ(pack.error2[0], alone.error2[0]) << level;
+    }
   }
 }
 
@@ -150,11 +211,14 @@ TEST(Kernels, ANonFiniteLaneFailsAndEnds) {
   const auto& kernels = lanes::choose_kernels();
   const Robot robot = iksel_test::load(iksel_test::paper_robots()[0]);
   const auto chain = iksel::make_lane_chain(robot.model());
-  const std::vector<double> seeds(static_cast<std::size_t>(robot.dof() * lanes::kGroup), NAN);
-  JointVector q(robot.dof());
-  lanes::LaneTarget target = iksel::make_lane_target(Pose::Identity());
-  const lanes::LaneOptions options{1e-6, 1e-6, 1e-3, 20};
-  EXPECT_EQ(kernels.solve[6](chain, target, options, seeds.data(), q.data()).lane, -1);
+  lanes::LanePack pack{};
+  for (int lane = 0; lane < lanes::kWidth; ++lane) {
+    set_target(pack, lane, Pose::Identity());
+    for (int j = 0; j < robot.dof(); ++j) pack.q[j][lane] = NAN;
+  }
+  const auto result = kernels.advance[6](chain, lane_options(1e-6), ~0U, 20, pack);
+  EXPECT_EQ(result.done, 0U);
+  EXPECT_EQ(result.iterations, 20);
 }
 
 }  // namespace

@@ -64,6 +64,7 @@ TEST_P(Kinds, SeedOfAPosesOwnSampleIsItsSolution) {
   const Database database = Database::build(robot, options);
   const auto& data = database.data();
   const auto chain = iksel::make_lane_chain(robot.model());
+  const auto seed_chain = iksel::make_seed_chain(robot.model(), *data.reduction);
   for (std::size_t i = 0; i < database.size(); ++i) {
     // Move the joints left out to somewhere inside their limits: the sample must lead back there.
     JointVector q = database.q(i);
@@ -71,17 +72,22 @@ TEST_P(Kinds, SeedOfAPosesOwnSampleIsItsSolution) {
       if (data.reduction->leaves_out(j)) q[j] = 0.3 - 0.05 * j;
     }
     const Pose Y = data.reduction->reduce(robot.fk(q));
-    std::vector<double> group(
+    std::vector<float> group(
         static_cast<std::size_t>(iksel::lanes::group_rows(robot.dof()) * iksel::lanes::kGroup));
     for (int slot = 0; slot < iksel::lanes::kGroup; ++slot) {
       iksel::write_to_group(data, i, slot, group.data());
     }
-    std::vector<double> seeds(static_cast<std::size_t>(robot.dof() * iksel::lanes::kGroup));
-    const unsigned valid = iksel::lanes::kKernelsScalar.prepare(
-        chain, iksel::make_lane_target(Y), data.reduction->for_lanes(), group.data(), seeds.data());
-    EXPECT_EQ(valid, 255U);
-    for (int j = 0; j < robot.dof(); ++j) {
-      EXPECT_NEAR(seeds[static_cast<std::size_t>(j * iksel::lanes::kGroup)], q[j], 1e-4) << j;
+    iksel::lanes::SeedPack seeds;
+    iksel::lanes::kKernelsScalar.prepare(seed_chain, iksel::make_seed_target(Y), group.data(),
+                                         seeds);
+    for (int slot = 0; slot < iksel::lanes::kGroup; ++slot) {
+      // Equals keep their order; the first step is about none, even along singular directions.
+      EXPECT_EQ(seeds.order[slot], slot);
+      for (int j = 0; j < robot.dof(); ++j) EXPECT_NEAR(seeds.q[j][slot], q[j], 2e-3) << j;
+      if (data.reduction->leaves_out(0)) EXPECT_NEAR(seeds.first[slot], q[0], 1e-4);
+      if (data.reduction->leaves_out(robot.dof() - 1)) {
+        EXPECT_NEAR(seeds.last[slot], q[robot.dof() - 1], 1e-4);
+      }
     }
     // Without the outer joints, the pose is the sample's.
     JointVector seed(robot.dof());

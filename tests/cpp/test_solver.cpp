@@ -73,7 +73,7 @@ TEST_P(AllRobots, SolutionAsSeedIsTheAnswer) {
     const Result result = solver.solve(robot.fk(seed), seed);
     ASSERT_TRUE(result.success());
     EXPECT_EQ(result.attempts, 1);
-    EXPECT_EQ(result.iterations, 0);
+    EXPECT_LE(result.iterations, 1);
     EXPECT_LT((result.q - seed).norm(), 1e-9);
   }
 }

@@ -385,6 +385,74 @@ TEST(Tasks, TakeSeedsAndGiveTheSameBitsInBatches) {
   }
 }
 
+TEST(Tasks, OfACallTakeThePlaceOfTheOptions) {
+  const Robot robot = robot_named("cvr038");
+  const Solver solver(robot);
+  const int cases = iksel_test::cases(100);
+  const Eigen::MatrixXd q = robot.random_configurations(cases, iksel_test::seed());
+  for (const auto& [name, task] : tasks()) {
+    iksel::SolveRequest request;
+    request.task = task;
+    iksel::SolveRequest picky = request;
+    picky.filter =
+        iksel::filter_each(robot.dof(), [](const JointVector& at) { return at[1] < 0.5; });
+    iksel::SolveRequest seeded = request;
+    seeded.database_seeds = false;
+    for (int i = 0; i < cases; ++i) {
+      const Pose target = robot.fk(q.row(i));
+      const Result result = solver.solve(target, request);
+      ASSERT_TRUE(result.success()) << name << ", case " << i << ", seed " << iksel_test::seed();
+      expect_reached(task, target, robot.fk(result.q), name);
+      seeded.seeds = {q.row(i)};
+      EXPECT_TRUE(solver.solve(target, seeded).success()) << name;
+      const Result filtered = solver.solve(target, picky);
+      if (q(i, 1) < 0.5 && task.constrained_axes() < 6) EXPECT_TRUE(filtered.success()) << name;
+      if (!filtered.success()) continue;
+      EXPECT_LT(filtered.q[1], 0.5);
+      expect_reached(task, target, robot.fk(filtered.q), name);
+    }
+  }
+}
+
+TEST(Tasks, TheNearestSolutionUsesWhatTheyLeaveOpen) {
+  // No small move within the task makes the answer a nearer one: random moves, brought back to the
+  // task by solving from them, are the oracle.
+  Random random(iksel_test::seed());
+  for (const char* name : {"ur3", "panda", "xarm5"}) {
+    const Robot robot = robot_named(name);
+    const Solver solver(robot);
+    for (const auto& [task_name, task] : tasks()) {
+      for (int i = 0; i < iksel_test::cases(200) / 10; ++i) {
+        const Eigen::MatrixXd q = robot.random_configurations(1, random.next());
+        const Pose target = robot.fk(q.row(0));
+        iksel::SolveRequest request;
+        request.task = task;
+        JointVector near = q.row(0);
+        for (int j = 0; j < robot.dof(); ++j) near[j] += random.uniform(-0.3, 0.3);
+        request.near = near;
+        const Result nearest = solver.solve(target, request);
+        ASSERT_TRUE(nearest.success()) << name << ", " << task_name;
+        expect_reached(task, target, robot.fk(nearest.q), task_name);
+        EXPECT_NEAR(nearest.move, (nearest.q - near).norm(), 1e-12);
+        EXPECT_LE(nearest.move, (q.row(0).transpose() - near).norm() + 1e-4)
+            << name << ", " << task_name << ", seed " << iksel_test::seed();
+        iksel::SolveRequest from;
+        from.task = task;
+        from.database_seeds = false;
+        for (int k = 0; k < 20; ++k) {
+          JointVector moved = nearest.q;
+          for (int j = 0; j < robot.dof(); ++j) moved[j] += random.uniform(-0.02, 0.02);
+          from.seeds = {moved};
+          const Result other = solver.solve(target, from);
+          if (!other.success() || (other.q - nearest.q).norm() > 0.2) continue;
+          EXPECT_GE((other.q - near).norm(), nearest.move - 1e-4)
+              << name << ", " << task_name << ", seed " << iksel_test::seed();
+        }
+      }
+    }
+  }
+}
+
 TEST(Tasks, SayWhenThePositionIsOutOfReach) {
   const Robot robot = robot_named("ur3");
   Pose target = robot.fk(robot.random_configurations(1, 1).row(0));

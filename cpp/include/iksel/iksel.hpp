@@ -3,6 +3,7 @@
 #pragma once
 
 #include "iksel/database.hpp"    // IWYU pragma: export
+#include "iksel/diagnosis.hpp"   // IWYU pragma: export
 #include "iksel/error.hpp"       // IWYU pragma: export
 #include "iksel/evaluation.hpp"  // IWYU pragma: export
 #include "iksel/options.hpp"     // IWYU pragma: export

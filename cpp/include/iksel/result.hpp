@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <vector>
 
 #include "iksel/export.hpp"
 #include "iksel/types.hpp"
@@ -17,6 +18,9 @@ enum class Status : std::uint8_t {
   not_converged,   ///< no attempt reached the tolerances within the allowed work
   outside_limits,  ///< attempts reached the target, but only with joints outside their limits
   out_of_reach,  ///< the target's position is farther away than the arm is long; nothing was tried
+  rejected,      ///< attempts reached the target inside the limits, but the filter refused each
+  out_of_time,   ///< the deadline passed before an answer was found
+  too_fast,      ///< answers exist, but joints would have to move faster than their velocity limits
 };
 
 /// Lower-case name of a status.
@@ -31,9 +35,24 @@ struct Result {
   double position_error = std::numeric_limits<double>::quiet_NaN();
   /// Length of rotvec(R_target R(q)^T) [rad]; NaN unless solved.
   double rotation_error = std::numeric_limits<double>::quiet_NaN();
+  /// Length of the move from `near` to q, by the request's norm and weights; NaN unless solved with
+  /// a `near`.
+  double move = std::numeric_limits<double>::quiet_NaN();
   /// Seeds tried.
   int attempts = 0;
   /// Iteration steps over all attempts.
+  int iterations = 0;
+
+  [[nodiscard]] bool success() const { return status == Status::solved; }
+};
+
+/// The distinct solutions for one target, best first.
+struct Solutions {
+  /// `solved` if there is at least one; else why there is none.
+  Status status = Status::not_converged;
+  /// Each is a success by itself; `attempts` and `iterations` are those of the whole search.
+  std::vector<Result> all;
+  int attempts = 0;
   int iterations = 0;
 
   [[nodiscard]] bool success() const { return status == Status::solved; }

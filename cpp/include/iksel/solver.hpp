@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "iksel/database.hpp"
+#include "iksel/diagnosis.hpp"
 #include "iksel/export.hpp"
 #include "iksel/options.hpp"
+#include "iksel/request.hpp"
 #include "iksel/result.hpp"
 #include "iksel/robot.hpp"
 
@@ -49,6 +51,18 @@ class IKSEL_EXPORT Solver {
   [[nodiscard]] Result solve(const Pose& T_base_tip, const JointVector& seed) const;
   /// As solve, adding the time of each stage to `times`.
   [[nodiscard]] Result solve(const Pose& T_base_tip, StageTimes& times) const;
+  /// As solve, with wishes. Without any it is solve(T_base_tip).
+  [[nodiscard]] Result solve(const Pose& T_base_tip, const SolveRequest& request) const;
+
+  /// Every distinct solution inside the limits that is found within the bounds on work: all
+  /// branches of an arm with as many joints as the pose has directions, a spread over the families
+  /// of a redundant one. Throws as solve.
+  [[nodiscard]] Solutions solve_all(const Pose& T_base_tip, const AllOptions& options = {},
+                                    const SolveRequest& request = {}) const;
+
+  /// Why solve(T_base_tip, request) gives no answer, and the best that can be done. Spends more
+  /// than solving does, milliseconds. Throws as solve.
+  [[nodiscard]] Diagnosis diagnose(const Pose& T_base_tip, const SolveRequest& request = {}) const;
 
   /// Solves many targets; result i belongs to target i and has the bits that solve() gives.
   /// `threads` = 0 takes one per core. Throws InvalidArgumentError naming the first bad pose,

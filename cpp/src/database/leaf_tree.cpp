@@ -16,12 +16,12 @@ constexpr std::size_t kPerLeaf = 8;
 
 }  // namespace
 
-void write_to_group(const DatabaseData& data, std::size_t index, int slot, double* group) {
+void write_to_group(const DatabaseData& data, std::size_t index, int slot, float* group) {
   const double* x = data.x(index);
   const Eigen::Matrix3d R = from_rotation_vector(Eigen::Map<const Eigen::Vector3d>(x + 3));
-  double* at = group + slot;
+  float* at = group + slot;
   const auto put = [&](double value) {
-    *at = value;
+    *at = static_cast<float>(value);
     at += lanes::kGroup;
   };
   for (int i = 0; i < 3; ++i) put(x[i]);
@@ -29,6 +29,10 @@ void write_to_group(const DatabaseData& data, std::size_t index, int slot, doubl
     for (int i = 0; i < 3; ++i) put(R(i, column));
   }
   for (int j = 0; j < data.dof; ++j) put(data.q(index)[j]);
+  const double* pinv = data.pseudo_inverse(index);
+  for (int j = 0; j < data.dof; ++j) {
+    for (int r = 0; r < 6; ++r) put(pinv[r * data.dof + j]);
+  }
 }
 
 LeafTree::LeafTree(const DatabaseData& data)

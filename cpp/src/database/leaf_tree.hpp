@@ -19,7 +19,7 @@ class LeafTree {
   explicit LeafTree(const DatabaseData& data);
 
   /// Samples of the leaf that a key falls into, as a group of lanes (lane_types.hpp).
-  [[nodiscard]] const double* group(const double* key) const {
+  [[nodiscard]] const float* group(const double* key) const {
     std::size_t node = 0;
     for (int level = 0; level < depth_; ++level) {
       const bool above = key[dimension_[node]] >= value_[node];
@@ -36,10 +36,10 @@ class LeafTree {
   // Inner nodes in heap order: the children of i are 2 i + 1 and 2 i + 2.
   std::vector<std::uint8_t> dimension_;
   std::vector<double> value_;
-  std::vector<double> groups_;
+  std::vector<float> groups_;
 };
 
 /// Writes sample `index` into place `slot` of a group.
-void write_to_group(const DatabaseData& data, std::size_t index, int slot, double* group);
+void write_to_group(const DatabaseData& data, std::size_t index, int slot, float* group);
 
 }  // namespace iksel

@@ -28,8 +28,6 @@ bool is_simple(const ChainModel& model) {
 lanes::LaneChain make_lane_chain(const ChainModel& model) {
   lanes::LaneChain chain{};
   chain.n = model.dof;
-  const Frame<double>& tip = model.kernel.tip;
-  chain.lever = std::sqrt(tip.p[0] * tip.p[0] + tip.p[1] * tip.p[1] + tip.p[2] * tip.p[2]);
   for (int j = 0; j < model.dof; ++j) {
     const KernelJoint& from = model.kernel.joints[static_cast<std::size_t>(j)];
     lanes::LaneJoint& to = chain.joint[j];
@@ -49,13 +47,33 @@ lanes::LaneChain make_lane_chain(const ChainModel& model) {
   return chain;
 }
 
-lanes::LaneTarget make_lane_target(const Pose& Y) {
-  lanes::LaneTarget target{};
+lanes::SeedChain make_seed_chain(const ChainModel& model, const Reduction& reduction) {
+  const lanes::LaneChain chain = make_lane_chain(model);
+  const Reduction::Parameters& p = reduction.parameters();
+  lanes::SeedChain seeds{};
+  seeds.n = chain.n;
+  seeds.left = p.left;
+  seeds.right = p.right;
+  seeds.weight2 = static_cast<float>(p.weight * p.weight);
+  seeds.offset_first = static_cast<float>(chain.joint[0].offset);
+  seeds.offset_last = static_cast<float>(chain.joint[chain.n - 1].offset);
+  for (int j = 0; j < chain.n; ++j) {
+    const lanes::LaneJoint& joint = chain.joint[j];
+    seeds.lower[j] = static_cast<float>(joint.lower);
+    seeds.upper[j] = static_cast<float>(joint.upper);
+    seeds.middle[j] = static_cast<float>(0.5 * (joint.lower + joint.upper));
+    seeds.wraps[j] = !joint.prismatic;
+  }
+  return seeds;
+}
+
+lanes::SeedTarget make_seed_target(const Pose& Y) {
+  lanes::SeedTarget target{};
   for (int i = 0; i < 3; ++i) {
-    target.x[i] = Y(i, 0);
-    target.y[i] = Y(i, 1);
-    target.z[i] = Y(i, 2);
-    target.p[i] = Y(i, 3);
+    target.p[i] = static_cast<float>(Y(i, 3));
+    target.x[i] = static_cast<float>(Y(i, 0));
+    target.y[i] = static_cast<float>(Y(i, 1));
+    target.z[i] = static_cast<float>(Y(i, 2));
   }
   return target;
 }

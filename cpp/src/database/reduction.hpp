@@ -43,9 +43,6 @@ class Reduction {
   /// Y with the motions of the left-out joints at q taken off, as the samples have it.
   [[nodiscard]] Pose without_outer_joints(const Pose& Y, const lanes::LaneChain& chain,
                                           const double* q) const;
-  [[nodiscard]] lanes::LaneReduction for_lanes() const {
-    return {p_.left, p_.right, p_.weight * p_.weight};
-  }
 
  private:
   Parameters p_;
@@ -56,8 +53,9 @@ bool is_simple(const ChainModel& model);
 
 /// The chain as the lanes want it. Only for simple chains.
 lanes::LaneChain make_lane_chain(const ChainModel& model);
+lanes::SeedChain make_seed_chain(const ChainModel& model, const Reduction& reduction);
 
-/// Y as the lanes want it.
-lanes::LaneTarget make_lane_target(const Pose& Y);
+/// Y as seeds are prepared for it.
+lanes::SeedTarget make_seed_target(const Pose& Y);
 
 }  // namespace iksel

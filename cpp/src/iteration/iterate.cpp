@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "iteration/schemes.hpp"
+#include "iteration/task_step.hpp"
 #include "math/rotation.hpp"
 
 namespace iksel {
@@ -60,38 +61,6 @@ JointVector make_step(const IterationContext& context, const JointVector& q,
   return lm_step(context.model, q, J, e, options, squared_error);
 }
 
-/// A step that brings the deviation d (its Jacobian J) into the box. Parts inside the box ask for
-/// nothing, unless the step would take them out of it: then they are to stay at the bound.
-JointVector make_task_step(const IterationContext& context, const JointVector& q,
-                           const JacobianMatrix& J, const Vector6& d, const Vector6& e) {
-  const Vector6& lower = context.task->aim_lower();
-  const Vector6& upper = context.task->aim_upper();
-  const double squared_error = e.squaredNorm();
-  Vector6 asked = e;
-  JacobianMatrix rows = J;
-  bool active[6];
-  for (int i = 0; i < 6; ++i) {
-    active[i] = e[i] != 0 || lower[i] == upper[i];
-    if (!active[i]) rows.row(i).setZero();
-  }
-  for (int round = 0;; ++round) {
-    JointVector step = make_step(context, q, rows, asked, squared_error);
-    constexpr int kRounds = 3;
-    if (round == kRounds) return step;
-    bool changed = false;
-    for (int i = 0; i < 6; ++i) {
-      if (active[i]) continue;
-      const double goal = d[i] + J.row(i).dot(step);
-      if (goal >= lower[i] && goal <= upper[i]) continue;
-      active[i] = true;
-      changed = true;
-      rows.row(i) = J.row(i);
-      asked[i] = (goal < lower[i] ? lower[i] : upper[i]) - d[i];
-    }
-    if (!changed) return step;
-  }
-}
-
 /// What follows a step besides adding it; true if the attempt goes on.
 void after_step(const IterationContext& context, JointVector& q) {
   constexpr double kTwoPi = 6.28318530717958647692;
@@ -141,7 +110,7 @@ Outcome iterate(const IterationContext& context, JointVector& q, int& steps) {
       e = error_vector(context.tip_target, pose);
     } else {
       d = task->deviation(context.target, pose, rows);
-      e = d.cwiseMax(task->aim_lower()).cwiseMin(task->aim_upper()) - d;
+      e = task_error(*task, d);
     }
     const double position = e.head<3>().norm();
     const double rotation = e.tail<3>().norm();  // the same at the TCP
@@ -167,9 +136,11 @@ Outcome iterate(const IterationContext& context, JointVector& q, int& steps) {
     if (step == options.max_iterations) return outcome;
 
     if (options.iteration != Iteration::lm) clamp_error(e, position, rotation, options);
-    const JointVector adjustment = task != nullptr
-                                       ? make_task_step(context, q, rows, d, e)
-                                       : make_step(context, q, rows, e, e.squaredNorm());
+    const auto step_by = [&](const JacobianMatrix& part, const Vector6& asked, double squared) {
+      return make_step(context, q, part, asked, squared);
+    };
+    const JointVector adjustment =
+        task != nullptr ? task_step(*task, rows, d, e, step_by) : step_by(rows, e, e.squaredNorm());
     ++steps;
     if (!adjustment.allFinite()) return outcome;
     if (small_step_stop && std::abs(adjustment.sum()) < options.min_step) {

@@ -25,6 +25,10 @@ class TaskSpace {
   [[nodiscard]] const Task& task() const { return task_; }
   [[nodiscard]] bool is_full_pose() const { return full_pose_; }
   [[nodiscard]] int constrained_axes() const { return constrained_axes_; }
+  /// Number of axes without any width: a chain with more joints has families of solutions.
+  [[nodiscard]] int fixed_axes() const {
+    return static_cast<int>((lower_.array() == upper_.array()).count());
+  }
   [[nodiscard]] bool rotation_is_free() const { return rotation_free_; }
 
   /// Bounds of the deviation, and those that iterations aim at: narrower by the tolerances where

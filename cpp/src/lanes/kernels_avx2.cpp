@@ -5,7 +5,8 @@
 
 namespace iksel::lanes {
 
+using Arch = xsimd::fma3<xsimd::avx2>;
 const LaneKernels kKernelsAvx2 =
-    make_kernels<xsimd::batch<double, xsimd::fma3<xsimd::avx2>>>("avx2");
+    make_kernels<xsimd::batch<double, Arch>, xsimd::batch<float, Arch>>("avx2");
 
 }  // namespace iksel::lanes

@@ -5,6 +5,8 @@
 
 namespace iksel::lanes {
 
-const LaneKernels kKernelsAvx512 = make_kernels<xsimd::batch<double, xsimd::avx512f>>("avx512");
+using Arch = xsimd::avx512f;
+const LaneKernels kKernelsAvx512 =
+    make_kernels<xsimd::batch<double, Arch>, xsimd::batch<float, Arch>>("avx512");
 
 }  // namespace iksel::lanes

@@ -5,6 +5,8 @@
 
 namespace iksel::lanes {
 
-const LaneKernels kKernelsNeon = make_kernels<xsimd::batch<double, xsimd::neon64>>("neon");
+using Arch = xsimd::neon64;
+const LaneKernels kKernelsNeon =
+    make_kernels<xsimd::batch<double, Arch>, xsimd::batch<float, Arch>>("neon");
 
 }  // namespace iksel::lanes

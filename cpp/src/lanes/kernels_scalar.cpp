@@ -4,6 +4,6 @@
 
 namespace iksel::lanes {
 
-const LaneKernels kKernelsScalar = make_kernels<double>("scalar");
+const LaneKernels kKernelsScalar = make_kernels<double, float>("scalar");
 
 }  // namespace iksel::lanes

@@ -5,6 +5,8 @@
 
 namespace iksel::lanes {
 
-const LaneKernels kKernelsSse2 = make_kernels<xsimd::batch<double, xsimd::sse2>>("sse2");
+using Arch = xsimd::sse2;
+const LaneKernels kKernelsSse2 =
+    make_kernels<xsimd::batch<double, Arch>, xsimd::batch<float, Arch>>("sse2");
 
 }  // namespace iksel::lanes

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Levenberg-Marquardt over a pack of seeds, one per lane, with the limits inside the step.
+// Levenberg-Marquardt over a pack of lanes, each with its own target, with the limits inside the
+// step.
 #pragma once
 
 #include "lanes/lane_math.hpp"
 #include "lanes/lane_types.hpp"
+#include "lanes/seed_kernel.hpp"
 
 namespace iksel::lanes {
 
@@ -58,20 +60,17 @@ inline void solve_symmetric(T (&A)[6][6], const T& lambda, const T (&b)[6], T (&
 
 /// kN joints, or chain.n where kN is 0.
 template <typename T, int kN>
-PackResult solve_pack(const LaneChain& chain, const LaneTarget& target, const LaneOptions& options,
-                      const double* seeds, double* q_out) {
+PackResult advance(const LaneChain& chain, const LaneOptions& options, unsigned watched,
+                   int iterations, LanePack& pack) {
   constexpr int kSize = kN > 0 ? kN : kMaxJoints;
   const int n = kN > 0 ? kN : chain.n;
   using L = Lanes<T>;
+  const auto target = [&](int row) { return L::load(pack.target[row]); };
 
   T q[kSize];
-  for (int j = 0; j < n; ++j) q[j] = L::load(seeds + j * kGroup);
+  for (int j = 0; j < n; ++j) q[j] = L::load(pack.q[j]);
 
-  const double position2 = 0.5 * options.position_tolerance * options.position_tolerance;
-  const double rotation2 = 0.998 * options.rotation_tolerance * options.rotation_tolerance;
-  const double lever2 = chain.lever * chain.lever;
-
-  for (int iteration = 0;; ++iteration) {
+  for (int iteration = 1;; ++iteration) {
     // Frames of the joints: axis and origin of each, and the pose of the last.
     T x[3];
     T y[3];
@@ -117,38 +116,22 @@ PackResult solve_pack(const LaneChain& chain, const LaneTarget& target, const La
 
     // Error: position, and 2 sin(angle / 2) * axis of R_target R^T, which grows up to half a turn.
     T e[6];
-    for (int i = 0; i < 3; ++i) e[i] = T(target.p[i]) - p[i];
-    T twist[3];
+    for (int i = 0; i < 3; ++i) e[i] = target(i) - p[i];
+    T trace = T(1.0);
+    for (int i = 0; i < 3; ++i) {
+      trace = trace + x[i] * target(3 + i) + y[i] * target(6 + i) + z[i] * target(9 + i);
+    }
+    const T factor = T(1.0) / sqrt(max(trace, T(1e-12)));
     for (int i = 0; i < 3; ++i) {
       const int a = (i + 1) % 3;
       const int b = (i + 2) % 3;
-      twist[i] = x[a] * T(target.x[b]) - x[b] * T(target.x[a]) + y[a] * T(target.y[b]) -
-                 y[b] * T(target.y[a]) + z[a] * T(target.z[b]) - z[b] * T(target.z[a]);
+      const T twist = x[a] * target(3 + b) - x[b] * target(3 + a) + y[a] * target(6 + b) -
+                      y[b] * target(6 + a) + z[a] * target(9 + b) - z[b] * target(9 + a);
+      e[3 + i] = twist * factor;
     }
-    T trace = T(1.0);
-    for (int i = 0; i < 3; ++i) {
-      trace = trace + x[i] * T(target.x[i]) + y[i] * T(target.y[i]) + z[i] * T(target.z[i]);
-    }
-    const T factor = T(1.0) / sqrt(max(trace, T(1e-12)));
-    for (int i = 0; i < 3; ++i) e[3 + i] = twist[i] * factor;
-
     const T ep2 = e[0] * e[0] + e[1] * e[1] + e[2] * e[2];
     const T er2 = e[3] * e[3] + e[4] * e[4] + e[5] * e[5];
-    // |error at the TCP| <= |position error| + lever * |rotation error|.
-    const auto converged = (ep2 + er2 * T(lever2) <= T(position2)) & (er2 <= T(rotation2));
-    if (any(converged)) {
-      double hit[L::kCount];
-      L::store(select(converged, T(1.0), T(0.0)), hit);
-      int lane = 0;
-      while (hit[lane] == 0.0) ++lane;
-      double values[L::kCount];
-      for (int j = 0; j < n; ++j) {
-        L::store(q[j], values);
-        q_out[j] = values[lane];
-      }
-      return {lane, iteration};
-    }
-    if (iteration == options.max_iterations) return {-1, iteration};
+    const T e2 = ep2 + er2;
 
     // A = J J^T over the joints that may move, then dq = J^T (A + lambda I)^-1 e.
     T J[kSize][6];
@@ -190,120 +173,51 @@ PackResult solve_pack(const LaneChain& chain, const LaneTarget& target, const La
         for (int c = 0; c <= r; ++c) A[r][c] = A[r][c] + column[r] * column[c];
       }
     }
-    const T lambda = T(options.damping) * (ep2 + er2) + T(1e-18);
+    const T lambda = T(options.damping) * e2 + T(1e-18);
     T step[6];
     solve_symmetric(A, lambda, e, step);
+    // A lane that is there already stays: along a singular direction the step may be long.
+    const auto there =
+        (ep2 + er2 * T(options.lever2) <= T(options.position2)) & (er2 <= T(options.rotation2));
+    for (int i = 0; i < 6; ++i) step[i] = select(there, T(0.0), step[i]);
+    T dq2 = T(0.0);
 #pragma GCC unroll 10
     for (int j = 0; j < n; ++j) {
       T dq = J[j][0] * step[0];
 #pragma GCC unroll 6
       for (int i = 1; i < 6; ++i) dq = dq + J[j][i] * step[i];
+      dq2 = dq2 + dq * dq;
       q[j] = q[j] + dq;
       const LaneJoint& joint = chain.joint[j];
       if (joint.limited) q[j] = min(max(q[j], T(joint.lower)), T(joint.upper));
     }
-  }
-}
 
-/// q brought to the first turn above the lower limit, by whole turns.
-template <typename T>
-inline T wrap_above(const T& q, double lower) {
-  const T turns = floor((q - T(lower)) * T(0.159154943091895335769));
-  return q - turns * T(6.28318530717958647692);
-}
-
-template <typename T>
-unsigned prepare_seeds(const LaneChain& chain, const LaneTarget& target,
-                       const LaneReduction& reduction, const double* group, double* seeds) {
-  using L = Lanes<T>;
-  const int n = chain.n;
-  unsigned valid = 0;
-  for (int first = 0; first < kGroup; first += L::kCount) {
-    const auto row = [&](int r) { return L::load(group + r * kGroup + first); };
-    const auto write = [&](int j, const T& value) { L::store(value, seeds + j * kGroup + first); };
-    T inside = T(1.0);
-    const auto check = [&](int j, const T& value) {
-      inside = select(value <= T(chain.joint[j].upper), inside, T(0.0));
-      inside = select(value >= T(chain.joint[j].lower), inside, T(0.0));
-    };
-    for (int j = 0; j < n; ++j) write(j, row(kPoseRows + j));
-
-    // The left side first; c, s is the turn about the first axis that is left to the right side.
-    T c = T(1.0);
-    T s = T(0.0);
-    const int right = n - 1;
-    if (reduction.left == Side::rotation) {
-      const T w2 = T(reduction.weight2);
-      T px = row(0);
-      T py = row(1);
-      const T zx = row(9);
-      const T zy = row(10);
-      double tx = target.p[0];
-      double ty = target.p[1];
-      if (reduction.right == Side::translation) {
-        // The slide moves the position, but not the foot of the perpendicular onto its line.
-        const T along = px * zx + py * zy + row(2) * row(11);
-        px = px - along * zx;
-        py = py - along * zy;
-        const double target_along = tx * target.z[0] + ty * target.z[1] + target.p[2] * target.z[2];
-        tx -= target_along * target.z[0];
-        ty -= target_along * target.z[1];
+    // Steps shrink quadratically: after a short one the error needs no look.
+    const auto done = (dq2 <= T(options.last_step2)) & (e2 <= T(options.last_error2));
+    unsigned mask = 0;
+    if (any(done)) {
+      double hit[L::kCount];
+      L::store(select(done, T(1.0), T(0.0)), hit);
+      for (int lane = 0; lane < L::kCount; ++lane) {
+        if (hit[lane] != 0.0) mask |= 1U << static_cast<unsigned>(lane);
       }
-      const T S = px * T(ty) - py * T(tx) + w2 * (zx * T(target.z[1]) - zy * T(target.z[0]));
-      const T C = px * T(tx) + py * T(ty) + w2 * (zx * T(target.z[0]) + zy * T(target.z[1]));
-      const T scale = T(1.0) / sqrt(max(S * S + C * C, T(1e-300)));
-      c = select(C * C + S * S > T(1e-300), C * scale, T(1.0));
-      s = S * scale;
-      const T q = wrap_above(rough_atan2(S, C) - T(chain.joint[0].offset), chain.joint[0].lower);
-      check(0, q);
-      write(0, q);
-    } else if (reduction.left == Side::translation) {
-      const T q = T(target.p[2]) - row(2) - T(chain.joint[0].offset);
-      check(0, q);
-      write(0, q);
+      mask &= watched;
     }
-    if (reduction.right == Side::rotation) {
-      // Columns x and y of the target, turned back by the first joint.
-      const T ax = c * T(target.x[0]) + s * T(target.x[1]);
-      const T ay = c * T(target.x[1]) - s * T(target.x[0]);
-      const T bx = c * T(target.y[0]) + s * T(target.y[1]);
-      const T by = c * T(target.y[1]) - s * T(target.y[0]);
-      const T m00 = row(3) * ax + row(4) * ay + row(5) * T(target.x[2]);
-      const T m10 = row(6) * ax + row(7) * ay + row(8) * T(target.x[2]);
-      const T m01 = row(3) * bx + row(4) * by + row(5) * T(target.y[2]);
-      const T m11 = row(6) * bx + row(7) * by + row(8) * T(target.y[2]);
-      const T q = wrap_above(rough_atan2(m10 - m01, m00 + m11) - T(chain.joint[right].offset),
-                             chain.joint[right].lower);
-      check(right, q);
-      write(right, q);
-    } else if (reduction.right == Side::translation) {
-      // Along the last axis, which the target gives.
-      const T tx = c * T(target.p[0]) + s * T(target.p[1]);
-      const T ty = c * T(target.p[1]) - s * T(target.p[0]);
-      const T zx = c * T(target.z[0]) + s * T(target.z[1]);
-      const T zy = c * T(target.z[1]) - s * T(target.z[0]);
-      const T q = (tx - row(0)) * zx + (ty - row(1)) * zy +
-                  (T(target.p[2]) - row(2)) * T(target.z[2]) - T(chain.joint[right].offset);
-      check(right, q);
-      write(right, q);
-    }
-    double ok[L::kCount];
-    L::store(inside, ok);
-    for (int lane = 0; lane < L::kCount; ++lane) {
-      if (ok[lane] != 0.0) valid |= 1U << static_cast<unsigned>(first + lane);
+    if (mask != 0 || iteration >= iterations) {
+      for (int j = 0; j < n; ++j) L::store(q[j], pack.q[j]);
+      L::store(e2, pack.error2);
+      return {mask, iteration};
     }
   }
-  return valid;
 }
 
-template <typename T>
+template <typename T, typename S>
 constexpr LaneKernels make_kernels(const char* name) {
   return {name,
           Lanes<T>::kCount,
-          {solve_pack<T, 0>, solve_pack<T, 1>, solve_pack<T, 2>, solve_pack<T, 3>, solve_pack<T, 4>,
-           solve_pack<T, 5>, solve_pack<T, 6>, solve_pack<T, 7>, solve_pack<T, 8>, solve_pack<T, 9>,
-           solve_pack<T, 10>},
-          prepare_seeds<T>};
+          {advance<T, 0>, advance<T, 1>, advance<T, 2>, advance<T, 3>, advance<T, 4>, advance<T, 5>,
+           advance<T, 6>, advance<T, 7>, advance<T, 8>, advance<T, 9>, advance<T, 10>},
+          prepare_seeds<S>};
 }
 
 }  // namespace iksel::lanes

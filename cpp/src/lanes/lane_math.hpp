@@ -12,30 +12,41 @@ namespace iksel::lanes {
 
 template <typename T>
 struct Lanes {
+  using Number = typename T::value_type;
   static constexpr int kCount = static_cast<int>(T::size);
-  static T load(const double* p) { return T::load_unaligned(p); }
-  static void store(const T& v, double* p) { v.store_unaligned(p); }
+  static T load(const Number* p) { return T::load_unaligned(p); }
+  static void store(const T& v, Number* p) { v.store_unaligned(p); }
 };
 
-template <>
-struct Lanes<double> {
+/// One lane.
+template <typename N>
+struct OneLane {
+  using Number = N;
   static constexpr int kCount = 1;
-  static double load(const double* p) { return *p; }
-  static void store(double v, double* p) { *p = v; }
+  static N load(const N* p) { return *p; }
+  static void store(N v, N* p) { *p = v; }
 };
+template <>
+struct Lanes<double> : OneLane<double> {};
+template <>
+struct Lanes<float> : OneLane<float> {};
 
 inline double select(bool mask, double a, double b) { return mask ? a : b; }
+inline float select(bool mask, float a, float b) { return mask ? a : b; }
 inline bool any(bool mask) { return mask; }
 inline double sqrt(double x) { return __builtin_sqrt(x); }
-inline double floor(double x) { return __builtin_floor(x); }
+inline float sqrt(float x) { return __builtin_sqrtf(x); }
 inline double max(double a, double b) { return a > b ? a : b; }
+inline float max(float a, float b) { return a > b ? a : b; }
 inline double min(double a, double b) { return a < b ? a : b; }
-inline double abs(double x) { return __builtin_fabs(x); }
+inline float min(float a, float b) { return a < b ? a : b; }
+inline float abs(float x) { return __builtin_fabsf(x); }
 
-/// x rounded to the nearest integer, for |x| < 2^51: adding 1.5 * 2^52 pushes the fraction out.
+/// x rounded to the nearest integer, for |x| < 2^51 (2^22 in single precision): adding 1.5 * 2^52
+/// (1.5 * 2^23) pushes the fraction out.
 template <typename T>
 inline T nearest_integer(const T& x) {
-  const T magic(6755399441055744.0);
+  const T magic(sizeof(typename Lanes<T>::Number) == 8 ? 6755399441055744.0 : 12582912.0);
   return (x + magic) - magic;
 }
 
@@ -73,23 +84,24 @@ inline void sincos(const T& x, T& sine, T& cosine) {
   cosine = sign * c;
 }
 
-/// atan2 to about 1e-5 rad, which is enough for a seed (Abramowitz and Stegun, 4.4.49).
+/// Single-precision atan2 to about 1e-5 rad, which is enough for a seed (Abramowitz and Stegun,
+/// 4.4.49).
 template <typename T>
 inline T rough_atan2(const T& y, const T& x) {
   const T ax = abs(x);
   const T ay = abs(y);
-  const T high = max(max(ax, ay), T(1e-300));
+  const T high = max(max(ax, ay), T(1e-30F));
   const T t = min(ax, ay) / high;
   const T t2 = t * t;
-  T a = T(0.0208351);
-  a = a * t2 + T(-0.0851330);
-  a = a * t2 + T(0.1801410);
-  a = a * t2 + T(-0.3302995);
-  a = a * t2 + T(0.9998660);
+  T a = T(0.0208351F);
+  a = a * t2 + T(-0.0851330F);
+  a = a * t2 + T(0.1801410F);
+  a = a * t2 + T(-0.3302995F);
+  a = a * t2 + T(0.9998660F);
   a = a * t;
-  a = select(ay > ax, T(1.57079632679489662) - a, a);
-  a = select(x < T(0.0), T(3.14159265358979324) - a, a);
-  return select(y < T(0.0), T(0.0) - a, a);
+  a = select(ay > ax, T(1.57079633F) - a, a);
+  a = select(x < T(0.0F), T(3.14159265F) - a, a);
+  return select(y < T(0.0F), T(0.0F) - a, a);
 }
 
 }  // namespace iksel::lanes

@@ -6,9 +6,12 @@
 namespace iksel::lanes {
 
 inline constexpr int kMaxJoints = 32;
-/// Seeds that a leaf or a stage of neighbours hands over at a time; a multiple of every pack's
-/// lanes.
-inline constexpr int kGroup = 8;
+/// Most lanes of a pack.
+inline constexpr int kWidth = 8;
+/// Samples that a leaf or a stage of neighbours hands over at a time; a multiple of every pack's
+/// single-precision lanes.
+inline constexpr int kGroup = 16;
+inline constexpr float kSlots[kGroup] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
 /// A joint of a chain whose degrees of freedom are its joints, one to one.
 struct LaneJoint {
@@ -24,60 +27,84 @@ struct LaneJoint {
 /// The chain between the frames of its first and last joint.
 struct LaneChain {
   int n;
-  double lever;  ///< distance of the TCP from the last joint's frame [m]
   LaneJoint joint[kMaxJoints];
 };
 
+/// Numbers of the iteration, squared where they are compared with squares.
 struct LaneOptions {
-  double position_tolerance, rotation_tolerance;
   double damping;
-  int max_iterations;
+  double position2, rotation2, lever2;  ///< |error| below these: there already
+  double last_step2, last_error2;       ///< a step from below these is the last
+};
+
+/// What a pack of lanes works on, lane by lane. Rows of a target: position (3), columns x (3),
+/// y (3), z (3) of the last joint's frame seen from the first one's.
+struct LanePack {
+  alignas(64) double target[12][kWidth];
+  alignas(64) double q[kMaxJoints][kWidth];
+  /// Squared error before the last step.
+  alignas(64) double error2[kWidth];
+};
+
+/// How an advance ended.
+struct PackResult {
+  unsigned done;   ///< bit l: lane l arrived, as far as the step tells
+  int iterations;  ///< of the whole pack
+};
+
+/// Iterates a pack, until a lane of the mask `watched` arrives or the iterations are used up.
+using Advance = PackResult (*)(const LaneChain& chain, const LaneOptions& options, unsigned watched,
+                               int iterations, LanePack& pack);
+
+/// How a side of the chain is left out of the samples (reduction.hpp).
+enum class Side : int { none, rotation, translation };
+
+/// Samples in groups, lane by lane: row r of a group is kGroup numbers. Rows: position (3), columns
+/// x (3), y (3), z (3) of the sample's pose seen from the first joint, its n joint values, of which
+/// those left out are not read, and its n x 6 pseudo-inverse row by row.
+inline constexpr int kPoseRows = 12;
+constexpr int group_rows(int n) { return kPoseRows + 7 * n; }
+
+/// What seeds are prepared with.
+struct SeedChain {
+  int n;
+  Side left, right;
+  float weight2;  ///< squared rotation weight of the key [m^2]
+  float offset_first, offset_last;
+  float lower[kMaxJoints], upper[kMaxJoints], middle[kMaxJoints];
+  bool wraps[kMaxJoints];  ///< turns, so that whole turns change nothing
 };
 
 /// Pose of the last joint's frame to reach, seen from the first one's: columns x, y, z and
 /// position.
-struct LaneTarget {
-  double x[3], y[3], z[3], p[3];
+struct SeedTarget {
+  float x[3], y[3], z[3], p[3];
 };
 
-/// How a side of the chain is left out of the samples (DESIGN: reduction.hpp).
-enum class Side : int { none, rotation, translation };
+/// Length of the first step at most [rad or m].
+inline constexpr float kLongestStep = 1.0F;
+/// What a seed's score counts of the squared joint values by which its first step left the limits.
+inline constexpr float kOutsideWeight = 100.0F;
 
-/// Samples in groups, lane by lane: row r of a group is kGroup numbers. Rows: position (3), columns
-/// x (3), y (3), z (3) of the sample's pose seen from the first joint, then its n joint values, of
-/// which those left out are not read.
-inline constexpr int kPoseRows = 12;
-constexpr int group_rows(int n) { return kPoseRows + n; }
-
-/// What seeds are prepared with.
-struct LaneReduction {
-  Side left, right;
-  double weight2;  ///< squared rotation weight of the key [m^2]
+/// Seeds made from a group.
+struct SeedPack {
+  /// The joints left out of the samples, as they bring each sample's pose nearest to the target.
+  alignas(64) float first[kGroup], last[kGroup];
+  /// All joints after the first step, inside the limits.
+  alignas(64) float q[kMaxJoints][kGroup];
+  alignas(64) float score[kGroup];
+  unsigned char order[kGroup];  ///< best score first
 };
 
-/// How a group or pack ended.
-struct PackResult {
-  int lane;        ///< the first that converged, or -1
-  int iterations;  ///< of the whole pack
-};
-
-/// Iterates as many seeds as there are lanes (joint j of seed s at seeds[j * kGroup + s]) until one
-/// converges; its joint values go to q.
-using SolvePack = PackResult (*)(const LaneChain& chain, const LaneTarget& target,
-                                 const LaneOptions& options, const double* seeds, double* q);
-
-/// Makes the seeds of a group for a target: the left-out joints are set to bring each sample's pose
-/// as near to it as they can. Bit s of the answer is set if seed s lies inside the limits.
-using PrepareSeeds = unsigned (*)(const LaneChain& chain, const LaneTarget& target,
-                                  const LaneReduction& reduction, const double* group,
-                                  double* seeds);
+using PrepareSeeds = void (*)(const SeedChain& chain, const SeedTarget& target, const float* group,
+                              SeedPack& out);
 
 /// The kernels of one instruction set.
 struct LaneKernels {
   const char* name;
   int lanes;
   /// By number of joints; [0] serves any number.
-  SolvePack solve[11];
+  Advance advance[11];
   PrepareSeeds prepare;
 };
 

@@ -12,9 +12,6 @@
 
 namespace iksel {
 
-using lanes::LaneReduction;
-using lanes::LaneTarget;
-
 namespace {
 
 constexpr double kTwoPi = 6.28318530717958647692;
@@ -70,11 +67,11 @@ void Selection::rank() {
 }
 
 void Selection::prepare_seeds() {
-  const LaneTarget target = make_lane_target(target_);
-  const LaneReduction reduction = data_.reduction->for_lanes();
+  const lanes::SeedChain chain = make_seed_chain(model_, *data_.reduction);
+  const lanes::SeedTarget target = make_seed_target(target_);
   const auto dof = static_cast<std::size_t>(model_.dof);
-  double group[lanes::group_rows(kMaxDof) * lanes::kGroup];
-  double seeds[kMaxDof * lanes::kGroup];
+  float group[lanes::group_rows(kMaxDof) * lanes::kGroup];
+  lanes::SeedPack pack;
   std::size_t kept = 0;
   for (std::size_t first = 0; first < found_; first += lanes::kGroup) {
     const std::size_t count = std::min<std::size_t>(lanes::kGroup, found_ - first);
@@ -82,11 +79,16 @@ void Selection::prepare_seeds() {
       write_to_group(data_, neighbours_[first + std::min(s, count - 1)].index, static_cast<int>(s),
                      group);
     }
-    const unsigned valid = lanes::kKernelsScalar.prepare(chain_, target, reduction, group, seeds);
+    lanes::kKernelsScalar.prepare(chain, target, group, pack);
     for (std::size_t s = 0; s < count; ++s) {
-      if ((valid >> s & 1U) == 0) continue;
+      double* q = &seeds_[kept * dof];
+      std::copy_n(data_.q(neighbours_[first + s].index), dof, q);
+      if (data_.reduction->leaves_out(0)) q[0] = static_cast<double>(pack.first[s]);
+      if (data_.reduction->leaves_out(model_.dof - 1)) {
+        q[dof - 1] = static_cast<double>(pack.last[s]);
+      }
+      if (!model_.within_limits(q)) continue;
       neighbours_[kept] = neighbours_[first + s];
-      for (std::size_t j = 0; j < dof; ++j) seeds_[kept * dof + j] = seeds[j * lanes::kGroup + s];
       ++kept;
     }
   }

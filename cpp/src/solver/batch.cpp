@@ -9,9 +9,6 @@
 namespace iksel {
 namespace {
 
-/// Targets that a thread takes at a time: few enough to share evenly, enough to hide the taking.
-constexpr std::size_t kChunk = 64;
-
 void write_row(const Result& result, std::size_t row, int dof, const BatchView& out) {
   double* q = out.q + row * static_cast<std::size_t>(dof);
   if (result.success()) {
@@ -35,11 +32,11 @@ std::vector<Result> Solver::solve_batch(const std::vector<Pose>& T_base_tip, int
     check_matrix(rows.data(), "poses", static_cast<std::ptrdiff_t>(i));
   }
   std::vector<Result> results(T_base_tip.size());
-  parallel_for(results.size(), kChunk, threads, [&] {
+  parallel_for(results.size(), Impl::kMany, threads, [&] {
     return [&, lease = std::make_shared<Impl::Lease>(*impl_)](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        results[i] = impl_->solve(T_base_tip[i], nullptr, lease->get(), nullptr);
-      }
+      impl_->solve_many(
+          begin, end, lease->get(), [&](std::size_t i) -> const Pose& { return T_base_tip[i]; },
+          [&](std::size_t i, const Result& result) { results[i] = result; });
     };
   });
   return results;
@@ -54,13 +51,12 @@ void Solver::solve_batch(const double* T_base_tip, std::size_t count, const Batc
   const int dof = robot().dof();
   const auto make_worker = [&] {
     return [&, lease = std::make_shared<Impl::Lease>(*impl_)](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        write_row(impl_->solve(to_pose(T_base_tip + 16 * i), nullptr, lease->get(), nullptr), i,
-                  dof, out);
-      }
+      impl_->solve_many(
+          begin, end, lease->get(), [&](std::size_t i) { return to_pose(T_base_tip + 16 * i); },
+          [&](std::size_t i, const Result& result) { write_row(result, i, dof, out); });
     };
   };
-  parallel_for(count, kChunk, threads, make_worker, [&](std::size_t done) {
+  parallel_for(count, Impl::kMany, threads, make_worker, [&](std::size_t done) {
     if (progress) progress(done, count);
   });
 }

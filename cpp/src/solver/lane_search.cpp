@@ -4,6 +4,27 @@
 #include <algorithm>
 
 namespace iksel {
+namespace {
+
+lanes::LaneOptions make_lane_options(const ChainModel& model, const SolverOptions& options) {
+  lanes::LaneOptions lanes{};
+  const double position = options.position_tolerance;
+  const double rotation = options.rotation_tolerance;
+  const Frame<double>& tip = model.kernel.tip;
+  lanes.damping = options.damping;
+  // |error at the TCP| <= |position error| + lever * |rotation error|, and the square of a sum of
+  // two is at most twice the sum of their squares.
+  lanes.lever2 = tip.p[0] * tip.p[0] + tip.p[1] * tip.p[1] + tip.p[2] * tip.p[2];
+  lanes.position2 = 0.5 * position * position;
+  lanes.rotation2 = 0.998 * rotation * rotation;
+  // The error after a Newton step is about half the second derivative of FK times the squared step;
+  // that derivative is at most the reach for positions and 1 for rotations, and mostly less.
+  lanes.last_step2 = std::min(position / std::max(model.reach, 1e-3), rotation);
+  lanes.last_error2 = 16 * lanes.last_step2;
+  return lanes;
+}
+
+}  // namespace
 
 bool solves_in_lanes(const ChainModel& model, const DatabaseData& data,
                      const SolverOptions& options) {
@@ -17,38 +38,48 @@ LaneSearch::LaneSearch(const ChainModel& model, const DatabaseData& data,
       data_(data),
       options_(options),
       kernels_(kernels),
-      solve_pack_(kernels.solve[model.dof <= 10 ? model.dof : 0]),
+      advance_(kernels.advance[model.dof <= 10 ? model.dof : 0]),
       chain_(make_lane_chain(model)),
-      lane_options_{options.position_tolerance, options.rotation_tolerance, options.damping,
-                    options.max_iterations},
-      reduction_(data.reduction->for_lanes()),
-      target_{},
+      lane_options_(make_lane_options(model, options)),
+      seed_chain_(make_seed_chain(model, *data.reduction)),
+      seeds_{},
+      pack_{},
       neighbours_(std::min<std::size_t>(static_cast<std::size_t>(options.neighbours), data.size)),
-      group_(static_cast<std::size_t>(lanes::group_rows(model.dof) * lanes::kGroup)),
-      // Room for a pack that starts at the last seed.
-      seeds_(static_cast<std::size_t>((model.dof + 1) * lanes::kGroup)) {}
+      group_(static_cast<std::size_t>(lanes::group_rows(model.dof) * lanes::kGroup)) {}
 
-void LaneSearch::set_target(const Pose& tip_target) {
+Pose LaneSearch::set_query(const Pose& tip_target) {
   const Pose Y = data_.reduction->reduce(tip_target);
   data_.reduction->make_key(Y, key_);
-  target_ = make_lane_target(Y);
+  seed_target_ = make_seed_target(Y);
+  return Y;
 }
 
-int LaneSearch::prepare(const double* group) {
-  const unsigned valid = kernels_.prepare(chain_, target_, reduction_, group, seeds_.data());
-  if (valid == (1U << static_cast<unsigned>(lanes::kGroup)) - 1) return lanes::kGroup;
-  int count = 0;
-  for (int s = 0; s < lanes::kGroup; ++s) {
-    if ((valid >> static_cast<unsigned>(s) & 1U) == 0) continue;
-    if (s != count) {
-      for (int j = 0; j < model_.dof; ++j) {
-        seeds_[static_cast<std::size_t>(j * lanes::kGroup + count)] =
-            seeds_[static_cast<std::size_t>(j * lanes::kGroup + s)];
-      }
+void LaneSearch::set_target(const Pose& tip_target) {
+  const Pose Y = set_query(tip_target);
+  for (int lane = 0; lane < kernels_.lanes; ++lane) set_lane_target(lane, Y);
+}
+
+void LaneSearch::set_lane_target(int lane, const Pose& Y) {
+  for (int i = 0; i < 3; ++i) {
+    pack_.target[i][lane] = Y(i, 3);
+    for (int column = 0; column < 3; ++column) {
+      pack_.target[3 + 3 * column + i][lane] = Y(i, column);
     }
-    ++count;
   }
-  return count;
+}
+
+void LaneSearch::load_ranked(int rank, int lane) {
+  const int slot = seeds_.order[rank];
+  for (int j = 0; j < model_.dof; ++j) {
+    pack_.q[j][lane] = static_cast<double>(seeds_.q[j][slot]);
+  }
+}
+
+void LaneSearch::load_seed(int lane, const double* q) {
+  for (int j = 0; j < model_.dof; ++j) {
+    const lanes::LaneJoint& joint = chain_.joint[j];
+    pack_.q[j][lane] = joint.limited ? std::min(std::max(q[j], joint.lower), joint.upper) : q[j];
+  }
 }
 
 }  // namespace iksel

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <type_traits>
 #include <vector>
 
 #include "database/data.hpp"
@@ -19,112 +20,237 @@ namespace iksel {
 bool solves_in_lanes(const ChainModel& model, const DatabaseData& data,
                      const SolverOptions& options);
 
+/// What is to be done after a lane has arrived.
+enum class Verdict {
+  stop,    ///< nothing more is wanted
+  next,    ///< this seed is finished; go on with others
+  refine,  ///< it is not quite there; iterate it further
+};
+
+/// Seeds and pack iterations so far.
+struct Work {
+  int attempts = 0;
+  int iterations = 0;
+};
+
 class LaneSearch {
  public:
   LaneSearch(const ChainModel& model, const DatabaseData& data, const SolverOptions& options,
              const lanes::LaneKernels& kernels);
 
-  /// Calls `accept(q)` for every converged q until it says true, or the work bound is reached.
-  /// `seed` may be null. Counts seeds and pack iterations.
-  template <typename Accept>
-  bool run(const Pose& tip_target, const JointVector* seed, StageClock& clock, int& attempts,
-           int& iterations, const Accept& accept);
+  /// Says yes to every "shall I go on?".
+  struct Always {
+    bool operator()() const { return true; }
+  };
+
+  /// Calls `accept(JointVector& q) -> Verdict` for every q that arrives until it says stop (then
+  /// true), or the work bound is reached. `seed` may be null. `go_on()` is asked after each group
+  /// of the database's seeds; false ends the search.
+  template <typename Accept, typename GoOn = Always>
+  bool run(const Pose& tip_target, const JointVector* seed, StageClock& clock, Work& work,
+           const Accept& accept, const GoOn& go_on = {});
+
+  /// Iterates `count` seeds for the target that was set, most lanes at a time;
+  /// `load(k, lane)` puts seed k into a lane.
+  template <typename Load, typename Accept>
+  bool iterate(int count, Work& work, const Load& load, const Accept& accept);
+
+  /// One target per lane, each with its best seed alone; a lane takes the next target as soon as
+  /// it is through with one. `next(Pose& tip_target)` gives the index of a target, or -1 at the
+  /// end; `settle(index, q, iterations) -> bool` is told the q of a target that arrived, or null if
+  /// it did not within the patience for one seed, and says whether it need not be iterated further.
+  template <typename Next, typename Settle>
+  void stream(const Next& next, const Settle& settle);
+
+  void set_target(const Pose& tip_target);
+  void load_seed(int lane, const double* q);
 
  private:
-  void set_target(const Pose& tip_target);
-  /// The seeds of a group that lie inside the limits, moved to the front; how many.
-  int prepare(const double* group);
-  template <typename Accept>
-  bool solve_seeds(int count, int& attempts, int& iterations, const Accept& accept);
+  /// Y of a target, whose seeds and leaf are asked for next.
+  Pose set_query(const Pose& tip_target);
+  /// Of the group's seeds, by rank.
+  void load_ranked(int rank, int lane);
+  void set_lane_target(int lane, const Pose& Y);
 
   const ChainModel& model_;
   const DatabaseData& data_;
   const SolverOptions& options_;
   const lanes::LaneKernels& kernels_;
-  lanes::SolvePack solve_pack_;
+  lanes::Advance advance_;
   lanes::LaneChain chain_;
   lanes::LaneOptions lane_options_;
-  lanes::LaneReduction reduction_;
-  lanes::LaneTarget target_;
+  lanes::SeedChain seed_chain_;
+  lanes::SeedTarget seed_target_{};
+  lanes::SeedPack seeds_;
+  lanes::LanePack pack_;
   double key_[12] = {};
   std::vector<Neighbour> neighbours_;
-  std::vector<double> group_;
-  std::vector<double> seeds_;
+  std::vector<float> group_;
 };
 
-template <typename Accept>
-bool LaneSearch::solve_seeds(int count, int& attempts, int& iterations, const Accept& accept) {
-  JointVector q(model_.dof);
-  count = std::min(count, options_.max_attempts - attempts);
-  for (int first = 0; first < count; first += kernels_.lanes) {
-    // A pack that is not full repeats its first seed.
-    for (int s = count; s < first + kernels_.lanes; ++s) {
-      for (int j = 0; j < model_.dof; ++j) {
-        seeds_[static_cast<std::size_t>(j * lanes::kGroup + s)] =
-            seeds_[static_cast<std::size_t>(j * lanes::kGroup + first)];
+/// A seed that is still far off after so many iterations is given up: few such come home.
+inline constexpr int kPatience = 8;
+/// Squared error that counts as far off [mixed units].
+inline constexpr double kFarOff2 = 1e-4;
+
+template <typename Load, typename Accept>
+bool LaneSearch::iterate(int count, Work& work, const Load& load, const Accept& accept) {
+  const int lanes = kernels_.lanes;
+  count = std::min(count, options_.max_attempts - work.attempts);
+  if (count <= 0) return false;
+  int age[lanes::kWidth] = {};
+  unsigned alive = 0;
+  int next = 0;
+  for (int lane = 0; lane < lanes; ++lane) {
+    // A lane too many does what another does, and is not watched.
+    load(std::min(next, count - 1), lane);
+    if (next == count) continue;
+    alive |= 1U << static_cast<unsigned>(lane);
+    ++next;
+  }
+  work.attempts += next;
+  const int patience = std::min(kPatience, options_.max_iterations);
+  while (alive != 0) {
+    int budget = options_.max_iterations;
+    for (int lane = 0; lane < lanes; ++lane) {
+      if ((alive >> static_cast<unsigned>(lane) & 1U) == 0) continue;
+      budget =
+          std::min(budget, (age[lane] < patience ? patience : options_.max_iterations) - age[lane]);
+    }
+    const lanes::PackResult result = advance_(chain_, lane_options_, alive, budget, pack_);
+    work.iterations += result.iterations;
+    for (int lane = 0; lane < lanes; ++lane) {
+      const unsigned bit = 1U << static_cast<unsigned>(lane);
+      if ((alive & bit) == 0) continue;
+      age[lane] += result.iterations;
+      bool finished = age[lane] >= options_.max_iterations ||
+                      (age[lane] >= patience && !(pack_.error2[lane] < kFarOff2));
+      if ((result.done & bit) != 0) {
+        JointVector q(model_.dof);
+        for (int j = 0; j < model_.dof; ++j) q[j] = pack_.q[j][lane];
+        const Verdict verdict = accept(q);
+        if (verdict == Verdict::stop) return true;
+        finished = finished || verdict == Verdict::next;
+      }
+      if (!finished) continue;
+      if (next < count) {
+        load(next++, lane);
+        ++work.attempts;
+        age[lane] = 0;
+      } else {
+        alive &= ~bit;
       }
     }
-    attempts += std::min(kernels_.lanes, count - first);
-    const lanes::PackResult result =
-        solve_pack_(chain_, target_, lane_options_, seeds_.data() + first, q.data());
-    iterations += result.iterations;
-    if (result.lane >= 0 && accept(q)) return true;
   }
   return false;
 }
 
-template <typename Accept>
-bool LaneSearch::run(const Pose& tip_target, const JointVector* seed, StageClock& clock,
-                     int& attempts, int& iterations, const Accept& accept) {
-  const auto iterate = [&](int count) {
+template <typename Next, typename Settle>
+void LaneSearch::stream(const Next& next, const Settle& settle) {
+  const int lanes = kernels_.lanes;
+  const int patience = std::min(kPatience, options_.max_iterations);
+  int index[lanes::kWidth];
+  int age[lanes::kWidth] = {};
+  unsigned alive = 0;
+  const auto refill = [&](int lane) {
+    Pose target;
+    index[lane] = next(target);
+    if (index[lane] < 0) {
+      alive &= ~(1U << static_cast<unsigned>(lane));
+      return;
+    }
+    set_lane_target(lane, set_query(target));
+    kernels_.prepare(seed_chain_, seed_target_, data_.leaves.group(key_), seeds_);
+    load_ranked(0, lane);
+    age[lane] = 0;
+    alive |= 1U << static_cast<unsigned>(lane);
+  };
+  for (int lane = 0; lane < lanes; ++lane) refill(lane);
+  while (alive != 0) {
+    int budget = patience;
+    for (int lane = 0; lane < lanes; ++lane) {
+      if ((alive >> static_cast<unsigned>(lane) & 1U) != 0) {
+        budget = std::min(budget, patience - age[lane]);
+      }
+    }
+    const lanes::PackResult result = advance_(chain_, lane_options_, alive, budget, pack_);
+    for (int lane = 0; lane < lanes; ++lane) {
+      const unsigned bit = 1U << static_cast<unsigned>(lane);
+      if ((alive & bit) == 0) continue;
+      age[lane] += result.iterations;
+      if ((result.done & bit) != 0) {
+        JointVector q(model_.dof);
+        for (int j = 0; j < model_.dof; ++j) q[j] = pack_.q[j][lane];
+        if (settle(index[lane], &q, age[lane])) {
+          refill(lane);
+          continue;
+        }
+      }
+      if (age[lane] < patience) continue;
+      settle(index[lane], nullptr, age[lane]);
+      refill(lane);
+    }
+  }
+}
+
+template <typename Accept, typename GoOn>
+bool LaneSearch::run(const Pose& tip_target, const JointVector* seed, StageClock& clock, Work& work,
+                     const Accept& accept, const GoOn& go_on) {
+  const auto iterate_ranked = [&](int count) {
     clock.lap(&StageTimes::rank);
-    const bool solved = solve_seeds(count, attempts, iterations, accept);
+    const bool solved = iterate(
+        count, work, [this](int k, int lane) { load_ranked(k, lane); }, accept);
     clock.lap(&StageTimes::iterate);
     return solved;
   };
   set_target(tip_target);
   if (seed != nullptr) {
-    for (int j = 0; j < model_.dof; ++j) {
-      seeds_[static_cast<std::size_t>(j * lanes::kGroup)] =
-          std::min(std::max((*seed)[j], chain_.joint[j].limited ? model_.lower[j] : (*seed)[j]),
-                   chain_.joint[j].limited ? model_.upper[j] : (*seed)[j]);
-    }
-    if (iterate(1)) return true;
+    const auto load = [&](int, int lane) { load_seed(lane, seed->data()); };
+    if (iterate(1, work, load, accept)) return true;
+    clock.lap(&StageTimes::iterate);
   }
-  const double* leaf = data_.leaves.group(key_);
+  const float* leaf = data_.leaves.group(key_);
   clock.lap(&StageTimes::query);
-  if (iterate(prepare(leaf))) return true;
+  kernels_.prepare(seed_chain_, seed_target_, leaf, seeds_);
+  if (iterate_ranked(lanes::kGroup)) return true;
+  if (!go_on()) return false;
 
   // Widening stages: each asks for four times as many and tries those it has not tried yet.
   std::size_t done = 0;
-  const auto most = static_cast<std::size_t>(options_.neighbours);
-  for (std::size_t k = std::min<std::size_t>(32, most); done < std::min(most, data_.size);
-       k = std::min(4 * k, most)) {
-    const std::size_t found = data_.tree.nearest(key_, std::min(k, data_.size), neighbours_.data());
+  const std::size_t most = std::min(static_cast<std::size_t>(options_.neighbours), data_.size);
+  for (std::size_t k = std::min<std::size_t>(64, most); done < most; k = std::min(4 * k, most)) {
+    if (work.attempts >= options_.max_attempts) return false;
+    const std::size_t found = data_.tree.nearest(key_, k, neighbours_.data());
     std::sort(neighbours_.begin(), neighbours_.begin() + static_cast<std::ptrdiff_t>(found));
     clock.lap(&StageTimes::query);
     for (; done < found; done += lanes::kGroup) {
+      const std::size_t count = std::min<std::size_t>(lanes::kGroup, found - done);
       for (int slot = 0; slot < lanes::kGroup; ++slot) {
-        const std::size_t i = std::min(done + static_cast<std::size_t>(slot), found - 1);
+        const std::size_t i = done + std::min(static_cast<std::size_t>(slot), count - 1);
         write_to_group(data_, neighbours_[i].index, slot, group_.data());
       }
-      if (attempts >= options_.max_attempts) return false;
-      if (iterate(prepare(group_.data()))) return true;
+      kernels_.prepare(seed_chain_, seed_target_, group_.data(), seeds_);
+      if (iterate_ranked(lanes::kGroup)) return true;
+      if (!go_on() || work.attempts >= options_.max_attempts) return false;
     }
     done = found;
   }
 
   Random random(options_.seed);
-  while (attempts < options_.max_attempts) {
-    for (int s = 0; s < lanes::kGroup; ++s) {
-      for (int j = 0; j < model_.dof; ++j) {
-        seeds_[static_cast<std::size_t>(j * lanes::kGroup + s)] =
-            random.uniform(model_.sample_lower(j), model_.sample_upper(j));
-      }
+  const auto load_random = [&](int, int lane) {
+    for (int j = 0; j < model_.dof; ++j) {
+      pack_.q[j][lane] = random.uniform(model_.sample_lower(j), model_.sample_upper(j));
     }
-    if (iterate(lanes::kGroup)) return true;
+  };
+  constexpr bool kAsks = !std::is_same_v<GoOn, Always>;
+  bool solved = false;
+  while (!solved && work.attempts < options_.max_attempts) {
+    const int left = options_.max_attempts - work.attempts;
+    solved = iterate(kAsks ? std::min(left, lanes::kGroup) : left, work, load_random, accept);
+    if (!go_on()) break;
   }
-  return false;
+  clock.lap(&StageTimes::iterate);
+  return solved;
 }
 
 }  // namespace iksel

@@ -114,6 +114,12 @@ const char* to_string(Status status) {
       return "outside_limits";
     case Status::out_of_reach:
       return "out_of_reach";
+    case Status::rejected:
+      return "rejected";
+    case Status::out_of_time:
+      return "out_of_time";
+    case Status::too_fast:
+      return "too_fast";
   }
   return "unknown";
 }

@@ -35,7 +35,7 @@ void check_fits(const Robot& robot, const Database& database) {
 
 Workspace::Workspace(const ChainModel& model, const DatabaseData& data,
                      const SolverOptions& options)
-    : selection(model, data, options), tasks(model, data, options, selection) {
+    : selection(model, data, options), tasks(model, data, options, selection), found(model) {
   if (solves_in_lanes(model, data, options)) {
     lanes = std::make_unique<LaneSearch>(model, data, options, lanes::choose_kernels());
   }
@@ -81,43 +81,40 @@ Solver::Impl::Lease::~Lease() {
 
 Result Solver::Impl::solve(const Pose& T_base_tip, const JointVector* seed, Workspace& workspace,
                            StageTimes* times) const {
-  return solve(T_base_tip, task, seed, workspace, times);
-}
-
-Result Solver::Impl::solve(const Pose& T_base_tip, const TaskSpace& task_of_call,
-                           const JointVector* seed, Workspace& workspace, StageTimes* times) const {
   const ChainModel& model = robot.model();
   StageClock clock(times);
 
   Result result;
-  const bool full_pose = task_of_call.is_full_pose();
-  const double distance = full_pose ? (T_base_tip.translation() - robot.reach_centre()).norm()
-                                    : task_of_call.distance_from(T_base_tip, robot.reach_centre());
-  if (distance > robot.reach() + options.position_tolerance) {
+  if (out_of_reach(task, T_base_tip)) {
     result.status = Status::out_of_reach;
     return result;
   }
+  // Nothing is a success by hearsay: the q that goes out is measured itself.
+  const auto accept = [&](JointVector& q) {
+    model.wrap_into_limits(q.data());
+    result = finish(result, task, T_base_tip, q);
+    return result.success() ? Verdict::stop : Verdict::refine;
+  };
 
-  if (!full_pose) {
-    bool outside_limits = false;
-    const bool solved =
-        workspace.tasks.run(T_base_tip, task_of_call, seed, clock, result.attempts,
-                            result.iterations, outside_limits, [&](const JointVector& q) {
-                              result = finish(result, task_of_call, T_base_tip, q);
-                              return result.success();
-                            });
-    if (!solved && outside_limits) result.status = Status::outside_limits;
+  if (!task.is_full_pose()) {
+    Work work;
+    TaskSearch& tasks = workspace.tasks;
+    tasks.begin(T_base_tip, task);
+    if (seed == nullptr || !tasks.attempt(*seed, clock, work, accept)) {
+      tasks.run(clock, work, accept);
+    }
+    if (!result.success() && tasks.left_limits()) result.status = Status::outside_limits;
+    result.attempts = work.attempts;
+    result.iterations = work.iterations;
     return result;
   }
 
   const Pose tip_target = T_base_tip * Pose(model.tcp_inverse);
   if (workspace.lanes) {
-    workspace.lanes->run(tip_target, seed, clock, result.attempts, result.iterations,
-                         [&](JointVector& q) {
-                           model.wrap_into_limits(q.data());
-                           result = finish(result, task_of_call, T_base_tip, q);
-                           return result.success();
-                         });
+    Work work;
+    workspace.lanes->run(tip_target, seed, clock, work, accept);
+    result.attempts = work.attempts;
+    result.iterations = work.iterations;
     return result;
   }
 
@@ -130,8 +127,7 @@ Result Solver::Impl::solve(const Pose& T_base_tip, const TaskSpace& task_of_call
     ++result.attempts;
     const Outcome outcome = iterate(context, q, result.iterations);
     if (outcome == Outcome::outside_limits) result.status = Status::outside_limits;
-    // Nothing is a success by hearsay: the q that goes out is measured itself.
-    if (outcome == Outcome::solved) result = finish(result, task_of_call, T_base_tip, q);
+    if (outcome == Outcome::solved) result = finish(result, task, T_base_tip, q);
     return result.success();
   };
 
@@ -157,15 +153,27 @@ Result Solver::Impl::solve(const Pose& T_base_tip, const TaskSpace& task_of_call
   return result;
 }
 
-Result Solver::Impl::finish(Result result, const TaskSpace& task_of_call, const Pose& target,
+bool Solver::Impl::out_of_reach(const TaskSpace& of_call, const Pose& T_base_tip) const {
+  const double distance = of_call.is_full_pose()
+                              ? (T_base_tip.translation() - robot.reach_centre()).norm()
+                              : of_call.distance_from(T_base_tip, robot.reach_centre());
+  return distance > robot.reach() + options.position_tolerance;
+}
+
+void Solver::Impl::measure(const TaskSpace& of_call, const Pose& target, const JointVector& q,
+                           double& position, double& rotation) const {
+  if (of_call.is_full_pose()) {
+    measure_error(robot.model(), target, q, position, rotation);
+  } else {
+    of_call.measure(target, robot.model().fk(q.data()), position, rotation);
+  }
+}
+
+Result Solver::Impl::finish(Result result, const TaskSpace& of_call, const Pose& target,
                             const JointVector& q) const {
   double position = kNan;
   double rotation = kNan;
-  if (task_of_call.is_full_pose()) {
-    measure_error(robot.model(), target, q, position, rotation);
-  } else {
-    task_of_call.measure(target, robot.model().fk(q.data()), position, rotation);
-  }
+  measure(of_call, target, q, position, rotation);
   if (position <= options.position_tolerance && rotation <= options.rotation_tolerance &&
       robot.model().within_limits(q.data())) {
     result.status = Status::solved;

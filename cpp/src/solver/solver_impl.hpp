@@ -4,11 +4,14 @@
 
 #include <array>
 #include <atomic>
+#include <bitset>
 #include <memory>
 
 #include "iksel/solver.hpp"
 #include "iteration/iterate.hpp"
 #include "selection/selection.hpp"
+#include "solver/explore.hpp"
+#include "solver/found.hpp"
 #include "solver/lane_search.hpp"
 #include "solver/task_search.hpp"
 
@@ -24,6 +27,8 @@ struct Workspace {
   std::unique_ptr<KdlChain> kdl;
   /// Only if the options solve in lanes.
   std::unique_ptr<LaneSearch> lanes;
+  /// Of solves with wishes.
+  Found found;
 };
 
 struct Solver::Impl {
@@ -35,9 +40,20 @@ struct Solver::Impl {
   /// The whole pipeline for one valid target; `seed` and `times` may be null.
   Result solve(const Pose& T_base_tip, const JointVector* seed, Workspace& workspace,
                StageTimes* times) const;
-  /// As above, for a task of its own.
-  Result solve(const Pose& T_base_tip, const TaskSpace& task_of_call, const JointVector* seed,
-               Workspace& workspace, StageTimes* times) const;
+
+  /// Targets first to last - 1, whose poses `target(i)` gives: `settle(i, result)` for each, in any
+  /// order. What comes out for one does not depend on the others.
+  template <typename Target, typename Settle>
+  void solve_many(std::size_t first, std::size_t last, Workspace& workspace, const Target& target,
+                  const Settle& settle) const;
+
+  /// The whole pipeline for one valid target with wishes.
+  Result solve(const Pose& T_base_tip, const SolveRequest& request, Workspace& workspace) const;
+  Solutions solve_all(const Pose& T_base_tip, const AllOptions& all, const SolveRequest& request,
+                      Workspace& workspace) const;
+
+  /// `self` is the solver of this.
+  Diagnosis diagnose(const Solver& self, const Pose& T_base_tip, const SolveRequest& request) const;
 
   /// A workspace of this solver, given back when it goes.
   class Lease {
@@ -59,8 +75,27 @@ struct Solver::Impl {
   /// options.task.
   TaskSpace task;
 
+  /// Most targets of one solve_many.
+  static constexpr std::size_t kMany = 256;
+
  private:
-  Result finish(Result result, const TaskSpace& task_of_call, const Pose& target,
+  [[nodiscard]] bool out_of_reach(const TaskSpace& of_call, const Pose& T_base_tip) const;
+  /// The task of a request, or the options'.
+  [[nodiscard]] TaskSpace task_of(const SolveRequest& request) const;
+  class Judge;
+  /// Collects solutions in workspace.found.
+  void explore(Exploration& search, Workspace& workspace) const;
+  void explore_in_lanes(Exploration& search, const Pose& tip_target, LaneSearch& lanes,
+                        FunctionRef<Verdict(JointVector&)> accept, FunctionRef<bool()> go_on) const;
+  void explore_one_by_one(Exploration& search, const Pose& tip_target, Workspace& workspace,
+                          FunctionRef<Verdict(JointVector&)> accept,
+                          FunctionRef<bool()> go_on) const;
+  void explore_task(Exploration& search, TaskSearch& tasks,
+                    FunctionRef<Verdict(JointVector&)> accept, FunctionRef<bool()> go_on) const;
+  /// The errors of q: position [m] and rotation [rad].
+  void measure(const TaskSpace& of_call, const Pose& target, const JointVector& q, double& position,
+               double& rotation) const;
+  Result finish(Result result, const TaskSpace& of_call, const Pose& target,
                 const JointVector& q) const;
 
   /// Workspaces that lie idle; a null is a place to put one back. More solves at once than places
@@ -68,5 +103,49 @@ struct Solver::Impl {
   static constexpr std::size_t kPlaces = 64;
   mutable std::array<std::atomic<Workspace*>, kPlaces> idle_{};
 };
+
+template <typename Target, typename Settle>
+void Solver::Impl::solve_many(std::size_t first, std::size_t last, Workspace& workspace,
+                              const Target& target, const Settle& settle) const {
+  if (workspace.lanes == nullptr || !task.is_full_pose()) {
+    for (std::size_t i = first; i < last; ++i) {
+      settle(i, solve(target(i), nullptr, workspace, nullptr));
+    }
+    return;
+  }
+  // Those that the best seed alone does not solve are solved one by one afterwards.
+  std::bitset<kMany> open;
+  std::size_t at = first;
+  const auto next = [&](Pose& tip_target) -> int {
+    for (; at < last; ++at) {
+      const Pose T_base_tip = target(at);
+      if (out_of_reach(task, T_base_tip)) {
+        open.set(at - first);
+        continue;
+      }
+      tip_target = T_base_tip * Pose(robot.model().tcp_inverse);
+      return static_cast<int>(at++ - first);
+    }
+    return -1;
+  };
+  workspace.lanes->stream(next, [&](int offset, JointVector* q, int iterations) {
+    const auto index = static_cast<std::size_t>(offset);
+    if (q == nullptr) {
+      open.set(index);
+      return true;
+    }
+    robot.model().wrap_into_limits(q->data());
+    Result result;
+    result.attempts = 1;
+    result.iterations = iterations;
+    result = finish(result, task, target(first + index), *q);
+    if (!result.success()) return false;
+    settle(first + index, result);
+    return true;
+  });
+  for (std::size_t i = first; i < last; ++i) {
+    if (open[i - first]) settle(i, solve(target(i), nullptr, workspace, nullptr));
+  }
+}
 
 }  // namespace iksel

@@ -36,7 +36,11 @@ TaskSearch::TaskSearch(const ChainModel& model, const DatabaseData& data,
   if (options.kinematics == Kinematics::kdl) kdl_ = model.make_kdl();
 }
 
-void TaskSearch::start() {
+void TaskSearch::begin(const Pose& target, const TaskSpace& task) {
+  target_ = &target;
+  task_ = &task;
+  tip_target_ = target * Pose(model_.tcp_inverse);
+  left_limits_ = false;
   random_ = Random(options_.seed);
   for (const std::uint32_t sample : tried_) is_tried_[sample] = false;
   tried_.clear();
@@ -50,7 +54,9 @@ JointVector TaskSearch::random_configuration() {
   return q;
 }
 
-Pose TaskSearch::allowed_pose(const Pose& target, const TaskSpace& task, int round) {
+Pose TaskSearch::allowed_pose(int round) {
+  const Pose& target = *target_;
+  const TaskSpace& task = *task_;
   Vector6 d = Vector6::Zero().cwiseMax(task.lower()).cwiseMin(task.upper());
   if (round == 0) return task.pose_at(target, d);
   // What is free is drawn from any pose in the ball that the arm can reach at all; what is within
@@ -75,7 +81,7 @@ Pose TaskSearch::allowed_pose(const Pose& target, const TaskSpace& task, int rou
   return pose;
 }
 
-JointVector TaskSearch::seed_for(const Pose& target, const TaskSpace& task, const Pose& allowed) {
+JointVector TaskSearch::seed_for(const Pose& allowed) {
   // Some poses have the same neighbours: a spin about the last joint is not in a reduced key.
   constexpr std::size_t kSeeds = 16;
   const std::size_t found =
@@ -86,7 +92,7 @@ JointVector TaskSearch::seed_for(const Pose& target, const TaskSpace& task, cons
     if (is_tried_[selection_.nearest_sample(i)]) continue;
     double position = 0;
     double rotation = 0;
-    task.measure(target, model_.fk(selection_.nearest_seed(i)), position, rotation);
+    task_->measure(*target_, model_.fk(selection_.nearest_seed(i)), position, rotation);
     const double error = std::hypot(position, data_.weight * rotation);
     if (error < least) {
       least = error;

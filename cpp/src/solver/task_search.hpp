@@ -10,6 +10,7 @@
 #include "database/data.hpp"
 #include "iteration/iterate.hpp"
 #include "selection/selection.hpp"
+#include "solver/lane_search.hpp"
 #include "solver/stage_clock.hpp"
 
 namespace iksel {
@@ -19,20 +20,28 @@ class TaskSearch {
   TaskSearch(const ChainModel& model, const DatabaseData& data, const SolverOptions& options,
              Selection& selection);
 
-  /// Calls `accept(q)` for every converged q until it says true, or the work bound is reached;
-  /// true if it did. `seed` may be null. Counts seeds and iterations; `outside_limits` is set if an
-  /// attempt reached the task outside the limits.
+  /// Sets what attempt() and run() are to reach; both must outlive them.
+  void begin(const Pose& target, const TaskSpace& task);
+
+  /// Iterates from a seed and calls `accept(JointVector& q) -> Verdict` if it arrives; true if that
+  /// says stop. Counts the seed and its iterations.
   template <typename Accept>
-  bool run(const Pose& target, const TaskSpace& task, const JointVector* seed, StageClock& clock,
-           int& attempts, int& iterations, bool& outside_limits, const Accept& accept);
+  bool attempt(const JointVector& seed, StageClock& clock, Work& work, const Accept& accept);
+
+  /// Attempts seeds of its own until one is accepted (then true), the work bound is reached, or
+  /// `go_on()`, asked after each, says no.
+  template <typename Accept, typename GoOn = LaneSearch::Always>
+  bool run(StageClock& clock, Work& work, const Accept& accept, const GoOn& go_on = {});
+
+  /// Whether an attempt reached the task outside the limits.
+  [[nodiscard]] bool left_limits() const { return left_limits_; }
 
  private:
-  void start();
   /// The best seed, of samples not tried yet, for a pose that the task allows.
-  JointVector seed_for(const Pose& target, const TaskSpace& task, const Pose& allowed);
+  JointVector seed_for(const Pose& allowed);
   JointVector random_configuration();
   /// A pose that the task allows: the one nearest to the target first, then at random.
-  Pose allowed_pose(const Pose& target, const TaskSpace& task, int round);
+  Pose allowed_pose(int round);
 
   const ChainModel& model_;
   const DatabaseData& data_;
@@ -43,32 +52,34 @@ class TaskSearch {
   /// Whether a sample of the database was a seed already, and which were.
   std::vector<bool> is_tried_;
   std::vector<std::uint32_t> tried_;
+  const Pose* target_ = nullptr;
+  const TaskSpace* task_ = nullptr;
+  Pose tip_target_ = Pose::Identity();
+  bool left_limits_ = false;
 };
 
 template <typename Accept>
-bool TaskSearch::run(const Pose& target, const TaskSpace& task, const JointVector* seed,
-                     StageClock& clock, int& attempts, int& iterations, bool& outside_limits,
-                     const Accept& accept) {
-  start();
-  const Pose tip_target = target * Pose(model_.tcp_inverse);
-  const IterationContext context{model_, options_, target, tip_target, kdl_.get(), random_, &task};
-  const auto attempt = [&](JointVector& q) {
-    ++attempts;
-    const Outcome outcome = iterate(context, q, iterations);
-    if (outcome == Outcome::outside_limits) outside_limits = true;
-    const bool accepted = outcome == Outcome::solved && accept(q);
-    clock.lap(&StageTimes::iterate);
-    return accepted;
-  };
-  if (seed != nullptr) {
-    JointVector q = *seed;
-    if (attempt(q)) return true;
-  }
+bool TaskSearch::attempt(const JointVector& seed, StageClock& clock, Work& work,
+                         const Accept& accept) {
+  const IterationContext context{model_,     options_, *target_, tip_target_,
+                                 kdl_.get(), random_,  task_};
+  JointVector q = seed;
+  ++work.attempts;
+  const Outcome outcome = iterate(context, q, work.iterations);
+  if (outcome == Outcome::outside_limits) left_limits_ = true;
+  const bool accepted = outcome == Outcome::solved && accept(q) == Verdict::stop;
+  clock.lap(&StageTimes::iterate);
+  return accepted;
+}
+
+template <typename Accept, typename GoOn>
+bool TaskSearch::run(StageClock& clock, Work& work, const Accept& accept, const GoOn& go_on) {
   for (int round = 0; round < options_.max_attempts; ++round) {
-    JointVector q = round % 4 == 3 ? random_configuration()
-                                   : seed_for(target, task, allowed_pose(target, task, round));
+    const JointVector seed =
+        round % 4 == 3 ? random_configuration() : seed_for(allowed_pose(round));
     clock.lap(&StageTimes::query);
-    if (attempt(q)) return true;
+    if (attempt(seed, clock, work, accept)) return true;
+    if (!go_on()) return false;
   }
   return false;
 }

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a caller may ask for besides the pose: near which configuration, from which seeds, which
+// answers to refuse, and by when.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "iksel/export.hpp"
+#include "iksel/task.hpp"
+#include "iksel/types.hpp"
+
+namespace iksel {
+
+/// How the length of a joint move is measured.
+enum class MoveNorm {
+  two,  ///< root of the sum of squares
+  max,  ///< the largest joint's
+};
+
+/// Tells which candidates may be answers: `q` holds `count` configurations of dof joint values, one
+/// after the other, each inside the limits and at its target; sets `keep` for each. Called from the
+/// thread that solves. Its exceptions end the solve and reach the caller.
+using Filter = std::function<void(const double* q, std::size_t count, bool* keep)>;
+
+/// A filter that is asked about one configuration at a time.
+IKSEL_EXPORT Filter filter_each(int dof, std::function<bool(const JointVector&)> keep);
+
+/// A solve with wishes. The defaults wish nothing.
+struct IKSEL_EXPORT SolveRequest {
+  /// Seeds of any origin, each with dof joint values [rad or m], inside the limits or not. They are
+  /// ranked and iterated as the database's own, and come before those.
+  std::vector<JointVector> seeds;
+  /// Whether the database's seeds follow the given ones; random restarts belong to the database's.
+  bool database_seeds = true;
+
+  /// Configuration to stay near, typically where the arm is. May lie outside the limits, as
+  /// measured joint values do. The answer is then the one with the smallest move of all that are
+  /// found within the bounds on work; a redundant arm's has slid along its self-motion until the
+  /// move is a local minimum.
+  std::optional<JointVector> near;
+  /// Factor on each joint's part of the move, >= 0 and not all 0 (so that radians and metres can be
+  /// compared); empty: all 1.
+  JointVector weights;
+  MoveNorm norm = MoveNorm::two;
+
+  /// Refuses candidates; the search goes on within its bounds. Empty: takes all.
+  Filter filter;
+  /// Wall-clock time after which no new stage of the search begins [s]. What was found by then is
+  /// judged. The one option under which the same input may give different answers.
+  double deadline = std::numeric_limits<double>::infinity();
+
+  /// What of the pose has to be reached; empty: what the solver's options say.
+  std::optional<Task> task;
+
+  /// Throws InvalidArgumentError naming the first field that does not fit a chain of `dof` joints.
+  void validate(int dof) const;
+};
+
+/// In which order solve_all gives its solutions.
+enum class SolutionOrder {
+  move,            ///< the smallest move first: from `near`, or else from the middle of the limits
+  limit_distance,  ///< the largest distance from the limits first, relative to each joint's range
+  manipulability,  ///< the largest sqrt(det(J J^T)) first
+};
+
+/// What solve_all gives.
+struct IKSEL_EXPORT AllOptions {
+  /// Solutions given at most.
+  int max = 64;
+  /// Solutions that differ by less than this in every joint are one [rad or m]; a redundant arm's,
+  /// which come in families, are spread at least this far.
+  double min_distance = 0.01;
+  /// Whether copies by whole turns inside the limits count as solutions of their own. Otherwise
+  /// each is given once: at the turn nearest to `near`, or else to the middle of the limits.
+  bool whole_turns = false;
+  SolutionOrder order = SolutionOrder::move;
+
+  /// Throws InvalidArgumentError naming the first option out of range.
+  void validate() const;
+};
+
+}  // namespace iksel

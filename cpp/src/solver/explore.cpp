@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "solver/explore.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "solver/given_seeds.hpp"
+#include "solver/solver_impl.hpp"
+#include "solver/stage_clock.hpp"
+
+namespace iksel {
+namespace {
+
+/// Seeds between two looks at what was found, where they are iterated one by one.
+constexpr int kStage = 8;
+
+}  // namespace
+
+void Solver::Impl::explore(Exploration& search, Workspace& workspace) const {
+  const ChainModel& model = robot.model();
+  Found& found = workspace.found;
+  found.clear();
+  if (out_of_reach(search.task, search.T_base_tip)) {
+    search.status = Status::out_of_reach;
+    return;
+  }
+
+  const Deadline deadline(search.request.deadline);
+  const auto accept = [&](JointVector& q) {
+    double position = 0;
+    double rotation = 0;
+    measure(search.task, search.T_base_tip, q, position, rotation);
+    if (!(position <= options.position_tolerance && rotation <= options.rotation_tolerance)) {
+      return Verdict::refine;
+    }
+    model.wrap_into_limits(q.data());
+    if (!model.within_limits(q.data())) {
+      search.status = Status::outside_limits;
+      return Verdict::next;
+    }
+    if (search.request.near) {
+      take_nearest_turns(model, *search.request.near, q);
+    } else {
+      take_first_turns(model, q);
+    }
+    found.add(q, search.min_distance);
+    return Verdict::next;
+  };
+  const auto go_on = [&] {
+    if (search.enough(search.work.attempts)) return false;
+    search.out_of_time = deadline.passed();
+    return !search.out_of_time;
+  };
+
+  const Pose tip_target = search.T_base_tip * Pose(model.tcp_inverse);
+  if (!search.task.is_full_pose()) {
+    explore_task(search, workspace.tasks, accept, go_on);
+  } else if (workspace.lanes) {
+    explore_in_lanes(search, tip_target, *workspace.lanes, accept, go_on);
+  } else {
+    explore_one_by_one(search, tip_target, workspace, accept, go_on);
+  }
+  if (found.size() > 0) search.status = Status::solved;
+}
+
+void Solver::Impl::explore_in_lanes(Exploration& search, const Pose& tip_target, LaneSearch& lanes,
+                                    FunctionRef<Verdict(JointVector&)> accept,
+                                    FunctionRef<bool()> go_on) const {
+  lanes.set_target(tip_target);
+  Work& work = search.work;
+  const auto iterate_seeds = [&](const double* const* seeds, int count) {
+    lanes.iterate(
+        count, work, [&](int k, int lane) { lanes.load_seed(lane, seeds[k]); }, accept);
+  };
+  if (search.request.near) {
+    const double* near = search.request.near->data();
+    iterate_seeds(&near, 1);
+  }
+  if (!search.request.seeds.empty()) {
+    GivenSeeds given(robot.model(), options, search.task, search.T_base_tip, search.request.seeds);
+    std::vector<const double*> order;
+    while (const double* seed = given.next(static_cast<int>(order.size()))) order.push_back(seed);
+    const int count = static_cast<int>(order.size());
+    for (int first = 0; first < count; first += lanes::kGroup) {
+      iterate_seeds(&order[static_cast<std::size_t>(first)],
+                    std::min(lanes::kGroup, count - first));
+      if (!go_on()) return;
+    }
+  }
+  if (!go_on() || !search.request.database_seeds) return;
+  StageClock clock(nullptr);
+  lanes.run(tip_target, nullptr, clock, work, accept, go_on);
+}
+
+void Solver::Impl::explore_task(Exploration& search, TaskSearch& tasks,
+                                FunctionRef<Verdict(JointVector&)> accept,
+                                FunctionRef<bool()> go_on) const {
+  StageClock clock(nullptr);
+  tasks.begin(search.T_base_tip, search.task);
+  // A filter is asked about many at a time.
+  const int stage = search.request.filter ? kStage : 1;
+  int since = 0;
+  const auto go_on_in_stages = [&] { return ++since % stage != 0 || go_on(); };
+  if (search.request.near) tasks.attempt(*search.request.near, clock, search.work, accept);
+  if (!search.request.seeds.empty()) {
+    GivenSeeds given(robot.model(), options, search.task, search.T_base_tip, search.request.seeds);
+    for (int k = 0; k < options.max_attempts; ++k) {
+      const double* seed = given.next(k);
+      if (seed == nullptr) break;
+      tasks.attempt(Eigen::Map<const Eigen::VectorXd>(seed, robot.dof()), clock, search.work,
+                    accept);
+      if (!go_on_in_stages()) return;
+    }
+  }
+  if (search.request.database_seeds) tasks.run(clock, search.work, accept, go_on_in_stages);
+  if (tasks.left_limits()) search.status = Status::outside_limits;
+  // What the last seeds found is looked at too.
+  go_on();
+}
+
+void Solver::Impl::explore_one_by_one(Exploration& search, const Pose& tip_target,
+                                      Workspace& workspace,
+                                      FunctionRef<Verdict(JointVector&)> accept,
+                                      FunctionRef<bool()> go_on) const {
+  const ChainModel& model = robot.model();
+  Random random(options.seed);
+  const IterationContext context{model, options, search.T_base_tip, tip_target, workspace.kdl.get(),
+                                 random};
+  const auto attempt = [&](const double* from) {
+    JointVector q = Eigen::Map<const Eigen::VectorXd>(from, model.dof);
+    ++search.work.attempts;
+    const Outcome outcome = iterate(context, q, search.work.iterations);
+    if (outcome == Outcome::outside_limits) search.status = Status::outside_limits;
+    if (outcome == Outcome::solved) accept(q);
+  };
+
+  if (search.request.near) attempt(search.request.near->data());
+  const int on_top = search.work.attempts;
+  const auto left = [&] { return search.work.attempts - on_top < options.max_attempts; };
+  const auto try_all = [&](auto& seeds) {
+    for (int k = 0; left(); ++k) {
+      if (k % kStage == 0 && !go_on()) return false;
+      const double* seed = seeds(k);
+      if (seed == nullptr) return true;
+      attempt(seed);
+    }
+    return false;
+  };
+
+  if (!search.request.seeds.empty()) {
+    GivenSeeds given(model, options, search.task, search.T_base_tip, search.request.seeds);
+    const auto next = [&](int k) { return given.next(k); };
+    if (!try_all(next)) {
+      go_on();
+      return;
+    }
+  }
+  if (search.request.database_seeds) {
+    Selection& selection = workspace.selection;
+    selection.query(tip_target);
+    selection.rank();
+    const auto next = [&](int k) { return selection.next_seed(k); };
+    try_all(next);
+  }
+  // What the last seeds found is looked at too.
+  go_on();
+}
+
+}  // namespace iksel

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How far joints move between configurations, whole turns considered.
+#pragma once
+
+#include "iksel/request.hpp"
+#include "iteration/schemes.hpp"
+#include "kinematics/chain_model.hpp"
+
+namespace iksel {
+
+/// True where a whole turn of the joint leads to the same pose, and may lie inside the limits.
+inline bool has_whole_turns(const ChainModel& model, int joint) {
+  return !limits_count(model, joint);
+}
+
+/// The norm and weights of a request.
+class JointMove {
+ public:
+  JointMove(int dof, const SolveRequest& request)
+      : weights_(request.weights.size() == 0 ? JointVector(JointVector::Ones(dof))
+                                             : request.weights),
+        norm_(request.norm) {}
+
+  [[nodiscard]] double length(const JointVector& difference) const {
+    const auto weighted = weights_.cwiseProduct(difference);
+    return norm_ == MoveNorm::two ? weighted.norm() : weighted.cwiseAbs().maxCoeff();
+  }
+  [[nodiscard]] const JointVector& weights() const { return weights_; }
+  [[nodiscard]] MoveNorm norm() const { return norm_; }
+
+ private:
+  JointVector weights_;
+  MoveNorm norm_;
+};
+
+/// Brings each joint with whole turns to the turn nearest to `near` inside the limits; q lies
+/// inside them before and after.
+void take_nearest_turns(const ChainModel& model, const JointVector& near, JointVector& q);
+
+/// Brings each joint with whole turns to the first turn inside the limits, or to [-pi, pi) if there
+/// are none.
+void take_first_turns(const ChainModel& model, JointVector& q);
+
+/// Moves to the next combination of whole turns inside the limits; false after the last, which
+/// leaves q at the first. Starts from take_first_turns.
+bool take_next_turns(const ChainModel& model, JointVector& q);
+
+/// The largest difference of a joint; whole turns are none.
+double distance_without_turns(const ChainModel& model, const double* a, const double* b);
+
+/// The middle of the limits; 0 where there are none.
+JointVector middle_of_limits(const ChainModel& model);
+
+}  // namespace iksel

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "iksel/request.hpp"
+
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "error_check.hpp"
+#include "iksel/error.hpp"
+
+namespace iksel {
+
+Filter filter_each(int dof, std::function<bool(const JointVector&)> keep) {
+  return [dof, one = std::move(keep)](const double* q, std::size_t count, bool* kept) {
+    for (std::size_t i = 0; i < count; ++i) {
+      kept[i] = one(Eigen::Map<const Eigen::VectorXd>(q + i * static_cast<std::size_t>(dof), dof));
+    }
+  };
+}
+
+void SolveRequest::validate(int dof) const {
+  for (std::size_t i = 0; i < seeds.size(); ++i) {
+    check_joints(seeds[i], dof, ("seeds[" + std::to_string(i) + "]").c_str());
+  }
+  if (near) check_joints(*near, dof, "near");
+  if (weights.size() != 0) {
+    check_joints(weights, dof, "weights");
+    for (int i = 0; i < dof; ++i) {
+      if (weights[i] < 0) {
+        throw InvalidArgumentError("weights[" + std::to_string(i) +
+                                   "]: " + std::to_string(weights[i]) + " is negative");
+      }
+    }
+    if (weights.maxCoeff() == 0) throw InvalidArgumentError("weights: all are 0");
+  }
+  if (norm != MoveNorm::two && norm != MoveNorm::max) {
+    throw InvalidArgumentError("norm: not a value of MoveNorm (two, max)");
+  }
+  if (task) task->validate();
+  if (!(deadline >= 0)) {
+    throw InvalidArgumentError("deadline: " + std::to_string(deadline) + " s is not 0 or more");
+  }
+}
+
+void AllOptions::validate() const {
+  if (max < 1) throw InvalidArgumentError("max: " + std::to_string(max) + " is less than 1");
+  if (!(min_distance > 0 && min_distance <= 1e3)) {
+    throw InvalidArgumentError("min_distance: " + std::to_string(min_distance) +
+                               " is not above 0 and at most 1000");
+  }
+  if (order != SolutionOrder::move && order != SolutionOrder::limit_distance &&
+      order != SolutionOrder::manipulability) {
+    throw InvalidArgumentError(
+        "order: not a value of SolutionOrder (move, limit_distance, manipulability)");
+  }
+}
+
+}  // namespace iksel

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "error_check.hpp"
+#include "math/pseudo_inverse.hpp"
+#include "solver/explore.hpp"
+#include "solver/solver_impl.hpp"
+
+namespace iksel {
+namespace {
+
+/// Solutions of a redundant arm from which the asked for are spread: so many for each.
+constexpr std::size_t kChoice = 4;
+/// Copies by whole turns looked at, at most.
+constexpr std::size_t kMostCopies = 65536;
+
+struct Copy {
+  JointVector q;
+  double cost;
+  std::size_t solution;  ///< of which it is a copy
+};
+
+bool cheaper(const Copy& a, const Copy& b) {
+  if (a.cost != b.cost) return a.cost < b.cost;
+  return std::lexicographical_compare(a.q.data(), a.q.data() + a.q.size(), b.q.data(),
+                                      b.q.data() + b.q.size());
+}
+
+/// Smallest distance from a limit, relative to the joint's range; joints without limits have none.
+double limit_distance(const ChainModel& model, const JointVector& q) {
+  double least = 0.5;
+  for (int j = 0; j < model.dof; ++j) {
+    const double range = model.upper[j] - model.lower[j];
+    if (!std::isfinite(range) || range <= 0) continue;
+    least = std::min(least, std::min(q[j] - model.lower[j], model.upper[j] - q[j]) / range);
+  }
+  return least;
+}
+
+/// sqrt(det(J J^T)), or sqrt(det(J^T J)) for fewer than 6 joints (Yoshikawa 1985).
+double manipulability(const ChainModel& model, const JointVector& q) {
+  Pose pose;
+  Jacobian J;
+  model.fk_jacobian(q.data(), pose, J);
+  const double determinant = model.dof < 6 ? Eigen::MatrixXd(J.transpose() * J).determinant()
+                                           : Matrix6(J * J.transpose()).determinant();
+  return std::sqrt(std::max(determinant, 0.0));
+}
+
+/// The cost that puts solutions in order, smaller first.
+double cost_of(const ChainModel& model, SolutionOrder order, const JointMove& move,
+               const JointVector& from, const JointVector& q) {
+  switch (order) {
+    case SolutionOrder::limit_distance:
+      return -limit_distance(model, q);
+    case SolutionOrder::manipulability:
+      return -manipulability(model, q);
+    case SolutionOrder::move:
+      break;
+  }
+  return move.length(q - from);
+}
+
+/// Moves `count` to the front that lie far from each other: after the best, always the one farthest
+/// from those before.
+void spread(const ChainModel& model, std::size_t count, std::vector<Copy>& copies) {
+  std::vector<double> distance(copies.size(), std::numeric_limits<double>::infinity());
+  for (std::size_t chosen = 1; chosen < count; ++chosen) {
+    std::size_t farthest = chosen;
+    for (std::size_t i = chosen; i < copies.size(); ++i) {
+      const double d =
+          distance_without_turns(model, copies[chosen - 1].q.data(), copies[i].q.data());
+      distance[i] = std::min(distance[i], d);
+      if (distance[i] > distance[farthest]) farthest = i;
+    }
+    std::swap(copies[chosen], copies[farthest]);
+    std::swap(distance[chosen], distance[farthest]);
+  }
+}
+
+/// Takes out what the filter refuses.
+void apply_filter(const Filter& filter, int dof, std::vector<Copy>& copies) {
+  if (!filter || copies.empty()) return;
+  std::vector<double> q;
+  q.reserve(copies.size() * static_cast<std::size_t>(dof));
+  for (const Copy& copy : copies) q.insert(q.end(), copy.q.data(), copy.q.data() + dof);
+  const std::unique_ptr<bool[]> keep(new bool[copies.size()]());
+  filter(q.data(), copies.size(), keep.get());
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < copies.size(); ++i) {
+    if (!keep[i]) continue;
+    if (kept != i) copies[kept] = std::move(copies[i]);
+    ++kept;
+  }
+  copies.resize(kept);
+}
+
+/// Of the copies of each solution, in order, the first.
+void take_first_of_each(std::size_t solutions, std::vector<Copy>& copies) {
+  std::vector<bool> seen(solutions);
+  copies.erase(std::remove_if(copies.begin(), copies.end(),
+                              [&](const Copy& copy) {
+                                const bool again = seen[copy.solution];
+                                seen[copy.solution] = true;
+                                return again;
+                              }),
+               copies.end());
+}
+
+}  // namespace
+
+Solutions Solver::Impl::solve_all(const Pose& T_base_tip, const AllOptions& all,
+                                  const SolveRequest& request, Workspace& workspace) const {
+  const ChainModel& model = robot.model();
+  const TaskSpace of_call = task_of(request);
+  const bool redundant = model.dof > of_call.fixed_axes();
+  const auto most = static_cast<std::size_t>(all.max);
+  Found& found = workspace.found;
+  Saturation saturation;
+  const auto enough = [&](int attempts) {
+    if (redundant && found.size() >= std::max<std::size_t>(kChoice * most, 64)) return true;
+    return saturation.reached(found.size(), attempts);
+  };
+  Exploration search{T_base_tip, of_call, request, all.min_distance,
+                     FunctionRef<bool(int)>(enough)};
+  explore(search, workspace);
+
+  Solutions solutions;
+  solutions.status = search.status;
+  solutions.attempts = search.work.attempts;
+  solutions.iterations = search.work.iterations;
+
+  const JointMove move(model.dof, request);
+  const JointVector from = request.near ? *request.near : middle_of_limits(model);
+  std::vector<Copy> copies;
+  const auto add = [&](const JointVector& q, std::size_t i) {
+    copies.push_back({q, cost_of(model, all.order, move, from, q), i});
+  };
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    JointVector q = found.at(i);
+    if (all.whole_turns || request.filter) {
+      take_first_turns(model, q);
+      do {
+        add(q, i);
+      } while (copies.size() < kMostCopies && take_next_turns(model, q));
+    } else {
+      take_nearest_turns(model, from, q);
+      add(q, i);
+    }
+  }
+  apply_filter(request.filter, model.dof, copies);
+  std::sort(copies.begin(), copies.end(), cheaper);
+  if (!all.whole_turns) take_first_of_each(found.size(), copies);
+  if (copies.size() > most) {
+    if (redundant) spread(model, most, copies);
+    copies.resize(most);
+    std::sort(copies.begin(), copies.end(), cheaper);
+  }
+
+  for (const Copy& copy : copies) {
+    Result result = finish(Result{}, of_call, T_base_tip, copy.q);
+    if (!result.success()) continue;
+    if (request.near) result.move = move.length(copy.q - from);
+    result.attempts = search.work.attempts;
+    result.iterations = search.work.iterations;
+    solutions.all.push_back(result);
+  }
+  if (solutions.all.empty()) {
+    if (solutions.status == Status::solved) solutions.status = Status::rejected;
+    if (search.out_of_time) solutions.status = Status::out_of_time;
+  }
+  return solutions;
+}
+
+Solutions Solver::solve_all(const Pose& T_base_tip, const AllOptions& options,
+                            const SolveRequest& request) const {
+  check_pose(T_base_tip);
+  options.validate();
+  request.validate(robot().dof());
+  const Impl::Lease lease(*impl_);
+  return impl_->solve_all(T_base_tip, options, request, lease.get());
+}
+
+}  // namespace iksel

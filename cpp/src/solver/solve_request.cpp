@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// solve with wishes: the nearest solution, or the first that a filter lets through.
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "error_check.hpp"
+#include "solver/explore.hpp"
+#include "solver/self_motion.hpp"
+#include "solver/solver_impl.hpp"
+
+namespace iksel {
+namespace {
+
+/// Seeds for a redundant arm, whose solutions never end.
+constexpr int kRedundantSeeds = 64;
+/// The nearest solutions of a redundant arm that slide.
+constexpr std::size_t kSlides = 4;
+/// Solutions nearer than this in every joint are looked at once [rad or m]: how far apart answers
+/// of one branch may lie at the default tolerances where the arm is singular.
+constexpr double kSame = 2e-3;
+
+/// Half the squared weighted move, or for the max norm a p-norm near to it. A joint without weight
+/// still has a little, so that it does not drift.
+class MoveCost {
+ public:
+  MoveCost(const JointMove& move, const JointVector& near, double power)
+      : near_(near), power_(power), weights_(move.weights()) {
+    constexpr double kLeast = 1e-6;
+    const double least = kLeast * weights_.maxCoeff();
+    weights_ = weights_.cwiseMax(least);
+  }
+
+  double operator()(const JointVector& q, JointVector* gradient, JointVector* curvature) const {
+    const JointVector d = weights_.cwiseProduct(q - near_);
+    const double largest = d.cwiseAbs().maxCoeff();
+    if (power_ == 2 || largest == 0) {
+      if (gradient != nullptr) *gradient = weights_.cwiseProduct(d);
+      if (curvature != nullptr) *curvature = weights_.cwiseAbs2();
+      return 0.5 * d.squaredNorm();
+    }
+    // (sum |d|^p)^(1/p), scaled by the largest against overflow. The curvature leaves out the rank
+    // one part, and is bounded below to stay positive where d is 0.
+    const JointVector r = d.cwiseAbs() / largest;
+    const double sum = r.array().pow(power_).sum();
+    const double value = largest * std::pow(sum, 1 / power_);
+    const double scale = std::pow(sum, 1 / power_ - 1);
+    for (Eigen::Index j = 0; j < d.size(); ++j) {
+      const double slope = scale * std::pow(r[j], power_ - 1);
+      if (gradient != nullptr) (*gradient)[j] = weights_[j] * std::copysign(slope, d[j]);
+      if (curvature != nullptr) {
+        constexpr double kFloor = 1e-3;
+        (*curvature)[j] = weights_[j] * weights_[j] * (power_ - 1) / largest *
+                          std::max(scale * std::pow(r[j], power_ - 2), kFloor);
+      }
+    }
+    return value;
+  }
+
+ private:
+  JointVector near_;
+  double power_;
+  JointVector weights_;
+};
+
+void slide_towards(const ChainModel& model, const SolverOptions& options, const TaskSpace& task,
+                   const Pose& T_base_tip, const JointMove& move, const JointVector& near,
+                   JointVector& q) {
+  constexpr int kSteps = 20;
+  const auto slide_by = [&](double power) {
+    const MoveCost cost(move, near, power);
+    slide(model, options, task, T_base_tip, JointCost(cost), kSteps, q);
+  };
+  slide_by(2);
+  if (move.norm() == MoveNorm::two) return;
+  JointVector best = q;
+  const auto keep_better = [&] {
+    if (move.length(q - near) < move.length(best - near)) best = q;
+  };
+  // The p-norm tends to the max norm; each is easy to reach from the one before.
+  for (const double power : {4.0, 16.0, 64.0}) {
+    slide_by(power);
+    keep_better();
+  }
+  q = best;
+}
+
+}  // namespace
+
+/// The candidates of one request, judged by its filter and measured by its move.
+class Solver::Impl::Judge {
+ public:
+  Judge(const Impl& solver, const TaskSpace& task, const Pose& T_base_tip,
+        const SolveRequest& request, Found& found)
+      : solver_(solver),
+        model_(solver.robot.model()),
+        task_(task),
+        redundant_(model_.dof > task.fixed_axes()),
+        T_base_tip_(T_base_tip),
+        request_(request),
+        found_(found),
+        move_(model_.dof, request) {}
+
+  /// Puts what was found since the last look before the filter. True if the best of all that passed
+  /// is an answer.
+  bool look(int attempts) {
+    ask_filter();
+    if (!request_.near) return first_kept_ < found_.size();
+    if (redundant_) return first_kept_ < found_.size() && attempts >= kRedundantSeeds;
+    return first_kept_ < found_.size() && saturation_.reached(found_.size(), attempts);
+  }
+
+  /// The best of what passed; false if nothing did.
+  bool answer(JointVector& q) {
+    if (first_kept_ == found_.size()) return answer_among_turns(q);
+    if (!request_.near) {
+      q = found_.at(first_kept_);
+      return true;
+    }
+    std::array<Ranked, Found::kMost> ranked;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < found_.size(); ++i) {
+      if (kept(i)) ranked[count++] = {move_.length(found_.at(i) - *request_.near), i};
+    }
+    const std::size_t slides = redundant_ ? std::min(count, kSlides) : 1;
+    std::partial_sort(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(slides),
+                      ranked.begin() + static_cast<std::ptrdiff_t>(count));
+    q = found_.at(ranked[0].index);
+    if (redundant_) slide_best(ranked.data(), slides, q);
+    return true;
+  }
+
+ private:
+  struct Ranked {
+    double move;
+    std::size_t index;
+    friend bool operator<(const Ranked& a, const Ranked& b) {
+      return a.move != b.move ? a.move < b.move : a.index < b.index;
+    }
+  };
+
+  [[nodiscard]] bool kept(std::size_t i) const { return !request_.filter || kept_[i]; }
+
+  void ask_filter() {
+    if (request_.filter && asked_ < found_.size()) {
+      request_.filter(found_.q(asked_), found_.size() - asked_, &kept_[asked_]);
+    }
+    asked_ = found_.size();
+    while (first_kept_ < asked_ && !kept(first_kept_)) ++first_kept_;
+  }
+
+  /// Slides the nearest of what passed; q is the best before, and after.
+  void slide_best(const Ranked* ranked, std::size_t count, JointVector& q) {
+    double best = ranked[0].move;
+    for (std::size_t k = 0; k < count; ++k) {
+      JointVector slid = found_.at(ranked[k].index);
+      slide_towards(model_, solver_.options, task_, T_base_tip_, move_, *request_.near, slid);
+      const double length = move_.length(slid - *request_.near);
+      if (!(length < best)) continue;
+      bool keep = true;
+      if (request_.filter) request_.filter(slid.data(), 1, &keep);
+      if (!keep) continue;
+      best = length;
+      q = slid;
+    }
+  }
+
+  /// As answer, among the copies by whole turns that were not looked at yet.
+  bool answer_among_turns(JointVector& q) {
+    if (!request_.filter) return false;
+    constexpr std::size_t kChunk = 64;
+    const auto dof = static_cast<std::size_t>(model_.dof);
+    std::vector<double> copies;
+    double best = std::numeric_limits<double>::infinity();
+    const auto flush = [&] {
+      std::array<bool, kChunk> keep{};
+      const std::size_t count = copies.size() / dof;
+      if (count > 0) request_.filter(copies.data(), count, keep.data());
+      for (std::size_t i = 0; i < count; ++i) {
+        const JointVector copy =
+            Eigen::Map<const Eigen::VectorXd>(copies.data() + i * dof, model_.dof);
+        const double cost = request_.near ? move_.length(copy - *request_.near) : 0.0;
+        if (!keep[i] || !(cost < best)) continue;
+        best = cost;
+        q = copy;
+      }
+      copies.clear();
+    };
+    for (std::size_t i = 0; i < found_.size(); ++i) {
+      JointVector copy = found_.at(i);
+      take_first_turns(model_, copy);
+      do {
+        copies.insert(copies.end(), copy.data(), copy.data() + dof);
+        if (copies.size() == kChunk * dof) flush();
+      } while (take_next_turns(model_, copy) && (request_.near || std::isinf(best)));
+    }
+    flush();
+    return std::isfinite(best);
+  }
+
+  const Impl& solver_;
+  const ChainModel& model_;
+  const TaskSpace& task_;
+  bool redundant_;
+  const Pose& T_base_tip_;
+  const SolveRequest& request_;
+  Found& found_;
+  JointMove move_;
+  Saturation saturation_;
+  std::array<bool, Found::kMost> kept_{};
+  std::size_t asked_ = 0;
+  std::size_t first_kept_ = 0;
+};
+
+TaskSpace Solver::Impl::task_of(const SolveRequest& request) const {
+  if (!request.task) return task;
+  return {*request.task, options.position_tolerance, options.rotation_tolerance};
+}
+
+Result Solver::Impl::solve(const Pose& T_base_tip, const SolveRequest& request,
+                           Workspace& workspace) const {
+  const TaskSpace of_call = task_of(request);
+  Judge judge(*this, of_call, T_base_tip, request, workspace.found);
+  const auto enough = [&](int attempts) { return judge.look(attempts); };
+  Exploration search{T_base_tip, of_call, request, kSame, FunctionRef<bool(int)>(enough)};
+  explore(search, workspace);
+
+  Result result;
+  JointVector q;
+  if (search.status == Status::solved) {
+    result = judge.answer(q) ? finish(result, of_call, T_base_tip, q) : result;
+    if (result.success()) {
+      if (request.near) result.move = JointMove(robot.dof(), request).length(q - *request.near);
+    } else {
+      result.status = Status::rejected;
+    }
+  } else {
+    result.status = search.status;
+  }
+  if (!result.success() && search.out_of_time) result.status = Status::out_of_time;
+  result.attempts = search.work.attempts;
+  result.iterations = search.work.iterations;
+  return result;
+}
+
+Result Solver::solve(const Pose& T_base_tip, const SolveRequest& request) const {
+  check_pose(T_base_tip);
+  request.validate(robot().dof());
+  const Impl::Lease lease(*impl_);
+  return impl_->solve(T_base_tip, request, lease.get());
+}
+
+}  // namespace iksel

@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Installs what IKSel needs, and IKSel itself into a virtual environment.
 #
-# Usage: scripts/bootstrap.sh [--dev] [--lint] [--apt-only]
+# Usage: scripts/bootstrap.sh [--dev] [--lint] [--bench] [--apt-only]
 #
 #   --dev       also what tests, benchmarks and the extra [dev] need
 #   --lint      also clang-format, clang-tidy and shellcheck
+#   --bench     also NLopt for the C++ baselines, and from PyPI the solvers to compare with
 #   --apt-only  only the system's packages, no virtual environment
 #
 # System packages come from apt; those that are there already are left alone. The virtual environment
@@ -13,10 +14,11 @@
 # the sources are unchanged.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-apt_only=false dev=false lint=false
+apt_only=false bench=false dev=false lint=false
 for option in "$@"; do
   case $option in
     --apt-only) apt_only=true ;;
+    --bench) bench=true ;;
     --dev) dev=true ;;
     --lint) lint=true ;;
     -h | --help) usage && exit ;;
@@ -52,6 +54,7 @@ find_missing() {
     want_library benchmark libbenchmark-dev
     want_library gtest libgtest-dev
   fi
+  if $bench; then want_library nlopt libnlopt-cxx-dev; fi
   if $lint; then
     want_command clang-format clang-format
     want_command clang-tidy clang-tidy
@@ -118,7 +121,21 @@ install_project() {
   printf '%s\n' "$state $target" >"$stamp"
 }
 
+# What the extras bench and bench-* of pyproject.toml name; iksel itself is not built again.
+install_rivals() {
+  local list
+  list=$("$python" - <<'PYTHON'
+import pathlib, tomllib
+extras = tomllib.loads(pathlib.Path("pyproject.toml").read_text())["project"]["optional-dependencies"]
+print(*(item for name, items in extras.items() if name.startswith("bench") for item in items))
+PYTHON
+  )
+  # shellcheck disable=SC2086  # one word for each package
+  quietly "installing $list" "$python" -m pip install $list
+}
+
 install_missing
 if ! $apt_only; then
   install_project
+  if $bench; then install_rivals; fi
 fi

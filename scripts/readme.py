@@ -41,70 +41,66 @@ def robots() -> str:
     return "\n".join(rows)
 
 
-def load_results(name: str) -> dict[str, Any]:
-    """A file written by bench/evaluate.py."""
-    path = ROOT / "bench" / "results" / f"{name}.json"
+ANALYTIC = ("EAIK", "IK-Geo")
+
+
+def results() -> str:
+    """The default preset beside its rivals, from what `python -m bench report` kept."""
+    path = ROOT / "bench" / "results" / "report.json"
     report: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-    return report
-
-
-def conditions(report: dict[str, Any]) -> str:
-    """The line that says how the figures came about."""
-    row = report["rows"][0]
-    return (
-        f"{row['targets']:,} targets per robot, seed {row['seed']}, uniform in the "
-        f"joint limits; tolerance {row['position_tolerance']:g} m and "
-        f"{row['rotation_tolerance']:g} rad; failures included in the times; "
-        f"{row['threads']} thread, SIMD level {row['simd']}, {report['cpu']} "
-        f"({report['cores']} cores). Made by `{report['command']}`."
+    cells: dict[str, dict[str, dict[str, Any]]] = {}
+    for cell in report["cells"]:
+        settings, result = cell["settings"], cell["result"]
+        if settings["cell"] == "rival" and settings["kind"] == "uniform":
+            by_solver = cells.setdefault(settings["robot"], {})
+            if result.get("right"):
+                by_solver[settings["rival"]] = result
+    rows = [
+        "| robot | success | mean | p99 | next fastest numerical solver | analytic |",
+        "|---|---|---|---|---|---|",
+    ]
+    rows += [f"| `{robot}` | {beside(found)} |" for robot, found in cells.items()]
+    facts = report["machine"]
+    count = next(iter(cells.values()))["IKSel"]["count"]
+    conditions = (
+        f"{count:,} targets per robot (fewer for the slower solvers), uniform in the "
+        "joint limits; one pose at a time from Python (KDL's and SLSQP's from C++); "
+        "every answer checked to 1e-5 m, 1e-5 rad and the limits; failures included in "
+        f"the times; SIMD level {facts['simd']}, {facts['cpu']} ({facts['cores']} "
+        f"cores). Made by `{report['command']}`."
     )
+    plot = "![Share of targets solved over time](bench/plots/success_over_time.svg)"
+    return "\n".join([plot, "", *rows, "", conditions])
 
 
-PUBLISHED = {"cvr038": 87.59, "cvrb1213": 86.75, "ur3_wrs": 73.17, "irb14050": 95.67}
-
-
-def paper_results() -> str:
-    """The paper's four robots beside the published success."""
-    report = load_results("paper")
-    rows = [
-        "| robot | success | published | mean | p99 | ratio | query / rank / iterate |",
-        "|---|---|---|---|---|---|---|",
-    ]
-    rows += [
-        f"| `{row['robot']}` | {row['success_percent']:.2f} % "
-        f"| {PUBLISHED[row['robot']]:.2f} % | {row['mean_us']:.0f} µs "
-        f"| {row['p99_us']:.0f} µs | {row['ratio']:.0f} "
-        f"| {row['query_us']:.0f} / {row['rank_us']:.0f} / {row['iterate_us']:.0f} µs |"
-        for row in report["rows"]
-        if row["robot"] in PUBLISHED
-    ]
-    return "\n".join([*rows, "", conditions(report)])
-
-
-def default_results() -> str:
-    """Every robot with the default preset."""
-    report = load_results("default")
-    rows = [
-        "| robot | joints | success | mean | median | p99 | ratio |",
-        "|---|---|---|---|---|---|---|",
-    ]
-    manifest = tomllib.loads((ROOT / "cpp/robots/robots.toml").read_text("utf-8"))
-    for row in report["rows"]:
-        dof = manifest["robots"][row["robot"]]["dof"]
-        rows.append(
-            f"| `{row['robot']}` | {dof} | {row['success_percent']:.3f} % "
-            f"| {row['mean_us']:.2f} µs | {row['median_us']:.2f} µs "
-            f"| {row['p99_us']:.2f} µs | {row['ratio']:.2f} |"
-        )
-    return "\n".join([*rows, "", conditions(report)])
+def beside(found: dict[str, dict[str, Any]]) -> str:
+    """One robot's row."""
+    ours = found["IKSel"]
+    numerical = {
+        name: result
+        for name, result in found.items()
+        if not name.startswith("IKSel") and name not in ANALYTIC
+    }
+    name = min(numerical, key=lambda solver: float(numerical[solver]["mean_us"]))
+    mean = numerical[name]["mean_us"]
+    analytic = ", ".join(
+        f"{solver} {found[solver]['mean_us']:.1f} µs"
+        for solver in ANALYTIC
+        if solver in found
+    )
+    return (
+        f"{100.0 * ours['right'] / ours['count']:.3f} % | {ours['mean_us']:.2f} µs "
+        f"| {ours['p99_us']:.2f} µs "
+        f"| {name} {mean:.0f} µs, {mean / ours['mean_us']:.0f} times "
+        f"| {analytic or 'none'}"
+    )
 
 
 BLOCKS: dict[str, Callable[[], str]] = {
     "python example": lambda: code("python/examples/01_solve.py", "python"),
     "cpp example": lambda: code("cpp/examples/01_solve.cpp", "cpp"),
     "robots": robots,
-    "paper results": paper_results,
-    "default results": default_results,
+    "results": results,
 }
 
 

@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "database/reduction.hpp"
 #include "kinematics/chain_model.hpp"
+#include "lanes/kernels.hpp"
 #include "selection/selection.hpp"
 
 namespace {
@@ -113,6 +115,90 @@ void query_and_rank(benchmark::State& state) {
   }
 }
 BENCHMARK(query_and_rank)->Arg(0)->Arg(1);
+
+/// The leaf of the descent-only tree that a target falls into.
+void leaf_query(benchmark::State& state) {
+  const Problem& p = problem(state.range(0));
+  const iksel::DatabaseData& data = solver(state.range(0), false).database().data();
+  double key[12];
+  std::size_t i = 0;
+  for (auto _ : state) {
+    data.make_key(p.targets[i++ % kTargets], key);
+    benchmark::DoNotOptimize(data.leaves.group(key));
+  }
+}
+BENCHMARK(leaf_query)->Arg(0)->Arg(1);
+
+/// The same number of samples, by nanoflann.
+void exact_query(benchmark::State& state) {
+  const Problem& p = problem(state.range(0));
+  const iksel::DatabaseData& data = solver(state.range(0), false).database().data();
+  double key[12];
+  iksel::Neighbour nearest[iksel::lanes::kGroup];
+  std::size_t i = 0;
+  for (auto _ : state) {
+    data.make_key(p.targets[i++ % kTargets], key);
+    benchmark::DoNotOptimize(data.tree.nearest(key, iksel::lanes::kGroup, nearest));
+  }
+}
+BENCHMARK(exact_query)->Arg(0)->Arg(1);
+
+/// Seeds and ranking of one group.
+void prepare_seeds(benchmark::State& state) {
+  const Problem& p = problem(state.range(0));
+  const iksel::DatabaseData& data = solver(state.range(0), false).database().data();
+  const iksel::lanes::SeedChain chain = iksel::make_seed_chain(p.robot.model(), *data.reduction);
+  std::vector<const float*> groups;
+  std::vector<iksel::lanes::SeedTarget> targets;
+  for (const iksel::Pose& target : p.targets) {
+    double key[12];
+    data.make_key(target, key);
+    groups.push_back(data.leaves.group(key));
+    targets.push_back(iksel::make_seed_target(data.reduction->reduce(target)));
+  }
+  const auto prepare = iksel::lanes::choose_kernels().prepare;
+  iksel::lanes::SeedPack seeds;
+  std::size_t i = 0;
+  for (auto _ : state) {
+    prepare(chain, targets[i % kTargets], groups[i % kTargets], seeds);
+    benchmark::DoNotOptimize(seeds.order[0]);
+    ++i;
+  }
+  state.SetItemsProcessed(static_cast<int64_t>(state.iterations() * iksel::lanes::kGroup));
+}
+BENCHMARK(prepare_seeds)->Arg(0)->Arg(1);
+
+/// One iteration of a pack; items are seeds.
+void lane_iteration(benchmark::State& state) {
+  const Problem& p = problem(state.range(0));
+  const auto chain = iksel::make_lane_chain(p.robot.model());
+  const iksel::Reduction reduction = iksel::Reduction::of(p.robot.model(), 1);
+  const auto& kernels = iksel::lanes::choose_kernels();
+  iksel::lanes::LanePack pack{};
+  for (int lane = 0; lane < iksel::lanes::kWidth; ++lane) {
+    const iksel::Pose Y = reduction.reduce(p.targets[static_cast<std::size_t>(lane)]);
+    for (int r = 0; r < 3; ++r) {
+      pack.target[r][lane] = Y(r, 3);
+      for (int c = 0; c < 3; ++c) pack.target[3 + 3 * c + r][lane] = Y(r, c);
+    }
+  }
+  const iksel::lanes::LaneOptions options{1e-3, 0, 0, 0, 0, 0};  // never there
+  constexpr int kIterations = 16;
+  std::size_t i = 0;
+  for (auto _ : state) {
+    const iksel::JointVector& q = p.configurations[i++ % kTargets];
+    for (int j = 0; j < p.robot.dof(); ++j) {
+      for (double& value : pack.q[j]) value = q[j];
+    }
+    benchmark::DoNotOptimize(
+        kernels.advance[p.robot.dof()](chain, options, ~0U, kIterations, pack));
+  }
+  state.SetItemsProcessed(static_cast<int64_t>(state.iterations()) * kIterations * kernels.lanes);
+  state.counters["per_iteration"] =
+      benchmark::Counter(static_cast<double>(state.iterations()) * kIterations,
+                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+BENCHMARK(lane_iteration)->Arg(0)->Arg(1);
 
 void solve(benchmark::State& state) {
   const Problem& p = problem(state.range(0));

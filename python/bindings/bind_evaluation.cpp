@@ -33,6 +33,8 @@ struct FieldTable<Evaluation> {
         field("p999_us", &E::p999_us, "99.9th percentile of the time [us]."),
         field("mean_attempts", &E::mean_attempts, "Mean number of seeds tried."),
         field("mean_iterations", &E::mean_iterations, "Mean number of iteration steps."),
+        field("max_iterations", &E::max_iterations,
+              "Most iteration steps that a solve took; Solver.work_bound is the bound."),
         field("kdl_fk_jac_us", &E::kdl_fk_jac_us,
               "Mean time of one KDL FK plus one KDL Jacobian on the same robot [us]."),
         field("ratio", &E::ratio,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>
@@ -30,6 +31,29 @@ Pose as_rigid_pose(const ArrayLike& value, const char* name) {
   Pose pose = as_pose(value, name);
   check_pose(pose, name);
   return pose;
+}
+
+/// Row i of the result: the error between poses[i] and targets[i].
+py::array_t<double> pose_errors(const DoubleArray& targets, const DoubleArray& poses) {
+  if (poses.ndim() != 3 || !std::equal(targets.shape(), targets.shape() + 3, poses.shape())) {
+    throw_wrong_shape("pose", "as many poses as targets, shape " + shape_text(targets), poses);
+  }
+  const py::ssize_t rows = poses.shape(0);
+  py::array_t<double> out({rows, py::ssize_t{6}});
+  double* to = out.mutable_data();
+  const double* target = targets.data();
+  const double* pose = poses.data();
+  const py::gil_scoped_release release;
+  Pose a;
+  Pose b;
+  for (py::ssize_t row = 0; row < rows; ++row, target += 16, pose += 16, to += 6) {
+    a.matrix() = Eigen::Map<const RowMajorPose>(target);
+    b.matrix() = Eigen::Map<const RowMajorPose>(pose);
+    check_pose(a, ("target[" + std::to_string(row) + "]").c_str());
+    check_pose(b, ("pose[" + std::to_string(row) + "]").c_str());
+    Eigen::Map<Eigen::Matrix<double, 6, 1>>{to} = pose_error(a, b);
+  }
+  return out;
 }
 
 bool is_xml(const std::string& text) {
@@ -213,6 +237,30 @@ Returns:
 Raises:
     InvalidArgumentError: wrong shape or dtype, or a number that is not finite.)");
   cls.def(
+      "dq_dx",
+      [](const Robot& self, const ArrayLike& q, const Loose<double>& damping) {
+        const auto factor = from_python<double>(damping, "damping");
+        const int dof = self.dof();
+        return map_joints(q, dof, "q", {dof, 6}, [&](const JointVector& joints, double* out) {
+          Eigen::Map<RowMajorMatrix>(out, dof, 6) = self.dq_dx(joints, factor);
+        });
+      },
+      py::arg("q"), py::arg("damping") = 0.0,
+      R"(Derivative of an answer q by its target, for differentiable use.
+
+dq = dq_dx @ [linear; angular] for a small twist of the target in base axes at the tip, of all dq
+the least: the damped pseudo-inverse J^T (J J^T + damping^2 I)^-1 (Nakamura and Hanafusa 1986).
+
+Args:
+    q: joint values [rad or m], (dof,) or (N, dof).
+    damping: bounds dq near singularities; 0: the pseudo-inverse.
+
+Returns:
+    (dof, 6), or (N, dof, 6) with the GIL released.
+
+Raises:
+    InvalidArgumentError: wrong shape or dtype, a number that is not finite, damping below 0.)");
+  cls.def(
       "random_configurations",
       [](const Robot& self, const Loose<std::size_t>& n, const Loose<std::uint64_t>& seed) {
         return to_array(self.random_configurations(from_python<std::size_t>(n, "n"),
@@ -229,12 +277,17 @@ Raises:
 
   m.def(
       "pose_error",
-      [](const ArrayLike& target, const ArrayLike& pose) {
+      [](const ArrayLike& target, const ArrayLike& pose) -> py::array_t<double> {
+        const DoubleArray targets = as_doubles(target, "target");
+        if (targets.ndim() == 3) {
+          return pose_errors(as_poses(targets, "target"), as_doubles(pose, "pose"));
+        }
         return to_array(
             JointVector(pose_error(as_rigid_pose(target, "target"), as_rigid_pose(pose, "pose"))));
       },
       py::arg("target"), py::arg("pose"),
-      "[p_target - p; rotvec(R_target R^T)] of two (4, 4) poses [m, rad], (6,).");
+      "[p_target - p; rotvec(R_target R^T)] of two (4, 4) poses [m, rad], (6,); or of each pair "
+      "from two (N, 4, 4) arrays, (N, 6).");
 }
 
 }  // namespace iksel::python

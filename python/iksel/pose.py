@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import iksel_cpp
 import numpy as np
 
 from iksel import _rotations as rotations
@@ -230,10 +231,10 @@ def pose_error(
         (check_pose(target, "target"), check_pose(pose, "pose")),
         (2, 2),
     )
-    distance = np.linalg.norm(a[..., :3, 3] - b[..., :3, 3], axis=-1)
-    between = a[..., :3, :3] @ np.swapaxes(b[..., :3, :3], -1, -2)
-    vector = rotations.vector_from_quaternion(rotations.quaternion_from_matrix(between))
-    return np.asarray(distance), np.asarray(np.linalg.norm(vector, axis=-1))
+    rows = iksel_cpp.pose_error(a.reshape(-1, 4, 4), b.reshape(-1, 4, 4))
+    errors = rows.reshape(*a.shape[:-2], 6)
+    distance = np.linalg.norm(errors[..., :3], axis=-1)
+    return np.asarray(distance), np.asarray(np.linalg.norm(errors[..., 3:], axis=-1))
 
 
 def _assemble(position: npt.ArrayLike, name: str, rotation: FloatArray) -> FloatArray:

@@ -931,7 +931,12 @@ class Solver:
         """
     def solve_batch(self, poses: numpy.typing.ArrayLike, threads: int = 0) -> BatchResult:
         """
-        Solves many targets with the GIL released; row i has the bits that solve() gives.
+        Solves many targets with the GIL released; row i belongs to target i.
+
+        A row has the same bits whatever the number of threads and whatever else is in the batch. Its
+        status is that of solve(), and so are its bits, but for seeds in SIMD lanes (the default preset):
+        there a target has a lane to itself, and the answer may be another of its solutions, within the
+        same tolerances.
 
         Args:
             poses: T_base_tip, (N, 4, 4) [m]. Doubles in C order are read in place.
@@ -955,6 +960,11 @@ class Solver:
     def robot(self) -> Robot:
         """
         The robot it solves for.
+        """
+    @property
+    def work_bound(self) -> int:
+        """
+        Most iteration steps that one solve without given seeds can spend, over all its seeds: max_attempts * max_iterations.
         """
 class Evaluation:
     """
@@ -983,6 +993,11 @@ class Evaluation:
     def kdl_fk_jac_us(self) -> float:
         """
         Mean time of one KDL FK plus one KDL Jacobian on the same robot [us].
+        """
+    @property
+    def max_iterations(self) -> int:
+        """
+        Most iteration steps that a solve took; Solver.work_bound is the bound.
         """
     @property
     def max_us(self) -> float:
@@ -1090,7 +1105,7 @@ def grid_counts(dof: int, scale: Scale | str) -> list[int]:
     """
 def pose_error(target: numpy.typing.ArrayLike, pose: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
     """
-    [p_target - p; rotvec(R_target R^T)] of two (4, 4) poses [m, rad], (6,).
+    [p_target - p; rotvec(R_target R^T)] of two (4, 4) poses [m, rad], (6,); or of each pair from two (N, 4, 4) arrays, (N, 6).
     """
 def simd_level() -> str:
     """

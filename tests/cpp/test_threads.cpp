@@ -2,8 +2,10 @@
 // Many threads on one solver give bit for bit what one gives. Built with the thread sanitizer too.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <iksel/iksel.hpp>
+#include <numeric>
 #include <thread>
 
 #include "robots.hpp"
@@ -37,7 +39,9 @@ void expect_same(const Result& a, const Result& b) {
 
 std::vector<SolverOptions> presets() {
   SolverOptions paper = SolverOptions::paper();
-  paper.database.scale = iksel::Scale::small;
+  // What threads do to each other does not depend on the size of the database.
+  paper.database.sampling = iksel::Sampling::random;
+  paper.database.samples = 2000;
   SolverOptions random_restarts = paper;
   random_restarts.iteration = iksel::Iteration::pinv_rr;
   SolverOptions kdl = paper;
@@ -45,26 +49,60 @@ std::vector<SolverOptions> presets() {
   return {SolverOptions{}, paper, random_restarts, kdl};
 }
 
-TEST(Threads, BatchGivesTheBitsOfALoop) {
+/// Whatever the number of threads; and but for seeds in lanes, what single solves give.
+TEST(Threads, BatchGivesTheSameBits) {
   for (const auto& c : iksel_test::paper_robots()) {
     const Robot robot = iksel_test::load(c);
-    const auto targets = random_targets(robot, 300);
+    const auto targets = random_targets(robot, iksel_test::cases(600));
     for (const SolverOptions& options : presets()) {
       const Solver solver(robot, options);
-      std::vector<Result> loop;
-      for (const Pose& target : targets) loop.push_back(solver.solve(target));
+      std::vector<Result> expected;
+      if (options.iteration == iksel::Iteration::lm) {
+        expected = solver.solve_batch(targets, 1);
+      } else {
+        for (const Pose& target : targets) expected.push_back(solver.solve(target));
+      }
       for (const int threads : {1, 2, 8}) {
         const std::vector<Result> batch = solver.solve_batch(targets, threads);
-        ASSERT_EQ(batch.size(), loop.size());
-        for (std::size_t i = 0; i < loop.size(); ++i) expect_same(batch[i], loop[i]);
+        ASSERT_EQ(batch.size(), expected.size());
+        for (std::size_t i = 0; i < expected.size(); ++i) expect_same(batch[i], expected[i]);
       }
+    }
+  }
+}
+
+/// In lanes a batch may answer with another solution than a single solve: as good, solved for the
+/// same targets, and untouched by what else is in the batch.
+TEST(Threads, BatchInLanesAnswersEachTargetByItself) {
+  for (const auto& c : iksel_test::paper_robots()) {
+    const Robot robot = iksel_test::load(c);
+    const Solver solver(robot);
+    auto targets = random_targets(robot, iksel_test::cases(600));
+    for (std::size_t i = 0; i < targets.size(); i += 7) targets[i].translation() *= 3;  // too far
+    const std::vector<Result> batch = solver.solve_batch(targets, 1);
+    std::vector<std::size_t> order(targets.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::reverse(order.begin(), order.end());
+    order.erase(order.begin(), order.begin() + 13);
+    std::vector<Pose> others;
+    for (const std::size_t i : order) others.push_back(targets[i]);
+    const std::vector<Result> shuffled = solver.solve_batch(others, 1);
+    for (std::size_t k = 0; k < order.size(); ++k) expect_same(shuffled[k], batch[order[k]]);
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+      const Result single = solver.solve(targets[i]);
+      EXPECT_EQ(batch[i].status, single.status) << c.name << " " << i;
+      if (!single.success() || !batch[i].success()) continue;
+      // Both lie within the tolerances of the target, so their poses within twice those.
+      const auto apart = iksel::pose_error(robot.fk(single.q), robot.fk(batch[i].q));
+      EXPECT_LE(apart.head<3>().norm(), 2 * solver.options().position_tolerance + 1e-12);
+      EXPECT_LE(apart.tail<3>().norm(), 2 * solver.options().rotation_tolerance + 1e-12);
     }
   }
 }
 
 TEST(Threads, EightThreadsShareOneSolver) {
   const Robot robot = iksel_test::load(iksel_test::paper_robots()[3]);
-  const auto targets = random_targets(robot, 400);
+  const auto targets = random_targets(robot, iksel_test::cases(400));
   for (const SolverOptions& options : presets()) {
     const Solver solver(robot, options);
     std::vector<Result> alone;
@@ -90,7 +128,7 @@ TEST(Threads, EightThreadsShareOneSolver) {
 
 TEST(Threads, KinematicsOfOneRobotAreShared) {
   const Robot robot = iksel_test::load(iksel_test::paper_robots()[3]);
-  const Eigen::MatrixXd q = robot.random_configurations(500, iksel_test::seed());
+  const Eigen::MatrixXd q = robot.random_configurations(iksel_test::cases(500), iksel_test::seed());
   std::vector<std::thread> threads;
   std::atomic<int> wrong{0};
   for (int t = 0; t < 8; ++t) {

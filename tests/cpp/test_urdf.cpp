@@ -5,7 +5,10 @@
 #include <iksel/iksel.hpp>
 #include <string>
 
+#include "database/data.hpp"
+#include "kinematics/chain_model.hpp"
 #include "robots.hpp"
+#include "solver/lane_search.hpp"
 
 namespace {
 
@@ -189,6 +192,59 @@ TEST(Urdf, LockedJointIsNoDegreeOfFreedom) {
 
   options.locked_joints["nothing"] = 0;
   EXPECT_THROW(Robot::from_urdf_string(tree(), options), iksel::UnknownNameError);
+}
+
+TEST(Urdf, JointsLockedOnTheWayUpAndAlongASlide) {
+  const std::string xml = robot_xml(joint("ab", "revolute", "a", "b", kTurn) +
+                                    joint("bc", "prismatic", "b", "c", kTurn) +
+                                    joint("bd", "revolute", "b", "d", kTurn));
+  for (const char* name : {"bc", "bd"}) {
+    RobotOptions options;
+    options.base_link = "c";
+    options.tip_link = "d";
+    options.locked_joints[name] = -0.6;
+    const Robot locked = Robot::from_urdf_string(xml, options);
+    const Robot whole = load(xml, "c", "d");
+    ASSERT_EQ(whole.joint_names(), (std::vector<std::string>{"bc", "bd"}));
+    JointVector both = JointVector::Constant(2, 0.4);
+    both[locked.joint_names()[0] == "bc" ? 1 : 0] = -0.6;
+    const JointVector one = JointVector::Constant(1, 0.4);
+    const Pose expected = whole.fk(both, Kinematics::kdl);
+    EXPECT_LT((locked.fk(one).matrix() - expected.matrix()).norm(), 1e-14) << name;
+    EXPECT_LT((locked.fk(one, Kinematics::kdl).matrix() - expected.matrix()).norm(), 1e-14) << name;
+  }
+}
+
+/// With a joint locked in its middle the panda is an arm of six joints like any other.
+TEST(Urdf, LockedPandaSolvesInLanesAndAnswersForTheWholeArm) {
+  constexpr double kLocked = 0.4;
+  RobotOptions options;
+  options.base_link = "panda_link0";
+  options.tip_link = "panda_link8";
+  const std::string file = std::string(IKSEL_ROBOTS_DIR) + "/panda.urdf";
+  const Robot whole = Robot::from_urdf_file(file, options);
+  options.locked_joints["panda_joint3"] = kLocked;
+  const Robot locked = Robot::from_urdf_file(file, options);
+  ASSERT_EQ(locked.dof(), 6);
+
+  const iksel::Solver solver(locked);
+  EXPECT_EQ(solver.database().options().key_scheme, iksel::KeyScheme::reduced);
+  EXPECT_TRUE(iksel::solves_in_lanes(locked.model(), solver.database().data(), solver.options()));
+
+  const Eigen::MatrixXd q = locked.random_configurations(500, iksel_test::seed());
+  std::size_t solved = 0;
+  for (Eigen::Index i = 0; i < q.rows(); ++i) {
+    const Pose target = locked.fk(q.row(i), Kinematics::kdl);
+    const iksel::Result result = solver.solve(target);
+    if (!result.success()) continue;
+    ++solved;
+    JointVector all(7);
+    all << result.q.head(2), kLocked, result.q.tail(4);
+    const auto e = iksel::pose_error(target, whole.fk(all, Kinematics::kdl));
+    EXPECT_LE(e.head<3>().norm(), solver.options().position_tolerance + 1e-13) << "target " << i;
+    EXPECT_LE(e.tail<3>().norm(), solver.options().rotation_tolerance + 1e-13) << "target " << i;
+  }
+  EXPECT_GE(solved, 495U) << "seed " << iksel_test::seed();
 }
 
 TEST(Urdf, SoftLimitsAreReadAndUsedOnRequest) {

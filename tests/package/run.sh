@@ -52,21 +52,25 @@ installed() { # PREFIX KIND
   build_outside package/find_package "consumer-$2" -DCMAKE_PREFIX_PATH="$1" \
     -DCMAKE_BUILD_TYPE=Release
   "./consumer-$2/consumer"
+  echo "find_package works with the $2 library"
+}
+
+other_programs() { # PREFIX: what does not depend on the kind of library
   # A program with other SIMD flags than the library: Eigen's types must not change their layout.
   if grep -qw avx2 /proc/cpuinfo; then
-    build_outside package/find_package "consumer-$2-avx2" -DCMAKE_PREFIX_PATH="$1" \
+    build_outside package/find_package consumer-avx2 -DCMAKE_PREFIX_PATH="$1" \
       -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_STANDARD=20 -DCMAKE_CXX_FLAGS='-mavx2 -mfma'
-    "./consumer-$2-avx2/consumer"
+    ./consumer-avx2/consumer
   fi
-  build_outside examples "examples-$2" -DCMAKE_PREFIX_PATH="$1" \
-    -DCMAKE_BUILD_TYPE=Release
-  "./examples-$2/01_solve" >/dev/null
-  echo "find_package works with the $2 library"
+  build_outside examples examples-outside -DCMAKE_PREFIX_PATH="$1" -DCMAKE_BUILD_TYPE=Release
+  ./examples-outside/01_solve >/dev/null
+  echo "the examples build outside the tree, and so does a program with other SIMD flags"
 }
 
 run cmake --install "$build" --prefix "$work/static"
 public_headers "$work/static"
 installed "$work/static" static
+other_programs "$work/static"
 
 # Without optimisation, which builds faster and has Eigen's assertions on.
 build_outside package/add_subdirectory subdirectory -DIKSEL_SOURCE_DIR="$root" \

@@ -229,7 +229,10 @@ def test_rows_equal_single_calls(robot, joints, kinematics):
         np.testing.assert_array_equal(rows, single)
 
 
-def test_batch_equals_loop(solver, poses):
+def test_batch_equals_loop(robot, poses):
+    options = core.SolverOptions.paper()
+    options.database.scale = "small"
+    solver = core.Solver(robot, options)
     batch = solver.solve_batch(poses)
     assert len(batch) == len(poses)
     for pose, row, status in zip(poses, batch, batch.statuses(), strict=True):
@@ -241,6 +244,14 @@ def test_batch_equals_loop(solver, poses):
         np.testing.assert_array_equal(row.q, single.q)
         np.testing.assert_equal(row.position_error, single.position_error)
         np.testing.assert_equal(row.rotation_error, single.rotation_error)
+
+
+def test_batch_in_lanes_solves_what_a_loop_solves(robot, solver, poses):
+    batch = solver.solve_batch(poses)
+    for pose, row in zip(poses, batch, strict=True):
+        assert row.status is solver.solve(pose).status
+        if row.success:
+            np.testing.assert_allclose(robot.fk(row.q), pose, atol=3e-6)
 
 
 @pytest.mark.parametrize("threads", [1, 2, 5])
@@ -861,6 +872,14 @@ def test_pose_error_is_zero_only_between_equals(poses):
     moved[2, 3] += 0.25
     error = core.pose_error(moved, poses[0])
     np.testing.assert_allclose(error, [0, 0, 0.25, 0, 0, 0], atol=1e-12)
+    rows = core.pose_error(poses, poses[::-1])
+    assert rows.shape == (len(poses), 6)
+    for row, target, pose in zip(rows, poses, poses[::-1], strict=True):
+        np.testing.assert_array_equal(row, core.pose_error(target, pose))
+    with pytest.raises(core.InvalidArgumentError, match="as many poses as targets"):
+        core.pose_error(poses, poses[1:])
+    with pytest.raises(core.InvalidArgumentError, match=r"pose: .*\(4, 4\)"):
+        core.pose_error(poses[0], poses)
 
 
 def test_grid_counts_are_the_papers():

@@ -201,7 +201,8 @@ def test_solve_with_a_file_of_ones_own(run: Run, urdf: Path) -> None:
 
 def test_every_option_is_a_flag(run: Run) -> None:
     words = ["solve", "ur3", "--from-q", *Q, "--json"]
-    options = iksel.SolverOptions(database=iksel.DatabaseOptions(samples=500)).to_dict()
+    database = iksel.DatabaseOptions(samples=0, scale="small")
+    options = iksel.SolverOptions(database=database).to_dict()
     renamed = {
         ("solver", "seed"): "--solver-seed",
         ("database", "seed"): "--database-seed",
@@ -243,6 +244,26 @@ def test_build_by_the_paper(run: Run, tmp_path: Path) -> None:
     words = ["build", "cvr038", "-o", tmp_path / "file", "--preset", "paper", "--json"]
     assert run(*words).json()["samples"] == 40_320
     assert run(*words, "--scale", "small").json()["samples"] == 12_000
+
+
+@pytest.mark.parametrize("preset", ["default", "paper"])
+def test_a_named_scale_is_the_papers_grid(
+    run: Run, tmp_path: Path, preset: str
+) -> None:
+    path = tmp_path / "file"
+    words = ["build", "cvr038", "-o", path, "--preset", preset, "--scale", "small"]
+    report = assert_good(run(*words, "--json")).json()
+    assert report["samples"] == 12_000
+    assert report["options"]["sampling"] == "grid"
+    assert report["options"]["key_scheme"] == "full"
+    assert iksel.Database.load(path).key_dimension == 6
+    # The default preset solves over it too, one seed after another.
+    q = ["--from-q", *"001000", "--json"]
+    answer = assert_good(run("solve", "cvr038", "--database", path, *q)).json()
+    assert answer["success"]
+    other = run(*words, "--sampling", "low_discrepancy", "--json").json()
+    assert other["samples"] == 12_000
+    assert other["options"]["sampling"] == "low_discrepancy"
 
 
 def test_progress_is_shown_if_asked_for(run: Run, tmp_path: Path) -> None:

@@ -69,6 +69,10 @@ BAD = [
         f"solve ur3 --pose {POSE} --database x --samples 9 --scale small",
         "--samples, --scale: cannot be used with --database",
     ),
+    (
+        "build ur3 -o x --scale large --samples 9",
+        "--samples 9: cannot be used with --scale large",
+    ),
     ("build ur3", "-o/--output"),
     ("build ur3 -o absent/file --samples 50", "absent/file.*No such file"),
     ("build ur3 -o . --samples 50", "database '.'"),

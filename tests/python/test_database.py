@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 import subprocess
 import sys
 import textwrap
@@ -284,6 +285,39 @@ def test_truncated_files_are_refused(
         assert_refused(content[:length], tmp_path / "short.iksel")
     for more in (b"\0", b"\0" * 8, content):
         assert_refused(content + more, tmp_path / "long.iksel")
+
+
+@pytest.mark.slow
+def test_large_file_serves_another_process_and_no_damage_passes(tmp_path: Path) -> None:
+    """The paper's large grid: solved with elsewhere, damaged 1000 times, cut 100."""
+    path, damaged = tmp_path / "ur3.iksel", tmp_path / "damaged.iksel"
+    command = [sys.executable, "-m", "iksel"]
+    build = ["build", "ur3", "--scale", "large", "-o", path]
+    subprocess.run([*command, *build], check=True, capture_output=True)
+    assert len(iksel.Database.load(path)) == 151_200
+    pose = ["--pose", "0.3", "0.1", "0.2", "0", "1", "0", "0"]
+    solve = ["solve", "ur3", "--database", path, *pose]
+    subprocess.run([*command, *solve], check=True, capture_output=True)
+
+    shutil.copy(path, damaged)
+    size = path.stat().st_size
+    random = np.random.default_rng(1)
+    typed = (iksel.DatabaseCorruptError, iksel.DatabaseMismatchError)
+    with damaged.open("r+b", buffering=0) as file:
+        for place in random.integers(0, size, 1000):
+            file.seek(place)
+            right = file.read(1)
+            for byte in (bytes([right[0] ^ random.integers(1, 256)]), right):
+                file.seek(place)
+                file.write(byte)
+                if byte != right:
+                    with pytest.raises(typed, match="damaged"):
+                        iksel.Database.load(damaged)
+        assert len(iksel.Database.load(damaged)) == 151_200
+        for length in np.sort(random.integers(0, size, 100))[::-1]:
+            file.truncate(int(length))
+            with pytest.raises(typed, match="damaged"):
+                iksel.Database.load(damaged)
 
 
 @pytest.mark.parametrize(

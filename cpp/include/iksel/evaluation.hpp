@@ -20,6 +20,8 @@ struct Evaluation {
   double success_percent = 0;
   double mean_us = 0, std_us = 0, min_us = 0, max_us = 0, median_us = 0, p99_us = 0, p999_us = 0;
   double mean_attempts = 0, mean_iterations = 0;
+  /// Most iterations that a solve took, to be compared with Solver::work_bound().
+  int max_iterations = 0;
   /// Mean time of one KDL forward kinematics plus one KDL Jacobian on the same robot [us].
   double kdl_fk_jac_us = 0;
   /// mean_us / kdl_fk_jac_us: how speed is compared between machines.

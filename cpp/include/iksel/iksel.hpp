@@ -6,7 +6,10 @@
 #include "iksel/diagnosis.hpp"   // IWYU pragma: export
 #include "iksel/error.hpp"       // IWYU pragma: export
 #include "iksel/evaluation.hpp"  // IWYU pragma: export
+#include "iksel/objective.hpp"   // IWYU pragma: export
 #include "iksel/options.hpp"     // IWYU pragma: export
+#include "iksel/path.hpp"        // IWYU pragma: export
+#include "iksel/request.hpp"     // IWYU pragma: export
 #include "iksel/result.hpp"      // IWYU pragma: export
 #include "iksel/robot.hpp"       // IWYU pragma: export
 #include "iksel/solver.hpp"      // IWYU pragma: export

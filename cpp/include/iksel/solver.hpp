@@ -20,6 +20,21 @@ namespace iksel {
 /// environment variable IKSEL_SIMD forces one. Throws InvalidArgumentError if it is not to be had.
 IKSEL_EXPORT const char* simd_level();
 
+/// How far two chains put their tips apart at the same joint values, at most.
+struct Drift {
+  double position = 0;  ///< [m]
+  double rotation = 0;  ///< [rad]
+};
+
+/// The drift of a chain from its nominal one, the largest over `samples` configurations uniform
+/// inside the limits; tools are left out. Throws InvalidArgumentError if the numbers of joints
+/// differ.
+IKSEL_EXPORT Drift measure_drift(const Robot& robot, const Robot& nominal,
+                                 std::size_t samples = 2'000);
+
+struct PathOptions;
+struct PathResult;
+
 /// Time spent in each stage of one or more solves [ns].
 struct StageTimes {
   double query = 0;
@@ -37,10 +52,29 @@ class IKSEL_EXPORT Solver {
   explicit Solver(const Robot& robot, const SolverOptions& options = {});
   /// Uses a given database. Throws DatabaseMismatchError if it belongs to another chain.
   Solver(const Robot& robot, const SolverOptions& options, const Database& database);
+  /// A calibrated arm: uses a database that was built for `nominal`, whose constants differ a
+  /// little from the robot's. Seeds come from the nominal chain; iterations, tolerances and limits
+  /// are the robot's own. Throws DatabaseMismatchError if the database does not belong to
+  /// `nominal`, or the robot's drift from it (see `drift`) is beyond `bound`.
+  Solver(const Robot& robot, const SolverOptions& options, const Database& database,
+         const Robot& nominal, const Drift& bound = kMostDrift);
+
+  /// Drift up to which a database serves a calibrated chain: several times what calibrations of
+  /// industrial arms find.
+  static constexpr Drift kMostDrift{0.05, 0.1};
 
   [[nodiscard]] const Robot& robot() const;
   [[nodiscard]] const SolverOptions& options() const;
   [[nodiscard]] const Database& database() const;
+  /// The chain that the database was built for: the robot itself, unless that is a calibrated one.
+  [[nodiscard]] const Robot& nominal() const;
+  /// The robot's drift from `nominal`.
+  [[nodiscard]] Drift drift() const;
+
+  /// Most iteration steps that one solve without given seeds can spend, over all its seeds:
+  /// max_attempts * max_iterations. A step of a whole pack of lanes counts once in
+  /// Result::iterations, so that solves in lanes stay below this by the number of lanes.
+  [[nodiscard]] std::size_t work_bound() const;
 
   /// Joint values that put the tip (the TCP, if there is one) at T_base_tip. Throws
   /// InvalidArgumentError if the pose is not rigid; a pose that cannot be solved is no error but a
@@ -64,9 +98,17 @@ class IKSEL_EXPORT Solver {
   /// than solving does, milliseconds. Throws as solve.
   [[nodiscard]] Diagnosis diagnose(const Pose& T_base_tip, const SolveRequest& request = {}) const;
 
-  /// Solves many targets; result i belongs to target i and has the bits that solve() gives.
-  /// `threads` = 0 takes one per core. Throws InvalidArgumentError naming the first bad pose,
-  /// before any is solved.
+  /// Joint values along a path of poses, by a choice among the solutions of all waypoints that
+  /// makes the whole way in joint space short. Throws InvalidArgumentError naming a bad pose or
+  /// option.
+  [[nodiscard]] PathResult solve_path(const std::vector<Pose>& T_base_tip,
+                                      const PathOptions& options) const;
+
+  /// Solves many targets; result i belongs to target i and has the same bits whatever the number
+  /// of threads and whatever else is in the batch. It has the bits that solve() gives, but for
+  /// seeds in lanes: there a target has a lane to itself, and the answer may be another of its
+  /// solutions, within the same tolerances. `threads` = 0 takes one per core. Throws
+  /// InvalidArgumentError naming the first bad pose, before any is solved.
   [[nodiscard]] std::vector<Result> solve_batch(const std::vector<Pose>& T_base_tip,
                                                 int threads = 0) const;
   /// The same over `count` 4x4 matrices, row by row, into arrays that the caller owns. An exception
@@ -75,6 +117,7 @@ class IKSEL_EXPORT Solver {
                    int threads = 0, const Progress& progress = {}) const;
 
  private:
+  friend class Tracker;
   struct Impl;
   std::shared_ptr<const Impl> impl_;
 };

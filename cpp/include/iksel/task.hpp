@@ -24,8 +24,8 @@ enum class Axis { x, y, z };
 ///   * position: p - p_t [m];
 ///   * rotation: that of E = R R_t^T [rad] (in tool axes E = R_t^T R), as the rotation vector of E
 ///     where the three widths are equal, else as swing and twist, E = swing * twist about the axis
-///     whose width is unlike the other two's. So with a free spin the swing is the angle by which
-///     the tool's axis points elsewhere, whatever the spin.
+///     whose width is unlike the other two's (of three, the wider odd one). So with a free spin the
+///     swing is the angle by which the tool's axis points elsewhere, whatever the spin.
 /// An answer lies at most SolverOptions::position_tolerance and ::rotation_tolerance outside of the
 /// box, both as norms over their three axes, and inside it along axes wider than two tolerances.
 struct IKSEL_EXPORT Task {

@@ -20,7 +20,8 @@
 namespace iksel {
 namespace {
 
-constexpr std::size_t kChunk = 512;
+/// Samples that a thread takes at a time.
+constexpr std::size_t kSamplesPerTurn = 512;
 
 /// What the samples of one database are made with, by one thread.
 class SampleMaker {
@@ -108,8 +109,12 @@ void build_data(const ChainModel& model, const DatabaseOptions& options, const P
   }
   const std::size_t updates = options.sampling == Sampling::cvt ? options.cvt_updates : 0;
   const std::size_t total = updates + data->size;
+  // Only what is new, so that every call tells more than the one before.
+  std::size_t next_told = 0;
   const auto report = [&](std::size_t done) {
-    if (progress) progress(done, total);
+    if (!progress || done < next_told) return;
+    next_told = done + 1;
+    progress(done, total);
   };
   report(0);
 
@@ -131,7 +136,9 @@ void build_data(const ChainModel& model, const DatabaseOptions& options, const P
       }
     };
   };
-  parallel_for(data->size, kChunk, threads, make_key_worker, [&](std::size_t) { report(updates); });
+  // Half of a sample's work.
+  parallel_for(data->size, kSamplesPerTurn, threads, make_key_worker,
+               [&](std::size_t done) { report(updates + done / 2); });
   const std::vector<std::uint32_t> order = KdTree(keys.data(), data->size, data->key_dim).order();
 
   const auto block = std::make_shared<HeapBlock>(data->size * (key_dim + length) * sizeof(double));
@@ -141,7 +148,7 @@ void build_data(const ChainModel& model, const DatabaseOptions& options, const P
     std::copy_n(&keys[order[i] * key_dim], key_dim, payload + i * key_dim);
   }
   parallel_for(
-      data->size, kChunk, threads,
+      data->size, kSamplesPerTurn, threads,
       [&] {
         return [&, maker = make_worker()](std::size_t begin, std::size_t end) {
           for (std::size_t i = begin; i < end; ++i) {
@@ -149,7 +156,11 @@ void build_data(const ChainModel& model, const DatabaseOptions& options, const P
           }
         };
       },
-      [&](std::size_t done) { report(updates + done); });
+      [&](std::size_t done) {
+        // The end is told when all is done.
+        const std::size_t halves = updates + (data->size + done) / 2;
+        if (halves < total) report(halves);
+      });
 
   write_header(*data, block->writable(), block->size());
   data->use(block);

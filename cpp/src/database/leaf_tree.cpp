@@ -12,7 +12,7 @@ namespace iksel {
 namespace {
 
 /// Samples per leaf that the depth of the tree aims at.
-constexpr std::size_t kPerLeaf = 8;
+constexpr std::size_t kPerLeaf = 4;
 
 }  // namespace
 

@@ -3,12 +3,12 @@
 
 #include <cmath>
 
+#include "math/constants.hpp"
+
 namespace iksel {
 namespace {
 
 using lanes::Side;
-
-constexpr double kPi = 3.14159265358979323846;
 
 Side side_of(const KernelJoint& joint) {
   return joint.prismatic ? Side::translation : Side::rotation;
@@ -54,6 +54,8 @@ lanes::SeedChain make_seed_chain(const ChainModel& model, const Reduction& reduc
   seeds.n = chain.n;
   seeds.left = p.left;
   seeds.right = p.right;
+  seeds.longest_step = 1.0F;
+  seeds.outside_weight = 1000.0F;
   seeds.weight2 = static_cast<float>(p.weight * p.weight);
   seeds.offset_first = static_cast<float>(chain.joint[0].offset);
   seeds.offset_last = static_cast<float>(chain.joint[chain.n - 1].offset);
@@ -126,7 +128,7 @@ void Reduction::make_key(const Pose& Y, double* key) const {
   if (p_.right == Side::translation) point -= point.dot(axis) * axis;
   double c = 1;
   double s = 0;
-  const double rho = std::hypot(point[0], point[1]);
+  const double rho = std::sqrt(point[0] * point[0] + point[1] * point[1]);
   if (p_.left == Side::rotation && rho > 1e-12) {
     c = point[0] / rho;
     s = point[1] / rho;

@@ -6,6 +6,7 @@
 
 #include "iteration/schemes.hpp"
 #include "iteration/task_step.hpp"
+#include "math/constants.hpp"
 #include "math/rotation.hpp"
 
 namespace iksel {
@@ -63,7 +64,6 @@ JointVector make_step(const IterationContext& context, const JointVector& q,
 
 /// What follows a step besides adding it; true if the attempt goes on.
 void after_step(const IterationContext& context, JointVector& q) {
-  constexpr double kTwoPi = 6.28318530717958647692;
   if (context.options.iteration == Iteration::pinv_rr && !context.model.within_limits(q.data())) {
     random_configuration(context.model, context.random, q);
   } else if (context.options.iteration == Iteration::cwln) {
@@ -77,11 +77,27 @@ void after_step(const IterationContext& context, JointVector& q) {
 
 }  // namespace
 
-void measure_error(const ChainModel& model, const Pose& target, const JointVector& q,
+void measure_error(const ChainModel& model, const Pose& target, const double* q,
                    double& position_error, double& rotation_error) {
-  const Vector6 e = error_vector(target, model.fk(q.data()));
-  position_error = e.head<3>().norm();
-  rotation_error = e.tail<3>().norm();
+  const Frame<double> f = forward(model.kernel, q);
+  double square = 0;
+  double sine2 = 0;  // |R_target R^T - its transpose|^2 / 4: sine of the angle, squared
+  double trace = 0;
+  for (int i = 0; i < 3; ++i) {
+    const int a = (i + 1) % 3;
+    const int b = (i + 2) % 3;
+    const double d = target(i, 3) - f.p[i];
+    const double v = 0.5 * (f.x[a] * target(b, 0) - f.x[b] * target(a, 0) + f.y[a] * target(b, 1) -
+                            f.y[b] * target(a, 1) + f.z[a] * target(b, 2) - f.z[b] * target(a, 2));
+    square += d * d;
+    sine2 += v * v;
+    trace += f.x[i] * target(i, 0) + f.y[i] * target(i, 1) + f.z[i] * target(i, 2);
+  }
+  const double sine = std::sqrt(sine2);
+  position_error = std::sqrt(square);
+  // asin by its series where that is exact to the last digit; it also spares an arc tangent.
+  const bool small = sine < 1e-4 && trace > 1;
+  rotation_error = small ? sine * (1 + sine2 / 6) : std::atan2(sine, 0.5 * (trace - 1));
 }
 
 Outcome iterate(const IterationContext& context, JointVector& q, int& steps) {

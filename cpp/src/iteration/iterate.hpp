@@ -41,7 +41,7 @@ struct IterationContext {
 Outcome iterate(const IterationContext& context, JointVector& q, int& steps);
 
 /// Lengths of the position [m] and rotation [rad] error of q, by the kernel.
-void measure_error(const ChainModel& model, const Pose& target, const JointVector& q,
+void measure_error(const ChainModel& model, const Pose& target, const double* q,
                    double& position_error, double& rotation_error);
 
 }  // namespace iksel

@@ -2,10 +2,12 @@
 // One step of each iteration scheme: the joint adjustment for an error e at q (paper, Table II).
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <cmath>
 
 #include "iksel/options.hpp"
 #include "kinematics/chain_model.hpp"
+#include "math/constants.hpp"
 #include "math/pseudo_inverse.hpp"
 
 namespace iksel {
@@ -80,7 +82,6 @@ inline JointVector cwpi_step(const ChainModel& model, const JointVector& q, cons
 /// True where a joint has limits that count: a range of 2 pi or more is left free and wrapped
 /// later.
 inline bool limits_count(const ChainModel& model, int i) {
-  constexpr double kTwoPi = 6.28318530717958647692;
   return model.joint_types[static_cast<std::size_t>(i)] == JointType::prismatic ||
          model.upper[i] - model.lower[i] < kTwoPi;
 }

@@ -8,12 +8,12 @@
 #include <string>
 
 #include "iksel/error.hpp"
+#include "math/constants.hpp"
 
 namespace iksel {
 namespace {
 
 constexpr double kFree = std::numeric_limits<double>::infinity();
-constexpr double kPi = 3.14159265358979323846;
 
 std::size_t index(Axis axis) { return static_cast<std::size_t>(axis); }
 

@@ -4,12 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/constants.hpp"
 #include "math/rotation.hpp"
 
 namespace iksel {
 namespace {
-
-constexpr double kTwoPi = 6.28318530717958647692;
 
 /// The axis whose width is unlike the other two's; -1 if all are equal.
 int odd_axis(const Task& task) {

@@ -7,13 +7,11 @@
 #include <utility>
 
 #include "iksel/error.hpp"
+#include "math/constants.hpp"
 #include "math/hash.hpp"
 
 namespace iksel {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kTwoPi = 2.0 * kPi;
 
 Frame<double> to_frame(const Eigen::Isometry3d& T) {
   Frame<double> f;
@@ -187,8 +185,8 @@ void ChainModel::measure_reach() {
     if (!first) reach += Eigen::Vector3d(k.p[0], k.p[1], k.p[2]).norm();
     first = false;
     if (k.prismatic) {
-      const double low = k.variable < 0 ? 0 : k.multiplier * lower[k.variable];
-      const double high = k.variable < 0 ? 0 : k.multiplier * upper[k.variable];
+      const double low = k.multiplier * lower[k.variable];
+      const double high = k.multiplier * upper[k.variable];
       reach += std::max(std::abs(low + k.offset), std::abs(high + k.offset));
     }
   }

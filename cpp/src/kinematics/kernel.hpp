@@ -13,6 +13,8 @@
 #include <cmath>
 #include <vector>
 
+#include "math/sincos.hpp"
+
 namespace iksel {
 
 struct KernelJoint {
@@ -20,7 +22,7 @@ struct KernelJoint {
   double cos_alpha, sin_alpha;
   double multiplier, offset;  ///< motion = multiplier * q[variable] + offset [rad or m]
   double cos_turn, sin_turn;  ///< constant angle_k of a prismatic joint
-  int variable;               ///< -1: the motion is `offset`
+  int variable;
   bool prismatic;
 };
 
@@ -37,9 +39,14 @@ struct KernelChain {
   Frame<double> flange;  ///< last joint -> tip link
 };
 
-inline void sincos(double angle, double& sine, double& cosine) {
-  sine = std::sin(angle);
-  cosine = std::cos(angle);
+/// For angles of any size.
+inline void safe_sincos(double angle, double& sine, double& cosine) {
+  if (std::abs(angle) <= kSincosRange) {
+    sincos(angle, sine, cosine);
+  } else {
+    sine = std::sin(angle);
+    cosine = std::cos(angle);
+  }
 }
 
 /// Most joints that move on a chain (mimic joints come on top of the degrees of freedom).
@@ -84,25 +91,30 @@ inline Frame<T> forward_to_last_joint(const KernelChain& chain, const T* q, Join
     f.z[i] = T(chain.base.z[i]);
     f.p[i] = T(chain.base.p[i]);
   }
+  // The joints' sines first: they do not depend on each other.
+  T sine[kMaxMovingJoints];
+  T cosine[kMaxMovingJoints];
+  T motion[kMaxMovingJoints];
   int k = 0;
+  for (const KernelJoint& joint : chain.joints) {
+    motion[k] = q[joint.variable] * joint.multiplier + joint.offset;
+    if (!joint.prismatic) safe_sincos(motion[k], sine[k], cosine[k]);
+    ++k;
+  }
+  k = 0;
   for (const KernelJoint& joint : chain.joints) {
     for (int i = 0; i < 3; ++i) {
       f.p[i] += f.x[i] * joint.p[0] + f.y[i] * joint.p[1] + f.z[i] * joint.p[2];
     }
     turn_columns(f.y, f.z, joint.cos_alpha, joint.sin_alpha);
-    const T motion =
-        joint.variable < 0 ? T(joint.offset) : q[joint.variable] * joint.multiplier + joint.offset;
     if (axes != nullptr) {
       for (int i = 0; i < 3; ++i) axes->axis[k][i] = f.z[i];
     }
     if (joint.prismatic) {
       turn_columns(f.x, f.y, joint.cos_turn, joint.sin_turn);
-      for (int i = 0; i < 3; ++i) f.p[i] += f.z[i] * motion;
+      for (int i = 0; i < 3; ++i) f.p[i] += f.z[i] * motion[k];
     } else {
-      T sine;
-      T cosine;
-      sincos(motion, sine, cosine);
-      turn_columns(f.x, f.y, cosine, sine);
+      turn_columns(f.x, f.y, cosine[k], sine[k]);
     }
     if (axes != nullptr) {
       for (int i = 0; i < 3; ++i) axes->origin[k][i] = f.p[i];
@@ -131,20 +143,18 @@ inline Frame<T> forward_jacobian(const KernelChain& chain, const Frame<double>& 
   for (int i = 0; i < 6 * dof; ++i) jacobian[i] = T(0.0);
   int k = 0;
   for (const KernelJoint& joint : chain.joints) {
-    if (joint.variable >= 0) {
-      T* column = jacobian + 6 * joint.variable;
-      const T* z = axes.axis[k];
-      const double m = joint.multiplier;
-      if (joint.prismatic) {
-        for (int i = 0; i < 3; ++i) column[i] += z[i] * m;
-      } else {
-        const T* o = axes.origin[k];
-        const T r[3] = {f.p[0] - o[0], f.p[1] - o[1], f.p[2] - o[2]};
-        column[0] += (z[1] * r[2] - z[2] * r[1]) * m;
-        column[1] += (z[2] * r[0] - z[0] * r[2]) * m;
-        column[2] += (z[0] * r[1] - z[1] * r[0]) * m;
-        for (int i = 0; i < 3; ++i) column[3 + i] += z[i] * m;
-      }
+    T* column = jacobian + 6 * joint.variable;
+    const T* z = axes.axis[k];
+    const double m = joint.multiplier;
+    if (joint.prismatic) {
+      for (int i = 0; i < 3; ++i) column[i] += z[i] * m;
+    } else {
+      const T* o = axes.origin[k];
+      const T r[3] = {f.p[0] - o[0], f.p[1] - o[1], f.p[2] - o[2]};
+      column[0] += (z[1] * r[2] - z[2] * r[1]) * m;
+      column[1] += (z[2] * r[0] - z[0] * r[2]) * m;
+      column[2] += (z[0] * r[1] - z[1] * r[0]) * m;
+      for (int i = 0; i < 3; ++i) column[3 + i] += z[i] * m;
     }
     ++k;
   }

@@ -179,7 +179,7 @@ PackResult advance(const LaneChain& chain, const LaneOptions& options, unsigned 
     // A lane that is there already stays: along a singular direction the step may be long.
     const auto there =
         (ep2 + er2 * T(options.lever2) <= T(options.position2)) & (er2 <= T(options.rotation2));
-    for (int i = 0; i < 6; ++i) step[i] = select(there, T(0.0), step[i]);
+    for (T& part : step) part = select(there, T(0.0), part);
     T dq2 = T(0.0);
 #pragma GCC unroll 10
     for (int j = 0; j < n; ++j) {

@@ -8,11 +8,13 @@
 
 #include <xsimd/xsimd.hpp>
 
+#include "math/sincos.hpp"
+
 namespace iksel::lanes {
 
 template <typename T>
 struct Lanes {
-  using Number = typename T::value_type;
+  using Number = NumberOf<T>;
   static constexpr int kCount = static_cast<int>(T::size);
   static T load(const Number* p) { return T::load_unaligned(p); }
   static void store(const T& v, Number* p) { v.store_unaligned(p); }
@@ -41,48 +43,6 @@ inline float max(float a, float b) { return a > b ? a : b; }
 inline double min(double a, double b) { return a < b ? a : b; }
 inline float min(float a, float b) { return a < b ? a : b; }
 inline float abs(float x) { return __builtin_fabsf(x); }
-
-/// x rounded to the nearest integer, for |x| < 2^51 (2^22 in single precision): adding 1.5 * 2^52
-/// (1.5 * 2^23) pushes the fraction out.
-template <typename T>
-inline T nearest_integer(const T& x) {
-  const T magic(sizeof(typename Lanes<T>::Number) == 8 ? 6755399441055744.0 : 12582912.0);
-  return (x + magic) - magic;
-}
-
-/// Sine and cosine to about 5e-14: x = n pi + r, both series in r over [-pi/2, pi/2], and the sign
-/// (-1)^n. Good for |x| up to 1e6; the answer of a solve is checked by the exact functions anyway.
-template <typename T>
-inline void sincos(const T& x, T& sine, T& cosine) {
-  const T n = nearest_integer(x * T(0.318309886183790671538));
-  // pi in two parts; n * high is exact for |n| < 2^21.
-  const T r = (x - n * T(3.14159265160560607910)) - n * T(1.98418714791870343106e-9);
-  const T half = n * T(0.5);
-  const T parity = half - nearest_integer(half);       // 0 or +-1/2
-  const T sign = T(1.0) - T(8.0) * (parity * parity);  // 1 or -1
-  const T r2 = r * r;
-  T s = T(1.0 / 355687428096000.0);  // 1/17!
-  s = s * r2 + T(-1.0 / 1307674368000.0);
-  s = s * r2 + T(1.0 / 6227020800.0);
-  s = s * r2 + T(-1.0 / 39916800.0);
-  s = s * r2 + T(1.0 / 362880.0);
-  s = s * r2 + T(-1.0 / 5040.0);
-  s = s * r2 + T(1.0 / 120.0);
-  s = s * r2 + T(-1.0 / 6.0);
-  s = s * r2 + T(1.0);
-  T c = T(-1.0 / 6402373705728000.0);  // 1/18!
-  c = c * r2 + T(1.0 / 20922789888000.0);
-  c = c * r2 + T(-1.0 / 87178291200.0);
-  c = c * r2 + T(1.0 / 479001600.0);
-  c = c * r2 + T(-1.0 / 3628800.0);
-  c = c * r2 + T(1.0 / 40320.0);
-  c = c * r2 + T(-1.0 / 720.0);
-  c = c * r2 + T(1.0 / 24.0);
-  c = c * r2 + T(-0.5);
-  c = c * r2 + T(1.0);
-  sine = sign * (s * r);
-  cosine = sign * c;
-}
 
 /// Single-precision atan2 to about 1e-5 rad, which is enough for a seed (Abramowitz and Stegun,
 /// 4.4.49).

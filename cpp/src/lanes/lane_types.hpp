@@ -69,7 +69,9 @@ constexpr int group_rows(int n) { return kPoseRows + 7 * n; }
 struct SeedChain {
   int n;
   Side left, right;
-  float weight2;  ///< squared rotation weight of the key [m^2]
+  float weight2;         ///< squared rotation weight of the key [m^2]
+  float longest_step;    ///< length of the first step at most [rad or m]
+  float outside_weight;  ///< of the squared way by which the first step left the limits
   float offset_first, offset_last;
   float lower[kMaxJoints], upper[kMaxJoints], middle[kMaxJoints];
   bool wraps[kMaxJoints];  ///< turns, so that whole turns change nothing
@@ -80,11 +82,6 @@ struct SeedChain {
 struct SeedTarget {
   float x[3], y[3], z[3], p[3];
 };
-
-/// Length of the first step at most [rad or m].
-inline constexpr float kLongestStep = 1.0F;
-/// What a seed's score counts of the squared joint values by which its first step left the limits.
-inline constexpr float kOutsideWeight = 100.0F;
 
 /// Seeds made from a group.
 struct SeedPack {

@@ -131,7 +131,7 @@ void prepare_seeds(const SeedChain& chain, const SeedTarget& target, const float
       dq2 = dq2 + dq[j] * dq[j];
     }
     // Far from the sample its pseudo-inverse is no guide: only so long a step in its direction.
-    const T shorten = min(T(1.0F), T(kLongestStep) / sqrt(max(dq2, T(1e-20F))));
+    const T shorten = min(T(1.0F), T(chain.longest_step) / sqrt(max(dq2, T(1e-20F))));
     T outside = T(0.0F);
     for (int j = 0; j < n; ++j) {
       T q = row(kPoseRows + j);
@@ -143,7 +143,7 @@ void prepare_seeds(const SeedChain& chain, const SeedTarget& target, const float
       outside = outside + (q - inside) * (q - inside);
       L::store(inside, out.q[j] + v * L::kCount);
     }
-    score[v] = dq2 + T(kOutsideWeight) * outside;
+    score[v] = dq2 + T(chain.outside_weight) * outside;
     L::store(score[v], out.score + v * L::kCount);
   }
 

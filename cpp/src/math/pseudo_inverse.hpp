@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Truncated and damped solves with a Jacobian, without a heap allocation.
+// Truncated and damped solves with a Jacobian, without a heap allocation. Eigen's decompositions
+// take a compiler long, and so are seen by one source only.
 #pragma once
 
-#include <Eigen/Cholesky>
-#include <Eigen/SVD>
+#include <Eigen/Core>
 
 #include "iksel/types.hpp"
 
@@ -20,40 +20,24 @@ using JacobianMatrix = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor,
 /// off.
 class TruncatedSvd {
  public:
-  TruncatedSvd(const JacobianMatrix& J, double cutoff)
-      // Full U, which is 6 x 6 for any arm: a thin one does not fit the type for fewer than 6
-      // joints.
-      : svd_(J, Eigen::ComputeFullU | Eigen::ComputeThinV) {
-    const auto& sigma = svd_.singularValues();
-    inverse_sigma_.resize(sigma.size());
-    for (Eigen::Index i = 0; i < sigma.size(); ++i) {
-      inverse_sigma_[i] = sigma[i] > cutoff * sigma[0] && sigma[i] > 0 ? 1.0 / sigma[i] : 0.0;
-    }
-  }
+  TruncatedSvd(const JacobianMatrix& J, double cutoff);
 
   /// J^+ e, the least-squares step of least norm.
-  [[nodiscard]] JointVector solve(const Vector6& e) const {
-    const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1> scaled =
-        inverse_sigma_.cwiseProduct(svd_.matrixU().leftCols(inverse_sigma_.size()).transpose() * e);
-    return svd_.matrixV() * scaled;
-  }
-
+  [[nodiscard]] JointVector solve(const Vector6& e) const;
   /// J^+.
-  [[nodiscard]] PseudoInverse inverse() const {
-    return svd_.matrixV() * inverse_sigma_.asDiagonal() *
-           svd_.matrixU().leftCols(inverse_sigma_.size()).transpose();
-  }
+  [[nodiscard]] PseudoInverse inverse() const;
 
  private:
-  Eigen::JacobiSVD<JacobianMatrix> svd_;
-  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1> inverse_sigma_;
+  // J = U diag(sigma) V^T with as many columns as J has singular values.
+  Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 6> U_;
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxDof, 6> V_;
+  Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1> inverse_sigma_;
 };
 
+/// J^T (J J^T + lambda I)^-1.
+PseudoInverse damped_inverse(const JacobianMatrix& J, double lambda);
+
 /// J^T (J J^T + lambda I)^-1 e.
-inline JointVector damped_solve(const JacobianMatrix& J, double lambda, const Vector6& e) {
-  Matrix6 A = J * J.transpose();
-  A.diagonal().array() += lambda;
-  return J.transpose() * A.ldlt().solve(e);
-}
+JointVector damped_solve(const JacobianMatrix& J, double lambda, const Vector6& e);
 
 }  // namespace iksel

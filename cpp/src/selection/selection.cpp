@@ -7,27 +7,23 @@
 
 #include "database/key.hpp"
 #include "lanes/kernels.hpp"
+#include "math/constants.hpp"
 #include "math/pseudo_inverse.hpp"
 #include "math/rotation.hpp"
 
 namespace iksel {
 
-namespace {
-
-constexpr double kTwoPi = 6.28318530717958647692;
-
-}  // namespace
-
-Selection::Selection(const ChainModel& model, const DatabaseData& data,
+Selection::Selection(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
                      const SolverOptions& options)
     : model_(model),
+      nominal_(nominal),
       data_(data),
       options_(options),
       chain_{},
       neighbours_(std::min<std::size_t>(static_cast<std::size_t>(options.neighbours), data.size)),
       candidates_(neighbours_.size()) {
   if (data.reduction) {
-    chain_ = make_lane_chain(model);
+    chain_ = make_lane_chain(nominal);
     seeds_.resize(neighbours_.size() * static_cast<std::size_t>(model.dof));
   }
 }
@@ -67,7 +63,7 @@ void Selection::rank() {
 }
 
 void Selection::prepare_seeds() {
-  const lanes::SeedChain chain = make_seed_chain(model_, *data_.reduction);
+  const lanes::SeedChain chain = make_seed_chain(nominal_, *data_.reduction);
   const lanes::SeedTarget target = make_seed_target(target_);
   const auto dof = static_cast<std::size_t>(model_.dof);
   float group[lanes::group_rows(kMaxDof) * lanes::kGroup];

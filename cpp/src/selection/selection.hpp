@@ -27,7 +27,9 @@ struct Candidate {
 /// Picks seeds for one target. Memory is taken at construction, none later.
 class Selection {
  public:
-  Selection(const ChainModel& model, const DatabaseData& data, const SolverOptions& options);
+  /// `nominal` is the chain that the data belongs to; `model` may differ from it a little.
+  Selection(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
+            const SolverOptions& options);
 
   /// The neighbours of T_base_flange (the tip link, without the tool).
   void query(const Pose& T_base_flange);
@@ -60,6 +62,7 @@ class Selection {
   void bring_farthest_forward(int attempt);
 
   const ChainModel& model_;
+  const ChainModel& nominal_;
   const DatabaseData& data_;
   const SolverOptions& options_;
   /// Pose of the tip link, or Y of reduction.hpp.

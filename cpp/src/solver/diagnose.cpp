@@ -8,16 +8,17 @@
 
 #include "error_check.hpp"
 #include "iteration/task_step.hpp"
+#include "math/constants.hpp"
 #include "solver/solver_impl.hpp"
 
 namespace iksel {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
 /// Work that a diagnosis may spend where a solve gave up.
-constexpr int kAttempts = 512;
-constexpr int kIterations = 200;
+constexpr int kPatientAttempts = 512;
+constexpr int kPatientIterations = 200;
 
 /// Singular values below this part of the largest are close to a singularity.
 constexpr double kNearlySingular = 1e-3;
@@ -32,16 +33,16 @@ SolverOptions generous(SolverOptions options) {
   options.iteration = Iteration::lm;
   options.damping = SolverOptions{}.damping;
   options.whole_turns = true;
-  options.max_attempts = std::max(options.max_attempts, kAttempts);
-  options.max_iterations = std::max(options.max_iterations, kIterations);
+  options.max_attempts = std::max(options.max_attempts, kPatientAttempts);
+  options.max_iterations = std::max(options.max_iterations, kPatientIterations);
   return options;
 }
 
 /// The position's part of a task.
 Task position_of(Task task) {
   for (std::size_t i = 0; i < 3; ++i) {
-    task.rotation_lower[i] = -kInfinity;
-    task.rotation_upper[i] = kInfinity;
+    task.rotation_lower[i] = -kNoBound;
+    task.rotation_upper[i] = kNoBound;
   }
   return task;
 }
@@ -59,7 +60,6 @@ std::pair<double, double> singular_values(const ChainModel& model, const JointVe
 JointVector violations(const ChainModel& model, JointVector q) {
   model.wrap_into_limits(q.data());
   JointVector outside = JointVector::Zero(model.dof);
-  constexpr double kTwoPi = 6.28318530717958647692;
   for (int j = 0; j < model.dof; ++j) {
     const auto beyond = [&](double at) {
       return std::max({model.lower[j] - at, at - model.upper[j], 0.0});
@@ -85,7 +85,7 @@ double descend(const ChainModel& model, const SolverOptions& options, const Task
   q = q.cwiseMax(model.lower).cwiseMin(model.upper);
   double error = error_of(q);
   double damping = 1e-3;
-  for (int i = 0; i < kIterations && damping < 1e6 && error > 1e-12; ++i) {
+  for (int i = 0; i < kPatientIterations && damping < 1e6 && error > 1e-12; ++i) {
     Pose pose;
     Jacobian of_pose;
     model.fk_jacobian(q.data(), pose, of_pose);
@@ -98,8 +98,9 @@ double descend(const ChainModel& model, const SolverOptions& options, const Task
     damped.damping = damping;
     const JacobianMatrix weighted = scale.asDiagonal() * J;
     const Vector6 asked = scale.cwiseProduct(e);
-    const JointVector next =
-        (q + lm_step(model, q, weighted, asked, damped)).cwiseMax(model.lower).cwiseMin(model.upper);
+    const JointVector next = (q + lm_step(model, q, weighted, asked, damped))
+                                 .cwiseMax(model.lower)
+                                 .cwiseMin(model.upper);
     const double next_error = error_of(next);
     if (next_error < error) {
       const bool settled = error - next_error < 1e-9 * error;
@@ -117,12 +118,10 @@ double descend(const ChainModel& model, const SolverOptions& options, const Task
 /// The least error found from many seeds, for a task without an answer.
 class BestEffort {
  public:
-  BestEffort(const Solver& solver, const TaskSpace& task, const Pose& target)
-      : model_(solver.robot().model()),
-        options_(solver.options()),
-        task_(task),
-        target_(target),
-        weight_(solver.database().data().weight) {}
+  /// `weight` is the length that 1 rad counts [m].
+  BestEffort(const ChainModel& model, const SolverOptions& options, double weight,
+             const TaskSpace& task, const Pose& target)
+      : model_(model), options_(options), task_(task), target_(target), weight_(weight) {}
 
   /// Makes 1 rad count that part of what it counts otherwise. To come first.
   void weigh_rotation(double part) { weight_ *= part; }
@@ -153,7 +152,7 @@ class BestEffort {
   const TaskSpace& task_;
   const Pose& target_;
   double weight_;
-  double error_ = kInfinity;
+  double error_ = kNoBound;
   JointVector q_;
 };
 
@@ -184,8 +183,7 @@ const char* to_string(Cause cause) {
   return "unknown";
 }
 
-Diagnosis Solver::Impl::diagnose(const Solver& self, const Pose& T_base_tip,
-                                 const SolveRequest& request) const {
+Diagnosis Solver::Impl::diagnose(const Pose& T_base_tip, const SolveRequest& request) const {
   const ChainModel& model = robot.model();
   const TaskSpace of_call = task_of(request);
   Diagnosis out;
@@ -197,7 +195,8 @@ Diagnosis Solver::Impl::diagnose(const Solver& self, const Pose& T_base_tip,
     return least < kNearlySingular * most;
   };
 
-  const Result plain = self.solve(T_base_tip, request);
+  const Lease lease(*this);
+  const Result plain = solve(T_base_tip, request, lease.get());
   if (plain.success()) {
     describe(plain.q);
     out.q_is_solution = true;
@@ -209,9 +208,14 @@ Diagnosis Solver::Impl::diagnose(const Solver& self, const Pose& T_base_tip,
   SolveRequest without_filter = request;
   without_filter.filter = nullptr;
   without_filter.near.reset();
-  without_filter.deadline = kInfinity;
+  without_filter.deadline = kNoBound;
   without_filter.database_seeds = true;
-  const Solver patient(robot, generous(options), database);
+  without_filter.objective = {};
+  const double weight = database.data().weight;
+  const auto make_patient = [&](const Robot& arm) {
+    return Solver(arm, generous(options), database, nominal, Drift{kNoBound, kNoBound});
+  };
+  const Solver patient = make_patient(robot);
   const auto position_task = [&] {
     SolveRequest relaxed = without_filter;
     relaxed.task = position_of(of_call.task());
@@ -220,7 +224,7 @@ Diagnosis Solver::Impl::diagnose(const Solver& self, const Pose& T_base_tip,
 
   if (plain.status != Status::out_of_reach) {
     SolveRequest filtered = request;
-    filtered.deadline = kInfinity;
+    filtered.deadline = kNoBound;
     filtered.database_seeds = true;
     const Result found = patient.solve(T_base_tip, filtered);
     if (found.success()) {
@@ -232,17 +236,18 @@ Diagnosis Solver::Impl::diagnose(const Solver& self, const Pose& T_base_tip,
       out.message =
           out.cause == Cause::out_of_time
               ? "an answer exists, but the deadline passed before it was found: allow more time"
-          : singular ? format("an answer exists close to a singularity (least singular value "
-                              "%.3g), where iterations are slow: raise max_iterations, or loosen "
-                              "the tolerances",
-                              out.least_singular_value)
+          : singular ? format(
+                           "an answer exists close to a singularity (least singular value "
+                           "%.3g), where iterations are slow: raise max_iterations, or loosen "
+                           "the tolerances",
+                           out.least_singular_value)
                      : "an answer exists that the bounds on work were too low to find: raise "
                        "max_attempts or max_iterations";
       return out;
     }
     if (found.status == Status::rejected) {
       AllOptions all;
-      all.max = kAttempts;
+      all.max = kPatientAttempts;
       const Solutions refused = patient.solve_all(T_base_tip, all, without_filter);
       out.cause = Cause::rejected;
       out.refused = static_cast<int>(refused.all.size());
@@ -252,7 +257,7 @@ Diagnosis Solver::Impl::diagnose(const Solver& self, const Pose& T_base_tip,
       return out;
     }
 
-    const Solver free(robot.without_limits(), generous(options), database);
+    const Solver free = make_patient(robot.without_limits());
     AllOptions all;
     const Solutions unlimited = free.solve_all(T_base_tip, all, without_filter);
     for (const Result& answer : unlimited.all) {
@@ -266,7 +271,7 @@ Diagnosis Solver::Impl::diagnose(const Solver& self, const Pose& T_base_tip,
     }
     if (out.joint >= 0) {
       out.cause = Cause::joint_limits;
-      BestEffort effort(self, of_call, T_base_tip);
+      BestEffort effort(model, options, weight, of_call, T_base_tip);
       for (const Result& answer : unlimited.all) {
         JointVector seed = answer.q;
         model.wrap_into_limits(seed.data());
@@ -283,7 +288,7 @@ Diagnosis Solver::Impl::diagnose(const Solver& self, const Pose& T_base_tip,
     }
   }
 
-  BestEffort effort(self, of_call, T_base_tip);
+  BestEffort effort(model, options, weight, of_call, T_base_tip);
   const Result position = patient.solve(T_base_tip, position_task());
   if (position.success()) {
     // From many configurations that have the position towards the rotation, the position weighing
@@ -305,9 +310,10 @@ Diagnosis Solver::Impl::diagnose(const Solver& self, const Pose& T_base_tip,
     describe(held.success() ? held.q : position.q);
     out.cause = Cause::orientation;
     out.rotation_gap = out.rotation_error;
-    out.message = format("the position can be reached, but not with this rotation: it is off by "
-                         "%.4g rad at least; ",
-                         out.rotation_gap) +
+    out.message = format(
+                      "the position can be reached, but not with this rotation: it is off by "
+                      "%.4g rad at least; ",
+                      out.rotation_gap) +
                   (model.dof < of_call.constrained_axes()
                        ? "the arm has fewer joints than the task has axes: leave an axis free"
                        : "turn the target, or leave an axis free");
@@ -316,7 +322,7 @@ Diagnosis Solver::Impl::diagnose(const Solver& self, const Pose& T_base_tip,
 
   const TaskSpace of_position(position_of(of_call.task()), options.position_tolerance,
                               options.rotation_tolerance);
-  BestEffort nearest(self, of_position, T_base_tip);
+  BestEffort nearest(model, options, weight, of_position, T_base_tip);
   nearest.from_anywhere(2 * kEfforts);
   double ignored = 0;
   measure(of_position, T_base_tip, nearest.q(), out.beyond_reach, ignored);
@@ -324,17 +330,16 @@ Diagnosis Solver::Impl::diagnose(const Solver& self, const Pose& T_base_tip,
   effort.from_anywhere(kEfforts);
   describe(effort.q());
   out.cause = Cause::out_of_reach;
-  out.message =
-      format("the position lies %.4g m beyond what the arm reaches", out.beyond_reach) +
-      (plain.status == Status::out_of_reach ? "" : " within its limits") +
-      ": move the target or the base, or allow a tolerance";
+  out.message = format("the position lies %.4g m beyond what the arm reaches", out.beyond_reach) +
+                (plain.status == Status::out_of_reach ? "" : " within its limits") +
+                ": move the target or the base, or allow a tolerance";
   return out;
 }
 
 Diagnosis Solver::diagnose(const Pose& T_base_tip, const SolveRequest& request) const {
   check_pose(T_base_tip);
   request.validate(robot().dof());
-  return impl_->diagnose(*this, T_base_tip, request);
+  return impl_->diagnose(T_base_tip, request);
 }
 
 }  // namespace iksel

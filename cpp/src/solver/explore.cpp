@@ -2,6 +2,7 @@
 #include "solver/explore.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "solver/given_seeds.hpp"
@@ -11,8 +12,33 @@
 namespace iksel {
 namespace {
 
-/// Seeds between two looks at what was found, where they are iterated one by one.
-constexpr int kStage = 8;
+/// A seed whose first step ends this near to a solution would end there itself.
+constexpr double kCaught = 0.2;
+/// Seeds for a task between two questions to a filter.
+constexpr int kFilterStage = 16;
+
+struct Steering {
+  Found& found;
+  FunctionRef<bool()> ask;
+  double caught;
+
+  [[nodiscard]] bool go_on() const { return ask(); }
+  [[nodiscard]] bool skips(const lanes::SeedPack& seeds, int slot) const {
+    struct Column {
+      const lanes::SeedPack& seeds;
+      int slot;
+      double operator[](int joint) const { return static_cast<double>(seeds.q[joint][slot]); }
+    };
+    return found.is_near_known(Column{seeds, slot}, caught);
+  }
+};
+
+/// Where the turns lie that an objective wants; the others take what comes.
+std::optional<JointVector> cheapest_turns(const ChainModel& model, const Objective& objective) {
+  if (objective.kind == Objective::Kind::posture) return objective.posture;
+  if (objective.kind == Objective::Kind::limits) return middle_of_limits(model);
+  return std::nullopt;
+}
 
 }  // namespace
 
@@ -25,7 +51,10 @@ void Solver::Impl::explore(Exploration& search, Workspace& workspace) const {
     return;
   }
 
-  const Deadline deadline(search.request.deadline);
+  const SolveRequest& request = search.request;
+  const JointMove move(model.dof, request);
+  const Deadline deadline(request.deadline);
+  const std::optional<JointVector> turns_near = cheapest_turns(model, request.objective);
   const auto accept = [&](JointVector& q) {
     double position = 0;
     double rotation = 0;
@@ -38,12 +67,17 @@ void Solver::Impl::explore(Exploration& search, Workspace& workspace) const {
       search.status = Status::outside_limits;
       return Verdict::next;
     }
-    if (search.request.near) {
-      take_nearest_turns(model, *search.request.near, q);
-    } else {
+    double cost = 0;
+    if (request.near && !turns_near) {
+      take_turns_near(*request.near, search.task, search.T_base_tip, q);
+      // What a filter has been asked about stays as it is.
+      if (!request.filter) cost = move.length(q - *request.near);
+    } else if (turns_near) {
+      take_turns_near(*turns_near, search.task, search.T_base_tip, q);
+    } else if (!request.objective.is_set()) {
       take_first_turns(model, q);
     }
-    found.add(q, search.min_distance);
+    found.add(q, cost, search.min_distance);
     return Verdict::next;
   };
   const auto go_on = [&] {
@@ -52,21 +86,37 @@ void Solver::Impl::explore(Exploration& search, Workspace& workspace) const {
     return !search.out_of_time;
   };
 
-  const Pose tip_target = search.T_base_tip * Pose(model.tcp_inverse);
   if (!search.task.is_full_pose()) {
     explore_task(search, workspace.tasks, accept, go_on);
   } else if (workspace.lanes) {
-    explore_in_lanes(search, tip_target, *workspace.lanes, accept, go_on);
+    explore_in_lanes(search, workspace, accept, go_on);
   } else {
-    explore_one_by_one(search, tip_target, workspace, accept, go_on);
+    explore_one_by_one(search, workspace, accept, go_on);
   }
   if (found.size() > 0) search.status = Status::solved;
 }
 
-void Solver::Impl::explore_in_lanes(Exploration& search, const Pose& tip_target, LaneSearch& lanes,
+void Solver::Impl::take_turns_near(const JointVector& near, const TaskSpace& of_call,
+                                   const Pose& T_base_tip, JointVector& q) const {
+  const ChainModel& model = robot.model();
+  // An answer at a limit lies outside by rounding as often as not. Held to the limit it need not be
+  // a whole turn away.
+  JointVector held = q;
+  if (take_nearest_turns(model, near, options.rotation_tolerance, held)) {
+    Result measured;
+    if (finish(of_call, T_base_tip, held, measured)) {
+      q = held;
+      return;
+    }
+  }
+  take_nearest_turns(model, near, 0, q);
+}
+
+void Solver::Impl::explore_in_lanes(Exploration& search, Workspace& workspace,
                                     FunctionRef<Verdict(JointVector&)> accept,
                                     FunctionRef<bool()> go_on) const {
-  lanes.set_target(tip_target);
+  LaneSearch& lanes = *workspace.lanes;
+  lanes.set_target(search.T_base_tip);
   Work& work = search.work;
   const auto iterate_seeds = [&](const double* const* seeds, int count) {
     lanes.iterate(
@@ -88,8 +138,9 @@ void Solver::Impl::explore_in_lanes(Exploration& search, const Pose& tip_target,
     }
   }
   if (!go_on() || !search.request.database_seeds) return;
+  const Steering steering{workspace.found, go_on, robot.dof() > 6 ? 0.0 : kCaught};
   StageClock clock(nullptr);
-  lanes.run(tip_target, nullptr, clock, work, accept, go_on);
+  lanes.search(search.T_base_tip, nullptr, clock, work, accept, steering);
 }
 
 void Solver::Impl::explore_task(Exploration& search, TaskSearch& tasks,
@@ -98,7 +149,7 @@ void Solver::Impl::explore_task(Exploration& search, TaskSearch& tasks,
   StageClock clock(nullptr);
   tasks.begin(search.T_base_tip, search.task);
   // A filter is asked about many at a time.
-  const int stage = search.request.filter ? kStage : 1;
+  const int stage = search.request.filter ? kFilterStage : 1;
   int since = 0;
   const auto go_on_in_stages = [&] { return ++since % stage != 0 || go_on(); };
   if (search.request.near) tasks.attempt(*search.request.near, clock, search.work, accept);
@@ -118,11 +169,11 @@ void Solver::Impl::explore_task(Exploration& search, TaskSearch& tasks,
   go_on();
 }
 
-void Solver::Impl::explore_one_by_one(Exploration& search, const Pose& tip_target,
-                                      Workspace& workspace,
+void Solver::Impl::explore_one_by_one(Exploration& search, Workspace& workspace,
                                       FunctionRef<Verdict(JointVector&)> accept,
                                       FunctionRef<bool()> go_on) const {
   const ChainModel& model = robot.model();
+  const Pose tip_target = search.T_base_tip * Pose(model.tcp_inverse);
   Random random(options.seed);
   const IterationContext context{model, options, search.T_base_tip, tip_target, workspace.kdl.get(),
                                  random};
@@ -139,7 +190,7 @@ void Solver::Impl::explore_one_by_one(Exploration& search, const Pose& tip_targe
   const auto left = [&] { return search.work.attempts - on_top < options.max_attempts; };
   const auto try_all = [&](auto& seeds) {
     for (int k = 0; left(); ++k) {
-      if (k % kStage == 0 && !go_on()) return false;
+      if (!go_on()) return false;
       const double* seed = seeds(k);
       if (seed == nullptr) return true;
       attempt(seed);

@@ -2,6 +2,7 @@
 // The distinct solutions found so far for one target.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -17,21 +18,33 @@ class Found {
   static constexpr std::size_t kMost = 1024;
 
   explicit Found(const ChainModel& model)
-      : model_(model), q_(kMost * static_cast<std::size_t>(model.dof)) {}
+      : model_(model), q_(kMost * static_cast<std::size_t>(model.dof)), cost_(kMost) {}
 
   void clear() { size_ = 0; }
 
   /// Adds q, a solution inside the limits, unless one lies nearer than `min_distance` in every
-  /// joint, copies by whole turns not counted; or there is no room. Whether it was added.
-  bool add(const JointVector& q, double min_distance) {
-    if (size_ == kMost) return false;
+  /// joint, copies by whole turns not counted; or there is no room. Of two that lie so near, the
+  /// one of smaller cost stays, at the place of the first.
+  void add(const JointVector& q, double cost, double min_distance) {
     for (std::size_t i = 0; i < size_; ++i) {
-      if (distance_without_turns(model_, this->q(i), q.data()) < min_distance) return false;
+      if (distance_without_turns(model_, this->q(i), q, min_distance) >= min_distance) continue;
+      if (cost < cost_[i]) put(i, q, cost);
+      return;
     }
-    const auto dof = static_cast<std::size_t>(model_.dof);
-    for (std::size_t j = 0; j < dof; ++j) q_[size_ * dof + j] = q[static_cast<int>(j)];
-    ++size_;
-    return true;
+    if (size_ == kMost) return;
+    put(size_++, q, cost);
+  }
+
+  /// True if q lies within `radius` of a solution in every
+  /// joint.
+  template <typename Q>
+  [[nodiscard]] bool is_near_known(const Q& q, double radius) const {
+    for (std::size_t i = 0; i < size_; ++i) {
+      if (distance_without_turns(model_, this->q(i), q, radius) < radius) {
+        return true;
+      }
+    }
+    return false;
   }
 
   [[nodiscard]] std::size_t size() const { return size_; }
@@ -43,8 +56,14 @@ class Found {
   }
 
  private:
+  void put(std::size_t i, const JointVector& q, double cost) {
+    std::copy_n(q.data(), model_.dof, &q_[i * static_cast<std::size_t>(model_.dof)]);
+    cost_[i] = cost;
+  }
+
   const ChainModel& model_;
   std::vector<double> q_;
+  std::vector<double> cost_;
   std::size_t size_ = 0;
 };
 

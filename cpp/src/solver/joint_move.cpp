@@ -5,25 +5,26 @@
 #include <cmath>
 
 namespace iksel {
-namespace {
 
-constexpr double kTwoPi = 6.28318530717958647692;
-
-}  // namespace
-
-void take_nearest_turns(const ChainModel& model, const JointVector& near, JointVector& q) {
+bool take_nearest_turns(const ChainModel& model, const JointVector& near, double slack,
+                        JointVector& q) {
+  bool held = false;
   for (int j = 0; j < model.dof; ++j) {
     if (!has_whole_turns(model, j)) continue;
+    const double lower = model.lower[j] - slack;
+    const double upper = model.upper[j] + slack;
     double value = q[j] + kTwoPi * std::round((near[j] - q[j]) / kTwoPi);
-    // One turn to either side is as near or nearer only if this one lies outside.
-    if (value > model.upper[j]) value -= kTwoPi * std::ceil((value - model.upper[j]) / kTwoPi);
-    if (value < model.lower[j]) value += kTwoPi * std::ceil((model.lower[j] - value) / kTwoPi);
-    if (value >= model.lower[j] && value <= model.upper[j]) q[j] = value;
+    // The nearest turn of all lies outside: then the nearest inside.
+    if (value > upper) value -= kTwoPi * std::ceil((value - upper) / kTwoPi);
+    if (value < lower) value += kTwoPi * std::ceil((lower - value) / kTwoPi);
+    if (value < lower || value > upper) continue;
+    q[j] = std::min(std::max(value, model.lower[j]), model.upper[j]);
+    held = held || q[j] != value;
   }
+  return held;
 }
 
 void take_first_turns(const ChainModel& model, JointVector& q) {
-  constexpr double kPi = kTwoPi / 2;
   for (int j = 0; j < model.dof; ++j) {
     if (!has_whole_turns(model, j)) continue;
     const double lower = std::isfinite(model.lower[j]) ? model.lower[j] : -kPi;
@@ -45,16 +46,6 @@ bool take_next_turns(const ChainModel& model, JointVector& q) {
     if (q[j] < model.lower[j]) q[j] += kTwoPi;
   }
   return false;
-}
-
-double distance_without_turns(const ChainModel& model, const double* a, const double* b) {
-  double largest = 0;
-  for (int j = 0; j < model.dof; ++j) {
-    double d = a[j] - b[j];
-    if (has_whole_turns(model, j)) d = std::remainder(d, kTwoPi);
-    largest = std::max(largest, std::abs(d));
-  }
-  return largest;
 }
 
 JointVector middle_of_limits(const ChainModel& model) {

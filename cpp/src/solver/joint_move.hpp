@@ -2,6 +2,9 @@
 // How far joints move between configurations, whole turns considered.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "iksel/request.hpp"
 #include "iteration/schemes.hpp"
 #include "kinematics/chain_model.hpp"
@@ -34,8 +37,10 @@ class JointMove {
 };
 
 /// Brings each joint with whole turns to the turn nearest to `near` inside the limits; q lies
-/// inside them before and after.
-void take_nearest_turns(const ChainModel& model, const JointVector& near, JointVector& q);
+/// inside them before and after. A turn that lies outside by no more than `slack` [rad] is taken
+/// too, and the joint held to the limit. True if one was.
+bool take_nearest_turns(const ChainModel& model, const JointVector& near, double slack,
+                        JointVector& q);
 
 /// Brings each joint with whole turns to the first turn inside the limits, or to [-pi, pi) if there
 /// are none.
@@ -45,8 +50,21 @@ void take_first_turns(const ChainModel& model, JointVector& q);
 /// leaves q at the first. Starts from take_first_turns.
 bool take_next_turns(const ChainModel& model, JointVector& q);
 
-/// The largest difference of a joint; whole turns are none.
-double distance_without_turns(const ChainModel& model, const double* a, const double* b);
+/// The largest difference of a joint, whole turns counting nothing; or anything not below `bound`
+/// if it is not below.
+template <typename A, typename B>
+double distance_without_turns(const ChainModel& model, const A& a, const B& b, double bound) {
+  double largest = 0;
+  for (int j = 0; j < model.dof; ++j) {
+    double d = std::abs(a[j] - b[j]);
+    if (d >= bound && has_whole_turns(model, j)) {
+      d = std::abs(d - kTwoPi * static_cast<double>(static_cast<long>(d / kTwoPi + 0.5)));
+    }
+    largest = std::max(largest, d);
+    if (largest >= bound) return largest;
+  }
+  return largest;
+}
 
 /// The middle of the limits; 0 where there are none.
 JointVector middle_of_limits(const ChainModel& model);

@@ -32,30 +32,32 @@ bool solves_in_lanes(const ChainModel& model, const DatabaseData& data,
          data.reduction != nullptr && is_simple(model);
 }
 
-LaneSearch::LaneSearch(const ChainModel& model, const DatabaseData& data,
+LaneSearch::LaneSearch(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
                        const SolverOptions& options, const lanes::LaneKernels& kernels)
     : model_(model),
       data_(data),
       options_(options),
       kernels_(kernels),
+      base_inverse_(to_pose(model.kernel.base).inverse()),
+      tcp_inverse_(Pose(model.tcp_inverse) * to_pose(model.kernel.flange).inverse()),
       advance_(kernels.advance[model.dof <= 10 ? model.dof : 0]),
       chain_(make_lane_chain(model)),
       lane_options_(make_lane_options(model, options)),
-      seed_chain_(make_seed_chain(model, *data.reduction)),
+      seed_chain_(make_seed_chain(nominal, *data.reduction)),
       seeds_{},
       pack_{},
       neighbours_(std::min<std::size_t>(static_cast<std::size_t>(options.neighbours), data.size)),
       group_(static_cast<std::size_t>(lanes::group_rows(model.dof) * lanes::kGroup)) {}
 
-Pose LaneSearch::set_query(const Pose& tip_target) {
-  const Pose Y = data_.reduction->reduce(tip_target);
+Pose LaneSearch::set_query(const Pose& T_base_tcp) {
+  Pose Y = base_inverse_ * T_base_tcp * tcp_inverse_;
   data_.reduction->make_key(Y, key_);
   seed_target_ = make_seed_target(Y);
   return Y;
 }
 
-void LaneSearch::set_target(const Pose& tip_target) {
-  const Pose Y = set_query(tip_target);
+void LaneSearch::set_target(const Pose& T_base_tcp) {
+  const Pose Y = set_query(T_base_tcp);
   for (int lane = 0; lane < kernels_.lanes; ++lane) set_lane_target(lane, Y);
 }
 

@@ -35,39 +35,42 @@ struct Work {
 
 class LaneSearch {
  public:
-  LaneSearch(const ChainModel& model, const DatabaseData& data, const SolverOptions& options,
-             const lanes::LaneKernels& kernels);
+  /// `nominal` is the chain that the data belongs to; `model` may differ from it a little.
+  LaneSearch(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
+             const SolverOptions& options, const lanes::LaneKernels& kernels);
 
-  /// Says yes to every "shall I go on?".
-  struct Always {
-    bool operator()() const { return true; }
+  /// Leaves a search to itself.
+  struct Unsteered {
+    /// Asked after each group of the database's seeds; false ends the search.
+    static bool go_on() { return true; }
+    /// Whether a seed of the database, whose first step is made, need not be iterated.
+    static bool skips(const lanes::SeedPack& /*seeds*/, int /*slot*/) { return false; }
   };
 
   /// Calls `accept(JointVector& q) -> Verdict` for every q that arrives until it says stop (then
-  /// true), or the work bound is reached. `seed` may be null. `go_on()` is asked after each group
-  /// of the database's seeds; false ends the search.
-  template <typename Accept, typename GoOn = Always>
-  bool run(const Pose& tip_target, const JointVector* seed, StageClock& clock, Work& work,
-           const Accept& accept, const GoOn& go_on = {});
+  /// true), or the work bound is reached. `seed` may be null.
+  template <typename Accept, typename Steering = Unsteered>
+  bool search(const Pose& T_base_tcp, const JointVector* seed, StageClock& clock, Work& work,
+              const Accept& accept, const Steering& steering = {});
 
   /// Iterates `count` seeds for the target that was set, most lanes at a time;
   /// `load(k, lane)` puts seed k into a lane.
   template <typename Load, typename Accept>
   bool iterate(int count, Work& work, const Load& load, const Accept& accept);
 
-  /// One target per lane, each with its best seed alone; a lane takes the next target as soon as
-  /// it is through with one. `next(Pose& tip_target)` gives the index of a target, or -1 at the
-  /// end; `settle(index, q, iterations) -> bool` is told the q of a target that arrived, or null if
-  /// it did not within the patience for one seed, and says whether it need not be iterated further.
-  template <typename Next, typename Settle>
-  void stream(const Next& next, const Settle& settle);
+  /// One target per lane, each with its kStreamSeeds best seeds one after the other; a lane takes
+  /// the next target as soon as it is through with one. `next() -> int` gives the index of a
+  /// target, or -1 at the end, and `target(index)` its T_base_tcp. `settle(index, q, work) -> bool`
+  /// is told the q of a target that arrived, and says whether it is good; or null if no seed was.
+  template <typename Next, typename Target, typename Settle>
+  void stream(const Next& next, const Target& target, const Settle& settle);
 
-  void set_target(const Pose& tip_target);
+  void set_target(const Pose& T_base_tcp);
   void load_seed(int lane, const double* q);
 
  private:
   /// Y of a target, whose seeds and leaf are asked for next.
-  Pose set_query(const Pose& tip_target);
+  Pose set_query(const Pose& T_base_tcp);
   /// Of the group's seeds, by rank.
   void load_ranked(int rank, int lane);
   void set_lane_target(int lane, const Pose& Y);
@@ -76,6 +79,7 @@ class LaneSearch {
   const DatabaseData& data_;
   const SolverOptions& options_;
   const lanes::LaneKernels& kernels_;
+  Pose base_inverse_, tcp_inverse_;  ///< Y = base_inverse T_base_tcp tcp_inverse
   lanes::Advance advance_;
   lanes::LaneChain chain_;
   lanes::LaneOptions lane_options_;
@@ -90,6 +94,8 @@ class LaneSearch {
 
 /// A seed that is still far off after so many iterations is given up: few such come home.
 inline constexpr int kPatience = 8;
+/// Seeds that a target of a batch is given before it is solved by itself.
+inline constexpr int kStreamSeeds = 2;
 /// Squared error that counts as far off [mixed units].
 inline constexpr double kFarOff2 = 1e-4;
 
@@ -145,65 +151,86 @@ bool LaneSearch::iterate(int count, Work& work, const Load& load, const Accept& 
   return false;
 }
 
-template <typename Next, typename Settle>
-void LaneSearch::stream(const Next& next, const Settle& settle) {
+template <typename Next, typename Target, typename Settle>
+void LaneSearch::stream(const Next& next, const Target& target, const Settle& settle) {
   const int lanes = kernels_.lanes;
   const int patience = std::min(kPatience, options_.max_iterations);
-  int index[lanes::kWidth];
-  int age[lanes::kWidth] = {};
+  const int most_seeds = std::min(kStreamSeeds, options_.max_attempts);
+  struct {
+    int index;  ///< of the target; -1: none
+    int age;    ///< iterations of the seed
+    Work work;
+  } at[lanes::kWidth] = {};
   unsigned alive = 0;
-  const auto refill = [&](int lane) {
-    Pose target;
-    index[lane] = next(target);
-    if (index[lane] < 0) {
-      alive &= ~(1U << static_cast<unsigned>(lane));
-      return;
-    }
-    set_lane_target(lane, set_query(target));
+  const auto load = [&](int lane) {
+    set_lane_target(lane, set_query(target(at[lane].index)));
     kernels_.prepare(seed_chain_, seed_target_, data_.leaves.group(key_), seeds_);
-    load_ranked(0, lane);
-    age[lane] = 0;
-    alive |= 1U << static_cast<unsigned>(lane);
+    load_ranked(at[lane].work.attempts++, lane);
+    at[lane].age = 0;
+  };
+  const auto refill = [&](int lane) {
+    at[lane] = {next(), 0, {}};
+    if (at[lane].index < 0) {
+      alive &= ~(1U << static_cast<unsigned>(lane));
+    } else {
+      alive |= 1U << static_cast<unsigned>(lane);
+      load(lane);
+    }
   };
   for (int lane = 0; lane < lanes; ++lane) refill(lane);
+  // NOLINTNEXTLINE(bugprone-infinite-loop): refill() ends it.
   while (alive != 0) {
     int budget = patience;
     for (int lane = 0; lane < lanes; ++lane) {
       if ((alive >> static_cast<unsigned>(lane) & 1U) != 0) {
-        budget = std::min(budget, patience - age[lane]);
+        budget = std::min(budget, patience - at[lane].age);
       }
     }
     const lanes::PackResult result = advance_(chain_, lane_options_, alive, budget, pack_);
     for (int lane = 0; lane < lanes; ++lane) {
-      const unsigned bit = 1U << static_cast<unsigned>(lane);
-      if ((alive & bit) == 0) continue;
-      age[lane] += result.iterations;
-      if ((result.done & bit) != 0) {
+      if ((alive >> static_cast<unsigned>(lane) & 1U) == 0) continue;
+      at[lane].age += result.iterations;
+      at[lane].work.iterations += result.iterations;
+      if ((result.done >> static_cast<unsigned>(lane) & 1U) != 0) {
         JointVector q(model_.dof);
         for (int j = 0; j < model_.dof; ++j) q[j] = pack_.q[j][lane];
-        if (settle(index[lane], &q, age[lane])) {
+        if (settle(at[lane].index, &q, at[lane].work)) {
           refill(lane);
           continue;
         }
       }
-      if (age[lane] < patience) continue;
-      settle(index[lane], nullptr, age[lane]);
-      refill(lane);
+      if (at[lane].age < patience) continue;
+      if (at[lane].work.attempts < most_seeds) {
+        load(lane);
+      } else {
+        settle(at[lane].index, nullptr, at[lane].work);
+        refill(lane);
+      }
     }
   }
 }
 
-template <typename Accept, typename GoOn>
-bool LaneSearch::run(const Pose& tip_target, const JointVector* seed, StageClock& clock, Work& work,
-                     const Accept& accept, const GoOn& go_on) {
+template <typename Accept, typename Steering>
+bool LaneSearch::search(const Pose& T_base_tcp, const JointVector* seed, StageClock& clock,
+                        Work& work, const Accept& accept, const Steering& steering) {
+  constexpr bool kSteered = !std::is_same_v<Steering, Unsteered>;
   const auto iterate_ranked = [&](int count) {
     clock.lap(&StageTimes::rank);
+    if constexpr (kSteered) {
+      int kept = 0;
+      for (int k = 0; k < count; ++k) {
+        const unsigned char slot = seeds_.order[k];
+        if (!steering.skips(seeds_, slot)) seeds_.order[kept++] = slot;
+      }
+      work.attempts += count - kept;
+      count = kept;
+    }
     const bool solved = iterate(
         count, work, [this](int k, int lane) { load_ranked(k, lane); }, accept);
     clock.lap(&StageTimes::iterate);
     return solved;
   };
-  set_target(tip_target);
+  set_target(T_base_tcp);
   if (seed != nullptr) {
     const auto load = [&](int, int lane) { load_seed(lane, seed->data()); };
     if (iterate(1, work, load, accept)) return true;
@@ -213,7 +240,7 @@ bool LaneSearch::run(const Pose& tip_target, const JointVector* seed, StageClock
   clock.lap(&StageTimes::query);
   kernels_.prepare(seed_chain_, seed_target_, leaf, seeds_);
   if (iterate_ranked(lanes::kGroup)) return true;
-  if (!go_on()) return false;
+  if (!steering.go_on()) return false;
 
   // Widening stages: each asks for four times as many and tries those it has not tried yet.
   std::size_t done = 0;
@@ -231,7 +258,7 @@ bool LaneSearch::run(const Pose& tip_target, const JointVector* seed, StageClock
       }
       kernels_.prepare(seed_chain_, seed_target_, group_.data(), seeds_);
       if (iterate_ranked(lanes::kGroup)) return true;
-      if (!go_on() || work.attempts >= options_.max_attempts) return false;
+      if (!steering.go_on() || work.attempts >= options_.max_attempts) return false;
     }
     done = found;
   }
@@ -242,12 +269,11 @@ bool LaneSearch::run(const Pose& tip_target, const JointVector* seed, StageClock
       pack_.q[j][lane] = random.uniform(model_.sample_lower(j), model_.sample_upper(j));
     }
   };
-  constexpr bool kAsks = !std::is_same_v<GoOn, Always>;
   bool solved = false;
   while (!solved && work.attempts < options_.max_attempts) {
     const int left = options_.max_attempts - work.attempts;
-    solved = iterate(kAsks ? std::min(left, lanes::kGroup) : left, work, load_random, accept);
-    if (!go_on()) break;
+    solved = iterate(kSteered ? std::min(left, lanes::kGroup) : left, work, load_random, accept);
+    if (!steering.go_on()) break;
   }
   clock.lap(&StageTimes::iterate);
   return solved;

@@ -137,45 +137,50 @@ class SlideStep {
   JointVector side_;
 };
 
-/// Brings q back to the task, to a hundredth of the tolerances. False if it does not come back.
-bool correct(const ChainModel& model, const SolverOptions& options, const TaskSpace& task,
-             const Pose& T_base_tip, JointVector& q) {
-  constexpr int kCorrections = 8;
-  Pose pose;
-  Jacobian of_pose;
-  for (int i = 0;; ++i) {
-    model.fk_jacobian(q.data(), pose, of_pose);
-    JacobianMatrix J = of_pose;
-    const Vector6 d = task.deviation(T_base_tip, pose, J);
-    const Vector6 e = task_error(task, d);
-    const double position = e.head<3>().norm();
-    const double rotation = e.tail<3>().norm();
-    if (position <= 0.01 * options.position_tolerance &&
-        rotation <= 0.01 * options.rotation_tolerance) {
-      return model.within_limits(q.data());
-    }
-    if (i == kCorrections) {
-      return position <= options.position_tolerance && rotation <= options.rotation_tolerance &&
-             model.within_limits(q.data());
-    }
-    q += task_step(task, J, d, e,
-                   [&](const JacobianMatrix& rows, const Vector6& asked, double squared_error) {
-                     return lm_step(model, q, rows, asked, options, squared_error);
-                   });
-  }
-}
-
 void clamp(const ChainModel& model, JointVector& q) {
   q = q.cwiseMax(model.lower).cwiseMin(model.upper);
 }
 
 }  // namespace
 
+bool converge(const ChainModel& model, const SolverOptions& options, const TaskSpace& task,
+              const Pose& T_base_tip, int most, JointVector& q) {
+  Pose pose;
+  Jacobian of_pose;
+  // The default damping, whatever the scheme of the solver is.
+  const SolverOptions damped;
+  for (int i = 0;; ++i) {
+    model.fk_jacobian(q.data(), pose, of_pose);
+    JacobianMatrix J = of_pose;
+    Vector6 d;
+    Vector6 e;
+    if (task.is_full_pose()) {
+      e = pose_error(T_base_tip, pose);
+    } else {
+      d = task.deviation(T_base_tip, pose, J);
+      e = task_error(task, d);
+    }
+    const double position = e.head<3>().norm();
+    const double rotation = e.tail<3>().norm();
+    if (i == most || (position <= 0.01 * options.position_tolerance &&
+                      rotation <= 0.01 * options.rotation_tolerance)) {
+      return position <= options.position_tolerance && rotation <= options.rotation_tolerance &&
+             model.within_limits(q.data());
+    }
+    const auto step = [&](const JacobianMatrix& rows, const Vector6& asked, double squared_error) {
+      return lm_step(model, q, rows, asked, damped, squared_error);
+    };
+    q += task.is_full_pose() ? step(J, e, e.squaredNorm()) : task_step(task, J, d, e, step);
+    if (!q.allFinite()) return false;
+  }
+}
+
 int slide(const ChainModel& model, const SolverOptions& options, const TaskSpace& task,
           const Pose& T_base_tip, const JointCost& cost, int most, JointVector& q) {
   /// Longest step of a joint, within which the pose stays near enough to be corrected [rad or m].
   constexpr double kLongest = 0.5;
   constexpr double kSettled = 1e-7;
+  constexpr int kCorrections = 8;
   JointVector gradient(model.dof);
   JointVector curvature(model.dof);
   Pose pose;
@@ -194,7 +199,7 @@ int slide(const ChainModel& model, const SolverOptions& options, const TaskSpace
     for (int halving = 0; halving < 8 && !better; ++halving, scale /= 2) {
       JointVector next = q + scale * step;
       clamp(model, next);
-      if (!correct(model, options, task, T_base_tip, next)) continue;
+      if (!converge(model, options, task, T_base_tip, kCorrections, next)) continue;
       const double next_value = cost(next, nullptr, nullptr);
       if (!(next_value < value)) continue;
       better = true;

@@ -21,4 +21,10 @@ using JointCost =
 int slide(const ChainModel& model, const SolverOptions& options, const TaskSpace& task,
           const Pose& T_base_tip, const JointCost& cost, int most, JointVector& q);
 
+/// Brings q to the task by Levenberg-Marquardt with the limits inside the step, to a hundredth of
+/// the tolerances, in at most `most` steps. False if it does not get within the tolerances and the
+/// limits.
+bool converge(const ChainModel& model, const SolverOptions& options, const TaskSpace& task,
+              const Pose& T_base_tip, int most, JointVector& q);
+
 }  // namespace iksel

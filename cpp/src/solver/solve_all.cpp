@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "error_check.hpp"
-#include "math/pseudo_inverse.hpp"
 #include "solver/explore.hpp"
+#include "solver/objective_cost.hpp"
 #include "solver/solver_impl.hpp"
 
 namespace iksel {
@@ -41,16 +41,6 @@ double limit_distance(const ChainModel& model, const JointVector& q) {
   return least;
 }
 
-/// sqrt(det(J J^T)), or sqrt(det(J^T J)) for fewer than 6 joints (Yoshikawa 1985).
-double manipulability(const ChainModel& model, const JointVector& q) {
-  Pose pose;
-  Jacobian J;
-  model.fk_jacobian(q.data(), pose, J);
-  const double determinant = model.dof < 6 ? Eigen::MatrixXd(J.transpose() * J).determinant()
-                                           : Matrix6(J * J.transpose()).determinant();
-  return std::sqrt(std::max(determinant, 0.0));
-}
-
 /// The cost that puts solutions in order, smaller first.
 double cost_of(const ChainModel& model, SolutionOrder order, const JointMove& move,
                const JointVector& from, const JointVector& q) {
@@ -73,7 +63,7 @@ void spread(const ChainModel& model, std::size_t count, std::vector<Copy>& copie
     std::size_t farthest = chosen;
     for (std::size_t i = chosen; i < copies.size(); ++i) {
       const double d =
-          distance_without_turns(model, copies[chosen - 1].q.data(), copies[i].q.data());
+          distance_without_turns(model, copies[chosen - 1].q, copies[i].q, distance[i]);
       distance[i] = std::min(distance[i], d);
       if (distance[i] > distance[farthest]) farthest = i;
     }
@@ -123,7 +113,7 @@ Solutions Solver::Impl::solve_all(const Pose& T_base_tip, const AllOptions& all,
   Saturation saturation;
   const auto enough = [&](int attempts) {
     if (redundant && found.size() >= std::max<std::size_t>(kChoice * most, 64)) return true;
-    return saturation.reached(found.size(), attempts);
+    return saturation.reached(found, attempts);
   };
   Exploration search{T_base_tip, of_call, request, all.min_distance,
                      FunctionRef<bool(int)>(enough)};
@@ -148,7 +138,7 @@ Solutions Solver::Impl::solve_all(const Pose& T_base_tip, const AllOptions& all,
         add(q, i);
       } while (copies.size() < kMostCopies && take_next_turns(model, q));
     } else {
-      take_nearest_turns(model, from, q);
+      take_turns_near(from, of_call, T_base_tip, q);
       add(q, i);
     }
   }
@@ -162,8 +152,8 @@ Solutions Solver::Impl::solve_all(const Pose& T_base_tip, const AllOptions& all,
   }
 
   for (const Copy& copy : copies) {
-    Result result = finish(Result{}, of_call, T_base_tip, copy.q);
-    if (!result.success()) continue;
+    Result result;
+    if (!finish(of_call, T_base_tip, copy.q, result)) continue;
     if (request.near) result.move = move.length(copy.q - from);
     result.attempts = search.work.attempts;
     result.iterations = search.work.iterations;

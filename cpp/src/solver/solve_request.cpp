@@ -6,6 +6,7 @@
 
 #include "error_check.hpp"
 #include "solver/explore.hpp"
+#include "solver/objective_cost.hpp"
 #include "solver/self_motion.hpp"
 #include "solver/solver_impl.hpp"
 
@@ -98,6 +99,7 @@ class Solver::Impl::Judge {
         redundant_(model_.dof > task.fixed_axes()),
         T_base_tip_(T_base_tip),
         request_(request),
+        ranks_(request.near || request.objective.is_set()),
         found_(found),
         move_(model_.dof, request) {}
 
@@ -105,22 +107,22 @@ class Solver::Impl::Judge {
   /// is an answer.
   bool look(int attempts) {
     ask_filter();
-    if (!request_.near) return first_kept_ < found_.size();
+    if (!ranks_) return first_kept_ < found_.size();
     if (redundant_) return first_kept_ < found_.size() && attempts >= kRedundantSeeds;
-    return first_kept_ < found_.size() && saturation_.reached(found_.size(), attempts);
+    return first_kept_ < found_.size() && saturation_.reached(found_, attempts);
   }
 
   /// The best of what passed; false if nothing did.
   bool answer(JointVector& q) {
     if (first_kept_ == found_.size()) return answer_among_turns(q);
-    if (!request_.near) {
+    if (!ranks_) {
       q = found_.at(first_kept_);
       return true;
     }
     std::array<Ranked, Found::kMost> ranked;
     std::size_t count = 0;
     for (std::size_t i = 0; i < found_.size(); ++i) {
-      if (kept(i)) ranked[count++] = {move_.length(found_.at(i) - *request_.near), i};
+      if (kept(i)) ranked[count++] = {cost_of(found_.at(i)), i};
     }
     const std::size_t slides = redundant_ ? std::min(count, kSlides) : 1;
     std::partial_sort(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(slides),
@@ -131,11 +133,17 @@ class Solver::Impl::Judge {
   }
 
  private:
+  /// Smaller is better.
+  [[nodiscard]] double cost_of(const JointVector& q) const {
+    if (request_.objective.is_set()) return ObjectiveCost(model_, request_.objective).value(q);
+    return move_.length(q - *request_.near);
+  }
+
   struct Ranked {
-    double move;
+    double cost;
     std::size_t index;
     friend bool operator<(const Ranked& a, const Ranked& b) {
-      return a.move != b.move ? a.move < b.move : a.index < b.index;
+      return a.cost != b.cost ? a.cost < b.cost : a.index < b.index;
     }
   };
 
@@ -151,16 +159,22 @@ class Solver::Impl::Judge {
 
   /// Slides the nearest of what passed; q is the best before, and after.
   void slide_best(const Ranked* ranked, std::size_t count, JointVector& q) {
-    double best = ranked[0].move;
+    double best = ranked[0].cost;
     for (std::size_t k = 0; k < count; ++k) {
       JointVector slid = found_.at(ranked[k].index);
-      slide_towards(model_, solver_.options, task_, T_base_tip_, move_, *request_.near, slid);
-      const double length = move_.length(slid - *request_.near);
-      if (!(length < best)) continue;
+      if (request_.objective.is_set()) {
+        constexpr int kObjectiveSteps = 50;
+        const ObjectiveCost cost(model_, request_.objective);
+        slide(model_, solver_.options, task_, T_base_tip_, JointCost(cost), kObjectiveSteps, slid);
+      } else {
+        slide_towards(model_, solver_.options, task_, T_base_tip_, move_, *request_.near, slid);
+      }
+      const double cost = cost_of(slid);
+      if (!(cost < best)) continue;
       bool keep = true;
       if (request_.filter) request_.filter(slid.data(), 1, &keep);
       if (!keep) continue;
-      best = length;
+      best = cost;
       q = slid;
     }
   }
@@ -179,7 +193,7 @@ class Solver::Impl::Judge {
       for (std::size_t i = 0; i < count; ++i) {
         const JointVector copy =
             Eigen::Map<const Eigen::VectorXd>(copies.data() + i * dof, model_.dof);
-        const double cost = request_.near ? move_.length(copy - *request_.near) : 0.0;
+        const double cost = ranks_ ? cost_of(copy) : 0.0;
         if (!keep[i] || !(cost < best)) continue;
         best = cost;
         q = copy;
@@ -192,7 +206,7 @@ class Solver::Impl::Judge {
       do {
         copies.insert(copies.end(), copy.data(), copy.data() + dof);
         if (copies.size() == kChunk * dof) flush();
-      } while (take_next_turns(model_, copy) && (request_.near || std::isinf(best)));
+      } while (take_next_turns(model_, copy) && (ranks_ || std::isinf(best)));
     }
     flush();
     return std::isfinite(best);
@@ -204,6 +218,8 @@ class Solver::Impl::Judge {
   bool redundant_;
   const Pose& T_base_tip_;
   const SolveRequest& request_;
+  /// Whether some answers are better than others.
+  bool ranks_;
   Found& found_;
   JointMove move_;
   Saturation saturation_;
@@ -228,8 +244,10 @@ Result Solver::Impl::solve(const Pose& T_base_tip, const SolveRequest& request,
   Result result;
   JointVector q;
   if (search.status == Status::solved) {
-    result = judge.answer(q) ? finish(result, of_call, T_base_tip, q) : result;
-    if (result.success()) {
+    if (judge.answer(q) && finish(of_call, T_base_tip, q, result)) {
+      if (request.objective.is_set()) {
+        result.cost = ObjectiveCost(robot.model(), request.objective).value(q);
+      }
       if (request.near) result.move = JointMove(robot.dof(), request).length(q - *request.near);
     } else {
       result.status = Status::rejected;

@@ -33,25 +33,28 @@ void check_fits(const Robot& robot, const Database& database) {
 
 }  // namespace
 
-Workspace::Workspace(const ChainModel& model, const DatabaseData& data,
+Workspace::Workspace(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
                      const SolverOptions& options)
-    : selection(model, data, options), tasks(model, data, options, selection), found(model) {
+    : selection(model, nominal, data, options),
+      tasks(model, data, options, selection),
+      found(model) {
   if (solves_in_lanes(model, data, options)) {
-    lanes = std::make_unique<LaneSearch>(model, data, options, lanes::choose_kernels());
+    lanes = std::make_unique<LaneSearch>(model, nominal, data, options, lanes::choose_kernels());
   }
   if (options.kinematics == Kinematics::kdl) kdl = model.make_kdl(Pose::Identity());
 }
 
 Solver::Impl::Impl(const Robot& robot_in, const SolverOptions& options_in,
-                   const Database& database_in)
+                   const Database& database_in, const Robot& nominal_in)
     : robot(robot_in),
       options(options_in),
       database(database_in),
+      nominal(nominal_in),
       task(options.task, options.position_tolerance, options.rotation_tolerance) {
-  check_fits(robot, database);
+  check_fits(nominal, database);
   const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
   for (std::size_t i = 0; i < std::min(cores, kPlaces); ++i) {
-    idle_[i] = new Workspace(robot.model(), database.data(), options);
+    idle_[i] = new Workspace(robot.model(), nominal.model(), database.data(), options);
   }
 }
 
@@ -65,7 +68,8 @@ Solver::Impl::Lease::Lease(const Impl& solver) : solver_(solver) {
     workspace_ = place.exchange(nullptr, std::memory_order_acquire);
     if (workspace_ != nullptr) return;
   }
-  workspace_ = new Workspace(solver.robot.model(), solver.database.data(), solver.options);
+  workspace_ = new Workspace(solver.robot.model(), solver.nominal.model(), solver.database.data(),
+                             solver.options);
 }
 
 Solver::Impl::Lease::~Lease() {
@@ -89,11 +93,9 @@ Result Solver::Impl::solve(const Pose& T_base_tip, const JointVector* seed, Work
     result.status = Status::out_of_reach;
     return result;
   }
-  // Nothing is a success by hearsay: the q that goes out is measured itself.
   const auto accept = [&](JointVector& q) {
     model.wrap_into_limits(q.data());
-    result = finish(result, task, T_base_tip, q);
-    return result.success() ? Verdict::stop : Verdict::refine;
+    return finish(task, T_base_tip, q, result) ? Verdict::stop : Verdict::refine;
   };
 
   if (!task.is_full_pose()) {
@@ -109,15 +111,15 @@ Result Solver::Impl::solve(const Pose& T_base_tip, const JointVector* seed, Work
     return result;
   }
 
-  const Pose tip_target = T_base_tip * Pose(model.tcp_inverse);
   if (workspace.lanes) {
     Work work;
-    workspace.lanes->run(tip_target, seed, clock, work, accept);
+    workspace.lanes->search(T_base_tip, seed, clock, work, accept);
     result.attempts = work.attempts;
     result.iterations = work.iterations;
     return result;
   }
 
+  const Pose tip_target = T_base_tip * Pose(model.tcp_inverse);
   Random random(options.seed);
   const IterationContext context{model, options, T_base_tip, tip_target, workspace.kdl.get(),
                                  random};
@@ -127,8 +129,7 @@ Result Solver::Impl::solve(const Pose& T_base_tip, const JointVector* seed, Work
     ++result.attempts;
     const Outcome outcome = iterate(context, q, result.iterations);
     if (outcome == Outcome::outside_limits) result.status = Status::outside_limits;
-    if (outcome == Outcome::solved) result = finish(result, task, T_base_tip, q);
-    return result.success();
+    return outcome == Outcome::solved && finish(task, T_base_tip, q, result);
   };
 
   if (seed != nullptr && attempt(seed->data())) {
@@ -163,40 +164,46 @@ bool Solver::Impl::out_of_reach(const TaskSpace& of_call, const Pose& T_base_tip
 void Solver::Impl::measure(const TaskSpace& of_call, const Pose& target, const JointVector& q,
                            double& position, double& rotation) const {
   if (of_call.is_full_pose()) {
-    measure_error(robot.model(), target, q, position, rotation);
+    measure_error(robot.model(), target, q.data(), position, rotation);
   } else {
     of_call.measure(target, robot.model().fk(q.data()), position, rotation);
   }
 }
 
-Result Solver::Impl::finish(Result result, const TaskSpace& of_call, const Pose& target,
-                            const JointVector& q) const {
+bool Solver::Impl::finish(const TaskSpace& of_call, const Pose& target, const JointVector& q,
+                          Result& result) const {
   double position = kNan;
   double rotation = kNan;
   measure(of_call, target, q, position, rotation);
-  if (position <= options.position_tolerance && rotation <= options.rotation_tolerance &&
-      robot.model().within_limits(q.data())) {
-    result.status = Status::solved;
-    result.q = q;
-    result.position_error = position;
-    result.rotation_error = rotation;
+  if (!(position <= options.position_tolerance && rotation <= options.rotation_tolerance &&
+        robot.model().within_limits(q.data()))) {
+    return false;
   }
-  return result;
+  result.status = Status::solved;
+  result.q = q;
+  result.position_error = position;
+  result.rotation_error = rotation;
+  return true;
 }
 
 Solver::Solver(const Robot& robot, const SolverOptions& options) {
   options.validate();
-  impl_ = std::make_shared<Impl>(robot, options, Database::build(robot, options.database));
+  impl_ = std::make_shared<Impl>(robot, options, Database::build(robot, options.database), robot);
 }
 
 Solver::Solver(const Robot& robot, const SolverOptions& options, const Database& database) {
   options.validate();
-  impl_ = std::make_shared<Impl>(robot, options, database);
+  impl_ = std::make_shared<Impl>(robot, options, database, robot);
 }
 
 const Robot& Solver::robot() const { return impl_->robot; }
 const SolverOptions& Solver::options() const { return impl_->options; }
 const Database& Solver::database() const { return impl_->database; }
+
+std::size_t Solver::work_bound() const {
+  return static_cast<std::size_t>(options().max_attempts) *
+         static_cast<std::size_t>(options().max_iterations);
+}
 
 Result Solver::solve(const Pose& T_base_tip) const {
   check_pose(T_base_tip);

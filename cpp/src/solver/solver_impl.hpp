@@ -19,7 +19,9 @@ namespace iksel {
 
 /// What one solve writes to. Never shared between two solves at once.
 struct Workspace {
-  Workspace(const ChainModel& model, const DatabaseData& data, const SolverOptions& options);
+  /// `nominal` is the chain that the data belongs to.
+  Workspace(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
+            const SolverOptions& options);
 
   Selection selection;
   TaskSearch tasks;
@@ -32,7 +34,9 @@ struct Workspace {
 };
 
 struct Solver::Impl {
-  Impl(const Robot& robot_in, const SolverOptions& options_in, const Database& database_in);
+  /// The nominal robot is the one that the database was built for.
+  Impl(const Robot& robot_in, const SolverOptions& options_in, const Database& database_in,
+       const Robot& nominal_in);
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
   ~Impl();
@@ -52,8 +56,7 @@ struct Solver::Impl {
   Solutions solve_all(const Pose& T_base_tip, const AllOptions& all, const SolveRequest& request,
                       Workspace& workspace) const;
 
-  /// `self` is the solver of this.
-  Diagnosis diagnose(const Solver& self, const Pose& T_base_tip, const SolveRequest& request) const;
+  Diagnosis diagnose(const Pose& T_base_tip, const SolveRequest& request) const;
 
   /// A workspace of this solver, given back when it goes.
   class Lease {
@@ -72,11 +75,20 @@ struct Solver::Impl {
   Robot robot;
   SolverOptions options;
   Database database;
+  Robot nominal;
+  Drift drift;
   /// options.task.
   TaskSpace task;
 
   /// Most targets of one solve_many.
   static constexpr std::size_t kMany = 256;
+
+  PathResult solve_path(const std::vector<Pose>& T_base_tip, const PathOptions& path,
+                        Workspace& workspace) const;
+  /// Nothing is a success by hearsay: measures q itself, and only if that reaches the target inside
+  /// the limits, makes it the result.
+  bool finish(const TaskSpace& of_call, const Pose& target, const JointVector& q,
+              Result& result) const;
 
  private:
   [[nodiscard]] bool out_of_reach(const TaskSpace& of_call, const Pose& T_base_tip) const;
@@ -85,9 +97,12 @@ struct Solver::Impl {
   class Judge;
   /// Collects solutions in workspace.found.
   void explore(Exploration& search, Workspace& workspace) const;
-  void explore_in_lanes(Exploration& search, const Pose& tip_target, LaneSearch& lanes,
+  /// Brings a solution to the turns nearest to `near`.
+  void take_turns_near(const JointVector& near, const TaskSpace& of_call, const Pose& T_base_tip,
+                       JointVector& q) const;
+  void explore_in_lanes(Exploration& search, Workspace& workspace,
                         FunctionRef<Verdict(JointVector&)> accept, FunctionRef<bool()> go_on) const;
-  void explore_one_by_one(Exploration& search, const Pose& tip_target, Workspace& workspace,
+  void explore_one_by_one(Exploration& search, Workspace& workspace,
                           FunctionRef<Verdict(JointVector&)> accept,
                           FunctionRef<bool()> go_on) const;
   void explore_task(Exploration& search, TaskSearch& tasks,
@@ -95,8 +110,6 @@ struct Solver::Impl {
   /// The errors of q: position [m] and rotation [rad].
   void measure(const TaskSpace& of_call, const Pose& target, const JointVector& q, double& position,
                double& rotation) const;
-  Result finish(Result result, const TaskSpace& of_call, const Pose& target,
-                const JointVector& q) const;
 
   /// Workspaces that lie idle; a null is a place to put one back. More solves at once than places
   /// make their own.
@@ -113,22 +126,20 @@ void Solver::Impl::solve_many(std::size_t first, std::size_t last, Workspace& wo
     }
     return;
   }
-  // Those that the best seed alone does not solve are solved one by one afterwards.
+  // Those that their best seeds do not solve are solved one by one afterwards.
   std::bitset<kMany> open;
   std::size_t at = first;
-  const auto next = [&](Pose& tip_target) -> int {
+  const auto next = [&]() -> int {
     for (; at < last; ++at) {
-      const Pose T_base_tip = target(at);
-      if (out_of_reach(task, T_base_tip)) {
-        open.set(at - first);
-        continue;
-      }
-      tip_target = T_base_tip * Pose(robot.model().tcp_inverse);
-      return static_cast<int>(at++ - first);
+      if (!out_of_reach(task, target(at))) return static_cast<int>(at++ - first);
+      open.set(at - first);
     }
     return -1;
   };
-  workspace.lanes->stream(next, [&](int offset, JointVector* q, int iterations) {
+  const auto target_at = [&](int offset) -> decltype(auto) {
+    return target(first + static_cast<std::size_t>(offset));
+  };
+  workspace.lanes->stream(next, target_at, [&](int offset, JointVector* q, const Work& work) {
     const auto index = static_cast<std::size_t>(offset);
     if (q == nullptr) {
       open.set(index);
@@ -136,10 +147,9 @@ void Solver::Impl::solve_many(std::size_t first, std::size_t last, Workspace& wo
     }
     robot.model().wrap_into_limits(q->data());
     Result result;
-    result.attempts = 1;
-    result.iterations = iterations;
-    result = finish(result, task, target(first + index), *q);
-    if (!result.success()) return false;
+    result.attempts = work.attempts;
+    result.iterations = work.iterations;
+    if (!finish(task, target(first + index), *q, result)) return false;
     settle(first + index, result);
     return true;
   });

@@ -5,12 +5,11 @@
 #include <cmath>
 #include <limits>
 
+#include "math/constants.hpp"
 #include "math/rotation.hpp"
 
 namespace iksel {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Uniform over all rotations (Shoemake: "Uniform random rotations", Graphics Gems III, 1992).
 Eigen::Matrix3d random_rotation(Random& random) {

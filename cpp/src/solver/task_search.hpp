@@ -17,6 +17,10 @@ namespace iksel {
 
 class TaskSearch {
  public:
+  struct Always {
+    bool operator()() const { return true; }
+  };
+
   TaskSearch(const ChainModel& model, const DatabaseData& data, const SolverOptions& options,
              Selection& selection);
 
@@ -30,7 +34,7 @@ class TaskSearch {
 
   /// Attempts seeds of its own until one is accepted (then true), the work bound is reached, or
   /// `go_on()`, asked after each, says no.
-  template <typename Accept, typename GoOn = LaneSearch::Always>
+  template <typename Accept, typename GoOn = Always>
   bool run(StageClock& clock, Work& work, const Accept& accept, const GoOn& go_on = {});
 
   /// Whether an attempt reached the task outside the limits.

@@ -138,6 +138,8 @@ class ChainReader {
     }
     segment.axis = axis.normalized();
 
+    if (upwards) segment.axis = -segment.axis;
+
     const Motion motion = resolve_mimic(joint);
     segment.multiplier = motion.multiplier;
     segment.offset = motion.offset;
@@ -151,7 +153,6 @@ class ChainReader {
       segment.variable = variable_of(*motion.source);
       narrow_by_follower(joint, motion, spec_.variables[segment.variable]);
     }
-    if (upwards) segment.axis = -segment.axis;
     spec_.joints.push_back(segment);
   }
 
@@ -184,10 +185,14 @@ class ChainReader {
     return motion;
   }
 
+  /// A locked joint is a fixed one: its motion by `value` becomes part of the constant transform.
   static void lock(ChainJoint& segment, double value) {
-    segment.variable = -1;
-    segment.multiplier = 0.0;
-    segment.offset = value;
+    if (segment.prismatic) {
+      segment.before.translate(value * segment.axis);
+    } else {
+      segment.before.rotate(Eigen::AngleAxisd(value, segment.axis));
+    }
+    segment.fixed = true;
   }
 
   int variable_of(const urdf::Joint& source) {

@@ -11,7 +11,8 @@
 namespace iksel {
 
 /// One joint on the way from base to tip: first the constant transform `before`, then the motion by
-/// `multiplier * q[variable] + offset` about or along `axis`, then `after`.
+/// `multiplier * q[variable] + offset` about or along `axis`, then `after`. A fixed or locked joint
+/// has the constant transforms only.
 struct ChainJoint {
   std::string name;
   Eigen::Isometry3d before = Eigen::Isometry3d::Identity();
@@ -19,7 +20,7 @@ struct ChainJoint {
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
   bool fixed = false;
   bool prismatic = false;
-  int variable = -1;
+  int variable = -1;  ///< -1: fixed
   double multiplier = 1.0;
   double offset = 0.0;
 };

@@ -7,7 +7,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from iksel_cpp import DatabaseOptions, InvalidArgumentError, SolverOptions
+from iksel_cpp import Axis, DatabaseOptions, InvalidArgumentError, SolverOptions, Task
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -15,6 +15,14 @@ if TYPE_CHECKING:
 Options = DatabaseOptions | SolverOptions
 
 PRESETS = ("default", "paper")
+
+TASK_FORMS = (
+    "pose, position_only, free_spin[:AXIS] (any spin about an axis of the tool), "
+    "upright[:AXIS] (any turn about an axis of the base), planar[:AXIS], or "
+    "box:PX,PY,PZ,RX,RY,RZ (tolerances in the tool's axes [m, rad], inf: free); "
+    "AXIS is x, y or z (default z)"
+)
+_TASKS = {"free_spin": Task.free_spin, "upright": Task.upright, "planar": Task.planar}
 
 # Fields whose plain flag would mean two things in one command.
 _SOLVER_FLAGS = {"seed": "--solver-seed"}
@@ -24,6 +32,13 @@ _DATABASE_FLAGS = {
     "threads": "--database-threads",
 }
 _SOLVER, _DATABASE = "solver.", "database."
+
+# Who names a scale means the paper's databases, which have their sizes from it.
+_WITH_SCALE = {"sampling": "grid", "key_scheme": "full", "samples": 0}
+_NOTES = {
+    "scale": "; unless other flags say otherwise, with --sampling grid "
+    "--key-scheme full, as in the paper"
+}
 
 
 def add_preset(parser: argparse.ArgumentParser) -> None:
@@ -43,9 +58,15 @@ def add_solver_options(parser: argparse.ArgumentParser) -> None:
         "--database",
         type=Path,
         metavar="FILE",
-        help="use a database made by 'iksel build' instead of building one",
+        help="use a database made by 'iksel build' instead of building one; over one "
+        "with a full key seeds are iterated one by one, not in SIMD lanes",
     )
     group = parser.add_argument_group("solver options")
+    group.add_argument(
+        "--task",
+        metavar="TASK",
+        help=f"what of a pose has to be reached: {TASK_FORMS}",
+    )
     _add_fields(group, SolverOptions, _SOLVER, _SOLVER_FLAGS)
     add_database_options(parser)
 
@@ -63,16 +84,41 @@ def solver_options(arguments: argparse.Namespace) -> SolverOptions:
         InvalidArgumentError: A value out of range, or database flags where a database
             is given.
     """
-    changes = _given(arguments, _DATABASE)
+    changes = _database_changes(arguments)
     if changes and arguments.database is not None:
-        flags = ", ".join(_flag(name, _DATABASE_FLAGS) for name in changes)
+        given = _given(arguments, _DATABASE)
+        flags = ", ".join(_flag(name, _DATABASE_FLAGS) for name in given)
         raise InvalidArgumentError(
             f"{flags}: cannot be used with --database, whose file has its own settings"
         )
     paper = arguments.preset == "paper"
     options = SolverOptions.paper() if paper else SolverOptions()
     database = options.database.replace(**changes)
-    return options.replace(database=database, **_given(arguments, _SOLVER))
+    task = parse_task(arguments.task) if arguments.task else options.task
+    return options.replace(database=database, task=task, **_given(arguments, _SOLVER))
+
+
+def parse_task(text: str) -> Task:
+    """A task in one of TASK_FORMS.
+
+    Raises:
+        InvalidArgumentError: Not one of them.
+    """
+    name, _, rest = text.partition(":")
+    if name in _TASKS and (not rest or rest in Axis.__members__):
+        return _TASKS[name](rest) if rest else _TASKS[name]()
+    if text == "pose":
+        return Task.pose()
+    if text == "position_only":
+        return Task.position_only()
+    if name == "box":
+        try:
+            values = [float(word) for word in rest.split(",")]
+        except ValueError:
+            values = []
+        if len(values) == 6:
+            return Task.box(values[:3], values[3:])
+    raise InvalidArgumentError(f"--task: {text!r} is none of {TASK_FORMS}")
 
 
 def database_options(arguments: argparse.Namespace) -> DatabaseOptions:
@@ -83,16 +129,35 @@ def database_options(arguments: argparse.Namespace) -> DatabaseOptions:
     """
     paper = arguments.preset == "paper"
     options = DatabaseOptions.paper() if paper else SolverOptions().database
-    return options.replace(**_given(arguments, _DATABASE))
+    return options.replace(**_database_changes(arguments))
 
 
 def overrides(arguments: argparse.Namespace) -> dict[str, Any]:
     """The fields that flags changed from the preset; database fields as database.x."""
-    database = _given(arguments, _DATABASE)
+    database = _database_changes(arguments)
+    task = getattr(arguments, "task", None)
     return {
+        **({"task": task} if task else {}),
         **_given(arguments, _SOLVER),
         **{_DATABASE + name: value for name, value in database.items()},
     }
+
+
+def _database_changes(arguments: argparse.Namespace) -> dict[str, Any]:
+    """The database fields that the flags change from the preset.
+
+    Raises:
+        InvalidArgumentError: Two sizes at once.
+    """
+    given = _given(arguments, _DATABASE)
+    if "scale" not in given:
+        return given
+    if given.get("samples") and getattr(arguments, "database", None) is None:
+        raise InvalidArgumentError(
+            f"--samples {given['samples']}: cannot be used with --scale "
+            f"{given['scale']}, which has a size of its own"
+        )
+    return {**_WITH_SCALE, **given}
 
 
 def _given(arguments: argparse.Namespace, prefix: str) -> dict[str, Any]:
@@ -119,7 +184,9 @@ def _add_fields(
     for field, default in defaults.items():
         if isinstance(default, dict):
             continue
-        text = f"{getattr(options, field).__doc__} ({_presets(default, paper[field])})"
+        note = _NOTES.get(field, "") if options is DatabaseOptions else ""
+        doc = getattr(options, field).__doc__
+        text = f"{doc}{note} ({_presets(default, paper[field])})"
         group.add_argument(
             _flag(field, renamed),
             dest=prefix + field,

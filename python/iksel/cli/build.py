@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 EXAMPLES = """\
 examples:
   iksel build ur3 -o ur3.iksel
-  iksel build ur3 -o ur3.iksel --preset paper --scale large
+  iksel build ur3 -o ur3.iksel --scale large
   iksel build arm.urdf --base base_link --tip tool0 -o arm.iksel --samples 40000
 """
 

@@ -27,6 +27,7 @@ EXAMPLES = """\
 examples:
   iksel evaluate ur3
   iksel evaluate ur3_wrs --preset paper --targets 10000 --seed 1 --json
+  iksel evaluate xarm5 --task free_spin --targets 100000
   iksel evaluate panda --preset paper --iteration cwln --max-attempts 6 --stages
 """
 
@@ -91,6 +92,7 @@ def run(arguments: argparse.Namespace) -> int:
         "rotation_tolerance": options.rotation_tolerance,
         "threads": 1,
         "simd": iksel_cpp.simd_level(),
+        "work_bound": solver.work_bound,
         "database_samples": len(database),
         "build_s": build_s,
     }
@@ -106,7 +108,7 @@ def print_text(report: dict[str, Any]) -> None:
     changed = ", ".join(f"{k}={v}" for k, v in report["overrides"].items())
     times = [
         (name, report[f"{name}_us"])
-        for name in ("mean", "std", "min", "median", "p99", "max")
+        for name in ("mean", "std", "min", "median", "p99", "p999", "max")
     ]
     build_s = report["build_s"]
     origin = "from file" if build_s is None else f"built in {build_s:.3f} s"
@@ -124,6 +126,7 @@ def print_text(report: dict[str, Any]) -> None:
             ("false successes", str(report["false_success"])),
             ("attempts", f"{report['mean_attempts']:.2f} on average"),
             ("iterations", f"{report['mean_iterations']:.2f} on average"),
+            ("  most", f"{report['max_iterations']}, bound {report['work_bound']}"),
             *((f"{name} time", f"{value:10.2f} us") for name, value in times),
             *(
                 (f"  {key.removesuffix('_us')}", f"{report[key]:10.2f} us")

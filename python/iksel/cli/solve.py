@@ -7,7 +7,7 @@ import math
 import time
 from typing import TYPE_CHECKING, Any
 
-from iksel_cpp import Database, Solver
+from iksel_cpp import Database, InvalidArgumentError, Solver
 
 from iksel.cli._options import add_solver_options, solver_options
 from iksel.cli._output import add_json, number, print_json, print_pairs, print_table
@@ -18,7 +18,9 @@ from iksel.cli.info import pose_text
 if TYPE_CHECKING:
     import argparse
 
-    from iksel_cpp import Result, Robot
+    from iksel_cpp import Diagnosis, Result, Robot
+
+    from iksel._arrays import FloatArray
 
 EXIT_SOLVED, EXIT_NO_SOLUTION = 0, 1
 
@@ -26,6 +28,10 @@ EXAMPLES = """\
 examples:
   iksel solve ur3 --pose 0.2 0.15 0.3 0 3.1416 0
   iksel solve ur3 --pose 0.2 0.15 0.3 0 0 1 0 --json
+  iksel solve ur3 --pose 0.2 0.15 0.3 0 3.1416 0 --near 0 -1 1 0 1 0
+  iksel solve ur3 --pose 0.2 0.15 0.3 0 3.1416 0 --all
+  iksel solve ur3 --pose 0.2 0.15 0.3 0 3.1416 0 --task free_spin
+  iksel solve ur3 --pose 0.9 0 0.3 0 0 0 --diagnose
   iksel solve panda --from-q 0 -0.5 0 -2 0 1.6 0.8 --preset paper --max-attempts 6
   iksel solve arm.urdf --base base_link --tip tool0 --tcp 0 0 0.1 0 0 0 --from-q 0 0 0 0
 
@@ -57,6 +63,31 @@ def add_parser(commands: Any) -> None:
         metavar="Q",
         help="joint values to start the first attempt from [rad or m]",
     )
+    parser.add_argument(
+        "--near",
+        nargs="+",
+        metavar="Q",
+        help="joint values to stay near [rad or m]: gives the solution with the smallest "
+        "joint move",
+    )
+    parser.add_argument(
+        "--all",
+        action="store_true",
+        help="give every distinct solution, nearest first (with --near: to that, else to "
+        "the middle of the limits)",
+    )
+    parser.add_argument(
+        "--objective",
+        choices=("limits", "manipulability"),
+        help="of all answers found, the one farthest from the limits, or the most "
+        "manipulable; a redundant arm's slides there",
+    )
+    parser.add_argument(
+        "--diagnose",
+        action="store_true",
+        help="if there is no solution, search for the reason, and print it with the "
+        "best effort",
+    )
     add_json(parser)
     add_solver_options(parser)
     parser.set_defaults(run=run)
@@ -70,15 +101,28 @@ def run(arguments: argparse.Namespace) -> int:
         target = parse_pose("--pose", arguments.pose)
     else:
         target = robot.fk(parse_joints("--from-q", arguments.from_q, joints))
+    near = arguments.near and parse_joints("--near", arguments.near, joints)
+    if arguments.objective and (arguments.all or arguments.seed_q):
+        raise InvalidArgumentError("--objective: not with --all or --seed-q")
+    if near and arguments.seed_q:
+        raise InvalidArgumentError("--seed-q: --near starts from its own joint values")
     seed = arguments.seed_q and parse_joints("--seed-q", arguments.seed_q, joints)
     options = solver_options(arguments)
     database = arguments.database and Database.load(arguments.database)
     solver = Solver(robot, options, database)
 
+    if arguments.all:
+        return run_all(solver, target, near, arguments)
+
+    def solve() -> Result:
+        if near or arguments.objective:
+            return solver.solve(target, near=near, objective=arguments.objective)
+        return solver.solve(target, seed=seed)
+
     # The first call also fetches the database into the caches: time the second.
-    solver.solve(target, seed=seed)
+    solve()
     start = time.perf_counter()
-    result = solver.solve(target, seed=seed)
+    result = solve()
     time_us = (time.perf_counter() - start) * 1e6
 
     report = {
@@ -95,11 +139,90 @@ def run(arguments: argparse.Namespace) -> int:
         "iterations": result.iterations,
         "time_us": time_us,
     }
+    diagnosis = None
+    if arguments.diagnose and not result.success:
+        diagnosis = solver.diagnose(target)
+        report["diagnosis"] = diagnosis_report(robot, diagnosis)
     if arguments.json:
         print_json(report)
     else:
         print_text(robot, result, report)
+        if diagnosis is not None:
+            print_diagnosis(robot, diagnosis)
     return EXIT_SOLVED if result.success else EXIT_NO_SOLUTION
+
+
+def diagnosis_report(robot: Robot, diagnosis: Diagnosis) -> dict[str, Any]:
+    """The fields of a diagnosis; the joint by name."""
+    joint = diagnosis.joint
+    return {
+        "cause": diagnosis.cause.name,
+        "message": diagnosis.message,
+        "beyond_reach": diagnosis.beyond_reach,
+        "rotation_gap": diagnosis.rotation_gap,
+        "joint": robot.joint_names[joint] if joint >= 0 else None,
+        "limit_violation": diagnosis.limit_violation,
+        "least_singular_value": diagnosis.least_singular_value,
+        "best_effort_q": diagnosis.q,
+        "best_effort_is_solution": diagnosis.q_is_solution,
+        "best_effort_position_error": diagnosis.position_error,
+        "best_effort_rotation_error": diagnosis.rotation_error,
+    }
+
+
+def print_diagnosis(robot: Robot, diagnosis: Diagnosis) -> None:
+    """Print the reason of a failure for people, and the best effort."""
+    print()
+    print_pairs([("cause", diagnosis.cause.name), ("", diagnosis.message)])
+    if diagnosis.q is None:
+        return
+    note = "an answer" if diagnosis.q_is_solution else "NO SOLUTION"
+    print()
+    print(
+        f"best effort ({note}): off by {diagnosis.position_error:.3g} m, "
+        f"{diagnosis.rotation_error:.3g} rad"
+    )
+    print_joints(robot, diagnosis.q.tolist())
+
+
+def run_all(
+    solver: Solver, target: FloatArray, near: list[float] | None, arguments: Any
+) -> int:
+    """Find every distinct solution and print them."""
+    robot = solver.robot
+    start = time.perf_counter()
+    found = solver.solve_all(target, near=near)
+    report = {
+        "robot": robot.name,
+        "preset": arguments.preset,
+        "joint_names": robot.joint_names,
+        "target": target,
+        "success": found.success,
+        "status": found.status.name,
+        "q": found.q,
+        "position_error": found.position_error,
+        "rotation_error": found.rotation_error,
+        "attempts": found.attempts,
+        "iterations": found.iterations,
+        "time_us": (time.perf_counter() - start) * 1e6,
+    }
+    if arguments.json:
+        print_json(report)
+    else:
+        print_pairs(
+            [
+                ("robot", f"{robot.name}, {robot.base_link} -> {robot.tip_link}"),
+                ("target", pose_text(target)),
+                ("status", found.status.name),
+                ("solutions", str(len(found))),
+            ]
+        )
+        if found.success:
+            print()
+            print_table(
+                robot.joint_names, [[number(x, 6) for x in q] for q in found.q.tolist()]
+            )
+    return EXIT_SOLVED if found.success else EXIT_NO_SOLUTION
 
 
 def print_text(robot: Robot, result: Result, report: dict[str, Any]) -> None:
@@ -121,6 +244,11 @@ def print_text(robot: Robot, result: Result, report: dict[str, Any]) -> None:
     if result.q is None:
         return
     print()
+    print_joints(robot, result.q.tolist())
+
+
+def print_joints(robot: Robot, q: list[float]) -> None:
+    """Print joint values as a table."""
     print_table(
         ("joint", "rad or m", "deg"),
         [
@@ -130,7 +258,7 @@ def print_text(robot: Robot, result: Result, report: dict[str, Any]) -> None:
                 "" if kind.name == "prismatic" else number(math.degrees(value), 4),
             )
             for name, kind, value in zip(
-                robot.joint_names, robot.joint_types, result.q.tolist(), strict=True
+                robot.joint_names, robot.joint_types, q, strict=True
             )
         ],
     )

@@ -1,0 +1,257 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What can be measured: one function per kind of cell, from settings to a result.
+
+Cells run in worker processes (bench.worker). Settings and results are plain data.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import json
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+import iksel
+from bench.arms import load_arm
+from bench.check import judge, right
+from bench.machine import fingerprint
+from bench.paper.artefact import singular_first
+from bench.rivals import RIVALS
+from bench.rivals.base import UnsupportedError
+from bench.targets import cached_targets
+from bench.timing import summary
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from bench.rivals.base import Rival
+    from bench.store import Settings
+    from bench.targets import Targets
+
+WORK = Path(__file__).resolve().parents[1] / "build" / "bench"
+"""Where targets, databases and results are kept."""
+
+CEILING_ATTEMPTS = 100
+"""Attempts of the paper's near-optimal line."""
+
+DATABASE = "database."
+"""Prefix of the overrides that are of DatabaseOptions."""
+
+
+def solver_options(preset: str, overrides: dict[str, Any]) -> iksel.SolverOptions:
+    """A preset with fields changed; database fields are written database.FIELD."""
+    options = (
+        iksel.SolverOptions.paper() if preset == "paper" else iksel.SolverOptions()
+    )
+    database = {
+        name.removeprefix(DATABASE): value
+        for name, value in overrides.items()
+        if name.startswith(DATABASE)
+    }
+    solver = {
+        name: value
+        for name, value in overrides.items()
+        if not name.startswith(DATABASE)
+    }
+    return options.replace(database=options.database.replace(**database), **solver)
+
+
+def command_line(settings: Settings) -> str:
+    """The command that shows an `evaluate` cell to a reader."""
+    words = ["iksel evaluate", settings["robot"], "--preset", settings["preset"]]
+    for name, value in settings["overrides"].items():
+        flag = name.removeprefix(DATABASE).replace("_", "-")
+        if name in ("database.pinv_cutoff", "database.seed", "database.threads"):
+            flag = "database-" + flag
+        words += ["--" + flag, str(value)]
+    words += ["--targets", str(settings["count"]), "--seed", str(settings["seed"])]
+    return " ".join(words)
+
+
+@functools.lru_cache(maxsize=2)
+def _database(robot: str, fields: str) -> iksel.Database:
+    """A database by its options as JSON; those that take long are kept in files."""
+    options = iksel.DatabaseOptions(**json.loads(fields))
+    arm = load_arm(robot)
+    if options.sampling != iksel.Sampling.cvt:
+        return iksel.Database.build(arm.robot, options)
+    name = hashlib.sha256(f"{fingerprint()} {fields}".encode()).hexdigest()[:20]
+    path = WORK / "databases" / f"{robot}-{name}.iksel"
+    if not path.exists():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        iksel.Database.build(arm.robot, options).save(path)
+    return iksel.Database.load(path)
+
+
+def make_solver(settings: Settings) -> iksel.Solver:
+    """The solver of a cell with robot, preset and overrides."""
+    options = solver_options(settings["preset"], settings["overrides"])
+    fields = json.dumps(options.database.to_dict(), sort_keys=True)
+    database = _database(settings["robot"], fields)
+    return iksel.Solver(load_arm(settings["robot"]).robot, options, database)
+
+
+def targets_of(settings: Settings) -> Targets:
+    """The targets of a cell with robot, kind, count and seed."""
+    arm = load_arm(settings["robot"])
+    kind, count, seed = settings["kind"], settings["count"], settings["seed"]
+    return cached_targets(WORK / "targets", arm, kind, count, seed)
+
+
+def targets(settings: Settings) -> dict[str, Any]:
+    """Make the targets that others will read."""
+    return {"count": len(targets_of(settings))}
+
+
+def evaluate(settings: Settings) -> dict[str, Any]:
+    """The paper's protocol by iksel.evaluate, timed inside C++."""
+    solver = make_solver(settings)
+    count, seed = settings["count"], settings["seed"]
+    figures = iksel.evaluate(solver, count, seed, settings.get("stages", False))
+    return {**figures.to_dict(), "samples": len(solver.database)}
+
+
+def attempts(settings: Settings) -> dict[str, Any]:
+    """Targets solved within 1, 2, ... attempts, from one run with many.
+
+    An attempt does not know how many may follow it, so a run that is allowed r attempts
+    solves just what a longer run has solved by its attempt r.
+    """
+    solver = make_solver(settings)
+    arm = load_arm(settings["robot"])
+    q = arm.robot.random_configurations(settings["count"], settings["seed"])
+    # To the last bit the targets of iksel.evaluate.
+    poses = arm.robot.fk(q, iksel.Kinematics.kdl)
+    result = solver.solve_batch(poses)
+    longest = solver.options.max_attempts
+    by_attempt = np.bincount(result.attempts[result.success], minlength=longest + 1)
+    outside = np.count_nonzero(result.status == int(iksel.Status.outside_limits))
+    return {
+        "solved": np.cumsum(by_attempt)[1:].tolist(),
+        "converged_outside_limits": int(outside),
+        "count": settings["count"],
+        "samples": len(solver.database),
+    }
+
+
+def rival(settings: Settings) -> dict[str, Any]:
+    """One solver on one kind of targets, judged by bench.check."""
+    arm = load_arm(settings["robot"])
+    try:
+        solver = _rival(settings["robot"], settings["rival"])
+    except UnsupportedError as reason:
+        return {"unsupported": str(reason)}
+    goals = targets_of(settings)
+    run = solver.run(goals)
+    done = len(run.answers)
+    verdict = judge(arm.chain, goals.poses[:done], run.answers)
+    result = {
+        "count": done,
+        "right": int(verdict.right.sum()),
+        "claimed": int(verdict.claimed.sum()),
+        "false_claims": verdict.false_claims,
+        **summary(run.times_ns),
+    }
+    # Success over time: the times of the right answers alone.
+    quantiles = summary(run.times_ns[verdict.right]) if verdict.right.any() else {}
+    result["right_quantiles_us"] = quantiles.get("quantiles_us", [])
+    return result
+
+
+@functools.lru_cache(maxsize=1)
+def _rival(robot: str, name: str) -> Rival:
+    return RIVALS[name](load_arm(robot))
+
+
+def batch(settings: Settings) -> dict[str, Any]:
+    """Many poses in one call: time per pose, best of three."""
+    arm = load_arm(settings["robot"])
+    goals = targets_of(settings)
+    threads = settings["threads"]
+    if settings["rival"] == "EAIK":
+        eaik: Any = _rival(settings["robot"], "EAIK")
+        poses = np.array([eaik.prepare(pose, None)[0] for pose in goals.poses])
+        call = functools.partial(eaik.batch, poses, threads)
+    else:
+        solver = iksel.Solver(arm.robot)
+        call = functools.partial(solver.solve_batch, goals.poses, threads=threads)
+    call()
+    times = []
+    for _ in range(3):
+        begin = time.perf_counter_ns()
+        returned = call()
+        times.append(time.perf_counter_ns() - begin)
+    if settings["rival"] == "EAIK":
+        answers = [eaik.answers(solution) for solution in returned]
+        solved = int(judge(arm.chain, goals.poses, answers).right.sum())
+    else:
+        solved = int(right(arm.chain, goals.poses, returned.q).sum())
+    return {
+        "count": len(goals),
+        "right": solved,
+        "us_per_pose": min(times) / 1e3 / len(goals),
+    }
+
+
+def artefact(settings: Settings) -> dict[str, Any]:
+    """How often a singular sample ranks first; bench.paper.artefact."""
+    solver = make_solver(settings)
+    arm = load_arm(settings["robot"])
+    q = arm.robot.random_configurations(settings["count"], settings["seed"])
+    return singular_first(solver, arm.chain.fk(q))
+
+
+def seeds(settings: Settings) -> dict[str, Any]:
+    """Solutions of another solver as the only seeds of the paper's iteration."""
+    solver: Any = make_solver(settings)
+    if "database_seeds" not in (type(solver).solve.__doc__ or ""):
+        return {"unsupported": "this iksel has no Solver.solve(pose, seeds=...)"}
+    arm = load_arm(settings["robot"])
+    try:
+        source = _rival(settings["robot"], settings["rival"])
+    except UnsupportedError as reason:
+        return {"unsupported": str(reason)}
+    goals = targets_of(settings)
+    run = source.run(goals)
+    done = len(run.answers)
+    direct = judge(arm.chain, goals.poses[:done], run.answers)
+    times = np.array(run.times_ns, dtype=float)
+    answers: list[list[Any]] = []
+    for i, found in enumerate(run.answers):
+        if not found:
+            answers.append([])
+            continue
+        given = np.array(found)
+        begin = time.perf_counter_ns()
+        result = solver.solve(goals.poses[i], seeds=given, database_seeds=False)
+        times[i] += time.perf_counter_ns() - begin
+        answers.append([result.q] if result.success else [])
+    tolerance = solver.options.position_tolerance, solver.options.rotation_tolerance
+    solved = [
+        bool(right(arm.chain, goals.poses[i : i + 1], np.array(found), *tolerance)[0])
+        for i, found in enumerate(answers)
+        if found
+    ]
+    return {
+        "count": done,
+        "direct_right": int(direct.right.sum()),
+        "direct_mean_us": float(np.mean(run.times_ns)) / 1e3,
+        "right": sum(solved),
+        "mean_us": float(times.mean()) / 1e3,
+    }
+
+
+CELLS: dict[str, Callable[[Settings], dict[str, Any]]] = {
+    "targets": targets,
+    "evaluate": evaluate,
+    "attempts": attempts,
+    "rival": rival,
+    "batch": batch,
+    "artefact": artefact,
+    "seeds": seeds,
+}
+"""The functions by the names that settings have under "cell"."""

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the figures were made on, and of."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import os
+import platform
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import iksel_cpp
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[1]
+
+MEASURING = (
+    "arms.py",
+    "cells.py",
+    "chain.py",
+    "check.py",
+    "targets.py",
+    "timing.py",
+    "paper/artefact.py",
+    "rivals/*.py",
+    "cpp/baselines/*",
+)
+"""Files of bench/ that a figure depends on; the others only choose and show."""
+
+
+def facts() -> dict[str, Any]:
+    """Machine, versions and commit, as the report prints them."""
+    return {
+        "cpu": cpu_name(),
+        "cores": os.cpu_count(),
+        "system": platform.platform(terse=True),
+        "python": platform.python_version(),
+        "numpy": np.__version__,
+        "iksel": iksel_cpp.__version__,
+        "simd": iksel_cpp.simd_level(),
+        "commit": commit(),
+        "stale": stale(),
+    }
+
+
+def cpu_name() -> str:
+    """The processor as the system calls it."""
+    try:
+        text = Path("/proc/cpuinfo").read_text(encoding="utf-8")
+    except OSError:
+        return platform.processor()
+    for line in text.splitlines():
+        if line.startswith("model name"):
+            return line.split(":", 1)[1].strip()
+    return platform.machine()
+
+
+def commit() -> str:
+    """The checkout's commit; with a + if files outside bench/ differ from it."""
+    revision = _git("rev-parse", "--short=10", "HEAD")
+    if not revision:
+        return "unknown"
+    changed = _git("status", "--porcelain", "--untracked-files=no", "--", ":!bench")
+    return revision + ("+" if changed else "")
+
+
+def stale() -> bool:
+    """Whether cpp/ or python/ have changed since the installed core was built."""
+    changed = _git("log", "-1", "--format=%ct", "--", "cpp", "python")
+    built = Path(iksel_cpp.__file__).stat().st_mtime
+    return bool(changed) and float(changed) > built
+
+
+def _git(*arguments: str) -> str:
+    command = ["git", "-C", str(ROOT), *arguments]
+    try:
+        done = subprocess.run(command, check=False, capture_output=True, text=True)
+    except OSError:
+        return ""
+    return done.stdout.strip() if done.returncode == 0 else ""
+
+
+@functools.cache
+def fingerprint() -> str:
+    """Changes when a stored figure would no longer be this machine's and code's.
+
+    Made of the installed core, the measuring files, the interpreter and the processor.
+    """
+    digest = hashlib.sha256()
+    digest.update(Path(iksel_cpp.__file__).read_bytes())
+    for pattern in MEASURING:
+        for path in sorted((ROOT / "bench").glob(pattern)):
+            digest.update(path.read_bytes())
+    for fact in (cpu_name(), os.cpu_count(), sys.version, iksel_cpp.simd_level()):
+        digest.update(str(fact).encode())
+    return digest.hexdigest()[:16]

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Pieces of a Markdown text."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+NONE = "\N{EN DASH}"
+"""What stands where there is no figure."""
+
+
+def table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """A table; columns after the first are aligned right."""
+    lines = [list(header), ["---", *["---:"] * (len(header) - 1)], *map(list, rows)]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def microseconds(value: float | None) -> str:
+    """A time [us] with as many digits as mean something."""
+    if value is None:
+        return NONE
+    if value < 10:
+        return f"{value:.2f}"
+    if value < 100:
+        return f"{value:.1f}"
+    return f"{value:,.0f}"
+
+
+def percent(part: float, whole: float, digits: int = 2) -> str:
+    """A part in percent; never rounded up to 100."""
+    value = 100.0 * part / whole
+    shown = f"{value:.{digits}f}"
+    if part < whole and float(shown) == 100.0:
+        shown = f"{100.0 - 10.0**-digits:.{digits}f}"
+    return shown
+
+
+def signed(value: float, digits: int = 2) -> str:
+    """A difference with its sign."""
+    return f"{value:+.{digits}f}".replace("-", "\N{MINUS SIGN}")

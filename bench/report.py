@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Collects results into one file, and makes the text and the plots of it."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+from bench import machine
+from bench.plots import draw_all
+from bench.rivals import RIVALS
+from bench.rivals.base import UnsupportedError
+from bench.sections import paper, rivals, robots
+from bench.store import write_json
+from bench.view import View
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from bench.plan import Job, Size
+    from bench.store import Store
+    from bench.view import Report
+
+PLOTTED = "uniform"
+"""Targets whose distributions are kept for the plots."""
+
+DIGITS = 6
+"""Significant digits of the figures that are kept."""
+
+
+def collect(
+    jobs: list[Job], store: Store, size: Size, *, command: str, seconds: float
+) -> Report:
+    """All results of some jobs as plain data, and what they were made on."""
+    cells = {}
+    for job in jobs:
+        for settings in job.cells:
+            result = store.load(settings)
+            if result is not None and settings["cell"] != "targets":
+                key = json.dumps(settings, sort_keys=True)
+                if settings.get("kind", PLOTTED) != PLOTTED:
+                    result = _without_quantiles(result)
+                cells[key] = {"settings": settings, "result": _rounded(result)}
+    return {
+        "machine": machine.facts(),
+        "command": command,
+        "seconds": round(seconds),
+        "size": asdict(size),
+        "versions": store.versions,
+        "missing": missing_rivals(),
+        "failures": {},
+        "cells": list(cells.values()),
+    }
+
+
+def installed_rivals() -> dict[str, str]:
+    """Versions of the solvers that can be had here, by name."""
+    versions = {}
+    for name, rival in RIVALS.items():
+        with contextlib.suppress(UnsupportedError):
+            versions[name] = rival.version()
+    return versions
+
+
+def missing_rivals() -> dict[str, str]:
+    """Why the others cannot be had, by name."""
+    reasons = {}
+    for name, rival in RIVALS.items():
+        try:
+            rival.version()
+        except UnsupportedError as reason:
+            reasons[name] = str(reason)
+    return reasons
+
+
+def save_report(report: Report, folder: Path) -> None:
+    """Write results/report.json."""
+    write_json(folder / "results" / "report.json", report)
+
+
+def load_report(folder: Path) -> Report:
+    """Read what save_report wrote."""
+    path = folder / "results" / "report.json"
+    report: Report = json.loads(path.read_text(encoding="utf-8"))
+    return report
+
+
+def render(report: Report, folder: Path) -> None:
+    """Write RESULTS.md and the plots."""
+    view = View(report)
+    text = "\n\n".join(
+        part
+        for part in (
+            _head(report),
+            rivals.text(view),
+            paper.text(view),
+            robots.text(view),
+            _tail(report),
+        )
+        if part
+    )
+    drawn = draw_all(view, folder / "plots")
+    text = "\n".join(
+        line
+        for line in text.splitlines()
+        if not line.startswith("![") or any(f"({plot})" in line for plot in drawn)
+    )
+    if not drawn:
+        text += "\n\nNo plots: matplotlib is not installed.\n"
+    (folder / "RESULTS.md").write_text(text.rstrip() + "\n", encoding="utf-8")
+
+
+def _head(report: Report) -> str:
+    facts = report["machine"]
+    made = (
+        f"Made by `{report['command']}` in {report['seconds']} s (results that were "
+        f"there already not counted), with IKSel {facts['iksel']} (lanes: "
+        f"{facts['simd']}) at commit {facts['commit']}, Python {facts['python']}, "
+        f"numpy {facts['numpy']}, on {facts['cpu']}, {facts['cores']} cores, "
+        f"{facts['system']}. Times move from machine to machine; what is compared "
+        "here was timed in the same run."
+    )
+    if facts.get("stale"):
+        made += " The sources have changed since this IKSel was built and installed."
+    return f"# Results\n\nGenerated; nothing in here is written by hand.\n\n{made}"
+
+
+def _tail(report: Report) -> str:
+    failures = report["failures"]
+    if not failures:
+        return ""
+    lines = [f"- {name}: {reason}" for name, reason in failures.items()]
+    return "\n".join(["## Failed", "", *lines])
+
+
+def _without_quantiles(result: dict[str, Any]) -> dict[str, Any]:
+    return {k: v for k, v in result.items() if not k.endswith("quantiles_us")}
+
+
+def _rounded(value: Any) -> Any:
+    """Floats with DIGITS significant digits, to keep the file small."""
+    if isinstance(value, dict):
+        return {name: _rounded(item) for name, item in value.items()}
+    if isinstance(value, list):
+        return [_rounded(item) for item in value]
+    if isinstance(value, float):
+        return float(f"{value:.{DIGITS}g}")
+    return value

@@ -1,0 +1,300 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""IKSel beside its rivals, as text."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from bench.arms import RIVAL_ARMS
+from bench.check import POSITION_TOLERANCE, ROTATION_TOLERANCE
+from bench.markdown import NONE, microseconds, percent, table
+from bench.plan import BATCH_THREADS, BATCHES, batch_cell, rival_cell, rival_count
+from bench.rivals import RIVALS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from bench.view import View
+
+OURS = "IKSel"
+ANALYTIC = ("EAIK", "IK-Geo")
+TIMES_FASTER = 20.0
+"""Times that IKSel is to be faster than a numerical rival."""
+ENOUGH_PERCENT = 99.99
+"""Success that the default preset is to have near limits and singularities."""
+
+KIND_TITLES = {
+    "near_limits": "Near the limits: at least one joint within 2 % of its range of one",
+    "near_singular": "Near singularities: smallest singular value in the lowest 1 %",
+    "lines": "Along straight lines of 0.1 m in 50 steps, every pose by itself",
+}
+
+
+def text(view: View) -> str:
+    """The whole section."""
+    if not view.has_any("rival"):
+        return ""
+    parts = [
+        "## IKSel beside its rivals",
+        _conditions(view),
+        "![Share of targets solved over time](plots/success_over_time.svg)",
+        "### Random targets: mean (p99) in µs",
+        _times(view, "uniform"),
+        *_verdicts(view),
+        "### Random targets: right answers in percent",
+        _rights(view, "uniform"),
+        "![Latency of each solver](plots/latency.svg)",
+    ]
+    for kind, title in KIND_TITLES.items():
+        parts += [f"### {title}", _rights_and_times(view, kind)]
+        if kind == "lines":
+            continue
+        parts.append(_enough(view, kind))
+    parts += [
+        "### Reachable positions, random rotations",
+        "Some have no solution, and a solver has to find that out.",
+        _rights_and_times(view, "any_rotation"),
+        *_complete(view),
+    ]
+    parts += [
+        "### Out of reach: mean (p99) in µs until a solver says so",
+        _times(view, "unreachable"),
+        _unreachable_claims(view),
+        "### In batches",
+        _batches(view),
+        "### Versions and settings",
+        _settings(view),
+    ]
+    return "\n\n".join(part for part in parts if part)
+
+
+def _conditions(view: View) -> str:
+    counts = view.size.rivals
+    shares = ", ".join(
+        f"{name} {rival_count(view.size, name, 'uniform'):,}"
+        for name in RIVALS
+        if rival_count(view.size, name, "uniform") != counts["uniform"]
+    )
+    return (
+        f"{counts['uniform']:,} targets per robot uniform in the joint limits, seed 1 "
+        f"({shares}), the same for all; one after another in one process per solver, "
+        "on one thread where the solver lets us choose; times are of each call, "
+        "failures included, and from Python unless the table of settings says C++. "
+        "An answer is right if bench's own forward kinematics is within "
+        f"{POSITION_TOLERANCE:g} m and {ROTATION_TOLERANCE:g} rad of the target and "
+        "it lies inside the limits (of an analytic solver's branches, one has to "
+        "be). Solvers that need a start all get the same random one. Their "
+        "tolerances are set so that their answers can pass: some defaults are of a "
+        "squared error."
+    )
+
+
+def _cells(
+    view: View, kind: str, show: Callable[[dict[str, Any]], str]
+) -> list[list[str]]:
+    rows = []
+    for name in RIVALS:
+        found = [
+            view.get(rival_cell(robot, name, kind, view.size)) for robot in RIVAL_ARMS
+        ]
+        if any(found):
+            rows.append(
+                [name, *(NONE if cell is None else show(cell) for cell in found)]
+            )
+    return rows
+
+
+def _header(first: str) -> list[str]:
+    return [first, *(f"`{robot}`" for robot in RIVAL_ARMS)]
+
+
+def _times(view: View, kind: str) -> str:
+    def show(cell: dict[str, Any]) -> str:
+        return f"{microseconds(cell['mean_us'])} ({microseconds(cell['p99_us'])})"
+
+    return table(_header("solver"), _cells(view, kind, show))
+
+
+def _rights(view: View, kind: str) -> str:
+    def show(cell: dict[str, Any]) -> str:
+        right = percent(cell["right"], cell["count"])
+        false = cell["false_claims"]
+        return right + (f" ({false} false)" if false else "")
+
+    note = "(n false): answers claimed that are none."
+    return table(_header("solver"), _cells(view, kind, show)) + "\n\n" + note
+
+
+def _rights_and_times(view: View, kind: str) -> str:
+    def show(cell: dict[str, Any]) -> str:
+        right = percent(cell["right"], cell["count"])
+        false = f" ({cell['false_claims']} false)" if cell["false_claims"] else ""
+        return f"{right}{false}; {microseconds(cell['mean_us'])}"
+
+    return table(_header("right answers in %; mean in µs"), _cells(view, kind, show))
+
+
+def factors(view: View) -> dict[tuple[str, str], float]:
+    """How many times each rival's mean is IKSel's, by robot and solver."""
+    result = {}
+    for robot in RIVAL_ARMS:
+        ours = view.get(rival_cell(robot, OURS, "uniform", view.size))
+        for name in RIVALS:
+            theirs = view.get(rival_cell(robot, name, "uniform", view.size))
+            if ours and theirs and not name.startswith(OURS):
+                result[robot, name] = theirs["mean_us"] / ours["mean_us"]
+    return result
+
+
+def _verdicts(view: View) -> list[str]:
+    by_rival = factors(view)
+    numerical = {key: f for key, f in by_rival.items() if key[1] not in ANALYTIC}
+    lines = []
+    if numerical:
+        (robot, name), least = min(numerical.items(), key=lambda item: item[1])
+        below = sorted(key for key, f in numerical.items() if f < TIMES_FASTER)
+        lines.append(
+            f"Against numerical rivals IKSel is at least {least:.1f} times faster in "
+            f"the mean ({name} on `{robot}` comes closest); {TIMES_FASTER:.0f} times "
+            "was the aim"
+            + (
+                ", missed against "
+                + ", ".join(
+                    f"{name} on `{robot}` ({numerical[robot, name]:.1f})"
+                    for robot, name in below
+                )
+                if below
+                else ", and holds everywhere"
+            )
+            + "."
+        )
+    for name in ANALYTIC:
+        found = {robot: f for (robot, n), f in by_rival.items() if n == name}
+        for robot, factor in found.items():
+            ours = view.get(rival_cell(robot, OURS, "uniform", view.size))
+            theirs = view.get(rival_cell(robot, name, "uniform", view.size))
+            if ours is None or theirs is None or theirs["right"] == 0:
+                continue
+            word = "below" if factor > 1.0 else "above"
+            lines.append(
+                f"{OURS} on `{robot}`, one pose at a time from Python: "
+                f"{microseconds(ours['mean_us'])} µs, {word} {name}'s "
+                f"{microseconds(theirs['mean_us'])} µs."
+            )
+    return lines
+
+
+def _enough(view: View, kind: str) -> str:
+    worst, where = 100.0, ""
+    for robot in RIVAL_ARMS:
+        cell = view.get(rival_cell(robot, OURS, kind, view.size))
+        if cell is not None:
+            value = 100.0 * cell["right"] / cell["count"]
+            if value <= worst:
+                worst, where = value, robot
+    if not where:
+        return ""
+    word = "holds" if worst >= ENOUGH_PERCENT else "is missed"
+    return (
+        f"IKSel's least is {worst:.3f} % (`{where}`): the aim of {ENOUGH_PERCENT} % "
+        f"{word}."
+    )
+
+
+def _complete(view: View) -> list[str]:
+    """IKSel beside the solver that finds every solution there is."""
+    lines = []
+    for robot in RIVAL_ARMS:
+        ours, theirs = (
+            view.get(rival_cell(robot, name, "any_rotation", view.size))
+            for name in (OURS, ANALYTIC[0])
+        )
+        if ours and theirs and ours["count"] == theirs["count"]:
+            lines.append(
+                f"On `{robot}` {ANALYTIC[0]}, which finds all solutions there are, "
+                f"solves {theirs['right']:,} of {theirs['count']:,}, {OURS} "
+                f"{ours['right']:,}."
+            )
+    return lines
+
+
+def _unreachable_claims(view: View) -> str:
+    claims = []
+    for name in RIVALS:
+        found = [
+            view.get(rival_cell(robot, name, "unreachable", view.size))
+            for robot in RIVAL_ARMS
+        ]
+        total = sum(cell["claimed"] for cell in found if cell is not None)
+        if total:
+            claims.append(f"{name} ({total})")
+    targets = "Targets farther from the first joint than the arm is long. "
+    if not claims:
+        return targets + "No solver claimed an answer."
+    return targets + f"Answers claimed all the same: {', '.join(claims)}."
+
+
+def _batches(view: View) -> str:
+    rows = []
+    for robot, name in BATCHES:
+        cells = [
+            view.get(batch_cell(robot, name, threads, view.size))
+            for threads in BATCH_THREADS
+        ]
+        if any(cells):
+            rows.append(
+                [
+                    f"{name} on `{robot}`",
+                    *(
+                        NONE if cell is None else microseconds(cell["us_per_pose"])
+                        for cell in cells
+                    ),
+                    *(
+                        percent(cell["right"], cell["count"])
+                        for cell in cells[:1]
+                        if cell is not None
+                    ),
+                ]
+            )
+    header = [f"µs per pose, {view.size.batch:,} poses"]
+    header += [f"{threads} thread" + "s" * (threads > 1) for threads in BATCH_THREADS]
+    return "\n\n".join([table([*header, "right %"], rows), *_batch_verdict(view)])
+
+
+def _batch_verdict(view: View) -> list[str]:
+    robot, name = BATCHES[0]
+    ours, theirs = (
+        view.get(batch_cell(robot, solver, BATCH_THREADS[0], view.size))
+        for solver in (OURS, name)
+    )
+    if ours is None or theirs is None:
+        return []
+    factor = theirs["us_per_pose"] / ours["us_per_pose"]
+    where = f"{OURS} on `{robot}` in batches, one thread"
+    return [f"{where}: {factor:.1f} times as fast as {name}."]
+
+
+def _settings(view: View) -> str:
+    rows = []
+    for name, rival in RIVALS.items():
+        version = view.report["versions"].get(name)
+        if version is None:
+            version = f"skipped: {view.report['missing'][name]}"
+        rows.append([name, version, rival.measured, rival.settings])
+    lines = [
+        "| solver | version | timed | settings |",
+        "|---|---|---|---|",
+        *("| " + " | ".join(row) + " |" for row in rows),
+    ]
+    refused = sorted(
+        {
+            f"{name} on `{robot}`: {why}"
+            for name in RIVALS
+            for robot in RIVAL_ARMS
+            if (why := view.why_not(rival_cell(robot, name, "uniform", view.size)))
+            and why != "not measured"
+        }
+    )
+    if refused:
+        lines += ["", "Refused:", "", *(f"- {line}" for line in refused)]
+    return "\n".join(lines)

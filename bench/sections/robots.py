@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The default preset on every built-in robot, as text."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from bench.markdown import microseconds, table
+from bench.plan import all_robots, robot_cell
+
+if TYPE_CHECKING:
+    from bench.view import View
+
+
+def text(view: View) -> str:
+    """The whole section."""
+    rows = []
+    for robot in all_robots():
+        cell = view.get(robot_cell(robot, view.size))
+        if cell is None:
+            continue
+        rows.append(
+            [
+                f"`{robot}`",
+                f"{cell['success_percent']:.3f}",
+                str(cell["false_success"]),
+                *(
+                    microseconds(cell[name])
+                    for name in ("mean_us", "median_us", "p99_us", "max_us")
+                ),
+                f"{cell['ratio']:.2f}",
+                " / ".join(
+                    f"{cell[name]:.2f}"
+                    for name in ("query_us", "rank_us", "iterate_us")
+                ),
+            ]
+        )
+    if not rows:
+        return ""
+    header = [
+        "robot",
+        "success %",
+        "false",
+        "mean µs",
+        "median",
+        "p99",
+        "max",
+        "ratio",
+        "query / seeds / iterate",
+    ]
+    conditions = (
+        f"{view.size.robots:,} targets per robot, seed 1, 1e-6 m and 1e-6 rad, timed "
+        "inside C++ on one thread. *ratio* is the mean over the time of one KDL "
+        "forward kinematics plus Jacobian on the same robot in the same run: how "
+        "times compare between machines."
+    )
+    title = "## Every robot, default preset"
+    return f"{title}\n\n{conditions}\n\n{table(header, rows)}"

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The one timing loop, and what is kept of its times."""
+
+from __future__ import annotations
+
+import gc
+import time
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    import numpy.typing as npt
+
+WARM_UP = 20
+"""Calls before the first timed one."""
+
+QUANTILES = np.concatenate(
+    [np.linspace(0.0, 0.98, 50), [0.99, 0.995, 0.998, 0.999, 0.9995, 0.9999, 1.0]]
+)
+"""The quantiles of a latency distribution that are kept for the plots."""
+
+
+def time_calls(
+    call: Callable[..., Any], arguments: Sequence[tuple[Any, ...]], limit_s: float
+) -> tuple[npt.NDArray[np.int64], list[Any]]:
+    """Time a call over many arguments, one after another.
+
+    Args:
+        call: What is timed.
+        arguments: One tuple for each call.
+        limit_s: No call is begun after this time [s]; there may be fewer times then.
+
+    Returns:
+        The times [ns] and what was returned. Garbage collection waits meanwhile.
+    """
+    for values in arguments[:WARM_UP]:
+        call(*values)
+    times = np.zeros(len(arguments), dtype=np.int64)
+    returned = []
+    clock = time.perf_counter_ns
+    end = clock() + int(limit_s * 1e9)
+    enabled = gc.isenabled()
+    gc.disable()
+    try:
+        for i, values in enumerate(arguments):
+            begin = clock()
+            result = call(*values)
+            now = clock()
+            times[i] = now - begin
+            returned.append(result)
+            if now > end:
+                break
+    finally:
+        if enabled:
+            gc.enable()
+    return times[: len(returned)], returned
+
+
+def summary(times_ns: npt.NDArray[Any]) -> dict[str, Any]:
+    """Mean, deviation and quantiles [us], failures included."""
+    us = np.asarray(times_ns, dtype=float) / 1e3
+    return {
+        "mean_us": float(us.mean()),
+        "std_us": float(us.std()),
+        "min_us": float(us.min()),
+        "max_us": float(us.max()),
+        "median_us": float(np.median(us)),
+        "p99_us": float(np.quantile(us, 0.99)),
+        "quantiles_us": np.round(np.quantile(us, QUANTILES), 3).tolist(),
+    }

@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A finished report, and how its text and plots look things up in it."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+from bench.plan import Size
+
+if TYPE_CHECKING:
+    from bench.store import Settings
+
+Report = dict[str, Any]
+"""machine, command, seconds, size, versions, missing, failures, and cells: settings,
+result."""
+
+
+class View:
+    """The results of a report by their settings."""
+
+    def __init__(self, report: Report) -> None:
+        """Index the cells."""
+        self.report = report
+        fields: dict[str, Any] = {
+            name: tuple(value) if isinstance(value, list) else value
+            for name, value in report["size"].items()
+        }
+        self.size = Size(**fields)
+        self._results = {
+            _key(cell["settings"]): cell["result"] for cell in report["cells"]
+        }
+
+    def get(self, settings: Settings) -> dict[str, Any] | None:
+        """The result of a cell; None where it was not measured or cannot be."""
+        result = self._results.get(_key(settings))
+        return None if result is None or "unsupported" in result else result
+
+    def why_not(self, settings: Settings) -> str:
+        """Why a cell has no result."""
+        result = self._results.get(_key(settings))
+        return "not measured" if result is None else result.get("unsupported", "")
+
+    def has_any(self, cell: str) -> bool:
+        """Whether anything of that kind was measured."""
+        return any(entry["settings"]["cell"] == cell for entry in self.report["cells"])
+
+
+def _key(settings: Settings) -> str:
+    return json.dumps(settings, sort_keys=True)

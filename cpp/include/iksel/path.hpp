@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Paths of poses, known beforehand or streamed one by one.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "iksel/export.hpp"
+#include "iksel/request.hpp"
+#include "iksel/result.hpp"
+#include "iksel/solver.hpp"
+
+namespace iksel {
+
+/// How solve_path chooses among the solutions of each waypoint.
+struct IKSEL_EXPORT PathOptions {
+  /// Where the arm is one time step before the first waypoint; may lie outside the limits. Empty:
+  /// the path may begin anywhere.
+  std::optional<JointVector> start;
+  /// Time from one waypoint to the next [s]: no joint then moves farther than its velocity limit
+  /// allows. 0: speeds are not limited.
+  double dt = 0;
+  /// The path with the least sum of the moves is taken, each measured so (as in SolveRequest).
+  JointVector weights;
+  MoveNorm norm = MoveNorm::two;
+  /// Refuses candidates, those of one waypoint at a time.
+  Filter filter;
+  /// Candidates kept per waypoint at most.
+  int candidates = 64;
+
+  /// Throws InvalidArgumentError naming the first option that does not fit a chain of `dof` joints.
+  void validate(int dof) const;
+};
+
+/// Joint values along a path.
+struct PathResult {
+  /// `solved` if there is a configuration for every waypoint. Else why there is none for waypoint
+  /// `broken`: too_fast if it has solutions, but no joint path leads there in time.
+  Status status = Status::not_converged;
+  /// One configuration per waypoint [rad or m]; if the path is broken, of those before the break.
+  std::vector<JointVector> q;
+  /// Index of the first waypoint that has no continuation; -1 if the path is solved.
+  std::ptrdiff_t broken = -1;
+  /// The farthest that a joint moves between two waypoints (or start and the first) [rad or m].
+  double largest_step = 0;
+  /// Which joint does, and on the way to which waypoint; -1 if there is no step.
+  int largest_step_joint = -1;
+  std::ptrdiff_t largest_step_waypoint = -1;
+  /// Sum of the moves.
+  double move = 0;
+
+  [[nodiscard]] bool success() const { return status == Status::solved; }
+};
+
+/// Follows a stream of poses: each answer continues from the last, within the velocity limits. Not
+/// to be used from two threads at once; allocates nothing after construction.
+class IKSEL_EXPORT Tracker {
+ public:
+  /// `start` is where the arm is; joints outside their limits are taken to be at them. Throws
+  /// InvalidArgumentError if it has not dof finite elements.
+  Tracker(const Solver& solver, const JointVector& start);
+
+  /// Moves on towards the pose, by no more than each joint can in `dt` seconds. Status `solved`:
+  /// there. `too_fast`: the arm needs more time, and went as far on the straight way in joint space
+  /// as it could. Any other: there is no continuation from here, and the arm stays. `move` is the
+  /// length of the move in joint space. Throws InvalidArgumentError if the pose is not rigid or dt
+  /// is not above 0.
+  [[nodiscard]] Result track(const Pose& T_base_tip, double dt);
+
+  /// Where the arm is now [rad or m]; always inside the limits.
+  [[nodiscard]] const JointVector& q() const { return q_; }
+
+ private:
+  Solver solver_;
+  JointVector q_;
+};
+
+}  // namespace iksel

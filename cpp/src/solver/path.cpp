@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Paths as shortest paths: a layer of candidates per waypoint, the cost of an edge is the move
+// between its ends, and edges that are too fast are none.
+#include "iksel/path.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "error_check.hpp"
+#include "iksel/error.hpp"
+#include "solver/explore.hpp"
+#include "solver/joint_move.hpp"
+#include "solver/self_motion.hpp"
+#include "solver/solver_impl.hpp"
+
+namespace iksel {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Candidates nearer than this in every joint are one [rad or m].
+constexpr double kSame = 1e-4;
+/// Steps from a configuration to the next waypoint's at most.
+constexpr int kSteps = 20;
+
+/// Candidates of one waypoint, with the cheapest way to each.
+struct Layer {
+  std::size_t dof;
+  std::vector<double> q;
+  std::vector<double> cost;
+  std::vector<std::size_t> parent;
+
+  [[nodiscard]] std::size_t size() const { return q.size() / dof; }
+  [[nodiscard]] JointVector at(std::size_t i) const {
+    return Eigen::Map<const Eigen::VectorXd>(&q[i * dof], static_cast<Eigen::Index>(dof));
+  }
+  /// Adds a candidate unless it is there; copies by whole turns are others.
+  void add(const JointVector& candidate) {
+    for (std::size_t i = 0; i < size(); ++i) {
+      if ((at(i) - candidate).cwiseAbs().maxCoeff() < kSame) return;
+    }
+    q.insert(q.end(), candidate.data(), candidate.data() + dof);
+  }
+};
+
+/// Moves allowed in one time step; infinite where they are not limited.
+JointVector longest_moves(const ChainModel& model, double dt) {
+  JointVector longest = JointVector::Constant(model.dof, kInfinity);
+  // A hair more, so that a joint may run at its limit in spite of rounding.
+  constexpr double kSlack = 1e-9;
+  if (dt > 0) longest = model.velocity * (dt * (1 + kSlack));
+  return longest;
+}
+
+bool too_far(const JointVector& move, const JointVector& longest) {
+  return (move.array().abs() > longest.array()).any();
+}
+
+class PathSearch {
+ public:
+  PathSearch(const ChainModel& model, const SolverOptions& solver_options, const TaskSpace& task,
+             const PathOptions& options)
+      : model_(model),
+        solver_options_(solver_options),
+        task_(task),
+        options_(options),
+        request_(make_request(options)),
+        move_(model.dof, request_),
+        longest_(longest_moves(model, options.dt)) {}
+
+  [[nodiscard]] const SolveRequest& request() const { return request_; }
+
+  /// What the candidates of the layer before lead to at the next pose.
+  void add_continuations(const Pose& pose, const Layer& before, Layer& layer) const {
+    // Copies by whole turns lead to copies: only one of them is iterated.
+    constexpr double kCopy = 1e-11;
+    std::vector<JointVector> origins;
+    std::vector<JointVector> moves;
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      const JointVector from = before.at(i);
+      std::size_t same = 0;
+      while (same < origins.size() &&
+             distance_without_turns(model_, origins[same], from, kCopy) >= kCopy) {
+        ++same;
+      }
+      if (same == origins.size()) {
+        JointVector q = from;
+        if (!converge(model_, solver_options_, task_, pose, kSteps, q)) continue;
+        origins.push_back(from);
+        moves.emplace_back(q - from);
+      }
+      const JointVector q = from + moves[same];
+      if (model_.within_limits(q.data())) layer.add(q);
+    }
+  }
+
+  /// The solutions found from the database, each at the turns nearest to where the path may come
+  /// from; of the first waypoint without a start, at all turns.
+  void add_solutions(const Found& found, const Layer* before, Layer& layer) const {
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      JointVector q = found.at(i);
+      if (before == nullptr) {
+        take_first_turns(model_, q);
+        do {
+          layer.add(q);
+        } while (layer.size() < kMostTurns && take_next_turns(model_, q));
+        continue;
+      }
+      for (std::size_t k = 0; k < before->size(); ++k) {
+        take_nearest_turns(model_, before->at(k), 0, q);
+        layer.add(q);
+      }
+    }
+  }
+
+  void apply_filter(Layer& layer) const {
+    if (!options_.filter || layer.size() == 0) return;
+    const std::unique_ptr<bool[]> keep(new bool[layer.size()]());
+    options_.filter(layer.q.data(), layer.size(), keep.get());
+    Layer kept{layer.dof, {}, {}, {}};
+    for (std::size_t i = 0; i < layer.size(); ++i) {
+      if (keep[i]) kept.add(layer.at(i));
+    }
+    layer = std::move(kept);
+  }
+
+  /// The cheapest way to each candidate; keeps the cheapest, and those only that can be reached.
+  void connect(const Layer* before, Layer& layer) {
+    struct Edge {
+      double cost;
+      std::size_t parent;
+      std::size_t index;
+    };
+    std::vector<Edge> edges;
+    for (std::size_t i = 0; i < layer.size(); ++i) {
+      Edge best{before == nullptr ? 0.0 : kInfinity, 0, i};
+      const JointVector q = layer.at(i);
+      for (std::size_t k = 0; before != nullptr && k < before->size(); ++k) {
+        if (before->cost[k] >= best.cost) continue;
+        const JointVector difference = q - before->at(k);
+        if (too_far(difference, longest_)) continue;
+        const double cost = before->cost[k] + move_.length(difference);
+        if (cost < best.cost) best = {cost, k, i};
+      }
+      if (best.cost < kInfinity) edges.push_back(best);
+    }
+    std::stable_sort(edges.begin(), edges.end(),
+                     [](const Edge& a, const Edge& b) { return a.cost < b.cost; });
+    // Without a start all candidates of the first waypoint cost the same, and all are needed.
+    const std::size_t most = std::max(static_cast<std::size_t>(options_.candidates), first_layer_);
+    if (before != nullptr && edges.size() > most) edges.resize(most);
+    if (before == nullptr) first_layer_ = edges.size();
+    Layer kept{layer.dof, {}, {}, {}};
+    for (const Edge& edge : edges) {
+      const JointVector q = layer.at(edge.index);
+      kept.q.insert(kept.q.end(), q.data(), q.data() + model_.dof);
+      kept.cost.push_back(edge.cost);
+      kept.parent.push_back(edge.parent);
+    }
+    layer = std::move(kept);
+  }
+
+  /// Walks back from the cheapest end.
+  void trace(const std::vector<Layer>& layers, PathResult& result) const {
+    if (layers.empty()) return;
+    result.q.resize(layers.size());
+    std::size_t i = 0;
+    for (std::size_t w = layers.size(); w-- > 0;) {
+      result.q[w] = layers[w].at(i);
+      i = layers[w].parent[i];
+    }
+    const bool from_start = options_.start.has_value();
+    for (std::size_t w = from_start ? 0 : 1; w < result.q.size(); ++w) {
+      const JointVector step = result.q[w] - (w == 0 ? *options_.start : result.q[w - 1]);
+      result.move += move_.length(step);
+      int joint = 0;
+      const double largest = step.cwiseAbs().maxCoeff(&joint);
+      if (result.largest_step_joint >= 0 && largest <= result.largest_step) continue;
+      result.largest_step = largest;
+      result.largest_step_joint = joint;
+      result.largest_step_waypoint = static_cast<std::ptrdiff_t>(w);
+    }
+  }
+
+ private:
+  /// Copies by whole turns at the first waypoint, at most.
+  static constexpr std::size_t kMostTurns = 2048;
+
+  static SolveRequest make_request(const PathOptions& options) {
+    SolveRequest request;
+    request.weights = options.weights;
+    request.norm = options.norm;
+    return request;
+  }
+
+  const ChainModel& model_;
+  const SolverOptions& solver_options_;
+  const TaskSpace& task_;
+  const PathOptions& options_;
+  SolveRequest request_;
+  JointMove move_;
+  JointVector longest_;
+  /// Candidates of the first waypoint, if the path has no start.
+  std::size_t first_layer_ = 0;
+};
+
+}  // namespace
+
+void PathOptions::validate(int dof) const {
+  SolveRequest request;
+  request.near = start;
+  request.weights = weights;
+  request.norm = norm;
+  if (start) check_joints(*start, dof, "start");
+  request.validate(dof);
+  if (!(dt >= 0 && dt <= 1e9)) {
+    throw InvalidArgumentError("dt: " + std::to_string(dt) + " s is not 0 or more");
+  }
+  if (candidates < 1 || candidates > 100'000) {
+    throw InvalidArgumentError("candidates: " + std::to_string(candidates) +
+                               " is not in 1 .. 100000");
+  }
+}
+
+PathResult Solver::Impl::solve_path(const std::vector<Pose>& T_base_tip, const PathOptions& path,
+                                    Workspace& workspace) const {
+  const ChainModel& model = robot.model();
+  const auto dof = static_cast<std::size_t>(model.dof);
+  PathSearch search(model, options, task, path);
+  const Layer start = path.start
+                          ? Layer{dof, {path.start->data(), path.start->data() + dof}, {0.0}, {0}}
+                          : Layer{dof, {}, {}, {}};
+
+  std::vector<Layer> layers;
+  layers.reserve(T_base_tip.size());
+  PathResult result;
+  result.status = Status::solved;
+  for (std::size_t w = 0; w < T_base_tip.size(); ++w) {
+    const Layer* before = !layers.empty() ? &layers.back() : path.start ? &start : nullptr;
+    Layer layer{dof, {}, {}, {}};
+    if (before != nullptr) search.add_continuations(T_base_tip[w], *before, layer);
+    Saturation saturation;
+    Found& found = workspace.found;
+    const bool redundant = model.dof > task.fixed_axes();
+    const auto most = static_cast<std::size_t>(path.candidates);
+    const auto enough = [&](int attempts) {
+      return (redundant && found.size() >= most) || saturation.reached(found, attempts);
+    };
+    Exploration exploration{T_base_tip[w], task, search.request(), kSame * 20,
+                            FunctionRef<bool(int)>(enough)};
+    explore(exploration, workspace);
+    search.add_solutions(found, before, layer);
+    const bool any = layer.size() > 0;
+    search.apply_filter(layer);
+    const bool kept = layer.size() > 0;
+    search.connect(before, layer);
+    if (layer.size() == 0) {
+      result.broken = static_cast<std::ptrdiff_t>(w);
+      result.status = kept ? Status::too_fast : any ? Status::rejected : exploration.status;
+      break;
+    }
+    layers.push_back(std::move(layer));
+  }
+  search.trace(layers, result);
+  return result;
+}
+
+PathResult Solver::solve_path(const std::vector<Pose>& T_base_tip,
+                              const PathOptions& options) const {
+  for (std::size_t i = 0; i < T_base_tip.size(); ++i) {
+    check_pose(T_base_tip[i], ("poses[" + std::to_string(i) + "]").c_str());
+  }
+  options.validate(robot().dof());
+  const Impl::Lease lease(*impl_);
+  return impl_->solve_path(T_base_tip, options, lease.get());
+}
+
+Tracker::Tracker(const Solver& solver, const JointVector& start) : solver_(solver), q_(start) {
+  const Robot& robot = solver.robot();
+  check_joints(start, robot.dof(), "start");
+  q_ = q_.cwiseMax(robot.lower()).cwiseMin(robot.upper());
+}
+
+Result Tracker::track(const Pose& T_base_tip, double dt) {
+  check_pose(T_base_tip);
+  if (!(dt > 0)) {
+    throw InvalidArgumentError("dt: " + std::to_string(dt) + " s is not above 0");
+  }
+  const ChainModel& model = solver_.robot().model();
+  Result result;
+  JointVector goal = q_;
+  result.attempts = 1;
+  if (!converge(model, solver_.options(), solver_.impl_->task, T_base_tip, kSteps, goal))
+    return result;
+  const JointVector move = goal - q_;
+  const JointVector longest = longest_moves(model, dt);
+  double part = 1;
+  for (int j = 0; j < model.dof; ++j) {
+    if (std::abs(move[j]) > longest[j]) part = std::min(part, longest[j] / std::abs(move[j]));
+  }
+  if (part == 1) {
+    if (!solver_.impl_->finish(solver_.impl_->task, T_base_tip, goal, result)) return result;
+    q_ = goal;
+  } else {
+    result.status = Status::too_fast;
+    q_ += part * move;
+  }
+  result.move = part * move.norm();
+  return result;
+}
+
+}  // namespace iksel

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "array_checks.hpp"
+#include "bindings.hpp"
+#include "filter.hpp"
+#include "iksel/path.hpp"
+#include "py_result.hpp"
+#include "python_types.hpp"
+
+namespace iksel::python {
+
+namespace {
+
+struct PyPath {
+  PathResult path;
+  int dof = 0;
+
+  [[nodiscard]] py::array_t<double> q() const {
+    py::array_t<double> array(
+        {static_cast<py::ssize_t>(path.q.size()), static_cast<py::ssize_t>(dof)});
+    double* out = array.mutable_data();
+    for (const JointVector& q : path.q) {
+      out = std::copy_n(q.data(), static_cast<std::size_t>(dof), out);
+    }
+    return array;
+  }
+};
+
+using OptionalIndex = py::typing::Optional<py::int_>;
+
+OptionalIndex optional_index(std::ptrdiff_t index) {
+  const py::object value = index < 0 ? py::object(py::none()) : py::object(py::int_(index));
+  return py::reinterpret_borrow<OptionalIndex>(value);
+}
+
+PyPath solve_path(const Solver& self, const ArrayLike& poses, const std::optional<ArrayLike>& start,
+                  const Loose<double>& dt, const std::optional<ArrayLike>& weights,
+                  const Loose<MoveNorm>& norm, const std::optional<FilterCallable>& filter,
+                  const Loose<int>& candidates) {
+  const int dof = self.robot().dof();
+  const DoubleArray array = as_poses(poses, "poses");
+  std::vector<Pose> targets(static_cast<std::size_t>(array.shape(0)));
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    targets[i].matrix() = Eigen::Map<const RowMajorPose>(array.data() + 16 * i);
+  }
+  PathOptions options;
+  if (start) options.start = as_joints(*start, dof, "start");
+  options.dt = from_python<double>(dt, "dt");
+  if (weights) options.weights = as_joints(*weights, dof, "weights");
+  options.norm = from_python<MoveNorm>(norm, "norm");
+  if (filter) options.filter = make_filter(*filter, dof);
+  options.candidates = from_python<int>(candidates, "candidates");
+  const py::gil_scoped_release release;
+  return {self.solve_path(targets, options), dof};
+}
+
+void bind_path_result(py::module_& m) {
+  py::class_<PyPath> cls(m, "PathResult", "Joint values along a path.");
+  cls.def_property_readonly(
+      "success", [](const PyPath& self) { return self.path.success(); },
+      "Whether there is a configuration for every waypoint.");
+  cls.def_property_readonly(
+      "status", [](const PyPath& self) { return self.path.status; },
+      "`solved`, or why waypoint `broken` has none: `too_fast` if it has solutions, but no joint "
+      "path leads there in time.");
+  cls.def_property_readonly(
+      "q", &PyPath::q,
+      "Joint values [rad or m], (N, dof); if the path is broken, of the waypoints before.");
+  cls.def_property_readonly(
+      "broken", [](const PyPath& self) { return optional_index(self.path.broken); },
+      "Index of the first waypoint that has no continuation; None if solved.");
+  cls.def_property_readonly(
+      "largest_step", [](const PyPath& self) { return self.path.largest_step; },
+      "The farthest that a joint moves from one waypoint to the next [rad or m].");
+  cls.def_property_readonly(
+      "largest_step_joint",
+      [](const PyPath& self) { return optional_index(self.path.largest_step_joint); },
+      "Index of the joint that does; None if there is no step.");
+  cls.def_property_readonly(
+      "largest_step_waypoint",
+      [](const PyPath& self) { return optional_index(self.path.largest_step_waypoint); },
+      "Index of the waypoint where that step ends; None if there is no step.");
+  cls.def_property_readonly(
+      "move", [](const PyPath& self) { return self.path.move; }, "Sum of the joint moves.");
+  cls.def("__repr__", [](const PyPath& self) {
+    return std::string("PathResult(") + enum_name(self.path.status) + ", " +
+           std::to_string(self.path.q.size()) + " waypoints" +
+           (self.path.success() ? "" : ", broken=" + std::to_string(self.path.broken)) + ")";
+  });
+}
+
+}  // namespace
+
+void bind_path(py::module_& m, py::class_<Solver>& cls) {
+  bind_path_result(m);
+  const PathOptions path;
+  cls.def("solve_path", &solve_path, py::arg("poses"), py::arg("start") = py::none(), py::kw_only(),
+          py::arg("dt") = path.dt, py::arg("weights") = py::none(),
+          py::arg("norm") = py::cast(path.norm), py::arg("filter") = py::none(),
+          py::arg("candidates") = path.candidates,
+          R"(Joint values along a path of poses, by a choice among the solutions of all waypoints.
+
+Of all ways through the solutions that are found, the one with the least sum of joint moves.
+
+Args:
+    poses: T_base_tip of each waypoint, (N, 4, 4) [m].
+    start: where the arm is one time step before the first waypoint, (dof,) [rad or m]; None: the
+        path may begin anywhere.
+    dt: time from one waypoint to the next [s], in which no joint moves farther than its velocity
+        limit allows; 0: speeds are not limited.
+    weights, norm: how a move is measured, as in solve.
+    filter: called with candidates (n, dof) of one waypoint; returns n truth values.
+    candidates: candidates kept per waypoint at most.
+
+Raises:
+    InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, a number out of range.)");
+
+  py::class_<Tracker> tracker(
+      m, "Tracker",
+      "Follows a stream of poses: each answer continues from the last, within the velocity limits. "
+      "Not to be used from two threads at once.");
+  tracker.def(py::init([](const Solver& solver, const ArrayLike& start) {
+                return Tracker(solver, as_joints(start, solver.robot().dof(), "start"));
+              }),
+              py::arg("solver"), py::arg("start"),
+              R"(Begins where the arm is.
+
+Args:
+    solver: what solves.
+    start: joint values, (dof,) [rad or m]; those outside the limits are taken to be at them.
+
+Raises:
+    InvalidArgumentError: wrong shape or dtype, or a number that is not finite.)");
+  tracker.def(
+      "track",
+      [](Tracker& self, const ArrayLike& pose, const Loose<double>& dt) {
+        return PyResult{self.track(as_pose(pose, "pose"), from_python<double>(dt, "dt")), {}};
+      },
+      py::arg("pose"), py::arg("dt"),
+      R"(Moves on towards a pose, by no more than each joint can in the time step.
+
+Args:
+    pose: T_base_tip, (4, 4) [m].
+    dt: time step [s].
+
+Returns:
+    A Result. Status `solved`: there. `too_fast`: the arm needs more time, and went as far on the
+    straight way in joint space as it could. Any other: no continuation, and the arm stays.
+
+Raises:
+    InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, or dt not above 0.)");
+  tracker.def_property_readonly(
+      "q", [](const Tracker& self) { return to_array(self.q()); },
+      "Where the arm is now, (dof,) [rad or m]; always inside the limits.");
+  cls.def(
+      "tracker",
+      [](const Solver& self, const ArrayLike& start) {
+        return Tracker(self, as_joints(start, self.robot().dof(), "start"));
+      },
+      py::arg("start"), "Tracker(self, start).");
+}
+
+}  // namespace iksel::python

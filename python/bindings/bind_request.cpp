@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "array_checks.hpp"
+#include "bindings.hpp"
+#include "filter.hpp"
+#include "iksel/diagnosis.hpp"
+#include "iksel/solver.hpp"
+#include "objective.hpp"
+#include "py_result.hpp"
+#include "python_types.hpp"
+#include "task_fields.hpp"
+
+namespace iksel::python {
+
+namespace {
+
+/// The distinct solutions for one target.
+struct PySolutions {
+  Solutions solutions;
+  int dof = 0;
+
+  [[nodiscard]] py::ssize_t size() const { return static_cast<py::ssize_t>(solutions.all.size()); }
+
+  [[nodiscard]] py::array_t<double> q() const {
+    py::array_t<double> array({size(), static_cast<py::ssize_t>(dof)});
+    double* out = array.mutable_data();
+    for (const Result& result : solutions.all) {
+      out = std::copy_n(result.q.data(), static_cast<std::size_t>(dof), out);
+    }
+    return array;
+  }
+
+  template <class T>
+  [[nodiscard]] py::array_t<T> column(T Result::*member) const {
+    py::array_t<T> array(size());
+    T* out = array.mutable_data();
+    for (const Result& result : solutions.all) *out++ = result.*member;
+    return array;
+  }
+
+  [[nodiscard]] PyResult row(const Loose<py::ssize_t>& index) const {
+    auto i = from_python<py::ssize_t>(index, "i");
+    if (i < 0) i += size();
+    if (i < 0 || i >= size()) {
+      throw py::index_error("solution " + std::to_string(i) + " of " + std::to_string(size()));
+    }
+    return {solutions.all[static_cast<std::size_t>(i)], {}};
+  }
+};
+
+std::vector<JointVector> as_seeds(const ArrayLike& value, int dof) {
+  const DoubleArray array = as_doubles(value, "seeds");
+  const std::string n = std::to_string(dof);
+  if (array.ndim() != 2 || array.shape(1) != dof) {
+    throw_wrong_shape("seeds", "an (N, " + n + ") array", array);
+  }
+  std::vector<JointVector> seeds;
+  seeds.reserve(static_cast<std::size_t>(array.shape(0)));
+  for (py::ssize_t i = 0; i < array.shape(0); ++i) {
+    check_finite(array.data(i), dof, "seeds[" + std::to_string(i) + "]");
+    seeds.emplace_back(Eigen::Map<const Eigen::VectorXd>(array.data(i), dof));
+  }
+  return seeds;
+}
+
+SolveRequest make_request(int dof, const std::optional<ArrayLike>& near,
+                          const std::optional<ArrayLike>& weights, const Loose<MoveNorm>& norm,
+                          const std::optional<ArrayLike>& seeds, const Loose<bool>& database_seeds,
+                          const std::optional<FilterCallable>& filter,
+                          const std::optional<Loose<double>>& deadline,
+                          const std::optional<Loose<Task>>& task,
+                          const std::optional<ObjectiveLike>& objective) {
+  SolveRequest request;
+  if (task) request.task = from_python<Task>(*task, "task");
+  if (objective) request.objective = as_objective(*objective);
+  if (near) request.near = as_joints(*near, dof, "near");
+  if (weights) request.weights = as_joints(*weights, dof, "weights");
+  request.norm = from_python<MoveNorm>(norm, "norm");
+  if (seeds) request.seeds = as_seeds(*seeds, dof);
+  request.database_seeds = from_python<bool>(database_seeds, "database_seeds");
+  if (filter) request.filter = make_filter(*filter, dof);
+  if (deadline) request.deadline = from_python<double>(*deadline, "deadline");
+  return request;
+}
+
+PyResult solve(const Solver& self, const ArrayLike& pose, const std::optional<ArrayLike>& near,
+               const std::optional<ArrayLike>& weights, const Loose<MoveNorm>& norm,
+               const std::optional<ArrayLike>& seeds, const Loose<bool>& database_seeds,
+               const std::optional<FilterCallable>& filter,
+               const std::optional<Loose<double>>& deadline, const std::optional<Loose<Task>>& task,
+               const std::optional<ObjectiveLike>& objective) {
+  const Pose target = as_pose(pose, "pose");
+  const SolveRequest request = make_request(self.robot().dof(), near, weights, norm, seeds,
+                                            database_seeds, filter, deadline, task, objective);
+  if (!filter) return {self.solve(target, request), {}};
+  const py::gil_scoped_release release;
+  return {self.solve(target, request), {}};
+}
+
+PySolutions solve_all(const Solver& self, const ArrayLike& pose, const Loose<int>& max,
+                      const Loose<double>& min_distance, const Loose<bool>& whole_turns,
+                      const Loose<SolutionOrder>& order, const std::optional<ArrayLike>& near,
+                      const std::optional<ArrayLike>& weights, const Loose<MoveNorm>& norm,
+                      const std::optional<ArrayLike>& seeds, const Loose<bool>& database_seeds,
+                      const std::optional<FilterCallable>& filter,
+                      const std::optional<Loose<double>>& deadline,
+                      const std::optional<Loose<Task>>& task) {
+  const Pose target = as_pose(pose, "pose");
+  const int dof = self.robot().dof();
+  AllOptions options;
+  options.max = from_python<int>(max, "max");
+  options.min_distance = from_python<double>(min_distance, "min_distance");
+  options.whole_turns = from_python<bool>(whole_turns, "whole_turns");
+  options.order = from_python<SolutionOrder>(order, "order");
+  const SolveRequest request =
+      make_request(dof, near, weights, norm, seeds, database_seeds, filter, deadline, task, {});
+  const py::gil_scoped_release release;
+  return {self.solve_all(target, options, request), dof};
+}
+
+Diagnosis diagnose(const Solver& self, const ArrayLike& pose,
+                   const std::optional<FilterCallable>& filter,
+                   const std::optional<Loose<double>>& deadline,
+                   const std::optional<Loose<Task>>& task) {
+  const Pose target = as_pose(pose, "pose");
+  SolveRequest request;
+  if (filter) request.filter = make_filter(*filter, self.robot().dof());
+  if (deadline) request.deadline = from_python<double>(*deadline, "deadline");
+  if (task) request.task = from_python<Task>(*task, "task");
+  const py::gil_scoped_release release;
+  return self.diagnose(target, request);
+}
+
+void bind_solutions(py::module_& m) {
+  using S = PySolutions;
+  py::class_<S> cls(m, "Solutions",
+                    "The distinct solutions for one target, best first. Indexing gives a Result.");
+  cls.def_property_readonly(
+      "success", [](const S& self) { return self.solutions.success(); },
+      "Whether there is at least one.");
+  cls.def_property_readonly(
+      "status", [](const S& self) { return self.solutions.status; },
+      "`solved`, or why there is none.");
+  cls.def_property_readonly("q", &S::q, "Joint values [rad or m], (n, dof).");
+  cls.def_property_readonly(
+      "position_error", [](const S& self) { return self.column(&Result::position_error); },
+      "Distances to the target [m], (n,).");
+  cls.def_property_readonly(
+      "rotation_error", [](const S& self) { return self.column(&Result::rotation_error); },
+      "Lengths of the rotation vectors to the target [rad], (n,).");
+  cls.def_property_readonly(
+      "move", [](const S& self) { return self.column(&Result::move); },
+      "Lengths of the moves from `near`, (n,); NaN without one.");
+  cls.def_property_readonly(
+      "attempts", [](const S& self) { return self.solutions.attempts; }, "Seeds tried.");
+  cls.def_property_readonly(
+      "iterations", [](const S& self) { return self.solutions.iterations; },
+      "Iteration steps over all attempts.");
+  cls.def("__len__", &S::size);
+  cls.def("__getitem__", &S::row, py::arg("i"));
+  cls.def("__iter__", [](const py::object& self) {
+    return py::reinterpret_steal<py::typing::Iterator<PyResult>>(PySeqIter_New(self.ptr()));
+  });
+  cls.def("__repr__", [](const S& self) {
+    return std::string("Solutions(") + enum_name(self.solutions.status) + ", " +
+           std::to_string(self.size()) + " solutions)";
+  });
+}
+
+}  // namespace
+
+void bind_requests(py::module_& m, py::class_<Solver>& cls) {
+  bind_solutions(m);
+  const SolveRequest wishes;
+  const AllOptions all;
+  const auto norm = py::cast(wishes.norm);
+  // A second overload, so that plain solving pays nothing for the wishes.
+  cls.def("solve", &solve, py::arg("pose"), py::kw_only(), py::arg("near") = py::none(),
+          py::arg("weights") = py::none(), py::arg("norm") = norm, py::arg("seeds") = py::none(),
+          py::arg("database_seeds") = wishes.database_seeds, py::arg("filter") = py::none(),
+          py::arg("deadline") = py::none(), py::arg("task") = py::none(),
+          py::arg("objective") = py::none(),
+          R"(As solve, with wishes.
+
+Args:
+    pose: T_base_tip, (4, 4) [m].
+    near: configuration to stay near, (dof,) [rad or m]; may lie outside the limits. The answer
+        is the one with the smallest joint move of all that are found, whole turns considered; a
+        redundant arm's has slid along its self-motion to where the move is smallest.
+    weights: factor on each joint's part of the move, (dof,), >= 0; None: all 1.
+    norm: how the move is measured.
+    seeds: joint values to iterate from, (N, dof) [rad or m]; ranked as the database's seeds, and
+        tried before them.
+    database_seeds: whether the database's seeds follow the given ones.
+    filter: called with candidates (n, dof), each at the pose and inside the limits; returns n
+        truth values. The search goes on within its bounds while all are refused.
+    deadline: wall-clock time after which the search ends [s]; checked between its stages.
+    task: what of the pose has to be reached; None: what the solver's options say.
+    objective: what the answer is to be good at besides: an Objective, 'limits',
+        'manipulability', or a function of joint values (dof,) that returns a cost. Comes before
+        `near`. Of the answers found, the cheapest; a redundant arm's has slid to a local minimum.
+
+Returns:
+    A Result. A pose that cannot be solved is no error but a status.
+
+Raises:
+    InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, a number that is not
+        finite or out of range.)");
+  cls.def("solve_all", &solve_all, py::arg("pose"), py::arg("max") = all.max, py::kw_only(),
+          py::arg("min_distance") = all.min_distance, py::arg("whole_turns") = all.whole_turns,
+          py::arg("order") = py::cast(all.order), py::arg("near") = py::none(),
+          py::arg("weights") = py::none(), py::arg("norm") = norm, py::arg("seeds") = py::none(),
+          py::arg("database_seeds") = wishes.database_seeds, py::arg("filter") = py::none(),
+          py::arg("deadline") = py::none(), py::arg("task") = py::none(),
+          R"(Every distinct solution that is found: all branches, or a spread for a redundant arm.
+
+Args:
+    pose: T_base_tip, (4, 4) [m].
+    max: solutions given at most.
+    min_distance: solutions that differ by less in every joint are one [rad or m].
+    whole_turns: whether copies by whole turns inside the limits count as solutions of their own;
+        otherwise each comes once, at the turn nearest to `near` or to the middle of the limits.
+    order: what comes first.
+    near, weights, norm, seeds, database_seeds, filter, deadline, task: as in solve.
+
+Returns:
+    Solutions; empty, with a status that says why, if there is none.
+
+Raises:
+    InvalidArgumentError: as solve.)");
+  cls.def("diagnose", &diagnose, py::arg("pose"), py::kw_only(), py::arg("filter") = py::none(),
+          py::arg("deadline") = py::none(), py::arg("task") = py::none(),
+          R"(Why solve() with the same arguments gives no answer, and the best that can be done.
+
+Spends much more than solving does, milliseconds to a second.
+
+Args:
+    pose: T_base_tip, (4, 4) [m].
+    filter, deadline, task: as in solve.
+
+Returns:
+    A Diagnosis; its cause is `none` if there is an answer.
+
+Raises:
+    InvalidArgumentError: as solve.)");
+}
+
+}  // namespace iksel::python

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A Result as Python sees it.
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/typing.h>
+
+#include "array_checks.hpp"
+#include "iksel/result.hpp"
+
+namespace iksel::python {
+
+using OptionalJoints = py::typing::Optional<py::array_t<double>>;
+
+/// A Result whose q becomes an array when it is first asked for.
+struct PyResult {
+  Result result;
+  py::object q;
+
+  OptionalJoints joints() {
+    if (!q) q = result.success() ? py::object(to_array(result.q)) : py::object(py::none());
+    return py::reinterpret_borrow<OptionalJoints>(q);
+  }
+};
+
+}  // namespace iksel::python

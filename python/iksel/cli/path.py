@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""iksel path: joint values along a path of poses."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from iksel_cpp import InvalidArgumentError, Solver
+
+from iksel.cli._options import add_solver_options, solver_options
+from iksel.cli._output import add_json, number, print_json, print_pairs, print_table
+from iksel.cli._parser import parse_joints, parse_numbers, parse_pose
+from iksel.cli._robot import add_robot, load
+
+if TYPE_CHECKING:
+    import argparse
+
+    from iksel_cpp import PathResult, Robot
+
+    from iksel._arrays import FloatArray
+
+EXIT_SOLVED, EXIT_NO_SOLUTION = 0, 1
+
+EXAMPLES = """\
+examples:
+  iksel path ur3 poses.txt --start 0.3 -1.2 1.4 -0.6 1.2 0.2 --dt 0.01
+  iksel path panda - --json < poses.csv
+
+FILE has one pose a line, in the forms of `iksel solve --pose`, separated by spaces or
+commas; empty lines and those that start with # are left out.
+
+exit status: 0 solved, 1 a waypoint has no continuation, 2 bad input
+"""
+
+
+def add_parser(commands: Any) -> None:
+    """Add the command."""
+    parser = commands.add_parser(
+        "path",
+        usage="iksel path ROBOT FILE [options]",
+        help="find joint values along a path of poses",
+        description="Find joint values along a path of poses with little joint motion.",
+        epilog=EXAMPLES,
+    )
+    add_robot(parser)
+    parser.add_argument("file", metavar="FILE", help="poses, one a line; - is stdin")
+    parser.add_argument(
+        "--start",
+        nargs="+",
+        metavar="Q",
+        help="where the arm is one time step before the first pose [rad or m]",
+    )
+    parser.add_argument(
+        "--dt",
+        type=float,
+        default=0.0,
+        metavar="S",
+        help="time between poses [s], in which no joint moves farther than its velocity "
+        "limit allows; 0: speeds are not limited (default)",
+    )
+    add_json(parser)
+    add_solver_options(parser)
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Solve and print the path."""
+    robot = load(arguments)
+    poses = read_poses(arguments.file)
+    start = arguments.start and parse_joints(
+        "--start", arguments.start, robot.joint_names
+    )
+    solver = Solver(robot, solver_options(arguments))
+    path = solver.solve_path(poses, start, dt=arguments.dt)
+    if arguments.json:
+        print_json(
+            {
+                "robot": robot.name,
+                "joint_names": robot.joint_names,
+                "success": path.success,
+                "status": path.status.name,
+                "broken": path.broken,
+                "largest_step": path.largest_step,
+                "largest_step_joint": path.largest_step_joint,
+                "largest_step_waypoint": path.largest_step_waypoint,
+                "move": path.move,
+                "q": path.q,
+            }
+        )
+    else:
+        print_text(robot, path, len(poses))
+    return EXIT_SOLVED if path.success else EXIT_NO_SOLUTION
+
+
+def read_poses(name: str) -> FloatArray:
+    """The poses of a file as an (N, 4, 4) array.
+
+    Raises:
+        InvalidArgumentError: It cannot be read, or a line is no pose.
+    """
+    try:
+        text = sys.stdin.read() if name == "-" else Path(name).read_text("utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise InvalidArgumentError(f"{name}: {error}") from None
+    poses = []
+    for index, line in enumerate(text.splitlines(), 1):
+        if not line.strip() or line.lstrip().startswith("#"):
+            continue
+        flag = f"{name}, line {index}"
+        poses.append(parse_pose(flag, [repr(x) for x in parse_numbers(flag, [line])]))
+    if not poses:
+        raise InvalidArgumentError(f"{name}: no poses in it")
+    return np.stack(poses)
+
+
+def print_text(robot: Robot, path: PathResult, count: int) -> None:
+    """Print the path for people."""
+    rows = [
+        ("robot", f"{robot.name}, {robot.base_link} -> {robot.tip_link}"),
+        ("waypoints", str(count)),
+        ("status", path.status.name),
+    ]
+    if path.broken is not None:
+        rows.append(("broken at", f"waypoint {path.broken} (from 0)"))
+    if path.largest_step_joint is not None:
+        rows.append(
+            (
+                "largest step",
+                f"{path.largest_step:.4g} rad or m, "
+                f"{robot.joint_names[path.largest_step_joint]} "
+                f"to waypoint {path.largest_step_waypoint}",
+            )
+        )
+    print_pairs(rows)
+    print()
+    print_table(
+        robot.joint_names, [[number(x, 6) for x in q] for q in path.q.tolist()]
+    )

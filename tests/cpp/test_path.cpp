@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Laws of paths and trackers.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iksel/iksel.hpp>
+
+#include "robots.hpp"
+
+namespace {
+
+using iksel::JointVector;
+using iksel::PathOptions;
+using iksel::PathResult;
+using iksel::Pose;
+using iksel::Result;
+using iksel::Solver;
+using iksel::Status;
+
+constexpr double kTwoPi = 6.28318530717958647692;
+
+Solver make_solver(const char* name) {
+  for (const auto& c : iksel_test::all_robots()) {
+    if (std::string(c.name) == name) return Solver(iksel_test::load(c));
+  }
+  throw std::runtime_error(name);
+}
+
+/// n poses from `first` along a straight line.
+std::vector<Pose> line(const Pose& first, const Eigen::Vector3d& length, int n) {
+  std::vector<Pose> poses;
+  for (int i = 0; i < n; ++i) {
+    Pose pose = first;
+    pose.translation() += length * i / (n - 1);
+    poses.push_back(pose);
+  }
+  return poses;
+}
+
+void expect_path(const Solver& solver, const std::vector<Pose>& poses, const PathOptions& options,
+                 const PathResult& path) {
+  ASSERT_TRUE(path.success()) << to_string(path.status) << " at " << path.broken;
+  ASSERT_EQ(path.q.size(), poses.size());
+  EXPECT_EQ(path.broken, -1);
+  double largest = 0;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const auto error =
+        iksel::pose_error(poses[i], solver.robot().fk(path.q[i], iksel::Kinematics::kdl));
+    EXPECT_LE(error.head<3>().norm(), 1.0001e-6);
+    EXPECT_LE(error.tail<3>().norm(), 1.0001e-6);
+    EXPECT_TRUE(solver.robot().within_limits(path.q[i]));
+    if (i == 0 && !options.start) continue;
+    const JointVector step = path.q[i] - (i == 0 ? *options.start : path.q[i - 1]);
+    largest = std::max(largest, step.cwiseAbs().maxCoeff());
+    if (options.dt == 0) continue;
+    for (int j = 0; j < solver.robot().dof(); ++j) {
+      EXPECT_LE(std::abs(step[j]), solver.robot().velocity_limit()[j] * options.dt * (1 + 1e-8));
+    }
+  }
+  EXPECT_DOUBLE_EQ(path.largest_step, largest);
+}
+
+TEST(Path, StraightLineWithinTheVelocityLimits) {
+  for (const char* name : {"panda", "cvr038"}) {
+    const Solver solver = make_solver(name);
+    JointVector start = (solver.robot().lower() + solver.robot().upper()) / 2;
+    if (std::string(name) == "cvr038") start[4] = 0.8;
+    start[1] += 0.3;
+    PathOptions options;
+    options.start = start;
+    options.dt = 0.02;
+    const auto poses = line(solver.robot().fk(start), {0.0, 0.05, -0.05}, 60);
+    expect_path(solver, poses, options, solver.solve_path(poses, options));
+  }
+}
+
+TEST(Path, JointPathComesBackAndMovesNoMore) {
+  // Poses of a joint path: a path through them exists, and the one found is no longer.
+  for (const char* name : {"ur3", "irb14050"}) {
+    const Solver solver = make_solver(name);
+    const auto& robot = solver.robot();
+    const Eigen::MatrixXd ends = robot.random_configurations(2, iksel_test::seed());
+    const JointVector from = ends.row(0).transpose();
+    const JointVector to = ends.row(1).transpose();
+    std::vector<Pose> poses;
+    double length = 0;
+    const int n = 80;
+    for (int i = 0; i < n; ++i) poses.push_back(robot.fk(from + (to - from) * i / (n - 1.0)));
+    length = (to - from).norm();
+    PathOptions options;
+    options.start = from;
+    const PathResult path = solver.solve_path(poses, options);
+    expect_path(solver, poses, options, path);
+    EXPECT_LE(path.move, length * 1.001) << name << ", seed " << iksel_test::seed();
+  }
+}
+
+TEST(Path, FirstWaypointWithoutContinuationIsNamed) {
+  const Solver solver = make_solver("ur3");
+  const JointVector start = (JointVector(6) << 0.3, -1.2, 1.4, -0.6, 1.2, 0.2).finished();
+  // Straight out of reach.
+  const auto poses = line(solver.robot().fk(start), {0.6, 0.6, 0.0}, 100);
+  PathOptions options;
+  options.start = start;
+  const PathResult path = solver.solve_path(poses, options);
+  ASSERT_FALSE(path.success());
+  ASSERT_GT(path.broken, 0);
+  EXPECT_EQ(path.q.size(), static_cast<std::size_t>(path.broken));
+  const auto broken = static_cast<std::size_t>(path.broken);
+  EXPECT_TRUE(solver.solve(poses[broken - 1]).success());
+  EXPECT_FALSE(solver.solve(poses[broken]).success());
+
+  // Too fast: half a turn of the tool in one step.
+  std::vector<Pose> flip = {poses[0], poses[0]};
+  flip[1].linear() = flip[1].linear() * Eigen::AngleAxisd(3.0, Eigen::Vector3d::UnitZ());
+  options.dt = 0.01;
+  const PathResult fast = solver.solve_path(flip, options);
+  EXPECT_EQ(fast.status, Status::too_fast);
+  EXPECT_EQ(fast.broken, 1);
+}
+
+TEST(Path, BeginsAtTheTurnFromWhichItCanEnd) {
+  // The last joint winds up by one and a half turns: of the copies that the first waypoint has,
+  // only those low enough have room.
+  const Solver solver = make_solver("ur3");
+  JointVector q = (JointVector(6) << 0.3, -1.2, 1.4, -0.6, 1.2, 1.0).finished();
+  std::vector<Pose> poses;
+  for (int i = 0; i <= 60; ++i) {
+    poses.push_back(solver.robot().fk(q));
+    q[5] += 1.5 * kTwoPi / 60;
+  }
+  PathOptions options;
+  options.dt = 0.1;
+  expect_path(solver, poses, options, solver.solve_path(poses, options));
+}
+
+TEST(Track, NeverFasterThanTheLimits) {
+  for (const char* name : {"ur3", "panda"}) {
+    const Solver solver = make_solver(name);
+    const auto& robot = solver.robot();
+    const Eigen::MatrixXd ends = robot.random_configurations(10, iksel_test::seed());
+    iksel::Tracker tracker(solver, ends.row(0).transpose());
+    const double dt = 0.01;
+    int arrived = 0;
+    int late = 0;
+    for (int i = 0; i < 1000; ++i) {
+      const JointVector before = tracker.q();
+      const Result result = tracker.track(robot.fk(ends.row(i / 100)), dt);
+      for (int j = 0; j < robot.dof(); ++j) {
+        EXPECT_LE(std::abs(tracker.q()[j] - before[j]),
+                  robot.velocity_limit()[j] * dt * (1 + 1e-8));
+      }
+      EXPECT_TRUE(robot.within_limits(tracker.q()));
+      if (result.success()) {
+        EXPECT_EQ(result.q, tracker.q());
+        ++arrived;
+      }
+      late += result.status == Status::too_fast;
+    }
+    EXPECT_GT(arrived, 0);
+    EXPECT_GT(late, 0);
+  }
+}
+
+TEST(Track, FollowsAJointPathAtEveryStep) {
+  const Solver solver = make_solver("panda");
+  const auto& robot = solver.robot();
+  const JointVector start = (robot.lower() + robot.upper()) / 2;
+  iksel::Tracker tracker(solver, start);
+  for (int i = 1; i <= 500; ++i) {
+    JointVector q = start;
+    q[1] += 0.5 * std::sin(i * 0.01);
+    q[3] += 0.4 * std::sin(i * 0.013);
+    EXPECT_TRUE(tracker.track(robot.fk(q), 0.01).success()) << i;
+  }
+}
+
+}  // namespace

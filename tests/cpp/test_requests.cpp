@@ -1,0 +1,367 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Laws of solves with wishes, against brute force.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iksel/iksel.hpp>
+#include <iostream>
+
+#include "robots.hpp"
+
+namespace {
+
+using iksel::JointVector;
+using iksel::Pose;
+using iksel::Result;
+using iksel::Robot;
+using iksel::Solver;
+using iksel::SolveRequest;
+using iksel::Status;
+
+constexpr double kTwoPi = 6.28318530717958647692;
+
+bool turns(const Robot& robot, int j) {
+  return robot.joint_types()[static_cast<std::size_t>(j)] != iksel::JointType::prismatic &&
+         robot.upper()[j] - robot.lower()[j] >= kTwoPi;
+}
+
+/// The largest difference of a joint, whole turns counting nothing.
+double distance(const Robot& robot, const JointVector& a, const JointVector& b) {
+  double largest = 0;
+  for (int j = 0; j < robot.dof(); ++j) {
+    const double d = a[j] - b[j];
+    largest = std::max(largest, std::abs(turns(robot, j) ? std::remainder(d, kTwoPi) : d));
+  }
+  return largest;
+}
+
+/// The length of the shortest move from near to q or a copy of it inside the limits.
+double shortest_move(const Robot& robot, const JointVector& q, const JointVector& near,
+                     iksel::MoveNorm norm) {
+  JointVector move = q - near;
+  for (int j = 0; j < robot.dof(); ++j) {
+    if (!turns(robot, j)) continue;
+    for (int k = -3; k <= 3; ++k) {
+      const double copy = q[j] + k * kTwoPi;
+      if (copy < robot.lower()[j] || copy > robot.upper()[j]) continue;
+      if (std::abs(copy - near[j]) < std::abs(move[j])) move[j] = copy - near[j];
+    }
+  }
+  return norm == iksel::MoveNorm::two ? move.norm() : move.cwiseAbs().maxCoeff();
+}
+
+/// Every solution that is found from each of n random seeds alone.
+std::vector<JointVector> brute_force(const Solver& solver, const Pose& target, int n) {
+  std::vector<JointVector> found;
+  const Eigen::MatrixXd seeds =
+      solver.robot().random_configurations(static_cast<std::size_t>(n), iksel_test::seed() + 99);
+  for (int i = 0; i < n; ++i) {
+    SolveRequest request;
+    request.seeds = {seeds.row(i).transpose()};
+    request.database_seeds = false;
+    const Result result = solver.solve(target, request);
+    if (!result.success()) continue;
+    const bool known = std::any_of(found.begin(), found.end(), [&](const JointVector& q) {
+      return distance(solver.robot(), q, result.q) < 0.02;
+    });
+    if (!known) found.push_back(result.q);
+  }
+  return found;
+}
+
+JointVector noisy(const JointVector& q, iksel::Matrix noise, Eigen::Index i, double scale) {
+  return q + scale * JointVector(noise.row(i).transpose());
+}
+
+void expect_solution(const Solver& solver, const Pose& target, const JointVector& q) {
+  const auto error = iksel::pose_error(target, solver.robot().fk(q, iksel::Kinematics::kdl));
+  EXPECT_LE(error.head<3>().norm(), 1.0001e-6);
+  EXPECT_LE(error.tail<3>().norm(), 1.0001e-6);
+  EXPECT_TRUE(solver.robot().within_limits(q));
+}
+
+const iksel_test::RobotCase& robot_case(const char* name) {
+  for (const auto& c : iksel_test::all_robots()) {
+    if (std::string(c.name) == name) return c;
+  }
+  throw std::runtime_error(name);
+}
+
+class SixJoints : public testing::TestWithParam<const char*> {};
+
+TEST_P(SixJoints, AllBranchesOfBruteForceAreFoundAndNoOther) {
+  const Solver solver(iksel_test::load(robot_case(GetParam())));
+  const int n = iksel_test::cases(300) / 15;
+  const Eigen::MatrixXd q = solver.robot().random_configurations(n, iksel_test::seed());
+  int missed = 0;
+  for (int i = 0; i < n; ++i) {
+    const Pose target = solver.robot().fk(q.row(i));
+    const auto all = solver.solve_all(target);
+    ASSERT_TRUE(all.success());
+    for (const Result& one : all.all) expect_solution(solver, target, one.q);
+    for (std::size_t a = 0; a < all.all.size(); ++a) {
+      for (std::size_t b = 0; b < a; ++b) {
+        EXPECT_GE(distance(solver.robot(), all.all[a].q, all.all[b].q), 0.01);
+      }
+    }
+    for (const JointVector& known : brute_force(solver, target, 1000)) {
+      missed += std::none_of(all.all.begin(), all.all.end(), [&](const Result& one) {
+        return distance(solver.robot(), one.q, known) < 0.05;
+      });
+    }
+  }
+  EXPECT_LE(missed, 1) << "of " << n << " poses, seed " << iksel_test::seed();
+}
+
+TEST_P(SixJoints, NearestIsNearestOfBruteForce) {
+  const Solver solver(iksel_test::load(robot_case(GetParam())));
+  const Robot& robot = solver.robot();
+  const int n = iksel_test::cases(300) / 15;
+  const Eigen::MatrixXd q = robot.random_configurations(n, iksel_test::seed());
+  const iksel::Matrix noise = robot.random_configurations(n, iksel_test::seed() + 1);
+  int farther = 0;
+  for (int i = 0; i < n; ++i) {
+    const JointVector from = q.row(i).transpose();
+    SolveRequest request;
+    request.near = noisy(from, noise, i, 0.3);
+    request.norm = i % 2 == 0 ? iksel::MoveNorm::two : iksel::MoveNorm::max;
+    const Pose target = robot.fk(from);
+    const Result result = solver.solve(target, request);
+    ASSERT_TRUE(result.success());
+    expect_solution(solver, target, result.q);
+    double best = shortest_move(robot, from, *request.near, request.norm);
+    for (const JointVector& known : brute_force(solver, target, 1000)) {
+      best = std::min(best, shortest_move(robot, known, *request.near, request.norm));
+    }
+    EXPECT_NEAR(result.move, shortest_move(robot, result.q, *request.near, request.norm), 1e-12);
+    farther += result.move > best + 1e-3;
+  }
+  EXPECT_LE(farther, 1) << "of " << n << " poses, seed " << iksel_test::seed();
+}
+
+INSTANTIATE_TEST_SUITE_P(Robots, SixJoints, testing::Values("ur3", "cvr038", "cvrb1213"));
+
+TEST(SolveAll, WholeTurnsAreAllCopiesInsideTheLimits) {
+  const Solver solver(iksel_test::load(robot_case("ur3")));
+  const Robot& robot = solver.robot();
+  const Eigen::MatrixXd q = robot.random_configurations(5, iksel_test::seed());
+  for (int i = 0; i < 5; ++i) {
+    const Pose target = robot.fk(q.row(i));
+    iksel::AllOptions options;
+    const auto once = solver.solve_all(target, options);
+    options.whole_turns = true;
+    options.max = 100'000;
+    const auto copies = solver.solve_all(target, options);
+    std::size_t expected = 0;
+    for (const Result& one : once.all) {
+      std::size_t product = 1;
+      for (int j = 0; j < robot.dof(); ++j) {
+        std::size_t count = 0;
+        for (int k = -3; k <= 3; ++k) {
+          const double copy = one.q[j] + k * kTwoPi;
+          count += copy >= robot.lower()[j] && copy <= robot.upper()[j] ? 1 : 0;
+        }
+        product *= turns(robot, j) ? count : 1;
+      }
+      expected += product;
+    }
+    EXPECT_EQ(copies.all.size(), expected);
+    for (const Result& one : copies.all) expect_solution(solver, target, one.q);
+  }
+}
+
+TEST(SolveAll, MaxMinDistanceAndOrderHold) {
+  for (const char* name : {"ur3", "panda"}) {
+    const Solver solver(iksel_test::load(robot_case(name)));
+    const Eigen::MatrixXd q = solver.robot().random_configurations(20, iksel_test::seed());
+    for (int i = 0; i < 20; ++i) {
+      iksel::AllOptions options;
+      options.max = 5;
+      options.min_distance = 0.2;
+      SolveRequest request;
+      request.near = q.row((i + 1) % 20).transpose();
+      const auto some = solver.solve_all(solver.robot().fk(q.row(i)), options, request);
+      ASSERT_TRUE(some.success());
+      EXPECT_LE(some.all.size(), 5U);
+      for (std::size_t a = 0; a < some.all.size(); ++a) {
+        if (a > 0) EXPECT_GE(some.all[a].move, some.all[a - 1].move);
+        for (std::size_t b = 0; b < a; ++b) {
+          EXPECT_GE(distance(solver.robot(), some.all[a].q, some.all[b].q), 0.2);
+        }
+      }
+    }
+  }
+}
+
+TEST(Near, MayLieOutsideTheLimits) {
+  for (const char* name : {"panda", "ur3", "cvr038"}) {
+    const Solver solver(iksel_test::load(robot_case(name)));
+    const Robot& robot = solver.robot();
+    const Eigen::MatrixXd q = robot.random_configurations(50, iksel_test::seed());
+    for (int i = 0; i < 50; ++i) {
+      JointVector at_limit = q.row(i).transpose();
+      const int joint = i % robot.dof();
+      at_limit[joint] = robot.upper()[joint];
+      SolveRequest request;
+      request.near = at_limit;
+      (*request.near)[joint] += 1e-3;
+      const Pose target = robot.fk(at_limit);
+      const Result result = solver.solve(target, request);
+      ASSERT_TRUE(result.success()) << name;
+      expect_solution(solver, target, result.q);
+      // A UR's elbow is singular at its limit: within the tolerances it may be some mrad away.
+      EXPECT_LE(result.move, 2e-2) << name << " joint " << joint;
+    }
+  }
+}
+
+TEST(Near, RedundantArmHasSlidToALocalMinimum) {
+  for (const char* name : {"panda", "iiwa14"}) {
+    const Solver solver(iksel_test::load(robot_case(name)));
+    const Robot& robot = solver.robot();
+    const int n = iksel_test::cases(300) / 10;
+    const Eigen::MatrixXd q = robot.random_configurations(n, iksel_test::seed());
+    const iksel::Matrix noise = robot.random_configurations(n, iksel_test::seed() + 1);
+    for (int i = 0; i < n; ++i) {
+      SolveRequest request;
+      request.near = noisy(q.row(i).transpose(), noise, i, 0.2);
+      const Pose target = robot.fk(q.row(i));
+      const Result result = solver.solve(target, request);
+      ASSERT_TRUE(result.success());
+      expect_solution(solver, target, result.q);
+      // Along the self-motion the move grows in both directions, or a limit is in the way.
+      const Eigen::MatrixXd J = robot.jacobian(result.q);
+      const Eigen::JacobiSVD<Eigen::MatrixXd> svd(J, Eigen::ComputeFullV);
+      if (svd.singularValues()[5] < 0.02) continue;
+      const JointVector along = svd.matrixV().col(6);
+      const double slope = along.dot(result.q - *request.near);
+      const JointVector step = -std::copysign(1e-4, slope) * along;
+      const bool blocked = !robot.within_limits(result.q + step);
+      EXPECT_TRUE(blocked || std::abs(slope) < 1e-3 * std::max(1.0, result.move))
+          << name << " pose " << i << ": slope " << slope << ", seed " << iksel_test::seed();
+    }
+  }
+}
+
+TEST(Filter, FindsWheneverSolveAllHasOneThatPasses) {
+  for (const char* name : {"ur3", "cvrb1213", "panda"}) {
+    const Solver solver(iksel_test::load(robot_case(name)));
+    const Robot& robot = solver.robot();
+    const int n = iksel_test::cases(300);
+    const Eigen::MatrixXd q = robot.random_configurations(n, iksel_test::seed());
+    int passed = 0;
+    int rejected = 0;
+    for (int i = 0; i < n; ++i) {
+      const Pose target = robot.fk(q.row(i));
+      const auto passes = [](const JointVector& at) { return at[1] <= 0; };
+      iksel::AllOptions options;
+      options.whole_turns = true;
+      options.max = 10'000;
+      const auto all = solver.solve_all(target, options);
+      const bool any = std::any_of(all.all.begin(), all.all.end(),
+                                   [&](const Result& one) { return passes(one.q); });
+      SolveRequest request;
+      request.filter = iksel::filter_each(robot.dof(), passes);
+      if (i % 2 == 1) request.near = q.row(i).transpose();
+      const Result result = solver.solve(target, request);
+      if (any) EXPECT_TRUE(result.success()) << name << " pose " << i;
+      if (!result.success()) EXPECT_EQ(result.status, Status::rejected);
+      if (result.success()) {
+        EXPECT_LE(result.q[1], 0);
+        expect_solution(solver, target, result.q);
+      }
+      passed += result.success();
+      rejected += !result.success();
+    }
+    EXPECT_GT(passed, 0);
+    if (std::string(name) == "cvrb1213") EXPECT_GT(rejected, 0);
+  }
+}
+
+TEST(Seeds, AreRankedAndComeFirst) {
+  for (const bool paper : {false, true}) {
+    iksel::SolverOptions options = paper ? iksel::SolverOptions::paper() : iksel::SolverOptions();
+    options.database.scale = iksel::Scale::small;
+    const Solver solver(iksel_test::load(robot_case("cvr038")), options);
+    const Robot& robot = solver.robot();
+    const Eigen::MatrixXd q = robot.random_configurations(21, iksel_test::seed());
+    const JointVector middle = (robot.lower() + robot.upper()) / 2;
+    for (int i = 0; i < 20; ++i) {
+      // Away from the limits, so that the predicted end of a good seed is inside.
+      const JointVector goal = 0.8 * JointVector(q.row(i).transpose()) + 0.2 * middle;
+      SolveRequest request;
+      request.database_seeds = false;
+      request.seeds = {JointVector(q.row(20).transpose()),
+                       goal + JointVector::Constant(robot.dof(), 1e-3)};
+      const Result result = solver.solve(robot.fk(goal), request);
+      ASSERT_TRUE(result.success()) << i;
+      EXPECT_LE(distance(robot, result.q, goal), 0.05);
+      if (paper) EXPECT_EQ(result.attempts, 1);
+      request.seeds.clear();
+      EXPECT_EQ(solver.solve(robot.fk(goal), request).attempts, 0);
+    }
+  }
+}
+
+TEST(Deadline, EndsTheSearch) {
+  const Solver solver(iksel_test::load(robot_case("ur3")));
+  const Pose target = solver.robot().fk(JointVector::Constant(6, 0.5));
+  SolveRequest request;
+  request.deadline = 0;
+  const Result result = solver.solve(target, request);
+  EXPECT_EQ(result.status, Status::out_of_time);
+  EXPECT_EQ(result.attempts, 0);
+  request.deadline = 1e9;
+  EXPECT_TRUE(solver.solve(target, request).success());
+}
+
+TEST(Requests, SameInputSameBits) {
+  for (const char* name : {"ur3", "panda"}) {
+    const Solver solver(iksel_test::load(robot_case(name)));
+    const Eigen::MatrixXd q = solver.robot().random_configurations(50, iksel_test::seed());
+    std::vector<JointVector> first;
+    for (int repeat = 0; repeat < 2; ++repeat) {
+      for (int i = 0; i < 50; ++i) {
+        SolveRequest request;
+        request.near = q.row((i + 1) % 50).transpose();
+        const Result result = solver.solve(solver.robot().fk(q.row(i)), request);
+        ASSERT_TRUE(result.success());
+        if (repeat == 0) {
+          first.push_back(result.q);
+        } else {
+          EXPECT_EQ(first[static_cast<std::size_t>(i)], result.q);
+        }
+      }
+    }
+  }
+}
+
+TEST(Requests, BadOnesAreNamed) {
+  const Solver solver(iksel_test::load(robot_case("ur3")));
+  const Pose target = Pose::Identity();
+  const auto expect_error = [&](const SolveRequest& request, const std::string& what) {
+    try {
+      (void)solver.solve(target, request);
+      FAIL() << what;
+    } catch (const iksel::InvalidArgumentError& error) {
+      EXPECT_NE(std::string(error.what()).find(what), std::string::npos) << error.what();
+    }
+  };
+  SolveRequest request;
+  request.near = JointVector::Zero(5);
+  expect_error(request, "near");
+  request = {};
+  request.weights = JointVector::Constant(6, -1.0);
+  expect_error(request, "weights[0]");
+  request.weights = JointVector::Zero(6);
+  expect_error(request, "weights");
+  request = {};
+  request.seeds = {JointVector::Zero(6), JointVector::Constant(6, NAN)};
+  expect_error(request, "seeds[1]");
+  request = {};
+  request.deadline = -1;
+  expect_error(request, "deadline");
+}
+
+}  // namespace

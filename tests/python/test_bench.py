@@ -1,0 +1,292 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The benchmarks' own laws: targets, the judge, kept results. No times."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+pytest.importorskip("bench", reason="the benchmarks are in the repository only")
+
+from bench import check, guard, plan, run, targets
+from bench.arms import load_arm
+from bench.rivals.axes import axes_of
+from bench.rivals.base import UnsupportedError
+from bench.store import Store
+
+ARMS = ("cvrb1213", "ur3_wrs", "panda")
+COUNT = 30
+SEED = 7
+REACHABLE = ["uniform", "near_limits", "near_singular", "lines"]
+
+
+@pytest.fixture(params=ARMS)
+def arm(request):
+    return load_arm(request.param)
+
+
+class TestChain:
+    def test_agrees_with_the_robot(self, arm):
+        q = arm.robot.random_configurations(COUNT, SEED)
+        pose, jacobian = arm.chain.fk_jacobian(q)
+        assert np.abs(pose - arm.robot.fk(q)).max() < 1e-12
+        assert np.abs(jacobian - arm.robot.jacobian(q)).max() < 1e-12
+        assert np.array_equal(arm.chain.lower, arm.robot.lower)
+        assert np.array_equal(arm.chain.upper, arm.robot.upper)
+
+    def test_rivals_are_given_the_same_chain(self, arm):
+        again = type(arm.robot).from_urdf(arm.urdf, arm.base_link, arm.tip_link)
+        q = arm.robot.random_configurations(COUNT, SEED)
+        assert np.abs(again.fk(q) - arm.robot.fk(q)).max() < 1e-12
+
+    def test_analytic_solvers_are_given_the_same_chain(self, arm):
+        if arm.chain.dof != 6:
+            with pytest.raises(UnsupportedError, match="6 revolute joints"):
+                axes_of(arm)
+            return
+        axes = axes_of(arm)
+        q = arm.robot.random_configurations(COUNT, SEED)
+        for values, pose in zip(q, arm.chain.fk(q), strict=True):
+            rotation, position = np.eye(3), axes.p[0].copy()
+            for angle, axis, offset in zip(values, axes.h, axes.p[1:], strict=True):
+                cross = np.cross(np.eye(3), axis)
+                turn = np.eye(3) + np.sin(angle) * cross
+                turn += (1 - np.cos(angle)) * cross @ cross
+                rotation = rotation @ turn
+                position += rotation @ offset
+            assert np.abs(position - pose[:3, 3]).max() < 1e-12
+            assert np.abs(rotation - axes.rotation_for(pose)).max() < 1e-12
+
+
+class TestTargets:
+    @pytest.mark.parametrize("kind", targets.KINDS)
+    def test_same_seed_same_targets(self, arm, kind):
+        first, again = (targets.make_targets(arm, kind, 20, SEED) for _ in range(2))
+        other = targets.make_targets(arm, kind, 20, SEED + 1)
+        assert np.array_equal(first.poses, again.poses)
+        assert np.array_equal(first.starts, again.starts)
+        assert not np.array_equal(first.poses, other.poses)
+
+    @pytest.mark.parametrize("kind", REACHABLE)
+    def test_reachable_inside_the_limits(self, arm, kind):
+        made = targets.make_targets(arm, kind, COUNT, SEED)
+        assert len(made) == COUNT
+        assert check.right(arm.chain, made.poses, made.witnesses, 1e-8, 1e-8).all()
+        assert arm.chain.within_limits(made.witnesses).all()
+        assert arm.chain.within_limits(made.starts).all()
+
+    def test_uniform_is_what_evaluate_draws(self, arm):
+        made = targets.make_targets(arm, "uniform", COUNT, SEED)
+        drawn = arm.robot.random_configurations(COUNT, SEED)
+        assert np.array_equal(made.witnesses, drawn)
+
+    def test_near_limits(self, arm):
+        q = targets.make_targets(arm, "near_limits", COUNT, SEED).witnesses
+        lower, upper = arm.chain.lower, arm.chain.upper
+        depth = np.minimum(q - lower, upper - q) / (upper - lower)
+        assert (depth.min(axis=1) <= targets.NEAR_LIMIT_PART).all()
+
+    def test_near_singular(self, arm):
+        q = targets.make_targets(arm, "near_singular", COUNT, SEED).witnesses
+        values = np.linalg.svd(arm.robot.jacobian(q), compute_uv=False)[:, 5]
+        everywhere = arm.robot.random_configurations(4_000, SEED + 99)
+        usual = np.linalg.svd(arm.robot.jacobian(everywhere), compute_uv=False)[:, 5]
+        # The lowest 1 %, give or take what 4,000 samples say about it.
+        assert values.max() < np.quantile(usual, 0.02)
+
+    def test_lines_are_straight(self, arm):
+        count = 2 * targets.LINE_STEPS
+        poses = targets.make_targets(arm, "lines", count, SEED).poses
+        for line in np.split(poses, 2):
+            assert np.abs(line[:, :3, :3] - line[0, :3, :3]).max() < 1e-12
+            steps = np.diff(line[:, :3, 3], axis=0)
+            assert np.abs(steps - steps[0]).max() < 1e-12
+            length = np.linalg.norm(line[-1, :3, 3] - line[0, :3, 3])
+            assert length == pytest.approx(targets.LINE_LENGTH)
+
+    def test_any_rotation(self, arm):
+        poses = targets.make_targets(arm, "any_rotation", COUNT, SEED).poses
+        reachable = targets.make_targets(arm, "uniform", COUNT, SEED).poses
+        assert np.array_equal(poses[:, :3, 3], reachable[:, :3, 3])
+        rotations = poses[:, :3, :3]
+        unit = rotations @ rotations.transpose(0, 2, 1)
+        assert np.abs(unit - np.eye(3)).max() < 1e-12
+        assert np.linalg.det(rotations).min() > 0
+        # Uniform over all rotations: angles between two have a mean of pi/2 + 2/pi.
+        many = targets.make_targets(arm, "any_rotation", 2_000, SEED).poses[:, :3, :3]
+        angles = check.rotation_distance(many[:1_000], many[1_000:])
+        assert angles.mean() == pytest.approx(np.pi / 2 + 2 / np.pi, abs=0.1)
+
+    def test_unreachable(self, arm):
+        made = targets.make_targets(arm, "unreachable", COUNT, SEED)
+        origin = arm.chain.offsets[0, :3, 3]
+        q = arm.robot.random_configurations(4_000, SEED)
+        farthest = np.linalg.norm(arm.chain.fk(q)[:, :3, 3] - origin, axis=1).max()
+        distance = np.linalg.norm(made.poses[:, :3, 3] - origin, axis=1)
+        assert farthest < targets.length_bound(arm.chain) < distance.min()
+
+    def test_saved_with_their_seed(self, arm, tmp_path):
+        made = targets.cached_targets(tmp_path, arm, "lines", 10, SEED)
+        (path,) = tmp_path.iterdir()
+        read = targets.Targets.load(path)
+        assert (read.kind, read.robot, read.seed) == ("lines", arm.name, SEED)
+        assert np.array_equal(read.poses, made.poses)
+        assert np.array_equal(read.witnesses, made.witnesses)
+
+
+class TestJudge:
+    def test_rotation_distance(self):
+        random = np.random.default_rng(SEED)
+        for angle in (0.0, 1e-9, 1e-5, 0.3, 3.0, np.pi):
+            axis = random.normal(size=3)
+            axis /= np.linalg.norm(axis)
+            skew = np.cross(np.eye(3), axis)
+            turn = np.eye(3) + np.sin(angle) * skew + (1 - np.cos(angle)) * skew @ skew
+            found = check.rotation_distance(turn[None], np.eye(3)[None])[0]
+            assert found == pytest.approx(angle, rel=1e-6, abs=1e-12)
+
+    def test_true_and_false_answers(self, arm):
+        q = arm.robot.random_configurations(COUNT, SEED)
+        q = np.clip(q, arm.chain.lower + 1e-3, arm.chain.upper - 1e-3)
+        poses = arm.chain.fk(q)
+        assert check.right(arm.chain, poses, q).all()
+        assert not check.right(arm.chain, poses, q + 1e-3).any()
+        assert not check.right(arm.chain, poses, np.full_like(q, np.nan)).any()
+        # A whole turn reaches the same pose and leaves the limits.
+        turned = q.copy()
+        turned[:, 0] += 2 * np.pi * np.ceil(arm.chain.upper[0] / np.pi)
+        position, rotation = check.errors(arm.chain, poses, turned)
+        assert max(position.max(), rotation.max()) < 1e-9
+        assert not check.right(arm.chain, poses, turned).any()
+
+    def test_branches_and_false_claims(self, arm):
+        q = arm.robot.random_configurations(3, SEED)
+        wrong = q[0] + 0.1
+        answers = [[wrong, q[0]], [], [wrong]]
+        verdict = check.judge(arm.chain, arm.chain.fk(q), answers)
+        assert verdict.claimed.tolist() == [True, False, True]
+        assert verdict.right.tolist() == [True, False, False]
+        assert verdict.false_claims == 1
+
+
+class TestStore:
+    def test_keyed_by_settings_and_fingerprint(self, tmp_path):
+        store = Store(tmp_path, "a")
+        settings = {"cell": "evaluate", "robot": "ur3", "count": 1}
+        assert store.load(settings) is None
+        store.save(settings, {"ratio": 1.5})
+        assert store.load(dict(reversed(settings.items()))) == {"ratio": 1.5}
+        assert store.load({**settings, "count": 2}) is None
+        assert Store(tmp_path, "b").load(settings) is None
+
+    def test_another_version_of_a_rival_is_measured_again(self, tmp_path):
+        settings = {"cell": "rival", "rival": "EAIK"}
+        Store(tmp_path, "a", {"EAIK": "1", "OptIK": "1"}).save(settings, {"y": 1})
+        assert Store(tmp_path, "a", {"EAIK": "1", "OptIK": "2"}).has(settings)
+        assert not Store(tmp_path, "a", {"EAIK": "2"}).has(settings)
+
+    def test_damaged_file_is_no_result(self, tmp_path):
+        store = Store(tmp_path, "a")
+        store.save({"cell": "x"}, {"y": 1})
+        path = store.path({"cell": "x"})
+        for content in ("", "{", "[]", json.dumps({"result": 3})):
+            path.write_text(content)
+            assert store.load({"cell": "x"}) is None
+
+    def test_goes_on_where_it_was(self, tmp_path, monkeypatch):
+        """Of three cells one ends its worker, and one was there before."""
+        cells = [
+            {"cell": "evaluate", "robot": "ur3", "count": count, "overrides": {}}
+            for count in (1, 2, 3)
+        ]
+        store = Store(tmp_path / "cells", "a")
+        store.save(cells[0], {"made": "before"})
+        asked = []
+
+        def worker(left, store, log):
+            asked.append([cell["count"] for cell in left])
+            for cell in left:
+                if cell["count"] == 2:
+                    return "exit status -11"
+                store.save(cell, {"made": "now"})
+            return ""
+
+        monkeypatch.setattr(run, "_run_worker", worker)
+        job = plan.Job("a job", "paper", cells)
+        failures = run.run_jobs([job], store, tmp_path)
+        assert failures == {"a job, ur3, evaluate": "exit status -11"}
+        assert asked == [[2, 3], [3]]
+        made = [store.load(cell) for cell in cells]
+        assert made == [{"made": "before"}, None, {"made": "now"}]
+        # Started again, only the one that failed is tried.
+        run.run_jobs([job], store, tmp_path)
+        assert asked[2:] == [[2]]
+
+
+class TestPlan:
+    def test_every_cell_once(self):
+        for size in (plan.QUICK, plan.FULL):
+            jobs = plan.plan(size, None, None)
+            cells = [json.dumps(c, sort_keys=True) for job in jobs for c in job.cells]
+            repeated = {cell for cell in cells if cells.count(cell) > 1}
+            assert not repeated
+
+    def test_untimed_jobs_first(self):
+        timed = [job.timed for job in plan.plan(plan.QUICK, None, None)]
+        assert timed == sorted(timed)
+
+    def test_only_and_robots(self):
+        jobs = plan.plan(plan.QUICK, ["ur3_wrs"], ["EAIK"])
+        cells = [cell for job in jobs if job.timed for cell in job.cells]
+        assert {cell["rival"] for cell in cells} == {"EAIK"}
+        assert {cell["robot"] for cell in cells} == {"ur3_wrs"}
+
+    def test_rivals_that_are_not_there_are_left_out(self):
+        jobs = plan.plan(plan.QUICK, None, None, ["IKSel", "EAIK"])
+        cells = [cell for job in jobs for cell in job.cells]
+        assert {cell.get("rival", "EAIK") for cell in cells} == {"IKSel", "EAIK"}
+
+    def test_worker_measures_a_cell(self, tmp_path):
+        """One real cell through a real process."""
+        size = plan.QUICK
+        cell = {**plan.robot_cell("ur3", size), "count": 20, "stages": False}
+        store = Store(tmp_path / "cells", "a")
+        assert run.run_jobs([plan.Job("one", "robots", [cell])], store, tmp_path) == {}
+        result = store.load(cell)
+        assert result is not None
+        assert (result["targets"], result["false_success"]) == (20, 0)
+
+
+class TestGuard:
+    BEFORE = {  # noqa: RUF012 - never changed
+        "robot": "ur3",
+        "preset": "default",
+        "ratio": 1.5,
+        "success_percent": 100.0,
+        "false_success": 0,
+    }
+    ROW = {"robot": "ur3", "preset": "default", "points": 0.02}  # noqa: RUF012
+
+    def reasons(self, *, comparable=True, **now):
+        measured = {**self.BEFORE, **now}
+        return guard._reasons(self.ROW, self.BEFORE, measured, comparable=comparable)
+
+    def test_within_the_margins(self):
+        assert self.reasons(ratio=1.5 * guard.SLOWER, success_percent=99.98) == []
+
+    def test_regressions(self):
+        (slow,) = self.reasons(ratio=1.5 * guard.SLOWER + 0.01)
+        assert "2.41" in slow
+        assert "1.50" in slow
+        (failing,) = self.reasons(success_percent=99.9)
+        assert "99.900" in failing
+        assert "100.000" in failing
+        assert len(self.reasons(false_success=1)) == 1
+        assert self.reasons(ratio=99.0, comparable=False) == []
+
+    def test_committed_rows_are_those_that_run(self):
+        committed = json.loads(guard.PATH.read_text(encoding="utf-8"))["rows"]
+        names = [(row["robot"], row["preset"]) for row in committed]
+        assert names == [(row["robot"], row["preset"]) for row in guard.ROWS]

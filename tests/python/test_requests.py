@@ -1,0 +1,209 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Solves with wishes, as Python offers them, and against EAIK where it is installed."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import iksel
+
+SEED = 5
+
+
+def noisy_targets(robot: iksel.Robot, n: int, scale: float):
+    rng = np.random.default_rng(SEED)
+    q = robot.random_configurations(n, seed=SEED)
+    return q, q + rng.normal(0, scale, q.shape), robot.fk(q)
+
+
+@pytest.mark.parametrize("norm", ["two", iksel.MoveNorm.max])
+def test_near_moves_no_more_than_any_branch(made, cases, norm) -> None:
+    solver = made("ur3")
+    _, near, targets = noisy_targets(solver.robot, cases, 0.3)
+    for here, target in zip(near, targets, strict=True):
+        result = solver.solve(target, near=here, norm=norm)
+        branches = solver.solve_all(target, near=here, norm=norm)
+        assert result.success
+        assert result.move <= branches.move.min() + 1e-3
+        difference = np.abs(result.q - here)
+        length = difference.max() if norm != "two" else np.linalg.norm(difference)
+        assert result.move == pytest.approx(length)
+
+
+def test_weights_count(made) -> None:
+    solver = made("panda")
+    q, near, targets = noisy_targets(solver.robot, 20, 0.2)
+    heavy = np.array([100.0, 1, 1, 1, 1, 1, 1])
+    for here, target in zip(near, targets, strict=True):
+        plain = solver.solve(target, near=here).q
+        weighted = solver.solve(target, near=here, weights=heavy).q
+        assert abs(weighted[0] - here[0]) <= abs(plain[0] - here[0]) + 1e-6
+
+
+def test_solutions_are_a_sequence_of_results(made) -> None:
+    solver = made("ur3")
+    target = solver.robot.fk(np.full(6, 0.7))
+    found = solver.solve_all(target)
+    assert found.success
+    assert found.status is iksel.Status.solved
+    assert len(found) == len(found.q) == len(list(found))
+    assert found.q.shape == (len(found), 6)
+    np.testing.assert_array_equal(found[-1].q, found.q[-1])
+    for one in found:
+        assert iksel.pose_error(solver.robot.fk(one.q), target)[0] <= 1e-6
+    with pytest.raises(IndexError, match="solution 99"):
+        found[99]
+    none = solver.solve_all(iksel.pose_from_euler([9, 9, 9], [0, 0, 0]))
+    assert (len(none), none.status.name) == (0, "out_of_reach")
+
+
+def test_filter_gets_many_and_decides(made, cases) -> None:
+    solver = made("ur3")
+    shapes = []
+
+    def low_shoulder(q):
+        shapes.append(q.shape)
+        return q[:, 1] <= 0
+
+    q = solver.robot.random_configurations(cases, seed=SEED)
+    for target in solver.robot.fk(q):
+        passing = solver.solve_all(target, 100_000, whole_turns=True).q[:, 1] <= 0
+        result = solver.solve(target, filter=low_shoulder)
+        assert result.success or not passing.any()
+        assert not result.success or result.q[1] <= 0
+        kept = solver.solve_all(target, filter=low_shoulder)
+        assert (kept.q[:, 1] <= 0).all()
+    assert max(n for n, _ in shapes) > 1
+    assert {dof for _, dof in shapes} == {6}
+
+
+def test_filter_that_refuses_all(made) -> None:
+    solver = made("ur3")
+    target = solver.robot.fk(np.full(6, 0.7))
+    result = solver.solve(target, filter=lambda q: np.zeros(len(q), dtype=bool))
+    assert result.status is iksel.Status.rejected
+    assert result.q is None
+
+
+def test_bad_filters_are_named(made) -> None:
+    solver = made("ur3")
+    target = solver.robot.fk(np.full(6, 0.7))
+    for answer in (0.5, [True] * 99, "no"):
+        with pytest.raises(iksel.InvalidArgumentError, match="filter"):
+            solver.solve(target, filter=lambda q, answer=answer: answer)
+
+    def broken(q):
+        raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        solver.solve(target, filter=broken)
+
+
+def test_seeds_alone(made) -> None:
+    solver = made("iiwa14")
+    q = solver.robot.random_configurations(10, seed=SEED)
+    for i, target in enumerate(solver.robot.fk(q)):
+        result = solver.solve(target, seeds=q, database_seeds=False)
+        assert result.success
+        assert np.abs(result.q - q[i]).max() < 0.5 or result.attempts > 1
+    nothing = solver.solve(target, seeds=np.zeros((0, 7)), database_seeds=False)
+    assert (nothing.status.name, nothing.attempts) == ("not_converged", 0)
+
+
+def test_deadline(made) -> None:
+    solver = made("ur3")
+    target = solver.robot.fk(np.full(6, 0.7))
+    assert solver.solve(target, deadline=0).status is iksel.Status.out_of_time
+    assert solver.solve(target, deadline=10).success
+
+
+@pytest.mark.parametrize(
+    ("wish", "named"),
+    [
+        ({"near": np.zeros(5)}, "near"),
+        ({"near": np.full(6, np.nan)}, "near"),
+        ({"weights": np.full(6, -1.0)}, r"weights\[0\]"),
+        ({"norm": "one"}, "norm: expected one of two, max"),
+        ({"seeds": np.zeros(6)}, "seeds"),
+        ({"deadline": -1}, "deadline"),
+    ],
+)
+def test_bad_wishes_are_named(made, wish, named) -> None:
+    solver = made("ur3")
+    with pytest.raises(iksel.InvalidArgumentError, match=named):
+        solver.solve(np.eye(4), **wish)
+
+
+def test_path_and_tracker(made) -> None:
+    solver = made("panda")
+    robot = solver.robot
+    start = np.array([0.0, -0.4, 0.0, -2.2, 0.0, 1.8, 0.8])
+    line = np.repeat(robot.fk(start)[None], 50, axis=0)
+    line[:, 1, 3] += 0.002 * np.arange(1, 51)
+    path = solver.solve_path(line, start, dt=0.02)
+    assert path.success
+    assert path.broken is None
+    steps = np.abs(np.diff(path.q, axis=0, prepend=start[None]))
+    assert (steps <= robot.velocity_limit * 0.02 * (1 + 1e-8)).all()
+    assert path.largest_step == steps.max()
+    assert path.largest_step == steps[path.largest_step_waypoint, path.largest_step_joint]
+    tracker = solver.tracker(start)
+    for pose in line:
+        assert tracker.track(pose, 0.02).success
+    np.testing.assert_allclose(robot.fk(tracker.q), line[-1], atol=1e-5)
+
+    line[30:, 0, 3] += 5
+    broken = solver.solve_path(line, start, dt=0.02)
+    assert (broken.broken, len(broken.q)) == (30, 30)
+    assert broken.status is iksel.Status.out_of_reach
+
+
+@pytest.mark.parametrize("name", ["ur3", "ur10e"])
+def test_branches_are_those_of_eaik(made, cases, name) -> None:
+    urdf = pytest.importorskip("eaik.IK_URDF")
+    solver = made(name)
+    robot = solver.robot
+    path = robot_file(name)
+    analytic = urdf.UrdfRobot(str(path))
+    differ = 0
+    for q in robot.random_configurations(cases, seed=SEED):
+        answer = analytic.IK(analytic.fwdKin(q))
+        exact = [
+            np.asarray(b)
+            for b, approximate in zip(answer.Q, answer.is_LS, strict=True)
+            if not approximate
+        ]
+        found = solver.solve_all(robot.fk(q)).q
+        differ += not same_branches(found, exact, robot)
+    assert differ <= max(1, cases // 200)
+
+
+def robot_file(name: str):
+    from importlib import resources
+
+    packaged = resources.files(iksel) / "robots" / f"{name}.urdf"
+    if packaged.is_file():
+        return packaged
+    from pathlib import Path
+
+    return Path(__file__).parents[2] / "cpp" / "robots" / f"{name}.urdf"
+
+
+def same_branches(found, exact, robot) -> bool:
+    """Whether each has the other's, where whole turns and limits do not count."""
+
+    def near(a, b):
+        difference = np.abs((a - b + np.pi) % (2 * np.pi) - np.pi)
+        return difference.max() < 0.03
+
+    inside = []
+    for q in exact:
+        for turns in (-2 * np.pi, 0, 2 * np.pi):
+            copy = np.where(q + turns > robot.upper, q, q + turns)
+            if (copy >= robot.lower).all() and (copy <= robot.upper).all():
+                inside.append(q)
+                break
+    return all(any(near(a, b) for b in found) for a in inside) and all(
+        any(near(a, b) for b in exact) for a in found
+    )

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pybind11/numpy.h>
+#include <pybind11/stl.h>
 #include <pybind11/typing.h>
 
 #include <optional>

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "error_check.hpp"
 #include "iteration/task_step.hpp"
@@ -126,23 +128,28 @@ class BestEffort {
   /// Makes 1 rad count that part of what it counts otherwise. To come first.
   void weigh_rotation(double part) { weight_ *= part; }
 
-  void from(const JointVector& seed) {
+  /// Where it ended.
+  JointVector from(const JointVector& seed) {
     JointVector q = seed;
     const double error = descend(model_, options_, task_, target_, weight_, q);
-    if (!(error < error_)) return;
-    error_ = error;
-    q_ = q;
+    if (error < error_) {
+      error_ = error;
+      q_ = q;
+    }
+    return q;
   }
   /// From n configurations spread over the limits.
-  void from_anywhere(int n) {
+  std::vector<JointVector> from_anywhere(int n) {
     Random random(options_.seed);
     JointVector q(model_.dof);
+    std::vector<JointVector> ends;
     for (int i = 0; i < n; ++i) {
       for (int j = 0; j < model_.dof; ++j) {
         q[j] = random.uniform(model_.sample_lower(j), model_.sample_upper(j));
       }
-      from(q);
+      ends.push_back(from(q));
     }
+    return ends;
   }
   [[nodiscard]] const JointVector& q() const { return q_; }
 
@@ -258,8 +265,11 @@ Diagnosis Solver::Impl::diagnose(const Pose& T_base_tip, const SolveRequest& req
     }
 
     const Solver free = make_patient(robot.without_limits());
-    AllOptions all;
-    const Solutions unlimited = free.solve_all(T_base_tip, all, without_filter);
+    // The answers that violate the limits least are close to what does best inside them.
+    BestEffort effort(model, options, weight, of_call, T_base_tip);
+    SolveRequest hinted = without_filter;
+    hinted.seeds = effort.from_anywhere(kEfforts);
+    const Solutions unlimited = free.solve_all(T_base_tip, {}, hinted);
     for (const Result& answer : unlimited.all) {
       const JointVector outside = violations(model, answer.q);
       int joint = 0;
@@ -271,7 +281,6 @@ Diagnosis Solver::Impl::diagnose(const Pose& T_base_tip, const SolveRequest& req
     }
     if (out.joint >= 0) {
       out.cause = Cause::joint_limits;
-      BestEffort effort(model, options, weight, of_call, T_base_tip);
       for (const Result& answer : unlimited.all) {
         JointVector seed = answer.q;
         model.wrap_into_limits(seed.data());

@@ -67,14 +67,14 @@ def add_parser(commands: Any) -> None:
         "--near",
         nargs="+",
         metavar="Q",
-        help="joint values to stay near [rad or m]: gives the solution with the smallest "
-        "joint move",
+        help="joint values to stay near [rad or m]: gives the solution with the "
+        "smallest joint move",
     )
     parser.add_argument(
         "--all",
         action="store_true",
-        help="give every distinct solution, nearest first (with --near: to that, else to "
-        "the middle of the limits)",
+        help="give every distinct solution, nearest first (with --near: to that, else "
+        "to the middle of the limits)",
     )
     parser.add_argument(
         "--objective",
@@ -102,10 +102,12 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         target = robot.fk(parse_joints("--from-q", arguments.from_q, joints))
     near = arguments.near and parse_joints("--near", arguments.near, joints)
+    if arguments.seed_q and (near or arguments.all):
+        raise InvalidArgumentError("--seed-q: cannot be used with --near or --all")
     if arguments.objective and (arguments.all or arguments.seed_q):
-        raise InvalidArgumentError("--objective: not with --all or --seed-q")
-    if near and arguments.seed_q:
-        raise InvalidArgumentError("--seed-q: --near starts from its own joint values")
+        raise InvalidArgumentError(
+            "--objective: cannot be used with --all or --seed-q"
+        )
     seed = arguments.seed_q and parse_joints("--seed-q", arguments.seed_q, joints)
     options = solver_options(arguments)
     database = arguments.database and Database.load(arguments.database)
@@ -135,6 +137,7 @@ def run(arguments: argparse.Namespace) -> int:
         "q": result.q,
         "position_error": result.position_error,
         "rotation_error": result.rotation_error,
+        "move": result.move,
         "attempts": result.attempts,
         "iterations": result.iterations,
         "time_us": time_us,
@@ -202,6 +205,7 @@ def run_all(
         "q": found.q,
         "position_error": found.position_error,
         "rotation_error": found.rotation_error,
+        "move": found.move,
         "attempts": found.attempts,
         "iterations": found.iterations,
         "time_us": (time.perf_counter() - start) * 1e6,
@@ -240,6 +244,8 @@ def print_text(robot: Robot, result: Result, report: dict[str, Any]) -> None:
             ("position error", f"{result.position_error:.3g} m"),
             ("rotation error", f"{result.rotation_error:.3g} rad"),
         ]
+    if math.isfinite(result.move):
+        rows.append(("joint move", f"{result.move:.4g} rad or m"))
     print_pairs(rows)
     if result.q is None:
         return

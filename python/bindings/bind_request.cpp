@@ -9,9 +9,12 @@
 #include "array_checks.hpp"
 #include "bindings.hpp"
 #include "filter.hpp"
+#include "iksel/diagnosis.hpp"
 #include "iksel/solver.hpp"
+#include "objective.hpp"
 #include "py_result.hpp"
 #include "python_types.hpp"
+#include "task_fields.hpp"
 
 namespace iksel::python {
 
@@ -70,8 +73,12 @@ SolveRequest make_request(int dof, const std::optional<ArrayLike>& near,
                           const std::optional<ArrayLike>& weights, const Loose<MoveNorm>& norm,
                           const std::optional<ArrayLike>& seeds, const Loose<bool>& database_seeds,
                           const std::optional<FilterCallable>& filter,
-                          const std::optional<Loose<double>>& deadline) {
+                          const std::optional<Loose<double>>& deadline,
+                          const std::optional<Loose<Task>>& task,
+                          const std::optional<ObjectiveLike>& objective) {
   SolveRequest request;
+  if (task) request.task = from_python<Task>(*task, "task");
+  if (objective) request.objective = as_objective(*objective);
   if (near) request.near = as_joints(*near, dof, "near");
   if (weights) request.weights = as_joints(*weights, dof, "weights");
   request.norm = from_python<MoveNorm>(norm, "norm");
@@ -86,10 +93,11 @@ PyResult solve(const Solver& self, const ArrayLike& pose, const std::optional<Ar
                const std::optional<ArrayLike>& weights, const Loose<MoveNorm>& norm,
                const std::optional<ArrayLike>& seeds, const Loose<bool>& database_seeds,
                const std::optional<FilterCallable>& filter,
-               const std::optional<Loose<double>>& deadline) {
+               const std::optional<Loose<double>>& deadline, const std::optional<Loose<Task>>& task,
+               const std::optional<ObjectiveLike>& objective) {
   const Pose target = as_pose(pose, "pose");
   const SolveRequest request = make_request(self.robot().dof(), near, weights, norm, seeds,
-                                            database_seeds, filter, deadline);
+                                            database_seeds, filter, deadline, task, objective);
   const py::gil_scoped_release release;
   return {self.solve(target, request), {}};
 }
@@ -100,7 +108,8 @@ PySolutions solve_all(const Solver& self, const ArrayLike& pose, const Loose<int
                       const std::optional<ArrayLike>& weights, const Loose<MoveNorm>& norm,
                       const std::optional<ArrayLike>& seeds, const Loose<bool>& database_seeds,
                       const std::optional<FilterCallable>& filter,
-                      const std::optional<Loose<double>>& deadline) {
+                      const std::optional<Loose<double>>& deadline,
+                      const std::optional<Loose<Task>>& task) {
   const Pose target = as_pose(pose, "pose");
   const int dof = self.robot().dof();
   AllOptions options;
@@ -109,9 +118,22 @@ PySolutions solve_all(const Solver& self, const ArrayLike& pose, const Loose<int
   options.whole_turns = from_python<bool>(whole_turns, "whole_turns");
   options.order = from_python<SolutionOrder>(order, "order");
   const SolveRequest request =
-      make_request(dof, near, weights, norm, seeds, database_seeds, filter, deadline);
+      make_request(dof, near, weights, norm, seeds, database_seeds, filter, deadline, task, {});
   const py::gil_scoped_release release;
   return {self.solve_all(target, options, request), dof};
+}
+
+Diagnosis diagnose(const Solver& self, const ArrayLike& pose,
+                   const std::optional<FilterCallable>& filter,
+                   const std::optional<Loose<double>>& deadline,
+                   const std::optional<Loose<Task>>& task) {
+  const Pose target = as_pose(pose, "pose");
+  SolveRequest request;
+  if (filter) request.filter = make_filter(*filter, self.robot().dof());
+  if (deadline) request.deadline = from_python<double>(*deadline, "deadline");
+  if (task) request.task = from_python<Task>(*task, "task");
+  const py::gil_scoped_release release;
+  return self.diagnose(target, request);
 }
 
 void bind_solutions(py::module_& m) {
@@ -161,7 +183,8 @@ void bind_requests(py::module_& m, py::class_<Solver>& cls) {
   cls.def("solve", &solve, py::arg("pose"), py::kw_only(), py::arg("near") = py::none(),
           py::arg("weights") = py::none(), py::arg("norm") = norm, py::arg("seeds") = py::none(),
           py::arg("database_seeds") = wishes.database_seeds, py::arg("filter") = py::none(),
-          py::arg("deadline") = py::none(),
+          py::arg("deadline") = py::none(), py::arg("task") = py::none(),
+          py::arg("objective") = py::none(),
           R"(As solve, with wishes.
 
 Args:
@@ -177,6 +200,10 @@ Args:
     filter: called with candidates (n, dof), each at the pose and inside the limits; returns n
         truth values. The search goes on within its bounds while all are refused.
     deadline: wall-clock time after which the search ends [s]; checked between its stages.
+    task: what of the pose has to be reached; None: what the solver's options say.
+    objective: what the answer is to be good at besides: an Objective, 'limits',
+        'manipulability', or a function of joint values (dof,) that returns a cost. Comes before
+        `near`. Of the answers found, the cheapest; a redundant arm's has slid to a local minimum.
 
 Returns:
     A Result. A pose that cannot be solved is no error but a status.
@@ -189,7 +216,7 @@ Raises:
           py::arg("order") = enum_name(all.order), py::arg("near") = py::none(),
           py::arg("weights") = py::none(), py::arg("norm") = norm, py::arg("seeds") = py::none(),
           py::arg("database_seeds") = wishes.database_seeds, py::arg("filter") = py::none(),
-          py::arg("deadline") = py::none(),
+          py::arg("deadline") = py::none(), py::arg("task") = py::none(),
           R"(Every distinct solution that is found: all branches, or a spread for a redundant arm.
 
 Args:
@@ -199,10 +226,25 @@ Args:
     whole_turns: whether copies by whole turns inside the limits count as solutions of their own;
         otherwise each comes once, at the turn nearest to `near` or to the middle of the limits.
     order: what comes first.
-    near, weights, norm, seeds, database_seeds, filter, deadline: as in solve.
+    near, weights, norm, seeds, database_seeds, filter, deadline, task: as in solve.
 
 Returns:
     Solutions; empty, with a status that says why, if there is none.
+
+Raises:
+    InvalidArgumentError: as solve.)");
+  cls.def("diagnose", &diagnose, py::arg("pose"), py::kw_only(), py::arg("filter") = py::none(),
+          py::arg("deadline") = py::none(), py::arg("task") = py::none(),
+          R"(Why solve() with the same arguments gives no answer, and the best that can be done.
+
+Spends much more than solving does, milliseconds to a second.
+
+Args:
+    pose: T_base_tip, (4, 4) [m].
+    filter, deadline, task: as in solve.
+
+Returns:
+    A Diagnosis; its cause is `none` if there is an answer.
 
 Raises:
     InvalidArgumentError: as solve.)");

@@ -237,6 +237,30 @@ Returns:
 Raises:
     InvalidArgumentError: wrong shape or dtype, or a number that is not finite.)");
   cls.def(
+      "dq_dx",
+      [](const Robot& self, const ArrayLike& q, const Loose<double>& damping) {
+        const auto factor = from_python<double>(damping, "damping");
+        const int dof = self.dof();
+        return map_joints(q, dof, "q", {dof, 6}, [&](const JointVector& joints, double* out) {
+          Eigen::Map<RowMajorMatrix>(out, dof, 6) = self.dq_dx(joints, factor);
+        });
+      },
+      py::arg("q"), py::arg("damping") = 0.0,
+      R"(Derivative of an answer q by its target, for differentiable use.
+
+dq = dq_dx @ [linear; angular] for a small twist of the target in base axes at the tip, of all dq
+the least: the damped pseudo-inverse J^T (J J^T + damping^2 I)^-1 (Nakamura and Hanafusa 1986).
+
+Args:
+    q: joint values [rad or m], (dof,) or (N, dof).
+    damping: bounds dq near singularities; 0: the pseudo-inverse.
+
+Returns:
+    (dof, 6), or (N, dof, 6) with the GIL released.
+
+Raises:
+    InvalidArgumentError: wrong shape or dtype, a number that is not finite, damping below 0.)");
+  cls.def(
       "random_configurations",
       [](const Robot& self, const Loose<std::size_t>& n, const Loose<std::uint64_t>& seed) {
         return to_array(self.random_configurations(from_python<std::size_t>(n, "n"),

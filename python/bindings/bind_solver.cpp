@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "array_checks.hpp"
@@ -56,13 +57,20 @@ struct PyBatchResult {
 };
 
 Solver make_solver(const Robot& robot, const std::optional<SolverOptions>& given,
-                   const std::optional<Database>& database) {
+                   const std::optional<Database>& database, const std::optional<Robot>& nominal,
+                   const std::optional<std::pair<double, double>>& max_drift) {
   const SolverOptions options = given.value_or(SolverOptions{});
   options.validate();
   // Built here and not by Solver, so that Ctrl-C ends a long build.
   const std::optional<ProgressCallable> no_callable;
   const Progress interruptible = make_progress(no_callable);
   const py::gil_scoped_release release;
+  if (nominal) {
+    const Drift bound = max_drift ? Drift{max_drift->first, max_drift->second} : Solver::kMostDrift;
+    return Solver(robot, options,
+                  database ? *database : Database::build(*nominal, options.database, interruptible),
+                  *nominal, bound);
+  }
   return Solver(robot, options,
                 database ? *database : Database::build(robot, options.database, interruptible));
 }
@@ -137,6 +145,9 @@ void bind_result(py::module_& m) {
       "move", [](const PyResult& self) { return self.result.move; },
       "Length of the move from `near`, by its norm and weights; NaN without one.");
   cls.def_property_readonly(
+      "cost", [](const PyResult& self) { return self.result.cost; },
+      "Cost of q by the objective; NaN without one.");
+  cls.def_property_readonly(
       "attempts", [](const PyResult& self) { return self.result.attempts; }, "Seeds tried.");
   cls.def_property_readonly(
       "iterations", [](const PyResult& self) { return self.result.iterations; },
@@ -146,7 +157,7 @@ void bind_result(py::module_& m) {
       [](PyResult& self) {
         const Result& r = self.result;
         return py::make_tuple(enum_name(r.status), self.joints(), r.position_error,
-                              r.rotation_error, r.attempts, r.iterations, r.move);
+                              r.rotation_error, r.attempts, r.iterations, r.move, r.cost);
       },
       [](const py::tuple& state) {
         PyResult self;
@@ -157,6 +168,7 @@ void bind_result(py::module_& m) {
         self.result.attempts = py::cast<int>(state[4]);
         self.result.iterations = py::cast<int>(state[5]);
         self.result.move = py::cast<double>(state[6]);
+        self.result.cost = py::cast<double>(state[7]);
         return self;
       }));
 }
@@ -225,17 +237,33 @@ void bind_solver(py::module_& m) {
                          "Solves inverse kinematics for one robot. Immutable, safe to use from "
                          "many threads at once; the same input gives the same bits.");
   cls.def(py::init(&make_solver), py::arg("robot"), py::arg("options") = py::none(),
-          py::arg("database") = py::none(),
+          py::arg("database") = py::none(), py::kw_only(), py::arg("nominal") = py::none(),
+          py::arg("max_drift") = py::none(),
           R"(Uses a database, or builds one by `options.database` if it is given none.
 
 Args:
     robot: the chain to solve for.
     options: SolverOptions() if None.
     database: built for the same chain; its TCP may differ.
+    nominal: for a calibrated arm, the chain that the database was built for, whose constants
+        differ a little. Seeds come from it; iterations, tolerances and limits are the robot's.
+    max_drift: the largest drift of the robot from `nominal`, (position [m], rotation [rad]);
+        None: (0.05, 0.1).
 
 Raises:
     InvalidArgumentError: an option out of range.
-    DatabaseMismatchError: the database belongs to another chain.)");
+    DatabaseMismatchError: the database belongs to another chain, or the drift is too large.)");
+  cls.def_property_readonly("nominal", &Solver::nominal,
+                            "The chain that the database was built for: the robot itself, unless "
+                            "that is a calibrated one.");
+  cls.def_property_readonly(
+      "drift",
+      [](const Solver& self) {
+        const Drift drift = self.drift();
+        return std::make_pair(drift.position, drift.rotation);
+      },
+      "How far the robot's tip drifts from `nominal`'s at the same joint values, at most over "
+      "2000 configurations: (position [m], rotation [rad]).");
   cls.def_property_readonly("robot", &Solver::robot, "The robot it solves for.");
   cls.def_property_readonly(
       "options", [](const Solver& self) { return self.options(); }, "A copy of its options.");
@@ -282,11 +310,17 @@ Raises:
       "__deepcopy__", [](const Solver& self, const py::dict&) { return self; }, py::arg("memo"));
   cls.def(py::pickle(
       [](const Solver& self) {
-        return py::make_tuple(self.robot(), self.options(), self.database());
+        return py::make_tuple(self.robot(), self.options(), self.database(), self.nominal());
       },
       [](const py::tuple& state) {
-        return Solver(py::cast<const Robot&>(state[0]), py::cast<const SolverOptions&>(state[1]),
-                      py::cast<const Database&>(state[2]));
+        const auto& robot = py::cast<const Robot&>(state[0]);
+        const auto& options = py::cast<const SolverOptions&>(state[1]);
+        const auto& database = py::cast<const Database&>(state[2]);
+        const auto& nominal = py::cast<const Robot&>(state[3]);
+        if (nominal.chain_hash() == robot.chain_hash()) return Solver(robot, options, database);
+        // It was within its bound when it was made.
+        constexpr double kAny = std::numeric_limits<double>::infinity();
+        return Solver(robot, options, database, nominal, Drift{kAny, kAny});
       }));
 }
 

@@ -12,8 +12,12 @@ namespace iksel::python {
 
 void bind_errors(pybind11::module_& m);
 void bind_robot(pybind11::module_& m);
+/// To come before the options, one of which is a task.
+void bind_task(pybind11::module_& m);
 void bind_options(pybind11::module_& m);
 void bind_database(pybind11::module_& m);
+void bind_objective(pybind11::module_& m);
+void bind_diagnosis(pybind11::module_& m);
 void bind_solver(pybind11::module_& m);
 /// The methods of Solver that take wishes.
 void bind_requests(pybind11::module_& m, pybind11::class_<Solver>& solver);

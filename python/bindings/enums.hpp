@@ -9,6 +9,7 @@
 #include <string>
 #include <type_traits>
 
+#include "iksel/diagnosis.hpp"
 #include "iksel/options.hpp"
 #include "iksel/request.hpp"
 #include "iksel/result.hpp"
@@ -202,6 +203,60 @@ struct EnumTable<SolutionOrder> {
       {"limit_distance", SolutionOrder::limit_distance,
        "the largest distance from the limits first, relative to each joint's range"},
       {"manipulability", SolutionOrder::manipulability, "the largest sqrt(det(J J^T)) first"},
+  };
+};
+
+template <>
+struct EnumTable<TaskFrame> {
+  static constexpr const char* kName = "TaskFrame";
+  static constexpr const char* kDoc = "Axes that the tolerances of a task lie along.";
+  static constexpr EnumValue<TaskFrame> kValues[] = {
+      {"base", TaskFrame::base, "the base's"},
+      {"tool", TaskFrame::tool, "the target pose's own: those the tool has when it is there"},
+  };
+};
+
+template <>
+struct EnumTable<Axis> {
+  static constexpr const char* kName = "Axis";
+  static constexpr const char* kDoc = "One axis of a frame.";
+  static constexpr EnumValue<Axis> kValues[] = {
+      {"x", Axis::x, "x"}, {"y", Axis::y, "y"}, {"z", Axis::z, "z"}};
+};
+
+template <>
+struct EnumTable<Cause> {
+  static constexpr const char* kName = "Cause";
+  static constexpr const char* kDoc =
+      "Why a solve gave no answer. All but `out_of_reach` beyond Robot.reach are found by search "
+      "and so are likely, not proven.";
+  static constexpr EnumValue<Cause> kValues[] = {
+      {"none", Cause::none, "there is an answer"},
+      {"out_of_reach", Cause::out_of_reach, "the position lies beyond what the arm reaches"},
+      {"orientation", Cause::orientation,
+       "the position can be reached, but not with this rotation"},
+      {"joint_limits", Cause::joint_limits,
+       "answers exist, but all with joints outside their limits"},
+      {"rejected", Cause::rejected, "answers exist, but the filter refuses each"},
+      {"singular", Cause::singular,
+       "more work finds an answer, where the arm is close to a singularity"},
+      {"budget", Cause::budget,
+       "more work finds an answer: the bounds on attempts or iterations are too low"},
+      {"out_of_time", Cause::out_of_time, "more time finds an answer: the deadline is too short"},
+  };
+};
+
+template <>
+struct EnumTable<Objective::Kind> {
+  static constexpr const char* kName = "ObjectiveKind";
+  static constexpr const char* kDoc = "What an Objective counts.";
+  static constexpr EnumValue<Objective::Kind> kValues[] = {
+      {"none", Objective::Kind::none, "nothing"},
+      {"posture", Objective::Kind::posture, "1/2 sum (w_i (q_i - posture_i))^2"},
+      {"limits", Objective::Kind::limits,
+       "sum 1/4 (1/x_i + 1/(1 - x_i)), x_i in 0 .. 1 the place between the limits"},
+      {"manipulability", Objective::Kind::manipulability, "-sqrt(det(J J^T))"},
+      {"custom", Objective::Kind::custom, "the caller's function"},
   };
 };
 

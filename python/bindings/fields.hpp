@@ -7,6 +7,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/typing.h>
 
+#include <array>
 #include <string>
 #include <tuple>
 #include <type_traits>
@@ -41,6 +42,27 @@ void for_each_field(const Visitor& visit) {
   std::apply([&](const auto&... each) { (visit(each), ...); }, FieldTable<Struct>::fields());
 }
 
+template <class T>
+struct IsArray : std::false_type {};
+template <std::size_t N>
+struct IsArray<std::array<double, N>> : std::true_type {};
+
+/// A sequence of N numbers.
+template <std::size_t N>
+struct FromPython<std::array<double, N>> {
+  static std::array<double, N> convert(py::handle value, const char* name) {
+    const std::string expected = std::to_string(N) + " numbers";
+    if (!py::isinstance<py::sequence>(value) && !py::hasattr(value, "__array__")) {
+      throw_wrong_type(name, expected, value);
+    }
+    const py::list items(py::reinterpret_borrow<py::object>(value));
+    if (items.size() != N) throw_wrong_type(name, expected, value);
+    std::array<double, N> out{};
+    for (std::size_t i = 0; i < N; ++i) out[i] = from_python<double>(items[i], name);
+    return out;
+  }
+};
+
 template <class Struct>
 std::string field_names() {
   std::string names;
@@ -63,6 +85,10 @@ py::object to_plain(const T& value) {
     return to_dict(value);
   } else if constexpr (std::is_enum_v<T>) {
     return py::str(enum_name(value));
+  } else if constexpr (IsArray<T>::value) {
+    py::tuple items(value.size());
+    for (std::size_t i = 0; i < value.size(); ++i) items[i] = value[i];
+    return items;
   } else {
     return py::cast(value);
   }
@@ -148,6 +174,8 @@ std::string argument_type() {
     return std::string("iksel_cpp.") + EnumTable<T>::kName + " | str";
   } else if constexpr (std::is_same_v<T, bool>) {
     return "bool";
+  } else if constexpr (IsArray<T>::value) {
+    return "collections.abc.Sequence[float]";
   } else {
     return std::is_integral_v<T> ? "int" : "float";
   }
@@ -182,18 +210,30 @@ py::class_<Struct> bind_fields(py::module_& m, bool writable) {
   py::class_<Struct> cls(m, Table::kName, Table::kDoc);
   for_each_field<Struct>([&](const auto& f) {
     using T = std::decay_t<decltype(std::declval<Struct>().*f.member)>;
-    const py::cpp_function get([member = f.member](Struct& self) -> T& { return self.*member; },
-                               py::is_method(cls), py::return_value_policy::reference_internal);
-    if (!writable) {
-      cls.def_property_readonly(f.name, get, f.doc);
+    if constexpr (IsArray<T>::value) {
+      // A copy, and unchangeable, so that nobody takes it for the struct's own.
+      cls.def_property_readonly(
+          f.name,
+          [member = f.member](const Struct& self) {
+            const auto& [x, y, z] = self.*member;
+            return py::typing::Tuple<py::float_, py::float_, py::float_>(py::make_tuple(x, y, z));
+          },
+          f.doc);
       return;
+    } else {
+      const py::cpp_function get([member = f.member](Struct& self) -> T& { return self.*member; },
+                                 py::is_method(cls), py::return_value_policy::reference_internal);
+      if (!writable) {
+        cls.def_property_readonly(f.name, get, f.doc);
+        return;
+      }
+      const py::cpp_function set(
+          [member = f.member, name = f.name](Struct& self, const Loose<T>& value) {
+            self.*member = from_python<T>(value, name);
+          },
+          py::is_method(cls), py::arg("value"));
+      cls.def_property(f.name, get, set, f.doc);
     }
-    const py::cpp_function set(
-        [member = f.member, name = f.name](Struct& self, const Loose<T>& value) {
-          self.*member = from_python<T>(value, name);
-        },
-        py::is_method(cls), py::arg("value"));
-    cls.def_property(f.name, get, set, f.doc);
   });
   cls.def("to_dict", &to_dict<Struct>,
           "All fields by name as plain Python data, with the names of enums in their place.");
@@ -216,10 +256,10 @@ py::class_<Struct> bind_fields(py::module_& m, bool writable) {
   return cls;
 }
 
-/// As bind_fields with writable attributes, a keyword constructor, paper() and replace().
+/// As bind_fields with writable attributes, a keyword constructor and replace().
 template <class Struct>
-py::class_<Struct> bind_options_class(py::module_& m) {
-  auto cls = bind_fields<Struct>(m, /*writable=*/true);
+py::class_<Struct> bind_options_class(py::module_& m, bool writable = true) {
+  auto cls = bind_fields<Struct>(m, writable);
   py::options signatures;
   signatures.disable_function_signatures();
   const std::string init_doc = keyword_doc<Struct>("__init__", "None", /*show_defaults=*/true,

@@ -14,8 +14,11 @@ PYBIND11_MODULE(iksel_cpp, m) {
   m.attr("__version__") = iksel::kVersion;
   iksel::python::bind_errors(m);
   iksel::python::bind_robot(m);
+  iksel::python::bind_task(m);
   iksel::python::bind_options(m);
   iksel::python::bind_database(m);
+  iksel::python::bind_objective(m);
+  iksel::python::bind_diagnosis(m);
   iksel::python::bind_solver(m);
   iksel::python::bind_evaluation(m);
 }

@@ -4,6 +4,7 @@
 
 #include "fields.hpp"
 #include "iksel/options.hpp"
+#include "task_fields.hpp"
 
 namespace iksel::python {
 
@@ -49,6 +50,8 @@ struct FieldTable<SolverOptions> {
               "An answer's position is at most this far from the target's [m]."),
         field("rotation_tolerance", &O::rotation_tolerance,
               "An answer's rotation vector error is at most this long [rad]."),
+        field("task", &O::task,
+              "What of a pose has to be reached: all of it, or a box with free axes."),
         field("database", &O::database,
               "Database that a solver builds for itself when it is given none."),
         field("neighbours", &O::neighbours,

@@ -6,6 +6,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <array>
 #include <filesystem>
 #include <limits>
 #include <string>
@@ -154,6 +155,8 @@ struct handle_type_name<iksel::python::Loose<T>> {
   static constexpr auto describe() {
     if constexpr (std::is_enum_v<T>) {
       return make_caster<T>::name + const_name(" | str");
+    } else if constexpr (std::is_same_v<T, std::array<double, 3>>) {
+      return const_name("collections.abc.Sequence[float]");
     } else if constexpr (std::is_class_v<T>) {
       return make_caster<T>::name + const_name(" | collections.abc.Mapping[str, object]");
     } else if constexpr (std::is_same_v<T, bool>) {

@@ -14,7 +14,7 @@ import numpy
 import numpy.typing
 import os
 import typing
-__all__: list[str] = ['BatchResult', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'KeyScheme', 'Kinematics', 'MoveNorm', 'PathResult', 'Ranking', 'Reselection', 'Result', 'Robot', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'SolutionOrder', 'Solutions', 'Solver', 'SolverOptions', 'Status', 'Tracker', 'UnknownNameError', 'UrdfError', 'evaluate', 'grid_counts', 'pose_error', 'simd_level', 'time_kdl_fk_jacobian']
+__all__: list[str] = ['Axis', 'BatchResult', 'Cause', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'Diagnosis', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'KeyScheme', 'Kinematics', 'MoveNorm', 'Objective', 'ObjectiveKind', 'PathResult', 'Ranking', 'Reselection', 'Result', 'Robot', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'SolutionOrder', 'Solutions', 'Solver', 'SolverOptions', 'Status', 'Task', 'TaskFrame', 'Tracker', 'UnknownNameError', 'UrdfError', 'evaluate', 'grid_counts', 'pose_error', 'simd_level', 'time_kdl_fk_jacobian']
 class Error(Exception):
     """
     Base of every exception of the library.
@@ -88,6 +88,23 @@ class Robot:
         ...
     def __repr__(self) -> str:
         ...
+    def dq_dx(self, q: numpy.typing.ArrayLike, damping: float = 0.0) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Derivative of an answer q by its target, for differentiable use.
+
+        dq = dq_dx @ [linear; angular] for a small twist of the target in base axes at the tip, of all dq
+        the least: the damped pseudo-inverse J^T (J J^T + damping^2 I)^-1 (Nakamura and Hanafusa 1986).
+
+        Args:
+            q: joint values [rad or m], (dof,) or (N, dof).
+            damping: bounds dq near singularities; 0: the pseudo-inverse.
+
+        Returns:
+            (dof, 6), or (N, dof, 6) with the GIL released.
+
+        Raises:
+            InvalidArgumentError: wrong shape or dtype, a number that is not finite, damping below 0.
+        """
     def fk(self, q: numpy.typing.ArrayLike, kinematics: Kinematics | str = 'kernel') -> numpy.typing.NDArray[numpy.float64]:
         """
         Forward kinematics: T_base_tip (of the TCP, if there is one).
@@ -217,6 +234,136 @@ class Robot:
     def velocity_limit(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         Velocity limits [rad/s or m/s], (dof,); inf where the URDF has none.
+        """
+class TaskFrame(enum.Enum):
+    """
+    Axes that the tolerances of a task lie along.
+    """
+    base = 0
+    tool = 1
+class Axis(enum.Enum):
+    """
+    One axis of a frame.
+    """
+    x = 0
+    y = 1
+    z = 2
+class Task:
+    """
+    What of a pose has to be reached: a box around the target for the deviation of the tip, along the axes of `frame`. Zero width asks for an axis exactly, infinite width leaves it free. The rotation's deviation is a rotation vector where its three widths are equal, else swing and twist about the axis whose width is unlike the other two's. An answer lies at most the solver's tolerances outside of the box. Immutable.
+    """
+    @staticmethod
+    def box(position: collections.abc.Sequence[float], rotation: collections.abc.Sequence[float], frame: TaskFrame | str = 'tool') -> Task:
+        """
+        Symmetric tolerances about the target.
+
+        Args:
+            position: half widths along x, y, z [m]; inf leaves an axis free.
+            rotation: half widths about x, y, z [rad]; pi or more leaves an axis free.
+            frame: whose axes these are.
+
+        Raises:
+            InvalidArgumentError: a half width that is negative or not a number.
+        """
+    @staticmethod
+    def free_spin(axis: Axis | str = 'z') -> Task:
+        """
+        The position and the direction of one of the tool's axes; any spin about it.
+        """
+    @staticmethod
+    def planar(normal: Axis | str = 'z') -> Task:
+        """
+        The position in the plane that `normal` of the base is normal to, and the angle about it; three axes are left free. For arms that move in a plane.
+        """
+    @staticmethod
+    def pose() -> Task:
+        """
+        The whole pose, exactly.
+        """
+    @staticmethod
+    def position_only() -> Task:
+        """
+        The position; any rotation.
+        """
+    @staticmethod
+    def upright(axis: Axis | str = 'z') -> Task:
+        """
+        The position, and the rotation up to a turn about one of the base's axes: a glass stays upright.
+        """
+    def __eq__(self, other: object) -> bool:
+        ...
+    def __hash__(self) -> int:
+        ...
+    def __init__(self, *, frame: TaskFrame | str = 'tool', position_lower: collections.abc.Sequence[float] = (0.0, 0.0, 0.0), position_upper: collections.abc.Sequence[float] = (0.0, 0.0, 0.0), rotation_lower: collections.abc.Sequence[float] = (0.0, 0.0, 0.0), rotation_upper: collections.abc.Sequence[float] = (0.0, 0.0, 0.0)) -> None:
+        """
+        Fields that are not given keep their default.
+
+        Args:
+            frame: Whose axes the bounds lie along.
+            position_lower: Lower bounds of the position's deviation along x, y, z [m]; -inf: none.
+            position_upper: Upper bounds of the position's deviation along x, y, z [m]; inf: none.
+            rotation_lower: Lower bounds of the rotation's deviation about x, y, z [rad], from -pi, or -inf.
+            rotation_upper: Upper bounds of the rotation's deviation about x, y, z [rad], up to pi, or inf.
+
+        Raises:
+            TypeError: a keyword that is no field.
+            InvalidArgumentError: a value of the wrong type or out of range.
+        """
+    def __repr__(self) -> str:
+        ...
+    def replace(self, *, frame: TaskFrame | str = ..., position_lower: collections.abc.Sequence[float] = ..., position_upper: collections.abc.Sequence[float] = ..., rotation_lower: collections.abc.Sequence[float] = ..., rotation_upper: collections.abc.Sequence[float] = ...) -> Task:
+        """
+        A copy in which the given fields have another value.
+
+        Args:
+            frame: Whose axes the bounds lie along.
+            position_lower: Lower bounds of the position's deviation along x, y, z [m]; -inf: none.
+            position_upper: Upper bounds of the position's deviation along x, y, z [m]; inf: none.
+            rotation_lower: Lower bounds of the rotation's deviation about x, y, z [rad], from -pi, or -inf.
+            rotation_upper: Upper bounds of the rotation's deviation about x, y, z [rad], up to pi, or inf.
+
+        Raises:
+            TypeError: a keyword that is no field.
+            InvalidArgumentError: a value of the wrong type or out of range.
+        """
+    def to_dict(self) -> dict[str, typing.Any]:
+        """
+        All fields by name as plain Python data, with the names of enums in their place.
+        """
+    @property
+    def constrained_axes(self) -> int:
+        """
+        Number of axes that are not free, 0 to 6.
+        """
+    @property
+    def frame(self) -> TaskFrame:
+        """
+        Whose axes the bounds lie along.
+        """
+    @property
+    def is_full_pose(self) -> bool:
+        """
+        Whether every tolerance is zero.
+        """
+    @property
+    def position_lower(self) -> tuple[float, float, float]:
+        """
+        Lower bounds of the position's deviation along x, y, z [m]; -inf: none.
+        """
+    @property
+    def position_upper(self) -> tuple[float, float, float]:
+        """
+        Upper bounds of the position's deviation along x, y, z [m]; inf: none.
+        """
+    @property
+    def rotation_lower(self) -> tuple[float, float, float]:
+        """
+        Lower bounds of the rotation's deviation about x, y, z [rad], from -pi, or -inf.
+        """
+    @property
+    def rotation_upper(self) -> tuple[float, float, float]:
+        """
+        Upper bounds of the rotation's deviation about x, y, z [rad], up to pi, or inf.
         """
 class Sampling(enum.Enum):
     """
@@ -437,13 +584,14 @@ class SolverOptions:
         """
     def __eq__(self, other: object) -> bool:
         ...
-    def __init__(self, *, position_tolerance: float = 1e-06, rotation_tolerance: float = 1e-06, database: DatabaseOptions | collections.abc.Mapping[str, typing.Any] = ..., neighbours: int = 200, ranking: Ranking | str = 'joint_adjustment', rotation_difference: RotationDifference | str = 'geodesic', limit_aware: bool = True, candidates: int = 100, reselection: Reselection | str = 'farthest', max_attempts: int = 1024, iteration: Iteration | str = 'lm', max_iterations: int = 20, damping: float = 0.001, pinv_cutoff: float = 0.0001, position_clamp: float = 0.1, rotation_clamp: float = 0.3141592653589793, growth_stop: GrowthStop | str = 'by_scheme', min_step: float = 1e-06, limit_margin: float = 0.1, whole_turns: bool = True, kinematics: Kinematics | str = 'kernel', seed: int = 0) -> None:
+    def __init__(self, *, position_tolerance: float = 1e-06, rotation_tolerance: float = 1e-06, task: Task | collections.abc.Mapping[str, typing.Any] = ..., database: DatabaseOptions | collections.abc.Mapping[str, typing.Any] = ..., neighbours: int = 200, ranking: Ranking | str = 'joint_adjustment', rotation_difference: RotationDifference | str = 'geodesic', limit_aware: bool = True, candidates: int = 100, reselection: Reselection | str = 'farthest', max_attempts: int = 1024, iteration: Iteration | str = 'lm', max_iterations: int = 20, damping: float = 0.001, pinv_cutoff: float = 0.0001, position_clamp: float = 0.1, rotation_clamp: float = 0.3141592653589793, growth_stop: GrowthStop | str = 'by_scheme', min_step: float = 1e-06, limit_margin: float = 0.1, whole_turns: bool = True, kinematics: Kinematics | str = 'kernel', seed: int = 0) -> None:
         """
         Fields that are not given keep their default.
 
         Args:
             position_tolerance: An answer's position is at most this far from the target's [m].
             rotation_tolerance: An answer's rotation vector error is at most this long [rad].
+            task: What of a pose has to be reached: all of it, or a box with free axes.
             database: Database that a solver builds for itself when it is given none.
             neighbours: Neighbours asked from the KD-tree (k); lanes take them in widening stages.
             ranking: How the neighbours are put in order.
@@ -471,13 +619,14 @@ class SolverOptions:
         """
     def __repr__(self) -> str:
         ...
-    def replace(self, *, position_tolerance: float = ..., rotation_tolerance: float = ..., database: DatabaseOptions | collections.abc.Mapping[str, typing.Any] = ..., neighbours: int = ..., ranking: Ranking | str = ..., rotation_difference: RotationDifference | str = ..., limit_aware: bool = ..., candidates: int = ..., reselection: Reselection | str = ..., max_attempts: int = ..., iteration: Iteration | str = ..., max_iterations: int = ..., damping: float = ..., pinv_cutoff: float = ..., position_clamp: float = ..., rotation_clamp: float = ..., growth_stop: GrowthStop | str = ..., min_step: float = ..., limit_margin: float = ..., whole_turns: bool = ..., kinematics: Kinematics | str = ..., seed: int = ...) -> SolverOptions:
+    def replace(self, *, position_tolerance: float = ..., rotation_tolerance: float = ..., task: Task | collections.abc.Mapping[str, typing.Any] = ..., database: DatabaseOptions | collections.abc.Mapping[str, typing.Any] = ..., neighbours: int = ..., ranking: Ranking | str = ..., rotation_difference: RotationDifference | str = ..., limit_aware: bool = ..., candidates: int = ..., reselection: Reselection | str = ..., max_attempts: int = ..., iteration: Iteration | str = ..., max_iterations: int = ..., damping: float = ..., pinv_cutoff: float = ..., position_clamp: float = ..., rotation_clamp: float = ..., growth_stop: GrowthStop | str = ..., min_step: float = ..., limit_margin: float = ..., whole_turns: bool = ..., kinematics: Kinematics | str = ..., seed: int = ...) -> SolverOptions:
         """
         A copy in which the given fields have another value.
 
         Args:
             position_tolerance: An answer's position is at most this far from the target's [m].
             rotation_tolerance: An answer's rotation vector error is at most this long [rad].
+            task: What of a pose has to be reached: all of it, or a box with free axes.
             database: Database that a solver builds for itself when it is given none.
             neighbours: Neighbours asked from the KD-tree (k); lanes take them in widening stages.
             ranking: How the neighbours are put in order.
@@ -680,6 +829,14 @@ class SolverOptions:
     def seed(self, value: int) -> None:
         ...
     @property
+    def task(self) -> Task:
+        """
+        What of a pose has to be reached: all of it, or a box with free axes.
+        """
+    @task.setter
+    def task(self, value: Task | collections.abc.Mapping[str, typing.Any]) -> None:
+        ...
+    @property
     def whole_turns(self) -> bool:
         """
         Bring joints with a range of more than 2 pi inside their limits by whole turns.
@@ -786,6 +943,124 @@ class Database:
         """
         Number of samples.
         """
+class ObjectiveKind(enum.Enum):
+    """
+    What an Objective counts.
+    """
+    custom = 4
+    limits = 2
+    manipulability = 3
+    none = 0
+    posture = 1
+class Objective:
+    """
+    What an answer is to be good at besides reaching the target: a cost of joint values, the smaller the better. Of all answers found the cheapest is taken; where the arm is free to move (more joints than fixed axes) the best have slid to a local minimum of the cost first. Immutable.
+    """
+    @staticmethod
+    def custom(cost: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any], gradient: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None) -> Objective:
+        """
+        The cost of joint values (dof,) inside the limits, a number, and its gradient (dof,); without one, central differences of the cost.
+        """
+    @staticmethod
+    def far_from_limits() -> Objective:
+        """
+        Far from the limits: sum 1/4 (1/x_i + 1/(1 - x_i)), x_i in 0 .. 1 the place between them (Zghal, Dubey and Euler 1990).
+        """
+    @staticmethod
+    def most_manipulable() -> Objective:
+        """
+        Far from singularities: -sqrt(det(J J^T)) (Yoshikawa 1985); of J^T J with fewer than 6 joints.
+        """
+    @staticmethod
+    def near_posture(posture: numpy.typing.ArrayLike, weights: numpy.typing.ArrayLike | None = None) -> Objective:
+        """
+        Near joint values (dof,) [rad or m], inside the limits or not: 1/2 sum (w_i (q_i - posture_i))^2, weights (dof,), >= 0; None: all 1.
+        """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def kind(self) -> ObjectiveKind:
+        """
+        What it counts.
+        """
+class Cause(enum.Enum):
+    """
+    Why a solve gave no answer. All but `out_of_reach` beyond Robot.reach are found by search and so are likely, not proven.
+    """
+    budget = 6
+    joint_limits = 3
+    none = 0
+    orientation = 2
+    out_of_reach = 1
+    out_of_time = 7
+    rejected = 4
+    singular = 5
+class Diagnosis:
+    """
+    What Solver.diagnose found. Numbers that do not belong to the cause are NaN.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def beyond_reach(self) -> float:
+        """
+        out_of_reach: distance from the nearest position that was reached [m].
+        """
+    @property
+    def cause(self) -> Cause:
+        """
+        Why there is no answer; `none` if there is one.
+        """
+    @property
+    def joint(self) -> int:
+        """
+        joint_limits: index of the joint that lies farthest outside its limits in the answer that violates them least; -1 otherwise.
+        """
+    @property
+    def least_singular_value(self) -> float:
+        """
+        Least singular value of the Jacobian at q [mixed units]: small where it is close to a singularity.
+        """
+    @property
+    def limit_violation(self) -> float:
+        """
+        joint_limits: by how much that joint lies outside [rad or m].
+        """
+    @property
+    def message(self) -> str:
+        """
+        What is wrong and what to do about it, in a sentence.
+        """
+    @property
+    def position_error(self) -> float:
+        """
+        Position error of q [m].
+        """
+    @property
+    def q(self) -> numpy.typing.NDArray[numpy.float64] | None:
+        """
+        Best effort inside the limits, (dof,) [rad or m]. NO SOLUTION unless q_is_solution.
+        """
+    @property
+    def q_is_solution(self) -> bool:
+        """
+        Whether q is an answer: within the tolerances, inside the limits, passed by the filter.
+        """
+    @property
+    def refused(self) -> int:
+        """
+        rejected: how many answers the filter refused.
+        """
+    @property
+    def rotation_error(self) -> float:
+        """
+        Rotation error of q [rad].
+        """
+    @property
+    def rotation_gap(self) -> float:
+        """
+        orientation: least rotation error that was reached with the position held [rad].
+        """
 class Status(enum.IntEnum):
     """
     Why a solve ended.
@@ -820,6 +1095,11 @@ class Result:
     def attempts(self) -> int:
         """
         Seeds tried.
+        """
+    @property
+    def cost(self) -> float:
+        """
+        Cost of q by the objective; NaN without one.
         """
     @property
     def iterations(self) -> int:
@@ -920,7 +1200,7 @@ class Solver:
         ...
     def __deepcopy__(self, memo: dict[int, object]) -> Solver:
         ...
-    def __init__(self, robot: Robot, options: SolverOptions | None = None, database: Database | None = None) -> None:
+    def __init__(self, robot: Robot, options: SolverOptions | None = None, database: Database | None = None, *, nominal: Robot | None = None, max_drift: tuple[typing.SupportsFloat | typing.SupportsIndex, typing.SupportsFloat | typing.SupportsIndex] | None = None) -> None:
         """
         Uses a database, or builds one by `options.database` if it is given none.
 
@@ -928,13 +1208,33 @@ class Solver:
             robot: the chain to solve for.
             options: SolverOptions() if None.
             database: built for the same chain; its TCP may differ.
+            nominal: for a calibrated arm, the chain that the database was built for, whose constants
+                differ a little. Seeds come from it; iterations, tolerances and limits are the robot's.
+            max_drift: the largest drift of the robot from `nominal`, (position [m], rotation [rad]);
+                None: (0.05, 0.1).
 
         Raises:
             InvalidArgumentError: an option out of range.
-            DatabaseMismatchError: the database belongs to another chain.
+            DatabaseMismatchError: the database belongs to another chain, or the drift is too large.
         """
     def __repr__(self) -> str:
         ...
+    def diagnose(self, pose: numpy.typing.ArrayLike, *, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None) -> Diagnosis:
+        """
+        Why solve() with the same arguments gives no answer, and the best that can be done.
+
+        Spends much more than solving does, milliseconds to a second.
+
+        Args:
+            pose: T_base_tip, (4, 4) [m].
+            filter, deadline, task: as in solve.
+
+        Returns:
+            A Diagnosis; its cause is `none` if there is an answer.
+
+        Raises:
+            InvalidArgumentError: as solve.
+        """
     @typing.overload
     def solve(self, pose: numpy.typing.ArrayLike, seed: numpy.typing.ArrayLike | None = None) -> Result:
         """
@@ -952,7 +1252,7 @@ class Solver:
                 not finite.
         """
     @typing.overload
-    def solve(self, pose: numpy.typing.ArrayLike, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None) -> Result:
+    def solve(self, pose: numpy.typing.ArrayLike, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None) -> Result:
         """
         As solve, with wishes.
 
@@ -969,6 +1269,10 @@ class Solver:
             filter: called with candidates (n, dof), each at the pose and inside the limits; returns n
                 truth values. The search goes on within its bounds while all are refused.
             deadline: wall-clock time after which the search ends [s]; checked between its stages.
+            task: what of the pose has to be reached; None: what the solver's options say.
+            objective: what the answer is to be good at besides: an Objective, 'limits',
+                'manipulability', or a function of joint values (dof,) that returns a cost. Comes before
+                `near`. Of the answers found, the cheapest; a redundant arm's has slid to a local minimum.
 
         Returns:
             A Result. A pose that cannot be solved is no error but a status.
@@ -977,7 +1281,7 @@ class Solver:
             InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, a number that is not
                 finite or out of range.
         """
-    def solve_all(self, pose: numpy.typing.ArrayLike, max: int = 64, *, min_distance: float = 0.01, whole_turns: bool = False, order: SolutionOrder | str = 'move', near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None) -> Solutions:
+    def solve_all(self, pose: numpy.typing.ArrayLike, max: int = 64, *, min_distance: float = 0.01, whole_turns: bool = False, order: SolutionOrder | str = 'move', near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None) -> Solutions:
         """
         Every distinct solution that is found: all branches, or a spread for a redundant arm.
 
@@ -988,7 +1292,7 @@ class Solver:
             whole_turns: whether copies by whole turns inside the limits count as solutions of their own;
                 otherwise each comes once, at the turn nearest to `near` or to the middle of the limits.
             order: what comes first.
-            near, weights, norm, seeds, database_seeds, filter, deadline: as in solve.
+            near, weights, norm, seeds, database_seeds, filter, deadline, task: as in solve.
 
         Returns:
             Solutions; empty, with a status that says why, if there is none.
@@ -1040,6 +1344,16 @@ class Solver:
     def database(self) -> Database:
         """
         The database it selects seeds from.
+        """
+    @property
+    def drift(self) -> tuple[float, float]:
+        """
+        How far the robot's tip drifts from `nominal`'s at the same joint values, at most over 2000 configurations: (position [m], rotation [rad]).
+        """
+    @property
+    def nominal(self) -> Robot:
+        """
+        The chain that the database was built for: the robot itself, unless that is a calibrated one.
         """
     @property
     def options(self) -> SolverOptions:

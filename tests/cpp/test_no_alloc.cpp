@@ -90,6 +90,26 @@ TEST_P(Schemes, SolveWithoutTheHeap) {
   }
 }
 
+TEST(NoAllocation, TasksSolveWithoutTheHeap) {
+  const iksel::Robot robot = iksel_test::load(iksel_test::paper_robots()[3]);
+  for (const iksel::Task& task : {iksel::Task::position_only(), iksel::Task::free_spin(),
+                                  iksel::Task::box({0.01, 0.01, 0.01}, {0.1, 0.1, 0.1})}) {
+    iksel::SolverOptions options;
+    options.task = task;
+    const iksel::Solver solver(robot, options);
+    const Eigen::MatrixXd q = robot.random_configurations(100, iksel_test::seed());
+    std::vector<iksel::Pose> targets;
+    for (Eigen::Index i = 0; i < q.rows(); ++i) targets.push_back(robot.fk(q.row(i)));
+    allocations = 0;
+    watching = true;
+    int solved = 0;
+    for (const iksel::Pose& target : targets) solved += solver.solve(target).success();
+    watching = false;
+    EXPECT_EQ(allocations.load(), 0);
+    EXPECT_EQ(solved, 100);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, Schemes,
                          testing::Values(iksel::Iteration::dls, iksel::Iteration::pinv,
                                          iksel::Iteration::pinv_rr, iksel::Iteration::cwln,

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "iksel/export.hpp"
+#include "iksel/task.hpp"
 #include "iksel/types.hpp"
 
 namespace iksel {
@@ -107,6 +108,8 @@ struct IKSEL_EXPORT SolverOptions {
   double position_tolerance = 1e-6;
   /// An answer's rotation vector error is at most this long [rad].
   double rotation_tolerance = 1e-6;
+  /// What of a pose has to be reached: all of it, or a box with free axes.
+  Task task;
 
   /// Database that a solver builds for itself when it is given none.
   DatabaseOptions database;

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "iksel/export.hpp"
+#include "iksel/objective.hpp"
+#include "iksel/task.hpp"
 #include "iksel/types.hpp"
 
 namespace iksel {
@@ -51,6 +53,13 @@ struct IKSEL_EXPORT SolveRequest {
   /// Wall-clock time after which no new stage of the search begins [s]. What was found by then is
   /// judged. The one option under which the same input may give different answers.
   double deadline = std::numeric_limits<double>::infinity();
+
+  /// What the answer is to be good at besides; comes before `near`, which then only measures the
+  /// move and says which turns are meant where the objective does not care.
+  Objective objective;
+
+  /// What of the pose has to be reached; empty: what the solver's options say.
+  std::optional<Task> task;
 
   /// Throws InvalidArgumentError naming the first field that does not fit a chain of `dof` joints.
   void validate(int dof) const;

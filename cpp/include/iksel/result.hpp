@@ -38,6 +38,8 @@ struct Result {
   /// Length of the move from `near` to q, by the request's norm and weights; NaN unless solved with
   /// a `near`.
   double move = std::numeric_limits<double>::quiet_NaN();
+  /// Cost of q by the request's objective; NaN unless solved with one.
+  double cost = std::numeric_limits<double>::quiet_NaN();
   /// Seeds tried.
   int attempts = 0;
   /// Iteration steps over all attempts.

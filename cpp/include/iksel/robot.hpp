@@ -50,6 +50,10 @@ class IKSEL_EXPORT Robot {
   /// The same chain with another tool T_tip_tcp; databases built for one serve the other.
   [[nodiscard]] Robot with_tcp(const Pose& T_tip_tcp) const;
 
+  /// The same chain with joints that turn freely, and slides that reach as far again at each end as
+  /// between their limits; databases built for one serve the other.
+  [[nodiscard]] Robot without_limits() const;
+
   [[nodiscard]] const std::string& name() const;
   [[nodiscard]] const std::string& base_link() const;
   [[nodiscard]] const std::string& tip_link() const;
@@ -79,6 +83,13 @@ class IKSEL_EXPORT Robot {
   /// Geometric Jacobian at q, 6 x dof. Throws as fk.
   [[nodiscard]] Jacobian jacobian(const JointVector& q,
                                   Kinematics kinematics = Kinematics::kernel) const;
+
+  /// The derivative of an answer q by its target: dq = dq_dx * [linear; angular] for a small twist
+  /// of the target in base axes at the tip, of all dq the least. dof x 6: J^T (J J^T + damping^2
+  /// I)^-1, the damped pseudo-inverse (Nakamura and Hanafusa 1986); with damping 0 the
+  /// pseudo-inverse, singular values under 1e-9 of the largest cut off. Throws as fk, and if the
+  /// damping is negative or not finite.
+  [[nodiscard]] Matrix dq_dx(const JointVector& q, double damping = 0) const;
 
   /// n configurations uniform inside the limits (continuous joints in [-pi, pi)), one per row. The
   /// same seed gives the same numbers everywhere.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "iksel/database.hpp"
+#include "iksel/diagnosis.hpp"
 #include "iksel/export.hpp"
 #include "iksel/options.hpp"
 #include "iksel/request.hpp"
@@ -18,6 +19,18 @@ namespace iksel {
 /// The instruction set whose lanes solve on this machine: avx512, avx2, sse2, neon or scalar. The
 /// environment variable IKSEL_SIMD forces one. Throws InvalidArgumentError if it is not to be had.
 IKSEL_EXPORT const char* simd_level();
+
+/// How far two chains put their tips apart at the same joint values, at most.
+struct Drift {
+  double position = 0;  ///< [m]
+  double rotation = 0;  ///< [rad]
+};
+
+/// The drift of a chain from its nominal one, the largest over `samples` configurations uniform
+/// inside the limits; tools are left out. Throws InvalidArgumentError if the numbers of joints
+/// differ.
+IKSEL_EXPORT Drift measure_drift(const Robot& robot, const Robot& nominal,
+                                 std::size_t samples = 2'000);
 
 struct PathOptions;
 struct PathResult;
@@ -39,10 +52,24 @@ class IKSEL_EXPORT Solver {
   explicit Solver(const Robot& robot, const SolverOptions& options = {});
   /// Uses a given database. Throws DatabaseMismatchError if it belongs to another chain.
   Solver(const Robot& robot, const SolverOptions& options, const Database& database);
+  /// A calibrated arm: uses a database that was built for `nominal`, whose constants differ a
+  /// little from the robot's. Seeds come from the nominal chain; iterations, tolerances and limits
+  /// are the robot's own. Throws DatabaseMismatchError if the database does not belong to
+  /// `nominal`, or the robot's drift from it (see `drift`) is beyond `bound`.
+  Solver(const Robot& robot, const SolverOptions& options, const Database& database,
+         const Robot& nominal, const Drift& bound = kMostDrift);
+
+  /// Drift up to which a database serves a calibrated chain: several times what calibrations of
+  /// industrial arms find.
+  static constexpr Drift kMostDrift{0.05, 0.1};
 
   [[nodiscard]] const Robot& robot() const;
   [[nodiscard]] const SolverOptions& options() const;
   [[nodiscard]] const Database& database() const;
+  /// The chain that the database was built for: the robot itself, unless that is a calibrated one.
+  [[nodiscard]] const Robot& nominal() const;
+  /// The robot's drift from `nominal`.
+  [[nodiscard]] Drift drift() const;
 
   /// Most iteration steps that one solve without given seeds can spend, over all its seeds:
   /// max_attempts * max_iterations. A step of a whole pack of lanes counts once in
@@ -66,6 +93,10 @@ class IKSEL_EXPORT Solver {
   /// of a redundant one. Throws as solve.
   [[nodiscard]] Solutions solve_all(const Pose& T_base_tip, const AllOptions& options = {},
                                     const SolveRequest& request = {}) const;
+
+  /// Why solve(T_base_tip, request) gives no answer, and the best that can be done. Spends more
+  /// than solving does, milliseconds. Throws as solve.
+  [[nodiscard]] Diagnosis diagnose(const Pose& T_base_tip, const SolveRequest& request = {}) const;
 
   /// Joint values along a path of poses, by a choice among the solutions of all waypoints that
   /// makes the whole way in joint space short. Throws InvalidArgumentError naming a bad pose or

@@ -5,11 +5,17 @@
 #include <limits>
 
 #include "iteration/schemes.hpp"
+#include "iteration/task_step.hpp"
 #include "math/constants.hpp"
 #include "math/rotation.hpp"
 
 namespace iksel {
 namespace {
+
+/// A seed for a task that is still far off after so many steps is given up: few such come home.
+constexpr int kTaskPatience = 8;
+/// Squared error that counts as far off [mixed units].
+constexpr double kTaskFarOff2 = 1e-4;
 
 /// [position; rotation vector] error of a pose against the target.
 Vector6 error_vector(const Pose& target, const Pose& pose) {
@@ -41,8 +47,9 @@ bool stops_on_small_step(Iteration iteration) {
          iteration == Iteration::pinv_rr;
 }
 
+/// `squared_error` is what lm damps by.
 JointVector make_step(const IterationContext& context, const JointVector& q,
-                      const JacobianMatrix& J, const Vector6& e) {
+                      const JacobianMatrix& J, const Vector6& e, double squared_error) {
   const SolverOptions& options = context.options;
   switch (options.iteration) {
     case Iteration::dls:
@@ -57,7 +64,7 @@ JointVector make_step(const IterationContext& context, const JointVector& q,
     case Iteration::lm:
       break;
   }
-  return lm_step(context.model, q, J, e, options);
+  return lm_step(context.model, q, J, e, options, squared_error);
 }
 
 /// What follows a step besides adding it; true if the attempt goes on.
@@ -108,19 +115,31 @@ Outcome iterate(const IterationContext& context, JointVector& q, int& steps) {
   double last_rotation = std::numeric_limits<double>::infinity();
   Pose pose;
   Jacobian J;
+  const TaskSpace* task = context.task;
 
   for (int step = 0;; ++step) {
     if (context.kdl != nullptr) {
       pose = context.kdl->fk(q);
       J = context.kdl->jacobian(q);
     } else {
-      model.fk_jacobian(q.data(), pose, J, false);
+      model.fk_jacobian(q.data(), pose, J, task != nullptr);
     }
-    Vector6 e = error_vector(context.tip_target, pose);
+    JacobianMatrix rows = J;
+    Vector6 d;
+    Vector6 e;
+    if (task == nullptr) {
+      e = error_vector(context.tip_target, pose);
+    } else {
+      d = task->deviation(context.target, pose, rows);
+      e = task_error(*task, d);
+    }
     const double position = e.head<3>().norm();
     const double rotation = e.tail<3>().norm();  // the same at the TCP
     const double tcp_position =
-        (context.target.translation() - pose * Eigen::Vector3d(model.tcp.translation())).norm();
+        task != nullptr
+            ? position
+            : (context.target.translation() - pose * Eigen::Vector3d(model.tcp.translation()))
+                  .norm();
 
     if (tcp_position < options.position_tolerance && rotation < options.rotation_tolerance) {
       if (options.whole_turns) model.wrap_into_limits(q.data());
@@ -136,9 +155,17 @@ Outcome iterate(const IterationContext& context, JointVector& q, int& steps) {
     last_position = position;
     last_rotation = rotation;
     if (step == options.max_iterations) return outcome;
+    if (task != nullptr && options.iteration == Iteration::lm && step >= kTaskPatience &&
+        e.squaredNorm() > kTaskFarOff2) {
+      return outcome;
+    }
 
     if (options.iteration != Iteration::lm) clamp_error(e, position, rotation, options);
-    const JointVector adjustment = make_step(context, q, J, e);
+    const auto step_by = [&](const JacobianMatrix& part, const Vector6& asked, double squared) {
+      return make_step(context, q, part, asked, squared);
+    };
+    const JointVector adjustment =
+        task != nullptr ? task_step(*task, rows, d, e, step_by) : step_by(rows, e, e.squaredNorm());
     ++steps;
     if (!adjustment.allFinite()) return outcome;
     if (small_step_stop && std::abs(adjustment.sum()) < options.min_step) {

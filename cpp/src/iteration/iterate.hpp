@@ -3,10 +3,12 @@
 //
 // Steps are made for the pose of the tip link, where the database's samples lie too, whatever the
 // tool; the tolerances are tested at the TCP. The paper's figures come out this way only: with the
-// TCP of C1 0.2 m beyond its flange, stepping at the TCP loses 2.6 points of success.
+// TCP of C1 0.2 m beyond its flange, stepping at the TCP loses 2.6 points of success. A task that
+// leaves something of the pose open does not say where the tip link is to be, and steps at the TCP.
 #pragma once
 
 #include "iksel/options.hpp"
+#include "iteration/task_space.hpp"
 #include "kinematics/chain_model.hpp"
 #include "kinematics/kdl_chain.hpp"
 #include "math/random.hpp"
@@ -27,10 +29,12 @@ struct IterationContext {
   /// T_base_tcp to reach, and where the tip link is then.
   const Pose& target;
   const Pose& tip_target;
-  /// Used instead of the kernel if not null; without the tool.
+  /// Used instead of the kernel if not null; without the tool, or with it if there is a task.
   KdlChain* kdl;
   /// Source of restarts.
   Random& random;
+  /// What of the target is to be reached; null: the whole pose.
+  const TaskSpace* task = nullptr;
 };
 
 /// Iterates q, in place, from the seed it holds. `steps` counts the steps taken. Never throws.

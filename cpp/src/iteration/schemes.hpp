@@ -86,10 +86,11 @@ inline bool limits_count(const ChainModel& model, int i) {
          model.upper[i] - model.lower[i] < kTwoPi;
 }
 
-/// lm: J^T (J J^T + damping |e|^2 I)^-1 e with the columns of joints that stand at a limit and
-/// would leave it set to zero, and the step cut off at the limits.
+/// lm: J^T (J J^T + damping |e|^2 I)^-1 e, or with `squared_error` in place of |e|^2, with the
+/// columns of joints that stand at a limit and would leave it set to zero, and the step cut off at
+/// the limits.
 inline JointVector lm_step(const ChainModel& model, const JointVector& q, const JacobianMatrix& J,
-                           const Vector6& e, const SolverOptions& options) {
+                           const Vector6& e, const SolverOptions& options, double squared_error) {
   JacobianMatrix active = J;
   for (int i = 0; i < model.dof; ++i) {
     if (!limits_count(model, i)) continue;
@@ -99,7 +100,7 @@ inline JointVector lm_step(const ChainModel& model, const JointVector& q, const 
     }
   }
   // The floor keeps the solve regular where the error is zero in double precision.
-  const double lambda = options.damping * e.squaredNorm() + 1e-18;
+  const double lambda = options.damping * squared_error + 1e-18;
   JointVector step = damped_solve(active, lambda, e);
   for (int i = 0; i < model.dof; ++i) {
     if (!limits_count(model, i)) continue;
@@ -107,6 +108,11 @@ inline JointVector lm_step(const ChainModel& model, const JointVector& q, const 
     step[i] = goal - q[i];
   }
   return step;
+}
+
+inline JointVector lm_step(const ChainModel& model, const JointVector& q, const JacobianMatrix& J,
+                           const Vector6& e, const SolverOptions& options) {
+  return lm_step(model, q, J, e, options, e.squaredNorm());
 }
 
 }  // namespace iksel

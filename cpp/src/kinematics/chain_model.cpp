@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "iksel/error.hpp"
@@ -90,6 +91,24 @@ std::shared_ptr<const ChainModel> ChainModel::with_tcp(const Pose& T_tip_tcp) co
   auto copy = std::make_shared<ChainModel>(*this);
   copy->options.tcp = T_tip_tcp;
   copy->set_tool(T_tip_tcp);
+  return copy;
+}
+
+std::shared_ptr<const ChainModel> ChainModel::without_limits() const {
+  auto copy = std::make_shared<ChainModel>(*this);
+  for (int i = 0; i < dof; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    if (joint_types[k] == JointType::prismatic) {
+      const double range = upper[i] - lower[i];
+      copy->lower[i] = lower[i] - range;
+      copy->upper[i] = upper[i] + range;
+    } else {
+      copy->joint_types[k] = JointType::continuous;
+      copy->lower[i] = -std::numeric_limits<double>::infinity();
+      copy->upper[i] = std::numeric_limits<double>::infinity();
+    }
+  }
+  copy->measure_reach();
   return copy;
 }
 

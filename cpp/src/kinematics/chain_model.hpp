@@ -21,6 +21,9 @@ class ChainModel {
   /// The same chain with another tool.
   [[nodiscard]] std::shared_ptr<const ChainModel> with_tcp(const Pose& T_tip_tcp) const;
 
+  /// The same chain with joints that turn freely and slides that reach farther.
+  [[nodiscard]] std::shared_ptr<const ChainModel> without_limits() const;
+
   /// KDL's chain to the TCP, or to another frame behind the tip link.
   [[nodiscard]] std::unique_ptr<KdlChain> make_kdl() const { return make_kdl(Pose(tcp)); }
   [[nodiscard]] std::unique_ptr<KdlChain> make_kdl(const Pose& T_tip_end) const;

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "iksel/robot.hpp"
 
+#include <cmath>
+#include <string>
 #include <utility>
 
 #include "error_check.hpp"
 #include "iksel/error.hpp"
 #include "kinematics/chain_model.hpp"
+#include "math/pseudo_inverse.hpp"
 #include "math/random.hpp"
 #include "math/rotation.hpp"
 #include "urdf/parse.hpp"
@@ -31,6 +34,8 @@ Robot Robot::from_urdf_string(const std::string& xml, const RobotOptions& option
 }
 
 Robot Robot::with_tcp(const Pose& T_tip_tcp) const { return Robot(model_->with_tcp(T_tip_tcp)); }
+
+Robot Robot::without_limits() const { return Robot(model_->without_limits()); }
 
 const std::string& Robot::name() const { return model_->spec.robot_name; }
 const std::string& Robot::base_link() const { return model_->options.base_link; }
@@ -65,6 +70,16 @@ Jacobian Robot::jacobian(const JointVector& q, Kinematics kinematics) const {
   Jacobian J;
   model_->fk_jacobian(q.data(), pose, J);
   return J;
+}
+
+Matrix Robot::dq_dx(const JointVector& q, double damping) const {
+  if (!(damping >= 0 && std::isfinite(damping))) {
+    throw InvalidArgumentError("damping: " + std::to_string(damping) + " is not 0 or more");
+  }
+  const JacobianMatrix J = jacobian(q);
+  constexpr double kCutoff = 1e-9;
+  if (damping == 0) return TruncatedSvd(J, kCutoff).inverse();
+  return damped_inverse(J, damping * damping);
 }
 
 Matrix Robot::random_configurations(std::size_t n, std::uint64_t seed) const {

@@ -28,6 +28,12 @@ PseudoInverse TruncatedSvd::inverse() const {
   return V_ * inverse_sigma_.asDiagonal() * U_.transpose();
 }
 
+PseudoInverse damped_inverse(const JacobianMatrix& J, double lambda) {
+  Matrix6 A = J * J.transpose();
+  A.diagonal().array() += lambda;
+  return A.ldlt().solve(J).transpose();
+}
+
 JointVector damped_solve(const JacobianMatrix& J, double lambda, const Vector6& e) {
   Matrix6 A = J * J.transpose();
   A.diagonal().array() += lambda;

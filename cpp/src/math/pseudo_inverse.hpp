@@ -34,6 +34,9 @@ class TruncatedSvd {
   Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1> inverse_sigma_;
 };
 
+/// J^T (J J^T + lambda I)^-1.
+PseudoInverse damped_inverse(const JacobianMatrix& J, double lambda);
+
 /// J^T (J J^T + lambda I)^-1 e.
 JointVector damped_solve(const JacobianMatrix& J, double lambda, const Vector6& e);
 

@@ -13,21 +13,30 @@
 
 namespace iksel {
 
-Selection::Selection(const ChainModel& model, const DatabaseData& data,
+Selection::Selection(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
                      const SolverOptions& options)
     : model_(model),
+      nominal_(nominal),
       data_(data),
       options_(options),
       chain_{},
       neighbours_(std::min<std::size_t>(static_cast<std::size_t>(options.neighbours), data.size)),
       candidates_(neighbours_.size()) {
   if (data.reduction) {
-    chain_ = make_lane_chain(model);
+    chain_ = make_lane_chain(nominal);
     seeds_.resize(neighbours_.size() * static_cast<std::size_t>(model.dof));
   }
 }
 
-void Selection::query(const Pose& T_base_flange) {
+void Selection::query(const Pose& T_base_flange) { query(T_base_flange, neighbours_.size()); }
+
+std::size_t Selection::nearest_seeds(const Pose& T_base_flange, std::size_t k) {
+  query(T_base_flange, std::min(k, neighbours_.size()));
+  if (data_.reduction) prepare_seeds();
+  return found_;
+}
+
+void Selection::query(const Pose& T_base_flange, std::size_t k) {
   target_ = data_.reduction ? data_.reduction->reduce(T_base_flange) : T_base_flange;
   Eigen::Map<Eigen::Vector3d> position(target_x_);
   Eigen::Map<Eigen::Vector3d> rotation(target_x_ + 3);
@@ -35,7 +44,7 @@ void Selection::query(const Pose& T_base_flange) {
   rotation = to_rotation_vector(target_.linear());
   double key[kMaxKeyDimension];
   data_.make_key(T_base_flange, key);
-  found_ = data_.tree.nearest(key, neighbours_.size(), neighbours_.data());
+  found_ = data_.tree.nearest(key, k, neighbours_.data());
 }
 
 void Selection::rank() {
@@ -54,7 +63,7 @@ void Selection::rank() {
 }
 
 void Selection::prepare_seeds() {
-  const lanes::SeedChain chain = make_seed_chain(model_, *data_.reduction);
+  const lanes::SeedChain chain = make_seed_chain(nominal_, *data_.reduction);
   const lanes::SeedTarget target = make_seed_target(target_);
   const auto dof = static_cast<std::size_t>(model_.dof);
   float group[lanes::group_rows(kMaxDof) * lanes::kGroup];

@@ -27,10 +27,22 @@ struct Candidate {
 /// Picks seeds for one target. Memory is taken at construction, none later.
 class Selection {
  public:
-  Selection(const ChainModel& model, const DatabaseData& data, const SolverOptions& options);
+  /// `nominal` is the chain that the data belongs to; `model` may differ from it a little.
+  Selection(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
+            const SolverOptions& options);
 
   /// The neighbours of T_base_flange (the tip link, without the tool).
   void query(const Pose& T_base_flange);
+  /// At most k seeds for T_base_flange, of the nearest neighbours in no order; those that a reduced
+  /// key cannot bring inside the limits are left out. Returns how many.
+  std::size_t nearest_seeds(const Pose& T_base_flange, std::size_t k);
+  /// The dof values of seed i of nearest_seeds().
+  [[nodiscard]] const double* nearest_seed(std::size_t i) const {
+    return data_.reduction ? &seeds_[i * static_cast<std::size_t>(model_.dof)]
+                           : data_.q(neighbours_[i].index);
+  }
+  /// The sample that seed i of nearest_seeds() is made of.
+  [[nodiscard]] std::uint32_t nearest_sample(std::size_t i) const { return neighbours_[i].index; }
   /// Puts the neighbours in order and keeps the best.
   void rank();
   /// The seed of the next attempt (0, 1, ...), dof values; null when there is none left.
@@ -43,11 +55,14 @@ class Selection {
   /// Joint values to start from: the sample's, with the joints that a reduced key leaves out set
   /// for this target.
   [[nodiscard]] const double* seed_of(const Candidate& candidate) const;
+  /// Asks the tree for k neighbours.
+  void query(const Pose& T_base_flange, std::size_t k);
   /// Makes the seeds of all neighbours of a reduced key; drops those outside the limits.
   void prepare_seeds();
   void bring_farthest_forward(int attempt);
 
   const ChainModel& model_;
+  const ChainModel& nominal_;
   const DatabaseData& data_;
   const SolverOptions& options_;
   /// Pose of the tip link, or Y of reduction.hpp.

@@ -9,6 +9,7 @@
 
 #include "iksel/error.hpp"
 #include "kinematics/chain_model.hpp"
+#include "math/constants.hpp"
 
 namespace iksel {
 namespace {
@@ -19,14 +20,77 @@ double microseconds(Clock::duration duration) {
   return std::chrono::duration<double, std::micro>(duration).count();
 }
 
+/// What of a deviation lies outside an interval.
+double outside(double deviation, double lower, double upper) {
+  return deviation - std::min(std::max(deviation, lower), upper);
+}
+
+/// The axis whose width is unlike the other two's; -1: none.
+int twist_axis(const Task& task) {
+  const auto width = [&](std::size_t i) {
+    return std::min(task.rotation_upper[i] - task.rotation_lower[i], 2 * kPi);
+  };
+  const double x = width(0);
+  const double y = width(1);
+  const double z = width(2);
+  if (x == y && y == z) return -1;
+  const double apart[3] = {std::abs(y - z), std::abs(x - z), std::abs(x - y)};
+  const double widths[3] = {x, y, z};
+  int odd = 0;
+  for (int i = 1; i < 3; ++i) {
+    if (apart[i] < apart[odd] || (apart[i] == apart[odd] && widths[i] > widths[odd])) odd = i;
+  }
+  return odd;
+}
+
+/// The errors that a Task's documentation defines, by quaternions: the solver's own formulas are
+/// others. [position; rotation] outside of the box.
+Eigen::Matrix<double, 6, 1> task_errors(const Task& task, const Pose& target, const Pose& pose) {
+  const bool in_tool = task.frame == TaskFrame::tool;
+  const Eigen::Quaterniond to(target.linear());
+  const Eigen::Quaterniond at(pose.linear());
+  Eigen::Vector3d p = pose.translation() - target.translation();
+  if (in_tool) p = to.conjugate() * p;
+  Eigen::Quaterniond E = in_tool ? to.conjugate() * at : at * to.conjugate();
+  if (E.w() < 0) E.coeffs() *= -1;
+  const auto vector_of = [](const Eigen::Quaterniond& rotation) -> Eigen::Vector3d {
+    const double sine = rotation.vec().norm();
+    const double angle = 2 * std::atan2(sine, rotation.w());
+    return sine > 0 ? Eigen::Vector3d(angle / sine * rotation.vec()) : Eigen::Vector3d::Zero();
+  };
+  Eigen::Vector3d r;
+  const int axis = twist_axis(task);
+  if (axis < 0) {
+    r = vector_of(E);
+  } else {
+    Eigen::Quaterniond twist(E.w(), 0, 0, 0);
+    twist.vec()[axis] = E.vec()[axis];
+    twist.normalize();
+    if (twist.w() < 0) twist.coeffs() *= -1;
+    Eigen::Quaterniond swing = E * twist.conjugate();
+    if (swing.w() < 0) swing.coeffs() *= -1;
+    r = vector_of(swing);
+    r[axis] = vector_of(twist)[axis];
+  }
+  Eigen::Matrix<double, 6, 1> e;
+  for (int i = 0; i < 3; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    e[i] = outside(p[i], task.position_lower[k], task.position_upper[k]);
+    e[3 + i] = outside(r[i], task.rotation_lower[k], task.rotation_upper[k]);
+  }
+  return e;
+}
+
 /// By KDL and the limits, with nothing of the solver's own.
 bool is_solution(KdlChain& kdl, const Solver& solver, const Pose& target, const JointVector& q) {
   // FK in doubles is good to 1e-14 or so, which is what two implementations may differ by.
   constexpr double kRounding = 1e-13;
   if (q.size() != solver.robot().dof() || !q.allFinite()) return false;
-  const Eigen::Matrix<double, 6, 1> e = pose_error(target, kdl.fk(q));
-  return e.head<3>().norm() <= solver.options().position_tolerance + kRounding &&
-         e.tail<3>().norm() <= solver.options().rotation_tolerance + kRounding &&
+  const SolverOptions& options = solver.options();
+  Eigen::Matrix<double, 6, 1> e = pose_error(target, kdl.fk(q));
+  if (!options.task.is_full_pose()) e = task_errors(options.task, target, kdl.fk(q));
+  return e.head<3>().norm() <= options.position_tolerance + kRounding &&
+         e.tail<3>().norm() <= options.rotation_tolerance + kRounding &&
          solver.robot().within_limits(q);
 }
 

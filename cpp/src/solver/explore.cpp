@@ -2,6 +2,7 @@
 #include "solver/explore.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "solver/given_seeds.hpp"
@@ -13,6 +14,8 @@ namespace {
 
 /// A seed whose first step ends this near to a solution would end there itself.
 constexpr double kCaught = 0.2;
+/// Seeds for a task between two questions to a filter.
+constexpr int kFilterStage = 16;
 
 struct Steering {
   Found& found;
@@ -30,13 +33,20 @@ struct Steering {
   }
 };
 
+/// Where the turns lie that an objective wants; the others take what comes.
+std::optional<JointVector> cheapest_turns(const ChainModel& model, const Objective& objective) {
+  if (objective.kind == Objective::Kind::posture) return objective.posture;
+  if (objective.kind == Objective::Kind::limits) return middle_of_limits(model);
+  return std::nullopt;
+}
+
 }  // namespace
 
 void Solver::Impl::explore(Exploration& search, Workspace& workspace) const {
   const ChainModel& model = robot.model();
   Found& found = workspace.found;
   found.clear();
-  if (out_of_reach(search.T_base_tip)) {
+  if (out_of_reach(search.task, search.T_base_tip)) {
     search.status = Status::out_of_reach;
     return;
   }
@@ -44,10 +54,11 @@ void Solver::Impl::explore(Exploration& search, Workspace& workspace) const {
   const SolveRequest& request = search.request;
   const JointMove move(model.dof, request);
   const Deadline deadline(request.deadline);
+  const std::optional<JointVector> turns_near = cheapest_turns(model, request.objective);
   const auto accept = [&](JointVector& q) {
     double position = 0;
     double rotation = 0;
-    measure_error(model, search.T_base_tip, q.data(), position, rotation);
+    measure(search.task, search.T_base_tip, q, position, rotation);
     if (!(position <= options.position_tolerance && rotation <= options.rotation_tolerance)) {
       return Verdict::refine;
     }
@@ -57,11 +68,13 @@ void Solver::Impl::explore(Exploration& search, Workspace& workspace) const {
       return Verdict::next;
     }
     double cost = 0;
-    if (request.near) {
-      take_turns_near(*request.near, search.T_base_tip, q);
+    if (request.near && !turns_near) {
+      take_turns_near(*request.near, search.task, search.T_base_tip, q);
       // What a filter has been asked about stays as it is.
       if (!request.filter) cost = move.length(q - *request.near);
-    } else {
+    } else if (turns_near) {
+      take_turns_near(*turns_near, search.task, search.T_base_tip, q);
+    } else if (!request.objective.is_set()) {
       take_first_turns(model, q);
     }
     found.add(q, cost, search.min_distance);
@@ -73,7 +86,9 @@ void Solver::Impl::explore(Exploration& search, Workspace& workspace) const {
     return !search.out_of_time;
   };
 
-  if (workspace.lanes) {
+  if (!search.task.is_full_pose()) {
+    explore_task(search, workspace.tasks, accept, go_on);
+  } else if (workspace.lanes) {
     explore_in_lanes(search, workspace, accept, go_on);
   } else {
     explore_one_by_one(search, workspace, accept, go_on);
@@ -81,15 +96,15 @@ void Solver::Impl::explore(Exploration& search, Workspace& workspace) const {
   if (found.size() > 0) search.status = Status::solved;
 }
 
-void Solver::Impl::take_turns_near(const JointVector& near, const Pose& T_base_tip,
-                                   JointVector& q) const {
+void Solver::Impl::take_turns_near(const JointVector& near, const TaskSpace& of_call,
+                                   const Pose& T_base_tip, JointVector& q) const {
   const ChainModel& model = robot.model();
   // An answer at a limit lies outside by rounding as often as not. Held to the limit it need not be
   // a whole turn away.
   JointVector held = q;
   if (take_nearest_turns(model, near, options.rotation_tolerance, held)) {
     Result measured;
-    if (finish(T_base_tip, held, measured)) {
+    if (finish(of_call, T_base_tip, held, measured)) {
       q = held;
       return;
     }
@@ -112,8 +127,7 @@ void Solver::Impl::explore_in_lanes(Exploration& search, Workspace& workspace,
     iterate_seeds(&near, 1);
   }
   if (!search.request.seeds.empty()) {
-    const Pose tip_target = search.T_base_tip * Pose(robot.model().tcp_inverse);
-    GivenSeeds given(robot.model(), options, tip_target, search.request.seeds);
+    GivenSeeds given(robot.model(), options, search.task, search.T_base_tip, search.request.seeds);
     std::vector<const double*> order;
     while (const double* seed = given.next(static_cast<int>(order.size()))) order.push_back(seed);
     const int count = static_cast<int>(order.size());
@@ -127,6 +141,32 @@ void Solver::Impl::explore_in_lanes(Exploration& search, Workspace& workspace,
   const Steering steering{workspace.found, go_on, robot.dof() > 6 ? 0.0 : kCaught};
   StageClock clock(nullptr);
   lanes.search(search.T_base_tip, nullptr, clock, work, accept, steering);
+}
+
+void Solver::Impl::explore_task(Exploration& search, TaskSearch& tasks,
+                                FunctionRef<Verdict(JointVector&)> accept,
+                                FunctionRef<bool()> go_on) const {
+  StageClock clock(nullptr);
+  tasks.begin(search.T_base_tip, search.task);
+  // A filter is asked about many at a time.
+  const int stage = search.request.filter ? kFilterStage : 1;
+  int since = 0;
+  const auto go_on_in_stages = [&] { return ++since % stage != 0 || go_on(); };
+  if (search.request.near) tasks.attempt(*search.request.near, clock, search.work, accept);
+  if (!search.request.seeds.empty()) {
+    GivenSeeds given(robot.model(), options, search.task, search.T_base_tip, search.request.seeds);
+    for (int k = 0; k < options.max_attempts; ++k) {
+      const double* seed = given.next(k);
+      if (seed == nullptr) break;
+      tasks.attempt(Eigen::Map<const Eigen::VectorXd>(seed, robot.dof()), clock, search.work,
+                    accept);
+      if (!go_on_in_stages()) return;
+    }
+  }
+  if (search.request.database_seeds) tasks.run(clock, search.work, accept, go_on_in_stages);
+  if (tasks.left_limits()) search.status = Status::outside_limits;
+  // What the last seeds found is looked at too.
+  go_on();
 }
 
 void Solver::Impl::explore_one_by_one(Exploration& search, Workspace& workspace,
@@ -159,7 +199,7 @@ void Solver::Impl::explore_one_by_one(Exploration& search, Workspace& workspace,
   };
 
   if (!search.request.seeds.empty()) {
-    GivenSeeds given(model, options, tip_target, search.request.seeds);
+    GivenSeeds given(model, options, search.task, search.T_base_tip, search.request.seeds);
     const auto next = [&](int k) { return given.next(k); };
     if (!try_all(next)) {
       go_on();

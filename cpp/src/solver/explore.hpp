@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "iksel/result.hpp"
+#include "iteration/task_space.hpp"
 #include "solver/found.hpp"
 #include "solver/lane_search.hpp"
 #include "util/function_ref.hpp"
@@ -35,6 +36,7 @@ class Deadline {
 /// One exploration: what it looks for, and what came of it.
 struct Exploration {
   const Pose& T_base_tip;
+  const TaskSpace& task;
   const SolveRequest& request;
   /// Solutions nearer than this in every joint are one.
   double min_distance;

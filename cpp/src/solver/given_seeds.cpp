@@ -9,29 +9,48 @@
 
 namespace iksel {
 
-GivenSeeds::GivenSeeds(const ChainModel& model, const SolverOptions& options,
-                       const Pose& tip_target, const std::vector<JointVector>& seeds)
+GivenSeeds::GivenSeeds(const ChainModel& model, const SolverOptions& options, const TaskSpace& task,
+                       const Pose& T_base_tip, const std::vector<JointVector>& seeds)
     : model_(model),
       options_(options),
       seeds_(seeds),
       sum_of_failed_(JointVector::Zero(model.dof)) {
   ranked_.reserve(seeds.size());
-  for (std::size_t i = 0; i < seeds.size(); ++i) ranked_.push_back(rank(i, tip_target));
+  for (std::size_t i = 0; i < seeds.size(); ++i) ranked_.push_back(rank(i, task, T_base_tip));
   std::sort(ranked_.begin(), ranked_.end());
 }
 
-GivenSeeds::Ranked GivenSeeds::rank(std::size_t index, const Pose& tip_target) const {
-  const JointVector& q = seeds_[index];
-  Ranked ranked{0, index, false};
-  Pose pose;
-  Jacobian J;
-  model_.fk_jacobian(q.data(), pose, J, false);
+Vector6 GivenSeeds::error_of(const JointVector& q, const TaskSpace& task, const Pose& T_base_tip,
+                             JacobianMatrix& J) const {
   Vector6 e;
+  Pose pose;
+  Jacobian of_pose;
+  if (!task.is_full_pose()) {
+    model_.fk_jacobian(q.data(), pose, of_pose);
+    J = of_pose;
+    e = -task.outside(task.deviation(T_base_tip, pose, J));
+    for (int i = 0; i < 6; ++i) {
+      if (e[i] == 0) J.row(i).setZero();
+    }
+    return e;
+  }
+  const Pose tip_target = T_base_tip * Pose(model_.tcp_inverse);
+  model_.fk_jacobian(q.data(), pose, of_pose, false);
+  J = of_pose;
   e.head<3>() = tip_target.translation() - pose.translation();
   e.tail<3>() = options_.rotation_difference == RotationDifference::geodesic
                     ? to_rotation_vector(tip_target.linear() * pose.linear().transpose())
                     : Eigen::Vector3d(to_rotation_vector(tip_target.linear()) -
                                       to_rotation_vector(pose.linear()));
+  return e;
+}
+
+GivenSeeds::Ranked GivenSeeds::rank(std::size_t index, const TaskSpace& task,
+                                    const Pose& T_base_tip) const {
+  const JointVector& q = seeds_[index];
+  Ranked ranked{0, index, false};
+  JacobianMatrix J;
+  const Vector6 e = error_of(q, task, T_base_tip, J);
   ranked.score = e.squaredNorm();
   if (options_.ranking == Ranking::nearest && !options_.limit_aware) return ranked;
   const JointVector adjustment = TruncatedSvd(J, options_.database.pinv_cutoff).solve(e);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "iksel/options.hpp"
+#include "iteration/task_space.hpp"
 #include "kinematics/chain_model.hpp"
 
 namespace iksel {
@@ -13,8 +14,8 @@ namespace iksel {
 class GivenSeeds {
  public:
   /// `seeds` must outlive this.
-  GivenSeeds(const ChainModel& model, const SolverOptions& options, const Pose& tip_target,
-             const std::vector<JointVector>& seeds);
+  GivenSeeds(const ChainModel& model, const SolverOptions& options, const TaskSpace& task,
+             const Pose& T_base_tip, const std::vector<JointVector>& seeds);
 
   /// The seed of attempt 0, 1, ...; null when there is none left.
   const double* next(int attempt);
@@ -30,7 +31,10 @@ class GivenSeeds {
       return a.score != b.score ? a.score < b.score : a.index < b.index;
     }
   };
-  [[nodiscard]] Ranked rank(std::size_t index, const Pose& tip_target) const;
+  [[nodiscard]] Ranked rank(std::size_t index, const TaskSpace& task, const Pose& T_base_tip) const;
+  /// The error to be reduced, and the Jacobian J of what reduces it.
+  Vector6 error_of(const JointVector& q, const TaskSpace& task, const Pose& T_base_tip,
+                   JacobianMatrix& J) const;
   void bring_farthest_forward(std::size_t position);
 
   const ChainModel& model_;

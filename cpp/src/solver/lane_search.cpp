@@ -32,18 +32,18 @@ bool solves_in_lanes(const ChainModel& model, const DatabaseData& data,
          data.reduction != nullptr && is_simple(model);
 }
 
-LaneSearch::LaneSearch(const ChainModel& model, const DatabaseData& data,
+LaneSearch::LaneSearch(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
                        const SolverOptions& options, const lanes::LaneKernels& kernels)
     : model_(model),
       data_(data),
       options_(options),
       kernels_(kernels),
-      base_inverse_(data.reduction->parameters().base_inverse),
-      tcp_inverse_(Pose(model.tcp_inverse) * Pose(data.reduction->parameters().flange_inverse)),
+      base_inverse_(to_pose(model.kernel.base).inverse()),
+      tcp_inverse_(Pose(model.tcp_inverse) * to_pose(model.kernel.flange).inverse()),
       advance_(kernels.advance[model.dof <= 10 ? model.dof : 0]),
       chain_(make_lane_chain(model)),
       lane_options_(make_lane_options(model, options)),
-      seed_chain_(make_seed_chain(model, *data.reduction)),
+      seed_chain_(make_seed_chain(nominal, *data.reduction)),
       seeds_{},
       pack_{},
       neighbours_(std::min<std::size_t>(static_cast<std::size_t>(options.neighbours), data.size)),

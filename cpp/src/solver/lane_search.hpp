@@ -35,8 +35,9 @@ struct Work {
 
 class LaneSearch {
  public:
-  LaneSearch(const ChainModel& model, const DatabaseData& data, const SolverOptions& options,
-             const lanes::LaneKernels& kernels);
+  /// `nominal` is the chain that the data belongs to; `model` may differ from it a little.
+  LaneSearch(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
+             const SolverOptions& options, const lanes::LaneKernels& kernels);
 
   /// Leaves a search to itself.
   struct Unsteered {

@@ -84,6 +84,7 @@ SolverOptions SolverOptions::paper() {
 void SolverOptions::validate() const {
   check_range("position_tolerance", position_tolerance, 1e-12, 1e3);
   check_range("rotation_tolerance", rotation_tolerance, 1e-12, 4.0);
+  task.validate();
   database.validate();
   check_range("neighbours", neighbours, 1, 1'000'000);
   check_enum("ranking", ranking, Ranking::joint_adjustment);

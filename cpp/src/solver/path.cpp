@@ -58,10 +58,11 @@ bool too_far(const JointVector& move, const JointVector& longest) {
 
 class PathSearch {
  public:
-  PathSearch(const ChainModel& model, const SolverOptions& solver_options,
+  PathSearch(const ChainModel& model, const SolverOptions& solver_options, const TaskSpace& task,
              const PathOptions& options)
       : model_(model),
         solver_options_(solver_options),
+        task_(task),
         options_(options),
         request_(make_request(options)),
         move_(model.dof, request_),
@@ -84,7 +85,7 @@ class PathSearch {
       }
       if (same == origins.size()) {
         JointVector q = from;
-        if (!converge(model_, solver_options_, pose, kSteps, q)) continue;
+        if (!converge(model_, solver_options_, task_, pose, kSteps, q)) continue;
         origins.push_back(from);
         moves.emplace_back(q - from);
       }
@@ -194,6 +195,7 @@ class PathSearch {
 
   const ChainModel& model_;
   const SolverOptions& solver_options_;
+  const TaskSpace& task_;
   const PathOptions& options_;
   SolveRequest request_;
   JointMove move_;
@@ -224,7 +226,7 @@ PathResult Solver::Impl::solve_path(const std::vector<Pose>& T_base_tip, const P
                                     Workspace& workspace) const {
   const ChainModel& model = robot.model();
   const auto dof = static_cast<std::size_t>(model.dof);
-  PathSearch search(model, options, path);
+  PathSearch search(model, options, task, path);
   const Layer start = path.start
                           ? Layer{dof, {path.start->data(), path.start->data() + dof}, {0.0}, {0}}
                           : Layer{dof, {}, {}, {}};
@@ -239,12 +241,12 @@ PathResult Solver::Impl::solve_path(const std::vector<Pose>& T_base_tip, const P
     if (before != nullptr) search.add_continuations(T_base_tip[w], *before, layer);
     Saturation saturation;
     Found& found = workspace.found;
-    const bool redundant = model.dof > 6;
+    const bool redundant = model.dof > task.fixed_axes();
     const auto most = static_cast<std::size_t>(path.candidates);
     const auto enough = [&](int attempts) {
       return (redundant && found.size() >= most) || saturation.reached(found, attempts);
     };
-    Exploration exploration{T_base_tip[w], search.request(), kSameCandidate * 20,
+    Exploration exploration{T_base_tip[w], task, search.request(), kSameCandidate * 20,
                             FunctionRef<bool(int)>(enough)};
     explore(exploration, workspace);
     search.add_solutions(found, before, layer);
@@ -288,7 +290,8 @@ Result Tracker::track(const Pose& T_base_tip, double dt) {
   Result result;
   JointVector goal = q_;
   result.attempts = 1;
-  if (!converge(model, solver_.options(), T_base_tip, kSteps, goal)) return result;
+  if (!converge(model, solver_.options(), solver_.impl_->task, T_base_tip, kSteps, goal))
+    return result;
   const JointVector move = goal - q_;
   const JointVector longest = longest_moves(model, dt);
   double part = 1;
@@ -296,7 +299,7 @@ Result Tracker::track(const Pose& T_base_tip, double dt) {
     if (std::abs(move[j]) > longest[j]) part = std::min(part, longest[j] / std::abs(move[j]));
   }
   if (part == 1) {
-    if (!solver_.impl_->finish(T_base_tip, goal, result)) return result;
+    if (!solver_.impl_->finish(solver_.impl_->task, T_base_tip, goal, result)) return result;
     q_ = goal;
   } else {
     result.status = Status::too_fast;

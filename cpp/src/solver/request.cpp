@@ -36,6 +36,8 @@ void SolveRequest::validate(int dof) const {
   if (norm != MoveNorm::two && norm != MoveNorm::max) {
     throw InvalidArgumentError("norm: not a value of MoveNorm (two, max)");
   }
+  objective.validate(dof);
+  if (task) task->validate();
   if (!(deadline >= 0)) {
     throw InvalidArgumentError("deadline: " + std::to_string(deadline) + " s is not 0 or more");
   }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "iksel/options.hpp"
+#include "iteration/task_space.hpp"
 #include "kinematics/chain_model.hpp"
 #include "util/function_ref.hpp"
 
@@ -14,16 +15,16 @@ namespace iksel {
 using JointCost =
     FunctionRef<double(const JointVector& q, JointVector* gradient, JointVector* curvature)>;
 
-/// Slides q, a solution inside the limits, along its self-motion until the cost is at a local
+/// Slides q, a solution inside the limits, over what the task allows until the cost is at a local
 /// minimum or after `most` steps. q is a solution inside the limits and costs no more than before
 /// when it ends. Returns the steps taken.
-int slide(const ChainModel& model, const SolverOptions& options, const Pose& T_base_tip,
-          const JointCost& cost, int most, JointVector& q);
+int slide(const ChainModel& model, const SolverOptions& options, const TaskSpace& task,
+          const Pose& T_base_tip, const JointCost& cost, int most, JointVector& q);
 
-/// Brings q onto the pose by Levenberg-Marquardt with the limits inside the step, to a hundredth of
+/// Brings q to the task by Levenberg-Marquardt with the limits inside the step, to a hundredth of
 /// the tolerances, in at most `most` steps. False if it does not get within the tolerances and the
 /// limits.
-bool converge(const ChainModel& model, const SolverOptions& options, const Pose& T_base_tip,
-              int most, JointVector& q);
+bool converge(const ChainModel& model, const SolverOptions& options, const TaskSpace& task,
+              const Pose& T_base_tip, int most, JointVector& q);
 
 }  // namespace iksel

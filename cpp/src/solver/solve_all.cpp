@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "error_check.hpp"
-#include "math/pseudo_inverse.hpp"
 #include "solver/explore.hpp"
+#include "solver/objective_cost.hpp"
 #include "solver/solver_impl.hpp"
 
 namespace iksel {
@@ -39,16 +39,6 @@ double limit_distance(const ChainModel& model, const JointVector& q) {
     least = std::min(least, std::min(q[j] - model.lower[j], model.upper[j] - q[j]) / range);
   }
   return least;
-}
-
-/// sqrt(det(J J^T)), or sqrt(det(J^T J)) for fewer than 6 joints (Yoshikawa 1985).
-double manipulability(const ChainModel& model, const JointVector& q) {
-  Pose pose;
-  Jacobian J;
-  model.fk_jacobian(q.data(), pose, J);
-  const double determinant = model.dof < 6 ? Eigen::MatrixXd(J.transpose() * J).determinant()
-                                           : Matrix6(J * J.transpose()).determinant();
-  return std::sqrt(std::max(determinant, 0.0));
 }
 
 /// The cost that puts solutions in order, smaller first.
@@ -116,7 +106,8 @@ void take_first_of_each(std::size_t solutions, std::vector<Copy>& copies) {
 Solutions Solver::Impl::solve_all(const Pose& T_base_tip, const AllOptions& all,
                                   const SolveRequest& request, Workspace& workspace) const {
   const ChainModel& model = robot.model();
-  const bool redundant = model.dof > 6;
+  const TaskSpace of_call = task_of(request);
+  const bool redundant = model.dof > of_call.fixed_axes();
   const auto most = static_cast<std::size_t>(all.max);
   Found& found = workspace.found;
   Saturation saturation;
@@ -124,7 +115,8 @@ Solutions Solver::Impl::solve_all(const Pose& T_base_tip, const AllOptions& all,
     if (redundant && found.size() >= std::max<std::size_t>(kChoice * most, 64)) return true;
     return saturation.reached(found, attempts);
   };
-  Exploration search{T_base_tip, request, all.min_distance, FunctionRef<bool(int)>(enough)};
+  Exploration search{T_base_tip, of_call, request, all.min_distance,
+                     FunctionRef<bool(int)>(enough)};
   explore(search, workspace);
 
   Solutions solutions;
@@ -146,7 +138,7 @@ Solutions Solver::Impl::solve_all(const Pose& T_base_tip, const AllOptions& all,
         add(q, i);
       } while (copies.size() < kMostCopies && take_next_turns(model, q));
     } else {
-      take_turns_near(from, T_base_tip, q);
+      take_turns_near(from, of_call, T_base_tip, q);
       add(q, i);
     }
   }
@@ -161,7 +153,7 @@ Solutions Solver::Impl::solve_all(const Pose& T_base_tip, const AllOptions& all,
 
   for (const Copy& copy : copies) {
     Result result;
-    if (!finish(T_base_tip, copy.q, result)) continue;
+    if (!finish(of_call, T_base_tip, copy.q, result)) continue;
     if (request.near) result.move = move.length(copy.q - from);
     result.attempts = search.work.attempts;
     result.iterations = search.work.iterations;

@@ -6,6 +6,7 @@
 
 #include "error_check.hpp"
 #include "solver/explore.hpp"
+#include "solver/objective_cost.hpp"
 #include "solver/self_motion.hpp"
 #include "solver/solver_impl.hpp"
 
@@ -63,12 +64,13 @@ class MoveCost {
   JointVector weights_;
 };
 
-void slide_towards(const ChainModel& model, const SolverOptions& options, const Pose& T_base_tip,
-                   const JointMove& move, const JointVector& near, JointVector& q) {
+void slide_towards(const ChainModel& model, const SolverOptions& options, const TaskSpace& task,
+                   const Pose& T_base_tip, const JointMove& move, const JointVector& near,
+                   JointVector& q) {
   constexpr int kSteps = 20;
   const auto slide_by = [&](double power) {
     const MoveCost cost(move, near, power);
-    slide(model, options, T_base_tip, JointCost(cost), kSteps, q);
+    slide(model, options, task, T_base_tip, JointCost(cost), kSteps, q);
   };
   slide_by(2);
   if (move.norm() == MoveNorm::two) return;
@@ -89,11 +91,15 @@ void slide_towards(const ChainModel& model, const SolverOptions& options, const 
 /// The candidates of one request, judged by its filter and measured by its move.
 class Solver::Impl::Judge {
  public:
-  Judge(const Impl& solver, const Pose& T_base_tip, const SolveRequest& request, Found& found)
+  Judge(const Impl& solver, const TaskSpace& task, const Pose& T_base_tip,
+        const SolveRequest& request, Found& found)
       : solver_(solver),
         model_(solver.robot.model()),
+        task_(task),
+        redundant_(model_.dof > task.fixed_axes()),
         T_base_tip_(T_base_tip),
         request_(request),
+        ranks_(request.near || request.objective.is_set()),
         found_(found),
         move_(model_.dof, request) {}
 
@@ -101,38 +107,43 @@ class Solver::Impl::Judge {
   /// is an answer.
   bool look(int attempts) {
     ask_filter();
-    if (!request_.near) return first_kept_ < found_.size();
-    const bool redundant = model_.dof > 6;
-    if (redundant) return first_kept_ < found_.size() && attempts >= kRedundantSeeds;
+    if (!ranks_) return first_kept_ < found_.size();
+    if (redundant_) return first_kept_ < found_.size() && attempts >= kRedundantSeeds;
     return first_kept_ < found_.size() && saturation_.reached(found_, attempts);
   }
 
   /// The best of what passed; false if nothing did.
   bool answer(JointVector& q) {
     if (first_kept_ == found_.size()) return answer_among_turns(q);
-    if (!request_.near) {
+    if (!ranks_) {
       q = found_.at(first_kept_);
       return true;
     }
     std::array<Ranked, Found::kMost> ranked;
     std::size_t count = 0;
     for (std::size_t i = 0; i < found_.size(); ++i) {
-      if (kept(i)) ranked[count++] = {move_.length(found_.at(i) - *request_.near), i};
+      if (kept(i)) ranked[count++] = {cost_of(found_.at(i)), i};
     }
-    const std::size_t slides = model_.dof > 6 ? std::min(count, kSlides) : 1;
+    const std::size_t slides = redundant_ ? std::min(count, kSlides) : 1;
     std::partial_sort(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(slides),
                       ranked.begin() + static_cast<std::ptrdiff_t>(count));
     q = found_.at(ranked[0].index);
-    if (model_.dof > 6) slide_best(ranked.data(), slides, q);
+    if (redundant_) slide_best(ranked.data(), slides, q);
     return true;
   }
 
  private:
+  /// Smaller is better.
+  [[nodiscard]] double cost_of(const JointVector& q) const {
+    if (request_.objective.is_set()) return ObjectiveCost(model_, request_.objective).value(q);
+    return move_.length(q - *request_.near);
+  }
+
   struct Ranked {
-    double move;
+    double cost;
     std::size_t index;
     friend bool operator<(const Ranked& a, const Ranked& b) {
-      return a.move != b.move ? a.move < b.move : a.index < b.index;
+      return a.cost != b.cost ? a.cost < b.cost : a.index < b.index;
     }
   };
 
@@ -148,16 +159,22 @@ class Solver::Impl::Judge {
 
   /// Slides the nearest of what passed; q is the best before, and after.
   void slide_best(const Ranked* ranked, std::size_t count, JointVector& q) {
-    double best = ranked[0].move;
+    double best = ranked[0].cost;
     for (std::size_t k = 0; k < count; ++k) {
       JointVector slid = found_.at(ranked[k].index);
-      slide_towards(model_, solver_.options, T_base_tip_, move_, *request_.near, slid);
-      const double length = move_.length(slid - *request_.near);
-      if (!(length < best)) continue;
+      if (request_.objective.is_set()) {
+        constexpr int kObjectiveSteps = 50;
+        const ObjectiveCost cost(model_, request_.objective);
+        slide(model_, solver_.options, task_, T_base_tip_, JointCost(cost), kObjectiveSteps, slid);
+      } else {
+        slide_towards(model_, solver_.options, task_, T_base_tip_, move_, *request_.near, slid);
+      }
+      const double cost = cost_of(slid);
+      if (!(cost < best)) continue;
       bool keep = true;
       if (request_.filter) request_.filter(slid.data(), 1, &keep);
       if (!keep) continue;
-      best = length;
+      best = cost;
       q = slid;
     }
   }
@@ -176,7 +193,7 @@ class Solver::Impl::Judge {
       for (std::size_t i = 0; i < count; ++i) {
         const JointVector copy =
             Eigen::Map<const Eigen::VectorXd>(copies.data() + i * dof, model_.dof);
-        const double cost = request_.near ? move_.length(copy - *request_.near) : 0.0;
+        const double cost = ranks_ ? cost_of(copy) : 0.0;
         if (!keep[i] || !(cost < best)) continue;
         best = cost;
         q = copy;
@@ -189,7 +206,7 @@ class Solver::Impl::Judge {
       do {
         copies.insert(copies.end(), copy.data(), copy.data() + dof);
         if (copies.size() == kChunk * dof) flush();
-      } while (take_next_turns(model_, copy) && (request_.near || std::isinf(best)));
+      } while (take_next_turns(model_, copy) && (ranks_ || std::isinf(best)));
     }
     flush();
     return std::isfinite(best);
@@ -197,8 +214,12 @@ class Solver::Impl::Judge {
 
   const Impl& solver_;
   const ChainModel& model_;
+  const TaskSpace& task_;
+  bool redundant_;
   const Pose& T_base_tip_;
   const SolveRequest& request_;
+  /// Whether some answers are better than others.
+  bool ranks_;
   Found& found_;
   JointMove move_;
   Saturation saturation_;
@@ -207,17 +228,26 @@ class Solver::Impl::Judge {
   std::size_t first_kept_ = 0;
 };
 
+TaskSpace Solver::Impl::task_of(const SolveRequest& request) const {
+  if (!request.task) return task;
+  return {*request.task, options.position_tolerance, options.rotation_tolerance};
+}
+
 Result Solver::Impl::solve(const Pose& T_base_tip, const SolveRequest& request,
                            Workspace& workspace) const {
-  Judge judge(*this, T_base_tip, request, workspace.found);
+  const TaskSpace of_call = task_of(request);
+  Judge judge(*this, of_call, T_base_tip, request, workspace.found);
   const auto enough = [&](int attempts) { return judge.look(attempts); };
-  Exploration search{T_base_tip, request, kSame, FunctionRef<bool(int)>(enough)};
+  Exploration search{T_base_tip, of_call, request, kSame, FunctionRef<bool(int)>(enough)};
   explore(search, workspace);
 
   Result result;
   JointVector q;
   if (search.status == Status::solved) {
-    if (judge.answer(q) && finish(T_base_tip, q, result)) {
+    if (judge.answer(q) && finish(of_call, T_base_tip, q, result)) {
+      if (request.objective.is_set()) {
+        result.cost = ObjectiveCost(robot.model(), request.objective).value(q);
+      }
       if (request.near) result.move = JointMove(robot.dof(), request).length(q - *request.near);
     } else {
       result.status = Status::rejected;

@@ -33,22 +33,28 @@ void check_fits(const Robot& robot, const Database& database) {
 
 }  // namespace
 
-Workspace::Workspace(const ChainModel& model, const DatabaseData& data,
+Workspace::Workspace(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
                      const SolverOptions& options)
-    : selection(model, data, options), found(model) {
+    : selection(model, nominal, data, options),
+      tasks(model, data, options, selection),
+      found(model) {
   if (solves_in_lanes(model, data, options)) {
-    lanes = std::make_unique<LaneSearch>(model, data, options, lanes::choose_kernels());
+    lanes = std::make_unique<LaneSearch>(model, nominal, data, options, lanes::choose_kernels());
   }
   if (options.kinematics == Kinematics::kdl) kdl = model.make_kdl(Pose::Identity());
 }
 
 Solver::Impl::Impl(const Robot& robot_in, const SolverOptions& options_in,
-                   const Database& database_in)
-    : robot(robot_in), options(options_in), database(database_in) {
-  check_fits(robot, database);
+                   const Database& database_in, const Robot& nominal_in)
+    : robot(robot_in),
+      options(options_in),
+      database(database_in),
+      nominal(nominal_in),
+      task(options.task, options.position_tolerance, options.rotation_tolerance) {
+  check_fits(nominal, database);
   const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
   for (std::size_t i = 0; i < std::min(cores, kPlaces); ++i) {
-    idle_[i] = new Workspace(robot.model(), database.data(), options);
+    idle_[i] = new Workspace(robot.model(), nominal.model(), database.data(), options);
   }
 }
 
@@ -62,7 +68,8 @@ Solver::Impl::Lease::Lease(const Impl& solver) : solver_(solver) {
     workspace_ = place.exchange(nullptr, std::memory_order_acquire);
     if (workspace_ != nullptr) return;
   }
-  workspace_ = new Workspace(solver.robot.model(), solver.database.data(), solver.options);
+  workspace_ = new Workspace(solver.robot.model(), solver.nominal.model(), solver.database.data(),
+                             solver.options);
 }
 
 Solver::Impl::Lease::~Lease() {
@@ -82,17 +89,31 @@ Result Solver::Impl::solve(const Pose& T_base_tip, const JointVector* seed, Work
   StageClock clock(times);
 
   Result result;
-  if (out_of_reach(T_base_tip)) {
+  if (out_of_reach(task, T_base_tip)) {
     result.status = Status::out_of_reach;
+    return result;
+  }
+  const auto accept = [&](JointVector& q) {
+    model.wrap_into_limits(q.data());
+    return finish(task, T_base_tip, q, result) ? Verdict::stop : Verdict::refine;
+  };
+
+  if (!task.is_full_pose()) {
+    Work work;
+    TaskSearch& tasks = workspace.tasks;
+    tasks.begin(T_base_tip, task);
+    if (seed == nullptr || !tasks.attempt(*seed, clock, work, accept)) {
+      tasks.run(clock, work, accept);
+    }
+    if (!result.success() && tasks.left_limits()) result.status = Status::outside_limits;
+    result.attempts = work.attempts;
+    result.iterations = work.iterations;
     return result;
   }
 
   if (workspace.lanes) {
     Work work;
-    workspace.lanes->search(T_base_tip, seed, clock, work, [&](JointVector& q) {
-      model.wrap_into_limits(q.data());
-      return finish(T_base_tip, q, result) ? Verdict::stop : Verdict::refine;
-    });
+    workspace.lanes->search(T_base_tip, seed, clock, work, accept);
     result.attempts = work.attempts;
     result.iterations = work.iterations;
     return result;
@@ -108,8 +129,7 @@ Result Solver::Impl::solve(const Pose& T_base_tip, const JointVector* seed, Work
     ++result.attempts;
     const Outcome outcome = iterate(context, q, result.iterations);
     if (outcome == Outcome::outside_limits) result.status = Status::outside_limits;
-    // Nothing is a success by hearsay: the q that goes out is measured itself.
-    return outcome == Outcome::solved && finish(T_base_tip, q, result);
+    return outcome == Outcome::solved && finish(task, T_base_tip, q, result);
   };
 
   if (seed != nullptr && attempt(seed->data())) {
@@ -134,15 +154,27 @@ Result Solver::Impl::solve(const Pose& T_base_tip, const JointVector* seed, Work
   return result;
 }
 
-bool Solver::Impl::out_of_reach(const Pose& T_base_tip) const {
-  const double distance = (T_base_tip.translation() - robot.reach_centre()).norm();
+bool Solver::Impl::out_of_reach(const TaskSpace& of_call, const Pose& T_base_tip) const {
+  const double distance = of_call.is_full_pose()
+                              ? (T_base_tip.translation() - robot.reach_centre()).norm()
+                              : of_call.distance_from(T_base_tip, robot.reach_centre());
   return distance > robot.reach() + options.position_tolerance;
 }
 
-bool Solver::Impl::finish(const Pose& target, const JointVector& q, Result& result) const {
+void Solver::Impl::measure(const TaskSpace& of_call, const Pose& target, const JointVector& q,
+                           double& position, double& rotation) const {
+  if (of_call.is_full_pose()) {
+    measure_error(robot.model(), target, q.data(), position, rotation);
+  } else {
+    of_call.measure(target, robot.model().fk(q.data()), position, rotation);
+  }
+}
+
+bool Solver::Impl::finish(const TaskSpace& of_call, const Pose& target, const JointVector& q,
+                          Result& result) const {
   double position = kNan;
   double rotation = kNan;
-  measure_error(robot.model(), target, q.data(), position, rotation);
+  measure(of_call, target, q, position, rotation);
   if (!(position <= options.position_tolerance && rotation <= options.rotation_tolerance &&
         robot.model().within_limits(q.data()))) {
     return false;
@@ -156,12 +188,12 @@ bool Solver::Impl::finish(const Pose& target, const JointVector& q, Result& resu
 
 Solver::Solver(const Robot& robot, const SolverOptions& options) {
   options.validate();
-  impl_ = std::make_shared<Impl>(robot, options, Database::build(robot, options.database));
+  impl_ = std::make_shared<Impl>(robot, options, Database::build(robot, options.database), robot);
 }
 
 Solver::Solver(const Robot& robot, const SolverOptions& options, const Database& database) {
   options.validate();
-  impl_ = std::make_shared<Impl>(robot, options, database);
+  impl_ = std::make_shared<Impl>(robot, options, database, robot);
 }
 
 const Robot& Solver::robot() const { return impl_->robot; }

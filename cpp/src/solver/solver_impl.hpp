@@ -13,14 +13,18 @@
 #include "solver/explore.hpp"
 #include "solver/found.hpp"
 #include "solver/lane_search.hpp"
+#include "solver/task_search.hpp"
 
 namespace iksel {
 
 /// What one solve writes to. Never shared between two solves at once.
 struct Workspace {
-  Workspace(const ChainModel& model, const DatabaseData& data, const SolverOptions& options);
+  /// `nominal` is the chain that the data belongs to.
+  Workspace(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
+            const SolverOptions& options);
 
   Selection selection;
+  TaskSearch tasks;
   /// Only if the options iterate by KDL, whose objects are not safe to share.
   std::unique_ptr<KdlChain> kdl;
   /// Only if the options solve in lanes.
@@ -30,7 +34,9 @@ struct Workspace {
 };
 
 struct Solver::Impl {
-  Impl(const Robot& robot_in, const SolverOptions& options_in, const Database& database_in);
+  /// The nominal robot is the one that the database was built for.
+  Impl(const Robot& robot_in, const SolverOptions& options_in, const Database& database_in,
+       const Robot& nominal_in);
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
   ~Impl();
@@ -50,6 +56,8 @@ struct Solver::Impl {
   Solutions solve_all(const Pose& T_base_tip, const AllOptions& all, const SolveRequest& request,
                       Workspace& workspace) const;
 
+  Diagnosis diagnose(const Pose& T_base_tip, const SolveRequest& request) const;
+
   /// A workspace of this solver, given back when it goes.
   class Lease {
    public:
@@ -67,6 +75,10 @@ struct Solver::Impl {
   Robot robot;
   SolverOptions options;
   Database database;
+  Robot nominal;
+  Drift drift;
+  /// options.task.
+  TaskSpace task;
 
   /// Most targets of one solve_many.
   static constexpr std::size_t kMany = 256;
@@ -75,20 +87,29 @@ struct Solver::Impl {
                         Workspace& workspace) const;
   /// Nothing is a success by hearsay: measures q itself, and only if that reaches the target inside
   /// the limits, makes it the result.
-  bool finish(const Pose& target, const JointVector& q, Result& result) const;
+  bool finish(const TaskSpace& of_call, const Pose& target, const JointVector& q,
+              Result& result) const;
 
  private:
-  [[nodiscard]] bool out_of_reach(const Pose& T_base_tip) const;
+  [[nodiscard]] bool out_of_reach(const TaskSpace& of_call, const Pose& T_base_tip) const;
+  /// The task of a request, or the options'.
+  [[nodiscard]] TaskSpace task_of(const SolveRequest& request) const;
   class Judge;
   /// Collects solutions in workspace.found.
   void explore(Exploration& search, Workspace& workspace) const;
   /// Brings a solution to the turns nearest to `near`.
-  void take_turns_near(const JointVector& near, const Pose& T_base_tip, JointVector& q) const;
+  void take_turns_near(const JointVector& near, const TaskSpace& of_call, const Pose& T_base_tip,
+                       JointVector& q) const;
   void explore_in_lanes(Exploration& search, Workspace& workspace,
                         FunctionRef<Verdict(JointVector&)> accept, FunctionRef<bool()> go_on) const;
   void explore_one_by_one(Exploration& search, Workspace& workspace,
                           FunctionRef<Verdict(JointVector&)> accept,
                           FunctionRef<bool()> go_on) const;
+  void explore_task(Exploration& search, TaskSearch& tasks,
+                    FunctionRef<Verdict(JointVector&)> accept, FunctionRef<bool()> go_on) const;
+  /// The errors of q: position [m] and rotation [rad].
+  void measure(const TaskSpace& of_call, const Pose& target, const JointVector& q, double& position,
+               double& rotation) const;
 
   /// Workspaces that lie idle; a null is a place to put one back. More solves at once than places
   /// make their own.
@@ -99,7 +120,7 @@ struct Solver::Impl {
 template <typename Target, typename Settle>
 void Solver::Impl::solve_many(std::size_t first, std::size_t last, Workspace& workspace,
                               const Target& target, const Settle& settle) const {
-  if (workspace.lanes == nullptr) {
+  if (workspace.lanes == nullptr || !task.is_full_pose()) {
     for (std::size_t i = first; i < last; ++i) {
       settle(i, solve(target(i), nullptr, workspace, nullptr));
     }
@@ -110,7 +131,7 @@ void Solver::Impl::solve_many(std::size_t first, std::size_t last, Workspace& wo
   std::size_t at = first;
   const auto next = [&]() -> int {
     for (; at < last; ++at) {
-      if (!out_of_reach(target(at))) return static_cast<int>(at++ - first);
+      if (!out_of_reach(task, target(at))) return static_cast<int>(at++ - first);
       open.set(at - first);
     }
     return -1;
@@ -128,7 +149,7 @@ void Solver::Impl::solve_many(std::size_t first, std::size_t last, Workspace& wo
     Result result;
     result.attempts = work.attempts;
     result.iterations = work.iterations;
-    if (!finish(target(first + index), *q, result)) return false;
+    if (!finish(task, target(first + index), *q, result)) return false;
     settle(first + index, result);
     return true;
   });

@@ -7,7 +7,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from iksel_cpp import DatabaseOptions, InvalidArgumentError, SolverOptions
+from iksel_cpp import Axis, DatabaseOptions, InvalidArgumentError, SolverOptions, Task
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -15,6 +15,14 @@ if TYPE_CHECKING:
 Options = DatabaseOptions | SolverOptions
 
 PRESETS = ("default", "paper")
+
+TASK_FORMS = (
+    "pose, position_only, free_spin[:AXIS] (any spin about an axis of the tool), "
+    "upright[:AXIS] (any turn about an axis of the base), planar[:AXIS], or "
+    "box:PX,PY,PZ,RX,RY,RZ (tolerances in the tool's axes [m, rad], inf: free); "
+    "AXIS is x, y or z (default z)"
+)
+_TASKS = {"free_spin": Task.free_spin, "upright": Task.upright, "planar": Task.planar}
 
 # Fields whose plain flag would mean two things in one command.
 _SOLVER_FLAGS = {"seed": "--solver-seed"}
@@ -54,6 +62,11 @@ def add_solver_options(parser: argparse.ArgumentParser) -> None:
         "with a full key seeds are iterated one by one, not in SIMD lanes",
     )
     group = parser.add_argument_group("solver options")
+    group.add_argument(
+        "--task",
+        metavar="TASK",
+        help=f"what of a pose has to be reached: {TASK_FORMS}",
+    )
     _add_fields(group, SolverOptions, _SOLVER, _SOLVER_FLAGS)
     add_database_options(parser)
 
@@ -81,7 +94,31 @@ def solver_options(arguments: argparse.Namespace) -> SolverOptions:
     paper = arguments.preset == "paper"
     options = SolverOptions.paper() if paper else SolverOptions()
     database = options.database.replace(**changes)
-    return options.replace(database=database, **_given(arguments, _SOLVER))
+    task = parse_task(arguments.task) if arguments.task else options.task
+    return options.replace(database=database, task=task, **_given(arguments, _SOLVER))
+
+
+def parse_task(text: str) -> Task:
+    """A task in one of TASK_FORMS.
+
+    Raises:
+        InvalidArgumentError: Not one of them.
+    """
+    name, _, rest = text.partition(":")
+    if name in _TASKS and (not rest or rest in Axis.__members__):
+        return _TASKS[name](rest) if rest else _TASKS[name]()
+    if text == "pose":
+        return Task.pose()
+    if text == "position_only":
+        return Task.position_only()
+    if name == "box":
+        try:
+            values = [float(word) for word in rest.split(",")]
+        except ValueError:
+            values = []
+        if len(values) == 6:
+            return Task.box(values[:3], values[3:])
+    raise InvalidArgumentError(f"--task: {text!r} is none of {TASK_FORMS}")
 
 
 def database_options(arguments: argparse.Namespace) -> DatabaseOptions:
@@ -98,7 +135,9 @@ def database_options(arguments: argparse.Namespace) -> DatabaseOptions:
 def overrides(arguments: argparse.Namespace) -> dict[str, Any]:
     """The fields that flags changed from the preset; database fields as database.x."""
     database = _database_changes(arguments)
+    task = getattr(arguments, "task", None)
     return {
+        **({"task": task} if task else {}),
         **_given(arguments, _SOLVER),
         **{_DATABASE + name: value for name, value in database.items()},
     }

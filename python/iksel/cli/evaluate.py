@@ -27,6 +27,7 @@ EXAMPLES = """\
 examples:
   iksel evaluate ur3
   iksel evaluate ur3_wrs --preset paper --targets 10000 --seed 1 --json
+  iksel evaluate xarm5 --task free_spin --targets 100000
   iksel evaluate panda --preset paper --iteration cwln --max-attempts 6 --stages
 """
 

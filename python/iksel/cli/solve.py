@@ -18,7 +18,7 @@ from iksel.cli.info import pose_text
 if TYPE_CHECKING:
     import argparse
 
-    from iksel_cpp import Result, Robot
+    from iksel_cpp import Diagnosis, Result, Robot
 
     from iksel._arrays import FloatArray
 
@@ -30,6 +30,8 @@ examples:
   iksel solve ur3 --pose 0.2 0.15 0.3 0 0 1 0 --json
   iksel solve ur3 --pose 0.2 0.15 0.3 0 3.1416 0 --near 0 -1 1 0 1 0
   iksel solve ur3 --pose 0.2 0.15 0.3 0 3.1416 0 --all
+  iksel solve ur3 --pose 0.2 0.15 0.3 0 3.1416 0 --task free_spin
+  iksel solve ur3 --pose 0.9 0 0.3 0 0 0 --diagnose
   iksel solve panda --from-q 0 -0.5 0 -2 0 1.6 0.8 --preset paper --max-attempts 6
   iksel solve arm.urdf --base base_link --tip tool0 --tcp 0 0 0.1 0 0 0 --from-q 0 0 0 0
 
@@ -74,6 +76,18 @@ def add_parser(commands: Any) -> None:
         help="give every distinct solution, nearest first (with --near: to that, else "
         "to the middle of the limits)",
     )
+    parser.add_argument(
+        "--objective",
+        choices=("limits", "manipulability"),
+        help="of all answers found, the one farthest from the limits, or the most "
+        "manipulable; a redundant arm's slides there",
+    )
+    parser.add_argument(
+        "--diagnose",
+        action="store_true",
+        help="if there is no solution, search for the reason, and print it with the "
+        "best effort",
+    )
     add_json(parser)
     add_solver_options(parser)
     parser.set_defaults(run=run)
@@ -90,6 +104,10 @@ def run(arguments: argparse.Namespace) -> int:
     near = arguments.near and parse_joints("--near", arguments.near, joints)
     if arguments.seed_q and (near or arguments.all):
         raise InvalidArgumentError("--seed-q: cannot be used with --near or --all")
+    if arguments.objective and (arguments.all or arguments.seed_q):
+        raise InvalidArgumentError(
+            "--objective: cannot be used with --all or --seed-q"
+        )
     seed = arguments.seed_q and parse_joints("--seed-q", arguments.seed_q, joints)
     options = solver_options(arguments)
     database = arguments.database and Database.load(arguments.database)
@@ -99,8 +117,8 @@ def run(arguments: argparse.Namespace) -> int:
         return run_all(solver, target, near, arguments)
 
     def solve() -> Result:
-        if near:
-            return solver.solve(target, near=near)
+        if near or arguments.objective:
+            return solver.solve(target, near=near, objective=arguments.objective)
         return solver.solve(target, seed=seed)
 
     # The first call also fetches the database into the caches: time the second.
@@ -124,11 +142,50 @@ def run(arguments: argparse.Namespace) -> int:
         "iterations": result.iterations,
         "time_us": time_us,
     }
+    diagnosis = None
+    if arguments.diagnose and not result.success:
+        diagnosis = solver.diagnose(target)
+        report["diagnosis"] = diagnosis_report(robot, diagnosis)
     if arguments.json:
         print_json(report)
     else:
         print_text(robot, result, report)
+        if diagnosis is not None:
+            print_diagnosis(robot, diagnosis)
     return EXIT_SOLVED if result.success else EXIT_NO_SOLUTION
+
+
+def diagnosis_report(robot: Robot, diagnosis: Diagnosis) -> dict[str, Any]:
+    """The fields of a diagnosis; the joint by name."""
+    joint = diagnosis.joint
+    return {
+        "cause": diagnosis.cause.name,
+        "message": diagnosis.message,
+        "beyond_reach": diagnosis.beyond_reach,
+        "rotation_gap": diagnosis.rotation_gap,
+        "joint": robot.joint_names[joint] if joint >= 0 else None,
+        "limit_violation": diagnosis.limit_violation,
+        "least_singular_value": diagnosis.least_singular_value,
+        "best_effort_q": diagnosis.q,
+        "best_effort_is_solution": diagnosis.q_is_solution,
+        "best_effort_position_error": diagnosis.position_error,
+        "best_effort_rotation_error": diagnosis.rotation_error,
+    }
+
+
+def print_diagnosis(robot: Robot, diagnosis: Diagnosis) -> None:
+    """Print the reason of a failure for people, and the best effort."""
+    print()
+    print_pairs([("cause", diagnosis.cause.name), ("", diagnosis.message)])
+    if diagnosis.q is None:
+        return
+    note = "an answer" if diagnosis.q_is_solution else "NO SOLUTION"
+    print()
+    print(
+        f"best effort ({note}): off by {diagnosis.position_error:.3g} m, "
+        f"{diagnosis.rotation_error:.3g} rad"
+    )
+    print_joints(robot, diagnosis.q.tolist())
 
 
 def run_all(
@@ -193,6 +250,11 @@ def print_text(robot: Robot, result: Result, report: dict[str, Any]) -> None:
     if result.q is None:
         return
     print()
+    print_joints(robot, result.q.tolist())
+
+
+def print_joints(robot: Robot, q: list[float]) -> None:
+    """Print joint values as a table."""
     print_table(
         ("joint", "rad or m", "deg"),
         [
@@ -202,7 +264,7 @@ def print_text(robot: Robot, result: Result, report: dict[str, Any]) -> None:
                 "" if kind.name == "prismatic" else number(math.degrees(value), 4),
             )
             for name, kind, value in zip(
-                robot.joint_names, robot.joint_types, result.q.tolist(), strict=True
+                robot.joint_names, robot.joint_types, q, strict=True
             )
         ],
     )

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Why a pose has no answer.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+
+#include "iksel/export.hpp"
+#include "iksel/types.hpp"
+
+namespace iksel {
+
+/// Why a solve gave no answer. All but `out_of_reach` beyond Robot::reach are found by search and
+/// so are likely, not proven.
+enum class Cause : std::uint8_t {
+  none,          ///< there is an answer
+  out_of_reach,  ///< the position lies beyond what the arm reaches
+  orientation,   ///< the position can be reached, but not with this rotation
+  joint_limits,  ///< answers exist, but all with joints outside their limits
+  rejected,      ///< answers exist, but the filter refuses each
+  singular,      ///< more work finds an answer, where the arm is close to a singularity
+  budget,        ///< more work finds an answer: the bounds on attempts or iterations are too low
+  out_of_time,   ///< more time finds an answer: the deadline is too short
+};
+
+/// Lower-case name of a cause.
+IKSEL_EXPORT const char* to_string(Cause cause);
+
+/// What Solver::diagnose found. Numbers that do not belong to the cause are NaN.
+struct Diagnosis {
+  Cause cause = Cause::none;
+  /// What is wrong and what to do about it, in a sentence.
+  std::string message;
+  /// out_of_reach: distance from the nearest position that was reached [m].
+  double beyond_reach = std::numeric_limits<double>::quiet_NaN();
+  /// orientation: least rotation error that was reached with the position held [rad].
+  double rotation_gap = std::numeric_limits<double>::quiet_NaN();
+  /// joint_limits: the joint that lies farthest outside its limits in the answer that violates
+  /// them least, and by how much [rad or m]; -1 otherwise.
+  int joint = -1;
+  double limit_violation = std::numeric_limits<double>::quiet_NaN();
+  /// rejected: how many answers the filter refused.
+  int refused = 0;
+  /// Least singular value of the Jacobian at `q` [mixed units]: small where it is close to a
+  /// singularity.
+  double least_singular_value = std::numeric_limits<double>::quiet_NaN();
+
+  /// Best effort inside the limits: an answer if `cause` is none, singular, budget or out_of_time,
+  /// and otherwise NO SOLUTION.
+  JointVector q;
+  /// Errors of q outside of the task's box: position [m] and rotation [rad].
+  double position_error = std::numeric_limits<double>::quiet_NaN();
+  double rotation_error = std::numeric_limits<double>::quiet_NaN();
+  /// Whether q is an answer: within the tolerances, inside the limits, passed by the filter.
+  bool q_is_solution = false;
+};
+
+}  // namespace iksel

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Arms whose constants differ a little from those that a database was built with.
+#include <algorithm>
+#include <sstream>
+
+#include "iksel/error.hpp"
+#include "solver/solver_impl.hpp"
+
+namespace iksel {
+
+Drift measure_drift(const Robot& robot, const Robot& nominal, std::size_t samples) {
+  if (robot.dof() != nominal.dof()) {
+    throw InvalidArgumentError("nominal: robot '" + nominal.name() + "' has " +
+                               std::to_string(nominal.dof()) + " joints, '" + robot.name() + "' " +
+                               std::to_string(robot.dof()));
+  }
+  const Robot a = robot.with_tcp(Pose::Identity());
+  const Robot b = nominal.with_tcp(Pose::Identity());
+  Drift drift;
+  const Matrix q = nominal.random_configurations(samples, 0);
+  for (Eigen::Index i = 0; i < q.rows(); ++i) {
+    const JointVector joints = q.row(i);
+    const Eigen::Matrix<double, 6, 1> e = pose_error(a.fk(joints), b.fk(joints));
+    drift.position = std::max(drift.position, e.head<3>().norm());
+    drift.rotation = std::max(drift.rotation, e.tail<3>().norm());
+  }
+  return drift;
+}
+
+Solver::Solver(const Robot& robot, const SolverOptions& options, const Database& database,
+               const Robot& nominal, const Drift& bound) {
+  options.validate();
+  if (robot.dof() != nominal.dof()) {
+    throw DatabaseMismatchError("robot '" + robot.name() + "' has " + std::to_string(robot.dof()) +
+                                " joints, its nominal chain " + std::to_string(nominal.dof()));
+  }
+  const Drift drift = measure_drift(robot, nominal);
+  // Written so that NaN is beyond.
+  if (!(drift.position <= bound.position && drift.rotation <= bound.rotation)) {
+    std::ostringstream text;
+    text << "robot '" << robot.name() << "' drifts by " << drift.position << " m and "
+         << drift.rotation << " rad from the chain of the database, more than " << bound.position
+         << " m or " << bound.rotation << " rad: build a database for it";
+    throw DatabaseMismatchError(text.str());
+  }
+  const auto impl = std::make_shared<Impl>(robot, options, database, nominal);
+  impl->drift = drift;
+  impl_ = impl;
+}
+
+const Robot& Solver::nominal() const { return impl_->nominal; }
+Drift Solver::drift() const { return impl_->drift; }
+
+}  // namespace iksel

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "solver/objective_cost.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "error_check.hpp"
+#include "iksel/error.hpp"
+#include "math/pseudo_inverse.hpp"
+
+namespace iksel {
+
+Objective Objective::near_posture(const JointVector& posture, const JointVector& weights) {
+  Objective objective;
+  objective.kind = Kind::posture;
+  objective.posture = posture;
+  objective.weights = weights;
+  return objective;
+}
+
+Objective Objective::far_from_limits() {
+  Objective objective;
+  objective.kind = Kind::limits;
+  return objective;
+}
+
+Objective Objective::most_manipulable() {
+  Objective objective;
+  objective.kind = Kind::manipulability;
+  return objective;
+}
+
+Objective Objective::custom(std::function<double(const JointVector&)> cost,
+                            std::function<JointVector(const JointVector&)> gradient) {
+  Objective objective;
+  objective.kind = Kind::custom;
+  objective.cost = std::move(cost);
+  objective.gradient = std::move(gradient);
+  return objective;
+}
+
+void Objective::validate(int dof) const {
+  if (kind == Kind::custom && !cost) {
+    throw InvalidArgumentError("objective: a custom one needs a cost");
+  }
+  if (kind != Kind::posture) return;
+  check_joints(posture, dof, "objective posture");
+  if (weights.size() == 0) return;
+  check_joints(weights, dof, "objective weights");
+  if (weights.minCoeff() < 0 || weights.maxCoeff() == 0) {
+    throw InvalidArgumentError("objective weights: they are not all 0 or more, or all are 0");
+  }
+}
+
+double manipulability(const ChainModel& model, const JointVector& q) {
+  Pose pose;
+  Jacobian J;
+  model.fk_jacobian(q.data(), pose, J);
+  const double determinant = model.dof < 6 ? Eigen::MatrixXd(J.transpose() * J).determinant()
+                                           : Matrix6(J * J.transpose()).determinant();
+  return std::sqrt(std::max(determinant, 0.0));
+}
+
+double ObjectiveCost::of_posture(const JointVector& q, JointVector* gradient,
+                                 JointVector* curvature) const {
+  JointVector weights = JointVector::Ones(model_.dof);
+  if (objective_.weights.size() != 0) {
+    // A joint without weight still has a little, so that it does not drift.
+    constexpr double kLeast = 1e-6;
+    weights = objective_.weights.cwiseMax(kLeast * objective_.weights.maxCoeff());
+  }
+  const JointVector d = weights.cwiseProduct(q - objective_.posture);
+  if (gradient != nullptr) *gradient = weights.cwiseProduct(d);
+  if (curvature != nullptr) *curvature = weights.cwiseAbs2();
+  return 0.5 * d.squaredNorm();
+}
+
+double ObjectiveCost::of_limits(const JointVector& q, JointVector* gradient,
+                                JointVector* curvature) const {
+  // Nearer than this part of the range a limit repels no more, so that the cost stays finite.
+  constexpr double kNearest = 1e-4;
+  // Joints without limits have a little, so that they do not drift.
+  if (gradient != nullptr) gradient->setZero(model_.dof);
+  if (curvature != nullptr) curvature->setConstant(model_.dof, 1e-6);
+  double sum = 0;
+  for (int j = 0; j < model_.dof; ++j) {
+    const double range = model_.upper[j] - model_.lower[j];
+    if (!(std::isfinite(range) && range > 0)) continue;
+    const double x = std::min(std::max((q[j] - model_.lower[j]) / range, kNearest), 1 - kNearest);
+    const double below = 1 / x;
+    const double above = 1 / (1 - x);
+    sum += 0.25 * (below + above);
+    if (gradient != nullptr) (*gradient)[j] = 0.25 * (above * above - below * below) / range;
+    if (curvature != nullptr) {
+      (*curvature)[j] = 0.5 * (below * below * below + above * above * above) / (range * range);
+    }
+  }
+  return sum;
+}
+
+double ObjectiveCost::value(const JointVector& q) const {
+  switch (objective_.kind) {
+    case Objective::Kind::posture:
+      return of_posture(q, nullptr, nullptr);
+    case Objective::Kind::limits:
+      return of_limits(q, nullptr, nullptr);
+    case Objective::Kind::manipulability:
+      return -manipulability(model_, q);
+    case Objective::Kind::custom:
+      return objective_.cost(q);
+    case Objective::Kind::none:
+      break;
+  }
+  return 0;
+}
+
+JointVector ObjectiveCost::slope(const JointVector& q) const {
+  if (objective_.kind == Objective::Kind::custom && objective_.gradient) {
+    JointVector given = objective_.gradient(q);
+    check_joints(given, model_.dof, "objective gradient");
+    return given;
+  }
+  constexpr double kStep = 1e-5;
+  JointVector gradient(model_.dof);
+  for (int j = 0; j < model_.dof; ++j) {
+    // One-sided at a limit, beyond which a cost need not be defined.
+    JointVector above = q;
+    JointVector below = q;
+    above[j] = std::min(q[j] + kStep, model_.upper[j]);
+    below[j] = std::max(q[j] - kStep, model_.lower[j]);
+    const double width = above[j] - below[j];
+    gradient[j] = width > 0 ? (value(above) - value(below)) / width : 0.0;
+  }
+  return gradient;
+}
+
+double ObjectiveCost::estimate_curvature(const JointVector& q, const JointVector& gradient) const {
+  // The first step is as long as this [rad or m].
+  constexpr double kFirst = 0.2;
+  double curvature = gradient.norm() / kFirst;
+  if (last_q_.size() != 0) {
+    const JointVector dq = q - last_q_;
+    const double along = dq.dot(gradient - last_gradient_);
+    // Where the cost is concave a step as long as may be is right: the slide bounds it.
+    curvature = along > 0 ? along / dq.squaredNorm() : 0.5 * last_curvature_;
+  }
+  last_q_ = q;
+  last_gradient_ = gradient;
+  last_curvature_ = std::max(curvature, 1e-12);
+  return last_curvature_;
+}
+
+double ObjectiveCost::operator()(const JointVector& q, JointVector* gradient,
+                                 JointVector* curvature) const {
+  if (objective_.kind == Objective::Kind::posture) return of_posture(q, gradient, curvature);
+  if (objective_.kind == Objective::Kind::limits) return of_limits(q, gradient, curvature);
+  if (gradient != nullptr) {
+    *gradient = slope(q);
+    if (curvature != nullptr) {
+      curvature->setConstant(model_.dof, estimate_curvature(q, *gradient));
+    }
+  }
+  return value(q);
+}
+
+}  // namespace iksel

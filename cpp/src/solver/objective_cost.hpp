@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// An Objective as the slide wants it: value, gradient, and a diagonal second derivative.
+#pragma once
+
+#include "iksel/objective.hpp"
+#include "kinematics/chain_model.hpp"
+
+namespace iksel {
+
+/// sqrt(det(J J^T)), or sqrt(det(J^T J)) for fewer than 6 joints (Yoshikawa 1985).
+double manipulability(const ChainModel& model, const JointVector& q);
+
+/// For one slide: where the second derivative is not known, it is estimated from the gradients that
+/// were asked for so far (Barzilai and Borwein 1988).
+class ObjectiveCost {
+ public:
+  /// Both must outlive this.
+  ObjectiveCost(const ChainModel& model, const Objective& objective)
+      : model_(model), objective_(objective) {}
+
+  [[nodiscard]] double value(const JointVector& q) const;
+  double operator()(const JointVector& q, JointVector* gradient, JointVector* curvature) const;
+
+ private:
+  double of_posture(const JointVector& q, JointVector* gradient, JointVector* curvature) const;
+  double of_limits(const JointVector& q, JointVector* gradient, JointVector* curvature) const;
+  [[nodiscard]] JointVector slope(const JointVector& q) const;
+  [[nodiscard]] double estimate_curvature(const JointVector& q, const JointVector& gradient) const;
+
+  const ChainModel& model_;
+  const Objective& objective_;
+  mutable JointVector last_q_, last_gradient_;
+  mutable double last_curvature_ = 0;
+};
+
+}  // namespace iksel

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+#include <pybind11/typing.h>
+
+#include <optional>
+#include <string>
+
+#include "bindings.hpp"
+#include "objective.hpp"
+
+namespace iksel::python {
+
+namespace {
+
+using CostCallable = py::typing::Callable<py::object(py::array_t<double>)>;
+
+JointVector as_any_joints(const ArrayLike& value, const char* name) {
+  const DoubleArray array = as_doubles(value, name);
+  if (array.ndim() != 1 || array.shape(0) > kMaxDof) {
+    throw_wrong_shape(name, "a (dof,) array", array);
+  }
+  return as_joints(array, static_cast<int>(array.shape(0)), name);
+}
+
+}  // namespace
+
+void bind_objective(py::module_& m) {
+  bind_enum<Objective::Kind>(m);
+  py::class_<Objective> cls(
+      m, "Objective",
+      "What an answer is to be good at besides reaching the target: a cost of joint values, the "
+      "smaller the better. Of all answers found the cheapest is taken; where the arm is free to "
+      "move (more joints than fixed axes) the best have slid to a local minimum of the cost "
+      "first. Immutable.");
+  cls.def_static(
+      "near_posture",
+      [](const ArrayLike& posture, const std::optional<ArrayLike>& weights) {
+        return Objective::near_posture(
+            as_any_joints(posture, "posture"),
+            weights ? as_any_joints(*weights, "weights") : JointVector());
+      },
+      py::arg("posture"), py::arg("weights") = py::none(),
+      "Near joint values (dof,) [rad or m], inside the limits or not: 1/2 sum (w_i (q_i - "
+      "posture_i))^2, weights (dof,), >= 0; None: all 1.");
+  cls.def_static("far_from_limits", &Objective::far_from_limits,
+                 "Far from the limits: sum 1/4 (1/x_i + 1/(1 - x_i)), x_i in 0 .. 1 the place "
+                 "between them (Zghal, Dubey and Euler 1990).");
+  cls.def_static("most_manipulable", &Objective::most_manipulable,
+                 "Far from singularities: -sqrt(det(J J^T)) (Yoshikawa 1985); of J^T J with fewer "
+                 "than 6 joints.");
+  cls.def_static(
+      "custom",
+      [](const CostCallable& cost, const std::optional<CostCallable>& gradient) {
+        return make_custom_objective(cost, gradient ? py::object(*gradient) : py::none());
+      },
+      py::arg("cost"), py::arg("gradient") = py::none(),
+      "The cost of joint values (dof,) inside the limits, a number, and its gradient (dof,); "
+      "without one, central differences of the cost.");
+  cls.def_property_readonly(
+      "kind", [](const Objective& self) { return self.kind; }, "What it counts.");
+  cls.def("__repr__", [](const Objective& self) {
+    return std::string("Objective(") + enum_name(self.kind) + ")";
+  });
+}
+
+}  // namespace iksel::python

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Objectives from Python: an Objective, the name of one that needs nothing else, or a cost
+// function.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "array_checks.hpp"
+#include "iksel/objective.hpp"
+#include "python_types.hpp"
+
+namespace iksel::python {
+
+/// What as_objective takes.
+class ObjectiveLike : public py::object {
+  PYBIND11_OBJECT_DEFAULT(ObjectiveLike, object, is_any_object)
+};
+
+/// A callable that may be copied and dropped without the GIL.
+inline std::shared_ptr<py::object> hold(py::object callable) {
+  return {new py::object(std::move(callable)), [](py::object* held) {
+            const py::gil_scoped_acquire acquire;
+            delete held;
+          }};
+}
+
+inline Objective make_custom_objective(const py::object& cost, const py::object& gradient) {
+  if (PyCallable_Check(cost.ptr()) == 0) throw_wrong_type("cost", "a callable", cost);
+  Objective objective = Objective::custom([call = hold(cost)](const JointVector& q) {
+    const py::gil_scoped_acquire acquire;
+    return from_python<double>((*call)(to_array(q)), "cost");
+  });
+  if (!gradient.is_none()) {
+    if (PyCallable_Check(gradient.ptr()) == 0) throw_wrong_type("gradient", "a callable", gradient);
+    objective.gradient = [call = hold(gradient)](const JointVector& q) {
+      const py::gil_scoped_acquire acquire;
+      return as_joints((*call)(to_array(q)), static_cast<int>(q.size()), "gradient");
+    };
+  }
+  return objective;
+}
+
+inline Objective as_objective(py::handle value) {
+  if (py::isinstance<Objective>(value)) return py::cast<Objective>(value);
+  if (py::isinstance<py::str>(value)) {
+    const auto name = py::cast<std::string>(value);
+    if (name == enum_name(Objective::Kind::limits)) return Objective::far_from_limits();
+    if (name == enum_name(Objective::Kind::manipulability)) return Objective::most_manipulable();
+  } else if (PyCallable_Check(value.ptr()) != 0) {
+    return make_custom_objective(py::reinterpret_borrow<py::object>(value), py::none());
+  }
+  throw_wrong_type("objective", "an Objective, a callable, or one of limits, manipulability",
+                   value);
+}
+
+}  // namespace iksel::python
+
+// NOLINTBEGIN(readability-identifier-naming): pybind11 looks for `name`.
+namespace pybind11::detail {
+template <>
+struct handle_type_name<iksel::python::ObjectiveLike> {
+  static constexpr auto name =
+      const_name("iksel_cpp.Objective | str | collections.abc.Callable[[numpy.ndarray], float]");
+};
+}  // namespace pybind11::detail
+// NOLINTEND(readability-identifier-naming)

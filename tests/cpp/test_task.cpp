@@ -1,0 +1,512 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Tasks: what their deviations are, and that solving reaches them, measured by KDL's FK and by
+// formulas of this file's own.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "iksel/iksel.hpp"
+#include "iteration/task_space.hpp"
+#include "math/random.hpp"
+#include "math/rotation.hpp"
+#include "robots.hpp"
+
+namespace {
+
+using iksel::Axis;
+using iksel::JacobianMatrix;
+using iksel::JointVector;
+using iksel::Pose;
+using iksel::Random;
+using iksel::Result;
+using iksel::Robot;
+using iksel::Solver;
+using iksel::SolverOptions;
+using iksel::Status;
+using iksel::Task;
+using iksel::TaskFrame;
+using iksel::TaskSpace;
+using iksel::Vector6;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kPi = 3.14159265358979323846;
+
+struct NamedTask {
+  const char* name;
+  Task task;
+};
+
+std::vector<NamedTask> tasks() {
+  Task one_sided;  // the hand may stop short of the target along the tool's z, and tilt a little
+  one_sided.position_lower[2] = -0.02;
+  one_sided.rotation_lower = {-0.1, -0.2, -0.05};
+  one_sided.rotation_upper = {0.1, 0.2, 0.0};
+  return {{"position only", Task::position_only()},
+          {"free spin x", Task::free_spin(Axis::x)},
+          {"free spin z", Task::free_spin()},
+          {"upright", Task::upright()},
+          {"planar", Task::planar()},
+          {"box", Task::box({0.001, 0.002, 0.003}, {0.01, 0.02, 0.03})},
+          {"cone", Task::box({0, 0, 0}, {0.3, 0.3, kPi}, TaskFrame::tool)},
+          {"slab", Task::box({0.5, 0.5, 0}, {0.2, 0.2, 1.0}, TaskFrame::base)},
+          {"one-sided", one_sided}};
+}
+
+Robot robot_named(const char* name) {
+  for (const auto& c : iksel_test::all_robots()) {
+    if (std::string(c.name) == name) return iksel_test::load(c);
+  }
+  throw std::runtime_error(name);
+}
+
+TaskSpace space_of(const Task& task) { return {task, 1e-6, 1e-6}; }
+
+/// Angle between two directions [rad].
+double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+TEST(TaskSpace, FindsTheDeviationThatAPoseWasMadeWith) {
+  const Robot robot = robot_named("panda");
+  Random random(iksel_test::seed());
+  for (const auto& [name, task] : tasks()) {
+    const TaskSpace space = space_of(task);
+    for (int i = 0; i < iksel_test::cases(300); ++i) {
+      const Pose target = robot.fk(robot.random_configurations(1, random.next()).row(0));
+      Vector6 d;
+      for (int k = 0; k < 3; ++k) d[k] = random.uniform(-1, 1);
+      // Any twist, and swings or rotation vectors shorter than pi.
+      for (int k = 3; k < 6; ++k) d[k] = random.uniform(-1.7, 1.7);
+      if (space.rotation_is_free()) d.tail<3>().setZero();
+      const Vector6 found = space.deviation(target, space.pose_at(target, d));
+      EXPECT_LT((found - d).norm(), 1e-12) << name << ", seed " << iksel_test::seed();
+    }
+  }
+}
+
+TEST(TaskSpace, JacobianIsTheDerivativeOfTheDeviation) {
+  Random random(iksel_test::seed());
+  for (const char* robot_name : {"panda", "xarm5", "cvr038"}) {
+    const Robot robot = robot_named(robot_name);
+    for (const auto& [name, task] : tasks()) {
+      const TaskSpace space = space_of(task);
+      for (int i = 0; i < iksel_test::cases(100); ++i) {
+        const Eigen::MatrixXd q = robot.random_configurations(2, random.next());
+        const Pose target = robot.fk(q.row(0));
+        JacobianMatrix J = robot.jacobian(q.row(1));
+        const Vector6 d = space.deviation(target, robot.fk(q.row(1)), J);
+        EXPECT_LT((d - space.deviation(target, robot.fk(q.row(1)))).norm(), 1e-12);
+        constexpr double kStep = 1e-6;
+        for (int j = 0; j < robot.dof(); ++j) {
+          JointVector above = q.row(1);
+          JointVector below = q.row(1);
+          above[j] += kStep;
+          below[j] -= kStep;
+          const Vector6 after = space.deviation(target, robot.fk(above));
+          const Vector6 before = space.deviation(target, robot.fk(below));
+          // Across a half turn the numbers jump; close to a reversed axis they run away.
+          if ((after - before).norm() > 1e-3) continue;
+          const Vector6 difference = (after - before) / (2 * kStep);
+          EXPECT_LT((J.col(j) - difference).norm(), 1e-6 * (1 + difference.norm()))
+              << robot_name << ", " << name << ", joint " << j << ", case " << i << ", seed "
+              << iksel_test::seed();
+        }
+      }
+    }
+  }
+}
+
+TEST(TaskSpace, FreeSpinMeasuresTheAngleBetweenTheAxes) {
+  const Robot robot = robot_named("ur3");
+  const Eigen::MatrixXd q = robot.random_configurations(2 * iksel_test::cases(1000), 5);
+  for (Eigen::Index i = 0; i + 1 < q.rows(); i += 2) {
+    const Pose target = robot.fk(q.row(i));
+    const Pose pose = robot.fk(q.row(i + 1));
+    for (int axis = 0; axis < 3; ++axis) {
+      double position = 0;
+      double rotation = 0;
+      space_of(Task::free_spin(static_cast<Axis>(axis))).measure(target, pose, position, rotation);
+      EXPECT_NEAR(position, (target.translation() - pose.translation()).norm(), 1e-12);
+      EXPECT_NEAR(rotation, angle_between(target.linear().col(axis), pose.linear().col(axis)),
+                  1e-12);
+      // Upright: the base's axis as the tool sees it.
+      space_of(Task::upright(static_cast<Axis>(axis))).measure(target, pose, position, rotation);
+      EXPECT_NEAR(
+          rotation,
+          angle_between(target.linear().row(axis).transpose(), pose.linear().row(axis).transpose()),
+          1e-12);
+    }
+  }
+}
+
+TEST(TaskSpace, AFullPoseIsMeasuredAsEverywhereElse) {
+  const Robot robot = robot_named("ur3");
+  const Eigen::MatrixXd q = robot.random_configurations(200, 6);
+  for (Eigen::Index i = 0; i + 1 < q.rows(); i += 2) {
+    double position = 0;
+    double rotation = 0;
+    const Pose target = robot.fk(q.row(i));
+    const Pose pose = robot.fk(q.row(i + 1));
+    space_of(Task::pose()).measure(target, pose, position, rotation);
+    const Vector6 e = iksel::pose_error(target, pose);
+    EXPECT_NEAR(position, e.head<3>().norm(), 1e-12);
+    EXPECT_NEAR(rotation, e.tail<3>().norm(), 1e-12);
+  }
+}
+
+TEST(TaskSpace, DistanceFromAPointIsTheLeastOverTheBox) {
+  Random random(iksel_test::seed());
+  const Robot robot = robot_named("ur3");
+  for (const TaskFrame frame : {TaskFrame::base, TaskFrame::tool}) {
+    const TaskSpace space = space_of(Task::box({0.1, 0.2, 0.3}, {0, 0, 0}, frame));
+    const Pose target = robot.fk(robot.random_configurations(1, 7).row(0));
+    for (int i = 0; i < 20; ++i) {
+      const Eigen::Vector3d point(random.uniform(-1, 1), random.uniform(-1, 1),
+                                  random.uniform(-1, 1));
+      const double distance = space.distance_from(target, point);
+      double least = kInfinity;
+      for (int k = 0; k < 20'000; ++k) {
+        Vector6 d = Vector6::Zero();
+        for (int j = 0; j < 3; ++j) d[j] = random.uniform(space.lower()[j], space.upper()[j]);
+        least = std::min(least, (space.pose_at(target, d).translation() - point).norm());
+      }
+      EXPECT_LE(distance, least + 1e-12);
+      EXPECT_NEAR(distance, least, 0.03);
+    }
+  }
+}
+
+/// What a task asks for, by formulas that share nothing with the library's.
+void expect_reached(const Task& task, const Pose& target, const Pose& pose, const char* what) {
+  constexpr double kTolerance = 1e-6 + 1e-12;
+  const bool tool = task.frame == TaskFrame::tool;
+  const Eigen::Vector3d p = pose.translation() - target.translation();
+  const Eigen::Vector3d d = tool ? Eigen::Vector3d(target.linear().transpose() * p) : p;
+  const Eigen::Matrix3d E = tool ? Eigen::Matrix3d(target.linear().transpose() * pose.linear())
+                                 : Eigen::Matrix3d(pose.linear() * target.linear().transpose());
+  for (int i = 0; i < 3; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    // Where there is room, answers lie within the bounds, not only within the tolerance.
+    const bool room = task.position_upper[k] - task.position_lower[k] > 1e-5;
+    const double slack = room ? 1e-12 : kTolerance;
+    EXPECT_GE(d[i], task.position_lower[k] - slack) << what;
+    EXPECT_LE(d[i], task.position_upper[k] + slack) << what;
+  }
+  const auto free = [&](std::size_t i) { return std::isinf(task.rotation_upper[i]); };
+  const int open = free(0) + free(1) + free(2);
+  if (open == 3) return;
+  if (open == 0) {
+    const Eigen::AngleAxisd rotation(E);
+    // Rotation vectors and swing-twist agree to second order; these boxes are small enough.
+    const Eigen::Vector3d w = rotation.angle() * rotation.axis();
+    for (int i = 0; i < 3; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const double slack = kTolerance + 0.6 * w.squaredNorm();
+      EXPECT_GE(w[i], task.rotation_lower[k] - slack) << what;
+      EXPECT_LE(w[i], task.rotation_upper[k] + slack) << what;
+    }
+    return;
+  }
+  if (open == 1) {
+    const int axis = free(0) ? 0 : free(1) ? 1 : 2;
+    const Eigen::Vector3d a = Eigen::Vector3d::Unit(axis);
+    const Eigen::Vector3d u = E.col(axis);
+    Eigen::Vector3d swing = a.cross(u);
+    if (swing.norm() > 1e-12) swing *= angle_between(a, u) / swing.norm();
+    for (int i = 0; i < 3; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      if (i == axis) continue;
+      EXPECT_GE(swing[i], task.rotation_lower[k] - kTolerance) << what;
+      EXPECT_LE(swing[i], task.rotation_upper[k] + kTolerance) << what;
+    }
+    return;
+  }
+  // Only the twist about one axis counts: 2 atan2(q_axis, q_w).
+  const int axis = !free(0) ? 0 : !free(1) ? 1 : 2;
+  const Eigen::Vector4d q = iksel::to_quaternion_wxyz(E);
+  const double twist = std::remainder(2 * std::atan2(q[1 + axis], q[0]), 2 * kPi);
+  const auto k = static_cast<std::size_t>(axis);
+  EXPECT_GE(twist, task.rotation_lower[k] - kTolerance) << what;
+  EXPECT_LE(twist, task.rotation_upper[k] + kTolerance) << what;
+}
+
+class Robots : public testing::TestWithParam<iksel_test::RobotCase> {};
+
+TEST_P(Robots, ReachEveryTaskFromReachableTargets) {
+  const Robot robot = iksel_test::load(GetParam());
+  const iksel::Database database = iksel::Database::build(robot);
+  const int cases = iksel_test::cases(200);
+  const Eigen::MatrixXd q = robot.random_configurations(cases, iksel_test::seed());
+  for (const auto& [name, task] : tasks()) {
+    SolverOptions options;
+    options.task = task;
+    const Solver solver(robot, options, database);
+    int solved = 0;
+    for (int i = 0; i < cases; ++i) {
+      const Pose target = iksel_test::kdl_pose(robot, q, i);
+      const Result result = solver.solve(target);
+      if (!result.success()) continue;
+      ++solved;
+      EXPECT_TRUE(robot.within_limits(result.q));
+      EXPECT_LE(result.position_error, 1e-6);
+      EXPECT_LE(result.rotation_error, 1e-6);
+      expect_reached(task, target, robot.fk(result.q, iksel::Kinematics::kdl), name);
+    }
+    EXPECT_EQ(solved, cases) << name << ", seed " << iksel_test::seed();
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Robots, testing::ValuesIn(iksel_test::all_robots()),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+TEST(FewerThanSixJoints, ReachFullPoses) {
+  for (const char* name : {"xarm5", "wx250"}) {
+    const Robot robot = robot_named(name);
+    const Solver solver(robot);
+    const int cases = iksel_test::cases(2000);
+    const Eigen::MatrixXd q = robot.random_configurations(cases, iksel_test::seed());
+    int solved = 0;
+    for (int i = 0; i < cases; ++i) {
+      const Pose target = iksel_test::kdl_pose(robot, q, i);
+      const Result result = solver.solve(target);
+      if (!result.success()) continue;
+      ++solved;
+      const Vector6 e = iksel::pose_error(target, robot.fk(result.q, iksel::Kinematics::kdl));
+      EXPECT_LE(e.head<3>().norm(), 1e-6 + 1e-12);
+      EXPECT_LE(e.tail<3>().norm(), 1e-6 + 1e-12);
+    }
+    EXPECT_EQ(solved, cases) << name << ", seed " << iksel_test::seed();
+  }
+}
+
+TEST(FewerThanSixJoints, APlanarArmReachesAPlanarTask) {
+  const char* urdf = R"(<robot name="planar"><link name="base"/><link name="a"/><link name="b"/>
+    <link name="tip"/>
+    <joint name="q1" type="revolute"><parent link="base"/><child link="a"/><axis xyz="0 0 1"/>
+      <limit lower="-3" upper="3" effort="1" velocity="1"/></joint>
+    <joint name="q2" type="revolute"><parent link="a"/><child link="b"/><origin xyz="0.4 0 0.1"/>
+      <axis xyz="0 0 1"/><limit lower="-2.5" upper="2.5" effort="1" velocity="1"/></joint>
+    <joint name="q3" type="revolute"><parent link="b"/><child link="tip"/><origin xyz="0.3 0 0"/>
+      <axis xyz="0 0 1"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint></robot>)";
+  iksel::RobotOptions links;
+  links.tcp.translation().x() = 0.2;
+  const Robot robot = Robot::from_urdf_string(urdf, links);
+  SolverOptions options;
+  options.task = Task::planar();
+  const Solver solver(robot, options);
+  const int cases = iksel_test::cases(1000);
+  const Eigen::MatrixXd q = robot.random_configurations(cases, iksel_test::seed());
+  for (int i = 0; i < cases; ++i) {
+    // Lifted off the plane and tilted, which a planar task does not look at.
+    Pose target = robot.fk(q.row(i));
+    const double yaw = q.row(i).sum();
+    target.translation().z() += 0.3;
+    target.linear() = target.linear() * Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitX());
+    const Result result = solver.solve(target);
+    ASSERT_TRUE(result.success()) << "case " << i << ", seed " << iksel_test::seed();
+    EXPECT_LT(
+        (robot.fk(result.q) * Eigen::Vector3d::Zero() - target.translation()).head<2>().norm(),
+        1e-6);
+    EXPECT_LT(std::abs(std::remainder(result.q.sum() - yaw, 2 * kPi)), 1e-6);
+  }
+}
+
+TEST(Boxes, AreUsedAndNotOnlyAccepted) {
+  // A target a little farther away than the arm can reach, stretched out: only its box is in reach.
+  const Robot robot = robot_named("xarm5");
+  SolverOptions options;
+  options.task = Task::box({0.02, 0.02, 0.02}, {0.2, 0.2, 0.2});
+  const Solver with_box(robot, options);
+  const Solver without(robot, SolverOptions{}, with_box.database());
+  Random random(iksel_test::seed());
+  const int cases = iksel_test::cases(200);
+  const Eigen::MatrixXd q = robot.random_configurations(cases, iksel_test::seed());
+  int exact = 0;
+  for (int i = 0; i < cases; ++i) {
+    // Five joints cannot follow a target that is moved in six.
+    Vector6 d;
+    for (int k = 0; k < 6; ++k) d[k] = random.uniform(-1, 1) * (k < 3 ? 0.015 : 0.1);
+    const Pose target = TaskSpace(Task::pose(), 0, 0).pose_at(robot.fk(q.row(i)), d);
+    if (without.solve(target).success()) ++exact;
+    const Result result = with_box.solve(target);
+    ASSERT_TRUE(result.success()) << "case " << i << ", seed " << iksel_test::seed();
+    expect_reached(options.task, target, robot.fk(result.q, iksel::Kinematics::kdl), "box");
+  }
+  EXPECT_EQ(exact, 0);
+}
+
+TEST(Tasks, SolveWithEverySchemeAndByKdl) {
+  const Robot robot = robot_named("irb14050");
+  const iksel::Database database = iksel::Database::build(robot);
+  const int cases = iksel_test::cases(100);
+  const Eigen::MatrixXd q = robot.random_configurations(cases, iksel_test::seed());
+  for (const auto iteration :
+       {iksel::Iteration::lm, iksel::Iteration::dls, iksel::Iteration::pinv,
+        iksel::Iteration::pinv_rr, iksel::Iteration::cwln, iksel::Iteration::cwpi}) {
+    for (const auto kinematics : {iksel::Kinematics::kernel, iksel::Kinematics::kdl}) {
+      SolverOptions options;
+      options.iteration = iteration;
+      options.kinematics = kinematics;
+      options.task = Task::free_spin();
+      const Solver solver(robot, options, database);
+      int solved = 0;
+      for (int i = 0; i < cases; ++i) {
+        const Pose target = robot.fk(q.row(i));
+        const Result result = solver.solve(target);
+        if (!result.success()) continue;
+        ++solved;
+        expect_reached(options.task, target, robot.fk(result.q), "free spin");
+      }
+      EXPECT_GE(solved, cases * 99 / 100) << static_cast<int>(iteration);
+    }
+  }
+}
+
+TEST(Tasks, TakeSeedsAndGiveTheSameBitsInBatches) {
+  const Robot robot = robot_named("panda");
+  SolverOptions options;
+  options.task = Task::position_only();
+  const Solver solver(robot, options);
+  const int cases = iksel_test::cases(200);
+  const Eigen::MatrixXd q = robot.random_configurations(cases, iksel_test::seed());
+  std::vector<Pose> targets;
+  for (int i = 0; i < cases; ++i) targets.push_back(robot.fk(q.row(i)));
+  const std::vector<Result> batch = solver.solve_batch(targets, 3);
+  for (int i = 0; i < cases; ++i) {
+    const Result one = solver.solve(targets[static_cast<std::size_t>(i)]);
+    ASSERT_TRUE(one.success());
+    EXPECT_EQ(one.q, batch[static_cast<std::size_t>(i)].q);
+    const Result seeded = solver.solve(targets[static_cast<std::size_t>(i)], q.row(i));
+    ASSERT_TRUE(seeded.success());
+    EXPECT_EQ(seeded.attempts, 1);
+    EXPECT_LT((seeded.q - q.row(i).transpose()).norm(), 1e-9);
+  }
+}
+
+TEST(Tasks, OfACallTakeThePlaceOfTheOptions) {
+  const Robot robot = robot_named("cvr038");
+  const Solver solver(robot);
+  const int cases = iksel_test::cases(100);
+  const Eigen::MatrixXd q = robot.random_configurations(cases, iksel_test::seed());
+  for (const auto& [name, task] : tasks()) {
+    iksel::SolveRequest request;
+    request.task = task;
+    iksel::SolveRequest picky = request;
+    picky.filter =
+        iksel::filter_each(robot.dof(), [](const JointVector& at) { return at[1] < 0.5; });
+    iksel::SolveRequest seeded = request;
+    seeded.database_seeds = false;
+    for (int i = 0; i < cases; ++i) {
+      const Pose target = robot.fk(q.row(i));
+      const Result result = solver.solve(target, request);
+      ASSERT_TRUE(result.success()) << name << ", case " << i << ", seed " << iksel_test::seed();
+      expect_reached(task, target, robot.fk(result.q), name);
+      seeded.seeds = {q.row(i)};
+      EXPECT_TRUE(solver.solve(target, seeded).success()) << name;
+      const Result filtered = solver.solve(target, picky);
+      if (q(i, 1) < 0.5 && task.constrained_axes() < 6) EXPECT_TRUE(filtered.success()) << name;
+      if (!filtered.success()) continue;
+      EXPECT_LT(filtered.q[1], 0.5);
+      expect_reached(task, target, robot.fk(filtered.q), name);
+    }
+  }
+}
+
+TEST(Tasks, TheNearestSolutionUsesWhatTheyLeaveOpen) {
+  // No small move within the task makes the answer a nearer one: random moves, brought back to the
+  // task by solving from them, are the oracle.
+  Random random(iksel_test::seed());
+  for (const char* name : {"ur3", "panda", "xarm5"}) {
+    const Robot robot = robot_named(name);
+    const Solver solver(robot);
+    for (const auto& [task_name, task] : tasks()) {
+      for (int i = 0; i < iksel_test::cases(200) / 10; ++i) {
+        const Eigen::MatrixXd q = robot.random_configurations(1, random.next());
+        const Pose target = robot.fk(q.row(0));
+        iksel::SolveRequest request;
+        request.task = task;
+        JointVector near = q.row(0);
+        for (int j = 0; j < robot.dof(); ++j) near[j] += random.uniform(-0.3, 0.3);
+        request.near = near;
+        const Result nearest = solver.solve(target, request);
+        ASSERT_TRUE(nearest.success()) << name << ", " << task_name;
+        expect_reached(task, target, robot.fk(nearest.q), task_name);
+        EXPECT_NEAR(nearest.move, (nearest.q - near).norm(), 1e-12);
+        EXPECT_LE(nearest.move, (q.row(0).transpose() - near).norm() + 1e-4)
+            << name << ", " << task_name << ", seed " << iksel_test::seed();
+        iksel::SolveRequest from;
+        from.task = task;
+        from.database_seeds = false;
+        for (int k = 0; k < 20; ++k) {
+          JointVector moved = nearest.q;
+          for (int j = 0; j < robot.dof(); ++j) moved[j] += random.uniform(-0.02, 0.02);
+          from.seeds = {moved};
+          const Result other = solver.solve(target, from);
+          if (!other.success() || (other.q - nearest.q).norm() > 0.2) continue;
+          EXPECT_GE((other.q - near).norm(), nearest.move - 1e-4)
+              << name << ", " << task_name << ", seed " << iksel_test::seed();
+        }
+      }
+    }
+  }
+}
+
+TEST(Tasks, SayWhenThePositionIsOutOfReach) {
+  const Robot robot = robot_named("ur3");
+  Pose target = robot.fk(robot.random_configurations(1, 1).row(0));
+  target.translation() = robot.reach_centre() + Eigen::Vector3d(robot.reach() + 0.05, 0, 0);
+  SolverOptions options;
+  options.task = Task::position_only();
+  const Solver solver(robot, options);
+  EXPECT_EQ(solver.solve(target).status, Status::out_of_reach);
+  options.task.position_lower[0] = -0.6;  // along the tool's x, wherever that points
+  options.task.position_lower[1] = -0.6;
+  options.task.position_lower[2] = -0.6;
+  options.task.position_upper = {0.6, 0.6, 0.6};
+  const Solver roomy(robot, options, solver.database());
+  EXPECT_EQ(roomy.solve(target).status, Status::solved);
+}
+
+TEST(Tasks, RefuseBoundsThatMakeNoSense) {
+  const auto refused = [](const Task& task) {
+    SolverOptions options;
+    options.task = task;
+    try {
+      options.validate();
+    } catch (const iksel::InvalidArgumentError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  Task task;
+  EXPECT_EQ(refused(task), "");
+  task.position_lower[1] = 0.1;
+  EXPECT_NE(refused(task).find("position y"), std::string::npos);
+  task = Task{};
+  task.position_upper[2] = std::nan("");
+  EXPECT_NE(refused(task).find("position z"), std::string::npos);
+  task = Task{};
+  task.rotation_upper[0] = 4;
+  EXPECT_NE(refused(task).find("rotation x"), std::string::npos);
+  task.rotation_upper[0] = kInfinity;  // half free
+  EXPECT_NE(refused(task).find("rotation x"), std::string::npos);
+  task = Task::position_only();
+  for (std::size_t i = 0; i < 3; ++i) {
+    task.position_lower[i] = -kInfinity;
+    task.position_upper[i] = kInfinity;
+  }
+  EXPECT_NE(refused(task).find("nothing to reach"), std::string::npos);
+  EXPECT_THROW(static_cast<void>(Task::box({-1, 0, 0}, {0, 0, 0})), iksel::InvalidArgumentError);
+}
+
+TEST(Tasks, CountTheAxesTheyConstrain) {
+  EXPECT_EQ(Task::pose().constrained_axes(), 6);
+  EXPECT_EQ(Task::position_only().constrained_axes(), 3);
+  EXPECT_EQ(Task::free_spin().constrained_axes(), 5);
+  EXPECT_EQ(Task::planar().constrained_axes(), 3);
+  EXPECT_EQ(Task::box({0, 0, kInfinity}, {0, 0, kPi}).constrained_axes(), 4);
+}
+
+}  // namespace

@@ -11,9 +11,11 @@
 
 #include "array_checks.hpp"
 #include "bindings.hpp"
+#include "filter.hpp"
 #include "iksel/solver.hpp"
 #include "option_fields.hpp"
 #include "progress.hpp"
+#include "py_request.hpp"
 #include "py_result.hpp"
 
 namespace iksel::python {
@@ -29,6 +31,7 @@ struct PyBatchResult {
   py::array_t<double> rotation_error;
   py::array_t<std::int32_t> attempts;
   py::array_t<std::int32_t> iterations;
+  py::array_t<double> move;
 
   [[nodiscard]] py::ssize_t size() const { return status.shape(0); }
 
@@ -52,6 +55,7 @@ struct PyBatchResult {
     out.result.rotation_error = rotation_error.at(i);
     out.result.attempts = attempts.at(i);
     out.result.iterations = iterations.at(i);
+    out.result.move = move.at(i);
     return out;
   }
 };
@@ -81,28 +85,55 @@ PyResult solve(const Solver& self, const ArrayLike& pose, const std::optional<Ar
   return {self.solve(target, as_joints(*seed, self.robot().dof(), "seed")), {}};
 }
 
-PyBatchResult solve_batch(const Solver& self, const ArrayLike& poses, const Loose<int>& threads) {
+/// (N, dof) values, or (dof,) for all targets, which go into the request.
+std::optional<DoubleArray> as_near(const std::optional<ArrayLike>& value, py::ssize_t n, int dof,
+                                   SolveRequest& request) {
+  if (!value) return std::nullopt;
+  const DoubleArray array = as_doubles(*value, "near");
+  if (array.ndim() == 1) {
+    request.near = as_joints(array, dof, "near");
+    return std::nullopt;
+  }
+  if (array.ndim() != 2 || array.shape(0) != n || array.shape(1) != dof) {
+    const std::string d = std::to_string(dof);
+    throw_wrong_shape("near", "a (" + d + ",) or (" + std::to_string(n) + ", " + d + ") array",
+                      array);
+  }
+  return array;
+}
+
+PyBatchResult solve_batch(const Solver& self, const ArrayLike& poses, const Loose<int>& threads,
+                          const std::optional<ArrayLike>& near,
+                          const std::optional<ArrayLike>& weights, const Loose<MoveNorm>& norm,
+                          const std::optional<ArrayLike>& seeds, const Loose<bool>& database_seeds,
+                          const std::optional<FilterCallable>& filter,
+                          const std::optional<Loose<double>>& deadline) {
   const DoubleArray targets = as_poses(poses, "poses");
   const auto thread_count = from_python<int>(threads, "threads");
   const py::ssize_t n = targets.shape(0);
   const py::ssize_t dof = self.robot().dof();
+  SolveRequest request = make_request(self.robot().dof(), std::nullopt, weights, norm, seeds,
+                                      database_seeds, filter, deadline);
+  const auto nears = as_near(near, n, self.robot().dof(), request);
   PyBatchResult out{py::array_t<double>({n, dof}), py::array_t<bool>(n),
                     py::array_t<std::uint8_t>(n),  py::array_t<double>(n),
                     py::array_t<double>(n),        py::array_t<std::int32_t>(n),
-                    py::array_t<std::int32_t>(n)};
+                    py::array_t<std::int32_t>(n),  py::array_t<double>(n)};
   const BatchView view{out.q.mutable_data(),
                        out.status.mutable_data(),
                        out.position_error.mutable_data(),
                        out.rotation_error.mutable_data(),
                        out.attempts.mutable_data(),
-                       out.iterations.mutable_data()};
+                       out.iterations.mutable_data(),
+                       out.move.mutable_data()};
   const std::optional<ProgressCallable> no_callable;
   const Progress interruptible = make_progress(no_callable);
   bool* success = out.success.mutable_data();
   const double* in = targets.data();
   {
     const py::gil_scoped_release release;
-    self.solve_batch(in, static_cast<std::size_t>(n), view, thread_count, interruptible);
+    self.solve_batch(in, static_cast<std::size_t>(n), request, nears ? nears->data() : nullptr,
+                     view, thread_count, interruptible);
     std::transform(view.status, view.status + n, success, [](std::uint8_t status) {
       return static_cast<Status>(status) == Status::solved;
     });
@@ -188,6 +219,8 @@ void bind_batch_result(py::module_& m) {
                    "solved.");
   cls.def_readonly("attempts", &B::attempts, "Seeds tried, (N,).");
   cls.def_readonly("iterations", &B::iterations, "Iteration steps over all attempts, (N,).");
+  cls.def_readonly("move", &B::move,
+                   "Lengths of the moves from `near`, (N,); NaN where not solved or without one.");
   cls.def_property_readonly("solved", &B::solved, "Number of targets solved.");
   cls.def(
       "statuses",
@@ -212,14 +245,14 @@ void bind_batch_result(py::module_& m) {
   cls.def(py::pickle(
       [](const B& self) {
         return py::make_tuple(self.q, self.success, self.status, self.position_error,
-                              self.rotation_error, self.attempts, self.iterations);
+                              self.rotation_error, self.attempts, self.iterations, self.move);
       },
       [](const py::tuple& state) {
         B self{
             state[0].cast<py::array_t<double>>(),       state[1].cast<py::array_t<bool>>(),
             state[2].cast<py::array_t<std::uint8_t>>(), state[3].cast<py::array_t<double>>(),
             state[4].cast<py::array_t<double>>(),       state[5].cast<py::array_t<std::int32_t>>(),
-            state[6].cast<py::array_t<std::int32_t>>()};
+            state[6].cast<py::array_t<std::int32_t>>(), state[7].cast<py::array_t<double>>()};
         return self;
       }));
 }
@@ -286,7 +319,12 @@ Raises:
         not finite.)");
   bind_requests(m, cls);
   bind_path(m, cls);
-  cls.def("solve_batch", &solve_batch, py::arg("poses"), py::arg("threads") = 0,
+  const SolveRequest wishes;
+  cls.def("solve_batch", &solve_batch, py::arg("poses"), py::arg("threads") = 0, py::kw_only(),
+          py::arg("near") = py::none(), py::arg("weights") = py::none(),
+          py::arg("norm") = enum_name(wishes.norm), py::arg("seeds") = py::none(),
+          py::arg("database_seeds") = wishes.database_seeds, py::arg("filter") = py::none(),
+          py::arg("deadline") = py::none(),
           R"(Solves many targets with the GIL released; row i belongs to target i.
 
 A row has the same bits whatever the number of threads and whatever else is in the batch. Its
@@ -297,9 +335,13 @@ same tolerances.
 Args:
     poses: T_base_tip, (N, 4, 4) [m]. Doubles in C order are read in place.
     threads: 0: one per core.
+    near: configuration to stay near, (dof,), or one for each target, (N, dof) [rad or m].
+    filter: called with candidates (n, dof), first the answers of up to 256 targets at once;
+        returns n truth values. Where it refuses, the search for that target goes on.
+    weights, norm, seeds, database_seeds, deadline: as in solve, for each target by itself.
 
 Raises:
-    InvalidArgumentError: wrong shape or dtype, or a bad pose; the first is named, and none is
+    InvalidArgumentError: wrong shape or dtype, a bad wish, or a bad pose; the first is named, and none is
         solved.)");
   cls.def("__repr__", [](const Solver& self) {
     return "Solver(" + py::cast<std::string>(py::repr(py::cast(self.robot()))) + ", " +

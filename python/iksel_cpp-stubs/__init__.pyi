@@ -1163,6 +1163,11 @@ class BatchResult:
         Iteration steps over all attempts, (N,).
         """
     @property
+    def move(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Lengths of the moves from `near`, (N,); NaN where not solved or without one.
+        """
+    @property
     def position_error(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         Distances to the targets [m], (N,); NaN where not solved.
@@ -1300,7 +1305,7 @@ class Solver:
         Raises:
             InvalidArgumentError: as solve.
         """
-    def solve_batch(self, poses: numpy.typing.ArrayLike, threads: int = 0) -> BatchResult:
+    def solve_batch(self, poses: numpy.typing.ArrayLike, threads: int = 0, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None) -> BatchResult:
         """
         Solves many targets with the GIL released; row i belongs to target i.
 
@@ -1312,9 +1317,13 @@ class Solver:
         Args:
             poses: T_base_tip, (N, 4, 4) [m]. Doubles in C order are read in place.
             threads: 0: one per core.
+            near: configuration to stay near, (dof,), or one for each target, (N, dof) [rad or m].
+            filter: called with candidates (n, dof), first the answers of up to 256 targets at once;
+                returns n truth values. Where it refuses, the search for that target goes on.
+            weights, norm, seeds, database_seeds, deadline: as in solve, for each target by itself.
 
         Raises:
-            InvalidArgumentError: wrong shape or dtype, or a bad pose; the first is named, and none is
+            InvalidArgumentError: wrong shape or dtype, a bad wish, or a bad pose; the first is named, and none is
                 solved.
         """
     def solve_path(self, poses: numpy.typing.ArrayLike, start: numpy.typing.ArrayLike | None = None, *, dt: float = 0.0, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, candidates: int = 64) -> PathResult:

@@ -119,6 +119,80 @@ TEST(Path, FirstWaypointWithoutContinuationIsNamed) {
   EXPECT_EQ(fast.broken, 1);
 }
 
+TEST(Path, WhatItGivesBeforeABreakIsMeasuredToo) {
+  for (const char* name : {"ur3", "panda"}) {
+    const Solver solver = make_solver(name);
+    const auto& robot = solver.robot();
+    const Eigen::MatrixXd q = robot.random_configurations(20, iksel_test::seed());
+    int broken = 0;
+    for (int i = 0; i < 10; ++i) {
+      PathOptions options;
+      options.start = q.row(i).transpose();
+      options.dt = 0.05;
+      const auto poses = line(robot.fk(q.row(i)), {0.2, 0.3, 0.6}, 40);
+      const PathResult path = solver.solve_path(poses, options);
+      broken += !path.success();
+      ASSERT_EQ(path.q.size(), path.success() ? poses.size() : std::size_t(path.broken));
+      for (std::size_t w = 0; w < path.q.size(); ++w) {
+        const auto error = iksel::pose_error(poses[w], robot.fk(path.q[w], iksel::Kinematics::kdl));
+        EXPECT_LE(error.head<3>().norm(), 1.0001e-6);
+        EXPECT_LE(error.tail<3>().norm(), 1.0001e-6);
+        EXPECT_TRUE(robot.within_limits(path.q[w]));
+      }
+    }
+    EXPECT_GT(broken, 0);
+  }
+}
+
+TEST(Path, FilterHoldsOnTheWholeWay) {
+  const Solver solver = make_solver("panda");
+  const auto& robot = solver.robot();
+  PathOptions options;
+  options.start = (robot.lower() + robot.upper()) / 2;
+  options.filter = iksel::filter_each(7, [](const JointVector& q) { return q[2] <= 0.01; });
+  const auto poses = line(robot.fk(*options.start), {0.0, 0.1, -0.05}, 20);
+  const PathResult path = solver.solve_path(poses, options);
+  expect_path(solver, poses, options, path);
+  for (const JointVector& q : path.q) EXPECT_LE(q[2], 0.01);
+  options.filter = iksel::filter_each(7, [](const JointVector&) { return false; });
+  const PathResult none = solver.solve_path(poses, options);
+  EXPECT_EQ(none.status, Status::rejected);
+  EXPECT_EQ(none.broken, 0);
+  EXPECT_TRUE(none.q.empty());
+}
+
+TEST(Path, BadInputIsNamed) {
+  const Solver solver = make_solver("ur3");
+  std::vector<Pose> poses(3, solver.robot().fk(JointVector::Constant(6, 0.5)));
+  const auto expect_error = [&](const PathOptions& options, const std::string& what) {
+    try {
+      (void)solver.solve_path(poses, options);
+      FAIL() << what;
+    } catch (const iksel::InvalidArgumentError& error) {
+      EXPECT_NE(std::string(error.what()).find(what), std::string::npos) << error.what();
+    }
+  };
+  PathOptions options;
+  options.start = JointVector::Zero(5);
+  expect_error(options, "start: expected 6 joint values, got 5");
+  options = {};
+  for (const double dt : {-1.0, double(NAN), double(INFINITY)}) {
+    options.dt = dt;
+    expect_error(options, "dt");
+  }
+  options = {};
+  options.weights = JointVector::Constant(6, NAN);
+  expect_error(options, "weights");
+  options = {};
+  options.candidates = 0;
+  expect_error(options, "candidates: 0");
+  options = {};
+  poses[1].linear() *= 2;
+  expect_error(options, "poses[1]");
+  poses.clear();
+  expect_error(options, "poses: there are none");
+}
+
 TEST(Path, BeginsAtTheTurnFromWhichItCanEnd) {
   // The last joint winds up by one and a half turns: of the copies that the first waypoint has,
   // only those low enough have room.
@@ -160,6 +234,43 @@ TEST(Track, NeverFasterThanTheLimits) {
     EXPECT_GT(arrived, 0);
     EXPECT_GT(late, 0);
   }
+}
+
+TEST(Track, StaysWhereThereIsNoContinuation) {
+  const Solver solver = make_solver("ur3");
+  const JointVector start = (JointVector(6) << 0.3, -1.2, 1.4, -0.6, 1.2, 0.2).finished();
+  iksel::Tracker tracker(solver, start);
+  Pose far = solver.robot().fk(start);
+  far.translation().x() += 5;
+  const Result result = tracker.track(far, 0.01);
+  EXPECT_FALSE(result.success());
+  EXPECT_NE(result.status, Status::too_fast);
+  EXPECT_EQ(tracker.q(), start);
+}
+
+TEST(Track, BadInputIsNamed) {
+  const Solver solver = make_solver("ur3");
+  const JointVector start = JointVector::Constant(6, 0.5);
+  const auto expect_error = [](const auto& call, const std::string& what) {
+    try {
+      call();
+      FAIL() << what;
+    } catch (const iksel::InvalidArgumentError& error) {
+      EXPECT_NE(std::string(error.what()).find(what), std::string::npos) << error.what();
+    }
+  };
+  expect_error([&] { iksel::Tracker(solver, JointVector::Zero(7)); }, "start");
+  expect_error([&] { iksel::Tracker(solver, JointVector::Constant(6, NAN)); }, "start");
+  iksel::Tracker tracker(solver, start);
+  const Pose pose = solver.robot().fk(start);
+  for (const double dt : {0.0, -0.1, double(NAN)}) {
+    expect_error([&] { (void)tracker.track(pose, dt); }, "dt");
+  }
+  Pose bent = pose;
+  bent.linear() *= 2;
+  expect_error([&] { (void)tracker.track(bent, 0.01); }, "pose");
+  EXPECT_EQ(tracker.q(), start);
+  EXPECT_TRUE(tracker.track(pose, 0.01).success());
 }
 
 TEST(Track, FollowsAJointPathAtEveryStep) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iksel/iksel.hpp>
 #include <iostream>
+#include <stdexcept>
 
 #include "robots.hpp"
 
@@ -245,10 +246,10 @@ TEST(Near, RedundantArmHasSlidToALocalMinimum) {
 }
 
 TEST(Filter, FindsWheneverSolveAllHasOneThatPasses) {
-  for (const char* name : {"ur3", "cvrb1213", "panda"}) {
+  for (const char* name : {"ur3", "ur10e", "cvr038", "cvrb1213", "panda", "irb14050"}) {
     const Solver solver(iksel_test::load(robot_case(name)));
     const Robot& robot = solver.robot();
-    const int n = iksel_test::cases(300);
+    const int n = iksel_test::cases(300) / 2;
     const Eigen::MatrixXd q = robot.random_configurations(n, iksel_test::seed());
     int passed = 0;
     int rejected = 0;
@@ -277,6 +278,41 @@ TEST(Filter, FindsWheneverSolveAllHasOneThatPasses) {
     EXPECT_GT(passed, 0);
     if (std::string(name) == "cvrb1213") EXPECT_GT(rejected, 0);
   }
+}
+
+TEST(Filter, NearestIsNearestOfAllThatPass) {
+  // The filter lets through what lies on one side of `near` in one joint, so that often the nearest
+  // that passes is a whole turn away from the nearest.
+  const Solver solver(iksel_test::load(robot_case("ur3")));
+  const Robot& robot = solver.robot();
+  const int n = iksel_test::cases(300);
+  const Eigen::MatrixXd q = robot.random_configurations(n, iksel_test::seed());
+  const iksel::Matrix noise = robot.random_configurations(n, iksel_test::seed() + 1);
+  int turned = 0;
+  int farther = 0;
+  for (int i = 0; i < n; ++i) {
+    const JointVector near = noisy(q.row(i).transpose(), noise, i, 0.1);
+    const int joint = i % 6;
+    const auto passes = [&](const JointVector& at) { return at[joint] <= near[joint] - 1; };
+    SolveRequest request;
+    request.near = near;
+    request.filter = iksel::filter_each(robot.dof(), passes);
+    const Pose target = robot.fk(q.row(i));
+    iksel::AllOptions options;
+    options.whole_turns = true;
+    options.max = 100'000;
+    const auto all = solver.solve_all(target, options, request);
+    const Result result = solver.solve(target, request);
+    ASSERT_GE(result.success(), all.success()) << "pose " << i;
+    if (!result.success()) continue;
+    expect_solution(solver, target, result.q);
+    EXPECT_TRUE(passes(result.q));
+    if (!all.success()) continue;
+    farther += result.move > all.all.front().move + 2e-3;
+    turned += result.move > 4;
+  }
+  EXPECT_LE(farther, n / 100) << "seed " << iksel_test::seed();
+  EXPECT_GT(turned, 0);
 }
 
 TEST(Seeds, AreRankedAndComeFirst) {
@@ -308,7 +344,7 @@ TEST(Deadline, EndsTheSearch) {
   const Solver solver(iksel_test::load(robot_case("ur3")));
   const Pose target = solver.robot().fk(JointVector::Constant(6, 0.5));
   SolveRequest request;
-  request.deadline = 0;
+  request.deadline = 1e-9;
   const Result result = solver.solve(target, request);
   EXPECT_EQ(result.status, Status::out_of_time);
   EXPECT_EQ(result.attempts, 0);
@@ -337,6 +373,151 @@ TEST(Requests, SameInputSameBits) {
   }
 }
 
+TEST(Requests, WithoutWishesAreThePlainSolve) {
+  const Solver solver(iksel_test::load(robot_case("panda")));
+  const Eigen::MatrixXd q = solver.robot().random_configurations(50, iksel_test::seed());
+  SolveRequest request;
+  request.weights = JointVector::Constant(7, 2.0);
+  request.norm = iksel::MoveNorm::max;
+  for (int i = 0; i < 50; ++i) {
+    const Pose target = solver.robot().fk(q.row(i));
+    EXPECT_EQ(solver.solve(target, request).q, solver.solve(target).q);
+  }
+}
+
+/// Targets at random configurations, and a noisy one near each.
+struct Batch {
+  Batch(const Robot& robot, int n) {
+    const Eigen::MatrixXd q = robot.random_configurations(n, iksel_test::seed());
+    const iksel::Matrix noise = robot.random_configurations(n, iksel_test::seed() + 1);
+    for (int i = 0; i < n; ++i) {
+      targets.push_back(robot.fk(q.row(i)));
+      near.push_back(noisy(q.row(i).transpose(), noise, i, 0.2));
+    }
+  }
+  std::vector<Pose> targets;
+  std::vector<JointVector> near;
+};
+
+TEST(RequestBatch, IsTheLoopOnAnyNumberOfThreads) {
+  for (const char* name : {"ur3", "panda"}) {
+    const Solver solver(iksel_test::load(robot_case(name)));
+    const Batch batch(solver.robot(), iksel_test::cases(300) / 5);
+    for (const int threads : {1, 2, 8}) {
+      const auto rows = solver.solve_batch(batch.targets, SolveRequest{}, batch.near, threads);
+      ASSERT_EQ(rows.size(), batch.targets.size());
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        SolveRequest request;
+        request.near = batch.near[i];
+        const Result one = solver.solve(batch.targets[i], request);
+        ASSERT_EQ(rows[i].q, one.q) << name << " row " << i << ", " << threads << " threads";
+        EXPECT_EQ(rows[i].move, one.move);
+        EXPECT_EQ(rows[i].attempts, one.attempts);
+      }
+    }
+  }
+}
+
+TEST(RequestBatch, FilterIsAskedAboutManyAndFindsWhatSolveFinds) {
+  for (const char* name : {"ur3", "cvrb1213", "panda"}) {
+    const Solver solver(iksel_test::load(robot_case(name)));
+    const Robot& robot = solver.robot();
+    const Batch batch(robot, iksel_test::cases(300));
+    std::size_t most = 0;
+    SolveRequest request;
+    request.filter = [&](const double* q, std::size_t count, bool* keep) {
+      most = std::max(most, count);
+      for (std::size_t i = 0; i < count; ++i) keep[i] = q[i * robot.dof() + 1] <= 0;
+    };
+    for (const bool with_near : {false, true}) {
+      const auto near = with_near ? batch.near : std::vector<JointVector>();
+      most = 0;
+      const auto rows = solver.solve_batch(batch.targets, request, near, 1);
+      EXPECT_EQ(most, std::min<std::size_t>(256, rows.size()));
+      for (const int threads : {2, 8}) {
+        const auto again = solver.solve_batch(batch.targets, request, near, threads);
+        for (std::size_t i = 0; i < rows.size(); ++i) ASSERT_EQ(rows[i].q, again[i].q);
+      }
+      int passed = 0;
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        SolveRequest single = request;
+        if (with_near) single.near = batch.near[i];
+        const Result one = solver.solve(batch.targets[i], single);
+        ASSERT_EQ(rows[i].status, one.status) << name << " row " << i;
+        if (!one.success()) continue;
+        ++passed;
+        expect_solution(solver, batch.targets[i], rows[i].q);
+        EXPECT_LE(rows[i].q[1], 0);
+        // Of a redundant arm the nearest are local minima, of which there are many.
+        if (with_near && robot.dof() == 6) EXPECT_NEAR(rows[i].move, one.move, 2e-3) << i;
+      }
+      EXPECT_GT(passed, 0);
+    }
+  }
+}
+
+TEST(RequestBatch, ExceptionsOfAFilterReachTheCaller) {
+  const Solver solver(iksel_test::load(robot_case("ur3")));
+  const Batch batch(solver.robot(), 600);
+  SolveRequest request;
+  request.filter = [](const double* /*q*/, std::size_t /*count*/, bool* /*keep*/) {
+    throw std::domain_error("no map");
+  };
+  for (const int threads : {1, 4}) {
+    EXPECT_THROW((void)solver.solve_batch(batch.targets, request, {}, threads), std::domain_error);
+  }
+  EXPECT_THROW((void)solver.solve(batch.targets[0], request), std::domain_error);
+  EXPECT_THROW((void)solver.solve_all(batch.targets[0], {}, request), std::domain_error);
+  // The solver is as good as before.
+  EXPECT_TRUE(solver.solve(batch.targets[0]).success());
+}
+
+TEST(RequestBatch, BadOnesAreNamed) {
+  const Solver solver(iksel_test::load(robot_case("ur3")));
+  Batch batch(solver.robot(), 5);
+  const auto expect_error = [&](const std::string& what) {
+    try {
+      (void)solver.solve_batch(batch.targets, SolveRequest{}, batch.near);
+      FAIL() << what;
+    } catch (const iksel::InvalidArgumentError& error) {
+      EXPECT_NE(std::string(error.what()).find(what), std::string::npos) << error.what();
+    }
+  };
+  batch.near[3][2] = NAN;
+  expect_error("near[3]");
+  batch.near.pop_back();
+  expect_error("near: expected none, or one for each of the 5 poses, got 4");
+  batch.near.clear();
+  batch.targets[2].linear() *= 2;
+  expect_error("poses[2]");
+  SolveRequest request;
+  request.weights = JointVector::Zero(6);
+  EXPECT_THROW((void)solver.solve_batch(batch.targets, request), iksel::InvalidArgumentError);
+}
+
+TEST(Requests, BadOptionsOfSolveAllAreNamed) {
+  const Solver solver(iksel_test::load(robot_case("ur3")));
+  const auto expect_error = [&](const iksel::AllOptions& options, const std::string& what) {
+    try {
+      (void)solver.solve_all(Pose::Identity(), options);
+      FAIL() << what;
+    } catch (const iksel::InvalidArgumentError& error) {
+      EXPECT_NE(std::string(error.what()).find(what), std::string::npos) << error.what();
+    }
+  };
+  iksel::AllOptions options;
+  options.max = 0;
+  expect_error(options, "max");
+  options = {};
+  for (const double distance : {0.0, -1.0, 1e9, double(NAN)}) {
+    options.min_distance = distance;
+    expect_error(options, "min_distance");
+  }
+  options = {};
+  options.order = static_cast<iksel::SolutionOrder>(9);
+  expect_error(options, "order: not a value of SolutionOrder (move, limit_distance");
+}
+
 TEST(Requests, BadOnesAreNamed) {
   const Solver solver(iksel_test::load(robot_case("ur3")));
   const Pose target = Pose::Identity();
@@ -360,8 +541,21 @@ TEST(Requests, BadOnesAreNamed) {
   request.seeds = {JointVector::Zero(6), JointVector::Constant(6, NAN)};
   expect_error(request, "seeds[1]");
   request = {};
-  request.deadline = -1;
-  expect_error(request, "deadline");
+  request.near = JointVector::Constant(6, NAN);
+  expect_error(request, "near");
+  request = {};
+  request.weights = JointVector::Constant(6, NAN);
+  expect_error(request, "weights");
+  request.weights = JointVector::Ones(7);
+  expect_error(request, "weights");
+  request = {};
+  request.norm = static_cast<iksel::MoveNorm>(7);
+  expect_error(request, "norm: not a value of MoveNorm (two, max)");
+  request = {};
+  for (const double deadline : {0.0, -1.0, double(NAN)}) {
+    request.deadline = deadline;
+    expect_error(request, "deadline");
+  }
 }
 
 }  // namespace

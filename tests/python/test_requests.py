@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+import math
+import pickle
+
 import numpy as np
 import pytest
 
@@ -89,9 +92,20 @@ def test_filter_that_refuses_all(made) -> None:
 def test_bad_filters_are_named(made) -> None:
     solver = made.solver("ur3")
     target = solver.robot.fk(np.full(6, 0.7))
-    for answer in (0.5, [True] * 99, "no"):
-        with pytest.raises(iksel.InvalidArgumentError, match="filter"):
+    for answer, got in [
+        (0.5, r"shape \(\) of dtype float64"),
+        ([True] * 99, r"shape \(99,\) of dtype bool"),
+        ([[True]], r"shape \(1, 1\)"),
+        ([1, 0], "dtype int64"),
+        ("no", "dtype <U2"),
+        (None, "dtype object"),
+    ]:
+        with pytest.raises(
+            iksel.InvalidArgumentError, match=f"filter: expected to get back .*{got}"
+        ):
             solver.solve(target, filter=lambda q, answer=answer: answer)
+    with pytest.raises(TypeError, match="filter"):
+        solver.solve(target, filter=3)
 
     def broken(q):
         raise ZeroDivisionError
@@ -114,25 +128,112 @@ def test_seeds_alone(made) -> None:
 def test_deadline(made) -> None:
     solver = made.solver("ur3")
     target = solver.robot.fk(np.full(6, 0.7))
-    assert solver.solve(target, deadline=0).status is iksel.Status.out_of_time
+    assert solver.solve(target, deadline=1e-9).status is iksel.Status.out_of_time
     assert solver.solve(target, deadline=10).success
 
 
 @pytest.mark.parametrize(
     ("wish", "named"),
     [
-        ({"near": np.zeros(5)}, "near"),
-        ({"near": np.full(6, np.nan)}, "near"),
-        ({"weights": np.full(6, -1.0)}, r"weights\[0\]"),
+        ({"near": np.zeros(5)}, r"near: expected a \(6,\) array, got shape \(5,\)"),
+        ({"near": np.full(6, np.nan)}, "near: expected finite numbers.* joint 0"),
+        ({"near": "here"}, "near: expected (an array of )?real numbers"),
+        ({"weights": np.full(6, -1.0)}, r"weights\[0\]: -1.*negative"),
+        ({"weights": np.full(6, np.nan)}, "weights: expected finite numbers"),
+        ({"weights": np.zeros(6)}, "weights: all are 0"),
         ({"norm": "one"}, "norm: expected one of two, max"),
-        ({"seeds": np.zeros(6)}, "seeds"),
-        ({"deadline": -1}, "deadline"),
+        ({"seeds": np.zeros(6)}, r"seeds: expected an \(N, 6\) array"),
+        ({"seeds": np.full((2, 6), np.inf)}, r"seeds\[0\]: expected finite"),
+        ({"database_seeds": 1}, "database_seeds: expected True or False"),
+        ({"deadline": 0}, "deadline: 0.* s is not above 0"),
+        ({"deadline": -1}, "deadline: -1.* s is not above 0"),
+        ({"deadline": math.nan}, "deadline"),
+        ({"deadline": "soon"}, "deadline: expected a number, got 'soon'"),
     ],
 )
 def test_bad_wishes_are_named(made, wish, named) -> None:
     solver = made.solver("ur3")
+    for call in (solver.solve, solver.solve_all):
+        with pytest.raises(iksel.InvalidArgumentError, match=named):
+            call(np.eye(4), **wish)
+    if "near" not in wish:
+        with pytest.raises(iksel.InvalidArgumentError, match=named):
+            solver.solve_batch(np.eye(4)[None], **wish)
+
+
+@pytest.mark.parametrize(
+    ("wish", "named"),
+    [
+        ({"order": "best"}, "order: expected one of move, limit_distance, manip"),
+        ({"max": 0}, "max: 0 is less than 1"),
+        ({"max": 1.5}, "max: expected an int"),
+        ({"min_distance": 0}, "min_distance"),
+        ({"min_distance": math.nan}, "min_distance"),
+        ({"whole_turns": "no"}, "whole_turns: expected True or False"),
+    ],
+)
+def test_bad_options_of_solve_all_are_named(made, wish, named) -> None:
     with pytest.raises(iksel.InvalidArgumentError, match=named):
-        solver.solve(np.eye(4), **wish)
+        made.solver("ur3").solve_all(np.eye(4), **wish)
+
+
+@pytest.mark.parametrize("name", ["ur3", "panda"])
+@pytest.mark.parametrize("threads", [1, 2, 8])
+def test_batch_near_is_the_loop(made, cases, name, threads) -> None:
+    solver = made.solver(name)
+    _, near, targets = noisy_targets(solver.robot, min(cases, 60), 0.3)
+    rows = solver.solve_batch(targets, threads, near=near, norm="max")
+    for row, here, target in zip(rows, near, targets, strict=True):
+        one = solver.solve(target, near=here, norm="max")
+        np.testing.assert_array_equal(row.q, one.q)
+        assert row.move == one.move
+    same = solver.solve_batch(targets, threads, near=near[0])
+    one = solver.solve(targets[-1], near=near[0])
+    np.testing.assert_array_equal(same.q[-1], one.q)
+    assert rows.move.shape == (len(targets),)
+    again = pickle.loads(pickle.dumps(rows))
+    np.testing.assert_array_equal(again.move, rows.move)
+    assert np.isnan(solver.solve_batch(targets).move).all()
+
+
+def test_batch_asks_a_filter_about_many(made, cases) -> None:
+    solver = made.solver("ur3")
+    _, _, targets = noisy_targets(solver.robot, cases, 0)
+    asked = []
+
+    def low_shoulder(q):
+        asked.append(len(q))
+        return q[:, 1] <= 0
+
+    rows = solver.solve_batch(targets, 2, filter=low_shoulder)
+    assert asked[0] == min(cases, 256)
+    assert (rows.q[rows.success, 1] <= 0).all()
+    assert rows.solved > cases // 2
+    for row, target in zip(rows, targets, strict=True):
+        assert row.status is solver.solve(target, filter=low_shoulder).status
+
+
+def test_bad_wishes_of_a_batch_are_named(made) -> None:
+    solver = made.solver("ur3")
+    targets = solver.robot.fk(np.full((3, 6), 0.5))
+    for near in (np.zeros((2, 6)), np.zeros((3, 5)), np.zeros(5)):
+        with pytest.raises(iksel.InvalidArgumentError, match=r"near: .*\(6,\)"):
+            solver.solve_batch(targets, near=near)
+    near = np.zeros((3, 6))
+    near[1, 4] = np.nan
+    with pytest.raises(iksel.InvalidArgumentError, match=r"near\[1\]"):
+        solver.solve_batch(targets, near=near)
+    with pytest.raises(
+        iksel.InvalidArgumentError, match="filter: expected to get back"
+    ):
+        solver.solve_batch(targets, filter=lambda q: True)
+
+    def broken(q):
+        raise ZeroDivisionError
+
+    for threads in (1, 4):
+        with pytest.raises(ZeroDivisionError):
+            solver.solve_batch(np.repeat(targets, 300, 0), threads, filter=broken)
 
 
 def test_path_and_tracker(made) -> None:
@@ -154,10 +255,43 @@ def test_path_and_tracker(made) -> None:
         assert tracker.track(pose, 0.02).success
     np.testing.assert_allclose(robot.fk(tracker.q), line[-1], atol=1e-5)
 
+    with pytest.raises(iksel.InvalidArgumentError, match="pose"):
+        tracker.track(np.eye(3), 0.02)
+    for dt in (0, -0.1, math.nan):
+        with pytest.raises(iksel.InvalidArgumentError, match="dt: .*not above 0"):
+            tracker.track(line[0], dt)
+    for bad in (np.zeros(6), np.full(7, np.nan)):
+        with pytest.raises(iksel.InvalidArgumentError, match="start: expected"):
+            solver.tracker(bad)
+
     line[30:, 0, 3] += 5
     broken = solver.solve_path(line, start, dt=0.02)
     assert (broken.broken, len(broken.q)) == (30, 30)
     assert broken.status is iksel.Status.out_of_reach
+
+
+@pytest.mark.parametrize(
+    ("wish", "named"),
+    [
+        ({"poses": np.zeros((0, 4, 4))}, "poses: there are none"),
+        ({"poses": np.eye(4)}, r"poses: expected an \(N, 4, 4\) array"),
+        ({"poses": np.ones((2, 4, 4))}, r"poses\[0\]"),
+        ({"start": np.zeros(5)}, r"start: expected a \(6,\) array"),
+        ({"start": np.full(6, np.nan)}, "start: expected finite numbers"),
+        ({"dt": -1}, "dt: -1"),
+        ({"dt": math.nan}, "dt: nan"),
+        ({"dt": "fast"}, "dt: expected a number"),
+        ({"weights": np.full(6, np.nan)}, "weights: expected finite numbers"),
+        ({"norm": "one"}, "norm: expected one of two, max"),
+        ({"candidates": 0}, "candidates: 0"),
+        ({"filter": lambda q: q}, "filter: expected to get back"),
+    ],
+)
+def test_bad_paths_are_named(made, wish, named) -> None:
+    solver = made.solver("ur3")
+    poses = solver.robot.fk(np.full((2, 6), 0.5))
+    with pytest.raises(iksel.InvalidArgumentError, match=named):
+        solver.solve_path(**{"poses": poses, **wish})
 
 
 @pytest.mark.parametrize("name", ["ur3", "ur10e"])

@@ -50,8 +50,8 @@ struct IKSEL_EXPORT SolveRequest {
 
   /// Refuses candidates; the search goes on within its bounds. Empty: takes all.
   Filter filter;
-  /// Wall-clock time after which no new stage of the search begins [s]. What was found by then is
-  /// judged. The one option under which the same input may give different answers.
+  /// Wall-clock time after which no new stage of the search begins [s], above 0. What was found by
+  /// then is judged. The one option under which the same input may give different answers.
   double deadline = std::numeric_limits<double>::infinity();
 
   /// What the answer is to be good at besides; comes before `near`, which then only measures the
@@ -61,6 +61,8 @@ struct IKSEL_EXPORT SolveRequest {
   /// What of the pose has to be reached; empty: what the solver's options say.
   std::optional<Task> task;
 
+  /// Whether anything is asked for; weights and norm alone ask for nothing.
+  [[nodiscard]] bool has_wishes() const;
   /// Throws InvalidArgumentError naming the first field that does not fit a chain of `dof` joints.
   void validate(int dof) const;
 };

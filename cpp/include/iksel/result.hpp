@@ -68,6 +68,7 @@ struct BatchView {
   double* rotation_error;  ///< (n) [rad]; NaN where not solved
   std::int32_t* attempts;
   std::int32_t* iterations;
+  double* move = nullptr;  ///< (n); NaN where not solved or without a `near`; null: not wanted
 };
 
 }  // namespace iksel

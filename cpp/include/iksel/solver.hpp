@@ -116,6 +116,19 @@ class IKSEL_EXPORT Solver {
   void solve_batch(const double* T_base_tip, std::size_t count, const BatchView& out,
                    int threads = 0, const Progress& progress = {}) const;
 
+  /// As solve_batch, with wishes, which hold for each target by itself. `near` is empty, or has one
+  /// configuration for each target, which counts instead of the request's. A filter is asked about
+  /// the first answers of up to 256 targets at once; only where it refuses, the search for that
+  /// target goes on. Calls to it come from any thread, one at a time.
+  [[nodiscard]] std::vector<Result> solve_batch(const std::vector<Pose>& T_base_tip,
+                                                const SolveRequest& request,
+                                                const std::vector<JointVector>& near = {},
+                                                int threads = 0) const;
+  /// The same over arrays; `near` is null, or has (count, dof) values row by row.
+  void solve_batch(const double* T_base_tip, std::size_t count, const SolveRequest& request,
+                   const double* near, const BatchView& out, int threads = 0,
+                   const Progress& progress = {}) const;
+
  private:
   friend class Tracker;
   struct Impl;

@@ -56,27 +56,31 @@ void Solver::Impl::explore(Exploration& search, Workspace& workspace) const {
   const Deadline deadline(request.deadline);
   const std::optional<JointVector> turns_near = cheapest_turns(model, request.objective);
   const auto accept = [&](JointVector& q) {
+    model.wrap_into_limits(q.data());
     double position = 0;
     double rotation = 0;
     measure(search.task, search.T_base_tip, q, position, rotation);
     if (!(position <= options.position_tolerance && rotation <= options.rotation_tolerance)) {
       return Verdict::refine;
     }
-    model.wrap_into_limits(q.data());
     if (!model.within_limits(q.data())) {
       search.status = Status::outside_limits;
       return Verdict::next;
     }
-    double cost = 0;
-    if (request.near && !turns_near) {
-      take_turns_near(*request.near, search.task, search.T_base_tip, q);
-      // What a filter has been asked about stays as it is.
-      if (!request.filter) cost = move.length(q - *request.near);
-    } else if (turns_near) {
+    const JointVector measured_q = q;
+    if (turns_near) {
       take_turns_near(*turns_near, search.task, search.T_base_tip, q);
+    } else if (request.near) {
+      take_turns_near(*request.near, search.task, search.T_base_tip, q);
     } else if (!request.objective.is_set()) {
-      take_first_turns(model, q);
+      take_nearest_turns(model, middle_of_limits(model), 0, q);
     }
+    // Whole turns round.
+    Result measured;
+    if (q != measured_q && !finish(search.task, search.T_base_tip, q, measured)) q = measured_q;
+    // What a filter has been asked about stays as it is.
+    const double cost =
+        request.near && !turns_near && !request.filter ? move.length(q - *request.near) : 0.0;
     found.add(q, cost, search.min_distance);
     return Verdict::next;
   };

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 
 #include "error_check.hpp"
@@ -40,6 +41,15 @@ struct Layer {
       if ((at(i) - candidate).cwiseAbs().maxCoeff() < kSameCandidate) return;
     }
     q.insert(q.end(), candidate.data(), candidate.data() + dof);
+  }
+  /// Leaves only the candidates for which keep(index) is true.
+  template <typename Keep>
+  void keep_if(const Keep& keep) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < size(); ++i) {
+      if (keep(i)) std::copy_n(&q[i * dof], dof, &q[kept++ * dof]);
+    }
+    q.resize(kept * dof);
   }
 };
 
@@ -117,11 +127,7 @@ class PathSearch {
     if (!options_.filter || layer.size() == 0) return;
     const std::unique_ptr<bool[]> keep(new bool[layer.size()]());
     options_.filter(layer.q.data(), layer.size(), keep.get());
-    Layer kept{layer.dof, {}, {}, {}};
-    for (std::size_t i = 0; i < layer.size(); ++i) {
-      if (keep[i]) kept.add(layer.at(i));
-    }
-    layer = std::move(kept);
+    layer.keep_if([&](std::size_t i) { return keep[i]; });
   }
 
   /// The cheapest way to each candidate; keeps the cheapest, and those only that can be reached.
@@ -250,13 +256,20 @@ PathResult Solver::Impl::solve_path(const std::vector<Pose>& T_base_tip, const P
                             FunctionRef<bool(int)>(enough)};
     explore(exploration, workspace);
     search.add_solutions(found, before, layer);
+    layer.keep_if([&](std::size_t i) {
+      Result measured;
+      return finish(task, T_base_tip[w], layer.at(i), measured);
+    });
     const bool any = layer.size() > 0;
     search.apply_filter(layer);
     const bool kept = layer.size() > 0;
     search.connect(before, layer);
     if (layer.size() == 0) {
       result.broken = static_cast<std::ptrdiff_t>(w);
-      result.status = kept ? Status::too_fast : any ? Status::rejected : exploration.status;
+      result.status = kept                                   ? Status::too_fast
+                      : any                                  ? Status::rejected
+                      : exploration.status == Status::solved ? Status::not_converged
+                                                             : exploration.status;
       break;
     }
     layers.push_back(std::move(layer));
@@ -267,6 +280,7 @@ PathResult Solver::Impl::solve_path(const std::vector<Pose>& T_base_tip, const P
 
 PathResult Solver::solve_path(const std::vector<Pose>& T_base_tip,
                               const PathOptions& options) const {
+  if (T_base_tip.empty()) throw InvalidArgumentError("poses: there are none");
   for (std::size_t i = 0; i < T_base_tip.size(); ++i) {
     check_pose(T_base_tip[i], ("poses[" + std::to_string(i) + "]").c_str());
   }

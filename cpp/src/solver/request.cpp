@@ -18,6 +18,11 @@ Filter filter_each(int dof, std::function<bool(const JointVector&)> keep) {
   };
 }
 
+bool SolveRequest::has_wishes() const {
+  return !seeds.empty() || !database_seeds || near || filter || objective.is_set() || task ||
+         std::isfinite(deadline);
+}
+
 void SolveRequest::validate(int dof) const {
   for (std::size_t i = 0; i < seeds.size(); ++i) {
     check_joints(seeds[i], dof, ("seeds[" + std::to_string(i) + "]").c_str());
@@ -38,8 +43,8 @@ void SolveRequest::validate(int dof) const {
   }
   objective.validate(dof);
   if (task) task->validate();
-  if (!(deadline >= 0)) {
-    throw InvalidArgumentError("deadline: " + std::to_string(deadline) + " s is not 0 or more");
+  if (!(deadline > 0)) {
+    throw InvalidArgumentError("deadline: " + std::to_string(deadline) + " s is not above 0");
   }
 }
 

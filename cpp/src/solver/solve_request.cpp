@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "error_check.hpp"
+#include "math/constants.hpp"
 #include "solver/explore.hpp"
 #include "solver/objective_cost.hpp"
 #include "solver/self_motion.hpp"
@@ -114,7 +115,7 @@ class Solver::Impl::Judge {
 
   /// The best of what passed; false if nothing did.
   bool answer(JointVector& q) {
-    if (first_kept_ == found_.size()) return answer_among_turns(q);
+    if (first_kept_ == found_.size()) return answer_among_turns(kInfinity, q);
     if (!ranks_) {
       q = found_.at(first_kept_);
       return true;
@@ -128,13 +129,17 @@ class Solver::Impl::Judge {
     std::partial_sort(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(slides),
                       ranked.begin() + static_cast<std::ptrdiff_t>(count));
     q = found_.at(ranked[0].index);
-    if (redundant_) slide_best(ranked.data(), slides, q);
+    double best = ranked[0].cost;
+    if (redundant_) best = slide_best(ranked.data(), slides, q);
+    // A copy by whole turns of one that was refused may be better still.
+    if (count < found_.size()) answer_among_turns(best, q);
     return true;
   }
 
  private:
-  /// Smaller is better.
+  /// Smaller is better; 0 where nothing is.
   [[nodiscard]] double cost_of(const JointVector& q) const {
+    if (!ranks_) return 0;
     if (request_.objective.is_set()) return ObjectiveCost(model_, request_.objective).value(q);
     return move_.length(q - *request_.near);
   }
@@ -157,8 +162,13 @@ class Solver::Impl::Judge {
     while (first_kept_ < asked_ && !kept(first_kept_)) ++first_kept_;
   }
 
-  /// Slides the nearest of what passed; q is the best before, and after.
-  void slide_best(const Ranked* ranked, std::size_t count, JointVector& q) {
+  [[nodiscard]] bool is_solution(const JointVector& q) const {
+    Result measured;
+    return solver_.finish(task_, T_base_tip_, q, measured);
+  }
+
+  /// Slides the best of what passed; q is the best before, and after. Its cost.
+  double slide_best(const Ranked* ranked, std::size_t count, JointVector& q) {
     double best = ranked[0].cost;
     for (std::size_t k = 0; k < count; ++k) {
       JointVector slid = found_.at(ranked[k].index);
@@ -170,22 +180,24 @@ class Solver::Impl::Judge {
         slide_towards(model_, solver_.options, task_, T_base_tip_, move_, *request_.near, slid);
       }
       const double cost = cost_of(slid);
-      if (!(cost < best)) continue;
+      if (!(cost < best) || !is_solution(slid)) continue;
       bool keep = true;
       if (request_.filter) request_.filter(slid.data(), 1, &keep);
       if (!keep) continue;
       best = cost;
       q = slid;
     }
+    return best;
   }
 
-  /// As answer, among the copies by whole turns that were not looked at yet.
-  bool answer_among_turns(JointVector& q) {
+  /// As answer, among the copies by whole turns whose cost is less than `best`. False if there is
+  /// none, and q is what it was.
+  bool answer_among_turns(double best, JointVector& q) {
     if (!request_.filter) return false;
     constexpr std::size_t kChunk = 64;
     const auto dof = static_cast<std::size_t>(model_.dof);
     std::vector<double> copies;
-    double best = std::numeric_limits<double>::infinity();
+    bool any = false;
     const auto flush = [&] {
       std::array<bool, kChunk> keep{};
       const std::size_t count = copies.size() / dof;
@@ -193,10 +205,11 @@ class Solver::Impl::Judge {
       for (std::size_t i = 0; i < count; ++i) {
         const JointVector copy =
             Eigen::Map<const Eigen::VectorXd>(copies.data() + i * dof, model_.dof);
-        const double cost = ranks_ ? cost_of(copy) : 0.0;
+        const double cost = cost_of(copy);
         if (!keep[i] || !(cost < best)) continue;
         best = cost;
         q = copy;
+        any = true;
       }
       copies.clear();
     };
@@ -204,12 +217,13 @@ class Solver::Impl::Judge {
       JointVector copy = found_.at(i);
       take_first_turns(model_, copy);
       do {
+        if (!(cost_of(copy) < best) || !is_solution(copy)) continue;
         copies.insert(copies.end(), copy.data(), copy.data() + dof);
         if (copies.size() == kChunk * dof) flush();
-      } while (take_next_turns(model_, copy) && (ranks_ || std::isinf(best)));
+      } while (take_next_turns(model_, copy));
     }
     flush();
-    return std::isfinite(best);
+    return any;
   }
 
   const Impl& solver_;
@@ -265,6 +279,7 @@ Result Solver::solve(const Pose& T_base_tip, const SolveRequest& request) const 
   check_pose(T_base_tip);
   request.validate(robot().dof());
   const Impl::Lease lease(*impl_);
+  if (!request.has_wishes()) return impl_->solve(T_base_tip, nullptr, lease.get(), nullptr);
   return impl_->solve(T_base_tip, request, lease.get());
 }
 

@@ -51,6 +51,18 @@ struct Solver::Impl {
   void solve_many(std::size_t first, std::size_t last, Workspace& workspace, const Target& target,
                   const Settle& settle) const;
 
+  /// As solve_many, with wishes; `request` is changed in its `near` only, to near(i) if that is not
+  /// null.
+  template <typename Target, typename Near, typename Settle>
+  void solve_many(std::size_t first, std::size_t last, SolveRequest& request, Workspace& workspace,
+                  const Target& target, const Near& near, const Settle& settle) const;
+
+  /// Targets 0 to count - 1 with wishes by `threads` threads.
+  template <typename Target, typename Near, typename Settle, typename OnProgress>
+  void solve_batch(std::size_t count, const SolveRequest& request, int threads,
+                   const Target& target, const Near& near, const Settle& settle,
+                   const OnProgress& on_progress) const;
+
   /// The whole pipeline for one valid target with wishes.
   Result solve(const Pose& T_base_tip, const SolveRequest& request, Workspace& workspace) const;
   Solutions solve_all(const Pose& T_base_tip, const AllOptions& all, const SolveRequest& request,

@@ -31,6 +31,7 @@ examples:
   iksel info ur3
   iksel solve ur3 --pose 0.2 0.15 0.3 0 3.1416 0
   iksel solve arm.urdf --base base_link --tip tool0 --from-q 0 -1 1 0 0.5 0
+  iksel path ur3 poses.txt --start 0.3 -1.2 1.4 -0.6 1.2 0.2 --dt 0.01
   iksel build panda -o panda.iksel --samples 40000
   iksel evaluate ur3 --preset paper --targets 10000 --seed 1 --json
 """

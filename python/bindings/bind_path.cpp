@@ -10,6 +10,7 @@
 #include "bindings.hpp"
 #include "filter.hpp"
 #include "iksel/path.hpp"
+#include "progress.hpp"
 #include "py_result.hpp"
 #include "python_types.hpp"
 
@@ -56,6 +57,8 @@ PyPath solve_path(const Solver& self, const ArrayLike& poses, const std::optiona
   options.norm = from_python<MoveNorm>(norm, "norm");
   if (filter) options.filter = make_filter(*filter, dof);
   options.candidates = from_python<int>(candidates, "candidates");
+  const std::optional<ProgressCallable> no_callable;
+  options.progress = make_progress(no_callable);
   const py::gil_scoped_release release;
   return {self.solve_path(targets, options), dof};
 }

@@ -107,13 +107,15 @@ PyBatchResult solve_batch(const Solver& self, const ArrayLike& poses, const Loos
                           const std::optional<ArrayLike>& weights, const Loose<MoveNorm>& norm,
                           const std::optional<ArrayLike>& seeds, const Loose<bool>& database_seeds,
                           const std::optional<FilterCallable>& filter,
-                          const std::optional<Loose<double>>& deadline) {
+                          const std::optional<Loose<double>>& deadline,
+                          const std::optional<Loose<Task>>& task,
+                          const std::optional<ObjectiveLike>& objective) {
   const DoubleArray targets = as_poses(poses, "poses");
   const auto thread_count = from_python<int>(threads, "threads");
   const py::ssize_t n = targets.shape(0);
   const py::ssize_t dof = self.robot().dof();
   SolveRequest request = make_request(self.robot().dof(), std::nullopt, weights, norm, seeds,
-                                      database_seeds, filter, deadline);
+                                      database_seeds, filter, deadline, task, objective);
   const auto nears = as_near(near, n, self.robot().dof(), request);
   PyBatchResult out{py::array_t<double>({n, dof}), py::array_t<bool>(n),
                     py::array_t<std::uint8_t>(n),  py::array_t<double>(n),
@@ -324,7 +326,8 @@ Raises:
           py::arg("near") = py::none(), py::arg("weights") = py::none(),
           py::arg("norm") = enum_name(wishes.norm), py::arg("seeds") = py::none(),
           py::arg("database_seeds") = wishes.database_seeds, py::arg("filter") = py::none(),
-          py::arg("deadline") = py::none(),
+          py::arg("deadline") = py::none(), py::arg("task") = py::none(),
+          py::arg("objective") = py::none(),
           R"(Solves many targets with the GIL released; row i belongs to target i.
 
 A row has the same bits whatever the number of threads and whatever else is in the batch. Its
@@ -338,7 +341,8 @@ Args:
     near: configuration to stay near, (dof,), or one for each target, (N, dof) [rad or m].
     filter: called with candidates (n, dof), first the answers of up to 256 targets at once;
         returns n truth values. Where it refuses, the search for that target goes on.
-    weights, norm, seeds, database_seeds, deadline: as in solve, for each target by itself.
+    weights, norm, seeds, database_seeds, deadline, task, objective: as in solve, for each target
+        by itself.
 
 Raises:
     InvalidArgumentError: wrong shape or dtype, a bad wish, or a bad pose; the first is named, and none is

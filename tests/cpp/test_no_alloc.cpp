@@ -110,6 +110,39 @@ TEST(NoAllocation, TasksSolveWithoutTheHeap) {
   }
 }
 
+TEST(NoAllocation, NearFilteredAndTracking) {
+  for (const auto& c : iksel_test::all_robots()) {
+    const std::string name = c.name;
+    if (name != "ur3" && name != "panda" && name != "cvr038") continue;
+    const iksel::Robot robot = iksel_test::load(c);
+    const iksel::Solver solver(robot);
+    const Eigen::MatrixXd q = robot.random_configurations(100, iksel_test::seed());
+    std::vector<iksel::Pose> targets;
+    for (Eigen::Index i = 0; i < q.rows(); ++i) targets.push_back(robot.fk(q.row(i)));
+    iksel::SolveRequest near;
+    iksel::SolveRequest filtered;
+    filtered.filter =
+        iksel::filter_each(robot.dof(), [](const iksel::JointVector& at) { return at[0] > at[1]; });
+    iksel::Tracker tracker(solver, q.row(0).transpose());
+
+    allocations = 0;
+    watching = true;
+    int solved = 0;
+    for (Eigen::Index i = 0; i < q.rows(); ++i) {
+      const iksel::Pose& target = targets[static_cast<std::size_t>(i)];
+      near.near = q.row((i + 1) % q.rows()).transpose();
+      near.norm = i % 2 == 0 ? iksel::MoveNorm::two : iksel::MoveNorm::max;
+      solved += solver.solve(target).success();
+      solved += solver.solve(target, near).success();
+      solved += solver.solve(target, filtered).success();
+      (void)tracker.track(target, 0.1);
+    }
+    watching = false;
+    EXPECT_EQ(allocations.load(), 0) << name;
+    EXPECT_GT(solved, 200);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, Schemes,
                          testing::Values(iksel::Iteration::dls, iksel::Iteration::pinv,
                                          iksel::Iteration::pinv_rr, iksel::Iteration::cwln,

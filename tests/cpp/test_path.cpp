@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <iksel/iksel.hpp>
+#include <stdexcept>
 
 #include "robots.hpp"
 
@@ -159,6 +160,23 @@ TEST(Path, FilterHoldsOnTheWholeWay) {
   EXPECT_EQ(none.status, Status::rejected);
   EXPECT_EQ(none.broken, 0);
   EXPECT_TRUE(none.q.empty());
+}
+
+TEST(Path, TellsItsProgressAndStopsOnAnException) {
+  const Solver solver = make_solver("ur3");
+  const std::vector<Pose> poses(5, solver.robot().fk(JointVector::Constant(6, 0.5)));
+  PathOptions options;
+  std::vector<std::size_t> told;
+  options.progress = [&](std::size_t done, std::size_t total) {
+    EXPECT_EQ(total, 5U);
+    told.push_back(done);
+  };
+  EXPECT_TRUE(solver.solve_path(poses, options).success());
+  EXPECT_EQ(told, (std::vector<std::size_t>{1, 2, 3, 4, 5}));
+  options.progress = [](std::size_t done, std::size_t /*total*/) {
+    if (done == 3) throw std::domain_error("enough");
+  };
+  EXPECT_THROW((void)solver.solve_path(poses, options), std::domain_error);
 }
 
 TEST(Path, BadInputIsNamed) {

@@ -6,7 +6,9 @@
 #include <atomic>
 #include <iksel/iksel.hpp>
 #include <numeric>
+#include <string>
 #include <thread>
+#include <utility>
 
 #include "robots.hpp"
 
@@ -96,6 +98,41 @@ TEST(Threads, BatchInLanesAnswersEachTargetByItself) {
       const auto apart = iksel::pose_error(robot.fk(single.q), robot.fk(batch[i].q));
       EXPECT_LE(apart.head<3>().norm(), 2 * solver.options().position_tolerance + 1e-12);
       EXPECT_LE(apart.tail<3>().norm(), 2 * solver.options().rotation_tolerance + 1e-12);
+    }
+  }
+}
+
+/// With wishes too; and the filter, which here is not safe to call twice at once, is not.
+TEST(Threads, BatchWithWishesGivesTheSameBits) {
+  for (const char* name : {"ur3", "panda"}) {
+    const auto& all = iksel_test::all_robots();
+    const auto c = std::find_if(all.begin(), all.end(),
+                                [&](const auto& one) { return std::string(one.name) == name; });
+    const Robot robot = iksel_test::load(*c);
+    const Solver solver(robot);
+    const auto targets = random_targets(robot, iksel_test::cases(600));
+    std::vector<iksel::JointVector> near;
+    const Eigen::MatrixXd q = robot.random_configurations(targets.size(), iksel_test::seed() + 1);
+    for (Eigen::Index i = 0; i < q.rows(); ++i) near.emplace_back(q.row(i).transpose());
+    std::size_t asked = 0;
+    iksel::SolveRequest request;
+    for (const bool filtered : {false, true}) {
+      if (filtered) {
+        request.filter = [&](const double* values, std::size_t count, bool* keep) {
+          asked += count;
+          for (std::size_t i = 0; i < count; ++i) keep[i] = values[i * robot.dof()] > 0;
+        };
+      }
+      const std::vector<Result> expected = solver.solve_batch(targets, request, near, 1);
+      const std::size_t asked_by_one = std::exchange(asked, 0);
+      for (const int threads : {2, 8}) {
+        const std::vector<Result> batch = solver.solve_batch(targets, request, near, threads);
+        for (std::size_t i = 0; i < batch.size(); ++i) {
+          expect_same(batch[i], expected[i]);
+          if (batch[i].success()) EXPECT_EQ(batch[i].move, expected[i].move);
+        }
+        EXPECT_EQ(std::exchange(asked, 0), asked_by_one);
+      }
     }
   }
 }

@@ -28,6 +28,8 @@ struct IKSEL_EXPORT PathOptions {
   Filter filter;
   /// Candidates kept per waypoint at most.
   int candidates = 64;
+  /// Told after each waypoint; its exceptions end the search and reach the caller.
+  Progress progress;
 
   /// Throws InvalidArgumentError naming the first option that does not fit a chain of `dof` joints.
   void validate(int dof) const;

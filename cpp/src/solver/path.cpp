@@ -273,6 +273,7 @@ PathResult Solver::Impl::solve_path(const std::vector<Pose>& T_base_tip, const P
       break;
     }
     layers.push_back(std::move(layer));
+    if (path.progress) path.progress(w + 1, T_base_tip.size());
   }
   search.trace(layers, result);
   return result;

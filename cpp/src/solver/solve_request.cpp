@@ -2,7 +2,8 @@
 // solve with wishes: the nearest solution, or the first that a filter lets through.
 #include <algorithm>
 #include <array>
-#include <vector>
+#include <cmath>
+#include <limits>
 
 #include "error_check.hpp"
 #include "math/constants.hpp"
@@ -196,11 +197,11 @@ class Solver::Impl::Judge {
     if (!request_.filter) return false;
     constexpr std::size_t kChunk = 64;
     const auto dof = static_cast<std::size_t>(model_.dof);
-    std::vector<double> copies;
+    std::array<double, kChunk* static_cast<std::size_t>(kMaxDof)> copies;
+    std::size_t count = 0;
     bool any = false;
     const auto flush = [&] {
       std::array<bool, kChunk> keep{};
-      const std::size_t count = copies.size() / dof;
       if (count > 0) request_.filter(copies.data(), count, keep.data());
       for (std::size_t i = 0; i < count; ++i) {
         const JointVector copy =
@@ -211,15 +212,15 @@ class Solver::Impl::Judge {
         q = copy;
         any = true;
       }
-      copies.clear();
+      count = 0;
     };
     for (std::size_t i = 0; i < found_.size(); ++i) {
       JointVector copy = found_.at(i);
       take_first_turns(model_, copy);
       do {
         if (!(cost_of(copy) < best) || !is_solution(copy)) continue;
-        copies.insert(copies.end(), copy.data(), copy.data() + dof);
-        if (copies.size() == kChunk * dof) flush();
+        std::copy_n(copy.data(), dof, copies.data() + count * dof);
+        if (++count == kChunk) flush();
       } while (take_next_turns(model_, copy));
     }
     flush();

@@ -22,10 +22,13 @@ int run() {
   const iksel::Solver solver(robot);
   const auto here = (iksel::JointVector(7) << 0.2, -0.4, 0.1, -2.0, 0.3, 1.7, 0.5).finished();
   iksel::Pose target = robot.fk(here);
+  target.translation() += Eigen::Vector3d(-0.05, 0.1, 0.05);
 
-  // The hand may turn about its own z axis, say to drill: one joint more is free.
   iksel::SolveRequest request;
   request.near = here;
+  print("the pose", solver.solve(target, request).q);
+
+  // The hand may turn about its own z axis, say to drill: one joint more is free.
   request.task = iksel::Task::free_spin();
   print("any spin", solver.solve(target, request).q);
   // Within 2 cm to either side along the tool's x, and exact along the rest.
@@ -41,8 +44,8 @@ int run() {
       iksel::Objective::custom([](const iksel::JointVector& q) { return 1 - std::cos(q[2]); });
   std::printf("elbow in         cost %.3f\n", solver.solve(target, wish).cost);
 
-  // Too far away by some 0.3 m.
-  target.translation() *= 1.2 / target.translation().norm();
+  // Beyond what the arm reaches.
+  target.translation() *= 1.5 / target.translation().norm();
   const iksel::Diagnosis diagnosis = solver.diagnose(target);
   std::printf("no answer        %s by %.2f m\n", iksel::to_string(diagnosis.cause),
               diagnosis.beyond_reach);

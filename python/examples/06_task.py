@@ -19,6 +19,9 @@ robot = iksel.load_robot("panda")
 solver = iksel.Solver(robot)
 here = np.array([0.2, -0.4, 0.1, -2.0, 0.3, 1.7, 0.5])
 target = robot.fk(here)
+target[:3, 3] += [-0.05, 0.1, 0.05]
+
+show("the pose", solver.solve(target, near=here).q)
 
 # The hand may turn about its own z axis, say to drill: one joint more is free.
 show("any spin", solver.solve(target, near=here, task=iksel.Task.free_spin()).q)
@@ -39,7 +42,7 @@ def elbow_in(q):
 result = solver.solve(target, objective=elbow_in)
 print(f"elbow in         cost {result.cost:.3f}")
 
-# Too far away by some 0.3 m.
-target[:3, 3] *= 1.2 / np.linalg.norm(target[:3, 3])
+# Beyond what the arm reaches.
+target[:3, 3] *= 1.5 / np.linalg.norm(target[:3, 3])
 diagnosis = solver.diagnose(target)
 print(f"no answer        {diagnosis.cause.name} by {diagnosis.beyond_reach:.2f} m")

@@ -7,8 +7,8 @@ import math
 import pickle
 import re
 
-import numpy as np
 import iksel_cpp
+import numpy as np
 import pytest
 from command_line import Run, assert_bad, assert_good
 from conftest import CASES

@@ -12,11 +12,6 @@
 namespace iksel {
 namespace {
 
-/// A seed for a task that is still far off after so many steps is given up: few such come home.
-constexpr int kTaskPatience = 8;
-/// Squared error that counts as far off [mixed units].
-constexpr double kTaskFarOff2 = 1e-4;
-
 /// [position; rotation vector] error of a pose against the target.
 Vector6 error_vector(const Pose& target, const Pose& pose) {
   Vector6 e;
@@ -155,10 +150,9 @@ Outcome iterate(const IterationContext& context, JointVector& q, int& steps) {
     last_position = position;
     last_rotation = rotation;
     if (step == options.max_iterations) return outcome;
-    if (task != nullptr && options.iteration == Iteration::lm && step >= kTaskPatience &&
-        e.squaredNorm() > kTaskFarOff2) {
-      return outcome;
-    }
+    /// Squared error that counts as far off [mixed units].
+    constexpr double kStillFarOff2 = 1e-4;
+    if (step >= context.patience && e.squaredNorm() > kStillFarOff2) return outcome;
 
     if (options.iteration != Iteration::lm) clamp_error(e, position, rotation, options);
     const auto step_by = [&](const JacobianMatrix& part, const Vector6& asked, double squared) {

@@ -7,6 +7,8 @@
 // leaves something of the pose open does not say where the tip link is to be, and steps at the TCP.
 #pragma once
 
+#include <limits>
+
 #include "iksel/options.hpp"
 #include "iteration/task_space.hpp"
 #include "kinematics/chain_model.hpp"
@@ -35,6 +37,8 @@ struct IterationContext {
   Random& random;
   /// What of the target is to be reached; null: the whole pose.
   const TaskSpace* task = nullptr;
+  /// An attempt that is still far off after so many steps is given up.
+  int patience = std::numeric_limits<int>::max();
 };
 
 /// Iterates q, in place, from the seed it holds. `steps` counts the steps taken. Never throws.

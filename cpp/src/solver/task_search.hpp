@@ -65,8 +65,13 @@ class TaskSearch {
 template <typename Accept>
 bool TaskSearch::attempt(const JointVector& seed, StageClock& clock, Work& work,
                          const Accept& accept) {
-  const IterationContext context{model_,     options_, *target_, tip_target_,
-                                 kdl_.get(), random_,  task_};
+  // Few that are far off after so many steps come home; where many have failed, those few count.
+  constexpr int kTaskPatience = 8;
+  constexpr int kHastyAttempts = 32;
+  IterationContext context{model_, options_, *target_, tip_target_, kdl_.get(), random_, task_};
+  if (options_.iteration == Iteration::lm && work.attempts < kHastyAttempts) {
+    context.patience = kTaskPatience;
+  }
   JointVector q = seed;
   ++work.attempts;
   const Outcome outcome = iterate(context, q, work.iterations);

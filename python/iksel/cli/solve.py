@@ -105,9 +105,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.seed_q and (near or arguments.all):
         raise InvalidArgumentError("--seed-q: cannot be used with --near or --all")
     if arguments.objective and (arguments.all or arguments.seed_q):
-        raise InvalidArgumentError(
-            "--objective: cannot be used with --all or --seed-q"
-        )
+        raise InvalidArgumentError("--objective: cannot be used with --all or --seed-q")
     seed = arguments.seed_q and parse_joints("--seed-q", arguments.seed_q, joints)
     options = solver_options(arguments)
     database = arguments.database and Database.load(arguments.database)

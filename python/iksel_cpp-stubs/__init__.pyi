@@ -1305,7 +1305,7 @@ class Solver:
         Raises:
             InvalidArgumentError: as solve.
         """
-    def solve_batch(self, poses: numpy.typing.ArrayLike, threads: int = 0, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None) -> BatchResult:
+    def solve_batch(self, poses: numpy.typing.ArrayLike, threads: int = 0, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None) -> BatchResult:
         """
         Solves many targets with the GIL released; row i belongs to target i.
 
@@ -1320,7 +1320,8 @@ class Solver:
             near: configuration to stay near, (dof,), or one for each target, (N, dof) [rad or m].
             filter: called with candidates (n, dof), first the answers of up to 256 targets at once;
                 returns n truth values. Where it refuses, the search for that target goes on.
-            weights, norm, seeds, database_seeds, deadline: as in solve, for each target by itself.
+            weights, norm, seeds, database_seeds, deadline, task, objective: as in solve, for each target
+                by itself.
 
         Raises:
             InvalidArgumentError: wrong shape or dtype, a bad wish, or a bad pose; the first is named, and none is

@@ -31,9 +31,9 @@ struct Result {
   Status status = Status::not_converged;
   /// Joint values [rad or m]; empty unless solved, so that no other q can be taken for an answer.
   JointVector q;
-  /// |p_target - p(q)| [m]; NaN unless solved.
+  /// |p_target - p(q)| [m], or what of it a task does not allow; NaN unless solved.
   double position_error = std::numeric_limits<double>::quiet_NaN();
-  /// Length of rotvec(R_target R(q)^T) [rad]; NaN unless solved.
+  /// |rotvec(R_target R(q)^T)| [rad], or what of it a task does not allow; NaN unless solved.
   double rotation_error = std::numeric_limits<double>::quiet_NaN();
   /// Length of the move from `near` to q, by the request's norm and weights; NaN unless solved with
   /// a `near`.

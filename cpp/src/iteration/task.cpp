@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <sstream>
 #include <string>
 
@@ -13,7 +12,7 @@
 namespace iksel {
 namespace {
 
-constexpr double kFree = std::numeric_limits<double>::infinity();
+constexpr double kFree = kInfinity;
 
 std::size_t index(Axis axis) { return static_cast<std::size_t>(axis); }
 

@@ -107,6 +107,10 @@ struct Solver::Impl {
   /// The task of a request, or the options'.
   [[nodiscard]] TaskSpace task_of(const SolveRequest& request) const;
   class Judge;
+  class Inquiry;
+  /// Makes q the best effort of a diagnosis.
+  void describe(const TaskSpace& of_call, const Pose& target, const JointVector& q,
+                Diagnosis& out) const;
   /// Collects solutions in workspace.found.
   void explore(Exploration& search, Workspace& workspace) const;
   /// Brings a solution to the turns nearest to `near`.

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "math/constants.hpp"
 #include "math/rotation.hpp"
@@ -86,7 +85,7 @@ JointVector TaskSearch::seed_for(const Pose& allowed) {
   const std::size_t found =
       selection_.nearest_seeds(allowed * Pose(model_.tcp_inverse), kSeeds + tried_.size());
   std::size_t best = found;
-  double least = std::numeric_limits<double>::infinity();
+  double least = kInfinity;
   for (std::size_t i = 0; i < found; ++i) {
     if (is_tried_[selection_.nearest_sample(i)]) continue;
     double position = 0;

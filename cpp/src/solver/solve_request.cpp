@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "error_check.hpp"
+#include "math/constants.hpp"
 #include "solver/explore.hpp"
 #include "solver/self_motion.hpp"
 #include "solver/solver_impl.hpp"
@@ -111,7 +111,7 @@ class Solver::Impl::Judge {
   /// The best of what passed; false if nothing did.
   bool answer(JointVector& q) {
     if (first_kept_ == found_.size()) {
-      return answer_among_turns(std::numeric_limits<double>::infinity(), q);
+      return answer_among_turns(kInfinity, q);
     }
     if (!request_.near) {
       q = found_.at(first_kept_);

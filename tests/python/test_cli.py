@@ -292,6 +292,15 @@ def test_path_of_a_file(run: Run, made, poses: Path) -> None:
     assert "broken" not in text
 
 
+def test_path_with_settings(run: Run, poses: Path, tmp_path: Path) -> None:
+    file = tmp_path / "ur3.iksel"
+    assert_good(run("build", "ur3", "-o", file, *FEW))
+    words = ["path", "ur3", poses, "--json"]
+    assert_good(run(*words, "--database", file, "--position-tolerance", "1e-5"))
+    assert "absent" in run(*words, "--database", tmp_path / "absent").err
+    assert_good(run(*words, "--preset", "paper", "--scale", "small"))
+
+
 def test_path_that_breaks(run: Run, poses: Path) -> None:
     with poses.open("a", encoding="utf-8") as file:
         file.write("\n9 0 0 0 0 0\n")

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from iksel_cpp import InvalidArgumentError, Solver
+from iksel_cpp import Database, InvalidArgumentError, Solver
 
 from iksel.cli._options import add_solver_options, solver_options
 from iksel.cli._output import add_json, number, print_json, print_pairs, print_table
@@ -73,7 +73,8 @@ def run(arguments: argparse.Namespace) -> int:
     start = arguments.start and parse_joints(
         "--start", arguments.start, robot.joint_names
     )
-    solver = Solver(robot, solver_options(arguments))
+    database = arguments.database and Database.load(arguments.database)
+    solver = Solver(robot, solver_options(arguments), database)
     path = solver.solve_path(poses, start, dt=arguments.dt)
     if arguments.json:
         print_json(

@@ -238,15 +238,12 @@ PathResult Solver::Impl::solve_path(const std::vector<Pose>& T_base_tip, const P
     const Layer* before = !layers.empty() ? &layers.back() : path.start ? &start : nullptr;
     Layer layer{dof, {}, {}, {}};
     if (before != nullptr) search.add_continuations(T_base_tip[w], *before, layer);
-    Saturation saturation;
     Found& found = workspace.found;
     const bool redundant = model.dof > 6;
     const auto most = static_cast<std::size_t>(path.candidates);
-    const auto enough = [&](int attempts) {
-      return (redundant && found.size() >= most) || saturation.reached(found, attempts);
-    };
+    const auto enough = [&](const Exploration&) { return redundant && found.size() >= most; };
     Exploration exploration{T_base_tip[w], search.request(), kSame * 20,
-                            FunctionRef<bool(int)>(enough)};
+                            FunctionRef<bool(const Exploration&)>(enough), true};
     explore(exploration, workspace);
     search.add_solutions(found, before, layer);
     const bool any = layer.size() > 0;

@@ -99,12 +99,12 @@ class Solver::Impl::Judge {
 
   /// Puts what was found since the last look before the filter. True if the best of all that passed
   /// is an answer.
-  bool look(int attempts) {
+  bool look(const Exploration& search) {
     ask_filter();
     if (!request_.near) return first_kept_ < found_.size();
     const bool redundant = model_.dof > 6;
-    if (redundant) return first_kept_ < found_.size() && attempts >= kRedundantSeeds;
-    return first_kept_ < found_.size() && saturation_.reached(found_, attempts);
+    if (redundant) return first_kept_ < found_.size() && search.work.attempts >= kRedundantSeeds;
+    return first_kept_ < found_.size() && search.is_likely_complete();
   }
 
   /// The best of what passed; false if nothing did.
@@ -201,7 +201,6 @@ class Solver::Impl::Judge {
   const SolveRequest& request_;
   Found& found_;
   JointMove move_;
-  Saturation saturation_;
   std::array<bool, Found::kMost> kept_{};
   std::size_t asked_ = 0;
   std::size_t first_kept_ = 0;
@@ -210,8 +209,11 @@ class Solver::Impl::Judge {
 Result Solver::Impl::solve(const Pose& T_base_tip, const SolveRequest& request,
                            Workspace& workspace) const {
   Judge judge(*this, T_base_tip, request, workspace.found);
-  const auto enough = [&](int attempts) { return judge.look(attempts); };
-  Exploration search{T_base_tip, request, kSame, FunctionRef<bool(int)>(enough)};
+  const auto enough = [&](const Exploration& so_far) { return judge.look(so_far); };
+  // With a filter the judge decides: nothing may have passed it yet.
+  const bool takes_any = request.near && !request.filter && robot.dof() <= 6;
+  Exploration search{T_base_tip, request, kSame, FunctionRef<bool(const Exploration&)>(enough),
+                     takes_any};
   explore(search, workspace);
 
   Result result;

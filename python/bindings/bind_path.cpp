@@ -102,7 +102,7 @@ void bind_path(py::module_& m, py::class_<Solver>& cls) {
   const PathOptions path;
   cls.def("solve_path", &solve_path, py::arg("poses"), py::arg("start") = py::none(), py::kw_only(),
           py::arg("dt") = path.dt, py::arg("weights") = py::none(),
-          py::arg("norm") = py::cast(path.norm), py::arg("filter") = py::none(),
+          py::arg("norm") = enum_name(path.norm), py::arg("filter") = py::none(),
           py::arg("candidates") = path.candidates,
           R"(Joint values along a path of poses, by a choice among the solutions of all waypoints.
 

@@ -90,7 +90,6 @@ PyResult solve(const Solver& self, const ArrayLike& pose, const std::optional<Ar
   const Pose target = as_pose(pose, "pose");
   const SolveRequest request = make_request(self.robot().dof(), near, weights, norm, seeds,
                                             database_seeds, filter, deadline);
-  if (!filter) return {self.solve(target, request), {}};
   const py::gil_scoped_release release;
   return {self.solve(target, request), {}};
 }
@@ -157,7 +156,7 @@ void bind_requests(py::module_& m, py::class_<Solver>& cls) {
   bind_solutions(m);
   const SolveRequest wishes;
   const AllOptions all;
-  const auto norm = py::cast(wishes.norm);
+  const char* norm = enum_name(wishes.norm);
   // A second overload, so that plain solving pays nothing for the wishes.
   cls.def("solve", &solve, py::arg("pose"), py::kw_only(), py::arg("near") = py::none(),
           py::arg("weights") = py::none(), py::arg("norm") = norm, py::arg("seeds") = py::none(),
@@ -187,7 +186,7 @@ Raises:
         finite or out of range.)");
   cls.def("solve_all", &solve_all, py::arg("pose"), py::arg("max") = all.max, py::kw_only(),
           py::arg("min_distance") = all.min_distance, py::arg("whole_turns") = all.whole_turns,
-          py::arg("order") = py::cast(all.order), py::arg("near") = py::none(),
+          py::arg("order") = enum_name(all.order), py::arg("near") = py::none(),
           py::arg("weights") = py::none(), py::arg("norm") = norm, py::arg("seeds") = py::none(),
           py::arg("database_seeds") = wishes.database_seeds, py::arg("filter") = py::none(),
           py::arg("deadline") = py::none(),

@@ -27,7 +27,7 @@ for one in solver.solve_all(target, near=here):
 
 
 def elbow_up(q):
-    """Say which of the candidates (n, dof) are welcome; a real one looks for collisions."""
+    """Say which of (n, dof) candidates are welcome; real ones look for collisions."""
     return (q[:, 2] < 0) & (q[:, 4] > 0)
 
 

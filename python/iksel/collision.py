@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Self-collision from a URDF's collision geometry, as a filter for solves.
 
-    collides_not = iksel.collision.SelfCollision("arm.urdf", robot)
-    solver.solve(pose, filter=collides_not)
+    from iksel.collision import SelfCollision
+
+    solver.solve(pose, filter=SelfCollision("arm.urdf", robot))
 
 Needs the library coal: `pip install iksel[collision]`.
 """
@@ -46,21 +47,23 @@ class SelfCollision:
 
         Args:
             urdf: Path of the URDF, or its text. Boxes, cylinders, spheres and meshes.
-            robot: The arm whose joint values are asked about.
+            robot: The arm whose joint values are asked about, from the same URDF.
             margin: Links nearer than this collide [m].
             ignore: Pairs of links that may touch. Links that a joint connects may
                 always, and so may links that do not move against each other.
-            other_joints: Values of joints that are not the arm's [rad or m]; 0 if not
-                given.
+            other_joints: Values of joints that are not the arm's [rad or m]; those that
+                the arm holds are known, others are 0 if not given.
             packages: Folders of package:// names of meshes.
 
         Raises:
             InvalidArgumentError: coal is missing, or margin is negative.
-            UrdfError: The URDF cannot be read, or has no collision geometry.
-            UnknownNameError: `ignore` or `other_joints` names what is not there.
+            UrdfError: The URDF or a mesh cannot be read, or there is no collision
+                geometry.
+            UnknownNameError: The URDF lacks a joint of the arm, or what `ignore` or
+                `other_joints` names; or `packages` lacks a folder.
         """
-        if not margin >= 0:
-            raise InvalidArgumentError(f"margin: {margin} m is negative")
+        if not 0 <= margin < np.inf:
+            raise InvalidArgumentError(f"margin: {margin} m is not 0 or more")
         self._coal = _import_coal()
         text, folder = _read(urdf)
         try:
@@ -68,12 +71,12 @@ class SelfCollision:
         except ET.ParseError as error:
             raise UrdfError(f"urdf: {error}") from None
         self._dof = robot.dof
-        self._tree = _Tree(root, robot.joint_names, dict(other_joints or {}))
         self._request = self._coal.CollisionRequest()
         self._request.security_margin = margin
         self._shapes = self._read_shapes(root, folder, packages or {})
         if not self._shapes:
             raise UrdfError("urdf: no link has collision geometry")
+        self._tree = _Tree(root, robot, dict(other_joints or {}))
         self._pairs = self._make_pairs(ignore)
 
     @property
@@ -117,38 +120,42 @@ class SelfCollision:
                         return a, b
         return None
 
-    def _make_pairs(
-        self, ignore: Iterable[tuple[str, str]]
-    ) -> list[tuple[str, str]]:
+    def _make_pairs(self, ignore: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
         ignored = set()
         for pair in ignore:
             for link in pair:
                 if link not in self._tree.links:
-                    names = ", ".join(self._tree.links)
-                    raise UnknownNameError(f"ignore: no link {link!r}; it has: {names}")
+                    raise UnknownNameError(
+                        f"ignore: the URDF has no link {link!r}; it has: "
+                        f"{', '.join(self._tree.links)}"
+                    )
             ignored.add(frozenset(pair))
         links = list(self._shapes)
-        body = self._tree.bodies()
+        body, parent = self._tree.bodies()
         return [
             (a, b)
             for i, a in enumerate(links)
             for b in links[i + 1 :]
             if frozenset((a, b)) not in ignored
             and body[a] != body[b]
-            and not self._tree.adjacent(body[a], body[b])
+            and parent[body[a]] != body[b]
+            and parent[body[b]] != body[a]
         ]
 
     def _read_shapes(
         self, root: ET.Element, folder: Path, packages: Mapping[str, Any]
     ) -> dict[str, list[tuple[Any, FloatArray]]]:
         shapes: dict[str, list[tuple[Any, FloatArray]]] = {}
-        for link in root.iter("link"):
+        for link in root.findall("link"):
+            name = link.get("name", "")
             for collision in link.findall("collision"):
                 geometry = collision.find("geometry")
                 if geometry is None or len(geometry) == 0:
-                    continue
-                shape = self._make_shape(geometry[0], folder, packages)
-                name = link.get("name", "")
+                    raise UrdfError(f"urdf: link {name!r} has an empty collision")
+                try:
+                    shape = self._make_shape(geometry[0], folder, packages)
+                except UrdfError as error:
+                    raise type(error)(f"urdf: link {name!r}: {error}") from None
                 shapes.setdefault(name, []).append((shape, _origin(collision)))
         return shapes
 
@@ -156,39 +163,50 @@ class SelfCollision:
         self, element: ET.Element, folder: Path, packages: Mapping[str, Any]
     ) -> Any:
         if element.tag == "box":
-            return self._coal.Box(*_numbers(element, "size", "0 0 0"))
+            return self._coal.Box(*_numbers(element, "size", 3))
         if element.tag == "sphere":
-            return self._coal.Sphere(_numbers(element, "radius", "0")[0])
+            return self._coal.Sphere(*_numbers(element, "radius", 1))
         if element.tag == "cylinder":
-            radius = _numbers(element, "radius", "0")[0]
-            return self._coal.Cylinder(radius, _numbers(element, "length", "0")[0])
+            (radius,) = _numbers(element, "radius", 1)
+            return self._coal.Cylinder(radius, *_numbers(element, "length", 1))
         if element.tag == "mesh":
             path = _mesh_path(element.get("filename", ""), folder, packages)
-            scale = np.array(_numbers(element, "scale", "1 1 1"))
-            return self._coal.MeshLoader().load(str(path), scale)
+            scale = np.array(_numbers(element, "scale", 3, "1 1 1"))
+            return self._load_mesh(path, scale)
         raise UrdfError(
-            f"urdf: no geometry {element.tag!r}; possible: box, cylinder, sphere, mesh"
+            f"no geometry {element.tag!r}; possible: box, cylinder, sphere, mesh"
         )
+
+    def _load_mesh(self, path: Path, scale: FloatArray) -> Any:
+        if not path.is_file():
+            raise UrdfError(f"no mesh file {str(path)!r}")
+        try:
+            return self._coal.MeshLoader().load(str(path), scale)
+        except (RuntimeError, ValueError) as error:
+            raise UrdfError(f"mesh file {str(path)!r}: {error}") from None
 
 
 class _Tree:
     """All links of a URDF and where they are."""
 
     def __init__(
-        self, root: ET.Element, names: list[str], others: dict[str, float]
+        self, root: ET.Element, robot: Robot, others: dict[str, float]
     ) -> None:
-        self.links = [link.get("name", "") for link in root.iter("link")]
-        self._names = names
+        self.links = [link.get("name", "") for link in root.findall("link")]
+        self._names = robot.joint_names
         self._joints: dict[str, _Joint] = {}
         for element in root.findall("joint"):
             joint = _Joint(element)
             self._joints[joint.child] = joint
-        known = {joint.name for joint in self._joints.values()}
-        for name in others:
-            if name not in known:
-                listed = ", ".join(sorted(known))
-                raise UnknownNameError(f"other_joints: no joint {name!r}; {listed}")
-        self._others = others
+        known = [joint.name for joint in self._joints.values()]
+        for argument, names in (("robot", self._names), ("other_joints", others)):
+            for name in names:
+                if name not in known:
+                    raise UnknownNameError(
+                        f"{argument}: the URDF has no joint {name!r}; it has: "
+                        f"{', '.join(known)}"
+                    )
+        self._others = {**robot.locked_joints, **others}
 
     def poses(self, q: FloatArray) -> dict[str, FloatArray]:
         """Pose of each link in the root link's frame."""
@@ -207,24 +225,25 @@ class _Tree:
 
         return {link: pose(link) for link in self.links}
 
-    def bodies(self) -> dict[str, str]:
-        """For each link the first link of those that are fixed to each other."""
+    def bodies(self) -> tuple[dict[str, str], dict[str, str | None]]:
+        """What moves as one.
+
+        Returns:
+            For each link the first link of those that are fixed to each other, their
+            body; and for each body the one that it is joined to.
+        """
 
         def body(link: str) -> str:
             joint = self._joints.get(link)
             return link if joint is None or joint.moves else body(joint.parent)
 
-        return {link: body(link) for link in self.links}
-
-    def adjacent(self, a: str, b: str) -> bool:
-        """Whether one joint connects two bodies."""
-        bodies = self.bodies()
-
-        def parent(link: str) -> str | None:
-            joint = self._joints.get(link)
-            return None if joint is None else bodies[joint.parent]
-
-        return parent(a) == b or parent(b) == a
+        body_of = {link: body(link) for link in self.links}
+        parent_of = {
+            first: None if joint is None else body_of[joint.parent]
+            for first in body_of.values()
+            for joint in [self._joints.get(first)]
+        }
+        return body_of, parent_of
 
 
 class _Joint:
@@ -238,12 +257,14 @@ class _Joint:
         self.child = _link(element, "child")
         self._origin = _origin(element)
         axis = element.find("axis")
-        xyz = [1.0, 0.0, 0.0] if axis is None else _numbers(axis, "xyz", "1 0 0")
-        self._axis = np.array(xyz) / np.linalg.norm(xyz)
+        xyz = [1.0, 0.0, 0.0] if axis is None else _numbers(axis, "xyz", 3)
+        self._axis = np.array(xyz) / (np.linalg.norm(xyz) or 1.0)
         mimic = element.find("mimic")
         self._follows = None if mimic is None else mimic.get("joint", "")
-        self._factor = 1.0 if mimic is None else _numbers(mimic, "multiplier", "1")[0]
-        self._offset = 0.0 if mimic is None else _numbers(mimic, "offset", "0")[0]
+        self._factor = (
+            1.0 if mimic is None else _numbers(mimic, "multiplier", 1, "1")[0]
+        )
+        self._offset = 0.0 if mimic is None else _numbers(mimic, "offset", 1, "0")[0]
 
     def transform(self, values: Mapping[str, float]) -> FloatArray:
         """Pose of the child link in the parent link's frame."""
@@ -268,8 +289,8 @@ def _import_coal() -> Any:
         import coal  # noqa: PLC0415 (an optional extra)
     except ImportError as error:
         raise InvalidArgumentError(
-            f"self-collision needs the library coal, which cannot be imported ({error}); "
-            "install it with: pip install 'iksel[collision]'"
+            f"self-collision needs coal, which cannot be imported ({error}); "
+            "install it by: pip install 'iksel[collision]'"
         ) from None
     return coal
 
@@ -290,20 +311,27 @@ def _link(joint: ET.Element, end: str) -> str:
     return "" if element is None else element.get("link", "")
 
 
-def _numbers(element: ET.Element, attribute: str, default: str) -> list[float]:
+def _numbers(
+    element: ET.Element, attribute: str, count: int, default: str = ""
+) -> list[float]:
     text = element.get(attribute, default)
     try:
-        return [float(word) for word in text.split()]
+        numbers = [float(word) for word in text.split()]
     except ValueError:
-        raise UrdfError(f"urdf: {attribute}={text!r} are no numbers") from None
+        numbers = []
+    if len(numbers) != count:
+        raise UrdfError(
+            f"{element.tag} with {attribute}={text!r}, expected {count} numbers"
+        )
+    return numbers
 
 
 def _origin(element: ET.Element) -> FloatArray:
     origin = element.find("origin")
     if origin is None:
         return np.eye(4)
-    xyz = _numbers(origin, "xyz", "0 0 0")
-    return pose_from_euler(xyz, _numbers(origin, "rpy", "0 0 0"))
+    xyz = _numbers(origin, "xyz", 3, "0 0 0")
+    return pose_from_euler(xyz, _numbers(origin, "rpy", 3, "0 0 0"))
 
 
 def _split(pose: FloatArray) -> tuple[FloatArray, FloatArray]:

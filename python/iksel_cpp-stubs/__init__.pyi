@@ -14,7 +14,7 @@ import numpy
 import numpy.typing
 import os
 import typing
-__all__: list[str] = ['BatchResult', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'KeyScheme', 'Kinematics', 'Ranking', 'Reselection', 'Result', 'Robot', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'Solver', 'SolverOptions', 'Status', 'UnknownNameError', 'UrdfError', 'evaluate', 'grid_counts', 'pose_error', 'simd_level', 'time_kdl_fk_jacobian']
+__all__: list[str] = ['BatchResult', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'KeyScheme', 'Kinematics', 'MoveNorm', 'PathResult', 'Ranking', 'Reselection', 'Result', 'Robot', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'SolutionOrder', 'Solutions', 'Solver', 'SolverOptions', 'Status', 'Tracker', 'UnknownNameError', 'UrdfError', 'evaluate', 'grid_counts', 'pose_error', 'simd_level', 'time_kdl_fk_jacobian']
 class Error(Exception):
     """
     Base of every exception of the library.
@@ -792,8 +792,24 @@ class Status(enum.IntEnum):
     """
     not_converged = 1
     out_of_reach = 3
+    out_of_time = 5
     outside_limits = 2
+    rejected = 4
     solved = 0
+    too_fast = 6
+class MoveNorm(enum.Enum):
+    """
+    How the length of a joint move is measured.
+    """
+    max = 1
+    two = 0
+class SolutionOrder(enum.Enum):
+    """
+    In which order solve_all gives its solutions.
+    """
+    limit_distance = 1
+    manipulability = 2
+    move = 0
 class Result:
     """
     Answer to one target. Everything in it is measured on the returned q.
@@ -809,6 +825,11 @@ class Result:
     def iterations(self) -> int:
         """
         Iteration steps over all attempts.
+        """
+    @property
+    def move(self) -> float:
+        """
+        Length of the move from `near`, by its norm and weights; NaN without one.
         """
     @property
     def position_error(self) -> float:
@@ -914,6 +935,7 @@ class Solver:
         """
     def __repr__(self) -> str:
         ...
+    @typing.overload
     def solve(self, pose: numpy.typing.ArrayLike, seed: numpy.typing.ArrayLike | None = None) -> Result:
         """
         Joint values that put the tip (the TCP, if there is one) at a pose.
@@ -928,6 +950,51 @@ class Solver:
         Raises:
             InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, or a number that is
                 not finite.
+        """
+    @typing.overload
+    def solve(self, pose: numpy.typing.ArrayLike, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None) -> Result:
+        """
+        As solve, with wishes.
+
+        Args:
+            pose: T_base_tip, (4, 4) [m].
+            near: configuration to stay near, (dof,) [rad or m]; may lie outside the limits. The answer
+                is the one with the smallest joint move of all that are found, whole turns considered; a
+                redundant arm's has slid along its self-motion to where the move is smallest.
+            weights: factor on each joint's part of the move, (dof,), >= 0; None: all 1.
+            norm: how the move is measured.
+            seeds: joint values to iterate from, (N, dof) [rad or m]; ranked as the database's seeds, and
+                tried before them.
+            database_seeds: whether the database's seeds follow the given ones.
+            filter: called with candidates (n, dof), each at the pose and inside the limits; returns n
+                truth values. The search goes on within its bounds while all are refused.
+            deadline: wall-clock time after which the search ends [s]; checked between its stages.
+
+        Returns:
+            A Result. A pose that cannot be solved is no error but a status.
+
+        Raises:
+            InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, a number that is not
+                finite or out of range.
+        """
+    def solve_all(self, pose: numpy.typing.ArrayLike, max: int = 64, *, min_distance: float = 0.01, whole_turns: bool = False, order: SolutionOrder | str = 'move', near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None) -> Solutions:
+        """
+        Every distinct solution that is found: all branches, or a spread for a redundant arm.
+
+        Args:
+            pose: T_base_tip, (4, 4) [m].
+            max: solutions given at most.
+            min_distance: solutions that differ by less in every joint are one [rad or m].
+            whole_turns: whether copies by whole turns inside the limits count as solutions of their own;
+                otherwise each comes once, at the turn nearest to `near` or to the middle of the limits.
+            order: what comes first.
+            near, weights, norm, seeds, database_seeds, filter, deadline: as in solve.
+
+        Returns:
+            Solutions; empty, with a status that says why, if there is none.
+
+        Raises:
+            InvalidArgumentError: as solve.
         """
     def solve_batch(self, poses: numpy.typing.ArrayLike, threads: int = 0) -> BatchResult:
         """
@@ -945,6 +1012,29 @@ class Solver:
         Raises:
             InvalidArgumentError: wrong shape or dtype, or a bad pose; the first is named, and none is
                 solved.
+        """
+    def solve_path(self, poses: numpy.typing.ArrayLike, start: numpy.typing.ArrayLike | None = None, *, dt: float = 0.0, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, candidates: int = 64) -> PathResult:
+        """
+        Joint values along a path of poses, by a choice among the solutions of all waypoints.
+
+        Of all ways through the solutions that are found, the one with the least sum of joint moves.
+
+        Args:
+            poses: T_base_tip of each waypoint, (N, 4, 4) [m].
+            start: where the arm is one time step before the first waypoint, (dof,) [rad or m]; None: the
+                path may begin anywhere.
+            dt: time from one waypoint to the next [s], in which no joint moves farther than its velocity
+                limit allows; 0: speeds are not limited.
+            weights, norm: how a move is measured, as in solve.
+            filter: called with candidates (n, dof) of one waypoint; returns n truth values.
+            candidates: candidates kept per waypoint at most.
+
+        Raises:
+            InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, a number out of range.
+        """
+    def tracker(self, start: numpy.typing.ArrayLike) -> Tracker:
+        """
+        Tracker(self, start).
         """
     @property
     def database(self) -> Database:
@@ -965,6 +1055,139 @@ class Solver:
     def work_bound(self) -> int:
         """
         Most iteration steps that one solve without given seeds can spend, over all its seeds: max_attempts * max_iterations.
+        """
+class Solutions:
+    """
+    The distinct solutions for one target, best first. Indexing gives a Result.
+    """
+    def __getitem__(self, i: int) -> Result:
+        ...
+    def __iter__(self) -> collections.abc.Iterator[Result]:
+        ...
+    def __len__(self) -> int:
+        ...
+    def __repr__(self) -> str:
+        ...
+    @property
+    def attempts(self) -> int:
+        """
+        Seeds tried.
+        """
+    @property
+    def iterations(self) -> int:
+        """
+        Iteration steps over all attempts.
+        """
+    @property
+    def move(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Lengths of the moves from `near`, (n,); NaN without one.
+        """
+    @property
+    def position_error(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Distances to the target [m], (n,).
+        """
+    @property
+    def q(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Joint values [rad or m], (n, dof).
+        """
+    @property
+    def rotation_error(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Lengths of the rotation vectors to the target [rad], (n,).
+        """
+    @property
+    def status(self) -> Status:
+        """
+        `solved`, or why there is none.
+        """
+    @property
+    def success(self) -> bool:
+        """
+        Whether there is at least one.
+        """
+class PathResult:
+    """
+    Joint values along a path.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def broken(self) -> int | None:
+        """
+        Index of the first waypoint that has no continuation; None if solved.
+        """
+    @property
+    def largest_step(self) -> float:
+        """
+        The farthest that a joint moves from one waypoint to the next [rad or m].
+        """
+    @property
+    def largest_step_joint(self) -> int | None:
+        """
+        Index of the joint that does; None if there is no step.
+        """
+    @property
+    def largest_step_waypoint(self) -> int | None:
+        """
+        Index of the waypoint where that step ends; None if there is no step.
+        """
+    @property
+    def move(self) -> float:
+        """
+        Sum of the joint moves.
+        """
+    @property
+    def q(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Joint values [rad or m], (N, dof); if the path is broken, of the waypoints before.
+        """
+    @property
+    def status(self) -> Status:
+        """
+        `solved`, or why waypoint `broken` has none: `too_fast` if it has solutions, but no joint path leads there in time.
+        """
+    @property
+    def success(self) -> bool:
+        """
+        Whether there is a configuration for every waypoint.
+        """
+class Tracker:
+    """
+    Follows a stream of poses: each answer continues from the last, within the velocity limits. Not to be used from two threads at once.
+    """
+    def __init__(self, solver: Solver, start: numpy.typing.ArrayLike) -> None:
+        """
+        Begins where the arm is.
+
+        Args:
+            solver: what solves.
+            start: joint values, (dof,) [rad or m]; those outside the limits are taken to be at them.
+
+        Raises:
+            InvalidArgumentError: wrong shape or dtype, or a number that is not finite.
+        """
+    def track(self, pose: numpy.typing.ArrayLike, dt: float) -> Result:
+        """
+        Moves on towards a pose, by no more than each joint can in the time step.
+
+        Args:
+            pose: T_base_tip, (4, 4) [m].
+            dt: time step [s].
+
+        Returns:
+            A Result. Status `solved`: there. `too_fast`: the arm needs more time, and went as far on the
+            straight way in joint space as it could. Any other: no continuation, and the arm stays.
+
+        Raises:
+            InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, or dt not above 0.
+        """
+    @property
+    def q(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Where the arm is now, (dof,) [rad or m]; always inside the limits.
         """
 class Evaluation:
     """

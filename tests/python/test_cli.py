@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import importlib.metadata
+import io
 import math
 import re
 import shlex
@@ -19,7 +20,7 @@ import iksel
 from iksel import cli
 from iksel.cli._output import Progress
 
-COMMANDS = ["robots", "info", "solve", "build", "evaluate"]
+COMMANDS = ["robots", "info", "solve", "path", "build", "evaluate"]
 EVALUATE_FIELDS = """
     robot preset targets seed solved false_success success_percent mean_us std_us
     min_us max_us median_us p99_us kdl_fk_jac_us ratio position_tolerance
@@ -75,6 +76,8 @@ def test_examples_work(
     run: Run, example: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
+    pose = iksel.load_robot("ur3").fk([0.3, -1.2, 1.4, -0.6, 1.2, 0.2])
+    Path("poses.txt").write_text(" ".join(texts(pose.ravel())), encoding="utf-8")
     if example.startswith("evaluate"):
         example = re.sub(r" --targets \d+", "", example) + " --targets 20"
         if "panda" in example:
@@ -219,6 +222,92 @@ def test_every_option_is_a_flag(run: Run) -> None:
             else:
                 words += [flag, str(value)]
     assert assert_good(run(*words)).json()["success"]
+
+
+def test_solve_near(run: Run, made) -> None:
+    here = [0.1, -1, 1, 0.2, 0.3, -0.4 + 2 * math.pi]
+    words = ["solve", "ur3", "--from-q", *Q, "--near", *texts(here)]
+    answer = assert_good(run(*words, "--json")).json()
+    np.testing.assert_allclose(answer["q"], here, atol=1e-4)
+    assert answer["move"] < 1e-3
+    assert "move" in assert_good(run(*words)).out
+    assert run("solve", "ur3", "--from-q", *Q, "--json").json()["move"] is None
+
+
+def test_solve_all(run: Run, made) -> None:
+    words = ["solve", "ur3", "--from-q", *Q, "--all"]
+    answer = assert_good(run(*words, "--json")).json()
+    target = np.array(answer["target"])
+    assert answer["success"] is True
+    assert len(answer["q"]) == len(answer["position_error"]) == 8
+    for q in answer["q"]:
+        assert iksel.pose_error(made.robot("ur3").fk(q), target)[0] <= 1e-6 + 1e-12
+    near = assert_good(run(*words, "--near", *Q, "--json")).json()
+    np.testing.assert_allclose(near["q"][0], [float(x) for x in Q], atol=1e-4)
+    assert near["move"] == sorted(near["move"])
+    text = assert_good(run(*words)).out
+    assert "solutions  8" in text
+    assert "wrist_3_joint" in text
+    nothing = assert_good(run("solve", "ur3", *FAR, "--all", "--json"), code=1).json()
+    assert (nothing["q"], nothing["status"]) == ([], "out_of_reach")
+    assert "wrist_3" not in run("solve", "ur3", *FAR, "--all").out
+
+
+# path
+
+
+@pytest.fixture
+def poses(tmp_path: Path, made) -> Path:
+    """A file of 20 poses from Q, 2 mm apart, in several forms."""
+    lines = ["# a straight line", ""]
+    pose = made.robot("ur3").fk([float(x) for x in Q])
+    for i in range(20):
+        pose[2, 3] += 0.002
+        position, angles = pose[:3, 3], iksel.euler_from_pose(pose)
+        quaternion = iksel.quaternion_from_pose(pose)
+        form = [pose.ravel(), [*position, *angles], [*position, *quaternion]][i % 3]
+        lines.append((" " if i % 2 else ", ").join(texts(form)))
+    path = tmp_path / "poses.txt"
+    path.write_text("\n".join(lines), encoding="utf-8")
+    return path
+
+
+def test_path_of_a_file(run: Run, made, poses: Path) -> None:
+    robot = made.robot("ur3")
+    words = ["path", "ur3", poses, "--start", *Q, "--dt", "0.01"]
+    answer = assert_good(run(*words, "--json")).json()
+    assert answer["success"] is True
+    assert answer["broken"] is None
+    assert answer["joint_names"] == robot.joint_names
+    q = np.array(answer["q"])
+    assert q.shape == (20, 6)
+    steps = np.abs(np.diff(q, axis=0, prepend=[[float(x) for x in Q]]))
+    assert (steps <= robot.velocity_limit * 0.01 * (1 + 1e-8)).all()
+    assert answer["largest_step"] == steps.max()
+    heights = robot.fk(q)[:, 2, 3]
+    np.testing.assert_allclose(np.diff(heights), 0.002, atol=3e-6)
+    text = assert_good(run(*words)).out
+    for word in ("waypoints     20", "solved", "largest step", "wrist_3_joint"):
+        assert word in text
+    assert "broken" not in text
+
+
+def test_path_that_breaks(run: Run, poses: Path) -> None:
+    with poses.open("a", encoding="utf-8") as file:
+        file.write("\n9 0 0 0 0 0\n")
+    answer = assert_good(run("path", "ur3", poses, "--json"), code=1).json()
+    assert (answer["broken"], answer["status"]) == (20, "out_of_reach")
+    assert len(answer["q"]) == 20
+    text = assert_good(run("path", "ur3", poses), code=1).out
+    assert "broken at" in text
+    assert "waypoint 20 (from 0)" in text
+
+
+def test_path_from_stdin(
+    run: Run, poses: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("sys.stdin", io.StringIO(poses.read_text("utf-8")))
+    assert len(assert_good(run("path ur3 - --json")).json()["q"]) == 20
 
 
 # build, evaluate

@@ -73,6 +73,18 @@ BAD = [
         "build ur3 -o x --scale large --samples 9",
         "--samples 9: cannot be used with --scale large",
     ),
+    (f"solve ur3 --pose {POSE} --near 1 2", "--near: expected 6 numbers.*got 2"),
+    (f"solve ur3 --pose {POSE} --near" + " nan" * 6, "near"),
+    (
+        f"solve ur3 --pose {POSE} --near 0 0 0 0 0 0 --seed-q 0 0 0 0 0 0",
+        "--seed-q: .*--near",
+    ),
+    (f"solve ur3 --pose {POSE} --all --seed-q 0 0 0 0 0 0", "--seed-q: .*--all"),
+    ("path ur3", "FILE"),
+    ("path ur3 absent.txt", r"absent\.txt: .*No such file"),
+    ("path ur3 .", "'?.'?: .*directory"),
+    ("path ur3 /dev/null", "/dev/null: no poses"),
+    ("path ur3 /dev/null --dt x", "--dt"),
     ("build ur3", "-o/--output"),
     ("build ur3 -o absent/file --samples 50", "absent/file.*No such file"),
     ("build ur3 -o . --samples 50", "database '.'"),
@@ -110,6 +122,20 @@ def test_bad_files_are_one_line(run: Run, tmp_path: Path) -> None:
     assert_bad(run(*words), r"other\.iksel.*truncated")
     database.write_bytes(b"")
     assert_bad(run(*words), r"other\.iksel.*truncated")
+
+
+def test_bad_paths_are_one_line(run: Run, tmp_path: Path) -> None:
+    path = tmp_path / "poses"
+    path.write_text(f"# a comment\n{POSE}\n1 2 3\n", encoding="utf-8")
+    assert_bad(run("path", "ur3", path), "poses, line 3: expected 6 numbers.*got 3")
+    path.write_text(f"{POSE}\n1 2 x\n", encoding="utf-8")
+    assert_bad(run("path", "ur3", path), "poses, line 2: not all numbers")
+    path.write_bytes(b"\xff\xfe")
+    assert_bad(run("path", "ur3", path), "poses: .*utf-8")
+    path.write_text(POSE, encoding="utf-8")
+    assert_bad(run("path", "ur3", path, "--start", "1"), "--start: expected 6 numbers")
+    assert_bad(run("path", "ur3", path, "--dt", "-1"), "dt: -1")
+    assert_bad(run("path", "ur3", path, "--dt", "nan"), "dt: nan")
 
 
 def test_line_breaks_in_names_stay_inside_the_line(run: Run) -> None:

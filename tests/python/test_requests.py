@@ -19,7 +19,7 @@ def noisy_targets(robot: iksel.Robot, n: int, scale: float):
 
 @pytest.mark.parametrize("norm", ["two", iksel.MoveNorm.max])
 def test_near_moves_no_more_than_any_branch(made, cases, norm) -> None:
-    solver = made("ur3")
+    solver = made.solver("ur3")
     _, near, targets = noisy_targets(solver.robot, cases, 0.3)
     for here, target in zip(near, targets, strict=True):
         result = solver.solve(target, near=here, norm=norm)
@@ -32,8 +32,8 @@ def test_near_moves_no_more_than_any_branch(made, cases, norm) -> None:
 
 
 def test_weights_count(made) -> None:
-    solver = made("panda")
-    q, near, targets = noisy_targets(solver.robot, 20, 0.2)
+    solver = made.solver("panda")
+    _, near, targets = noisy_targets(solver.robot, 20, 0.2)
     heavy = np.array([100.0, 1, 1, 1, 1, 1, 1])
     for here, target in zip(near, targets, strict=True):
         plain = solver.solve(target, near=here).q
@@ -42,7 +42,7 @@ def test_weights_count(made) -> None:
 
 
 def test_solutions_are_a_sequence_of_results(made) -> None:
-    solver = made("ur3")
+    solver = made.solver("ur3")
     target = solver.robot.fk(np.full(6, 0.7))
     found = solver.solve_all(target)
     assert found.success
@@ -59,7 +59,7 @@ def test_solutions_are_a_sequence_of_results(made) -> None:
 
 
 def test_filter_gets_many_and_decides(made, cases) -> None:
-    solver = made("ur3")
+    solver = made.solver("ur3")
     shapes = []
 
     def low_shoulder(q):
@@ -79,7 +79,7 @@ def test_filter_gets_many_and_decides(made, cases) -> None:
 
 
 def test_filter_that_refuses_all(made) -> None:
-    solver = made("ur3")
+    solver = made.solver("ur3")
     target = solver.robot.fk(np.full(6, 0.7))
     result = solver.solve(target, filter=lambda q: np.zeros(len(q), dtype=bool))
     assert result.status is iksel.Status.rejected
@@ -87,7 +87,7 @@ def test_filter_that_refuses_all(made) -> None:
 
 
 def test_bad_filters_are_named(made) -> None:
-    solver = made("ur3")
+    solver = made.solver("ur3")
     target = solver.robot.fk(np.full(6, 0.7))
     for answer in (0.5, [True] * 99, "no"):
         with pytest.raises(iksel.InvalidArgumentError, match="filter"):
@@ -101,7 +101,7 @@ def test_bad_filters_are_named(made) -> None:
 
 
 def test_seeds_alone(made) -> None:
-    solver = made("iiwa14")
+    solver = made.solver("iiwa14")
     q = solver.robot.random_configurations(10, seed=SEED)
     for i, target in enumerate(solver.robot.fk(q)):
         result = solver.solve(target, seeds=q, database_seeds=False)
@@ -112,7 +112,7 @@ def test_seeds_alone(made) -> None:
 
 
 def test_deadline(made) -> None:
-    solver = made("ur3")
+    solver = made.solver("ur3")
     target = solver.robot.fk(np.full(6, 0.7))
     assert solver.solve(target, deadline=0).status is iksel.Status.out_of_time
     assert solver.solve(target, deadline=10).success
@@ -130,13 +130,13 @@ def test_deadline(made) -> None:
     ],
 )
 def test_bad_wishes_are_named(made, wish, named) -> None:
-    solver = made("ur3")
+    solver = made.solver("ur3")
     with pytest.raises(iksel.InvalidArgumentError, match=named):
         solver.solve(np.eye(4), **wish)
 
 
 def test_path_and_tracker(made) -> None:
-    solver = made("panda")
+    solver = made.solver("panda")
     robot = solver.robot
     start = np.array([0.0, -0.4, 0.0, -2.2, 0.0, 1.8, 0.8])
     line = np.repeat(robot.fk(start)[None], 50, axis=0)
@@ -147,7 +147,8 @@ def test_path_and_tracker(made) -> None:
     steps = np.abs(np.diff(path.q, axis=0, prepend=start[None]))
     assert (steps <= robot.velocity_limit * 0.02 * (1 + 1e-8)).all()
     assert path.largest_step == steps.max()
-    assert path.largest_step == steps[path.largest_step_waypoint, path.largest_step_joint]
+    farthest = steps[path.largest_step_waypoint, path.largest_step_joint]
+    assert farthest == path.largest_step
     tracker = solver.tracker(start)
     for pose in line:
         assert tracker.track(pose, 0.02).success
@@ -160,11 +161,12 @@ def test_path_and_tracker(made) -> None:
 
 
 @pytest.mark.parametrize("name", ["ur3", "ur10e"])
-def test_branches_are_those_of_eaik(made, cases, name) -> None:
+def test_branches_are_those_of_eaik(made, cases, tmp_path, name) -> None:
     urdf = pytest.importorskip("eaik.IK_URDF")
-    solver = made(name)
+    solver = made.solver(name)
     robot = solver.robot
-    path = robot_file(name)
+    path = tmp_path / "arm.urdf"
+    path.write_text(robot.urdf, encoding="utf-8")
     analytic = urdf.UrdfRobot(str(path))
     differ = 0
     for q in robot.random_configurations(cases, seed=SEED):
@@ -177,17 +179,6 @@ def test_branches_are_those_of_eaik(made, cases, name) -> None:
         found = solver.solve_all(robot.fk(q)).q
         differ += not same_branches(found, exact, robot)
     assert differ <= max(1, cases // 200)
-
-
-def robot_file(name: str):
-    from importlib import resources
-
-    packaged = resources.files(iksel) / "robots" / f"{name}.urdf"
-    if packaged.is_file():
-        return packaged
-    from pathlib import Path
-
-    return Path(__file__).parents[2] / "cpp" / "robots" / f"{name}.urdf"
 
 
 def same_branches(found, exact, robot) -> bool:

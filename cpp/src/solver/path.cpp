@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include "error_check.hpp"
 #include "iksel/error.hpp"
+#include "math/constants.hpp"
 #include "solver/explore.hpp"
 #include "solver/joint_move.hpp"
 #include "solver/self_motion.hpp"
@@ -18,9 +18,8 @@
 namespace iksel {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Candidates nearer than this in every joint are one [rad or m].
-constexpr double kSame = 1e-4;
+constexpr double kSameCandidate = 1e-4;
 /// Steps from a configuration to the next waypoint's at most.
 constexpr int kSteps = 20;
 
@@ -38,7 +37,7 @@ struct Layer {
   /// Adds a candidate unless it is there; copies by whole turns are others.
   void add(const JointVector& candidate) {
     for (std::size_t i = 0; i < size(); ++i) {
-      if ((at(i) - candidate).cwiseAbs().maxCoeff() < kSame) return;
+      if ((at(i) - candidate).cwiseAbs().maxCoeff() < kSameCandidate) return;
     }
     q.insert(q.end(), candidate.data(), candidate.data() + dof);
   }
@@ -242,7 +241,7 @@ PathResult Solver::Impl::solve_path(const std::vector<Pose>& T_base_tip, const P
     const bool redundant = model.dof > 6;
     const auto most = static_cast<std::size_t>(path.candidates);
     const auto enough = [&](const Exploration&) { return redundant && found.size() >= most; };
-    Exploration exploration{T_base_tip[w], search.request(), kSame * 20,
+    Exploration exploration{T_base_tip[w], search.request(), kSameCandidate * 20,
                             FunctionRef<bool(const Exploration&)>(enough), true};
     explore(exploration, workspace);
     search.add_solutions(found, before, layer);

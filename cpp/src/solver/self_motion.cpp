@@ -15,10 +15,10 @@ namespace {
 /// J d = 0).
 JointVector project(const JacobianMatrix& J, const JointVector& inverse_curvature,
                     const JointVector& d) {
-  const JacobianMatrix JH = J * inverse_curvature.asDiagonal();
-  Matrix6 A = JH * J.transpose();
+  const JacobianMatrix weighted = J * inverse_curvature.asDiagonal();
+  Matrix6 A = weighted * J.transpose();
   A.diagonal().array() += 1e-12 * std::max(A.trace(), 1e-12);
-  return d - JH.transpose() * A.ldlt().solve(J * d);
+  return d - weighted.transpose() * A.ldlt().solve(J * d);
 }
 
 /// The step from q, with the joints held that it would push over a limit.

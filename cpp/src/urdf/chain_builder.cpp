@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <sstream>
 
 #include "error_check.hpp"
 #include "iksel/error.hpp"
+#include "math/constants.hpp"
 #include "urdf/chain_spec.hpp"
 #include "urdf/parse.hpp"
 
 namespace iksel {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Eigen::Isometry3d to_eigen(const urdf::Pose& pose) {
   const urdf::Rotation& r = pose.rotation;

@@ -27,10 +27,10 @@ EXIT_SOLVED, EXIT_NO_SOLUTION = 0, 1
 EXAMPLES = """\
 examples:
   iksel path ur3 poses.txt --start 0.3 -1.2 1.4 -0.6 1.2 0.2 --dt 0.01
-  iksel path panda - --json < poses.csv
+  iksel path ur3 poses.txt --json
 
 FILE has one pose a line, in the forms of `iksel solve --pose`, separated by spaces or
-commas; empty lines and those that start with # are left out.
+commas; empty lines and those that start with # are left out. - is stdin.
 
 exit status: 0 solved, 1 a waypoint has no continuation, 2 bad input
 """
@@ -46,7 +46,7 @@ def add_parser(commands: Any) -> None:
         epilog=EXAMPLES,
     )
     add_robot(parser)
-    parser.add_argument("file", metavar="FILE", help="poses, one a line; - is stdin")
+    parser.add_argument("file", metavar="FILE", help="poses, one a line")
     parser.add_argument(
         "--start",
         nargs="+",
@@ -58,8 +58,8 @@ def add_parser(commands: Any) -> None:
         type=float,
         default=0.0,
         metavar="S",
-        help="time between poses [s], in which no joint moves farther than its velocity "
-        "limit allows; 0: speeds are not limited (default)",
+        help="time between poses [s], in which no joint moves farther than its "
+        "velocity limit allows; 0: speeds are not limited (default)",
     )
     add_json(parser)
     add_solver_options(parser)
@@ -126,16 +126,11 @@ def print_text(robot: Robot, path: PathResult, count: int) -> None:
     if path.broken is not None:
         rows.append(("broken at", f"waypoint {path.broken} (from 0)"))
     if path.largest_step_joint is not None:
+        joint = robot.joint_names[path.largest_step_joint]
+        step = f"{path.largest_step:.4g} rad or m, {joint}"
         rows.append(
-            (
-                "largest step",
-                f"{path.largest_step:.4g} rad or m, "
-                f"{robot.joint_names[path.largest_step_joint]} "
-                f"to waypoint {path.largest_step_waypoint}",
-            )
+            ("largest step", f"{step} to waypoint {path.largest_step_waypoint}")
         )
     print_pairs(rows)
     print()
-    print_table(
-        robot.joint_names, [[number(x, 6) for x in q] for q in path.q.tolist()]
-    )
+    print_table(robot.joint_names, [[number(x, 6) for x in q] for q in path.q.tolist()])

@@ -65,14 +65,14 @@ def add_parser(commands: Any) -> None:
         "--near",
         nargs="+",
         metavar="Q",
-        help="joint values to stay near [rad or m]: gives the solution with the smallest "
-        "joint move",
+        help="joint values to stay near [rad or m]: gives the solution with the "
+        "smallest joint move",
     )
     parser.add_argument(
         "--all",
         action="store_true",
-        help="give every distinct solution, nearest first (with --near: to that, else to "
-        "the middle of the limits)",
+        help="give every distinct solution, nearest first (with --near: to that, else "
+        "to the middle of the limits)",
     )
     add_json(parser)
     add_solver_options(parser)
@@ -88,8 +88,8 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         target = robot.fk(parse_joints("--from-q", arguments.from_q, joints))
     near = arguments.near and parse_joints("--near", arguments.near, joints)
-    if near and arguments.seed_q:
-        raise InvalidArgumentError("--seed-q: --near starts from its own joint values")
+    if arguments.seed_q and (near or arguments.all):
+        raise InvalidArgumentError("--seed-q: cannot be used with --near or --all")
     seed = arguments.seed_q and parse_joints("--seed-q", arguments.seed_q, joints)
     options = solver_options(arguments)
     database = arguments.database and Database.load(arguments.database)
@@ -119,6 +119,7 @@ def run(arguments: argparse.Namespace) -> int:
         "q": result.q,
         "position_error": result.position_error,
         "rotation_error": result.rotation_error,
+        "move": result.move,
         "attempts": result.attempts,
         "iterations": result.iterations,
         "time_us": time_us,
@@ -147,6 +148,7 @@ def run_all(
         "q": found.q,
         "position_error": found.position_error,
         "rotation_error": found.rotation_error,
+        "move": found.move,
         "attempts": found.attempts,
         "iterations": found.iterations,
         "time_us": (time.perf_counter() - start) * 1e6,
@@ -185,6 +187,8 @@ def print_text(robot: Robot, result: Result, report: dict[str, Any]) -> None:
             ("position error", f"{result.position_error:.3g} m"),
             ("rotation error", f"{result.rotation_error:.3g} rad"),
         ]
+    if math.isfinite(result.move):
+        rows.append(("joint move", f"{result.move:.4g} rad or m"))
     print_pairs(rows)
     if result.q is None:
         return

@@ -20,6 +20,7 @@ from bench.arms import load_arm
 from bench.check import judge, right
 from bench.machine import fingerprint
 from bench.paper.artefact import singular_first
+from bench.requests import ON_TARGETS, path
 from bench.rivals import RIVALS
 from bench.rivals.base import UnsupportedError
 from bench.targets import cached_targets
@@ -245,6 +246,16 @@ def seeds(settings: Settings) -> dict[str, Any]:
     }
 
 
+def _on_targets(name: str, settings: Settings) -> dict[str, Any]:
+    """A function of bench.requests, or why there is no such solver."""
+    try:
+        return ON_TARGETS[name](
+            load_arm(settings["robot"]), targets_of(settings), settings
+        )
+    except UnsupportedError as reason:
+        return {"unsupported": str(reason)}
+
+
 CELLS: dict[str, Callable[[Settings], dict[str, Any]]] = {
     "targets": targets,
     "evaluate": evaluate,
@@ -253,5 +264,7 @@ CELLS: dict[str, Callable[[Settings], dict[str, Any]]] = {
     "batch": batch,
     "artefact": artefact,
     "seeds": seeds,
+    **{name: functools.partial(_on_targets, name) for name in ON_TARGETS},
+    "path": path,
 }
 """The functions by the names that settings have under "cell"."""

@@ -25,6 +25,7 @@ MEASURING = (
     "targets.py",
     "timing.py",
     "paper/artefact.py",
+    "requests.py",
     "rivals/*.py",
     "cpp/baselines/*",
 )

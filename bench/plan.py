@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 SEED = 1
 """Seed of all targets."""
 
-SECTIONS = ("paper", "rivals", "robots")
+SECTIONS = ("paper", "rivals", "robots", "requests")
 """What --only takes."""
 
 ABLATION_1_SCALES = ("small", "medium", "large")
@@ -60,6 +60,10 @@ class Size:
     """Queries looked at for singular samples."""
     share: float = 10.0
     """Largest share that a solver may have."""
+    requests: int = 10_000
+    """Targets of the requests."""
+    restarts: int = 1_000
+    """Targets that are restarted a thousand times each."""
 
 
 FULL = Size(
@@ -96,6 +100,8 @@ QUICK = Size(
     robots=2_000,
     batch=2_000,
     artefact=200,
+    requests=500,
+    restarts=50,
 )
 
 
@@ -123,7 +129,12 @@ def plan(
         only: Keep only these sections and solvers; None: all.
         rivals: The solvers that can be had.
     """
-    jobs = [*_paper_jobs(size), *_rival_jobs(size), _robots_job(size)]
+    jobs = [
+        *_paper_jobs(size),
+        *_rival_jobs(size),
+        _robots_job(size),
+        *_request_jobs(size),
+    ]
     jobs = [_kept(job, robots, only, rivals) for job in jobs]
     jobs = [*_target_jobs(jobs), *(job for job in jobs if job.cells)]
     return sorted(jobs, key=lambda job: job.timed)
@@ -154,7 +165,15 @@ SECONDS_PER_TARGET = {
     "batch": 1e-5,
     "artefact": 1e-2,
     "seeds": 5e-3,
+    "near_branches": 1e-3,
+    "near_moves": 1e-3,
+    "all_branches": 1e-3,
+    "restarts": 2e-2,
+    "path": 1e-2,
 }
+
+PATH_WAYPOINTS = 1_000
+"""About how many a path has."""
 
 
 def seconds(cell: Settings) -> float:
@@ -165,7 +184,7 @@ def seconds(cell: Settings) -> float:
     if overrides.get("database.sampling") == "cvt":
         fixed *= 3.0
     per_target: float = SECONDS_PER_TARGET[cell["cell"]]
-    return 0.2 + fixed / 5.0 + float(cell["count"]) * per_target
+    return 0.2 + fixed / 5.0 + float(cell.get("count", PATH_WAYPOINTS)) * per_target
 
 
 def rival_count(size: Size, name: str, kind: str) -> int:
@@ -413,3 +432,63 @@ def robot_cell(robot: str, size: Size) -> Settings:
 def _robots_job(size: Size) -> Job:
     cells = [robot_cell(robot, size) for robot in all_robots()]
     return Job("every robot", "robots", cells)
+
+
+BRANCH_ARMS = ("ur3", "ur10e")
+"""Robots whose branches an analytic solver knows."""
+NEAR_ARM = BRANCH_ARMS[0]
+RESTART_ARMS = ("cvr038", "cvrb1213")
+"""Robots whose branches none of them knows."""
+MOVE_ARMS = ("panda", "iiwa14")
+MOVE_RIVALS: dict[str, dict[str, Any]] = {
+    "Robotics Toolbox": {"rival": "Robotics Toolbox"},
+    "OptIK": {"rival": "OptIK"},
+    "OptIK, quality": {"rival": "OptIK", "quality": True},
+}
+"""Solvers that start where they are told, as settings."""
+PATHS = (("panda", "line"), ("ur3", "circle"), ("ur3", "circle_beside"))
+BRANCH_RIVAL = "EAIK"
+
+
+def request_cell(cell: str, robot: str, count: int, rival: str = "") -> Settings:
+    """One request on one robot, beside a solver if there is one."""
+    settings = {**target_cell(robot, "uniform", count), "cell": cell}
+    return {**settings, "rival": rival} if rival else settings
+
+
+def moves_cell(robot: str, name: str, size: Size) -> Settings:
+    """Our moves beside those of a solver, of which each call takes up to 0.1 s."""
+    return {
+        **request_cell("near_moves", robot, max(1, size.requests // 10)),
+        **MOVE_RIVALS[name],
+    }
+
+
+def path_cell(robot: str, name: str) -> Settings:
+    """One path of bench.requests."""
+    return {"cell": "path", "robot": robot, "path": name}
+
+
+def _request_jobs(size: Size) -> list[Job]:
+    near = request_cell("near_branches", NEAR_ARM, size.requests, BRANCH_RIVAL)
+    branches = [
+        request_cell("all_branches", robot, size.requests, BRANCH_RIVAL)
+        for robot in BRANCH_ARMS
+    ]
+    counts = [request_cell("restarts", robot, size.restarts) for robot in RESTART_ARMS]
+    paths = [path_cell(robot, name) for robot, name in PATHS]
+    moves = [
+        Job(
+            f"near, {name}",
+            "requests",
+            [moves_cell(robot, name, size) for robot in MOVE_ARMS],
+        )
+        for name in MOVE_RIVALS
+    ]
+    return [
+        Job("near, branches", "requests", [near]),
+        *moves,
+        Job("all solutions", "requests", branches),
+        Job("restarts", "requests", counts),
+        Job("paths", "requests", paths),
+    ]

@@ -6,7 +6,7 @@ from __future__ import annotations
 import importlib
 import tempfile
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -27,6 +27,10 @@ class OptIk(PythonRival):
         "speed, 1 thread, 0.1 s, tol_f 1e-12 (of the squared error), random start"
     )
 
+    mode: ClassVar[str] = "speed"
+    max_time: ClassVar[float] = 0.1
+    """[s]"""
+
     def __init__(self, arm: Arm) -> None:
         """Hand it the chain's URDF."""
         module = importlib.import_module("optik")
@@ -38,8 +42,8 @@ class OptIk(PythonRival):
             )
         self._robot.set_parallelism(1)
         self._config = module.SolverConfig(
-            solution_mode="speed",
-            max_time=0.1,
+            solution_mode=self.mode,
+            max_time=self.max_time,
             max_restarts=1_000_000,
             tol_f=1e-12,
             tol_df=-1.0,
@@ -57,3 +61,11 @@ class OptIk(PythonRival):
     def answers(self, returned: Any) -> list[Array]:
         """A pair of configuration and error, or None."""
         return [] if returned is None else [np.asarray(returned[0])]
+
+
+class OptIkQuality(OptIk):
+    """All of its time for the answer nearest to the start; not in RIVALS."""
+
+    name = "OptIK, quality"
+    mode = "quality"
+    max_time = 0.01

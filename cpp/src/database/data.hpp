@@ -9,6 +9,7 @@
 #include "database/kd_tree.hpp"
 #include "database/leaf_tree.hpp"
 #include "database/reduction.hpp"
+#include "database/tiles.hpp"
 #include "iksel/options.hpp"
 
 namespace iksel {
@@ -44,6 +45,7 @@ struct DatabaseData {
   std::shared_ptr<const Reduction> reduction;
   /// Only over a reduced key.
   LeafTree leaves;
+  Tiles tiles;
 
   /// Key of a pose of the tip link.
   void make_key(const Pose& T_base_tip, double* key) const;

@@ -128,7 +128,10 @@ void DatabaseData::use(std::shared_ptr<const Block> with) {
   keys = reinterpret_cast<const double*>(block->data() + kHeaderSize);
   records = keys + size * static_cast<std::size_t>(key_dim);
   tree = KdTree(keys, size, key_dim);
-  if (reduction) leaves = LeafTree(*this);
+  if (reduction) {
+    leaves = LeafTree(*this);
+    tiles = Tiles(*this);
+  }
 }
 
 void write_header(const DatabaseData& data, unsigned char* block, std::size_t size) {

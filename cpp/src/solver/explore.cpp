@@ -6,30 +6,39 @@
 #include <vector>
 
 #include "solver/given_seeds.hpp"
+#include "solver/lane_explore.hpp"
+#include "solver/mirror.hpp"
 #include "solver/solver_impl.hpp"
-#include "solver/stage_clock.hpp"
 
 namespace iksel {
 namespace {
 
-/// A seed whose first step ends this near to a solution would end there itself.
+/// A seed this near to a solution in every joint would end there itself [rad or m]; or at the other
+/// of a pair that is near, which is looked for from the solution.
 constexpr double kCaught = 0.2;
 /// Seeds for a task between two questions to a filter.
 constexpr int kFilterStage = 16;
 
 struct Steering {
+  const Exploration& search;
   Found& found;
+  std::vector<JointVector>& mirrors;
   FunctionRef<bool()> ask;
   double caught;
 
+  /// The next seed that goes before the database's, if there is one.
+  bool take(JointVector& q) const {
+    if (mirrors.empty()) return false;
+    q = mirrors.back();
+    mirrors.pop_back();
+    return true;
+  }
+  [[nodiscard]] bool exhausted() const { return search.ends_complete(); }
+
   [[nodiscard]] bool go_on() const { return ask(); }
-  [[nodiscard]] bool skips(const lanes::SeedPack& seeds, int slot) const {
-    struct Column {
-      const lanes::SeedPack& seeds;
-      int slot;
-      double operator[](int joint) const { return static_cast<double>(seeds.q[joint][slot]); }
-    };
-    return found.is_near_known(Column{seeds, slot}, caught);
+  template <typename Q>
+  [[nodiscard]] bool knows(const Q& q) const {
+    return caught > 0 && found.is_near_known(q, caught);
   }
 };
 
@@ -51,10 +60,13 @@ void Solver::Impl::explore(Exploration& search, Workspace& workspace) const {
     return;
   }
 
+  search.orientations_cancel = search.task.is_full_pose() && orientations_cancel(model);
   const SolveRequest& request = search.request;
   const JointMove move(model.dof, request);
   const Deadline deadline(request.deadline);
   const std::optional<JointVector> turns_near = cheapest_turns(model, request.objective);
+  std::vector<JointVector>& mirrors = workspace.mirrors;
+  mirrors.clear();
   const auto accept = [&](JointVector& q) {
     model.wrap_into_limits(q.data());
     double position = 0;
@@ -81,11 +93,20 @@ void Solver::Impl::explore(Exploration& search, Workspace& workspace) const {
     // What a filter has been asked about stays as it is.
     const double cost =
         request.near && !turns_near && !request.filter ? move.length(q - *request.near) : 0.0;
-    found.add(q, cost, search.min_distance);
+    if (!found.add(q, cost, search.min_distance)) return Verdict::next;
+    ++search.found;
+    search.last_new = search.work.attempts;
+    if (search.task.is_full_pose()) {
+      // Of a pair that counts as one, the other may still lie on the side of a limit where `near`
+      // is.
+      Surroundings around = look_around(model, q, request.near ? 0.0 : search.min_distance);
+      search.orientation += around.orientation;
+      if (around.paired) mirrors.push_back(std::move(around.other));
+    }
     return Verdict::next;
   };
   const auto go_on = [&] {
-    if (search.enough(search.work.attempts)) return false;
+    if (search.enough(search) || search.ends_complete()) return false;
     search.out_of_time = deadline.passed();
     return !search.out_of_time;
   };
@@ -142,9 +163,9 @@ void Solver::Impl::explore_in_lanes(Exploration& search, Workspace& workspace,
     }
   }
   if (!go_on() || !search.request.database_seeds) return;
-  const Steering steering{workspace.found, go_on, robot.dof() > 6 ? 0.0 : kCaught};
-  StageClock clock(nullptr);
-  lanes.search(search.T_base_tip, nullptr, clock, work, accept, steering);
+  const Steering steering{search, workspace.found, workspace.mirrors, go_on,
+                          robot.dof() > 6 ? 0.0 : kCaught};
+  lanes.explore(search.T_base_tip, work, accept, steering);
 }
 
 void Solver::Impl::explore_task(Exploration& search, TaskSearch& tasks,

@@ -33,6 +33,14 @@ class Deadline {
   Clock::time_point end_;
 };
 
+/// Seeds in a row without a new solution after which a search has most likely found all.
+/// With 64, an arm whose limits cut into its branches lost one in a pose of a hundred, with 96 in
+/// one of two hundred.
+inline constexpr int kSeedsInVain = 96;
+/// The same where the signs of det J cancel. With 16 a UR lost two branches in one pose of three
+/// hundred, with 20 in one of six hundred.
+inline constexpr int kSeedsInVainBalanced = 20;
+
 /// One exploration: what it looks for, and what came of it.
 struct Exploration {
   const Pose& T_base_tip;
@@ -40,31 +48,27 @@ struct Exploration {
   const SolveRequest& request;
   /// Solutions nearer than this in every joint are one.
   double min_distance;
-  /// Asked between the groups of seeds; true ends the search.
-  FunctionRef<bool(int attempts)> enough;
+  /// Asked between groups of seeds; true ends the search.
+  FunctionRef<bool(const Exploration& search)> enough;
+  /// Whether the search ends when it has most likely found all.
+  bool until_complete;
 
   Status status = Status::not_converged;  ///< solved if anything was found
   Work work = {};
+  int found = 0;                     ///< solutions
+  int last_new = 0;                  ///< seeds tried until the last of them
+  int orientation = 0;               ///< sum of their signs of det J
+  bool orientations_cancel = false;  ///< over all that there are
   bool out_of_time = false;
-};
 
-/// Tells when a search has most likely found all there is: so many seeds in a row led to nothing
-/// new.
-class Saturation {
- public:
-  bool reached(const Found& found, int attempts) {
-    if (found.size() > found_) {
-      found_ = found.size();
-      last_ = attempts;
-    }
-    return found_ > 0 && attempts - last_ >= kSeeds;
+  [[nodiscard]] bool ends_complete() const { return until_complete && is_likely_complete(); }
+  /// Whether all there is has most likely been found: many seeds in a row led to nothing new; or
+  /// fewer, and the signs of det J, of which a single solution more would leave one over, cancel.
+  [[nodiscard]] bool is_likely_complete() const {
+    const bool balanced = orientations_cancel && orientation == 0;
+    return found > 0 &&
+           work.attempts - last_new >= (balanced ? kSeedsInVainBalanced : kSeedsInVain);
   }
-
- private:
-  /// With 32 a UR lost a branch in one pose of a hundred, with 48 in one of a thousand.
-  static constexpr int kSeeds = 64;
-  std::size_t found_ = 0;
-  int last_ = 0;
 };
 
 }  // namespace iksel

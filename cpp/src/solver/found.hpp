@@ -18,31 +18,39 @@ class Found {
   static constexpr std::size_t kMost = 1024;
 
   explicit Found(const ChainModel& model)
-      : model_(model), q_(kMost * static_cast<std::size_t>(model.dof)), cost_(kMost) {}
+      : model_(model),
+        q_(kMost * static_cast<std::size_t>(model.dof)),
+        cost_(kMost),
+        turns_(static_cast<std::size_t>(model.dof)) {
+    for (int j = 0; j < model.dof; ++j) {
+      turns_[static_cast<std::size_t>(j)] = has_whole_turns(model, j) ? 1 / kTwoPi : 0;
+    }
+  }
 
   void clear() { size_ = 0; }
 
   /// Adds q, a solution inside the limits, unless one lies nearer than `min_distance` in every
   /// joint, copies by whole turns not counted; or there is no room. Of two that lie so near, the
-  /// one of smaller cost stays, at the place of the first.
-  void add(const JointVector& q, double cost, double min_distance) {
+  /// one of smaller cost stays, at the place of the first. True if it is a new one.
+  bool add(const JointVector& q, double cost, double min_distance) {
     for (std::size_t i = 0; i < size_; ++i) {
       if (distance_without_turns(model_, this->q(i), q, min_distance) >= min_distance) continue;
       if (cost < cost_[i]) put(i, q, cost);
-      return;
+      return false;
     }
-    if (size_ == kMost) return;
+    if (size_ == kMost) return false;
     put(size_++, q, cost);
+    return true;
   }
 
-  /// True if q lies within `radius` of a solution in every
-  /// joint.
+  /// True if q lies within `radius` of a solution in every joint.
   template <typename Q>
   [[nodiscard]] bool is_near_known(const Q& q, double radius) const {
-    for (std::size_t i = 0; i < size_; ++i) {
-      if (distance_without_turns(model_, this->q(i), q, radius) < radius) {
-        return true;
-      }
+    const double* known = q_.data();
+    for (std::size_t i = 0; i < size_; ++i, known += model_.dof) {
+      int j = 0;
+      while (j < model_.dof && std::abs(turned_difference(j, q[j] - known[j])) < radius) ++j;
+      if (j == model_.dof) return true;
     }
     return false;
   }
@@ -61,9 +69,18 @@ class Found {
     cost_[i] = cost;
   }
 
+  /// A joint's difference without its whole turns. Added to so large a number, a double loses what
+  /// comes after its point: cheaper than to round.
+  [[nodiscard]] double turned_difference(int joint, double d) const {
+    constexpr double kNoFraction = 6755399441055744.0;
+    const double turns = (d * turns_[static_cast<std::size_t>(joint)] + kNoFraction) - kNoFraction;
+    return d - kTwoPi * turns;
+  }
+
   const ChainModel& model_;
   std::vector<double> q_;
   std::vector<double> cost_;
+  std::vector<double> turns_;  ///< 1 / 2 pi for joints with whole turns, else 0
   std::size_t size_ = 0;
 };
 

@@ -47,7 +47,10 @@ LaneSearch::LaneSearch(const ChainModel& model, const ChainModel& nominal, const
       seeds_{},
       pack_{},
       neighbours_(std::min<std::size_t>(static_cast<std::size_t>(options.neighbours), data.size)),
-      group_(static_cast<std::size_t>(lanes::group_rows(model.dof) * lanes::kGroup)) {}
+      group_(static_cast<std::size_t>(lanes::group_rows(model.dof) * lanes::kGroup)),
+      tile_distance2_(data.tiles.size()),
+      tile_order_(data.tiles.size()),
+      tile_seeds_(kTilesAtOnce) {}
 
 Pose LaneSearch::set_query(const Pose& T_base_tcp) {
   Pose Y = base_inverse_ * T_base_tcp * tcp_inverse_;
@@ -70,10 +73,11 @@ void LaneSearch::set_lane_target(int lane, const Pose& Y) {
   }
 }
 
-void LaneSearch::load_ranked(int rank, int lane) {
-  const int slot = seeds_.order[rank];
+void LaneSearch::load_ranked(int rank, int lane) { load_slot(seeds_, seeds_.order[rank], lane); }
+
+void LaneSearch::load_slot(const lanes::SeedPack& seeds, int slot, int lane) {
   for (int j = 0; j < model_.dof; ++j) {
-    pack_.q[j][lane] = static_cast<double>(seeds_.q[j][slot]);
+    pack_.q[j][lane] = static_cast<double>(seeds.q[j][slot]);
   }
 }
 

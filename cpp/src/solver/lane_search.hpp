@@ -4,7 +4,7 @@
 #pragma once
 
 #include <algorithm>
-#include <type_traits>
+#include <cstdint>
 #include <vector>
 
 #include "database/data.hpp"
@@ -39,19 +39,18 @@ class LaneSearch {
   LaneSearch(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
              const SolverOptions& options, const lanes::LaneKernels& kernels);
 
-  /// Leaves a search to itself.
-  struct Unsteered {
-    /// Asked after each group of the database's seeds; false ends the search.
-    static bool go_on() { return true; }
-    /// Whether a seed of the database, whose first step is made, need not be iterated.
-    static bool skips(const lanes::SeedPack& /*seeds*/, int /*slot*/) { return false; }
-  };
-
   /// Calls `accept(JointVector& q) -> Verdict` for every q that arrives until it says stop (then
   /// true), or the work bound is reached. `seed` may be null.
-  template <typename Accept, typename Steering = Unsteered>
+  template <typename Accept>
   bool search(const Pose& T_base_tcp, const JointVector* seed, StageClock& clock, Work& work,
-              const Accept& accept, const Steering& steering = {});
+              const Accept& accept);
+
+  /// As search, but through tiles of the database instead of the nearest samples one by one, and
+  /// past seeds on their way to what is known: `steering.go_on() -> bool`, asked now and then, ends
+  /// the search if false; `steering.knows(q) -> bool` tells whether joint values, of a seed after
+  /// its first step or on its way, lie near a solution that was found before (lane_explore.hpp).
+  template <typename Accept, typename Steering>
+  void explore(const Pose& T_base_tcp, Work& work, const Accept& accept, const Steering& steering);
 
   /// Iterates `count` seeds for the target that was set, most lanes at a time;
   /// `load(k, lane)` puts seed k into a lane.
@@ -73,6 +72,10 @@ class LaneSearch {
   Pose set_query(const Pose& T_base_tcp);
   /// Of the group's seeds, by rank.
   void load_ranked(int rank, int lane);
+  void load_slot(const lanes::SeedPack& seeds, int slot, int lane);
+  template <typename Skips, typename Load, typename Accept, typename Steering>
+  void iterate_steered(int count, Work& work, const Skips& skips, const Load& load,
+                       const Accept& accept, const Steering& steering);
   void set_lane_target(int lane, const Pose& Y);
 
   const ChainModel& model_;
@@ -90,12 +93,17 @@ class LaneSearch {
   double key_[12] = {};
   std::vector<Neighbour> neighbours_;
   std::vector<float> group_;
+  std::vector<float> tile_distance2_;
+  std::vector<std::uint32_t> tile_order_;
+  std::vector<lanes::SeedPack> tile_seeds_;
 };
 
 /// A seed that is still far off after so many iterations is given up: few such come home.
 inline constexpr int kPatience = 8;
 /// Seeds that a target of a batch is given before it is solved by itself.
 inline constexpr int kStreamSeeds = 2;
+/// Tiles whose seeds are iterated together, so that lanes find work.
+inline constexpr int kTilesAtOnce = 4;
 /// Squared error that counts as far off [mixed units].
 inline constexpr double kFarOff2 = 1e-4;
 
@@ -210,21 +218,11 @@ void LaneSearch::stream(const Next& next, const Target& target, const Settle& se
   }
 }
 
-template <typename Accept, typename Steering>
+template <typename Accept>
 bool LaneSearch::search(const Pose& T_base_tcp, const JointVector* seed, StageClock& clock,
-                        Work& work, const Accept& accept, const Steering& steering) {
-  constexpr bool kSteered = !std::is_same_v<Steering, Unsteered>;
+                        Work& work, const Accept& accept) {
   const auto iterate_ranked = [&](int count) {
     clock.lap(&StageTimes::rank);
-    if constexpr (kSteered) {
-      int kept = 0;
-      for (int k = 0; k < count; ++k) {
-        const unsigned char slot = seeds_.order[k];
-        if (!steering.skips(seeds_, slot)) seeds_.order[kept++] = slot;
-      }
-      work.attempts += count - kept;
-      count = kept;
-    }
     const bool solved = iterate(
         count, work, [this](int k, int lane) { load_ranked(k, lane); }, accept);
     clock.lap(&StageTimes::iterate);
@@ -240,7 +238,6 @@ bool LaneSearch::search(const Pose& T_base_tcp, const JointVector* seed, StageCl
   clock.lap(&StageTimes::query);
   kernels_.prepare(seed_chain_, seed_target_, leaf, seeds_);
   if (iterate_ranked(lanes::kGroup)) return true;
-  if (!steering.go_on()) return false;
 
   // Widening stages: each asks for four times as many and tries those it has not tried yet.
   std::size_t done = 0;
@@ -258,7 +255,7 @@ bool LaneSearch::search(const Pose& T_base_tcp, const JointVector* seed, StageCl
       }
       kernels_.prepare(seed_chain_, seed_target_, group_.data(), seeds_);
       if (iterate_ranked(lanes::kGroup)) return true;
-      if (!steering.go_on() || work.attempts >= options_.max_attempts) return false;
+      if (work.attempts >= options_.max_attempts) return false;
     }
     done = found;
   }
@@ -269,12 +266,7 @@ bool LaneSearch::search(const Pose& T_base_tcp, const JointVector* seed, StageCl
       pack_.q[j][lane] = random.uniform(model_.sample_lower(j), model_.sample_upper(j));
     }
   };
-  bool solved = false;
-  while (!solved && work.attempts < options_.max_attempts) {
-    const int left = options_.max_attempts - work.attempts;
-    solved = iterate(kSteered ? std::min(left, lanes::kGroup) : left, work, load_random, accept);
-    if (!steering.go_on()) break;
-  }
+  const bool solved = iterate(options_.max_attempts - work.attempts, work, load_random, accept);
   clock.lap(&StageTimes::iterate);
   return solved;
 }

@@ -245,15 +245,16 @@ PathResult Solver::Impl::solve_path(const std::vector<Pose>& T_base_tip, const P
     const Layer* before = !layers.empty() ? &layers.back() : path.start ? &start : nullptr;
     Layer layer{dof, {}, {}, {}};
     if (before != nullptr) search.add_continuations(T_base_tip[w], *before, layer);
-    Saturation saturation;
     Found& found = workspace.found;
     const bool redundant = model.dof > task.fixed_axes();
     const auto most = static_cast<std::size_t>(path.candidates);
-    const auto enough = [&](int attempts) {
-      return (redundant && found.size() >= most) || saturation.reached(found, attempts);
-    };
-    Exploration exploration{T_base_tip[w], task, search.request(), kSameCandidate * 20,
-                            FunctionRef<bool(int)>(enough)};
+    const auto enough = [&](const Exploration&) { return redundant && found.size() >= most; };
+    Exploration exploration{T_base_tip[w],
+                            task,
+                            search.request(),
+                            kSameCandidate * 20,
+                            FunctionRef<bool(const Exploration&)>(enough),
+                            true};
     explore(exploration, workspace);
     search.add_solutions(found, before, layer);
     layer.keep_if([&](std::size_t i) {

@@ -110,13 +110,12 @@ Solutions Solver::Impl::solve_all(const Pose& T_base_tip, const AllOptions& all,
   const bool redundant = model.dof > of_call.fixed_axes();
   const auto most = static_cast<std::size_t>(all.max);
   Found& found = workspace.found;
-  Saturation saturation;
-  const auto enough = [&](int attempts) {
-    if (redundant && found.size() >= std::max<std::size_t>(kChoice * most, 64)) return true;
-    return saturation.reached(found, attempts);
+  const auto enough = [&](const Exploration&) {
+    return redundant && found.size() >= std::max<std::size_t>(kChoice * most, 64);
   };
-  Exploration search{T_base_tip, of_call, request, all.min_distance,
-                     FunctionRef<bool(int)>(enough)};
+  Exploration search{
+      T_base_tip, of_call, request, all.min_distance, FunctionRef<bool(const Exploration&)>(enough),
+      true};
   explore(search, workspace);
 
   Solutions solutions;

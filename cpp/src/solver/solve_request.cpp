@@ -106,12 +106,15 @@ class Solver::Impl::Judge {
 
   /// Puts what was found since the last look before the filter. True if the best of all that passed
   /// is an answer.
-  bool look(int attempts) {
+  bool look(const Exploration& search) {
     ask_filter();
     if (!ranks_) return first_kept_ < found_.size();
-    if (redundant_) return first_kept_ < found_.size() && attempts >= kRedundantSeeds;
-    return first_kept_ < found_.size() && saturation_.reached(found_, attempts);
+    if (redundant_) return first_kept_ < found_.size() && search.work.attempts >= kRedundantSeeds;
+    return first_kept_ < found_.size() && search.is_likely_complete();
   }
+
+  /// Whether the best can only be told when all are known.
+  [[nodiscard]] bool wants_all() const { return ranks_ && !redundant_; }
 
   /// The best of what passed; false if nothing did.
   bool answer(JointVector& q) {
@@ -236,7 +239,6 @@ class Solver::Impl::Judge {
   bool ranks_;
   Found& found_;
   JointMove move_;
-  Saturation saturation_;
   std::array<bool, Found::kMost> kept_{};
   std::size_t asked_ = 0;
   std::size_t first_kept_ = 0;
@@ -251,8 +253,12 @@ Result Solver::Impl::solve(const Pose& T_base_tip, const SolveRequest& request,
                            Workspace& workspace) const {
   const TaskSpace of_call = task_of(request);
   Judge judge(*this, of_call, T_base_tip, request, workspace.found);
-  const auto enough = [&](int attempts) { return judge.look(attempts); };
-  Exploration search{T_base_tip, of_call, request, kSame, FunctionRef<bool(int)>(enough)};
+  const auto enough = [&](const Exploration& so_far) { return judge.look(so_far); };
+  // With a filter the judge decides: nothing may have passed it yet.
+  const bool takes_any = judge.wants_all() && !request.filter;
+  Exploration search{
+      T_base_tip, of_call, request, kSame, FunctionRef<bool(const Exploration&)>(enough),
+      takes_any};
   explore(search, workspace);
 
   Result result;

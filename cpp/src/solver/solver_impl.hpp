@@ -31,6 +31,7 @@ struct Workspace {
   std::unique_ptr<LaneSearch> lanes;
   /// Of solves with wishes.
   Found found;
+  std::vector<JointVector> mirrors;
 };
 
 struct Solver::Impl {

@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Nearest, all solutions and paths, as text."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from bench import plan, requests
+from bench.markdown import microseconds, percent, table
+
+if TYPE_CHECKING:
+    from bench.view import View
+
+ENOUGH_PERCENT = 99.9
+"""Poses whose nearest solution, or all, are to be found."""
+RESTARTS_PERCENT = 99.5
+"""Poses whose branch count is to agree with the restarts'."""
+TIMES_SLOWER = 5.0
+"""Times of the analytic solver's mean that all solutions may take."""
+
+
+def text(view: View) -> str:
+    """The whole section."""
+    parts = [*_near(view), *_moves(view), *_branches(view), *_restarts(view)]
+    parts += _paths(view)
+    if not parts:
+        return ""
+    conditions = (
+        "Targets uniform in the joint limits, seed 1, default options, called from "
+        "Python one pose at a time; every answer judged by bench's own forward "
+        f"kinematics and the limits. *near* is a solution with normal noise of "
+        f"{requests.NOISE} rad on every joint."
+    )
+    return "\n\n".join(["## Nearest, all, paths", conditions, *parts])
+
+
+def _verdict(part: float, whole: float, enough: float) -> str:
+    holds = 100.0 * part >= enough * whole
+    return f"{percent(part, whole)} ({enough} aimed at: {'holds' if holds else 'missed'})"
+
+
+def _near(view: View) -> list[str]:
+    settings = plan.request_cell(
+        "near_branches", plan.NEAR_ARM, view.size.requests, plan.BRANCH_RIVAL
+    )
+    cell = view.get(settings)
+    if cell is None:
+        return []
+    return [
+        "### Nearest of all branches",
+        f"`{plan.NEAR_ARM}`, {cell['count']:,} poses: solved "
+        f"{percent(cell['solved'], cell['count'])} %; the move is the smallest over all "
+        f"of {plan.BRANCH_RIVAL}'s branches and their whole turns inside the limits "
+        f"(give or take {requests.SAME_MOVE:g} rad) in "
+        f"{_verdict(cell['smallest'], cell['count'], ENOUGH_PERCENT)} % of them, and "
+        f"smaller than that in {cell['shorter']} poses. Mean {microseconds(cell['mean_us'])} "
+        f"µs, p99 {microseconds(cell['p99_us'])} µs.",
+    ]
+
+
+def _moves(view: View) -> list[str]:
+    rows = []
+    for robot in plan.MOVE_ARMS:
+        for name in plan.MOVE_RIVALS:
+            cell = view.get(plan.moves_cell(robot, name, view.size))
+            if cell is None:
+                continue
+            kinds = {
+                name: (cell["rival"], cell["rival_mean_us"]),
+                "IKSel": (cell["two"], cell["two"]["mean_us"]),
+                "IKSel, norm max": (cell["max"], cell["max"]["mean_us"]),
+            }
+            for solver, (moves, mean) in kinds.items():
+                rows.append([f"`{robot}`, {solver}", *_move_columns(cell, moves, mean)])
+    if not rows:
+        return []
+    header = ["largest joint move, rad", "right %", "median", "p99", "mean µs"]
+    return ["### Moves of redundant arms from the same seed", table(header, rows)]
+
+
+def _move_columns(
+    cell: dict[str, Any], moves: dict[str, Any], mean: float
+) -> list[str]:
+    return [
+        percent(moves["right"], cell["count"]),
+        f"{moves['median_largest']:.4f}",
+        f"{moves['p99_largest']:.4f}",
+        microseconds(mean),
+    ]
+
+
+def _branches(view: View) -> list[str]:
+    lines = []
+    for robot in plan.BRANCH_ARMS:
+        settings = plan.request_cell(
+            "all_branches", robot, view.size.requests, plan.BRANCH_RIVAL
+        )
+        cell = view.get(settings)
+        if cell is None:
+            continue
+        times = cell["mean_us"] / cell["rival_mean_us"]
+        word = "holds" if times <= TIMES_SLOWER else "missed"
+        lines.append(
+            f"- `{robot}`, {cell['count']:,} poses, {cell['branches']:,} solutions: all "
+            f"branches of {plan.BRANCH_RIVAL} in "
+            f"{_verdict(cell['same'], cell['count'], ENOUGH_PERCENT)} %, one that it does "
+            f"not have in {cell['more']}, wrong {cell['wrong']}; mean "
+            f"{microseconds(cell['mean_us'])} µs, {times:.1f} times "
+            f"{plan.BRANCH_RIVAL}'s {microseconds(cell['rival_mean_us'])} µs "
+            f"({TIMES_SLOWER:.0f} allowed: {word})."
+        )
+    return ["### All branches", "\n".join(lines)] if lines else []
+
+
+def _restarts(view: View) -> list[str]:
+    lines = []
+    for robot in plan.RESTART_ARMS:
+        cell = view.get(plan.request_cell("restarts", robot, view.size.restarts))
+        if cell is None:
+            continue
+        lines.append(
+            f"- `{robot}`, {cell['count']:,} poses, {cell['branches']:,} solutions: as many "
+            f"as {requests.RESTARTS:,} random restarts find in "
+            f"{_verdict(cell['agrees'], cell['count'], RESTARTS_PERCENT)} %, more in "
+            f"{cell['more']}, fewer in {cell['fewer']}, wrong {cell['wrong']}; mean "
+            f"{microseconds(cell['mean_us'])} µs."
+        )
+    return ["### Branches beside random restarts", "\n".join(lines)] if lines else []
+
+
+PATH_TITLES = {
+    "line": "1 m straight at 1 mm and 0.1 m/s",
+    "circle": "a circle of 8 cm radius in 8 s through a wrist singularity",
+    "circle_beside": "the same circle 2 mm off the singularity",
+}
+
+
+def _paths(view: View) -> list[str]:
+    rows = []
+    for robot, name in plan.PATHS:
+        cell = view.get(plan.path_cell(robot, name))
+        if cell is None:
+            continue
+        title = f"`{robot}`, {PATH_TITLES[name]}"
+        broken = "" if cell["broken"] is None else f" at waypoint {cell['broken']}"
+        for solver in ("path", "points"):
+            result = cell[solver]
+            word = f"`solve_path`: {cell['status']}{broken}"
+            label = word if solver == "path" else "point by point, `near`"
+            rows.append(
+                [
+                    f"{title}; {label}",
+                    f"{result['right']} of {cell['count']}",
+                    f"{result.get('move', 0.0):.3f}",
+                    f"{result.get('largest_step', 0.0):.4f}",
+                    str(result.get("too_fast", 0)),
+                    f"{1e6 * cell[f'{solver}_s'] / cell['count']:.0f}",
+                ]
+            )
+    if not rows:
+        return []
+    header = [
+        "path",
+        "waypoints right",
+        "joint move, rad",
+        "largest step, rad",
+        "steps over a velocity limit",
+        "µs per waypoint",
+    ]
+    return ["### Paths", table(header, rows)]

@@ -345,8 +345,8 @@ Args:
         by itself.
 
 Raises:
-    InvalidArgumentError: wrong shape or dtype, a bad wish, or a bad pose; the first is named, and none is
-        solved.)");
+    InvalidArgumentError: wrong shape or dtype, a bad wish, or a bad pose; the first is named, and
+        none is solved.)");
   cls.def("__repr__", [](const Solver& self) {
     return "Solver(" + py::cast<std::string>(py::repr(py::cast(self.robot()))) + ", " +
            to_repr(self.options()) + ")";

@@ -1324,8 +1324,8 @@ class Solver:
                 by itself.
 
         Raises:
-            InvalidArgumentError: wrong shape or dtype, a bad wish, or a bad pose; the first is named, and none is
-                solved.
+            InvalidArgumentError: wrong shape or dtype, a bad wish, or a bad pose; the first is named, and
+                none is solved.
         """
     def solve_path(self, poses: numpy.typing.ArrayLike, start: numpy.typing.ArrayLike | None = None, *, dt: float = 0.0, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, candidates: int = 64) -> PathResult:
         """

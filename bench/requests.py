@@ -170,7 +170,9 @@ def all_branches(arm: Arm, goals: Targets, settings: Settings) -> dict[str, Any]
         q = ours.q
         truth = branches_inside(arm, pose, given)
         wrong += int(
-            np.count_nonzero(~right(arm.chain, np.broadcast_to(pose, (len(q), 4, 4)), q))
+            np.count_nonzero(
+                ~right(arm.chain, np.broadcast_to(pose, (len(q), 4, 4)), q)
+            )
         )
         # Two that lie APART or nearer may be one to either.
         between = gap(truth, q) if len(q) else np.full((len(truth), 1), np.inf)
@@ -209,11 +211,7 @@ def restarts(arm: Arm, goals: Targets, settings: Settings) -> dict[str, Any]:
         q = np.array([answer.q for answer in single if answer.success])
         truth = len(distinct(q.reshape(-1, arm.chain.dof)))
         verdict = (
-            "agrees"
-            if len(ours) == truth
-            else "more"
-            if len(ours) > truth
-            else "fewer"
+            "agrees" if len(ours) == truth else "more" if len(ours) > truth else "fewer"
         )
         counts[verdict] += 1
         if verdict != "agrees":

@@ -48,13 +48,16 @@ def _near(view: View) -> list[str]:
         return []
     return [
         "### Nearest of all branches",
-        f"`{plan.NEAR_ARM}`, {cell['count']:,} poses: solved "
-        f"{percent(cell['solved'], cell['count'])} %; the move is the smallest over all "
-        f"of {plan.BRANCH_RIVAL}'s branches and their whole turns inside the limits "
-        f"(give or take {requests.SAME_MOVE:g} rad) in "
-        f"{_verdict(cell['smallest'], cell['count'], ENOUGH_PERCENT)} % of them, and "
-        f"smaller than that in {cell['shorter']} poses. Mean "
-        f"{microseconds(cell['mean_us'])} µs, p99 {microseconds(cell['p99_us'])} µs.",
+        (
+            f"`{plan.NEAR_ARM}`, {cell['count']:,} poses: solved "
+            f"{percent(cell['solved'], cell['count'])} %; the move is the smallest "
+            f"over all of {plan.BRANCH_RIVAL}'s branches and their whole turns inside "
+            f"the limits (give or take {requests.SAME_MOVE:g} rad) in "
+            f"{_verdict(cell['smallest'], cell['count'], ENOUGH_PERCENT)} % of them, "
+            f"and smaller than that in {cell['shorter']} poses. Mean "
+            f"{microseconds(cell['mean_us'])} µs, p99 "
+            f"{microseconds(cell['p99_us'])} µs."
+        ),
     ]
 
 

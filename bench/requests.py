@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Cells on requests: nearest, all solutions, paths; each beside a solver or brute force.
+"""Cells on requests: nearest, all solutions, paths; beside a solver or brute force.
 
 Every answer is judged by bench.chain. A branch is a solution without its whole turns.
 """
@@ -30,8 +30,8 @@ if TYPE_CHECKING:
 NOISE = 0.3
 """Deviation of `near` from a solution, every joint [rad]."""
 SAME_MOVE = 1e-3
-"""Moves that differ by less are the same [rad]: where the arm is nearly singular, answers
-within the tolerances of the pose are that far apart."""
+"""Moves that differ by less are the same [rad]: near a singularity answers within the
+tolerances of the pose are that far apart."""
 APART = 0.01
 """Branches differ by at least this in some joint [rad]: AllOptions.min_distance."""
 RESTARTS = 1_000
@@ -155,7 +155,7 @@ def _moves(chain: Chain, poses: Array, near: Array, q: Array) -> dict[str, Any]:
 
 
 def all_branches(arm: Arm, goals: Targets, settings: Settings) -> dict[str, Any]:
-    """Whether solve_all has every branch of an analytic solver, and how long both take."""
+    """Whether solve_all has every branch of an analytic solver; how long both take."""
     rival = RIVALS[settings["rival"]](arm).run(goals)
     solver = iksel.Solver(arm.robot)
     times, found = time_calls(solver.solve_all, [(p,) for p in goals.poses], LIMIT_S)
@@ -170,7 +170,9 @@ def all_branches(arm: Arm, goals: Targets, settings: Settings) -> dict[str, Any]
         q = ours.q
         truth = branches_inside(arm, pose, given)
         wrong += int(
-            np.count_nonzero(~right(arm.chain, np.broadcast_to(pose, (len(q), 4, 4)), q))
+            np.count_nonzero(
+                ~right(arm.chain, np.broadcast_to(pose, (len(q), 4, 4)), q)
+            )
         )
         # Two that lie APART or nearer may be one to either.
         between = gap(truth, q) if len(q) else np.full((len(truth), 1), np.inf)
@@ -209,11 +211,7 @@ def restarts(arm: Arm, goals: Targets, settings: Settings) -> dict[str, Any]:
         q = np.array([answer.q for answer in single if answer.success])
         truth = len(distinct(q.reshape(-1, arm.chain.dof)))
         verdict = (
-            "agrees"
-            if len(ours) == truth
-            else "more"
-            if len(ours) > truth
-            else "fewer"
+            "agrees" if len(ours) == truth else "more" if len(ours) > truth else "fewer"
         )
         counts[verdict] += 1
         if verdict != "agrees":
@@ -282,7 +280,10 @@ def path(settings: Settings) -> dict[str, Any]:
     start = whole.q[0] if len(whole.q) else solver.solve(poses[0]).q
     points = [start]
     for pose in poses[1:]:
-        points.append(solver.solve(pose, near=points[-1]).q)
+        answer = solver.solve(pose, near=points[-1])
+        if not answer.success:
+            break
+        points.append(answer.q)
     end = time.perf_counter()
     return {
         "count": len(poses),

@@ -35,8 +35,8 @@ def text(view: View) -> str:
 
 
 def _verdict(part: float, whole: float, enough: float) -> str:
-    holds = 100.0 * part >= enough * whole
-    return f"{percent(part, whole)} ({enough} aimed at: {'holds' if holds else 'missed'})"
+    word = "holds" if 100.0 * part >= enough * whole else "missed"
+    return f"{percent(part, whole)} ({enough} aimed at: {word})"
 
 
 def _near(view: View) -> list[str]:
@@ -48,13 +48,16 @@ def _near(view: View) -> list[str]:
         return []
     return [
         "### Nearest of all branches",
-        f"`{plan.NEAR_ARM}`, {cell['count']:,} poses: solved "
-        f"{percent(cell['solved'], cell['count'])} %; the move is the smallest over all "
-        f"of {plan.BRANCH_RIVAL}'s branches and their whole turns inside the limits "
-        f"(give or take {requests.SAME_MOVE:g} rad) in "
-        f"{_verdict(cell['smallest'], cell['count'], ENOUGH_PERCENT)} % of them, and "
-        f"smaller than that in {cell['shorter']} poses. Mean {microseconds(cell['mean_us'])} "
-        f"µs, p99 {microseconds(cell['p99_us'])} µs.",
+        (
+            f"`{plan.NEAR_ARM}`, {cell['count']:,} poses: solved "
+            f"{percent(cell['solved'], cell['count'])} %; the move is the smallest "
+            f"over all of {plan.BRANCH_RIVAL}'s branches and their whole turns inside "
+            f"the limits (give or take {requests.SAME_MOVE:g} rad) in "
+            f"{_verdict(cell['smallest'], cell['count'], ENOUGH_PERCENT)} % of them, "
+            f"and smaller than that in {cell['shorter']} poses. Mean "
+            f"{microseconds(cell['mean_us'])} µs, p99 "
+            f"{microseconds(cell['p99_us'])} µs."
+        ),
     ]
 
 
@@ -101,10 +104,10 @@ def _branches(view: View) -> list[str]:
         times = cell["mean_us"] / cell["rival_mean_us"]
         word = "holds" if times <= TIMES_SLOWER else "missed"
         lines.append(
-            f"- `{robot}`, {cell['count']:,} poses, {cell['branches']:,} solutions: all "
-            f"branches of {plan.BRANCH_RIVAL} in "
-            f"{_verdict(cell['same'], cell['count'], ENOUGH_PERCENT)} %, one that it does "
-            f"not have in {cell['more']}, wrong {cell['wrong']}; mean "
+            f"- `{robot}`, {cell['count']:,} poses, {cell['branches']:,} solutions: "
+            f"all branches of {plan.BRANCH_RIVAL} in "
+            f"{_verdict(cell['same'], cell['count'], ENOUGH_PERCENT)} %, one that it "
+            f"does not have in {cell['more']}, wrong {cell['wrong']}; mean "
             f"{microseconds(cell['mean_us'])} µs, {times:.1f} times "
             f"{plan.BRANCH_RIVAL}'s {microseconds(cell['rival_mean_us'])} µs "
             f"({TIMES_SLOWER:.0f} allowed: {word})."
@@ -119,8 +122,8 @@ def _restarts(view: View) -> list[str]:
         if cell is None:
             continue
         lines.append(
-            f"- `{robot}`, {cell['count']:,} poses, {cell['branches']:,} solutions: as many "
-            f"as {requests.RESTARTS:,} random restarts find in "
+            f"- `{robot}`, {cell['count']:,} poses, {cell['branches']:,} solutions: as "
+            f"many as {requests.RESTARTS:,} random restarts find in "
             f"{_verdict(cell['agrees'], cell['count'], RESTARTS_PERCENT)} %, more in "
             f"{cell['more']}, fewer in {cell['fewer']}, wrong {cell['wrong']}; mean "
             f"{microseconds(cell['mean_us'])} µs."

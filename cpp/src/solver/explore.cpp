@@ -97,11 +97,12 @@ void Solver::Impl::explore(Exploration& search, Workspace& workspace) const {
     ++search.found;
     search.last_new = search.work.attempts;
     if (search.task.is_full_pose()) {
-      // Of a pair that counts as one, the other may still lie on the side of a limit where `near`
-      // is.
+      // Of a pair that counts as one, the other may lie on the side of a limit where `near` is.
       Surroundings around = look_around(model, q, request.near ? 0.0 : search.min_distance);
       search.orientation += around.orientation;
-      if (around.paired) mirrors.push_back(std::move(around.other));
+      if (around.paired && mirrors.size() < mirrors.capacity()) {
+        mirrors.push_back(std::move(around.other));
+      }
     }
     return Verdict::next;
   };

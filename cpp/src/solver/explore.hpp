@@ -38,8 +38,8 @@ class Deadline {
 /// one of two hundred.
 inline constexpr int kSeedsInVain = 96;
 /// The same where the signs of det J cancel. With 16 a UR lost two branches in one pose of three
-/// hundred, with 20 in one of six hundred.
-inline constexpr int kSeedsInVainBalanced = 20;
+/// hundred, with 20 in one of a thousand.
+inline constexpr int kSeedsInVainBalanced = 24;
 
 /// One exploration: what it looks for, and what came of it.
 struct Exploration {

@@ -38,6 +38,7 @@ Workspace::Workspace(const ChainModel& model, const ChainModel& nominal, const D
     : selection(model, nominal, data, options),
       tasks(model, data, options, selection),
       found(model) {
+  mirrors.reserve(kMirrors);
   if (solves_in_lanes(model, data, options)) {
     lanes = std::make_unique<LaneSearch>(model, nominal, data, options, lanes::choose_kernels());
   }

@@ -31,7 +31,10 @@ struct Workspace {
   std::unique_ptr<LaneSearch> lanes;
   /// Of solves with wishes.
   Found found;
+  /// Guesses at solutions that a found one told of, still to be tried (mirror.hpp).
   std::vector<JointVector> mirrors;
+  /// Room for that many; there are fewer solutions that come in pairs.
+  static constexpr std::size_t kMirrors = 64;
 };
 
 struct Solver::Impl {

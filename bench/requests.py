@@ -243,7 +243,7 @@ def _circle(arm: Arm, offset: float) -> tuple[Array, float]:
     angle = np.linspace(0.0, TURN, 401)
     poses = np.tile(through, (401, 1, 1))
     # Half way round it passes the singular pose; there q5 would change its sign.
-    poses[:, 0, 3] += CIRCLE_RADIUS * (1.0 + np.cos(angle)) + offset
+    poses[:, 0, 3] -= CIRCLE_RADIUS * (1.0 + np.cos(angle)) + offset
     poses[:, 1, 3] += CIRCLE_RADIUS * np.sin(angle)
     return poses, 0.02
 

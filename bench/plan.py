@@ -446,7 +446,12 @@ MOVE_RIVALS: dict[str, dict[str, Any]] = {
     "OptIK, quality": {"rival": "OptIK", "quality": True},
 }
 """Solvers that start where they are told, as settings."""
-PATHS = (("panda", "line"), ("ur3", "circle"), ("ur3", "circle_beside"))
+PATHS = (
+    ("panda", "line"),
+    ("ur3", "flip"),
+    ("ur3", "flip_beside"),
+    ("ur3", "flip_free"),
+)
 BRANCH_RIVAL = "EAIK"
 
 

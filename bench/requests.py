@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -227,55 +227,65 @@ def restarts(arm: Arm, goals: Targets, settings: Settings) -> dict[str, Any]:
     }
 
 
-def panda_line(arm: Arm) -> tuple[Array, float]:
+class Path(NamedTuple):
+    """A path to follow."""
+
+    poses: Array
+    """T_base_tip, (N, 4, 4) [m]."""
+    dt: float
+    """Time between two [s]."""
+    start: Array | None = None
+    """Where the arm is before, (dof,) [rad]; None: the solver chooses the branch."""
+
+
+def panda_line(arm: Arm) -> Path:
     """1 m straight to the left at 1 mm and 0.1 m/s, the hand pointing down."""
+    del arm
     poses = np.tile(np.diag([1.0, -1.0, -1.0, 1.0]), (1001, 1, 1))
     poses[:, :3, 3] = [0.45, -0.5, 0.4]
     poses[:, 1, 3] += np.linspace(0.0, 1.0, 1001)
-    del arm
-    return poses, 0.01
+    return Path(poses, 0.01)
 
 
-def _circle(arm: Arm, offset: float) -> tuple[Array, float]:
-    """A horizontal circle that passes a wrist singularity at some distance [m]."""
-    q = np.array([[0.4, -1.2, 1.5, -0.7, 0.0, 0.3]])
-    through = arm.chain.fk(q)[0]
-    angle = np.linspace(0.0, TURN, 401)
-    poses = np.tile(through, (401, 1, 1))
-    # Half way round it passes the singular pose; there q5 would change its sign.
-    poses[:, 0, 3] -= CIRCLE_RADIUS * (1.0 + np.cos(angle)) + offset
-    poses[:, 1, 3] += CIRCLE_RADIUS * np.sin(angle)
-    return poses, 0.02
-
-
-def ur3_circle(arm: Arm) -> tuple[Array, float]:
-    """A circle of 8 cm in 8 s that meets a wrist singularity half way."""
-    return _circle(arm, 0.0)
-
-
-def ur3_circle_beside(arm: Arm) -> tuple[Array, float]:
-    """The same circle, 2 mm off the singularity."""
-    return _circle(arm, 0.002)
-
-
+WRIST_STRAIGHT = [0.4, -1.2, 1.5, -0.7, 0.0, 0.3]
+"""UR3 where joints 4 and 6 are in line: q5 changes its sign there [rad]."""
 CIRCLE_RADIUS = 0.08
-"""Of the path through a wrist flip [m]."""
+"""Of the path past it [m]."""
+TILT = 0.02
+"""Of the tool, which keeps q5 from 0; joints 4 and 6 then turn by half a turn [rad]."""
 
-PATHS: dict[str, Callable[[Arm], tuple[Array, float]]] = {
+
+def _circle(arm: Arm, tilt: float, *, from_there: bool) -> Path:
+    """A horizontal circle that comes through the straight wrist half way round."""
+    through = arm.chain.fk(np.array([WRIST_STRAIGHT]))[0]
+    z = through[:3, 2]
+    axis = np.cross(z, [0.0, 0.0, 1.0])
+    axis *= tilt / np.linalg.norm(axis)
+    rotation = iksel.pose_from_rotation_vector(np.zeros(3), axis)[:3, :3]
+    poses = np.tile(through, (401, 1, 1))
+    poses[:, :3, :3] = rotation @ through[:3, :3]
+    angle = np.linspace(0.0, TURN, 401)
+    poses[:, 0, 3] -= CIRCLE_RADIUS * (1.0 + np.cos(angle))
+    poses[:, 1, 3] += CIRCLE_RADIUS * np.sin(angle)
+    start = iksel.Solver(arm.robot).solve(poses[0], near=WRIST_STRAIGHT).q
+    return Path(poses, 0.02, start if from_there else None)
+
+
+PATHS: dict[str, Callable[[Arm], Path]] = {
     "line": panda_line,
-    "circle": ur3_circle,
-    "circle_beside": ur3_circle_beside,
+    "flip": lambda arm: _circle(arm, 0.0, from_there=True),
+    "flip_beside": lambda arm: _circle(arm, TILT, from_there=True),
+    "flip_free": lambda arm: _circle(arm, TILT, from_there=False),
 }
-"""Poses T_base_tip, (N, 4, 4) [m], and the time between two [s], by name."""
 
 
 def path(settings: Settings) -> dict[str, Any]:
     """A path as a whole, and point by point, each the nearest to the one before."""
     arm = load_arm(settings["robot"])
-    poses, dt = PATHS[settings["path"]](arm)
+    poses, dt, from_q = PATHS[settings["path"]](arm)
     solver = iksel.Solver(arm.robot)
     begin = time.perf_counter()
-    whole = solver.solve_path(poses, dt=dt)
+    whole = solver.solve_path(poses, start=from_q, dt=dt)
     middle = time.perf_counter()
     start = whole.q[0] if len(whole.q) else solver.solve(poses[0]).q
     points = [start]

@@ -133,8 +133,9 @@ def _restarts(view: View) -> list[str]:
 
 PATH_TITLES = {
     "line": "1 m straight at 1 mm and 0.1 m/s",
-    "circle": "a circle of 8 cm radius in 8 s through a wrist singularity",
-    "circle_beside": "the same circle 2 mm off the singularity",
+    "flip": "a circle of 8 cm in 8 s, begun on the branch whose q5 changes its sign",
+    "flip_beside": "the same with the tool tilted by 0.02 rad, which keeps q5 from 0",
+    "flip_free": "the tilted one, begun on any branch",
 }
 
 

@@ -9,18 +9,16 @@
 namespace iksel {
 
 Tiles::Tiles(const DatabaseData& data)
-    : group_size_(static_cast<std::size_t>(lanes::group_rows(data.dof) * lanes::kGroup)) {
+    : group_size_(static_cast<std::size_t>(lanes::group_rows(data.dof) * lanes::kGroup)),
+      size_((data.size + lanes::kGroup - 1) / lanes::kGroup) {
   constexpr auto kGroup = static_cast<std::size_t>(lanes::kGroup);
-  const std::size_t tiles = (data.size + kGroup - 1) / kGroup;
   const auto dim = static_cast<std::size_t>(data.key_dim);
-  groups_.resize(tiles * group_size_);
-  counts_.resize(tiles);
-  middles_.resize(dim * tiles);
-  for (std::size_t tile = 0; tile < tiles; ++tile) {
+  groups_.resize(size_ * group_size_);
+  middles_.resize(dim * size_);
+  for (std::size_t tile = 0; tile < size_; ++tile) {
     // Neighbours in the tree's order are near each other.
     const std::size_t first = tile * kGroup;
     const std::size_t count = std::min(kGroup, data.size - first);
-    counts_[tile] = static_cast<int>(count);
     for (std::size_t slot = 0; slot < kGroup; ++slot) {
       write_to_group(data, first + slot % count, static_cast<int>(slot),
                      &groups_[tile * group_size_]);
@@ -28,7 +26,7 @@ Tiles::Tiles(const DatabaseData& data)
     for (std::size_t d = 0; d < dim; ++d) {
       double sum = 0;
       for (std::size_t i = first; i < first + count; ++i) sum += data.keys[i * dim + d];
-      middles_[d * tiles + tile] = static_cast<float>(sum / static_cast<double>(count));
+      middles_[d * size_ + tile] = static_cast<float>(sum / static_cast<double>(count));
     }
   }
 }

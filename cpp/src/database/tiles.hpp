@@ -17,18 +17,17 @@ class Tiles {
   /// `data` has its keys, in the order of its tree, and records already.
   explicit Tiles(const DatabaseData& data);
 
-  [[nodiscard]] std::size_t size() const { return counts_.size(); }
+  [[nodiscard]] std::size_t size() const { return size_; }
   /// A tile's samples as a group of lanes (lane_types.hpp).
   [[nodiscard]] const float* group(std::size_t tile) const { return &groups_[tile * group_size_]; }
-  /// How many of its places are samples of their own; the others repeat them.
-  [[nodiscard]] int count(std::size_t tile) const { return counts_[tile]; }
   /// Squared distance of each tile's middle from a key.
   void measure(const double* key, float* distance2) const;
 
  private:
   std::size_t group_size_ = 0;
+  std::size_t size_ = 0;
+  /// Places left over in the last tile repeat its samples.
   std::vector<float> groups_;
-  std::vector<int> counts_;
   /// Mean key of each tile, dimension by dimension.
   std::vector<float> middles_;
 };

@@ -69,7 +69,7 @@ Eigen::Vector3d TaskSpace::rotation_part(const Eigen::Matrix3d& E, Eigen::Matrix
     return Eigen::Vector3d::Zero();
   }
   if (twist_ < 0) {
-    const Eigen::Vector3d w = to_rotation_vector(E);
+    Eigen::Vector3d w = to_rotation_vector(E);
     if (map != nullptr) *map = inverse_left_jacobian(w);
     return w;
   }
@@ -114,10 +114,10 @@ Vector6 TaskSpace::deviation(const Pose& target, const Pose& pose, JacobianMatri
   Eigen::Matrix3d map;
   const Eigen::Vector3d p = pose.translation() - target.translation();
   if (task_.frame == TaskFrame::tool) {
-    const Eigen::Matrix3d Rt = target.linear().transpose();
-    d << Rt * p, rotation_part(Rt * pose.linear(), &map);
-    map = map * Rt;
-    J.topRows<3>() = Rt * J.topRows<3>().eval();
+    const Eigen::Matrix3d to_target = target.linear().transpose();
+    d << to_target * p, rotation_part(to_target * pose.linear(), &map);
+    map = map * to_target;
+    J.topRows<3>() = to_target * J.topRows<3>().eval();
   } else {
     d << p, rotation_part(pose.linear() * target.linear().transpose(), &map);
   }

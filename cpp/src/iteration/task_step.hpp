@@ -28,7 +28,7 @@ JointVector task_step(const TaskSpace& task, const JacobianMatrix& J, const Vect
     if (!active[i]) rows.row(i).setZero();
   }
   for (int round = 0;; ++round) {
-    const JointVector adjustment = step(rows, asked, squared_error);
+    JointVector adjustment = step(rows, asked, squared_error);
     constexpr int kRounds = 3;
     if (round == kRounds) return adjustment;
     bool changed = false;

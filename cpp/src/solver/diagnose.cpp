@@ -239,8 +239,9 @@ class Solver::Impl::Inquiry {
     return Solver(arm, generous(solver_.options), solver_.database, solver_.nominal,
                   Drift{kInfinity, kInfinity});
   }
-  [[nodiscard]] BestEffort make_effort(const TaskSpace& task) const {
-    return BestEffort(model_, solver_.options, solver_.database.data().weight, task, T_base_tip_);
+  [[nodiscard]] BestEffort make_effort(const TaskSpace& towards) const {
+    return BestEffort(model_, solver_.options, solver_.database.data().weight, towards,
+                      T_base_tip_);
   }
 
   bool explain_refusals() {

@@ -61,6 +61,7 @@ void Solver::Impl::explore(Exploration& search, Workspace& workspace) const {
   }
 
   search.orientations_cancel = search.task.is_full_pose() && orientations_cancel(model);
+  search.most = most_solutions;
   const SolveRequest& request = search.request;
   const JointMove move(model.dof, request);
   const Deadline deadline(request.deadline);
@@ -120,6 +121,25 @@ void Solver::Impl::explore(Exploration& search, Workspace& workspace) const {
     explore_one_by_one(search, workspace, accept, go_on);
   }
   if (found.size() > 0) search.status = Status::solved;
+}
+
+int Solver::Impl::count_most_solutions() const {
+  constexpr std::size_t kPoses = 64;
+  if (!task.is_full_pose() || !orientations_cancel(robot.model())) return 0;
+  const SolveRequest none;
+  const AllOptions all;
+  const auto never = [](const Exploration&) { return false; };
+  const Lease lease(*this);
+  const Matrix q = robot.random_configurations(kPoses, options.seed);
+  int most = 0;
+  for (Eigen::Index i = 0; i < q.rows(); ++i) {
+    const Pose target = robot.fk(q.row(i));
+    Exploration search{
+        target, task, none, all.min_distance, FunctionRef<bool(const Exploration&)>(never), true};
+    explore(search, lease.get());
+    most = std::max(most, search.found);
+  }
+  return most;
 }
 
 void Solver::Impl::take_turns_near(const JointVector& near, const TaskSpace& of_call,

@@ -41,6 +41,9 @@ inline constexpr int kSeedsInVain = 96;
 /// hundred, with 20 in one of a thousand.
 inline constexpr int kSeedsInVainBalanced = 24;
 
+/// The same where there are as many solutions as the chain was ever seen to have.
+inline constexpr int kSeedsInVainMost = 2;
+
 /// One exploration: what it looks for, and what came of it.
 struct Exploration {
   const Pose& T_base_tip;
@@ -59,6 +62,7 @@ struct Exploration {
   int last_new = 0;                  ///< seeds tried until the last of them
   int orientation = 0;               ///< sum of their signs of det J
   bool orientations_cancel = false;  ///< over all that there are
+  int most = 0;                      ///< solutions that a pose is known to have at most; 0: unknown
   bool out_of_time = false;
 
   [[nodiscard]] bool ends_complete() const { return until_complete && is_likely_complete(); }
@@ -66,8 +70,10 @@ struct Exploration {
   /// fewer, and the signs of det J, of which a single solution more would leave one over, cancel.
   [[nodiscard]] bool is_likely_complete() const {
     const bool balanced = orientations_cancel && orientation == 0;
-    return found > 0 &&
-           work.attempts - last_new >= (balanced ? kSeedsInVainBalanced : kSeedsInVain);
+    const int in_vain = !balanced       ? kSeedsInVain
+                        : found == most ? kSeedsInVainMost
+                                        : kSeedsInVainBalanced;
+    return found > 0 && work.attempts - last_new >= in_vain;
   }
 };
 

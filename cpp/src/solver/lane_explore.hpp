@@ -108,11 +108,9 @@ void LaneSearch::explore(const Pose& T_base_tcp, Work& work, const Accept& accep
     const auto begin = tile_order_.begin() + static_cast<std::ptrdiff_t>(done);
     const auto end = begin + static_cast<std::ptrdiff_t>(count);
     std::partial_sort(begin, end, tile_order_.end(), nearer);
-    int seeds = 0;
     for (std::size_t t = 0; t < count; ++t) {
       const std::uint32_t tile = tile_order_[done + t];
       kernels_.prepare(seed_chain_, seed_target_, tiles.group(tile), tile_seeds_[t]);
-      seeds += tiles.count(tile);
     }
     // The best of each tile, then the second best, and so on.
     const auto pack_of = [&](int k) -> const lanes::SeedPack& {

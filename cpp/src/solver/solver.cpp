@@ -57,6 +57,7 @@ Solver::Impl::Impl(const Robot& robot_in, const SolverOptions& options_in,
   for (std::size_t i = 0; i < std::min(cores, kPlaces); ++i) {
     idle_[i] = new Workspace(robot.model(), nominal.model(), database.data(), options);
   }
+  most_solutions = count_most_solutions();
 }
 
 Solver::Impl::~Impl() {

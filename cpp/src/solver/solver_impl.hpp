@@ -95,6 +95,7 @@ struct Solver::Impl {
   Drift drift;
   /// options.task.
   TaskSpace task;
+  int most_solutions = 0;
 
   /// Most targets of one solve_many.
   static constexpr std::size_t kMany = 256;
@@ -111,6 +112,9 @@ struct Solver::Impl {
   /// The task of a request, or the options'.
   [[nodiscard]] TaskSpace task_of(const SolveRequest& request) const;
   class Judge;
+  /// The most solutions that one of some poses has, if the signs of det J tell when a search has
+  /// them all; else 0.
+  [[nodiscard]] int count_most_solutions() const;
   class Inquiry;
   /// Makes q the best effort of a diagnosis.
   void describe(const TaskSpace& of_call, const Pose& target, const JointVector& q,

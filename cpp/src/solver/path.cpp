@@ -37,8 +37,10 @@ struct Layer {
   }
   /// Adds a candidate unless it is there; copies by whole turns are others.
   void add(const JointVector& candidate) {
-    for (std::size_t i = 0; i < size(); ++i) {
-      if ((at(i) - candidate).cwiseAbs().maxCoeff() < kSameCandidate) return;
+    for (const double* known = q.data(); known != q.data() + q.size(); known += dof) {
+      std::size_t j = 0;
+      while (j < dof && std::abs(known[j] - candidate.data()[j]) < kSameCandidate) ++j;
+      if (j == dof) return;
     }
     q.insert(q.end(), candidate.data(), candidate.data() + dof);
   }
@@ -116,9 +118,13 @@ class PathSearch {
         } while (layer.size() < kMostTurns && take_next_turns(model_, q));
         continue;
       }
+      // Most that the path may come from lie in the same turn.
+      JointVector last = q;
       for (std::size_t k = 0; k < before->size(); ++k) {
         take_nearest_turns(model_, before->at(k), 0, q);
+        if (k > 0 && q == last) continue;
         layer.add(q);
+        last = q;
       }
     }
   }

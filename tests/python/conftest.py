@@ -3,9 +3,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import os
 import shlex
+import signal
+import threading
+import time
 
 import hypothesis
 import pytest
@@ -77,3 +81,23 @@ def run(capfd: pytest.CaptureFixture[str]) -> Run:
         return Output(code, out, err)
 
     return run_
+
+
+@contextlib.contextmanager
+def _interrupted():
+    # A shell's background jobs start with the signal ignored.
+    handler = signal.signal(signal.SIGINT, signal.default_int_handler)
+    started = time.monotonic()
+    try:
+        threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+        with pytest.raises(KeyboardInterrupt):
+            yield
+    finally:
+        signal.signal(signal.SIGINT, handler)
+    assert time.monotonic() - started < 30
+
+
+@pytest.fixture
+def interrupted():
+    """A context that Ctrl-C ends after a moment, long before its body would end."""
+    return _interrupted

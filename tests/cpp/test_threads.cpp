@@ -6,6 +6,7 @@
 #include <atomic>
 #include <iksel/iksel.hpp>
 #include <numeric>
+#include <random>
 #include <string>
 #include <thread>
 #include <utility>
@@ -149,11 +150,11 @@ TEST(Threads, EightThreadsShareOneSolver) {
     for (std::size_t t = 0; t < shared.size(); ++t) {
       threads.emplace_back([&, t] {
         // Each in another order, so that no two are in step.
+        std::vector<std::size_t> order(targets.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::shuffle(order.begin(), order.end(), std::mt19937_64(iksel_test::seed() + t));
         shared[t].resize(targets.size());
-        for (std::size_t k = 0; k < targets.size(); ++k) {
-          const std::size_t i = (k * 7 + t * 53) % targets.size();
-          shared[t][i] = solver.solve(targets[i]);
-        }
+        for (const std::size_t i : order) shared[t][i] = solver.solve(targets[i]);
       });
     }
     for (std::thread& thread : threads) thread.join();

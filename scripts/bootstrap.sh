@@ -51,6 +51,7 @@ find_missing() {
   want_library xsimd libxsimd-dev
   if ! $apt_only; then find_missing_python; fi
   if $dev; then
+    want_command ccache ccache
     want_library benchmark libbenchmark-dev
     want_library gtest libgtest-dev
   fi
@@ -108,7 +109,12 @@ install_project() {
     quietly "making the virtual environment $venv" "$base_python" -m venv --clear "$venv"
   fi
   local stamp=$venv/iksel.stamp target=. state
-  if $dev; then target='.[dev]'; fi
+  # As the tests build it, so that ccache knows it.
+  local settings=()
+  if $dev; then
+    target='.[dev]'
+    settings=(-C build-dir=build/python -C cmake.define.IKSEL_WARNINGS_AS_ERRORS=ON)
+  fi
   state="$(source_hash) $("$python" -V)"
   # Once the extra is there, it stays there.
   if [[ -f $stamp ]] && { [[ $(<"$stamp") == "$state $target" ]] ||
@@ -117,7 +123,7 @@ install_project() {
   fi
   if [[ -f $stamp ]] && grep -qF '.[dev]' "$stamp"; then target='.[dev]'; fi
   rm -f "$stamp"
-  quietly "installing iksel into $venv" "$python" -m pip install "$target"
+  quietly "installing iksel into $venv" "$python" -m pip install "${settings[@]}" "$target"
   printf '%s\n' "$state $target" >"$stamp"
 }
 
@@ -135,6 +141,7 @@ PYTHON
 }
 
 install_missing
+use_ccache
 if ! $apt_only; then
   install_project
   if $bench; then install_rivals; fi

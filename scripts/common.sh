@@ -16,9 +16,14 @@ export CMAKE_BUILD_PARALLEL_LEVEL CTEST_PARALLEL_LEVEL
 if command -v ninja >/dev/null; then
   export CMAKE_GENERATOR=${CMAKE_GENERATOR:-Ninja}
 fi
-if command -v ccache >/dev/null; then
+# The package and the tests are made of the same sources: what one build has compiled, the next takes.
+use_ccache() {
+  if ! command -v ccache >/dev/null; then return; fi
   export CMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER:-ccache}
-fi
+  # Wherever the folder of the build is, and by one name of the compiler.
+  export CCACHE_BASEDIR=${CCACHE_BASEDIR:-$root} CCACHE_NOHASHDIR=1 CXX=${CXX:-c++}
+}
+use_ccache
 
 die() {
   printf '%s: %s\n' "$(basename "$0")" "$1" >&2

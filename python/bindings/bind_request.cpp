@@ -54,12 +54,14 @@ struct PySolutions {
   }
 };
 
-PyResult solve(const Solver& self, const ArrayLike& pose, const std::optional<ArrayLike>& near,
-               const std::optional<ArrayLike>& weights, const Loose<MoveNorm>& norm,
-               const std::optional<ArrayLike>& seeds, const Loose<bool>& database_seeds,
-               const std::optional<FilterCallable>& filter,
-               const std::optional<Loose<double>>& deadline, const std::optional<Loose<Task>>& task,
-               const std::optional<ObjectiveLike>& objective) {
+PyResult solve_request(const Solver& self, const ArrayLike& pose,
+                       const std::optional<ArrayLike>& near,
+                       const std::optional<ArrayLike>& weights, const Loose<MoveNorm>& norm,
+                       const std::optional<ArrayLike>& seeds, const Loose<bool>& database_seeds,
+                       const std::optional<FilterCallable>& filter,
+                       const std::optional<Loose<double>>& deadline,
+                       const std::optional<Loose<Task>>& task,
+                       const std::optional<ObjectiveLike>& objective) {
   const Pose target = as_pose(pose, "pose");
   const SolveRequest request = make_request(self.robot().dof(), near, weights, norm, seeds,
                                             database_seeds, filter, deadline, task, objective);
@@ -145,7 +147,7 @@ void bind_requests(py::module_& m, py::class_<Solver>& cls) {
   const AllOptions all;
   const char* norm = enum_name(wishes.norm);
   // A second overload, so that plain solving pays nothing for the wishes.
-  cls.def("solve", &solve, py::arg("pose"), py::kw_only(), py::arg("near") = py::none(),
+  cls.def("solve", &solve_request, py::arg("pose"), py::kw_only(), py::arg("near") = py::none(),
           py::arg("weights") = py::none(), py::arg("norm") = norm, py::arg("seeds") = py::none(),
           py::arg("database_seeds") = wishes.database_seeds, py::arg("filter") = py::none(),
           py::arg("deadline") = py::none(), py::arg("task") = py::none(),

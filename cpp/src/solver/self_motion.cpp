@@ -37,12 +37,9 @@ class SlideStep {
       Vector6 y;
       const JointVector slope = curvature_.cwiseProduct(x) + gradient_;
       const JointVector p = step_on_active(slope, y);
-      constexpr double kStill = 1e-12;
-      if (p.cwiseAbs().maxCoeff() <= kStill) {
-        if (!release(slope, y)) break;
-        continue;
-      }
-      advance(p, x);
+      if (advance(p, x)) continue;
+      // At the least cost over the active bounds, whose multipliers are y.
+      if (!release(slope + curvature_.cwiseProduct(p), y)) break;
     }
     return x;
   }
@@ -63,8 +60,9 @@ class SlideStep {
     return inverse.cwiseProduct(rows.transpose() * y - slope);
   }
 
-  /// Goes from x along p to its end, or to the first bound on the way, which becomes active.
-  void advance(const JointVector& p, JointVector& x) {
+  /// Goes from x along p to its end, or to the first bound on the way, which becomes active. True
+  /// if there was one.
+  bool advance(const JointVector& p, JointVector& x) {
     double part = 1;
     int joint = -1;
     int row = -1;
@@ -90,6 +88,7 @@ class SlideStep {
     } else if (joint >= 0) {
       side_[joint] = p[joint] > 0 ? 1 : -1;
     }
+    return row >= 0 || joint >= 0;
   }
 
   /// Takes out the active bound whose multiplier says most that it pulls instead of holding; false

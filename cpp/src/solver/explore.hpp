@@ -34,9 +34,9 @@ class Deadline {
 };
 
 /// Seeds in a row without a new solution after which a search has most likely found all.
-/// With 64, an arm whose limits cut into its branches lost one in a pose of a hundred, with 96 in
-/// one of two hundred.
-inline constexpr int kSeedsInVain = 96;
+/// With 96, an arm whose limits cut into its branches lost one in a pose of two hundred, with 128 in
+/// one of three hundred, with 160 in one of seven hundred.
+inline constexpr int kSeedsInVain = 160;
 /// The same where the signs of det J cancel. With 16 a UR lost two branches in one pose of three
 /// hundred, with 20 in one of a thousand.
 inline constexpr int kSeedsInVainBalanced = 24;

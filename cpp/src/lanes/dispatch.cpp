@@ -15,14 +15,21 @@ namespace {
 /// Widest first.
 std::vector<const LaneKernels*> available() {
   std::vector<const LaneKernels*> kernels;
-#if defined(IKSEL_X86)
+#if defined(__x86_64__)
   __builtin_cpu_init();
+#endif
+#if defined(IKSEL_SIMD_AVX512)
   if (__builtin_cpu_supports("avx512f")) kernels.push_back(&kKernelsAvx512);
+#endif
+#if defined(IKSEL_SIMD_AVX2)
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
     kernels.push_back(&kKernelsAvx2);
   }
+#endif
+#if defined(IKSEL_SIMD_SSE2)
   kernels.push_back(&kKernelsSse2);
-#elif defined(IKSEL_NEON)
+#endif
+#if defined(IKSEL_SIMD_NEON)
   kernels.push_back(&kKernelsNeon);
 #endif
   kernels.push_back(&kKernelsScalar);
@@ -41,7 +48,7 @@ const LaneKernels& choose_kernels() {
     names.emplace_back(k->name);
   }
   throw InvalidArgumentError("IKSEL_SIMD: '" + std::string(asked) +
-                             "' is not to be had on this machine; it has: " + list_names(names));
+                             "' is not to be had here; there are: " + list_names(names));
 }
 
 }  // namespace lanes

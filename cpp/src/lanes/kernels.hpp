@@ -7,16 +7,14 @@
 namespace iksel::lanes {
 
 extern const LaneKernels kKernelsScalar;
-#if defined(IKSEL_X86)
+// Of these, what IKSEL_SIMD_LEVELS of CMake names.
 extern const LaneKernels kKernelsSse2;
 extern const LaneKernels kKernelsAvx2;
 extern const LaneKernels kKernelsAvx512;
-#elif defined(IKSEL_NEON)
 extern const LaneKernels kKernelsNeon;
-#endif
 
-/// The widest that this processor has, or what the environment variable IKSEL_SIMD asks for. Throws
-/// InvalidArgumentError if that is unknown or not to be had here.
+/// The widest that was built and that this processor has, or what the environment variable
+/// IKSEL_SIMD asks for. Throws InvalidArgumentError if that is unknown or not to be had here.
 const LaneKernels& choose_kernels();
 
 }  // namespace iksel::lanes

@@ -6,6 +6,7 @@
 #include "lanes/lane_math.hpp"
 #include "lanes/lane_types.hpp"
 #include "lanes/seed_kernel.hpp"
+#include "math/symmetric.hpp"
 
 namespace iksel::lanes {
 
@@ -16,45 +17,6 @@ inline void turn(T (&u)[3], T (&v)[3], const C& c, const C& s) {
     const T a = u[i];
     u[i] = a * c + v[i] * s;
     v[i] = v[i] * c - a * s;
-  }
-}
-
-/// Solves (A + lambda I) y = b for a symmetric 6 x 6 A of which the lower half is given (L D L^T).
-template <typename T>
-inline void solve_symmetric(T (&A)[6][6], const T& lambda, const T (&b)[6], T (&y)[6]) {
-  T inverse[6];
-#pragma GCC unroll 6
-  for (int j = 0; j < 6; ++j) {
-    T d = A[j][j] + lambda;
-    T scaled[6];
-#pragma GCC unroll 6
-    for (int k = 0; k < j; ++k) {
-      scaled[k] = A[j][k];
-      A[j][k] = A[j][k] * inverse[k];
-      d = d - A[j][k] * scaled[k];
-    }
-    inverse[j] = T(1.0) / d;
-#pragma GCC unroll 6
-    for (int i = j + 1; i < 6; ++i) {
-      T v = A[i][j];
-#pragma GCC unroll 6
-      for (int k = 0; k < j; ++k) v = v - A[i][k] * A[j][k];
-      A[i][j] = v;
-    }
-  }
-#pragma GCC unroll 6
-  for (int i = 0; i < 6; ++i) {
-    T v = b[i];
-#pragma GCC unroll 6
-    for (int k = 0; k < i; ++k) v = v - A[i][k] * y[k];
-    y[i] = v;
-  }
-#pragma GCC unroll 6
-  for (int i = 0; i < 6; ++i) y[i] = y[i] * inverse[i];
-#pragma GCC unroll 6
-  for (int i = 5; i >= 0; --i) {
-#pragma GCC unroll 6
-    for (int k = i + 1; k < 6; ++k) y[i] = y[i] - A[k][i] * y[k];
   }
 }
 
@@ -175,7 +137,7 @@ PackResult advance(const LaneChain& chain, const LaneOptions& options, unsigned 
     }
     const T lambda = T(options.damping) * e2 + T(1e-18);
     T step[6];
-    solve_symmetric(A, lambda, e, step);
+    SymmetricFactors<T>(A, lambda).solve(e, step);
     // A lane that is there already stays: along a singular direction the step may be long.
     const auto there =
         (ep2 + er2 * T(options.lever2) <= T(options.position2)) & (er2 <= T(options.rotation2));

@@ -24,6 +24,7 @@ struct Steering {
   Found& found;
   std::vector<JointVector>& mirrors;
   FunctionRef<bool()> ask;
+  /// Seeds and lanes nearer to a solution are not followed further [rad or m]; 0: all are.
   double caught;
 
   /// The next seed that goes before the database's, if there is one.
@@ -36,6 +37,9 @@ struct Steering {
   [[nodiscard]] bool exhausted() const { return search.ends_complete(); }
 
   [[nodiscard]] bool go_on() const { return ask(); }
+  /// Solutions that seeds are to be taken far from: none where all are followed.
+  [[nodiscard]] std::size_t known() const { return caught > 0 ? found.size() : 0; }
+  [[nodiscard]] const double* solution(std::size_t i) const { return found.q(i); }
   template <typename Q>
   [[nodiscard]] bool knows(const Q& q) const {
     return caught > 0 && found.is_near_known(q, caught);

@@ -34,12 +34,12 @@ class Deadline {
 };
 
 /// Seeds in a row without a new solution after which a search has most likely found all.
-/// With 96, an arm whose limits cut into its branches lost one in a pose of two hundred, with 128 in
-/// one of three hundred, with 160 in one of seven hundred.
+/// With 96, an arm whose limits cut into its branches lost one in a pose of 170, with 128
+/// in one of 300, with 160 in one of 700 (bench/README.md).
 inline constexpr int kSeedsInVain = 160;
-/// The same where the signs of det J cancel. With 16 a UR lost two branches in one pose of three
-/// hundred, with 20 in one of a thousand.
-inline constexpr int kSeedsInVainBalanced = 24;
+/// The same where the signs of det J cancel. With 12 a UR lost two branches in a pose of 5,000,
+/// with 14 in one of 10,000.
+inline constexpr int kSeedsInVainBalanced = 14;
 
 /// The same where there are as many solutions as the chain was ever seen to have.
 inline constexpr int kSeedsInVainMost = 2;

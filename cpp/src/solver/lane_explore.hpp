@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A search in lanes that goes on after a solution: through the database tile by tile, then random
-// restarts, and past every seed that is on its way to what is known.
+// A search in lanes that goes on after a solution: through the database tile by tile, always with
+// the seed farthest from what was found, then random restarts; and past every seed that is on its
+// way to what is known.
 #pragma once
 
 #include <algorithm>
@@ -16,17 +17,16 @@ inline constexpr int kLook = 2;
 /// the mean, and what is far off after 6 costs more than what it finds.
 inline constexpr int kExplorePatience = 6;
 
-/// A column of joint values in lanes.
-template <typename Rows>
+/// The joint values of one lane.
 struct LaneColumn {
-  const Rows& rows;
+  const double (&rows)[lanes::kMaxJoints][lanes::kWidth];
   int lane;
-  double operator[](int joint) const { return static_cast<double>(rows[joint][lane]); }
+  double operator[](int joint) const { return rows[joint][lane]; }
 };
 
-template <typename Skips, typename Load, typename Accept, typename Steering>
-void LaneSearch::iterate_steered(int count, Work& work, const Skips& skips, const Load& load,
-                                 const Accept& accept, const Steering& steering) {
+template <typename Load, typename Accept, typename Steering>
+void LaneSearch::iterate_steered(int count, Work& work, const Load& load, const Accept& accept,
+                                 const Steering& steering) {
   const int lanes = kernels_.lanes;
   const int patience = std::min(kExplorePatience, options_.max_iterations);
   int age[lanes::kWidth] = {};
@@ -48,9 +48,8 @@ void LaneSearch::iterate_steered(int count, Work& work, const Skips& skips, cons
     }
     while (!steering.exhausted() && next < count && work.attempts < options_.max_attempts) {
       ++work.attempts;
-      const int k = next++;
-      if (skips(k)) continue;
-      load(k, lane);
+      ++next;
+      if (!load(lane)) continue;
       age[lane] = 0;
       next_look[lane] = kLook;
       alive |= bit;
@@ -73,10 +72,9 @@ void LaneSearch::iterate_steered(int count, Work& work, const Skips& skips, cons
       age[lane] += result.iterations;
       bool finished = age[lane] >= options_.max_iterations ||
                       (age[lane] >= patience && !(pack_.error2[lane] < kFarOff2));
-      using Column = LaneColumn<decltype(pack_.q)>;
       const bool look = age[lane] >= next_look[lane] && (sure & bit) == 0;
       if (look) next_look[lane] = age[lane] + kLook;
-      if (look && !finished && steering.knows(Column{pack_.q, lane})) {
+      if (look && !finished && steering.knows(LaneColumn{pack_.q, lane})) {
         finished = true;
       } else if ((result.done & bit) != 0) {
         JointVector q(model_.dof);
@@ -114,32 +112,32 @@ void LaneSearch::explore(const Pose& T_base_tcp, Work& work, const Accept& accep
       const std::uint32_t tile = tile_order_[done + t];
       kernels_.prepare(seed_chain_, seed_target_, tiles.group(tile), tile_seeds_[t]);
     }
-    // The best of each tile, then the second best, and so on.
-    const auto pack_of = [&](int k) -> const lanes::SeedPack& {
-      return tile_seeds_[static_cast<std::size_t>(k) % count];
+    seeds_left_.reset(tile_seeds_.data(), static_cast<int>(count));
+    std::size_t kept_from = 0;
+    const auto load = [&](int lane) {
+      for (; kept_from < steering.known(); ++kept_from) {
+        seeds_left_.keep_from(steering.solution(kept_from));
+      }
+      float distance = 0;
+      const int k = seeds_left_.take(distance);
+      if (distance < steering.caught) return false;
+      for (int j = 0; j < model_.dof; ++j) pack_.q[j][lane] = seeds_left_.q(j, k);
+      return true;
     };
-    const auto slot_of = [&](int k) {
-      return static_cast<int>(pack_of(k).order[static_cast<std::size_t>(k) / count]);
-    };
-    const auto skips = [&](int k) {
-      using Column = LaneColumn<decltype(lanes::SeedPack::q)>;
-      return steering.knows(Column{pack_of(k).q, slot_of(k)});
-    };
-    const auto load = [&](int k, int lane) { load_slot(pack_of(k), slot_of(k), lane); };
-    iterate_steered(static_cast<int>(count) * lanes::kGroup, work, skips, load, accept, steering);
+    iterate_steered(static_cast<int>(count) * lanes::kGroup, work, load, accept, steering);
     done += count;
     if (!go_on()) return;
   }
 
   Random random(options_.seed);
-  const auto none = [](int) { return false; };
-  const auto load_random = [&](int, int lane) {
+  const auto load_random = [&](int lane) {
     for (int j = 0; j < model_.dof; ++j) {
       pack_.q[j][lane] = random.uniform(model_.sample_lower(j), model_.sample_upper(j));
     }
+    return true;
   };
   do {
-    iterate_steered(kTilesAtOnce * lanes::kGroup, work, none, load_random, accept, steering);
+    iterate_steered(kTilesAtOnce * lanes::kGroup, work, load_random, accept, steering);
   } while (go_on());
 }
 

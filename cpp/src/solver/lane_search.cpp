@@ -50,7 +50,8 @@ LaneSearch::LaneSearch(const ChainModel& model, const ChainModel& nominal, const
       group_(static_cast<std::size_t>(lanes::group_rows(model.dof) * lanes::kGroup)),
       tile_distance2_(data.tiles.size()),
       tile_order_(data.tiles.size()),
-      tile_seeds_(kTilesAtOnce) {}
+      tile_seeds_(kTilesAtOnce),
+      seeds_left_(model) {}
 
 Pose LaneSearch::set_query(const Pose& T_base_tcp) {
   Pose Y = base_inverse_ * T_base_tcp * tcp_inverse_;

@@ -12,6 +12,7 @@
 #include "kinematics/chain_model.hpp"
 #include "lanes/kernels.hpp"
 #include "math/random.hpp"
+#include "solver/seeds_left.hpp"
 #include "solver/stage_clock.hpp"
 
 namespace iksel {
@@ -45,10 +46,10 @@ class LaneSearch {
   bool search(const Pose& T_base_tcp, const JointVector* seed, StageClock& clock, Work& work,
               const Accept& accept);
 
-  /// As search, but through tiles of the database instead of the nearest samples one by one, and
-  /// past seeds on their way to what is known: `steering.go_on() -> bool`, asked now and then, ends
-  /// the search if false; `steering.knows(q) -> bool` tells whether joint values, of a seed after
-  /// its first step or on its way, lie near a solution that was found before (lane_explore.hpp).
+  /// As search, but through tiles of the database instead of the nearest samples one by one, with
+  /// the seeds far from what was found first, and past lanes on their way to it
+  /// (lane_explore.hpp). `steering` tells of what was found, may give seeds of its own, and ends
+  /// the search: see Steering in explore.cpp.
   template <typename Accept, typename Steering>
   void explore(const Pose& T_base_tcp, Work& work, const Accept& accept, const Steering& steering);
 
@@ -73,9 +74,9 @@ class LaneSearch {
   /// Of the group's seeds, by rank.
   void load_ranked(int rank, int lane);
   void load_slot(const lanes::SeedPack& seeds, int slot, int lane);
-  template <typename Skips, typename Load, typename Accept, typename Steering>
-  void iterate_steered(int count, Work& work, const Skips& skips, const Load& load,
-                       const Accept& accept, const Steering& steering);
+  template <typename Load, typename Accept, typename Steering>
+  void iterate_steered(int count, Work& work, const Load& load, const Accept& accept,
+                       const Steering& steering);
   void set_lane_target(int lane, const Pose& Y);
 
   const ChainModel& model_;
@@ -96,14 +97,13 @@ class LaneSearch {
   std::vector<float> tile_distance2_;
   std::vector<std::uint32_t> tile_order_;
   std::vector<lanes::SeedPack> tile_seeds_;
+  SeedsLeft seeds_left_;
 };
 
 /// A seed that is still far off after so many iterations is given up: few such come home.
 inline constexpr int kPatience = 8;
 /// Seeds that a target of a batch is given before it is solved by itself.
 inline constexpr int kStreamSeeds = 2;
-/// Tiles whose seeds are iterated together, so that lanes find work.
-inline constexpr int kTilesAtOnce = 4;
 /// Squared error that counts as far off [mixed units].
 inline constexpr double kFarOff2 = 1e-4;
 

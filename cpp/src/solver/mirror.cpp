@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "math/pseudo_inverse.hpp"
+#include "math/symmetric.hpp"
 #include "solver/joint_move.hpp"
 
 namespace iksel {
@@ -20,21 +21,29 @@ Surroundings look_around(const ChainModel& model, const JointVector& q, double n
   Jacobian J;
   model.fk_jacobian(q.data(), pose, J);
   // Joints that are not there are of no consequence: they have zeros, and ones on the diagonal.
-  using Motions = Eigen::Matrix<double, 6, kMost>;
-  Motions motions = Motions::Zero();
+  Matrix6 motions = Matrix6::Zero();
   motions.leftCols(model.dof) = J;
   if (model.dof == kMost) result.orientation = motions.determinant() < 0 ? -1 : 1;
-  Matrix6 A = motions.transpose() * motions;
-  A.diagonal().array() += 1e-12 * A.trace();
-  for (int j = model.dof; j < kMost; ++j) A(j, j) = 1;
-  const Eigen::LLT<Matrix6> llt(A);
-  // Inverse iteration; the start is of no symmetry that an arm may have.
-  Vector6 v = Vector6::Zero();
-  for (int j = 0; j < model.dof; ++j) v[j] = 1 + 0.13 * j;
-  for (int i = 0; i < 3; ++i) v = llt.solve(v).normalized();
+  double A[kMost][kMost];
+  double trace = 0;
+  for (int i = 0; i < kMost; ++i) {
+    for (int k = 0; k <= i; ++k) A[i][k] = motions.col(i).dot(motions.col(k));
+    trace += A[i][i];
+  }
+  for (int j = model.dof; j < kMost; ++j) A[j][j] = 1;
+  const SymmetricFactors<double> factors(A, 1e-12 * trace);
+  // Inverse iteration, which goes to the direction of the least singular value; the start is of no
+  // symmetry that an arm may have.
+  double start[kMost] = {};
+  for (int j = 0; j < model.dof; ++j) start[j] = 1 + 0.13 * j;
+  double next[kMost];
+  factors.solve(start, next);
+  factors.solve(next, start);
+  factors.solve(start, next);
+  const Vector6 v = Eigen::Map<const Vector6>(next).normalized();
   const Vector6 motion = motions * v;
   const double sigma = motion.norm();
-  if (!(sigma > 0)) return result;
+  if (!(sigma > 0) || !v.allFinite()) return result;
   const JointVector ahead = q + kStep * v.head(model.dof);
   model.fk_jacobian(ahead.data(), pose, J);
   const double kappa = motion.dot(J * v.head(model.dof) - motion) / (sigma * kStep);

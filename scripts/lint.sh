@@ -36,8 +36,8 @@ clang_format() {
   sources '*.cpp' '*.hpp' | xargs -0 -r clang-format --dry-run --Werror
 }
 
-# The checks walk through all of Eigen for every source, so the library is given to them as one
-# source that includes the others. The lane kernels in it are the scalar ones: those of the other
+# The checks walk through all of Eigen for every source, so the library is given to them as two
+# sources that include the others. The lane kernels in it are the scalar ones: those of the other
 # instruction sets, which have flags of their own and stay outside, are the same templates.
 clang_tidy() {
   cmake --preset tidy >/dev/null

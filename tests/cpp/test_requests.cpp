@@ -420,7 +420,10 @@ TEST(RequestBatch, IsTheLoopOnAnyNumberOfThreads) {
 
 TEST(RequestBatch, FilterIsAskedAboutManyAndFindsWhatSolveFinds) {
   for (const char* name : {"ur3", "cvrb1213", "panda"}) {
-    const Solver solver(iksel_test::load(robot_case(name)));
+    // Where nothing passes, all attempts are made.
+    iksel::SolverOptions options;
+    options.max_attempts = 256;
+    const Solver solver(iksel_test::load(robot_case(name)), options);
     const Robot& robot = solver.robot();
     const Batch batch(robot, iksel_test::cases(300));
     std::size_t most = 0;

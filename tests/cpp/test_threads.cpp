@@ -110,7 +110,10 @@ TEST(Threads, BatchWithWishesGivesTheSameBits) {
     const auto c = std::find_if(all.begin(), all.end(),
                                 [&](const auto& one) { return std::string(one.name) == name; });
     const Robot robot = iksel_test::load(*c);
-    const Solver solver(robot);
+    // Where nothing passes, all attempts are made.
+    SolverOptions options;
+    options.max_attempts = 256;
+    const Solver solver(robot, options);
     const auto targets = random_targets(robot, iksel_test::cases(600));
     std::vector<iksel::JointVector> near;
     const Eigen::MatrixXd q = robot.random_configurations(targets.size(), iksel_test::seed() + 1);

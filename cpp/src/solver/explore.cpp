@@ -73,6 +73,7 @@ void Solver::Impl::explore(Exploration& search, Workspace& workspace) const {
   const SolveRequest& request = search.request;
   const JointMove move(model.dof, request);
   const Deadline deadline(request.deadline);
+  const JointVector middle = middle_of_limits(model);
   const std::optional<JointVector> turns_near = cheapest_turns(model, request.objective);
   std::vector<JointVector>& mirrors = workspace.mirrors;
   mirrors.clear();
@@ -94,7 +95,7 @@ void Solver::Impl::explore(Exploration& search, Workspace& workspace) const {
     } else if (request.near) {
       take_turns_near(*request.near, search.task, search.T_base_tip, q);
     } else if (!request.objective.is_set()) {
-      take_nearest_turns(model, middle_of_limits(model), 0, q);
+      take_turns_near(middle, search.task, search.T_base_tip, q);
     }
     // Whole turns round.
     Result measured;

@@ -13,7 +13,8 @@ bool take_nearest_turns(const ChainModel& model, const JointVector& near, double
     if (!has_whole_turns(model, j)) continue;
     const double lower = model.lower[j] - slack;
     const double upper = model.upper[j] + slack;
-    double value = q[j] + kTwoPi * std::round((near[j] - q[j]) / kTwoPi);
+    double value = q[j];
+    if (std::abs(near[j] - value) > kPi) value += kTwoPi * std::round((near[j] - value) / kTwoPi);
     // The nearest turn of all lies outside: then the nearest inside.
     if (value > upper) value -= kTwoPi * std::ceil((value - upper) / kTwoPi);
     if (value < lower) value += kTwoPi * std::ceil((lower - value) / kTwoPi);

@@ -126,6 +126,7 @@ Solutions Solver::Impl::solve_all(const Pose& T_base_tip, const AllOptions& all,
   const JointMove move(model.dof, request);
   const JointVector from = request.near ? *request.near : middle_of_limits(model);
   std::vector<Copy> copies;
+  copies.reserve(found.size());
   const auto add = [&](const JointVector& q, std::size_t i) {
     copies.push_back({q, cost_of(model, all.order, move, from, q), i});
   };
@@ -137,7 +138,7 @@ Solutions Solver::Impl::solve_all(const Pose& T_base_tip, const AllOptions& all,
         add(q, i);
       } while (copies.size() < kMostCopies && take_next_turns(model, q));
     } else {
-      take_turns_near(from, of_call, T_base_tip, q);
+      // At the turns nearest to `from` already.
       add(q, i);
     }
   }
@@ -150,6 +151,7 @@ Solutions Solver::Impl::solve_all(const Pose& T_base_tip, const AllOptions& all,
     std::sort(copies.begin(), copies.end(), cheaper);
   }
 
+  solutions.all.reserve(copies.size());
   for (const Copy& copy : copies) {
     Result result;
     if (!finish(of_call, T_base_tip, copy.q, result)) continue;

@@ -37,9 +37,9 @@ struct Steering {
   [[nodiscard]] bool exhausted() const { return search.ends_complete(); }
 
   [[nodiscard]] bool go_on() const { return ask(); }
-  /// Whether some answers are better than others.
-  [[nodiscard]] bool ranks() const {
-    return search.until_complete || search.request.near || search.request.objective.is_set();
+  /// Whether more than the first answer is wanted.
+  [[nodiscard]] bool wants_more() const {
+    return search.until_complete || ranks_answers(search.request);
   }
   /// Solutions that seeds are to be taken far from: none where all are followed.
   [[nodiscard]] std::size_t known() const { return caught > 0 ? found.size() : 0; }

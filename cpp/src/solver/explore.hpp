@@ -44,6 +44,11 @@ inline constexpr int kSeedsInVainBalanced = 14;
 /// The same where there are as many solutions as the chain was ever seen to have.
 inline constexpr int kSeedsInVainMost = 2;
 
+/// Whether some answers to the request are better than others.
+inline bool ranks_answers(const SolveRequest& request) {
+  return request.near || request.objective.is_set();
+}
+
 /// One exploration: what it looks for, and what came of it.
 struct Exploration {
   const Pose& T_base_tip;

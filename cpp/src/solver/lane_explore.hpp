@@ -105,7 +105,7 @@ void LaneSearch::explore(const Pose& T_base_tcp, Work& work, const Accept& accep
   const std::size_t most = std::min(wanted, tiles.size());
   for (std::size_t done = 0; done < most;) {
     // One alone at first where any answer will do: it may have one.
-    const bool one = done == 0 && !steering.ranks();
+    const bool one = done == 0 && !steering.wants_more();
     const std::size_t count = std::min(one ? 1 : tile_seeds_.size(), most - done);
     const auto begin = tile_order_.begin() + static_cast<std::ptrdiff_t>(done);
     const auto end = begin + static_cast<std::ptrdiff_t>(count);

@@ -43,7 +43,7 @@ Surroundings look_around(const ChainModel& model, const JointVector& q, double n
   const Vector6 v = Eigen::Map<const Vector6>(next).normalized();
   const Vector6 motion = motions * v;
   const double sigma = motion.norm();
-  if (!(sigma > 0) || !v.allFinite()) return result;
+  if (!(sigma > 0)) return result;
   const JointVector ahead = q + kStep * v.head(model.dof);
   model.fk_jacobian(ahead.data(), pose, J);
   const double kappa = motion.dot(J * v.head(model.dof) - motion) / (sigma * kStep);

@@ -100,7 +100,7 @@ class Solver::Impl::Judge {
         redundant_(model_.dof > task.fixed_axes()),
         T_base_tip_(T_base_tip),
         request_(request),
-        ranks_(request.near || request.objective.is_set()),
+        ranks_(ranks_answers(request)),
         found_(found),
         move_(model_.dof, request) {}
 

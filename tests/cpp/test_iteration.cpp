@@ -161,7 +161,8 @@ TEST_P(Schemes, ConvergeFromNearBy) {
     EXPECT_LE(steps, 30);
     double position = 1;
     double rotation = 1;
-    iksel::measure_error(robot.model(), target, q.data(), position, rotation);
+    iksel::measure_error(target, iksel::forward(robot.model().kernel, q.data()), position,
+                         rotation);
     EXPECT_LT(position, 1e-4);
     EXPECT_LT(rotation, 1e-3);
   }

@@ -2,6 +2,7 @@
 // The lane kernels of every instruction set that this machine has.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <iksel/iksel.hpp>
@@ -221,6 +222,63 @@ TEST(Kernels, ANonFiniteLaneFailsAndEnds) {
   const auto result = kernels.advance[6](chain, lane_options(1e-6), ~0U, 20, pack);
   EXPECT_EQ(result.done, 0U);
   EXPECT_EQ(result.iterations, 20);
+}
+
+/// Against one number after the other.
+TEST(Kernels, SeedsAreKeptFromWhatIsKnown) {
+  constexpr int kJoints = 6;
+  iksel::Random random(iksel_test::seed());
+  const auto number = [&random] { return static_cast<float>(random.uniform(-6, 6)); };
+  for (const std::string& level : levels()) {
+    const ForcedLevel forced(level);
+    const auto& kernels = lanes::choose_kernels();
+    for (int round = 0; round < 100; ++round) {
+      lanes::SeedPack seeds{};
+      float from[kJoints];
+      float per_turn[kJoints];
+      for (int j = 0; j < kJoints; ++j) {
+        from[j] = number();
+        per_turn[j] = random.uniform(0, 1) < 0.5 ? static_cast<float>(0.5 / M_PI) : 0;
+        for (float& q : seeds.q[j]) q = number();
+      }
+      float nearest[lanes::kGroup];
+      for (float& d : nearest) d = static_cast<float>(random.uniform(-1, 4));
+      float expected[lanes::kGroup];
+      for (int slot = 0; slot < lanes::kGroup; ++slot) {
+        float away = 0;
+        for (int j = 0; j < kJoints; ++j) {
+          const float d = seeds.q[j][slot] - from[j];
+          away = std::max(away, std::abs(per_turn[j] > 0 ? std::remainder(d, 6.2831853F) : d));
+        }
+        expected[slot] = std::min(nearest[slot], away);
+      }
+      kernels.keep_from(kJoints, per_turn, from, seeds, nearest);
+      for (int slot = 0; slot < lanes::kGroup; ++slot) {
+        EXPECT_NEAR(nearest[slot], expected[slot], 1e-5) << level << " round " << round;
+      }
+    }
+  }
+}
+
+TEST(Kernels, TheFirstOfTheLargestIsFound) {
+  constexpr int kMost = 4 * lanes::kGroup;
+  iksel::Random random(iksel_test::seed());
+  for (const std::string& level : levels()) {
+    const ForcedLevel forced(level);
+    const auto& kernels = lanes::choose_kernels();
+    for (int round = 0; round < 400; ++round) {
+      const int count = (1 + round % 4) * lanes::kGroup;
+      float numbers[kMost];
+      // Few values: the largest comes more than once.
+      for (float& x : numbers) x = std::floor(static_cast<float>(random.uniform(-3, 30)));
+      EXPECT_EQ(kernels.find_largest(count, numbers),
+                std::max_element(numbers, numbers + count) - numbers)
+          << level << " round " << round;
+    }
+    // Nothing is found of what is no number, but nothing read beyond the end either.
+    const std::vector<float> none(lanes::kGroup, NAN);
+    EXPECT_LT(kernels.find_largest(lanes::kGroup, none.data()), lanes::kGroup) << level;
+  }
 }
 
 }  // namespace

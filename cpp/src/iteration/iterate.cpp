@@ -77,9 +77,8 @@ void after_step(const IterationContext& context, JointVector& q) {
 
 }  // namespace
 
-void measure_error(const ChainModel& model, const Pose& target, const double* q,
-                   double& position_error, double& rotation_error) {
-  const Frame<double> f = forward(model.kernel, q);
+void measure_error(const Pose& target, const Frame<double>& f, double& position_error,
+                   double& rotation_error) {
   double square = 0;
   double sine2 = 0;  // |R_target R^T - its transpose|^2 / 4: sine of the angle, squared
   double trace = 0;

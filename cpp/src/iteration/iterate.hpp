@@ -44,8 +44,8 @@ struct IterationContext {
 /// Iterates q, in place, from the seed it holds. `steps` counts the steps taken. Never throws.
 Outcome iterate(const IterationContext& context, JointVector& q, int& steps);
 
-/// Lengths of the position [m] and rotation [rad] error of q, by the kernel.
-void measure_error(const ChainModel& model, const Pose& target, const double* q,
-                   double& position_error, double& rotation_error);
+/// Lengths of the position [m] and rotation [rad] error of a pose.
+void measure_error(const Pose& target, const Frame<double>& pose, double& position_error,
+                   double& rotation_error);
 
 }  // namespace iksel

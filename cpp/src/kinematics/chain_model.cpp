@@ -223,11 +223,15 @@ std::uint64_t ChainModel::compute_hash() const {
 
 Pose ChainModel::fk(const double* q) const { return to_pose(forward(kernel, q)); }
 
-void ChainModel::fk_jacobian(const double* q, Pose& pose, Jacobian& jacobian,
-                             bool with_tool) const {
+Frame<double> ChainModel::fk_jacobian(const double* q, Jacobian& jacobian, bool with_tool) const {
   jacobian.resize(6, dof);
   const Frame<double>& end = with_tool ? kernel.tip : kernel.flange;
-  pose = to_pose(forward_jacobian(kernel, end, dof, q, jacobian.data()));
+  return forward_jacobian(kernel, end, dof, q, jacobian.data());
+}
+
+void ChainModel::fk_jacobian(const double* q, Pose& pose, Jacobian& jacobian,
+                             bool with_tool) const {
+  pose = to_pose(fk_jacobian(q, jacobian, with_tool));
 }
 
 bool ChainModel::within_limits(const double* q) const {

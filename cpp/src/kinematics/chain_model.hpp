@@ -31,6 +31,8 @@ class ChainModel {
   [[nodiscard]] Pose fk(const double* q) const;
   /// Pose and Jacobian of the TCP, or of the tip link if not `with_tool`.
   void fk_jacobian(const double* q, Pose& pose, Jacobian& jacobian, bool with_tool = true) const;
+  /// Jacobian of the TCP, whose frame is returned.
+  Frame<double> fk_jacobian(const double* q, Jacobian& jacobian, bool with_tool = true) const;
 
   /// True if every joint lies inside its limits, both ends included.
   [[nodiscard]] bool within_limits(const double* q) const;

@@ -98,7 +98,9 @@ PackResult advance(const LaneChain& chain, const LaneOptions& options, unsigned 
     // A = J J^T over the joints that may move, then dq = J^T (A + lambda I)^-1 e.
     T J[kSize][6];
     T A[6][6];
+#pragma GCC unroll 6
     for (int r = 0; r < 6; ++r) {
+#pragma GCC unroll 6
       for (int c = 0; c <= r; ++c) A[r][c] = T(0.0);
     }
 #pragma GCC unroll 10
@@ -179,7 +181,9 @@ constexpr LaneKernels make_kernels(const char* name) {
           Lanes<T>::kCount,
           {advance<T, 0>, advance<T, 1>, advance<T, 2>, advance<T, 3>, advance<T, 4>, advance<T, 5>,
            advance<T, 6>, advance<T, 7>, advance<T, 8>, advance<T, 9>, advance<T, 10>},
-          prepare_seeds<S>};
+          prepare_seeds<S>,
+          keep_from<S>,
+          find_largest<S>};
 }
 
 }  // namespace iksel::lanes

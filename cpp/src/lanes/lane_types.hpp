@@ -96,6 +96,15 @@ struct SeedPack {
 using PrepareSeeds = void (*)(const SeedChain& chain, const SeedTarget& target, const float* group,
                               SeedPack& out);
 
+/// The `seeds` of a chain from a configuration: lowers nearest[slot] to their distance in the joint
+/// where that is largest [rad or m]. `per_turn`: 1 / 2 pi for joints whose whole turns change
+/// nothing, else 0.
+using KeepFrom = void (*)(int n, const float* per_turn, const float* from, const SeedPack& seeds,
+                          float* nearest);
+
+/// Index of the largest of `count` numbers, a multiple of kGroup; of equals the first.
+using FindLargest = int (*)(int count, const float* numbers);
+
 /// The kernels of one instruction set.
 struct LaneKernels {
   const char* name;
@@ -103,6 +112,8 @@ struct LaneKernels {
   /// By number of joints; [0] serves any number.
   Advance advance[11];
   PrepareSeeds prepare;
+  KeepFrom keep_from;
+  FindLargest find_largest;
 };
 
 }  // namespace iksel::lanes

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // From the samples of a group to seeds for a target: the joints that are left out of the samples
 // are set, every seed takes one step by its stored pseudo-inverse, and the seeds are ranked by
-// where that step ended. All in single precision: a seed need not be exact.
+// where that step ended; and how far seeds are from what is known. All in single precision: a seed
+// need not be exact.
 #pragma once
 
 #include "lanes/lane_math.hpp"
@@ -164,6 +165,36 @@ void prepare_seeds(const SeedChain& chain, const SeedTarget& target, const float
   for (int slot = 0; slot < kGroup; ++slot) {
     out.order[static_cast<int>(ranks[slot])] = static_cast<unsigned char>(slot);
   }
+}
+
+template <typename T>
+void keep_from(int n, const float* per_turn, const float* from, const SeedPack& seeds,
+               float* nearest) {
+  using L = Lanes<T>;
+  for (int slot = 0; slot < kGroup; slot += L::kCount) {
+    T away = T(0.0F);
+    for (int j = 0; j < n; ++j) {
+      const T d = L::load(seeds.q[j] + slot) - T(from[j]);
+      const T turns = nearest_integer(d * T(per_turn[j]));
+      away = max(away, abs(d - turns * T(6.2831853F)));
+    }
+    L::store(min(away, L::load(nearest + slot)), nearest + slot);
+  }
+}
+
+template <typename T>
+int find_largest(int count, const float* numbers) {
+  using L = Lanes<T>;
+  T columns = L::load(numbers);
+  for (int i = L::kCount; i < count; i += L::kCount) columns = max(columns, L::load(numbers + i));
+  float rows[L::kCount];
+  L::store(columns, rows);
+  float largest = rows[0];
+  for (int i = 1; i < L::kCount; ++i) largest = max(largest, rows[i]);
+  int at = 0;
+  while (at + L::kCount < count && !any(L::load(numbers + at) == T(largest))) at += L::kCount;
+  while (at + 1 < count && numbers[at] != largest) ++at;
+  return at;
 }
 
 }  // namespace iksel::lanes

@@ -75,40 +75,39 @@ void Solver::Impl::explore(Exploration& search, Workspace& workspace) const {
   const Deadline deadline(request.deadline);
   const JointVector middle = middle_of_limits(model);
   const std::optional<JointVector> turns_near = cheapest_turns(model, request.objective);
+  const bool in_pairs = search.task.is_full_pose() && model.dof <= 6;
   std::vector<JointVector>& mirrors = workspace.mirrors;
   mirrors.clear();
   const auto accept = [&](JointVector& q) {
     model.wrap_into_limits(q.data());
-    double position = 0;
-    double rotation = 0;
-    measure(search.task, search.T_base_tip, q, position, rotation);
-    if (!(position <= options.position_tolerance && rotation <= options.rotation_tolerance)) {
-      return Verdict::refine;
-    }
+    Result answer;
+    Jacobian J;
+    measure(search.task, search.T_base_tip, q, answer.position_error, answer.rotation_error,
+            in_pairs ? &J : nullptr);
+    if (!within_tolerances(answer.position_error, answer.rotation_error)) return Verdict::refine;
     if (!model.within_limits(q.data())) {
       search.status = Status::outside_limits;
       return Verdict::next;
     }
-    const JointVector measured_q = q;
+    answer.status = Status::solved;
+    answer.q = q;
     if (turns_near) {
-      take_turns_near(*turns_near, search.task, search.T_base_tip, q);
+      take_turns_near(*turns_near, search.task, search.T_base_tip, answer);
     } else if (request.near) {
-      take_turns_near(*request.near, search.task, search.T_base_tip, q);
+      take_turns_near(*request.near, search.task, search.T_base_tip, answer);
     } else if (!request.objective.is_set()) {
-      take_turns_near(middle, search.task, search.T_base_tip, q);
+      take_turns_near(middle, search.task, search.T_base_tip, answer);
     }
-    // Whole turns round.
-    Result measured;
-    if (q != measured_q && !finish(search.task, search.T_base_tip, q, measured)) q = measured_q;
     // What a filter has been asked about stays as it is.
-    const double cost =
-        request.near && !turns_near && !request.filter ? move.length(q - *request.near) : 0.0;
-    if (!found.add(q, cost, search.min_distance)) return Verdict::next;
+    const double cost = request.near && !turns_near && !request.filter
+                            ? move.length(answer.q - *request.near)
+                            : 0.0;
+    if (!found.add(answer, cost, search.min_distance)) return Verdict::next;
     ++search.found;
     search.last_new = search.work.attempts;
-    if (search.task.is_full_pose()) {
+    if (in_pairs) {
       // Of a pair that counts as one, the other may lie on the side of a limit where `near` is.
-      Surroundings around = look_around(model, q, request.near ? 0.0 : search.min_distance);
+      Surroundings around = look_around(J, answer.q, request.near ? 0.0 : search.min_distance);
       search.orientation += around.orientation;
       if (around.paired && mirrors.size() < mirrors.capacity()) {
         mirrors.push_back(std::move(around.other));
@@ -152,19 +151,18 @@ int Solver::Impl::count_most_solutions() const {
 }
 
 void Solver::Impl::take_turns_near(const JointVector& near, const TaskSpace& of_call,
-                                   const Pose& T_base_tip, JointVector& q) const {
+                                   const Pose& T_base_tip, Result& answer) const {
   const ChainModel& model = robot.model();
   // An answer at a limit lies outside by rounding as often as not. Held to the limit it need not be
   // a whole turn away.
-  JointVector held = q;
-  if (take_nearest_turns(model, near, options.rotation_tolerance, held)) {
-    Result measured;
-    if (finish(of_call, T_base_tip, held, measured)) {
-      q = held;
-      return;
-    }
-  }
-  take_nearest_turns(model, near, 0, q);
+  JointVector turned = answer.q;
+  const bool held = take_nearest_turns(model, near, options.rotation_tolerance, turned);
+  if (turned == answer.q) return;
+  // Whole turns round, and so measured again.
+  if (finish(of_call, T_base_tip, turned, answer) || !held) return;
+  turned = answer.q;
+  take_nearest_turns(model, near, 0, turned);
+  finish(of_call, T_base_tip, turned, answer);
 }
 
 void Solver::Impl::explore_in_lanes(Exploration& search, Workspace& workspace,

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "iksel/result.hpp"
 #include "kinematics/chain_model.hpp"
 #include "solver/joint_move.hpp"
 
@@ -21,6 +22,8 @@ class Found {
       : model_(model),
         q_(kMost * static_cast<std::size_t>(model.dof)),
         cost_(kMost),
+        position_error_(kMost),
+        rotation_error_(kMost),
         turns_(static_cast<std::size_t>(model.dof)) {
     for (int j = 0; j < model.dof; ++j) {
       turns_[static_cast<std::size_t>(j)] = has_whole_turns(model, j) ? 1 / kTwoPi : 0;
@@ -29,17 +32,18 @@ class Found {
 
   void clear() { size_ = 0; }
 
-  /// Adds q, a solution inside the limits, unless one lies nearer than `min_distance` in every
-  /// joint, copies by whole turns not counted; or there is no room. Of two that lie so near, the
-  /// one of smaller cost stays, at the place of the first. True if it is a new one.
-  bool add(const JointVector& q, double cost, double min_distance) {
+  /// Adds a success unless one lies nearer than `min_distance` in every joint, copies by whole
+  /// turns not counted; or there is no room. Of two that lie so near, the one of smaller cost
+  /// stays, at the place of the first. True if it is a new one.
+  bool add(const Result& solution, double cost, double min_distance) {
     for (std::size_t i = 0; i < size_; ++i) {
-      if (distance_without_turns(model_, this->q(i), q, min_distance) >= min_distance) continue;
-      if (cost < cost_[i]) put(i, q, cost);
+      const double away = distance_without_turns(model_, q(i), solution.q, min_distance);
+      if (away >= min_distance) continue;
+      if (cost < cost_[i]) put(i, solution, cost);
       return false;
     }
     if (size_ == kMost) return false;
-    put(size_++, q, cost);
+    put(size_++, solution, cost);
     return true;
   }
 
@@ -62,11 +66,22 @@ class Found {
   [[nodiscard]] JointVector at(std::size_t i) const {
     return Eigen::Map<const Eigen::VectorXd>(q(i), model_.dof);
   }
+  /// The success that was added, with its errors.
+  [[nodiscard]] Result result(std::size_t i) const {
+    Result result;
+    result.status = Status::solved;
+    result.q = at(i);
+    result.position_error = position_error_[i];
+    result.rotation_error = rotation_error_[i];
+    return result;
+  }
 
  private:
-  void put(std::size_t i, const JointVector& q, double cost) {
-    std::copy_n(q.data(), model_.dof, &q_[i * static_cast<std::size_t>(model_.dof)]);
+  void put(std::size_t i, const Result& solution, double cost) {
+    std::copy_n(solution.q.data(), model_.dof, &q_[i * static_cast<std::size_t>(model_.dof)]);
     cost_[i] = cost;
+    position_error_[i] = solution.position_error;
+    rotation_error_[i] = solution.rotation_error;
   }
 
   /// A joint's difference without its whole turns. Added to so large a number, a double loses what
@@ -80,7 +95,9 @@ class Found {
   const ChainModel& model_;
   std::vector<double> q_;
   std::vector<double> cost_;
-  std::vector<double> turns_;  ///< 1 / 2 pi for joints with whole turns, else 0
+  std::vector<double> position_error_;  ///< [m]
+  std::vector<double> rotation_error_;  ///< [rad]
+  std::vector<double> turns_;           ///< 1 / 2 pi for joints with whole turns, else 0
   std::size_t size_ = 0;
 };
 

@@ -5,7 +5,8 @@
 #pragma once
 
 #include <algorithm>
-#include <numeric>
+#include <cstdint>
+#include <cstring>
 
 #include "solver/lane_search.hpp"
 
@@ -94,11 +95,12 @@ void LaneSearch::explore(const Pose& T_base_tcp, Work& work, const Accept& accep
   set_target(T_base_tcp);
   const Tiles& tiles = data_.tiles;
   tiles.measure(key_, tile_distance2_.data());
-  std::iota(tile_order_.begin(), tile_order_.end(), 0U);
-  const auto nearer = [this](std::uint32_t a, std::uint32_t b) {
-    return tile_distance2_[a] != tile_distance2_[b] ? tile_distance2_[a] < tile_distance2_[b]
-                                                    : a < b;
-  };
+  for (std::size_t tile = 0; tile < tiles.size(); ++tile) {
+    // Squares are not negative, and so in the order of their bits; of equals the first.
+    std::uint32_t bits = 0;
+    std::memcpy(&bits, &tile_distance2_[tile], sizeof bits);
+    tile_order_[tile] = std::uint64_t{bits} << 32U | tile;
+  }
   const auto go_on = [&] { return steering.go_on() && work.attempts < options_.max_attempts; };
   const std::size_t wanted =
       (static_cast<std::size_t>(options_.neighbours) + lanes::kGroup - 1) / lanes::kGroup;
@@ -109,9 +111,9 @@ void LaneSearch::explore(const Pose& T_base_tcp, Work& work, const Accept& accep
     const std::size_t count = std::min(one ? 1 : tile_seeds_.size(), most - done);
     const auto begin = tile_order_.begin() + static_cast<std::ptrdiff_t>(done);
     const auto end = begin + static_cast<std::ptrdiff_t>(count);
-    std::partial_sort(begin, end, tile_order_.end(), nearer);
+    std::partial_sort(begin, end, tile_order_.end());
     for (std::size_t t = 0; t < count; ++t) {
-      const std::uint32_t tile = tile_order_[done + t];
+      const auto tile = static_cast<std::uint32_t>(tile_order_[done + t]);
       kernels_.prepare(seed_chain_, seed_target_, tiles.group(tile), tile_seeds_[t]);
     }
     seeds_left_.reset(tile_seeds_.data(), static_cast<int>(count));

@@ -51,7 +51,7 @@ LaneSearch::LaneSearch(const ChainModel& model, const ChainModel& nominal, const
       tile_distance2_(data.tiles.size()),
       tile_order_(data.tiles.size()),
       tile_seeds_(kTilesAtOnce),
-      seeds_left_(model) {}
+      seeds_left_(model, kernels) {}
 
 Pose LaneSearch::set_query(const Pose& T_base_tcp) {
   Pose Y = base_inverse_ * T_base_tcp * tcp_inverse_;

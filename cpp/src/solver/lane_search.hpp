@@ -95,7 +95,7 @@ class LaneSearch {
   std::vector<Neighbour> neighbours_;
   std::vector<float> group_;
   std::vector<float> tile_distance2_;
-  std::vector<std::uint32_t> tile_order_;
+  std::vector<std::uint64_t> tile_order_;  ///< squared distance, and the tile
   std::vector<lanes::SeedPack> tile_seeds_;
   SeedsLeft seeds_left_;
 };

@@ -2,54 +2,107 @@
 #include "solver/mirror.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "math/pseudo_inverse.hpp"
 #include "math/symmetric.hpp"
 #include "solver/joint_move.hpp"
 
 namespace iksel {
+namespace {
 
-Surroundings look_around(const ChainModel& model, const JointVector& q, double nearest) {
+constexpr int kAxes = 6;
+
+/// Sign of the determinant of a matrix of `rows`, which become its factors: by elimination, the
+/// largest of a column first.
+int sign_of_determinant(double (&rows)[kAxes][kAxes]) {
+  double* row[kAxes];
+  for (int k = 0; k < kAxes; ++k) row[k] = rows[k];
+  bool negative = false;
+#pragma GCC unroll 6
+  for (int k = 0; k < kAxes; ++k) {
+    int largest = k;
+#pragma GCC unroll 6
+    for (int r = k + 1; r < kAxes; ++r) {
+      if (std::abs(row[r][k]) > std::abs(row[largest][k])) largest = r;
+    }
+    if (largest != k) {
+      std::swap(row[k], row[largest]);
+      negative = !negative;
+    }
+    const double pivot = row[k][k];
+    if (pivot < 0) negative = !negative;
+    const double inverse = 1 / pivot;
+#pragma GCC unroll 6
+    for (int r = k + 1; r < kAxes; ++r) {
+      const double factor = row[r][k] * inverse;
+#pragma GCC unroll 6
+      for (int i = k + 1; i < kAxes; ++i) row[r][i] -= factor * row[k][i];
+    }
+  }
+  return negative ? -1 : 1;
+}
+
+/// How the twist J v changes in unit time while the joints move at the rates v: a joint's axis and
+/// origin turn with the joints before it, and the tip moves past it with those behind. A variable
+/// that moves several joints counts as one, which is near enough for a guess.
+Vector6 acceleration(const Jacobian& J, const Vector6& v, const Vector6& twist) {
+  Eigen::Vector3d turned = Eigen::Vector3d::Zero();
+  Eigen::Vector3d behind = twist.head<3>();
+  Vector6 result = Vector6::Zero();
+  for (Eigen::Index j = 0; j < J.cols(); ++j) {
+    const Eigen::Vector3d linear = v[j] * J.col(j).head<3>();
+    const Eigen::Vector3d angular = v[j] * J.col(j).tail<3>();
+    result.head<3>() += turned.cross(linear) + angular.cross(behind);
+    result.tail<3>() += turned.cross(angular);
+    turned += angular;
+    behind -= linear;
+  }
+  return result;
+}
+
+}  // namespace
+
+Surroundings look_around(const Jacobian& J, const JointVector& q, double nearest) {
   /// Farthest that the second-order guess is of use [rad or m].
   constexpr double kFarthest = 1.5;
-  constexpr double kStep = 1e-3;
-  constexpr int kMost = 6;
   Surroundings result;
-  if (model.dof > kMost) return result;
+  const auto dof = static_cast<int>(J.cols());
 
-  Pose pose;
-  Jacobian J;
-  model.fk_jacobian(q.data(), pose, J);
   // Joints that are not there are of no consequence: they have zeros, and ones on the diagonal.
-  Matrix6 motions = Matrix6::Zero();
-  motions.leftCols(model.dof) = J;
-  if (model.dof == kMost) result.orientation = motions.determinant() < 0 ? -1 : 1;
-  double A[kMost][kMost];
-  double trace = 0;
-  for (int i = 0; i < kMost; ++i) {
-    for (int k = 0; k <= i; ++k) A[i][k] = motions.col(i).dot(motions.col(k));
-    trace += A[i][i];
+  double columns[kAxes][kAxes] = {};
+  for (int j = 0; j < dof; ++j) {
+    for (int i = 0; i < kAxes; ++i) columns[j][i] = J(i, j);
   }
-  for (int j = model.dof; j < kMost; ++j) A[j][j] = 1;
+  double A[kAxes][kAxes];
+  double trace = 0;
+  for (int j = 0; j < kAxes; ++j) {
+#pragma GCC unroll 6
+    for (int k = 0; k <= j; ++k) {
+      A[j][k] = 0;
+      for (int i = 0; i < kAxes; ++i) A[j][k] += columns[j][i] * columns[k][i];
+    }
+    trace += A[j][j];
+  }
+  if (dof == kAxes) result.orientation = sign_of_determinant(columns);
+  for (int j = dof; j < kAxes; ++j) A[j][j] = 1;
   const SymmetricFactors<double> factors(A, 1e-12 * trace);
   // Inverse iteration, which goes to the direction of the least singular value; the start is of no
   // symmetry that an arm may have.
-  double start[kMost] = {};
-  for (int j = 0; j < model.dof; ++j) start[j] = 1 + 0.13 * j;
-  double next[kMost];
+  double start[kAxes] = {};
+  for (int j = 0; j < dof; ++j) start[j] = 1 + 0.13 * j;
+  double next[kAxes];
   factors.solve(start, next);
   factors.solve(next, start);
   factors.solve(start, next);
   const Vector6 v = Eigen::Map<const Vector6>(next).normalized();
-  const Vector6 motion = motions * v;
-  const double sigma = motion.norm();
+  const Vector6 twist = J * v.head(dof);
+  const double sigma = twist.norm();
   if (!(sigma > 0)) return result;
-  const JointVector ahead = q + kStep * v.head(model.dof);
-  model.fk_jacobian(ahead.data(), pose, J);
-  const double kappa = motion.dot(J * v.head(model.dof) - motion) / (sigma * kStep);
+  const double kappa = twist.dot(acceleration(J, v, twist)) / sigma;
   const double t = -2 * sigma / kappa;
   result.paired = std::abs(t) <= kFarthest && std::abs(t) * v.cwiseAbs().maxCoeff() >= nearest;
-  if (result.paired) result.other = q + t * v.head(model.dof);
+  if (result.paired) result.other = q + t * v.head(dof);
   return result;
 }
 

@@ -17,8 +17,9 @@ struct Surroundings {
   JointVector other;
 };
 
-/// `nearest`: a pair nearer than this in every joint counts as one solution.
-Surroundings look_around(const ChainModel& model, const JointVector& q, double nearest);
+/// `J` is the Jacobian at the solution q. `nearest`: a pair nearer than this in every joint counts
+/// as one solution.
+Surroundings look_around(const Jacobian& J, const JointVector& q, double nearest);
 
 /// True if the signs of det J over all solutions of a pose add up to zero: 6 joints that all turn
 /// without an end. Such configurations form a torus, and the degree of a map from a compact

@@ -130,15 +130,16 @@ Solutions Solver::Impl::solve_all(const Pose& T_base_tip, const AllOptions& all,
   const auto add = [&](const JointVector& q, std::size_t i) {
     copies.push_back({q, cost_of(model, all.order, move, from, q), i});
   };
+  // Otherwise each is at the turns nearest to `from` already.
+  const bool turned = all.whole_turns || request.filter;
   for (std::size_t i = 0; i < found.size(); ++i) {
     JointVector q = found.at(i);
-    if (all.whole_turns || request.filter) {
+    if (turned) {
       take_first_turns(model, q);
       do {
         add(q, i);
       } while (copies.size() < kMostCopies && take_next_turns(model, q));
     } else {
-      // At the turns nearest to `from` already.
       add(q, i);
     }
   }
@@ -154,7 +155,11 @@ Solutions Solver::Impl::solve_all(const Pose& T_base_tip, const AllOptions& all,
   solutions.all.reserve(copies.size());
   for (const Copy& copy : copies) {
     Result result;
-    if (!finish(of_call, T_base_tip, copy.q, result)) continue;
+    if (!turned) {
+      result = found.result(copy.solution);
+    } else if (!finish(of_call, T_base_tip, copy.q, result)) {
+      continue;
+    }
     if (request.near) result.move = move.length(copy.q - from);
     result.attempts = search.work.attempts;
     result.iterations = search.work.iterations;

@@ -164,12 +164,19 @@ bool Solver::Impl::out_of_reach(const TaskSpace& of_call, const Pose& T_base_tip
 }
 
 void Solver::Impl::measure(const TaskSpace& of_call, const Pose& target, const JointVector& q,
-                           double& position, double& rotation) const {
-  if (of_call.is_full_pose()) {
-    measure_error(robot.model(), target, q.data(), position, rotation);
+                           double& position, double& rotation, Jacobian* jacobian) const {
+  const ChainModel& model = robot.model();
+  if (!of_call.is_full_pose()) {
+    of_call.measure(target, model.fk(q.data()), position, rotation);
+  } else if (jacobian != nullptr) {
+    measure_error(target, model.fk_jacobian(q.data(), *jacobian), position, rotation);
   } else {
-    of_call.measure(target, robot.model().fk(q.data()), position, rotation);
+    measure_error(target, forward(model.kernel, q.data()), position, rotation);
   }
+}
+
+bool Solver::Impl::within_tolerances(double position, double rotation) const {
+  return position <= options.position_tolerance && rotation <= options.rotation_tolerance;
 }
 
 bool Solver::Impl::finish(const TaskSpace& of_call, const Pose& target, const JointVector& q,
@@ -177,8 +184,7 @@ bool Solver::Impl::finish(const TaskSpace& of_call, const Pose& target, const Jo
   double position = kNan;
   double rotation = kNan;
   measure(of_call, target, q, position, rotation);
-  if (!(position <= options.position_tolerance && rotation <= options.rotation_tolerance &&
-        robot.model().within_limits(q.data()))) {
+  if (!within_tolerances(position, rotation) || !robot.model().within_limits(q.data())) {
     return false;
   }
   result.status = Status::solved;

@@ -121,9 +121,9 @@ struct Solver::Impl {
                 Diagnosis& out) const;
   /// Collects solutions in workspace.found.
   void explore(Exploration& search, Workspace& workspace) const;
-  /// Brings a solution to the turns nearest to `near`.
+  /// Brings a success to the turns nearest to `near`, where it still is one.
   void take_turns_near(const JointVector& near, const TaskSpace& of_call, const Pose& T_base_tip,
-                       JointVector& q) const;
+                       Result& answer) const;
   void explore_in_lanes(Exploration& search, Workspace& workspace,
                         FunctionRef<Verdict(JointVector&)> accept, FunctionRef<bool()> go_on) const;
   void explore_one_by_one(Exploration& search, Workspace& workspace,
@@ -131,9 +131,11 @@ struct Solver::Impl {
                           FunctionRef<bool()> go_on) const;
   void explore_task(Exploration& search, TaskSearch& tasks,
                     FunctionRef<Verdict(JointVector&)> accept, FunctionRef<bool()> go_on) const;
-  /// The errors of q: position [m] and rotation [rad].
+  /// The errors of q: position [m] and rotation [rad]; and for a whole pose its Jacobian, if that
+  /// is not null.
   void measure(const TaskSpace& of_call, const Pose& target, const JointVector& q, double& position,
-               double& rotation) const;
+               double& rotation, Jacobian* jacobian = nullptr) const;
+  [[nodiscard]] bool within_tolerances(double position, double rotation) const;
 
   /// Workspaces that lie idle; a null is a place to put one back. More solves at once than places
   /// make their own.

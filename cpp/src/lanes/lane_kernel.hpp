@@ -20,6 +20,24 @@ inline void turn(T (&u)[3], T (&v)[3], const C& c, const C& s) {
   }
 }
 
+/// Rows kFirst to kLast - 1 of the lower half of A = J J^T: few at a time stay in registers.
+template <int kFirst, int kLast, typename T>
+inline void multiply_rows(int n, const T (*J)[6], T (&A)[6][6]) {
+#pragma GCC unroll 6
+  for (int r = kFirst; r < kLast; ++r) {
+#pragma GCC unroll 6
+    for (int c = 0; c <= r; ++c) A[r][c] = J[0][r] * J[0][c];
+  }
+#pragma GCC unroll 10
+  for (int j = 1; j < n; ++j) {
+#pragma GCC unroll 6
+    for (int r = kFirst; r < kLast; ++r) {
+#pragma GCC unroll 6
+      for (int c = 0; c <= r; ++c) A[r][c] = A[r][c] + J[j][r] * J[j][c];
+    }
+  }
+}
+
 /// kN joints, or chain.n where kN is 0.
 template <typename T, int kN>
 PackResult advance(const LaneChain& chain, const LaneOptions& options, unsigned watched,
@@ -33,19 +51,23 @@ PackResult advance(const LaneChain& chain, const LaneOptions& options, unsigned 
   for (int j = 0; j < n; ++j) q[j] = L::load(pack.q[j]);
 
   for (int iteration = 1;; ++iteration) {
-    // Frames of the joints: axis and origin of each, and the pose of the last.
+    // Columns of the Jacobian, which hold the origin and the axis of their joint at first; and the
+    // pose of the last frame.
+    T J[kSize][6];
     T x[3];
     T y[3];
     T z[3];
     T p[3];
-    T axis[kSize][3];
-    T origin[kSize][3];
     for (int i = 0; i < 3; ++i) {
       x[i] = T(i == 0 ? 1.0 : 0.0);
       y[i] = T(i == 1 ? 1.0 : 0.0);
       z[i] = T(i == 2 ? 1.0 : 0.0);
       p[i] = T(0.0);
     }
+    // The joints' sines first: they do not depend on each other, and the frames need the registers.
+    T sine[kSize];
+    T cosine[kSize];
+    for (int j = 0; j < n; ++j) sincos(q[j] + T(chain.joint[j].offset), sine[j], cosine[j]);
 #pragma GCC unroll 10
     for (int j = 0; j < n; ++j) {
       const LaneJoint& joint = chain.joint[j];
@@ -55,25 +77,20 @@ PackResult advance(const LaneChain& chain, const LaneOptions& options, unsigned 
         }
         turn(y, z, T(joint.cos_alpha), T(joint.sin_alpha));
       }
-      for (int i = 0; i < 3; ++i) axis[j][i] = z[i];
+      for (int i = 0; i < 3; ++i) J[j][3 + i] = z[i];
       if (joint.prismatic) {
         turn(x, y, T(joint.cos_turn), T(joint.sin_turn));
         const T slide = q[j] + T(joint.offset);
         for (int i = 0; i < 3; ++i) p[i] = p[i] + z[i] * slide;
+      } else if (j == 0) {
+        x[0] = cosine[0];
+        x[1] = sine[0];
+        y[0] = T(0.0) - sine[0];
+        y[1] = cosine[0];
       } else {
-        T sine;
-        T cosine;
-        sincos(q[j] + T(joint.offset), sine, cosine);
-        if (j == 0) {
-          x[0] = cosine;
-          x[1] = sine;
-          y[0] = T(0.0) - sine;
-          y[1] = cosine;
-        } else {
-          turn(x, y, cosine, sine);
-        }
+        turn(x, y, cosine[j], sine[j]);
       }
-      for (int i = 0; i < 3; ++i) origin[j][i] = p[i];
+      for (int i = 0; i < 3; ++i) J[j][i] = p[i];
     }
 
     // Error: position, and 2 sin(angle / 2) * axis of R_target R^T, which grows up to half a turn.
@@ -95,30 +112,23 @@ PackResult advance(const LaneChain& chain, const LaneOptions& options, unsigned 
     const T er2 = e[3] * e[3] + e[4] * e[4] + e[5] * e[5];
     const T e2 = ep2 + er2;
 
-    // A = J J^T over the joints that may move, then dq = J^T (A + lambda I)^-1 e.
-    T J[kSize][6];
-    T A[6][6];
-#pragma GCC unroll 6
-    for (int r = 0; r < 6; ++r) {
-#pragma GCC unroll 6
-      for (int c = 0; c <= r; ++c) A[r][c] = T(0.0);
-    }
+    // Joints that stand at a limit and would leave it do not move.
 #pragma GCC unroll 10
     for (int j = 0; j < n; ++j) {
       const LaneJoint& joint = chain.joint[j];
       T* column = J[j];
+      const T* axis = column + 3;
       if (joint.prismatic) {
         for (int i = 0; i < 3; ++i) {
-          column[i] = axis[j][i];
+          column[i] = axis[i];
           column[3 + i] = T(0.0);
         }
       } else {
-        const T r[3] = {p[0] - origin[j][0], p[1] - origin[j][1], p[2] - origin[j][2]};
+        const T r[3] = {p[0] - column[0], p[1] - column[1], p[2] - column[2]};
         for (int i = 0; i < 3; ++i) {
           const int a = (i + 1) % 3;
           const int b = (i + 2) % 3;
-          column[i] = axis[j][a] * r[b] - axis[j][b] * r[a];
-          column[3 + i] = axis[j][i];
+          column[i] = axis[a] * r[b] - axis[b] * r[a];
         }
       }
       if (joint.limited) {
@@ -131,12 +141,12 @@ PackResult advance(const LaneChain& chain, const LaneOptions& options, unsigned 
           for (int i = 0; i < 6; ++i) column[i] = select(leaves, T(0.0), column[i]);
         }
       }
-#pragma GCC unroll 6
-      for (int r = 0; r < 6; ++r) {
-#pragma GCC unroll 6
-        for (int c = 0; c <= r; ++c) A[r][c] = A[r][c] + column[r] * column[c];
-      }
     }
+    // dq = J^T (J J^T + lambda I)^-1 e.
+    T A[6][6];
+    multiply_rows<0, 3>(n, J, A);
+    multiply_rows<3, 5>(n, J, A);
+    multiply_rows<5, 6>(n, J, A);
     const T lambda = T(options.damping) * e2 + T(1e-18);
     T step[6];
     SymmetricFactors<T>(A, lambda).solve(e, step);

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Fails when IKSel has become slower or solves less than bench/guard.json says.
 
-Speed is compared by `ratio`, mean solve time over one KDL forward kinematics plus
+Speed is compared by `ratio`, mean time of a call over one KDL forward kinematics plus
 Jacobian in the same run, which moves little between machines. A shared machine still
 disturbs it, so the least of a few runs counts, and the margin is wide: this is to catch
 the loss of a kernel, not of a percent.
@@ -15,11 +15,18 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 import iksel
+from bench.arms import load_arm
 from bench.cells import solver_options
+from bench.check import right
 from bench.machine import facts
 from bench.markdown import table
+from bench.requests import LIMIT_S, near_of
 from bench.store import write_json
+from bench.targets import make_targets
+from bench.timing import time_calls
 
 PATH = Path(__file__).with_name("guard.json")
 
@@ -29,21 +36,26 @@ SLOWER = 1.6
 """A ratio may be this many times the committed one."""
 SEED = 1
 
+PRESETS = ("default", "paper")
 ROWS: tuple[dict[str, Any], ...] = (
-    {"robot": "ur3", "preset": "default", "targets": 20_000, "points": 0.02},
-    {"robot": "panda", "preset": "default", "targets": 20_000, "points": 0.02},
-    {"robot": "cvr038", "preset": "default", "targets": 20_000, "points": 0.02},
+    {"robot": "ur3", "what": "default", "targets": 20_000, "points": 0.02},
+    {"robot": "panda", "what": "default", "targets": 20_000, "points": 0.02},
+    {"robot": "cvr038", "what": "default", "targets": 20_000, "points": 0.02},
     {
         "robot": "valkyrie_waist_right_arm",
-        "preset": "default",
+        "what": "default",
         "targets": 10_000,
         "points": 0.05,
     },
-    {"robot": "ur3_wrs", "preset": "paper", "targets": 1_000, "points": 0.5},
-    {"robot": "cvr038", "preset": "paper", "targets": 1_000, "points": 0.5},
+    {"robot": "ur3_wrs", "what": "paper", "targets": 1_000, "points": 0.5},
+    {"robot": "cvr038", "what": "paper", "targets": 1_000, "points": 0.5},
+    {"robot": "ur3", "what": "solve_all", "targets": 2_000, "points": 0.5},
+    {"robot": "ur3", "what": "near", "targets": 2_000, "points": 0.1},
+    {"robot": "panda", "what": "near", "targets": 500, "points": 0.1},
 )
-"""What is run; `points` is how far success may fall [percent]. The same targets every
-time, so only the code and the last bits of the arithmetic can move it."""
+"""What is run: solve by a preset, or another call by the default one. `points` is how
+far `per_100` may fall. The same targets every time, so only the code and the last bits
+of the arithmetic can move it."""
 
 LEVELS = ("scalar", "sse2", "neon", "avx2", "avx512")
 """Instruction sets; the committed ratios are of one of them."""
@@ -62,7 +74,7 @@ def guard(*, update: bool) -> int:
     lines, failed = [], []
     for row, before in zip(ROWS, committed["rows"], strict=True):
         now = _measured(row, SLOWER * before["ratio"] if comparable else math.inf)
-        name = f"{row['robot']}, {row['preset']}"
+        name = f"{row['robot']}, {row['what']}"
         reasons = _reasons(row, before, now, comparable=comparable)
         failed += [f"{name}: {reason}" for reason in reasons]
         lines.append(
@@ -70,12 +82,12 @@ def guard(*, update: bool) -> int:
                 name,
                 f"{now['ratio']:.2f}",
                 f"{before['ratio']:.2f}",
-                f"{now['success_percent']:.3f}",
-                f"{before['success_percent']:.3f}",
+                f"{now['per_100']:.3f}",
+                f"{before['per_100']:.3f}",
                 "FAILED" if reasons else "ok",
             ]
         )
-    header = ["guard", "ratio", "committed", "success %", "committed", ""]
+    header = ["guard", "ratio", "committed", "of 100", "committed", ""]
     sys.stdout.write(table(header, lines) + "\n")
     if not comparable:
         sys.stdout.write(f"ratios not compared: lanes here are {level}\n")
@@ -97,16 +109,16 @@ def _reasons(
     comparable: bool,
 ) -> list[str]:
     reasons = []
-    if before["robot"] != row["robot"] or before["preset"] != row["preset"]:
+    if before["robot"] != row["robot"] or before["what"] != row["what"]:
         return [
             "bench/guard.json has another row here; run python -m bench guard --update"
         ]
     if now["false_success"]:
         reasons.append(f"{now['false_success']} false successes")
-    if now["success_percent"] < before["success_percent"] - row["points"]:
+    if now["per_100"] < before["per_100"] - row["points"]:
         reasons.append(
-            f"success {now['success_percent']:.3f} %, committed "
-            f"{before['success_percent']:.3f} %, margin {row['points']} points"
+            f"{now['per_100']:.3f} of 100, committed {before['per_100']:.3f}, "
+            f"margin {row['points']}"
         )
     if comparable and now["ratio"] > SLOWER * before["ratio"]:
         reasons.append(
@@ -117,23 +129,62 @@ def _reasons(
 
 
 def _measured(row: dict[str, Any], limit: float | None = None) -> dict[str, Any]:
-    """A row's figures.
+    """A row's figures; `per_100` targets are solved, or that many solutions found.
 
     With a limit the least ratio of RUNS runs, of twice as many if it is above the
     limit; without, the middle one.
     """
-    robot = iksel.load_robot(row["robot"])
-    solver = iksel.Solver(robot, solver_options(row["preset"], {}))
-    runs = [iksel.evaluate(solver, row["targets"], SEED) for _ in range(RUNS)]
-    ratios = sorted(run.ratio for run in runs)
+    measure = _solve if row["what"] in PRESETS else _request
+    runs = [measure(row) for _ in range(RUNS)]
+    ratios = sorted(run["ratio"] for run in runs)
     if limit is not None and ratios[0] > limit:
-        runs += [iksel.evaluate(solver, row["targets"], SEED) for _ in range(RUNS)]
-        ratios = sorted(run.ratio for run in runs)
+        runs += [measure(row) for _ in range(RUNS)]
+        ratios = sorted(run["ratio"] for run in runs)
     return {
         "robot": row["robot"],
-        "preset": row["preset"],
+        "what": row["what"],
         # To compare with: the middle one, for noise makes some too small as well.
         "ratio": round(ratios[len(ratios) // 2] if limit is None else ratios[0], 3),
-        "success_percent": round(runs[0].success_percent, 4),
-        "false_success": max(run.false_success for run in runs),
+        "per_100": round(runs[0]["per_100"], 4),
+        "false_success": max(run["false_success"] for run in runs),
+    }
+
+
+def _solve(row: dict[str, Any]) -> dict[str, Any]:
+    robot = iksel.load_robot(row["robot"])
+    solver = iksel.Solver(robot, solver_options(row["what"], {}))
+    run = iksel.evaluate(solver, row["targets"], SEED)
+    return {
+        "ratio": run.ratio,
+        "per_100": run.success_percent,
+        "false_success": run.false_success,
+    }
+
+
+def _request(row: dict[str, Any]) -> dict[str, Any]:
+    arm = load_arm(row["robot"])
+    goals = make_targets(arm, "uniform", row["targets"], SEED)
+    solver = iksel.Solver(arm.robot)
+    if row["what"] == "near":
+        arguments: list[tuple[Any, ...]] = list(
+            zip(goals.poses, near_of(goals, SEED), strict=True)
+        )
+        times, answers = time_calls(
+            lambda pose, q: solver.solve(pose, near=q), arguments, LIMIT_S
+        )
+        found = [a.q[None] if a.success else np.empty((0, 0)) for a in answers]
+    else:
+        arguments = [(pose,) for pose in goals.poses]
+        times, answers = time_calls(solver.solve_all, arguments, LIMIT_S)
+        found = [a.q for a in answers]
+    wrong = [
+        np.count_nonzero(~right(arm.chain, np.broadcast_to(pose, (len(q), 4, 4)), q))
+        for pose, q in zip(goals.poses, found, strict=True)
+        if len(q)
+    ]
+    kdl_us = iksel.evaluate(solver, 1_000, SEED).kdl_fk_jac_us
+    return {
+        "ratio": float(times.mean()) / 1e3 / kdl_us,
+        "per_100": 100.0 * sum(map(len, found)) / len(goals),
+        "false_success": int(sum(wrong)),
     }

@@ -262,25 +262,25 @@ class TestPlan:
 class TestGuard:
     BEFORE = {  # noqa: RUF012 - never changed
         "robot": "ur3",
-        "preset": "default",
+        "what": "default",
         "ratio": 1.5,
-        "success_percent": 100.0,
+        "per_100": 100.0,
         "false_success": 0,
     }
-    ROW = {"robot": "ur3", "preset": "default", "points": 0.02}  # noqa: RUF012
+    ROW = {"robot": "ur3", "what": "default", "points": 0.02}  # noqa: RUF012
 
     def reasons(self, *, comparable=True, **now):
         measured = {**self.BEFORE, **now}
         return guard._reasons(self.ROW, self.BEFORE, measured, comparable=comparable)
 
     def test_within_the_margins(self):
-        assert self.reasons(ratio=1.5 * guard.SLOWER, success_percent=99.98) == []
+        assert self.reasons(ratio=1.5 * guard.SLOWER, per_100=99.98) == []
 
     def test_regressions(self):
         (slow,) = self.reasons(ratio=1.5 * guard.SLOWER + 0.01)
         assert "2.41" in slow
         assert "1.50" in slow
-        (failing,) = self.reasons(success_percent=99.9)
+        (failing,) = self.reasons(per_100=99.9)
         assert "99.900" in failing
         assert "100.000" in failing
         assert len(self.reasons(false_success=1)) == 1
@@ -288,5 +288,5 @@ class TestGuard:
 
     def test_committed_rows_are_those_that_run(self):
         committed = json.loads(guard.PATH.read_text(encoding="utf-8"))["rows"]
-        names = [(row["robot"], row["preset"]) for row in committed]
-        assert names == [(row["robot"], row["preset"]) for row in guard.ROWS]
+        names = [(row["robot"], row["what"]) for row in committed]
+        assert names == [(row["robot"], row["what"]) for row in guard.ROWS]

@@ -37,10 +37,7 @@ struct Steering {
   [[nodiscard]] bool exhausted() const { return search.ends_complete(); }
 
   [[nodiscard]] bool go_on() const { return ask(); }
-  /// Whether more than the first answer is wanted.
-  [[nodiscard]] bool wants_more() const {
-    return search.until_complete || ranks_answers(search.request);
-  }
+  [[nodiscard]] bool wants_more() const { return search.wants_more(); }
   /// Solutions that seeds are to be taken far from: none where all are followed.
   [[nodiscard]] std::size_t known() const { return caught > 0 ? found.size() : 0; }
   [[nodiscard]] const double* solution(std::size_t i) const { return found.q(i); }
@@ -200,7 +197,8 @@ void Solver::Impl::explore_task(Exploration& search, TaskSearch& tasks,
                                 FunctionRef<Verdict(JointVector&)> accept,
                                 FunctionRef<bool()> go_on) const {
   StageClock clock(nullptr);
-  tasks.begin(search.T_base_tip, search.task);
+  tasks.begin(search.T_base_tip, search.task,
+              search.wants_more() ? TaskSearch::kMany : TaskSearch::kFew);
   // A filter is asked about many at a time.
   const int stage = search.request.filter ? kFilterStage : 1;
   int since = 0;

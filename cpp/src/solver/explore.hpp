@@ -70,6 +70,8 @@ struct Exploration {
   int most = 0;                      ///< solutions that a pose is known to have at most; 0: unknown
   bool out_of_time = false;
 
+  /// Whether more than the first answer is wanted.
+  [[nodiscard]] bool wants_more() const { return until_complete || ranks_answers(request); }
   [[nodiscard]] bool ends_complete() const { return until_complete && is_likely_complete(); }
   /// Whether all there is has most likely been found: many seeds in a row led to nothing new; or
   /// fewer, and the signs of det J, of which a single solution more would leave one over, cancel.

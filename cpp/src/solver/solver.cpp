@@ -103,7 +103,7 @@ Result Solver::Impl::solve(const Pose& T_base_tip, const JointVector* seed, Work
   if (!task.is_full_pose()) {
     Work work;
     TaskSearch& tasks = workspace.tasks;
-    tasks.begin(T_base_tip, task);
+    tasks.begin(T_base_tip, task, TaskSearch::kFew);
     if (seed == nullptr || !tasks.attempt(*seed, clock, work, accept)) {
       tasks.run(clock, work, accept);
     }

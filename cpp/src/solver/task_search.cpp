@@ -34,9 +34,10 @@ TaskSearch::TaskSearch(const ChainModel& model, const DatabaseData& data,
   if (options.kinematics == Kinematics::kdl) kdl_ = model.make_kdl();
 }
 
-void TaskSearch::begin(const Pose& target, const TaskSpace& task) {
+void TaskSearch::begin(const Pose& target, const TaskSpace& task, std::size_t neighbours) {
   target_ = &target;
   task_ = &task;
+  neighbours_ = neighbours;
   tip_target_ = target * Pose(model_.tcp_inverse);
   left_limits_ = false;
   random_ = Random(options_.seed);
@@ -81,9 +82,8 @@ Pose TaskSearch::allowed_pose(int round) {
 
 JointVector TaskSearch::seed_for(const Pose& allowed) {
   // Some poses have the same neighbours: a spin about the last joint is not in a reduced key.
-  constexpr std::size_t kSeeds = 16;
   const std::size_t found =
-      selection_.nearest_seeds(allowed * Pose(model_.tcp_inverse), kSeeds + tried_.size());
+      selection_.nearest_seeds(allowed * Pose(model_.tcp_inverse), neighbours_ + tried_.size());
   std::size_t best = found;
   double least = kInfinity;
   for (std::size_t i = 0; i < found; ++i) {

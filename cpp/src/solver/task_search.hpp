@@ -24,8 +24,13 @@ class TaskSearch {
   TaskSearch(const ChainModel& model, const DatabaseData& data, const SolverOptions& options,
              Selection& selection);
 
+  /// Neighbours of a pose that a seed is the best of: few where any answer will do, many to find
+  /// answers that differ.
+  static constexpr std::size_t kFew = 4;
+  static constexpr std::size_t kMany = 16;
+
   /// Sets what attempt() and run() are to reach; both must outlive them.
-  void begin(const Pose& target, const TaskSpace& task);
+  void begin(const Pose& target, const TaskSpace& task, std::size_t neighbours);
 
   /// Iterates from a seed and calls `accept(JointVector& q) -> Verdict` if it arrives; true if that
   /// says stop. Counts the seed and its iterations.
@@ -59,6 +64,7 @@ class TaskSearch {
   const Pose* target_ = nullptr;
   const TaskSpace* task_ = nullptr;
   Pose tip_target_ = Pose::Identity();
+  std::size_t neighbours_ = kMany;
   bool left_limits_ = false;
 };
 

@@ -3,8 +3,6 @@
 // paper's farthest-first re-selection, with solutions found in the place of seeds that failed.
 #pragma once
 
-#include <algorithm>
-
 #include "kinematics/chain_model.hpp"
 #include "lanes/lane_types.hpp"
 #include "math/constants.hpp"

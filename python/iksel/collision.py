@@ -3,22 +3,24 @@
 
     from iksel.collision import SelfCollision
 
-    solver.solve(pose, filter=SelfCollision("arm.urdf", robot))
+    solver.solve(pose, filter=SelfCollision("arm.urdf", robot, srdf="arm.srdf"))
 
 Needs the library coal: `pip install iksel[collision]`.
 """
 
 from __future__ import annotations
 
-import xml.etree.ElementTree as ET
+from itertools import combinations
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
-from iksel_cpp import InvalidArgumentError, UnknownNameError, UrdfError
+from iksel_cpp import InvalidArgumentError, UnknownNameError
 
 from iksel._arrays import as_floats
-from iksel.pose import pose_from_euler
+from iksel._collision_pairs import PairSampler, srdf_pairs, srdf_text
+from iksel._collision_shapes import Shapes, import_coal, place, read_shapes
+from iksel._link_tree import LinkTree, read_xml
 
 if TYPE_CHECKING:
     import os
@@ -28,61 +30,113 @@ if TYPE_CHECKING:
     from iksel_cpp import Robot
 
     from iksel._arrays import BoolArray, FloatArray
+    from iksel._collision_pairs import Pair
+    from iksel._collision_shapes import Placed
+
+_FROM_SRDF = "srdf: "  # before the reason that an SRDF gives
 
 
 class SelfCollision:
-    """Says which configurations of an arm are free of collisions between its links."""
+    """Says which configurations of an arm are free of collisions between its links.
+
+    Not all pairs of links are looked at; `ignored` lists the others with the reason:
+
+    - "fixed": the arm does not move the links against each other.
+    - "adjacent": one joint connects them; links without geometry between them belong to
+      the joint.
+    - "srdf: ...": the SRDF disables the pair, with its reason.
+    - "always": they touch in all samples.
+    - "never": they stay clear of each other in all samples. Samples can miss a
+      collision that is rare; an SRDF or `samples=0` ignores none for that reason.
+    - "ignore": the argument `ignore` names them.
+
+    Pairs that touch in some samples, but are within the margin in all of them, are held
+    to a margin of 0.
+    """
 
     def __init__(
         self,
         urdf: str | os.PathLike[str],
         robot: Robot,
         *,
+        srdf: str | os.PathLike[str] | None = None,
         margin: float = 0.0,
         ignore: Iterable[tuple[str, str]] = (),
+        keep: Iterable[tuple[str, str]] = (),
+        samples: int = 5_000,
+        seed: int = 0,
         other_joints: Mapping[str, float] | None = None,
         packages: Mapping[str, str | os.PathLike[str]] | None = None,
     ) -> None:
-        """Read the collision geometry of all links.
+        """Read the collision geometry of all links and find the pairs to look at.
 
         Args:
             urdf: Path of the URDF, or its text. Boxes, cylinders, spheres and meshes.
             robot: The arm whose joint values are asked about, from the same URDF.
+            srdf: Path of an SRDF, or its text, whose disable_collisions are ignored,
+                for example one that `save_srdf` wrote.
             margin: Links nearer than this collide [m].
-            ignore: Pairs of links that may touch. Links that a joint connects may
-                always, and so may links that do not move against each other.
+            ignore: Pairs of links that may touch.
+            keep: Pairs that are looked at whatever else is found.
+            samples: Configurations in which to look for pairs that always touch and,
+                without an SRDF, for those that never do. 0: neither.
+            seed: Of the samples.
             other_joints: Values of joints that are not the arm's [rad or m]; those that
                 the arm holds are known, others are 0 if not given.
             packages: Folders of package:// names of meshes.
 
         Raises:
-            InvalidArgumentError: coal is missing, or margin is negative.
-            UrdfError: The URDF or a mesh cannot be read, or there is no collision
-                geometry.
-            UnknownNameError: The URDF lacks a joint of the arm, or what `ignore` or
-                `other_joints` names; or `packages` lacks a folder.
+            InvalidArgumentError: coal is missing, margin or samples is negative, or a
+                pair is both in `ignore` and in `keep`.
+            UrdfError: The URDF, the SRDF or a mesh cannot be read, there is no
+                collision geometry, or joints mimic each other in a circle.
+            UnknownNameError: The URDF lacks a joint of the arm or of a mimic tag, or
+                what `ignore`, `keep` or `other_joints` names; or `packages` lacks a
+                folder.
         """
         if not 0 <= margin < np.inf:
             raise InvalidArgumentError(f"margin: {margin} m is not 0 or more")
-        self._coal = _import_coal()
-        text, folder = _read(urdf)
-        try:
-            root = ET.fromstring(text)  # noqa: S314 (the user's own file)
-        except ET.ParseError as error:
-            raise UrdfError(f"urdf: {error}") from None
+        if samples < 0:
+            raise InvalidArgumentError(f"samples: {samples} is not 0 or more")
+        coal = import_coal()
+        root, _, folder = read_xml("urdf", urdf)
+        shapes = read_shapes(coal, root, folder, packages or {})
         self._dof = robot.dof
-        self._request = self._coal.CollisionRequest()
-        self._request.security_margin = margin
-        self._shapes = self._read_shapes(root, folder, packages or {})
-        if not self._shapes:
-            raise UrdfError("urdf: no link has collision geometry")
-        self._tree = _Tree(root, robot, dict(other_joints or {}))
-        self._pairs = self._make_pairs(ignore)
+        self._name = root.get("name", "")
+        self._tree = LinkTree(root, robot, other_joints or {})
+        self._shapes = Shapes(coal, shapes, self._tree)
+        self._kept = self._read_pairs("keep", keep)
+        self._ignored: dict[Pair, str] = {}
+        self._ignore_listed(srdf, self._read_pairs("ignore", ignore))
+        self._margins = dict.fromkeys(self._left(), margin)
+        if samples:
+            q = robot.random_configurations(samples, seed=seed)
+            self._ignore_sampled(q, margin, never=srdf is None)
+        self._list_parts()
 
     @property
     def pairs(self) -> list[tuple[str, str]]:
         """The pairs of links that are looked at."""
-        return list(self._pairs)
+        return list(self._margins)
+
+    @property
+    def ignored(self) -> dict[tuple[str, str], str]:
+        """The pairs of links that are not looked at, with the reason."""
+        return dict(self._ignored)
+
+    def save_srdf(self, path: str | os.PathLike[str]) -> None:
+        """Write an SRDF that disables the ignored pairs.
+
+        Read by `srdf=` it spares the sampling, and it can be edited.
+
+        Args:
+            path: The file to write.
+        """
+        reasons = {
+            pair: reason.removeprefix(_FROM_SRDF)
+            for pair, reason in self._ignored.items()
+        }
+        Path(path).write_text(srdf_text(self._name, reasons), encoding="utf-8")
 
     def __call__(self, q: npt.ArrayLike) -> BoolArray:
         """Say which configurations are free.
@@ -97,255 +151,93 @@ class SelfCollision:
             InvalidArgumentError: Wrong shape or dtype, or a number that is not finite.
         """
         values = as_floats("q", q, (self._dof,))
-        free = [not self.colliding_links(one) for one in values.reshape(-1, self._dof)]
-        return np.array(free, dtype=bool).reshape(values.shape[:-1])
+        found = self._first_colliding(values.reshape(-1, self._dof))
+        free = np.array([pair is None for pair in found], dtype=bool)
+        return free.reshape(values.shape[:-1])
 
     def colliding_links(self, q: npt.ArrayLike) -> tuple[str, str] | None:
         """The first pair of links that collide at q, (dof,), or None."""
-        poses = self._tree.poses(as_floats("q", q, (self._dof,)))
-        placed = {
-            link: [
-                (shape, self._coal.Transform3s(*_split(poses[link] @ origin)))
-                for shape, origin in shapes
+        return self._first_colliding(as_floats("q", q, (self._dof,)).reshape(1, -1))[0]
+
+    def _first_colliding(self, q: FloatArray) -> list[Pair | None]:
+        found: list[Pair | None] = []
+        for placed in place(self._shapes, self._tree, q):
+            near = placed.near(self._part_shapes, self._part_margins)
+            found += [
+                self._first_touching(placed, n, row) for n, row in enumerate(near)
             ]
-            for link, shapes in self._shapes.items()
-        }
-        for a, b in self._pairs:
-            for shape_a, at_a in placed[a]:
-                for shape_b, at_b in placed[b]:
-                    result = self._coal.CollisionResult()
-                    if self._coal.collide(
-                        shape_a, at_a, shape_b, at_b, self._request, result
-                    ):
-                        return a, b
+        return found
+
+    def _first_touching(self, placed: Placed, n: int, near: BoolArray) -> Pair | None:
+        for k in np.flatnonzero(near):
+            pair, margin, part = self._parts[k]
+            if self._shapes.touch(placed, n, part, margin):
+                return pair
         return None
 
-    def _make_pairs(self, ignore: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
-        ignored = set()
-        for pair in ignore:
+    def _read_pairs(self, argument: str, pairs: Iterable[Pair]) -> set[frozenset[str]]:
+        found = set()
+        for pair in pairs:
             for link in pair:
                 if link not in self._tree.links:
                     raise UnknownNameError(
-                        f"ignore: the URDF has no link {link!r}; it has: "
+                        f"{argument}: the URDF has no link {link!r}; it has: "
                         f"{', '.join(self._tree.links)}"
                     )
-            ignored.add(frozenset(pair))
-        links = list(self._shapes)
-        body, parent = self._tree.bodies()
-        return [
-            (a, b)
-            for i, a in enumerate(links)
-            for b in links[i + 1 :]
-            if frozenset((a, b)) not in ignored
-            and body[a] != body[b]
-            and parent[body[a]] != body[b]
-            and parent[body[b]] != body[a]
-        ]
+            found.add(frozenset(pair))
+        return found
 
-    def _read_shapes(
-        self, root: ET.Element, folder: Path, packages: Mapping[str, Any]
-    ) -> dict[str, list[tuple[Any, FloatArray]]]:
-        shapes: dict[str, list[tuple[Any, FloatArray]]] = {}
-        for link in root.findall("link"):
-            name = link.get("name", "")
-            for collision in link.findall("collision"):
-                geometry = collision.find("geometry")
-                if geometry is None or len(geometry) == 0:
-                    raise UrdfError(f"urdf: link {name!r} has an empty collision")
-                try:
-                    shape = self._make_shape(geometry[0], folder, packages)
-                except UrdfError as error:
-                    raise type(error)(f"urdf: link {name!r}: {error}") from None
-                shapes.setdefault(name, []).append((shape, _origin(collision)))
-        return shapes
-
-    def _make_shape(
-        self, element: ET.Element, folder: Path, packages: Mapping[str, Any]
-    ) -> Any:
-        if element.tag == "box":
-            return self._coal.Box(*_numbers(element, "size", 3))
-        if element.tag == "sphere":
-            return self._coal.Sphere(*_numbers(element, "radius", 1))
-        if element.tag == "cylinder":
-            (radius,) = _numbers(element, "radius", 1)
-            return self._coal.Cylinder(radius, *_numbers(element, "length", 1))
-        if element.tag == "mesh":
-            path = _mesh_path(element.get("filename", ""), folder, packages)
-            scale = np.array(_numbers(element, "scale", 3, "1 1 1"))
-            return self._load_mesh(path, scale)
-        raise UrdfError(
-            f"no geometry {element.tag!r}; possible: box, cylinder, sphere, mesh"
-        )
-
-    def _load_mesh(self, path: Path, scale: FloatArray) -> Any:
-        if not path.is_file():
-            raise UrdfError(f"no mesh file {str(path)!r}")
-        try:
-            return self._coal.MeshLoader().load(str(path), scale)
-        except (RuntimeError, ValueError) as error:
-            raise UrdfError(f"mesh file {str(path)!r}: {error}") from None
-
-
-class _Tree:
-    """All links of a URDF and where they are."""
-
-    def __init__(
-        self, root: ET.Element, robot: Robot, others: dict[str, float]
+    def _ignore_listed(
+        self, srdf: str | os.PathLike[str] | None, ignore: set[frozenset[str]]
     ) -> None:
-        self.links = [link.get("name", "") for link in root.findall("link")]
-        self._names = robot.joint_names
-        self._joints: dict[str, _Joint] = {}
-        for element in root.findall("joint"):
-            joint = _Joint(element)
-            self._joints[joint.child] = joint
-        known = [joint.name for joint in self._joints.values()]
-        for argument, names in (("robot", self._names), ("other_joints", others)):
-            for name in names:
-                if name not in known:
-                    raise UnknownNameError(
-                        f"{argument}: the URDF has no joint {name!r}; it has: "
-                        f"{', '.join(known)}"
-                    )
-        self._others = {**robot.locked_joints, **others}
-
-    def poses(self, q: FloatArray) -> dict[str, FloatArray]:
-        """Pose of each link in the root link's frame."""
-        values = {**self._others, **dict(zip(self._names, q.tolist(), strict=True))}
-        poses: dict[str, FloatArray] = {}
-
-        def pose(link: str) -> FloatArray:
-            if link not in poses:
-                joint = self._joints.get(link)
-                poses[link] = (
-                    np.eye(4)
-                    if joint is None
-                    else pose(joint.parent) @ joint.transform(values)
-                )
-            return poses[link]
-
-        return {link: pose(link) for link in self.links}
-
-    def bodies(self) -> tuple[dict[str, str], dict[str, str | None]]:
-        """What moves as one.
-
-        Returns:
-            For each link the first link of those that are fixed to each other, their
-            body; and for each body the one that it is joined to.
-        """
-
-        def body(link: str) -> str:
-            joint = self._joints.get(link)
-            return link if joint is None or joint.moves else body(joint.parent)
-
-        body_of = {link: body(link) for link in self.links}
-        parent_of = {
-            first: None if joint is None else body_of[joint.parent]
-            for first in body_of.values()
-            for joint in [self._joints.get(first)]
-        }
-        return body_of, parent_of
-
-
-class _Joint:
-    """A joint of a URDF."""
-
-    def __init__(self, element: ET.Element) -> None:
-        self.name = element.get("name", "")
-        self.kind = element.get("type", "")
-        self.moves = self.kind in {"revolute", "continuous", "prismatic"}
-        self.parent = _link(element, "parent")
-        self.child = _link(element, "child")
-        self._origin = _origin(element)
-        axis = element.find("axis")
-        xyz = [1.0, 0.0, 0.0] if axis is None else _numbers(axis, "xyz", 3)
-        self._axis = np.array(xyz) / (np.linalg.norm(xyz) or 1.0)
-        mimic = element.find("mimic")
-        self._follows = None if mimic is None else mimic.get("joint", "")
-        self._factor = (
-            1.0 if mimic is None else _numbers(mimic, "multiplier", 1, "1")[0]
-        )
-        self._offset = 0.0 if mimic is None else _numbers(mimic, "offset", 1, "0")[0]
-
-    def transform(self, values: Mapping[str, float]) -> FloatArray:
-        """Pose of the child link in the parent link's frame."""
-        if not self.moves:
-            return self._origin
-        driver = self.name if self._follows is None else self._follows
-        value = self._factor * values.get(driver, 0.0) + self._offset
-        motion = np.eye(4)
-        if self.kind == "prismatic":
-            motion[:3, 3] = value * self._axis
-        else:
-            x, y, z = self._axis
-            cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-            motion[:3, :3] += np.sin(value) * cross
-            motion[:3, :3] += (1 - np.cos(value)) * cross @ cross
-        moved: FloatArray = self._origin @ motion
-        return moved
-
-
-def _import_coal() -> Any:
-    try:
-        import coal  # noqa: PLC0415 (an optional extra)
-    except ImportError as error:
-        raise InvalidArgumentError(
-            f"self-collision needs coal, which cannot be imported ({error}); "
-            "install it by: pip install 'iksel[collision]'"
-        ) from None
-    return coal
-
-
-def _read(urdf: str | os.PathLike[str]) -> tuple[str, Path]:
-    """The text, and the folder that relative mesh names start from."""
-    if isinstance(urdf, str) and urdf.lstrip().startswith("<"):
-        return urdf, Path()
-    path = Path(urdf)
-    try:
-        return path.read_text("utf-8"), path.parent
-    except OSError as error:
-        raise UrdfError(f"urdf: {error}") from None
-
-
-def _link(joint: ET.Element, end: str) -> str:
-    element = joint.find(end)
-    return "" if element is None else element.get("link", "")
-
-
-def _numbers(
-    element: ET.Element, attribute: str, count: int, default: str = ""
-) -> list[float]:
-    text = element.get(attribute, default)
-    try:
-        numbers = [float(word) for word in text.split()]
-    except ValueError:
-        numbers = []
-    if len(numbers) != count:
-        raise UrdfError(
-            f"{element.tag} with {attribute}={text!r}, expected {count} numbers"
-        )
-    return numbers
-
-
-def _origin(element: ET.Element) -> FloatArray:
-    origin = element.find("origin")
-    if origin is None:
-        return np.eye(4)
-    xyz = _numbers(origin, "xyz", 3, "0 0 0")
-    return pose_from_euler(xyz, _numbers(origin, "rpy", 3, "0 0 0"))
-
-
-def _split(pose: FloatArray) -> tuple[FloatArray, FloatArray]:
-    return pose[:3, :3], pose[:3, 3]
-
-
-def _mesh_path(name: str, folder: Path, packages: Mapping[str, Any]) -> Path:
-    if name.startswith("package://"):
-        package, _, rest = name.removeprefix("package://").partition("/")
-        if package not in packages:
-            listed = ", ".join(packages) or "none"
-            raise UnknownNameError(
-                f"packages: no folder for package {package!r} of mesh {name!r}; given: "
-                f"{listed}"
+        """Ignore what is known without samples."""
+        for pair in ignore & self._kept:
+            raise InvalidArgumentError(
+                f"ignore: {' and '.join(sorted(pair))} are in keep too"
             )
-        return Path(packages[package]) / rest
-    return folder / name.removeprefix("file://")
+        disabled = {}
+        if srdf is not None:
+            disabled = srdf_pairs(read_xml("srdf", srdf)[0], self._tree.links)
+        adjacent = self._tree.neighbours(self._shapes.links)
+        body = self._tree.body
+        for a, b in self._left():
+            pair = frozenset((a, b))
+            if pair in self._kept:
+                continue
+            if pair in ignore:
+                self._ignored[a, b] = "ignore"
+            elif body[a] == body[b]:
+                self._ignored[a, b] = "fixed"
+            elif pair in adjacent:
+                self._ignored[a, b] = "adjacent"
+            elif pair in disabled:
+                self._ignored[a, b] = f"{_FROM_SRDF}{disabled[pair]}"
+
+    def _ignore_sampled(self, q: FloatArray, margin: float, *, never: bool) -> None:
+        """Ignore pairs that always touch or never do; hold close ones to 0 m."""
+        pairs = [pair for pair in self._left() if frozenset(pair) not in self._kept]
+        sampler = PairSampler(self._shapes, self._tree, q)
+        found = sampler.look(pairs, margin, never=never)
+        self._ignored.update(dict.fromkeys(found.always, "always"))
+        self._ignored.update(dict.fromkeys(found.never, "never"))
+        self._margins = {
+            pair: 0.0 if pair in found.close else margin for pair in self._left()
+        }
+
+    def _left(self) -> list[Pair]:
+        """The pairs that are not ignored so far."""
+        pairs = combinations(self._shapes.links, 2)
+        return [pair for pair in pairs if pair not in self._ignored]
+
+    def _list_parts(self) -> None:
+        """Lay out the pairs of shapes that are looked at, and what they belong to."""
+        of_link = self._shapes.of_link
+        self._parts = [
+            (pair, margin, (i, j))
+            for pair, margin in self._margins.items()
+            for i in of_link[pair[0]]
+            for j in of_link[pair[1]]
+        ]
+        shapes = [part for _, _, part in self._parts]
+        self._part_shapes = np.array(shapes, dtype=int).reshape(-1, 2)
+        self._part_margins = np.array([margin for _, margin, _ in self._parts])

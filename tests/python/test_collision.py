@@ -4,11 +4,15 @@
 from __future__ import annotations
 
 import sys
+import time
+import xml.etree.ElementTree as ET
+from functools import cache
 
 import numpy as np
 import pytest
 
 import iksel
+from iksel import _link_tree
 
 coal = pytest.importorskip("coal")
 collision = pytest.importorskip("iksel.collision")
@@ -56,11 +60,16 @@ def capsule_distance(a: np.ndarray, b: np.ndarray) -> float:
     return float(np.linalg.norm(p[:, None] - q[None], axis=2).min())
 
 
-def segments(arm: iksel.Robot, q: np.ndarray) -> dict[str, np.ndarray]:
+@cache
+def parts() -> list[iksel.Robot]:
+    """The arm as far as l1, l2, ..., l6."""
+    return [iksel.Robot.from_urdf(URDF, base_link="l0", tip_link=n) for n in NAMES[1:]]
+
+
+def segments(q: np.ndarray) -> dict[str, np.ndarray]:
     """Axis of each link's tube in the base frame, by the library's own FK."""
     found = {"l0": np.array([[0, 0, 0], [0, 0, LENGTHS[0]]], dtype=float)}
-    for i in range(1, 7):
-        part = iksel.Robot.from_urdf(URDF, base_link="l0", tip_link=f"l{i}")
+    for i, part in enumerate(parts(), 1):
         pose = part.fk(q[:i])
         found[f"l{i}"] = np.stack([pose[:3, 3], (pose @ [0, 0, LENGTHS[i], 1])[:3]])
     return found
@@ -72,7 +81,7 @@ def test_agrees_with_the_distance_of_the_axes(arm) -> None:
     assert ("l0", "l1") not in free.pairs
     seen = {True: 0, False: 0}
     for q in arm.random_configurations(300, seed=3):
-        axes = segments(arm, q)
+        axes = segments(q)
         distances = [capsule_distance(axes[a], axes[b]) for a, b in free.pairs]
         # A flat end lies inside its capsule: nearer than the radii says nothing.
         if min(distances) > 0.085:
@@ -86,7 +95,9 @@ def test_agrees_with_the_distance_of_the_axes(arm) -> None:
 
 def test_margin_and_ignore(arm) -> None:
     bent = np.array([0, 1.2, 2.0, 0, 0, 0])
-    pair = collision.SelfCollision(URDF, arm, margin=0.3).colliding_links(bent)
+    pair = collision.SelfCollision(URDF, arm, margin=0.3, samples=99).colliding_links(
+        bent
+    )
     assert pair is not None
     everything = collision.SelfCollision(URDF, arm).pairs
     assert collision.SelfCollision(URDF, arm, margin=9, ignore=everything)(bent)
@@ -180,10 +191,12 @@ def test_joints_that_the_arm_holds_are_where_it_holds_them() -> None:
     held = iksel.Robot.from_urdf(
         URDF, base_link="l0", tip_link="l6", locked_joints={"j2": 2.6}
     )
-    expected = collision.SelfCollision(URDF, whole, margin=0.05).colliding_links(bent)
+    expected = collision.SelfCollision(
+        URDF, whole, margin=0.05, samples=99
+    ).colliding_links(bent)
     rest = np.delete(bent, 2)
     assert expected is not None
-    free = collision.SelfCollision(URDF, held, margin=0.05)
+    free = collision.SelfCollision(URDF, held, margin=0.05, samples=99)
     assert free.colliding_links(rest) == expected
     straight = collision.SelfCollision(URDF, held, other_joints={"j2": 0.0})
     assert straight(rest)
@@ -193,3 +206,377 @@ def test_without_coal_it_says_what_to_install(arm, monkeypatch) -> None:
     monkeypatch.setitem(sys.modules, "coal", None)
     with pytest.raises(iksel.InvalidArgumentError, match=r"iksel\[collision\]"):
         collision.SelfCollision(URDF, arm)
+
+
+def hand(finger: float) -> str:
+    """The arm with two fingers of that width [m], 0.1 m apart, each on a slide."""
+    fingers = ""
+    for side, y in (("left", 0.05), ("right", -0.05)):
+        fingers += f"""<link name="{side}"><collision>
+          <geometry><box size="0.02 {finger} 0.08"/></geometry></collision></link>
+        <joint name="{side}_slide" type="prismatic">
+          <parent link="l6"/><child link="{side}"/>
+          <origin xyz="0 {y} 0.1"/><axis xyz="0 1 0"/>
+          <limit lower="0" upper="0.04" effort="1" velocity="1"/></joint>"""
+    return URDF.replace("</robot>", fingers + "</robot>")
+
+
+def test_what_the_arm_does_not_move_against_each_other_is_ignored(arm) -> None:
+    without = collision.SelfCollision(URDF, arm, samples=0)
+    free = collision.SelfCollision(hand(0.15), arm, samples=0)
+    assert free.ignored["left", "right"] == "fixed"
+    assert free.ignored["l6", "left"] == "fixed"
+    assert free.ignored["l5", "l6"] == "adjacent"
+    assert not set(free.pairs) & set(free.ignored)
+    q = arm.random_configurations(100, seed=8)
+    assert without(q).sum() > 5
+    assert 5 < free(q).sum() < 100
+    kept = collision.SelfCollision(
+        hand(0.15), arm, samples=99, keep=[("right", "left")]
+    )
+    assert ("left", "right") in kept.pairs
+    assert not kept(q).any()
+    assert kept.colliding_links(np.zeros(6)) == ("left", "right")
+
+
+def srdf(*tags: str) -> str:
+    return f'<robot name="tubes">{"".join(f"<{tag}/>" for tag in tags)}</robot>'
+
+
+def test_pairs_that_an_srdf_disables(arm, tmp_path) -> None:
+    text = srdf(
+        'disable_collisions link1="l4" link2="l0" reason="Never"',
+        'disable_collisions link1="l1" link2="l0" reason="Adjacent"',
+        'disable_collisions link1="l0" link2="camera" reason="Never"',
+        'disable_default_collisions link="l6"',
+        'enable_collisions link1="l6" link2="l1"',
+    )
+    path = tmp_path / "arm.srdf"
+    path.write_text(text, encoding="utf-8")
+    everything = collision.SelfCollision(URDF, arm, samples=0)
+    for source in (text, path, str(path)):
+        free = collision.SelfCollision(URDF, arm, srdf=source)
+        by_srdf = {pair for pair, why in free.ignored.items() if why[:4] == "srdf"}
+        assert by_srdf == {
+            ("l0", "l4"),
+            ("l0", "l6"),
+            *((f"l{i}", "l6") for i in (2, 3, 4)),
+        }
+        assert free.ignored["l0", "l4"] == "srdf: Never"
+        assert free.ignored["l0", "l1"] == "adjacent"
+        assert set(free.pairs) == set(everything.pairs) - by_srdf
+    kept = collision.SelfCollision(URDF, arm, srdf=text, keep=[("l4", "l0")])
+    assert ("l0", "l4") in kept.pairs
+    # The verdict is that of the pairs that are left.
+    first = [
+        everything.colliding_links(q) for q in arm.random_configurations(200, seed=1)
+    ]
+    assert any(pair in by_srdf for pair in first)
+    q = arm.random_configurations(200, seed=1)
+    ignoring = collision.SelfCollision(URDF, arm, samples=0, ignore=by_srdf)
+    assert ignoring(q).tolist() == free(q).tolist()
+    assert (free(q) > everything(q)).any()
+
+
+def test_errors_of_an_srdf_say_what_is_wrong(arm) -> None:
+    other = srdf('disable_collisions link1="shoulder" link2="elbow"')
+    with pytest.raises(iksel.UrdfError, match=r"srdf: of another robot.*elbow.*l0, l1"):
+        collision.SelfCollision(URDF, arm, srdf=other)
+    with pytest.raises(iksel.UrdfError, match="srdf: expected <robot>, got <sdf>"):
+        collision.SelfCollision(URDF, arm, srdf="<sdf/>")
+    with pytest.raises(iksel.UrdfError, match=r"srdf: .*absent\.srdf"):
+        collision.SelfCollision(URDF, arm, srdf="absent.srdf")
+    with pytest.raises(iksel.UrdfError, match="srdf: "):
+        collision.SelfCollision(URDF, arm, srdf="<robot")
+
+
+def test_the_pairs_found_are_saved_as_an_srdf(arm, tmp_path) -> None:
+    found = collision.SelfCollision(BUMPED, arm, samples=300)
+    assert set(found.ignored.values()) == {"fixed", "adjacent", "always", "never"}
+    found.save_srdf(tmp_path / "found.srdf")
+    again = collision.SelfCollision(BUMPED, arm, srdf=tmp_path / "found.srdf")
+    assert again.pairs == found.pairs
+    assert {why.removeprefix("srdf: ") for why in again.ignored.values()} == set(
+        found.ignored.values()
+    )
+
+
+# A sphere around the second joint, on l2, is always in l0; a bead on l5 never is.
+BALL = '<collision><geometry><sphere radius="0.3"/></geometry></collision>'
+BUMPED = URDF.replace('<link name="l2">', f'<link name="l2">{BALL}').replace(
+    link("l6", LENGTHS[6]),
+    link("l6", LENGTHS[6]) + '<link name="bead">'
+    '<collision><geometry><sphere radius="0.01"/></geometry></collision></link>'
+    '<joint name="glue" type="fixed"><parent link="l5"/><child link="bead"/></joint>',
+)
+
+
+def test_pairs_that_always_or_never_touch_are_found(arm) -> None:
+    q = arm.random_configurations(200, seed=9)
+    assert not collision.SelfCollision(BUMPED, arm, samples=0)(q).any()
+    free = collision.SelfCollision(BUMPED, arm, samples=500)
+    assert free.ignored["l0", "l2"] == "always"
+    assert free.ignored["l3", "bead"] == "never"
+    assert ("l1", "l6") in free.pairs
+    assert 20 < free(q).sum() < 200
+    again = collision.SelfCollision(BUMPED, arm, samples=500, seed=0)
+    assert again.ignored == free.ignored
+    # An SRDF says what never touches; what always does is still found.
+    listed = srdf('disable_collisions link1="l0" link2="l4" reason="Never"')
+    listed = collision.SelfCollision(BUMPED, arm, srdf=listed)
+    assert listed.ignored["l0", "l2"] == "always"
+    assert "never" not in listed.ignored.values()
+    kept = collision.SelfCollision(BUMPED, arm, samples=500, keep=[("l0", "l2")])
+    assert not kept(q).any()
+    # What never touches does not in the samples of others either.
+    never = [pair for pair, why in free.ignored.items() if why == "never"]
+    only = collision.SelfCollision(
+        BUMPED, arm, samples=0, ignore=free.pairs, keep=never
+    )
+    assert all(only.colliding_links(one) not in never for one in q)
+    with pytest.raises(iksel.InvalidArgumentError, match="samples: -1"):
+        collision.SelfCollision(URDF, arm, samples=-1)
+    with pytest.raises(iksel.InvalidArgumentError, match="ignore: l0 and l2 .*keep"):
+        collision.SelfCollision(URDF, arm, ignore=[("l0", "l2")], keep=[("l2", "l0")])
+    with pytest.raises(iksel.UnknownNameError, match="keep: .*'elbow'.*l0, l1"):
+        collision.SelfCollision(URDF, arm, keep=[("l0", "elbow")])
+
+
+def orbit(distance: float) -> str:
+    """Two balls of 0.1 m, one around the other on two axes, and a bead between."""
+    balls = "".join(
+        f'<link name="{name}"><collision><origin xyz="{x} 0 0"/>'
+        f'<geometry><sphere radius="{r}"/></geometry></collision></link>'
+        for name, x, r in (("sun", 0, 0.1), ("dust", 9, 0.01), ("moon", distance, 0.1))
+    )
+    axes = joint("a", "sun", "dust", 0, "0 0 1") + joint(
+        "b", "dust", "moon", 0, "0 1 0"
+    )
+    return f'<robot name="orbit">{balls}{axes}</robot>'
+
+
+@pytest.mark.parametrize(
+    ("gap", "why"), [(-1e-3, "always"), (0.01, None), (0.03, "never")]
+)
+def test_a_pair_that_comes_near_is_looked_at(gap, why) -> None:
+    """Samples that are free do not prove that those between them are."""
+    text = orbit(0.2 + gap)
+    robot = iksel.Robot.from_urdf(text, base_link="sun", tip_link="moon")
+    free = collision.SelfCollision(text, robot, samples=300)
+    assert free.ignored.get(("sun", "moon")) == why
+
+
+def test_a_pair_that_cannot_keep_the_margin_is_held_to_none(arm) -> None:
+    # l1, 0.1 m long, is all that is between l0 and l2.
+    free = collision.SelfCollision(URDF, arm, margin=0.12, samples=500)
+    assert ("l0", "l2") in free.pairs
+    q = arm.random_configurations(300, seed=10)
+    assert 5 < free(q).sum() < 300
+    bent = [0, 2.9, 0, 0, 0, 0]
+    assert collision.SelfCollision(URDF, arm).colliding_links(bent) == ("l0", "l2")
+    assert free.colliding_links(bent) == ("l0", "l2")
+
+
+def universal(solid: str) -> str:
+    """Two solid links with a joint of two axes and a flange between them."""
+    empty = "".join(f'<link name="{name}"/>' for name in ("cross", "flange"))
+    fixed = """<joint name="bolts" type="fixed">
+      <parent link="flange"/><child link="lower"/></joint>"""
+    return (
+        f'<robot name="u"><link name="upper">{solid}</link>{empty}'
+        f'<link name="lower">{solid}</link>{fixed}'
+        + joint("x", "upper", "cross", 0.02, "1 0 0")
+        + joint("y", "cross", "flange", 0, "0 1 0")
+        + "</robot>"
+    )
+
+
+def test_links_around_a_joint_of_several_axes_are_adjacent() -> None:
+    text = universal(TUBE.join(("<collision><geometry>", "</geometry></collision>")))
+    robot = iksel.Robot.from_urdf(text, base_link="upper", tip_link="lower")
+    free = collision.SelfCollision(text, robot, samples=0)
+    assert free.ignored == {("upper", "lower"): "adjacent"}
+    assert free(robot.random_configurations(20, seed=1)).all()
+
+
+def random_tree(rng: np.random.Generator, links: int, solid: str = "") -> str:
+    """Links on random joints, many of which follow others, up to all in a row."""
+    text = '<link name="n0"/>'
+    movers: list[str] = []
+    for i in range(1, links):
+        kind = rng.choice(["revolute", "prismatic", "continuous", "fixed"])
+        xyz, rpy, axis = rng.normal(size=(3, 3))
+        mimic = ""
+        if movers and kind != "fixed" and rng.random() < 0.6:
+            factor, offset = rng.uniform(-1.5, 1.5, 2)
+            mimic = (
+                f'<mimic joint="{rng.choice(movers)}" multiplier="{factor}" '
+                f'offset="{offset}"/>'
+            )
+        if kind != "fixed":
+            movers.append(f"m{i}")
+        text += f"""<link name="n{i}">{solid}</link><joint name="m{i}" type="{kind}">
+          <parent link="n{rng.integers(max(0, i - 3), i)}"/><child link="n{i}"/>
+          <origin xyz="{" ".join(map(str, xyz))}" rpy="{" ".join(map(str, rpy))}"/>
+          <axis xyz="{" ".join(map(str, axis))}"/>{mimic}
+          <limit lower="-9" upper="9" effort="1" velocity="1"/></joint>"""
+    return f'<robot name="tree">{text}</robot>'
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_all_links_are_where_forward_kinematics_puts_them(seed) -> None:
+    rng = np.random.default_rng(seed)
+    text = random_tree(rng, 12)
+    root = ET.fromstring(text)
+    arms = {}
+    for i in range(1, 12):
+        try:
+            arms[f"n{i}"] = iksel.Robot.from_urdf(
+                text, base_link="n0", tip_link=f"n{i}"
+            )
+        except iksel.UrdfError:  # nothing moves there, or no range is left
+            continue
+    values = {
+        name: rng.uniform(-1, 1) for arm in arms.values() for name in arm.joint_names
+    }
+    assert len(arms) > 3, f"seed {seed}"
+    for arm in arms.values():
+        held = {name: values[name] for name in arm.joint_names[1:2] if arm.dof > 1}
+        tip = arm.tip_link
+        locked = iksel.Robot.from_urdf(
+            text, base_link="n0", tip_link=tip, locked_joints=held
+        )
+        for robot in (arm, locked):
+            others = {name: values[name] for name in set(values) - set(held)}
+            tree = _link_tree.LinkTree(root, robot, others)
+            q = np.array([[values[name] for name in robot.joint_names]])
+            poses = tree.poses(q)[0]
+            for link, way in arms.items():
+                expected = way.fk(np.array([values[name] for name in way.joint_names]))
+                np.testing.assert_allclose(
+                    poses[tree.body[link]] @ tree.in_body[link],
+                    expected,
+                    atol=1e-12,
+                    err_msg=f"seed {seed}, arm to {tip}, link {link}",
+                )
+
+
+FOLLOWERS = """<link name="f{i}"><collision><geometry><sphere radius="0.04"/></geometry>
+  </collision></link><joint name="f{i}" type="revolute"><parent link="l0"/>
+  <child link="f{i}"/><origin xyz="{i} 0 0"/><axis xyz="0 1 0"/>
+  <limit lower="-9" upper="9" effort="1" velocity="1"/>
+  <mimic joint="{follows}" multiplier="2" offset="0.1"/></joint>"""
+
+
+def followers(*follows: str) -> str:
+    tags = "".join(
+        FOLLOWERS.format(i=i, follows=name) for i, name in enumerate(follows)
+    )
+    return URDF.replace("</robot>", tags + "</robot>")
+
+
+def test_mimics_of_mimics_at_any_depth(arm) -> None:
+    depth = 30
+    names = ["j0", *(f"f{i}" for i in range(depth))]
+    text = followers(*names)
+    root = ET.fromstring(text)
+    q = np.zeros((1, 6))
+    q[0, 0] = angle = 1e-9
+    tree = _link_tree.LinkTree(root, arm, {})
+    for _ in range(depth):
+        angle = 2 * angle + 0.1
+    pose = tree.poses(q)[0, tree.body[f"f{depth - 1}"]]
+    expected = iksel.pose_from_euler([depth - 1, 0, 0], [0, angle, 0])
+    np.testing.assert_allclose(pose, expected, atol=1e-6)
+
+
+def test_mimics_that_lead_nowhere_are_typed_errors(arm) -> None:
+    for names in (("f0",), ("f1", "f0"), ("f1", "f2", "f1")):
+        with pytest.raises(iksel.UrdfError, match="'f0' mimics itself .* circle"):
+            collision.SelfCollision(followers(*names), arm)
+    with pytest.raises(iksel.UnknownNameError, match="'f0' mimics 'motor'.*j0, j1"):
+        collision.SelfCollision(followers("motor"), arm)
+
+
+def test_links_that_hang_on_nothing_are_typed_errors(arm) -> None:
+    island = "".join(f'<link name="i{k}"/>' for k in range(2)) + "".join(
+        joint(f"i{k}", f"i{1 - k}", f"i{k}", 0, "1 0 0") for k in range(2)
+    )
+    with pytest.raises(iksel.UrdfError, match="no way from a root link to: i0, i1"):
+        collision.SelfCollision(URDF.replace("</robot>", island + "</robot>"), arm)
+
+
+def prism_walls(path) -> None:
+    """An STL file: four walls of a shaft 1 m wide and high, open at both ends."""
+    corners = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)]
+    lines = ["solid t"]
+    for (ax, ay), (bx, by) in zip(corners, corners[1:] + corners[:1], strict=True):
+        low, high = (ax, ay, -0.5), (bx, by, 0.5)
+        for face in ((low, (bx, by, -0.5), high), (low, high, (ax, ay, 0.5))):
+            lines += ["facet normal 0 0 0", "outer loop"]
+            lines += ["vertex {} {} {}".format(*corner) for corner in face]
+            lines += ["endloop", "endfacet"]
+    path.write_text("\n".join([*lines, "endsolid t"]), encoding="utf-8")
+
+
+@pytest.mark.parametrize("margin", [0.0, 0.05])
+def test_agrees_with_all_shapes_against_all(arm, tmp_path, margin) -> None:
+    """Boxes around shapes and hulls of meshes are only a quick first look."""
+    prism_walls(tmp_path / "shaft.stl")
+    shaft = (
+        '<link name="shaft"><collision><origin xyz="0.2 0 0.5" rpy="0.3 0 0.2"/>'
+        '<geometry><mesh filename="shaft.stl" scale="0.9 1.1 1"/></geometry>'
+        '</collision></link><joint name="bolts" type="fixed"><parent link="l0"/>'
+        '<child link="shaft"/></joint>'
+    )
+    urdf = tmp_path / "arm.urdf"
+    urdf.write_text(URDF.replace("</robot>", shaft + "</robot>"), encoding="utf-8")
+    free = collision.SelfCollision(urdf, arm, margin=margin, samples=0)
+    mesh = coal.MeshLoader().load(str(tmp_path / "shaft.stl"), np.array([0.9, 1.1, 1]))
+    tubes = [coal.Cylinder(0.04, length) for length in LENGTHS]
+    request = coal.CollisionRequest()
+    request.security_margin = margin
+    in_shaft, verdicts = 0, []
+    q = arm.random_configurations(300, seed=12)
+    for one in q:
+        poses = [np.eye(4), *(part.fk(one[: part.dof]) for part in parts())]
+        shapes = {
+            name: (tube, pose @ iksel.pose_from_euler([0, 0, length / 2], [0, 0, 0]))
+            for name, tube, pose, length in zip(
+                NAMES, tubes, poses, LENGTHS, strict=True
+            )
+        }
+        shapes["shaft"] = mesh, iksel.pose_from_euler([0.2, 0, 0.5], [0.3, 0, 0.2])
+        hits = []
+        for pair in free.pairs:
+            (a, at_a), (b, at_b) = (shapes[link] for link in pair)
+            at = [
+                coal.Transform3s(p[:3, :3].copy(), p[:3, 3].copy())
+                for p in (at_a, at_b)
+            ]
+            if coal.collide(a, at[0], b, at[1], request, coal.CollisionResult()):
+                hits.append(pair)
+        in_shaft += any("shaft" in pair for pair in hits)
+        assert free.colliding_links(one) == (hits[0] if hits else None)
+        verdicts.append(not hits)
+    assert free(q).tolist() == verdicts
+    assert 5 < sum(verdicts) < 295
+    assert in_shaft > 5
+
+
+def test_a_thousand_configurations_take_no_time(arm, tmp_path) -> None:
+    """Of seven meshes; 5 ms for each is many times what is needed."""
+    prism_walls(tmp_path / "shaft.stl")
+    text = URDF
+    for length in LENGTHS:
+        tube = f'<cylinder radius="0.04" length="{length}"/>'
+        mesh = f'<mesh filename="shaft.stl" scale="0.07 0.07 {length}"/>'
+        text = text.replace(tube, mesh)
+    urdf = tmp_path / "arm.urdf"
+    urdf.write_text(text, encoding="utf-8")
+    free = collision.SelfCollision(urdf, arm, samples=0)
+    q = arm.random_configurations(200, seed=13)
+    start = time.process_time()
+    verdicts = free(q)
+    assert (time.process_time() - start) / len(q) < 5e-3
+    assert 0 < verdicts.sum() < len(q)

@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Shapes of a URDF's collision geometry, and which of them touch."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from iksel_cpp import InvalidArgumentError, UnknownNameError, UrdfError
+
+from iksel._link_tree import read_numbers, read_origin
+
+if TYPE_CHECKING:
+    import xml.etree.ElementTree as ET
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from iksel._arrays import BoolArray, FloatArray, IntArray
+    from iksel._link_tree import LinkTree
+
+_CHUNK = 256  # configurations placed at a time, which bounds the memory
+
+
+class Shape(NamedTuple):
+    """A shape of a link."""
+
+    link: str
+    geometry: Any
+    hull: Any  # convex, around the geometry; the geometry itself where that is convex
+    origin: FloatArray  # pose in the frame of the link, (4, 4)
+
+
+class Placed:
+    """Shapes of links at a batch of configurations."""
+
+    def __init__(self, shapes: Shapes, poses: FloatArray) -> None:
+        self._coal = shapes.coal
+        self._bodies = poses
+        # World boxes around the shapes, (n, shapes, 3) [m].
+        frames = poses[:, shapes.body]
+        centres = (frames[..., :3, :3] @ shapes.centre[..., None])[..., 0]
+        self.centre = centres + frames[..., :3, 3]
+        self.half = np.abs(frames[..., :3, :3] @ shapes.half_axes).sum(-1)
+        self._body, self._origin = shapes.body, shapes.in_body
+        self._made: dict[tuple[int, int], Any] = {}
+
+    def at(self, n: int, shape: int) -> Any:
+        """Coal's transform of a shape at configuration n."""
+        if (n, shape) not in self._made:
+            pose = self._bodies[n, self._body[shape]] @ self._origin[shape]
+            self._made[n, shape] = self._coal.Transform3s(pose[:3, :3], pose[:3, 3])
+        return self._made[n, shape]
+
+    def near(self, pairs: IntArray, margins: FloatArray | float) -> BoolArray:
+        """Whether the boxes of pairs (m, 2) of shapes are within margins, (n, m)."""
+        a, b = pairs[:, 0], pairs[:, 1]
+        gap = np.abs(self.centre[:, a] - self.centre[:, b])
+        gap -= self.half[:, a]
+        gap -= self.half[:, b]
+        close: BoolArray = gap.max(-1) <= margins
+        return close
+
+
+def place(shapes: Shapes, tree: LinkTree, q: FloatArray) -> Iterator[Placed]:
+    """Place the shapes at configurations (n, dof), some of them at a time."""
+    for start in range(0, len(q), _CHUNK):
+        yield Placed(shapes, tree.poses(q[start : start + _CHUNK]))
+
+
+class Shapes:
+    """All shapes of a URDF, in the bodies of a LinkTree."""
+
+    def __init__(self, coal: Any, shapes: Sequence[Shape], tree: LinkTree) -> None:
+        self.coal = coal
+        self.links = list(dict.fromkeys(shape.link for shape in shapes))
+        self.of_link = {
+            link: [i for i, shape in enumerate(shapes) if shape.link == link]
+            for link in self.links
+        }
+        self.body = np.array([tree.body[shape.link] for shape in shapes])
+        self.in_body = np.array(
+            [tree.in_body[shape.link] @ shape.origin for shape in shapes]
+        )
+        boxes = np.array([_local_box(shape.geometry) for shape in shapes])
+        rotation = self.in_body[:, :3, :3]
+        centre = (rotation @ boxes[:, 0, :, None])[..., 0]
+        self.centre = centre + self.in_body[:, :3, 3]
+        self.half_axes = rotation * boxes[:, 1, None, :]
+        self._shapes = shapes
+        self._tests: dict[tuple[int, int], tuple[Any, Any]] = {}
+        self._result = coal.CollisionResult()
+        self._requests: dict[float, Any] = {}
+
+    def touch(
+        self,
+        placed: Placed,
+        n: int,
+        pair: tuple[int, int],
+        margin: float,
+        *,
+        hulls: bool = False,
+    ) -> bool:
+        """Whether two shapes are within margin at configuration n; or their hulls."""
+        convex, exact = self._tests_of(pair)
+        at = placed.at(n, pair[0]), placed.at(n, pair[1])
+        request = self._request(margin)
+        if not self._collide(convex, at, request):
+            return False
+        return hulls or exact is None or self._collide(exact, at, request)
+
+    def _collide(self, test: Any, at: tuple[Any, Any], request: Any) -> bool:
+        self._result.clear()
+        return bool(test(*at, request, self._result))
+
+    def _tests_of(self, pair: tuple[int, int]) -> tuple[Any, Any]:
+        if pair not in self._tests:
+            a, b = self._shapes[pair[0]], self._shapes[pair[1]]
+            make = self.coal.ComputeCollision
+            convex = a.hull is a.geometry and b.hull is b.geometry
+            exact = None if convex else make(a.geometry, b.geometry)
+            self._tests[pair] = make(a.hull, b.hull), exact
+        return self._tests[pair]
+
+    def _request(self, margin: float) -> Any:
+        if margin not in self._requests:
+            request = self._requests[margin] = self.coal.CollisionRequest()
+            request.security_margin = margin
+            request.enable_contact = False
+        return self._requests[margin]
+
+
+def import_coal() -> Any:
+    """Import the library coal, or say how to install it."""
+    try:
+        import coal  # noqa: PLC0415 (an optional extra)
+    except ImportError as error:
+        raise InvalidArgumentError(
+            f"self-collision needs coal, which cannot be imported ({error}); "
+            "install it by: pip install 'iksel[collision]'"
+        ) from None
+    return coal
+
+
+def read_shapes(
+    coal: Any, root: ET.Element, folder: Path, packages: Mapping[str, Any]
+) -> list[Shape]:
+    """Read the collision geometry of all links of a URDF."""
+    shapes = []
+    for link in root.findall("link"):
+        name = link.get("name", "")
+        for collision in link.findall("collision"):
+            geometry = collision.find("geometry")
+            if geometry is None or len(geometry) == 0:
+                raise UrdfError(f"urdf: link {name!r} has an empty collision")
+            try:
+                shape = _make_shape(coal, geometry[0], folder, packages)
+                origin = read_origin(collision)
+            except UrdfError as error:
+                raise type(error)(f"urdf: link {name!r}: {error}") from None
+            shapes.append(Shape(name, shape, _hull(shape), origin))
+    if not shapes:
+        raise UrdfError("urdf: no link has collision geometry")
+    return shapes
+
+
+def _make_shape(
+    coal: Any, element: ET.Element, folder: Path, packages: Mapping[str, Any]
+) -> Any:
+    if element.tag == "box":
+        return coal.Box(*read_numbers(element, "size", 3))
+    if element.tag == "sphere":
+        return coal.Sphere(*read_numbers(element, "radius", 1))
+    if element.tag == "cylinder":
+        (radius,) = read_numbers(element, "radius", 1)
+        return coal.Cylinder(radius, *read_numbers(element, "length", 1))
+    if element.tag == "mesh":
+        path = _mesh_path(element.get("filename", ""), folder, packages)
+        scale = np.array(read_numbers(element, "scale", 3, "1 1 1"))
+        return _load_mesh(coal, path, scale)
+    raise UrdfError(
+        f"no geometry {element.tag!r}; possible: box, cylinder, sphere, mesh"
+    )
+
+
+def _load_mesh(coal: Any, path: Path, scale: FloatArray) -> Any:
+    if not path.is_file():
+        raise UrdfError(f"no mesh file {str(path)!r}")
+    try:
+        return coal.MeshLoader().load(str(path), scale)
+    except (RuntimeError, ValueError) as error:
+        raise UrdfError(f"mesh file {str(path)!r}: {error}") from None
+
+
+def _hull(shape: Any) -> Any:
+    """The convex hull of a mesh; other shapes are convex."""
+    if not hasattr(shape, "buildConvexHull"):
+        return shape
+    try:
+        shape.buildConvexHull(False, "Qt")  # noqa: FBT003 (coal's own signature)
+    except (RuntimeError, ValueError):
+        return shape  # flat, which has no hull
+    return shape.convex or shape
+
+
+def _local_box(shape: Any) -> tuple[FloatArray, FloatArray]:
+    """Centre and half lengths [m] of the box around a shape, in its own frame."""
+    shape.computeLocalAABB()
+    low, high = shape.aabb_local.min_.copy(), shape.aabb_local.max_.copy()
+    return (low + high) / 2, (high - low) / 2
+
+
+def _mesh_path(name: str, folder: Path, packages: Mapping[str, Any]) -> Path:
+    if name.startswith("package://"):
+        package, _, rest = name.removeprefix("package://").partition("/")
+        if package not in packages:
+            listed = ", ".join(packages) or "none"
+            raise UnknownNameError(
+                f"packages: no folder for package {package!r} of mesh {name!r}; given: "
+                f"{listed}"
+            )
+        return Path(packages[package]) / rest
+    return folder / name.removeprefix("file://")

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Judges answers of every kind of request on random odd chains (tests/cpp/test_odd_chains.cpp), a
-# million by default, in one process per core. A million take about HOURS on two cores.
+# million by default, in one process per core. A million take about a quarter of an hour on two cores.
 #
 # Usage: scripts/odd_chains.sh [--cases N] [--jobs N] [--seed N]
 #

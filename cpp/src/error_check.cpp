@@ -2,10 +2,10 @@
 #include "error_check.hpp"
 
 #include <cmath>
-#include <sstream>
 
 #include "iksel/error.hpp"
 #include "iksel/robot.hpp"
+#include "message_text.hpp"
 
 namespace iksel {
 namespace {
@@ -14,7 +14,7 @@ namespace {
 constexpr double kRigidTolerance = 1e-6;
 
 [[noreturn]] void fail(const char* name, std::ptrdiff_t index, const std::string& what) {
-  std::ostringstream text;
+  MessageStream text;
   text << name;
   if (index >= 0) text << "[" << index << "]";
   text << ": " << what;
@@ -24,14 +24,14 @@ constexpr double kRigidTolerance = 1e-6;
 void check_rigid(const Eigen::Matrix4d& T, const char* name, std::ptrdiff_t index) {
   if (!T.allFinite()) fail(name, index, "not finite");
   if (T.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
-    std::ostringstream row;
+    MessageStream row;
     row << "the last row must be 0 0 0 1, not " << T.row(3);
     fail(name, index, row.str());
   }
   const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
   const double error = (R.transpose() * R - Eigen::Matrix3d::Identity()).lpNorm<Eigen::Infinity>();
   if (error > kRigidTolerance) {
-    std::ostringstream what;
+    MessageStream what;
     what << "not a rotation: R^T R differs from the identity by " << error << " (at most "
          << kRigidTolerance << " is accepted)";
     fail(name, index, what.str());
@@ -40,17 +40,6 @@ void check_rigid(const Eigen::Matrix4d& T, const char* name, std::ptrdiff_t inde
 }
 
 }  // namespace
-
-std::string list_names(const std::vector<std::string>& names) {
-  constexpr std::size_t kMost = 40;
-  std::string text;
-  for (std::size_t i = 0; i < names.size() && i < kMost; ++i) {
-    if (i > 0) text += ", ";
-    text += names[i];
-  }
-  if (names.size() > kMost) text += " and " + std::to_string(names.size() - kMost) + " more";
-  return text;
-}
 
 void check_joints(const JointVector& q, int dof, const char* name) {
   if (q.size() != dof) {

@@ -3,24 +3,10 @@
 #pragma once
 
 #include <cstddef>
-#include <string>
-#include <vector>
 
 #include "iksel/types.hpp"
 
 namespace iksel {
-
-/// "a, b, c" (the first 40, and how many more).
-std::string list_names(const std::vector<std::string>& names);
-
-/// The keys of a map, listed.
-template <typename Map>
-std::string list_names(const Map& map) {
-  std::vector<std::string> names;
-  names.reserve(map.size());
-  for (const auto& entry : map) names.push_back(entry.first);
-  return list_names(names);
-}
 
 /// Throws InvalidArgumentError unless q has `dof` finite elements.
 void check_joints(const JointVector& q, int dof, const char* name);

@@ -2,14 +2,17 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "array_checks.hpp"
 #include "bindings.hpp"
 #include "enums.hpp"
 #include "iksel/robot.hpp"
+#include "urdf_source.hpp"
 
 namespace iksel::python {
 
@@ -56,26 +59,29 @@ py::array_t<double> pose_errors(const DoubleArray& targets, const DoubleArray& p
   return out;
 }
 
-bool is_xml(const std::string& text) {
-  const auto start = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
-  return start != std::string::npos && text[start] == '<';
+std::pair<double, double> as_limits(const ArrayLike& value, const char* name) {
+  const DoubleArray array = as_doubles(value, name);
+  if (array.ndim() != 1 || array.shape(0) != 2) {
+    throw_wrong_shape(name, "two numbers, (lower, upper)", array);
+  }
+  return {array.at(0), array.at(1)};
 }
 
-Robot from_urdf(const PathLike& path_or_xml, const std::string& base_link,
-                const std::string& tip_link, const std::optional<ArrayLike>& tcp,
-                const std::optional<JointValues>& locked_joints, const Loose<bool>& soft_limits) {
+Robot from_urdf(const PathLike& path_or_xml, const std::optional<Loose<std::string>>& base_link,
+                const std::optional<Loose<std::string>>& tip_link,
+                const std::optional<ArrayLike>& tcp,
+                const std::optional<JointValues>& locked_joints, const Loose<bool>& soft_limits,
+                const std::optional<ArrayLike>& default_limits) {
   RobotOptions options;
-  options.base_link = base_link;
-  options.tip_link = tip_link;
+  if (base_link) options.base_link = from_python<std::string>(*base_link, "base_link");
+  if (tip_link) options.tip_link = from_python<std::string>(*tip_link, "tip_link");
   if (tcp) options.tcp = as_rigid_pose(*tcp, "tcp");
   if (locked_joints) options.locked_joints = as_joint_values(*locked_joints, "locked_joints");
   options.soft_limits = from_python<bool>(soft_limits, "soft_limits");
-
-  if (py::isinstance<py::str>(path_or_xml)) {
-    const auto text = py::cast<std::string>(path_or_xml);
-    if (is_xml(text)) return Robot::from_urdf_string(text, options);
-  }
-  return Robot::from_urdf_file(as_path(path_or_xml, "path_or_xml"), options);
+  if (default_limits) options.default_limits = as_limits(*default_limits, "default_limits");
+  return read_urdf(
+      path_or_xml, [&](const std::string& xml) { return Robot::from_urdf_string(xml, options); },
+      [&](const std::filesystem::path& path) { return Robot::from_urdf_file(path, options); });
 }
 
 py::array_t<double> fk(const Robot& self, const ArrayLike& q, const Loose<Kinematics>& kinematics) {
@@ -103,7 +109,7 @@ std::string robot_repr(const Robot& self) {
 py::tuple robot_state(const Robot& self) {
   const RobotOptions& options = self.options();
   return py::make_tuple(self.urdf(), options.base_link, options.tip_link, to_array(self.tcp()),
-                        options.locked_joints, options.soft_limits);
+                        options.locked_joints, options.soft_limits, options.default_limits);
 }
 
 Robot robot_from_state(const py::tuple& state) {
@@ -113,6 +119,7 @@ Robot robot_from_state(const py::tuple& state) {
   options.tcp = as_pose(state[3], "tcp");
   options.locked_joints = py::cast<std::map<std::string, double>>(state[4]);
   options.soft_limits = py::cast<bool>(state[5]);
+  options.default_limits = py::cast<std::optional<std::pair<double, double>>>(state[6]);
   return Robot::from_urdf_string(py::cast<std::string>(state[0]), options);
 }
 
@@ -131,6 +138,9 @@ void bind_chain(py::class_<Robot>& cls) {
   cls.def_property_readonly("name", &Robot::name, "Name in the URDF.");
   cls.def_property_readonly("base_link", &Robot::base_link, "Link the poses are relative to.");
   cls.def_property_readonly("tip_link", &Robot::tip_link, "Link whose pose is solved for.");
+  cls.def_property_readonly("link_names", &Robot::link_names,
+                            "Names of all links of the URDF, the chain's and others, depth first "
+                            "from the root.");
   cls.def_property_readonly("urdf", &Robot::urdf, "The URDF text this robot was made of.");
   cls.def_property_readonly(
       "locked_joints", [](const Robot& self) { return self.options().locked_joints; },
@@ -138,6 +148,9 @@ void bind_chain(py::class_<Robot>& cls) {
   cls.def_property_readonly(
       "soft_limits", [](const Robot& self) { return self.options().soft_limits; },
       "Whether the limits are narrowed to the safety controller's.");
+  cls.def_property_readonly(
+      "default_limits", [](const Robot& self) { return self.options().default_limits; },
+      "Lower and upper limit of joints that the URDF gives none [rad or m], or None.");
   cls.def_property_readonly(
       "tcp", [](const Robot& self) { return to_array(self.tcp()); },
       "T_tip_tcp, the tool centre point in the tip link's frame, (4, 4).");
@@ -179,24 +192,29 @@ void bind_robot(py::module_& m) {
   py::class_<Robot> cls(m, "Robot",
                         "An immutable serial chain between two links of a URDF, with its limits. "
                         "Safe to use from many threads at once.");
-  cls.def_static("from_urdf", &from_urdf, py::arg("path_or_xml"),
-                 py::arg("base_link") = defaults.base_link, py::arg("tip_link") = defaults.tip_link,
-                 py::arg("tcp") = py::none(), py::arg("locked_joints") = py::none(),
+  cls.def_static("from_urdf", &from_urdf, py::arg("path_or_xml"), py::arg("base_link") = py::none(),
+                 py::arg("tip_link") = py::none(), py::arg("tcp") = py::none(),
+                 py::arg("locked_joints") = py::none(),
                  py::arg("soft_limits") = defaults.soft_limits,
+                 py::arg("default_limits") = py::none(),
                  R"(Reads the chain between two links of a URDF.
 
 Args:
     path_or_xml: a path, or the URDF text itself (a str whose first character is '<').
-    base_link: link the poses are relative to; empty: the root link.
-    tip_link: link whose pose is solved for; empty: the one link without children.
+    base_link: link the poses are relative to; None: the root link.
+    tip_link: link whose pose is solved for; None: the one link without children.
     tcp: T_tip_tcp, (4, 4): tool centre point. Poses, FK and IK are then of the TCP.
     locked_joints: joints held at a value [rad or m]; they are no degrees of freedom.
     soft_limits: narrow the limits to the URDF's safety_controller where there is one.
+    default_limits: (lower, upper) [rad or m] of revolute and prismatic joints whose limits the
+        URDF leaves out or has as 0, 0; without, such a joint is an error.
 
 Raises:
-    UrdfError: the file, the XML, a joint type or a limit is no good.
+    UrdfError: the file, the XML, a joint type or a limit is no good, or a length or joint value
+        is beyond 1e8, where double precision ends. Where there was a choice of names, `available`
+        has them all.
     UnknownNameError: no such link or joint.
-    InvalidArgumentError: tcp is no rigid transform.)");
+    InvalidArgumentError: tcp is no rigid transform, or a number in the options is no good.)");
   bind_chain(cls);
   cls.def(
       "with_tcp",

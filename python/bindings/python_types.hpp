@@ -84,6 +84,14 @@ struct FromPython<bool> {
   }
 };
 
+template <>
+struct FromPython<std::string> {
+  static std::string convert(py::handle value, const char* name) {
+    if (!py::isinstance<py::str>(value)) throw_wrong_type(name, "a str", value);
+    return py::cast<std::string>(value);
+  }
+};
+
 template <class T>
 struct FromPython<T, std::enable_if_t<std::is_floating_point_v<T>>> {
   static T convert(py::handle value, const char* name) {
@@ -155,6 +163,8 @@ struct handle_type_name<iksel::python::Loose<T>> {
   static constexpr auto describe() {
     if constexpr (std::is_enum_v<T>) {
       return make_caster<T>::name + const_name(" | str");
+    } else if constexpr (std::is_same_v<T, std::string>) {
+      return const_name("str");
     } else if constexpr (std::is_same_v<T, std::array<double, 3>>) {
       return const_name("collections.abc.Sequence[float]");
     } else if constexpr (std::is_class_v<T>) {

@@ -24,6 +24,7 @@ except ImportError as _error:
     ) from _error
 
 from iksel_cpp import (
+    AngleUnitWarning,
     Axis,
     BatchResult,
     Cause,
@@ -42,6 +43,8 @@ from iksel_cpp import (
     JointType,
     KeyScheme,
     Kinematics,
+    LinkTree,
+    LinkTreeJoint,
     MoveNorm,
     Objective,
     ObjectiveKind,
@@ -87,6 +90,7 @@ from iksel.robots import load_robot, robot_info, robot_names
 __version__: str = _core.__version__
 
 __all__ = [
+    "AngleUnitWarning",
     "Axis",
     "BatchResult",
     "Cause",
@@ -105,6 +109,8 @@ __all__ = [
     "JointType",
     "KeyScheme",
     "Kinematics",
+    "LinkTree",
+    "LinkTreeJoint",
     "MoveNorm",
     "Objective",
     "ObjectiveKind",

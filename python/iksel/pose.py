@@ -15,6 +15,7 @@ import iksel_cpp
 import numpy as np
 
 from iksel import _rotations as rotations
+from iksel._angles import warn_of_degrees
 from iksel._arrays import (
     BoolArray,
     FloatArray,
@@ -110,7 +111,8 @@ def pose_from_euler(position: npt.ArrayLike, rpy: npt.ArrayLike) -> FloatArray:
 
     Args:
         position: Origin of the tip in the base frame, (..., 3) [m].
-        rpy: Roll, pitch and yaw, (..., 3) [rad].
+        rpy: Roll, pitch and yaw, (..., 3) [rad]. Whole numbers beyond 2 pi look like
+            degrees: an AngleUnitWarning.
 
     Returns:
         T_base_tip, (..., 4, 4).
@@ -119,6 +121,7 @@ def pose_from_euler(position: npt.ArrayLike, rpy: npt.ArrayLike) -> FloatArray:
         InvalidArgumentError: Wrong shape or not finite.
     """
     angles = as_floats("rpy", rpy, (3,))
+    warn_of_degrees("rpy", angles)
     return _assemble(position, "rpy", rotations.from_euler(angles))
 
 

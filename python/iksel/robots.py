@@ -36,7 +36,9 @@ def robot_info(name: str) -> RobotInfo:
     """
     robots = manifest()
     if name not in robots:
-        raise UnknownNameError(f"no built-in robot {name!r}; {_suggestion(name)}")
+        error = UnknownNameError(f"no built-in robot {name!r}; {_suggestion(name)}")
+        error.available = tuple(robots)
+        raise error
     return robots[name]
 
 
@@ -48,6 +50,7 @@ def load_robot(
     tip_link: str | None = None,
     locked_joints: Mapping[str, float] | None = None,
     soft_limits: bool = False,
+    default_limits: npt.ArrayLike | None = None,
 ) -> Robot:
     """Load a built-in robot.
 
@@ -60,6 +63,7 @@ def load_robot(
         tip_link: Link that the TCP is fixed to; None: the manifest's.
         locked_joints: Joints held at a value [rad or m]; no degrees of freedom.
         soft_limits: Narrow the limits to the soft limits of the URDF, if it has any.
+        default_limits: (lower, upper) [rad or m] of joints that the URDF gives none.
 
     Raises:
         UnknownNameError: No built-in robot, link or joint has that name.
@@ -79,6 +83,7 @@ def load_robot(
         tcp=tcp,
         locked_joints=dict(locked_joints or {}),
         soft_limits=soft_limits,
+        default_limits=default_limits,
     )
 
 

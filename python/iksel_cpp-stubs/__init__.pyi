@@ -14,19 +14,25 @@ import numpy
 import numpy.typing
 import os
 import typing
-__all__: list[str] = ['Axis', 'BatchResult', 'Cause', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'Diagnosis', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'KeyScheme', 'Kinematics', 'MoveNorm', 'Objective', 'ObjectiveKind', 'PathResult', 'Ranking', 'Reselection', 'Result', 'Robot', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'SolutionOrder', 'Solutions', 'Solver', 'SolverOptions', 'Status', 'Task', 'TaskFrame', 'Tracker', 'UnknownNameError', 'UrdfError', 'evaluate', 'grid_counts', 'pose_error', 'simd_level', 'time_kdl_fk_jacobian']
+__all__: list[str] = ['AngleUnitWarning', 'Axis', 'BatchResult', 'Cause', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'Diagnosis', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'KeyScheme', 'Kinematics', 'LinkTree', 'LinkTreeJoint', 'MoveNorm', 'Objective', 'ObjectiveKind', 'PathResult', 'Ranking', 'Reselection', 'Result', 'Robot', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'SolutionOrder', 'Solutions', 'Solver', 'SolverOptions', 'Status', 'Task', 'TaskFrame', 'Tracker', 'UnknownNameError', 'UrdfError', 'evaluate', 'grid_counts', 'pose_error', 'simd_level', 'time_kdl_fk_jacobian']
+class AngleUnitWarning(UserWarning):
+    """
+    Angles that look like degrees were given where radians are meant.
+    """
 class Error(Exception):
     """
     Base of every exception of the library.
     """
 class UrdfError(Error):
     """
-    A URDF that cannot be read, parsed or turned into a chain.
+    A URDF that cannot be read, parsed or turned into a chain; `available` is a tuple of all the names there were to choose from, where it is about a name.
     """
+    available: tuple[str, ...]
 class UnknownNameError(UrdfError):
     """
-    A link or joint name that the URDF does not have.
+    A link or joint name that the URDF does not have; `available` has those it has.
     """
+    available: tuple[str, ...]
 class InvalidArgumentError(Error, ValueError):
     """
     An argument of the wrong type, shape or value: a pose that is not rigid, a non-finite number, an option out of range.
@@ -47,6 +53,71 @@ class DatabaseMismatchError(DatabaseError):
     """
     An intact database that does not fit: other robot, other format version, other byte order.
     """
+class LinkTreeJoint:
+    """
+    One joint of a URDF.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def child_link(self) -> str:
+        """
+        The link that it carries.
+        """
+    @property
+    def name(self) -> str:
+        """
+        Its name.
+        """
+    @property
+    def parent_link(self) -> str:
+        """
+        The link that it is on.
+        """
+    @property
+    def type(self) -> str:
+        """
+        'revolute', 'fixed', ...
+        """
+class LinkTree:
+    """
+    The links of a URDF and the joints between them, depth first from the root; str() draws the tree.
+    """
+    @staticmethod
+    def from_urdf(path_or_xml: str | os.PathLike[str]) -> LinkTree:
+        """
+        Reads the tree of a URDF.
+
+        Args:
+            path_or_xml: a path, or the URDF text itself (a str whose first character is '<').
+
+        Raises:
+            UrdfError: the file or the XML is no good.
+        """
+    def __repr__(self) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
+    @property
+    def joints(self) -> list[LinkTreeJoint]:
+        """
+        All joints.
+        """
+    @property
+    def links(self) -> list[str]:
+        """
+        Names of all links, the root first.
+        """
+    @property
+    def robot_name(self) -> str:
+        """
+        Name in the URDF.
+        """
+    @property
+    def tips(self) -> list[tuple[str, int]]:
+        """
+        The links without children, each with the number of joints that move it.
+        """
 class JointType(enum.Enum):
     """
     How a degree of freedom moves.
@@ -65,22 +136,26 @@ class Robot:
     An immutable serial chain between two links of a URDF, with its limits. Safe to use from many threads at once.
     """
     @staticmethod
-    def from_urdf(path_or_xml: str | os.PathLike[str], base_link: str = '', tip_link: str = '', tcp: numpy.typing.ArrayLike | None = None, locked_joints: collections.abc.Mapping[str, float] | None = None, soft_limits: bool = False) -> Robot:
+    def from_urdf(path_or_xml: str | os.PathLike[str], base_link: str | None = None, tip_link: str | None = None, tcp: numpy.typing.ArrayLike | None = None, locked_joints: collections.abc.Mapping[str, float] | None = None, soft_limits: bool = False, default_limits: numpy.typing.ArrayLike | None = None) -> Robot:
         """
         Reads the chain between two links of a URDF.
 
         Args:
             path_or_xml: a path, or the URDF text itself (a str whose first character is '<').
-            base_link: link the poses are relative to; empty: the root link.
-            tip_link: link whose pose is solved for; empty: the one link without children.
+            base_link: link the poses are relative to; None: the root link.
+            tip_link: link whose pose is solved for; None: the one link without children.
             tcp: T_tip_tcp, (4, 4): tool centre point. Poses, FK and IK are then of the TCP.
             locked_joints: joints held at a value [rad or m]; they are no degrees of freedom.
             soft_limits: narrow the limits to the URDF's safety_controller where there is one.
+            default_limits: (lower, upper) [rad or m] of revolute and prismatic joints whose limits the
+                URDF leaves out or has as 0, 0; without, such a joint is an error.
 
         Raises:
-            UrdfError: the file, the XML, a joint type or a limit is no good.
+            UrdfError: the file, the XML, a joint type or a limit is no good, or a length or joint value
+                is beyond 1e8, where double precision ends. Where there was a choice of names, `available`
+                has them all.
             UnknownNameError: no such link or joint.
-            InvalidArgumentError: tcp is no rigid transform.
+            InvalidArgumentError: tcp is no rigid transform, or a number in the options is no good.
         """
     def __copy__(self) -> Robot:
         ...
@@ -156,6 +231,11 @@ class Robot:
         Hash of the chain up to the tip link: equal for chains that may share a database.
         """
     @property
+    def default_limits(self) -> tuple[float, float] | None:
+        """
+        Lower and upper limit of joints that the URDF gives none [rad or m], or None.
+        """
+    @property
     def dof(self) -> int:
         """
         Degrees of freedom.
@@ -169,6 +249,11 @@ class Robot:
     def joint_types(self) -> list[JointType]:
         """
         How each degree of freedom moves, base to tip.
+        """
+    @property
+    def link_names(self) -> list[str]:
+        """
+        Names of all links of the URDF, the chain's and others, depth first from the root.
         """
     @property
     def locked_joints(self) -> dict[str, float]:

@@ -28,7 +28,7 @@ BAD = [
     ("info ur33", "no built-in robot 'ur33'; did you mean ur3.*panda.*URDF file"),
     ("info absent.urdf", r"absent\.urdf"),
     ("info ./absent", "'absent'"),
-    ("info arm.urdf.xacro", r"xacro arm\.urdf\.xacro"),
+    ("info arm.urdf.xacro", r"'arm\.urdf\.xacro': No such file"),
     ("info ur3 --tip hand", "'hand'.*tool0"),
     ("info ur3 --base hand", "'hand'.*base_link"),
     ("info ur3 --tip base_link", "base_link"),

@@ -2,8 +2,11 @@
 // Every exception the library throws. Each message names the culprit and lists what was possible.
 #pragma once
 
+#include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "iksel/export.hpp"
 
@@ -18,7 +21,18 @@ class IKSEL_EXPORT Error : public std::runtime_error {
 /// A URDF that cannot be read, parsed or turned into a chain.
 class IKSEL_EXPORT UrdfError : public Error {
  public:
+  using Names = std::vector<std::string>;
+
   using Error::Error;
+  UrdfError(const std::string& message, Names available)
+      : Error(message), available_(std::make_shared<const Names>(std::move(available))) {}
+
+  /// The names that there were to choose from, all of them (a message shortens long lists); empty
+  /// where the error is not about a name.
+  [[nodiscard]] Names available() const { return available_ ? *available_ : Names{}; }
+
+ private:
+  std::shared_ptr<const Names> available_;  // exceptions are copied, and that must not throw
 };
 
 /// A link or joint name that the URDF does not have.

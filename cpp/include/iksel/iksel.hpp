@@ -6,6 +6,7 @@
 #include "iksel/diagnosis.hpp"   // IWYU pragma: export
 #include "iksel/error.hpp"       // IWYU pragma: export
 #include "iksel/evaluation.hpp"  // IWYU pragma: export
+#include "iksel/link_tree.hpp"   // IWYU pragma: export
 #include "iksel/objective.hpp"   // IWYU pragma: export
 #include "iksel/options.hpp"     // IWYU pragma: export
 #include "iksel/path.hpp"        // IWYU pragma: export

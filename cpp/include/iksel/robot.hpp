@@ -6,7 +6,9 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "iksel/export.hpp"
@@ -35,14 +37,19 @@ struct RobotOptions {
   std::map<std::string, double> locked_joints;
   /// Narrow the position limits to the URDF's safety_controller soft limits where there are any.
   bool soft_limits = false;
+  /// Lower and upper limit [rad or m] of revolute and prismatic joints whose limits the URDF leaves
+  /// out or has as 0, 0; none: such a joint is an error. A mimic joint of that kind has no limits
+  /// beside those of the joint that it follows.
+  std::optional<std::pair<double, double>> default_limits;
 };
 
 /// An immutable serial chain with its limits; copies are cheap and share the data. Safe to use from
 /// many threads at once.
 class IKSEL_EXPORT Robot {
  public:
-  /// Reads a URDF file. Throws UrdfError (file, XML, joint type, limits), UnknownNameError (links,
-  /// locked joints).
+  /// Reads a URDF file. Throws UrdfError (file, XML, joint type, limits, a length or joint value
+  /// beyond kMaxCoordinate), UnknownNameError (links, locked joints), InvalidArgumentError (numbers
+  /// in the options).
   static Robot from_urdf_file(const std::filesystem::path& path, const RobotOptions& options = {});
   /// Parses URDF text. Throws as from_urdf_file.
   static Robot from_urdf_string(const std::string& xml, const RobotOptions& options = {});
@@ -60,6 +67,8 @@ class IKSEL_EXPORT Robot {
   /// The URDF text and options this robot was made of (base and tip link filled in).
   [[nodiscard]] const std::string& urdf() const;
   [[nodiscard]] const RobotOptions& options() const;
+  /// Names of all links of the URDF, the chain's and others, depth first from the root.
+  [[nodiscard]] const std::vector<std::string>& link_names() const;
   /// T_tip_tcp.
   [[nodiscard]] Pose tcp() const;
 

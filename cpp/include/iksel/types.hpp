@@ -17,6 +17,11 @@ namespace iksel {
 /// Most joints (degrees of freedom) a chain may have.
 inline constexpr int kMaxDof = 32;
 
+/// Largest length [m] and joint value [rad or m] that a robot may have: at 1e8 doubles are 1.5e-8
+/// apart, so that the forward kinematics of kMaxDof joints errs by less than 1e-6; far below the
+/// 1e18 whose squares leave the single-precision keys of a database.
+inline constexpr double kMaxCoordinate = 1e8;
+
 /// Joint values [rad or m], one per degree of freedom, base to tip. Holds its storage inside, so
 /// that it is never on the heap; unaligned, so that its layout does not depend on the caller's SIMD
 /// flags.

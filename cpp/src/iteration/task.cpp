@@ -3,11 +3,11 @@
 
 #include <cmath>
 #include <cstddef>
-#include <sstream>
 #include <string>
 
 #include "iksel/error.hpp"
 #include "math/constants.hpp"
+#include "message_text.hpp"
 
 namespace iksel {
 namespace {
@@ -23,7 +23,7 @@ void set_free(std::array<double, 3>& lower, std::array<double, 3>& upper, std::s
 
 [[noreturn]] void reject(const char* what, std::size_t axis, double lower, double upper,
                          const char* expected) {
-  std::ostringstream text;
+  MessageStream text;
   text << "task " << what << " "
        << "xyz"[axis] << ": " << lower << " .. " << upper << " is not " << expected;
   throw InvalidArgumentError(text.str());

@@ -9,6 +9,7 @@
 #include "iksel/error.hpp"
 #include "math/constants.hpp"
 #include "math/hash.hpp"
+#include "message_text.hpp"
 
 namespace iksel {
 namespace {
@@ -55,6 +56,15 @@ struct EulerZxz {
   }
 };
 
+void check_tool(const Pose& T_tip_tcp) {
+  check_pose(T_tip_tcp, "tcp");
+  const double distance = T_tip_tcp.translation().stableNorm();
+  if (distance <= kMaxCoordinate) return;
+  throw InvalidArgumentError("tcp: its origin is " + number_text(distance) +
+                             " m from the tip link's; at most " + number_text(kMaxCoordinate) +
+                             " can be computed with");
+}
+
 }  // namespace
 
 Pose to_pose(const Frame<double>& f) {
@@ -66,7 +76,7 @@ Pose to_pose(const Frame<double>& f) {
 
 ChainModel::ChainModel(std::string urdf_xml, const RobotOptions& options_in)
     : urdf(std::move(urdf_xml)), options(options_in) {
-  check_pose(Pose(options.tcp), "tcp");
+  check_tool(Pose(options.tcp));
   spec = read_chain(urdf, options);
   dof = static_cast<int>(spec.variables.size());
   for (JointVector* v : {&lower, &upper, &velocity, &soft_lower, &soft_upper}) v->resize(dof);
@@ -87,7 +97,7 @@ ChainModel::ChainModel(std::string urdf_xml, const RobotOptions& options_in)
 }
 
 std::shared_ptr<const ChainModel> ChainModel::with_tcp(const Pose& T_tip_tcp) const {
-  check_pose(T_tip_tcp, "tcp");
+  check_tool(T_tip_tcp);
   auto copy = std::make_shared<ChainModel>(*this);
   copy->options.tcp = T_tip_tcp;
   copy->set_tool(T_tip_tcp);

@@ -11,6 +11,7 @@
 #include "math/pseudo_inverse.hpp"
 #include "math/random.hpp"
 #include "math/rotation.hpp"
+#include "message_text.hpp"
 #include "urdf/parse.hpp"
 
 namespace iksel {
@@ -18,15 +19,8 @@ namespace iksel {
 Robot::Robot(std::shared_ptr<const ChainModel> model) : model_(std::move(model)) {}
 
 Robot Robot::from_urdf_file(const std::filesystem::path& path, const RobotOptions& options) {
-  const std::string where = "URDF file '" + path.string() + "': ";
-  const std::string xml = read_urdf_file(path);
-  try {
-    return from_urdf_string(xml, options);
-  } catch (const UnknownNameError& error) {
-    throw UnknownNameError(where + error.what());
-  } catch (const UrdfError& error) {
-    throw UrdfError(where + error.what());
-  }
+  return read_with_path(path,
+                        [&](const std::string& xml) { return from_urdf_string(xml, options); });
 }
 
 Robot Robot::from_urdf_string(const std::string& xml, const RobotOptions& options) {
@@ -40,6 +34,7 @@ Robot Robot::without_limits() const { return Robot(model_->without_limits()); }
 const std::string& Robot::name() const { return model_->spec.robot_name; }
 const std::string& Robot::base_link() const { return model_->options.base_link; }
 const std::string& Robot::tip_link() const { return model_->options.tip_link; }
+const std::vector<std::string>& Robot::link_names() const { return model_->spec.link_names; }
 const std::string& Robot::urdf() const { return model_->urdf; }
 const RobotOptions& Robot::options() const { return model_->options; }
 Pose Robot::tcp() const { return Pose(model_->tcp); }
@@ -74,7 +69,7 @@ Jacobian Robot::jacobian(const JointVector& q, Kinematics kinematics) const {
 
 Matrix Robot::dq_dx(const JointVector& q, double damping) const {
   if (!(damping >= 0 && std::isfinite(damping))) {
-    throw InvalidArgumentError("damping: " + std::to_string(damping) + " is not 0 or more");
+    throw InvalidArgumentError("damping: " + number_text(damping) + " is not 0 or more");
   }
   const JacobianMatrix J = jacobian(q);
   constexpr double kCutoff = 1e-9;

@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "error_check.hpp"
 #include "iksel/error.hpp"
 #include "iksel/solver.hpp"
 #include "lanes/kernels.hpp"
+#include "message_text.hpp"
 
 namespace iksel {
 namespace lanes {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Arms whose constants differ a little from those that a database was built with.
 #include <algorithm>
-#include <sstream>
 
 #include "iksel/error.hpp"
+#include "message_text.hpp"
 #include "solver/solver_impl.hpp"
 
 namespace iksel {
@@ -37,7 +37,7 @@ Solver::Solver(const Robot& robot, const SolverOptions& options, const Database&
   const Drift drift = measure_drift(robot, nominal);
   // Written so that NaN is beyond.
   if (!(drift.position <= bound.position && drift.rotation <= bound.rotation)) {
-    std::ostringstream text;
+    MessageStream text;
     text << "robot '" << robot.name() << "' drifts by " << drift.position << " m and "
          << drift.rotation << " rad from the chain of the database, more than " << bound.position
          << " m or " << bound.rotation << " rad: build a database for it";

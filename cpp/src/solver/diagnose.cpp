@@ -3,11 +3,12 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <string>
 #include <utility>
 
 #include "error_check.hpp"
 #include "math/constants.hpp"
+#include "message_text.hpp"
 #include "solver/best_effort.hpp"
 #include "solver/solver_impl.hpp"
 
@@ -21,10 +22,10 @@ constexpr int kPatientIterations = 200;
 /// Singular values below this part of the largest are close to a singularity.
 constexpr double kNearlySingular = 1e-3;
 
-std::string format(const char* pattern, double value) {
-  char text[200];
-  std::snprintf(text, sizeof text, pattern, value);
-  return text;
+/// The number in place of the pattern's one "%.Ng", in every locale the same.
+std::string format(const std::string& pattern, double value) {
+  const std::size_t at = pattern.find("%.");
+  return pattern.substr(0, at) + number_text(value, pattern[at + 2] - '0') + pattern.substr(at + 4);
 }
 
 SolverOptions generous(SolverOptions options) {

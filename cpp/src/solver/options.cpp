@@ -2,10 +2,10 @@
 #include "iksel/options.hpp"
 
 #include <cmath>
-#include <sstream>
 
 #include "iksel/error.hpp"
 #include "iksel/result.hpp"
+#include "message_text.hpp"
 #include "util/parallel.hpp"
 
 namespace iksel {
@@ -15,7 +15,7 @@ namespace {
 template <typename T>
 void check_range(const char* name, T value, T low, T high) {
   if (value >= low && value <= high) return;
-  std::ostringstream text;
+  MessageStream text;
   text << "option " << name << ": " << value << " is not in " << low << " .. " << high;
   throw InvalidArgumentError(text.str());
 }

@@ -11,6 +11,7 @@
 #include "error_check.hpp"
 #include "iksel/error.hpp"
 #include "math/constants.hpp"
+#include "message_text.hpp"
 #include "solver/explore.hpp"
 #include "solver/joint_move.hpp"
 #include "solver/self_motion.hpp"
@@ -226,7 +227,7 @@ void PathOptions::validate(int dof) const {
   if (start) check_joints(*start, dof, "start");
   request.validate(dof);
   if (!(dt >= 0 && dt <= 1e9)) {
-    throw InvalidArgumentError("dt: " + std::to_string(dt) + " s is not 0 or more");
+    throw InvalidArgumentError("dt: " + number_text(dt) + " s is not 0 or more");
   }
   if (candidates < 1 || candidates > 100'000) {
     throw InvalidArgumentError("candidates: " + std::to_string(candidates) +
@@ -306,7 +307,7 @@ Tracker::Tracker(const Solver& solver, const JointVector& start) : solver_(solve
 Result Tracker::track(const Pose& T_base_tip, double dt) {
   check_pose(T_base_tip);
   if (!(dt > 0)) {
-    throw InvalidArgumentError("dt: " + std::to_string(dt) + " s is not above 0");
+    throw InvalidArgumentError("dt: " + number_text(dt) + " s is not above 0");
   }
   const ChainModel& model = solver_.robot().model();
   Result result;

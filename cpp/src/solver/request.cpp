@@ -7,6 +7,7 @@
 
 #include "error_check.hpp"
 #include "iksel/error.hpp"
+#include "message_text.hpp"
 
 namespace iksel {
 
@@ -33,7 +34,7 @@ void SolveRequest::validate(int dof) const {
     for (int i = 0; i < dof; ++i) {
       if (weights[i] < 0) {
         throw InvalidArgumentError("weights[" + std::to_string(i) +
-                                   "]: " + std::to_string(weights[i]) + " is negative");
+                                   "]: " + number_text(weights[i]) + " is negative");
       }
     }
     if (weights.maxCoeff() == 0) throw InvalidArgumentError("weights: all are 0");
@@ -44,14 +45,14 @@ void SolveRequest::validate(int dof) const {
   objective.validate(dof);
   if (task) task->validate();
   if (!(deadline > 0)) {
-    throw InvalidArgumentError("deadline: " + std::to_string(deadline) + " s is not above 0");
+    throw InvalidArgumentError("deadline: " + number_text(deadline) + " s is not above 0");
   }
 }
 
 void AllOptions::validate() const {
   if (max < 1) throw InvalidArgumentError("max: " + std::to_string(max) + " is less than 1");
   if (!(min_distance > 0 && min_distance <= 1e3)) {
-    throw InvalidArgumentError("min_distance: " + std::to_string(min_distance) +
+    throw InvalidArgumentError("min_distance: " + number_text(min_distance) +
                                " is not above 0 and at most 1000");
   }
   if (order != SolutionOrder::move && order != SolutionOrder::limit_distance &&

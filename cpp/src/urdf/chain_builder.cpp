@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
 #include <cmath>
-#include <sstream>
 
-#include "error_check.hpp"
 #include "iksel/error.hpp"
-#include "math/constants.hpp"
+#include "message_text.hpp"
 #include "urdf/chain_spec.hpp"
+#include "urdf/joint_limits.hpp"
 #include "urdf/parse.hpp"
+#include "urdf/size_check.hpp"
 
 namespace iksel {
 namespace {
@@ -26,16 +25,20 @@ class ChainReader {
       : model_(model), options_(options) {}
 
   ChainSpec read() {
-    spec_.robot_name = model_.getName();
+    check_default_limits(options_);
+    const LinkTree tree = make_link_tree(model_);
+    spec_.robot_name = tree.robot_name;
+    spec_.link_names = tree.links;
     if (options_.base_link.empty()) options_.base_link = model_.getRoot()->name;
-    if (options_.tip_link.empty()) options_.tip_link = only_leaf();
+    if (options_.tip_link.empty()) options_.tip_link = only_tip(tree);
     for (const auto& [name, value] : options_.locked_joints) {
       if (!model_.joints_.count(name)) {
-        throw UnknownNameError("locked joint '" + name +
-                               "' is not in the URDF; it has: " + list_names(model_.joints_));
+        throw_unknown_name("locked joint '" + name + "' is not in the URDF", name, joint_names());
       }
-      if (!std::isfinite(value)) {
-        throw InvalidArgumentError("locked joint '" + name + "': its value is not finite");
+      if (!(std::abs(value) <= kMaxCoordinate)) {
+        throw InvalidArgumentError("locked joint '" + name + "': its value is " +
+                                   number_text(value) + "; at most " + number_text(kMaxCoordinate) +
+                                   " can be computed with");
       }
     }
 
@@ -56,7 +59,7 @@ class ChainReader {
     for (std::size_t i = 0; i < common_base; ++i) add_joint(*base_up[i]->parent_joint, true);
     for (std::size_t i = common_tip; i-- > 0;) add_joint(*tip_up[i]->parent_joint, false);
 
-    for (const ChainVariable& variable : spec_.variables) check_variable(variable);
+    for (const ChainVariable& variable : spec_.variables) check_limits(variable);
     if (spec_.variables.empty()) {
       throw UrdfError("the chain from '" + options_.base_link + "' to '" + options_.tip_link +
                       "' has no movable joint");
@@ -66,38 +69,43 @@ class ChainReader {
                       "' has " + std::to_string(spec_.variables.size()) +
                       " movable joints; at most " + std::to_string(kMaxDof) + " are possible");
     }
+    check_sizes(spec_);
     return std::move(spec_);
   }
 
  private:
-  /// Where a joint's motion comes from: multiplier * (value of `source`) + offset.
-  struct Motion {
-    const urdf::Joint* source;
-    double multiplier;
-    double offset;
-  };
-
-  std::string only_leaf() const {
-    std::vector<std::string> leaves;
-    for (const auto& [name, link] : model_.links_) {
-      if (link->child_joints.empty()) leaves.push_back(name);
-    }
-    if (leaves.size() == 1) return leaves.front();
-    throw UrdfError("no tip link is given and the URDF ends in several: " + list_names(leaves));
+  static std::string only_tip(const LinkTree& tree) {
+    if (tree.tips.size() == 1) return tree.tips.front().link;
+    std::vector<std::string> links;
+    for (const LinkTree::Tip& tip : tree.tips) links.push_back(tip.link);
+    throw UrdfError(
+        "no tip link is given and the URDF ends in several (LinkTree shows how they "
+        "hang together): " +
+            list_names(links),
+        links);
   }
 
   const urdf::Link* find_link(const std::string& name, const char* role) const {
     const auto it = model_.links_.find(name);
     if (it != model_.links_.end()) return it->second.get();
-    throw UnknownNameError(std::string(role) + " link '" + name +
-                           "' is not in the URDF; it has: " + list_names(model_.links_));
+    throw_unknown_name(std::string(role) + " link '" + name + "' is not in the URDF", name,
+                       spec_.link_names);
   }
 
-  static std::vector<const urdf::Link*> path_to_root(const urdf::Link* link) {
+  std::vector<std::string> joint_names() const {
+    std::vector<std::string> names;
+    for (const auto& entry : model_.joints_) names.push_back(entry.first);
+    return names;
+  }
+
+  std::vector<const urdf::Link*> path_to_root(const urdf::Link* link) const {
     std::vector<const urdf::Link*> path;
     urdf::LinkSharedPtr parent;
     while (link != nullptr) {
       path.push_back(link);
+      if (path.size() > model_.links_.size()) {
+        throw UrdfError("link '" + path.front()->name + "' hangs on a circle of links");
+      }
       parent = link->getParent();
       link = parent.get();
     }
@@ -126,13 +134,14 @@ class ChainReader {
         segment.prismatic = true;
         break;
       default:
-        throw UrdfError("joint '" + joint.name + "' is " + type_name(joint.type) +
+        throw UrdfError("joint '" + joint.name + "' is " + joint_type_name(joint.type) +
                         "; only revolute, continuous, prismatic and fixed joints can be solved");
     }
 
     const Eigen::Vector3d axis(joint.axis.x, joint.axis.y, joint.axis.z);
-    if (!axis.allFinite() || axis.norm() < 1e-9) {
-      throw UrdfError("joint '" + joint.name + "' has no axis: its axis vector is zero");
+    if (!(axis.norm() >= 1e-9 && axis.norm() <= kMaxCoordinate)) {
+      throw UrdfError("joint '" + joint.name + "' has no axis: its axis vector has the length " +
+                      number_text(axis.norm()));
     }
     segment.axis = axis.normalized();
 
@@ -149,7 +158,7 @@ class ChainReader {
       lock(segment, motion.multiplier * locked->second + motion.offset);
     } else {
       segment.variable = variable_of(*motion.source);
-      narrow_by_follower(joint, motion, spec_.variables[segment.variable]);
+      narrow_by_follower(joint, motion, options_, spec_.variables[segment.variable]);
     }
     spec_.joints.push_back(segment);
   }
@@ -161,9 +170,9 @@ class ChainReader {
       const urdf::JointMimic& mimic = *motion.source->mimic;
       const auto it = model_.joints_.find(mimic.joint_name);
       if (it == model_.joints_.end()) {
-        throw UnknownNameError(
-            "joint '" + motion.source->name + "' mimics '" + mimic.joint_name +
-            "', which is not in the URDF; it has: " + list_names(model_.joints_));
+        throw_unknown_name("joint '" + motion.source->name + "' mimics '" + mimic.joint_name +
+                               "', which is not in the URDF",
+                           mimic.joint_name, joint_names());
       }
       if (steps > model_.joints_.size()) {
         throw UrdfError("joint '" + joint.name + "' mimics itself through a circle of joints");
@@ -171,14 +180,17 @@ class ChainReader {
       motion = {it->second.get(), motion.multiplier * mimic.multiplier,
                 motion.offset + motion.multiplier * mimic.offset};
     }
-    if (!std::isfinite(motion.multiplier) || !std::isfinite(motion.offset)) {
-      throw UrdfError("joint '" + joint.name + "': its mimic multiplier or offset is not finite");
+    for (const double number : {motion.multiplier, motion.offset}) {
+      if (std::abs(number) <= kMaxCoordinate) continue;
+      throw UrdfError("joint '" + joint.name + "': its mimic multiplier or offset is " +
+                      number_text(number) + "; at most " + number_text(kMaxCoordinate) +
+                      " can be computed with");
     }
     const auto type = motion.source->type;
     if (type != urdf::Joint::REVOLUTE && type != urdf::Joint::CONTINUOUS &&
         type != urdf::Joint::PRISMATIC) {
       throw UrdfError("joint '" + joint.name + "' mimics '" + motion.source->name + "', which is " +
-                      type_name(type));
+                      joint_type_name(type));
     }
     return motion;
   }
@@ -197,84 +209,8 @@ class ChainReader {
     for (std::size_t i = 0; i < spec_.variables.size(); ++i) {
       if (spec_.variables[i].name == source.name) return static_cast<int>(i);
     }
-    spec_.variables.push_back(make_variable(source));
+    spec_.variables.push_back(make_variable(source, options_));
     return static_cast<int>(spec_.variables.size()) - 1;
-  }
-
-  ChainVariable make_variable(const urdf::Joint& joint) const {
-    ChainVariable variable;
-    variable.name = joint.name;
-    variable.velocity =
-        joint.limits && joint.limits->velocity > 0 ? joint.limits->velocity : kInfinity;
-    if (joint.type == urdf::Joint::CONTINUOUS) {
-      // Safety limits of continuous joints are placeholders in practice (0, 0).
-      variable.type = JointType::continuous;
-      variable.lower = variable.soft_lower = -kInfinity;
-      variable.upper = variable.soft_upper = kInfinity;
-      return variable;
-    }
-    variable.type =
-        joint.type == urdf::Joint::PRISMATIC ? JointType::prismatic : JointType::revolute;
-    if (!joint.limits) {
-      throw UrdfError("joint '" + joint.name + "' has no limits; only continuous joints need none");
-    }
-    variable.lower = joint.limits->lower;
-    variable.upper = joint.limits->upper;
-    variable.soft_lower = variable.lower;
-    variable.soft_upper = variable.upper;
-    if (joint.safety && joint.safety->soft_lower_limit < joint.safety->soft_upper_limit) {
-      variable.soft_lower = std::max(variable.lower, joint.safety->soft_lower_limit);
-      variable.soft_upper = std::min(variable.upper, joint.safety->soft_upper_limit);
-    }
-    if (options_.soft_limits) {
-      variable.lower = variable.soft_lower;
-      variable.upper = variable.soft_upper;
-    }
-    return variable;
-  }
-
-  /// A joint that follows another has limits of its own, which the other must respect.
-  void narrow_by_follower(const urdf::Joint& follower, const Motion& motion,
-                          ChainVariable& variable) const {
-    if (motion.source == &follower || motion.multiplier == 0.0) return;
-    const ChainVariable own = make_variable(follower);
-    const auto narrow = [&](double low, double high, double& lower, double& upper) {
-      low = (low - motion.offset) / motion.multiplier;
-      high = (high - motion.offset) / motion.multiplier;
-      lower = std::max(lower, std::min(low, high));
-      upper = std::min(upper, std::max(low, high));
-    };
-    narrow(own.lower, own.upper, variable.lower, variable.upper);
-    narrow(own.soft_lower, own.soft_upper, variable.soft_lower, variable.soft_upper);
-    variable.velocity = std::min(variable.velocity, own.velocity / std::abs(motion.multiplier));
-    if (variable.type == JointType::continuous && std::isfinite(variable.lower)) {
-      variable.type = JointType::revolute;
-    }
-  }
-
-  static void check_variable(const ChainVariable& variable) {
-    if (variable.type == JointType::continuous) return;
-    if (std::isfinite(variable.lower) && std::isfinite(variable.upper) &&
-        variable.lower < variable.upper) {
-      return;
-    }
-    std::ostringstream text;
-    text << "joint '" << variable.name << "' has no usable limits: lower " << variable.lower
-         << ", upper " << variable.upper << " (finite numbers with lower < upper are needed)";
-    throw UrdfError(text.str());
-  }
-
-  static const char* type_name(int type) {
-    switch (type) {
-      case urdf::Joint::FIXED:
-        return "fixed";
-      case urdf::Joint::FLOATING:
-        return "floating";
-      case urdf::Joint::PLANAR:
-        return "planar";
-      default:
-        return "of an unknown type";
-    }
   }
 
   const urdf::ModelInterface& model_;
@@ -285,8 +221,8 @@ class ChainReader {
 }  // namespace
 
 ChainSpec read_chain(const std::string& urdf_xml, RobotOptions& options) {
-  const auto model = parse_urdf(urdf_xml);
-  return ChainReader(*model, options).read();
+  return explain_xacro(urdf_xml,
+                       [&] { return ChainReader(*parse_urdf(urdf_xml), options).read(); });
 }
 
 }  // namespace iksel

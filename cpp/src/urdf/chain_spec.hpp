@@ -36,6 +36,7 @@ struct ChainVariable {
 
 struct ChainSpec {
   std::string robot_name;
+  std::vector<std::string> link_names;  ///< of the whole URDF
   std::vector<ChainJoint> joints;
   std::vector<ChainVariable> variables;
 };

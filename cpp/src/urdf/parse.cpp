@@ -4,13 +4,15 @@
 #include <console_bridge/console.h>
 #include <urdf_parser/urdf_parser.h>
 
-#include <algorithm>
+#include <cerrno>
 #include <exception>
 #include <fstream>
 #include <mutex>
 #include <sstream>
+#include <system_error>
 
 #include "iksel/error.hpp"
+#include "urdf/precheck.hpp"
 
 namespace iksel {
 namespace {
@@ -51,35 +53,6 @@ class MessageCollector : public console_bridge::OutputHandler {
   std::string text_;
 };
 
-/// A URDF needs half a dozen levels. urdfdom's XML parser calls itself for each level and would run
-/// out of stack on text made to be deep.
-constexpr int kMaxDepth = 200;
-
-/// Depth of the deepest element of XML text, as far as its tags tell.
-int xml_depth(const std::string& xml) {
-  const auto skip_to = [&](std::size_t from, const char* end) {
-    const std::size_t at = xml.find(end, from);
-    return at == std::string::npos ? xml.size() : at;
-  };
-  int depth = 0;
-  int deepest = 0;
-  for (std::size_t i = xml.find('<'); i < xml.size(); i = xml.find('<', i + 1)) {
-    if (xml.compare(i, 4, "<!--") == 0) {
-      i = skip_to(i, "-->");
-    } else if (xml.compare(i, 9, "<![CDATA[") == 0) {
-      i = skip_to(i, "]]>");
-    } else if (xml.compare(i, 2, "</") == 0) {
-      --depth;
-    } else if (xml.compare(i, 2, "<?") != 0 && xml.compare(i, 2, "<!") != 0) {
-      const std::size_t end = skip_to(i, ">");
-      deepest = std::max(deepest, ++depth);
-      if (xml[end - 1] == '/') --depth;
-    }
-    if (i >= xml.size()) break;
-  }
-  return deepest;
-}
-
 /// One line out of many, so that an error stays one line.
 std::string one_line(std::string text) {
   for (char& c : text) {
@@ -96,7 +69,10 @@ std::string read_urdf_file(const std::filesystem::path& path) {
     throw UrdfError("URDF file '" + path.string() + "' is a directory");
   }
   std::ifstream file(path, std::ios::binary);
-  if (!file) throw UrdfError("cannot open URDF file '" + path.string() + "'");
+  if (!file) {
+    throw UrdfError("cannot open URDF file '" + path.string() +
+                    "': " + std::generic_category().message(errno));
+  }
   std::ostringstream text;
   text << file.rdbuf();
   if (file.bad()) throw UrdfError("cannot read URDF file '" + path.string() + "'");
@@ -104,16 +80,13 @@ std::string read_urdf_file(const std::filesystem::path& path) {
 }
 
 urdf::ModelInterfaceSharedPtr parse_urdf(const std::string& xml) {
-  if (xml_depth(xml) > kMaxDepth) {
-    throw UrdfError("URDF does not parse: its elements are nested deeper than " +
-                    std::to_string(kMaxDepth) + " levels");
-  }
+  const std::string text = prepare_urdf(xml);
   urdf::ModelInterfaceSharedPtr model;
   std::string messages;
   {
     const MessageCollector collector;
     try {
-      model = urdf::parseURDF(xml);
+      model = urdf::parseURDF(text);
       messages = collector.text();
     } catch (const std::exception& error) {
       messages = collector.text() + " " + error.what();
@@ -124,6 +97,33 @@ urdf::ModelInterfaceSharedPtr parse_urdf(const std::string& xml) {
                     (messages.empty() ? "no robot in it" : one_line(messages)));
   }
   return model;
+}
+
+const char* joint_type_name(int type) {
+  switch (type) {
+    case urdf::Joint::REVOLUTE:
+      return "revolute";
+    case urdf::Joint::CONTINUOUS:
+      return "continuous";
+    case urdf::Joint::PRISMATIC:
+      return "prismatic";
+    case urdf::Joint::FIXED:
+      return "fixed";
+    case urdf::Joint::FLOATING:
+      return "floating";
+    case urdf::Joint::PLANAR:
+      return "planar";
+    default:
+      return "of an unknown type";
+  }
+}
+
+void throw_if_xacro(const std::string& xml, const std::string& reason) {
+  const std::string sign = find_xacro(xml);
+  if (sign.empty()) return;
+  throw UrdfError("it is xacro (" + one_line(sign) +
+                  "), which has to be expanded first: xacro FILE > robot.urdf (as URDF: " + reason +
+                  ")");
 }
 
 }  // namespace iksel

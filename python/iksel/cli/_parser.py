@@ -9,12 +9,8 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 from iksel_cpp import InvalidArgumentError
 
-from iksel.pose import check_pose, pose_from_euler, pose_from_quaternion
-
 if TYPE_CHECKING:
     from collections.abc import Sequence
-
-    from iksel._arrays import FloatArray
 
 EXIT_BAD_INPUT = 2
 
@@ -32,6 +28,11 @@ _SEPARATORS = re.compile(r"[\s,;\[\]()]+")
 def error_line(message: str) -> str:
     """An error message as the one line that stderr gets."""
     return f"iksel: error: {' '.join(message.split())}\n"
+
+
+def warning_line(message: str) -> str:
+    """The same for a warning, after which the command goes on."""
+    return f"iksel: warning: {' '.join(message.split())}\n"
 
 
 class Parser(argparse.ArgumentParser):
@@ -76,37 +77,3 @@ def parse_numbers(flag: str, words: Sequence[str]) -> list[float]:
         return [float(word) for word in _SEPARATORS.split(text) if word]
     except ValueError:
         raise InvalidArgumentError(f"{flag}: not all numbers in {text!r}") from None
-
-
-def parse_joints(flag: str, words: Sequence[str], joints: Sequence[str]) -> list[float]:
-    """One number per joint.
-
-    Raises:
-        InvalidArgumentError: Not numbers, or not as many as there are joints.
-    """
-    values = parse_numbers(flag, words)
-    if len(values) != len(joints):
-        raise InvalidArgumentError(
-            f"{flag}: expected {len(joints)} numbers, one per joint "
-            f"({', '.join(joints)}), got {len(values)}"
-        )
-    return values
-
-
-def parse_pose(flag: str, words: Sequence[str]) -> FloatArray:
-    """A pose in one of POSE_FORMS as a (4, 4) matrix.
-
-    Raises:
-        InvalidArgumentError: Not numbers, another count, or not rigid.
-    """
-    numbers = parse_numbers(flag, words)
-    try:
-        if len(numbers) == 6:
-            return pose_from_euler(numbers[:3], numbers[3:])
-        if len(numbers) == 7:
-            return pose_from_quaternion(numbers[:3], numbers[3:])
-        if len(numbers) == 16:
-            return check_pose([numbers[i : i + 4] for i in range(0, 16, 4)])
-    except InvalidArgumentError as error:
-        raise InvalidArgumentError(f"{flag}: {error}") from None
-    raise InvalidArgumentError(f"{flag}: expected {POSE_FORMS}; got {len(numbers)}")

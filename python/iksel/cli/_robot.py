@@ -7,15 +7,29 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from iksel_cpp import InvalidArgumentError, Robot, UnknownNameError, UrdfError
+from iksel_cpp import (
+    InvalidArgumentError,
+    LinkTree,
+    Robot,
+    UnknownNameError,
+    UrdfError,
+)
 
-from iksel.cli._parser import POSE_METAVAR, parse_numbers, parse_pose
+from iksel._manifest import urdf_text
+from iksel.cli._angles import Angles, add_degrees
+from iksel.cli._parser import POSE_METAVAR, parse_numbers
 from iksel.robots import load_robot, robot_info, robot_names
 
 if TYPE_CHECKING:
     import argparse
 
-URDF_SUFFIXES = (".urdf", ".xml")
+URDF_SUFFIXES = (".urdf", ".xml", ".xacro")
+
+# What errors call by the name of the argument in Python.
+_FLAGS = {
+    "default_limits": "--default-limits LOWER UPPER",
+    "locked_joints": "--lock JOINT=VALUE",
+}
 
 
 def add_robot(parser: argparse.ArgumentParser) -> None:
@@ -55,6 +69,14 @@ def add_robot(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="narrow the joint limits to the URDF's soft limits",
     )
+    group.add_argument(
+        "--default-limits",
+        nargs=2,
+        metavar=("LOWER", "UPPER"),
+        help="limits of joints whose limits the URDF leaves out or has as 0, 0 [rad or "
+        "m]; without, such a joint is an error",
+    )
+    add_degrees(group)
 
 
 def load(arguments: argparse.Namespace) -> Robot:
@@ -65,24 +87,52 @@ def load(arguments: argparse.Namespace) -> Robot:
         UrdfError: The file cannot be read or used.
         InvalidArgumentError: A tool or locked joint that makes no sense.
     """
+    angles = Angles(arguments)
     settings: dict[str, Any] = {
-        "locked_joints": dict(map(_lock, arguments.lock)),
+        "base_link": arguments.base,
+        "tip_link": arguments.tip,
         "soft_limits": arguments.soft_limits,
     }
+    if arguments.lock:
+        settings["locked_joints"] = _locked_joints(arguments, angles)
+    if arguments.default_limits is not None:
+        flag = "--default-limits"
+        limits = parse_numbers(flag, arguments.default_limits)
+        settings["default_limits"] = angles.read(flag, limits)
     if arguments.tcp is not None:
         none = arguments.tcp == ["none"]
-        settings["tcp"] = None if none else parse_pose("--tcp", arguments.tcp)
+        settings["tcp"] = None if none else angles.read_pose("--tcp", arguments.tcp)
+    name = arguments.robot
+    try:
+        if is_built_in(name):
+            return load_robot(name, **settings)
+        return Robot.from_urdf(_urdf_path(name), **settings)
+    except UnknownNameError as error:
+        if str(error).endswith(" more"):
+            message = f"{error} ('iksel info {name} --tree' shows all)"
+            raise UnknownNameError(message) from None
+        raise
+    except UrdfError as error:
+        message = str(error)
+        tree = {"LinkTree": f"'iksel info {name} --tree'"}
+        for argument, flag in (_FLAGS | tree).items():
+            message = message.replace(argument, flag)
+        if error.available:
+            message += "; choose one by --tip"
+        raise UrdfError(message) from None
+
+
+def load_tree(arguments: argparse.Namespace) -> LinkTree:
+    """The tree of all links of the robot.
+
+    Raises:
+        UnknownNameError: Neither a built-in robot nor a file.
+        UrdfError: The file cannot be read or used.
+    """
     name = arguments.robot
     if is_built_in(name):
-        return load_robot(
-            name, base_link=arguments.base, tip_link=arguments.tip, **settings
-        )
-    return Robot.from_urdf(
-        _urdf_path(name),
-        base_link=arguments.base or "",
-        tip_link=arguments.tip or "",
-        **settings,
-    )
+        return LinkTree.from_urdf(urdf_text(robot_info(name)))
+    return LinkTree.from_urdf(_urdf_path(name))
 
 
 def is_built_in(name: str) -> bool:
@@ -93,8 +143,6 @@ def is_built_in(name: str) -> bool:
 def _urdf_path(name: str) -> Path:
     """The path that a ROBOT argument is, if it does not look like a mistyped name."""
     path = Path(name)
-    if path.suffix == ".xacro":
-        raise UrdfError(f"{name} is a xacro file; expand it: xacro {name} > robot.urdf")
     if os.sep in name or path.suffix in URDF_SUFFIXES or path.exists():
         return path
     try:
@@ -102,6 +150,18 @@ def _urdf_path(name: str) -> Path:
     except UnknownNameError as error:
         raise UnknownNameError(f"{error}; or give the path of a URDF file") from None
     return path
+
+
+def _locked_joints(arguments: argparse.Namespace, angles: Angles) -> dict[str, float]:
+    """Names and values of all --lock [rad or m]."""
+    locked = dict(map(_lock, arguments.lock))
+    slides = {
+        joint.name for joint in load_tree(arguments).joints if joint.type == "prismatic"
+    }
+    return {
+        name: value if name in slides else angles.read(f"--lock {name}", [value])[0]
+        for name, value in locked.items()
+    }
 
 
 def _lock(text: str) -> tuple[str, float]:

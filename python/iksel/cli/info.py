@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from iksel.cli._angles import Angles, turning
 from iksel.cli._output import (
     add_json,
     number,
@@ -16,14 +17,14 @@ from iksel.cli._output import (
     print_pairs,
     print_table,
 )
-from iksel.cli._robot import add_robot, is_built_in, load
+from iksel.cli._robot import add_robot, is_built_in, load, load_tree
 from iksel.pose import euler_from_pose
 from iksel.robots import robot_info
 
 if TYPE_CHECKING:
     import argparse
 
-    from iksel_cpp import Robot
+    from iksel_cpp import LinkTree, Robot
 
     from iksel._arrays import FloatArray
 
@@ -31,10 +32,17 @@ EXAMPLES = """\
 examples:
   iksel info ur3
   iksel info panda --tip panda_link7 --json
+  iksel info ur3 --tree
+  iksel info arm.urdf
   iksel info arm.urdf --base base_link --tip tool0 --lock wrist=0.5
+
+Without --tip, a URDF file that ends in several links is drawn as a tree, with the links
+to choose from.
 """
 
 LIMIT_FIELDS = ("lower", "upper", "soft_lower", "soft_upper", "velocity_limit")
+LIMIT_HEADER = ("lower", "upper", "velocity")
+HEADER = ("joint", "type", *LIMIT_HEADER, "unit", *LIMIT_HEADER, "unit")
 SOURCE_FIELDS = ("maker", "licence", "source", "note")
 
 
@@ -48,12 +56,22 @@ def add_parser(commands: Any) -> None:
         epilog=EXAMPLES,
     )
     add_robot(parser)
+    parser.add_argument(
+        "--tree",
+        action="store_true",
+        help="draw the tree of all links, and list the possible tips",
+    )
     add_json(parser)
     parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Show the robot."""
+    if arguments.tree or (arguments.tip is None and not is_built_in(arguments.robot)):
+        tree = load_tree(arguments)
+        if arguments.tree or len(tree.tips) > 1:
+            show_tree(tree, arguments)
+            return 0
     robot = load(arguments)
     reach = f"{number(robot.reach, 4)} m around {_point(robot.reach_centre)}"
     origin = {}
@@ -61,7 +79,7 @@ def run(arguments: argparse.Namespace) -> int:
         info = robot_info(arguments.robot)
         origin = {field: getattr(info, field) for field in SOURCE_FIELDS}
     if arguments.json:
-        print_json(as_dict(robot) | origin)
+        print_json(as_dict(robot, Angles(arguments)) | origin)
         return 0
     print_pairs(
         [
@@ -74,16 +92,37 @@ def run(arguments: argparse.Namespace) -> int:
         ]
     )
     print()
-    print_table(("joint", "type", "lower", "upper", "velocity", "unit"), _rows(robot))
+    print_table(HEADER, _rows(robot))
     return 0
 
 
-def as_dict(robot: Robot) -> dict[str, Any]:
-    """All about a robot as plain data and arrays [rad, m]."""
+def show_tree(tree: LinkTree, arguments: argparse.Namespace) -> None:
+    """Show the links to choose a tip from."""
+    if arguments.json:
+        fields = ("name", "type", "parent_link", "child_link")
+        print_json(
+            {
+                "name": tree.robot_name,
+                "links": tree.links,
+                "joints": [{f: getattr(j, f) for f in fields} for j in tree.joints],
+                "tips": dict(tree.tips),
+            }
+        )
+        return
+    print(tree)
+    print()
+    print("Links without children; any link may be chosen by --tip and --base:")
+    print_table(
+        ("tip", "moving joints"), [(link, str(moving)) for link, moving in tree.tips]
+    )
+
+
+def as_dict(robot: Robot, angles: Angles) -> dict[str, Any]:
+    """All about a robot as plain data and arrays [m, and rad or deg]."""
     columns = zip(
         robot.joint_names,
         (kind.name for kind in robot.joint_types),
-        *(array.tolist() for array in _limits(robot)),
+        *(angles.show(robot, array).tolist() for array in _limits(robot)),
         strict=True,
     )
     names = ("name", "type", *LIMIT_FIELDS)
@@ -92,6 +131,7 @@ def as_dict(robot: Robot) -> dict[str, Any]:
         "base_link": robot.base_link,
         "tip_link": robot.tip_link,
         "dof": robot.dof,
+        "angle_unit": angles.unit,
         "tcp": robot.tcp,
         "reach": robot.reach,
         "reach_centre": robot.reach_centre,
@@ -116,15 +156,23 @@ def _limits(robot: Robot) -> list[FloatArray]:
 
 
 def _rows(robot: Robot) -> list[tuple[str, ...]]:
-    """One row per joint, angles in degrees."""
+    """One row per joint; angles in radians and in degrees."""
     rows = []
-    for i, (name, kind) in enumerate(
-        zip(robot.joint_names, robot.joint_types, strict=True)
+    for i, (name, turns) in enumerate(
+        zip(robot.joint_names, turning(robot), strict=True)
     ):
-        slides = kind.name == "prismatic"
         values = (robot.lower[i], robot.upper[i], robot.velocity_limit[i])
-        texts = [number(v if slides else math.degrees(v), 3) for v in values]
-        rows.append((name, kind.name, *texts, "m, m/s" if slides else "deg, deg/s"))
+        degrees = [number(math.degrees(v), 2) if turns else "" for v in values]
+        rows.append(
+            (
+                name,
+                robot.joint_types[i].name,
+                *(number(v, 4) for v in values),
+                "rad" if turns else "m",
+                *degrees,
+                "deg" if turns else "",
+            )
+        )
     return rows
 
 

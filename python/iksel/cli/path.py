@@ -10,10 +10,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from iksel_cpp import Database, InvalidArgumentError, Solver
 
+from iksel.cli._angles import Angles, turning
 from iksel.cli._options import add_solver_options, solver_options
-from iksel.cli._output import add_json, number, print_json, print_pairs, print_table
-from iksel.cli._parser import parse_joints, parse_numbers, parse_pose
+from iksel.cli._output import add_json, print_json, print_pairs
+from iksel.cli._parser import parse_numbers
 from iksel.cli._robot import add_robot, load
+from iksel.cli.solve import print_configurations
 
 if TYPE_CHECKING:
     import argparse
@@ -69,10 +71,9 @@ def add_parser(commands: Any) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Solve and print the path."""
     robot = load(arguments)
-    poses = read_poses(arguments.file)
-    start = arguments.start and parse_joints(
-        "--start", arguments.start, robot.joint_names
-    )
+    angles = Angles(arguments)
+    poses = read_poses(arguments.file, angles)
+    start = arguments.start and angles.read_joints("--start", arguments.start, robot)
     database = arguments.database and Database.load(arguments.database)
     solver = Solver(robot, solver_options(arguments), database)
     path = solver.solve_path(poses, start, dt=arguments.dt)
@@ -84,19 +85,28 @@ def run(arguments: argparse.Namespace) -> int:
                 "success": path.success,
                 "status": path.status.name,
                 "broken": path.broken,
-                "largest_step": path.largest_step,
+                "angle_unit": angles.unit,
+                "largest_step": largest_step(robot, path, angles),
                 "largest_step_joint": path.largest_step_joint,
                 "largest_step_waypoint": path.largest_step_waypoint,
                 "move": path.move,
-                "q": path.q,
+                "q": angles.show(robot, path.q),
             }
         )
     else:
-        print_text(robot, path, len(poses))
+        print_text(robot, path, len(poses), angles)
     return EXIT_SOLVED if path.success else EXIT_NO_SOLUTION
 
 
-def read_poses(name: str) -> FloatArray:
+def largest_step(robot: Robot, path: PathResult, angles: Angles) -> float:
+    """The farthest that a joint moves between two poses, in that joint's unit."""
+    steps = np.zeros(robot.dof)
+    if path.largest_step_joint is not None:
+        steps[path.largest_step_joint] = path.largest_step
+    return float(angles.show(robot, steps).max())
+
+
+def read_poses(name: str, angles: Angles) -> FloatArray:
     """The poses of a file as an (N, 4, 4) array.
 
     Raises:
@@ -111,13 +121,14 @@ def read_poses(name: str) -> FloatArray:
         if not line.strip() or line.lstrip().startswith("#"):
             continue
         flag = f"{name}, line {index}"
-        poses.append(parse_pose(flag, [repr(x) for x in parse_numbers(flag, [line])]))
+        words = [repr(x) for x in parse_numbers(flag, [line])]
+        poses.append(angles.read_pose(flag, words))
     if not poses:
         raise InvalidArgumentError(f"{name}: no poses in it")
     return np.stack(poses)
 
 
-def print_text(robot: Robot, path: PathResult, count: int) -> None:
+def print_text(robot: Robot, path: PathResult, count: int, angles: Angles) -> None:
     """Print the path for people."""
     rows = [
         ("robot", f"{robot.name}, {robot.base_link} -> {robot.tip_link}"),
@@ -128,10 +139,11 @@ def print_text(robot: Robot, path: PathResult, count: int) -> None:
         rows.append(("broken at", f"waypoint {path.broken} (from 0)"))
     if path.largest_step_joint is not None:
         joint = robot.joint_names[path.largest_step_joint]
-        step = f"{path.largest_step:.4g} rad or m, {joint}"
+        unit = angles.unit if turning(robot)[path.largest_step_joint] else "m"
+        step = f"{largest_step(robot, path, angles):.4g} {unit}, {joint}"
         rows.append(
             ("largest step", f"{step} to waypoint {path.largest_step_waypoint}")
         )
     print_pairs(rows)
     print()
-    print_table(robot.joint_names, [[number(x, 6) for x in q] for q in path.q.tolist()])
+    print_configurations(robot, path.q, angles)

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 from iksel_cpp import Database, InvalidArgumentError, Solver
 
+from iksel.cli._angles import Angles
 from iksel.cli._options import add_solver_options, solver_options
 from iksel.cli._output import add_json, number, print_json, print_pairs, print_table
-from iksel.cli._parser import POSE_FORMS, POSE_METAVAR, parse_joints, parse_pose
+from iksel.cli._parser import POSE_FORMS, POSE_METAVAR
 from iksel.cli._robot import add_robot, load
 from iksel.cli.info import pose_text
 
@@ -97,22 +98,23 @@ def run(arguments: argparse.Namespace) -> int:
     """Solve and print the answer."""
     robot = load(arguments)
     joints = robot.joint_names
+    angles = Angles(arguments)
     if arguments.pose is not None:
-        target = parse_pose("--pose", arguments.pose)
+        target = angles.read_pose("--pose", arguments.pose)
     else:
-        target = robot.fk(parse_joints("--from-q", arguments.from_q, joints))
-    near = arguments.near and parse_joints("--near", arguments.near, joints)
+        target = robot.fk(angles.read_joints("--from-q", arguments.from_q, robot))
+    near = arguments.near and angles.read_joints("--near", arguments.near, robot)
     if arguments.seed_q and (near or arguments.all):
         raise InvalidArgumentError("--seed-q: cannot be used with --near or --all")
     if arguments.objective and (arguments.all or arguments.seed_q):
         raise InvalidArgumentError("--objective: cannot be used with --all or --seed-q")
-    seed = arguments.seed_q and parse_joints("--seed-q", arguments.seed_q, joints)
+    seed = arguments.seed_q and angles.read_joints("--seed-q", arguments.seed_q, robot)
     options = solver_options(arguments)
     database = arguments.database and Database.load(arguments.database)
     solver = Solver(robot, options, database)
 
     if arguments.all:
-        return run_all(solver, target, near, arguments)
+        return run_all(solver, target, near, arguments, angles)
 
     def solve() -> Result:
         if near or arguments.objective:
@@ -132,10 +134,12 @@ def run(arguments: argparse.Namespace) -> int:
         "target": target,
         "success": result.success,
         "status": result.status.name,
-        "q": result.q,
+        "angle_unit": angles.unit,
+        "q": angles.show_optional(robot, result.q),
         "position_error": result.position_error,
         "rotation_error": result.rotation_error,
         "move": result.move,
+        "cost": result.cost,
         "attempts": result.attempts,
         "iterations": result.iterations,
         "time_us": time_us,
@@ -143,7 +147,7 @@ def run(arguments: argparse.Namespace) -> int:
     diagnosis = None
     if arguments.diagnose and not result.success:
         diagnosis = solver.diagnose(target)
-        report["diagnosis"] = diagnosis_report(robot, diagnosis)
+        report["diagnosis"] = diagnosis_report(robot, diagnosis, angles)
     if arguments.json:
         print_json(report)
     else:
@@ -153,7 +157,9 @@ def run(arguments: argparse.Namespace) -> int:
     return EXIT_SOLVED if result.success else EXIT_NO_SOLUTION
 
 
-def diagnosis_report(robot: Robot, diagnosis: Diagnosis) -> dict[str, Any]:
+def diagnosis_report(
+    robot: Robot, diagnosis: Diagnosis, angles: Angles
+) -> dict[str, Any]:
     """The fields of a diagnosis; the joint by name."""
     joint = diagnosis.joint
     return {
@@ -164,7 +170,7 @@ def diagnosis_report(robot: Robot, diagnosis: Diagnosis) -> dict[str, Any]:
         "joint": robot.joint_names[joint] if joint >= 0 else None,
         "limit_violation": diagnosis.limit_violation,
         "least_singular_value": diagnosis.least_singular_value,
-        "best_effort_q": diagnosis.q,
+        "best_effort_q": angles.show_optional(robot, diagnosis.q),
         "best_effort_is_solution": diagnosis.q_is_solution,
         "best_effort_position_error": diagnosis.position_error,
         "best_effort_rotation_error": diagnosis.rotation_error,
@@ -187,7 +193,11 @@ def print_diagnosis(robot: Robot, diagnosis: Diagnosis) -> None:
 
 
 def run_all(
-    solver: Solver, target: FloatArray, near: list[float] | None, arguments: Any
+    solver: Solver,
+    target: FloatArray,
+    near: list[float] | None,
+    arguments: Any,
+    angles: Angles,
 ) -> int:
     """Find every distinct solution and print them."""
     robot = solver.robot
@@ -200,7 +210,8 @@ def run_all(
         "target": target,
         "success": found.success,
         "status": found.status.name,
-        "q": found.q,
+        "angle_unit": angles.unit,
+        "q": angles.show(robot, found.q),
         "position_error": found.position_error,
         "rotation_error": found.rotation_error,
         "move": found.move,
@@ -221,9 +232,7 @@ def run_all(
         )
         if found.success:
             print()
-            print_table(
-                robot.joint_names, [[number(x, 6) for x in q] for q in found.q.tolist()]
-            )
+            print_configurations(robot, found.q, angles)
     return EXIT_SOLVED if found.success else EXIT_NO_SOLUTION
 
 
@@ -242,6 +251,8 @@ def print_text(robot: Robot, result: Result, report: dict[str, Any]) -> None:
             ("position error", f"{result.position_error:.3g} m"),
             ("rotation error", f"{result.rotation_error:.3g} rad"),
         ]
+    if math.isfinite(result.cost):
+        rows.append(("cost", f"{result.cost:.6g}"))
     if math.isfinite(result.move):
         rows.append(("joint move", f"{result.move:.4g} rad or m"))
     print_pairs(rows)
@@ -249,6 +260,13 @@ def print_text(robot: Robot, result: Result, report: dict[str, Any]) -> None:
         return
     print()
     print_joints(robot, result.q.tolist())
+
+
+def print_configurations(robot: Robot, q: FloatArray, angles: Angles) -> None:
+    """Print joint values (N, dof) [rad or m] as a table, one configuration a row."""
+    print(f"joint values [{angles.unit} or m]")
+    rows = angles.show(robot, q).tolist()
+    print_table(robot.joint_names, [[number(x, 6) for x in row] for row in rows])
 
 
 def print_joints(robot: Robot, q: list[float]) -> None:

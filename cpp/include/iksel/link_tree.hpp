@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a URDF holds before a chain is chosen: its links and the joints between them.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "iksel/export.hpp"
+
+namespace iksel {
+
+/// One joint of a URDF.
+struct LinkTreeJoint {
+  std::string name;
+  std::string type;  ///< "revolute", "fixed", ...
+  std::string parent_link;
+  std::string child_link;
+};
+
+/// The tree of a URDF's links, depth first from the root.
+struct IKSEL_EXPORT LinkTree {
+  std::string robot_name;
+  std::vector<std::string> links;
+  std::vector<LinkTreeJoint> joints;
+  /// Links without children, and how many joints move each of them: the tips to choose from.
+  struct Tip {
+    std::string link;
+    int moving_joints;
+  };
+  std::vector<Tip> tips;
+
+  /// Reads a URDF file. Throws UrdfError.
+  static LinkTree from_urdf_file(const std::filesystem::path& path);
+  /// Parses URDF text. Throws UrdfError.
+  static LinkTree from_urdf_string(const std::string& xml);
+
+  /// One line per link, indented under its parent, with the joint that carries it.
+  [[nodiscard]] std::string draw() const;
+};
+
+}  // namespace iksel

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The words of error messages: numbers, lists of names, and the name that may have been meant.
+#pragma once
+
+#include <locale>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace iksel {
+
+/// A stream for messages, whose numbers are the same in every locale.
+class MessageStream : public std::ostringstream {
+ public:
+  MessageStream() { imbue(std::locale::classic()); }
+};
+
+/// A number with that many significant digits, the same in every locale.
+std::string number_text(double value, int digits = 6);
+
+/// "a, b, c" (the first 20, and how many more).
+std::string list_names(const std::vector<std::string>& names);
+
+/// Throws UnknownNameError: `problem`, the known names that `name` may mean, and those there are.
+[[noreturn]] void throw_unknown_name(const std::string& problem, const std::string& name,
+                                     const std::vector<std::string>& known);
+
+}  // namespace iksel

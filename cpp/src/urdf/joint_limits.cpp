@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "urdf/joint_limits.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "iksel/error.hpp"
+#include "math/constants.hpp"
+#include "message_text.hpp"
+
+namespace iksel {
+namespace {
+
+bool is_limited(const urdf::Joint& joint) { return joint.type != urdf::Joint::CONTINUOUS; }
+
+/// Exporters write 0, 0 where they know no limits; urdfdom reads a limit without numbers so.
+bool lacks_limits(const urdf::Joint& joint) {
+  return is_limited(joint) &&
+         (!joint.limits || (joint.limits->lower == 0 && joint.limits->upper == 0));
+}
+
+bool are_usable(double lower, double upper) {
+  return std::isfinite(lower) && std::isfinite(upper) && lower < upper;
+}
+
+void set_limits(ChainVariable& variable, double lower, double upper) {
+  variable.lower = variable.soft_lower = lower;
+  variable.upper = variable.soft_upper = upper;
+}
+
+}  // namespace
+
+ChainVariable make_variable(const urdf::Joint& joint, const RobotOptions& options) {
+  ChainVariable variable;
+  variable.name = joint.name;
+  variable.velocity =
+      joint.limits && joint.limits->velocity > 0 ? joint.limits->velocity : kInfinity;
+  if (!is_limited(joint)) {
+    // Safety limits of continuous joints are placeholders in practice (0, 0).
+    variable.type = JointType::continuous;
+    set_limits(variable, -kInfinity, kInfinity);
+    return variable;
+  }
+  variable.type = joint.type == urdf::Joint::PRISMATIC ? JointType::prismatic : JointType::revolute;
+  if (!lacks_limits(joint)) {
+    set_limits(variable, joint.limits->lower, joint.limits->upper);
+  } else if (options.default_limits) {
+    set_limits(variable, options.default_limits->first, options.default_limits->second);
+  } else {
+    throw UrdfError("joint '" + joint.name +
+                    "' has no limits (they are missing or 0, 0): give default_limits for such "
+                    "joints, or hold it at a value by locked_joints");
+  }
+  if (joint.safety && joint.safety->soft_lower_limit < joint.safety->soft_upper_limit) {
+    variable.soft_lower = std::max(variable.lower, joint.safety->soft_lower_limit);
+    variable.soft_upper = std::min(variable.upper, joint.safety->soft_upper_limit);
+  }
+  if (options.soft_limits) {
+    variable.lower = variable.soft_lower;
+    variable.upper = variable.soft_upper;
+  }
+  return variable;
+}
+
+void narrow_by_follower(const urdf::Joint& follower, const Motion& motion,
+                        const RobotOptions& options, ChainVariable& variable) {
+  if (motion.source == &follower || motion.multiplier == 0.0) return;
+  if (options.default_limits && lacks_limits(follower)) return;
+  const ChainVariable own = make_variable(follower, options);
+  const auto narrow = [&](double low, double high, double& lower, double& upper) {
+    low = (low - motion.offset) / motion.multiplier;
+    high = (high - motion.offset) / motion.multiplier;
+    lower = std::max(lower, std::min(low, high));
+    upper = std::min(upper, std::max(low, high));
+  };
+  narrow(own.lower, own.upper, variable.lower, variable.upper);
+  narrow(own.soft_lower, own.soft_upper, variable.soft_lower, variable.soft_upper);
+  variable.velocity = std::min(variable.velocity, own.velocity / std::abs(motion.multiplier));
+  if (variable.type == JointType::continuous && std::isfinite(variable.lower)) {
+    variable.type = JointType::revolute;
+  }
+}
+
+void check_limits(const ChainVariable& variable) {
+  if (variable.type == JointType::continuous || are_usable(variable.lower, variable.upper)) return;
+  throw UrdfError("joint '" + variable.name + "' has no usable limits: lower " +
+                  number_text(variable.lower) + ", upper " + number_text(variable.upper) +
+                  " (finite numbers with lower < upper are needed; a joint that does not move is "
+                  "held by locked_joints)");
+}
+
+void check_default_limits(const RobotOptions& options) {
+  if (!options.default_limits) return;
+  const auto [lower, upper] = *options.default_limits;
+  if (are_usable(lower, upper)) return;
+  throw InvalidArgumentError("default_limits: lower " + number_text(lower) + ", upper " +
+                             number_text(upper) +
+                             " are not finite numbers with lower < upper [rad or m]");
+}
+
+}  // namespace iksel

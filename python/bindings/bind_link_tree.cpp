@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pybind11/stl.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bindings.hpp"
+#include "iksel/link_tree.hpp"
+#include "urdf_source.hpp"
+
+namespace iksel::python {
+
+namespace {
+
+LinkTree tree_from_urdf(const PathLike& path_or_xml) {
+  return read_urdf(path_or_xml, &LinkTree::from_urdf_string, &LinkTree::from_urdf_file);
+}
+
+std::string tree_repr(const LinkTree& self) {
+  return "LinkTree(" + py::cast<std::string>(py::repr(py::str(self.robot_name))) + ", " +
+         std::to_string(self.links.size()) + " links, " + std::to_string(self.tips.size()) +
+         " tips)";
+}
+
+}  // namespace
+
+void bind_link_tree(py::module_& m) {
+  py::class_<LinkTreeJoint>(m, "LinkTreeJoint", "One joint of a URDF.")
+      .def_readonly("name", &LinkTreeJoint::name, "Its name.")
+      .def_readonly("type", &LinkTreeJoint::type, "'revolute', 'fixed', ...")
+      .def_readonly("parent_link", &LinkTreeJoint::parent_link, "The link that it is on.")
+      .def_readonly("child_link", &LinkTreeJoint::child_link, "The link that it carries.")
+      .def("__repr__", [](const LinkTreeJoint& self) {
+        return "LinkTreeJoint('" + self.name + "', " + self.type + ", '" + self.parent_link +
+               "' -> '" + self.child_link + "')";
+      });
+  py::class_<LinkTree>(m, "LinkTree",
+                       "The links of a URDF and the joints between them, depth first from the "
+                       "root; str() draws the tree.")
+      .def_static("from_urdf", &tree_from_urdf, py::arg("path_or_xml"),
+                  R"(Reads the tree of a URDF.
+
+Args:
+    path_or_xml: a path, or the URDF text itself (a str whose first character is '<').
+
+Raises:
+    UrdfError: the file or the XML is no good.)")
+      .def_readonly("robot_name", &LinkTree::robot_name, "Name in the URDF.")
+      .def_readonly("links", &LinkTree::links, "Names of all links, the root first.")
+      .def_readonly("joints", &LinkTree::joints, "All joints.")
+      .def_property_readonly(
+          "tips",
+          [](const LinkTree& self) {
+            std::vector<std::pair<std::string, int>> tips;
+            for (const auto& [link, moving] : self.tips) tips.emplace_back(link, moving);
+            return tips;
+          },
+          "The links without children, each with the number of joints that move it.")
+      .def("__str__", &LinkTree::draw)
+      .def("__repr__", &tree_repr);
+}
+
+}  // namespace iksel::python

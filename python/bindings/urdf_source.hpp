@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A URDF as people hold it: a path, or the text itself.
+#pragma once
+
+#include <string>
+
+#include "python_types.hpp"
+
+namespace iksel::python {
+
+/// Whether a str is the text of a URDF and no path.
+inline bool is_xml(const std::string& text) {
+  const auto start = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
+  return start != std::string::npos && text[start] == '<';
+}
+
+/// `from_text` of the text, or `from_file` of the path.
+template <typename FromText, typename FromFile>
+auto read_urdf(const PathLike& path_or_xml, const FromText& from_text, const FromFile& from_file) {
+  if (py::isinstance<py::str>(path_or_xml)) {
+    const auto text = py::cast<std::string>(path_or_xml);
+    if (is_xml(text)) return from_text(text);
+  }
+  return from_file(as_path(path_or_xml, "path_or_xml"));
+}
+
+}  // namespace iksel::python

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Poses and joint values in the unit of angles that the user chose."""
+
+from __future__ import annotations
+
+import sys
+import warnings
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from iksel_cpp import AngleUnitWarning, InvalidArgumentError, JointType
+
+from iksel._angles import look_like_degrees
+from iksel.cli._parser import POSE_FORMS, parse_numbers, warning_line
+from iksel.pose import check_pose, pose_from_euler, pose_from_quaternion
+
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Sequence
+
+    from iksel_cpp import Robot
+
+    from iksel._arrays import FloatArray
+
+
+def add_degrees(parser: argparse._ActionsContainer) -> None:
+    """Add --degrees."""
+    parser.add_argument(
+        "--degrees",
+        action="store_true",
+        help="joint angles and roll, pitch, yaw are degrees, in what is given and in "
+        "what is printed; tolerances and errors stay radians",
+    )
+
+
+class Angles:
+    """Reads and shows angles in degrees or radians; warns of radians that are none."""
+
+    def __init__(self, arguments: argparse.Namespace) -> None:
+        """Take the unit from --degrees."""
+        self._degrees: bool = arguments.degrees
+        self._warned = False
+
+    @property
+    def unit(self) -> str:
+        """The unit's name."""
+        return "deg" if self._degrees else "rad"
+
+    def read(self, flag: str, angles: Sequence[float]) -> list[float]:
+        """Angles that were given, in radians."""
+        if self._degrees:
+            return [float(x) for x in np.radians(angles)]
+        if not self._warned and look_like_degrees(angles):
+            self._warned = True
+            text = " ".join(f"{x:g}" for x in angles)
+            sys.stderr.write(
+                warning_line(
+                    f"{flag}: {text} look like degrees, and are taken as radians; "
+                    "give --degrees if they are"
+                )
+            )
+        return list(angles)
+
+    def read_pose(self, flag: str, words: Sequence[str]) -> FloatArray:
+        """A pose in one of POSE_FORMS as a (4, 4) matrix.
+
+        Raises:
+            InvalidArgumentError: Not numbers, another count, or not rigid.
+        """
+        numbers = parse_numbers(flag, words)
+        try:
+            if len(numbers) == 6:
+                rpy = self.read(flag, numbers[3:])
+                with warnings.catch_warnings():  # `read` has warned
+                    warnings.simplefilter("ignore", AngleUnitWarning)
+                    return pose_from_euler(numbers[:3], rpy)
+            if len(numbers) == 7:
+                return pose_from_quaternion(numbers[:3], numbers[3:])
+            if len(numbers) == 16:
+                return check_pose([numbers[i : i + 4] for i in range(0, 16, 4)])
+        except InvalidArgumentError as error:
+            raise InvalidArgumentError(f"{flag}: {error}") from None
+        raise InvalidArgumentError(f"{flag}: expected {POSE_FORMS}; got {len(numbers)}")
+
+    def read_joints(self, flag: str, words: Sequence[str], robot: Robot) -> list[float]:
+        """One number per joint [rad or m].
+
+        Raises:
+            InvalidArgumentError: Not numbers, or not as many as there are joints.
+        """
+        names = robot.joint_names
+        values = parse_numbers(flag, words)
+        if len(values) != len(names):
+            raise InvalidArgumentError(
+                f"{flag}: expected {len(names)} numbers, one per joint "
+                f"({', '.join(names)}), got {len(values)}"
+            )
+        turns = turning(robot)
+        angles = [v for v, turn in zip(values, turns, strict=True) if turn]
+        radians = iter(self.read(flag, angles))
+        return [next(radians) if t else v for v, t in zip(values, turns, strict=True)]
+
+    def show(self, robot: Robot, q: FloatArray) -> FloatArray:
+        """Joint values (..., dof) [rad or m] in the unit."""
+        scale = np.degrees(1.0) if self._degrees else 1.0
+        return np.asarray(q * np.where(turning(robot), scale, 1.0))
+
+    def show_optional(self, robot: Robot, q: Any) -> FloatArray | None:
+        """The same; None stays None."""
+        return None if q is None else self.show(robot, q)
+
+
+def turning(robot: Robot) -> list[bool]:
+    """Which joints turn; the others slide."""
+    return [kind != JointType.prismatic for kind in robot.joint_types]

@@ -43,7 +43,7 @@ class UrdfFile:
         self.base = bases[0] if len(bases) == 1 else None
         self.tips = [link for link in links if link not in holding]
         try:
-            self._model = pinocchio.buildModelFromUrdf(str(path))
+            self._model = _read_model(root)
             self._data = self._model.createData()
         except ValueError:
             self._model = None
@@ -121,6 +121,9 @@ class UrdfFile:
         strangers = {self._source(j) for j in joints} - set(self._joints)
         if strangers and any(f"mimics '{name}'" in problem for name in strangers):
             return "a joint mimics one that is not there"
+        if "at most 1e+08" in problem:
+            limits = [x for j in joints for x in _limits(j)]
+            return "a limit is beyond 1e8" if max(map(abs, limits)) > 1e8 else None
         if "limits" in problem:
             return self._no_range([j.get("name") for j in joints])
         return None
@@ -157,6 +160,17 @@ class UrdfFile:
         return driver, by * factor, by * offset + float(mimic.get("offset", "0"))
 
 
+def _read_model(root: ET.Element) -> pinocchio.Model:
+    """Pinocchio's model, which needs limits, efforts and velocities to be given."""
+    for joint in root.findall("joint"):
+        if joint.get("type") in {"revolute", "prismatic"}:
+            limit = joint.find("limit")
+            limit = ET.SubElement(joint, "limit") if limit is None else limit
+            for name in ("effort", "velocity"):
+                limit.set(name, limit.get(name, "0"))
+    return pinocchio.buildModelFromXML(ET.tostring(root, encoding="unicode"))
+
+
 def _parent(joint: ET.Element) -> str:
     return joint.find("parent").get("link")
 
@@ -164,6 +178,8 @@ def _parent(joint: ET.Element) -> str:
 def _limits(joint: ET.Element) -> tuple[float, float]:
     if joint.get("type") == "continuous":
         return -np.inf, np.inf
+    if joint.get("type") not in MOVING:
+        return 0.0, 0.0
     limit = joint.find("limit")
     if limit is None:
         return 0.0, 0.0

@@ -37,7 +37,9 @@ void check_sizes(const ChainSpec& spec) {
     if (variable.type == JointType::continuous) continue;
     const char* unit = variable.type == JointType::prismatic ? "m" : "rad";
     for (const double limit : {variable.lower, variable.upper}) {
-      if (!is_small(limit)) refuse(variable.name, "a limit", limit, unit);
+      if (!is_small(limit)) {
+        refuse(variable.name, "a limit (a joint that turns freely is 'continuous')", limit, unit);
+      }
     }
   }
   double length = 0;

@@ -21,6 +21,9 @@ auto read_urdf(const PathLike& path_or_xml, const FromText& from_text, const Fro
     const auto text = py::cast<std::string>(path_or_xml);
     if (is_xml(text)) return from_text(text);
   }
+  if (!py::isinstance<py::str>(path_or_xml) && !py::hasattr(path_or_xml, "__fspath__")) {
+    throw_wrong_type("path_or_xml", "the path of a URDF file, or its text", path_or_xml);
+  }
   return from_file(as_path(path_or_xml, "path_or_xml"));
 }
 

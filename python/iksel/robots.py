@@ -81,7 +81,7 @@ def load_robot(
         base_link=info.base_link if base_link is None else base_link,
         tip_link=tip,
         tcp=tcp,
-        locked_joints=dict(locked_joints or {}),
+        locked_joints={} if locked_joints is None else locked_joints,
         soft_limits=soft_limits,
         default_limits=default_limits,
     )
@@ -91,4 +91,6 @@ def _suggestion(name: str) -> str:
     names = robot_names()
     close = difflib.get_close_matches(str(name).lower(), names)
     hint = f"did you mean {' or '.join(close)}? " if close else ""
+    if str(name).endswith((".urdf", ".xml", ".xacro")):
+        hint = "Robot.from_urdf reads files. "
     return f"{hint}built-in robots: {', '.join(names)}"

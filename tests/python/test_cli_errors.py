@@ -46,6 +46,7 @@ BAD = [
     ("solve ur3 --pose", "--pose"),
     (f"solve ur3 --pose {POSE} --from-q 0 0 0 0 0 0", "not allowed with"),
     ("solve ur3 --pose 1 2 3 4 5", "--pose: expected 6 numbers.*7.*16.*got 5"),
+    ("solve ur3 --pose 0,2 0,1 0,3 0 3,1 0", "got 10; decimals take a point"),
     ("solve ur3 --pose 1 2 3 4 5 x", "--pose: not all numbers in '1 2 3 4 5 x'"),
     ("solve ur3 --pose 1 2 3 4 5 nan", "--pose: rpy: not finite: nan"),
     ("solve ur3 --pose -inf 2 3 4 5 6", "--pose: position: not finite: -inf"),

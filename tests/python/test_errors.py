@@ -84,6 +84,18 @@ def test_broken_files_are_named(tmp_path: Path) -> None:
     refuse(path, "'second'")
 
 
+@pytest.mark.parametrize("xml", ["<robot name='a'>", arm()[:200], "<robot><link "])
+def test_text_that_was_cut_off_is_said_to_be(xml: str) -> None:
+    refuse(xml, "cut off")
+
+
+def test_text_without_xml_is_said_to_be(tmp_path: Path) -> None:
+    path = tmp_path / "notes.txt"
+    for text in ("", "buy milk"):
+        path.write_text(text, encoding="utf-8")
+        refuse(path, r"notes\.txt.*no XML element")
+
+
 def test_deep_nesting_is_refused_and_not_followed() -> None:
     program = """
         import iksel

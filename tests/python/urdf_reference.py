@@ -121,15 +121,14 @@ class UrdfFile:
         strangers = {self._source(j) for j in joints} - set(self._joints)
         if strangers and any(f"mimics '{name}'" in problem for name in strangers):
             return "a joint mimics one that is not there"
-        if "at most 1e+08" in problem:
-            limits = [x for j in joints for x in _limits(j)]
-            return "a limit is beyond 1e8" if max(map(abs, limits)) > 1e8 else None
-        if "limits" in problem:
+        if "limit" in problem:
             return self._no_range([j.get("name") for j in joints])
         return None
 
     def _no_range(self, names: list[str]) -> str | None:
         """Why a driver of these joints has no range, if one has none."""
+        if any(abs(x) > 1e8 for n in names for x in _finite(self._joints[n])):
+            return "a limit is beyond 1e8"
         ranges: dict[str, list[float]] = {}
         for name in names:
             if self._joints[name].get("type") in {"revolute", "prismatic"}:
@@ -175,11 +174,14 @@ def _parent(joint: ET.Element) -> str:
     return joint.find("parent").get("link")
 
 
+def _finite(joint: ET.Element) -> tuple[float, ...]:
+    """The limits, if the joint is to have any."""
+    return _limits(joint) if joint.get("type") in {"revolute", "prismatic"} else ()
+
+
 def _limits(joint: ET.Element) -> tuple[float, float]:
     if joint.get("type") == "continuous":
         return -np.inf, np.inf
-    if joint.get("type") not in MOVING:
-        return 0.0, 0.0
     limit = joint.find("limit")
     if limit is None:
         return 0.0, 0.0

@@ -93,6 +93,8 @@ urdf::ModelInterfaceSharedPtr parse_urdf(const std::string& xml) {
     }
   }
   if (!model) {
+    const std::string reason = explain_broken_xml(xml);
+    if (!reason.empty()) messages = reason + " (" + messages + ")";
     throw UrdfError("URDF does not parse: " +
                     (messages.empty() ? "no robot in it" : one_line(messages)));
   }

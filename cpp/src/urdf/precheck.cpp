@@ -132,6 +132,14 @@ std::string prepare_urdf(const std::string& xml) {
   return text.append(xml, done);
 }
 
+std::string explain_broken_xml(const std::string& xml) {
+  XmlScanner scanner(xml);
+  XmlTag tag;
+  if (!scanner.next(tag)) return "there is no XML element in it";
+  while (scanner.next(tag)) continue;
+  return scanner.depth() > 0 ? "it ends before its elements do, as if it was cut off" : "";
+}
+
 std::string find_xacro(const std::string& xml) {
   bool declared = false;
   XmlTag tag;

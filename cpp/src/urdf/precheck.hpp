@@ -12,6 +12,9 @@ namespace iksel {
 /// are nested too deeply, or links form a circle.
 std::string prepare_urdf(const std::string& xml);
 
+/// What urdfdom's parser does not say of text that it cannot read; empty where nothing is known.
+std::string explain_broken_xml(const std::string& xml);
+
 /// The first sign that the text is xacro which has to be expanded; empty if there is none.
 std::string find_xacro(const std::string& xml);
 

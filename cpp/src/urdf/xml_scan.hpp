@@ -29,6 +29,8 @@ class XmlScanner {
 
   /// The next tag; false at the end of the text or of what is well-formed.
   bool next(XmlTag& tag);
+  /// How many elements are open after what was read.
+  [[nodiscard]] int depth() const { return depth_; }
 
  private:
   [[nodiscard]] std::size_t end_of_tag(std::size_t from) const;

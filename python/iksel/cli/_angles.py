@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 import warnings
 from typing import TYPE_CHECKING, Any
@@ -80,7 +81,11 @@ class Angles:
                 return check_pose([numbers[i : i + 4] for i in range(0, 16, 4)])
         except InvalidArgumentError as error:
             raise InvalidArgumentError(f"{flag}: {error}") from None
-        raise InvalidArgumentError(f"{flag}: expected {POSE_FORMS}; got {len(numbers)}")
+        comma = any(re.fullmatch(r"-?\d+,\d+", word) for word in words)
+        hint = "; decimals take a point, and commas separate numbers" if comma else ""
+        raise InvalidArgumentError(
+            f"{flag}: expected {POSE_FORMS}; got {len(numbers)}{hint}"
+        )
 
     def read_joints(self, flag: str, words: Sequence[str], robot: Robot) -> list[float]:
         """One number per joint [rad or m].

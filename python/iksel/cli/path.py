@@ -114,7 +114,9 @@ def read_poses(name: str, angles: Angles) -> FloatArray:
     """
     try:
         text = sys.stdin.read() if name == "-" else Path(name).read_text("utf-8")
-    except (OSError, UnicodeDecodeError) as error:
+    except OSError as error:
+        raise InvalidArgumentError(f"{name}: {error.strerror}") from None
+    except UnicodeDecodeError as error:
         raise InvalidArgumentError(f"{name}: {error}") from None
     poses = []
     for index, line in enumerate(text.splitlines(), 1):

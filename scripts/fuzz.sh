@@ -61,6 +61,7 @@ command_of() {
 fuzz() {
   local target=$1 found=build/fuzz/findings/$1-
   mkdir -p build/fuzz/findings "build/fuzz/corpus/$target"
+  rm -f "$found"*
   command_of "$target"
   local settings=("-max_total_time=$seconds" "-timeout=$hang" -rss_limit_mb=4096 -max_len=16384
     "-artifact_prefix=$found" -print_final_stats=1)

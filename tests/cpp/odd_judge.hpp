@@ -142,9 +142,8 @@ inline std::string judge(const OddChain& chain, const iksel::SolverOptions& opti
   std::string why;
   if (!inside_limits(chain, q, why)) return why;
   const Miss miss = miss_of(goal, target, forward(chain, q));
-  // What the library's doubles cannot tell, over so many joints of so much length and angle.
-  const double digits = 1e-15 * static_cast<double>(chain.joints.size() + 1) *
-                        (10 + q.cwiseAbs().maxCoeff() / std::max(1.0, chain.scale));
+  // What the library's doubles cannot tell, over so many joints and so much length.
+  const double digits = 1e-14 * static_cast<double>(chain.joints.size() + 1);
   const Real position = options.position_tolerance + digits * length_of(chain);
   const Real rotation = options.rotation_tolerance + digits;
   if (miss.position <= position && miss.rotation <= rotation) return "";

@@ -561,4 +561,29 @@ TEST(Requests, BadOnesAreNamed) {
   }
 }
 
+TEST(Filter, IsAskedAboutSoManyTurnsAtMost) {
+  // Six joints of 31 turns each have nearly 10^9 copies of every solution.
+  std::string urdf = "<robot name=\"turns\"><link name=\"l0\"/>";
+  for (int i = 0; i < 6; ++i) {
+    const std::string a = "l" + std::to_string(i);
+    const std::string b = "l" + std::to_string(i + 1);
+    urdf +=
+        "<link name=\"" + b + "\"/><joint name=\"j" + b + "\" type=\"revolute\"><parent link=\"" +
+        a + "\"/><child link=\"" + b + "\"/><origin xyz=\"0.1 0.05 0.2\" rpy=\"1.57 0.2 0\"/>" +
+        "<axis xyz=\"0 0 1\"/><limit lower=\"-100\" upper=\"100\" velocity=\"1\" effort=\"1\"/>" +
+        "</joint>";
+  }
+  const Solver solver(Robot::from_urdf_string(urdf + "</robot>"));
+  std::size_t asked = 0;
+  SolveRequest request;
+  request.filter = [&](const double* /*q*/, std::size_t count, bool* keep) {
+    asked += count;
+    if (asked > 1'000'000) throw std::runtime_error("asked for ever");
+    std::fill_n(keep, count, false);
+  };
+  const Pose target = solver.robot().fk(solver.robot().random_configurations(1, 1).row(0));
+  EXPECT_EQ(solver.solve(target, request).status, Status::rejected);
+  EXPECT_GT(asked, 1'000U);
+}
+
 }  // namespace

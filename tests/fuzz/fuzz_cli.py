@@ -8,6 +8,7 @@ JSON; a bad one says so in one line on stderr and prints nothing else.
 from __future__ import annotations
 
 import contextlib
+import functools
 import io
 import json
 import os
@@ -23,6 +24,9 @@ import urdf_text
 with atheris.instrument_imports(include=["iksel"]):
     import iksel
     from iksel import cli
+
+# The parser takes most of the time to make, and is the same for all.
+cli.make_parser = functools.cache(cli.make_parser)
 
 NUMBERS = (
     *("0", "1", "-1", "0.3", "-0.5", "3.1416", "90", "1e-3", "-1e-300", "1e308"),

@@ -22,6 +22,9 @@ constexpr std::size_t kSlides = 4;
 /// of one branch may lie at the default tolerances where the arm is singular.
 constexpr double kSame = 2e-3;
 
+/// Copies by whole turns looked at, at most: joints with many turns have more than time allows.
+constexpr std::size_t kMostTurns = 65536;
+
 /// Half the squared weighted move, or for the max norm a p-norm near to it. A joint without weight
 /// still has a little, so that it does not drift.
 class MoveCost {
@@ -219,11 +222,12 @@ class Solver::Impl::Judge {
     for (std::size_t i = 0; i < found_.size(); ++i) {
       JointVector copy = found_.at(i);
       take_first_turns(model_, copy);
+      std::size_t left = kMostTurns / found_.size();
       do {
         if (!(cost_of(copy) < best) || !is_solution(copy)) continue;
         std::copy_n(copy.data(), dof, copies.data() + count * dof);
         if (++count == kChunk) flush();
-      } while (take_next_turns(model_, copy));
+      } while (--left > 0 && take_next_turns(model_, copy));
     }
     flush();
     return any;

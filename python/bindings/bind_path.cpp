@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "angle_warning.hpp"
 #include "array_checks.hpp"
 #include "bindings.hpp"
 #include "filter.hpp"
@@ -51,7 +52,10 @@ PyPath solve_path(const Solver& self, const ArrayLike& poses, const std::optiona
     targets[i].matrix() = Eigen::Map<const RowMajorPose>(array.data() + 16 * i);
   }
   PathOptions options;
-  if (start) options.start = as_joints(*start, dof, "start");
+  if (start) {
+    options.start = as_joints(*start, dof, "start");
+    warn_of_degrees(self.robot(), *options.start, "start");
+  }
   options.dt = from_python<double>(dt, "dt");
   if (weights) options.weights = as_joints(*weights, dof, "weights");
   options.norm = from_python<MoveNorm>(norm, "norm");

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "angle_warning.hpp"
 #include "array_checks.hpp"
 #include "bindings.hpp"
 #include "filter.hpp"
@@ -65,6 +66,7 @@ PyResult solve_request(const Solver& self, const ArrayLike& pose,
   const Pose target = as_pose(pose, "pose");
   const SolveRequest request = make_request(self.robot().dof(), near, weights, norm, seeds,
                                             database_seeds, filter, deadline, task, objective);
+  if (request.near) warn_of_degrees(self.robot(), *request.near, "near");
   const py::gil_scoped_release release;
   return {self.solve(target, request), {}};
 }
@@ -86,6 +88,7 @@ PySolutions solve_all(const Solver& self, const ArrayLike& pose, const Loose<int
   options.order = from_python<SolutionOrder>(order, "order");
   const SolveRequest request =
       make_request(dof, near, weights, norm, seeds, database_seeds, filter, deadline, task, {});
+  if (request.near) warn_of_degrees(self.robot(), *request.near, "near");
   const py::gil_scoped_release release;
   return {self.solve_all(target, options, request), dof};
 }

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "angle_warning.hpp"
 #include "array_checks.hpp"
 #include "bindings.hpp"
 #include "filter.hpp"
@@ -82,7 +83,9 @@ Solver make_solver(const Robot& robot, const std::optional<SolverOptions>& given
 PyResult solve(const Solver& self, const ArrayLike& pose, const std::optional<ArrayLike>& seed) {
   const Pose target = as_pose(pose, "pose");
   if (!seed) return {self.solve(target), {}};
-  return {self.solve(target, as_joints(*seed, self.robot().dof(), "seed")), {}};
+  const JointVector start = as_joints(*seed, self.robot().dof(), "seed");
+  warn_of_degrees(self.robot(), start, "seed");
+  return {self.solve(target, start), {}};
 }
 
 /// (N, dof) values, or (dof,) for all targets, which go into the request.
@@ -117,6 +120,7 @@ PyBatchResult solve_batch(const Solver& self, const ArrayLike& poses, const Loos
   SolveRequest request = make_request(self.robot().dof(), std::nullopt, weights, norm, seeds,
                                       database_seeds, filter, deadline, task, objective);
   const auto nears = as_near(near, n, self.robot().dof(), request);
+  if (request.near) warn_of_degrees(self.robot(), *request.near, "near");
   PyBatchResult out{py::array_t<double>({n, dof}), py::array_t<bool>(n),
                     py::array_t<std::uint8_t>(n),  py::array_t<double>(n),
                     py::array_t<double>(n),        py::array_t<std::int32_t>(n),

@@ -172,6 +172,32 @@ def test_degrees_are_suspected_in_python() -> None:
             iksel.pose_from_euler([0, 0, 0], rpy)
 
 
+def test_joint_values_in_degrees_are_suspected(made, slide: Path) -> None:
+    solver = made.solver("ur3")
+    pose = solver.robot.fk(Q)
+    degrees = [0, -90, 90, 0, 0, 0]
+    for name, solve in (
+        ("near", lambda q: solver.solve(pose, near=q)),
+        ("seed", lambda q: solver.solve(pose, seed=q)),
+        ("near", lambda q: solver.solve_all(pose, near=q)),
+        ("near", lambda q: solver.solve_batch([pose], near=q)),
+        ("start", lambda q: solver.solve_path([pose], start=q)),
+    ):
+        with pytest.warns(iksel.AngleUnitWarning, match=f"{name}: .*degrees") as caught:
+            solve(degrees)
+        assert caught[0].filename == __file__
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            solve([0, -3, 6, 0, 0, 0])
+            solve([0, -7.25, 6, 0, 0, 0])
+    sliding = iksel.Robot.from_urdf(slide)
+    options = iksel.SolverOptions(task=iksel.Task.position_only())
+    solver = iksel.Solver(sliding, options)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        solver.solve(sliding.fk([0.1, 0.2]), near=[0, 90])
+
+
 def test_objectives_have_a_cost(run: Run) -> None:
     command = "solve panda --from-q 0 -0.5 0 -2 0 1.6 0.8 --samples 500"
     for objective in ("limits", "manipulability"):

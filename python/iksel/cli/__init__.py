@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import os
 import sys
+import warnings
 from typing import TYPE_CHECKING
 
-from iksel_cpp import Error
+from iksel_cpp import AngleUnitWarning, Error
 
 from iksel import __version__
 from iksel.cli import build, evaluate, info, path, robots, solve
@@ -80,7 +81,10 @@ def make_parser() -> Parser:
 def _run(argv: Sequence[str] | None) -> int:
     try:
         arguments = make_parser().parse_args(argv)
-        return int(arguments.run(arguments))
+        with warnings.catch_warnings():
+            # The command line has its own, which names the flag.
+            warnings.simplefilter("ignore", AngleUnitWarning)
+            return int(arguments.run(arguments))
     except SystemExit as stop:
         return int(stop.code or 0)
     except Error as error:

@@ -5,11 +5,10 @@ from __future__ import annotations
 
 import re
 import sys
-import warnings
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from iksel_cpp import AngleUnitWarning, InvalidArgumentError, JointType
+from iksel_cpp import InvalidArgumentError, JointType
 
 from iksel._angles import look_like_degrees
 from iksel.cli._parser import POSE_FORMS, parse_numbers, warning_line
@@ -71,10 +70,7 @@ class Angles:
         numbers = parse_numbers(flag, words)
         try:
             if len(numbers) == 6:
-                rpy = self.read(flag, numbers[3:])
-                with warnings.catch_warnings():  # `read` has warned
-                    warnings.simplefilter("ignore", AngleUnitWarning)
-                    return pose_from_euler(numbers[:3], rpy)
+                return pose_from_euler(numbers[:3], self.read(flag, numbers[3:]))
             if len(numbers) == 7:
                 return pose_from_quaternion(numbers[:3], numbers[3:])
             if len(numbers) == 16:

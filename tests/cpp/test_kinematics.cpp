@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <iksel/iksel.hpp>
+#include <string>
 
 #include "robots.hpp"
 
@@ -75,6 +76,26 @@ TEST_P(AllRobots, ToolMovesThePoseAndNotTheHash) {
 
 INSTANTIATE_TEST_SUITE_P(Robots, AllRobots, testing::ValuesIn(iksel_test::all_robots()),
                          [](const auto& info) { return std::string(info.param.name); });
+
+TEST(Axes, NearlyOppositeToZKeepTheirDigits) {
+  for (const char* axis : {"0 0 -1", "0 -1e-7 -1", "1e-7 0 -1", "3e-7 -2e-7 -1", "0 1e-9 -1",
+                           "1e-16 1e-17 -1", "0.8 0.1 -0.6", "0.1 0.8 -0.4999"}) {
+    const std::string limit =
+        "<limit lower='-3' upper='3' effort='1' velocity='1'/><origin xyz='1 2 3'/>";
+    const Robot robot = Robot::from_urdf_string(
+        std::string("<robot name='r'><link name='a'/><link name='b'/><link name='c'/>") +
+        "<joint name='j' type='revolute'><parent link='a'/><child link='b'/><axis xyz='" + axis +
+        "'/>" + limit + "</joint><joint name='k' type='revolute'><parent link='b'/>" +
+        "<child link='c'/><axis xyz='1 0 0'/>" + limit + "</joint></robot>");
+    const Eigen::MatrixXd q = robot.random_configurations(20, iksel_test::seed());
+    for (Eigen::Index i = 0; i < q.rows(); ++i) {
+      const JointVector at = q.row(i);
+      const Eigen::Matrix4d difference =
+          robot.fk(at).matrix() - robot.fk(at, Kinematics::kdl).matrix();
+      EXPECT_LT(difference.lpNorm<Eigen::Infinity>(), 1e-14) << axis;
+    }
+  }
+}
 
 TEST(RandomConfigurations, AreInsideTheLimitsAndRepeat) {
   const Robot robot = iksel_test::load(iksel_test::all_robots()[5]);  // with a continuous joint

@@ -25,13 +25,25 @@ Frame<double> to_frame(const Eigen::Isometry3d& T) {
   return f;
 }
 
-/// Rotation that takes z to the unit vector `axis`; the identity where it is z already.
+/// Rotation that takes z to the unit vector `axis`, by the least angle; the identity where it is z
+/// already. (Eigen's FromTwoVectors loses digits where the axis is nearly -z.)
 Eigen::Isometry3d turn_z_to(const Eigen::Vector3d& axis) {
+  const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  if ((axis - Eigen::Vector3d::UnitZ()).norm() > 0) {
-    T.linear() =
-        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis).toRotationMatrix();
+  if ((axis - z).norm() == 0) return T;
+  const Eigen::Vector3d to = axis.normalized();
+  if (to.z() < -0.5) {
+    // By way of -z, from where the rest of the angle is small.
+    const Eigen::Vector3d half_turn_about_x(1, -1, -1);
+    T = turn_z_to(half_turn_about_x.cwiseProduct(to));
+    T.linear() = half_turn_about_x.asDiagonal() * T.linear();
+    return T;
   }
+  // The unit quaternion (1 + z . to, z x to), up to its length.
+  const double length = std::sqrt((1 + to.z()) * 2);
+  const Eigen::Vector3d vector = z.cross(to) * (1 / length);
+  T.linear() =
+      Eigen::Quaterniond(length * 0.5, vector.x(), vector.y(), vector.z()).toRotationMatrix();
   return T;
 }
 

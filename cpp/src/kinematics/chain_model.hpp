@@ -11,6 +11,7 @@
 #include "iksel/robot.hpp"
 #include "kinematics/kdl_chain.hpp"
 #include "kinematics/kernel.hpp"
+#include "math/constants.hpp"
 #include "urdf/chain_spec.hpp"
 
 namespace iksel {
@@ -63,6 +64,13 @@ class ChainModel {
   void measure_reach();
   [[nodiscard]] std::uint64_t compute_hash() const;
 };
+
+/// True where a whole turn of the joint leads to the same pose, and may lie inside the limits: a
+/// range of 2 pi or more.
+inline bool has_whole_turns(const ChainModel& model, int joint) {
+  return model.joint_types[static_cast<std::size_t>(joint)] != JointType::prismatic &&
+         !(model.upper[joint] - model.lower[joint] < kTwoPi);
+}
 
 /// Frame of the kernel as a pose.
 Pose to_pose(const Frame<double>& frame);

@@ -34,6 +34,13 @@ class TruncatedSvd {
   Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1> inverse_sigma_;
 };
 
+/// Singular values, largest first.
+Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1> singular_values(
+    const JacobianMatrix& J);
+
+/// A^-1 b for a symmetric A.
+Vector6 solve_symmetric(const Matrix6& A, const Vector6& b);
+
 /// J^T (J J^T + lambda I)^-1.
 PseudoInverse damped_inverse(const JacobianMatrix& J, double lambda);
 

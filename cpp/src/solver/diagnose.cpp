@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Why not: questions asked one after the other with more work and fewer demands.
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -8,6 +7,7 @@
 
 #include "error_check.hpp"
 #include "math/constants.hpp"
+#include "math/pseudo_inverse.hpp"
 #include "message_text.hpp"
 #include "solver/best_effort.hpp"
 #include "solver/solver_impl.hpp"
@@ -47,12 +47,12 @@ Task position_of(Task task) {
 }
 
 /// Smallest and largest singular value of the Jacobian.
-std::pair<double, double> singular_values(const ChainModel& model, const JointVector& q) {
+std::pair<double, double> extreme_singular_values(const ChainModel& model, const JointVector& q) {
   Pose pose;
   Jacobian J;
   model.fk_jacobian(q.data(), pose, J);
-  const Eigen::JacobiSVD<JacobianMatrix> svd{JacobianMatrix(J)};
-  return {svd.singularValues().minCoeff(), svd.singularValues().maxCoeff()};
+  const auto sigma = singular_values(JacobianMatrix(J));
+  return {sigma.minCoeff(), sigma.maxCoeff()};
 }
 
 /// How far each joint lies outside its limits, at the nearest turn.
@@ -260,7 +260,7 @@ class Solver::Impl::Inquiry {
   /// Puts q into the diagnosis; true if it is close to a singularity.
   bool describe(const JointVector& q) {
     solver_.describe(task_, T_base_tip_, q, out_);
-    const auto [least, most] = singular_values(model_, q);
+    const auto [least, most] = extreme_singular_values(model_, q);
     return least < kNearlySingular * most;
   }
 
@@ -280,7 +280,7 @@ void Solver::Impl::describe(const TaskSpace& of_call, const Pose& target, const 
                             Diagnosis& out) const {
   out.q = q;
   measure(of_call, target, q, out.position_error, out.rotation_error);
-  out.least_singular_value = singular_values(robot.model(), q).first;
+  out.least_singular_value = extreme_singular_values(robot.model(), q).first;
 }
 
 Diagnosis Solver::Impl::diagnose(const Pose& T_base_tip, const SolveRequest& request) const {

@@ -6,15 +6,9 @@
 #include <cmath>
 
 #include "iksel/request.hpp"
-#include "iteration/schemes.hpp"
 #include "kinematics/chain_model.hpp"
 
 namespace iksel {
-
-/// True where a whole turn of the joint leads to the same pose, and may lie inside the limits.
-inline bool has_whole_turns(const ChainModel& model, int joint) {
-  return !limits_count(model, joint);
-}
 
 /// The norm and weights of a request.
 class JointMove {

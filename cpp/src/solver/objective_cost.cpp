@@ -59,9 +59,14 @@ double manipulability(const ChainModel& model, const JointVector& q) {
   Pose pose;
   Jacobian J;
   model.fk_jacobian(q.data(), pose, J);
-  const double determinant = model.dof < 6 ? Eigen::MatrixXd(J.transpose() * J).determinant()
-                                           : Matrix6(J * J.transpose()).determinant();
-  return std::sqrt(std::max(determinant, 0.0));
+  // With fewer joints than six, of J^T J, filled up by the identity.
+  Matrix6 gram = Matrix6::Identity();
+  if (model.dof < 6) {
+    gram.topLeftCorner(model.dof, model.dof) = J.transpose() * J;
+  } else {
+    gram = J * J.transpose();
+  }
+  return std::sqrt(std::max(gram.determinant(), 0.0));
 }
 
 double ObjectiveCost::of_posture(const JointVector& q, JointVector* gradient,

@@ -56,7 +56,7 @@ class SlideStep {
     const JacobianMatrix weighted = rows * inverse.asDiagonal();
     Matrix6 A = weighted * rows.transpose();
     A.diagonal().array() += 1e-12 * std::max(A.trace(), 1e-12);
-    y = A.ldlt().solve(weighted * slope);
+    y = solve_symmetric(A, weighted * slope);
     return inverse.cwiseProduct(rows.transpose() * y - slope);
   }
 

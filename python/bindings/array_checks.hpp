@@ -15,6 +15,7 @@
 
 #include "iksel/error.hpp"
 #include "iksel/types.hpp"
+#include "progress.hpp"
 #include "python_types.hpp"
 
 namespace iksel::python {
@@ -104,11 +105,12 @@ inline JointVector as_joints(py::handle value, int dof, const char* name) {
   return Eigen::Map<const Eigen::VectorXd>(array.data(), dof);
 }
 
-/// Applies `function(const JointVector&, double* out)` to a (dof,) array, giving an array of shape
-/// `item`, or to every row of an (N, dof) array, giving (N, *item) with the GIL released.
-template <class Function>
-py::array_t<double> map_joints(py::handle value, int dof, const char* name,
-                               const std::vector<py::ssize_t>& item, const Function& function) {
+/// Applies `function(const JointVector&, T* out)` to a (dof,) array, giving an array of shape
+/// `item`, or to every row of an (N, dof) array, giving (N, *item) with the GIL released; Ctrl-C
+/// ends it.
+template <class T = double, class Function>
+py::array_t<T> map_joints(py::handle value, int dof, const char* name,
+                          const std::vector<py::ssize_t>& item, const Function& function) {
   const DoubleArray array = as_doubles(value, name);
   const bool single = array.ndim() == 1;
   if ((!single && array.ndim() != 2) || array.shape(array.ndim() - 1) != dof) {
@@ -118,7 +120,7 @@ py::array_t<double> map_joints(py::handle value, int dof, const char* name,
   const double* in = array.data();
   if (single) {
     check_finite(in, dof, name);
-    py::array_t<double> out(item);
+    py::array_t<T> out(item);
     function(JointVector(Eigen::Map<const Eigen::VectorXd>(in, dof)), out.mutable_data());
     return out;
   }
@@ -130,12 +132,14 @@ py::array_t<double> map_joints(py::handle value, int dof, const char* name,
     shape.push_back(extent);
     item_size *= extent;
   }
-  py::array_t<double> out(shape);
-  double* to = out.mutable_data();
+  py::array_t<T> out(shape);
+  T* to = out.mutable_data();
   {
     const py::gil_scoped_release release;
     JointVector q(dof);
+    InterruptCheck check_interrupt;
     for (py::ssize_t row = 0; row < rows; ++row, in += dof, to += item_size) {
+      check_interrupt();
       if (!Eigen::Map<const Eigen::VectorXd>(in, dof).allFinite()) {
         check_finite(in, dof, std::string(name) + "[" + std::to_string(row) + "]");
       }

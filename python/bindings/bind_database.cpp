@@ -18,8 +18,10 @@ namespace iksel::python {
 
 namespace {
 
-Database build(const Robot& robot, const DatabaseOptions& options,
+Database build(const Loose<Robot>& given_robot, const Loose<DatabaseOptions>& given_options,
                const std::optional<ProgressCallable>& progress) {
+  const auto robot = from_python<Robot>(given_robot, "robot");
+  const auto options = from_python<DatabaseOptions>(given_options, "options");
   const Progress report = make_progress(progress);
   const py::gil_scoped_release release;
   return Database::build(robot, options, report);

@@ -7,15 +7,52 @@
 
 #include "array_checks.hpp"
 #include "bindings.hpp"
+#include "pickle.hpp"
 #include "py_result.hpp"
 
 namespace iksel::python {
 
+namespace {
+
+py::object diagnosis_state(const Diagnosis& self) {
+  return py::make_tuple(enum_name(self.cause), self.message, self.beyond_reach, self.rotation_gap,
+                        self.joint, self.limit_violation, self.refused, self.least_singular_value,
+                        to_array(self.q), self.position_error, self.rotation_error,
+                        self.q_is_solution);
+}
+
+Diagnosis diagnosis_from_state(const py::object& state) {
+  PickleState in(state, "Diagnosis", 12);
+  constexpr bool kMayBeNan = true;
+  Diagnosis out;
+  out.cause = in.value<Cause>("cause");
+  out.message = in.value<std::string>("message");
+  out.beyond_reach = in.length("beyond_reach", kMayBeNan);
+  out.rotation_gap = in.length("rotation_gap", kMayBeNan);
+  out.joint = in.index<int>("joint", kMaxDof);
+  out.limit_violation = in.length("limit_violation", kMayBeNan);
+  out.refused = in.count("refused");
+  out.least_singular_value = in.length("least_singular_value", kMayBeNan);
+  out.q = in.joints("q");
+  out.position_error = in.length("position_error", kMayBeNan);
+  out.rotation_error = in.length("rotation_error", kMayBeNan);
+  out.q_is_solution = in.value<bool>("q_is_solution");
+  if (out.joint >= out.q.size()) in.refuse("joint", "one of q's", std::to_string(out.joint));
+  if (out.q_is_solution && (out.q.size() == 0 || !(out.position_error >= 0))) {
+    in.refuse("q_is_solution", "False without joint values and errors", "True");
+  }
+  return out;
+}
+
+}  // namespace
+
 void bind_diagnosis(py::module_& m) {
   using D = Diagnosis;
   bind_enum<Cause>(m);
-  py::class_<D> cls(m, "Diagnosis",
-                    "What Solver.diagnose found. Numbers that do not belong to the cause are NaN.");
+  py::class_<D> cls(
+      m, "Diagnosis",
+      "What Solver.diagnose found; true if q_is_solution. Numbers that do not belong to the "
+      "cause are NaN.");
   cls.def_readonly("cause", &D::cause, "Why there is no answer; `none` if there is one.");
   cls.def_readonly("message", &D::message, "What is wrong and what to do about it, in a sentence.");
   cls.def_readonly("beyond_reach", &D::beyond_reach,
@@ -44,6 +81,8 @@ void bind_diagnosis(py::module_& m) {
   cls.def_readonly("q_is_solution", &D::q_is_solution,
                    "Whether q is an answer: within the tolerances, inside the limits, passed by "
                    "the filter.");
+  cls.def("__bool__", [](const D& self) { return self.q_is_solution; });
+  cls.def(py::pickle(&diagnosis_state, &diagnosis_from_state));
   cls.def("__repr__", [](const D& self) {
     return std::string("Diagnosis(") + enum_name(self.cause) + ": " + self.message + ")";
   });

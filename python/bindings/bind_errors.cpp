@@ -5,6 +5,7 @@
 
 #include "bindings.hpp"
 #include "iksel/error.hpp"
+#include "signature.hpp"
 
 namespace iksel::python {
 
@@ -61,10 +62,13 @@ void bind_errors(py::module_& m) {
   bind_available<UnknownNameError>(bind_error<UnknownNameError>(
       m, "UnknownNameError", urdf,
       "A link or joint name that the URDF does not have; `available` has those it has."));
-  bind_error<InvalidArgumentError>(
+  const auto invalid = bind_error<InvalidArgumentError>(
       m, "InvalidArgumentError", py::make_tuple(error, py::handle(PyExc_ValueError)),
       "An argument of the wrong type, shape or value: a pose that is not rigid, a non-finite "
       "number, an option out of range.");
+  bind_error<SignatureError>(
+      m, "SignatureError", py::make_tuple(invalid, py::handle(PyExc_TypeError)),
+      "A call that does not fit: an unknown keyword, a missing argument, one of another class.");
   const auto database = bind_error<DatabaseError>(
       m, "DatabaseError", error, "A database that cannot be built, read, written or trusted.");
   bind_error<DatabaseIoError>(m, "DatabaseIoError", database,

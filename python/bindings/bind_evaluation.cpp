@@ -50,9 +50,10 @@ struct FieldTable<Evaluation> {
 
 namespace {
 
-Evaluation evaluate_solver(const Solver& solver, const Loose<std::size_t>& targets,
+Evaluation evaluate_solver(const Loose<Solver>& given, const Loose<std::size_t>& targets,
                            const Loose<std::uint64_t>& seed, const Loose<bool>& stages,
                            const std::optional<ProgressCallable>& progress) {
+  const auto solver = from_python<Solver>(given, "solver");
   const auto count = from_python<std::size_t>(targets, "targets");
   const auto number = from_python<std::uint64_t>(seed, "seed");
   const auto with_stages = from_python<bool>(stages, "stages");
@@ -80,8 +81,13 @@ Args:
     progress: called now and then with (targets done, targets in all). What it raises ends the
         evaluation. Ctrl-C works.)");
   m.def(
-      "time_kdl_fk_jacobian", [](const Robot& robot) { return time_kdl_fk_jacobian(robot); },
-      py::arg("robot"), py::call_guard<py::gil_scoped_release>(),
+      "time_kdl_fk_jacobian",
+      [](const Loose<Robot>& given) {
+        const auto robot = from_python<Robot>(given, "robot");
+        const py::gil_scoped_release release;
+        return time_kdl_fk_jacobian(robot);
+      },
+      py::arg("robot"),
       "Mean time of one KDL FK plus one KDL Jacobian over random configurations [us].");
   m.def("simd_level", &simd_level,
         R"(The instruction set whose lanes solve on this machine.

@@ -7,6 +7,7 @@
 
 #include "bindings.hpp"
 #include "iksel/link_tree.hpp"
+#include "pickle.hpp"
 #include "urdf_source.hpp"
 
 namespace iksel::python {
@@ -23,6 +24,46 @@ std::string tree_repr(const LinkTree& self) {
          " tips)";
 }
 
+py::object joint_state(const LinkTreeJoint& self) {
+  return py::make_tuple(self.name, self.type, self.parent_link, self.child_link);
+}
+
+LinkTreeJoint joint_from_state(const py::object& state) {
+  PickleState in(state, "LinkTreeJoint", 4);
+  LinkTreeJoint joint;
+  joint.name = in.value<std::string>("name");
+  joint.type = in.value<std::string>("type");
+  joint.parent_link = in.value<std::string>("parent_link");
+  joint.child_link = in.value<std::string>("child_link");
+  return joint;
+}
+
+/// Joint after joint, each leading to the next link.
+py::object tree_state(const LinkTree& self) {
+  py::list joints;
+  for (const LinkTreeJoint& joint : self.joints) joints.append(joint_state(joint));
+  py::list tips;
+  for (const auto& [link, moving] : self.tips) tips.append(py::make_tuple(link, moving));
+  return py::make_tuple(self.robot_name, self.links.front(), joints, tips);
+}
+
+LinkTree tree_from_state(const py::object& state) {
+  PickleState in(state, "LinkTree", 4);
+  LinkTree tree;
+  tree.robot_name = in.value<std::string>("robot_name");
+  tree.links = {in.value<std::string>("root")};
+  for (const py::handle joint : in.list("joints")) {
+    tree.joints.push_back(joint_from_state(py::reinterpret_borrow<py::object>(joint)));
+    tree.links.push_back(tree.joints.back().child_link);
+  }
+  for (const py::handle tip : in.list("tips")) {
+    PickleState of_tip(py::reinterpret_borrow<py::object>(tip), "LinkTree, tip", 2);
+    const auto link = of_tip.value<std::string>("link");
+    tree.tips.push_back({link, of_tip.count("moving joints")});
+  }
+  return tree;
+}
+
 }  // namespace
 
 void bind_link_tree(py::module_& m) {
@@ -31,6 +72,7 @@ void bind_link_tree(py::module_& m) {
       .def_readonly("type", &LinkTreeJoint::type, "'revolute', 'fixed', ...")
       .def_readonly("parent_link", &LinkTreeJoint::parent_link, "The link that it is on.")
       .def_readonly("child_link", &LinkTreeJoint::child_link, "The link that it carries.")
+      .def(py::pickle(&joint_state, &joint_from_state))
       .def("__repr__", [](const LinkTreeJoint& self) {
         return "LinkTreeJoint('" + self.name + "', " + self.type + ", '" + self.parent_link +
                "' -> '" + self.child_link + "')";
@@ -58,7 +100,8 @@ Raises:
           },
           "The links without children, each with the number of joints that move it.")
       .def("__str__", &LinkTree::draw)
-      .def("__repr__", &tree_repr);
+      .def("__repr__", &tree_repr)
+      .def(py::pickle(&tree_state, &tree_from_state));
 }
 
 }  // namespace iksel::python

@@ -8,12 +8,29 @@
 
 #include "bindings.hpp"
 #include "objective.hpp"
+#include "pickle.hpp"
+
+namespace iksel::python {
+
+/// Checked by make_custom_objective.
+class CostCallable : public py::object {
+  PYBIND11_OBJECT_DEFAULT(CostCallable, object, is_any_object)
+};
+
+}  // namespace iksel::python
+
+// NOLINTBEGIN(readability-identifier-naming): pybind11 looks for `name`.
+namespace pybind11::detail {
+template <>
+struct handle_type_name<iksel::python::CostCallable> {
+  static constexpr auto name = handle_type_name<typing::Callable<object(array_t<double>)>>::name;
+};
+}  // namespace pybind11::detail
+// NOLINTEND(readability-identifier-naming)
 
 namespace iksel::python {
 
 namespace {
-
-using CostCallable = py::typing::Callable<py::object(py::array_t<double>)>;
 
 JointVector as_any_joints(const ArrayLike& value, const char* name) {
   const DoubleArray array = as_doubles(value, name);
@@ -21,6 +38,40 @@ JointVector as_any_joints(const ArrayLike& value, const char* name) {
     throw_wrong_shape(name, "a (dof,) array", array);
   }
   return as_joints(array, static_cast<int>(array.shape(0)), name);
+}
+
+/// The callable in a std::function that came from Python; None if it is empty.
+template <class Held, class Function>
+py::object callable_of(const Function& function) {
+  const auto* held = function.template target<Held>();
+  return held == nullptr ? py::none() : *held->callable;
+}
+
+py::object objective_state(const Objective& self) {
+  return py::make_tuple(enum_name(self.kind), to_array(self.posture), to_array(self.weights),
+                        callable_of<PyCost>(self.cost), callable_of<PyGradient>(self.gradient));
+}
+
+Objective objective_from_state(const py::object& state) {
+  PickleState in(state, "Objective", 5);
+  const auto kind = in.value<Objective::Kind>("kind");
+  const JointVector posture = in.joints("posture");
+  const JointVector weights = in.joints("weights");
+  const py::object cost = in.object();
+  const py::object gradient = in.object();
+  switch (kind) {
+    case Objective::Kind::none:
+      return {};
+    case Objective::Kind::posture:
+      return Objective::near_posture(posture, weights);
+    case Objective::Kind::limits:
+      return Objective::far_from_limits();
+    case Objective::Kind::manipulability:
+      return Objective::most_manipulable();
+    case Objective::Kind::custom:
+      break;
+  }
+  return make_custom_objective(cost, gradient);
 }
 
 }  // namespace
@@ -59,6 +110,7 @@ void bind_objective(py::module_& m) {
       "without one, central differences of the cost.");
   cls.def_property_readonly(
       "kind", [](const Objective& self) { return self.kind; }, "What it counts.");
+  cls.def(py::pickle(&objective_state, &objective_from_state));
   cls.def("__repr__", [](const Objective& self) {
     return std::string("Objective(") + enum_name(self.kind) + ")";
   });

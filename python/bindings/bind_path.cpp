@@ -10,7 +10,9 @@
 #include "array_checks.hpp"
 #include "bindings.hpp"
 #include "filter.hpp"
+#include "html.hpp"
 #include "iksel/path.hpp"
+#include "pickle.hpp"
 #include "progress.hpp"
 #include "py_result.hpp"
 #include "python_types.hpp"
@@ -67,8 +69,39 @@ PyPath solve_path(const Solver& self, const ArrayLike& poses, const std::optiona
   return {self.solve_path(targets, options), dof};
 }
 
+py::object path_state(const PyPath& self) {
+  const PathResult& p = self.path;
+  return py::make_tuple(enum_name(p.status), self.q(), p.broken, p.largest_step,
+                        p.largest_step_joint, p.largest_step_waypoint, p.move);
+}
+
+PyPath path_from_state(const py::object& state) {
+  PickleState in(state, "PathResult", 7);
+  PyPath out;
+  PathResult& path = out.path;
+  path.status = in.value<Status>("status");
+  const auto q = in.rows("q");
+  const py::ssize_t n = q.shape(0);
+  out.dof = static_cast<int>(q.shape(1));
+  for (py::ssize_t i = 0; i < n; ++i) {
+    check_finite(q.data(i), out.dof, "pickled PathResult, q[" + std::to_string(i) + "]");
+    path.q.emplace_back(Eigen::Map<const Eigen::VectorXd>(q.data(i), out.dof));
+  }
+  // A broken path has the waypoints before the break.
+  path.broken = in.index<std::ptrdiff_t>("broken", n + 1);
+  if (path.broken != (path.success() ? -1 : n)) {
+    in.refuse("broken", "the number of waypoints unless solved", std::to_string(path.broken));
+  }
+  path.largest_step = in.length("largest_step", /*may_be_nan=*/false);
+  path.largest_step_joint = in.index<int>("largest_step_joint", out.dof);
+  path.largest_step_waypoint = in.index<std::ptrdiff_t>("largest_step_waypoint", n);
+  path.move = in.length("move", /*may_be_nan=*/false);
+  return out;
+}
+
 void bind_path_result(py::module_& m) {
-  py::class_<PyPath> cls(m, "PathResult", "Joint values along a path.");
+  py::class_<PyPath> cls(m, "PathResult",
+                         "Joint values along a path; true if there are any for every waypoint.");
   cls.def_property_readonly(
       "success", [](const PyPath& self) { return self.path.success(); },
       "Whether there is a configuration for every waypoint.");
@@ -95,6 +128,8 @@ void bind_path_result(py::module_& m) {
       "Index of the waypoint where that step ends; None if there is no step.");
   cls.def_property_readonly(
       "move", [](const PyPath& self) { return self.path.move; }, "Sum of the joint moves.");
+  cls.def("__bool__", [](const PyPath& self) { return self.path.success(); });
+  cls.def(py::pickle(&path_state, &path_from_state));
   cls.def("__repr__", [](const PyPath& self) {
     return std::string("PathResult(") + enum_name(self.path.status) + ", " +
            std::to_string(self.path.q.size()) + " waypoints" +
@@ -132,7 +167,8 @@ Raises:
       m, "Tracker",
       "Follows a stream of poses: each answer continues from the last, within the velocity limits. "
       "Not to be used from two threads at once.");
-  tracker.def(py::init([](const Solver& solver, const ArrayLike& start) {
+  tracker.def(py::init([](const Loose<Solver>& given, const ArrayLike& start) {
+                const auto solver = from_python<Solver>(given, "solver");
                 return Tracker(solver, as_joints(start, solver.robot().dof(), "start"));
               }),
               py::arg("solver"), py::arg("start"),
@@ -165,6 +201,20 @@ Raises:
   tracker.def_property_readonly(
       "q", [](const Tracker& self) { return to_array(self.q()); },
       "Where the arm is now, (dof,) [rad or m]; always inside the limits.");
+  tracker.def("__repr__", [](const Tracker& self) {
+    const JointVector& q = self.q();
+    return "Tracker(" + py::cast<std::string>(py::repr(py::cast(self.solver().robot()))) +
+           ", q=" + short_numbers(q.data(), static_cast<std::size_t>(q.size())) + ")";
+  });
+  tracker.def(py::pickle(
+      [](const Tracker& self) -> py::object {
+        return py::make_tuple(self.solver(), to_array(self.q()));
+      },
+      [](const py::object& state) {
+        PickleState in(state, "Tracker", 2);
+        const auto solver = in.value<Solver>("solver");
+        return Tracker(solver, as_joints(in.object(), solver.robot().dof(), "pickled Tracker, q"));
+      }));
   cls.def(
       "tracker",
       [](const Solver& self, const ArrayLike& start) {

@@ -10,8 +10,11 @@
 #include "array_checks.hpp"
 #include "bindings.hpp"
 #include "filter.hpp"
+#include "html.hpp"
 #include "iksel/diagnosis.hpp"
 #include "iksel/solver.hpp"
+#include "pickle.hpp"
+#include "py_batch.hpp"
 #include "py_request.hpp"
 #include "py_result.hpp"
 #include "python_types.hpp"
@@ -45,13 +48,8 @@ struct PySolutions {
     return array;
   }
 
-  [[nodiscard]] PyResult row(const Loose<py::ssize_t>& index) const {
-    auto i = from_python<py::ssize_t>(index, "i");
-    if (i < 0) i += size();
-    if (i < 0 || i >= size()) {
-      throw py::index_error("solution " + std::to_string(i) + " of " + std::to_string(size()));
-    }
-    return {solutions.all[static_cast<std::size_t>(i)], {}};
+  [[nodiscard]] PyResult row(const RowIndex& index) const {
+    return {solutions.all[static_cast<std::size_t>(as_row(index, size(), "solution"))], {}};
   }
 };
 
@@ -106,10 +104,81 @@ Diagnosis diagnose(const Solver& self, const ArrayLike& pose,
   return self.diagnose(target, request);
 }
 
+py::object solutions_state(const PySolutions& self) {
+  const Solutions& s = self.solutions;
+  return py::make_tuple(enum_name(s.status), self.q(), self.column(&Result::position_error),
+                        self.column(&Result::rotation_error), self.column(&Result::move),
+                        self.column(&Result::cost), s.attempts, s.iterations);
+}
+
+PySolutions solutions_from_state(const py::object& state) {
+  PickleState in(state, "Solutions", 8);
+  Solutions out;
+  out.status = in.value<Status>("status");
+  const auto q = in.rows("q");
+  const py::ssize_t n = q.shape(0);
+  const int dof = static_cast<int>(q.shape(1));
+  if (out.success() != (n > 0)) in.refuse("q", "solutions where solved, and only there", "others");
+  const auto position_error = in.column<double>("position_error", n);
+  const auto rotation_error = in.column<double>("rotation_error", n);
+  const auto move = in.column<double>("move", n);
+  const auto cost = in.column<double>("cost", n);
+  out.attempts = in.count("attempts");
+  out.iterations = in.count("iterations");
+  for (py::ssize_t i = 0; i < n; ++i) {
+    check_finite(q.data(i), dof, "pickled Solutions, q[" + std::to_string(i) + "]");
+    if (!(position_error.at(i) >= 0 && rotation_error.at(i) >= 0)) {
+      in.refuse("errors", "0 or more", "others");
+    }
+    Result& r = out.all.emplace_back();
+    r.status = Status::solved;
+    r.q = Eigen::Map<const Eigen::VectorXd>(q.data(i), dof);
+    r.position_error = position_error.at(i);
+    r.rotation_error = rotation_error.at(i);
+    r.move = move.at(i);
+    r.cost = cost.at(i);
+    r.attempts = out.attempts;
+    r.iterations = out.iterations;
+  }
+  return {out, dof};
+}
+
+std::string solutions_repr(const PySolutions& self) {
+  const auto& all = self.solutions.all;
+  std::string best;
+  if (!all.empty()) {
+    const JointVector& q = all.front().q;
+    best = ", best q=" + short_numbers(q.data(), static_cast<std::size_t>(q.size()));
+  }
+  return std::string("Solutions(") + enum_name(self.solutions.status) + ", " +
+         std::to_string(all.size()) + " solutions" + best + ")";
+}
+
+std::string solutions_html(const PySolutions& self) {
+  const auto& all = self.solutions.all;
+  std::vector<std::string> header = {""};
+  for (int i = 0; i < self.dof; ++i) header.push_back("q[" + std::to_string(i) + "]");
+  header.insert(header.end(), {"position error [m]", "rotation error [rad]", "move"});
+  HtmlTable table(std::to_string(all.size()) + " solutions, " + enum_name(self.solutions.status),
+                  header);
+  const std::size_t shown = std::min(all.size(), HtmlTable::kMostRows);
+  for (std::size_t i = 0; i < shown; ++i) {
+    std::vector<std::string> cells = {std::to_string(i)};
+    for (const double q : all[i].q) cells.push_back(short_number(q));
+    for (const double x : {all[i].position_error, all[i].rotation_error, all[i].move}) {
+      cells.push_back(short_number(x, 3));
+    }
+    table.add_row(cells);
+  }
+  table.add_rest(all.size() - shown);
+  return table.text();
+}
+
 void bind_solutions(py::module_& m) {
   using S = PySolutions;
   py::class_<S> cls(m, "Solutions",
-                    "The distinct solutions for one target, best first. Indexing gives a Result.");
+                    "The distinct solutions for one target, best first; true if there are any. "
+                    "Indexing gives a Result.");
   cls.def_property_readonly(
       "success", [](const S& self) { return self.solutions.success(); },
       "Whether there is at least one.");
@@ -133,13 +202,11 @@ void bind_solutions(py::module_& m) {
       "Iteration steps over all attempts.");
   cls.def("__len__", &S::size);
   cls.def("__getitem__", &S::row, py::arg("i"));
-  cls.def("__iter__", [](const py::object& self) {
-    return py::reinterpret_steal<py::typing::Iterator<PyResult>>(PySeqIter_New(self.ptr()));
-  });
-  cls.def("__repr__", [](const S& self) {
-    return std::string("Solutions(") + enum_name(self.solutions.status) + ", " +
-           std::to_string(self.size()) + " solutions)";
-  });
+  cls.def("__iter__", &iterate_rows);
+  cls.def("__bool__", [](const S& self) { return self.solutions.success(); });
+  cls.def("__repr__", &solutions_repr);
+  cls.def("_repr_html_", &solutions_html);
+  cls.def(py::pickle(&solutions_state, &solutions_from_state));
 }
 
 }  // namespace

@@ -5,14 +5,36 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <random>
 #include <string>
 #include <utility>
 
 #include "array_checks.hpp"
 #include "bindings.hpp"
 #include "enums.hpp"
+#include "html.hpp"
 #include "iksel/robot.hpp"
+#include "pickle.hpp"
 #include "urdf_source.hpp"
+
+namespace iksel::python {
+
+/// A truth value for one configuration, an array of them for many.
+class BoolOrArray : public py::object {
+  PYBIND11_OBJECT_DEFAULT(BoolOrArray, object, is_any_object)
+};
+
+}  // namespace iksel::python
+
+// NOLINTBEGIN(readability-identifier-naming): pybind11 looks for `name`.
+namespace pybind11::detail {
+template <>
+struct handle_type_name<iksel::python::BoolOrArray> {
+  // Which of the two, the types of arrays do not tell.
+  static constexpr auto name = const_name("bool | typing.Any");
+};
+}  // namespace pybind11::detail
+// NOLINTEND(readability-identifier-naming)
 
 namespace iksel::python {
 
@@ -49,7 +71,9 @@ py::array_t<double> pose_errors(const DoubleArray& targets, const DoubleArray& p
   const py::gil_scoped_release release;
   Pose a;
   Pose b;
+  InterruptCheck check_interrupt;
   for (py::ssize_t row = 0; row < rows; ++row, target += 16, pose += 16, to += 6) {
+    check_interrupt();
     a.matrix() = Eigen::Map<const RowMajorPose>(target);
     b.matrix() = Eigen::Map<const RowMajorPose>(pose);
     check_pose(a, ("target[" + std::to_string(row) + "]").c_str());
@@ -65,6 +89,12 @@ std::pair<double, double> as_limits(const ArrayLike& value, const char* name) {
     throw_wrong_shape(name, "two numbers, (lower, upper)", array);
   }
   return {array.at(0), array.at(1)};
+}
+
+/// From the system's source of randomness.
+std::uint64_t fresh_seed() {
+  std::random_device device;
+  return (std::uint64_t{device()} << 32) | device();
 }
 
 Robot from_urdf(const PathLike& path_or_xml, const std::optional<Loose<std::string>>& base_link,
@@ -106,21 +136,40 @@ std::string robot_repr(const Robot& self) {
          "', tip_link='" + self.tip_link() + "')";
 }
 
-py::tuple robot_state(const Robot& self) {
+py::object robot_state(const Robot& self) {
   const RobotOptions& options = self.options();
   return py::make_tuple(self.urdf(), options.base_link, options.tip_link, to_array(self.tcp()),
                         options.locked_joints, options.soft_limits, options.default_limits);
 }
 
-Robot robot_from_state(const py::tuple& state) {
+Robot robot_from_state(const py::object& state) {
+  PickleState in(state, "Robot", 7);
+  const std::string urdf = in.value<std::string>("urdf");
   RobotOptions options;
-  options.base_link = py::cast<std::string>(state[1]);
-  options.tip_link = py::cast<std::string>(state[2]);
-  options.tcp = as_pose(state[3], "tcp");
-  options.locked_joints = py::cast<std::map<std::string, double>>(state[4]);
-  options.soft_limits = py::cast<bool>(state[5]);
-  options.default_limits = py::cast<std::optional<std::pair<double, double>>>(state[6]);
-  return Robot::from_urdf_string(py::cast<std::string>(state[0]), options);
+  options.base_link = in.value<std::string>("base_link");
+  options.tip_link = in.value<std::string>("tip_link");
+  options.tcp = as_rigid_pose(ArrayLike(in.object()), "pickled Robot, tcp");
+  options.locked_joints = as_joint_values(JointValues(in.object()), "pickled Robot, locked_joints");
+  options.soft_limits = in.value<bool>("soft_limits");
+  const py::object limits = in.object();
+  if (!limits.is_none()) {
+    options.default_limits = as_limits(ArrayLike(limits), "pickled Robot, default_limits");
+  }
+  return Robot::from_urdf_string(urdf, options);
+}
+
+/// A table of the joints.
+std::string robot_html(const Robot& self) {
+  HtmlTable table(self.name() + ": " + self.base_link() + " to " + self.tip_link(),
+                  {"joint", "type", "lower", "upper", "velocity limit"});
+  for (int i = 0; i < self.dof(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const JointType type = self.joint_types()[k];
+    const std::string unit = type == JointType::prismatic ? " [m]" : " [rad]";
+    table.add_row({self.joint_names()[k], enum_name(type) + unit, short_number(self.lower()[i]),
+                   short_number(self.upper()[i]), short_number(self.velocity_limit()[i])});
+  }
+  return table.text();
 }
 
 /// A read-only property over one of the robot's joint vectors, without a copy.
@@ -227,9 +276,15 @@ Raises:
   cls.def(
       "within_limits",
       [](const Robot& self, const ArrayLike& q) {
-        return self.within_limits(as_joints(q, self.dof(), "q"));
+        const auto inside = map_joints<bool>(
+            q, self.dof(), "q", {},
+            [&](const JointVector& joints, bool* out) { *out = self.within_limits(joints); });
+        return BoolOrArray(inside.ndim() == 0 ? py::object(py::bool_(*inside.data()))
+                                              : py::object(inside));
       },
-      py::arg("q"), "Whether q, (dof,) [rad or m], lies inside the position limits.");
+      py::arg("q"),
+      "Whether q [rad or m], (dof,), lies inside the position limits; of (N, dof) values each, "
+      "(N,).");
   cls.def("fk", &fk, py::arg("q"), py::arg("kinematics") = kernel,
           R"(Forward kinematics: T_base_tip (of the TCP, if there is one).
 
@@ -280,14 +335,17 @@ Raises:
     InvalidArgumentError: wrong shape or dtype, a number that is not finite, damping below 0.)");
   cls.def(
       "random_configurations",
-      [](const Robot& self, const Loose<std::size_t>& n, const Loose<std::uint64_t>& seed) {
-        return to_array(self.random_configurations(from_python<std::size_t>(n, "n"),
-                                                   from_python<std::uint64_t>(seed, "seed")));
+      [](const Robot& self, const Loose<std::size_t>& n,
+         const std::optional<Loose<std::uint64_t>>& seed) {
+        const auto count = from_python<std::size_t>(n, "n");
+        return to_array(self.random_configurations(
+            count, seed ? from_python<std::uint64_t>(*seed, "seed") : fresh_seed()));
       },
-      py::arg("n"), py::arg("seed"),
+      py::arg("n"), py::arg("seed") = py::none(),
       "n configurations uniform inside the limits (continuous joints in [-pi, pi)), (n, dof). The "
-      "same seed gives the same numbers everywhere.");
+      "same seed gives the same numbers everywhere; None: other numbers in each call.");
   cls.def("__repr__", &robot_repr);
+  cls.def("_repr_html_", &robot_html);
   cls.def("__copy__", [](const Robot& self) { return self; });
   cls.def(
       "__deepcopy__", [](const Robot& self, const py::dict&) { return self; }, py::arg("memo"));

@@ -2,7 +2,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
-#include <cstdio>
+#include <array>
 #include <limits>
 #include <optional>
 #include <string>
@@ -15,7 +15,9 @@
 #include "filter.hpp"
 #include "iksel/solver.hpp"
 #include "option_fields.hpp"
+#include "pickle.hpp"
 #include "progress.hpp"
+#include "py_batch.hpp"
 #include "py_request.hpp"
 #include "py_result.hpp"
 
@@ -23,55 +25,32 @@ namespace iksel::python {
 
 namespace {
 
-/// The arrays of a batch.
-struct PyBatchResult {
-  py::array_t<double> q;
-  py::array_t<bool> success;
-  py::array_t<std::uint8_t> status;
-  py::array_t<double> position_error;
-  py::array_t<double> rotation_error;
-  py::array_t<std::int32_t> attempts;
-  py::array_t<std::int32_t> iterations;
-  py::array_t<double> move;
+template <class T>
+std::optional<T> from_optional(const std::optional<Loose<T>>& value, const char* name) {
+  if (!value) return std::nullopt;
+  return from_python<T>(*value, name);
+}
 
-  [[nodiscard]] py::ssize_t size() const { return status.shape(0); }
-
-  [[nodiscard]] py::ssize_t solved() const {
-    const bool* first = success.data();
-    return std::count(first, first + size(), true);
-  }
-
-  [[nodiscard]] PyResult row(const Loose<py::ssize_t>& index) const {
-    auto i = from_python<py::ssize_t>(index, "i");
-    if (i < 0) i += size();
-    if (i < 0 || i >= size()) {
-      throw py::index_error("row " + std::to_string(i) + " of " + std::to_string(size()));
-    }
-    PyResult out;
-    out.result.status = static_cast<Status>(status.at(i));
-    if (out.result.success()) {
-      out.result.q = Eigen::Map<const Eigen::VectorXd>(q.data(i), q.shape(1));
-    }
-    out.result.position_error = position_error.at(i);
-    out.result.rotation_error = rotation_error.at(i);
-    out.result.attempts = attempts.at(i);
-    out.result.iterations = iterations.at(i);
-    out.result.move = move.at(i);
-    return out;
-  }
-};
-
-Solver make_solver(const Robot& robot, const std::optional<SolverOptions>& given,
-                   const std::optional<Database>& database, const std::optional<Robot>& nominal,
-                   const std::optional<std::pair<double, double>>& max_drift) {
-  const SolverOptions options = given.value_or(SolverOptions{});
+Solver make_solver(const Loose<Robot>& given_robot,
+                   const std::optional<Loose<SolverOptions>>& given,
+                   const std::optional<Loose<Database>>& given_database,
+                   const std::optional<Loose<Robot>>& given_nominal,
+                   const std::optional<Loose<std::array<double, 2>>>& max_drift) {
+  const auto robot = from_python<Robot>(given_robot, "robot");
+  const auto options = given ? from_python<SolverOptions>(*given, "options") : SolverOptions{};
   options.validate();
+  const auto database = from_optional<Database>(given_database, "database");
+  const auto nominal = from_optional<Robot>(given_nominal, "nominal");
+  Drift bound = Solver::kMostDrift;
+  if (max_drift) {
+    const auto [position, rotation] = from_python<std::array<double, 2>>(*max_drift, "max_drift");
+    bound = {position, rotation};
+  }
   // Built here and not by Solver, so that Ctrl-C ends a long build.
   const std::optional<ProgressCallable> no_callable;
   const Progress interruptible = make_progress(no_callable);
   const py::gil_scoped_release release;
   if (nominal) {
-    const Drift bound = max_drift ? Drift{max_drift->first, max_drift->second} : Solver::kMostDrift;
     return Solver(robot, options,
                   database ? *database : Database::build(*nominal, options.database, interruptible),
                   *nominal, bound);
@@ -147,130 +126,27 @@ PyBatchResult solve_batch(const Solver& self, const ArrayLike& poses, const Loos
   return out;
 }
 
-std::string scientific(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
+py::object solver_state(const Solver& self) {
+  return py::make_tuple(self.robot(), self.options(), self.database(), self.nominal());
 }
 
-std::string result_repr(const PyResult& self) {
-  const Result& r = self.result;
-  return std::string("Result(") + enum_name(r.status) +
-         ", position_error=" + scientific(r.position_error) +
-         ", rotation_error=" + scientific(r.rotation_error) +
-         ", attempts=" + std::to_string(r.attempts) +
-         ", iterations=" + std::to_string(r.iterations) + ")";
-}
-
-void bind_result(py::module_& m) {
-  py::class_<PyResult> cls(m, "Result",
-                           "Answer to one target. Everything in it is measured on the returned q.");
-  cls.def_property_readonly(
-      "success", [](const PyResult& self) { return self.result.success(); },
-      "Whether q reaches the target within both tolerances and lies inside the limits.");
-  cls.def_property_readonly(
-      "status", [](const PyResult& self) { return self.result.status; }, "Why the solve ended.");
-  cls.def_property_readonly("q", &PyResult::joints,
-                            "Joint values [rad or m], (dof,); None unless solved.");
-  cls.def_property_readonly(
-      "position_error", [](const PyResult& self) { return self.result.position_error; },
-      "Distance to the target [m]; NaN unless solved.");
-  cls.def_property_readonly(
-      "rotation_error", [](const PyResult& self) { return self.result.rotation_error; },
-      "Length of the rotation vector to the target [rad]; NaN unless solved.");
-  cls.def_property_readonly(
-      "move", [](const PyResult& self) { return self.result.move; },
-      "Length of the move from `near`, by its norm and weights; NaN without one.");
-  cls.def_property_readonly(
-      "cost", [](const PyResult& self) { return self.result.cost; },
-      "Cost of q by the objective; NaN without one.");
-  cls.def_property_readonly(
-      "attempts", [](const PyResult& self) { return self.result.attempts; }, "Seeds tried.");
-  cls.def_property_readonly(
-      "iterations", [](const PyResult& self) { return self.result.iterations; },
-      "Iteration steps over all attempts.");
-  cls.def("__repr__", &result_repr);
-  cls.def(py::pickle(
-      [](PyResult& self) {
-        const Result& r = self.result;
-        return py::make_tuple(enum_name(r.status), self.joints(), r.position_error,
-                              r.rotation_error, r.attempts, r.iterations, r.move, r.cost);
-      },
-      [](const py::tuple& state) {
-        PyResult self;
-        self.result.status = from_python<Status>(state[0], "status");
-        self.q = state[1];
-        self.result.position_error = py::cast<double>(state[2]);
-        self.result.rotation_error = py::cast<double>(state[3]);
-        self.result.attempts = py::cast<int>(state[4]);
-        self.result.iterations = py::cast<int>(state[5]);
-        self.result.move = py::cast<double>(state[6]);
-        self.result.cost = py::cast<double>(state[7]);
-        return self;
-      }));
-}
-
-void bind_batch_result(py::module_& m) {
-  using B = PyBatchResult;
-  py::class_<B> cls(m, "BatchResult",
-                    "Answers to many targets as arrays; row i belongs to target i. Indexing gives "
-                    "a Result.");
-  cls.def_readonly("q", &B::q, "Joint values [rad or m], (N, dof); NaN where not solved.");
-  cls.def_readonly("success", &B::success, "Whether each target is solved, (N,).");
-  cls.def_readonly("status", &B::status, "Values of Status, (N,).");
-  cls.def_readonly("position_error", &B::position_error,
-                   "Distances to the targets [m], (N,); NaN where not solved.");
-  cls.def_readonly("rotation_error", &B::rotation_error,
-                   "Lengths of the rotation vectors to the targets [rad], (N,); NaN where not "
-                   "solved.");
-  cls.def_readonly("attempts", &B::attempts, "Seeds tried, (N,).");
-  cls.def_readonly("iterations", &B::iterations, "Iteration steps over all attempts, (N,).");
-  cls.def_readonly("move", &B::move,
-                   "Lengths of the moves from `near`, (N,); NaN where not solved or without one.");
-  cls.def_property_readonly("solved", &B::solved, "Number of targets solved.");
-  cls.def(
-      "statuses",
-      [](const B& self) {
-        std::vector<Status> statuses;
-        statuses.reserve(static_cast<std::size_t>(self.size()));
-        for (py::ssize_t i = 0; i < self.size(); ++i) {
-          statuses.push_back(static_cast<Status>(self.status.at(i)));
-        }
-        return statuses;
-      },
-      "`status` as members of Status.");
-  cls.def("__len__", &B::size);
-  cls.def("__getitem__", &B::row, py::arg("i"));
-  cls.def("__iter__", [](const py::object& self) {
-    return py::reinterpret_steal<py::typing::Iterator<PyResult>>(PySeqIter_New(self.ptr()));
-  });
-  cls.def("__repr__", [](const B& self) {
-    return "BatchResult(" + std::to_string(self.solved()) + " of " + std::to_string(self.size()) +
-           " solved)";
-  });
-  cls.def(py::pickle(
-      [](const B& self) {
-        return py::make_tuple(self.q, self.success, self.status, self.position_error,
-                              self.rotation_error, self.attempts, self.iterations, self.move);
-      },
-      [](const py::tuple& state) {
-        B self{
-            state[0].cast<py::array_t<double>>(),       state[1].cast<py::array_t<bool>>(),
-            state[2].cast<py::array_t<std::uint8_t>>(), state[3].cast<py::array_t<double>>(),
-            state[4].cast<py::array_t<double>>(),       state[5].cast<py::array_t<std::int32_t>>(),
-            state[6].cast<py::array_t<std::int32_t>>(), state[7].cast<py::array_t<double>>()};
-        return self;
-      }));
+Solver solver_from_state(const py::object& state) {
+  PickleState in(state, "Solver", 4);
+  const auto robot = in.value<Robot>("robot");
+  const auto options = in.value<SolverOptions>("options");
+  const auto database = in.value<Database>("database");
+  const auto nominal = in.value<Robot>("nominal");
+  if (nominal.chain_hash() == robot.chain_hash()) return Solver(robot, options, database);
+  // It was within its bound when it was made.
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  return Solver(robot, options, database, nominal, Drift{kAny, kAny});
 }
 
 }  // namespace
 
 void bind_solver(py::module_& m) {
-  bind_enum<Status>(m);
   bind_enum<MoveNorm>(m);
   bind_enum<SolutionOrder>(m);
-  bind_result(m);
-  bind_batch_result(m);
 
   py::class_<Solver> cls(m, "Solver",
                          "Solves inverse kinematics for one robot. Immutable, safe to use from "
@@ -358,20 +234,7 @@ Raises:
   cls.def("__copy__", [](const Solver& self) { return self; });
   cls.def(
       "__deepcopy__", [](const Solver& self, const py::dict&) { return self; }, py::arg("memo"));
-  cls.def(py::pickle(
-      [](const Solver& self) {
-        return py::make_tuple(self.robot(), self.options(), self.database(), self.nominal());
-      },
-      [](const py::tuple& state) {
-        const auto& robot = py::cast<const Robot&>(state[0]);
-        const auto& options = py::cast<const SolverOptions&>(state[1]);
-        const auto& database = py::cast<const Database&>(state[2]);
-        const auto& nominal = py::cast<const Robot&>(state[3]);
-        if (nominal.chain_hash() == robot.chain_hash()) return Solver(robot, options, database);
-        // It was within its bound when it was made.
-        constexpr double kAny = std::numeric_limits<double>::infinity();
-        return Solver(robot, options, database, nominal, Drift{kAny, kAny});
-      }));
+  cls.def(py::pickle(&solver_state, &solver_from_state));
 }
 
 }  // namespace iksel::python

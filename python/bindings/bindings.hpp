@@ -19,6 +19,7 @@ void bind_options(pybind11::module_& m);
 void bind_database(pybind11::module_& m);
 void bind_objective(pybind11::module_& m);
 void bind_diagnosis(pybind11::module_& m);
+void bind_result(pybind11::module_& m);
 void bind_solver(pybind11::module_& m);
 /// The methods of Solver that take wishes.
 void bind_requests(pybind11::module_& m, pybind11::class_<Solver>& solver);

@@ -287,6 +287,16 @@ void bind_enum(py::module_& m) {
   py::native_enum<E> binding(m, EnumTable<E>::kName, kBase, EnumTable<E>::kDoc);
   for (const auto& entry : EnumTable<E>::kValues) binding.value(entry.name, entry.value, entry.doc);
   binding.finalize();
+  // Else str() gives "Status.solved", or a number, by the version of Python.
+  const py::object cls = m.attr(EnumTable<E>::kName);
+  cls.attr("__str__") =
+      py::cpp_function([](const py::object& self) { return py::str(self.attr("name")); },
+                       py::name("__str__"), py::is_method(cls));
+  cls.attr("__format__") = py::cpp_function(
+      [](const py::object& self, const py::str& spec) {
+        return py::str(self.attr("name").attr("__format__")(spec));
+      },
+      py::name("__format__"), py::is_method(cls));
 }
 
 }  // namespace iksel::python

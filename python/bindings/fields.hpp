@@ -11,8 +11,10 @@
 #include <string>
 #include <tuple>
 #include <type_traits>
+#include <vector>
 
 #include "python_types.hpp"
+#include "signature.hpp"
 
 namespace iksel::python {
 
@@ -36,6 +38,12 @@ template <class T, class = void>
 struct HasFields : std::false_type {};
 template <class T>
 struct HasFields<T, std::void_t<decltype(FieldTable<T>::fields())>> : std::true_type {};
+
+template <class T, class = void>
+struct CanValidate : std::false_type {};
+template <class T>
+struct CanValidate<T, std::void_t<decltype(std::declval<const T&>().validate())>> : std::true_type {
+};
 
 template <class Struct, class Visitor>
 void for_each_field(const Visitor& visit) {
@@ -64,10 +72,9 @@ struct FromPython<std::array<double, N>> {
 };
 
 template <class Struct>
-std::string field_names() {
-  std::string names;
-  for_each_field<Struct>(
-      [&](const auto& f) { names += (names.empty() ? "" : ", ") + std::string(f.name); });
+std::vector<std::string> field_names() {
+  std::vector<std::string> names;
+  for_each_field<Struct>([&](const auto& f) { names.emplace_back(f.name); });
   return names;
 }
 
@@ -129,11 +136,20 @@ std::string to_repr(const Struct& values) {
   return std::string(FieldTable<Struct>::kName) + "(" + text + ")";
 }
 
-/// Sets the fields that `changes` names. Throws TypeError on a name that is none.
+template <class Struct>
+[[noreturn]] void throw_no_field(const std::string& name) {
+  const std::vector<std::string> names = field_names<Struct>();
+  std::string possible;
+  for (const std::string& each : names) possible += (possible.empty() ? "" : ", ") + each;
+  throw SignatureError(std::string(FieldTable<Struct>::kName) + ": no field '" + name + "'" +
+                       did_you_mean(name, names) + "; possible: " + possible);
+}
+
+/// Sets the fields that `changes` names. Throws SignatureError on a name that is none.
 template <class Struct>
 void assign(Struct& values, const py::dict& changes) {
   for (const auto& [key, value] : changes) {
-    if (!py::isinstance<py::str>(key)) throw py::type_error("field names are strings");
+    if (!py::isinstance<py::str>(key)) throw SignatureError("field names are strings");
     const auto name = py::cast<std::string>(key);
     bool known = false;
     for_each_field<Struct>([&, &value = value](const auto& f) {
@@ -142,10 +158,7 @@ void assign(Struct& values, const py::dict& changes) {
       using T = std::decay_t<decltype(values.*f.member)>;
       values.*f.member = from_python<T>(value, f.name);
     });
-    if (!known) {
-      throw py::type_error(std::string(FieldTable<Struct>::kName) + ": no field '" + name +
-                           "'; possible: " + field_names<Struct>());
-    }
+    if (!known) throw_no_field<Struct>(name);
   }
 }
 
@@ -199,7 +212,7 @@ std::string keyword_doc(const char* function, const char* result, bool show_defa
   });
   return std::string(function) + "(self: iksel_cpp." + FieldTable<Struct>::kName + ", *" +
          signature + ") -> " + result + "\n\n" + text + "\n\nArgs:" + arguments +
-         "\n\nRaises:\n    TypeError: a keyword that is no field.\n"
+         "\n\nRaises:\n    SignatureError: a keyword that is no field.\n"
          "    InvalidArgumentError: a value of the wrong type or out of range.";
 }
 
@@ -247,10 +260,14 @@ py::class_<Struct> bind_fields(py::module_& m, bool writable) {
         return py::bool_(equal(self, py::cast<const Struct&>(other)));
       },
       py::arg("other"));
-  cls.def(py::pickle([](const Struct& self) { return to_dict(self); },
-                     [](const FieldDict& state) {
+  cls.def(py::pickle([](const Struct& self) -> py::object { return to_dict(self); },
+                     [](const py::object& state) {
+                       if (!py::isinstance<py::dict>(state)) {
+                         throw_wrong_type(FieldTable<Struct>::kName, "a dict of fields", state);
+                       }
                        Struct values{};
                        assign(values, state);
+                       if constexpr (CanValidate<Struct>::value) values.validate();
                        return values;
                      }));
   return cls;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bindings.hpp"
 #include "iksel/version.hpp"
+#include "signature.hpp"
 
 PYBIND11_MODULE(iksel_cpp, m) {
   m.doc() =
@@ -20,6 +21,8 @@ PYBIND11_MODULE(iksel_cpp, m) {
   iksel::python::bind_database(m);
   iksel::python::bind_objective(m);
   iksel::python::bind_diagnosis(m);
+  iksel::python::bind_result(m);
   iksel::python::bind_solver(m);
   iksel::python::bind_evaluation(m);
+  iksel::python::guard_module(m);
 }

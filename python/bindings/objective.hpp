@@ -28,18 +28,31 @@ inline std::shared_ptr<py::object> hold(py::object callable) {
           }};
 }
 
-inline Objective make_custom_objective(const py::object& cost, const py::object& gradient) {
-  if (PyCallable_Check(cost.ptr()) == 0) throw_wrong_type("cost", "a callable", cost);
-  Objective objective = Objective::custom([call = hold(cost)](const JointVector& q) {
+/// A cost function from Python; a type of its own, so that pickling finds the callable again.
+struct PyCost {
+  std::shared_ptr<py::object> callable;
+
+  double operator()(const JointVector& q) const {
     const py::gil_scoped_acquire acquire;
-    return from_python<double>((*call)(to_array(q)), "cost");
-  });
+    return from_python<double>((*callable)(to_array(q)), "cost");
+  }
+};
+
+struct PyGradient {
+  std::shared_ptr<py::object> callable;
+
+  JointVector operator()(const JointVector& q) const {
+    const py::gil_scoped_acquire acquire;
+    return as_joints((*callable)(to_array(q)), static_cast<int>(q.size()), "gradient");
+  }
+};
+
+inline Objective make_custom_objective(const py::object& cost, const py::object& gradient) {
+  check_callable(cost, "cost");
+  Objective objective = Objective::custom(PyCost{hold(cost)});
   if (!gradient.is_none()) {
-    if (PyCallable_Check(gradient.ptr()) == 0) throw_wrong_type("gradient", "a callable", gradient);
-    objective.gradient = [call = hold(gradient)](const JointVector& q) {
-      const py::gil_scoped_acquire acquire;
-      return as_joints((*call)(to_array(q)), static_cast<int>(q.size()), "gradient");
-    };
+    check_callable(gradient, "gradient");
+    objective.gradient = PyGradient{hold(gradient)};
   }
   return objective;
 }

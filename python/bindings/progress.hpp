@@ -5,21 +5,27 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/typing.h>
 
+#include <chrono>
 #include <cstddef>
 #include <optional>
 
 #include "iksel/database.hpp"
+#include "python_types.hpp"
 
 namespace iksel::python {
 
 namespace py = pybind11;
 
-using ProgressCallable = py::typing::Callable<py::object(int, int)>;
+/// Checked by make_progress.
+class ProgressCallable : public py::object {
+  PYBIND11_OBJECT_DEFAULT(ProgressCallable, object, is_any_object)
+};
 
 /// Calls `callable(done, total)` if there is one, and lets Ctrl-C end the work in any case. To be
 /// called without the GIL; an exception passes through the work to the caller. The callable must
 /// outlive the returned function.
 inline Progress make_progress(const std::optional<ProgressCallable>& callable) {
+  if (callable) check_callable(*callable, "progress");
   return [&callable](std::size_t done, std::size_t total) {
     const py::gil_scoped_acquire acquire;
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
@@ -27,4 +33,32 @@ inline Progress make_progress(const std::optional<ProgressCallable>& callable) {
   };
 }
 
+/// Lets Ctrl-C end a loop that runs without the GIL: to be called in each round.
+class InterruptCheck {
+ public:
+  void operator()() {
+    // Asking for the time, and for the GIL, costs more than a round.
+    constexpr int kRounds = 64;
+    if (++rounds_ % kRounds != 0) return;
+    const auto now = std::chrono::steady_clock::now();
+    if (now < next_) return;
+    next_ = now + std::chrono::milliseconds(30);
+    const py::gil_scoped_acquire acquire;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+  }
+
+ private:
+  int rounds_ = 0;
+  std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now();
+};
+
 }  // namespace iksel::python
+
+// NOLINTBEGIN(readability-identifier-naming): pybind11 looks for `name`.
+namespace pybind11::detail {
+template <>
+struct handle_type_name<iksel::python::ProgressCallable> {
+  static constexpr auto name = handle_type_name<typing::Callable<object(int, int)>>::name;
+};
+}  // namespace pybind11::detail
+// NOLINTEND(readability-identifier-naming)

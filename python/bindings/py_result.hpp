@@ -24,4 +24,9 @@ struct PyResult {
   }
 };
 
+/// An iterator over what has __len__ and __getitem__ that takes an int.
+inline py::typing::Iterator<PyResult> iterate_rows(const py::object& self) {
+  return py::reinterpret_steal<py::typing::Iterator<PyResult>>(PySeqIter_New(self.ptr()));
+}
+
 }  // namespace iksel::python

@@ -15,6 +15,8 @@
 #include "enums.hpp"
 #include "iksel/error.hpp"
 #include "iksel/options.hpp"
+#include "iksel/solver.hpp"
+#include "signature.hpp"
 
 namespace iksel::python {
 
@@ -53,6 +55,11 @@ inline std::string describe(py::handle value) {
                                           py::handle got) {
   throw InvalidArgumentError(std::string(name) + ": expected " + expected + ", got " +
                              describe(got));
+}
+
+inline void check_callable(py::handle value, const char* name) {
+  if (PyCallable_Check(value.ptr()) != 0) return;
+  throw SignatureError(std::string(name) + ": expected a callable, got " + describe(value));
 }
 
 inline std::filesystem::path as_path(const PathLike& value, const char* name) {
@@ -122,6 +129,35 @@ struct FromPython<T, std::enable_if_t<std::is_integral_v<T>>> {
   }
 };
 
+/// A bound class; those with fields are taken as mappings too, see fields.hpp.
+template <class T>
+struct IsBoundClass : std::false_type {};
+template <>
+struct IsBoundClass<Robot> : std::true_type {
+  static constexpr const char* kExpected =
+      "a Robot, which iksel.load_robot(name) or Robot.from_urdf(path_or_xml) makes";
+};
+template <>
+struct IsBoundClass<Database> : std::true_type {
+  static constexpr const char* kExpected =
+      "a Database, which Database.build(robot) or Database.load(path) makes";
+};
+template <>
+struct IsBoundClass<Solver> : std::true_type {
+  static constexpr const char* kExpected = "a Solver, which Solver(robot) makes";
+};
+
+template <class T>
+struct FromPython<T, std::enable_if_t<IsBoundClass<T>::value>> {
+  static T convert(py::handle value, const char* name) {
+    if (!py::isinstance<T>(value)) {
+      throw SignatureError(std::string(name) + ": expected " + IsBoundClass<T>::kExpected +
+                           ", got " + describe(value));
+    }
+    return py::cast<T>(value);
+  }
+};
+
 /// A member of the Python enum, or its name.
 template <class T>
 struct FromPython<T, std::enable_if_t<std::is_enum_v<T>>> {
@@ -165,8 +201,11 @@ struct handle_type_name<iksel::python::Loose<T>> {
       return make_caster<T>::name + const_name(" | str");
     } else if constexpr (std::is_same_v<T, std::string>) {
       return const_name("str");
-    } else if constexpr (std::is_same_v<T, std::array<double, 3>>) {
+    } else if constexpr (std::is_same_v<T, std::array<double, 2>> ||
+                         std::is_same_v<T, std::array<double, 3>>) {
       return const_name("collections.abc.Sequence[float]");
+    } else if constexpr (iksel::python::IsBoundClass<T>::value) {
+      return make_caster<T>::name;
     } else if constexpr (std::is_class_v<T>) {
       return make_caster<T>::name + const_name(" | collections.abc.Mapping[str, object]");
     } else if constexpr (std::is_same_v<T, bool>) {

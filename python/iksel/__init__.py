@@ -6,7 +6,7 @@
     robot = iksel.load_robot("ur3")
     solver = iksel.Solver(robot)
     result = solver.solve(robot.fk([0.3, -1.2, 1.5, -0.4, 0.9, 0.0]))
-    if result.success:
+    if result:
         print(result.q)
 
 A pose is a 4x4 matrix T_base_tip; lengths are metres, angles radians.
@@ -17,11 +17,9 @@ from __future__ import annotations
 try:
     import iksel_cpp as _core
 except ImportError as _error:
-    raise ImportError(
-        "iksel needs its compiled extension module iksel_cpp, which could not be "
-        f"imported ({_error}). Install the package ('pip install .' at the top of the "
-        "repository) for this Python; the source tree alone is not enough."
-    ) from _error
+    from iksel._missing import explain
+
+    raise ImportError(explain(str(_error)), name="iksel_cpp") from _error
 
 from iksel_cpp import (
     AngleUnitWarning,
@@ -57,6 +55,7 @@ from iksel_cpp import (
     RotationKey,
     Sampling,
     Scale,
+    SignatureError,
     SolutionOrder,
     Solutions,
     Solver,
@@ -124,6 +123,7 @@ __all__ = [
     "RotationKey",
     "Sampling",
     "Scale",
+    "SignatureError",
     "SolutionOrder",
     "Solutions",
     "Solver",

@@ -313,11 +313,12 @@ def test_batch_rows_are_found_from_both_ends(solver, poses):
 def test_result_is_explicit_about_success(solver, poses):
     result = solver.solve(poses[0])
     assert result.success is True
-    assert not hasattr(type(result), "__bool__")
+    assert bool(result) is True
     assert result.q is result.q
     with pytest.raises(AttributeError):
         result.success = False
-    assert repr(result).startswith("Result(solved, position_error=")
+    assert repr(result).startswith("Result(solved, q=[")
+    assert "], position_error=" in repr(result)
 
 
 @pytest.mark.parametrize(
@@ -374,6 +375,28 @@ def test_random_configurations_depend_on_the_seed_alone(robot):
     assert (first != robot.random_configurations(20, 4)).any()
     assert all(robot.within_limits(q) for q in first)
     assert not robot.within_limits(robot.upper + 1e-3)
+
+
+def test_random_configurations_without_a_seed_are_fresh(robot):
+    draws = [robot.random_configurations(3) for _ in range(4)]
+    draws.append(robot.random_configurations(3, seed=None))
+    assert len({draw.tobytes() for draw in draws}) == len(draws)
+    assert robot.within_limits(np.concatenate(draws)).all()
+
+
+def test_limits_are_asked_of_one_and_of_many(robot):
+    rows = robot.random_configurations(100, 8) * 1.1
+    many = robot.within_limits(rows)
+    assert many.dtype == bool
+    assert many.shape == (100,)
+    expected = ((rows >= robot.lower) & (rows <= robot.upper)).all(axis=1)
+    np.testing.assert_array_equal(many, expected)
+    assert 0 < many.sum() < 100
+    for q, inside in zip(rows, many, strict=True):
+        assert robot.within_limits(q) is bool(inside)
+    assert robot.within_limits(np.zeros((0, 6))).shape == (0,)
+    with pytest.raises(core.InvalidArgumentError, match=r"^q: expected a \(6,\)"):
+        robot.within_limits(np.zeros((2, 5)))
 
 
 @pytest.mark.parametrize("count", [-1, 1.5, "3", True, None])
@@ -638,6 +661,7 @@ def test_error_hierarchy():
         (core.UrdfError, (core.Error,)),
         (core.UnknownNameError, (core.UrdfError,)),
         (core.InvalidArgumentError, (core.Error, ValueError)),
+        (core.SignatureError, (core.InvalidArgumentError, TypeError)),
         (core.DatabaseError, (core.Error,)),
         (core.DatabaseIoError, (core.DatabaseError,)),
         (core.DatabaseCorruptError, (core.DatabaseError,)),

@@ -72,6 +72,8 @@ class IKSEL_EXPORT Tracker {
 
   /// Where the arm is now [rad or m]; always inside the limits.
   [[nodiscard]] const JointVector& q() const { return q_; }
+  /// What solves.
+  [[nodiscard]] const Solver& solver() const { return solver_; }
 
  private:
   Solver solver_;

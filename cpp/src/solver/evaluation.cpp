@@ -102,6 +102,23 @@ double quantile(const std::vector<double>& sorted, double part) {
   return sorted[below] + (position - static_cast<double>(below)) * (sorted[above] - sorted[below]);
 }
 
+/// Passes on to a Progress, but only now and then.
+class Pace {
+ public:
+  explicit Pace(const Progress& progress, std::size_t total) : progress_(progress), total_(total) {}
+
+  void operator()(std::size_t done, Clock::time_point now = Clock::now()) {
+    if (!progress_ || now < next_) return;
+    next_ = now + std::chrono::milliseconds(30);
+    progress_(done, total_);
+  }
+
+ private:
+  const Progress& progress_;
+  std::size_t total_;
+  Clock::time_point next_{};
+};
+
 }  // namespace
 
 double time_kdl_fk_jacobian(const Robot& robot, std::size_t calls) {
@@ -124,11 +141,12 @@ Evaluation evaluate(const Solver& solver, std::size_t targets, std::uint64_t see
   const Robot& robot = solver.robot();
   const std::unique_ptr<KdlChain> kdl = robot.model().make_kdl();
   const Eigen::MatrixXd q = robot.random_configurations(targets, seed);
+  Pace pace(progress, targets);
   std::vector<Pose> poses;
   poses.reserve(targets);
   for (Eigen::Index i = 0; i < q.rows(); ++i) {
     poses.push_back(kdl->fk(q.row(i)));
-    if (progress && i % 65536 == 0) progress(0, targets);
+    if (i % 1024 == 0) pace(0);
   }
 
   Evaluation out;
@@ -138,7 +156,10 @@ Evaluation evaluate(const Solver& solver, std::size_t targets, std::uint64_t see
   // meanwhile does not tilt the ratio.
   const double kdl_before = time_kdl_fk_jacobian(robot);
   const std::size_t warm_up = std::min<std::size_t>(targets, 200);
-  for (std::size_t i = 0; i < warm_up; ++i) static_cast<void>(solver.solve(poses[i]));
+  for (std::size_t i = 0; i < warm_up; ++i) {
+    static_cast<void>(solver.solve(poses[i]));
+    pace(0);
+  }
 
   std::vector<double> times(targets);
   double attempts = 0;
@@ -146,7 +167,8 @@ Evaluation evaluate(const Solver& solver, std::size_t targets, std::uint64_t see
   for (std::size_t i = 0; i < targets; ++i) {
     const auto start = Clock::now();
     const Result result = solver.solve(poses[i]);
-    times[i] = microseconds(Clock::now() - start);
+    const auto end = Clock::now();
+    times[i] = microseconds(end - start);
     attempts += result.attempts;
     iterations += result.iterations;
     out.max_iterations = std::max(out.max_iterations, result.iterations);
@@ -154,7 +176,7 @@ Evaluation evaluate(const Solver& solver, std::size_t targets, std::uint64_t see
       ++out.solved;
       if (!is_solution(*kdl, solver, poses[i], result.q)) ++out.false_success;
     }
-    if (progress && i % 1024 == 0) progress(i, targets);
+    pace(i, end);
   }
   out.kdl_fk_jac_us = 0.5 * (kdl_before + time_kdl_fk_jacobian(robot));
 
@@ -176,7 +198,10 @@ Evaluation evaluate(const Solver& solver, std::size_t targets, std::uint64_t see
 
   if (stages) {
     StageTimes total;
-    for (const Pose& pose : poses) static_cast<void>(solver.solve(pose, total));
+    for (const Pose& pose : poses) {
+      static_cast<void>(solver.solve(pose, total));
+      pace(targets);
+    }
     out.query_us = total.query / n / 1e3;
     out.rank_us = total.rank / n / 1e3;
     out.iterate_us = total.iterate / n / 1e3;

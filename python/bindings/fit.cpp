@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fit.hpp"
+
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "signature.hpp"
+
+namespace iksel::python {
+
+namespace {
+
+using Names = std::vector<std::string>;
+
+bool contains(const Names& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+std::string join(const Names& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+/// The arguments of one overload, without self.
+struct Form {
+  Names names;
+  Names required;
+  std::size_t positional = 0;
+
+  explicit Form(const py::detail::function_record& record) {
+    const std::size_t own = record.is_method ? 1 : 0;
+    positional = record.nargs_pos - own;
+    for (std::size_t i = own; i < record.args.size(); ++i) {
+      names.emplace_back(record.args[i].name);
+      if (!record.args[i].value) required.emplace_back(record.args[i].name);
+    }
+  }
+
+  /// "(pose, *, near, weights)"
+  [[nodiscard]] std::string text() const {
+    Names shown = names;
+    if (positional < shown.size()) {
+      shown.insert(shown.begin() + static_cast<std::ptrdiff_t>(positional), "*");
+    }
+    return "(" + join(shown) + ")";
+  }
+};
+
+/// What other libraries call the configuration that a search begins from.
+const Names kNamesOfSeeds = {"q_init", "q0",     "x0",      "q_start",    "initial_guess", "guess",
+                             "init",   "q_seed", "ik_seed", "seed_state", "initial_q"};
+
+struct MisfitCall {
+  std::string function;
+  std::vector<Form> forms;
+  std::size_t positional;  ///< arguments given by position, without self
+  Names keywords;
+
+  [[nodiscard]] Names all_names() const {
+    Names all;
+    for (const Form& form : forms) {
+      for (const std::string& name : form.names) {
+        if (!contains(all, name)) all.push_back(name);
+      }
+    }
+    return all;
+  }
+
+  /// The sentence, or nothing if the names fit and only a type does not.
+  [[nodiscard]] std::string sentence() const {
+    const Names known = all_names();
+    for (const std::string& keyword : keywords) {
+      if (!contains(known, keyword)) return unknown_keyword(keyword, known);
+    }
+    std::vector<Form> possible;
+    for (const Form& form : forms) {
+      const bool takes_all =
+          std::all_of(keywords.begin(), keywords.end(),
+                      [&](const auto& keyword) { return contains(form.names, keyword); });
+      if (takes_all) possible.push_back(form);
+    }
+    if (possible.empty()) return no_form_takes_all();
+    return misfit(*std::max_element(
+        possible.begin(), possible.end(),
+        [](const Form& a, const Form& b) { return a.positional < b.positional; }));
+  }
+
+ private:
+  [[nodiscard]] std::string unknown_keyword(const std::string& keyword, const Names& known) const {
+    std::string hint = did_you_mean(keyword, known);
+    if (contains(kNamesOfSeeds, keyword) && contains(known, "seed") && contains(known, "near")) {
+      hint =
+          "; say seed= for where the search begins, or near= for what the answer is to be "
+          "close to";
+    }
+    const std::string possible = known.empty() ? "none" : join(known);
+    return function + "() has no argument '" + keyword + "'" + hint + " (possible: " + possible +
+           ")";
+  }
+
+  [[nodiscard]] std::string no_form_takes_all() const {
+    std::string text = function + "() does not take " + join(keywords) + " together; possible: ";
+    for (std::size_t i = 0; i < forms.size(); ++i) text += (i == 0 ? "" : " or ") + forms[i].text();
+    return text;
+  }
+
+  [[nodiscard]] std::string misfit(const Form& form) const {
+    if (positional > form.positional) {
+      return function + "() takes at most " + std::to_string(form.positional) +
+             " arguments by position, got " + std::to_string(positional) +
+             "; possible: " + form.text();
+    }
+    const Names given(form.names.begin(), form.names.begin() + static_cast<std::ptrdiff_t>(std::min(
+                                                                   positional, form.names.size())));
+    for (const std::string& name : given) {
+      if (contains(keywords, name)) return function + "() is given '" + name + "' twice";
+    }
+    for (const std::string& name : form.required) {
+      if (!contains(given, name) && !contains(keywords, name)) {
+        return function + "() needs '" + name + "': " + function + form.text();
+      }
+    }
+    return "";
+  }
+};
+
+std::string type_names(PyObject* const* args, std::size_t count) {
+  Names names;
+  for (std::size_t i = 0; i < count; ++i) names.emplace_back(Py_TYPE(args[i])->tp_name);
+  return join(names);
+}
+
+std::string explain(const py::detail::function_record& record, PyObject* const* args,
+                    std::size_t count, const Names& keywords) {
+  std::string function = record.name;
+  if (record.scope && PyType_Check(record.scope.ptr()) != 0) {
+    const auto scope = py::cast<std::string>(record.scope.attr("__name__"));
+    function = record.is_constructor ? scope : scope + "." + function;
+  }
+  const std::size_t own = record.is_method ? 1 : 0;
+  MisfitCall call{function, {}, count < own ? 0 : count - own, keywords};
+  for (const auto* r = &record; r != nullptr; r = r->next) call.forms.emplace_back(*r);
+  const std::string sentence = call.sentence();
+  if (!sentence.empty()) return sentence;
+  return function + "() does not take (" + type_names(args, count + keywords.size()) + "); it is " +
+         record.name + record.signature;
+}
+
+}  // namespace
+
+void explain_misfit(PyObject* self, PyObject* const* args, Py_ssize_t count,
+                    PyObject* keywords) noexcept {
+  py::error_already_set original;
+  try {
+    const auto* record = py::detail::function_record_ptr_from_PyObject(self);
+    const std::string words = std::string(record->name) + "(): incompatible ";
+    if (py::cast<std::string>(py::str(original.value())).rfind(words, 0) == 0) {
+      Names names;
+      if (keywords != nullptr) names = py::cast<Names>(py::handle(keywords));
+      const std::string text = explain(*record, args, static_cast<std::size_t>(count), names);
+      PyErr_SetString(py::module_::import("iksel_cpp").attr("SignatureError").ptr(), text.c_str());
+      return;
+    }
+  } catch (...) {  // the original says enough
+  }
+  original.restore();
+}
+
+}  // namespace iksel::python

@@ -1,0 +1,313 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Objects that were never made, and pickles that hold the wrong state, are refused."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import pickle
+import subprocess
+import sys
+import textwrap
+
+import iksel_cpp as core
+import numpy as np
+import pytest
+
+import iksel
+
+CLASSES = [
+    thing for thing in vars(core).values() if type(thing).__name__ == "pybind11_type"
+]
+
+# What Python itself gives every object.
+OF_OBJECT = set(dir(object)) - {"__repr__", "__eq__", "__hash__"}
+
+
+def half_square(q: np.ndarray) -> float:
+    """A cost that pickles."""
+    return 0.5 * float(q @ q)
+
+
+@pytest.fixture(scope="module")
+def solver(made) -> iksel.Solver:
+    return iksel.Solver(
+        made.robot("ur3"), iksel.SolverOptions(database={"samples": 500})
+    )
+
+
+def examples(solver: iksel.Solver) -> list[object]:
+    """One of each bound class, or several where they differ much."""
+    robot = solver.robot
+    q = robot.random_configurations(5, 3)
+    poses = robot.fk(q)
+    far = poses[0].copy()
+    far[0, 3] = 9.0
+    line = np.stack([poses[0]] * 3)
+    line[:, 2, 3] += [0.0, 1e-3, 2e-3]
+    broken = line.copy()
+    broken[2, 0, 3] = 9.0
+    tracker = solver.tracker(q[0])
+    tracker.track(line[1], dt=0.1)
+    tree = iksel.LinkTree.from_urdf(robot.urdf)
+    return [
+        robot,
+        tree,
+        tree.joints[1],
+        solver,
+        solver.options,
+        solver.options.database,
+        solver.database,
+        iksel.Task.free_spin(),
+        solver.solve(poses[0]),
+        solver.solve(far),
+        solver.solve(poses[1], near=q[0], objective="limits"),
+        solver.solve_batch(np.concatenate([poses, far[None]]), near=q[0]),
+        solver.solve_all(poses[0], near=q[0]),
+        solver.solve_all(far),
+        solver.solve_path(line, start=q[0]),
+        solver.solve_path(broken, start=q[0]),
+        solver.diagnose(poses[0]),
+        solver.diagnose(far),
+        iksel.Objective.near_posture(q[0], weights=np.arange(6.0)),
+        iksel.Objective.far_from_limits(),
+        iksel.Objective.custom(half_square, np.negative),
+        iksel.evaluate(solver, 10, seed=1),
+        tracker,
+    ]
+
+
+def contents(thing: object) -> dict[str, object]:
+    """All that can be read of an object."""
+    names = [n for n in dir(thing) if not n.startswith("_") and n != "nominal"]
+    values = {name: getattr(thing, name) for name in names}
+    plain = {name: value for name, value in values.items() if not callable(value)}
+    if hasattr(thing, "__len__") and not isinstance(thing, iksel.Database):
+        plain["rows"] = [repr(row) for row in thing]
+    return plain | {"repr": repr(thing)}
+
+
+def test_every_class_has_an_example(solver) -> None:
+    assert {type(thing) for thing in examples(solver)} == set(CLASSES)
+    assert len(CLASSES) >= 14
+
+
+# Pickles
+
+
+@pytest.mark.parametrize("protocol", range(2, pickle.HIGHEST_PROTOCOL + 1))
+def test_everything_bound_is_pickled_whole(solver, protocol: int) -> None:
+    for thing in examples(solver):
+        twin = pickle.loads(pickle.dumps(thing, protocol))
+        assert type(twin) is type(thing)
+        before, after = contents(thing), contents(twin)
+        assert before.keys() == after.keys()
+        for name, value in before.items():
+            if isinstance(value, (np.ndarray, float)):
+                np.testing.assert_array_equal(after[name], value, err_msg=name)
+            elif "object at 0x" not in repr(value):
+                assert repr(after[name]) == repr(value), name
+
+
+def test_objectives_and_trackers_go_on_as_before(solver) -> None:
+    pose = solver.robot.fk(np.full(6, 0.4))
+    for objective in (
+        iksel.Objective.near_posture(np.ones(6)),
+        iksel.Objective.custom(half_square),
+    ):
+        twin = pickle.loads(pickle.dumps(objective))
+        expected = solver.solve(pose, objective=objective)
+        np.testing.assert_array_equal(solver.solve(pose, objective=twin).q, expected.q)
+    tracker = solver.tracker(np.zeros(6))
+    twin = pickle.loads(pickle.dumps(tracker))
+    for _ in range(3):
+        one, other = tracker.track(pose, 0.01), twin.track(pose, 0.01)
+        assert repr(one) == repr(other)
+        np.testing.assert_array_equal(tracker.q, twin.q)
+
+
+def test_a_cost_that_cannot_be_pickled_says_so() -> None:
+    objective = iksel.Objective.custom(lambda q: 0.0)
+    with pytest.raises((pickle.PicklingError, AttributeError), match="lambda"):
+        pickle.dumps(objective)
+
+
+def states(thing: object) -> object:
+    """The state of a pickle."""
+    return thing.__getstate__()
+
+
+def unpickled(cls: type, state: object) -> object:
+    made = cls.__new__(cls)
+    made.__setstate__(state)
+    return made
+
+
+JUNK = (
+    None,
+    3,
+    -7,
+    2**70,
+    math.nan,
+    "x",
+    b"x",
+    (),
+    [],
+    {},
+    [math.nan] * 6,
+    np.eye(3),
+    object(),
+)
+
+
+def test_states_of_another_kind_are_refused(solver) -> None:
+    for thing in examples(solver):
+        for junk in (None, 3, "x", b"x", (), (1,), {"x": 1}, [], object()):
+            with pytest.raises(iksel.Error):
+                unpickled(type(thing), junk)
+
+
+def test_states_of_another_length_are_refused(solver) -> None:
+    for thing in examples(solver):
+        state = states(thing)
+        if isinstance(state, tuple):
+            for other in (state[:-1], (*state, 0)):
+                with pytest.raises(iksel.InvalidArgumentError, match="tuple of"):
+                    unpickled(type(thing), other)
+
+
+def test_states_with_junk_in_them_are_refused_or_harmless(solver) -> None:
+    refused = 0
+    for thing in examples(solver):
+        state = states(thing)
+        if isinstance(state, bytes):
+            continue
+        keys = range(len(state)) if isinstance(state, tuple) else state.keys()
+        for key in keys:
+            for junk in JUNK:
+                if isinstance(state, tuple):
+                    other = (*state[:key], junk, *state[key + 1 :])
+                else:
+                    other = {**state, key: junk}
+                try:
+                    contents(unpickled(type(thing), other))
+                except iksel.Error:
+                    refused += 1
+    assert refused > 500
+
+
+def test_arrays_that_do_not_fit_each_other_are_refused(solver) -> None:
+    poses = solver.robot.fk(solver.robot.random_configurations(4, 5))
+    batch = solver.solve_batch(poses)
+    state = states(batch)
+    for i, array in enumerate(state):
+        for other in (array[:-1], array.astype(np.float32), array[..., None], array[0]):
+            with pytest.raises(iksel.InvalidArgumentError, match="pickled BatchResult"):
+                unpickled(iksel.BatchResult, (*state[:i], other, *state[i + 1 :]))
+    q, success, status = (array.copy() for array in state[:3])
+    status[1] = 200
+    with pytest.raises(iksel.InvalidArgumentError, match="status.*200"):
+        unpickled(iksel.BatchResult, (q, success, status, *state[3:]))
+    success[2] = False
+    with pytest.raises(iksel.InvalidArgumentError, match="success"):
+        unpickled(iksel.BatchResult, (q, success, *state[2:]))
+    q[3, 2] = math.nan
+    with pytest.raises(iksel.InvalidArgumentError, match="row 3.*joint 2"):
+        unpickled(iksel.BatchResult, (q, *state[1:]))
+
+
+def test_joint_values_of_another_length_are_refused(solver) -> None:
+    tracker = solver.tracker(np.zeros(6))
+    with pytest.raises(iksel.InvalidArgumentError, match=r"q: expected a \(6,\)"):
+        unpickled(iksel.Tracker, (solver, np.zeros(7)))
+    with pytest.raises(iksel.Error, match="solver"):
+        unpickled(iksel.Tracker, (solver.robot, tracker.q))
+    result = states(solver.solve(solver.robot.fk(np.zeros(6))))
+    for q in (np.zeros(33), np.zeros((2, 3)), np.full(6, math.nan), None):
+        with pytest.raises(iksel.InvalidArgumentError, match="q"):
+            unpickled(iksel.Result, (result[0], q, *result[2:]))
+
+
+# Objects that were never made
+
+
+def unmade(cls: type) -> object:
+    """What a pickle that ends before the state leaves."""
+    return pickle.loads(
+        b"\x80\x02c" + f"{cls.__module__}\n{cls.__name__}\n".encode() + b")\x81."
+    )
+
+
+def test_unmade_objects_raise_in_all_that_they_have() -> None:
+    # In a process of its own: what this guards against ends the interpreter.
+    program = """
+        import sys
+        sys.path.insert(0, sys.argv[1])
+        import test_unmade
+        test_unmade.try_all()
+        print("all tried")
+    """
+    done = subprocess.run(
+        [sys.executable, "-c", textwrap.dedent(program), __file__.rpartition("/")[0]],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode, done.stdout) == (0, "all tried\n"), done.stderr[-3000:]
+
+
+def try_all() -> None:
+    """Try every attribute and method of every class, with any number of arguments."""
+    tried = 0
+    for cls in CLASSES:
+        for thing in (
+            unmade(cls),
+            cls.__new__(cls),
+            type("Sub", (cls,), {}).__new__(cls),
+        ):
+            for text in (repr, str):
+                with pytest.raises(iksel.Error):
+                    text(thing)
+            with contextlib.suppress(iksel.Error):
+                pickle.dumps(thing)
+                pytest.fail(f"{cls.__name__} was pickled without a state")
+            for name in dir(cls):
+                if name in OF_OBJECT or name in {"__setstate__", "__module__"}:
+                    continue
+                member = vars(cls).get(name)
+                if member is None or isinstance(member, staticmethod):
+                    continue
+                tried += 1
+                if isinstance(member, property):
+                    with pytest.raises(iksel.Error):
+                        getattr(thing, name)
+                    continue
+                # Python asks the other object where operators take no such argument.
+                for count in (1,) if name == "__eq__" else range(5):
+                    with pytest.raises(iksel.Error):
+                        # An iterator asks for rows later.
+                        list(getattr(thing, name)(*[None] * count))
+    assert tried > 300
+
+
+def test_unmade_objects_are_refused_as_arguments(solver) -> None:
+    for call in (
+        lambda: iksel.Solver(unmade(iksel.Robot)),
+        lambda: iksel.Solver(solver.robot, options=unmade(iksel.SolverOptions)),
+        lambda: iksel.Solver(solver.robot, database=unmade(iksel.Database)),
+        lambda: iksel.evaluate(unmade(iksel.Solver), 10, 1),
+        lambda: solver.solve(np.eye(4), task=unmade(iksel.Task)),
+        lambda: solver.solve(np.eye(4), objective=unmade(iksel.Objective)),
+        lambda: solver.options == unmade(iksel.SolverOptions),
+    ):
+        with pytest.raises(iksel.InvalidArgumentError, match="never made"):
+            call()
+
+
+def test_methods_before_the_constructor_are_refused() -> None:
+    class Hasty(iksel.Solver):
+        def __init__(self) -> None:
+            self.solve(np.eye(4))
+
+    with pytest.raises(iksel.InvalidArgumentError, match="never made"):
+        Hasty()

@@ -7,7 +7,7 @@ known answers in the manifest; the library's own is tested against them elsewher
 
 import json
 import math
-import tomllib
+import sys
 import xml.etree.ElementTree as ET
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -15,6 +15,11 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 import pytest
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
 
 Array = npt.NDArray[np.float64]
 

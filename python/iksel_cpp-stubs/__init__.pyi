@@ -14,7 +14,7 @@ import numpy
 import numpy.typing
 import os
 import typing
-__all__: list[str] = ['AngleUnitWarning', 'Axis', 'BatchResult', 'Cause', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'Diagnosis', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'KeyScheme', 'Kinematics', 'LinkTree', 'LinkTreeJoint', 'MoveNorm', 'Objective', 'ObjectiveKind', 'PathResult', 'Ranking', 'Reselection', 'Result', 'Robot', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'SolutionOrder', 'Solutions', 'Solver', 'SolverOptions', 'Status', 'Task', 'TaskFrame', 'Tracker', 'UnknownNameError', 'UrdfError', 'evaluate', 'grid_counts', 'pose_error', 'simd_level', 'time_kdl_fk_jacobian']
+__all__: list[str] = ['AngleUnitWarning', 'Axis', 'BatchResult', 'Cause', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'Diagnosis', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'KeyScheme', 'Kinematics', 'LinkTree', 'LinkTreeJoint', 'MoveNorm', 'Objective', 'ObjectiveKind', 'PathResult', 'Ranking', 'Reselection', 'Result', 'Robot', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'SignatureError', 'SolutionOrder', 'Solutions', 'Solver', 'SolverOptions', 'Status', 'Task', 'TaskFrame', 'Tracker', 'UnknownNameError', 'UrdfError', 'evaluate', 'grid_counts', 'pose_error', 'simd_level', 'time_kdl_fk_jacobian']
 class AngleUnitWarning(UserWarning):
     """
     Angles that look like degrees were given where radians are meant.
@@ -36,6 +36,10 @@ class UnknownNameError(UrdfError):
 class InvalidArgumentError(Error, ValueError):
     """
     An argument of the wrong type, shape or value: a pose that is not rigid, a non-finite number, an option out of range.
+    """
+class SignatureError(InvalidArgumentError, TypeError):
+    """
+    A call that does not fit: an unknown keyword, a missing argument, one of another class.
     """
 class DatabaseError(Error):
     """
@@ -125,12 +129,20 @@ class JointType(enum.Enum):
     continuous = 1
     prismatic = 2
     revolute = 0
+    def __format__(self, arg0: str) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
 class Kinematics(enum.Enum):
     """
     Which implementation computes forward kinematics and Jacobians; they agree to 1e-12.
     """
     kdl = 1
     kernel = 0
+    def __format__(self, arg0: str) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
 class Robot:
     """
     An immutable serial chain between two links of a URDF, with its limits. Safe to use from many threads at once.
@@ -162,6 +174,8 @@ class Robot:
     def __deepcopy__(self, memo: dict[int, object]) -> Robot:
         ...
     def __repr__(self) -> str:
+        ...
+    def _repr_html_(self) -> str:
         ...
     def dq_dx(self, q: numpy.typing.ArrayLike, damping: float = 0.0) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -208,17 +222,17 @@ class Robot:
         Raises:
             InvalidArgumentError: wrong shape or dtype, or a number that is not finite.
         """
-    def random_configurations(self, n: int, seed: int) -> numpy.typing.NDArray[numpy.float64]:
+    def random_configurations(self, n: int, seed: int | None = None) -> numpy.typing.NDArray[numpy.float64]:
         """
-        n configurations uniform inside the limits (continuous joints in [-pi, pi)), (n, dof). The same seed gives the same numbers everywhere.
+        n configurations uniform inside the limits (continuous joints in [-pi, pi)), (n, dof). The same seed gives the same numbers everywhere; None: other numbers in each call.
         """
     def with_tcp(self, tcp: numpy.typing.ArrayLike) -> Robot:
         """
         The same chain with another tool T_tip_tcp, (4, 4). Databases built for one serve the other.
         """
-    def within_limits(self, q: numpy.typing.ArrayLike) -> bool:
+    def within_limits(self, q: numpy.typing.ArrayLike) -> bool | typing.Any:
         """
-        Whether q, (dof,) [rad or m], lies inside the position limits.
+        Whether q [rad or m], (dof,), lies inside the position limits; of (N, dof) values each, (N,).
         """
     @property
     def base_link(self) -> str:
@@ -326,6 +340,10 @@ class TaskFrame(enum.Enum):
     """
     base = 0
     tool = 1
+    def __format__(self, arg0: str) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
 class Axis(enum.Enum):
     """
     One axis of a frame.
@@ -333,6 +351,10 @@ class Axis(enum.Enum):
     x = 0
     y = 1
     z = 2
+    def __format__(self, arg0: str) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
 class Task:
     """
     What of a pose has to be reached: a box around the target for the deviation of the tip, along the axes of `frame`. Zero width asks for an axis exactly, infinite width leaves it free. The rotation's deviation is a rotation vector where its three widths are equal, else swing and twist about the axis whose width is unlike the other two's. An answer lies at most the solver's tolerances outside of the box. Immutable.
@@ -391,7 +413,7 @@ class Task:
             rotation_upper: Upper bounds of the rotation's deviation about x, y, z [rad], up to pi, or inf.
 
         Raises:
-            TypeError: a keyword that is no field.
+            SignatureError: a keyword that is no field.
             InvalidArgumentError: a value of the wrong type or out of range.
         """
     def __repr__(self) -> str:
@@ -408,7 +430,7 @@ class Task:
             rotation_upper: Upper bounds of the rotation's deviation about x, y, z [rad], up to pi, or inf.
 
         Raises:
-            TypeError: a keyword that is no field.
+            SignatureError: a keyword that is no field.
             InvalidArgumentError: a value of the wrong type or out of range.
         """
     def to_dict(self) -> dict[str, typing.Any]:
@@ -458,6 +480,10 @@ class Sampling(enum.Enum):
     grid = 0
     low_discrepancy = 2
     random = 3
+    def __format__(self, arg0: str) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
 class Scale(enum.Enum):
     """
     Size of a grid, and of other samplings whose `samples` is 0 (paper, database sizes).
@@ -465,12 +491,20 @@ class Scale(enum.Enum):
     large = 2
     medium = 1
     small = 0
+    def __format__(self, arg0: str) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
 class KeyScheme(enum.Enum):
     """
     What of a pose the database's key holds.
     """
     full = 0
     reduced = 1
+    def __format__(self, arg0: str) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
 class RotationKey(enum.Enum):
     """
     How the KD-tree's key writes the rotation of a pose (paper, footnote 1).
@@ -479,18 +513,30 @@ class RotationKey(enum.Enum):
     matrix = 2
     quaternion = 1
     rotation_vector = 0
+    def __format__(self, arg0: str) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
 class Ranking(enum.Enum):
     """
     How the neighbours of a target are put in order.
     """
     joint_adjustment = 1
     nearest = 0
+    def __format__(self, arg0: str) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
 class RotationDifference(enum.Enum):
     """
     The rotation part of x_target - x_i in Eq. (4) of the paper.
     """
     geodesic = 1
     rotation_vector = 0
+    def __format__(self, arg0: str) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
 class Iteration(enum.Enum):
     """
     One scheme of numerical iteration (paper, Table II).
@@ -501,6 +547,10 @@ class Iteration(enum.Enum):
     lm = 5
     pinv = 1
     pinv_rr = 2
+    def __format__(self, arg0: str) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
 class Reselection(enum.Enum):
     """
     Which seed follows a failed one.
@@ -508,6 +558,10 @@ class Reselection(enum.Enum):
     farthest = 2
     next = 1
     none = 0
+    def __format__(self, arg0: str) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
 class GrowthStop(enum.Enum):
     """
     Whether an attempt is given up when both errors have grown.
@@ -515,6 +569,10 @@ class GrowthStop(enum.Enum):
     by_scheme = 0
     off = 2
     on = 1
+    def __format__(self, arg0: str) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
 class DatabaseOptions:
     """
     How a database is built. Enums may be given by name, as in sampling='grid'.
@@ -544,7 +602,7 @@ class DatabaseOptions:
             threads: Threads that build; 0: one per core. The result has the same bits for any number.
 
         Raises:
-            TypeError: a keyword that is no field.
+            SignatureError: a keyword that is no field.
             InvalidArgumentError: a value of the wrong type or out of range.
         """
     def __repr__(self) -> str:
@@ -566,7 +624,7 @@ class DatabaseOptions:
             threads: Threads that build; 0: one per core. The result has the same bits for any number.
 
         Raises:
-            TypeError: a keyword that is no field.
+            SignatureError: a keyword that is no field.
             InvalidArgumentError: a value of the wrong type or out of range.
         """
     def to_dict(self) -> dict[str, typing.Any]:
@@ -699,7 +757,7 @@ class SolverOptions:
             seed: Seed of random restarts (pinv_rr).
 
         Raises:
-            TypeError: a keyword that is no field.
+            SignatureError: a keyword that is no field.
             InvalidArgumentError: a value of the wrong type or out of range.
         """
     def __repr__(self) -> str:
@@ -734,7 +792,7 @@ class SolverOptions:
             seed: Seed of random restarts (pinv_rr).
 
         Raises:
-            TypeError: a keyword that is no field.
+            SignatureError: a keyword that is no field.
             InvalidArgumentError: a value of the wrong type or out of range.
         """
     def to_dict(self) -> dict[str, typing.Any]:
@@ -934,7 +992,7 @@ class Database:
     An immutable set of samples (q_i, x_i, J_i^+) of a robot under a KD-tree. Safe to use from many threads at once.
     """
     @staticmethod
-    def build(robot: Robot, options: DatabaseOptions = ..., progress: collections.abc.Callable[[int, int], typing.Any] | None = None) -> Database:
+    def build(robot: Robot, options: DatabaseOptions | collections.abc.Mapping[str, typing.Any] = ..., progress: collections.abc.Callable[[int, int], typing.Any] | None = None) -> Database:
         """
         Samples the joint limits and computes pose, Jacobian and pseudo-inverse.
 
@@ -1037,6 +1095,10 @@ class ObjectiveKind(enum.Enum):
     manipulability = 3
     none = 0
     posture = 1
+    def __format__(self, arg0: str) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
 class Objective:
     """
     What an answer is to be good at besides reaching the target: a cost of joint values, the smaller the better. Of all answers found the cheapest is taken; where the arm is free to move (more joints than fixed axes) the best have slid to a local minimum of the cost first. Immutable.
@@ -1080,10 +1142,16 @@ class Cause(enum.Enum):
     out_of_time = 7
     rejected = 4
     singular = 5
+    def __format__(self, arg0: str) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
 class Diagnosis:
     """
-    What Solver.diagnose found. Numbers that do not belong to the cause are NaN.
+    What Solver.diagnose found; true if q_is_solution. Numbers that do not belong to the cause are NaN.
     """
+    def __bool__(self) -> bool:
+        ...
     def __repr__(self) -> str:
         ...
     @property
@@ -1157,24 +1225,18 @@ class Status(enum.IntEnum):
     rejected = 4
     solved = 0
     too_fast = 6
-class MoveNorm(enum.Enum):
+    def __format__(self, arg0: str) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
+@typing.type_check_only
+class _Result:
     """
-    How the length of a joint move is measured.
-    """
-    max = 1
-    two = 0
-class SolutionOrder(enum.Enum):
-    """
-    In which order solve_all gives its solutions.
-    """
-    limit_distance = 1
-    manipulability = 2
-    move = 0
-class Result:
-    """
-    Answer to one target. Everything in it is measured on the returned q.
+    Answer to one target, true if it is one. Everything in it is measured on the returned q.
     """
     def __repr__(self) -> str:
+        ...
+    def _repr_html_(self) -> str:
         ...
     @property
     def attempts(self) -> int:
@@ -1202,11 +1264,6 @@ class Result:
         Distance to the target [m]; NaN unless solved.
         """
     @property
-    def q(self) -> numpy.typing.NDArray[numpy.float64] | None:
-        """
-        Joint values [rad or m], (dof,); None unless solved.
-        """
-    @property
     def rotation_error(self) -> float:
         """
         Length of the rotation vector to the target [rad]; NaN unless solved.
@@ -1216,22 +1273,54 @@ class Result:
         """
         Why the solve ended.
         """
+@typing.type_check_only
+class _Solved(_Result):
     @property
-    def success(self) -> bool:
+    def q(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Joint values [rad or m], (dof,); None unless solved.
+        """
+    @property
+    def success(self) -> typing.Literal[True]:
         """
         Whether q reaches the target within both tolerances and lies inside the limits.
         """
+    def __bool__(self) -> typing.Literal[True]:
+        ...
+@typing.type_check_only
+class _Unsolved(_Result):
+    @property
+    def q(self) -> None:
+        """
+        Joint values [rad or m], (dof,); None unless solved.
+        """
+    @property
+    def success(self) -> typing.Literal[False]:
+        """
+        Whether q reaches the target within both tolerances and lies inside the limits.
+        """
+    def __bool__(self) -> typing.Literal[False]:
+        ...
+Result: typing.TypeAlias = _Solved | _Unsolved
 class BatchResult:
     """
-    Answers to many targets as arrays; row i belongs to target i. Indexing gives a Result.
+    Answers to many targets as arrays; row i belongs to target i. Indexing gives a Result, and by a slice or an array a BatchResult of its own. It is neither true nor false: ask success.all() or success.any().
     """
+    def __bool__(self) -> typing.NoReturn:
+        ...
+    @typing.overload
     def __getitem__(self, i: int) -> Result:
+        ...
+    @typing.overload
+    def __getitem__(self, i: slice | collections.abc.Sequence[int] | numpy.typing.NDArray[numpy.integer[typing.Any] | numpy.bool_]) -> BatchResult:
         ...
     def __iter__(self) -> collections.abc.Iterator[Result]:
         ...
     def __len__(self) -> int:
         ...
     def __repr__(self) -> str:
+        ...
+    def _repr_html_(self) -> str:
         ...
     def statuses(self) -> list[Status]:
         """
@@ -1282,6 +1371,27 @@ class BatchResult:
         """
         Whether each target is solved, (N,).
         """
+class MoveNorm(enum.Enum):
+    """
+    How the length of a joint move is measured.
+    """
+    max = 1
+    two = 0
+    def __format__(self, arg0: str) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
+class SolutionOrder(enum.Enum):
+    """
+    In which order solve_all gives its solutions.
+    """
+    limit_distance = 1
+    manipulability = 2
+    move = 0
+    def __format__(self, arg0: str) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
 class Solver:
     """
     Solves inverse kinematics for one robot. Immutable, safe to use from many threads at once; the same input gives the same bits.
@@ -1290,7 +1400,7 @@ class Solver:
         ...
     def __deepcopy__(self, memo: dict[int, object]) -> Solver:
         ...
-    def __init__(self, robot: Robot, options: SolverOptions | None = None, database: Database | None = None, *, nominal: Robot | None = None, max_drift: tuple[typing.SupportsFloat | typing.SupportsIndex, typing.SupportsFloat | typing.SupportsIndex] | None = None) -> None:
+    def __init__(self, robot: Robot, options: SolverOptions | collections.abc.Mapping[str, typing.Any] | None = None, database: Database | None = None, *, nominal: Robot | None = None, max_drift: collections.abc.Sequence[float] | None = None) -> None:
         """
         Uses a database, or builds one by `options.database` if it is given none.
 
@@ -1467,8 +1577,10 @@ class Solver:
         """
 class Solutions:
     """
-    The distinct solutions for one target, best first. Indexing gives a Result.
+    The distinct solutions for one target, best first; true if there are any. Indexing gives a Result.
     """
+    def __bool__(self) -> bool:
+        ...
     def __getitem__(self, i: int) -> Result:
         ...
     def __iter__(self) -> collections.abc.Iterator[Result]:
@@ -1476,6 +1588,8 @@ class Solutions:
     def __len__(self) -> int:
         ...
     def __repr__(self) -> str:
+        ...
+    def _repr_html_(self) -> str:
         ...
     @property
     def attempts(self) -> int:
@@ -1519,8 +1633,10 @@ class Solutions:
         """
 class PathResult:
     """
-    Joint values along a path.
+    Joint values along a path; true if there are any for every waypoint.
     """
+    def __bool__(self) -> bool:
+        ...
     def __repr__(self) -> str:
         ...
     @property
@@ -1578,6 +1694,8 @@ class Tracker:
         Raises:
             InvalidArgumentError: wrong shape or dtype, or a number that is not finite.
         """
+    def __repr__(self) -> str:
+        ...
     def track(self, pose: numpy.typing.ArrayLike, dt: float) -> Result:
         """
         Moves on towards a pose, by no more than each joint can in the time step.

@@ -109,11 +109,11 @@ install_project() {
     quietly "making the virtual environment $venv" "$base_python" -m venv --clear "$venv"
   fi
   local stamp=$venv/iksel.stamp target=. state
-  # As the tests build it, so that ccache knows it.
-  local settings=()
   if $dev; then
     target='.[dev]'
-    settings=(-C build-dir=build/python -C cmake.define.IKSEL_WARNINGS_AS_ERRORS=ON)
+    # As the tests build it, so that ccache knows it. In variables: the options that say the same are
+    # not known to every pip.
+    export SKBUILD_BUILD_DIR=build/python SKBUILD_CMAKE_DEFINE=IKSEL_WARNINGS_AS_ERRORS=ON
   fi
   state="$(source_hash) $("$python" -V)"
   # Once the extra is there, it stays there.
@@ -123,7 +123,7 @@ install_project() {
   fi
   if [[ -f $stamp ]] && grep -qF '.[dev]' "$stamp"; then target='.[dev]'; fi
   rm -f "$stamp"
-  quietly "installing iksel into $venv" "$python" -m pip install "${settings[@]}" "$target"
+  quietly "installing iksel into $venv" "$python" -m pip install "$target"
   printf '%s\n' "$state $target" >"$stamp"
 }
 

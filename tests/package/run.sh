@@ -71,6 +71,7 @@ run cmake --install "$build" --prefix "$work/static"
 public_headers "$work/static"
 installed "$work/static" static
 other_programs "$work/static"
+"$root/tests/package/readme.sh" "$work/static"
 
 # With Eigen's assertions on; the rest is left out to build faster.
 build_outside package/add_subdirectory subdirectory -DIKSEL_SOURCE_DIR="$root" \
@@ -78,6 +79,12 @@ build_outside package/add_subdirectory subdirectory -DIKSEL_SOURCE_DIR="$root" \
   -DIKSEL_SIMD_LEVELS=
 ./subdirectory/consumer
 echo "add_subdirectory works"
+run cmake -S package/add_subdirectory -B untouched -DIKSEL_SOURCE_DIR="$root"
 
 run cmake --install subdirectory --prefix "$work/shared"
 installed "$work/shared" shared
+"$root/tests/package/readme.sh" "$work/shared"
+
+# What a program's own build is set to stays its own.
+build_type=$(sed -n 's/^CMAKE_BUILD_TYPE:[A-Z]*=//p' untouched/CMakeCache.txt)
+[[ -z $build_type ]] || { echo "add_subdirectory set CMAKE_BUILD_TYPE" >&2 && exit 1; }

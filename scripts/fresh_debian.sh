@@ -1,0 +1,154 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Runs commands on the committed files in a bare Debian 12, made by debootstrap in a folder of its own:
+# by default the two of README.
+#
+# Usage: scripts/fresh_debian.sh [--keep] [COMMAND...]
+#
+#   --keep   leaves the system where it is, and says where
+#   COMMAND  run by bash, in order, at the top of a clone of HEAD; the first that fails ends it
+#
+# Of this machine it takes the package sources and pip's settings, and what those name (certificates,
+# folders of packages); nothing else. Needs root, and the right to mount. What it made is gone when it
+# ends, however it ends; processes that the commands left running end with it.
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+readonly suite=bookworm
+keep=false commands=()
+for argument in "$@"; do
+  case $argument in
+    --keep) keep=true ;;
+    -h | --help) usage && exit ;;
+    -*) unknown_option "$argument" ;;
+    *) commands+=("$argument") ;;
+  esac
+done
+if ((${#commands[@]} == 0)); then commands=("bash scripts/demo.sh" "bash scripts/test.sh"); fi
+
+((EUID == 0)) || die "debootstrap and chroot need root"
+if ! command -v debootstrap >/dev/null || ! command -v git >/dev/null; then
+  quietly "updating the package lists" apt-get update
+  quietly "installing debootstrap" env DEBIAN_FRONTEND=noninteractive \
+    apt-get install -y --no-install-recommends debootstrap git
+fi
+
+work=$(mktemp -d "${TMPDIR:-/tmp}/iksel-debian.XXXXXX")
+system=$work/system
+# The checkout's name in there.
+readonly home=/root/iksel
+inside=
+# Mounts are made in a namespace that ends with `inside`, and so never stand where rm goes.
+cleanup() {
+  trap '' INT TERM HUP
+  if [[ -n $inside ]]; then kill -KILL "$inside" 2>/dev/null && wait "$inside" 2>/dev/null; fi
+  if $keep; then echo "kept: $system"; else rm -rf --one-file-system "$work"; fi
+}
+trap cleanup EXIT
+trap 'exit 130' INT
+trap 'exit 143' TERM HUP
+
+# Runs a command in the background and waits, so that a signal is heard at once.
+in_background() {
+  "$@" </dev/null &
+  inside=$!
+  local status=0
+  wait "$inside" || status=$?
+  inside=
+  return "$status"
+}
+
+host_is_alike() { grep -qx "VERSION_CODENAME=$suite" /etc/os-release; }
+
+# The first source of the suite, or nothing: debootstrap then takes Debian's own.
+mirror() {
+  host_is_alike || return 0
+  # shellcheck disable=SC2016  # apt's own variables
+  apt-get indextargets --format '$(REPO_URI) $(RELEASE)' 'Created-By: Packages' 2>/dev/null |
+    awk -v suite="$suite" '$2 == suite { print $1; exit }'
+}
+
+copy_in() { # FILE...: to the same place, if there
+  local file
+  for file in "$@"; do
+    if [[ -e $file ]]; then
+      mkdir -p "$system$(dirname "$file")"
+      cp -rL "$file" "$system$file"
+    fi
+  done
+}
+
+copy_package_sources() {
+  copy_in /etc/resolv.conf /etc/hosts
+  apt-config dump Acquire >"$system/etc/apt/apt.conf.d/99host"
+  host_is_alike || return 0
+  rm -f "$system/etc/apt/sources.list"
+  copy_in /etc/apt/sources.list /etc/apt/sources.list.d /etc/apt/trusted.gpg.d /etc/apt/keyrings
+  # The keys that those files name.
+  local key
+  while read -r key; do copy_in "$key"; done < <(
+    cat /etc/apt/sources.list /etc/apt/sources.list.d/* 2>/dev/null |
+      grep -oiE 'signed-by[:=] ?/[^] ]+' | grep -oE '/.*' | sort -u)
+}
+
+# Variables, files and the folders that they name.
+copy_pip_settings() {
+  copy_in /etc/pip.conf /etc/xdg/pip "$HOME/.config/pip" "$HOME/.pip"
+  env | grep -E '^(PIP|SSL_CERT|REQUESTS_CA_BUNDLE|https?_proxy|HTTPS?_PROXY|no_proxy|NO_PROXY)' \
+    >"$work/environment" || true
+  local path
+  : >"$work/folders"
+  while read -r path; do
+    if [[ -d $path ]]; then echo "$path" >>"$work/folders"; else copy_in "$path"; fi
+  done < <({ cat "$work/environment" && python3 -m pip config list 2>/dev/null; } |
+    grep -oE "/[^ '\"]+" | sed 's,^//*,/,' | grep -vE '^/[^/]*$|simple/?$' | sort -u)
+  # An index of packages in a folder has them beside its pages.
+  python3 -m pip config list 2>/dev/null | grep -oE 'file://[^ '\''"]+' |
+    sed -E 's,^file://,,; s,/simple/?$,,' | sort -u | while read -r path; do
+    if [[ -d $path ]]; then echo "$path" >>"$work/folders"; fi
+  done
+}
+
+# In namespaces of its own: what is mounted there, and all processes, end with it.
+enter() { # COMMAND
+  # shellcheck disable=SC2016  # expanded inside
+  unshare --mount --pid --fork --kill-child=KILL --mount-proc bash -euc '
+      system=$1 home=$2 command=$3
+      mount -t proc proc "$system/proc"
+      mount -t tmpfs tmpfs "$system/tmp"
+      mount -t tmpfs tmpfs "$system/dev/shm"
+      while read -r folder; do
+        mkdir -p "$system$folder" && mount --bind -o ro "$folder" "$system$folder"
+      done <"$system/../folders"
+      mapfile -t environment
+      exec chroot "$system" env -i HOME=/root TERM=dumb LANG=C.UTF-8 \
+        PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
+        ${CI:+CI="$CI"} "${environment[@]}" bash -ec "cd $home && $command"
+    ' bash "$system" "$home" "$1" <"$work/environment"
+}
+
+debootstrap_here() {
+  local from
+  from=$(mirror)
+  mkdir -p build
+  printf 'making a bare %s ...\n' "$suite"
+  in_background debootstrap --variant=minbase "$suite" "$system" ${from:+"$from"} \
+    >build/fresh_debian.log 2>&1 || { cat build/fresh_debian.log >&2 && die "debootstrap failed"; }
+}
+
+debootstrap_here
+copy_package_sources
+copy_pip_settings
+git clone --quiet --no-hardlinks "$root" "$system$home"
+git -C "$system$home" remote remove origin
+
+for command in "${commands[@]}"; do
+  step "bare $suite: $command"
+  SECONDS=0
+  enter_status=0
+  enter "$command" &
+  inside=$!
+  wait "$inside" || enter_status=$?
+  inside=
+  printf '== %s s, exit status %s: %s\n' "$SECONDS" "$enter_status" "$command"
+  ((enter_status == 0)) || exit "$enter_status"
+done

@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Installs what IKSel needs, and IKSel itself into a virtual environment.
 #
-# Usage: scripts/bootstrap.sh [--dev] [--lint] [--bench] [--apt-only]
+# Usage: scripts/bootstrap.sh [--dev] [--lint] [--fuzz] [--bench] [--apt-only]
 #
 #   --dev       also what tests, benchmarks and the extra [dev] need
 #   --lint      also clang-format, clang-tidy and shellcheck
+#   --fuzz      also clang with libFuzzer
 #   --bench     also NLopt for the C++ baselines, and from PyPI the solvers to compare with
 #   --apt-only  only the system's packages, no virtual environment
 #
@@ -14,12 +15,13 @@
 # the sources are unchanged.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-apt_only=false bench=false dev=false lint=false
+apt_only=false bench=false dev=false fuzz=false lint=false
 for option in "$@"; do
   case $option in
     --apt-only) apt_only=true ;;
     --bench) bench=true ;;
     --dev) dev=true ;;
+    --fuzz) fuzz=true ;;
     --lint) lint=true ;;
     -h | --help) usage && exit ;;
     *) unknown_option "$option" ;;
@@ -34,6 +36,11 @@ want_command() { # COMMAND PACKAGE
 
 want_library() { # PKG-CONFIG-NAME PACKAGE
   pkg-config --exists "$1" 2>/dev/null || missing+=("$2")
+}
+
+has_libfuzzer() {
+  echo 'extern "C" int LLVMFuzzerTestOneInput(const char*, unsigned long) { return 0; }' |
+    clang++ -fsanitize=fuzzer,address -x c++ -o /dev/null - 2>/dev/null
 }
 
 # Puts the packages of what is not there into the array `missing`.
@@ -56,6 +63,7 @@ find_missing() {
     want_library gtest libgtest-dev
   fi
   if $bench; then want_library nlopt libnlopt-cxx-dev; fi
+  if $fuzz && ! has_libfuzzer; then missing+=(clang libclang-rt-14-dev); fi
   if $lint; then
     want_command clang-format clang-format
     want_command clang-tidy clang-tidy

@@ -35,10 +35,7 @@ export UBSAN_OPTIONS=print_stacktrace=1
 native() { [[ $1 == urdf || $1 == database ]]; }
 
 build_native() {
-  if ! echo 'extern "C" int LLVMFuzzerTestOneInput(const char*, unsigned long) { return 0; }' |
-    clang++ -fsanitize=fuzzer,address -x c++ -o /dev/null - 2>/dev/null; then
-    die "clang with libFuzzer is needed: apt-get install clang libclang-rt-dev (Debian 12: libclang-rt-14-dev)"
-  fi
+  scripts/bootstrap.sh --apt-only --fuzz
   step "build (fuzz)"
   cmake --preset fuzz >/dev/null
   cmake --build --preset fuzz

@@ -27,10 +27,11 @@ Database build(const Loose<Robot>& given_robot, const Loose<DatabaseOptions>& gi
   return Database::build(robot, options, report);
 }
 
-Database load(const PathLike& path) {
+Database load(const PathLike& path, const Loose<bool>& mmap) {
   const std::filesystem::path file = as_path(path, "path");
+  const auto mapped = from_python<bool>(mmap, "mmap");
   const py::gil_scoped_release release;
-  return Database::load(file);
+  return Database::load(file, mapped);
 }
 
 void save(const Database& self, const PathLike& path) {
@@ -117,8 +118,18 @@ Args:
 Raises:
     InvalidArgumentError: an option out of range.
     DatabaseError: more samples than fit.)");
-  cls.def_static("load", &load, py::arg("path"),
-                 R"(Maps a file read-only; processes that load one file share its memory.
+  cls.def_static("load", &load, py::arg("path"), py::kw_only(), py::arg("mmap") = false,
+                 R"(Reads a file, after which it may be changed or removed.
+
+Args:
+    path: what `save` wrote.
+    mmap: leave the samples, most of a large file, in the file and map them read-only, so
+        that processes that load one file share them. The file may then be replaced (`save`
+        does so) or removed, but should not be written to: what is overwritten in place is
+        not noticed, and makes seeds worse, never an answer wrong. Where a file is cut short,
+        the call under way still ends, and the next one on the database or a solver of it
+        raises DatabaseIoError; for this the first such load installs a handler of SIGBUS,
+        which passes on what is not its own. At most 256 files are mapped at once.
 
 Raises:
     DatabaseIoError: the file cannot be read.
@@ -126,6 +137,8 @@ Raises:
     DatabaseMismatchError: another format version or byte order.)");
   cls.def("save", &save, py::arg("path"),
           R"(Writes beside `path` and renames, so that a crash leaves the old file or the new one.
+
+Removes files named iksel-*.tmp in the same folder that saves which were killed have left.
 
 Raises:
     DatabaseIoError: the file cannot be written; an old one is untouched.)");

@@ -143,6 +143,31 @@ TEST(NoAllocation, NearFilteredAndTracking) {
   }
 }
 
+TEST(NoAllocation, GivenSeeds) {
+  for (const bool paper : {false, true}) {
+    const iksel::Robot robot = iksel_test::load(iksel_test::paper_robots()[0]);
+    iksel::SolverOptions options = paper ? iksel::SolverOptions::paper() : iksel::SolverOptions();
+    options.database.scale = iksel::Scale::small;
+    const iksel::Solver solver(robot, options);
+    const Eigen::MatrixXd q = robot.random_configurations(3000, iksel_test::seed());
+    const iksel::Pose target = robot.fk(q.row(0));
+    for (const int seeds : {1, 100, 1024, 3000}) {
+      for (const bool of_task : {false, true}) {
+        iksel::SolveRequest request;
+        for (int i = 0; i < seeds; ++i) request.seeds.push_back(q.row(i).transpose());
+        if (of_task) request.task = iksel::Task::free_spin();
+        // More than 1,024 need memory the first time.
+        if (seeds > 1024) (void)solver.solve(target, request);
+        allocations = 0;
+        watching = true;
+        (void)solver.solve(target, request);
+        watching = false;
+        EXPECT_EQ(allocations.load(), 0) << seeds << " seeds";
+      }
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, Schemes,
                          testing::Values(iksel::Iteration::dls, iksel::Iteration::pinv,
                                          iksel::Iteration::pinv_rr, iksel::Iteration::cwln,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <iksel/iksel.hpp>
 #include <iostream>
 #include <stdexcept>
@@ -13,6 +14,7 @@
 namespace {
 
 using iksel::JointVector;
+using iksel::Matrix;
 using iksel::Pose;
 using iksel::Result;
 using iksel::Robot;
@@ -340,6 +342,92 @@ TEST(Seeds, AreRankedAndComeFirst) {
   }
 }
 
+/// Processor time of this thread [s].
+double thread_seconds() {
+  timespec now{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// Seeds for a target, given or not, that nothing leads to but its own database.
+SolveRequest request_of(const Matrix& seeds, Eigen::Index count) {
+  SolveRequest request;
+  request.database_seeds = false;
+  for (Eigen::Index i = 0; i < count; ++i) request.seeds.push_back(seeds.row(i).transpose());
+  return request;
+}
+
+/// A pose within reach that is none of the arm's.
+Pose unreachable(const Solver& solver) {
+  Pose target = solver.robot().fk(JointVector::Zero(solver.robot().dof()));
+  target.translation() = solver.robot().reach_centre();
+  return target;
+}
+
+TEST(Seeds, CostInProportionToTheirNumber) {
+  constexpr Eigen::Index kFew = 2000;
+  for (const int kind : {0, 1, 2}) {
+    iksel::SolverOptions options =
+        kind == 1 ? iksel::SolverOptions::paper() : iksel::SolverOptions();
+    options.database.scale = iksel::Scale::small;
+    options.max_attempts = 1'000'000;
+    options.max_iterations = 1;
+    const Solver solver(iksel_test::load(robot_case("ur3")), options);
+    const Matrix seeds = solver.robot().random_configurations(8 * kFew, iksel_test::seed());
+    double seconds[2];
+    for (int size = 0; size < 2; ++size) {
+      SolveRequest request = request_of(seeds, size == 0 ? kFew : 8 * kFew);
+      if (kind == 2) request.task = iksel::Task::free_spin();
+      const double start = thread_seconds();
+      const Result result = solver.solve(unreachable(solver), request);
+      seconds[size] = thread_seconds() - start;
+      EXPECT_FALSE(result.success());
+      EXPECT_EQ(static_cast<std::size_t>(result.attempts), request.seeds.size());
+    }
+    EXPECT_LT(seconds[1], 20 * seconds[0]) << "8 times the seeds, 64 times if by the square";
+  }
+}
+
+TEST(Seeds, EndAtTheDeadline) {
+  for (const bool paper : {false, true}) {
+    iksel::SolverOptions options = paper ? iksel::SolverOptions::paper() : iksel::SolverOptions();
+    options.database.scale = iksel::Scale::small;
+    options.max_attempts = 1'000'000;
+    const Solver solver(iksel_test::load(robot_case("ur3")), options);
+    const Matrix seeds = solver.robot().random_configurations(32000, iksel_test::seed());
+    SolveRequest request = request_of(seeds, seeds.rows());
+    for (const double deadline : {1e-9, 1e-3, 1e-2}) {
+      request.deadline = deadline;
+      for (const bool of_task : {false, true}) {
+        request.task = of_task ? std::optional(iksel::Task::free_spin()) : std::nullopt;
+        const double start = thread_seconds();
+        const Result result = solver.solve(unreachable(solver), request);
+        // 32,000 isfinite() and the like are not part of the search.
+        EXPECT_LT(thread_seconds() - start, deadline + 0.02);
+        EXPECT_EQ(result.status, Status::out_of_time);
+      }
+    }
+  }
+}
+
+TEST(Seeds, AreTriedOnceEachInAnOrderOfTheirOwn) {
+  // More seeds than take part in re-selection: none is lost, whatever order they are given in.
+  iksel::SolverOptions options;
+  options.candidates = 10;
+  const Solver solver(iksel_test::load(robot_case("cvr038")), options);
+  Matrix seeds = solver.robot().random_configurations(100, iksel_test::seed());
+  const Pose target = solver.robot().fk(seeds.row(0));
+  SolveRequest request = request_of(seeds, seeds.rows());
+  const iksel::Solutions all = solver.solve_all(target, {}, request);
+  ASSERT_TRUE(all.success());
+  std::reverse(request.seeds.begin(), request.seeds.end());
+  const iksel::Solutions again = solver.solve_all(target, {}, request);
+  ASSERT_EQ(all.all.size(), again.all.size());
+  for (std::size_t i = 0; i < all.all.size(); ++i) {
+    EXPECT_LE(distance(solver.robot(), all.all[i].q, again.all[i].q), 1e-4);
+  }
+}
+
 TEST(Deadline, EndsTheSearch) {
   const Solver solver(iksel_test::load(robot_case("ur3")));
   const Pose target = solver.robot().fk(JointVector::Constant(6, 0.5));
@@ -496,6 +584,98 @@ TEST(RequestBatch, BadOnesAreNamed) {
   SolveRequest request;
   request.weights = JointVector::Zero(6);
   EXPECT_THROW((void)solver.solve_batch(batch.targets, request), iksel::InvalidArgumentError);
+}
+
+/// FK by KDL at q less its whole turns, which an extended double takes off without loss.
+Pose exact_pose(const Robot& robot, const JointVector& q) {
+  constexpr long double kTurn = 6.283185307179586476925286766559L;
+  JointVector reduced = q;
+  for (int j = 0; j < robot.dof(); ++j) {
+    if (robot.joint_types()[static_cast<std::size_t>(j)] == iksel::JointType::prismatic) continue;
+    const long double angle = q[j];
+    reduced[j] = static_cast<double>(angle - kTurn * std::round(angle / kTurn));
+  }
+  return robot.fk(reduced, iksel::Kinematics::kdl);
+}
+
+TEST(Angles, FarFromZeroAreRightOrRefused) {
+  for (const char* name : {"ur3", "panda"}) {
+    for (const double tolerance : {1e-6, 1e-9}) {
+      iksel::SolverOptions options;
+      options.position_tolerance = tolerance;
+      options.rotation_tolerance = tolerance;
+      const Solver solver(iksel_test::load(robot_case(name)).without_limits(), options);
+      const Robot& robot = solver.robot();
+      const int n = iksel_test::cases(300) / 15;
+      const Matrix q = robot.random_configurations(static_cast<std::size_t>(n), iksel_test::seed());
+      int refused = 0;
+      int far = 0;
+      for (int i = 0; i < n; ++i) {
+        const Pose target = robot.fk(q.row(i));
+        for (double size = 1; size < 1e13; size *= 10) {
+          SolveRequest request;
+          request.near = q.row((i + 1) % n).transpose() * size;
+          iksel::Solutions all;
+          try {
+            all = solver.solve_all(target, {}, request);
+            all.all.push_back(solver.solve(target, request));
+          } catch (const iksel::InvalidArgumentError& error) {
+            EXPECT_NE(std::string(error.what()).find("near["), std::string::npos);
+            EXPECT_GT(request.near->cwiseAbs().maxCoeff(), 100);
+            ++refused;
+            continue;
+          }
+          EXPECT_LT(size, 1e10);
+          for (const Result& one : all.all) {
+            if (!one.success()) continue;
+            far += one.q.cwiseAbs().maxCoeff() > 1000;
+            const auto error = iksel::pose_error(target, exact_pose(robot, one.q));
+            EXPECT_LE(error.head<3>().norm(), 1.1 * tolerance) << one.q.transpose();
+            EXPECT_LE(error.tail<3>().norm(), 1.1 * tolerance) << one.q.transpose();
+          }
+        }
+      }
+      EXPECT_GT(refused, 0);
+      EXPECT_GT(far, 0);
+    }
+  }
+}
+
+TEST(Angles, OutOfScaleAreNamedWhereverTheyComeIn) {
+  const Solver solver(iksel_test::load(robot_case("ur3")).without_limits());
+  const Pose target = solver.robot().fk(JointVector::Constant(6, 0.5));
+  JointVector far = JointVector::Constant(6, 0.5);
+  far[3] = -1e10;
+  const auto expect_named = [](const char* field, const auto& call) {
+    try {
+      call();
+      ADD_FAILURE() << field;
+    } catch (const iksel::InvalidArgumentError& error) {
+      const std::string text = error.what();
+      EXPECT_EQ(text.rfind(field, 0), 0U) << text;
+      EXPECT_NE(text.find("wrist_1_joint"), std::string::npos) << text;
+    }
+  };
+  SolveRequest near;
+  near.near = far;
+  SolveRequest seeds;
+  seeds.seeds = {JointVector::Zero(6), far};
+  SolveRequest posture;
+  posture.objective = iksel::Objective::near_posture(far);
+  iksel::PathOptions path;
+  path.start = far;
+  expect_named("near[3]", [&] { (void)solver.solve(target, near); });
+  expect_named("near[3]", [&] { (void)solver.solve_all(target, {}, near); });
+  expect_named("near[3]", [&] { (void)solver.diagnose(target, near); });
+  expect_named("near[3]", [&] { (void)solver.solve_batch({target}, near); });
+  expect_named("near[1][3]", [&] {
+    (void)solver.solve_batch({target, target}, {}, {JointVector::Zero(6), far});
+  });
+  expect_named("seeds[1][3]", [&] { (void)solver.solve(target, seeds); });
+  expect_named("seed[3]", [&] { (void)solver.solve(target, far); });
+  expect_named("posture[3]", [&] { (void)solver.solve(target, posture); });
+  expect_named("start[3]", [&] { (void)solver.solve_path({target}, path); });
+  expect_named("start[3]", [&] { (void)iksel::Tracker(solver, far); });
 }
 
 TEST(Requests, BadOptionsOfSolveAllAreNamed) {

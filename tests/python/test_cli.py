@@ -297,6 +297,7 @@ def test_path_with_settings(run: Run, poses: Path, tmp_path: Path) -> None:
     assert_good(run("build", "ur3", "-o", file, *FEW))
     words = ["path", "ur3", poses, "--json"]
     assert_good(run(*words, "--database", file, "--position-tolerance", "1e-5"))
+    assert_good(run(*words, "--database", file, "--mmap"))
     assert "absent" in run(*words, "--database", tmp_path / "absent").err
     assert_good(run(*words, "--preset", "paper", "--scale", "small"))
 

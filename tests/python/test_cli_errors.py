@@ -66,6 +66,7 @@ BAD = [
     (f"solve ur3 --pose {POSE} --solver-seed -1", "seed"),
     (f"solve ur3 --pose {POSE} --samples -1", "samples"),
     (f"solve ur3 --pose {POSE} --database absent.iksel", r"absent\.iksel"),
+    (f"solve ur3 --pose {POSE} --mmap", "--database"),
     (
         f"solve ur3 --pose {POSE} --database x --samples 9 --scale small",
         "--samples, --scale: cannot be used with --database",

@@ -251,6 +251,75 @@ def test_a_loaded_file_may_be_replaced_and_removed(database, tmp_path: Path) -> 
     assert_same(loaded, database)
 
 
+def test_mapped_files_are_the_same(made, database, tmp_path: Path) -> None:
+    path = tmp_path / "ur3.iksel"
+    database.save(path)
+    mapped = iksel.Database.load(path, mmap=True)
+    assert_same(mapped, database)
+    poses = made.robot("ur3").fk(made.robot("ur3").random_configurations(20, 1))
+    answers = [
+        iksel.Solver(made.robot("ur3"), database=d).solve_batch(poses).q
+        for d in (database, mapped)
+    ]
+    np.testing.assert_array_equal(*answers)
+    database.save(path)
+    path.unlink()
+    assert_same(mapped, database)
+    with pytest.raises(iksel.InvalidArgumentError, match="mmap"):
+        iksel.Database.load(path, mmap="yes")
+
+
+@pytest.mark.parametrize("preset", ["default", "paper"])
+def test_what_is_written_into_a_loaded_file_changes_nothing(
+    made, tmp_path: Path, preset: str
+) -> None:
+    solver = made.solver("ur3", preset)
+    path = tmp_path / "ur3.iksel"
+    solver.database.save(path)
+    loaded = iksel.Solver(solver.robot, solver.options, iksel.Database.load(path))
+    content = np.fromfile(path)
+    with path.open("r+b") as file:
+        file.write(np.full_like(content, np.nan).tobytes())
+        file.truncate(5000)
+    poses = solver.robot.fk(solver.robot.random_configurations(50, 1))
+    # Positions that are reached, with rotations that few are.
+    poses[25:, :3, :3] = poses[:25, :3, :3]
+    expected, batch = solver.solve_batch(poses), loaded.solve_batch(poses)
+    np.testing.assert_array_equal(batch.q, expected.q)
+
+
+def test_a_mapped_file_cut_short_ends_no_process(tmp_path: Path) -> None:
+    program = """
+        import faulthandler
+        import os
+        import sys
+        import iksel
+
+        options = iksel.SolverOptions.paper()
+        robot = iksel.load_robot("ur3")
+        iksel.Database.build(robot, options.database).save(sys.argv[1])
+        mapped = iksel.Database.load(sys.argv[1], mmap=True)
+        solver = iksel.Solver(robot, options, mapped)
+        poses = robot.fk(robot.random_configurations(50, 1))
+        os.truncate(sys.argv[1], 5000)
+        batch = solver.solve_batch(poses)
+        calls = [
+            lambda: solver.solve(poses[0]),
+            lambda: solver.solve_batch(poses),
+            lambda: mapped.q(0),
+            lambda: mapped.to_bytes(),
+            lambda: mapped.save(sys.argv[1]),
+        ]
+        for call in calls:
+            try:
+                call()
+            except iksel.DatabaseIoError as error:
+                print(error)
+    """
+    output = run_python(program, tmp_path / "ur3.iksel")
+    assert output.count("cut short") == 5
+
+
 def assert_refused(content: bytes, path: Path) -> None:
     """Neither the bytes nor a file of them is taken for a database."""
     typed = (iksel.DatabaseCorruptError, iksel.DatabaseMismatchError)
@@ -311,8 +380,10 @@ def test_large_file_serves_another_process_and_no_damage_passes(tmp_path: Path) 
                 file.seek(place)
                 file.write(byte)
                 if byte != right:
+                    # Reading takes longer, and is checked by the same code.
+                    mapped = bool(place % 8)
                     with pytest.raises(typed, match="damaged"):
-                        iksel.Database.load(damaged)
+                        iksel.Database.load(damaged, mmap=mapped)
         assert len(iksel.Database.load(damaged)) == 151_200
         for length in np.sort(random.integers(0, size, 100))[::-1]:
             file.truncate(int(length))

@@ -32,10 +32,19 @@ class IKSEL_EXPORT Database {
   static Database build(const Robot& robot, const DatabaseOptions& options = {},
                         const Progress& progress = {});
 
-  /// Maps a file read-only; processes that load one file share its memory. Throws DatabaseIoError,
+  /// Reads a file, after which it may be changed or removed. Throws DatabaseIoError,
   /// DatabaseCorruptError or DatabaseMismatchError (format version, byte order).
-  static Database load(const std::filesystem::path& path);
-  /// Writes beside `path` and renames, so that a crash leaves the old file or the new one. Throws
+  ///
+  /// With `mmap` the samples, most of a large file, stay in the file and are mapped read-only:
+  /// processes that load one file share them. The file may be replaced (`save` does so) or removed,
+  /// but should not be written to: what is overwritten in place is not noticed, and makes seeds
+  /// worse, never an answer wrong. Where a file is cut short, the call under way still ends, and
+  /// the next one on the database or a solver of it throws DatabaseIoError; for this the first such
+  /// load installs a handler of SIGBUS, which passes on what is not its own. At most 256 files are
+  /// mapped at once.
+  static Database load(const std::filesystem::path& path, bool mmap = false);
+  /// Writes beside `path` and renames, so that a crash leaves the old file or the new one. Removes
+  /// files named iksel-*.tmp in the same folder that saves which were killed have left. Throws
   /// DatabaseIoError; the old file is then untouched.
   void save(const std::filesystem::path& path) const;
 

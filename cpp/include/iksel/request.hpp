@@ -31,9 +31,16 @@ using Filter = std::function<void(const double* q, std::size_t count, bool* keep
 IKSEL_EXPORT Filter filter_each(int dof, std::function<bool(const JointVector&)> keep);
 
 /// A solve with wishes. The defaults wish nothing.
+///
+/// Angles of `near`, `seeds` and the objective's posture are refused where their rounding alone
+/// could move the tip by a tenth of the tolerances: beyond 2^53 / 10 min(rotation_tolerance,
+/// position_tolerance / reach) / (number of joints that turn), 1.5e8 rad for an arm of six joints
+/// with 1 m of reach at the default tolerances; up to 100 rad always pass.
 struct IKSEL_EXPORT SolveRequest {
   /// Seeds of any origin, each with dof joint values [rad or m], inside the limits or not. They are
-  /// ranked and iterated as the database's own, and come before those.
+  /// ranked and iterated as the database's own, and come before those; re-selection is among the
+  /// best SolverOptions::candidates of them, and SolverOptions::max_attempts bounds how many are
+  /// tried. Ranking n takes time n log n, ends at the deadline, and up to 1,024 need no memory.
   std::vector<JointVector> seeds;
   /// Whether the database's seeds follow the given ones; random restarts belong to the database's.
   bool database_seeds = true;

@@ -4,6 +4,7 @@
 #include <limits>
 #include <memory>
 #include <new>
+#include <sstream>
 #include <vector>
 
 #include "database/data.hpp"
@@ -19,6 +20,17 @@
 
 namespace iksel {
 namespace {
+
+/// Throws unless all numbers can be in a database.
+void check_samples(const double* first, std::size_t count, const ChainModel& model) {
+  if (std::all_of(first, first + count, is_usable)) return;
+  std::ostringstream text;
+  text << "no database can be built: samples of the chain are not finite or out of scale; its "
+          "reach is "
+       << model.reach << " m, its joint limits are " << model.lower.transpose() << " to "
+       << model.upper.transpose();
+  throw DatabaseError(text.str());
+}
 
 /// Samples that a thread takes at a time.
 constexpr std::size_t kSamplesPerTurn = 512;
@@ -139,6 +151,7 @@ void build_data(const ChainModel& model, const DatabaseOptions& options, const P
   // Half of a sample's work.
   parallel_for(data->size, kSamplesPerTurn, threads, make_key_worker,
                [&](std::size_t done) { report(updates + done / 2); });
+  check_samples(keys.data(), keys.size(), model);
   const std::vector<std::uint32_t> order = KdTree(keys.data(), data->size, data->key_dim).order();
 
   const auto block = std::make_shared<HeapBlock>(data->size * (key_dim + length) * sizeof(double));
@@ -162,6 +175,7 @@ void build_data(const ChainModel& model, const DatabaseOptions& options, const P
         if (halves < total) report(halves);
       });
 
+  check_samples(records, data->size * length, model);
   write_header(*data, block->writable(), block->size());
   data->use(block);
   report(total);

@@ -2,9 +2,12 @@
 // The arrays behind a Database. They lie in memory as in a file: a header, the keys, the records.
 #pragma once
 
+#include <atomic>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "database/kd_tree.hpp"
 #include "database/leaf_tree.hpp"
@@ -23,7 +26,12 @@ class Block {
   virtual ~Block() = default;
   [[nodiscard]] virtual const unsigned char* data() const = 0;
   [[nodiscard]] virtual std::size_t size() const = 0;
+  /// Null where nobody else can change the bytes; else whether some were lost since.
+  [[nodiscard]] virtual const std::atomic<bool>* damaged() const { return nullptr; }
 };
+
+/// Whether a number may be in a database: finite, and so are squared distances between such.
+inline bool is_usable(double value) { return std::abs(value) <= 1e100; }
 
 struct DatabaseData {
   DatabaseOptions options;
@@ -37,6 +45,8 @@ struct DatabaseData {
   std::shared_ptr<const Block> block;
   /// size x key_dim, in the order of the tree, so that neighbours lie close together.
   const double* keys = nullptr;
+  /// The keys, if the block may change.
+  std::shared_ptr<const std::vector<double>> own_keys;
   /// size x record_length: x_i = [position; rotation vector] of the tip link (6), q_i (dof), J_i^+
   /// column by column (dof x 6).
   const double* records = nullptr;
@@ -49,8 +59,11 @@ struct DatabaseData {
 
   /// Key of a pose of the tip link.
   void make_key(const Pose& T_base_tip, double* key) const;
-  /// Takes keys and records from a block, and makes the trees over them.
+  /// Takes keys and records from a block, and makes the trees over them. Throws DatabaseError if
+  /// one is not usable.
   void use(std::shared_ptr<const Block> with);
+  /// Throws DatabaseIoError if bytes of a mapped file were lost.
+  void check_intact() const;
 
   [[nodiscard]] static std::size_t record_length(int dof) {
     return 6 + 7 * static_cast<std::size_t>(dof);

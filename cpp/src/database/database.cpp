@@ -33,15 +33,20 @@ void DatabaseData::make_key(const Pose& T_base_tip, double* key) const {
 
 Database::Database(std::shared_ptr<const DatabaseData> data) : data_(std::move(data)) {}
 
-Database Database::load(const std::filesystem::path& path) {
-  return Database(
-      std::make_shared<DatabaseData>(read_block(map_file(path), "'" + path.string() + "'")));
+Database Database::load(const std::filesystem::path& path, bool mmap) {
+  return Database(std::make_shared<DatabaseData>(
+      read_block(mmap ? map_file(path) : read_file(path), "'" + path.string() + "'")));
 }
 
-void Database::save(const std::filesystem::path& path) const { write_file(path, *data_->block); }
+void Database::save(const std::filesystem::path& path) const {
+  data_->check_intact();
+  write_file(path, *data_->block);
+}
 
 std::string Database::to_bytes() const {
-  return {reinterpret_cast<const char*>(data_->block->data()), data_->block->size()};
+  std::string bytes(reinterpret_cast<const char*>(data_->block->data()), data_->block->size());
+  data_->check_intact();
+  return bytes;
 }
 
 Database Database::from_bytes(const std::string& bytes) {
@@ -61,7 +66,9 @@ std::uint64_t Database::chain_hash() const { return data_->chain_hash; }
 
 JointVector Database::q(std::size_t i) const {
   check_index(i, size());
-  return Eigen::Map<const Eigen::VectorXd>(data_->q(i), dof());
+  JointVector q = Eigen::Map<const Eigen::VectorXd>(data_->q(i), dof());
+  data_->check_intact();
+  return q;
 }
 
 Pose Database::pose(std::size_t i) const {
@@ -70,6 +77,7 @@ Pose Database::pose(std::size_t i) const {
   Pose pose = Pose::Identity();
   pose.translation() = Eigen::Map<const Eigen::Vector3d>(x);
   pose.linear() = from_rotation_vector(Eigen::Map<const Eigen::Vector3d>(x + 3));
+  data_->check_intact();
   if (data_->reduction) {
     const Reduction::Parameters& p = data_->reduction->parameters();
     return Pose(p.base_inverse).inverse() * pose * Pose(p.flange_inverse).inverse();
@@ -79,7 +87,9 @@ Pose Database::pose(std::size_t i) const {
 
 Matrix Database::pseudo_inverse(std::size_t i) const {
   check_index(i, size());
-  return Eigen::Map<const Eigen::MatrixXd>(data_->pseudo_inverse(i), dof(), 6);
+  Matrix inverse = Eigen::Map<const Eigen::MatrixXd>(data_->pseudo_inverse(i), dof(), 6);
+  data_->check_intact();
+  return inverse;
 }
 
 std::vector<std::size_t> Database::nearest(const Pose& T_base_tip, std::size_t k) const {
@@ -89,7 +99,7 @@ std::vector<std::size_t> Database::nearest(const Pose& T_base_tip, std::size_t k
   std::vector<Neighbour> neighbours(std::min(k, size()));
   std::vector<std::size_t> indices;
   if (neighbours.empty()) return indices;
-  data_->tree.nearest(key, neighbours.size(), neighbours.data());
+  neighbours.resize(data_->tree.nearest(key, neighbours.size(), neighbours.data()));
   std::sort(neighbours.begin(), neighbours.end());
   for (const Neighbour& neighbour : neighbours) indices.push_back(neighbour.index);
   return indices;

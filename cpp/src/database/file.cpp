@@ -1,20 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "database/file.hpp"
 
-#include <fcntl.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <atomic>
-#include <cerrno>
 #include <cstddef>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
-#include <new>
+#include <iterator>
+#include <limits>
 #include <utility>
+#include <vector>
 
 #include "database/key.hpp"
 #include "iksel/error.hpp"
@@ -26,7 +20,6 @@ namespace {
 constexpr char kMagic[8] = {'I', 'K', 'S', 'E', 'L', 'D', 'B', '\0'};
 constexpr std::uint32_t kVersion = 1;
 constexpr std::uint32_t kByteOrder = 0x01020304;
-constexpr std::size_t kAlignment = 64;
 
 /// The header. Magic, byte order and version keep their places, and the checksum its place at the
 /// end, in every version of the format.
@@ -78,60 +71,101 @@ StoredPose load_pose(const double* from) {
   return pose;
 }
 
-std::string system_error(int error) { return std::strerror(error); }
-
-class MappedBlock final : public Block {
- public:
-  MappedBlock(void* bytes, std::size_t size) : bytes_(bytes), size_(size) {}
-  MappedBlock(const MappedBlock&) = delete;
-  MappedBlock& operator=(const MappedBlock&) = delete;
-  ~MappedBlock() override { ::munmap(bytes_, size_); }
-  [[nodiscard]] const unsigned char* data() const override {
-    return static_cast<const unsigned char*>(bytes_);
+/// What a header says of the data behind it.
+DatabaseData describe(const Header& header) {
+  DatabaseData data;
+  data.options.sampling = static_cast<Sampling>(header.sampling);
+  data.options.scale = static_cast<Scale>(header.scale);
+  data.options.rotation_key = static_cast<RotationKey>(header.rotation_key);
+  data.options.key_scheme = static_cast<KeyScheme>(header.key_scheme);
+  data.options.samples = header.option_samples;
+  data.options.cvt_updates = header.cvt_updates;
+  data.options.seed = header.seed;
+  data.options.rotation_weight = header.rotation_weight;
+  data.options.pinv_cutoff = header.pinv_cutoff;
+  data.dof = static_cast<int>(header.dof);
+  data.key_dim = static_cast<int>(header.key_dim);
+  data.size = header.samples;
+  data.chain_hash = header.chain_hash;
+  data.weight = header.weight;
+  if (data.options.key_scheme == KeyScheme::reduced) {
+    Reduction::Parameters p;
+    p.left = static_cast<lanes::Side>(header.left);
+    p.right = static_cast<lanes::Side>(header.right);
+    p.dof = data.dof;
+    p.weight = header.weight;
+    p.base_inverse = load_pose(header.base_inverse);
+    p.flange_inverse = load_pose(header.flange_inverse);
+    data.reduction = std::make_shared<Reduction>(p);
   }
-  [[nodiscard]] std::size_t size() const override { return size_; }
-
- private:
-  void* bytes_;
-  std::size_t size_;
-};
-
-/// A file descriptor that closes itself.
-class Descriptor {
- public:
-  explicit Descriptor(int fd) : fd_(fd) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() { close(); }
-  [[nodiscard]] int get() const { return fd_; }
-  int close() {
-    const int fd = std::exchange(fd_, -1);
-    return fd >= 0 ? ::close(fd) : 0;
-  }
-
- private:
-  int fd_;
-};
-
-}  // namespace
-
-HeapBlock::HeapBlock(std::size_t payload) : size_(kHeaderSize + payload) {
-  const std::size_t rounded = (size_ + kAlignment - 1) / kAlignment * kAlignment;
-  bytes_ = static_cast<unsigned char*>(std::aligned_alloc(kAlignment, rounded));
-  if (bytes_ == nullptr) throw std::bad_alloc();
+  return data;
 }
 
-HeapBlock::~HeapBlock() { std::free(bytes_); }
+bool reduction_fits(const Header& header) {
+  const auto last = static_cast<std::uint32_t>(lanes::Side::translation);
+  const bool reduced = header.key_scheme == static_cast<std::uint32_t>(KeyScheme::reduced);
+  const bool leaves_out = header.left != 0 || header.right != 0;
+  return header.left <= last && header.right <= last &&
+         (!leaves_out || (reduced && header.dof >= 3)) && is_usable(header.weight) &&
+         std::all_of(std::begin(header.base_inverse), std::end(header.base_inverse), is_usable) &&
+         std::all_of(std::begin(header.flange_inverse), std::end(header.flange_inverse), is_usable);
+}
+
+bool sizes_fit(const Header& header, const DatabaseData& data) {
+  const int key_dim =
+      data.reduction ? data.reduction->key_dimension() : key_dimension(data.options.rotation_key);
+  return header.key_dim == static_cast<std::uint32_t>(key_dim) && header.samples >= 1 &&
+         header.samples <= std::numeric_limits<std::uint32_t>::max() &&
+         header.payload_size == header.samples * sizeof(double) *
+                                    (header.key_dim + DatabaseData::record_length(data.dof));
+}
+
+/// A header with a right checksum was written by this code, or by somebody who wants it to look so:
+/// nothing is done by its numbers until they are known to be in range.
+DatabaseData read_header(const Header& header, const std::string& name) {
+  if (header.dof < 1 || header.dof > static_cast<std::uint32_t>(kMaxDof) ||
+      !reduction_fits(header)) {
+    corrupt(name, "its header's numbers are out of range");
+  }
+  DatabaseData data = describe(header);
+  try {
+    data.options.validate();
+  } catch (const InvalidArgumentError& error) {
+    corrupt(name, std::string("its header's ") + error.what());
+  }
+  if (!sizes_fit(header, data)) corrupt(name, "its header's sizes do not fit together");
+  return data;
+}
+
+}  // namespace
 
 void DatabaseData::use(std::shared_ptr<const Block> with) {
   block = std::move(with);
   keys = reinterpret_cast<const double*>(block->data() + kHeaderSize);
-  records = keys + size * static_cast<std::size_t>(key_dim);
+  const std::size_t count = size * static_cast<std::size_t>(key_dim);
+  records = keys + count;
+  if (block->damaged() != nullptr) {
+    // What the trees lead through does not change under them.
+    own_keys = std::make_shared<const std::vector<double>>(keys, keys + count);
+    keys = own_keys->data();
+  }
+  if (!std::all_of(keys, keys + count, is_usable) ||
+      !std::all_of(records, records + size * record_length(dof), is_usable)) {
+    throw DatabaseError("a sample is not finite, or farther out than 1e100");
+  }
   tree = KdTree(keys, size, key_dim);
   if (reduction) {
     leaves = LeafTree(*this);
     tiles = Tiles(*this);
   }
+}
+
+void DatabaseData::check_intact() const {
+  const std::atomic<bool>* damaged = block->damaged();
+  if (damaged == nullptr || !*damaged) return;
+  throw DatabaseIoError(
+      "a mapped database can no longer be read: its file was cut short, or the disk failed, after "
+      "Database::load(..., mmap = true)");
 }
 
 void write_header(const DatabaseData& data, unsigned char* block, std::size_t size) {
@@ -186,42 +220,7 @@ DatabaseData read_block(std::shared_ptr<const Block> block, const std::string& n
                                 std::to_string(kVersion));
   }
 
-  DatabaseData data;
-  data.options.sampling = static_cast<Sampling>(header.sampling);
-  data.options.scale = static_cast<Scale>(header.scale);
-  data.options.rotation_key = static_cast<RotationKey>(header.rotation_key);
-  data.options.key_scheme = static_cast<KeyScheme>(header.key_scheme);
-  data.options.samples = header.option_samples;
-  data.options.cvt_updates = header.cvt_updates;
-  data.options.seed = header.seed;
-  data.options.rotation_weight = header.rotation_weight;
-  data.options.pinv_cutoff = header.pinv_cutoff;
-  data.dof = static_cast<int>(header.dof);
-  data.key_dim = static_cast<int>(header.key_dim);
-  data.size = header.samples;
-  data.chain_hash = header.chain_hash;
-
-  data.weight = header.weight;
-  if (data.options.key_scheme == KeyScheme::reduced) {
-    Reduction::Parameters p;
-    p.left = static_cast<lanes::Side>(header.left);
-    p.right = static_cast<lanes::Side>(header.right);
-    p.dof = data.dof;
-    p.weight = header.weight;
-    p.base_inverse = load_pose(header.base_inverse);
-    p.flange_inverse = load_pose(header.flange_inverse);
-    data.reduction = std::make_shared<Reduction>(p);
-  }
-
-  // A header with a right checksum was written by this code, yet nothing is read by its sizes until
-  // they are known to be consistent.
-  const bool sizes_fit =
-      header.dof >= 1 && header.dof <= static_cast<std::uint32_t>(kMaxDof) && header.key_dim >= 1 &&
-      header.key_dim <= static_cast<std::uint32_t>(kMaxKeyDimension) && header.samples >= 1 &&
-      header.samples <= header.payload_size / sizeof(double) &&
-      header.payload_size == header.samples * sizeof(double) *
-                                 (header.key_dim + DatabaseData::record_length(data.dof));
-  if (!sizes_fit) corrupt(name, "its header's sizes do not fit together");
+  DatabaseData data = read_header(header, name);
   if (block->size() - kHeaderSize != header.payload_size) {
     corrupt(name, "truncated: " + std::to_string(block->size()) + " bytes instead of " +
                       std::to_string(kHeaderSize + header.payload_size));
@@ -230,62 +229,13 @@ DatabaseData read_block(std::shared_ptr<const Block> block, const std::string& n
   if (checksum(payload, header.payload_size) != header.payload_checksum) {
     corrupt(name, "its content fails its checksum");
   }
-  data.use(std::move(block));
+  try {
+    data.use(std::move(block));
+  } catch (const DatabaseError& error) {
+    corrupt(name, error.what());
+  }
+  data.check_intact();
   return data;
-}
-
-std::shared_ptr<const Block> map_file(const std::filesystem::path& path) {
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (file.get() < 0) {
-    throw DatabaseIoError("cannot open database '" + path.string() + "': " + system_error(errno));
-  }
-  struct stat info {};
-  if (::fstat(file.get(), &info) != 0) {
-    throw DatabaseIoError("cannot read database '" + path.string() + "': " + system_error(errno));
-  }
-  if (!S_ISREG(info.st_mode)) {
-    throw DatabaseIoError("cannot read database '" + path.string() + "': not a regular file");
-  }
-  const auto size = static_cast<std::size_t>(info.st_size);
-  if (size < kHeaderSize) {
-    corrupt("'" + path.string() + "'",
-            "truncated: " + std::to_string(size) + " bytes, less than a header");
-  }
-  void* bytes = ::mmap(nullptr, size, PROT_READ, MAP_SHARED, file.get(), 0);
-  if (bytes == MAP_FAILED) {
-    throw DatabaseIoError("cannot map database '" + path.string() + "': " + system_error(errno));
-  }
-  return std::make_shared<MappedBlock>(bytes, size);
-}
-
-void write_file(const std::filesystem::path& path, const Block& block) {
-  // A name of our own in the same folder, so that the rename is atomic.
-  static std::atomic<unsigned> counter{0};
-  const std::string temporary =
-      path.string() + "." + std::to_string(::getpid()) + "-" + std::to_string(counter++) + ".tmp";
-  Descriptor file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-  if (file.get() < 0) {
-    throw DatabaseIoError("cannot write database '" + path.string() + "': " + system_error(errno));
-  }
-  const auto fail = [&](const char* what) {
-    const int error = errno;
-    file.close();
-    ::unlink(temporary.c_str());
-    throw DatabaseIoError(std::string("cannot ") + what + " database '" + path.string() +
-                          "': " + system_error(error));
-  };
-  std::size_t written = 0;
-  while (written < block.size()) {
-    constexpr std::size_t kPiece = 1U << 30U;
-    const ssize_t n =
-        ::write(file.get(), block.data() + written, std::min(kPiece, block.size() - written));
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) fail("write");
-    written += static_cast<std::size_t>(n);
-  }
-  if (::fsync(file.get()) != 0) fail("write");
-  if (file.close() != 0) fail("write");
-  if (::rename(temporary.c_str(), path.c_str()) != 0) fail("replace");
 }
 
 }  // namespace iksel

@@ -35,10 +35,16 @@ void write_header(const DatabaseData& data, unsigned char* block, std::size_t si
 /// `name` names it in errors.
 DatabaseData read_block(std::shared_ptr<const Block> block, const std::string& name);
 
-/// Maps a file read-only.
+/// Reads a file into memory of its own.
+std::shared_ptr<const Block> read_file(const std::filesystem::path& path);
+
+/// Maps a file read-only. Where the file is cut short afterwards, the mapping reads as zeros and is
+/// marked as damaged (mapped_file.cpp).
 std::shared_ptr<const Block> map_file(const std::filesystem::path& path);
 
-/// Writes beside `path`, syncs and renames.
-void write_file(const std::filesystem::path& path, const Block& block);
+/// Writes a file beside `path`, syncs and renames; first removes what saves that were killed left
+/// in the folder. A file without a name, where the system has such, leaves nothing when killed;
+/// tests can do without it.
+void write_file(const std::filesystem::path& path, const Block& block, bool nameless = true);
 
 }  // namespace iksel

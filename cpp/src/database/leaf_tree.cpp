@@ -6,6 +6,7 @@
 
 #include "database/data.hpp"
 #include "database/key.hpp"
+#include "iksel/error.hpp"
 #include "lanes/lane_types.hpp"
 
 namespace iksel {
@@ -86,6 +87,7 @@ LeafTree::LeafTree(const DatabaseData& data)
     for (double& m : mean) m /= static_cast<double>(bounds[leaf + 1] - bounds[leaf]);
     std::vector<Neighbour> nearest(lanes::kGroup);
     const std::size_t found = data.tree.nearest(mean, nearest.size(), nearest.data());
+    if (found == 0) throw DatabaseError("a leaf of the database has no sample near it");
     nearest.resize(found);
     std::sort(nearest.begin(), nearest.end());
     for (int slot = 0; slot < lanes::kGroup; ++slot) {

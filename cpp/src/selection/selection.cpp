@@ -127,7 +127,8 @@ void Selection::score(Candidate& candidate) const {
   if (options_.ranking == Ranking::joint_adjustment) {
     double sum = 0;
     for (int i = 0; i < dof; ++i) sum += adjustment[i] * adjustment[i];
-    candidate.score = sum;
+    // Not a number has no place in an order.
+    candidate.score = std::isnan(sum) ? kInfinity : sum;
   }
   if (options_.limit_aware) {
     const double* q = seed_of(candidate);

@@ -149,7 +149,7 @@ void Solver::Impl::solve_batch(std::size_t count, const SolveRequest& request, i
 std::vector<Result> Solver::solve_batch(const std::vector<Pose>& T_base_tip,
                                         const SolveRequest& request,
                                         const std::vector<JointVector>& near, int threads) const {
-  request.validate(robot().dof());
+  impl_->check(request);
   if (!request.has_wishes() && near.empty()) return solve_batch(T_base_tip, threads);
   threads = resolve_threads(threads);
   check_poses(T_base_tip);
@@ -159,7 +159,9 @@ std::vector<Result> Solver::solve_batch(const std::vector<Pose>& T_base_tip,
                                std::to_string(near.size()));
   }
   for (std::size_t i = 0; i < near.size(); ++i) {
-    check_joints(near[i], robot().dof(), ("near[" + std::to_string(i) + "]").c_str());
+    const std::string name = "near[" + std::to_string(i) + "]";
+    check_joints(near[i], robot().dof(), name.c_str());
+    impl_->check_angles(near[i], name.c_str());
   }
   std::vector<Result> results(T_base_tip.size());
   impl_->solve_batch(
@@ -173,7 +175,7 @@ void Solver::solve_batch(const double* T_base_tip, std::size_t count, const Solv
                          const double* near, const BatchView& out, int threads,
                          const Progress& progress) const {
   const int dof = robot().dof();
-  request.validate(dof);
+  impl_->check(request);
   if (!request.has_wishes() && near == nullptr) {
     solve_batch(T_base_tip, count, out, threads, progress);
     return;
@@ -186,8 +188,10 @@ void Solver::solve_batch(const double* T_base_tip, std::size_t count, const Solv
     return near == nullptr ? nullptr : near + i * static_cast<std::size_t>(dof);
   };
   for (std::size_t i = 0; near != nullptr && i < count; ++i) {
-    check_joints(Eigen::Map<const Eigen::VectorXd>(near_of(i), dof), dof,
-                 ("near[" + std::to_string(i) + "]").c_str());
+    const JointVector row = Eigen::Map<const Eigen::VectorXd>(near_of(i), dof);
+    const std::string name = "near[" + std::to_string(i) + "]";
+    check_joints(row, dof, name.c_str());
+    impl_->check_angles(row, name.c_str());
   }
   impl_->solve_batch(
       count, request, threads, [&](std::size_t i) { return to_pose(T_base_tip + 16 * i); }, near_of,

@@ -304,7 +304,7 @@ Diagnosis Solver::Impl::diagnose(const Pose& T_base_tip, const SolveRequest& req
 
 Diagnosis Solver::diagnose(const Pose& T_base_tip, const SolveRequest& request) const {
   check_pose(T_base_tip);
-  request.validate(robot().dof());
+  impl_->check(request);
   return impl_->diagnose(T_base_tip, request);
 }
 

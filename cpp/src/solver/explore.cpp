@@ -5,7 +5,6 @@
 #include <optional>
 #include <vector>
 
-#include "solver/given_seeds.hpp"
 #include "solver/lane_explore.hpp"
 #include "solver/mirror.hpp"
 #include "solver/solver_impl.hpp"
@@ -119,7 +118,7 @@ void Solver::Impl::explore(Exploration& search, Workspace& workspace) const {
   };
 
   if (!search.task.is_full_pose()) {
-    explore_task(search, workspace.tasks, accept, go_on);
+    explore_task(search, workspace, accept, go_on);
   } else if (workspace.lanes) {
     explore_in_lanes(search, workspace, accept, go_on);
   } else {
@@ -177,13 +176,14 @@ void Solver::Impl::explore_in_lanes(Exploration& search, Workspace& workspace,
     iterate_seeds(&near, 1);
   }
   if (!search.request.seeds.empty()) {
-    GivenSeeds given(robot.model(), options, search.task, search.T_base_tip, search.request.seeds);
-    std::vector<const double*> order;
-    while (const double* seed = given.next(static_cast<int>(order.size()))) order.push_back(seed);
-    const int count = static_cast<int>(order.size());
-    for (int first = 0; first < count; first += lanes::kGroup) {
-      iterate_seeds(&order[static_cast<std::size_t>(first)],
-                    std::min(lanes::kGroup, count - first));
+    GivenSeeds& given = workspace.given;
+    if (!given.rank(search.task, search.T_base_tip, search.request.seeds, go_on)) return;
+    const double* group[lanes::kGroup];
+    while (work.attempts < options.max_attempts) {
+      int count = 0;
+      while (count < lanes::kGroup && (group[count] = given.next()) != nullptr) ++count;
+      if (count == 0) break;
+      iterate_seeds(group, count);
       if (!go_on()) return;
     }
   }
@@ -193,9 +193,10 @@ void Solver::Impl::explore_in_lanes(Exploration& search, Workspace& workspace,
   lanes.explore(search.T_base_tip, work, accept, steering);
 }
 
-void Solver::Impl::explore_task(Exploration& search, TaskSearch& tasks,
+void Solver::Impl::explore_task(Exploration& search, Workspace& workspace,
                                 FunctionRef<Verdict(JointVector&)> accept,
                                 FunctionRef<bool()> go_on) const {
+  TaskSearch& tasks = workspace.tasks;
   StageClock clock(nullptr);
   tasks.begin(search.T_base_tip, search.task,
               search.wants_more() ? TaskSearch::kMany : TaskSearch::kFew);
@@ -205,9 +206,10 @@ void Solver::Impl::explore_task(Exploration& search, TaskSearch& tasks,
   const auto go_on_in_stages = [&] { return ++since % stage != 0 || go_on(); };
   if (search.request.near) tasks.attempt(*search.request.near, clock, search.work, accept);
   if (!search.request.seeds.empty()) {
-    GivenSeeds given(robot.model(), options, search.task, search.T_base_tip, search.request.seeds);
+    GivenSeeds& given = workspace.given;
+    if (!given.rank(search.task, search.T_base_tip, search.request.seeds, go_on)) return;
     for (int k = 0; k < options.max_attempts; ++k) {
-      const double* seed = given.next(k);
+      const double* seed = given.next();
       if (seed == nullptr) break;
       tasks.attempt(Eigen::Map<const Eigen::VectorXd>(seed, robot.dof()), clock, search.work,
                     accept);
@@ -250,9 +252,10 @@ void Solver::Impl::explore_one_by_one(Exploration& search, Workspace& workspace,
   };
 
   if (!search.request.seeds.empty()) {
-    GivenSeeds given(model, options, search.task, search.T_base_tip, search.request.seeds);
-    const auto next = [&](int k) { return given.next(k); };
-    if (!try_all(next)) {
+    GivenSeeds& given = workspace.given;
+    const auto next = [&](int /*attempt*/) { return given.next(); };
+    if (!given.rank(search.task, search.T_base_tip, search.request.seeds, go_on) ||
+        !try_all(next)) {
       go_on();
       return;
     }

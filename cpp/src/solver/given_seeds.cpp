@@ -9,15 +9,29 @@
 
 namespace iksel {
 
-GivenSeeds::GivenSeeds(const ChainModel& model, const SolverOptions& options, const TaskSpace& task,
-                       const Pose& T_base_tip, const std::vector<JointVector>& seeds)
-    : model_(model),
-      options_(options),
-      seeds_(seeds),
-      sum_of_failed_(JointVector::Zero(model.dof)) {
+GivenSeeds::GivenSeeds(const ChainModel& model, const SolverOptions& options)
+    : model_(model), options_(options) {
+  ranked_.reserve(kRoom);
+}
+
+bool GivenSeeds::rank(const TaskSpace& task, const Pose& T_base_tip,
+                      const std::vector<JointVector>& seeds, FunctionRef<bool()> go_on) {
+  /// Seeds between two questions: a fraction of a millisecond.
+  constexpr std::size_t kStage = 16;
+  seeds_ = &seeds;
+  taken_ = 0;
+  sum_of_failed_.setZero(model_.dof);
+  ranked_.clear();
   ranked_.reserve(seeds.size());
-  for (std::size_t i = 0; i < seeds.size(); ++i) ranked_.push_back(rank(i, task, T_base_tip));
+  for (std::size_t i = 0; i < seeds.size(); ++i) {
+    if (i % kStage == 0 && !go_on()) {
+      ranked_.clear();
+      return false;
+    }
+    ranked_.push_back(rank_one(i, task, T_base_tip));
+  }
   std::sort(ranked_.begin(), ranked_.end());
+  return true;
 }
 
 Vector6 GivenSeeds::error_of(const JointVector& q, const TaskSpace& task, const Pose& T_base_tip,
@@ -45,9 +59,9 @@ Vector6 GivenSeeds::error_of(const JointVector& q, const TaskSpace& task, const 
   return e;
 }
 
-GivenSeeds::Ranked GivenSeeds::rank(std::size_t index, const TaskSpace& task,
-                                    const Pose& T_base_tip) const {
-  const JointVector& q = seeds_[index];
+GivenSeeds::Ranked GivenSeeds::rank_one(std::size_t index, const TaskSpace& task,
+                                        const Pose& T_base_tip) const {
+  const JointVector& q = (*seeds_)[index];
   Ranked ranked{0, index, false};
   JacobianMatrix J;
   const Vector6 e = error_of(q, task, T_base_tip, J);
@@ -66,25 +80,28 @@ GivenSeeds::Ranked GivenSeeds::rank(std::size_t index, const TaskSpace& task,
   return ranked;
 }
 
-const double* GivenSeeds::next(int attempt) {
-  const auto position = static_cast<std::size_t>(attempt);
-  if (position >= ranked_.size()) return nullptr;
-  if (attempt > 0) {
+const double* GivenSeeds::next() {
+  if (taken_ >= ranked_.size()) return nullptr;
+  if (taken_ > 0) {
     if (options_.reselection == Reselection::none) return nullptr;
-    if (options_.reselection == Reselection::farthest) bring_farthest_forward(position);
+    if (options_.reselection == Reselection::farthest) bring_farthest_forward();
   }
-  return seeds_[ranked_[position].index].data();
+  return (*seeds_)[ranked_[taken_++].index].data();
 }
 
-void GivenSeeds::bring_farthest_forward(std::size_t position) {
+void GivenSeeds::bring_farthest_forward() {
+  const std::size_t candidates =
+      std::min(ranked_.size(), static_cast<std::size_t>(options_.candidates));
+  if (taken_ >= candidates) return;
   // As Selection does: the largest |m q - sum of the m failed q|.
-  sum_of_failed_ += seeds_[ranked_[position - 1].index];
-  const auto first = ranked_.begin() + static_cast<std::ptrdiff_t>(position);
-  const auto m = static_cast<double>(position);
+  sum_of_failed_ += (*seeds_)[ranked_[taken_ - 1].index];
+  const auto first = ranked_.begin() + static_cast<std::ptrdiff_t>(taken_);
+  const auto end = ranked_.begin() + static_cast<std::ptrdiff_t>(candidates);
+  const auto m = static_cast<double>(taken_);
   auto best = first;
   double best_distance = -1;
-  for (auto i = first; i != ranked_.end(); ++i) {
-    const double distance = (m * seeds_[i->index] - sum_of_failed_).squaredNorm();
+  for (auto i = first; i != end; ++i) {
+    const double distance = (m * (*seeds_)[i->index] - sum_of_failed_).squaredNorm();
     if (distance > best_distance) {
       best_distance = distance;
       best = i;

@@ -8,18 +8,25 @@
 #include "iksel/options.hpp"
 #include "iteration/task_space.hpp"
 #include "kinematics/chain_model.hpp"
+#include "util/function_ref.hpp"
 
 namespace iksel {
 
+/// Memory is taken at construction for kRoom seeds; more take it once, and it is kept.
 class GivenSeeds {
  public:
-  /// `seeds` must outlive this.
-  GivenSeeds(const ChainModel& model, const SolverOptions& options, const TaskSpace& task,
-             const Pose& T_base_tip, const std::vector<JointVector>& seeds);
+  static constexpr std::size_t kRoom = 1024;
 
-  /// The seed of attempt 0, 1, ...; null when there is none left.
-  const double* next(int attempt);
-  [[nodiscard]] std::size_t size() const { return ranked_.size(); }
+  GivenSeeds(const ChainModel& model, const SolverOptions& options);
+
+  /// Puts `seeds`, which must outlive their use, in order: n log n for n of them. Asks `go_on`
+  /// every few; false if it said no, and there are no seeds then.
+  bool rank(const TaskSpace& task, const Pose& T_base_tip, const std::vector<JointVector>& seeds,
+            FunctionRef<bool()> go_on);
+
+  /// The seed of the next attempt; null when there is none left. As the database's, seeds are
+  /// re-selected among the options' `candidates` best; the others follow by rank.
+  const double* next();
 
  private:
   struct Ranked {
@@ -31,16 +38,18 @@ class GivenSeeds {
       return a.score != b.score ? a.score < b.score : a.index < b.index;
     }
   };
-  [[nodiscard]] Ranked rank(std::size_t index, const TaskSpace& task, const Pose& T_base_tip) const;
+  [[nodiscard]] Ranked rank_one(std::size_t index, const TaskSpace& task,
+                                const Pose& T_base_tip) const;
   /// The error to be reduced, and the Jacobian J of what reduces it.
   Vector6 error_of(const JointVector& q, const TaskSpace& task, const Pose& T_base_tip,
                    JacobianMatrix& J) const;
-  void bring_farthest_forward(std::size_t position);
+  void bring_farthest_forward();
 
   const ChainModel& model_;
   const SolverOptions& options_;
-  const std::vector<JointVector>& seeds_;
+  const std::vector<JointVector>* seeds_ = nullptr;
   std::vector<Ranked> ranked_;
+  std::size_t taken_ = 0;
   JointVector sum_of_failed_;
 };
 

@@ -240,9 +240,13 @@ bool LaneSearch::search(const Pose& T_base_tcp, const JointVector* seed, StageCl
   if (iterate_ranked(lanes::kGroup)) return true;
 
   // Widening stages: each asks for four times as many and tries those it has not tried yet.
+  // Their number ends them, and not how many the tree finds: keys may be far out of its range.
   std::size_t done = 0;
+  std::size_t asked = 0;
   const std::size_t most = std::min(static_cast<std::size_t>(options_.neighbours), data_.size);
-  for (std::size_t k = std::min<std::size_t>(64, most); done < most; k = std::min(4 * k, most)) {
+  while (asked < most) {
+    const std::size_t k = std::min(std::max<std::size_t>(64, 4 * asked), most);
+    asked = k;
     if (work.attempts >= options_.max_attempts) return false;
     const std::size_t found = data_.tree.nearest(key_, k, neighbours_.data());
     std::sort(neighbours_.begin(), neighbours_.begin() + static_cast<std::ptrdiff_t>(found));

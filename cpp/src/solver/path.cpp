@@ -294,6 +294,7 @@ PathResult Solver::solve_path(const std::vector<Pose>& T_base_tip,
     check_pose(T_base_tip[i], ("poses[" + std::to_string(i) + "]").c_str());
   }
   options.validate(robot().dof());
+  if (options.start) impl_->check_angles(*options.start, "start");
   const Impl::Lease lease(*impl_);
   return impl_->solve_path(T_base_tip, options, lease.get());
 }
@@ -301,6 +302,7 @@ PathResult Solver::solve_path(const std::vector<Pose>& T_base_tip,
 Tracker::Tracker(const Solver& solver, const JointVector& start) : solver_(solver), q_(start) {
   const Robot& robot = solver.robot();
   check_joints(start, robot.dof(), "start");
+  solver.impl_->check_angles(start, "start");
   q_ = q_.cwiseMax(robot.lower()).cwiseMin(robot.upper());
 }
 

@@ -26,6 +26,8 @@ bool SolveRequest::has_wishes() const {
 
 void SolveRequest::validate(int dof) const {
   for (std::size_t i = 0; i < seeds.size(); ++i) {
+    // There may be many: names are made for the error only.
+    if (seeds[i].size() == dof && seeds[i].allFinite()) continue;
     check_joints(seeds[i], dof, ("seeds[" + std::to_string(i) + "]").c_str());
   }
   if (near) check_joints(*near, dof, "near");

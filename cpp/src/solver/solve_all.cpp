@@ -176,7 +176,7 @@ Solutions Solver::solve_all(const Pose& T_base_tip, const AllOptions& options,
                             const SolveRequest& request) const {
   check_pose(T_base_tip);
   options.validate();
-  request.validate(robot().dof());
+  impl_->check(request);
   const Impl::Lease lease(*impl_);
   return impl_->solve_all(T_base_tip, options, request, lease.get());
 }

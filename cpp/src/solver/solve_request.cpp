@@ -287,7 +287,7 @@ Result Solver::Impl::solve(const Pose& T_base_tip, const SolveRequest& request,
 
 Result Solver::solve(const Pose& T_base_tip, const SolveRequest& request) const {
   check_pose(T_base_tip);
-  request.validate(robot().dof());
+  impl_->check(request);
   const Impl::Lease lease(*impl_);
   if (!request.has_wishes()) return impl_->solve(T_base_tip, nullptr, lease.get(), nullptr);
   return impl_->solve(T_base_tip, request, lease.get());

@@ -23,8 +23,19 @@ std::string hex(std::uint64_t value) {
   return text;
 }
 
+/// Whether the database leaves out what the chain lets it leave out.
+bool reduction_fits(const ChainModel& model, const DatabaseData& data) {
+  if (!data.reduction) return true;
+  const Reduction expected = Reduction::of(model, data.weight);
+  return is_simple(model) && data.reduction->left() == expected.left() &&
+         data.reduction->right() == expected.right();
+}
+
 void check_fits(const Robot& robot, const Database& database) {
-  if (database.chain_hash() == robot.chain_hash() && database.dof() == robot.dof()) return;
+  if (database.chain_hash() == robot.chain_hash() && database.dof() == robot.dof() &&
+      reduction_fits(robot.model(), database.data())) {
+    return;
+  }
   throw DatabaseMismatchError(
       "the database (" + std::to_string(database.dof()) + " joints, chain hash " +
       hex(database.chain_hash()) + ") was built for another chain than robot '" + robot.name() +
@@ -37,6 +48,7 @@ Workspace::Workspace(const ChainModel& model, const ChainModel& nominal, const D
                      const SolverOptions& options)
     : selection(model, nominal, data, options),
       tasks(model, data, options, selection),
+      given(model, options),
       found(model) {
   mirrors.reserve(kMirrors);
   if (solves_in_lanes(model, data, options)) {
@@ -51,8 +63,12 @@ Solver::Impl::Impl(const Robot& robot_in, const SolverOptions& options_in,
       options(options_in),
       database(database_in),
       nominal(nominal_in),
-      task(options.task, options.position_tolerance, options.rotation_tolerance) {
+      task(options.task, options.position_tolerance, options.rotation_tolerance),
+      damaged(database.data().block->damaged()),
+      largest_angle(find_largest_angle()) {
+  database.data().check_intact();
   check_fits(nominal, database);
+  check_limits();
   const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
   for (std::size_t i = 0; i < std::min(cores, kPlaces); ++i) {
     idle_[i] = new Workspace(robot.model(), nominal.model(), database.data(), options);
@@ -65,6 +81,7 @@ Solver::Impl::~Impl() {
 }
 
 Solver::Impl::Lease::Lease(const Impl& solver) : solver_(solver) {
+  if (solver.damaged != nullptr) solver.database.data().check_intact();
   for (auto& place : solver_.idle_) {
     if (place.load(std::memory_order_relaxed) == nullptr) continue;
     workspace_ = place.exchange(nullptr, std::memory_order_acquire);
@@ -222,6 +239,7 @@ Result Solver::solve(const Pose& T_base_tip) const {
 Result Solver::solve(const Pose& T_base_tip, const JointVector& seed) const {
   check_pose(T_base_tip);
   check_joints(seed, robot().dof(), "seed");
+  impl_->check_angles(seed, "seed");
   const Impl::Lease lease(*impl_);
   return impl_->solve(T_base_tip, &seed, lease.get(), nullptr);
 }

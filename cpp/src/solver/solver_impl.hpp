@@ -12,6 +12,7 @@
 #include "selection/selection.hpp"
 #include "solver/explore.hpp"
 #include "solver/found.hpp"
+#include "solver/given_seeds.hpp"
 #include "solver/lane_search.hpp"
 #include "solver/task_search.hpp"
 
@@ -30,6 +31,7 @@ struct Workspace {
   /// Only if the options solve in lanes.
   std::unique_ptr<LaneSearch> lanes;
   /// Of solves with wishes.
+  GivenSeeds given;
   Found found;
   /// Guesses at solutions that a found one told of, still to be tried (mirror.hpp).
   std::vector<JointVector> mirrors;
@@ -74,6 +76,11 @@ struct Solver::Impl {
 
   Diagnosis diagnose(const Pose& T_base_tip, const SolveRequest& request) const;
 
+  /// Throws InvalidArgumentError unless the request fits the chain.
+  void check(const SolveRequest& request) const;
+  /// Throws InvalidArgumentError naming the first joint beyond `largest_angle`.
+  void check_angles(const JointVector& q, const char* name) const;
+
   /// A workspace of this solver, given back when it goes.
   class Lease {
    public:
@@ -95,7 +102,11 @@ struct Solver::Impl {
   Drift drift;
   /// options.task.
   TaskSpace task;
+  /// As Block::damaged of the database.
+  const std::atomic<bool>* damaged;
   int most_solutions = 0;
+  /// Angles up to this lose a tenth of the tolerances at most when FK rounds them [rad].
+  double largest_angle;
 
   /// Most targets of one solve_many.
   static constexpr std::size_t kMany = 256;
@@ -108,6 +119,8 @@ struct Solver::Impl {
               Result& result) const;
 
  private:
+  [[nodiscard]] double find_largest_angle() const;
+  void check_limits() const;
   [[nodiscard]] bool out_of_reach(const TaskSpace& of_call, const Pose& T_base_tip) const;
   /// The task of a request, or the options'.
   [[nodiscard]] TaskSpace task_of(const SolveRequest& request) const;
@@ -129,7 +142,7 @@ struct Solver::Impl {
   void explore_one_by_one(Exploration& search, Workspace& workspace,
                           FunctionRef<Verdict(JointVector&)> accept,
                           FunctionRef<bool()> go_on) const;
-  void explore_task(Exploration& search, TaskSearch& tasks,
+  void explore_task(Exploration& search, Workspace& workspace,
                     FunctionRef<Verdict(JointVector&)> accept, FunctionRef<bool()> go_on) const;
   /// The errors of q: position [m] and rotation [rad]; and for a whole pose its Jacobian, if that
   /// is not null.

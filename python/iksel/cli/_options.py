@@ -7,7 +7,14 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from iksel_cpp import Axis, DatabaseOptions, InvalidArgumentError, SolverOptions, Task
+from iksel_cpp import (
+    Axis,
+    Database,
+    DatabaseOptions,
+    InvalidArgumentError,
+    SolverOptions,
+    Task,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -61,6 +68,11 @@ def add_solver_options(parser: argparse.ArgumentParser) -> None:
         help="use a database made by 'iksel build' instead of building one; over one "
         "with a full key seeds are iterated one by one, not in SIMD lanes",
     )
+    parser.add_argument(
+        "--mmap",
+        action="store_true",
+        help="map --database FILE instead of reading it: processes share its samples",
+    )
     group = parser.add_argument_group("solver options")
     group.add_argument(
         "--task",
@@ -96,6 +108,20 @@ def solver_options(arguments: argparse.Namespace) -> SolverOptions:
     database = options.database.replace(**changes)
     task = parse_task(arguments.task) if arguments.task else options.task
     return options.replace(database=database, task=task, **_given(arguments, _SOLVER))
+
+
+def given_database(arguments: argparse.Namespace) -> Database | None:
+    """The database of --database FILE; None without.
+
+    Raises:
+        InvalidArgumentError: --mmap without a file.
+        DatabaseError: The file cannot be read, or is no database.
+    """
+    if arguments.database is not None:
+        return Database.load(arguments.database, mmap=arguments.mmap)
+    if arguments.mmap:
+        raise InvalidArgumentError("--mmap: needs --database FILE")
+    return None
 
 
 def parse_task(text: str) -> Task:

@@ -11,6 +11,7 @@ from iksel_cpp import Database, Solver
 
 from iksel.cli._options import (
     add_solver_options,
+    given_database,
     overrides,
     solver_options,
 )
@@ -143,8 +144,9 @@ def _database(
     arguments: argparse.Namespace, robot: Robot, options: SolverOptions
 ) -> tuple[Database, float | None]:
     """The database to use, and the seconds it took to build, if it was built."""
-    if arguments.database is not None:
-        return Database.load(arguments.database), None
+    given = given_database(arguments)
+    if given is not None:
+        return given, None
     start = time.perf_counter()
     with Progress(f"building {robot.name}", show=arguments.progress) as progress:
         database = Database.build(robot, options.database, progress)

@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from iksel_cpp import Database, InvalidArgumentError, Solver
+from iksel_cpp import InvalidArgumentError, Solver
 
 from iksel.cli._angles import Angles, turning
-from iksel.cli._options import add_solver_options, solver_options
+from iksel.cli._options import add_solver_options, given_database, solver_options
 from iksel.cli._output import add_json, print_json, print_pairs
 from iksel.cli._parser import parse_numbers
 from iksel.cli._robot import add_robot, load
@@ -74,7 +74,7 @@ def run(arguments: argparse.Namespace) -> int:
     angles = Angles(arguments)
     poses = read_poses(arguments.file, angles)
     start = arguments.start and angles.read_joints("--start", arguments.start, robot)
-    database = arguments.database and Database.load(arguments.database)
+    database = given_database(arguments)
     solver = Solver(robot, solver_options(arguments), database)
     path = solver.solve_path(poses, start, dt=arguments.dt)
     if arguments.json:

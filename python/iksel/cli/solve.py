@@ -7,10 +7,10 @@ import math
 import time
 from typing import TYPE_CHECKING, Any
 
-from iksel_cpp import Database, InvalidArgumentError, Solver
+from iksel_cpp import InvalidArgumentError, Solver
 
 from iksel.cli._angles import Angles
-from iksel.cli._options import add_solver_options, solver_options
+from iksel.cli._options import add_solver_options, given_database, solver_options
 from iksel.cli._output import add_json, number, print_json, print_pairs, print_table
 from iksel.cli._parser import POSE_FORMS, POSE_METAVAR
 from iksel.cli._robot import add_robot, load
@@ -110,7 +110,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise InvalidArgumentError("--objective: cannot be used with --all or --seed-q")
     seed = arguments.seed_q and angles.read_joints("--seed-q", arguments.seed_q, robot)
     options = solver_options(arguments)
-    database = arguments.database and Database.load(arguments.database)
+    database = given_database(arguments)
     solver = Solver(robot, options, database)
 
     if arguments.all:

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Open files.
+#pragma once
+
+#include <unistd.h>
+
+#include <cstddef>
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <utility>
+
+namespace iksel {
+
+/// A file descriptor that closes itself; below 0: none.
+class Descriptor {
+ public:
+  explicit Descriptor(int fd = -1) : fd_(fd) {}
+  Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    std::swap(fd_, other.fd_);
+    return *this;
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  [[nodiscard]] int get() const { return fd_; }
+
+ private:
+  int fd_;
+};
+
+inline std::string system_error(int error) { return std::strerror(error); }
+
+/// Opens a file that is as large as a header at least. Throws DatabaseIoError or
+/// DatabaseCorruptError.
+Descriptor open_database(const std::filesystem::path& path, std::size_t& size);
+
+}  // namespace iksel

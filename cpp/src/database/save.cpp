@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Saving so that at every moment there is the old file or the new one, and no other stays.
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <random>
+#include <string>
+#include <system_error>
+
+#include "database/descriptor.hpp"
+#include "database/file.hpp"
+#include "iksel/error.hpp"
+
+namespace iksel {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Files on their way bear names of their own, by chance: process numbers come again, in containers
+// soon. Whoever writes one holds a lock on it until it has its place, and so one without a lock has
+// nobody who will finish it.
+constexpr char kPrefix[] = "iksel-";
+constexpr char kSuffix[] = ".tmp";
+constexpr std::size_t kDigits = 16;
+
+std::string temporary_name() {
+  std::random_device random;
+  char digits[kDigits + 1];
+  std::snprintf(digits, sizeof digits, "%08x%08x", static_cast<unsigned>(random()),
+                static_cast<unsigned>(random()));
+  return std::string(kPrefix) + digits + kSuffix;
+}
+
+bool is_temporary_name(const std::string& name) {
+  constexpr std::size_t kHead = sizeof kPrefix - 1;
+  constexpr std::size_t kTail = sizeof kSuffix - 1;
+  return name.size() == kHead + kDigits + kTail && name.compare(0, kHead, kPrefix) == 0 &&
+         name.compare(kHead + kDigits, kTail, kSuffix) == 0 &&
+         name.find_first_not_of("0123456789abcdef", kHead) == kHead + kDigits;
+}
+
+bool lock(const Descriptor& file) { return ::flock(file.get(), LOCK_EX | LOCK_NB) == 0; }
+
+/// Removes what saves that were killed have left in a folder.
+void remove_abandoned(const fs::path& folder) {
+  std::error_code none;
+  for (fs::directory_iterator entry(folder, none), end; entry != end; entry.increment(none)) {
+    if (!is_temporary_name(entry->path().filename().string())) continue;
+    const Descriptor file(
+        ::open(entry->path().c_str(), O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+    struct stat info {};
+    if (file.get() < 0 || ::fstat(file.get(), &info) != 0) continue;
+    if (!S_ISREG(info.st_mode) || info.st_uid != ::geteuid() || !lock(file)) continue;
+    ::unlink(entry->path().c_str());
+  }
+}
+
+/// A file without a name, which goes with its process; none where the system has no such.
+Descriptor open_nameless(const fs::path& folder) {
+#ifdef O_TMPFILE
+  Descriptor file(::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666));
+  if (file.get() >= 0) lock(file);
+  return file;
+#else
+  return Descriptor();
+#endif
+}
+
+bool give_name(const Descriptor& file, const fs::path& name) {
+  const std::string link = "/proc/self/fd/" + std::to_string(file.get());
+  return ::linkat(AT_FDCWD, link.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0;
+}
+
+/// A file of a new name, which is written to `name`; none if it cannot be made.
+Descriptor open_named(const fs::path& folder, fs::path& name) {
+  constexpr int kTries = 16;
+  for (int i = 0; i < kTries; ++i) {
+    name = folder / temporary_name();
+    Descriptor file(::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+    if (file.get() < 0 && errno == EEXIST) continue;
+    if (file.get() < 0) return file;
+    // Another's remove_abandoned may have come between.
+    struct stat info {};
+    const bool taken = !lock(file) && errno == EWOULDBLOCK;
+    if (!taken && ::fstat(file.get(), &info) == 0 && info.st_nlink > 0) return file;
+  }
+  errno = EEXIST;
+  return Descriptor();
+}
+
+bool write_all(const Descriptor& file, const Block& block) {
+  std::size_t written = 0;
+  while (written < block.size()) {
+    constexpr std::size_t kPiece = 1U << 30U;
+    const ssize_t n =
+        ::write(file.get(), block.data() + written, std::min(kPiece, block.size() - written));
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return false;
+    written += static_cast<std::size_t>(n);
+  }
+  return ::fsync(file.get()) == 0;
+}
+
+}  // namespace
+
+void write_file(const fs::path& path, const Block& block, bool nameless) {
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  fs::path name;
+  const auto fail = [&](const char* what) {
+    const int error = errno;
+    if (!name.empty()) ::unlink(name.c_str());
+    throw DatabaseIoError(std::string("cannot ") + what + " database '" + path.string() +
+                          "': " + system_error(error));
+  };
+  remove_abandoned(folder);
+  Descriptor file;
+  if (nameless) file = open_nameless(folder);
+  if (file.get() >= 0) {
+    if (!write_all(file, block)) fail("write");
+    name = folder / temporary_name();
+    // Fails without /proc, and by bad luck with the name.
+    if (!give_name(file, name)) file = Descriptor();
+  }
+  if (file.get() < 0) {
+    name.clear();
+    fs::path made;
+    file = open_named(folder, made);
+    if (file.get() < 0) fail("write");
+    name = made;
+    if (!write_all(file, block)) fail("write");
+  }
+  if (::rename(name.c_str(), path.c_str()) != 0) fail("replace");
+}
+
+}  // namespace iksel

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Angles so large that a double cannot tell their poses apart.
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "iksel/error.hpp"
+#include "solver/solver_impl.hpp"
+
+namespace iksel {
+
+double Solver::Impl::find_largest_angle() const {
+  // FK turns joint k by m_k q_k + offset_k, of which rounding takes at most half a unit in the last
+  // place: |m_k q_k| 2^-53. That turns the tip by as much, and moves it by its lever, which the
+  // reach bounds, times as much. All joints together are to stay within a tenth of the tolerances.
+  constexpr double kShare = 0.1;
+  // Below, what is lost is lost at any angle.
+  constexpr double kLeast = 100;
+  double angles = 0;
+  for (const KernelJoint& joint : robot.model().kernel.joints) {
+    if (!joint.prismatic) angles += std::abs(joint.multiplier);
+  }
+  const double rotation = std::min(options.rotation_tolerance,
+                                   options.position_tolerance / std::max(robot.reach(), 1e-300));
+  return std::max(kLeast, kShare * rotation / (std::ldexp(1.0, -53) * std::max(angles, 1.0)));
+}
+
+void Solver::Impl::check_angles(const JointVector& q, const char* name) const {
+  const ChainModel& model = robot.model();
+  for (int j = 0; j < model.dof; ++j) {
+    const auto k = static_cast<std::size_t>(j);
+    if (std::abs(q[j]) <= largest_angle || model.joint_types[k] == JointType::prismatic) continue;
+    std::ostringstream text;
+    text << name << "[" << j << "] (joint '" << model.joint_names[k] << "'): " << q[j]
+         << " rad; at angles beyond " << largest_angle
+         << " rad a double cannot tell poses of this robot apart to a tenth of the tolerances ("
+         << options.position_tolerance << " m, " << options.rotation_tolerance
+         << " rad): take off whole turns";
+    throw InvalidArgumentError(text.str());
+  }
+}
+
+void Solver::Impl::check_limits() const {
+  const ChainModel& model = robot.model();
+  const auto finite = [](double limit) { return std::isfinite(limit) ? limit : 0.0; };
+  check_angles(model.lower.unaryExpr(finite), "lower limit");
+  check_angles(model.upper.unaryExpr(finite), "upper limit");
+}
+
+void Solver::Impl::check(const SolveRequest& request) const {
+  request.validate(robot.dof());
+  if (request.near) check_angles(*request.near, "near");
+  if (request.objective.posture.size() != 0) check_angles(request.objective.posture, "posture");
+  for (std::size_t i = 0; i < request.seeds.size(); ++i) {
+    // There may be many: names are made for the error only.
+    if (request.seeds[i].cwiseAbs().maxCoeff() <= largest_angle) continue;
+    check_angles(request.seeds[i], ("seeds[" + std::to_string(i) + "]").c_str());
+  }
+}
+
+}  // namespace iksel

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "gil.hpp"
 #include "iksel/error.hpp"
 #include "iksel/types.hpp"
 #include "progress.hpp"
@@ -135,7 +136,7 @@ py::array_t<T> map_joints(py::handle value, int dof, const char* name,
   py::array_t<T> out(shape);
   T* to = out.mutable_data();
   {
-    const py::gil_scoped_release release;
+    const GilRelease release;
     JointVector q(dof);
     InterruptCheck check_interrupt;
     for (py::ssize_t row = 0; row < rows; ++row, in += dof, to += item_size) {

@@ -10,6 +10,7 @@
 
 #include "array_checks.hpp"
 #include "bindings.hpp"
+#include "gil.hpp"
 #include "iksel/database.hpp"
 #include "option_fields.hpp"
 #include "progress.hpp"
@@ -23,27 +24,27 @@ Database build(const Loose<Robot>& given_robot, const Loose<DatabaseOptions>& gi
   const auto robot = from_python<Robot>(given_robot, "robot");
   const auto options = from_python<DatabaseOptions>(given_options, "options");
   const Progress report = make_progress(progress);
-  const py::gil_scoped_release release;
+  const GilRelease release;
   return Database::build(robot, options, report);
 }
 
 Database load(const PathLike& path, const Loose<bool>& mmap) {
   const std::filesystem::path file = as_path(path, "path");
   const auto mapped = from_python<bool>(mmap, "mmap");
-  const py::gil_scoped_release release;
+  const GilRelease release;
   return Database::load(file, mapped);
 }
 
 void save(const Database& self, const PathLike& path) {
   const std::filesystem::path file = as_path(path, "path");
-  const py::gil_scoped_release release;
+  const GilRelease release;
   self.save(file);
 }
 
 py::bytes to_bytes(const Database& self) {
   std::string content;
   {
-    const py::gil_scoped_release release;
+    const GilRelease release;
     content = self.to_bytes();
   }
   return content;
@@ -51,7 +52,7 @@ py::bytes to_bytes(const Database& self) {
 
 Database from_bytes(const py::bytes& content) {
   const std::string copy(content);
-  const py::gil_scoped_release release;
+  const GilRelease release;
   return Database::from_bytes(copy);
 }
 

@@ -7,6 +7,7 @@
 
 #include "bindings.hpp"
 #include "fields.hpp"
+#include "gil.hpp"
 #include "progress.hpp"
 
 namespace iksel::python {
@@ -58,7 +59,7 @@ Evaluation evaluate_solver(const Loose<Solver>& given, const Loose<std::size_t>&
   const auto number = from_python<std::uint64_t>(seed, "seed");
   const auto with_stages = from_python<bool>(stages, "stages");
   const Progress report = make_progress(progress);
-  const py::gil_scoped_release release;
+  const GilRelease release;
   return evaluate(solver, count, number, with_stages, report);
 }
 
@@ -84,7 +85,7 @@ Args:
       "time_kdl_fk_jacobian",
       [](const Loose<Robot>& given) {
         const auto robot = from_python<Robot>(given, "robot");
-        const py::gil_scoped_release release;
+        const GilRelease release;
         return time_kdl_fk_jacobian(robot);
       },
       py::arg("robot"),

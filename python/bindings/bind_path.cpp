@@ -10,6 +10,7 @@
 #include "array_checks.hpp"
 #include "bindings.hpp"
 #include "filter.hpp"
+#include "gil.hpp"
 #include "html.hpp"
 #include "iksel/path.hpp"
 #include "pickle.hpp"
@@ -65,7 +66,7 @@ PyPath solve_path(const Solver& self, const ArrayLike& poses, const std::optiona
   options.candidates = from_python<int>(candidates, "candidates");
   const std::optional<ProgressCallable> no_callable;
   options.progress = make_progress(no_callable);
-  const py::gil_scoped_release release;
+  const GilRelease release;
   return {self.solve_path(targets, options), dof};
 }
 

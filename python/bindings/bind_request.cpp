@@ -10,6 +10,7 @@
 #include "array_checks.hpp"
 #include "bindings.hpp"
 #include "filter.hpp"
+#include "gil.hpp"
 #include "html.hpp"
 #include "iksel/diagnosis.hpp"
 #include "iksel/solver.hpp"
@@ -65,7 +66,7 @@ PyResult solve_request(const Solver& self, const ArrayLike& pose,
   const SolveRequest request = make_request(self.robot().dof(), near, weights, norm, seeds,
                                             database_seeds, filter, deadline, task, objective);
   if (request.near) warn_of_degrees(self.robot(), *request.near, "near");
-  const py::gil_scoped_release release;
+  const GilRelease release;
   return {self.solve(target, request), {}};
 }
 
@@ -87,7 +88,7 @@ PySolutions solve_all(const Solver& self, const ArrayLike& pose, const Loose<int
   const SolveRequest request =
       make_request(dof, near, weights, norm, seeds, database_seeds, filter, deadline, task, {});
   if (request.near) warn_of_degrees(self.robot(), *request.near, "near");
-  const py::gil_scoped_release release;
+  const GilRelease release;
   return {self.solve_all(target, options, request), dof};
 }
 
@@ -100,7 +101,7 @@ Diagnosis diagnose(const Solver& self, const ArrayLike& pose,
   if (filter) request.filter = make_filter(*filter, self.robot().dof());
   if (deadline) request.deadline = from_python<double>(*deadline, "deadline");
   if (task) request.task = from_python<Task>(*task, "task");
-  const py::gil_scoped_release release;
+  const GilRelease release;
   return self.diagnose(target, request);
 }
 

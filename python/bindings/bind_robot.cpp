@@ -12,6 +12,7 @@
 #include "array_checks.hpp"
 #include "bindings.hpp"
 #include "enums.hpp"
+#include "gil.hpp"
 #include "html.hpp"
 #include "iksel/robot.hpp"
 #include "pickle.hpp"
@@ -68,7 +69,7 @@ py::array_t<double> pose_errors(const DoubleArray& targets, const DoubleArray& p
   double* to = out.mutable_data();
   const double* target = targets.data();
   const double* pose = poses.data();
-  const py::gil_scoped_release release;
+  const GilRelease release;
   Pose a;
   Pose b;
   InterruptCheck check_interrupt;

@@ -13,6 +13,7 @@
 #include "array_checks.hpp"
 #include "bindings.hpp"
 #include "filter.hpp"
+#include "gil.hpp"
 #include "iksel/solver.hpp"
 #include "option_fields.hpp"
 #include "pickle.hpp"
@@ -49,7 +50,7 @@ Solver make_solver(const Loose<Robot>& given_robot,
   // Built here and not by Solver, so that Ctrl-C ends a long build.
   const std::optional<ProgressCallable> no_callable;
   const Progress interruptible = make_progress(no_callable);
-  const py::gil_scoped_release release;
+  const GilRelease release;
   if (nominal) {
     return Solver(robot, options,
                   database ? *database : Database::build(*nominal, options.database, interruptible),
@@ -116,7 +117,7 @@ PyBatchResult solve_batch(const Solver& self, const ArrayLike& poses, const Loos
   bool* success = out.success.mutable_data();
   const double* in = targets.data();
   {
-    const py::gil_scoped_release release;
+    const GilRelease release;
     self.solve_batch(in, static_cast<std::size_t>(n), request, nears ? nears->data() : nullptr,
                      view, thread_count, interruptible);
     std::transform(view.status, view.status + n, success, [](std::uint8_t status) {

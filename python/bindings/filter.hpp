@@ -10,6 +10,7 @@
 #include <cstddef>
 
 #include "array_checks.hpp"
+#include "gil.hpp"
 #include "iksel/request.hpp"
 
 namespace iksel::python {
@@ -24,12 +25,12 @@ class FilterCallable : public py::object {
 inline Filter make_filter(const FilterCallable& callable, int dof) {
   check_callable(callable, "filter");
   return [&callable, dof](const double* q, std::size_t count, bool* keep) {
-    const py::gil_scoped_acquire acquire;
+    const GilAcquire acquire;
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     const auto n = static_cast<py::ssize_t>(count);
     py::array_t<double> candidates({n, static_cast<py::ssize_t>(dof)});
     std::copy_n(q, count * static_cast<std::size_t>(dof), candidates.mutable_data());
-    const py::object answer = callable(candidates);
+    const py::object answer = call_python(callable, candidates);
     const auto array = py::array::ensure(answer);
     if (!array) throw_wrong_type("filter", "an array of truth values", answer);
     const char kind = array.dtype().kind();

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "array_checks.hpp"
+#include "gil.hpp"
 #include "iksel/objective.hpp"
 #include "python_types.hpp"
 
@@ -23,7 +24,7 @@ class ObjectiveLike : public py::object {
 /// A callable that may be copied and dropped without the GIL.
 inline std::shared_ptr<py::object> hold(py::object callable) {
   return {new py::object(std::move(callable)), [](py::object* held) {
-            const py::gil_scoped_acquire acquire;
+            const GilAcquire acquire;
             delete held;
           }};
 }
@@ -33,8 +34,8 @@ struct PyCost {
   std::shared_ptr<py::object> callable;
 
   double operator()(const JointVector& q) const {
-    const py::gil_scoped_acquire acquire;
-    return from_python<double>((*callable)(to_array(q)), "cost");
+    const GilAcquire acquire;
+    return from_python<double>(call_python(*callable, to_array(q)), "cost");
   }
 };
 
@@ -42,8 +43,8 @@ struct PyGradient {
   std::shared_ptr<py::object> callable;
 
   JointVector operator()(const JointVector& q) const {
-    const py::gil_scoped_acquire acquire;
-    return as_joints((*callable)(to_array(q)), static_cast<int>(q.size()), "gradient");
+    const GilAcquire acquire;
+    return as_joints(call_python(*callable, to_array(q)), static_cast<int>(q.size()), "gradient");
   }
 };
 

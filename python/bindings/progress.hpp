@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "gil.hpp"
 #include "iksel/database.hpp"
 #include "python_types.hpp"
 
@@ -27,9 +28,9 @@ class ProgressCallable : public py::object {
 inline Progress make_progress(const std::optional<ProgressCallable>& callable) {
   if (callable) check_callable(*callable, "progress");
   return [&callable](std::size_t done, std::size_t total) {
-    const py::gil_scoped_acquire acquire;
+    const GilAcquire acquire;
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-    if (callable) (*callable)(done, total);
+    if (callable) call_python(*callable, done, total);
   };
 }
 
@@ -43,7 +44,7 @@ class InterruptCheck {
     const auto now = std::chrono::steady_clock::now();
     if (now < next_) return;
     next_ = now + std::chrono::milliseconds(30);
-    const py::gil_scoped_acquire acquire;
+    const GilAcquire acquire;
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
   }
 

@@ -1012,9 +1012,19 @@ class Database:
         The database that `to_bytes` wrote. Raises as `load`.
         """
     @staticmethod
-    def load(path: str | os.PathLike[str]) -> Database:
+    def load(path: str | os.PathLike[str], *, mmap: bool = False) -> Database:
         """
-        Maps a file read-only; processes that load one file share its memory.
+        Reads a file, after which it may be changed or removed.
+
+        Args:
+            path: what `save` wrote.
+            mmap: leave the samples, most of a large file, in the file and map them read-only, so
+                that processes that load one file share them. The file may then be replaced (`save`
+                does so) or removed, but should not be written to: what is overwritten in place is
+                not noticed, and makes seeds worse, never an answer wrong. Where a file is cut short,
+                the call under way still ends, and the next one on the database or a solver of it
+                raises DatabaseIoError; for this the first such load installs a handler of SIGBUS,
+                which passes on what is not its own. At most 256 files are mapped at once.
 
         Raises:
             DatabaseIoError: the file cannot be read.
@@ -1048,6 +1058,8 @@ class Database:
     def save(self, path: str | os.PathLike[str]) -> None:
         """
         Writes beside `path` and renames, so that a crash leaves the old file or the new one.
+
+        Removes files named iksel-*.tmp in the same folder that saves which were killed have left.
 
         Raises:
             DatabaseIoError: the file cannot be written; an old one is untouched.
@@ -1460,11 +1472,14 @@ class Solver:
             pose: T_base_tip, (4, 4) [m].
             near: configuration to stay near, (dof,) [rad or m]; may lie outside the limits. The answer
                 is the one with the smallest joint move of all that are found, whole turns considered; a
-                redundant arm's has slid along its self-motion to where the move is smallest.
+                redundant arm's has slid along its self-motion to where the move is smallest. Angles
+                here, in `seeds` and in a posture that are too large for a double to tell poses apart to
+                a tenth of the tolerances are refused: 1.5e8 rad for an arm of six joints and 1 m at the
+                default tolerances, never less than 100 rad.
             weights: factor on each joint's part of the move, (dof,), >= 0; None: all 1.
             norm: how the move is measured.
             seeds: joint values to iterate from, (N, dof) [rad or m]; ranked as the database's seeds, and
-                tried before them.
+                tried before them, as many as max_attempts allows.
             database_seeds: whether the database's seeds follow the given ones.
             filter: called with candidates (n, dof), each at the pose and inside the limits; returns n
                 truth values. The search goes on within its bounds while all are refused.

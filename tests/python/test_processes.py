@@ -157,13 +157,13 @@ def test_callables_may_solve_themselves(tmp_path: Path) -> None:
     nested = Nested()
 
     def keep(candidates):
-        if nested.depth < 2:
+        if nested.depth < 1:
             nested.depth += 1
             assert solver.solve(poses[0]).success
             assert solver.solve(poses[1], near=q[0]).success
             solver.solve(poses[2], filter=keep)
             solver.solve_all(poses[3], filter=keep)
-            solver.solve_batch(poses[:20], filter=keep, threads=2)
+            solver.solve_batch(poses[:5], filter=keep, threads=2)
             solver.solve_path(poses[:2], filter=keep)
             nested.depth -= 1
         return candidates[:, 0] > 0
@@ -182,8 +182,8 @@ def test_callables_may_solve_themselves(tmp_path: Path) -> None:
         return float(at @ at)
 
     for threads in (1, 2, 4):
-        a = solver.solve_batch(poses[:40], filter=keep, threads=threads)
-        b = solver.solve_batch(poses[:40], filter=plain, threads=threads)
+        a = solver.solve_batch(poses[:10], filter=keep, threads=threads)
+        b = solver.solve_batch(poses[:10], filter=plain, threads=threads)
         assert np.array_equal(a.q, b.q, equal_nan=True)
         a = solver.solve_batch(poses[:4], objective=cost, threads=threads)
         b = solver.solve_batch(poses[:4], objective=plain_cost, threads=threads)

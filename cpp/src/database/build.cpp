@@ -4,7 +4,6 @@
 #include <limits>
 #include <memory>
 #include <new>
-#include <sstream>
 #include <vector>
 
 #include "database/data.hpp"
@@ -16,6 +15,7 @@
 #include "kinematics/chain_model.hpp"
 #include "math/pseudo_inverse.hpp"
 #include "math/rotation.hpp"
+#include "message_text.hpp"
 #include "util/parallel.hpp"
 
 namespace iksel {
@@ -24,12 +24,10 @@ namespace {
 /// Throws unless all numbers can be in a database.
 void check_samples(const double* first, std::size_t count, const ChainModel& model) {
   if (std::all_of(first, first + count, is_usable)) return;
-  std::ostringstream text;
-  text << "no database can be built: samples of the chain are not finite or out of scale; its "
-          "reach is "
-       << model.reach << " m, its joint limits are " << model.lower.transpose() << " to "
-       << model.upper.transpose();
-  throw DatabaseError(text.str());
+  throw DatabaseError(
+      "no database can be built: samples of the chain are not finite or out of scale; its reach "
+      "is " +
+      number_text(model.reach) + " m");
 }
 
 /// Samples that a thread takes at a time.

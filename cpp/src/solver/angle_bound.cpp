@@ -2,9 +2,10 @@
 // Angles so large that a double cannot tell their poses apart.
 #include <algorithm>
 #include <cmath>
-#include <sstream>
+#include <string>
 
 #include "iksel/error.hpp"
+#include "message_text.hpp"
 #include "solver/solver_impl.hpp"
 
 namespace iksel {
@@ -30,13 +31,12 @@ void Solver::Impl::check_angles(const JointVector& q, const char* name) const {
   for (int j = 0; j < model.dof; ++j) {
     const auto k = static_cast<std::size_t>(j);
     if (std::abs(q[j]) <= largest_angle || model.joint_types[k] == JointType::prismatic) continue;
-    std::ostringstream text;
-    text << name << "[" << j << "] (joint '" << model.joint_names[k] << "'): " << q[j]
-         << " rad; at angles beyond " << largest_angle
-         << " rad a double cannot tell poses of this robot apart to a tenth of the tolerances ("
-         << options.position_tolerance << " m, " << options.rotation_tolerance
-         << " rad): take off whole turns";
-    throw InvalidArgumentError(text.str());
+    throw InvalidArgumentError(
+        std::string(name) + "[" + std::to_string(j) + "] (joint '" + model.joint_names[k] +
+        "'): " + number_text(q[j]) + " rad; at angles beyond " + number_text(largest_angle) +
+        " rad a double cannot tell poses of this robot apart to a tenth of the tolerances (" +
+        number_text(options.position_tolerance) + " m, " + number_text(options.rotation_tolerance) +
+        " rad): take off whole turns");
   }
 }
 

@@ -72,7 +72,7 @@ copy_in() { # FILE...: to the same place, if there
   for file in "$@"; do
     if [[ -e $file ]]; then
       mkdir -p "$system$(dirname "$file")"
-      cp -rL "$file" "$system$file"
+      cp -rLT "$file" "$system$file"
     fi
   done
 }

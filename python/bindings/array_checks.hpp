@@ -52,39 +52,19 @@ inline DoubleArray convert_to_doubles(py::handle value, const char* name) {
   return doubles;
 }
 
-/// The array itself if it is aligned doubles in C order, a converted one otherwise.
-inline DoubleArray as_doubles(py::handle value, const char* name) {
+/// Whether it is an array of aligned doubles in C order, which is read in place.
+inline bool is_doubles(py::handle value) {
   constexpr int kInPlace =
       py::array::c_style | static_cast<int>(py::detail::npy_api::NPY_ARRAY_ALIGNED_);
-  if (py::detail::npy_api::get().PyArray_Check_(value.ptr())) {
-    const auto* array = py::detail::array_proxy(value.ptr());
-    if ((array->flags & kInPlace) == kInPlace && py::isinstance<DoubleArray>(value)) {
-      return py::reinterpret_borrow<DoubleArray>(value);
-    }
-  }
+  if (!py::detail::npy_api::get().PyArray_Check_(value.ptr())) return false;
+  const auto* array = py::detail::array_proxy(value.ptr());
+  return (array->flags & kInPlace) == kInPlace && py::isinstance<DoubleArray>(value);
+}
+
+/// The array itself if it is read in place, a converted one otherwise.
+inline DoubleArray as_doubles(py::handle value, const char* name) {
+  if (is_doubles(value)) return py::reinterpret_borrow<DoubleArray>(value);
   return convert_to_doubles(value, name);
-}
-
-/// A (4, 4) array as a pose. That it is rigid is checked by what uses the pose.
-inline Pose as_pose(py::handle value, const char* name) {
-  const DoubleArray array = as_doubles(value, name);
-  if (array.ndim() != 2 || array.shape(0) != 4 || array.shape(1) != 4) {
-    throw_wrong_shape(name, "a (4, 4) array", array);
-  }
-  Pose pose;
-  pose.matrix() = Eigen::Map<const RowMajorPose>(array.data());
-  return pose;
-}
-
-/// An (N, 4, 4) array. That its poses are rigid is checked by Solver::solve_batch.
-inline DoubleArray as_poses(py::handle value, const char* name) {
-  DoubleArray array = as_doubles(value, name);
-  if (array.ndim() != 3 || array.shape(1) != 4 || array.shape(2) != 4) {
-    const bool single = array.ndim() == 2 && array.shape(0) == 4 && array.shape(1) == 4;
-    throw_wrong_shape(name, "an (N, 4, 4) array", array,
-                      single ? "; solve() takes a single pose" : "");
-  }
-  return array;
 }
 
 inline void check_finite(const double* values, int dof, const std::string& name) {

@@ -13,6 +13,7 @@
 #include "gil.hpp"
 #include "iksel/database.hpp"
 #include "option_fields.hpp"
+#include "pose_arguments.hpp"
 #include "progress.hpp"
 
 namespace iksel::python {
@@ -65,10 +66,9 @@ std::size_t sample_index(const Database& self, const Loose<std::size_t>& i) {
   return index;
 }
 
-py::array_t<std::int64_t> nearest(const Database& self, const ArrayLike& pose,
+py::array_t<std::int64_t> nearest(const Database& self, const PoseLike& pose,
                                   const Loose<std::size_t>& k) {
   const Pose T_base_tip = as_pose(pose, "pose");
-  check_pose(T_base_tip, "pose");
   const auto found = self.nearest(T_base_tip, from_python<std::size_t>(k, "k"));
   py::array_t<std::int64_t> indices(static_cast<py::ssize_t>(found.size()));
   std::copy(found.begin(), found.end(), indices.mutable_data());

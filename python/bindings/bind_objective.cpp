@@ -107,7 +107,8 @@ void bind_objective(py::module_& m) {
       },
       py::arg("cost"), py::arg("gradient") = py::none(),
       "The cost of joint values (dof,) inside the limits, a number, and its gradient (dof,); "
-      "without one, central differences of the cost.");
+      "without one, central differences of the cost. A cost of +inf refuses the joint values; NaN, "
+      "-inf, or a gradient that is not finite is an InvalidArgumentError.");
   cls.def_property_readonly(
       "kind", [](const Objective& self) { return self.kind; }, "What it counts.");
   cls.def(py::pickle(&objective_state, &objective_from_state));

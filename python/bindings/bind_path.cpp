@@ -14,6 +14,7 @@
 #include "html.hpp"
 #include "iksel/path.hpp"
 #include "pickle.hpp"
+#include "pose_arguments.hpp"
 #include "progress.hpp"
 #include "py_result.hpp"
 #include "python_types.hpp"
@@ -44,12 +45,12 @@ OptionalIndex optional_index(std::ptrdiff_t index) {
   return py::reinterpret_borrow<OptionalIndex>(value);
 }
 
-PyPath solve_path(const Solver& self, const ArrayLike& poses, const std::optional<ArrayLike>& start,
+PyPath solve_path(const Solver& self, const PoseLike& poses, const std::optional<ArrayLike>& start,
                   const Loose<double>& dt, const std::optional<ArrayLike>& weights,
                   const Loose<MoveNorm>& norm, const std::optional<FilterCallable>& filter,
                   const Loose<int>& candidates) {
   const int dof = self.robot().dof();
-  const DoubleArray array = as_poses(poses, "poses");
+  const DoubleArray array = as_poses(poses, "poses", &self.options().task);
   std::vector<Pose> targets(static_cast<std::size_t>(array.shape(0)));
   for (std::size_t i = 0; i < targets.size(); ++i) {
     targets[i].matrix() = Eigen::Map<const RowMajorPose>(array.data() + 16 * i);
@@ -152,9 +153,10 @@ void bind_path(py::module_& m, py::class_<Solver>& cls) {
 Of all ways through the solutions that are found, the one with the least sum of joint moves.
 
 Args:
-    poses: T_base_tip of each waypoint, (N, 4, 4) [m].
+    poses: T_base_tip of each waypoint, (N, 4, 4) [m], or others as in solve.
     start: where the arm is one time step before the first waypoint, (dof,) [rad or m]; None: the
-        path may begin anywhere.
+        path may begin anywhere, and of its copies by whole turns the one that begins nearest to
+        the middle of the limits is taken.
     dt: time from one waypoint to the next [s], in which no joint moves farther than its velocity
         limit allows; 0: speeds are not limited.
     weights, norm: how a move is measured, as in solve.
@@ -183,14 +185,14 @@ Raises:
     InvalidArgumentError: wrong shape or dtype, or a number that is not finite.)");
   tracker.def(
       "track",
-      [](Tracker& self, const ArrayLike& pose, const Loose<double>& dt) {
+      [](Tracker& self, const PoseLike& pose, const Loose<double>& dt) {
         return PyResult{self.track(as_pose(pose, "pose"), from_python<double>(dt, "dt")), {}};
       },
       py::arg("pose"), py::arg("dt"),
       R"(Moves on towards a pose, by no more than each joint can in the time step.
 
 Args:
-    pose: T_base_tip, (4, 4) [m].
+    pose: T_base_tip [m], as in Solver.solve.
     dt: time step [s].
 
 Returns:

@@ -15,6 +15,7 @@
 #include "iksel/diagnosis.hpp"
 #include "iksel/solver.hpp"
 #include "pickle.hpp"
+#include "pose_arguments.hpp"
 #include "py_batch.hpp"
 #include "py_request.hpp"
 #include "py_result.hpp"
@@ -54,7 +55,7 @@ struct PySolutions {
   }
 };
 
-PyResult solve_request(const Solver& self, const ArrayLike& pose,
+PyResult solve_request(const Solver& self, const PoseLike& pose,
                        const std::optional<ArrayLike>& near,
                        const std::optional<ArrayLike>& weights, const Loose<MoveNorm>& norm,
                        const std::optional<ArrayLike>& seeds, const Loose<bool>& database_seeds,
@@ -62,15 +63,15 @@ PyResult solve_request(const Solver& self, const ArrayLike& pose,
                        const std::optional<Loose<double>>& deadline,
                        const std::optional<Loose<Task>>& task,
                        const std::optional<ObjectiveLike>& objective) {
-  const Pose target = as_pose(pose, "pose");
   const SolveRequest request = make_request(self.robot().dof(), near, weights, norm, seeds,
                                             database_seeds, filter, deadline, task, objective);
+  const Pose target = as_pose(pose, "pose", &task_of(self, request));
   if (request.near) warn_of_degrees(self.robot(), *request.near, "near");
   const GilRelease release;
   return {self.solve(target, request), {}};
 }
 
-PySolutions solve_all(const Solver& self, const ArrayLike& pose, const Loose<int>& max,
+PySolutions solve_all(const Solver& self, const PoseLike& pose, const Loose<int>& max,
                       const Loose<double>& min_distance, const Loose<bool>& whole_turns,
                       const Loose<SolutionOrder>& order, const std::optional<ArrayLike>& near,
                       const std::optional<ArrayLike>& weights, const Loose<MoveNorm>& norm,
@@ -78,7 +79,6 @@ PySolutions solve_all(const Solver& self, const ArrayLike& pose, const Loose<int
                       const std::optional<FilterCallable>& filter,
                       const std::optional<Loose<double>>& deadline,
                       const std::optional<Loose<Task>>& task) {
-  const Pose target = as_pose(pose, "pose");
   const int dof = self.robot().dof();
   AllOptions options;
   options.max = from_python<int>(max, "max");
@@ -87,20 +87,21 @@ PySolutions solve_all(const Solver& self, const ArrayLike& pose, const Loose<int
   options.order = from_python<SolutionOrder>(order, "order");
   const SolveRequest request =
       make_request(dof, near, weights, norm, seeds, database_seeds, filter, deadline, task, {});
+  const Pose target = as_pose(pose, "pose", &task_of(self, request));
   if (request.near) warn_of_degrees(self.robot(), *request.near, "near");
   const GilRelease release;
   return {self.solve_all(target, options, request), dof};
 }
 
-Diagnosis diagnose(const Solver& self, const ArrayLike& pose,
+Diagnosis diagnose(const Solver& self, const PoseLike& pose,
                    const std::optional<FilterCallable>& filter,
                    const std::optional<Loose<double>>& deadline,
                    const std::optional<Loose<Task>>& task) {
-  const Pose target = as_pose(pose, "pose");
   SolveRequest request;
   if (filter) request.filter = make_filter(*filter, self.robot().dof());
   if (deadline) request.deadline = from_python<double>(*deadline, "deadline");
   if (task) request.task = from_python<Task>(*task, "task");
+  const Pose target = as_pose(pose, "pose", &task_of(self, request));
   const GilRelease release;
   return self.diagnose(target, request);
 }
@@ -226,7 +227,7 @@ void bind_requests(py::module_& m, py::class_<Solver>& cls) {
           R"(As solve, with wishes.
 
 Args:
-    pose: T_base_tip, (4, 4) [m].
+    pose: T_base_tip [m], in one of the forms of solve above.
     near: configuration to stay near, (dof,) [rad or m]; may lie outside the limits. The answer
         is the one with the smallest joint move of all that are found, whole turns considered; a
         redundant arm's has slid along its self-motion to where the move is smallest.
@@ -258,7 +259,7 @@ Raises:
           R"(Every distinct solution that is found: all branches, or a spread for a redundant arm.
 
 Args:
-    pose: T_base_tip, (4, 4) [m].
+    pose: T_base_tip [m], as in solve.
     max: solutions given at most.
     min_distance: solutions that differ by less in every joint are one [rad or m].
     whole_turns: whether copies by whole turns inside the limits count as solutions of their own;
@@ -278,7 +279,7 @@ Raises:
 Spends much more than solving does, milliseconds to a second.
 
 Args:
-    pose: T_base_tip, (4, 4) [m].
+    pose: T_base_tip [m], as in solve.
     filter, deadline, task: as in solve.
 
 Returns:

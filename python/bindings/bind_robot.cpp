@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pybind11/stl.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -16,6 +15,7 @@
 #include "html.hpp"
 #include "iksel/robot.hpp"
 #include "pickle.hpp"
+#include "pose_arguments.hpp"
 #include "urdf_source.hpp"
 
 namespace iksel::python {
@@ -53,37 +53,6 @@ std::map<std::string, double> as_joint_values(const JointValues& value, const ch
   return joints;
 }
 
-Pose as_rigid_pose(const ArrayLike& value, const char* name) {
-  Pose pose = as_pose(value, name);
-  check_pose(pose, name);
-  return pose;
-}
-
-/// Row i of the result: the error between poses[i] and targets[i].
-py::array_t<double> pose_errors(const DoubleArray& targets, const DoubleArray& poses) {
-  if (poses.ndim() != 3 || !std::equal(targets.shape(), targets.shape() + 3, poses.shape())) {
-    throw_wrong_shape("pose", "as many poses as targets, shape " + shape_text(targets), poses);
-  }
-  const py::ssize_t rows = poses.shape(0);
-  py::array_t<double> out({rows, py::ssize_t{6}});
-  double* to = out.mutable_data();
-  const double* target = targets.data();
-  const double* pose = poses.data();
-  const GilRelease release;
-  Pose a;
-  Pose b;
-  InterruptCheck check_interrupt;
-  for (py::ssize_t row = 0; row < rows; ++row, target += 16, pose += 16, to += 6) {
-    check_interrupt();
-    a.matrix() = Eigen::Map<const RowMajorPose>(target);
-    b.matrix() = Eigen::Map<const RowMajorPose>(pose);
-    check_pose(a, ("target[" + std::to_string(row) + "]").c_str());
-    check_pose(b, ("pose[" + std::to_string(row) + "]").c_str());
-    Eigen::Map<Eigen::Matrix<double, 6, 1>>{to} = pose_error(a, b);
-  }
-  return out;
-}
-
 std::pair<double, double> as_limits(const ArrayLike& value, const char* name) {
   const DoubleArray array = as_doubles(value, name);
   if (array.ndim() != 1 || array.shape(0) != 2) {
@@ -100,13 +69,12 @@ std::uint64_t fresh_seed() {
 
 Robot from_urdf(const PathLike& path_or_xml, const std::optional<Loose<std::string>>& base_link,
                 const std::optional<Loose<std::string>>& tip_link,
-                const std::optional<ArrayLike>& tcp,
-                const std::optional<JointValues>& locked_joints, const Loose<bool>& soft_limits,
-                const std::optional<ArrayLike>& default_limits) {
+                const std::optional<PoseLike>& tcp, const std::optional<JointValues>& locked_joints,
+                const Loose<bool>& soft_limits, const std::optional<ArrayLike>& default_limits) {
   RobotOptions options;
   if (base_link) options.base_link = from_python<std::string>(*base_link, "base_link");
   if (tip_link) options.tip_link = from_python<std::string>(*tip_link, "tip_link");
-  if (tcp) options.tcp = as_rigid_pose(*tcp, "tcp");
+  if (tcp) options.tcp = check_pose(as_pose(*tcp, "tcp"), "tcp");
   if (locked_joints) options.locked_joints = as_joint_values(*locked_joints, "locked_joints");
   options.soft_limits = from_python<bool>(soft_limits, "soft_limits");
   if (default_limits) options.default_limits = as_limits(*default_limits, "default_limits");
@@ -149,7 +117,7 @@ Robot robot_from_state(const py::object& state) {
   RobotOptions options;
   options.base_link = in.value<std::string>("base_link");
   options.tip_link = in.value<std::string>("tip_link");
-  options.tcp = as_rigid_pose(ArrayLike(in.object()), "pickled Robot, tcp");
+  options.tcp = check_pose(as_pose(in.object(), "pickled Robot, tcp"), "pickled Robot, tcp");
   options.locked_joints = as_joint_values(JointValues(in.object()), "pickled Robot, locked_joints");
   options.soft_limits = in.value<bool>("soft_limits");
   const py::object limits = in.object();
@@ -268,9 +236,7 @@ Raises:
   bind_chain(cls);
   cls.def(
       "with_tcp",
-      [](const Robot& self, const ArrayLike& tcp) {
-        return self.with_tcp(as_rigid_pose(tcp, "tcp"));
-      },
+      [](const Robot& self, const PoseLike& tcp) { return self.with_tcp(as_pose(tcp, "tcp")); },
       py::arg("tcp"),
       "The same chain with another tool T_tip_tcp, (4, 4). Databases built for one serve the "
       "other.");
@@ -351,20 +317,6 @@ Raises:
   cls.def(
       "__deepcopy__", [](const Robot& self, const py::dict&) { return self; }, py::arg("memo"));
   cls.def(py::pickle(&robot_state, &robot_from_state));
-
-  m.def(
-      "pose_error",
-      [](const ArrayLike& target, const ArrayLike& pose) -> py::array_t<double> {
-        const DoubleArray targets = as_doubles(target, "target");
-        if (targets.ndim() == 3) {
-          return pose_errors(as_poses(targets, "target"), as_doubles(pose, "pose"));
-        }
-        return to_array(
-            JointVector(pose_error(as_rigid_pose(target, "target"), as_rigid_pose(pose, "pose"))));
-      },
-      py::arg("target"), py::arg("pose"),
-      "[p_target - p; rotvec(R_target R^T)] of two (4, 4) poses [m, rad], (6,); or of each pair "
-      "from two (N, 4, 4) arrays, (N, 6).");
 }
 
 }  // namespace iksel::python

@@ -17,6 +17,7 @@
 #include "iksel/solver.hpp"
 #include "option_fields.hpp"
 #include "pickle.hpp"
+#include "pose_arguments.hpp"
 #include "progress.hpp"
 #include "py_batch.hpp"
 #include "py_request.hpp"
@@ -60,8 +61,8 @@ Solver make_solver(const Loose<Robot>& given_robot,
                 database ? *database : Database::build(robot, options.database, interruptible));
 }
 
-PyResult solve(const Solver& self, const ArrayLike& pose, const std::optional<ArrayLike>& seed) {
-  const Pose target = as_pose(pose, "pose");
+PyResult solve(const Solver& self, const PoseLike& pose, const std::optional<ArrayLike>& seed) {
+  const Pose target = as_pose(pose, "pose", &self.options().task);
   if (!seed) return {self.solve(target), {}};
   const JointVector start = as_joints(*seed, self.robot().dof(), "seed");
   warn_of_degrees(self.robot(), start, "seed");
@@ -85,20 +86,22 @@ std::optional<DoubleArray> as_near(const std::optional<ArrayLike>& value, py::ss
   return array;
 }
 
-PyBatchResult solve_batch(const Solver& self, const ArrayLike& poses, const Loose<int>& threads,
+PyBatchResult solve_batch(const Solver& self, const PoseLike& poses, const Loose<int>& threads,
                           const std::optional<ArrayLike>& near,
                           const std::optional<ArrayLike>& weights, const Loose<MoveNorm>& norm,
                           const std::optional<ArrayLike>& seeds, const Loose<bool>& database_seeds,
                           const std::optional<FilterCallable>& filter,
                           const std::optional<Loose<double>>& deadline,
                           const std::optional<Loose<Task>>& task,
-                          const std::optional<ObjectiveLike>& objective) {
-  const DoubleArray targets = as_poses(poses, "poses");
+                          const std::optional<ObjectiveLike>& objective,
+                          const Loose<OnInvalidPose>& on_invalid_pose) {
+  SolveRequest request = make_request(self.robot().dof(), std::nullopt, weights, norm, seeds,
+                                      database_seeds, filter, deadline, task, objective);
+  request.on_invalid_pose = from_python<OnInvalidPose>(on_invalid_pose, "on_invalid_pose");
+  const DoubleArray targets = as_poses(poses, "poses", &task_of(self, request));
   const auto thread_count = from_python<int>(threads, "threads");
   const py::ssize_t n = targets.shape(0);
   const py::ssize_t dof = self.robot().dof();
-  SolveRequest request = make_request(self.robot().dof(), std::nullopt, weights, norm, seeds,
-                                      database_seeds, filter, deadline, task, objective);
   const auto nears = as_near(near, n, self.robot().dof(), request);
   if (request.near) warn_of_degrees(self.robot(), *request.near, "near");
   PyBatchResult out{py::array_t<double>({n, dof}), py::array_t<bool>(n),
@@ -187,11 +190,18 @@ Raises:
   cls.def_property_readonly("work_bound", &Solver::work_bound,
                             "Most iteration steps that one solve without given seeds can spend, "
                             "over all its seeds: max_attempts * max_iterations.");
+  cls.def_property_readonly(
+      "task_hint", [](const Solver& self) { return task_hint(self.robot(), self.options().task); },
+      "For an arm with fewer joints than its task has axes, which hardly any target suits: tasks "
+      "for which its joints are enough, in a sentence; else empty.");
   cls.def("solve", &solve, py::arg("pose"), py::arg("seed") = py::none(),
           R"(Joint values that put the tip (the TCP, if there is one) at a pose.
 
 Args:
-    pose: T_base_tip, (4, 4) [m].
+    pose: T_base_tip [m]: (4, 4) or (3, 4); a pair (position, rotation) with a (3, 3) matrix or a
+        scipy Rotation; an object with as_matrix(), .homogeneous or .A (scipy, Pinocchio,
+        spatialmath); (3,) if the task leaves the rotation free. One that is rounded stands for the
+        nearest rigid one (see check_pose), by which the errors are measured.
     seed: joint values to iterate from first, (dof,) [rad or m]; may lie outside the limits.
 
 Returns:
@@ -209,6 +219,7 @@ Raises:
           py::arg("database_seeds") = wishes.database_seeds, py::arg("filter") = py::none(),
           py::arg("deadline") = py::none(), py::arg("task") = py::none(),
           py::arg("objective") = py::none(),
+          py::arg("on_invalid_pose") = enum_name(wishes.on_invalid_pose),
           R"(Solves many targets with the GIL released; row i belongs to target i.
 
 A row has the same bits whatever the number of threads and whatever else is in the batch. Its
@@ -217,17 +228,18 @@ there a target has a lane to itself, and the answer may be another of its soluti
 same tolerances.
 
 Args:
-    poses: T_base_tip, (N, 4, 4) [m]. Doubles in C order are read in place.
+    poses: T_base_tip, (N, 4, 4) [m], or others as in solve. Doubles in C order are read in place.
     threads: 0: one per core.
     near: configuration to stay near, (dof,), or one for each target, (N, dof) [rad or m].
     filter: called with candidates (n, dof), first the answers of up to 256 targets at once;
         returns n truth values. Where it refuses, the search for that target goes on.
     weights, norm, seeds, database_seeds, deadline, task, objective: as in solve, for each target
         by itself.
+    on_invalid_pose: what a row does that is no pose (see check_pose): "status", Status.invalid_pose
+        for it and NaN for its q; "raise", an error that names the first, and none is solved.
 
 Raises:
-    InvalidArgumentError: wrong shape or dtype, a bad wish, or a bad pose; the first is named, and
-        none is solved.)");
+    InvalidArgumentError: wrong shape or dtype, a bad wish, or by wish a bad pose.)");
   cls.def("__repr__", [](const Solver& self) {
     return "Solver(" + py::cast<std::string>(py::repr(py::cast(self.robot()))) + ", " +
            to_repr(self.options()) + ")";

@@ -12,6 +12,7 @@ namespace iksel::python {
 
 void bind_errors(pybind11::module_& m);
 void bind_link_tree(pybind11::module_& m);
+void bind_pose(pybind11::module_& m);
 void bind_robot(pybind11::module_& m);
 /// To come before the options, one of which is a task.
 void bind_task(pybind11::module_& m);

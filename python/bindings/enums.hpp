@@ -180,6 +180,8 @@ struct EnumTable<Status> {
       {"out_of_time", Status::out_of_time, "the deadline passed before an answer was found"},
       {"too_fast", Status::too_fast,
        "answers exist, but joints would have to move faster than their velocity limits"},
+      {"invalid_pose", Status::invalid_pose,
+       "the target is no pose; in batches only, for a single pose it is an error"},
   };
 };
 
@@ -190,6 +192,15 @@ struct EnumTable<MoveNorm> {
   static constexpr EnumValue<MoveNorm> kValues[] = {
       {"two", MoveNorm::two, "root of the sum of squares"},
       {"max", MoveNorm::max, "the largest joint's"},
+  };
+};
+
+/// No Python enum, where `raise` could not be written.
+template <>
+struct EnumTable<OnInvalidPose> {
+  static constexpr EnumValue<OnInvalidPose> kValues[] = {
+      {"status", OnInvalidPose::status, "Status::invalid_pose in its row"},
+      {"raise", OnInvalidPose::raise, "an error that names the first"},
   };
 };
 

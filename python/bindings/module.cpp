@@ -16,6 +16,7 @@ PYBIND11_MODULE(iksel_cpp, m) {
   iksel::python::bind_errors(m);
   iksel::python::bind_link_tree(m);
   iksel::python::bind_robot(m);
+  iksel::python::bind_pose(m);
   iksel::python::bind_task(m);
   iksel::python::bind_options(m);
   iksel::python::bind_database(m);

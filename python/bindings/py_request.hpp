@@ -12,6 +12,7 @@
 #include "array_checks.hpp"
 #include "filter.hpp"
 #include "iksel/request.hpp"
+#include "iksel/solver.hpp"
 #include "objective.hpp"
 #include "python_types.hpp"
 #include "task_fields.hpp"
@@ -32,6 +33,11 @@ inline std::vector<JointVector> as_seeds(const ArrayLike& value, int dof) {
     seeds.emplace_back(Eigen::Map<const Eigen::VectorXd>(array.data(i), dof));
   }
   return seeds;
+}
+
+/// The task of a request, or else the solver's.
+inline const Task& task_of(const Solver& solver, const SolveRequest& request) {
+  return request.task ? *request.task : solver.options().task;
 }
 
 /// `filter` and `objective` must outlive the request.

@@ -197,7 +197,9 @@ struct handle_type_name<iksel::python::JointValues> {
 template <class T>
 struct handle_type_name<iksel::python::Loose<T>> {
   static constexpr auto describe() {
-    if constexpr (std::is_enum_v<T>) {
+    if constexpr (std::is_same_v<T, iksel::OnInvalidPose>) {
+      return const_name("typing.Literal['status', 'raise']");
+    } else if constexpr (std::is_enum_v<T>) {
       return make_caster<T>::name + const_name(" | str");
     } else if constexpr (std::is_same_v<T, std::string>) {
       return const_name("str");

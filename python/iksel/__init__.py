@@ -73,9 +73,11 @@ from iksel_cpp import (
 
 from iksel._manifest import RobotInfo
 from iksel.pose import (
+    as_pose,
     check_pose,
     euler_from_pose,
     is_rigid,
+    orthonormalized,
     pose_error,
     pose_from_euler,
     pose_from_matrix,
@@ -135,11 +137,13 @@ __all__ = [
     "UnknownNameError",
     "UrdfError",
     "__version__",
+    "as_pose",
     "check_pose",
     "euler_from_pose",
     "evaluate",
     "is_rigid",
     "load_robot",
+    "orthonormalized",
     "pose_error",
     "pose_from_euler",
     "pose_from_matrix",

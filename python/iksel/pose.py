@@ -5,14 +5,18 @@ A pose is a 4x4 homogeneous matrix T_base_tip: it takes coordinates in the tip f
 coordinates in the base frame; lengths are metres, angles radians. Quaternions are
 (w, x, y, z). Every function works on one pose or on arrays of them: leading axes are
 kept, and those of two arguments are broadcast against each other.
+
+A pose may be given in any form that `as_pose` lists, and may be rounded: one whose
+rotation is off by RIGID_TOLERANCE (1e-3) or less stands for the nearest rigid one.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Literal
 
 import iksel_cpp
 import numpy as np
+from iksel_cpp import RIGID_TOLERANCE
 
 from iksel import _rotations as rotations
 from iksel._angles import warn_of_degrees
@@ -25,15 +29,15 @@ from iksel._arrays import (
     index_text,
     reject,
 )
-from iksel._rigid import (
-    RIGID_TOLERANCE,
-    pose_problems,
-    require_none,
-    rotation_problems,
-)
 
 if TYPE_CHECKING:
     import numpy.typing as npt
+
+QuaternionOrder = Literal["wxyz", "xyzw"]
+"""Whether the scalar of a quaternion comes first or last."""
+
+PoseLike = Any
+"""A pose in one of the forms that `as_pose` lists."""
 
 UNIT_TOLERANCE = 1e-3
 """Largest deviation of a quaternion's norm from 1 that is normalised away."""
@@ -44,7 +48,8 @@ def pose_from_matrix(position: npt.ArrayLike, rotation: npt.ArrayLike) -> FloatA
 
     Args:
         position: Origin of the tip in the base frame, (..., 3) [m].
-        rotation: R_base_tip, (..., 3, 3); its columns are the tip's axes.
+        rotation: R_base_tip, (..., 3, 3); its columns are the tip's axes. One that is
+            off by RIGID_TOLERANCE or less is projected to the nearest rotation.
 
     Returns:
         T_base_tip, (..., 4, 4).
@@ -53,29 +58,33 @@ def pose_from_matrix(position: npt.ArrayLike, rotation: npt.ArrayLike) -> FloatA
         InvalidArgumentError: Wrong shape, not finite, or no rotation.
     """
     matrix = as_floats("rotation", rotation, (3, 3))
-    pose = _assemble(position, "rotation", matrix)
-    require_none("rotation", matrix, rotation_problems(matrix))
-    return pose
+    return check_pose(_assemble(position, "rotation", matrix), "rotation")
 
 
 def pose_from_quaternion(
-    position: npt.ArrayLike, quaternion_wxyz: npt.ArrayLike
+    position: npt.ArrayLike,
+    quaternion: npt.ArrayLike,
+    order: QuaternionOrder = "wxyz",
 ) -> FloatArray:
     """Pose from a position and a quaternion.
 
     Args:
         position: Origin of the tip in the base frame, (..., 3) [m].
-        quaternion_wxyz: Rotation as (w, x, y, z), (..., 4). A norm up to 1e-3 away
-            from 1 is normalised; q and -q are the same rotation.
+        quaternion: Rotation, (..., 4). A norm up to 1e-3 away from 1 is normalised; q
+            and -q are the same rotation.
+        order: "wxyz": the scalar first (Eigen's constructor, MuJoCo, Pinocchio's text);
+            "xyzw": last (ROS, scipy, Bullet).
 
     Returns:
         T_base_tip, (..., 4, 4).
 
     Raises:
-        InvalidArgumentError: Wrong shape, not finite, or not of unit length.
+        InvalidArgumentError: Wrong shape, not finite, not of unit length, or another
+            order.
     """
-    name = "quaternion_wxyz"
-    q = as_floats(name, quaternion_wxyz, (4,))
+    name = "quaternion"
+    _check_order(order)
+    q = as_floats(name, quaternion, (4,))
     with np.errstate(over="ignore"):
         norm = np.linalg.norm(q, axis=-1)
     off = ~(np.abs(norm - 1.0) <= UNIT_TOLERANCE)
@@ -83,7 +92,10 @@ def pose_from_quaternion(
         index = first_index(off)
         got = f"{norm[index]} at index {index_text(index)}" if index else norm[index]
         reject(name, f"expected norm 1 within {UNIT_TOLERANCE}, got {got}")
-    return _assemble(position, name, rotations.from_quaternion(q / norm[..., None]))
+    q = q / norm[..., None]
+    if order == "xyzw":
+        q = q[..., [3, 0, 1, 2]]
+    return _assemble(position, name, rotations.from_quaternion(q))
 
 
 def pose_from_rotation_vector(
@@ -125,7 +137,7 @@ def pose_from_euler(position: npt.ArrayLike, rpy: npt.ArrayLike) -> FloatArray:
     return _assemble(position, "rpy", rotations.from_euler(angles))
 
 
-def quaternion_from_pose(pose: npt.ArrayLike) -> FloatArray:
+def quaternion_from_pose(pose: PoseLike) -> FloatArray:
     """Rotation of a pose as a unit quaternion (w, x, y, z) with w >= 0.
 
     Args:
@@ -140,7 +152,7 @@ def quaternion_from_pose(pose: npt.ArrayLike) -> FloatArray:
     return rotations.quaternion_from_matrix(check_pose(pose)[..., :3, :3])
 
 
-def rotation_vector_from_pose(pose: npt.ArrayLike) -> FloatArray:
+def rotation_vector_from_pose(pose: PoseLike) -> FloatArray:
     """Rotation of a pose as axis times angle, the angle in [0, pi].
 
     Args:
@@ -156,7 +168,7 @@ def rotation_vector_from_pose(pose: npt.ArrayLike) -> FloatArray:
     return rotations.vector_from_quaternion(q)
 
 
-def euler_from_pose(pose: npt.ArrayLike) -> FloatArray:
+def euler_from_pose(pose: PoseLike) -> FloatArray:
     """Rotation of a pose as roll, pitch, yaw of a URDF: R = Rz(y) Ry(p) Rx(r).
 
     Args:
@@ -174,13 +186,14 @@ def euler_from_pose(pose: npt.ArrayLike) -> FloatArray:
 
 
 def is_rigid(
-    pose: npt.ArrayLike, tolerance: float = RIGID_TOLERANCE
+    pose: PoseLike, tolerance: float = RIGID_TOLERANCE
 ) -> np.bool_ | BoolArray:
     """Whether poses are finite and rigid: R^T R = I, det R > 0, last row 0 0 0 1.
 
     Args:
         pose: Matrices, (..., 4, 4); elements may be NaN or infinite.
-        tolerance: Largest element of |R^T R - I|.
+        tolerance: Largest element of |R^T R - I|; by default that up to which a pose is
+            accepted.
 
     Returns:
         One truth value per pose, of the leading shape.
@@ -188,34 +201,91 @@ def is_rigid(
     Raises:
         InvalidArgumentError: Not numbers of shape (..., 4, 4).
     """
-    matrix = as_floats("pose", pose, (4, 4), finite=False)
-    problems = list(pose_problems(matrix, tolerance).values())
-    rigid: np.bool_ | BoolArray = ~np.logical_or.reduce(problems)
+    matrix = as_floats("pose", iksel_cpp.pose_matrices(pose), (4, 4), finite=False)
+    rigid: np.bool_ | BoolArray = iksel_cpp.rigid_deviation(matrix)[()] <= tolerance
     return rigid
 
 
-def check_pose(pose: npt.ArrayLike, name: str = "pose") -> FloatArray:
-    """Check that poses are finite and rigid.
+def check_pose(pose: PoseLike, name: str = "pose") -> FloatArray:
+    """Give the rigid transforms that poses stand for.
+
+    A pose that is rigid to rounding (|R^T R - I| <= 1e-12) is kept bit for bit; one
+    whose rotation is off by RIGID_TOLERANCE (1e-3) or less, as when it was printed with
+    a few decimals, is projected to the nearest. Every pose that iksel is given goes
+    through this.
 
     Args:
-        pose: T_base_tip, (..., 4, 4).
+        pose: T_base_tip, (..., 4, 4), or another form that `as_pose` lists.
         name: Name of the argument, for the error message.
 
     Returns:
-        `pose` as float64, (..., 4, 4).
+        T_base_tip as float64, (..., 4, 4).
 
     Raises:
         InvalidArgumentError: Wrong shape, not finite or not rigid; the message says
             which pose and why.
     """
-    matrix = as_floats(name, pose, (4, 4))
-    require_none(name, matrix, pose_problems(matrix))
-    return matrix
+    matrix = as_floats(name, iksel_cpp.pose_matrices(pose, name), (4, 4))
+    return iksel_cpp.check_pose(matrix, name)
 
 
-def pose_error(
-    target: npt.ArrayLike, pose: npt.ArrayLike
-) -> tuple[FloatArray, FloatArray]:
+def orthonormalized(pose: PoseLike) -> FloatArray:
+    """Give the rigid transforms nearest to poses, however far off they are.
+
+    For matrices that `check_pose` refuses: scaled, sheared, rounded to two decimals.
+    The rotation is the orthogonal polar factor, the nearest by the sum of squares.
+
+    Args:
+        pose: T_base_tip, (..., 4, 4), or another form that `as_pose` lists.
+
+    Returns:
+        T_base_tip, (..., 4, 4).
+
+    Raises:
+        InvalidArgumentError: Wrong shape, not finite, singular or mirrored, or a last
+            row other than (0, 0, 0, 1).
+    """
+    matrix = as_floats("pose", iksel_cpp.pose_matrices(pose), (4, 4))
+    return iksel_cpp.orthonormalized(matrix)
+
+
+def as_pose(value: PoseLike, order: QuaternionOrder | None = None) -> FloatArray:
+    """Turn a pose as other libraries hold it into a matrix.
+
+    All but the quaternions are also taken wherever iksel takes a pose; those, whose
+    order differs between libraries, by this function only.
+
+    Args:
+        value: One of these, or a list of one of them:
+
+            - a matrix (..., 4, 4) or (..., 3, 4);
+            - a pair (position, rotation): (..., 3) and a matrix (..., 3, 3) or an
+              object with as_matrix(), such as a scipy Rotation;
+            - an object with as_matrix() (scipy RigidTransform), .homogeneous
+              (Pinocchio SE3) or .A (spatialmath SE3);
+            - a pair (position, quaternion), (..., 3) and (..., 4);
+            - position and quaternion in one row, (..., 7).
+        order: Order of a quaternion: "wxyz" or "xyzw".
+
+    Returns:
+        T_base_tip, (..., 4, 4), rigid as `check_pose` makes it.
+
+    Raises:
+        InvalidArgumentError: None of these, a quaternion without an order, not finite,
+            or not rigid.
+    """
+    if order is None:
+        return check_pose(value, "value")
+    _check_order(order)
+    if isinstance(value, (tuple, list)) and len(value) == 2:
+        position, quaternion = value
+        if np.shape(quaternion)[-1:] == (4,) and np.shape(position)[-1:] == (3,):
+            return pose_from_quaternion(position, quaternion, order)
+    row = as_floats("value", value, (7,))
+    return pose_from_quaternion(row[..., :3], row[..., 3:], order)
+
+
+def pose_error(target: PoseLike, pose: PoseLike) -> tuple[FloatArray, FloatArray]:
     """How far `pose` is from `target`.
 
     Args:
@@ -234,10 +304,14 @@ def pose_error(
         (check_pose(target, "target"), check_pose(pose, "pose")),
         (2, 2),
     )
-    rows = iksel_cpp.pose_error(a.reshape(-1, 4, 4), b.reshape(-1, 4, 4))
-    errors = rows.reshape(*a.shape[:-2], 6)
+    errors = iksel_cpp.pose_error(a, b)
     distance = np.linalg.norm(errors[..., :3], axis=-1)
     return np.asarray(distance), np.asarray(np.linalg.norm(errors[..., 3:], axis=-1))
+
+
+def _check_order(order: str) -> None:
+    if order not in ("wxyz", "xyzw"):
+        reject("order", f"expected one of wxyz, xyzw, got {order!r}")
 
 
 def _assemble(position: npt.ArrayLike, name: str, rotation: FloatArray) -> FloatArray:

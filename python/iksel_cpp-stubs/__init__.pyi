@@ -14,7 +14,7 @@ import numpy
 import numpy.typing
 import os
 import typing
-__all__: list[str] = ['AngleUnitWarning', 'Axis', 'BatchResult', 'Cause', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'Diagnosis', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'KeyScheme', 'Kinematics', 'LinkTree', 'LinkTreeJoint', 'MoveNorm', 'Objective', 'ObjectiveKind', 'PathResult', 'Ranking', 'Reselection', 'Result', 'Robot', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'SignatureError', 'SolutionOrder', 'Solutions', 'Solver', 'SolverOptions', 'Status', 'Task', 'TaskFrame', 'Tracker', 'UnknownNameError', 'UrdfError', 'evaluate', 'grid_counts', 'pose_error', 'simd_level', 'time_kdl_fk_jacobian']
+__all__: list[str] = ['AngleUnitWarning', 'Axis', 'BatchResult', 'Cause', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'Diagnosis', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'KeyScheme', 'Kinematics', 'LinkTree', 'LinkTreeJoint', 'MoveNorm', 'Objective', 'ObjectiveKind', 'PathResult', 'RIGID_TOLERANCE', 'Ranking', 'Reselection', 'Result', 'Robot', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'SignatureError', 'SolutionOrder', 'Solutions', 'Solver', 'SolverOptions', 'Status', 'Task', 'TaskFrame', 'Tracker', 'UnknownNameError', 'UrdfError', 'check_pose', 'evaluate', 'grid_counts', 'orthonormalized', 'pose_error', 'pose_matrices', 'rigid_deviation', 'simd_level', 'time_kdl_fk_jacobian']
 class AngleUnitWarning(UserWarning):
     """
     Angles that look like degrees were given where radians are meant.
@@ -148,7 +148,7 @@ class Robot:
     An immutable serial chain between two links of a URDF, with its limits. Safe to use from many threads at once.
     """
     @staticmethod
-    def from_urdf(path_or_xml: str | os.PathLike[str], base_link: str | None = None, tip_link: str | None = None, tcp: numpy.typing.ArrayLike | None = None, locked_joints: collections.abc.Mapping[str, float] | None = None, soft_limits: bool = False, default_limits: numpy.typing.ArrayLike | None = None) -> Robot:
+    def from_urdf(path_or_xml: str | os.PathLike[str], base_link: str | None = None, tip_link: str | None = None, tcp: numpy.typing.ArrayLike | typing.Any | None = None, locked_joints: collections.abc.Mapping[str, float] | None = None, soft_limits: bool = False, default_limits: numpy.typing.ArrayLike | None = None) -> Robot:
         """
         Reads the chain between two links of a URDF.
 
@@ -226,7 +226,7 @@ class Robot:
         """
         n configurations uniform inside the limits (continuous joints in [-pi, pi)), (n, dof). The same seed gives the same numbers everywhere; None: other numbers in each call.
         """
-    def with_tcp(self, tcp: numpy.typing.ArrayLike) -> Robot:
+    def with_tcp(self, tcp: numpy.typing.ArrayLike | typing.Any) -> Robot:
         """
         The same chain with another tool T_tip_tcp, (4, 4). Databases built for one serve the other.
         """
@@ -1039,7 +1039,7 @@ class Database:
         ...
     def __repr__(self) -> str:
         ...
-    def nearest(self, pose: numpy.typing.ArrayLike, k: int) -> numpy.typing.NDArray[numpy.int64]:
+    def nearest(self, pose: numpy.typing.ArrayLike | typing.Any, k: int) -> numpy.typing.NDArray[numpy.int64]:
         """
         Indices of the k samples whose keys are nearest to that of a (4, 4) pose of the tip link, nearest first; Eq. (2) of the paper.
         """
@@ -1118,7 +1118,7 @@ class Objective:
     @staticmethod
     def custom(cost: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any], gradient: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None) -> Objective:
         """
-        The cost of joint values (dof,) inside the limits, a number, and its gradient (dof,); without one, central differences of the cost.
+        The cost of joint values (dof,) inside the limits, a number, and its gradient (dof,); without one, central differences of the cost. A cost of +inf refuses the joint values; NaN, -inf, or a gradient that is not finite is an InvalidArgumentError.
         """
     @staticmethod
     def far_from_limits() -> Objective:
@@ -1230,6 +1230,7 @@ class Status(enum.IntEnum):
     """
     Why a solve ended.
     """
+    invalid_pose = 7
     not_converged = 1
     out_of_reach = 3
     out_of_time = 5
@@ -1431,14 +1432,14 @@ class Solver:
         """
     def __repr__(self) -> str:
         ...
-    def diagnose(self, pose: numpy.typing.ArrayLike, *, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None) -> Diagnosis:
+    def diagnose(self, pose: numpy.typing.ArrayLike | typing.Any, *, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None) -> Diagnosis:
         """
         Why solve() with the same arguments gives no answer, and the best that can be done.
 
         Spends much more than solving does, milliseconds to a second.
 
         Args:
-            pose: T_base_tip, (4, 4) [m].
+            pose: T_base_tip [m], as in solve.
             filter, deadline, task: as in solve.
 
         Returns:
@@ -1448,12 +1449,15 @@ class Solver:
             InvalidArgumentError: as solve.
         """
     @typing.overload
-    def solve(self, pose: numpy.typing.ArrayLike, seed: numpy.typing.ArrayLike | None = None) -> Result:
+    def solve(self, pose: numpy.typing.ArrayLike | typing.Any, seed: numpy.typing.ArrayLike | None = None) -> Result:
         """
         Joint values that put the tip (the TCP, if there is one) at a pose.
 
         Args:
-            pose: T_base_tip, (4, 4) [m].
+            pose: T_base_tip [m]: (4, 4) or (3, 4); a pair (position, rotation) with a (3, 3) matrix or a
+                scipy Rotation; an object with as_matrix(), .homogeneous or .A (scipy, Pinocchio,
+                spatialmath); (3,) if the task leaves the rotation free. One that is rounded stands for the
+                nearest rigid one (see check_pose), by which the errors are measured.
             seed: joint values to iterate from first, (dof,) [rad or m]; may lie outside the limits.
 
         Returns:
@@ -1464,12 +1468,12 @@ class Solver:
                 not finite.
         """
     @typing.overload
-    def solve(self, pose: numpy.typing.ArrayLike, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None) -> Result:
+    def solve(self, pose: numpy.typing.ArrayLike | typing.Any, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None) -> Result:
         """
         As solve, with wishes.
 
         Args:
-            pose: T_base_tip, (4, 4) [m].
+            pose: T_base_tip [m], in one of the forms of solve above.
             near: configuration to stay near, (dof,) [rad or m]; may lie outside the limits. The answer
                 is the one with the smallest joint move of all that are found, whole turns considered; a
                 redundant arm's has slid along its self-motion to where the move is smallest. Angles
@@ -1496,12 +1500,12 @@ class Solver:
             InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, a number that is not
                 finite or out of range.
         """
-    def solve_all(self, pose: numpy.typing.ArrayLike, max: int = 64, *, min_distance: float = 0.01, whole_turns: bool = False, order: SolutionOrder | str = 'move', near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None) -> Solutions:
+    def solve_all(self, pose: numpy.typing.ArrayLike | typing.Any, max: int = 64, *, min_distance: float = 0.01, whole_turns: bool = False, order: SolutionOrder | str = 'move', near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None) -> Solutions:
         """
         Every distinct solution that is found: all branches, or a spread for a redundant arm.
 
         Args:
-            pose: T_base_tip, (4, 4) [m].
+            pose: T_base_tip [m], as in solve.
             max: solutions given at most.
             min_distance: solutions that differ by less in every joint are one [rad or m].
             whole_turns: whether copies by whole turns inside the limits count as solutions of their own;
@@ -1515,7 +1519,7 @@ class Solver:
         Raises:
             InvalidArgumentError: as solve.
         """
-    def solve_batch(self, poses: numpy.typing.ArrayLike, threads: int = 0, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None) -> BatchResult:
+    def solve_batch(self, poses: numpy.typing.ArrayLike | typing.Any, threads: int = 0, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None, on_invalid_pose: typing.Literal['status', 'raise'] = 'status') -> BatchResult:
         """
         Solves many targets with the GIL released; row i belongs to target i.
 
@@ -1525,28 +1529,30 @@ class Solver:
         same tolerances.
 
         Args:
-            poses: T_base_tip, (N, 4, 4) [m]. Doubles in C order are read in place.
+            poses: T_base_tip, (N, 4, 4) [m], or others as in solve. Doubles in C order are read in place.
             threads: 0: one per core.
             near: configuration to stay near, (dof,), or one for each target, (N, dof) [rad or m].
             filter: called with candidates (n, dof), first the answers of up to 256 targets at once;
                 returns n truth values. Where it refuses, the search for that target goes on.
             weights, norm, seeds, database_seeds, deadline, task, objective: as in solve, for each target
                 by itself.
+            on_invalid_pose: what a row does that is no pose (see check_pose): "status", Status.invalid_pose
+                for it and NaN for its q; "raise", an error that names the first, and none is solved.
 
         Raises:
-            InvalidArgumentError: wrong shape or dtype, a bad wish, or a bad pose; the first is named, and
-                none is solved.
+            InvalidArgumentError: wrong shape or dtype, a bad wish, or by wish a bad pose.
         """
-    def solve_path(self, poses: numpy.typing.ArrayLike, start: numpy.typing.ArrayLike | None = None, *, dt: float = 0.0, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, candidates: int = 64) -> PathResult:
+    def solve_path(self, poses: numpy.typing.ArrayLike | typing.Any, start: numpy.typing.ArrayLike | None = None, *, dt: float = 0.0, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, candidates: int = 64) -> PathResult:
         """
         Joint values along a path of poses, by a choice among the solutions of all waypoints.
 
         Of all ways through the solutions that are found, the one with the least sum of joint moves.
 
         Args:
-            poses: T_base_tip of each waypoint, (N, 4, 4) [m].
+            poses: T_base_tip of each waypoint, (N, 4, 4) [m], or others as in solve.
             start: where the arm is one time step before the first waypoint, (dof,) [rad or m]; None: the
-                path may begin anywhere.
+                path may begin anywhere, and of its copies by whole turns the one that begins nearest to
+                the middle of the limits is taken.
             dt: time from one waypoint to the next [s], in which no joint moves farther than its velocity
                 limit allows; 0: speeds are not limited.
             weights, norm: how a move is measured, as in solve.
@@ -1584,6 +1590,11 @@ class Solver:
     def robot(self) -> Robot:
         """
         The robot it solves for.
+        """
+    @property
+    def task_hint(self) -> str:
+        """
+        For an arm with fewer joints than its task has axes, which hardly any target suits: tasks for which its joints are enough, in a sentence; else empty.
         """
     @property
     def work_bound(self) -> int:
@@ -1711,12 +1722,12 @@ class Tracker:
         """
     def __repr__(self) -> str:
         ...
-    def track(self, pose: numpy.typing.ArrayLike, dt: float) -> Result:
+    def track(self, pose: numpy.typing.ArrayLike | typing.Any, dt: float) -> Result:
         """
         Moves on towards a pose, by no more than each joint can in the time step.
 
         Args:
-            pose: T_base_tip, (4, 4) [m].
+            pose: T_base_tip [m], as in Solver.solve.
             dt: time step [s].
 
         Returns:
@@ -1849,6 +1860,24 @@ class Evaluation:
         """
         Targets tried.
         """
+def check_pose(pose: numpy.typing.ArrayLike | typing.Any, name: str = 'pose') -> numpy.typing.NDArray[numpy.float64]:
+    """
+    The rigid transforms that poses stand for.
+
+    A pose that is rigid to rounding (|R^T R - I| <= 1e-12) is kept bit for bit; one whose rotation is
+    off by RIGID_TOLERANCE (1e-3) or less, as when it was printed with a few decimals, is projected to
+    the nearest. Every pose that is given to this module goes through this.
+
+    Args:
+        pose: T_base_tip, (..., 4, 4) or (..., 3, 4) [m], or what else as_pose of iksel lists.
+        name: name of the argument, for the error message.
+
+    Returns:
+        (..., 4, 4).
+
+    Raises:
+        InvalidArgumentError: wrong shape, not finite, or not rigid; the message says which and why.
+    """
 def evaluate(solver: Solver, targets: int, seed: int, stages: bool = False, progress: collections.abc.Callable[[int, int], typing.Any] | None = None) -> Evaluation:
     """
     The paper's experiment protocol: success and time over random reachable targets.
@@ -1868,9 +1897,32 @@ def grid_counts(dof: int, scale: Scale | str) -> list[int]:
     """
     Points per joint of the paper's grid, base to tip.
     """
-def pose_error(target: numpy.typing.ArrayLike, pose: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
+def orthonormalized(pose: numpy.typing.ArrayLike | typing.Any) -> numpy.typing.NDArray[numpy.float64]:
     """
-    [p_target - p; rotvec(R_target R^T)] of two (4, 4) poses [m, rad], (6,); or of each pair from two (N, 4, 4) arrays, (N, 6).
+    The rigid transforms nearest to poses, however far off their rotations are.
+
+    The rotation is the orthogonal polar factor: the nearest to the given matrix, by the sum of squares.
+
+    Args:
+        pose: (..., 4, 4) or (..., 3, 4) [m]: scaled, sheared or rounded.
+
+    Returns:
+        (..., 4, 4).
+
+    Raises:
+        InvalidArgumentError: not finite, singular or mirrored, or a last row other than 0 0 0 1.
+    """
+def pose_error(target: numpy.typing.ArrayLike | typing.Any, pose: numpy.typing.ArrayLike | typing.Any) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    [p_target - p; rotvec(R_target R^T)] of two (4, 4) poses [m, rad], (6,); or of each pair from two (..., 4, 4) arrays, (..., 6).
+    """
+def pose_matrices(pose: numpy.typing.ArrayLike | typing.Any, name: str = 'pose') -> typing.Any:
+    """
+    Poses in one of the forms that as_pose of iksel lists as matrices (..., 4, 4), not checked; what is none of them as it is.
+    """
+def rigid_deviation(pose: numpy.typing.ArrayLike | typing.Any) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Largest element of |R^T R - I| of each pose (..., 4, 4), (...); infinite if it is not finite, mirrored, or not 0 0 0 1 in its last row.
     """
 def simd_level() -> str:
     """
@@ -1885,4 +1937,5 @@ def time_kdl_fk_jacobian(robot: Robot) -> float:
     """
     Mean time of one KDL FK plus one KDL Jacobian over random configurations [us].
     """
+RIGID_TOLERANCE: float = 0.001
 __version__: str

@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <cmath>
+#include <limits>
 #include <regex>
 #include <vector>
 
@@ -244,6 +245,57 @@ TEST(Calibration, ADatabaseOfTheNominalChainServesACalibratedOne) {
       }
       EXPECT_GE(solved, solved_by_own - cases / 1000) << name << ", seed " << iksel_test::seed();
     }
+  }
+}
+
+TEST(Objective, ACostThatIsNoNumberIsAnError) {
+  for (const char* name : {"ur3", "panda"}) {
+    const Solver solver(robot_named(name));
+    const Robot& robot = solver.robot();
+    const Eigen::MatrixXd q = robot.random_configurations(20, iksel_test::seed());
+    std::vector<Pose> targets;
+    for (int i = 0; i < 20; ++i) targets.push_back(robot.fk(q.row(i)));
+    for (const double value : {std::nan(""), -std::numeric_limits<double>::infinity()}) {
+      SolveRequest request;
+      request.objective = Objective::custom([value](const JointVector&) { return value; });
+      EXPECT_THROW((void)solver.solve(targets[0], request), iksel::InvalidArgumentError) << name;
+      for (const int threads : {1, 2, 5}) {
+        try {
+          (void)solver.solve_batch(targets, request, {}, threads);
+          FAIL() << name << ", " << threads << " threads";
+        } catch (const iksel::InvalidArgumentError& error) {
+          EXPECT_NE(std::string(error.what()).find("objective: the cost is"), std::string::npos);
+        }
+      }
+    }
+  }
+}
+
+TEST(Objective, AnInfiniteCostRefuses) {
+  for (const char* name : {"ur3", "panda"}) {
+    const Solver solver(robot_named(name));
+    const Robot& robot = solver.robot();
+    const Eigen::MatrixXd q = robot.random_configurations(100, iksel_test::seed());
+    SolveRequest request;
+    // Never with the first joint on the left.
+    request.objective = Objective::custom([](const JointVector& at) {
+      return at[0] < 0 ? std::numeric_limits<double>::infinity() : at.squaredNorm();
+    });
+    int solved = 0;
+    int rejected = 0;
+    for (int i = 0; i < 100; ++i) {
+      const Result result = solver.solve(robot.fk(q.row(i)), request);
+      solved += result.success();
+      rejected += result.status == iksel::Status::rejected;
+      if (!result.success()) continue;
+      EXPECT_GE(result.q[0], 0) << name << ", seed " << iksel_test::seed();
+      EXPECT_TRUE(std::isfinite(result.cost));
+    }
+    EXPECT_EQ(solved + rejected, 100) << name;
+    EXPECT_GT(solved, 50) << name;
+    request.objective = Objective::custom(
+        [](const JointVector&) { return std::numeric_limits<double>::infinity(); });
+    EXPECT_EQ(solver.solve(robot.fk(q.row(0)), request).status, iksel::Status::rejected);
   }
 }
 

@@ -566,9 +566,11 @@ TEST(RequestBatch, ExceptionsOfAFilterReachTheCaller) {
 TEST(RequestBatch, BadOnesAreNamed) {
   const Solver solver(iksel_test::load(robot_case("ur3")));
   Batch batch(solver.robot(), 5);
+  SolveRequest request;
+  request.on_invalid_pose = iksel::OnInvalidPose::raise;
   const auto expect_error = [&](const std::string& what) {
     try {
-      (void)solver.solve_batch(batch.targets, SolveRequest{}, batch.near);
+      (void)solver.solve_batch(batch.targets, request, batch.near);
       FAIL() << what;
     } catch (const iksel::InvalidArgumentError& error) {
       EXPECT_NE(std::string(error.what()).find(what), std::string::npos) << error.what();
@@ -581,7 +583,10 @@ TEST(RequestBatch, BadOnesAreNamed) {
   batch.near.clear();
   batch.targets[2].linear() *= 2;
   expect_error("poses[2]");
-  SolveRequest request;
+  request.on_invalid_pose = static_cast<iksel::OnInvalidPose>(7);
+  expect_error("on_invalid_pose");
+  request = {};
+  EXPECT_EQ(solver.solve_batch(batch.targets, request)[2].status, iksel::Status::invalid_pose);
   request.weights = JointVector::Zero(6);
   EXPECT_THROW((void)solver.solve_batch(batch.targets, request), iksel::InvalidArgumentError);
 }

@@ -207,10 +207,41 @@ TEST(Solver, RefusesBadInput) {
   std::vector<Pose> poses(10, Pose::Identity());
   poses[7].translation().z() = std::numeric_limits<double>::infinity();
   try {
-    static_cast<void>(solver.solve_batch(poses));
+    iksel::SolveRequest request;
+    request.on_invalid_pose = iksel::OnInvalidPose::raise;
+    static_cast<void>(solver.solve_batch(poses, request));
     FAIL();
   } catch (const iksel::InvalidArgumentError& error) {
     EXPECT_NE(std::string(error.what()).find("poses[7]"), std::string::npos);
+  }
+}
+
+TEST(Solver, BadRowsOfABatchHaveTheirOwnStatus) {
+  const Solver solver(ur3());
+  const int n = iksel_test::cases(300);
+  const Eigen::MatrixXd q = solver.robot().random_configurations(n, iksel_test::seed());
+  std::vector<Pose> good;
+  std::vector<Pose> mixed;
+  for (int i = 0; i < n; ++i) {
+    good.push_back(solver.robot().fk(q.row(i)));
+    if (i % 3 == 1) {
+      mixed.push_back(good.back());
+      mixed.back().linear() *= 1.01;
+    }
+    mixed.push_back(good.back());
+  }
+  const std::vector<Result> expected = solver.solve_batch(good);
+  for (const int threads : {1, 3}) {
+    const std::vector<Result> results = solver.solve_batch(mixed, threads);
+    std::size_t row = 0;
+    for (int i = 0; i < n; ++i) {
+      if (i % 3 == 1) {
+        EXPECT_EQ(results[row].status, iksel::Status::invalid_pose);
+        EXPECT_EQ(results[row++].q.size(), 0);
+      }
+      EXPECT_EQ(results[row].status, expected[static_cast<std::size_t>(i)].status);
+      EXPECT_EQ(results[row++].q, expected[static_cast<std::size_t>(i)].q);
+    }
   }
 }
 

@@ -25,7 +25,7 @@ def spoilt(row: int, column: int, value: float) -> Array:
 
 NOT_RIGID = {
     "scaled": np.diag([2.0, 2.0, 2.0, 1.0]),
-    "sheared": spoilt(0, 1, 1e-5),
+    "sheared": spoilt(0, 1, 1.1e-3),
     "mirrored": np.diag([1.0, 1.0, -1.0, 1.0]),
     "last row": spoilt(3, 0, 1e-3),
     "last element": spoilt(3, 3, 2.0),
@@ -56,17 +56,17 @@ BAD_CALLS: list[tuple[Callable[..., Any], tuple[Any, ...], str]] = [
     (
         iksel.pose_from_quaternion,
         ([0, 0, 0], [1, 0, 0]),
-        "quaternion_wxyz: expected shape (..., 4), got (3,)",
+        "quaternion: expected shape (..., 4), got (3,)",
     ),
     (
         iksel.pose_from_quaternion,
         ([0, 0, 0], [1, 0, 0, 1]),
-        "quaternion_wxyz: expected norm 1 within 0.001, got 1.414",
+        "quaternion: expected norm 1 within 0.001, got 1.414",
     ),
     (
         iksel.pose_from_quaternion,
         ([0, 0, 0], [0, 0, 0, 0]),
-        "quaternion_wxyz: expected norm 1 within 0.001, got 0.0",
+        "quaternion: expected norm 1 within 0.001, got 0.0",
     ),
     (
         iksel.pose_from_quaternion,
@@ -76,7 +76,7 @@ BAD_CALLS: list[tuple[Callable[..., Any], tuple[Any, ...], str]] = [
     (
         iksel.pose_from_quaternion,
         ([0, 0, 0], [math.nan, 0, 0, 0]),
-        "quaternion_wxyz: not finite: nan at index 0",
+        "quaternion: not finite: nan at index 0",
     ),
     (
         iksel.pose_from_euler,

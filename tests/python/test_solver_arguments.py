@@ -79,7 +79,7 @@ def test_the_first_bad_pose_of_a_batch_is_named(made, culprit: str) -> None:
     poses = np.tile(np.eye(4), (9, 1, 1))
     poses[5] = poses[7] = bad_poses()[culprit]
     with pytest.raises(iksel.InvalidArgumentError, match=r"^poses\[5\]"):
-        made.solver("ur3").solve_batch(poses, threads=2)
+        made.solver("ur3").solve_batch(poses, threads=2, on_invalid_pose="raise")
 
 
 @pytest.mark.parametrize(

@@ -163,6 +163,49 @@ def test_objectives_improve_answers(made, name: str) -> None:
         assert solver.solve(target, objective="limits").success
 
 
+@pytest.mark.parametrize("value", [math.nan, -math.inf])
+@pytest.mark.parametrize("name", ["ur3", "panda"])
+def test_a_cost_that_is_no_number_is_an_error(made, name, value) -> None:
+    solver = made.solver(name)
+    targets = solver.robot.fk(solver.robot.random_configurations(20, 1))
+    message = r"^objective: the cost is -?(nan|inf) at q = \[.*\+infinity"
+
+    def sometimes(q):
+        return value if q[1] > 0 else float(q @ q)
+
+    for objective in (lambda _: value, iksel.Objective.custom(lambda _: value)):
+        with pytest.raises(iksel.InvalidArgumentError, match=message):
+            solver.solve(targets[0], objective=objective)
+    for threads in (1, 2, 5):
+        with pytest.raises(iksel.InvalidArgumentError, match=message):
+            solver.solve_batch(targets, objective=sometimes, threads=threads)
+    gradient = iksel.Objective.custom(lambda q: float(q @ q), lambda q: value * q)
+    with pytest.raises(iksel.InvalidArgumentError, match="gradient"):
+        made.solver("panda").solve(
+            made.robot("panda").fk(np.array([0.1, 0.2, 0.3, -1, 0.5, 1, 0.7])),
+            objective=gradient,
+        )
+
+
+@pytest.mark.parametrize("name", ["ur3", "panda"])
+def test_an_infinite_cost_refuses(made, name) -> None:
+    solver = made.solver(name)
+    robot = solver.robot
+    asked = solver.solve_batch(
+        robot.fk(robot.random_configurations(CASES, 3)),
+        objective=lambda q: float(q @ q) if q[0] >= 0 else math.inf,
+    )
+    refused = asked.status == iksel.Status.rejected
+    assert (asked.success | refused).all()
+    assert asked.solved > CASES / 2
+    assert asked.q[asked.success, 0].min() >= 0
+    never = solver.solve(
+        robot.fk(robot.random_configurations(1, 3)[0]), objective=lambda _: math.inf
+    )
+    assert never.status == iksel.Status.rejected
+    assert math.isnan(never.cost)
+
+
 def test_exceptions_of_an_objective_reach_the_caller(made) -> None:
     solver = made.solver("panda")
     target = solver.robot.fk(solver.robot.random_configurations(1, 1)[0])

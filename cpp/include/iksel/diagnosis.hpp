@@ -11,6 +11,9 @@
 
 namespace iksel {
 
+class Robot;
+struct Task;
+
 /// Why a solve gave no answer. All but `out_of_reach` beyond Robot::reach are found by search and
 /// so are likely, not proven.
 enum class Cause : std::uint8_t {
@@ -55,5 +58,9 @@ struct Diagnosis {
   /// Whether q is an answer: within the tolerances, inside the limits, passed by the filter.
   bool q_is_solution = false;
 };
+
+/// What to ask of an arm that has fewer joints than `task` has axes, in a sentence: tasks for which
+/// its joints are enough, told by the rank of their Jacobians. Empty if it has as many.
+IKSEL_EXPORT std::string task_hint(const Robot& robot, const Task& task);
 
 }  // namespace iksel

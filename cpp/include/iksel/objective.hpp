@@ -28,7 +28,8 @@ struct IKSEL_EXPORT Objective {
   JointVector weights;
   /// custom: the cost of q, which lies inside the limits, and its derivative; without one, central
   /// differences of the cost are taken. Called from the thread that solves. Their exceptions end
-  /// the solve and reach the caller.
+  /// the solve and reach the caller. A cost of +infinity refuses q, as a filter does; NaN and
+  /// -infinity, and a gradient that is not finite, are an InvalidArgumentError that ends the solve.
   std::function<double(const JointVector& q)> cost;
   std::function<JointVector(const JointVector& q)> gradient;
 

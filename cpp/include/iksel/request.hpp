@@ -22,6 +22,12 @@ enum class MoveNorm {
   max,  ///< the largest joint's
 };
 
+/// What solve_batch does about a target that is no pose (check_pose).
+enum class OnInvalidPose {
+  status,  ///< Status::invalid_pose in its row; the others are solved
+  raise,   ///< InvalidArgumentError that names the first, and none is solved
+};
+
 /// Tells which candidates may be answers: `q` holds `count` configurations of dof joint values, one
 /// after the other, each inside the limits and at its target; sets `keep` for each. Called from the
 /// thread that solves. Its exceptions end the solve and reach the caller.
@@ -68,7 +74,10 @@ struct IKSEL_EXPORT SolveRequest {
   /// What of the pose has to be reached; empty: what the solver's options say.
   std::optional<Task> task;
 
-  /// Whether anything is asked for; weights and norm alone ask for nothing.
+  /// Of solve_batch; solve, solve_all and diagnose always throw.
+  OnInvalidPose on_invalid_pose = OnInvalidPose::status;
+
+  /// Whether anything is asked for; weights, norm and on_invalid_pose alone ask for nothing.
   [[nodiscard]] bool has_wishes() const;
   /// Throws InvalidArgumentError naming the first field that does not fit a chain of `dof` joints.
   void validate(int dof) const;

@@ -76,9 +76,9 @@ class IKSEL_EXPORT Solver {
   /// Result::iterations, so that solves in lanes stay below this by the number of lanes.
   [[nodiscard]] std::size_t work_bound() const;
 
-  /// Joint values that put the tip (the TCP, if there is one) at T_base_tip. Throws
-  /// InvalidArgumentError if the pose is not rigid; a pose that cannot be solved is no error but a
-  /// status.
+  /// Joint values that put the tip (the TCP, if there is one) at T_base_tip, or if that is rounded
+  /// at the nearest rigid pose. Throws InvalidArgumentError if it is none (check_pose); a pose
+  /// that cannot be solved is no error but a status. For arms of few joints see task_hint.
   [[nodiscard]] Result solve(const Pose& T_base_tip) const;
   /// As above; iterates from `seed` first, then from the database's. The seed may lie outside the
   /// limits. Throws InvalidArgumentError if it has not dof finite elements.
@@ -107,8 +107,8 @@ class IKSEL_EXPORT Solver {
   /// Solves many targets; result i belongs to target i and has the same bits whatever the number
   /// of threads and whatever else is in the batch. It has the bits that solve() gives, but for
   /// seeds in lanes: there a target has a lane to itself, and the answer may be another of its
-  /// solutions, within the same tolerances. `threads` = 0 takes one per core. Throws
-  /// InvalidArgumentError naming the first bad pose, before any is solved.
+  /// solutions, within the same tolerances. `threads` = 0 takes one per core. A target that is no
+  /// pose has Status::invalid_pose; SolveRequest::on_invalid_pose can have it thrown instead.
   [[nodiscard]] std::vector<Result> solve_batch(const std::vector<Pose>& T_base_tip,
                                                 int threads = 0) const;
   /// The same over `count` 4x4 matrices, row by row, into arrays that the caller owns. An exception

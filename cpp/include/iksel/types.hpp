@@ -7,6 +7,8 @@
 //     velocities to it.
 //   * The rotation error between a target and a pose is the rotation vector of R_target * R^T.
 //   * Quaternions in helpers are (w, x, y, z).
+//   * A pose that comes in may be rounded: one whose rotation is off by kRigidTolerance or less
+//     stands for the rigid one nearest to it, by which all answers are measured.
 #pragma once
 
 #include <Eigen/Core>
@@ -36,6 +38,10 @@ using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Dont
 
 /// Rigid transform, here always T_base_tip or a part of it.
 using Pose = Eigen::Isometry3d;
+
+/// Largest element of |R^T R - I| up to which R is taken for a rounded rotation: poses printed with
+/// four decimals or more pass, a sheared or scaled one does not.
+inline constexpr double kRigidTolerance = 1e-3;
 
 /// A pose as a struct member: unaligned for the same reason as JointVector. Converts to Pose.
 using StoredPose = Eigen::Transform<double, 3, Eigen::Isometry, Eigen::DontAlign>;

@@ -93,9 +93,9 @@ Matrix Database::pseudo_inverse(std::size_t i) const {
 }
 
 std::vector<std::size_t> Database::nearest(const Pose& T_base_tip, std::size_t k) const {
-  check_pose(T_base_tip);
+  const Pose target = check_pose(T_base_tip);
   double key[kMaxKeyDimension];
-  data_->make_key(T_base_tip, key);
+  data_->make_key(target, key);
   std::vector<Neighbour> neighbours(std::min(k, size()));
   std::vector<std::size_t> indices;
   if (neighbours.empty()) return indices;

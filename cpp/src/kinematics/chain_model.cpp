@@ -68,10 +68,11 @@ struct EulerZxz {
   }
 };
 
-void check_tool(const Pose& T_tip_tcp) {
-  check_pose(T_tip_tcp, "tcp");
-  const double distance = T_tip_tcp.translation().stableNorm();
-  if (distance <= kMaxCoordinate) return;
+/// The tool as a rigid transform.
+Pose check_tool(const Pose& T_tip_tcp) {
+  const Pose tool = check_pose(T_tip_tcp, "tcp");
+  const double distance = tool.translation().stableNorm();
+  if (distance <= kMaxCoordinate) return tool;
   throw InvalidArgumentError("tcp: its origin is " + number_text(distance) +
                              " m from the tip link's; at most " + number_text(kMaxCoordinate) +
                              " can be computed with");
@@ -88,7 +89,7 @@ Pose to_pose(const Frame<double>& f) {
 
 ChainModel::ChainModel(std::string urdf_xml, const RobotOptions& options_in)
     : urdf(std::move(urdf_xml)), options(options_in) {
-  check_tool(Pose(options.tcp));
+  options.tcp = check_tool(Pose(options.tcp));
   spec = read_chain(urdf, options);
   dof = static_cast<int>(spec.variables.size());
   for (JointVector* v : {&lower, &upper, &velocity, &soft_lower, &soft_upper}) v->resize(dof);
@@ -109,10 +110,10 @@ ChainModel::ChainModel(std::string urdf_xml, const RobotOptions& options_in)
 }
 
 std::shared_ptr<const ChainModel> ChainModel::with_tcp(const Pose& T_tip_tcp) const {
-  check_tool(T_tip_tcp);
+  const Pose tool = check_tool(T_tip_tcp);
   auto copy = std::make_shared<ChainModel>(*this);
-  copy->options.tcp = T_tip_tcp;
-  copy->set_tool(T_tip_tcp);
+  copy->options.tcp = tool;
+  copy->set_tool(tool);
   return copy;
 }
 

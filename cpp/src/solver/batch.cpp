@@ -8,6 +8,7 @@
 
 #include "error_check.hpp"
 #include "iksel/error.hpp"
+#include "pose_check.hpp"
 #include "solver/solver_impl.hpp"
 #include "util/parallel.hpp"
 
@@ -29,12 +30,62 @@ void write_row(const Result& result, std::size_t row, int dof, const BatchView& 
   if (out.move != nullptr) out.move[row] = result.move;
 }
 
-void check_poses(const std::vector<Pose>& poses) {
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> rows = poses[i].matrix();
-    check_matrix(rows.data(), "poses", static_cast<std::ptrdiff_t>(i));
-  }
+/// A row that has no pose.
+Result no_pose() {
+  Result result;
+  result.status = Status::invalid_pose;
+  return result;
 }
+
+/// The targets of a batch that are poses, numbered without gaps. As long as all are rigid to
+/// rounding, nothing is copied.
+template <typename PoseAt>
+class Targets {
+ public:
+  /// `pose_at(row)` for rows 0 to count - 1. Throws about the first that is no pose, if asked to.
+  Targets(std::size_t count, const PoseAt& pose_at, OnInvalidPose on_invalid)
+      : pose_at_(pose_at), size_(count) {
+    std::size_t row = 0;
+    while (row < count && rigidity_of(pose_at(row)) == Rigidity::exact) ++row;
+    if (row == count) return;
+    copied_ = true;
+    own_.reserve(count);
+    rows_.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) take(i, on_invalid);
+    size_ = own_.size();
+  }
+
+  [[nodiscard]] std::size_t size() const { return size_; }
+  /// Rows that have no pose.
+  [[nodiscard]] const std::vector<std::size_t>& invalid_rows() const { return invalid_; }
+  [[nodiscard]] std::size_t row_of(std::size_t i) const { return copied_ ? rows_[i] : i; }
+  [[nodiscard]] decltype(auto) operator()(std::size_t i) const {
+    return copied_ ? own_[i] : pose_at_(i);
+  }
+
+ private:
+  void take(std::size_t row, OnInvalidPose on_invalid) {
+    const Pose& pose = pose_at_(row);
+    const Rigidity rigidity = rigidity_of(pose);
+    if (rigidity == Rigidity::none) {
+      if (on_invalid == OnInvalidPose::raise) {
+        throw_not_rigid(pose, "poses", static_cast<std::ptrdiff_t>(row));
+      }
+      invalid_.push_back(row);
+      return;
+    }
+    own_.push_back(pose);
+    rows_.push_back(row);
+    if (rigidity == Rigidity::close) make_rigid(own_.back());
+  }
+
+  const PoseAt& pose_at_;
+  std::size_t size_;
+  bool copied_ = false;
+  std::vector<Pose> own_;
+  std::vector<std::size_t> rows_;
+  std::vector<std::size_t> invalid_;
+};
 
 }  // namespace
 
@@ -89,39 +140,6 @@ void Solver::Impl::solve_many(std::size_t first, std::size_t last, SolveRequest&
   }
 }
 
-std::vector<Result> Solver::solve_batch(const std::vector<Pose>& T_base_tip, int threads) const {
-  threads = resolve_threads(threads);
-  check_poses(T_base_tip);
-  std::vector<Result> results(T_base_tip.size());
-  parallel_for(results.size(), Impl::kMany, threads, [&] {
-    return [&, lease = std::make_shared<Impl::Lease>(*impl_)](std::size_t begin, std::size_t end) {
-      impl_->solve_many(
-          begin, end, lease->get(), [&](std::size_t i) -> const Pose& { return T_base_tip[i]; },
-          [&](std::size_t i, const Result& result) { results[i] = result; });
-    };
-  });
-  return results;
-}
-
-void Solver::solve_batch(const double* T_base_tip, std::size_t count, const BatchView& out,
-                         int threads, const Progress& progress) const {
-  threads = resolve_threads(threads);
-  for (std::size_t i = 0; i < count; ++i) {
-    check_matrix(T_base_tip + 16 * i, "poses", static_cast<std::ptrdiff_t>(i));
-  }
-  const int dof = robot().dof();
-  const auto make_worker = [&] {
-    return [&, lease = std::make_shared<Impl::Lease>(*impl_)](std::size_t begin, std::size_t end) {
-      impl_->solve_many(
-          begin, end, lease->get(), [&](std::size_t i) { return to_pose(T_base_tip + 16 * i); },
-          [&](std::size_t i, const Result& result) { write_row(result, i, dof, out); });
-    };
-  };
-  parallel_for(count, Impl::kMany, threads, make_worker, [&](std::size_t done) {
-    if (progress) progress(done, count);
-  });
-}
-
 template <typename Target, typename Near, typename Settle, typename OnProgress>
 void Solver::Impl::solve_batch(std::size_t count, const SolveRequest& request, int threads,
                                const Target& target, const Near& near, const Settle& settle,
@@ -146,13 +164,45 @@ void Solver::Impl::solve_batch(std::size_t count, const SolveRequest& request, i
   parallel_for(count, chunk, threads, make_worker, on_progress);
 }
 
+template <typename PoseAt, typename Near, typename Settle>
+void Solver::Impl::solve_rows(std::size_t count, const PoseAt& pose_at, const SolveRequest& request,
+                              const Near& near_of, int threads, const Settle& settle_row,
+                              const Progress& progress) const {
+  const Targets<PoseAt> targets(count, pose_at, request.on_invalid_pose);
+  for (const std::size_t row : targets.invalid_rows()) settle_row(row, no_pose());
+  const auto settle = [&](std::size_t i, const Result& result) {
+    settle_row(targets.row_of(i), result);
+  };
+  const auto on_progress = [&](std::size_t done) {
+    if (progress) progress(done + targets.invalid_rows().size(), count);
+  };
+  const auto near = [&](std::size_t i) { return near_of(targets.row_of(i)); };
+  if (request.has_wishes() || near_of(0) != nullptr) {
+    solve_batch(targets.size(), request, threads, targets, near, settle, on_progress);
+    return;
+  }
+  const auto make_worker = [&] {
+    return [&, lease = std::make_shared<Lease>(*this)](std::size_t begin, std::size_t end) {
+      solve_many(begin, end, lease->get(), targets, settle);
+    };
+  };
+  parallel_for(targets.size(), kMany, threads, make_worker, on_progress);
+}
+
+std::vector<Result> Solver::solve_batch(const std::vector<Pose>& T_base_tip, int threads) const {
+  return solve_batch(T_base_tip, SolveRequest{}, {}, threads);
+}
+
+void Solver::solve_batch(const double* T_base_tip, std::size_t count, const BatchView& out,
+                         int threads, const Progress& progress) const {
+  solve_batch(T_base_tip, count, SolveRequest{}, nullptr, out, threads, progress);
+}
+
 std::vector<Result> Solver::solve_batch(const std::vector<Pose>& T_base_tip,
                                         const SolveRequest& request,
                                         const std::vector<JointVector>& near, int threads) const {
   impl_->check(request);
-  if (!request.has_wishes() && near.empty()) return solve_batch(T_base_tip, threads);
   threads = resolve_threads(threads);
-  check_poses(T_base_tip);
   if (!near.empty() && near.size() != T_base_tip.size()) {
     throw InvalidArgumentError("near: expected none, or one for each of the " +
                                std::to_string(T_base_tip.size()) + " poses, got " +
@@ -164,10 +214,10 @@ std::vector<Result> Solver::solve_batch(const std::vector<Pose>& T_base_tip,
     impl_->check_angles(near[i], name.c_str());
   }
   std::vector<Result> results(T_base_tip.size());
-  impl_->solve_batch(
-      results.size(), request, threads, [&](std::size_t i) -> const Pose& { return T_base_tip[i]; },
-      [&](std::size_t i) { return near.empty() ? nullptr : near[i].data(); },
-      [&](std::size_t i, const Result& result) { results[i] = result; }, [](std::size_t) {});
+  impl_->solve_rows(
+      results.size(), [&](std::size_t row) -> const Pose& { return T_base_tip[row]; }, request,
+      [&](std::size_t row) { return near.empty() ? nullptr : near[row].data(); }, threads,
+      [&](std::size_t row, const Result& result) { results[row] = result; }, {});
   return results;
 }
 
@@ -176,29 +226,20 @@ void Solver::solve_batch(const double* T_base_tip, std::size_t count, const Solv
                          const Progress& progress) const {
   const int dof = robot().dof();
   impl_->check(request);
-  if (!request.has_wishes() && near == nullptr) {
-    solve_batch(T_base_tip, count, out, threads, progress);
-    return;
-  }
   threads = resolve_threads(threads);
-  for (std::size_t i = 0; i < count; ++i) {
-    check_matrix(T_base_tip + 16 * i, "poses", static_cast<std::ptrdiff_t>(i));
-  }
-  const auto near_of = [&](std::size_t i) {
-    return near == nullptr ? nullptr : near + i * static_cast<std::size_t>(dof);
+  const auto near_of = [&](std::size_t row) {
+    return near == nullptr ? nullptr : near + row * static_cast<std::size_t>(dof);
   };
-  for (std::size_t i = 0; near != nullptr && i < count; ++i) {
-    const JointVector row = Eigen::Map<const Eigen::VectorXd>(near_of(i), dof);
-    const std::string name = "near[" + std::to_string(i) + "]";
-    check_joints(row, dof, name.c_str());
-    impl_->check_angles(row, name.c_str());
+  for (std::size_t row = 0; near != nullptr && row < count; ++row) {
+    const JointVector q = Eigen::Map<const Eigen::VectorXd>(near_of(row), dof);
+    const std::string name = "near[" + std::to_string(row) + "]";
+    check_joints(q, dof, name.c_str());
+    impl_->check_angles(q, name.c_str());
   }
-  impl_->solve_batch(
-      count, request, threads, [&](std::size_t i) { return to_pose(T_base_tip + 16 * i); }, near_of,
-      [&](std::size_t i, const Result& result) { write_row(result, i, dof, out); },
-      [&](std::size_t done) {
-        if (progress) progress(done, count);
-      });
+  impl_->solve_rows(
+      count, [&](std::size_t row) { return to_pose(T_base_tip + 16 * row); }, request, near_of,
+      threads, [&](std::size_t row, const Result& result) { write_row(result, row, dof, out); },
+      progress);
 }
 
 }  // namespace iksel

@@ -5,7 +5,6 @@
 #include <string>
 #include <utility>
 
-#include "error_check.hpp"
 #include "math/constants.hpp"
 #include "math/pseudo_inverse.hpp"
 #include "message_text.hpp"
@@ -209,9 +208,8 @@ class Solver::Impl::Inquiry {
             "the position can be reached, but not with this rotation, which is off by %.4g rad "
             "or more: ",
             out_.rotation_gap) +
-        (model_.dof < task_.constrained_axes()
-             ? "the arm has fewer joints than the task has axes, so leave an axis free"
-             : "turn the target, or leave an axis free");
+        (model_.dof < task_.constrained_axes() ? task_hint(solver_.robot, task_.task())
+                                               : "turn the target, or leave an axis free");
     return true;
   }
 
@@ -303,9 +301,9 @@ Diagnosis Solver::Impl::diagnose(const Pose& T_base_tip, const SolveRequest& req
 }
 
 Diagnosis Solver::diagnose(const Pose& T_base_tip, const SolveRequest& request) const {
-  check_pose(T_base_tip);
+  const Pose target = check_pose(T_base_tip);
   impl_->check(request);
-  return impl_->diagnose(T_base_tip, request);
+  return impl_->diagnose(target, request);
 }
 
 }  // namespace iksel

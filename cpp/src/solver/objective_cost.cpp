@@ -4,12 +4,13 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <string>
 #include <utility>
 
 #include "error_check.hpp"
 #include "iksel/error.hpp"
+#include "math/constants.hpp"
 #include "math/pseudo_inverse.hpp"
+#include "message_text.hpp"
 
 namespace iksel {
 
@@ -106,6 +107,16 @@ double ObjectiveCost::of_limits(const JointVector& q, JointVector* gradient,
   return sum;
 }
 
+double ObjectiveCost::of_custom(const JointVector& q) const {
+  const double cost = objective_.cost(q);
+  if (cost > -kInfinity) return cost;
+  MessageStream text;
+  text << "objective: the cost is " << cost << " at q = ["
+       << q.transpose().format(Eigen::IOFormat(6, 0, ", ", ", "))
+       << "]; it has to be a number, or +infinity where q must not be";
+  throw InvalidArgumentError(text.str());
+}
+
 double ObjectiveCost::value(const JointVector& q) const {
   switch (objective_.kind) {
     case Objective::Kind::posture:
@@ -115,7 +126,7 @@ double ObjectiveCost::value(const JointVector& q) const {
     case Objective::Kind::manipulability:
       return -manipulability(model_, q);
     case Objective::Kind::custom:
-      return objective_.cost(q);
+      return of_custom(q);
     case Objective::Kind::none:
       break;
   }
@@ -137,7 +148,9 @@ JointVector ObjectiveCost::slope(const JointVector& q) const {
     above[j] = std::min(q[j] + kStep, model_.upper[j]);
     below[j] = std::max(q[j] - kStep, model_.lower[j]);
     const double width = above[j] - below[j];
-    gradient[j] = width > 0 ? (value(above) - value(below)) / width : 0.0;
+    const double difference = width > 0 ? value(above) - value(below) : 0.0;
+    // Beside a place where the cost is infinite the difference says nothing.
+    gradient[j] = std::isfinite(difference) && width > 0 ? difference / width : 0.0;
   }
   return gradient;
 }

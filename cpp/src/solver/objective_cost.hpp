@@ -24,6 +24,8 @@ class ObjectiveCost {
  private:
   double of_posture(const JointVector& q, JointVector* gradient, JointVector* curvature) const;
   double of_limits(const JointVector& q, JointVector* gradient, JointVector* curvature) const;
+  /// Throws InvalidArgumentError about NaN and -infinity.
+  [[nodiscard]] double of_custom(const JointVector& q) const;
   [[nodiscard]] JointVector slope(const JointVector& q) const;
   [[nodiscard]] double estimate_curvature(const JointVector& q, const JointVector& gradient) const;
 

@@ -120,6 +120,8 @@ const char* to_string(Status status) {
       return "out_of_time";
     case Status::too_fast:
       return "too_fast";
+    case Status::invalid_pose:
+      return "invalid_pose";
   }
   return "unknown";
 }

@@ -12,6 +12,7 @@
 #include "iksel/error.hpp"
 #include "math/constants.hpp"
 #include "message_text.hpp"
+#include "pose_check.hpp"
 #include "solver/explore.hpp"
 #include "solver/joint_move.hpp"
 #include "solver/self_motion.hpp"
@@ -79,7 +80,8 @@ class PathSearch {
         options_(options),
         request_(make_request(options)),
         move_(model.dof, request_),
-        longest_(longest_moves(model, options.dt)) {}
+        longest_(longest_moves(model, options.dt)),
+        middle_(middle_of_limits(model)) {}
 
   [[nodiscard]] const SolveRequest& request() const { return request_; }
 
@@ -107,22 +109,32 @@ class PathSearch {
     }
   }
 
-  /// The solutions found from the database, each at the turns nearest to where the path may come
-  /// from; of the first waypoint without a start, at all turns.
-  void add_solutions(const Found& found, const Layer* before, Layer& layer) const {
+  /// The solutions found for the first waypoint of a path without a start, at all turns; those
+  /// nearest to the middle of the limits first, should there be too many.
+  void add_first_solutions(const Found& found, Layer& layer) const {
     for (std::size_t i = 0; i < found.size(); ++i) {
       JointVector q = found.at(i);
-      if (before == nullptr) {
-        take_first_turns(model_, q);
-        do {
-          layer.add(q);
-        } while (layer.size() < kMostTurns && take_next_turns(model_, q));
-        continue;
-      }
+      take_nearest_turns(model_, middle_, 0, q);
+      layer.add(q);
+    }
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      JointVector q = found.at(i);
+      take_first_turns(model_, q);
+      do {
+        layer.add(q);
+      } while (layer.size() < kMostTurns && take_next_turns(model_, q));
+    }
+  }
+
+  /// The solutions found from the database, each at the turns nearest to where the path may come
+  /// from.
+  void add_solutions(const Found& found, const Layer& before, Layer& layer) const {
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      JointVector q = found.at(i);
       // Most that the path may come from lie in the same turn.
       JointVector last = q;
-      for (std::size_t k = 0; k < before->size(); ++k) {
-        take_nearest_turns(model_, before->at(k), 0, q);
+      for (std::size_t k = 0; k < before.size(); ++k) {
+        take_nearest_turns(model_, before.at(k), 0, q);
         if (k > 0 && q == last) continue;
         layer.add(q);
         last = q;
@@ -146,8 +158,8 @@ class PathSearch {
     };
     std::vector<Edge> edges;
     for (std::size_t i = 0; i < layer.size(); ++i) {
-      Edge best{before == nullptr ? 0.0 : kInfinity, 0, i};
       const JointVector q = layer.at(i);
+      Edge best{before == nullptr ? tie_break(q) : kInfinity, 0, i};
       for (std::size_t k = 0; before != nullptr && k < before->size(); ++k) {
         if (before->cost[k] >= best.cost) continue;
         const JointVector difference = q - before->at(k);
@@ -159,7 +171,7 @@ class PathSearch {
     }
     std::stable_sort(edges.begin(), edges.end(),
                      [](const Edge& a, const Edge& b) { return a.cost < b.cost; });
-    // Without a start all candidates of the first waypoint cost the same, and all are needed.
+    // Without a start all candidates of the first waypoint are needed.
     const std::size_t most = std::max(static_cast<std::size_t>(options_.candidates), first_layer_);
     if (before != nullptr && edges.size() > most) edges.resize(most);
     if (before == nullptr) first_layer_ = edges.size();
@@ -199,6 +211,13 @@ class PathSearch {
   /// Copies by whole turns at the first waypoint, at most.
   static constexpr std::size_t kMostTurns = 2048;
 
+  /// A path that begins anywhere costs the same at all whole turns: of those, the one that begins
+  /// nearest to the middle of the limits. Small beside all costs, and large beside their rounding.
+  [[nodiscard]] double tie_break(const JointVector& q) const {
+    constexpr double kPart = 1e-9;
+    return kPart * (q - middle_).norm();
+  }
+
   static SolveRequest make_request(const PathOptions& options) {
     SolveRequest request;
     request.weights = options.weights;
@@ -213,6 +232,7 @@ class PathSearch {
   SolveRequest request_;
   JointMove move_;
   JointVector longest_;
+  JointVector middle_;
   /// Candidates of the first waypoint, if the path has no start.
   std::size_t first_layer_ = 0;
 };
@@ -263,7 +283,11 @@ PathResult Solver::Impl::solve_path(const std::vector<Pose>& T_base_tip, const P
                             FunctionRef<bool(const Exploration&)>(enough),
                             true};
     explore(exploration, workspace);
-    search.add_solutions(found, before, layer);
+    if (before != nullptr) {
+      search.add_solutions(found, *before, layer);
+    } else {
+      search.add_first_solutions(found, layer);
+    }
     layer.keep_if([&](std::size_t i) {
       Result measured;
       return finish(task, T_base_tip[w], layer.at(i), measured);
@@ -290,13 +314,15 @@ PathResult Solver::Impl::solve_path(const std::vector<Pose>& T_base_tip, const P
 PathResult Solver::solve_path(const std::vector<Pose>& T_base_tip,
                               const PathOptions& options) const {
   if (T_base_tip.empty()) throw InvalidArgumentError("poses: there are none");
-  for (std::size_t i = 0; i < T_base_tip.size(); ++i) {
-    check_pose(T_base_tip[i], ("poses[" + std::to_string(i) + "]").c_str());
+  std::vector<Pose> targets(T_base_tip);
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    Pose nearest;
+    targets[i] = to_rigid(targets[i], nearest, "poses", static_cast<std::ptrdiff_t>(i));
   }
   options.validate(robot().dof());
   if (options.start) impl_->check_angles(*options.start, "start");
   const Impl::Lease lease(*impl_);
-  return impl_->solve_path(T_base_tip, options, lease.get());
+  return impl_->solve_path(targets, options, lease.get());
 }
 
 Tracker::Tracker(const Solver& solver, const JointVector& start) : solver_(solver), q_(start) {
@@ -307,7 +333,8 @@ Tracker::Tracker(const Solver& solver, const JointVector& start) : solver_(solve
 }
 
 Result Tracker::track(const Pose& T_base_tip, double dt) {
-  check_pose(T_base_tip);
+  Pose nearest;
+  const Pose& target = to_rigid(T_base_tip, nearest);
   if (!(dt > 0)) {
     throw InvalidArgumentError("dt: " + number_text(dt) + " s is not above 0");
   }
@@ -315,8 +342,7 @@ Result Tracker::track(const Pose& T_base_tip, double dt) {
   Result result;
   JointVector goal = q_;
   result.attempts = 1;
-  if (!converge(model, solver_.options(), solver_.impl_->task, T_base_tip, kSteps, goal))
-    return result;
+  if (!converge(model, solver_.options(), solver_.impl_->task, target, kSteps, goal)) return result;
   const JointVector move = goal - q_;
   const JointVector longest = longest_moves(model, dt);
   double part = 1;
@@ -324,7 +350,7 @@ Result Tracker::track(const Pose& T_base_tip, double dt) {
     if (std::abs(move[j]) > longest[j]) part = std::min(part, longest[j] / std::abs(move[j]));
   }
   if (part == 1) {
-    if (!solver_.impl_->finish(solver_.impl_->task, T_base_tip, goal, result)) return result;
+    if (!solver_.impl_->finish(solver_.impl_->task, target, goal, result)) return result;
     q_ = goal;
   } else {
     result.status = Status::too_fast;

@@ -44,6 +44,9 @@ void SolveRequest::validate(int dof) const {
   if (norm != MoveNorm::two && norm != MoveNorm::max) {
     throw InvalidArgumentError("norm: not a value of MoveNorm (two, max)");
   }
+  if (on_invalid_pose != OnInvalidPose::status && on_invalid_pose != OnInvalidPose::raise) {
+    throw InvalidArgumentError("on_invalid_pose: not a value of OnInvalidPose (status, raise)");
+  }
   objective.validate(dof);
   if (task) task->validate();
   if (!(deadline > 0)) {

@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "error_check.hpp"
 #include "solver/explore.hpp"
 #include "solver/objective_cost.hpp"
 #include "solver/solver_impl.hpp"
@@ -174,11 +173,11 @@ Solutions Solver::Impl::solve_all(const Pose& T_base_tip, const AllOptions& all,
 
 Solutions Solver::solve_all(const Pose& T_base_tip, const AllOptions& options,
                             const SolveRequest& request) const {
-  check_pose(T_base_tip);
+  const Pose target = check_pose(T_base_tip);
   options.validate();
   impl_->check(request);
   const Impl::Lease lease(*impl_);
-  return impl_->solve_all(T_base_tip, options, request, lease.get());
+  return impl_->solve_all(target, options, request, lease.get());
 }
 
 }  // namespace iksel

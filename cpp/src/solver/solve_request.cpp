@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "error_check.hpp"
 #include "math/constants.hpp"
+#include "pose_check.hpp"
 #include "solver/explore.hpp"
 #include "solver/objective_cost.hpp"
 #include "solver/self_motion.hpp"
@@ -129,15 +129,18 @@ class Solver::Impl::Judge {
     std::array<Ranked, Found::kMost> ranked;
     std::size_t count = 0;
     for (std::size_t i = 0; i < found_.size(); ++i) {
-      if (kept(i)) ranked[count++] = {cost_of(found_.at(i)), i};
+      if (!kept(i)) continue;
+      const double cost = cost_of(found_.at(i));
+      if (cost < kInfinity) ranked[count++] = {cost, i};
     }
+    if (count == 0) return answer_among_turns(kInfinity, q);
     const std::size_t slides = redundant_ ? std::min(count, kSlides) : 1;
     std::partial_sort(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(slides),
                       ranked.begin() + static_cast<std::ptrdiff_t>(count));
     q = found_.at(ranked[0].index);
     double best = ranked[0].cost;
     if (redundant_) best = slide_best(ranked.data(), slides, q);
-    // A copy by whole turns of one that was refused may be better still.
+    // A copy by whole turns of one that was refused, or costs infinitely much, may be better still.
     if (count < found_.size()) answer_among_turns(best, q);
     return true;
   }
@@ -199,7 +202,6 @@ class Solver::Impl::Judge {
   /// As answer, among the copies by whole turns whose cost is less than `best`. False if there is
   /// none, and q is what it was.
   bool answer_among_turns(double best, JointVector& q) {
-    if (!request_.filter) return false;
     constexpr std::size_t kChunk = 64;
     const auto dof = static_cast<std::size_t>(model_.dof);
     std::array<double, kChunk* static_cast<std::size_t>(kMaxDof)> copies;
@@ -207,7 +209,8 @@ class Solver::Impl::Judge {
     bool any = false;
     const auto flush = [&] {
       std::array<bool, kChunk> keep{};
-      if (count > 0) request_.filter(copies.data(), count, keep.data());
+      keep.fill(!request_.filter);
+      if (count > 0 && request_.filter) request_.filter(copies.data(), count, keep.data());
       for (std::size_t i = 0; i < count; ++i) {
         const JointVector copy =
             Eigen::Map<const Eigen::VectorXd>(copies.data() + i * dof, model_.dof);
@@ -286,11 +289,12 @@ Result Solver::Impl::solve(const Pose& T_base_tip, const SolveRequest& request,
 }
 
 Result Solver::solve(const Pose& T_base_tip, const SolveRequest& request) const {
-  check_pose(T_base_tip);
+  Pose nearest;
+  const Pose& target = to_rigid(T_base_tip, nearest);
   impl_->check(request);
   const Impl::Lease lease(*impl_);
-  if (!request.has_wishes()) return impl_->solve(T_base_tip, nullptr, lease.get(), nullptr);
-  return impl_->solve(T_base_tip, request, lease.get());
+  if (!request.has_wishes()) return impl_->solve(target, nullptr, lease.get(), nullptr);
+  return impl_->solve(target, request, lease.get());
 }
 
 }  // namespace iksel

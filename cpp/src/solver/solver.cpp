@@ -9,6 +9,7 @@
 
 #include "error_check.hpp"
 #include "iksel/error.hpp"
+#include "pose_check.hpp"
 #include "solver/solver_impl.hpp"
 #include "solver/stage_clock.hpp"
 
@@ -231,23 +232,26 @@ std::size_t Solver::work_bound() const {
 }
 
 Result Solver::solve(const Pose& T_base_tip) const {
-  check_pose(T_base_tip);
+  Pose nearest;
+  const Pose& target = to_rigid(T_base_tip, nearest);
   const Impl::Lease lease(*impl_);
-  return impl_->solve(T_base_tip, nullptr, lease.get(), nullptr);
+  return impl_->solve(target, nullptr, lease.get(), nullptr);
 }
 
 Result Solver::solve(const Pose& T_base_tip, const JointVector& seed) const {
-  check_pose(T_base_tip);
+  Pose nearest;
+  const Pose& target = to_rigid(T_base_tip, nearest);
   check_joints(seed, robot().dof(), "seed");
   impl_->check_angles(seed, "seed");
   const Impl::Lease lease(*impl_);
-  return impl_->solve(T_base_tip, &seed, lease.get(), nullptr);
+  return impl_->solve(target, &seed, lease.get(), nullptr);
 }
 
 Result Solver::solve(const Pose& T_base_tip, StageTimes& times) const {
-  check_pose(T_base_tip);
+  Pose nearest;
+  const Pose& target = to_rigid(T_base_tip, nearest);
   const Impl::Lease lease(*impl_);
-  return impl_->solve(T_base_tip, nullptr, lease.get(), &times);
+  return impl_->solve(target, nullptr, lease.get(), &times);
 }
 
 }  // namespace iksel

@@ -69,6 +69,13 @@ struct Solver::Impl {
                    const Target& target, const Near& near, const Settle& settle,
                    const OnProgress& on_progress) const;
 
+  /// A whole batch: `settle_row(row, result)` for each row of `pose_at`, in any order and from any
+  /// thread; near_of(row) may be null.
+  template <typename PoseAt, typename Near, typename Settle>
+  void solve_rows(std::size_t count, const PoseAt& pose_at, const SolveRequest& request,
+                  const Near& near_of, int threads, const Settle& settle_row,
+                  const Progress& progress) const;
+
   /// The whole pipeline for one valid target with wishes.
   Result solve(const Pose& T_base_tip, const SolveRequest& request, Workspace& workspace) const;
   Solutions solve_all(const Pose& T_base_tip, const AllOptions& all, const SolveRequest& request,

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import sys
 import time
 from typing import TYPE_CHECKING, Any
 
@@ -154,7 +155,14 @@ def run(arguments: argparse.Namespace) -> int:
         print_text(robot, result, report)
         if diagnosis is not None:
             print_diagnosis(robot, diagnosis)
+    print_hint(solver, result)
     return EXIT_SOLVED if result.success else EXIT_NO_SOLUTION
+
+
+def print_hint(solver: Solver, result: Result) -> None:
+    """If there is no answer, say which tasks would suit an arm with few joints."""
+    if solver.task_hint and not result.success:
+        print(f"hint: {solver.task_hint}", file=sys.stderr)
 
 
 def diagnosis_report(

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Poses by themselves: what counts as one, and how far two are apart.
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bindings.hpp"
+#include "iksel/robot.hpp"
+#include "pose_arguments.hpp"
+#include "progress.hpp"
+
+namespace iksel::python {
+
+namespace {
+
+/// Matrices of any leading shape, (..., 4, 4).
+DoubleArray as_matrices(py::handle value, const char* name) {
+  DoubleArray array = as_doubles(to_matrices(value, name), name);
+  const py::ssize_t n = array.ndim();
+  if (n < 2 || array.shape(n - 2) != 4 || array.shape(n - 1) != 4) {
+    throw_wrong_shape(name, "a (..., 4, 4) array", array);
+  }
+  return array;
+}
+
+py::ssize_t count_of(const py::array& matrices) { return matrices.size() / 16; }
+
+Pose pose_at(const DoubleArray& matrices, py::ssize_t i) {
+  Pose pose;
+  pose.matrix() = Eigen::Map<const RowMajorPose>(matrices.data() + 16 * i);
+  return pose;
+}
+
+/// "pose[2, 0]": element i of the leading axes; "pose" if there are none.
+std::string element_name(const py::array& matrices, py::ssize_t i, const std::string& name) {
+  std::string index;
+  for (py::ssize_t axis = matrices.ndim() - 2; axis-- > 0;) {
+    const py::ssize_t extent = matrices.shape(axis);
+    index = std::to_string(i % extent) + (index.empty() ? "" : ", ") + index;
+    i /= extent;
+  }
+  return index.empty() ? name : name + "[" + index + "]";
+}
+
+/// The poses themselves if function(pose, name) changes none, else a copy with the changed ones.
+template <class Function>
+DoubleArray map_poses(const DoubleArray& poses, const std::string& name, const Function& function) {
+  std::optional<DoubleArray> out;
+  InterruptCheck check_interrupt;
+  for (py::ssize_t i = 0; i < count_of(poses); ++i) {
+    check_interrupt();
+    const Pose given = pose_at(poses, i);
+    Pose made;
+    try {
+      made = function(given, name.c_str());
+    } catch (const InvalidArgumentError&) {
+      // Once more, for the error that names the element.
+      if (poses.ndim() > 2) function(given, element_name(poses, i, name).c_str());
+      throw;
+    }
+    if (made.matrix() == given.matrix()) continue;
+    if (!out) out = py::cast<DoubleArray>(poses.attr("copy")());
+    Eigen::Map<RowMajorPose>(out->mutable_data() + 16 * i) = made.matrix();
+  }
+  return out ? *out : poses;
+}
+
+py::array_t<double> rigid_deviations(const PoseLike& value) {
+  const DoubleArray poses = as_matrices(value, "pose");
+  py::array_t<double> out(
+      std::vector<py::ssize_t>(poses.shape(), poses.shape() + poses.ndim() - 2));
+  for (py::ssize_t i = 0; i < count_of(poses); ++i) {
+    out.mutable_data()[i] = rigid_deviation(pose_at(poses, i));
+  }
+  return out;
+}
+
+/// Row i of the result: the error between poses[i] and targets[i].
+py::array_t<double> pose_errors(const PoseLike& target, const PoseLike& pose) {
+  const auto check = [](const Pose& given, const char* name) { return check_pose(given, name); };
+  const DoubleArray targets = map_poses(as_matrices(target, "target"), "target", check);
+  const DoubleArray poses = map_poses(as_matrices(pose, "pose"), "pose", check);
+  if (targets.ndim() != poses.ndim() ||
+      !std::equal(targets.shape(), targets.shape() + targets.ndim(), poses.shape())) {
+    throw_wrong_shape("pose", "as many poses as targets, shape " + shape_text(targets), poses);
+  }
+  std::vector<py::ssize_t> shape(targets.shape(), targets.shape() + targets.ndim() - 2);
+  shape.push_back(6);
+  py::array_t<double> out(shape);
+  double* to = out.mutable_data();
+  const GilRelease release;
+  InterruptCheck check_interrupt;
+  for (py::ssize_t i = 0; i < count_of(poses); ++i, to += 6) {
+    check_interrupt();
+    Eigen::Map<Eigen::Matrix<double, 6, 1>>{to} =
+        pose_error(pose_at(targets, i), pose_at(poses, i));
+  }
+  return out;
+}
+
+}  // namespace
+
+void bind_pose(py::module_& m) {
+  m.attr("RIGID_TOLERANCE") = kRigidTolerance;
+  m.def("pose_error", &pose_errors, py::arg("target"), py::arg("pose"),
+        "[p_target - p; rotvec(R_target R^T)] of two (4, 4) poses [m, rad], (6,); or of each pair "
+        "from two (..., 4, 4) arrays, (..., 6).");
+  m.def(
+      "check_pose",
+      [](const PoseLike& pose, const std::string& name) {
+        return map_poses(as_matrices(pose, name.c_str()), name,
+                         [](const Pose& given, const char* of) { return check_pose(given, of); });
+      },
+      py::arg("pose"), py::arg("name") = "pose",
+      R"(The rigid transforms that poses stand for.
+
+A pose that is rigid to rounding (|R^T R - I| <= 1e-12) is kept bit for bit; one whose rotation is
+off by RIGID_TOLERANCE (1e-3) or less, as when it was printed with a few decimals, is projected to
+the nearest. Every pose that is given to this module goes through this.
+
+Args:
+    pose: T_base_tip, (..., 4, 4) or (..., 3, 4) [m], or what else as_pose of iksel lists.
+    name: name of the argument, for the error message.
+
+Returns:
+    (..., 4, 4).
+
+Raises:
+    InvalidArgumentError: wrong shape, not finite, or not rigid; the message says which and why.)");
+  m.def(
+      "orthonormalized",
+      [](const PoseLike& pose) {
+        return map_poses(as_matrices(pose, "pose"), "pose", [](const Pose& given, const char* of) {
+          return orthonormalized(given, of);
+        });
+      },
+      py::arg("pose"),
+      R"(The rigid transforms nearest to poses, however far off their rotations are.
+
+The rotation is the orthogonal polar factor: the nearest to the given matrix, by the sum of squares.
+
+Args:
+    pose: (..., 4, 4) or (..., 3, 4) [m]: scaled, sheared or rounded.
+
+Returns:
+    (..., 4, 4).
+
+Raises:
+    InvalidArgumentError: not finite, singular or mirrored, or a last row other than 0 0 0 1.)");
+  m.def(
+      "pose_matrices",
+      [](const PoseLike& pose, const std::string& name) { return to_matrices(pose, name.c_str()); },
+      py::arg("pose"), py::arg("name") = "pose",
+      "Poses in one of the forms that as_pose of iksel lists as matrices (..., 4, 4), not checked; "
+      "what is none of them as it is.");
+  m.def("rigid_deviation", &rigid_deviations, py::arg("pose"),
+        "Largest element of |R^T R - I| of each pose (..., 4, 4), (...); infinite if it is not "
+        "finite, mirrored, or not 0 0 0 1 in its last row.");
+}
+
+}  // namespace iksel::python

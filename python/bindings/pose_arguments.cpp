@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pose_arguments.hpp"
+
+#include <cmath>
+#include <string>
+
+namespace iksel::python {
+namespace {
+
+py::module_ numpy() { return py::module_::import("numpy"); }
+
+bool is_array(py::handle value) { return py::isinstance<py::array>(value); }
+
+bool is_sequence(py::handle value) {
+  return py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value);
+}
+
+/// Whether the last axes of `value` are rows x columns.
+bool ends_with(const py::array& value, py::ssize_t rows, py::ssize_t columns) {
+  const py::ssize_t n = value.ndim();
+  return n >= 2 && value.shape(n - 2) == rows && value.shape(n - 1) == columns;
+}
+
+bool ends_with(const py::array& value, py::ssize_t length) {
+  return value.ndim() >= 1 && value.shape(value.ndim() - 1) == length;
+}
+
+/// Numbers, or an empty array if the value is none (a ragged list, say).
+py::array to_numbers(py::handle value) {
+  if (is_array(value)) return py::reinterpret_borrow<py::array>(value);
+  try {
+    const auto array = py::array(numpy().attr("asarray")(value));
+    return array.dtype().kind() == 'O' ? py::array() : array;
+  } catch (const py::error_already_set&) {
+    return {};
+  }
+}
+
+/// The matrix that an object of another library has for itself: scipy's Rotation and
+/// RigidTransform, Pinocchio's SE3, and the SE3 of spatialmath.
+py::object matrix_of(py::handle value) {
+  if (is_array(value) || is_sequence(value)) return {};
+  if (py::hasattr(value, "as_matrix")) return value.attr("as_matrix")();
+  if (py::hasattr(value, "homogeneous")) return value.attr("homogeneous");
+  if (py::hasattr(value, "A")) return value.attr("A");
+  return {};
+}
+
+[[noreturn]] void throw_quaternion(const char* name) {
+  throw InvalidArgumentError(
+      std::string(name) +
+      ": a position and a quaternion do not say in which order the quaternion is; name it: "
+      "iksel.as_pose(value, order=\"wxyz\") or order=\"xyzw\"");
+}
+
+bool is_quaternion(const py::array& value) {
+  return ends_with(value, 4) && !ends_with(value, 4, 4);
+}
+
+/// The rotation matrix of a rotation or matrix, or whatever numbers it is.
+py::array rotation_of(py::handle value) {
+  const py::object matrix = matrix_of(value);
+  return to_numbers(matrix ? matrix : py::reinterpret_borrow<py::object>(value));
+}
+
+/// Whether `value` is (position, rotation or quaternion): one pose or several.
+bool is_pair(py::handle value) {
+  if (!is_sequence(value) || py::len(value) != 2) return false;
+  const auto pair = py::reinterpret_borrow<py::sequence>(value);
+  const py::array position = to_numbers(pair[0]);
+  if (!ends_with(position, 3) || ends_with(position, 3, 3)) return false;
+  const py::array R = rotation_of(pair[1]);
+  return ends_with(R, 3, 3) || is_quaternion(R);
+}
+
+/// Poses (..., 4, 4) from positions (..., 3) and rotation matrices (..., 3, 3).
+py::object assemble(const py::array& p, const py::array& R) {
+  const py::module_ np = numpy();
+  const py::ellipsis all;
+  const py::slice three(0, 3, 1);
+  const py::tuple lead =
+      np.attr("broadcast_shapes")(p.attr("shape")[py::slice(0, p.ndim() - 1, 1)],
+                                  R.attr("shape")[py::slice(0, R.ndim() - 2, 1)]);
+  py::object T = np.attr("zeros")(lead + py::make_tuple(4, 4));
+  T[py::make_tuple(all, three, three)] = R;
+  T[py::make_tuple(all, three, 3)] = p;
+  T[py::make_tuple(all, 3, 3)] = 1.0;
+  return T;
+}
+
+/// Throws unless the task leaves all of the rotation free, so that a position says enough.
+void require_free_rotation(const Task* task, const char* name) {
+  const auto is_free = [&](std::size_t i) {
+    return std::isinf(task->rotation_lower[i]) && std::isinf(task->rotation_upper[i]);
+  };
+  if (task != nullptr && is_free(0) && is_free(1) && is_free(2)) return;
+  throw InvalidArgumentError(
+      std::string(name) + ": a position says nothing of the rotation: give a (4, 4) pose, or " +
+      (task != nullptr ? "leave the rotation free by task=Task.position_only()"
+                       : "a pair (position, rotation)"));
+}
+
+/// (..., 3, 4) with the row 0 0 0 1 below.
+py::object with_last_row(const py::array& rows) {
+  const py::module_ np = numpy();
+  const py::object last = np.attr("array")(py::make_tuple(py::make_tuple(0.0, 0.0, 0.0, 1.0)));
+  const py::tuple lead = rows.attr("shape")[py::slice(0, rows.ndim() - 2, 1)];
+  const py::object below = np.attr("broadcast_to")(last, lead + py::make_tuple(1, 4));
+  return np.attr("concatenate")(py::make_tuple(rows, below), py::arg("axis") = -2);
+}
+
+}  // namespace
+
+py::object to_matrices(py::handle value, const char* name) {
+  if (is_pair(value)) {
+    const auto pair = py::reinterpret_borrow<py::sequence>(value);
+    const py::array R = rotation_of(pair[1]);
+    if (is_quaternion(R)) throw_quaternion(name);
+    return assemble(to_numbers(pair[0]), R);
+  }
+  if (const py::object matrix = matrix_of(value)) {
+    if (ends_with(to_numbers(matrix), 3, 3)) {
+      throw_wrong_type(name, "a pose, or a pair (position, rotation)", value);
+    }
+    return to_matrices(matrix, name);
+  }
+  if (is_sequence(value) && py::len(value) > 0) {
+    const auto items = py::reinterpret_borrow<py::sequence>(value);
+    if (is_pair(items[0]) || matrix_of(items[0])) {
+      py::list matrices;
+      for (const py::handle item : items) matrices.append(to_matrices(item, name));
+      return matrices;
+    }
+  }
+  const py::array numbers = to_numbers(value);
+  if (ends_with(numbers, 3, 4)) return with_last_row(numbers);
+  if (ends_with(numbers, 7)) throw_quaternion(name);
+  if (numbers.size() > 0) return numbers;
+  return py::reinterpret_borrow<py::object>(value);
+}
+
+Pose convert_to_pose(py::handle value, const char* name, const Task* task) {
+  const DoubleArray array = as_doubles(to_matrices(value, name), name);
+  Pose pose = Pose::Identity();
+  if (array.ndim() == 1 && array.shape(0) == 3) {
+    require_free_rotation(task, name);
+    pose.translation() = Eigen::Map<const Eigen::Vector3d>(array.data());
+    return pose;
+  }
+  if (array.ndim() != 2 || array.shape(0) != 4 || array.shape(1) != 4) {
+    throw_wrong_shape(name, "a (4, 4) array", array);
+  }
+  pose.matrix() = Eigen::Map<const RowMajorPose>(array.data());
+  return pose;
+}
+
+DoubleArray as_poses(py::handle value, const char* name, const Task* task) {
+  const auto is_stack = [](const py::array& array) {
+    return array.ndim() == 3 && array.shape(1) == 4 && array.shape(2) == 4;
+  };
+  if (is_doubles(value)) {
+    auto array = py::reinterpret_borrow<DoubleArray>(value);
+    if (is_stack(array)) return array;
+  }
+  DoubleArray array = as_doubles(to_matrices(value, name), name);
+  if (array.ndim() == 2 && array.shape(1) == 3) {
+    require_free_rotation(task, name);
+    return as_doubles(assemble(array, numpy().attr("eye")(3)), name);
+  }
+  if (!is_stack(array)) {
+    const bool single = array.ndim() == 2 && array.shape(0) == 4 && array.shape(1) == 4;
+    throw_wrong_shape(name, "an (N, 4, 4) array", array,
+                      single ? "; solve() takes a single pose" : "");
+  }
+  return array;
+}
+
+}  // namespace iksel::python

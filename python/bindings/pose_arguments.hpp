@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Poses as people hold them: matrices, pairs of a position and a rotation, and objects of other
+// libraries, told by what they can do and not by their type. A (4, 4) or (N, 4, 4) array of doubles
+// in C order is read in place.
+#pragma once
+
+#include "array_checks.hpp"
+#include "iksel/task.hpp"
+#include "python_types.hpp"
+
+namespace iksel::python {
+
+/// Anything that as_pose or as_poses takes.
+class PoseLike : public py::object {
+  PYBIND11_OBJECT_DEFAULT(PoseLike, object, is_any_object)
+};
+
+/// `value` as matrices (..., 4, 4), if it is a pose or several: (..., 3, 4) matrices; a pair
+/// (position, rotation), (..., 3) and (..., 3, 3) or an object with as_matrix(); an object with
+/// as_matrix(), .homogeneous or .A; a list of such. Else what it is. Throws InvalidArgumentError
+/// about a quaternion, whose order is not known.
+py::object to_matrices(py::handle value, const char* name);
+
+/// For what is not simply a (4, 4) array of doubles; `task` may be null.
+Pose convert_to_pose(py::handle value, const char* name, const Task* task);
+
+/// One pose. That it is rigid is checked by what uses it. With a `task` that leaves the whole
+/// rotation free, a position (3,) will do.
+inline Pose as_pose(py::handle value, const char* name, const Task* task = nullptr) {
+  if (is_doubles(value)) {
+    const auto array = py::reinterpret_borrow<DoubleArray>(value);
+    if (array.ndim() == 2 && array.shape(0) == 4 && array.shape(1) == 4) {
+      Pose pose;
+      pose.matrix() = Eigen::Map<const RowMajorPose>(array.data());
+      return pose;
+    }
+  }
+  return convert_to_pose(value, name, task);
+}
+
+/// Poses as an (N, 4, 4) array, or positions (N, 3) as above.
+DoubleArray as_poses(py::handle value, const char* name, const Task* task = nullptr);
+
+}  // namespace iksel::python
+
+// NOLINTBEGIN(readability-identifier-naming): pybind11 looks for `name`.
+namespace pybind11::detail {
+template <>
+struct handle_type_name<iksel::python::PoseLike> {
+  static constexpr auto name = const_name("numpy.typing.ArrayLike | object");
+};
+}  // namespace pybind11::detail
+// NOLINTEND(readability-identifier-naming)

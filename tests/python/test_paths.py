@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Where paths without a start begin."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+
+SEED = 61
+
+
+def random_paths(robot, n, seed):
+    """Straight lines in joint space, as poses: each can be followed."""
+    rng = np.random.default_rng(seed)
+    half = np.minimum((robot.upper - robot.lower) / 2, np.pi)
+    middle = (robot.upper + robot.lower) / 2
+    for _ in range(n):
+        begin = middle + rng.uniform(-half, half)
+        end = begin + rng.uniform(-0.5, 0.5, robot.dof)
+        yield robot.fk(np.linspace(begin, end, 15))
+
+
+@pytest.mark.parametrize("name", ["ur5e", "ur3"])
+@pytest.mark.parametrize("dt", [0.0, 0.1])
+def test_paths_begin_at_the_turns_nearest_the_middle(made, name, dt) -> None:
+    solver = made.solver(name)
+    robot = solver.robot
+    assert robot.upper[0] > np.pi + 1
+    wound, solved, wound_by_solve = 0, 0, 0
+    for poses in random_paths(robot, 40, SEED):
+        path = solver.solve_path(poses, dt=dt)
+        if not path.success:
+            continue
+        solved += 1
+        wound += bool(np.abs(path.q[0]).max() > np.pi)
+        wound_by_solve += bool(np.abs(solver.solve(poses[0]).q).max() > np.pi)
+        np.testing.assert_allclose(robot.fk(path.q), poses, rtol=0, atol=1e-5)
+    assert solved >= 36, f"seed {SEED}"
+    assert wound <= wound_by_solve, f"seed {SEED}: {wound} of {solved} paths"
+
+
+def test_the_cost_of_a_path_is_the_least_of_all_turns(made) -> None:
+    solver = made.solver("ur5e")
+    robot = solver.robot
+    shifts = [
+        np.array(s) for s in itertools.product([0, 2 * np.pi, -2 * np.pi], repeat=2)
+    ]
+    for poses in random_paths(robot, 5, SEED + 1):
+        path = solver.solve_path(poses)
+        tried = 0
+        for shift in shifts:
+            start = path.q[0].copy()
+            start[:2] += shift
+            if not robot.within_limits(start):
+                continue
+            tried += 1
+            other = solver.solve_path(poses[1:], start)
+            assert not other.success or other.move >= path.move - 1e-6, f"seed {SEED}"
+        assert tried >= 2
+
+
+def test_a_path_that_needs_more_than_half_a_turn_begins_where_it_can(made) -> None:
+    """From the middle turn a joint would run into its limit."""
+    solver = made.solver("ur5e")
+    robot = solver.robot
+    q = np.tile([0, -1.2, 1.5, -0.5, 1.2, 0.3], (60, 1))
+    q[:, 0] = np.linspace(-5.5, 5.5, 60)
+    path = solver.solve_path(robot.fk(q))
+    assert path.success
+    np.testing.assert_allclose(path.q[:, 0], q[:, 0], atol=1e-5)
+
+
+def test_limits_without_a_turn_to_spare_change_nothing(made) -> None:
+    solver = made.solver("panda")
+    for poses in random_paths(solver.robot, 3, SEED + 2):
+        path = solver.solve_path(poses)
+        assert path.success
+        assert all(map(solver.robot.within_limits, path.q))

@@ -90,22 +90,27 @@ copy_package_sources() {
       grep -oiE 'signed-by[:=] ?/[^] ]+' | grep -oE '/.*' | sort -u)
 }
 
-# Variables, files and the folders that they name.
+# Variables and files, with the certificates and folders of packages that they name.
 copy_pip_settings() {
-  copy_in /etc/pip.conf /etc/xdg/pip "$HOME/.config/pip" "$HOME/.pip"
-  env | grep -E '^(PIP|SSL_CERT|REQUESTS_CA_BUNDLE|https?_proxy|HTTPS?_PROXY|no_proxy|NO_PROXY)' \
+  copy_in /etc/pip.conf "$HOME/.config/pip" "$HOME/.pip"
+  env | grep -E '^(PIP_|SSL_CERT_FILE|REQUESTS_CA_BUNDLE|(https?|no)_proxy|(HTTPS?|NO)_PROXY)' \
     >"$work/environment" || true
-  local path
   : >"$work/folders"
+  local path settings=("$work/environment")
+  mapfile -t -O 1 settings < <(find "$system/etc/pip.conf" "$system/root/.config/pip" \
+    "$system/root/.pip" -type f 2>/dev/null)
   while read -r path; do
-    if [[ -d $path ]]; then echo "$path" >>"$work/folders"; else copy_in "$path"; fi
-  done < <({ cat "$work/environment" && python3 -m pip config list 2>/dev/null; } |
-    grep -oE "/[^ '\"]+" | sed 's,^//*,/,' | grep -vE '^/[^/]*$|simple/?$' | sort -u)
-  # An index of packages in a folder has them beside its pages.
-  python3 -m pip config list 2>/dev/null | grep -oE 'file://[^ '\''"]+' |
-    sed -E 's,^file://,,; s,/simple/?$,,' | sort -u | while read -r path; do
-    if [[ -d $path ]]; then echo "$path" >>"$work/folders"; fi
-  done
+    if [[ -f $path ]]; then
+      # Under another name: Debian's package of certificates writes its own to the usual place.
+      copy_in "$path"
+      mkdir -p "$system/opt/host"
+      mv "$system$path" "$system/opt/host/$(basename "$path")"
+      sed -i "s,$path,/opt/host/$(basename "$path"),g" "${settings[@]}"
+    elif [[ -d $path ]]; then
+      # An index in a folder has its packages beside its pages.
+      echo "${path%/simple}" >>"$work/folders"
+    fi
+  done < <(cat "${settings[@]}" | grep -oE "/[^ '\"]+" | sed -E 's,^/+,/,; s,/$,,' | sort -u)
 }
 
 # In namespaces of its own: what is mounted there, and all processes, end with it.

@@ -35,7 +35,7 @@ fi
 work=$(mktemp -d "${TMPDIR:-/tmp}/iksel-debian.XXXXXX")
 system=$work/system
 # The checkout's name in there.
-readonly home=/root/iksel
+readonly home=/srv/iksel
 inside=
 # Mounts are made in a namespace that ends with `inside`, and so never stand where rm goes.
 cleanup() {
@@ -97,8 +97,8 @@ copy_pip_settings() {
     >"$work/environment" || true
   : >"$work/folders"
   local path settings=("$work/environment")
-  mapfile -t -O 1 settings < <(find "$system/etc/pip.conf" "$system/root/.config/pip" \
-    "$system/root/.pip" -type f 2>/dev/null)
+  mapfile -t -O 1 settings < <(find "$system/etc/pip.conf" "$system$HOME/.config/pip" \
+    "$system$HOME/.pip" -type f 2>/dev/null)
   while read -r path; do
     if [[ -f $path ]]; then
       # Under another name: Debian's package of certificates writes its own to the usual place.
@@ -125,7 +125,7 @@ enter() { # COMMAND
         mkdir -p "$system$folder" && mount --bind -o ro "$folder" "$system$folder"
       done <"$system/../folders"
       mapfile -t environment
-      exec chroot "$system" env -i HOME=/root TERM=dumb LANG=C.UTF-8 \
+      exec chroot "$system" env -i HOME="$HOME" TERM=dumb LANG=C.UTF-8 \
         PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
         ${CI:+CI="$CI"} "${environment[@]}" bash -ec "cd $home && $command"
     ' bash "$system" "$home" "$1" <"$work/environment"

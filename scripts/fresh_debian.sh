@@ -143,6 +143,7 @@ debootstrap_here() {
 debootstrap_here
 copy_package_sources
 copy_pip_settings
+mkdir -p "$system$HOME"
 git clone --quiet --no-hardlinks "$root" "$system$home"
 git -C "$system$home" remote remove origin
 

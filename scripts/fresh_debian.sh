@@ -37,19 +37,28 @@ system=$work/system
 # The checkout's name in there.
 readonly home=/srv/iksel
 inside=
-# Mounts are made in a namespace that ends with `inside`, and so never stand where rm goes.
+# Processes run in namespaces of their own, which end with `inside`, and all mounts with them: none stands
+# where rm goes.
 cleanup() {
   trap '' INT TERM HUP
-  if [[ -n $inside ]]; then kill -KILL "$inside" 2>/dev/null && wait "$inside" 2>/dev/null; fi
-  if $keep; then echo "kept: $system"; else rm -rf --one-file-system "$work"; fi
+  if [[ -n $inside ]]; then
+    kill -KILL "$inside" 2>/dev/null || true
+    wait "$inside" 2>/dev/null || true
+  fi
+  if $keep; then
+    echo "kept: $system"
+    return
+  fi
+  # The last of them may still be on its way out.
+  rm -rf --one-file-system "$work" 2>/dev/null || { sleep 2 && rm -rf --one-file-system "$work"; }
 }
 trap cleanup EXIT
 trap 'exit 130' INT
 trap 'exit 143' TERM HUP
 
 # Runs a command in the background and waits, so that a signal is heard at once.
-in_background() {
-  "$@" </dev/null &
+isolated() { # COMMAND...
+  unshare --mount --pid --fork --kill-child=KILL --mount-proc "$@" &
   inside=$!
   local status=0
   wait "$inside" || status=$?
@@ -113,22 +122,21 @@ copy_pip_settings() {
   done < <(cat "${settings[@]}" | grep -oE "/[^ '\"]+" | sed -E 's,^/+,/,; s,/$,,' | sort -u)
 }
 
-# In namespaces of its own: what is mounted there, and all processes, end with it.
 enter() { # COMMAND
   # shellcheck disable=SC2016  # expanded inside
-  unshare --mount --pid --fork --kill-child=KILL --mount-proc bash -euc '
-      system=$1 home=$2 command=$3
-      mount -t proc proc "$system/proc"
-      mount -t tmpfs tmpfs "$system/tmp"
-      mount -t tmpfs tmpfs "$system/dev/shm"
-      while read -r folder; do
-        mkdir -p "$system$folder" && mount --bind -o ro "$folder" "$system$folder"
-      done <"$system/../folders"
-      mapfile -t environment
-      exec chroot "$system" env -i HOME="$HOME" TERM=dumb LANG=C.UTF-8 \
-        PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
-        ${CI:+CI="$CI"} "${environment[@]}" bash -ec "cd $home && $command"
-    ' bash "$system" "$home" "$1" <"$work/environment"
+  isolated bash -euc '
+    system=$1 home=$2 command=$3
+    mount -t proc proc "$system/proc"
+    mount -t tmpfs tmpfs "$system/tmp"
+    mount -t tmpfs tmpfs "$system/dev/shm"
+    while read -r folder; do
+      mkdir -p "$system$folder" && mount --bind -o ro "$folder" "$system$folder"
+    done <"$system/../folders"
+    mapfile -t environment <"$system/../environment"
+    exec chroot "$system" env -i HOME="$HOME" TERM=dumb LANG=C.UTF-8 \
+      PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
+      ${CI:+CI="$CI"} "${environment[@]}" bash -ec "cd $home && $command"
+  ' bash "$system" "$home" "$1" </dev/null
 }
 
 debootstrap_here() {
@@ -136,7 +144,7 @@ debootstrap_here() {
   from=$(mirror)
   mkdir -p build
   printf 'making a bare %s ...\n' "$suite"
-  in_background debootstrap --variant=minbase "$suite" "$system" ${from:+"$from"} \
+  isolated debootstrap --variant=minbase "$suite" "$system" ${from:+"$from"} \
     >build/fresh_debian.log 2>&1 || { cat build/fresh_debian.log >&2 && die "debootstrap failed"; }
 }
 
@@ -150,11 +158,8 @@ git -C "$system$home" remote remove origin
 for command in "${commands[@]}"; do
   step "bare $suite: $command"
   SECONDS=0
-  enter_status=0
-  enter "$command" &
-  inside=$!
-  wait "$inside" || enter_status=$?
-  inside=
-  printf '== %s s, exit status %s: %s\n' "$SECONDS" "$enter_status" "$command"
-  ((enter_status == 0)) || exit "$enter_status"
+  status=0
+  enter "$command" || status=$?
+  printf '== %s s, exit status %s: %s\n' "$SECONDS" "$status" "$command"
+  ((status == 0)) || exit "$status"
 done

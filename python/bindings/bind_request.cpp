@@ -230,11 +230,14 @@ Args:
     pose: T_base_tip [m], in one of the forms of solve above.
     near: configuration to stay near, (dof,) [rad or m]; may lie outside the limits. The answer
         is the one with the smallest joint move of all that are found, whole turns considered; a
-        redundant arm's has slid along its self-motion to where the move is smallest.
+        redundant arm's has slid along its self-motion to where the move is smallest. Angles
+        here, in `seeds` and in a posture that are too large for a double to tell poses apart to
+        a tenth of the tolerances are refused: 1.5e8 rad for an arm of six joints and 1 m at the
+        default tolerances, never less than 100 rad.
     weights: factor on each joint's part of the move, (dof,), >= 0; None: all 1.
     norm: how the move is measured.
     seeds: joint values to iterate from, (N, dof) [rad or m]; ranked as the database's seeds, and
-        tried before them.
+        tried before them, as many as max_attempts allows.
     database_seeds: whether the database's seeds follow the given ones.
     filter: called with candidates (n, dof), each at the pose and inside the limits; returns n
         truth values. The search goes on within its bounds while all are refused.

@@ -8,7 +8,7 @@ import sys
 import time
 from typing import TYPE_CHECKING, Any
 
-from iksel_cpp import InvalidArgumentError, Solver
+from iksel_cpp import InvalidArgumentError, Solver, Status
 
 from iksel.cli._angles import Angles
 from iksel.cli._options import add_solver_options, given_database, solver_options
@@ -160,8 +160,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def print_hint(solver: Solver, result: Result) -> None:
-    """If there is no answer, say which tasks would suit an arm with few joints."""
-    if solver.task_hint and not result.success:
+    """If nothing else explains it, say which tasks suit an arm with few joints."""
+    if solver.task_hint and result.status == Status.not_converged:
         print(f"hint: {solver.task_hint}", file=sys.stderr)
 
 

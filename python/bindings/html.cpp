@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "html.hpp"
 
-#include <cstdio>
+#include <iomanip>
+#include <locale>
+#include <sstream>
 
 namespace iksel::python {
 
@@ -39,9 +41,10 @@ std::string row(const std::vector<std::string>& cells, const std::string& tag) {
 }  // namespace
 
 std::string short_number(double value, int digits) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.*g", digits, value);
-  return text;
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text << std::setprecision(digits) << value;
+  return text.str();
 }
 
 std::string short_numbers(const double* values, std::size_t count) {

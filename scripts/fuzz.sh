@@ -60,8 +60,11 @@ fuzz() {
   mkdir -p build/fuzz/findings "build/fuzz/corpus/$target"
   rm -f "$found"*
   command_of "$target"
-  local settings=("-max_total_time=$seconds" "-timeout=$hang" -rss_limit_mb=4096 -max_len=16384
-    "-artifact_prefix=$found" -print_final_stats=1)
+  # Arguments are chosen by few bytes.
+  local longest=16384
+  if [[ $target == cli ]]; then longest=256; fi
+  local settings=("-max_total_time=$seconds" "-timeout=$hang" -rss_limit_mb=4096
+    "-max_len=$longest" -len_control=0 "-artifact_prefix=$found" -print_final_stats=1)
   if [[ -f tests/fuzz/$target.dict ]]; then settings+=("-dict=tests/fuzz/$target.dict"); fi
   if "${command[@]}" "${settings[@]}" "build/fuzz/corpus/$target" "tests/fuzz/corpus/$target" \
     >"build/fuzz/$target.log" 2>&1; then

@@ -7,6 +7,7 @@ JSON; a bad one says so in one line on stderr and prints nothing else.
 
 from __future__ import annotations
 
+import argparse
 import contextlib
 import functools
 import io
@@ -48,14 +49,14 @@ FILES = (
     *("arm.urdf", "bad.urdf", "missing.urdf", "folder", "arm.iksel", "bad.iksel"),
     *("poses.txt", "bad.txt", "-", "/dev/null", "new.iksel", ""),
 )
-ROBOTS = ("arm.urdf", "arm.urdf", "arm.urdf", "ur3", "so100", "nobody", *FILES)
+ROBOTS = (*["arm.urdf"] * 20, "ur3", "so100", "nobody", *FILES)
 
 
-def flags_of_commands() -> dict[str, list[str]]:
+def flags_of_commands() -> dict[str, dict[str, argparse.Action]]:
     """The flags of each command, as its own parser has them."""
     actions = cli.make_parser()._subparsers._group_actions
     return {
-        name: sorted(parser._option_string_actions)
+        name: dict(sorted(parser._option_string_actions.items()))
         for name, parser in actions[0].choices.items()
     }
 
@@ -112,10 +113,24 @@ SINK = os.open(os.devnull, os.O_WRONLY)
 COMMANDS = flags_of_commands()
 
 
+def make_values(
+    flag: str, action: argparse.Action, dice: atheris.FuzzedDataProvider
+) -> list[str]:
+    """Values after a flag: mostly as many and of the kind that it takes."""
+    pool = [*(action.choices or values_for(flag))]
+    if dice.ConsumeIntInRange(0, 9) == 0:
+        pool = [*WORDS, *NUMBERS]
+    counts = {None: [1], "+": [1, 2, 2, 2, 6, 6, 7, 16]}.get(action.nargs)
+    count = dice.PickValueInList(counts or [int(action.nargs)])
+    if dice.ConsumeIntInRange(0, 19) == 0:
+        count = dice.ConsumeIntInRange(0, 7)
+    return [dice.PickValueInList(pool) for _ in range(count)]
+
+
 def make_arguments(data: bytes) -> list[str]:
     """An argument list out of any bytes."""
     dice = atheris.FuzzedDataProvider(data)
-    command = dice.PickValueInList([*COMMANDS, *COMMANDS, "", "nonsense", "--help"])
+    command = dice.PickValueInList([*COMMANDS] * 4 + ["", "nonsense", "--help"])
     arguments = [command]
     if dice.ConsumeIntInRange(0, 9):
         arguments.append(dice.PickValueInList(list(ROBOTS)))
@@ -126,12 +141,12 @@ def make_arguments(data: bytes) -> list[str]:
         arguments += ["--targets", "20"]
     if command in {"solve", "path", "build", "evaluate"}:
         arguments += ["--samples", "30"]
-    for _ in range(dice.ConsumeIntInRange(0, 6)):
-        flag = dice.PickValueInList(COMMANDS.get(command) or ["--json"])
-        arguments.append(flag)
-        values = list(values_for(flag))
-        for _ in range(dice.PickValueInList([0, 1, 1, 1, 2, 6, 7])):
-            arguments.append(dice.PickValueInList(values))
+    if command == "solve":
+        arguments += ["--from-q", "0.3", "0.4"]
+    flags = COMMANDS.get(command, {})
+    for _ in range(dice.ConsumeIntInRange(0, 5) if flags else 0):
+        flag = dice.PickValueInList(list(flags))
+        arguments += [flag, *make_values(flag, flags[flag], dice)]
     if dice.ConsumeIntInRange(0, 9) == 0:
         # Any bytes but NUL, as a shell may give them.
         arguments.append(os.fsdecode(dice.ConsumeBytes(20).replace(b"\0", b"")))

@@ -108,6 +108,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const MemoryFile file(data, size);
   try {
     use(iksel::Database::load(file.path()));
+    use(iksel::Database::load(file.path(), /*mmap=*/true));
   } catch (const iksel::Error&) {
     // Any other exception is a finding.
   }

@@ -53,6 +53,8 @@ def make_samples() -> list[Any]:
         solver.diagnose(POSE),
         iksel.Tracker(solver, [0.1, 0.2]),
         iksel_cpp.evaluate(solver, 3, 1),
+        iksel.LinkTree.from_urdf(urdf_text.arm()),
+        iksel.LinkTree.from_urdf(urdf_text.arm()).joints[0],
     ]
 
 
@@ -79,7 +81,8 @@ def names_in(pickled: bytes) -> set[tuple[str, str]]:
 
 
 NAMES = set().union(*map(names_in, PICKLES))
-assert {type(sample) for sample in SAMPLES} >= CLASSES, "samples of every class, please"
+WITHOUT = {kind.__name__ for kind in CLASSES - {type(sample) for sample in SAMPLES}}
+assert not WITHOUT, f"classes without a sample: {WITHOUT}"
 
 DTYPES = {"f8", "i8", "i4", "u1", "b1", "f4", "O8"}
 

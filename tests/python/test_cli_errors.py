@@ -180,6 +180,10 @@ def test_module_is_the_command_line() -> None:
     assert_bad(Output(process.returncode, out, err), "nobody")
 
 
+def test_arguments_that_are_no_text_are_an_error(run: Run) -> None:
+    assert_bad(run("info", "ur3", "--base", "\udcff"), r"'\\udcff': not in UTF-8")
+
+
 def test_a_reader_that_goes_away_is_no_error() -> None:
     reading, writing = os.pipe()
     os.close(reading)

@@ -79,6 +79,10 @@ def make_parser() -> Parser:
 
 
 def _run(argv: Sequence[str] | None) -> int:
+    words = sys.argv[1:] if argv is None else argv
+    for word in words:
+        if not _is_text(word):
+            return _report(f"argument {word!r}: not in UTF-8")
     try:
         arguments = make_parser().parse_args(argv)
         with warnings.catch_warnings():
@@ -91,6 +95,15 @@ def _run(argv: Sequence[str] | None) -> int:
         return _report(str(error))
     except MemoryError:
         return _report("not enough memory")
+
+
+def _is_text(word: str) -> bool:
+    """Whether a word is one in UTF-8; Python hides the bytes of others in it."""
+    try:
+        word.encode()
+    except UnicodeEncodeError:
+        return False
+    return True
 
 
 def _report(message: str) -> int:

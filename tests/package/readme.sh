@@ -24,9 +24,9 @@ cmake --build build >log 2>&1 || { cat log >&2 && exit 1; }
 ./build/app | grep -q '^q \[rad\]'
 
 # Debian's folder of libraries has the name of the machine in it.
-line=$(grep -oE 'c\+\+ -std=[^`]*' "$readme")
 PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name iksel.pc)")
 export PKG_CONFIG_PATH
-bash -ec "$line"
+example shell >build.sh
+bash -e build.sh
 LD_LIBRARY_PATH=$(dirname "$PKG_CONFIG_PATH") ./app | diff - <(./build/app)
 echo "README's C++ example works by CMake and by pkg-config"

@@ -70,7 +70,7 @@ struct EulerZxz {
 
 /// The tool as a rigid transform.
 Pose check_tool(const Pose& T_tip_tcp) {
-  const Pose tool = check_pose(T_tip_tcp, "tcp");
+  Pose tool = check_pose(T_tip_tcp, "tcp");
   const double distance = tool.translation().stableNorm();
   if (distance <= kMaxCoordinate) return tool;
   throw InvalidArgumentError("tcp: its origin is " + number_text(distance) +

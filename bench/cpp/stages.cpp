@@ -191,7 +191,7 @@ void lane_iteration(benchmark::State& state) {
       for (double& value : pack.q[j]) value = q[j];
     }
     benchmark::DoNotOptimize(
-        kernels.advance[p.robot.dof()](chain, options, ~0U, kIterations, pack));
+        kernels.advance(chain, options, ~0U, kIterations, pack));
   }
   state.SetItemsProcessed(static_cast<int64_t>(state.iterations()) * kIterations * kernels.lanes);
   state.counters["per_iteration"] =

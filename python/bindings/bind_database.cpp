@@ -15,6 +15,7 @@
 #include "option_fields.hpp"
 #include "pose_arguments.hpp"
 #include "progress.hpp"
+#include "property.hpp"
 
 namespace iksel::python {
 
@@ -147,18 +148,16 @@ Raises:
   cls.def_static("from_bytes", &from_bytes, py::arg("content"),
                  "The database that `to_bytes` wrote. Raises as `load`.");
 
-  cls.def_property_readonly(
-      "options", [](const Database& self) { return self.options(); },
+  add_property(
+      cls, "options", [](const Database& self) { return self.options(); },
       "A copy of the options it was built with.");
-  cls.def_property_readonly("size", &Database::size, "Number of samples.");
+  add_property(cls, "size", &Database::size, "Number of samples.");
   cls.def("__len__", &Database::size);
-  cls.def_property_readonly("dof", &Database::dof, "Degrees of freedom of its robot.");
-  cls.def_property_readonly("key_dimension", &Database::key_dimension,
-                            "Dimension of the KD-tree's key.");
-  cls.def_property_readonly("nbytes", &Database::bytes,
-                            "Bytes of samples, keys and pseudo-inverses.");
-  cls.def_property_readonly("chain_hash", &Database::chain_hash,
-                            "Robot.chain_hash of the robot it belongs to.");
+  add_property(cls, "dof", &Database::dof, "Degrees of freedom of its robot.");
+  add_property(cls, "key_dimension", &Database::key_dimension, "Dimension of the KD-tree's key.");
+  add_property(cls, "nbytes", &Database::bytes, "Bytes of samples, keys and pseudo-inverses.");
+  add_property(cls, "chain_hash", &Database::chain_hash,
+               "Robot.chain_hash of the robot it belongs to.");
   bind_samples(cls);
 
   cls.def("__repr__", [](const Database& self) {

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "array_checks.hpp"
+#include "bindings.hpp"
 #include "iksel/diagnosis.hpp"
+#include "pickle.hpp"
+#include "property.hpp"
+#include "py_result.hpp"
 
 #include <pybind11/stl.h>
 
@@ -53,34 +58,35 @@ void bind_diagnosis(py::module_& m) {
       m, "Diagnosis",
       "What Solver.diagnose found; true if q_is_solution. Numbers that do not belong to the "
       "cause are NaN.");
-  cls.def_readonly("cause", &D::cause, "Why there is no answer; `none` if there is one.");
-  cls.def_readonly("message", &D::message, "What is wrong and what to do about it, in a sentence.");
-  cls.def_readonly("beyond_reach", &D::beyond_reach,
-                   "out_of_reach: distance from the nearest position that was reached [m].");
-  cls.def_readonly("rotation_gap", &D::rotation_gap,
-                   "orientation: least rotation error that was reached with the position held "
-                   "[rad].");
-  cls.def_readonly("joint", &D::joint,
-                   "joint_limits: index of the joint that lies farthest outside its limits in the "
-                   "answer that violates them least; -1 otherwise.");
-  cls.def_readonly("limit_violation", &D::limit_violation,
-                   "joint_limits: by how much that joint lies outside [rad or m].");
-  cls.def_readonly("refused", &D::refused, "rejected: how many answers the filter refused.");
-  cls.def_readonly("least_singular_value", &D::least_singular_value,
-                   "Least singular value of the Jacobian at q [mixed units]: small where it is "
-                   "close to a singularity.");
-  cls.def_property_readonly(
-      "q",
+  add_property(cls, "cause", &D::cause, "Why there is no answer; `none` if there is one.");
+  add_property(cls, "message", &D::message,
+               "What is wrong and what to do about it, in a sentence.");
+  add_property(cls, "beyond_reach", &D::beyond_reach,
+               "out_of_reach: distance from the nearest position that was reached [m].");
+  add_property(cls, "rotation_gap", &D::rotation_gap,
+               "orientation: least rotation error that was reached with the position held "
+               "[rad].");
+  add_property(cls, "joint", &D::joint,
+               "joint_limits: index of the joint that lies farthest outside its limits in the "
+               "answer that violates them least; -1 otherwise.");
+  add_property(cls, "limit_violation", &D::limit_violation,
+               "joint_limits: by how much that joint lies outside [rad or m].");
+  add_property(cls, "refused", &D::refused, "rejected: how many answers the filter refused.");
+  add_property(cls, "least_singular_value", &D::least_singular_value,
+               "Least singular value of the Jacobian at q [mixed units]: small where it is "
+               "close to a singularity.");
+  add_property(
+      cls, "q",
       [](const D& self) {
         const py::object q = self.q.size() == 0 ? py::object(py::none()) : to_array(self.q);
         return py::reinterpret_borrow<OptionalJoints>(q);
       },
       "Best effort inside the limits, (dof,) [rad or m]. NO SOLUTION unless q_is_solution.");
-  cls.def_readonly("position_error", &D::position_error, "Position error of q [m].");
-  cls.def_readonly("rotation_error", &D::rotation_error, "Rotation error of q [rad].");
-  cls.def_readonly("q_is_solution", &D::q_is_solution,
-                   "Whether q is an answer: within the tolerances, inside the limits, passed by "
-                   "the filter.");
+  add_property(cls, "position_error", &D::position_error, "Position error of q [m].");
+  add_property(cls, "rotation_error", &D::rotation_error, "Rotation error of q [rad].");
+  add_property(cls, "q_is_solution", &D::q_is_solution,
+               "Whether q is an answer: within the tolerances, inside the limits, passed by "
+               "the filter.");
   cls.def("__bool__", [](const D& self) { return self.q_is_solution; });
   cls.def(py::pickle(&diagnosis_state, &diagnosis_from_state));
   cls.def("__repr__", [](const D& self) {

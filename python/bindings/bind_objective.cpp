@@ -9,6 +9,7 @@
 #include "bindings.hpp"
 #include "objective.hpp"
 #include "pickle.hpp"
+#include "property.hpp"
 
 namespace iksel::python {
 
@@ -109,8 +110,8 @@ void bind_objective(py::module_& m) {
       "The cost of joint values (dof,) inside the limits, a number, and its gradient (dof,); "
       "without one, central differences of the cost. A cost of +inf refuses the joint values; NaN, "
       "-inf, or a gradient that is not finite is an InvalidArgumentError.");
-  cls.def_property_readonly(
-      "kind", [](const Objective& self) { return self.kind; }, "What it counts.");
+  add_property(
+      cls, "kind", [](const Objective& self) { return self.kind; }, "What it counts.");
   cls.def(py::pickle(&objective_state, &objective_from_state));
   cls.def("__repr__", [](const Objective& self) {
     return std::string("Objective(") + enum_name(self.kind) + ")";

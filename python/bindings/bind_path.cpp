@@ -16,6 +16,7 @@
 #include "pickle.hpp"
 #include "pose_arguments.hpp"
 #include "progress.hpp"
+#include "property.hpp"
 #include "py_result.hpp"
 #include "python_types.hpp"
 
@@ -104,32 +105,32 @@ PyPath path_from_state(const py::object& state) {
 void bind_path_result(py::module_& m) {
   py::class_<PyPath> cls(m, "PathResult",
                          "Joint values along a path; true if there are any for every waypoint.");
-  cls.def_property_readonly(
-      "success", [](const PyPath& self) { return self.path.success(); },
+  add_property(
+      cls, "success", [](const PyPath& self) { return self.path.success(); },
       "Whether there is a configuration for every waypoint.");
-  cls.def_property_readonly(
-      "status", [](const PyPath& self) { return self.path.status; },
+  add_property(
+      cls, "status", [](const PyPath& self) { return self.path.status; },
       "`solved`, or why waypoint `broken` has none: `too_fast` if it has solutions, but no joint "
       "path leads there in time.");
-  cls.def_property_readonly(
-      "q", &PyPath::q,
+  add_property(
+      cls, "q", &PyPath::q,
       "Joint values [rad or m], (N, dof); if the path is broken, of the waypoints before.");
-  cls.def_property_readonly(
-      "broken", [](const PyPath& self) { return optional_index(self.path.broken); },
+  add_property(
+      cls, "broken", [](const PyPath& self) { return optional_index(self.path.broken); },
       "Index of the first waypoint that has no continuation; None if solved.");
-  cls.def_property_readonly(
-      "largest_step", [](const PyPath& self) { return self.path.largest_step; },
+  add_property(
+      cls, "largest_step", [](const PyPath& self) { return self.path.largest_step; },
       "The farthest that a joint moves from one waypoint to the next [rad or m].");
-  cls.def_property_readonly(
-      "largest_step_joint",
+  add_property(
+      cls, "largest_step_joint",
       [](const PyPath& self) { return optional_index(self.path.largest_step_joint); },
       "Index of the joint that does; None if there is no step.");
-  cls.def_property_readonly(
-      "largest_step_waypoint",
+  add_property(
+      cls, "largest_step_waypoint",
       [](const PyPath& self) { return optional_index(self.path.largest_step_waypoint); },
       "Index of the waypoint where that step ends; None if there is no step.");
-  cls.def_property_readonly(
-      "move", [](const PyPath& self) { return self.path.move; }, "Sum of the joint moves.");
+  add_property(
+      cls, "move", [](const PyPath& self) { return self.path.move; }, "Sum of the joint moves.");
   cls.def("__bool__", [](const PyPath& self) { return self.path.success(); });
   cls.def(py::pickle(&path_state, &path_from_state));
   cls.def("__repr__", [](const PyPath& self) {
@@ -201,8 +202,8 @@ Returns:
 
 Raises:
     InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, or dt not above 0.)");
-  tracker.def_property_readonly(
-      "q", [](const Tracker& self) { return to_array(self.q()); },
+  add_property(
+      tracker, "q", [](const Tracker& self) { return to_array(self.q()); },
       "Where the arm is now, (dof,) [rad or m]; always inside the limits.");
   tracker.def("__repr__", [](const Tracker& self) {
     const JointVector& q = self.q();

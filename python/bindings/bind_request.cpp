@@ -16,6 +16,7 @@
 #include "iksel/solver.hpp"
 #include "pickle.hpp"
 #include "pose_arguments.hpp"
+#include "property.hpp"
 #include "py_batch.hpp"
 #include "py_request.hpp"
 #include "py_result.hpp"
@@ -181,26 +182,26 @@ void bind_solutions(py::module_& m) {
   py::class_<S> cls(m, "Solutions",
                     "The distinct solutions for one target, best first; true if there are any. "
                     "Indexing gives a Result.");
-  cls.def_property_readonly(
-      "success", [](const S& self) { return self.solutions.success(); },
+  add_property(
+      cls, "success", [](const S& self) { return self.solutions.success(); },
       "Whether there is at least one.");
-  cls.def_property_readonly(
-      "status", [](const S& self) { return self.solutions.status; },
+  add_property(
+      cls, "status", [](const S& self) { return self.solutions.status; },
       "`solved`, or why there is none.");
-  cls.def_property_readonly("q", &S::q, "Joint values [rad or m], (n, dof).");
-  cls.def_property_readonly(
-      "position_error", [](const S& self) { return self.column(&Result::position_error); },
+  add_property(cls, "q", &S::q, "Joint values [rad or m], (n, dof).");
+  add_property(
+      cls, "position_error", [](const S& self) { return self.column(&Result::position_error); },
       "Distances to the target [m], (n,).");
-  cls.def_property_readonly(
-      "rotation_error", [](const S& self) { return self.column(&Result::rotation_error); },
+  add_property(
+      cls, "rotation_error", [](const S& self) { return self.column(&Result::rotation_error); },
       "Lengths of the rotation vectors to the target [rad], (n,).");
-  cls.def_property_readonly(
-      "move", [](const S& self) { return self.column(&Result::move); },
+  add_property(
+      cls, "move", [](const S& self) { return self.column(&Result::move); },
       "Lengths of the moves from `near`, (n,); NaN without one.");
-  cls.def_property_readonly(
-      "attempts", [](const S& self) { return self.solutions.attempts; }, "Seeds tried.");
-  cls.def_property_readonly(
-      "iterations", [](const S& self) { return self.solutions.iterations; },
+  add_property(
+      cls, "attempts", [](const S& self) { return self.solutions.attempts; }, "Seeds tried.");
+  add_property(
+      cls, "iterations", [](const S& self) { return self.solutions.iterations; },
       "Iteration steps over all attempts.");
   cls.def("__len__", &S::size);
   cls.def("__getitem__", &S::row, py::arg("i"));

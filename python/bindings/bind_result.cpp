@@ -8,6 +8,7 @@
 #include "bindings.hpp"
 #include "html.hpp"
 #include "pickle.hpp"
+#include "property.hpp"
 #include "py_batch.hpp"
 
 namespace iksel::python {
@@ -88,29 +89,29 @@ void bind_single(py::module_& m) {
   py::class_<PyResult> cls(m, "Result",
                            "Answer to one target, true if it is one. Everything in it is measured "
                            "on the returned q.");
-  cls.def_property_readonly(
-      "success", [](const PyResult& self) { return self.result.success(); },
+  add_property(
+      cls, "success", [](const PyResult& self) { return self.result.success(); },
       "Whether q reaches the target within both tolerances and lies inside the limits.");
-  cls.def_property_readonly(
-      "status", [](const PyResult& self) { return self.result.status; }, "Why the solve ended.");
-  cls.def_property_readonly("q", &PyResult::joints,
-                            "Joint values [rad or m], (dof,); None unless solved.");
-  cls.def_property_readonly(
-      "position_error", [](const PyResult& self) { return self.result.position_error; },
+  add_property(
+      cls, "status", [](const PyResult& self) { return self.result.status; },
+      "Why the solve ended.");
+  add_property(cls, "q", &PyResult::joints, "Joint values [rad or m], (dof,); None unless solved.");
+  add_property(
+      cls, "position_error", [](const PyResult& self) { return self.result.position_error; },
       "Distance to the target [m]; NaN unless solved.");
-  cls.def_property_readonly(
-      "rotation_error", [](const PyResult& self) { return self.result.rotation_error; },
+  add_property(
+      cls, "rotation_error", [](const PyResult& self) { return self.result.rotation_error; },
       "Length of the rotation vector to the target [rad]; NaN unless solved.");
-  cls.def_property_readonly(
-      "move", [](const PyResult& self) { return self.result.move; },
+  add_property(
+      cls, "move", [](const PyResult& self) { return self.result.move; },
       "Length of the move from `near`, by its norm and weights; NaN without one.");
-  cls.def_property_readonly(
-      "cost", [](const PyResult& self) { return self.result.cost; },
+  add_property(
+      cls, "cost", [](const PyResult& self) { return self.result.cost; },
       "Cost of q by the objective; NaN without one.");
-  cls.def_property_readonly(
-      "attempts", [](const PyResult& self) { return self.result.attempts; }, "Seeds tried.");
-  cls.def_property_readonly(
-      "iterations", [](const PyResult& self) { return self.result.iterations; },
+  add_property(
+      cls, "attempts", [](const PyResult& self) { return self.result.attempts; }, "Seeds tried.");
+  add_property(
+      cls, "iterations", [](const PyResult& self) { return self.result.iterations; },
       "Iteration steps over all attempts.");
   cls.def("__bool__", [](const PyResult& self) { return self.result.success(); });
   cls.def("__repr__", &result_repr);
@@ -193,19 +194,19 @@ void bind_batch(py::module_& m) {
                     "Answers to many targets as arrays; row i belongs to target i. Indexing gives "
                     "a Result, and by a slice or an array a BatchResult of its own. It is neither "
                     "true nor false: ask success.all() or success.any().");
-  cls.def_readonly("q", &B::q, "Joint values [rad or m], (N, dof); NaN where not solved.");
-  cls.def_readonly("success", &B::success, "Whether each target is solved, (N,).");
-  cls.def_readonly("status", &B::status, "Values of Status, (N,).");
-  cls.def_readonly("position_error", &B::position_error,
-                   "Distances to the targets [m], (N,); NaN where not solved.");
-  cls.def_readonly("rotation_error", &B::rotation_error,
-                   "Lengths of the rotation vectors to the targets [rad], (N,); NaN where not "
-                   "solved.");
-  cls.def_readonly("attempts", &B::attempts, "Seeds tried, (N,).");
-  cls.def_readonly("iterations", &B::iterations, "Iteration steps over all attempts, (N,).");
-  cls.def_readonly("move", &B::move,
-                   "Lengths of the moves from `near`, (N,); NaN where not solved or without one.");
-  cls.def_property_readonly("solved", &B::solved, "Number of targets solved.");
+  add_property(cls, "q", &B::q, "Joint values [rad or m], (N, dof); NaN where not solved.");
+  add_property(cls, "success", &B::success, "Whether each target is solved, (N,).");
+  add_property(cls, "status", &B::status, "Values of Status, (N,).");
+  add_property(cls, "position_error", &B::position_error,
+               "Distances to the targets [m], (N,); NaN where not solved.");
+  add_property(cls, "rotation_error", &B::rotation_error,
+               "Lengths of the rotation vectors to the targets [rad], (N,); NaN where not "
+               "solved.");
+  add_property(cls, "attempts", &B::attempts, "Seeds tried, (N,).");
+  add_property(cls, "iterations", &B::iterations, "Iteration steps over all attempts, (N,).");
+  add_property(cls, "move", &B::move,
+               "Lengths of the moves from `near`, (N,); NaN where not solved or without one.");
+  add_property(cls, "solved", &B::solved, "Number of targets solved.");
   cls.def("statuses", &batch_statuses, "`status` as members of Status.");
   cls.def("__len__", &B::size);
   cls.def("__getitem__", &B::row, py::arg("i"));

@@ -16,6 +16,7 @@
 #include "iksel/robot.hpp"
 #include "pickle.hpp"
 #include "pose_arguments.hpp"
+#include "property.hpp"
 #include "urdf_source.hpp"
 
 namespace iksel::python {
@@ -144,8 +145,8 @@ std::string robot_html(const Robot& self) {
 /// A read-only property over one of the robot's joint vectors, without a copy.
 void def_joint_vector(py::class_<Robot>& cls, const char* name,
                       const JointVector& (Robot::*get)() const, const char* doc) {
-  cls.def_property_readonly(
-      name,
+  add_property(
+      cls, name,
       [get](const Robot& self) {
         return read_only_view((self.*get)(), py::cast(self, py::return_value_policy::reference));
       },
@@ -153,30 +154,30 @@ void def_joint_vector(py::class_<Robot>& cls, const char* name,
 }
 
 void bind_chain(py::class_<Robot>& cls) {
-  cls.def_property_readonly("name", &Robot::name, "Name in the URDF.");
-  cls.def_property_readonly("base_link", &Robot::base_link, "Link the poses are relative to.");
-  cls.def_property_readonly("tip_link", &Robot::tip_link, "Link whose pose is solved for.");
-  cls.def_property_readonly("link_names", &Robot::link_names,
-                            "Names of all links of the URDF, the chain's and others, depth first "
-                            "from the root.");
-  cls.def_property_readonly("urdf", &Robot::urdf, "The URDF text this robot was made of.");
-  cls.def_property_readonly(
-      "locked_joints", [](const Robot& self) { return self.options().locked_joints; },
+  add_property(cls, "name", &Robot::name, "Name in the URDF.");
+  add_property(cls, "base_link", &Robot::base_link, "Link the poses are relative to.");
+  add_property(cls, "tip_link", &Robot::tip_link, "Link whose pose is solved for.");
+  add_property(cls, "link_names", &Robot::link_names,
+               "Names of all links of the URDF, the chain's and others, depth first "
+               "from the root.");
+  add_property(cls, "urdf", &Robot::urdf, "The URDF text this robot was made of.");
+  add_property(
+      cls, "locked_joints", [](const Robot& self) { return self.options().locked_joints; },
       "Joints held at a value [rad or m], by name.");
-  cls.def_property_readonly(
-      "soft_limits", [](const Robot& self) { return self.options().soft_limits; },
+  add_property(
+      cls, "soft_limits", [](const Robot& self) { return self.options().soft_limits; },
       "Whether the limits are narrowed to the safety controller's.");
-  cls.def_property_readonly(
-      "default_limits", [](const Robot& self) { return self.options().default_limits; },
+  add_property(
+      cls, "default_limits", [](const Robot& self) { return self.options().default_limits; },
       "Lower and upper limit of joints that the URDF gives none [rad or m], or None.");
-  cls.def_property_readonly(
-      "tcp", [](const Robot& self) { return to_array(self.tcp()); },
+  add_property(
+      cls, "tcp", [](const Robot& self) { return to_array(self.tcp()); },
       "T_tip_tcp, the tool centre point in the tip link's frame, (4, 4).");
-  cls.def_property_readonly("dof", &Robot::dof, "Degrees of freedom.");
-  cls.def_property_readonly("joint_names", &Robot::joint_names,
-                            "Names of the degrees of freedom, base to tip.");
-  cls.def_property_readonly("joint_types", &Robot::joint_types,
-                            "How each degree of freedom moves, base to tip.");
+  add_property(cls, "dof", &Robot::dof, "Degrees of freedom.");
+  add_property(cls, "joint_names", &Robot::joint_names,
+               "Names of the degrees of freedom, base to tip.");
+  add_property(cls, "joint_types", &Robot::joint_types,
+               "How each degree of freedom moves, base to tip.");
   def_joint_vector(cls, "lower", &Robot::lower,
                    "Lower position limits [rad or m], (dof,); -inf for continuous joints.");
   def_joint_vector(cls, "upper", &Robot::upper,
@@ -189,14 +190,14 @@ void bind_chain(py::class_<Robot>& cls) {
   def_joint_vector(cls, "soft_upper", &Robot::soft_upper,
                    "Upper limits of the safety controller [rad or m], (dof,); `upper` where the "
                    "URDF has none.");
-  cls.def_property_readonly("reach", &Robot::reach,
-                            "No pose farther than this from `reach_centre` can be reached [m].");
-  cls.def_property_readonly(
-      "reach_centre", [](const Robot& self) { return to_array(JointVector(self.reach_centre())); },
+  add_property(cls, "reach", &Robot::reach,
+               "No pose farther than this from `reach_centre` can be reached [m].");
+  add_property(
+      cls, "reach_centre",
+      [](const Robot& self) { return to_array(JointVector(self.reach_centre())); },
       "A point on the first joint's axis, in the base frame [m], (3,).");
-  cls.def_property_readonly(
-      "chain_hash", &Robot::chain_hash,
-      "Hash of the chain up to the tip link: equal for chains that may share a database.");
+  add_property(cls, "chain_hash", &Robot::chain_hash,
+               "Hash of the chain up to the tip link: equal for chains that may share a database.");
 }
 
 }  // namespace

@@ -19,6 +19,7 @@
 #include "pickle.hpp"
 #include "pose_arguments.hpp"
 #include "progress.hpp"
+#include "property.hpp"
 #include "py_batch.hpp"
 #include "py_request.hpp"
 #include "py_result.hpp"
@@ -172,26 +173,27 @@ Args:
 Raises:
     InvalidArgumentError: an option out of range.
     DatabaseMismatchError: the database belongs to another chain, or the drift is too large.)");
-  cls.def_property_readonly("nominal", &Solver::nominal,
-                            "The chain that the database was built for: the robot itself, unless "
-                            "that is a calibrated one.");
-  cls.def_property_readonly(
-      "drift",
+  add_property(cls, "nominal", &Solver::nominal,
+               "The chain that the database was built for: the robot itself, unless "
+               "that is a calibrated one.");
+  add_property(
+      cls, "drift",
       [](const Solver& self) {
         const Drift drift = self.drift();
         return std::make_pair(drift.position, drift.rotation);
       },
       "How far the robot's tip drifts from `nominal`'s at the same joint values, at most over "
       "2000 configurations: (position [m], rotation [rad]).");
-  cls.def_property_readonly("robot", &Solver::robot, "The robot it solves for.");
-  cls.def_property_readonly(
-      "options", [](const Solver& self) { return self.options(); }, "A copy of its options.");
-  cls.def_property_readonly("database", &Solver::database, "The database it selects seeds from.");
-  cls.def_property_readonly("work_bound", &Solver::work_bound,
-                            "Most iteration steps that one solve without given seeds can spend, "
-                            "over all its seeds: max_attempts * max_iterations.");
-  cls.def_property_readonly(
-      "task_hint", [](const Solver& self) { return task_hint(self.robot(), self.options().task); },
+  add_property(cls, "robot", &Solver::robot, "The robot it solves for.");
+  add_property(
+      cls, "options", [](const Solver& self) { return self.options(); }, "A copy of its options.");
+  add_property(cls, "database", &Solver::database, "The database it selects seeds from.");
+  add_property(cls, "work_bound", &Solver::work_bound,
+               "Most iteration steps that one solve without given seeds can spend, "
+               "over all its seeds: max_attempts * max_iterations.");
+  add_property(
+      cls, "task_hint",
+      [](const Solver& self) { return task_hint(self.robot(), self.options().task); },
       "For an arm with fewer joints than its task has axes, which hardly any target suits: tasks "
       "for which its joints are enough, in a sentence; else empty.");
   cls.def("solve", &solve, py::arg("pose"), py::arg("seed") = py::none(),

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bindings.hpp"
+#include "property.hpp"
 #include "task_fields.hpp"
 
 namespace iksel::python {
@@ -47,10 +48,9 @@ Args:
 
 Raises:
     InvalidArgumentError: a half width that is negative or not a number.)");
-  cls.def_property_readonly("is_full_pose", &Task::is_full_pose,
-                            "Whether every tolerance is zero.");
-  cls.def_property_readonly("constrained_axes", &Task::constrained_axes,
-                            "Number of axes that are not free, 0 to 6.");
+  add_property(cls, "is_full_pose", &Task::is_full_pose, "Whether every tolerance is zero.");
+  add_property(cls, "constrained_axes", &Task::constrained_axes,
+               "Number of axes that are not free, 0 to 6.");
   cls.def("__hash__", [](const Task& self) { return py::hash(py::repr(py::cast(self))); });
 }
 

@@ -290,16 +290,8 @@ const char* enum_name(E value) {
   return "?";
 }
 
-/// Makes the Python enum; to come before any function that takes or returns it.
-template <class E>
-void bind_enum(py::module_& m) {
-  // Statuses stand as numbers in batch results, and compare with them.
-  constexpr const char* kBase = std::is_same_v<E, Status> ? "enum.IntEnum" : "enum.Enum";
-  py::native_enum<E> binding(m, EnumTable<E>::kName, kBase, EnumTable<E>::kDoc);
-  for (const auto& entry : EnumTable<E>::kValues) binding.value(entry.name, entry.value, entry.doc);
-  binding.finalize();
-  // Else str() gives "Status.solved", or a number, by the version of Python.
-  const py::object cls = m.attr(EnumTable<E>::kName);
+/// Without this, str() gives "Status.solved", or a number, by the version of Python.
+inline void show_names(const py::object& cls) {
   cls.attr("__str__") =
       py::cpp_function([](const py::object& self) { return py::str(self.attr("name")); },
                        py::name("__str__"), py::is_method(cls));
@@ -308,6 +300,17 @@ void bind_enum(py::module_& m) {
         return py::str(self.attr("name").attr("__format__")(spec));
       },
       py::name("__format__"), py::is_method(cls));
+}
+
+/// Makes the Python enum; to come before any function that takes or returns it.
+template <class E>
+void bind_enum(py::module_& m) {
+  // Statuses stand as numbers in batch results, and compare with them.
+  constexpr const char* kBase = std::is_same_v<E, Status> ? "enum.IntEnum" : "enum.Enum";
+  py::native_enum<E> binding(m, EnumTable<E>::kName, kBase, EnumTable<E>::kDoc);
+  for (const auto& entry : EnumTable<E>::kValues) binding.value(entry.name, entry.value, entry.doc);
+  binding.finalize();
+  show_names(m.attr(EnumTable<E>::kName));
 }
 
 }  // namespace iksel::python

@@ -109,8 +109,7 @@ using FindLargest = int (*)(int count, const float* numbers);
 struct LaneKernels {
   const char* name;
   int lanes;
-  /// By number of joints; [0] serves any number.
-  Advance advance[11];
+  Advance advance;
   PrepareSeeds prepare;
   KeepFrom keep_from;
   FindLargest find_largest;

@@ -40,7 +40,7 @@ LaneSearch::LaneSearch(const ChainModel& model, const ChainModel& nominal, const
       kernels_(kernels),
       base_inverse_(to_pose(model.kernel.base).inverse()),
       tcp_inverse_(Pose(model.tcp_inverse) * to_pose(model.kernel.flange).inverse()),
-      advance_(kernels.advance[model.dof <= 10 ? model.dof : 0]),
+      advance_(kernels.advance),
       chain_(make_lane_chain(model)),
       lane_options_(make_lane_options(model, options)),
       seed_chain_(make_seed_chain(nominal, *data.reduction)),

@@ -2,8 +2,8 @@
 #include "solver/mirror.hpp"
 
 #include <cmath>
-#include <utility>
 
+#include "math/determinant.hpp"
 #include "math/pseudo_inverse.hpp"
 #include "math/symmetric.hpp"
 #include "solver/joint_move.hpp"
@@ -12,36 +12,6 @@ namespace iksel {
 namespace {
 
 constexpr int kAxes = 6;
-
-/// Sign of the determinant of a matrix of `rows`, which become its factors: by elimination, the
-/// largest of a column first.
-int sign_of_determinant(double (&rows)[kAxes][kAxes]) {
-  double* row[kAxes];
-  for (int k = 0; k < kAxes; ++k) row[k] = rows[k];
-  bool negative = false;
-#pragma GCC unroll 6
-  for (int k = 0; k < kAxes; ++k) {
-    int largest = k;
-#pragma GCC unroll 6
-    for (int r = k + 1; r < kAxes; ++r) {
-      if (std::abs(row[r][k]) > std::abs(row[largest][k])) largest = r;
-    }
-    if (largest != k) {
-      std::swap(row[k], row[largest]);
-      negative = !negative;
-    }
-    const double pivot = row[k][k];
-    if (pivot < 0) negative = !negative;
-    const double inverse = 1 / pivot;
-#pragma GCC unroll 6
-    for (int r = k + 1; r < kAxes; ++r) {
-      const double factor = row[r][k] * inverse;
-#pragma GCC unroll 6
-      for (int i = k + 1; i < kAxes; ++i) row[r][i] -= factor * row[k][i];
-    }
-  }
-  return negative ? -1 : 1;
-}
 
 /// How the twist J v changes in unit time while the joints move at the rates v: a joint's axis and
 /// origin turn with the joints before it, and the tip moves past it with those behind. A variable
@@ -84,7 +54,7 @@ Surroundings look_around(const Jacobian& J, const JointVector& q, double nearest
     }
     trace += A[j][j];
   }
-  if (dof == kAxes) result.orientation = sign_of_determinant(columns);
+  if (dof == kAxes) result.orientation = determinant(columns) < 0 ? -1 : 1;
   for (int j = dof; j < kAxes; ++j) A[j][j] = 1;
   const SymmetricFactors<double> factors(A, 1e-12 * trace);
   // Inverse iteration, which goes to the direction of the least singular value; the start is of no

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "solver/objective_cost.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -9,6 +8,7 @@
 #include "error_check.hpp"
 #include "iksel/error.hpp"
 #include "math/constants.hpp"
+#include "math/determinant.hpp"
 #include "math/pseudo_inverse.hpp"
 #include "message_text.hpp"
 
@@ -61,13 +61,19 @@ double manipulability(const ChainModel& model, const JointVector& q) {
   Jacobian J;
   model.fk_jacobian(q.data(), pose, J);
   // With fewer joints than six, of J^T J, filled up by the identity.
-  Matrix6 gram = Matrix6::Identity();
-  if (model.dof < 6) {
-    gram.topLeftCorner(model.dof, model.dof) = J.transpose() * J;
-  } else {
-    gram = J * J.transpose();
+  double gram[6][6] = {};
+  for (int i = 0; i < 6; ++i) {
+    for (int k = 0; k < 6; ++k) {
+      if (model.dof >= 6) {
+        gram[i][k] = J.row(i).dot(J.row(k));
+      } else if (std::max(i, k) < model.dof) {
+        gram[i][k] = J.col(i).dot(J.col(k));
+      } else {
+        gram[i][k] = i == k ? 1 : 0;
+      }
+    }
   }
-  return std::sqrt(std::max(gram.determinant(), 0.0));
+  return std::sqrt(std::max(determinant(gram), 0.0));
 }
 
 double ObjectiveCost::of_posture(const JointVector& q, JointVector* gradient,

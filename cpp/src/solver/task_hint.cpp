@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which tasks an arm with few joints can do.
-#include <Eigen/QR>
 #include <array>
 #include <string>
 
 #include "iksel/diagnosis.hpp"
 #include "iksel/robot.hpp"
 #include "iteration/task_space.hpp"
+#include "math/pseudo_inverse.hpp"
 
 namespace iksel {
 namespace {
@@ -46,10 +46,9 @@ bool fits(const Robot& robot, const Task& task) {
     }
     // Metres and radians alike, so that a small arm has no small singular values.
     J.topRows<3>() /= robot.reach();
-    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr{Eigen::MatrixXd(J)};
+    const auto sigma = singular_values(J);
     constexpr double kSingular = 1e-6;
-    qr.setThreshold(kSingular);
-    if (qr.rank() == task.constrained_axes()) return true;
+    if ((sigma.array() > kSingular * sigma[0]).count() == task.constrained_axes()) return true;
   }
   return false;
 }

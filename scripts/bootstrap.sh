@@ -139,7 +139,11 @@ install_project() {
 install_rivals() {
   local list
   list=$("$python" - <<'PYTHON'
-import pathlib, tomllib
+import pathlib
+try:
+    import tomllib
+except ModuleNotFoundError:  # Python 3.10, where iksel brings it along
+    import tomli as tomllib
 extras = tomllib.loads(pathlib.Path("pyproject.toml").read_text())["project"]["optional-dependencies"]
 print(*(item for name, items in extras.items() if name.startswith("bench") for item in items))
 PYTHON

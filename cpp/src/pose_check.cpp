@@ -62,6 +62,7 @@ void throw_not_rigid(const Pose& pose, const char* name, std::ptrdiff_t index) {
   const Eigen::Matrix3d R = pose.linear();
   if (!is_affine(pose)) {
     what << "the last row must be 0 0 0 1, not " << pose.matrix().row(3);
+    if (pose.matrix().col(3) == Eigen::Vector4d::UnitW()) what << "; is it transposed?";
   } else if (deviation_of(R) <= kRigidTolerance) {
     what << "det R is negative (a reflection)";
   } else {

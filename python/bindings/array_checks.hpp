@@ -44,6 +44,8 @@ inline DoubleArray convert_to_doubles(py::handle value, const char* name) {
   if (!array) throw_wrong_type(name, "an array of real numbers", value);
   const char kind = array.dtype().kind();
   if (kind != 'f' && kind != 'i' && kind != 'u') {
+    if (!py::isinstance<py::array>(value))
+      throw_wrong_type(name, "an array of real numbers", value);
     throw InvalidArgumentError(std::string(name) + ": expected real numbers, got dtype " +
                                py::cast<std::string>(py::str(array.dtype())));
   }

@@ -47,7 +47,7 @@ std::map<std::string, double> as_joint_values(const JointValues& value, const ch
   std::map<std::string, double> joints;
   for (const auto& [key, number] : py::dict(py::object(value))) {
     if (!py::isinstance<py::str>(key)) throw_wrong_type(name, "joint names as keys", key);
-    const auto joint = py::cast<std::string>(key);
+    const std::string joint = as_text(key, name);
     const std::string culprit = std::string(name) + "['" + joint + "']";
     joints[joint] = from_python<double>(number, culprit.c_str());
   }

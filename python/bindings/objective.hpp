@@ -61,7 +61,7 @@ inline Objective make_custom_objective(const py::object& cost, const py::object&
 inline Objective as_objective(py::handle value) {
   if (py::isinstance<Objective>(value)) return py::cast<Objective>(value);
   if (py::isinstance<py::str>(value)) {
-    const auto name = py::cast<std::string>(value);
+    const std::string name = as_text(value, "objective");
     if (name == enum_name(Objective::Kind::limits)) return Objective::far_from_limits();
     if (name == enum_name(Objective::Kind::manipulability)) return Objective::most_manipulable();
   } else if (PyCallable_Check(value.ptr()) != 0) {

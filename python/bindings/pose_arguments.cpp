@@ -148,7 +148,11 @@ Pose convert_to_pose(py::handle value, const char* name, const Task* task) {
     return pose;
   }
   if (array.ndim() != 2 || array.shape(0) != 4 || array.shape(1) != 4) {
-    throw_wrong_shape(name, "a (4, 4) array", array);
+    const bool six = array.ndim() == 1 && array.shape(0) == 6;
+    throw_wrong_shape(name, "a (4, 4) array", array,
+                      six ? "; position and roll, pitch, yaw make a pose by "
+                            "iksel.pose_from_euler(position, rpy)"
+                          : "");
   }
   pose.matrix() = Eigen::Map<const RowMajorPose>(array.data());
   return pose;

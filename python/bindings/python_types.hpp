@@ -62,6 +62,18 @@ inline void check_callable(py::handle value, const char* name) {
   throw SignatureError(std::string(name) + ": expected a callable, got " + describe(value));
 }
 
+/// The text of a str. One that holds bytes which are no UTF-8, as Python has them from a command
+/// line, is none.
+inline std::string as_text(py::handle value, const char* name) {
+  Py_ssize_t size = 0;
+  const char* text = PyUnicode_AsUTF8AndSize(value.ptr(), &size);
+  if (text == nullptr) {
+    PyErr_Clear();
+    throw_wrong_type(name, "a str in UTF-8", value);
+  }
+  return {text, static_cast<std::size_t>(size)};
+}
+
 inline std::filesystem::path as_path(const PathLike& value, const char* name) {
   if (!py::isinstance<py::str>(value) && !py::hasattr(value, "__fspath__")) {
     throw_wrong_type(name, "a path", value);
@@ -95,7 +107,7 @@ template <>
 struct FromPython<std::string> {
   static std::string convert(py::handle value, const char* name) {
     if (!py::isinstance<py::str>(value)) throw_wrong_type(name, "a str", value);
-    return py::cast<std::string>(value);
+    return as_text(value, name);
   }
 };
 
@@ -120,10 +132,11 @@ struct FromPython<T, std::enable_if_t<std::is_integral_v<T>>> {
     }
     py::detail::make_caster<T> caster;
     if (!caster.load(value, /*convert=*/true)) {
-      throw InvalidArgumentError(std::string(name) + ": expected an int from " +
-                                 std::to_string(std::numeric_limits<T>::min()) + " to " +
-                                 std::to_string(std::numeric_limits<T>::max()) + ", got " +
-                                 describe(value));
+      using Limits = std::numeric_limits<T>;
+      const std::string range = std::is_unsigned_v<T> ? "of 0 or more"
+                                                      : "from " + std::to_string(Limits::min()) +
+                                                            " to " + std::to_string(Limits::max());
+      throw_wrong_type(name, "an int " + range, value);
     }
     return py::detail::cast_op<T>(caster);
   }
@@ -165,7 +178,7 @@ struct FromPython<T, std::enable_if_t<std::is_enum_v<T>>> {
     py::detail::make_caster<T> caster;
     if (caster.load(value, /*convert=*/false)) return py::detail::cast_op<T&>(caster);
     if (py::isinstance<py::str>(value)) {
-      const auto text = py::cast<std::string>(value);
+      const std::string text = as_text(value, name);
       for (const auto& entry : EnumTable<T>::kValues) {
         if (text == entry.name) return entry.value;
       }

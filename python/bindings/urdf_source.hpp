@@ -18,7 +18,9 @@ inline bool is_xml(const std::string& text) {
 template <typename FromText, typename FromFile>
 auto read_urdf(const PathLike& path_or_xml, const FromText& from_text, const FromFile& from_file) {
   if (py::isinstance<py::str>(path_or_xml)) {
-    const auto text = py::cast<std::string>(path_or_xml);
+    // What is no UTF-8 may still be a path.
+    const py::bytes bytes = path_or_xml.attr("encode")("utf-8", "replace");
+    const auto text = py::cast<std::string>(bytes);
     if (is_xml(text)) return from_text(text);
   }
   if (!py::isinstance<py::str>(path_or_xml) && !py::hasattr(path_or_xml, "__fspath__")) {

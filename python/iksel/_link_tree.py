@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from iksel_cpp import UnknownNameError, UrdfError
 
+from iksel._files import read_text
 from iksel.pose import pose_from_euler
 
 if TYPE_CHECKING:
@@ -242,7 +243,7 @@ def read_xml(
     else:
         path = Path(source)
         try:
-            text, folder = path.read_text("utf-8"), path.parent
+            text, folder = read_text(path), path.parent
         except (OSError, ValueError) as error:
             raise UrdfError(f"{argument}: {error}") from None
     try:

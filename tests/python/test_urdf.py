@@ -160,3 +160,33 @@ def test_names_may_be_any_text() -> None:
     made = iksel.Robot.from_urdf(xml, tip_link="hånd/左 1")
     assert made.name == "tęst"
     assert made.tip_link == "hånd/左 1"
+
+
+def test_letters_of_other_encodings_are_question_marks(tmp_path: Path) -> None:
+    file = tmp_path / "latin.urdf"
+    file.write_bytes(arm("<!-- José -->").replace("hand", "hånd").encode("latin-1"))
+    made = iksel.Robot.from_urdf(file)
+    assert made.tip_link == "h?nd"
+    assert "h?nd" in repr(made)
+
+
+def test_files_that_never_end_are_refused() -> None:
+    with pytest.raises(iksel.UrdfError, match="'/dev/zero' is larger than 256 MiB"):
+        iksel.Robot.from_urdf("/dev/zero")
+
+
+@pytest.mark.parametrize(
+    "changes", [{"tip_link": "\udcff"}, {"locked_joints": {"\ud800": 1.0}}]
+)
+def test_names_that_are_no_text_are_named(changes: dict) -> None:
+    (culprit,) = changes
+    with pytest.raises(iksel.InvalidArgumentError, match=f"{culprit}: .* in UTF-8"):
+        iksel.Robot.from_urdf(arm(), **changes)
+
+
+def test_a_link_has_one_parent() -> None:
+    twice = joint("third", "base", "hand")
+    with pytest.raises(
+        iksel.UrdfError, match="link 'hand' is the child of two joints: 'second' and"
+    ):
+        iksel.Robot.from_urdf(arm(twice))

@@ -46,6 +46,8 @@ TABLE: dict[str, tuple[str, ...]] = {
         'iksel.Robot.from_urdf("my_arm.urdf")',
         'iksel.Robot.from_urdf(".")',
         'iksel.Robot.from_urdf("notes.txt")',
+        'iksel.Robot.from_urdf("/dev/zero")',
+        'iksel.Robot.from_urdf("hands.urdf", tip_link="\\udcff")',
         'iksel.Robot.from_urdf("broken.urdf")',
         'iksel.Robot.from_urdf("arm.urdf.xacro")',
         "iksel.Robot.from_urdf(None)",

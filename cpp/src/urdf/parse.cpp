@@ -4,11 +4,13 @@
 #include <console_bridge/console.h>
 #include <urdf_parser/urdf_parser.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <exception>
 #include <fstream>
+#include <map>
 #include <mutex>
-#include <sstream>
+#include <string>
 #include <system_error>
 
 #include "iksel/error.hpp"
@@ -61,6 +63,46 @@ std::string one_line(std::string text) {
   return text;
 }
 
+/// Length of the UTF-8 sequence that begins at `at`; 0: none does.
+std::size_t utf8_length(const std::string& text, std::size_t at) {
+  const auto byte = [&](std::size_t i) {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
+  };
+  const unsigned lead = byte(at);
+  if (lead < 0x80) return 1;
+  if (lead < 0xC2 || lead > 0xF4) return 0;
+  const std::size_t length = lead < 0xE0 ? 2 : lead < 0xF0 ? 3 : 4;
+  // Not longer than need be, no half of a surrogate pair, nothing beyond the last character.
+  const unsigned least = lead == 0xE0 ? 0xA0 : lead == 0xF0 ? 0x90 : 0x80;
+  const unsigned most = lead == 0xED ? 0x9F : lead == 0xF4 ? 0x8F : 0xBF;
+  if (byte(at + 1) < least || byte(at + 1) > most) return 0;
+  for (std::size_t i = 2; i < length; ++i) {
+    if (byte(at + i) < 0x80 || byte(at + i) > 0xBF) return 0;
+  }
+  return length;
+}
+
+/// Letters of other encodings, as in authors' names, become question marks: names and messages are
+/// shown as text.
+void replace_what_is_no_utf8(std::string& text) {
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t length = utf8_length(text, i);
+    if (length == 0) text[i] = '?';
+    i += std::max<std::size_t>(length, 1);
+  }
+}
+
+/// urdfdom keeps the last joint of those that carry the same link.
+void check_one_parent(const urdf::ModelInterface& model) {
+  std::map<std::string, std::string> carried_by;
+  for (const auto& [name, joint] : model.joints_) {
+    const auto [first, is_new] = carried_by.try_emplace(joint->child_link_name, name);
+    if (is_new) continue;
+    throw UrdfError("link '" + joint->child_link_name + "' is the child of two joints: '" +
+                    first->second + "' and '" + name + "'");
+  }
+}
+
 }  // namespace
 
 std::string read_urdf_file(const std::filesystem::path& path) {
@@ -73,10 +115,18 @@ std::string read_urdf_file(const std::filesystem::path& path) {
     throw UrdfError("cannot open URDF file '" + path.string() +
                     "': " + std::generic_category().message(errno));
   }
-  std::ostringstream text;
-  text << file.rdbuf();
+  // Devices never end.
+  constexpr std::size_t kMost = 256U << 20U;
+  std::string text;
+  for (char c = 0; file.get(c);) {
+    text += c;
+    if (text.size() > kMost) {
+      throw UrdfError("URDF file '" + path.string() + "' is larger than 256 MiB");
+    }
+  }
   if (file.bad()) throw UrdfError("cannot read URDF file '" + path.string() + "'");
-  return text.str();
+  replace_what_is_no_utf8(text);
+  return text;
 }
 
 urdf::ModelInterfaceSharedPtr parse_urdf(const std::string& xml) {
@@ -98,6 +148,7 @@ urdf::ModelInterfaceSharedPtr parse_urdf(const std::string& xml) {
     throw UrdfError("URDF does not parse: " +
                     (messages.empty() ? "no robot in it" : one_line(messages)));
   }
+  check_one_parent(*model);
   return model;
 }
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from iksel_cpp import InvalidArgumentError, Solver
 
+from iksel._files import read_text
 from iksel.cli._angles import Angles, turning
 from iksel.cli._options import add_solver_options, given_database, solver_options
 from iksel.cli._output import add_json, print_json, print_pairs
@@ -113,10 +114,10 @@ def read_poses(name: str, angles: Angles) -> FloatArray:
         InvalidArgumentError: It cannot be read, or a line is no pose.
     """
     try:
-        text = sys.stdin.read() if name == "-" else Path(name).read_text("utf-8")
+        text = sys.stdin.read() if name == "-" else read_text(Path(name))
     except OSError as error:
         raise InvalidArgumentError(f"{name}: {error.strerror}") from None
-    except UnicodeDecodeError as error:
+    except ValueError as error:
         raise InvalidArgumentError(f"{name}: {error}") from None
     poses = []
     for index, line in enumerate(text.splitlines(), 1):

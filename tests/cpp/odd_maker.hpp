@@ -164,6 +164,13 @@ class ChainMaker {
       const auto source = static_cast<std::size_t>(dice_.pick(static_cast<int>(i)));
       const OddJoint& followed = chain_.joints[source];
       if (joint.locked || followed.locked || !dice_.chance(0.08)) continue;
+      // Angles that follow a kilometre are refused: see test_solver.cpp.
+      const OddJoint& leader = chain_.joints[source_of(source)];
+      const bool turns = joint.type != iksel::JointType::prismatic;
+      if (turns && std::max(std::abs(leader.lower), std::abs(leader.upper)) > 100 &&
+          leader.type == iksel::JointType::prismatic) {
+        continue;
+      }
       joint.mimics = static_cast<int>(source);
       joint.multiplier = dice_.uniform(0.2, 2) * (dice_.chance(0.5) ? 1 : -1);
       joint.offset = dice_.uniform(-0.5, 0.5);

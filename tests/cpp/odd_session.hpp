@@ -306,24 +306,12 @@ class Session {
     return true;
   }
 
-  /// How many images by whole turns a configuration has inside the limits, about.
-  double images() const {
-    double product = 1;
-    for (std::size_t v = 0; v < chain_.lower.size(); ++v) {
-      const OddJoint& joint = chain_.joints[static_cast<std::size_t>(chain_.variables[v])];
-      if (joint.type != iksel::JointType::revolute) continue;
-      product *= std::max(1.0, (chain_.upper[v] - chain_.lower[v]) / 6.28);
-    }
-    return product;
-  }
-
   bool path() {
     const std::vector<JointVector> q = line(2 + dice_.pick(5));
     std::vector<Pose> poses;
     for (const JointVector& one : q) poses.push_back(pose_of(one));
     iksel::PathOptions options;
-    // Without a start each image by whole turns counts: with thousands of them, for seconds.
-    if (dice_.chance(0.5) || images() > 100) options.start = q.front();
+    if (dice_.chance(0.5)) options.start = q.front();
     if (dice_.chance(0.5)) options.dt = dice_.uniform(0.1, 3);
     options.candidates = 1 + dice_.pick(16);
     const iksel::PathResult result = solver_.solve_path(poses, options);

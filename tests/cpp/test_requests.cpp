@@ -683,6 +683,28 @@ TEST(Angles, OutOfScaleAreNamedWhereverTheyComeIn) {
   expect_named("start[3]", [&] { (void)iksel::Tracker(solver, far); });
 }
 
+/// A joint may turn by what another slides, which is metres.
+TEST(Angles, ThoseThatFollowASlideAreBoundedToo) {
+  const auto robot = [](const std::string& limit) {
+    return Robot::from_urdf_string(
+        "<robot name='r'><link name='a'/><link name='b'/><link name='c'/><joint name='slide' "
+        "type='prismatic'><parent link='a'/><child link='b'/><limit lower='-1' upper='" +
+        limit +
+        "' velocity='1' effort='1'/></joint><joint name='turn' type='continuous'><parent "
+        "link='b'/><child link='c'/><origin xyz='1000 0 0'/><mimic joint='slide'/></joint>"
+        "</robot>");
+  };
+  EXPECT_NO_THROW(Solver{robot("100")});
+  try {
+    const Solver solver(robot("1e7"));
+    FAIL();
+  } catch (const iksel::InvalidArgumentError& error) {
+    EXPECT_NE(std::string(error.what()).find("upper limit[0] (joint 'slide'): 1e+07 m, by which"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(Requests, BadOptionsOfSolveAllAreNamed) {
   const Solver solver(iksel_test::load(robot_case("ur3")));
   const auto expect_error = [&](const iksel::AllOptions& options, const std::string& what) {

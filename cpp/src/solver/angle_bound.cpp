@@ -9,6 +9,17 @@
 #include "solver/solver_impl.hpp"
 
 namespace iksel {
+namespace {
+
+/// Whether a joint that follows variable j, or is it, turns.
+bool turns_a_joint(const ChainModel& model, int j) {
+  const auto& joints = model.kernel.joints;
+  return std::any_of(joints.begin(), joints.end(), [j](const KernelJoint& joint) {
+    return joint.variable == j && !joint.prismatic;
+  });
+}
+
+}  // namespace
 
 double Solver::Impl::find_largest_angle() const {
   // FK turns joint k by m_k q_k + offset_k, of which rounding takes at most half a unit in the last
@@ -30,13 +41,15 @@ void Solver::Impl::check_angles(const JointVector& q, const char* name) const {
   const ChainModel& model = robot.model();
   for (int j = 0; j < model.dof; ++j) {
     const auto k = static_cast<std::size_t>(j);
-    if (std::abs(q[j]) <= largest_angle || model.joint_types[k] == JointType::prismatic) continue;
+    if (std::abs(q[j]) <= largest_angle || !turns_a_joint(model, j)) continue;
+    const bool slides = model.joint_types[k] == JointType::prismatic;
     throw InvalidArgumentError(
         std::string(name) + "[" + std::to_string(j) + "] (joint '" + model.joint_names[k] +
-        "'): " + number_text(q[j]) + " rad; at angles beyond " + number_text(largest_angle) +
+        "'): " + number_text(q[j]) + (slides ? " m, by which others turn" : " rad") +
+        "; at angles beyond " + number_text(largest_angle) +
         " rad a double cannot tell poses of this robot apart to a tenth of the tolerances (" +
         number_text(options.position_tolerance) + " m, " + number_text(options.rotation_tolerance) +
-        " rad): take off whole turns");
+        " rad): " + (slides ? "narrow its limits" : "take off whole turns"));
   }
 }
 

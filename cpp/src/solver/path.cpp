@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <set>
 #include <string>
 
 #include "error_check.hpp"
@@ -130,14 +131,20 @@ class PathSearch {
   /// from.
   void add_solutions(const Found& found, const Layer& before, Layer& layer) const {
     for (std::size_t i = 0; i < found.size(); ++i) {
-      JointVector q = found.at(i);
-      // Most that the path may come from lie in the same turn.
-      JointVector last = q;
+      const JointVector solution = found.at(i);
+      JointVector q = solution;
+      // Many that the path may come from lie in the same turn.
+      std::set<std::vector<long>> known;
+      std::vector<long> turns(before.dof);
       for (std::size_t k = 0; k < before.size(); ++k) {
         take_nearest_turns(model_, before.at(k), 0, q);
-        if (k > 0 && q == last) continue;
+        for (std::size_t j = 0; j < turns.size(); ++j) {
+          const auto joint = static_cast<Eigen::Index>(j);
+          turns[j] = std::lround((q[joint] - solution[joint]) / kTwoPi);
+        }
+        if (!known.insert(turns).second) continue;
+        if (layer.size() >= kMostCandidates) return;
         layer.add(q);
-        last = q;
       }
     }
   }
@@ -208,8 +215,11 @@ class PathSearch {
   }
 
  private:
-  /// Copies by whole turns at the first waypoint, at most.
+  /// Copies by whole turns at the first waypoint, at most: those of sixteen solutions, of seven
+  /// joints that have two turns each.
   static constexpr std::size_t kMostTurns = 2048;
+  /// Candidates from the database at a later waypoint, at most.
+  static constexpr std::size_t kMostCandidates = 2 * kMostTurns;
 
   /// A path that begins anywhere costs the same at all whole turns: of those, the one that begins
   /// nearest to the middle of the limits. Small beside all costs, and large beside their rounding.
@@ -274,8 +284,11 @@ PathResult Solver::Impl::solve_path(const std::vector<Pose>& T_base_tip, const P
     if (before != nullptr) search.add_continuations(T_base_tip[w], *before, layer);
     Found& found = workspace.found;
     const bool redundant = model.dof > task.fixed_axes();
-    const auto most = static_cast<std::size_t>(path.candidates);
-    const auto enough = [&](const Exploration&) { return redundant && found.size() >= most; };
+    // Of an arm that is not redundant all, which are few but where axes line up.
+    constexpr std::size_t kBranches = 64;
+    const auto candidates = static_cast<std::size_t>(path.candidates);
+    const std::size_t most = redundant ? candidates : std::max(candidates, kBranches);
+    const auto enough = [&](const Exploration&) { return found.size() >= most; };
     Exploration exploration{T_base_tip[w],
                             task,
                             search.request(),

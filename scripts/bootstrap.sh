@@ -49,6 +49,7 @@ find_missing() {
   want_command g++ g++
   want_command cmake cmake
   want_command make make
+  want_command ccache ccache
   want_command pkg-config pkg-config
   want_library eigen3 libeigen3-dev
   want_library libxxhash libxxhash-dev
@@ -58,7 +59,6 @@ find_missing() {
   want_library xsimd libxsimd-dev
   if ! $apt_only; then find_missing_python; fi
   if $dev; then
-    want_command ccache ccache
     want_library benchmark libbenchmark-dev
     want_library gtest libgtest-dev
   fi
@@ -112,17 +112,27 @@ source_hash() {
     LC_ALL=C sort -z | xargs -0 sha256sum | sha256sum | cut -d ' ' -f 1
 }
 
+# from_pyproject ITEMS: what a Python expression over pyproject.toml's contents gives, a line each.
+from_pyproject() {
+  "$python" - "$1" <<'PYTHON'
+import sys
+from pip._vendor import tomli  # Python 3.10 has no parser of its own
+with open("pyproject.toml", "rb") as file:
+    project = tomli.load(file)
+print(*eval(f"[*({sys.argv[1]})]", {"project": project}), sep="\n")
+PYTHON
+}
+
 install_project() {
   if ! "$python" -m pip --version >/dev/null 2>&1; then
     quietly "making the virtual environment $venv" "$base_python" -m venv --clear "$venv"
   fi
-  local stamp=$venv/iksel.stamp target=. state
-  if $dev; then
-    target='.[dev]'
-    # As the tests build it, so that ccache knows it. In variables: the options that say the same are
-    # not known to every pip.
-    export SKBUILD_BUILD_DIR=build/python SKBUILD_CMAKE_DEFINE=IKSEL_WARNINGS_AS_ERRORS=ON
-  fi
+  local stamp=$venv/iksel.stamp target=. state build_system
+  if $dev; then target='.[dev]'; fi
+  # As the tests build it, so that ccache knows it. In variables: the options that say the same are not
+  # known to every pip.
+  export SKBUILD_BUILD_DIR=build/python
+  if $dev || [[ -n ${CI-} ]]; then export SKBUILD_CMAKE_DEFINE=IKSEL_WARNINGS_AS_ERRORS=ON; fi
   state="$(source_hash) $("$python" -V)"
   # Once the extra is there, it stays there.
   if [[ -f $stamp ]] && { [[ $(<"$stamp") == "$state $target" ]] ||
@@ -131,25 +141,20 @@ install_project() {
   fi
   if [[ -f $stamp ]] && grep -qF '.[dev]' "$stamp"; then target='.[dev]'; fi
   rm -f "$stamp"
-  quietly "installing iksel into $venv" "$python" -m pip install "$target"
+  # Once, where it stays: pip's own environment for builds has another path each time.
+  mapfile -t build_system < <(from_pyproject 'project["build-system"]["requires"]')
+  quietly "installing ${build_system[*]} ninja" "$python" -m pip install "${build_system[@]}" ninja
+  quietly "installing iksel into $venv" "$python" -m pip install --no-build-isolation "$target"
   printf '%s\n' "$state $target" >"$stamp"
 }
 
 # What the extras bench and bench-* of pyproject.toml name; iksel itself is not built again.
 install_rivals() {
-  local list
-  list=$("$python" - <<'PYTHON'
-import pathlib
-try:
-    import tomllib
-except ModuleNotFoundError:  # Python 3.10, where iksel brings it along
-    import tomli as tomllib
-extras = tomllib.loads(pathlib.Path("pyproject.toml").read_text())["project"]["optional-dependencies"]
-print(*(item for name, items in extras.items() if name.startswith("bench") for item in items))
-PYTHON
-  )
-  # shellcheck disable=SC2086  # one word for each package
-  quietly "installing $list" "$python" -m pip install $list
+  local rivals
+  mapfile -t rivals < <(from_pyproject \
+    'item for extra, items in project["project"]["optional-dependencies"].items()
+       if extra.startswith("bench") for item in items')
+  quietly "installing ${rivals[*]}" "$python" -m pip install "${rivals[@]}"
 }
 
 install_missing

@@ -141,6 +141,8 @@ install_project() {
   fi
   if [[ -f $stamp ]] && grep -qF '.[dev]' "$stamp"; then target='.[dev]'; fi
   rm -f "$stamp"
+  # Python compiles what it imports; that would be all of numpy.
+  export PIP_NO_COMPILE=1
   # Once, where it stays: pip's own environment for builds has another path each time.
   mapfile -t build_system < <(from_pyproject 'project["build-system"]["requires"]')
   quietly "installing ${build_system[*]} ninja" "$python" -m pip install "${build_system[@]}" ninja

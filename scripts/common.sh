@@ -22,6 +22,8 @@ use_ccache() {
   export CMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER:-ccache}
   # Wherever the folder of the build is, and by one name of the compiler.
   export CCACHE_BASEDIR=${CCACHE_BASEDIR:-$root} CCACHE_NOHASHDIR=1 CXX=${CXX:-c++}
+  # What is included the compiler says; to find out beforehand takes a tenth of the time.
+  export CCACHE_DEPEND=1
 }
 use_ccache
 

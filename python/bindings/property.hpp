@@ -23,21 +23,26 @@ Get as_function(Get get, long /*otherwise*/) {
   return get;
 }
 
+inline void set_property(const py::object& cls, const char* name, const py::cpp_function& getter,
+                         const char* doc) {
+  const py::handle property(reinterpret_cast<PyObject*>(&PyProperty_Type));
+  cls.attr(name) = property(getter, py::none(), py::none(), doc);
+}
+
 }  // namespace detail
 
 /// `get`: a function of the object, a method or a member.
 template <class Class, class... Options, class Get>
 void add_property(py::class_<Class, Options...>& cls, const char* name, Get get, const char* doc) {
   constexpr auto kPolicy = py::return_value_policy::reference_internal;
-  py::object getter;
+  py::cpp_function getter;
   if constexpr (std::is_member_object_pointer_v<Get>) {
     getter = py::cpp_function(
         [get](const Class& self) -> const auto& { return self.*get; }, py::is_method(cls), kPolicy);
   } else {
     getter = py::cpp_function(detail::as_function(get, 0), py::is_method(cls), kPolicy);
   }
-  const py::handle property(reinterpret_cast<PyObject*>(&PyProperty_Type));
-  cls.attr(name) = property(getter, py::none(), py::none(), doc);
+  detail::set_property(cls, name, getter, doc);
 }
 
 }  // namespace iksel::python

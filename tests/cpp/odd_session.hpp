@@ -170,7 +170,13 @@ class Session {
   /// Somewhere near q, or a good way outside of the limits.
   JointVector away(JointVector q) {
     const double largest = dice_.chance(0.2) ? 50 : 0.3;
-    for (double& value : q) value += dice_.uniform(-largest, largest);
+    for (int j = 0; j < q.size(); ++j) {
+      q[j] += dice_.uniform(-largest, largest);
+      const auto variable = static_cast<std::size_t>(chain_.variables[static_cast<std::size_t>(j)]);
+      if (chain_.joints[variable].type == iksel::JointType::prismatic) continue;
+      // Of a long arm larger angles are refused.
+      q[j] = std::max(-100.0, std::min(100.0, q[j]));
+    }
     return q;
   }
 

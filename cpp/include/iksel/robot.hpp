@@ -58,7 +58,8 @@ class IKSEL_EXPORT Robot {
   [[nodiscard]] Robot with_tcp(const Pose& T_tip_tcp) const;
 
   /// The same chain with joints that turn freely, and slides that reach as far again at each end as
-  /// between their limits; databases built for one serve the other.
+  /// between their limits, but for those that other joints turn by; databases built for one serve
+  /// the other.
   [[nodiscard]] Robot without_limits() const;
 
   [[nodiscard]] const std::string& name() const;

@@ -122,6 +122,8 @@ std::shared_ptr<const ChainModel> ChainModel::without_limits() const {
   for (int i = 0; i < dof; ++i) {
     const auto k = static_cast<std::size_t>(i);
     if (joint_types[k] == JointType::prismatic) {
+      // Angles may be bounded by what the limits are.
+      if (turns_a_joint(*this, i)) continue;
       const double range = upper[i] - lower[i];
       copy->lower[i] = lower[i] - range;
       copy->upper[i] = upper[i] + range;
@@ -133,6 +135,13 @@ std::shared_ptr<const ChainModel> ChainModel::without_limits() const {
   }
   copy->measure_reach();
   return copy;
+}
+
+bool turns_a_joint(const ChainModel& model, int variable) {
+  return std::any_of(model.kernel.joints.begin(), model.kernel.joints.end(),
+                     [variable](const KernelJoint& joint) {
+                       return joint.variable == variable && !joint.prismatic;
+                     });
 }
 
 std::unique_ptr<KdlChain> ChainModel::make_kdl(const Pose& T_tip_end) const {

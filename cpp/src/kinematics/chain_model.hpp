@@ -72,6 +72,9 @@ inline bool has_whole_turns(const ChainModel& model, int joint) {
          !(model.upper[joint] - model.lower[joint] < kTwoPi);
 }
 
+/// Whether the variable, be it a slide, turns a joint: its own, or one that follows it.
+bool turns_a_joint(const ChainModel& model, int variable);
+
 /// Frame of the kernel as a pose.
 Pose to_pose(const Frame<double>& frame);
 

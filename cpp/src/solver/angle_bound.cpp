@@ -9,18 +9,6 @@
 #include "solver/solver_impl.hpp"
 
 namespace iksel {
-namespace {
-
-/// Whether a joint that follows variable j, or is it, turns.
-bool turns_a_joint(const ChainModel& model, int j) {
-  const auto& joints = model.kernel.joints;
-  return std::any_of(joints.begin(), joints.end(), [j](const KernelJoint& joint) {
-    return joint.variable == j && !joint.prismatic;
-  });
-}
-
-}  // namespace
-
 double Solver::Impl::find_largest_angle() const {
   // FK turns joint k by m_k q_k + offset_k, of which rounding takes at most half a unit in the last
   // place: |m_k q_k| 2^-53. That turns the tip by as much, and moves it by its lever, which the

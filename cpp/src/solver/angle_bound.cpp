@@ -25,20 +25,26 @@ double Solver::Impl::find_largest_angle() const {
   return std::max(kLeast, kShare * rotation / (std::ldexp(1.0, -53) * std::max(angles, 1.0)));
 }
 
-void Solver::Impl::check_angles(const JointVector& q, const char* name) const {
-  const ChainModel& model = robot.model();
-  for (int j = 0; j < model.dof; ++j) {
-    const auto k = static_cast<std::size_t>(j);
-    if (std::abs(q[j]) <= largest_angle || !turns_a_joint(model, j)) continue;
-    const bool slides = model.joint_types[k] == JointType::prismatic;
-    throw InvalidArgumentError(
-        std::string(name) + "[" + std::to_string(j) + "] (joint '" + model.joint_names[k] +
-        "'): " + number_text(q[j]) + (slides ? " m, by which others turn" : " rad") +
-        "; at angles beyond " + number_text(largest_angle) +
-        " rad a double cannot tell poses of this robot apart to a tenth of the tolerances (" +
-        number_text(options.position_tolerance) + " m, " + number_text(options.rotation_tolerance) +
-        " rad): " + (slides ? "narrow its limits" : "take off whole turns"));
+int Solver::Impl::first_large_angle(const JointVector& q) const {
+  for (int j = 0; j < robot.dof(); ++j) {
+    if (!(std::abs(q[j]) <= largest_angle) && turns_a_joint(robot.model(), j)) return j;
   }
+  return -1;
+}
+
+void Solver::Impl::check_angles(const JointVector& q, const char* name) const {
+  const int j = first_large_angle(q);
+  if (j < 0) return;
+  const ChainModel& model = robot.model();
+  const auto k = static_cast<std::size_t>(j);
+  const bool slides = model.joint_types[k] == JointType::prismatic;
+  throw InvalidArgumentError(
+      std::string(name) + "[" + std::to_string(j) + "] (joint '" + model.joint_names[k] +
+      "'): " + number_text(q[j]) + (slides ? " m, by which others turn" : " rad") +
+      "; at angles beyond " + number_text(largest_angle) +
+      " rad a double cannot tell poses of this robot apart to a tenth of the tolerances (" +
+      number_text(options.position_tolerance) + " m, " + number_text(options.rotation_tolerance) +
+      " rad): " + (slides ? "narrow its limits" : "take off whole turns"));
 }
 
 void Solver::Impl::check_limits() const {

@@ -52,6 +52,11 @@ double descend(const ChainModel& model, const SolverOptions& options, const Task
       damping *= 5;
     }
   }
+  // Steps may have turned a continuous joint many times; whole turns matter only to joints that
+  // follow it.
+  JointVector principal = q;
+  model.wrap_into_limits(principal.data());
+  if (error_of(principal) <= error + 1e-9 * (1 + error)) q = principal;
   return error;
 }
 

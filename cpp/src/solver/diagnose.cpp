@@ -155,7 +155,9 @@ class Solver::Impl::Inquiry {
     // The answers that violate the limits least are close to what does best inside them.
     BestEffort effort = make_effort(task_);
     SolveRequest hinted = open_;
-    hinted.seeds = effort.from_anywhere(kEfforts);
+    for (JointVector& seed : effort.from_anywhere(kEfforts)) {
+      if (solver_.first_large_angle(seed) < 0) hinted.seeds.push_back(std::move(seed));
+    }
     for (const Result& answer : unlimited.solve_all(T_base_tip_, {}, hinted).all) {
       JointVector seed = answer.q;
       model_.wrap_into_limits(seed.data());

@@ -85,6 +85,8 @@ struct Solver::Impl {
 
   /// Throws InvalidArgumentError unless the request fits the chain.
   void check(const SolveRequest& request) const;
+  /// The first joint beyond `largest_angle`, or -1.
+  [[nodiscard]] int first_large_angle(const JointVector& q) const;
   /// Throws InvalidArgumentError naming the first joint beyond `largest_angle`.
   void check_angles(const JointVector& q, const char* name) const;
 

@@ -11,6 +11,7 @@ from pathlib import Path
 from bench import plan
 from bench.arms import RIVAL_ARMS
 from bench.cells import WORK
+from bench.frozen import compare, record
 from bench.guard import guard
 from bench.machine import fingerprint, stale
 from bench.report import (
@@ -77,6 +78,14 @@ def parser() -> argparse.ArgumentParser:
     check.add_argument(
         "--update", action="store_true", help="write bench/guard.json instead"
     )
+    frozen = commands.add_parser(
+        "frozen",
+        help="compare the bits of every call's answers before and after a change",
+        description="Records what every public call answers, on every built-in robot, "
+        "at both presets and every SIMD level of this machine, or compares with that.",
+    )
+    frozen.add_argument("action", choices=["record", "compare"])
+    frozen.add_argument("file", type=Path, help="where, e.g. build/frozen.json")
     return top
 
 
@@ -86,6 +95,9 @@ def main(arguments: list[str] | None = None) -> int:
     options = parser().parse_args(given)
     if options.command == "guard":
         return guard(update=options.update)
+    if options.command == "frozen":
+        action = record if options.action == "record" else compare
+        return action(options.file)
     if options.command == "render":
         render(load_report(options.output), options.output)
         return 0

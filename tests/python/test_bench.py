@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 pytest.importorskip("bench", reason="the benchmarks are in the repository only")
 
-from bench import check, guard, plan, run, targets
+from bench import check, frozen, guard, plan, run, targets
 from bench.arms import load_arm
 from bench.rivals.axes import axes_of
 from bench.rivals.base import UnsupportedError
@@ -290,3 +291,35 @@ class TestGuard:
         committed = json.loads(guard.PATH.read_text(encoding="utf-8"))["rows"]
         names = [(row["robot"], row["what"]) for row in committed]
         assert names == [(row["robot"], row["what"]) for row in guard.ROWS]
+
+
+def test_frozen_names_the_calls_that_differ(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rows = {"ur3 default avx2 solve": "aa solved 1", "ur3 paper avx2 solve": "bb"}
+    monkeypatch.setattr(frozen, "_levels", lambda: dict(rows))
+    file = tmp_path / "frozen.json"
+    assert frozen.record(file) == 0
+    assert frozen.compare(file) == 0
+    rows["ur3 default avx2 solve"] = "cc solved 1"
+    del rows["ur3 paper avx2 solve"]
+    rows["panda default avx2 solve"] = "dd"
+    assert frozen.compare(file) == 1
+    told = capsys.readouterr().out
+    assert "before aa solved 1\n  after  cc solved 1" in told
+    assert "ur3 paper avx2 solve\n  before bb\n  after  not there" in told
+    assert "0 of 3 calls are the same" in told
+
+
+def test_frozen_sees_a_bit() -> None:
+    """Digests tell answers, orders and work apart, and nothing else."""
+    digests = [frozen.Digest() for _ in range(4)]
+    for digest, values in zip(
+        digests,
+        ([1.0, 2.0], [1.0, 2.0], [2.0, 1.0], [1.0, 2.0000000000000004]),
+        strict=True,
+    ):
+        digest.bits(*values)
+    rows = [digest.row() for digest in digests]
+    assert rows[0] == rows[1]
+    assert len(set(rows)) == 3

@@ -1483,7 +1483,7 @@ class Solver:
             weights: factor on each joint's part of the move, (dof,), >= 0; None: all 1.
             norm: how the move is measured.
             seeds: joint values to iterate from, (N, dof) [rad or m]; ranked as the database's seeds, and
-                tried before them, as many as max_attempts allows.
+                tried before them: up to max_attempts, and as many of the database's on top.
             database_seeds: whether the database's seeds follow the given ones.
             filter: called with candidates (n, dof), each at the pose and inside the limits; returns n
                 truth values. The search goes on within its bounds while all are refused.

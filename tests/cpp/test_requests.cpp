@@ -683,6 +683,43 @@ TEST(Angles, OutOfScaleAreNamedWhereverTheyComeIn) {
   expect_named("start[3]", [&] { (void)iksel::Tracker(solver, far); });
 }
 
+/// With one attempt, and a seed or three that lead nowhere, the database's best is tried too.
+TEST(Requests, GivenSeedsComeOnTopOfMaxAttempts) {
+  const Robot robot = iksel_test::load(robot_case("ur3"));
+  iksel::SolverOptions fast;
+  iksel::SolverOptions paper = iksel::SolverOptions::paper();
+  paper.database.samples = 2000;
+  paper.database.sampling = iksel::Sampling::random;
+  // Above the base, where the arm reaches, but not with the flange upside down.
+  Pose none = Pose::Identity();
+  none.translation() << 0, 0, robot.reach() * 0.95;
+  none.linear() = Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitX()).matrix();
+  for (iksel::SolverOptions options : {fast, paper}) {
+    for (const int most : {1, 2, 5}) {
+      options.max_attempts = most;
+      const Solver solver(robot, options);
+      ASSERT_FALSE(solver.solve(none).success());
+      EXPECT_EQ(solver.solve(none).attempts, most);
+      EXPECT_EQ(solver.solve(none, JointVector::Constant(6, 0.1)).attempts, most + 1);
+      SolveRequest request;
+      request.near = JointVector::Constant(6, 0.1);
+      EXPECT_EQ(solver.solve(none, request).attempts, most + 1);
+      EXPECT_EQ(solver.solve_all(none, {}, request).attempts, most + 1);
+      for (int n = 0; n < 3; ++n) request.seeds.emplace_back(JointVector::Constant(6, 0.2 * n));
+      const int given = 1 + std::min(most, 3);
+      EXPECT_EQ(solver.solve(none, request).attempts, most + given);
+      EXPECT_EQ(solver.solve_all(none, {}, request).attempts, most + given);
+      EXPECT_EQ(solver.solve_batch({none}, request)[0].attempts, most + given);
+      request.database_seeds = false;
+      EXPECT_EQ(solver.solve(none, request).attempts, given);
+      request = {};
+      request.task = iksel::Task::free_spin(iksel::Axis::z);
+      request.seeds = {JointVector::Zero(6)};
+      EXPECT_EQ(solver.solve(none, request).attempts, most + 1);
+    }
+  }
+}
+
 /// A joint may turn by what another slides, which is metres.
 TEST(Angles, ThoseThatFollowASlideAreBoundedToo) {
   const auto robot = [](const std::string& limit) {

@@ -46,7 +46,8 @@ struct IKSEL_EXPORT SolveRequest {
   /// Seeds of any origin, each with dof joint values [rad or m], inside the limits or not. They are
   /// ranked and iterated as the database's own, and come before those; re-selection is among the
   /// best SolverOptions::candidates of them, and SolverOptions::max_attempts bounds how many are
-  /// tried. Ranking n takes time n log n, ends at the deadline, and up to 1,024 need no memory.
+  /// tried, and how many of the database's after them. Ranking n takes time n log n, ends at the
+  /// deadline, and up to 1,024 need no memory.
   std::vector<JointVector> seeds;
   /// Whether the database's seeds follow the given ones; random restarts belong to the database's.
   bool database_seeds = true;

@@ -168,6 +168,7 @@ void Solver::Impl::explore_in_lanes(Exploration& search, Workspace& workspace,
   lanes.set_target(search.T_base_tip);
   Work& work = search.work;
   const auto iterate_seeds = [&](const double* const* seeds, int count) {
+    work.given += count;
     lanes.iterate(
         count, work, [&](int k, int lane) { lanes.load_seed(lane, seeds[k]); }, accept);
   };
@@ -179,9 +180,11 @@ void Solver::Impl::explore_in_lanes(Exploration& search, Workspace& workspace,
     GivenSeeds& given = workspace.given;
     if (!given.rank(search.task, search.T_base_tip, search.request.seeds, go_on)) return;
     const double* group[lanes::kGroup];
-    while (work.attempts < options.max_attempts) {
+    for (int tried = 0; tried < options.max_attempts;) {
+      const int most = std::min(lanes::kGroup, options.max_attempts - tried);
       int count = 0;
-      while (count < lanes::kGroup && (group[count] = given.next()) != nullptr) ++count;
+      while (count < most && (group[count] = given.next()) != nullptr) ++count;
+      tried += count;
       if (count == 0) break;
       iterate_seeds(group, count);
       if (!go_on()) return;
@@ -239,7 +242,7 @@ void Solver::Impl::explore_one_by_one(Exploration& search, Workspace& workspace,
   };
 
   if (search.request.near) attempt(search.request.near->data());
-  const int on_top = search.work.attempts;
+  int on_top = search.work.attempts;
   const auto left = [&] { return search.work.attempts - on_top < options.max_attempts; };
   const auto try_all = [&](auto& seeds) {
     for (int k = 0; left(); ++k) {
@@ -254,11 +257,12 @@ void Solver::Impl::explore_one_by_one(Exploration& search, Workspace& workspace,
   if (!search.request.seeds.empty()) {
     GivenSeeds& given = workspace.given;
     const auto next = [&](int /*attempt*/) { return given.next(); };
-    if (!given.rank(search.task, search.T_base_tip, search.request.seeds, go_on) ||
-        !try_all(next)) {
+    if (!given.rank(search.task, search.T_base_tip, search.request.seeds, go_on)) return;
+    if (!try_all(next) && left()) {
       go_on();
       return;
     }
+    on_top = search.work.attempts;
   }
   if (search.request.database_seeds) {
     Selection& selection = workspace.selection;

@@ -47,7 +47,7 @@ void LaneSearch::iterate_steered(int count, Work& work, const Load& load, const 
       sure |= bit;
       return;
     }
-    while (!steering.exhausted() && next < count && work.attempts < options_.max_attempts) {
+    while (!steering.exhausted() && next < count && attempts_left(work) > 0) {
       ++work.attempts;
       ++next;
       if (!load(lane)) continue;
@@ -101,7 +101,7 @@ void LaneSearch::explore(const Pose& T_base_tcp, Work& work, const Accept& accep
     std::memcpy(&bits, &tile_distance2_[tile], sizeof bits);
     tile_order_[tile] = std::uint64_t{bits} << 32U | tile;
   }
-  const auto go_on = [&] { return steering.go_on() && work.attempts < options_.max_attempts; };
+  const auto go_on = [&] { return steering.go_on() && attempts_left(work) > 0; };
   const std::size_t wanted =
       (static_cast<std::size_t>(options_.neighbours) + lanes::kGroup - 1) / lanes::kGroup;
   const std::size_t most = std::min(wanted, tiles.size());

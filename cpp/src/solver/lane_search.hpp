@@ -32,6 +32,8 @@ enum class Verdict {
 struct Work {
   int attempts = 0;
   int iterations = 0;
+  /// Of the attempts, those from seeds that came with the request: on top of max_attempts.
+  int given = 0;
 };
 
 class LaneSearch {
@@ -69,6 +71,9 @@ class LaneSearch {
   void load_seed(int lane, const double* q);
 
  private:
+  [[nodiscard]] int attempts_left(const Work& work) const {
+    return options_.max_attempts - (work.attempts - work.given);
+  }
   /// Y of a target, whose seeds and leaf are asked for next.
   Pose set_query(const Pose& T_base_tcp);
   /// Of the group's seeds, by rank.
@@ -110,7 +115,7 @@ inline constexpr double kFarOff2 = 1e-4;
 template <typename Load, typename Accept>
 bool LaneSearch::iterate(int count, Work& work, const Load& load, const Accept& accept) {
   const int lanes = kernels_.lanes;
-  count = std::min(count, options_.max_attempts - work.attempts);
+  count = std::min(count, attempts_left(work));
   if (count <= 0) return false;
   int age[lanes::kWidth] = {};
   unsigned alive = 0;
@@ -231,6 +236,7 @@ bool LaneSearch::search(const Pose& T_base_tcp, const JointVector* seed, StageCl
   set_target(T_base_tcp);
   if (seed != nullptr) {
     const auto load = [&](int, int lane) { load_seed(lane, seed->data()); };
+    work.given = 1;
     if (iterate(1, work, load, accept)) return true;
     clock.lap(&StageTimes::iterate);
   }
@@ -247,7 +253,7 @@ bool LaneSearch::search(const Pose& T_base_tcp, const JointVector* seed, StageCl
   while (asked < most) {
     const std::size_t k = std::min(std::max<std::size_t>(64, 4 * asked), most);
     asked = k;
-    if (work.attempts >= options_.max_attempts) return false;
+    if (attempts_left(work) <= 0) return false;
     const std::size_t found = data_.tree.nearest(key_, k, neighbours_.data());
     std::sort(neighbours_.begin(), neighbours_.begin() + static_cast<std::ptrdiff_t>(found));
     clock.lap(&StageTimes::query);
@@ -259,7 +265,7 @@ bool LaneSearch::search(const Pose& T_base_tcp, const JointVector* seed, StageCl
       }
       kernels_.prepare(seed_chain_, seed_target_, group_.data(), seeds_);
       if (iterate_ranked(lanes::kGroup)) return true;
-      if (work.attempts >= options_.max_attempts) return false;
+      if (attempts_left(work) <= 0) return false;
     }
     done = found;
   }
@@ -270,7 +276,7 @@ bool LaneSearch::search(const Pose& T_base_tcp, const JointVector* seed, StageCl
       pack_.q[j][lane] = random.uniform(model_.sample_lower(j), model_.sample_upper(j));
     }
   };
-  const bool solved = iterate(options_.max_attempts - work.attempts, work, load_random, accept);
+  const bool solved = iterate(attempts_left(work), work, load_random, accept);
   clock.lap(&StageTimes::iterate);
   return solved;
 }

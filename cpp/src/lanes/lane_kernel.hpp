@@ -186,12 +186,7 @@ PackResult advance(const LaneChain& chain, const LaneOptions& options, unsigned 
 
 template <typename T, typename S>
 constexpr LaneKernels make_kernels(const char* name) {
-  return {name,
-          Lanes<T>::kCount,
-          advance<T>,
-          prepare_seeds<S>,
-          keep_from<S>,
-          find_largest<S>};
+  return {name, Lanes<T>::kCount, advance<T>, prepare_seeds<S>, keep_from<S>, find_largest<S>};
 }
 
 }  // namespace iksel::lanes

@@ -10,8 +10,8 @@
 
 #include "database/reduction.hpp"
 #include "kinematics/chain_model.hpp"
-#include "lanes/kernels.hpp"
-#include "selection/selection.hpp"
+#include "simd/kernels.hpp"
+#include "seeds/selection.hpp"
 
 namespace {
 
@@ -124,7 +124,7 @@ void leaf_query(benchmark::State& state) {
   std::size_t i = 0;
   for (auto _ : state) {
     data.make_key(p.targets[i++ % kTargets], key);
-    benchmark::DoNotOptimize(data.leaves.group(key));
+    benchmark::DoNotOptimize(data.leaves.block(key));
   }
 }
 BENCHMARK(leaf_query)->Arg(0)->Arg(1);
@@ -134,37 +134,37 @@ void exact_query(benchmark::State& state) {
   const Problem& p = problem(state.range(0));
   const iksel::DatabaseData& data = solver(state.range(0), false).database().data();
   double key[12];
-  iksel::Neighbour nearest[iksel::lanes::kGroup];
+  iksel::Neighbour nearest[iksel::lanes::kBlock];
   std::size_t i = 0;
   for (auto _ : state) {
     data.make_key(p.targets[i++ % kTargets], key);
-    benchmark::DoNotOptimize(data.tree.nearest(key, iksel::lanes::kGroup, nearest));
+    benchmark::DoNotOptimize(data.tree.nearest(key, iksel::lanes::kBlock, nearest));
   }
 }
 BENCHMARK(exact_query)->Arg(0)->Arg(1);
 
-/// Seeds and ranking of one group.
+/// Seeds and ranking of one block.
 void prepare_seeds(benchmark::State& state) {
   const Problem& p = problem(state.range(0));
   const iksel::DatabaseData& data = solver(state.range(0), false).database().data();
   const iksel::lanes::SeedChain chain = iksel::make_seed_chain(p.robot.model(), *data.reduction);
-  std::vector<const float*> groups;
+  std::vector<const float*> blocks;
   std::vector<iksel::lanes::SeedTarget> targets;
   for (const iksel::Pose& target : p.targets) {
     double key[12];
     data.make_key(target, key);
-    groups.push_back(data.leaves.group(key));
+    blocks.push_back(data.leaves.block(key));
     targets.push_back(iksel::make_seed_target(data.reduction->reduce(target)));
   }
   const auto prepare = iksel::lanes::choose_kernels().prepare;
   iksel::lanes::SeedPack seeds;
   std::size_t i = 0;
   for (auto _ : state) {
-    prepare(chain, targets[i % kTargets], groups[i % kTargets], seeds);
+    prepare(chain, targets[i % kTargets], blocks[i % kTargets], seeds);
     benchmark::DoNotOptimize(seeds.order[0]);
     ++i;
   }
-  state.SetItemsProcessed(static_cast<int64_t>(state.iterations() * iksel::lanes::kGroup));
+  state.SetItemsProcessed(static_cast<int64_t>(state.iterations() * iksel::lanes::kBlock));
 }
 BENCHMARK(prepare_seeds)->Arg(0)->Arg(1);
 

@@ -14,9 +14,9 @@
 #include <iksel/iksel.hpp>
 #include <limits>
 
+#include "base/hash.hpp"
+#include "base/random.hpp"
 #include "database/file.hpp"
-#include "math/hash.hpp"
-#include "math/random.hpp"
 #include "robots.hpp"
 
 namespace {
@@ -400,7 +400,7 @@ TEST_F(DatabaseFile, KilledSavesLeaveADatabaseAndNoFiles) {
   const Database databases[] = {make(500), make(700)};
   const std::string contents[] = {databases[0].to_bytes(), databases[1].to_bytes()};
   const auto save = [&](int i, bool nameless) {
-    iksel::write_file(path("d.iksel"), *databases[i % 2].data().block, nameless);
+    iksel::write_file(path("d.iksel"), *databases[i % 2].data().storage, nameless);
   };
   iksel::Random random(iksel_test::seed());
   for (const bool nameless : {true, false}) {
@@ -454,7 +454,7 @@ TEST_F(DatabaseFile, SavesAtOnceDoNotDisturbEachOther) {
       if (child == 0) {
         try {
           for (int i = 0; i < 20; ++i) {
-            iksel::write_file(path("d.iksel"), *database.data().block, nameless);
+            iksel::write_file(path("d.iksel"), *database.data().storage, nameless);
           }
         } catch (const std::exception& error) {
           std::fputs(error.what(), stderr);

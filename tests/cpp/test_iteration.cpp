@@ -5,10 +5,10 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 
+#include "base/pseudo_inverse.hpp"
 #include "iksel/iksel.hpp"
-#include "iteration/iterate.hpp"
-#include "iteration/schemes.hpp"
-#include "math/pseudo_inverse.hpp"
+#include "refine/iterate.hpp"
+#include "refine/schemes.hpp"
 #include "robots.hpp"
 
 namespace {

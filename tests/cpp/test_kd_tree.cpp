@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "base/random.hpp"
 #include "database/kd_tree.hpp"
-#include "math/random.hpp"
 #include "robots.hpp"
 
 namespace {

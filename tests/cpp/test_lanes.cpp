@@ -7,12 +7,12 @@
 #include <cstdlib>
 #include <iksel/iksel.hpp>
 
+#include "base/random.hpp"
 #include "database/reduction.hpp"
 #include "kinematics/chain_model.hpp"
-#include "lanes/kernels.hpp"
-#include "lanes/lane_math.hpp"
-#include "math/random.hpp"
 #include "robots.hpp"
+#include "simd/kernels.hpp"
+#include "simd/lane_math.hpp"
 
 namespace {
 
@@ -238,33 +238,33 @@ TEST(Kernels, SeedsAreKeptFromWhatIsKnown) {
         per_turn[j] = random.uniform(0, 1) < 0.5 ? static_cast<float>(0.5 / M_PI) : 0;
         for (float& q : seeds.q[j]) q = number();
       }
-      float nearest[lanes::kGroup];
+      float nearest[lanes::kBlock];
       for (float& d : nearest) d = static_cast<float>(random.uniform(-1, 4));
-      float expected[lanes::kGroup];
-      for (int slot = 0; slot < lanes::kGroup; ++slot) {
+      float expected[lanes::kBlock];
+      for (int entry = 0; entry < lanes::kBlock; ++entry) {
         float away = 0;
         for (int j = 0; j < kJoints; ++j) {
-          const float d = seeds.q[j][slot] - from[j];
+          const float d = seeds.q[j][entry] - from[j];
           away = std::max(away, std::abs(per_turn[j] > 0 ? std::remainder(d, 6.2831853F) : d));
         }
-        expected[slot] = std::min(nearest[slot], away);
+        expected[entry] = std::min(nearest[entry], away);
       }
-      kernels.keep_from(kJoints, per_turn, from, seeds, nearest);
-      for (int slot = 0; slot < lanes::kGroup; ++slot) {
-        EXPECT_NEAR(nearest[slot], expected[slot], 1e-5) << level << " round " << round;
+      kernels.add_known(kJoints, per_turn, from, seeds, nearest);
+      for (int entry = 0; entry < lanes::kBlock; ++entry) {
+        EXPECT_NEAR(nearest[entry], expected[entry], 1e-5) << level << " round " << round;
       }
     }
   }
 }
 
 TEST(Kernels, TheFirstOfTheLargestIsFound) {
-  constexpr int kMost = 4 * lanes::kGroup;
+  constexpr int kMost = 4 * lanes::kBlock;
   iksel::Random random(iksel_test::seed());
   for (const std::string& level : levels()) {
     const ForcedLevel forced(level);
     const auto& kernels = lanes::choose_kernels();
     for (int round = 0; round < 400; ++round) {
-      const int count = (1 + round % 4) * lanes::kGroup;
+      const int count = (1 + round % 4) * lanes::kBlock;
       float numbers[kMost];
       // Few values: the largest comes more than once.
       for (float& x : numbers) x = std::floor(static_cast<float>(random.uniform(-3, 30)));
@@ -273,8 +273,8 @@ TEST(Kernels, TheFirstOfTheLargestIsFound) {
           << level << " round " << round;
     }
     // Nothing is found of what is no number, but nothing read beyond the end either.
-    const std::vector<float> none(lanes::kGroup, NAN);
-    EXPECT_LT(kernels.find_largest(lanes::kGroup, none.data()), lanes::kGroup) << level;
+    const std::vector<float> none(lanes::kBlock, NAN);
+    EXPECT_LT(kernels.find_largest(lanes::kBlock, none.data()), lanes::kBlock) << level;
   }
 }
 

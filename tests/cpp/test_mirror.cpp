@@ -5,10 +5,10 @@
 #include <cmath>
 #include <iksel/iksel.hpp>
 
+#include "base/pseudo_inverse.hpp"
 #include "kinematics/chain_model.hpp"
-#include "math/pseudo_inverse.hpp"
 #include "robots.hpp"
-#include "solver/mirror.hpp"
+#include "seeds/fold_partner.hpp"
 
 namespace {
 
@@ -48,7 +48,7 @@ TEST_P(SixJoints, OrientationIsTheSignOfTheDeterminant) {
     const Jacobian J = jacobian(robot, q.row(i));
     const double expected = determinant(J);
     if (std::abs(expected) < 1e-14) continue;
-    EXPECT_EQ(iksel::look_around(J, q.row(i), 0).orientation, expected > 0 ? 1 : -1)
+    EXPECT_EQ(iksel::find_fold_partner(J, q.row(i), 0).jacobian_sign, expected > 0 ? 1 : -1)
         << "row " << i << ", determinant " << expected;
     positive += expected > 0 ? 1 : 0;
   }
@@ -84,7 +84,7 @@ TEST_P(SixJoints, TheOtherOfAPairIsWhereSecondOrderPutsIt) {
     const double sigma = (J * v).norm();
     // Inverse iteration takes three steps: nearly equal ones are not told apart.
     if (sigma > 0.1 * (J * least_direction(J, &v)).norm() || sigma < 1e-6) continue;
-    const auto around = iksel::look_around(J, at, 0);
+    const auto around = iksel::find_fold_partner(J, at, 0);
     const Eigen::VectorXd u = J * v / sigma;
     const JointVector ahead = at + kStep * v;
     const JointVector behind = at - kStep * v;

@@ -10,11 +10,11 @@
 #include <regex>
 #include <vector>
 
+#include "base/random.hpp"
+#include "goal/objective_cost.hpp"
 #include "iksel/iksel.hpp"
 #include "kinematics/chain_model.hpp"
-#include "math/random.hpp"
 #include "robots.hpp"
-#include "solver/objective_cost.hpp"
 
 namespace {
 

@@ -4,11 +4,11 @@
 
 #include <iksel/iksel.hpp>
 
+#include "base/rotation.hpp"
 #include "database/data.hpp"
 #include "database/reduction.hpp"
-#include "lanes/kernels.hpp"
-#include "math/rotation.hpp"
 #include "robots.hpp"
+#include "simd/kernels.hpp"
 
 namespace {
 
@@ -72,21 +72,21 @@ TEST_P(Kinds, SeedOfAPosesOwnSampleIsItsSolution) {
       if (data.reduction->leaves_out(j)) q[j] = 0.3 - 0.05 * j;
     }
     const Pose Y = data.reduction->reduce(robot.fk(q));
-    std::vector<float> group(
-        static_cast<std::size_t>(iksel::lanes::group_rows(robot.dof()) * iksel::lanes::kGroup));
-    for (int slot = 0; slot < iksel::lanes::kGroup; ++slot) {
-      iksel::write_to_group(data, i, slot, group.data());
+    std::vector<float> block(
+        static_cast<std::size_t>(iksel::lanes::block_rows(robot.dof()) * iksel::lanes::kBlock));
+    for (int entry = 0; entry < iksel::lanes::kBlock; ++entry) {
+      iksel::write_to_block(data, i, entry, block.data());
     }
     iksel::lanes::SeedPack seeds;
-    iksel::lanes::kKernelsScalar.prepare(seed_chain, iksel::make_seed_target(Y), group.data(),
+    iksel::lanes::kKernelsScalar.prepare(seed_chain, iksel::make_seed_target(Y), block.data(),
                                          seeds);
-    for (int slot = 0; slot < iksel::lanes::kGroup; ++slot) {
+    for (int entry = 0; entry < iksel::lanes::kBlock; ++entry) {
       // Equals keep their order; the first step is about none, even along singular directions.
-      EXPECT_EQ(seeds.order[slot], slot);
-      for (int j = 0; j < robot.dof(); ++j) EXPECT_NEAR(seeds.q[j][slot], q[j], 2e-3) << j;
-      if (data.reduction->leaves_out(0)) EXPECT_NEAR(seeds.first[slot], q[0], 1e-4);
+      EXPECT_EQ(seeds.order[entry], entry);
+      for (int j = 0; j < robot.dof(); ++j) EXPECT_NEAR(seeds.q[j][entry], q[j], 2e-3) << j;
+      if (data.reduction->leaves_out(0)) EXPECT_NEAR(seeds.first[entry], q[0], 1e-4);
       if (data.reduction->leaves_out(robot.dof() - 1)) {
-        EXPECT_NEAR(seeds.last[slot], q[robot.dof() - 1], 1e-4);
+        EXPECT_NEAR(seeds.last[entry], q[robot.dof() - 1], 1e-4);
       }
     }
     // Without the outer joints, the pose is the sample's.

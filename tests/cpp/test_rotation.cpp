@@ -5,8 +5,8 @@
 #include <iksel/error.hpp>
 #include <iksel/robot.hpp>
 
-#include "math/random.hpp"
-#include "math/rotation.hpp"
+#include "base/random.hpp"
+#include "base/rotation.hpp"
 #include "robots.hpp"
 
 namespace {

@@ -6,12 +6,12 @@
 #include <numeric>
 #include <vector>
 
+#include "base/rotation.hpp"
 #include "database/data.hpp"
 #include "iksel/iksel.hpp"
 #include "kinematics/chain_model.hpp"
-#include "math/rotation.hpp"
 #include "robots.hpp"
-#include "selection/selection.hpp"
+#include "seeds/selection.hpp"
 
 namespace {
 

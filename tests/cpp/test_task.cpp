@@ -7,10 +7,10 @@
 #include <limits>
 #include <vector>
 
+#include "base/random.hpp"
+#include "base/rotation.hpp"
+#include "goal/task_space.hpp"
 #include "iksel/iksel.hpp"
-#include "iteration/task_space.hpp"
-#include "math/random.hpp"
-#include "math/rotation.hpp"
 #include "robots.hpp"
 
 namespace {

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "check_answer.hpp"
-#include "math/hash.hpp"
+#include "base/hash.hpp"
 
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t room);
 

@@ -6,6 +6,10 @@
 #include <new>
 #include <vector>
 
+#include "base/message_text.hpp"
+#include "base/parallel.hpp"
+#include "base/pseudo_inverse.hpp"
+#include "base/rotation.hpp"
 #include "database/data.hpp"
 #include "database/file.hpp"
 #include "database/key.hpp"
@@ -13,10 +17,6 @@
 #include "iksel/database.hpp"
 #include "iksel/error.hpp"
 #include "kinematics/chain_model.hpp"
-#include "math/pseudo_inverse.hpp"
-#include "math/rotation.hpp"
-#include "message_text.hpp"
-#include "util/parallel.hpp"
 
 namespace iksel {
 namespace {
@@ -152,8 +152,9 @@ void build_data(const ChainModel& model, const DatabaseOptions& options, const P
   check_samples(keys.data(), keys.size(), model);
   const std::vector<std::uint32_t> order = KdTree(keys.data(), data->size, data->key_dim).order();
 
-  const auto block = std::make_shared<HeapBlock>(data->size * (key_dim + length) * sizeof(double));
-  auto* payload = reinterpret_cast<double*>(block->writable() + kHeaderSize);
+  const auto storage =
+      std::make_shared<HeapStorage>(data->size * (key_dim + length) * sizeof(double));
+  auto* payload = reinterpret_cast<double*>(storage->writable() + kHeaderSize);
   double* records = payload + data->size * key_dim;
   for (std::size_t i = 0; i < data->size; ++i) {
     std::copy_n(&keys[order[i] * key_dim], key_dim, payload + i * key_dim);
@@ -174,8 +175,8 @@ void build_data(const ChainModel& model, const DatabaseOptions& options, const P
       });
 
   check_samples(records, data->size * length, model);
-  write_header(*data, block->writable(), block->size());
-  data->use(block);
+  write_header(*data, storage->writable(), storage->size());
+  data->use(storage);
   report(total);
 }
 

@@ -11,9 +11,9 @@
 #include <nanoflann.hpp>
 #include <vector>
 
+#include "base/parallel.hpp"
+#include "base/random.hpp"
 #include "database/sampling.hpp"
-#include "math/random.hpp"
-#include "util/parallel.hpp"
 
 namespace iksel {
 namespace {

@@ -10,20 +10,20 @@
 #include <vector>
 
 #include "database/kd_tree.hpp"
-#include "database/leaf_tree.hpp"
+#include "database/leaf_index.hpp"
 #include "database/reduction.hpp"
-#include "database/tiles.hpp"
+#include "database/sample_blocks.hpp"
 #include "iksel/options.hpp"
 
 namespace iksel {
 
-/// A block of bytes, on the heap or mapped from a file, aligned to 64 bytes at least.
-class Block {
+/// A storage of bytes, on the heap or mapped from a file, aligned to 64 bytes at least.
+class Storage {
  public:
-  Block() = default;
-  Block(const Block&) = delete;
-  Block& operator=(const Block&) = delete;
-  virtual ~Block() = default;
+  Storage() = default;
+  Storage(const Storage&) = delete;
+  Storage& operator=(const Storage&) = delete;
+  virtual ~Storage() = default;
   [[nodiscard]] virtual const unsigned char* data() const = 0;
   [[nodiscard]] virtual std::size_t size() const = 0;
   /// Null where nobody else can change the bytes; else whether some were lost since.
@@ -42,10 +42,10 @@ struct DatabaseData {
   /// Length that a unit of the key's rotation part counts [m].
   double weight = 0;
   /// Header, keys and records, as in a file.
-  std::shared_ptr<const Block> block;
+  std::shared_ptr<const Storage> storage;
   /// size x key_dim, in the order of the tree, so that neighbours lie close together.
   const double* keys = nullptr;
-  /// The keys, if the block may change.
+  /// The keys, if the storage may change.
   std::shared_ptr<const std::vector<double>> own_keys;
   /// size x record_length: x_i = [position; rotation vector] of the tip link (6), q_i (dof), J_i^+
   /// column by column (dof x 6).
@@ -54,14 +54,14 @@ struct DatabaseData {
   /// Not null: the key is reduced, and x_i and J_i^+ are those of the pose Y of reduction.hpp.
   std::shared_ptr<const Reduction> reduction;
   /// Only over a reduced key.
-  LeafTree leaves;
-  Tiles tiles;
+  LeafIndex leaves;
+  SampleBlocks blocks;
 
   /// Key of a pose of the tip link.
   void make_key(const Pose& T_base_tip, double* key) const;
-  /// Takes keys and records from a block, and makes the trees over them. Throws DatabaseError if
+  /// Takes keys and records from a storage, and makes the trees over them. Throws DatabaseError if
   /// one is not usable.
-  void use(std::shared_ptr<const Block> with);
+  void use(std::shared_ptr<const Storage> with);
   /// Throws DatabaseIoError if bytes of a mapped file were lost.
   void check_intact() const;
 

@@ -5,11 +5,11 @@
 #include <cstring>
 #include <utility>
 
+#include "base/rotation.hpp"
 #include "database/data.hpp"
 #include "database/file.hpp"
 #include "database/key.hpp"
 #include "iksel/error.hpp"
-#include "math/rotation.hpp"
 
 namespace iksel {
 namespace {
@@ -35,16 +35,16 @@ Database::Database(std::shared_ptr<const DatabaseData> data) : data_(std::move(d
 
 Database Database::load(const std::filesystem::path& path, bool mmap) {
   return Database(std::make_shared<DatabaseData>(
-      read_block(mmap ? map_file(path) : read_file(path), "'" + path.string() + "'")));
+      read_storage(mmap ? map_file(path) : read_file(path), "'" + path.string() + "'")));
 }
 
 void Database::save(const std::filesystem::path& path) const {
   data_->check_intact();
-  write_file(path, *data_->block);
+  write_file(path, *data_->storage);
 }
 
 std::string Database::to_bytes() const {
-  std::string bytes(reinterpret_cast<const char*>(data_->block->data()), data_->block->size());
+  std::string bytes(reinterpret_cast<const char*>(data_->storage->data()), data_->storage->size());
   data_->check_intact();
   return bytes;
 }
@@ -52,16 +52,16 @@ std::string Database::to_bytes() const {
 Database Database::from_bytes(const std::string& bytes) {
   const std::size_t payload = bytes.size() > kHeaderSize ? bytes.size() - kHeaderSize : 0;
   if (payload == 0) throw DatabaseCorruptError("database bytes: truncated, less than a header");
-  auto block = std::make_shared<HeapBlock>(payload);
-  std::memcpy(block->writable(), bytes.data(), bytes.size());
-  return Database(std::make_shared<DatabaseData>(read_block(std::move(block), "bytes")));
+  auto storage = std::make_shared<HeapStorage>(payload);
+  std::memcpy(storage->writable(), bytes.data(), bytes.size());
+  return Database(std::make_shared<DatabaseData>(read_storage(std::move(storage), "bytes")));
 }
 
 const DatabaseOptions& Database::options() const { return data_->options; }
 std::size_t Database::size() const { return data_->size; }
 int Database::dof() const { return data_->dof; }
 int Database::key_dimension() const { return data_->key_dim; }
-std::size_t Database::bytes() const { return data_->block->size(); }
+std::size_t Database::bytes() const { return data_->storage->size(); }
 std::uint64_t Database::chain_hash() const { return data_->chain_hash; }
 
 JointVector Database::q(std::size_t i) const {

@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/hash.hpp"
 #include "database/key.hpp"
 #include "iksel/error.hpp"
-#include "math/hash.hpp"
 
 namespace iksel {
 namespace {
@@ -139,12 +139,12 @@ DatabaseData read_header(const Header& header, const std::string& name) {
 
 }  // namespace
 
-void DatabaseData::use(std::shared_ptr<const Block> with) {
-  block = std::move(with);
-  keys = reinterpret_cast<const double*>(block->data() + kHeaderSize);
+void DatabaseData::use(std::shared_ptr<const Storage> with) {
+  storage = std::move(with);
+  keys = reinterpret_cast<const double*>(storage->data() + kHeaderSize);
   const std::size_t count = size * static_cast<std::size_t>(key_dim);
   records = keys + count;
-  if (block->damaged() != nullptr) {
+  if (storage->damaged() != nullptr) {
     // What the trees lead through does not change under them.
     own_keys = std::make_shared<const std::vector<double>>(keys, keys + count);
     keys = own_keys->data();
@@ -155,20 +155,20 @@ void DatabaseData::use(std::shared_ptr<const Block> with) {
   }
   tree = KdTree(keys, size, key_dim);
   if (reduction) {
-    leaves = LeafTree(*this);
-    tiles = Tiles(*this);
+    leaves = LeafIndex(*this);
+    blocks = SampleBlocks(*this);
   }
 }
 
 void DatabaseData::check_intact() const {
-  const std::atomic<bool>* damaged = block->damaged();
+  const std::atomic<bool>* damaged = storage->damaged();
   if (damaged == nullptr || !*damaged) return;
   throw DatabaseIoError(
       "a mapped database can no longer be read: its file was cut short, or the disk failed, after "
       "Database::load(..., mmap = true)");
 }
 
-void write_header(const DatabaseData& data, unsigned char* block, std::size_t size) {
+void write_header(const DatabaseData& data, unsigned char* storage, std::size_t size) {
   Header header{};
   std::memcpy(header.magic, kMagic, sizeof kMagic);
   header.byte_order = kByteOrder;
@@ -195,17 +195,17 @@ void write_header(const DatabaseData& data, unsigned char* block, std::size_t si
     store_pose(p.flange_inverse, header.flange_inverse);
   }
   header.payload_size = size - kHeaderSize;
-  header.payload_checksum = checksum(block + kHeaderSize, size - kHeaderSize);
+  header.payload_checksum = checksum(storage + kHeaderSize, size - kHeaderSize);
   header.header_checksum = header_checksum(header);
-  std::memcpy(block, &header, sizeof header);
+  std::memcpy(storage, &header, sizeof header);
 }
 
-DatabaseData read_block(std::shared_ptr<const Block> block, const std::string& name) {
-  if (block->size() < kHeaderSize) {
-    corrupt(name, "truncated: " + std::to_string(block->size()) + " bytes, less than a header");
+DatabaseData read_storage(std::shared_ptr<const Storage> storage, const std::string& name) {
+  if (storage->size() < kHeaderSize) {
+    corrupt(name, "truncated: " + std::to_string(storage->size()) + " bytes, less than a header");
   }
   Header header;
-  std::memcpy(&header, block->data(), sizeof header);
+  std::memcpy(&header, storage->data(), sizeof header);
   if (std::memcmp(header.magic, kMagic, sizeof kMagic) != 0) corrupt(name, "not an IKSel database");
   if (header.byte_order == __builtin_bswap32(kByteOrder)) {
     throw DatabaseMismatchError("database " + name +
@@ -221,16 +221,16 @@ DatabaseData read_block(std::shared_ptr<const Block> block, const std::string& n
   }
 
   DatabaseData data = read_header(header, name);
-  if (block->size() - kHeaderSize != header.payload_size) {
-    corrupt(name, "truncated: " + std::to_string(block->size()) + " bytes instead of " +
+  if (storage->size() - kHeaderSize != header.payload_size) {
+    corrupt(name, "truncated: " + std::to_string(storage->size()) + " bytes instead of " +
                       std::to_string(kHeaderSize + header.payload_size));
   }
-  const unsigned char* payload = block->data() + kHeaderSize;
+  const unsigned char* payload = storage->data() + kHeaderSize;
   if (checksum(payload, header.payload_size) != header.payload_checksum) {
     corrupt(name, "its content fails its checksum");
   }
   try {
-    data.use(std::move(block));
+    data.use(std::move(storage));
   } catch (const DatabaseError& error) {
     corrupt(name, error.what());
   }

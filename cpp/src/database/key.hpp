@@ -2,9 +2,9 @@
 // The point that stands for a pose in the KD-tree: position [m], then the weighted rotation.
 #pragma once
 
+#include "base/rotation.hpp"
 #include "iksel/options.hpp"
 #include "iksel/types.hpp"
-#include "math/rotation.hpp"
 
 namespace iksel {
 

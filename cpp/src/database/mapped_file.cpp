@@ -93,12 +93,12 @@ Watched* watch(void* bytes, std::size_t size) {
   return nullptr;
 }
 
-class MappedBlock final : public Block {
+class MappedStorage final : public Storage {
  public:
-  MappedBlock(void* bytes, std::size_t size) : bytes_(bytes), size_(size) {}
-  MappedBlock(const MappedBlock&) = delete;
-  MappedBlock& operator=(const MappedBlock&) = delete;
-  ~MappedBlock() override {
+  MappedStorage(void* bytes, std::size_t size) : bytes_(bytes), size_(size) {}
+  MappedStorage(const MappedStorage&) = delete;
+  MappedStorage& operator=(const MappedStorage&) = delete;
+  ~MappedStorage() override {
     if (watched_ != nullptr) {
       const std::lock_guard<std::mutex> lock(watched_mutex);
       watched_->begin = 0;
@@ -120,19 +120,19 @@ class MappedBlock final : public Block {
 
 }  // namespace
 
-std::shared_ptr<const Block> map_file(const std::filesystem::path& path) {
+std::shared_ptr<const Storage> map_file(const std::filesystem::path& path) {
   std::size_t size = 0;
   const Descriptor file = open_database(path, size);
   void* bytes = ::mmap(nullptr, size, PROT_READ, MAP_SHARED, file.get(), 0);
   if (bytes == MAP_FAILED) {
     throw DatabaseIoError("cannot map database '" + path.string() + "': " + system_error(errno));
   }
-  auto block = std::make_shared<MappedBlock>(bytes, size);
-  if (!block->watch()) {
+  auto storage = std::make_shared<MappedStorage>(bytes, size);
+  if (!storage->watch()) {
     throw DatabaseIoError("cannot map database '" + path.string() +
                           "': " + std::to_string(kMostMappings) + " are mapped already");
   }
-  return block;
+  return storage;
 }
 
 }  // namespace iksel

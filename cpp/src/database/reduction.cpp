@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "math/constants.hpp"
+#include "base/constants.hpp"
 
 namespace iksel {
 namespace {
@@ -38,10 +38,10 @@ lanes::LaneChain make_lane_chain(const ChainModel& model) {
     to.sin_turn = from.sin_turn;
     to.offset = from.offset;
     to.prismatic = from.prismatic;
-    const bool continuous = model.joint_types[static_cast<std::size_t>(j)] == JointType::continuous;
+    const bool continuous = model.joints.type(j) == JointType::continuous;
     // A principal angle just off its interval is still the same angle.
-    to.lower = continuous ? -kPi - 1e-9 : model.lower[j];
-    to.upper = continuous ? kPi + 1e-9 : model.upper[j];
+    to.lower = continuous ? -kPi - 1e-9 : model.joints.lower[j];
+    to.upper = continuous ? kPi + 1e-9 : model.joints.upper[j];
     to.limited = from.prismatic || (!continuous && to.upper - to.lower < 2 * kPi);
   }
   return chain;

@@ -11,7 +11,7 @@
 #pragma once
 
 #include "kinematics/chain_model.hpp"
-#include "lanes/lane_types.hpp"
+#include "simd/lane_types.hpp"
 
 namespace iksel {
 

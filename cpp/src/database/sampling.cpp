@@ -6,8 +6,8 @@
 #include <functional>
 #include <numeric>
 
+#include "base/random.hpp"
 #include "iksel/database.hpp"
-#include "math/random.hpp"
 
 namespace iksel {
 namespace {
@@ -103,9 +103,9 @@ SampleSpace sample_space(const ChainModel& model, const Reduction* reduction) {
   SampleSpace space;
   for (int j = 0; j < model.dof; ++j) {
     if (reduction != nullptr && reduction->leaves_out(j)) continue;
-    space.lower.push_back(model.sample_lower(j));
-    space.upper.push_back(model.sample_upper(j));
-    const bool slides = model.joint_types[static_cast<std::size_t>(j)] == JointType::prismatic;
+    space.lower.push_back(model.joints.sample_lower(j));
+    space.upper.push_back(model.joints.sample_upper(j));
+    const bool slides = model.joints.is_slide(j);
     space.unit.push_back(slides ? std::max(model.reach, 1e-9) : 1.0);
   }
   return space;

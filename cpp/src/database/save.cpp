@@ -92,12 +92,12 @@ Descriptor open_named(const fs::path& folder, fs::path& name) {
   return Descriptor();
 }
 
-bool write_all(const Descriptor& file, const Block& block) {
+bool write_all(const Descriptor& file, const Storage& storage) {
   std::size_t written = 0;
-  while (written < block.size()) {
+  while (written < storage.size()) {
     constexpr std::size_t kPiece = 1U << 30U;
     const ssize_t n =
-        ::write(file.get(), block.data() + written, std::min(kPiece, block.size() - written));
+        ::write(file.get(), storage.data() + written, std::min(kPiece, storage.size() - written));
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) return false;
     written += static_cast<std::size_t>(n);
@@ -107,7 +107,7 @@ bool write_all(const Descriptor& file, const Block& block) {
 
 }  // namespace
 
-void write_file(const fs::path& path, const Block& block, bool nameless) {
+void write_file(const fs::path& path, const Storage& storage, bool nameless) {
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   fs::path name;
   const auto fail = [&](const char* what) {
@@ -120,7 +120,7 @@ void write_file(const fs::path& path, const Block& block, bool nameless) {
   Descriptor file;
   if (nameless) file = open_nameless(folder);
   if (file.get() >= 0) {
-    if (!write_all(file, block)) fail("write");
+    if (!write_all(file, storage)) fail("write");
     name = folder / temporary_name();
     // Fails without /proc, and by bad luck with the name.
     if (!give_name(file, name)) file = Descriptor();
@@ -131,7 +131,7 @@ void write_file(const fs::path& path, const Block& block, bool nameless) {
     file = open_named(folder, made);
     if (file.get() < 0) fail("write");
     name = made;
-    if (!write_all(file, block)) fail("write");
+    if (!write_all(file, storage)) fail("write");
   }
   if (::rename(name.c_str(), path.c_str()) != 0) fail("replace");
 }

@@ -3,13 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
+#include "base/constants.hpp"
+#include "base/hash.hpp"
+#include "base/message_text.hpp"
 #include "iksel/error.hpp"
-#include "math/constants.hpp"
-#include "math/hash.hpp"
-#include "message_text.hpp"
 
 namespace iksel {
 namespace {
@@ -92,14 +91,15 @@ ChainModel::ChainModel(std::string urdf_xml, const RobotOptions& options_in)
   options.tcp = check_tool(Pose(options.tcp));
   spec = read_chain(urdf, options);
   dof = static_cast<int>(spec.variables.size());
-  for (JointVector* v : {&lower, &upper, &velocity, &soft_lower, &soft_upper}) v->resize(dof);
+  joints = JointSpace(dof);
+  for (JointVector* v : {&soft_lower, &soft_upper}) v->resize(dof);
   for (int i = 0; i < dof; ++i) {
     const ChainVariable& variable = spec.variables[i];
-    joint_names.push_back(variable.name);
-    joint_types.push_back(variable.type);
-    lower[i] = variable.lower;
-    upper[i] = variable.upper;
-    velocity[i] = variable.velocity;
+    joints.names[i] = variable.name;
+    joints.types[i] = variable.type;
+    joints.lower[i] = variable.lower;
+    joints.upper[i] = variable.upper;
+    joints.velocity[i] = variable.velocity;
     soft_lower[i] = variable.soft_lower;
     soft_upper[i] = variable.soft_upper;
   }
@@ -120,17 +120,17 @@ std::shared_ptr<const ChainModel> ChainModel::with_tcp(const Pose& T_tip_tcp) co
 std::shared_ptr<const ChainModel> ChainModel::without_limits() const {
   auto copy = std::make_shared<ChainModel>(*this);
   for (int i = 0; i < dof; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    if (joint_types[k] == JointType::prismatic) {
+    JointSpace& wide = copy->joints;
+    if (joints.is_slide(i)) {
       // Angles may be bounded by what the limits are.
       if (turns_a_joint(*this, i)) continue;
-      const double range = upper[i] - lower[i];
-      copy->lower[i] = lower[i] - range;
-      copy->upper[i] = upper[i] + range;
+      const double range = joints.upper[i] - joints.lower[i];
+      wide.lower[i] = joints.lower[i] - range;
+      wide.upper[i] = joints.upper[i] + range;
     } else {
-      copy->joint_types[k] = JointType::continuous;
-      copy->lower[i] = -std::numeric_limits<double>::infinity();
-      copy->upper[i] = std::numeric_limits<double>::infinity();
+      wide.types[static_cast<std::size_t>(i)] = JointType::continuous;
+      wide.lower[i] = -kInfinity;
+      wide.upper[i] = kInfinity;
     }
   }
   copy->measure_reach();
@@ -217,8 +217,8 @@ void ChainModel::measure_reach() {
     if (!first) reach += Eigen::Vector3d(k.p[0], k.p[1], k.p[2]).norm();
     first = false;
     if (k.prismatic) {
-      const double low = k.multiplier * lower[k.variable];
-      const double high = k.multiplier * upper[k.variable];
+      const double low = k.multiplier * joints.lower[k.variable];
+      const double high = k.multiplier * joints.upper[k.variable];
       reach += std::max(std::abs(low + k.offset), std::abs(high + k.offset));
     }
   }
@@ -247,8 +247,8 @@ std::uint64_t ChainModel::compute_hash() const {
     hasher.add(joint.offset);
   }
   for (int i = 0; i < dof; ++i) {
-    hasher.add(lower[i]);
-    hasher.add(upper[i]);
+    hasher.add(joints.lower[i]);
+    hasher.add(joints.upper[i]);
   }
   return hasher.value();
 }
@@ -264,38 +264,6 @@ Frame<double> ChainModel::fk_jacobian(const double* q, Jacobian& jacobian, bool 
 void ChainModel::fk_jacobian(const double* q, Pose& pose, Jacobian& jacobian,
                              bool with_tool) const {
   pose = to_pose(fk_jacobian(q, jacobian, with_tool));
-}
-
-bool ChainModel::within_limits(const double* q) const {
-  for (int i = 0; i < dof; ++i) {
-    // Written so that NaN is outside.
-    if (!(q[i] >= lower[i] && q[i] <= upper[i])) return false;
-  }
-  return true;
-}
-
-void ChainModel::wrap_into_limits(double* q) const {
-  for (int i = 0; i < dof; ++i) {
-    if (joint_types[i] == JointType::prismatic) continue;
-    if (joint_types[i] == JointType::continuous) {
-      // Any value is allowed; a principal one is what users expect.
-      if (std::abs(q[i]) > kPi) q[i] = std::remainder(q[i], kTwoPi);
-    } else if (q[i] < lower[i]) {
-      const double wrapped = q[i] + kTwoPi * std::ceil((lower[i] - q[i]) / kTwoPi);
-      if (wrapped <= upper[i]) q[i] = wrapped;
-    } else if (q[i] > upper[i]) {
-      const double wrapped = q[i] - kTwoPi * std::ceil((q[i] - upper[i]) / kTwoPi);
-      if (wrapped >= lower[i]) q[i] = wrapped;
-    }
-  }
-}
-
-double ChainModel::sample_lower(int joint) const {
-  return joint_types[joint] == JointType::continuous ? -kPi : lower[joint];
-}
-
-double ChainModel::sample_upper(int joint) const {
-  return joint_types[joint] == JointType::continuous ? kPi : upper[joint];
 }
 
 }  // namespace iksel

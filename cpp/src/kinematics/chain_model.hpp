@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "iksel/robot.hpp"
+#include "kinematics/joint_space.hpp"
 #include "kinematics/kdl_chain.hpp"
 #include "kinematics/kernel.hpp"
-#include "math/constants.hpp"
 #include "urdf/chain_spec.hpp"
 
 namespace iksel {
@@ -35,22 +35,12 @@ class ChainModel {
   /// Jacobian of the TCP, whose frame is returned.
   Frame<double> fk_jacobian(const double* q, Jacobian& jacobian, bool with_tool = true) const;
 
-  /// True if every joint lies inside its limits, both ends included.
-  [[nodiscard]] bool within_limits(const double* q) const;
-  /// Brings joints whose range exceeds 2 pi inside the limits by whole turns, to the nearest turn;
-  /// others are left alone.
-  void wrap_into_limits(double* q) const;
-  /// Range that samples and random configurations are taken from: the limits, or [-pi, pi).
-  [[nodiscard]] double sample_lower(int joint) const;
-  [[nodiscard]] double sample_upper(int joint) const;
-
   int dof;
   std::string urdf;
   RobotOptions options;
   ChainSpec spec;
-  std::vector<std::string> joint_names;
-  std::vector<JointType> joint_types;
-  JointVector lower, upper, velocity, soft_lower, soft_upper;
+  JointSpace joints;
+  JointVector soft_lower, soft_upper;
   KernelChain kernel;
   /// T_tip_tcp and its inverse.
   StoredPose tcp, tcp_inverse;
@@ -64,13 +54,6 @@ class ChainModel {
   void measure_reach();
   [[nodiscard]] std::uint64_t compute_hash() const;
 };
-
-/// True where a whole turn of the joint leads to the same pose, and may lie inside the limits: a
-/// range of 2 pi or more.
-inline bool has_whole_turns(const ChainModel& model, int joint) {
-  return model.joint_types[static_cast<std::size_t>(joint)] != JointType::prismatic &&
-         !(model.upper[joint] - model.lower[joint] < kTwoPi);
-}
 
 /// Whether the variable, be it a slide, turns a joint: its own, or one that follows it.
 bool turns_a_joint(const ChainModel& model, int variable);

@@ -13,7 +13,7 @@
 #include <cmath>
 #include <vector>
 
-#include "math/sincos.hpp"
+#include "base/sincos.hpp"
 
 namespace iksel {
 

@@ -5,13 +5,13 @@
 #include <string>
 #include <utility>
 
-#include "error_check.hpp"
+#include "base/error_check.hpp"
+#include "base/message_text.hpp"
+#include "base/pseudo_inverse.hpp"
+#include "base/random.hpp"
+#include "base/rotation.hpp"
 #include "iksel/error.hpp"
 #include "kinematics/chain_model.hpp"
-#include "math/pseudo_inverse.hpp"
-#include "math/random.hpp"
-#include "math/rotation.hpp"
-#include "message_text.hpp"
 #include "urdf/parse.hpp"
 
 namespace iksel {
@@ -39,17 +39,17 @@ const std::string& Robot::urdf() const { return model_->urdf; }
 const RobotOptions& Robot::options() const { return model_->options; }
 Pose Robot::tcp() const { return Pose(model_->tcp); }
 int Robot::dof() const { return model_->dof; }
-const std::vector<std::string>& Robot::joint_names() const { return model_->joint_names; }
-const std::vector<JointType>& Robot::joint_types() const { return model_->joint_types; }
-const JointVector& Robot::lower() const { return model_->lower; }
-const JointVector& Robot::upper() const { return model_->upper; }
-const JointVector& Robot::velocity_limit() const { return model_->velocity; }
+const std::vector<std::string>& Robot::joint_names() const { return model_->joints.names; }
+const std::vector<JointType>& Robot::joint_types() const { return model_->joints.types; }
+const JointVector& Robot::lower() const { return model_->joints.lower; }
+const JointVector& Robot::upper() const { return model_->joints.upper; }
+const JointVector& Robot::velocity_limit() const { return model_->joints.velocity; }
 const JointVector& Robot::soft_lower() const { return model_->soft_lower; }
 const JointVector& Robot::soft_upper() const { return model_->soft_upper; }
 
 bool Robot::within_limits(const JointVector& q) const {
   check_joints(q, dof(), "q");
-  return model_->within_limits(q.data());
+  return model_->joints.contains(q.data());
 }
 
 Pose Robot::fk(const JointVector& q, Kinematics kinematics) const {
@@ -81,9 +81,7 @@ Matrix Robot::random_configurations(std::size_t n, std::uint64_t seed) const {
   Matrix q(static_cast<Eigen::Index>(n), dof());
   Random random(seed);
   for (Eigen::Index row = 0; row < q.rows(); ++row) {
-    for (int i = 0; i < dof(); ++i) {
-      q(row, i) = random.uniform(model_->sample_lower(i), model_->sample_upper(i));
-    }
+    model_->joints.sample(random, q.row(row));
   }
   return q;
 }

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include "base/message_text.hpp"
 #include "iksel/error.hpp"
-#include "message_text.hpp"
 #include "solver/solver_impl.hpp"
 
 namespace iksel {
@@ -37,9 +37,9 @@ void Solver::Impl::check_angles(const JointVector& q, const char* name) const {
   if (j < 0) return;
   const ChainModel& model = robot.model();
   const auto k = static_cast<std::size_t>(j);
-  const bool slides = model.joint_types[k] == JointType::prismatic;
+  const bool slides = model.joints.types[k] == JointType::prismatic;
   throw InvalidArgumentError(
-      std::string(name) + "[" + std::to_string(j) + "] (joint '" + model.joint_names[k] +
+      std::string(name) + "[" + std::to_string(j) + "] (joint '" + model.joints.names[k] +
       "'): " + number_text(q[j]) + (slides ? " m, by which others turn" : " rad") +
       "; at angles beyond " + number_text(largest_angle) +
       " rad a double cannot tell poses of this robot apart to a tenth of the tolerances (" +
@@ -50,8 +50,8 @@ void Solver::Impl::check_angles(const JointVector& q, const char* name) const {
 void Solver::Impl::check_limits() const {
   const ChainModel& model = robot.model();
   const auto finite = [](double limit) { return std::isfinite(limit) ? limit : 0.0; };
-  check_angles(model.lower.unaryExpr(finite), "lower limit");
-  check_angles(model.upper.unaryExpr(finite), "upper limit");
+  check_angles(model.joints.lower.unaryExpr(finite), "lower limit");
+  check_angles(model.joints.upper.unaryExpr(finite), "upper limit");
 }
 
 void Solver::Impl::check(const SolveRequest& request) const {

@@ -6,11 +6,11 @@
 #include <mutex>
 #include <string>
 
-#include "error_check.hpp"
+#include "base/error_check.hpp"
+#include "base/parallel.hpp"
+#include "base/pose_check.hpp"
 #include "iksel/error.hpp"
-#include "pose_check.hpp"
 #include "solver/solver_impl.hpp"
-#include "util/parallel.hpp"
 
 namespace iksel {
 namespace {

@@ -2,8 +2,8 @@
 // Arms whose constants differ a little from those that a database was built with.
 #include <algorithm>
 
+#include "base/message_text.hpp"
 #include "iksel/error.hpp"
-#include "message_text.hpp"
 #include "solver/solver_impl.hpp"
 
 namespace iksel {

@@ -5,10 +5,10 @@
 #include <string>
 #include <utility>
 
-#include "math/constants.hpp"
-#include "math/pseudo_inverse.hpp"
-#include "message_text.hpp"
-#include "solver/best_effort.hpp"
+#include "base/constants.hpp"
+#include "base/message_text.hpp"
+#include "base/pseudo_inverse.hpp"
+#include "refine/best_effort.hpp"
 #include "solver/solver_impl.hpp"
 
 namespace iksel {
@@ -56,14 +56,14 @@ std::pair<double, double> extreme_singular_values(const ChainModel& model, const
 
 /// How far each joint lies outside its limits, at the nearest turn.
 JointVector violations(const ChainModel& model, JointVector q) {
-  model.wrap_into_limits(q.data());
+  model.joints.wrap(q.data());
   JointVector outside = JointVector::Zero(model.dof);
   for (int j = 0; j < model.dof; ++j) {
     const auto beyond = [&](double at) {
-      return std::max({model.lower[j] - at, at - model.upper[j], 0.0});
+      return std::max({model.joints.lower[j] - at, at - model.joints.upper[j], 0.0});
     };
     outside[j] = beyond(q[j]);
-    if (model.joint_types[static_cast<std::size_t>(j)] == JointType::prismatic) continue;
+    if (model.joints.is_slide(j)) continue;
     for (const double turn : {-kTwoPi, kTwoPi}) {
       outside[j] = std::min(outside[j], beyond(q[j] + turn));
     }
@@ -75,28 +75,6 @@ JointVector violations(const ChainModel& model, JointVector q) {
 constexpr int kEfforts = 24;
 
 }  // namespace
-
-const char* to_string(Cause cause) {
-  switch (cause) {
-    case Cause::none:
-      return "none";
-    case Cause::out_of_reach:
-      return "out_of_reach";
-    case Cause::orientation:
-      return "orientation";
-    case Cause::joint_limits:
-      return "joint_limits";
-    case Cause::rejected:
-      return "rejected";
-    case Cause::singular:
-      return "singular";
-    case Cause::budget:
-      return "budget";
-    case Cause::out_of_time:
-      return "out_of_time";
-  }
-  return "unknown";
-}
 
 /// The questions in turn; each says whether it found the reason.
 class Solver::Impl::Inquiry {
@@ -160,7 +138,7 @@ class Solver::Impl::Inquiry {
     }
     for (const Result& answer : unlimited.solve_all(T_base_tip_, {}, hinted).all) {
       JointVector seed = answer.q;
-      model_.wrap_into_limits(seed.data());
+      model_.joints.wrap(seed.data());
       effort.from(seed);
       int joint = 0;
       const double violation = violations(model_, answer.q).maxCoeff(&joint);
@@ -171,9 +149,9 @@ class Solver::Impl::Inquiry {
     if (out_.joint < 0) return false;
     describe(effort.q());
     const auto joint = static_cast<std::size_t>(out_.joint);
-    const bool is_slide = model_.joint_types[joint] == JointType::prismatic;
+    const bool is_slide = model_.joints.types[joint] == JointType::prismatic;
     out_.cause = Cause::joint_limits;
-    out_.message = "answers exist only outside the limits: joint '" + model_.joint_names[joint] +
+    out_.message = "answers exist only outside the limits: joint '" + model_.joints.names[joint] +
                    "' would have to go beyond by " +
                    format(is_slide ? "%.4g m" : "%.4g rad", out_.limit_violation) +
                    " or more; move the target, or leave an axis free";

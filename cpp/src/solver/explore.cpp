@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "solver/explore.hpp"
+#include "search/explore.hpp"
+#include "goal/joint_move.hpp"
 
 #include <algorithm>
 #include <optional>
 #include <vector>
 
-#include "solver/lane_explore.hpp"
-#include "solver/mirror.hpp"
+#include "search/lane_explore.hpp"
+#include "seeds/fold_partner.hpp"
 #include "solver/solver_impl.hpp"
 
 namespace iksel {
@@ -14,23 +15,23 @@ namespace {
 
 /// A seed this near to a solution in every joint would end there itself [rad or m]; or at the other
 /// of a pair that is near, which is looked for from the solution.
-constexpr double kCaught = 0.2;
+constexpr double kBasinRadius = 0.2;
 /// Seeds for a task between two questions to a filter.
 constexpr int kFilterStage = 16;
 
 struct Steering {
   const Exploration& search;
-  Found& found;
-  std::vector<JointVector>& mirrors;
+  SolutionSet& found;
+  std::vector<JointVector>& partners;
   FunctionRef<bool()> ask;
   /// Seeds and lanes nearer to a solution are not followed further [rad or m]; 0: all are.
-  double caught;
+  double basin_radius;
 
   /// The next seed that goes before the database's, if there is one.
   bool take(JointVector& q) const {
-    if (mirrors.empty()) return false;
-    q = mirrors.back();
-    mirrors.pop_back();
+    if (partners.empty()) return false;
+    q = partners.back();
+    partners.pop_back();
     return true;
   }
   [[nodiscard]] bool exhausted() const { return search.ends_complete(); }
@@ -38,18 +39,18 @@ struct Steering {
   [[nodiscard]] bool go_on() const { return ask(); }
   [[nodiscard]] bool wants_more() const { return search.wants_more(); }
   /// Solutions that seeds are to be taken far from: none where all are followed.
-  [[nodiscard]] std::size_t known() const { return caught > 0 ? found.size() : 0; }
+  [[nodiscard]] std::size_t known() const { return basin_radius > 0 ? found.size() : 0; }
   [[nodiscard]] const double* solution(std::size_t i) const { return found.q(i); }
   template <typename Q>
   [[nodiscard]] bool knows(const Q& q) const {
-    return caught > 0 && found.is_near_known(q, caught);
+    return basin_radius > 0 && found.is_near_known(q, basin_radius);
   }
 };
 
 /// Where the turns lie that an objective wants; the others take what comes.
 std::optional<JointVector> cheapest_turns(const ChainModel& model, const Objective& objective) {
   if (objective.kind == Objective::Kind::posture) return objective.posture;
-  if (objective.kind == Objective::Kind::limits) return middle_of_limits(model);
+  if (objective.kind == Objective::Kind::limits) return model.joints.middle();
   return std::nullopt;
 }
 
@@ -57,42 +58,42 @@ std::optional<JointVector> cheapest_turns(const ChainModel& model, const Objecti
 
 void Solver::Impl::explore(Exploration& search, Workspace& workspace) const {
   const ChainModel& model = robot.model();
-  Found& found = workspace.found;
+  SolutionSet& found = workspace.found;
   found.clear();
   if (out_of_reach(search.task, search.T_base_tip)) {
     search.status = Status::out_of_reach;
     return;
   }
 
-  search.orientations_cancel = search.task.is_full_pose() && orientations_cancel(model);
+  search.jacobian_signs_cancel = search.task.is_full_pose() && jacobian_signs_cancel(model);
   search.most = most_solutions;
   const SolveRequest& request = search.request;
   const JointMove move(model.dof, request);
   const Deadline deadline(request.deadline);
-  const JointVector middle = middle_of_limits(model);
+  const JointVector middle = model.joints.middle();
   const std::optional<JointVector> turns_near = cheapest_turns(model, request.objective);
   const bool in_pairs = search.task.is_full_pose() && model.dof <= 6;
-  std::vector<JointVector>& mirrors = workspace.mirrors;
-  mirrors.clear();
+  std::vector<JointVector>& partners = workspace.partners;
+  partners.clear();
   const auto accept = [&](JointVector& q) {
-    model.wrap_into_limits(q.data());
+    model.joints.wrap(q.data());
     Result answer;
     Jacobian J;
     measure(search.task, search.T_base_tip, q, answer.position_error, answer.rotation_error,
             in_pairs ? &J : nullptr);
     if (!within_tolerances(answer.position_error, answer.rotation_error)) return Verdict::refine;
-    if (!model.within_limits(q.data())) {
+    if (!model.joints.contains(q.data())) {
       search.status = Status::outside_limits;
       return Verdict::next;
     }
     answer.status = Status::solved;
     answer.q = q;
     if (turns_near) {
-      take_turns_near(*turns_near, search.task, search.T_base_tip, answer);
+      wrap_near(*turns_near, search.task, search.T_base_tip, answer);
     } else if (request.near) {
-      take_turns_near(*request.near, search.task, search.T_base_tip, answer);
+      wrap_near(*request.near, search.task, search.T_base_tip, answer);
     } else if (!request.objective.is_set()) {
-      take_turns_near(middle, search.task, search.T_base_tip, answer);
+      wrap_near(middle, search.task, search.T_base_tip, answer);
     }
     // What a filter has been asked about stays as it is.
     const double cost = request.near && !turns_near && !request.filter
@@ -103,10 +104,10 @@ void Solver::Impl::explore(Exploration& search, Workspace& workspace) const {
     search.last_new = search.work.attempts;
     if (in_pairs) {
       // Of a pair that counts as one, the other may lie on the side of a limit where `near` is.
-      Surroundings around = look_around(J, answer.q, request.near ? 0.0 : search.min_distance);
-      search.orientation += around.orientation;
-      if (around.paired && mirrors.size() < mirrors.capacity()) {
-        mirrors.push_back(std::move(around.other));
+      FoldPartner around = find_fold_partner(J, answer.q, request.near ? 0.0 : search.min_distance);
+      search.jacobian_sign += around.jacobian_sign;
+      if (around.paired && partners.size() < partners.capacity()) {
+        partners.push_back(std::move(around.other));
       }
     }
     return Verdict::next;
@@ -129,7 +130,7 @@ void Solver::Impl::explore(Exploration& search, Workspace& workspace) const {
 
 int Solver::Impl::count_most_solutions() const {
   constexpr std::size_t kPoses = 64;
-  if (!task.is_full_pose() || !orientations_cancel(robot.model())) return 0;
+  if (!task.is_full_pose() || !jacobian_signs_cancel(robot.model())) return 0;
   const SolveRequest none;
   const AllOptions all;
   const auto never = [](const Exploration&) { return false; };
@@ -146,18 +147,18 @@ int Solver::Impl::count_most_solutions() const {
   return most;
 }
 
-void Solver::Impl::take_turns_near(const JointVector& near, const TaskSpace& of_call,
-                                   const Pose& T_base_tip, Result& answer) const {
+void Solver::Impl::wrap_near(const JointVector& near, const TaskSpace& of_call,
+                             const Pose& T_base_tip, Result& answer) const {
   const ChainModel& model = robot.model();
   // An answer at a limit lies outside by rounding as often as not. Held to the limit it need not be
   // a whole turn away.
   JointVector turned = answer.q;
-  const bool held = take_nearest_turns(model, near, options.rotation_tolerance, turned);
+  const bool held = model.joints.wrap_nearest(near, options.rotation_tolerance, turned);
   if (turned == answer.q) return;
   // Whole turns round, and so measured again.
   if (finish(of_call, T_base_tip, turned, answer) || !held) return;
   turned = answer.q;
-  take_nearest_turns(model, near, 0, turned);
+  model.joints.wrap_nearest(near, 0, turned);
   finish(of_call, T_base_tip, turned, answer);
 }
 
@@ -179,20 +180,20 @@ void Solver::Impl::explore_in_lanes(Exploration& search, Workspace& workspace,
   if (!search.request.seeds.empty()) {
     GivenSeeds& given = workspace.given;
     if (!given.rank(search.task, search.T_base_tip, search.request.seeds, go_on)) return;
-    const double* group[lanes::kGroup];
+    const double* block[lanes::kBlock];
     for (int tried = 0; tried < options.max_attempts;) {
-      const int most = std::min(lanes::kGroup, options.max_attempts - tried);
+      const int most = std::min(lanes::kBlock, options.max_attempts - tried);
       int count = 0;
-      while (count < most && (group[count] = given.next()) != nullptr) ++count;
+      while (count < most && (block[count] = given.next()) != nullptr) ++count;
       tried += count;
       if (count == 0) break;
-      iterate_seeds(group, count);
+      iterate_seeds(block, count);
       if (!go_on()) return;
     }
   }
   if (!go_on() || !search.request.database_seeds) return;
-  const Steering steering{search, workspace.found, workspace.mirrors, go_on,
-                          robot.dof() > 6 ? 0.0 : kCaught};
+  const Steering steering{search, workspace.found, workspace.partners, go_on,
+                          robot.dof() > 6 ? 0.0 : kBasinRadius};
   lanes.explore(search.T_base_tip, work, accept, steering);
 }
 

@@ -9,14 +9,14 @@
 #include <set>
 #include <string>
 
-#include "error_check.hpp"
+#include "base/constants.hpp"
+#include "base/error_check.hpp"
+#include "base/message_text.hpp"
+#include "base/pose_check.hpp"
+#include "goal/joint_move.hpp"
 #include "iksel/error.hpp"
-#include "math/constants.hpp"
-#include "message_text.hpp"
-#include "pose_check.hpp"
-#include "solver/explore.hpp"
-#include "solver/joint_move.hpp"
-#include "solver/self_motion.hpp"
+#include "refine/self_motion.hpp"
+#include "search/explore.hpp"
 #include "solver/solver_impl.hpp"
 
 namespace iksel {
@@ -63,7 +63,7 @@ JointVector longest_moves(const ChainModel& model, double dt) {
   JointVector longest = JointVector::Constant(model.dof, kInfinity);
   // A hair more, so that a joint may run at its limit in spite of rounding.
   constexpr double kSlack = 1e-9;
-  if (dt > 0) longest = model.velocity * (dt * (1 + kSlack));
+  if (dt > 0) longest = model.joints.velocity * (dt * (1 + kSlack));
   return longest;
 }
 
@@ -82,7 +82,7 @@ class PathSearch {
         request_(make_request(options)),
         move_(model.dof, request_),
         longest_(longest_moves(model, options.dt)),
-        middle_(middle_of_limits(model)) {}
+        middle_(model.joints.middle()) {}
 
   [[nodiscard]] const SolveRequest& request() const { return request_; }
 
@@ -95,8 +95,7 @@ class PathSearch {
     for (std::size_t i = 0; i < before.size(); ++i) {
       const JointVector from = before.at(i);
       std::size_t same = 0;
-      while (same < origins.size() &&
-             distance_without_turns(model_, origins[same], from, kCopy) >= kCopy) {
+      while (same < origins.size() && model_.joints.distance(origins[same], from, kCopy) >= kCopy) {
         ++same;
       }
       if (same == origins.size()) {
@@ -106,30 +105,30 @@ class PathSearch {
         moves.emplace_back(q - from);
       }
       const JointVector q = from + moves[same];
-      if (model_.within_limits(q.data())) layer.add(q);
+      if (model_.joints.contains(q.data())) layer.add(q);
     }
   }
 
   /// The solutions found for the first waypoint of a path without a start, at all turns; those
   /// nearest to the middle of the limits first, should there be too many.
-  void add_first_solutions(const Found& found, Layer& layer) const {
+  void add_first_solutions(const SolutionSet& found, Layer& layer) const {
     for (std::size_t i = 0; i < found.size(); ++i) {
       JointVector q = found.at(i);
-      take_nearest_turns(model_, middle_, 0, q);
+      model_.joints.wrap_nearest(middle_, 0, q);
       layer.add(q);
     }
     for (std::size_t i = 0; i < found.size(); ++i) {
       JointVector q = found.at(i);
-      take_first_turns(model_, q);
+      model_.joints.first_image(q);
       do {
         layer.add(q);
-      } while (layer.size() < kMostTurns && take_next_turns(model_, q));
+      } while (layer.size() < kMostTurns && model_.joints.next_image(q));
     }
   }
 
   /// The solutions found from the database, each at the turns nearest to where the path may come
   /// from.
-  void add_solutions(const Found& found, const Layer& before, Layer& layer) const {
+  void add_solutions(const SolutionSet& found, const Layer& before, Layer& layer) const {
     for (std::size_t i = 0; i < found.size(); ++i) {
       const JointVector solution = found.at(i);
       JointVector q = solution;
@@ -137,7 +136,7 @@ class PathSearch {
       std::set<std::vector<long>> known;
       std::vector<long> turns(before.dof);
       for (std::size_t k = 0; k < before.size(); ++k) {
-        take_nearest_turns(model_, before.at(k), 0, q);
+        model_.joints.wrap_nearest(before.at(k), 0, q);
         for (std::size_t j = 0; j < turns.size(); ++j) {
           const auto joint = static_cast<Eigen::Index>(j);
           turns[j] = std::lround((q[joint] - solution[joint]) / kTwoPi);
@@ -249,22 +248,6 @@ class PathSearch {
 
 }  // namespace
 
-void PathOptions::validate(int dof) const {
-  SolveRequest request;
-  request.near = start;
-  request.weights = weights;
-  request.norm = norm;
-  if (start) check_joints(*start, dof, "start");
-  request.validate(dof);
-  if (!(dt >= 0 && dt <= 1e9)) {
-    throw InvalidArgumentError("dt: " + number_text(dt) + " s is not 0 or more");
-  }
-  if (candidates < 1 || candidates > 100'000) {
-    throw InvalidArgumentError("candidates: " + std::to_string(candidates) +
-                               " is not in 1 .. 100000");
-  }
-}
-
 PathResult Solver::Impl::solve_path(const std::vector<Pose>& T_base_tip, const PathOptions& path,
                                     Workspace& workspace) const {
   const ChainModel& model = robot.model();
@@ -282,7 +265,7 @@ PathResult Solver::Impl::solve_path(const std::vector<Pose>& T_base_tip, const P
     const Layer* before = !layers.empty() ? &layers.back() : path.start ? &start : nullptr;
     Layer layer{dof, {}, {}, {}};
     if (before != nullptr) search.add_continuations(T_base_tip[w], *before, layer);
-    Found& found = workspace.found;
+    SolutionSet& found = workspace.found;
     const bool redundant = model.dof > task.fixed_axes();
     // Of an arm that is not redundant all, which are few but where axes line up.
     constexpr std::size_t kBranches = 64;

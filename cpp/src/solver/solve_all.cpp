@@ -5,8 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "solver/explore.hpp"
-#include "solver/objective_cost.hpp"
+#include "goal/joint_move.hpp"
+#include "goal/objective_cost.hpp"
+#include "search/explore.hpp"
 #include "solver/solver_impl.hpp"
 
 namespace iksel {
@@ -33,9 +34,10 @@ bool cheaper(const Copy& a, const Copy& b) {
 double limit_distance(const ChainModel& model, const JointVector& q) {
   double least = 0.5;
   for (int j = 0; j < model.dof; ++j) {
-    const double range = model.upper[j] - model.lower[j];
+    const double range = model.joints.upper[j] - model.joints.lower[j];
     if (!std::isfinite(range) || range <= 0) continue;
-    least = std::min(least, std::min(q[j] - model.lower[j], model.upper[j] - q[j]) / range);
+    least = std::min(least,
+                     std::min(q[j] - model.joints.lower[j], model.joints.upper[j] - q[j]) / range);
   }
   return least;
 }
@@ -61,8 +63,7 @@ void spread(const ChainModel& model, std::size_t count, std::vector<Copy>& copie
   for (std::size_t chosen = 1; chosen < count; ++chosen) {
     std::size_t farthest = chosen;
     for (std::size_t i = chosen; i < copies.size(); ++i) {
-      const double d =
-          distance_without_turns(model, copies[chosen - 1].q, copies[i].q, distance[i]);
+      const double d = model.joints.distance(copies[chosen - 1].q, copies[i].q, distance[i]);
       distance[i] = std::min(distance[i], d);
       if (distance[i] > distance[farthest]) farthest = i;
     }
@@ -108,7 +109,7 @@ Solutions Solver::Impl::solve_all(const Pose& T_base_tip, const AllOptions& all,
   const TaskSpace of_call = task_of(request);
   const bool redundant = model.dof > of_call.fixed_axes();
   const auto most = static_cast<std::size_t>(all.max);
-  Found& found = workspace.found;
+  SolutionSet& found = workspace.found;
   const auto enough = [&](const Exploration&) {
     return redundant && found.size() >= std::max<std::size_t>(kChoice * most, 64);
   };
@@ -123,7 +124,7 @@ Solutions Solver::Impl::solve_all(const Pose& T_base_tip, const AllOptions& all,
   solutions.iterations = search.work.iterations;
 
   const JointMove move(model.dof, request);
-  const JointVector from = request.near ? *request.near : middle_of_limits(model);
+  const JointVector from = request.near ? *request.near : model.joints.middle();
   std::vector<Copy> copies;
   copies.reserve(found.size());
   const auto add = [&](const JointVector& q, std::size_t i) {
@@ -134,10 +135,10 @@ Solutions Solver::Impl::solve_all(const Pose& T_base_tip, const AllOptions& all,
   for (std::size_t i = 0; i < found.size(); ++i) {
     JointVector q = found.at(i);
     if (turned) {
-      take_first_turns(model, q);
+      model.joints.first_image(q);
       do {
         add(q, i);
-      } while (copies.size() < kMostCopies && take_next_turns(model, q));
+      } while (copies.size() < kMostCopies && model.joints.next_image(q));
     } else {
       add(q, i);
     }

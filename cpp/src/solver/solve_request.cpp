@@ -4,11 +4,12 @@
 #include <array>
 #include <cmath>
 
-#include "math/constants.hpp"
-#include "pose_check.hpp"
-#include "solver/explore.hpp"
-#include "solver/objective_cost.hpp"
-#include "solver/self_motion.hpp"
+#include "base/constants.hpp"
+#include "base/pose_check.hpp"
+#include "goal/joint_move.hpp"
+#include "goal/objective_cost.hpp"
+#include "refine/self_motion.hpp"
+#include "search/explore.hpp"
 #include "solver/solver_impl.hpp"
 
 namespace iksel {
@@ -96,7 +97,7 @@ void slide_towards(const ChainModel& model, const SolverOptions& options, const 
 class Solver::Impl::Judge {
  public:
   Judge(const Impl& solver, const TaskSpace& task, const Pose& T_base_tip,
-        const SolveRequest& request, Found& found)
+        const SolveRequest& request, SolutionSet& found)
       : solver_(solver),
         model_(solver.robot.model()),
         task_(task),
@@ -126,7 +127,7 @@ class Solver::Impl::Judge {
       q = found_.at(first_kept_);
       return true;
     }
-    std::array<Ranked, Found::kMost> ranked;
+    std::array<Ranked, SolutionSet::kMost> ranked;
     std::size_t count = 0;
     for (std::size_t i = 0; i < found_.size(); ++i) {
       if (!kept(i)) continue;
@@ -224,13 +225,13 @@ class Solver::Impl::Judge {
     };
     for (std::size_t i = 0; i < found_.size(); ++i) {
       JointVector copy = found_.at(i);
-      take_first_turns(model_, copy);
+      model_.joints.first_image(copy);
       std::size_t left = kMostTurns / found_.size();
       do {
         if (!(cost_of(copy) < best) || !is_solution(copy)) continue;
         std::copy_n(copy.data(), dof, copies.data() + count * dof);
         if (++count == kChunk) flush();
-      } while (--left > 0 && take_next_turns(model_, copy));
+      } while (--left > 0 && model_.joints.next_image(copy));
     }
     flush();
     return any;
@@ -244,9 +245,9 @@ class Solver::Impl::Judge {
   const SolveRequest& request_;
   /// Whether some answers are better than others.
   bool ranks_;
-  Found& found_;
+  SolutionSet& found_;
   JointMove move_;
-  std::array<bool, Found::kMost> kept_{};
+  std::array<bool, SolutionSet::kMost> kept_{};
   std::size_t asked_ = 0;
   std::size_t first_kept_ = 0;
 };

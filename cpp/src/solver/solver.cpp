@@ -7,11 +7,11 @@
 #include <thread>
 #include <utility>
 
-#include "error_check.hpp"
+#include "base/error_check.hpp"
+#include "base/pose_check.hpp"
+#include "base/stage_clock.hpp"
 #include "iksel/error.hpp"
-#include "pose_check.hpp"
 #include "solver/solver_impl.hpp"
-#include "solver/stage_clock.hpp"
 
 namespace iksel {
 namespace {
@@ -51,7 +51,7 @@ Workspace::Workspace(const ChainModel& model, const ChainModel& nominal, const D
       tasks(model, data, options, selection),
       given(model, options),
       found(model) {
-  mirrors.reserve(kMirrors);
+  partners.reserve(kPartners);
   if (solves_in_lanes(model, data, options)) {
     lanes = std::make_unique<LaneSearch>(model, nominal, data, options, lanes::choose_kernels());
   }
@@ -65,7 +65,7 @@ Solver::Impl::Impl(const Robot& robot_in, const SolverOptions& options_in,
       database(database_in),
       nominal(nominal_in),
       task(options.task, options.position_tolerance, options.rotation_tolerance),
-      damaged(database.data().block->damaged()),
+      damaged(database.data().storage->damaged()),
       largest_angle(find_largest_angle()) {
   database.data().check_intact();
   check_fits(nominal, database);
@@ -114,7 +114,7 @@ Result Solver::Impl::solve(const Pose& T_base_tip, const JointVector* seed, Work
     return result;
   }
   const auto accept = [&](JointVector& q) {
-    model.wrap_into_limits(q.data());
+    model.joints.wrap(q.data());
     return finish(task, T_base_tip, q, result) ? Verdict::stop : Verdict::refine;
   };
 
@@ -202,7 +202,7 @@ bool Solver::Impl::finish(const TaskSpace& of_call, const Pose& target, const Jo
   double position = kNan;
   double rotation = kNan;
   measure(of_call, target, q, position, rotation);
-  if (!within_tolerances(position, rotation) || !robot.model().within_limits(q.data())) {
+  if (!within_tolerances(position, rotation) || !robot.model().joints.contains(q.data())) {
     return false;
   }
   result.status = Status::solved;

@@ -8,13 +8,13 @@
 #include <memory>
 
 #include "iksel/solver.hpp"
-#include "iteration/iterate.hpp"
-#include "selection/selection.hpp"
-#include "solver/explore.hpp"
-#include "solver/found.hpp"
-#include "solver/given_seeds.hpp"
-#include "solver/lane_search.hpp"
-#include "solver/task_search.hpp"
+#include "refine/iterate.hpp"
+#include "search/explore.hpp"
+#include "search/lane_search.hpp"
+#include "search/solution_set.hpp"
+#include "seeds/given_seeds.hpp"
+#include "seeds/selection.hpp"
+#include "seeds/task_search.hpp"
 
 namespace iksel {
 
@@ -32,11 +32,11 @@ struct Workspace {
   std::unique_ptr<LaneSearch> lanes;
   /// Of solves with wishes.
   GivenSeeds given;
-  Found found;
+  SolutionSet found;
   /// Guesses at solutions that a found one told of, still to be tried (mirror.hpp).
-  std::vector<JointVector> mirrors;
+  std::vector<JointVector> partners;
   /// Room for that many; there are fewer solutions that come in pairs.
-  static constexpr std::size_t kMirrors = 64;
+  static constexpr std::size_t kPartners = 64;
 };
 
 struct Solver::Impl {
@@ -111,7 +111,7 @@ struct Solver::Impl {
   Drift drift;
   /// options.task.
   TaskSpace task;
-  /// As Block::damaged of the database.
+  /// As Storage::damaged of the database.
   const std::atomic<bool>* damaged;
   int most_solutions = 0;
   /// Angles up to this lose a tenth of the tolerances at most when FK rounds them [rad].
@@ -144,8 +144,8 @@ struct Solver::Impl {
   /// Collects solutions in workspace.found.
   void explore(Exploration& search, Workspace& workspace) const;
   /// Brings a success to the turns nearest to `near`, where it still is one.
-  void take_turns_near(const JointVector& near, const TaskSpace& of_call, const Pose& T_base_tip,
-                       Result& answer) const;
+  void wrap_near(const JointVector& near, const TaskSpace& of_call, const Pose& T_base_tip,
+                 Result& answer) const;
   void explore_in_lanes(Exploration& search, Workspace& workspace,
                         FunctionRef<Verdict(JointVector&)> accept, FunctionRef<bool()> go_on) const;
   void explore_one_by_one(Exploration& search, Workspace& workspace,
@@ -193,7 +193,7 @@ void Solver::Impl::solve_many(std::size_t first, std::size_t last, Workspace& wo
       open.set(index);
       return true;
     }
-    robot.model().wrap_into_limits(q->data());
+    robot.model().joints.wrap(q->data());
     Result result;
     result.attempts = work.attempts;
     result.iterations = work.iterations;

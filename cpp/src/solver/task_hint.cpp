@@ -3,10 +3,10 @@
 #include <array>
 #include <string>
 
+#include "base/pseudo_inverse.hpp"
+#include "goal/task_space.hpp"
 #include "iksel/diagnosis.hpp"
 #include "iksel/robot.hpp"
-#include "iteration/task_space.hpp"
-#include "math/pseudo_inverse.hpp"
 
 namespace iksel {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
 
+#include "base/message_text.hpp"
 #include "iksel/error.hpp"
-#include "message_text.hpp"
 #include "urdf/chain_spec.hpp"
 #include "urdf/joint_limits.hpp"
 #include "urdf/parse.hpp"

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <string>
 
+#include "base/constants.hpp"
+#include "base/message_text.hpp"
 #include "iksel/error.hpp"
-#include "math/constants.hpp"
-#include "message_text.hpp"
 
 namespace iksel {
 namespace {

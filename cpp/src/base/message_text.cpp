@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/message_text.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+#include <utility>
+
+#include "iksel/error.hpp"
+
+namespace iksel {
+namespace {
+
+std::string lower_case(std::string text) {
+  for (char& c : text) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return text;
+}
+
+/// Number of characters to insert, remove or replace between two words (Levenshtein 1966).
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  constexpr std::size_t kLongest = 100;  // it takes the product of the lengths
+  if (a.size() > kLongest || b.size() > kLongest) return std::max(a.size(), b.size());
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
+    }
+  }
+  return row[b.size()];
+}
+
+/// Up to three known names that `name` may mean, the most alike first: a third of the characters
+/// may differ, or one contains the other.
+std::vector<std::string> similar_names(const std::string& name,
+                                       const std::vector<std::string>& known) {
+  constexpr std::size_t kMost = 3;
+  constexpr std::size_t kShortestPart = 3;
+  const std::string wanted = lower_case(name);
+  std::vector<std::pair<std::size_t, std::string>> found;
+  for (const std::string& candidate : known) {
+    const std::string have = lower_case(candidate);
+    const std::size_t distance = edit_distance(wanted, have);
+    const bool contained =
+        std::min(wanted.size(), have.size()) >= kShortestPart &&
+        (have.find(wanted) != std::string::npos || wanted.find(have) != std::string::npos);
+    if (contained || distance <= wanted.size() / 3) found.emplace_back(distance, candidate);
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < std::min(found.size(), kMost); ++i) names.push_back(found[i].second);
+  return names;
+}
+
+}  // namespace
+
+std::string number_text(double value, int digits) {
+  MessageStream text;
+  text.precision(digits);
+  text << value;
+  return text.str();
+}
+
+void throw_unknown_name(const std::string& problem, const std::string& name,
+                        const std::vector<std::string>& known) {
+  std::string hint;
+  for (const std::string& similar : similar_names(name, known)) {
+    hint += (hint.empty() ? "did you mean '" : " or '") + similar + "'";
+  }
+  throw UnknownNameError(
+      problem + "; " + (hint.empty() ? "it has: " : hint + "? It has: ") + list_names(known),
+      known);
+}
+
+std::string list_names(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 20;
+  std::string text;
+  for (std::size_t i = 0; i < names.size() && i < kMost; ++i) {
+    if (i > 0) text += ", ";
+    text += names[i];
+  }
+  if (names.size() > kMost) text += " and " + std::to_string(names.size() - kMost) + " more";
+  return text;
+}
+
+}  // namespace iksel

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/pseudo_inverse.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/SVD>
+#include <algorithm>
+
+namespace iksel {
+namespace {
+
+/// For square matrices alone: the others would have it instantiate two QR decompositions, which
+/// takes a compiler longer than all the rest of this file.
+using SquareSvd = Eigen::JacobiSVD<Matrix6, Eigen::NoQRPreconditioner>;
+
+/// J^T = Q R with orthonormal columns (or zero ones) in Q, for more than 6 joints. Gram-Schmidt,
+/// each column twice: orthogonal to double precision (Giraud et al. 2005).
+Matrix6 decompose_transposed(const JacobianMatrix& J, PseudoInverse& Q) {
+  Matrix6 R = Matrix6::Zero();
+  Q = J.transpose();
+  for (int column = 0; column < 6; ++column) {
+    auto v = Q.col(column);
+    const double length = v.norm();
+    for (int pass = 0; pass < 2; ++pass) {
+      for (int i = 0; i < column; ++i) {
+        const double part = Q.col(i).dot(v);
+        R(i, column) += part;
+        v -= part * Q.col(i);
+      }
+    }
+    // What is left of a dependent column is rounding.
+    const double rest = v.norm();
+    const bool independent = rest > 1e-15 * length;
+    R(column, column) = independent ? rest : 0.0;
+    v *= independent ? 1 / rest : 0.0;
+  }
+  return R;
+}
+
+/// A 6 x 6 matrix with the singular values of J: J itself, with columns of zeros if there are fewer
+/// than 6 joints; with more, R^T of J^T = Q R.
+Matrix6 square(const JacobianMatrix& J, PseudoInverse* Q = nullptr) {
+  if (J.cols() > 6) {
+    PseudoInverse own;
+    return decompose_transposed(J, Q != nullptr ? *Q : own).transpose();
+  }
+  Matrix6 padded = Matrix6::Zero();
+  padded.leftCols(J.cols()) = J;
+  return padded;
+}
+
+}  // namespace
+
+TruncatedSvd::TruncatedSvd(const JacobianMatrix& J, double cutoff) {
+  const Eigen::Index dof = J.cols();
+  const Eigen::Index count = std::min<Eigen::Index>(dof, 6);
+  PseudoInverse Q;
+  const SquareSvd svd(square(J, &Q), Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const auto& sigma = svd.singularValues();
+  U_ = svd.matrixU().leftCols(count);
+  if (dof > 6) {
+    V_.noalias() = Q * svd.matrixV();
+  } else {
+    V_ = svd.matrixV().topLeftCorner(dof, count);
+  }
+  inverse_sigma_.resize(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    inverse_sigma_[i] = sigma[i] > cutoff * sigma[0] && sigma[i] > 0 ? 1.0 / sigma[i] : 0.0;
+  }
+}
+
+JointVector TruncatedSvd::solve(const Vector6& e) const {
+  const Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1> scaled =
+      inverse_sigma_.cwiseProduct(U_.transpose() * e);
+  return V_ * scaled;
+}
+
+PseudoInverse TruncatedSvd::inverse() const {
+  return V_ * inverse_sigma_.asDiagonal() * U_.transpose();
+}
+
+Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1> singular_values(
+    const JacobianMatrix& J) {
+  return SquareSvd(square(J)).singularValues().head(std::min<Eigen::Index>(J.cols(), 6));
+}
+
+Vector6 solve_symmetric(const Matrix6& A, const Vector6& b) { return A.ldlt().solve(b); }
+
+PseudoInverse damped_inverse(const JacobianMatrix& J, double lambda) {
+  Matrix6 A = J * J.transpose();
+  A.diagonal().array() += lambda;
+  return A.ldlt().solve(J).transpose();
+}
+
+JointVector damped_solve(const JacobianMatrix& J, double lambda, const Vector6& e) {
+  Matrix6 A = J * J.transpose();
+  A.diagonal().array() += lambda;
+  return J.transpose() * solve_symmetric(A, e);
+}
+
+}  // namespace iksel

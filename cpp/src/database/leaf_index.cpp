@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "database/leaf_index.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "database/data.hpp"
+#include "database/key.hpp"
+#include "iksel/error.hpp"
+#include "simd/lane_types.hpp"
+
+namespace iksel {
+namespace {
+
+/// Samples per leaf that the depth of the tree aims at.
+constexpr std::size_t kPerLeaf = 4;
+
+}  // namespace
+
+void write_to_block(const DatabaseData& data, std::size_t index, int entry, float* block) {
+  const double* x = data.x(index);
+  const Eigen::Matrix3d R = from_rotation_vector(Eigen::Map<const Eigen::Vector3d>(x + 3));
+  float* at = block + entry;
+  const auto put = [&](double value) {
+    *at = static_cast<float>(value);
+    at += lanes::kBlock;
+  };
+  for (int i = 0; i < 3; ++i) put(x[i]);
+  for (int column = 0; column < 3; ++column) {
+    for (int i = 0; i < 3; ++i) put(R(i, column));
+  }
+  for (int j = 0; j < data.dof; ++j) put(data.q(index)[j]);
+  const double* pinv = data.pseudo_inverse(index);
+  for (int j = 0; j < data.dof; ++j) {
+    for (int r = 0; r < 6; ++r) put(pinv[r * data.dof + j]);
+  }
+}
+
+LeafIndex::LeafIndex(const DatabaseData& data)
+    : block_size_(static_cast<std::size_t>(lanes::block_rows(data.dof) * lanes::kBlock)) {
+  while ((data.size >> static_cast<unsigned>(depth_ + 1)) >= kPerLeaf) ++depth_;
+  const std::size_t leaves = std::size_t{1} << static_cast<unsigned>(depth_);
+  const auto dim = static_cast<std::size_t>(data.key_dim);
+  dimension_.resize(leaves - 1);
+  value_.resize(leaves - 1);
+  blocks_.resize(leaves * block_size_);
+
+  // Split every node's samples at the median of the coordinate that spreads widest.
+  std::vector<std::uint32_t> order(data.size);
+  std::iota(order.begin(), order.end(), 0U);
+  std::vector<std::size_t> bounds = {0, data.size};
+  std::size_t node = 0;
+  for (int level = 0; level < depth_; ++level) {
+    std::vector<std::size_t> next = {0};
+    for (std::size_t k = 0; k + 1 < bounds.size(); ++k, ++node) {
+      const auto begin = order.begin() + static_cast<std::ptrdiff_t>(bounds[k]);
+      const auto end = order.begin() + static_cast<std::ptrdiff_t>(bounds[k + 1]);
+      std::size_t widest = 0;
+      double most = -1;
+      for (std::size_t d = 0; d < dim; ++d) {
+        const auto [low, high] = std::minmax_element(begin, end, [&](auto a, auto b) {
+          return data.keys[a * dim + d] < data.keys[b * dim + d];
+        });
+        const double spread = data.keys[*high * dim + d] - data.keys[*low * dim + d];
+        if (spread > most) {
+          most = spread;
+          widest = d;
+        }
+      }
+      const auto middle = begin + (end - begin) / 2;
+      std::nth_element(begin, middle, end, [&](auto a, auto b) {
+        return data.keys[a * dim + widest] < data.keys[b * dim + widest];
+      });
+      dimension_[node] = static_cast<std::uint8_t>(widest);
+      value_[node] = data.keys[*middle * dim + widest];
+      next.push_back(static_cast<std::size_t>(middle - order.begin()));
+      next.push_back(bounds[k + 1]);
+    }
+    bounds = std::move(next);
+  }
+
+  for (std::size_t leaf = 0; leaf < leaves; ++leaf) {
+    double mean[kMaxKeyDimension] = {};
+    for (std::size_t i = bounds[leaf]; i < bounds[leaf + 1]; ++i) {
+      for (std::size_t d = 0; d < dim; ++d) mean[d] += data.keys[order[i] * dim + d];
+    }
+    for (double& m : mean) m /= static_cast<double>(bounds[leaf + 1] - bounds[leaf]);
+    std::vector<Neighbour> nearest(lanes::kBlock);
+    const std::size_t found = data.tree.nearest(mean, nearest.size(), nearest.data());
+    if (found == 0) throw DatabaseError("a leaf of the database has no sample near it");
+    nearest.resize(found);
+    std::sort(nearest.begin(), nearest.end());
+    for (int entry = 0; entry < lanes::kBlock; ++entry) {
+      // A database smaller than a block repeats itself.
+      const std::size_t index = nearest[static_cast<std::size_t>(entry) % found].index;
+      write_to_block(data, index, entry, &blocks_[leaf * block_size_]);
+    }
+  }
+}
+
+}  // namespace iksel

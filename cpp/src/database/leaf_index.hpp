@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A KD-tree that is only descended, never searched back: each leaf owns the samples nearest to the
+// middle of its keys, laid out for the lanes, so that a query is one walk and a few contiguous
+// loads.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace iksel {
+
+struct DatabaseData;
+
+class LeafIndex {
+ public:
+  LeafIndex() = default;
+  /// `data` has its keys, records and exact tree already.
+  explicit LeafIndex(const DatabaseData& data);
+
+  /// Samples of the leaf that a key falls into, as a block of lanes (lane_types.hpp).
+  [[nodiscard]] const float* block(const double* key) const {
+    std::size_t node = 0;
+    for (int level = 0; level < depth_; ++level) {
+      const bool above = key[dimension_[node]] >= value_[node];
+      node = 2 * node + 1 + (above ? 1 : 0);
+    }
+    return &blocks_[(node - dimension_.size()) * block_size_];
+  }
+
+  [[nodiscard]] std::size_t leaves() const { return dimension_.size() + 1; }
+
+ private:
+  int depth_ = 0;
+  std::size_t block_size_ = 0;
+  // Inner nodes in heap order: the children of i are 2 i + 1 and 2 i + 2.
+  std::vector<std::uint8_t> dimension_;
+  std::vector<double> value_;
+  std::vector<float> blocks_;
+};
+
+/// Writes sample `index` into place `entry` of a block.
+void write_to_block(const DatabaseData& data, std::size_t index, int entry, float* block);
+
+}  // namespace iksel

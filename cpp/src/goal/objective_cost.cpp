@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "goal/objective_cost.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/constants.hpp"
+#include "base/determinant.hpp"
+#include "base/error_check.hpp"
+#include "base/message_text.hpp"
+#include "base/pseudo_inverse.hpp"
+#include "iksel/error.hpp"
+
+namespace iksel {
+
+double manipulability(const ChainModel& model, const JointVector& q) {
+  Pose pose;
+  Jacobian J;
+  model.fk_jacobian(q.data(), pose, J);
+  // With fewer joints than six, of J^T J, filled up by the identity.
+  double gram[6][6] = {};
+  for (int i = 0; i < 6; ++i) {
+    for (int k = 0; k < 6; ++k) {
+      if (model.dof >= 6) {
+        gram[i][k] = J.row(i).dot(J.row(k));
+      } else if (std::max(i, k) < model.dof) {
+        gram[i][k] = J.col(i).dot(J.col(k));
+      } else {
+        gram[i][k] = i == k ? 1 : 0;
+      }
+    }
+  }
+  return std::sqrt(std::max(determinant(gram), 0.0));
+}
+
+double ObjectiveCost::of_posture(const JointVector& q, JointVector* gradient,
+                                 JointVector* curvature) const {
+  JointVector weights = JointVector::Ones(model_.dof);
+  if (objective_.weights.size() != 0) {
+    // A joint without weight still has a little, so that it does not drift.
+    constexpr double kLeast = 1e-6;
+    weights = objective_.weights.cwiseMax(kLeast * objective_.weights.maxCoeff());
+  }
+  const JointVector d = weights.cwiseProduct(q - objective_.posture);
+  if (gradient != nullptr) *gradient = weights.cwiseProduct(d);
+  if (curvature != nullptr) *curvature = weights.cwiseAbs2();
+  return 0.5 * d.squaredNorm();
+}
+
+double ObjectiveCost::of_limits(const JointVector& q, JointVector* gradient,
+                                JointVector* curvature) const {
+  // Nearer than this part of the range a limit repels no more, so that the cost stays finite.
+  constexpr double kNearest = 1e-4;
+  // Joints without limits have a little, so that they do not drift.
+  if (gradient != nullptr) gradient->setZero(model_.dof);
+  if (curvature != nullptr) curvature->setConstant(model_.dof, 1e-6);
+  double sum = 0;
+  for (int j = 0; j < model_.dof; ++j) {
+    const double range = model_.joints.upper[j] - model_.joints.lower[j];
+    if (!(std::isfinite(range) && range > 0)) continue;
+    const double x =
+        std::min(std::max((q[j] - model_.joints.lower[j]) / range, kNearest), 1 - kNearest);
+    const double below = 1 / x;
+    const double above = 1 / (1 - x);
+    sum += 0.25 * (below + above);
+    if (gradient != nullptr) (*gradient)[j] = 0.25 * (above * above - below * below) / range;
+    if (curvature != nullptr) {
+      (*curvature)[j] = 0.5 * (below * below * below + above * above * above) / (range * range);
+    }
+  }
+  return sum;
+}
+
+double ObjectiveCost::of_custom(const JointVector& q) const {
+  const double cost = objective_.cost(q);
+  if (cost > -kInfinity) return cost;
+  MessageStream text;
+  text << "objective: the cost is " << cost << " at q = ["
+       << q.transpose().format(Eigen::IOFormat(6, 0, ", ", ", "))
+       << "]; it has to be a number, or +infinity where q must not be";
+  throw InvalidArgumentError(text.str());
+}
+
+double ObjectiveCost::value(const JointVector& q) const {
+  switch (objective_.kind) {
+    case Objective::Kind::posture:
+      return of_posture(q, nullptr, nullptr);
+    case Objective::Kind::limits:
+      return of_limits(q, nullptr, nullptr);
+    case Objective::Kind::manipulability:
+      return -manipulability(model_, q);
+    case Objective::Kind::custom:
+      return of_custom(q);
+    case Objective::Kind::none:
+      break;
+  }
+  return 0;
+}
+
+JointVector ObjectiveCost::slope(const JointVector& q) const {
+  if (objective_.kind == Objective::Kind::custom && objective_.gradient) {
+    JointVector given = objective_.gradient(q);
+    check_joints(given, model_.dof, "objective gradient");
+    return given;
+  }
+  constexpr double kStep = 1e-5;
+  JointVector gradient(model_.dof);
+  for (int j = 0; j < model_.dof; ++j) {
+    // One-sided at a limit, beyond which a cost need not be defined.
+    JointVector above = q;
+    JointVector below = q;
+    above[j] = std::min(q[j] + kStep, model_.joints.upper[j]);
+    below[j] = std::max(q[j] - kStep, model_.joints.lower[j]);
+    const double width = above[j] - below[j];
+    const double difference = width > 0 ? value(above) - value(below) : 0.0;
+    // Beside a place where the cost is infinite the difference says nothing.
+    gradient[j] = std::isfinite(difference) && width > 0 ? difference / width : 0.0;
+  }
+  return gradient;
+}
+
+double ObjectiveCost::estimate_curvature(const JointVector& q, const JointVector& gradient) const {
+  // The first step is as long as this [rad or m].
+  constexpr double kFirst = 0.2;
+  double curvature = gradient.norm() / kFirst;
+  if (last_q_.size() != 0) {
+    const JointVector dq = q - last_q_;
+    const double along = dq.dot(gradient - last_gradient_);
+    // Where the cost is concave a step as long as may be is right: the slide bounds it.
+    curvature = along > 0 ? along / dq.squaredNorm() : 0.5 * last_curvature_;
+  }
+  last_q_ = q;
+  last_gradient_ = gradient;
+  last_curvature_ = std::max(curvature, 1e-12);
+  return last_curvature_;
+}
+
+double ObjectiveCost::operator()(const JointVector& q, JointVector* gradient,
+                                 JointVector* curvature) const {
+  if (objective_.kind == Objective::Kind::posture) return of_posture(q, gradient, curvature);
+  if (objective_.kind == Objective::Kind::limits) return of_limits(q, gradient, curvature);
+  if (gradient != nullptr) {
+    *gradient = slope(q);
+    if (curvature != nullptr) {
+      curvature->setConstant(model_.dof, estimate_curvature(q, *gradient));
+    }
+  }
+  return value(q);
+}
+
+}  // namespace iksel

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kinematics/joint_space.hpp"
+
+namespace iksel {
+
+JointSpace::JointSpace(int dof)
+    : names(static_cast<std::size_t>(dof)),
+      types(static_cast<std::size_t>(dof)),
+      lower(dof),
+      upper(dof),
+      velocity(dof) {}
+
+bool JointSpace::contains(const double* q) const {
+  for (int j = 0; j < dof(); ++j) {
+    // Written so that NaN is outside.
+    if (!(q[j] >= lower[j] && q[j] <= upper[j])) return false;
+  }
+  return true;
+}
+
+JointVector JointSpace::middle() const {
+  JointVector middle(dof());
+  for (int j = 0; j < dof(); ++j) {
+    const double m = (lower[j] + upper[j]) / 2;
+    middle[j] = std::isfinite(m) ? m : 0.0;
+  }
+  return middle;
+}
+
+void JointSpace::wrap(double* q) const {
+  for (int j = 0; j < dof(); ++j) {
+    if (is_slide(j)) continue;
+    if (type(j) == JointType::continuous) {
+      // Any value is allowed; a principal one is what users expect.
+      if (std::abs(q[j]) > kPi) q[j] = std::remainder(q[j], kTwoPi);
+    } else if (q[j] < lower[j]) {
+      const double wrapped = q[j] + kTwoPi * std::ceil((lower[j] - q[j]) / kTwoPi);
+      if (wrapped <= upper[j]) q[j] = wrapped;
+    } else if (q[j] > upper[j]) {
+      const double wrapped = q[j] - kTwoPi * std::ceil((q[j] - upper[j]) / kTwoPi);
+      if (wrapped >= lower[j]) q[j] = wrapped;
+    }
+  }
+}
+
+bool JointSpace::wrap_nearest(const JointVector& near, double slack, JointVector& q) const {
+  bool held = false;
+  for (int j = 0; j < dof(); ++j) {
+    if (!is_periodic(j)) continue;
+    const double low = lower[j] - slack;
+    const double high = upper[j] + slack;
+    double value = q[j];
+    if (std::abs(near[j] - value) > kPi) value += kTwoPi * std::round((near[j] - value) / kTwoPi);
+    // The nearest turn of all lies outside: then the nearest inside.
+    if (value > high) value -= kTwoPi * std::ceil((value - high) / kTwoPi);
+    if (value < low) value += kTwoPi * std::ceil((low - value) / kTwoPi);
+    if (value < low || value > high) continue;
+    q[j] = std::min(std::max(value, lower[j]), upper[j]);
+    held = held || q[j] != value;
+  }
+  return held;
+}
+
+void JointSpace::first_image(JointVector& q) const {
+  for (int j = 0; j < dof(); ++j) {
+    if (!is_periodic(j)) continue;
+    const double low = std::isfinite(lower[j]) ? lower[j] : -kPi;
+    double value = q[j] - kTwoPi * std::floor((q[j] - low) / kTwoPi);
+    if (value < low) value += kTwoPi;
+    if (value <= upper[j]) q[j] = value;
+  }
+}
+
+bool JointSpace::next_image(JointVector& q) const {
+  for (int j = 0; j < dof(); ++j) {
+    // A joint without limits has no end of images; one stands for all.
+    if (!is_periodic(j) || !std::isfinite(upper[j])) continue;
+    if (q[j] + kTwoPi <= upper[j]) {
+      q[j] += kTwoPi;
+      return true;
+    }
+    q[j] -= kTwoPi * std::floor((q[j] - lower[j]) / kTwoPi);
+    if (q[j] < lower[j]) q[j] += kTwoPi;
+  }
+  return false;
+}
+
+}  // namespace iksel

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "iksel/request.hpp"
+
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "base/error_check.hpp"
+#include "base/message_text.hpp"
+#include "iksel/error.hpp"
+
+namespace iksel {
+
+Filter filter_each(int dof, std::function<bool(const JointVector&)> keep) {
+  return [dof, one = std::move(keep)](const double* q, std::size_t count, bool* kept) {
+    for (std::size_t i = 0; i < count; ++i) {
+      kept[i] = one(Eigen::Map<const Eigen::VectorXd>(q + i * static_cast<std::size_t>(dof), dof));
+    }
+  };
+}
+
+bool SolveRequest::has_wishes() const {
+  return !seeds.empty() || !database_seeds || near || filter || objective.is_set() || task ||
+         std::isfinite(deadline);
+}
+
+void SolveRequest::validate(int dof) const {
+  for (std::size_t i = 0; i < seeds.size(); ++i) {
+    // There may be many: names are made for the error only.
+    if (seeds[i].size() == dof && seeds[i].allFinite()) continue;
+    check_joints(seeds[i], dof, ("seeds[" + std::to_string(i) + "]").c_str());
+  }
+  if (near) check_joints(*near, dof, "near");
+  if (weights.size() != 0) {
+    check_joints(weights, dof, "weights");
+    for (int i = 0; i < dof; ++i) {
+      if (weights[i] < 0) {
+        throw InvalidArgumentError("weights[" + std::to_string(i) +
+                                   "]: " + number_text(weights[i]) + " is negative");
+      }
+    }
+    if (weights.maxCoeff() == 0) throw InvalidArgumentError("weights: all are 0");
+  }
+  if (norm != MoveNorm::two && norm != MoveNorm::max) {
+    throw InvalidArgumentError("norm: not a value of MoveNorm (two, max)");
+  }
+  if (on_invalid_pose != OnInvalidPose::status && on_invalid_pose != OnInvalidPose::raise) {
+    throw InvalidArgumentError("on_invalid_pose: not a value of OnInvalidPose (status, raise)");
+  }
+  objective.validate(dof);
+  if (task) task->validate();
+  if (!(deadline > 0)) {
+    throw InvalidArgumentError("deadline: " + number_text(deadline) + " s is not above 0");
+  }
+}
+
+}  // namespace iksel

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "refine/schemes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/pseudo_inverse.hpp"
+
+namespace iksel {
+JointVector joint_weights(const ChainModel& model, const JointVector& q, double margin) {
+  JointVector weights = JointVector::Ones(model.dof);
+  for (int i = 0; i < model.dof; ++i) {
+    const double range = model.joints.upper[i] - model.joints.lower[i];
+    if (!std::isfinite(range)) continue;
+    const double s =
+        std::min(q[i] - model.joints.lower[i], model.joints.upper[i] - q[i]) / (margin * range);
+    if (s <= 0) {
+      weights[i] = 0;
+    } else if (s < 1) {
+      weights[i] = s * s * (3 - 2 * s);
+    }
+  }
+  return weights;
+}
+
+JointVector pull_back(const ChainModel& model, const JointVector& q, const JointVector& weights) {
+  constexpr double kGain = 0.1;
+  JointVector c = JointVector::Zero(model.dof);
+  for (int i = 0; i < model.dof; ++i) {
+    const double range = model.joints.upper[i] - model.joints.lower[i];
+    if (!std::isfinite(range)) continue;
+    c[i] = -(1 - weights[i]) * kGain * (2 * q[i] - model.joints.lower[i] - model.joints.upper[i]) /
+           range;
+  }
+  return c;
+}
+
+JointVector dls_step(const JacobianMatrix& J, const Vector6& e, const SolverOptions& options) {
+  if (options.damping == 0) return TruncatedSvd(J, options.pinv_cutoff).solve(e);
+  return damped_solve(J, options.damping, e);
+}
+
+JointVector pinv_step(const JacobianMatrix& J, const Vector6& e, const SolverOptions& options) {
+  return TruncatedSvd(J, options.pinv_cutoff).inverse() * e;
+}
+
+JointVector cwln_step(const ChainModel& model, const JointVector& q, const JacobianMatrix& J,
+                      const Vector6& e, const SolverOptions& options) {
+  constexpr double kDamping = 1e-9;
+  const JointVector weights = joint_weights(model, q, options.limit_margin);
+  const JointVector c = pull_back(model, q, weights);
+  Matrix6 A = J * weights.asDiagonal() * J.transpose();
+  A.diagonal().array() += kDamping;
+  const Vector6 y = solve_symmetric(A, e - J * c);
+  return c + weights.cwiseProduct(J.transpose() * y);
+}
+
+JointVector cwpi_step(const ChainModel& model, const JointVector& q, const JacobianMatrix& J,
+                      const Vector6& e, const SolverOptions& options) {
+  const JointVector weights = joint_weights(model, q, options.limit_margin);
+  const JointVector c = pull_back(model, q, weights);
+  const JointVector root = weights.cwiseSqrt();
+  const JacobianMatrix weighted = J * root.asDiagonal();
+  const JointVector y = TruncatedSvd(weighted, options.pinv_cutoff).solve(e - J * c);
+  return c + root.cwiseProduct(y);
+}
+
+JointVector lm_step(const ChainModel& model, const JointVector& q, const JacobianMatrix& J,
+                    const Vector6& e, const SolverOptions& options, double squared_error) {
+  JacobianMatrix active = J;
+  for (int i = 0; i < model.dof; ++i) {
+    if (model.joints.is_periodic(i)) continue;
+    const double gradient = J.col(i).dot(e);
+    if ((q[i] <= model.joints.lower[i] && gradient < 0) ||
+        (q[i] >= model.joints.upper[i] && gradient > 0)) {
+      active.col(i).setZero();
+    }
+  }
+  // The floor keeps the solve regular where the error is zero in double precision.
+  const double lambda = options.damping * squared_error + 1e-18;
+  JointVector step = damped_solve(active, lambda, e);
+  for (int i = 0; i < model.dof; ++i) {
+    if (model.joints.is_periodic(i)) continue;
+    const double goal =
+        std::min(std::max(q[i] + step[i], model.joints.lower[i]), model.joints.upper[i]);
+    step[i] = goal - q[i];
+  }
+  return step;
+}
+
+JointVector lm_step(const ChainModel& model, const JointVector& q, const JacobianMatrix& J,
+                    const Vector6& e, const SolverOptions& options) {
+  return lm_step(model, q, J, e, options, e.squaredNorm());
+}
+
+}  // namespace iksel

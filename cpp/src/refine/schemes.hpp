@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One step of each iteration scheme: the joint adjustment for an error e at q (paper, Table II).
+#pragma once
+
+#include "base/pseudo_inverse.hpp"
+#include "iksel/options.hpp"
+#include "kinematics/chain_model.hpp"
+
+namespace iksel {
+
+/// dls: J^T (J J^T + damping I)^-1 e; truncated least squares in the undamped limit.
+JointVector dls_step(const JacobianMatrix& J, const Vector6& e, const SolverOptions& options);
+
+/// pinv, pinv_rr: J^+ e.
+JointVector pinv_step(const JacobianMatrix& J, const Vector6& e, const SolverOptions& options);
+
+/// Weight of each joint in cwln and cwpi: 1 inside, falling as 3 s^2 - 2 s^3 to 0 over the margin
+/// at each end of the range, s the distance to the limit over the margin (Huang et al. 2016).
+JointVector joint_weights(const ChainModel& model, const JointVector& q, double margin);
+
+/// Pull-back towards mid-range, c = -(I - W) phi, phi_i = 0.1 (2 q_i - lo_i - hi_i) / (hi_i -
+/// lo_i).
+JointVector pull_back(const ChainModel& model, const JointVector& q, const JointVector& weights);
+
+/// cwln: c + W J^T (J W J^T + 1e-9 I)^-1 (e - J c).
+JointVector cwln_step(const ChainModel& model, const JointVector& q, const JacobianMatrix& J,
+                      const Vector6& e, const SolverOptions& options);
+
+/// cwpi: c + W^1/2 (J W^1/2)^+ (e - J c).
+JointVector cwpi_step(const ChainModel& model, const JointVector& q, const JacobianMatrix& J,
+                      const Vector6& e, const SolverOptions& options);
+
+/// lm: J^T (J J^T + damping |e|^2 I)^-1 e, or with `squared_error` in place of |e|^2, with the
+/// columns of joints that stand at a limit and would leave it set to zero, and the step cut off at
+/// the limits.
+JointVector lm_step(const ChainModel& model, const JointVector& q, const JacobianMatrix& J,
+                    const Vector6& e, const SolverOptions& options, double squared_error);
+JointVector lm_step(const ChainModel& model, const JointVector& q, const JacobianMatrix& J,
+                    const Vector6& e, const SolverOptions& options);
+
+}  // namespace iksel

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "refine/self_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "refine/iterate.hpp"
+#include "refine/schemes.hpp"
+#include "refine/task_step.hpp"
+
+namespace iksel {
+namespace {
+
+/// The step that makes a cost least to second order (gradient g, diagonal second derivative H)
+/// inside the joint limits and the task's box: min 1/2 s^T H s + g^T s under
+/// lower <= [J s; s] <= upper. By the primal active-set method (Nocedal and Wright: "Numerical
+/// Optimization", 2006, section 16.5), whose steps are solved for in the 6 rows of J only.
+class SlideStep {
+ public:
+  SlideStep(const ChainModel& model, const TaskSpace& task, const JointVector& q, const Vector6& d,
+            const JacobianMatrix& J, const JointVector& gradient, const JointVector& curvature)
+      : J_(J), gradient_(gradient), curvature_(curvature), dof_(model.dof) {
+    row_lower_ = task.aim_lower() - d;
+    row_upper_ = task.aim_upper() - d;
+    lower_ = model.joints.lower - q;
+    upper_ = model.joints.upper - q;
+    for (int i = 0; i < 6; ++i) {
+      fixed_[i] = task.lower()[i] == task.upper()[i];
+      row_side_[i] = fixed_[i] ? 1 : 0;
+    }
+    side_.setZero(dof_);
+  }
+
+  JointVector solve() {
+    JointVector x = JointVector::Zero(dof_);
+    for (int round = 0; round < 4 * (dof_ + 6); ++round) {
+      Vector6 y;
+      const JointVector slope = curvature_.cwiseProduct(x) + gradient_;
+      const JointVector p = step_on_active(slope, y);
+      if (advance(p, x)) continue;
+      // At the least cost over the active bounds, whose multipliers are y.
+      if (!release(slope + curvature_.cwiseProduct(p), y)) break;
+    }
+    return x;
+  }
+
+ private:
+  /// The step from x to the least cost over the directions that the active bounds leave.
+  JointVector step_on_active(const JointVector& slope, Vector6& y) const {
+    JacobianMatrix rows = J_;
+    for (int i = 0; i < 6; ++i) {
+      if (row_side_[i] == 0) rows.row(i).setZero();
+    }
+    const JointVector inverse =
+        (side_.array() == 0).select(curvature_.cwiseInverse(), JointVector::Zero(dof_));
+    const JacobianMatrix weighted = rows * inverse.asDiagonal();
+    Matrix6 A = weighted * rows.transpose();
+    A.diagonal().array() += 1e-12 * std::max(A.trace(), 1e-12);
+    y = solve_symmetric(A, weighted * slope);
+    return inverse.cwiseProduct(rows.transpose() * y - slope);
+  }
+
+  /// Goes from x along p to its end, or to the first bound on the way, which becomes active. True
+  /// if there was one.
+  bool advance(const JointVector& p, JointVector& x) {
+    double part = 1;
+    int joint = -1;
+    int row = -1;
+    const auto look = [&](double at, double rate, double low, double high) {
+      constexpr double kSlow = 1e-14;
+      if (std::abs(rate) < kSlow) return false;
+      const double room = std::max((rate > 0 ? high - at : low - at) / rate, 0.0);
+      if (room >= part) return false;
+      part = room;
+      return true;
+    };
+    for (int j = 0; j < dof_; ++j) {
+      if (side_[j] == 0 && look(x[j], p[j], lower_[j], upper_[j])) joint = j;
+    }
+    const Vector6 at = J_ * x;
+    const Vector6 rate = J_ * p;
+    for (int i = 0; i < 6; ++i) {
+      if (row_side_[i] == 0 && look(at[i], rate[i], row_lower_[i], row_upper_[i])) row = i;
+    }
+    x += part * p;
+    if (row >= 0) {
+      row_side_[row] = rate[row] > 0 ? 1 : -1;
+    } else if (joint >= 0) {
+      side_[joint] = p[joint] > 0 ? 1 : -1;
+    }
+    return row >= 0 || joint >= 0;
+  }
+
+  /// Takes out the active bound whose multiplier says most that it pulls instead of holding; false
+  /// if there is none.
+  bool release(const JointVector& slope, const Vector6& y) {
+    double most = 1e-12;
+    int joint = -1;
+    int row = -1;
+    const JointVector rest = J_.transpose() * active(y) - slope;
+    for (int j = 0; j < dof_; ++j) {
+      if (side_[j] == 0 || -side_[j] * rest[j] <= most) continue;
+      most = -side_[j] * rest[j];
+      joint = j;
+    }
+    for (int i = 0; i < 6; ++i) {
+      if (fixed_[i] || row_side_[i] == 0 || row_side_[i] * y[i] <= most) continue;
+      most = row_side_[i] * y[i];
+      row = i;
+    }
+    if (row >= 0) {
+      row_side_[row] = 0;
+    } else if (joint >= 0) {
+      side_[joint] = 0;
+    }
+    return row >= 0 || joint >= 0;
+  }
+
+  [[nodiscard]] Vector6 active(const Vector6& y) const {
+    Vector6 out = y;
+    for (int i = 0; i < 6; ++i) {
+      if (row_side_[i] == 0) out[i] = 0;
+    }
+    return out;
+  }
+
+  const JacobianMatrix& J_;
+  const JointVector& gradient_;
+  const JointVector& curvature_;
+  int dof_;
+  Vector6 row_lower_, row_upper_;
+  JointVector lower_, upper_;
+  bool fixed_[6];
+  /// Which bound is active: -1 the lower, 1 the upper, 0 none.
+  int row_side_[6];
+  JointVector side_;
+};
+
+}  // namespace
+
+bool converge(const ChainModel& model, const SolverOptions& options, const TaskSpace& task,
+              const Pose& T_base_tip, int most, JointVector& q) {
+  Pose pose;
+  Jacobian of_pose;
+  // The default damping, whatever the scheme of the solver is.
+  const SolverOptions damped;
+  for (int i = 0;; ++i) {
+    model.fk_jacobian(q.data(), pose, of_pose);
+    JacobianMatrix J = of_pose;
+    Vector6 d;
+    Vector6 e;
+    if (task.is_full_pose()) {
+      e = pose_error(T_base_tip, pose);
+    } else {
+      d = task.deviation(T_base_tip, pose, J);
+      e = task_error(task, d);
+    }
+    const double position = e.head<3>().norm();
+    const double rotation = e.tail<3>().norm();
+    if (i == most || (position <= 0.01 * options.position_tolerance &&
+                      rotation <= 0.01 * options.rotation_tolerance)) {
+      return position <= options.position_tolerance && rotation <= options.rotation_tolerance &&
+             model.joints.contains(q.data());
+    }
+    const auto step = [&](const JacobianMatrix& rows, const Vector6& asked, double squared_error) {
+      return lm_step(model, q, rows, asked, damped, squared_error);
+    };
+    q += task.is_full_pose() ? step(J, e, e.squaredNorm()) : task_step(task, J, d, e, step);
+    if (!q.allFinite()) return false;
+  }
+}
+
+int slide(const ChainModel& model, const SolverOptions& options, const TaskSpace& task,
+          const Pose& T_base_tip, const JointCost& cost, int most, JointVector& q) {
+  /// Longest step of a joint, within which the pose stays near enough to be corrected [rad or m].
+  constexpr double kLongest = 0.5;
+  constexpr double kSettled = 1e-7;
+  constexpr int kCorrections = 8;
+  JointVector gradient(model.dof);
+  JointVector curvature(model.dof);
+  Pose pose;
+  Jacobian of_pose;
+  double value = cost(q, &gradient, &curvature);
+  int steps = 0;
+  while (steps < most) {
+    model.fk_jacobian(q.data(), pose, of_pose);
+    JacobianMatrix J = of_pose;
+    const Vector6 d = task.deviation(T_base_tip, pose, J);
+    const JointVector step = SlideStep(model, task, q, d, J, gradient, curvature).solve();
+    const double longest = step.cwiseAbs().maxCoeff();
+    if (!(longest > kSettled)) return steps;
+    double scale = std::min(1.0, kLongest / longest);
+    bool better = false;
+    for (int halving = 0; halving < 8 && !better; ++halving, scale /= 2) {
+      JointVector next = model.joints.clamp(q + scale * step);
+      if (!converge(model, options, task, T_base_tip, kCorrections, next)) continue;
+      const double next_value = cost(next, nullptr, nullptr);
+      if (!(next_value < value)) continue;
+      better = true;
+      q = next;
+    }
+    ++steps;
+    if (!better) return steps;
+    value = cost(q, &gradient, &curvature);
+  }
+  return steps;
+}
+
+}  // namespace iksel

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The distinct solutions found so far for one target.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "iksel/result.hpp"
+#include "kinematics/chain_model.hpp"
+#include "kinematics/joint_space.hpp"
+
+namespace iksel {
+
+/// Memory is taken at construction, none later.
+class SolutionSet {
+ public:
+  /// Solutions kept at most; a search is bounded, and redundant arms have one for every seed.
+  static constexpr std::size_t kMost = 1024;
+
+  explicit SolutionSet(const ChainModel& model)
+      : model_(model),
+        q_(kMost * static_cast<std::size_t>(model.dof)),
+        cost_(kMost),
+        position_error_(kMost),
+        rotation_error_(kMost),
+        turns_(static_cast<std::size_t>(model.dof)) {
+    for (int j = 0; j < model.dof; ++j) {
+      turns_[static_cast<std::size_t>(j)] = model.joints.is_periodic(j) ? 1 / kTwoPi : 0;
+    }
+  }
+
+  void clear() { size_ = 0; }
+
+  /// Adds a success unless one lies nearer than `min_distance` in every joint, copies by whole
+  /// turns not counted; or there is no room. Of two that lie so near, the one of smaller cost
+  /// stays, at the place of the first. True if it is a new one.
+  bool add(const Result& solution, double cost, double min_distance) {
+    for (std::size_t i = 0; i < size_; ++i) {
+      const double away = model_.joints.distance(q(i), solution.q, min_distance);
+      if (away >= min_distance) continue;
+      if (cost < cost_[i]) put(i, solution, cost);
+      return false;
+    }
+    if (size_ == kMost) return false;
+    put(size_++, solution, cost);
+    return true;
+  }
+
+  /// True if q lies within `radius` of a solution in every joint.
+  template <typename Q>
+  [[nodiscard]] bool is_near_known(const Q& q, double radius) const {
+    const double* known = q_.data();
+    for (std::size_t i = 0; i < size_; ++i, known += model_.dof) {
+      int j = 0;
+      while (j < model_.dof && std::abs(turned_difference(j, q[j] - known[j])) < radius) ++j;
+      if (j == model_.dof) return true;
+    }
+    return false;
+  }
+
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] const double* q(std::size_t i) const {
+    return &q_[i * static_cast<std::size_t>(model_.dof)];
+  }
+  [[nodiscard]] JointVector at(std::size_t i) const {
+    return Eigen::Map<const Eigen::VectorXd>(q(i), model_.dof);
+  }
+  /// The success that was added, with its errors.
+  [[nodiscard]] Result result(std::size_t i) const {
+    Result result;
+    result.status = Status::solved;
+    result.q = at(i);
+    result.position_error = position_error_[i];
+    result.rotation_error = rotation_error_[i];
+    return result;
+  }
+
+ private:
+  void put(std::size_t i, const Result& solution, double cost) {
+    std::copy_n(solution.q.data(), model_.dof, &q_[i * static_cast<std::size_t>(model_.dof)]);
+    cost_[i] = cost;
+    position_error_[i] = solution.position_error;
+    rotation_error_[i] = solution.rotation_error;
+  }
+
+  /// A joint's difference without its whole turns. Added to so large a number, a double loses what
+  /// comes after its point: cheaper than to round.
+  [[nodiscard]] double turned_difference(int joint, double d) const {
+    constexpr double kNoFraction = 6755399441055744.0;
+    const double turns = (d * turns_[static_cast<std::size_t>(joint)] + kNoFraction) - kNoFraction;
+    return d - kTwoPi * turns;
+  }
+
+  const ChainModel& model_;
+  std::vector<double> q_;
+  std::vector<double> cost_;
+  std::vector<double> position_error_;  ///< [m]
+  std::vector<double> rotation_error_;  ///< [rad]
+  std::vector<double> turns_;           ///< 1 / 2 pi for joints with whole turns, else 0
+  std::size_t size_ = 0;
+};
+
+}  // namespace iksel

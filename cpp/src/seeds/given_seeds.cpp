@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "seeds/given_seeds.hpp"
+
+#include <algorithm>
+
+#include "base/pseudo_inverse.hpp"
+#include "base/rotation.hpp"
+#include "kinematics/joint_space.hpp"
+
+namespace iksel {
+
+GivenSeeds::GivenSeeds(const ChainModel& model, const SolverOptions& options)
+    : model_(model), options_(options) {
+  ranked_.reserve(kRoom);
+}
+
+bool GivenSeeds::rank(const TaskSpace& task, const Pose& T_base_tip,
+                      const std::vector<JointVector>& seeds, FunctionRef<bool()> go_on) {
+  /// Seeds between two questions: a fraction of a millisecond.
+  constexpr std::size_t kStage = 16;
+  seeds_ = &seeds;
+  taken_ = 0;
+  sum_of_failed_.setZero(model_.dof);
+  ranked_.clear();
+  ranked_.reserve(seeds.size());
+  for (std::size_t i = 0; i < seeds.size(); ++i) {
+    if (i % kStage == 0 && !go_on()) {
+      ranked_.clear();
+      return false;
+    }
+    ranked_.push_back(rank_one(i, task, T_base_tip));
+  }
+  std::sort(ranked_.begin(), ranked_.end());
+  return true;
+}
+
+Vector6 GivenSeeds::error_of(const JointVector& q, const TaskSpace& task, const Pose& T_base_tip,
+                             JacobianMatrix& J) const {
+  Vector6 e;
+  Pose pose;
+  Jacobian of_pose;
+  if (!task.is_full_pose()) {
+    model_.fk_jacobian(q.data(), pose, of_pose);
+    J = of_pose;
+    e = -task.outside(task.deviation(T_base_tip, pose, J));
+    for (int i = 0; i < 6; ++i) {
+      if (e[i] == 0) J.row(i).setZero();
+    }
+    return e;
+  }
+  const Pose tip_target = T_base_tip * Pose(model_.tcp_inverse);
+  model_.fk_jacobian(q.data(), pose, of_pose, false);
+  J = of_pose;
+  e.head<3>() = tip_target.translation() - pose.translation();
+  e.tail<3>() = options_.rotation_difference == RotationDifference::geodesic
+                    ? to_rotation_vector(tip_target.linear() * pose.linear().transpose())
+                    : Eigen::Vector3d(to_rotation_vector(tip_target.linear()) -
+                                      to_rotation_vector(pose.linear()));
+  return e;
+}
+
+GivenSeeds::Ranked GivenSeeds::rank_one(std::size_t index, const TaskSpace& task,
+                                        const Pose& T_base_tip) const {
+  const JointVector& q = (*seeds_)[index];
+  Ranked ranked{0, index, false};
+  JacobianMatrix J;
+  const Vector6 e = error_of(q, task, T_base_tip, J);
+  ranked.score = e.squaredNorm();
+  if (options_.ranking == Ranking::nearest && !options_.limit_aware) return ranked;
+  const JointVector adjustment = TruncatedSvd(J, options_.database.pinv_cutoff).solve(e);
+  if (options_.ranking == Ranking::joint_adjustment) ranked.score = adjustment.squaredNorm();
+  if (options_.limit_aware) {
+    for (int j = 0; j < model_.dof; ++j) {
+      const double predicted = q[j] + adjustment[j];
+      ranked.leaves_limits =
+          ranked.leaves_limits ||
+          (!model_.joints.is_periodic(j) &&
+           (predicted < model_.joints.lower[j] || predicted > model_.joints.upper[j]));
+    }
+  }
+  return ranked;
+}
+
+const double* GivenSeeds::next() {
+  if (taken_ >= ranked_.size()) return nullptr;
+  if (taken_ > 0) {
+    if (options_.reselection == Reselection::none) return nullptr;
+    if (options_.reselection == Reselection::farthest) bring_farthest_forward();
+  }
+  return (*seeds_)[ranked_[taken_++].index].data();
+}
+
+void GivenSeeds::bring_farthest_forward() {
+  const std::size_t candidates =
+      std::min(ranked_.size(), static_cast<std::size_t>(options_.candidates));
+  if (taken_ >= candidates) return;
+  // As Selection does: the largest |m q - sum of the m failed q|.
+  sum_of_failed_ += (*seeds_)[ranked_[taken_ - 1].index];
+  const auto first = ranked_.begin() + static_cast<std::ptrdiff_t>(taken_);
+  const auto end = ranked_.begin() + static_cast<std::ptrdiff_t>(candidates);
+  const auto m = static_cast<double>(taken_);
+  auto best = first;
+  double best_distance = -1;
+  for (auto i = first; i != end; ++i) {
+    const double distance = (m * (*seeds_)[i->index] - sum_of_failed_).squaredNorm();
+    if (distance > best_distance) {
+      best_distance = distance;
+      best = i;
+    }
+  }
+  std::rotate(first, best, best + 1);
+}
+
+}  // namespace iksel

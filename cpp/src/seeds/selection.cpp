@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "seeds/selection.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/constants.hpp"
+#include "base/pseudo_inverse.hpp"
+#include "base/rotation.hpp"
+#include "database/key.hpp"
+#include "simd/kernels.hpp"
+
+namespace iksel {
+
+Selection::Selection(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
+                     const SolverOptions& options)
+    : model_(model),
+      nominal_(nominal),
+      data_(data),
+      options_(options),
+      chain_{},
+      neighbours_(std::min<std::size_t>(static_cast<std::size_t>(options.neighbours), data.size)),
+      candidates_(neighbours_.size()) {
+  if (data.reduction) {
+    chain_ = make_lane_chain(nominal);
+    seeds_.resize(neighbours_.size() * static_cast<std::size_t>(model.dof));
+  }
+}
+
+void Selection::query(const Pose& T_base_flange) { query(T_base_flange, neighbours_.size()); }
+
+std::size_t Selection::nearest_seeds(const Pose& T_base_flange, std::size_t k) {
+  query(T_base_flange, std::min(k, neighbours_.size()));
+  if (data_.reduction) prepare_seeds();
+  return found_;
+}
+
+void Selection::query(const Pose& T_base_flange, std::size_t k) {
+  target_ = data_.reduction ? data_.reduction->reduce(T_base_flange) : T_base_flange;
+  Eigen::Map<Eigen::Vector3d> position(target_x_);
+  Eigen::Map<Eigen::Vector3d> rotation(target_x_ + 3);
+  position = target_.translation();
+  rotation = to_rotation_vector(target_.linear());
+  double key[kMaxKeyDimension];
+  data_.make_key(T_base_flange, key);
+  found_ = data_.tree.nearest(key, k, neighbours_.data());
+}
+
+void Selection::rank() {
+  if (data_.reduction) prepare_seeds();
+  for (std::size_t i = 0; i < found_; ++i) {
+    Candidate& candidate = candidates_[i];
+    candidate = {neighbours_[i].distance, neighbours_[i].index, static_cast<std::uint32_t>(i),
+                 false};
+    if (options_.ranking == Ranking::joint_adjustment || options_.limit_aware) score(candidate);
+  }
+  kept_ = std::min(found_, static_cast<std::size_t>(options_.candidates));
+  const auto begin = candidates_.begin();
+  std::partial_sort(begin, begin + static_cast<std::ptrdiff_t>(kept_),
+                    begin + static_cast<std::ptrdiff_t>(found_));
+  sum_of_failed_.setZero(model_.dof);
+}
+
+void Selection::prepare_seeds() {
+  const lanes::SeedChain chain = make_seed_chain(nominal_, *data_.reduction);
+  const lanes::SeedTarget target = make_seed_target(target_);
+  const auto dof = static_cast<std::size_t>(model_.dof);
+  float block[lanes::block_rows(kMaxDof) * lanes::kBlock];
+  lanes::SeedPack pack;
+  std::size_t kept = 0;
+  for (std::size_t first = 0; first < found_; first += lanes::kBlock) {
+    const std::size_t count = std::min<std::size_t>(lanes::kBlock, found_ - first);
+    for (std::size_t s = 0; s < lanes::kBlock; ++s) {
+      write_to_block(data_, neighbours_[first + std::min(s, count - 1)].index, static_cast<int>(s),
+                     block);
+    }
+    lanes::kKernelsScalar.prepare(chain, target, block, pack);
+    for (std::size_t s = 0; s < count; ++s) {
+      double* q = &seeds_[kept * dof];
+      std::copy_n(data_.q(neighbours_[first + s].index), dof, q);
+      if (data_.reduction->leaves_out(0)) q[0] = static_cast<double>(pack.first[s]);
+      if (data_.reduction->leaves_out(model_.dof - 1)) {
+        q[dof - 1] = static_cast<double>(pack.last[s]);
+      }
+      if (!model_.joints.contains(q)) continue;
+      neighbours_[kept] = neighbours_[first + s];
+      ++kept;
+    }
+  }
+  found_ = kept;
+}
+
+const double* Selection::seed_of(const Candidate& candidate) const {
+  return data_.reduction ? &seeds_[candidate.place * static_cast<std::size_t>(model_.dof)]
+                         : data_.q(candidate.index);
+}
+
+Vector6 Selection::error_of(const Candidate& candidate) const {
+  const double* x = data_.x(candidate.index);
+  Vector6 e = Eigen::Map<const Vector6>(target_x_) - Eigen::Map<const Vector6>(x);
+  const bool geodesic = options_.rotation_difference == RotationDifference::geodesic;
+  if (!geodesic && !data_.reduction) return e;
+  // A reduced sample has its first and last joint at zero: the target is brought there too.
+  const Pose target =
+      data_.reduction ? data_.reduction->without_outer_joints(target_, chain_, seed_of(candidate))
+                      : target_;
+  const Eigen::Matrix3d R = from_rotation_vector(Eigen::Map<const Eigen::Vector3d>(x + 3));
+  e.head<3>() = target.translation() - Eigen::Map<const Eigen::Vector3d>(x);
+  e.tail<3>() = geodesic ? to_rotation_vector(target.linear() * R.transpose())
+                         : Eigen::Vector3d(to_rotation_vector(target.linear()) -
+                                           Eigen::Map<const Eigen::Vector3d>(x + 3));
+  return e;
+}
+
+void Selection::score(Candidate& candidate) const {
+  // Eq. (4): the joint adjustment that the sample's own pseudo-inverse predicts.
+  const Vector6 e = error_of(candidate);
+  const double* pseudo_inverse = data_.pseudo_inverse(candidate.index);
+  double adjustment[kMaxDof];
+  const int dof = model_.dof;
+  for (int i = 0; i < dof; ++i) adjustment[i] = pseudo_inverse[i] * e[0];
+  for (int j = 1; j < 6; ++j) {
+    const double* column = pseudo_inverse + j * dof;
+    for (int i = 0; i < dof; ++i) adjustment[i] += column[i] * e[j];
+  }
+  if (options_.ranking == Ranking::joint_adjustment) {
+    double sum = 0;
+    for (int i = 0; i < dof; ++i) sum += adjustment[i] * adjustment[i];
+    // Not a number has no place in an order.
+    candidate.score = std::isnan(sum) ? kInfinity : sum;
+  }
+  if (options_.limit_aware) {
+    const double* q = seed_of(candidate);
+    for (int i = 0; i < dof; ++i) {
+      const double predicted = q[i] + adjustment[i];
+      // A whole turn or more of range can always be wrapped.
+      if ((predicted < model_.joints.lower[i] || predicted > model_.joints.upper[i]) &&
+          !(model_.joints.upper[i] - model_.joints.lower[i] >= kTwoPi &&
+            !model_.joints.is_slide(i))) {
+        candidate.leaves_limits = true;
+        return;
+      }
+    }
+  }
+}
+
+const double* Selection::next_seed(int attempt) {
+  const auto position = static_cast<std::size_t>(attempt);
+  if (position >= kept_ || (attempt > 0 && options_.reselection == Reselection::none)) {
+    return nullptr;
+  }
+  if (attempt > 0 && options_.reselection == Reselection::farthest) {
+    bring_farthest_forward(attempt);
+  }
+  return seed_of(candidates_[position]);
+}
+
+void Selection::bring_farthest_forward(int attempt) {
+  // Of the candidates not tried yet, the one with the largest |m q - sum of the m failed q|.
+  const auto dof = model_.dof;
+  const auto position = static_cast<std::size_t>(attempt);
+  sum_of_failed_ += Eigen::Map<const Eigen::VectorXd>(seed_of(candidates_[position - 1]), dof);
+  std::size_t best = position;
+  double best_distance = -1;
+  for (std::size_t i = position; i < kept_; ++i) {
+    const double* q = seed_of(candidates_[i]);
+    double distance = 0;
+    for (int j = 0; j < dof; ++j) {
+      const double d = attempt * q[j] - sum_of_failed_[j];
+      distance += d * d;
+    }
+    if (distance > best_distance) {
+      best_distance = distance;
+      best = i;
+    }
+  }
+  // The others keep their order.
+  std::rotate(candidates_.begin() + static_cast<std::ptrdiff_t>(position),
+              candidates_.begin() + static_cast<std::ptrdiff_t>(best),
+              candidates_.begin() + static_cast<std::ptrdiff_t>(best) + 1);
+}
+
+}  // namespace iksel

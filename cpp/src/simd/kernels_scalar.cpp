@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simd/kernels.hpp"
+#include "simd/lane_kernel.hpp"
+
+namespace iksel::lanes {
+
+const LaneKernels kKernelsScalar = make_kernels<double, float>("scalar");
+
+}  // namespace iksel::lanes

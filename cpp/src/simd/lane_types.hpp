@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What goes into and comes out of a pack of lanes: plain numbers, so that files compiled for
+// different instruction sets agree on them.
+#pragma once
+
+namespace iksel::lanes {
+
+inline constexpr int kMaxJoints = 32;
+/// Most lanes of a pack.
+inline constexpr int kWidth = 8;
+/// Samples that a leaf or a stage of neighbours hands over at a time; a multiple of every pack's
+/// single-precision lanes.
+inline constexpr int kBlock = 16;
+inline constexpr float kEntries[kBlock] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+
+/// A joint of a chain whose degrees of freedom are its joints, one to one.
+struct LaneJoint {
+  double p[3];
+  double cos_alpha, sin_alpha;
+  double cos_turn, sin_turn;
+  double offset;
+  double lower, upper;
+  bool limited;  ///< false: a whole turn or more of range, wrapped at the end
+  bool prismatic;
+};
+
+/// The chain between the frames of its first and last joint.
+struct LaneChain {
+  int n;
+  LaneJoint joint[kMaxJoints];
+};
+
+/// Numbers of the iteration, squared where they are compared with squares.
+struct LaneOptions {
+  double damping;
+  double position2, rotation2, lever2;  ///< |error| below these: there already
+  double last_step2, last_error2;       ///< a step from below these is the last
+};
+
+/// What a pack of lanes works on, lane by lane. Rows of a target: position (3), columns x (3),
+/// y (3), z (3) of the last joint's frame seen from the first one's.
+struct LanePack {
+  alignas(64) double target[12][kWidth];
+  alignas(64) double q[kMaxJoints][kWidth];
+  /// Squared error before the last step.
+  alignas(64) double error2[kWidth];
+};
+
+/// How an advance ended.
+struct PackResult {
+  unsigned done;   ///< bit l: lane l arrived, as far as the step tells
+  int iterations;  ///< of the whole pack
+};
+
+/// Iterates a pack, until a lane of the mask `watched` arrives or the iterations are used up.
+using Advance = PackResult (*)(const LaneChain& chain, const LaneOptions& options, unsigned watched,
+                               int iterations, LanePack& pack);
+
+/// How a side of the chain is left out of the samples (reduction.hpp).
+enum class Side : int { none, rotation, translation };
+
+/// Samples in blocks, lane by lane: row r of a block is kBlock numbers. Rows: position (3), columns
+/// x (3), y (3), z (3) of the sample's pose seen from the first joint, its n joint values, of which
+/// those left out are not read, and its n x 6 pseudo-inverse row by row.
+inline constexpr int kPoseRows = 12;
+constexpr int block_rows(int n) { return kPoseRows + 7 * n; }
+
+/// What seeds are prepared with.
+struct SeedChain {
+  int n;
+  Side left, right;
+  float weight2;         ///< squared rotation weight of the key [m^2]
+  float longest_step;    ///< length of the first step at most [rad or m]
+  float outside_weight;  ///< of the squared way by which the first step left the limits
+  float offset_first, offset_last;
+  float lower[kMaxJoints], upper[kMaxJoints], middle[kMaxJoints];
+  bool wraps[kMaxJoints];  ///< turns, so that whole turns change nothing
+};
+
+/// Pose of the last joint's frame to reach, seen from the first one's: columns x, y, z and
+/// position.
+struct SeedTarget {
+  float x[3], y[3], z[3], p[3];
+};
+
+/// Seeds made from a block.
+struct SeedPack {
+  /// The joints left out of the samples, as they bring each sample's pose nearest to the target.
+  alignas(64) float first[kBlock], last[kBlock];
+  /// All joints after the first step, inside the limits.
+  alignas(64) float q[kMaxJoints][kBlock];
+  alignas(64) float score[kBlock];
+  unsigned char order[kBlock];  ///< best score first
+};
+
+using PrepareSeeds = void (*)(const SeedChain& chain, const SeedTarget& target, const float* block,
+                              SeedPack& out);
+
+/// The `seeds` of a chain from a configuration: lowers nearest[entry] to their distance in the
+/// joint where that is largest [rad or m]. `per_turn`: 1 / 2 pi for joints whose whole turns change
+/// nothing, else 0.
+using AddKnown = void (*)(int n, const float* per_turn, const float* from, const SeedPack& seeds,
+                          float* nearest);
+
+/// Index of the largest of `count` numbers, a multiple of kBlock; of equals the first.
+using FindLargest = int (*)(int count, const float* numbers);
+
+/// The kernels of one instruction set.
+struct LaneKernels {
+  const char* name;
+  int lanes;
+  Advance advance;
+  PrepareSeeds prepare;
+  AddKnown add_known;
+  FindLargest find_largest;
+};
+
+}  // namespace iksel::lanes

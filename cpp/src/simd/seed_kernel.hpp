@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From the samples of a block to seeds for a target: the joints that are left out of the samples
+// are set, every seed takes one step by its stored pseudo-inverse, and the seeds are ranked by
+// where that step ended; and how far seeds are from what is known. All in single precision: a seed
+// need not be exact.
+#pragma once
+
+#include "simd/lane_math.hpp"
+#include "simd/lane_types.hpp"
+
+namespace iksel::lanes {
+
+/// q moved by whole turns to within half a turn of `middle`.
+template <typename T>
+inline T wrap_near(const T& q, float middle) {
+  const T turns = nearest_integer((q - T(middle)) * T(0.15915494F));
+  return q - turns * T(6.2831853F);
+}
+
+template <typename T>
+void prepare_seeds(const SeedChain& chain, const SeedTarget& target, const float* block,
+                   SeedPack& out) {
+  using L = Lanes<T>;
+  constexpr int kVectors = kBlock / L::kCount;
+  const int n = chain.n;
+  const int right = n - 1;
+  T score[kVectors];
+  for (int v = 0; v < kVectors; ++v) {
+    const auto row = [&](int r) { return L::load(block + r * kBlock + v * L::kCount); };
+    T p[3] = {row(0), row(1), row(2)};
+    T x[3] = {row(3), row(4), row(5)};
+    T y[3] = {row(6), row(7), row(8)};
+    const T z[3] = {row(9), row(10), row(11)};
+
+    // The left side first; c, s is the turn about the first axis, by which the target is turned
+    // back to where the samples are.
+    T first = T(0.0F);
+    T c = T(1.0F);
+    T s = T(0.0F);
+    if (chain.left == Side::rotation) {
+      const T w2 = T(chain.weight2);
+      T px = p[0];
+      T py = p[1];
+      float tx = target.p[0];
+      float ty = target.p[1];
+      if (chain.right == Side::translation) {
+        // The slide moves the position, but not the foot of the perpendicular onto its line.
+        const T along = p[0] * z[0] + p[1] * z[1] + p[2] * z[2];
+        px = px - along * z[0];
+        py = py - along * z[1];
+        const float target_along = tx * target.z[0] + ty * target.z[1] + target.p[2] * target.z[2];
+        tx -= target_along * target.z[0];
+        ty -= target_along * target.z[1];
+      }
+      const T S = px * T(ty) - py * T(tx) + w2 * (z[0] * T(target.z[1]) - z[1] * T(target.z[0]));
+      const T C = px * T(tx) + py * T(ty) + w2 * (z[0] * T(target.z[0]) + z[1] * T(target.z[1]));
+      const T scale = T(1.0F) / sqrt(max(S * S + C * C, T(1e-30F)));
+      c = select(C * C + S * S > T(1e-30F), C * scale, T(1.0F));
+      s = S * scale;
+      first = wrap_near(rough_atan2(S, C) - T(chain.offset_first), chain.middle[0]);
+    } else if (chain.left == Side::translation) {
+      first = T(target.p[2]) - p[2] - T(chain.offset_first);
+      p[2] = T(target.p[2]);
+    }
+    const auto turned_back = [&](const float(&t)[3], T(&to)[3]) {
+      to[0] = c * T(t[0]) + s * T(t[1]);
+      to[1] = c * T(t[1]) - s * T(t[0]);
+      to[2] = T(t[2]);
+    };
+    T tp[3];
+    T tx[3];
+    T ty[3];
+    T tz[3];
+    turned_back(target.p, tp);
+    turned_back(target.x, tx);
+    turned_back(target.y, ty);
+    turned_back(target.z, tz);
+
+    T last = T(0.0F);
+    T slide = T(0.0F);
+    if (chain.right == Side::rotation) {
+      const T sine =
+          y[0] * tx[0] + y[1] * tx[1] + y[2] * tx[2] - (x[0] * ty[0] + x[1] * ty[1] + x[2] * ty[2]);
+      const T cosine =
+          x[0] * tx[0] + x[1] * tx[1] + x[2] * tx[2] + y[0] * ty[0] + y[1] * ty[1] + y[2] * ty[2];
+      const T square = sine * sine + cosine * cosine;
+      const T scale = T(1.0F) / sqrt(max(square, T(1e-30F)));
+      const T cn = select(square > T(1e-30F), cosine * scale, T(1.0F));
+      const T sn = sine * scale;
+      for (int i = 0; i < 3; ++i) {
+        const T a = x[i];
+        x[i] = a * cn + y[i] * sn;
+        y[i] = y[i] * cn - a * sn;
+      }
+      last = wrap_near(rough_atan2(sine, cosine) - T(chain.offset_last), chain.middle[right]);
+    } else if (chain.right == Side::translation) {
+      for (int i = 0; i < 3; ++i) slide = slide + (tp[i] - p[i]) * z[i];
+      last = slide - T(chain.offset_last);
+    }
+
+    L::store(first, out.first + v * L::kCount);
+    L::store(last, out.last + v * L::kCount);
+
+    // What is left of the error, as the iteration measures it, at the sample's own origin, where
+    // its pseudo-inverse was taken.
+    T e[6];
+    T trace = T(1.0F);
+    for (int i = 0; i < 3; ++i) trace = trace + x[i] * tx[i] + y[i] * ty[i] + z[i] * tz[i];
+    const T factor = T(1.0F) / sqrt(max(trace, T(1e-6F)));
+    for (int i = 0; i < 3; ++i) {
+      const int a = (i + 1) % 3;
+      const int b = (i + 2) % 3;
+      e[3 + i] = (x[a] * tx[b] - x[b] * tx[a] + y[a] * ty[b] - y[b] * ty[a] + z[a] * tz[b] -
+                  z[b] * tz[a]) *
+                 factor;
+    }
+    for (int i = 0; i < 3; ++i) {
+      e[i] = tp[i] - p[i];
+      if (chain.right == Side::translation) {
+        const int a = (i + 1) % 3;
+        const int b = (i + 2) % 3;
+        e[i] = e[i] - slide * z[i] - slide * (e[3 + a] * z[b] - e[3 + b] * z[a]);
+      }
+    }
+
+    T dq[kMaxJoints];
+    T dq2 = T(0.0F);
+    for (int j = 0; j < n; ++j) {
+      const int at = kPoseRows + n + 6 * j;
+      dq[j] = row(at) * e[0];
+      for (int r = 1; r < 6; ++r) dq[j] = dq[j] + row(at + r) * e[r];
+      dq2 = dq2 + dq[j] * dq[j];
+    }
+    // Far from the sample its pseudo-inverse is no guide: only so long a step in its direction.
+    const T shorten = min(T(1.0F), T(chain.longest_step) / sqrt(max(dq2, T(1e-20F))));
+    T outside = T(0.0F);
+    for (int j = 0; j < n; ++j) {
+      T q = row(kPoseRows + j);
+      if (j == 0 && chain.left != Side::none) q = first;
+      if (j == right && chain.right != Side::none) q = last;
+      q = q + dq[j] * shorten;
+      if (chain.wraps[j]) q = wrap_near(q, chain.middle[j]);
+      const T inside = min(max(q, T(chain.lower[j])), T(chain.upper[j]));
+      outside = outside + (q - inside) * (q - inside);
+      L::store(inside, out.q[j] + v * L::kCount);
+    }
+    score[v] = dq2 + T(chain.outside_weight) * outside;
+    L::store(score[v], out.score + v * L::kCount);
+  }
+
+  // Rank of a seed: how many others are better; of equals the first.
+  T rank[kVectors];
+  for (int v = 0; v < kVectors; ++v) rank[v] = T(0.0F);
+  for (int other = 0; other < kBlock; ++other) {
+    const T theirs(out.score[other]);
+    for (int v = 0; v < kVectors; ++v) {
+      const auto better = (theirs < score[v]) |
+                          ((theirs == score[v]) &
+                           (T(static_cast<float>(other)) < L::load(kEntries + v * L::kCount)));
+      rank[v] = rank[v] + select(better, T(1.0F), T(0.0F));
+    }
+  }
+  float ranks[kBlock];
+  for (int v = 0; v < kVectors; ++v) L::store(rank[v], ranks + v * L::kCount);
+  for (int entry = 0; entry < kBlock; ++entry) {
+    out.order[static_cast<int>(ranks[entry])] = static_cast<unsigned char>(entry);
+  }
+}
+
+template <typename T>
+void add_known(int n, const float* per_turn, const float* from, const SeedPack& seeds,
+               float* nearest) {
+  using L = Lanes<T>;
+  for (int entry = 0; entry < kBlock; entry += L::kCount) {
+    T away = T(0.0F);
+    for (int j = 0; j < n; ++j) {
+      const T d = L::load(seeds.q[j] + entry) - T(from[j]);
+      const T turns = nearest_integer(d * T(per_turn[j]));
+      away = max(away, abs(d - turns * T(6.2831853F)));
+    }
+    L::store(min(away, L::load(nearest + entry)), nearest + entry);
+  }
+}
+
+template <typename T>
+int find_largest(int count, const float* numbers) {
+  using L = Lanes<T>;
+  T columns = L::load(numbers);
+  for (int i = L::kCount; i < count; i += L::kCount) columns = max(columns, L::load(numbers + i));
+  float rows[L::kCount];
+  L::store(columns, rows);
+  float largest = rows[0];
+  for (int i = 1; i < L::kCount; ++i) largest = max(largest, rows[i]);
+  int at = 0;
+  while (at + L::kCount < count && !any(L::load(numbers + at) == T(largest))) at += L::kCount;
+  while (at + 1 < count && numbers[at] != largest) ++at;
+  return at;
+}
+
+}  // namespace iksel::lanes

@@ -129,9 +129,11 @@ class IKSEL_EXPORT Solver {
                    const double* near, const BatchView& out, int threads = 0,
                    const Progress& progress = {}) const;
 
+  /// What it holds; for the library's own files.
+  struct Impl;
+
  private:
   friend class Tracker;
-  struct Impl;
   std::shared_ptr<const Impl> impl_;
 };
 

@@ -11,7 +11,7 @@
 #pragma once
 
 #include "kinematics/chain_model.hpp"
-#include "simd/lane_types.hpp"
+#include "simd/lane_chain.hpp"
 
 namespace iksel {
 
@@ -48,11 +48,7 @@ class Reduction {
   Parameters p_;
 };
 
-/// True if the degrees of freedom are the joints, one to one: no mimic joints.
-bool is_simple(const ChainModel& model);
-
-/// The chain as the lanes want it. Only for simple chains.
-lanes::LaneChain make_lane_chain(const ChainModel& model);
+/// The joints of a simple chain as seeds are prepared for them.
 lanes::SeedChain make_seed_chain(const ChainModel& model, const Reduction& reduction);
 
 /// Y as seeds are prepared for it.

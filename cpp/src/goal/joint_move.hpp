@@ -25,4 +25,20 @@ class JointMove {
   MoveNorm norm_;
 };
 
+/// Half the squared weighted move from a configuration, or for the max norm a p-norm near to it. A
+/// joint without weight still has a little, so that it does not drift.
+class MoveCost {
+ public:
+  MoveCost(const JointVector& weights, const JointVector& from, double power = 2);
+
+  /// The gradient, and the diagonal of a positive approximation of the second derivative, if they
+  /// are not null.
+  double operator()(const JointVector& q, JointVector* gradient, JointVector* curvature) const;
+
+ private:
+  JointVector from_;
+  double power_;
+  JointVector weights_;
+};
+
 }  // namespace iksel

@@ -10,6 +10,7 @@
 #include "base/error_check.hpp"
 #include "base/message_text.hpp"
 #include "base/pseudo_inverse.hpp"
+#include "goal/joint_move.hpp"
 #include "iksel/error.hpp"
 
 namespace iksel {
@@ -36,16 +37,10 @@ double manipulability(const ChainModel& model, const JointVector& q) {
 
 double ObjectiveCost::of_posture(const JointVector& q, JointVector* gradient,
                                  JointVector* curvature) const {
-  JointVector weights = JointVector::Ones(model_.dof);
-  if (objective_.weights.size() != 0) {
-    // A joint without weight still has a little, so that it does not drift.
-    constexpr double kLeast = 1e-6;
-    weights = objective_.weights.cwiseMax(kLeast * objective_.weights.maxCoeff());
-  }
-  const JointVector d = weights.cwiseProduct(q - objective_.posture);
-  if (gradient != nullptr) *gradient = weights.cwiseProduct(d);
-  if (curvature != nullptr) *curvature = weights.cwiseAbs2();
-  return 0.5 * d.squaredNorm();
+  const JointVector weights = objective_.weights.size() == 0
+                                  ? JointVector(JointVector::Ones(model_.dof))
+                                  : objective_.weights;
+  return MoveCost(weights, objective_.posture)(q, gradient, curvature);
 }
 
 double ObjectiveCost::of_limits(const JointVector& q, JointVector* gradient,

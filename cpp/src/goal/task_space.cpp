@@ -46,6 +46,8 @@ Eigen::Matrix3d inverse_left_jacobian(const Eigen::Vector3d& w) {
 
 TaskSpace::TaskSpace(const Task& task, double position_tolerance, double rotation_tolerance)
     : task_(task),
+      position_tolerance_(position_tolerance),
+      rotation_tolerance_(rotation_tolerance),
       full_pose_(task.is_full_pose()),
       constrained_axes_(task.constrained_axes()),
       twist_(odd_axis(task)) {

@@ -23,6 +23,8 @@ class TaskSpace {
   TaskSpace(const Task& task, double position_tolerance, double rotation_tolerance);
 
   [[nodiscard]] const Task& task() const { return task_; }
+  [[nodiscard]] double position_tolerance() const { return position_tolerance_; }
+  [[nodiscard]] double rotation_tolerance() const { return rotation_tolerance_; }
   [[nodiscard]] bool is_full_pose() const { return full_pose_; }
   [[nodiscard]] int constrained_axes() const { return constrained_axes_; }
   /// Number of axes without any width: a chain with more joints has families of solutions.
@@ -61,6 +63,7 @@ class TaskSpace {
   Eigen::Vector3d rotation_part(const Eigen::Matrix3d& E, Eigen::Matrix3d* map) const;
 
   Task task_;
+  double position_tolerance_, rotation_tolerance_;
   bool full_pose_;
   int constrained_axes_;
   /// Axis of the twist; -1: the rotation vector is used.

@@ -46,6 +46,8 @@ class ChainModel {
   StoredPose tcp, tcp_inverse;
   Eigen::Matrix<double, 3, 1, Eigen::DontAlign> reach_centre;
   double reach;
+  /// Farthest that the TCP may be from reach_centre [m].
+  [[nodiscard]] double reach_of_tcp() const { return reach + tcp.translation().norm(); }
   std::uint64_t hash;
 
  private:

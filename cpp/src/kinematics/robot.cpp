@@ -86,7 +86,7 @@ Matrix Robot::random_configurations(std::size_t n, std::uint64_t seed) const {
   return q;
 }
 
-double Robot::reach() const { return model_->reach + model_->tcp.translation().norm(); }
+double Robot::reach() const { return model_->reach_of_tcp(); }
 Eigen::Vector3d Robot::reach_centre() const { return model_->reach_centre; }
 std::uint64_t Robot::chain_hash() const { return model_->hash; }
 

@@ -15,8 +15,9 @@ constexpr int kDescentSteps = 200;
 
 /// Lowers the errors outside of the box from q on, inside the limits, by damped steps of which only
 /// those are taken that help. `weight` is the length that 1 rad counts [m]. Returns the error [m].
-double descend(const ChainModel& model, const SolverOptions& options, const TaskSpace& task,
-               const Pose& target, double weight, JointVector& q) {
+double descend(const ChainModel& model, const Goal& goal, double weight, JointVector& q) {
+  const TaskSpace& task = goal.task();
+  const Pose& target = goal.target();
   Vector6 scale;
   scale << 1, 1, 1, weight, weight, weight;
   const auto error_of = [&](const JointVector& at) {
@@ -34,11 +35,10 @@ double descend(const ChainModel& model, const SolverOptions& options, const Task
     for (int k = 0; k < 6; ++k) {
       if (e[k] == 0 && task.lower()[k] != task.upper()[k]) J.row(k).setZero();
     }
-    SolverOptions damped = options;
-    damped.damping = damping;
     const JacobianMatrix weighted = scale.asDiagonal() * J;
     const Vector6 asked = scale.cwiseProduct(e);
-    const JointVector next = model.joints.clamp(q + lm_step(model, q, weighted, asked, damped));
+    const JointVector next =
+        model.joints.clamp(q + lm_step(model, q, weighted, asked, damping * asked.squaredNorm()));
     const double next_error = error_of(next);
     if (next_error < error) {
       const bool settled = error - next_error < 1e-9 * error;
@@ -62,7 +62,7 @@ double descend(const ChainModel& model, const SolverOptions& options, const Task
 
 JointVector BestEffort::from(const JointVector& seed) {
   JointVector q = seed;
-  const double error = descend(model_, options_, task_, target_, weight_, q);
+  const double error = descend(model_, goal_, weight_, q);
   if (error < error_) {
     error_ = error;
     q_ = q;
@@ -70,8 +70,8 @@ JointVector BestEffort::from(const JointVector& seed) {
   return q;
 }
 
-std::vector<JointVector> BestEffort::from_anywhere(int n) {
-  Random random(options_.seed);
+std::vector<JointVector> BestEffort::from_anywhere(int n, std::uint64_t seed) {
+  Random random(seed);
   JointVector q(model_.dof);
   std::vector<JointVector> ends;
   for (int i = 0; i < n; ++i) {

@@ -2,11 +2,11 @@
 // The least error inside the limits, for a task that has no answer there.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "base/constants.hpp"
-#include "goal/task_space.hpp"
-#include "iksel/options.hpp"
+#include "goal/goal.hpp"
 #include "kinematics/chain_model.hpp"
 
 namespace iksel {
@@ -15,24 +15,21 @@ namespace iksel {
 class BestEffort {
  public:
   /// `weight` is the length that 1 rad counts [m].
-  BestEffort(const ChainModel& model, const SolverOptions& options, double weight,
-             const TaskSpace& task, const Pose& target)
-      : model_(model), options_(options), task_(task), target_(target), weight_(weight) {}
+  BestEffort(const ChainModel& model, const Goal& goal, double weight)
+      : model_(model), goal_(goal), weight_(weight) {}
 
   /// Makes 1 rad count that part of what it counts otherwise. To come first.
   void weigh_rotation(double part) { weight_ *= part; }
 
   /// Where it ended.
   JointVector from(const JointVector& seed);
-  /// From n configurations spread over the limits.
-  std::vector<JointVector> from_anywhere(int n);
+  /// From n configurations spread over the limits by a seed.
+  std::vector<JointVector> from_anywhere(int n, std::uint64_t seed);
   [[nodiscard]] const JointVector& q() const { return q_; }
 
  private:
   const ChainModel& model_;
-  const SolverOptions& options_;
-  const TaskSpace& task_;
-  const Pose& target_;
+  const Goal& goal_;
   double weight_;
   double error_ = kInfinity;
   JointVector q_;

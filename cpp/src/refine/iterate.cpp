@@ -2,7 +2,6 @@
 #include "refine/iterate.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include "base/constants.hpp"
 #include "base/rotation.hpp"
@@ -11,14 +10,6 @@
 
 namespace iksel {
 namespace {
-
-/// [position; rotation vector] error of a pose against the target.
-Vector6 error_vector(const Pose& target, const Pose& pose) {
-  Vector6 e;
-  e << target.translation() - pose.translation(),
-      to_rotation_vector(target.linear() * pose.linear().transpose());
-  return e;
-}
 
 /// Shortens the two halves of an error to the clamps.
 void clamp_error(Vector6& e, double position, double rotation, const SolverOptions& options) {
@@ -53,7 +44,7 @@ JointVector make_step(const IterationContext& context, const JointVector& q,
     case Iteration::lm:
       break;
   }
-  return lm_step(context.model, q, J, e, options, squared_error);
+  return lm_step(context.model, q, J, e, options.damping * squared_error);
 }
 
 /// What follows a step besides adding it; true if the attempt goes on.
@@ -69,90 +60,86 @@ void after_step(const IterationContext& context, JointVector& q) {
   }
 }
 
-}  // namespace
+/// Where an attempt stands.
+struct Standing {
+  JacobianMatrix J;  ///< of the error's parts
+  Vector6 d;         ///< deviation, for a task only
+  Vector6 e;         ///< what is missing
+  double position, rotation;
+  double tcp_position;  ///< the rotation is the same there
+};
 
-void measure_error(const Pose& target, const Frame<double>& f, double& position_error,
-                   double& rotation_error) {
-  double square = 0;
-  double sine2 = 0;  // |R_target R^T - its transpose|^2 / 4: sine of the angle, squared
-  double trace = 0;
-  for (int i = 0; i < 3; ++i) {
-    const int a = (i + 1) % 3;
-    const int b = (i + 2) % 3;
-    const double d = target(i, 3) - f.p[i];
-    const double v = 0.5 * (f.x[a] * target(b, 0) - f.x[b] * target(a, 0) + f.y[a] * target(b, 1) -
-                            f.y[b] * target(a, 1) + f.z[a] * target(b, 2) - f.z[b] * target(a, 2));
-    square += d * d;
-    sine2 += v * v;
-    trace += f.x[i] * target(i, 0) + f.y[i] * target(i, 1) + f.z[i] * target(i, 2);
+Standing evaluate(const IterationContext& context, const JointVector& q) {
+  const ChainModel& model = context.model;
+  const Goal& goal = context.goal;
+  const bool at_tcp = !goal.is_full_pose() || context.steps_at_tcp;
+  Standing at;
+  Pose pose;
+  if (context.kdl != nullptr) {
+    pose = context.kdl->fk(q);
+    at.J = context.kdl->jacobian(q);
+  } else {
+    Jacobian J;
+    model.fk_jacobian(q.data(), pose, J, at_tcp);
+    at.J = J;
   }
-  const double sine = std::sqrt(sine2);
-  position_error = std::sqrt(square);
-  // asin by its series where that is exact to the last digit; it also spares an arc tangent.
-  const bool small = sine < 1e-4 && trace > 1;
-  rotation_error = small ? sine * (1 + sine2 / 6) : std::atan2(sine, 0.5 * (trace - 1));
+  if (goal.is_full_pose()) {
+    at.e = pose_error(context.tip_target, pose);
+  } else {
+    at.d = goal.task().deviation(goal.target(), pose, at.J);
+    at.e = task_error(goal.task(), at.d);
+  }
+  at.position = at.tcp_position = at.e.head<3>().norm();
+  at.rotation = at.e.tail<3>().norm();
+  if (!at_tcp) {
+    const Eigen::Vector3d tcp = pose * Eigen::Vector3d(model.tcp.translation());
+    at.tcp_position = (goal.target().translation() - tcp).norm();
+  }
+  return at;
 }
 
+/// The joint adjustment from q, whose error stands clamped in `at`.
+JointVector adjust(const IterationContext& context, const JointVector& q, const Standing& at) {
+  const auto step_by = [&](const JacobianMatrix& rows, const Vector6& asked, double squared) {
+    return make_step(context, q, rows, asked, squared);
+  };
+  if (context.goal.is_full_pose()) return step_by(at.J, at.e, at.e.squaredNorm());
+  return task_step(context.goal.task(), at.J, at.d, at.e, step_by);
+}
+
+}  // namespace
+
 Outcome iterate(const IterationContext& context, JointVector& q, int& steps) {
+  /// Squared error that counts as far off [mixed units].
+  constexpr double kFarOff2 = 1e-4;
   const ChainModel& model = context.model;
   const SolverOptions& options = context.options;
+  const TaskSpace& task = context.goal.task();
   const bool growth_stop = stops_on_growth(options);
   const bool small_step_stop = stops_on_small_step(options.iteration);
   Outcome outcome = Outcome::failed;
-  double last_position = std::numeric_limits<double>::infinity();
-  double last_rotation = std::numeric_limits<double>::infinity();
-  Pose pose;
-  Jacobian J;
-  const TaskSpace* task = context.task;
+  double last_position = kInfinity;
+  double last_rotation = kInfinity;
 
   for (int step = 0;; ++step) {
-    if (context.kdl != nullptr) {
-      pose = context.kdl->fk(q);
-      J = context.kdl->jacobian(q);
-    } else {
-      model.fk_jacobian(q.data(), pose, J, task != nullptr);
-    }
-    JacobianMatrix rows = J;
-    Vector6 d;
-    Vector6 e;
-    if (task == nullptr) {
-      e = error_vector(context.tip_target, pose);
-    } else {
-      d = task->deviation(context.target, pose, rows);
-      e = task_error(*task, d);
-    }
-    const double position = e.head<3>().norm();
-    const double rotation = e.tail<3>().norm();  // the same at the TCP
-    const double tcp_position =
-        task != nullptr
-            ? position
-            : (context.target.translation() - pose * Eigen::Vector3d(model.tcp.translation()))
-                  .norm();
-
-    if (tcp_position < options.position_tolerance && rotation < options.rotation_tolerance) {
+    Standing at = evaluate(context, q);
+    const double part = step == options.max_iterations ? 1 : context.aim;
+    if (at.tcp_position < part * task.position_tolerance() &&
+        at.rotation < part * task.rotation_tolerance()) {
       if (options.whole_turns) model.joints.wrap(q.data());
       if (model.joints.contains(q.data())) return Outcome::solved;
       outcome = Outcome::outside_limits;
-      // Only the paper's first two schemes go on from here; the others have nothing left to gain.
-      if (options.iteration == Iteration::cwln || options.iteration == Iteration::cwpi ||
-          options.iteration == Iteration::lm) {
-        return outcome;
-      }
+      // Only the paper's first schemes go on from here; the others have nothing left to gain.
+      if (!stops_on_small_step(options.iteration)) return outcome;
     }
-    if (growth_stop && position > last_position && rotation > last_rotation) return outcome;
-    last_position = position;
-    last_rotation = rotation;
+    if (growth_stop && at.position > last_position && at.rotation > last_rotation) return outcome;
+    last_position = at.position;
+    last_rotation = at.rotation;
     if (step == options.max_iterations) return outcome;
-    /// Squared error that counts as far off [mixed units].
-    constexpr double kStillFarOff2 = 1e-4;
-    if (step >= context.patience && e.squaredNorm() > kStillFarOff2) return outcome;
+    if (step >= context.patience && at.e.squaredNorm() > kFarOff2) return outcome;
 
-    if (options.iteration != Iteration::lm) clamp_error(e, position, rotation, options);
-    const auto step_by = [&](const JacobianMatrix& part, const Vector6& asked, double squared) {
-      return make_step(context, q, part, asked, squared);
-    };
-    const JointVector adjustment =
-        task != nullptr ? task_step(*task, rows, d, e, step_by) : step_by(rows, e, e.squaredNorm());
+    if (options.iteration != Iteration::lm) clamp_error(at.e, at.position, at.rotation, options);
+    const JointVector adjustment = adjust(context, q, at);
     ++steps;
     if (!adjustment.allFinite()) return outcome;
     if (small_step_stop && std::abs(adjustment.sum()) < options.min_step) {

@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "base/random.hpp"
-#include "goal/task_space.hpp"
+#include "goal/goal.hpp"
 #include "iksel/options.hpp"
 #include "kinematics/chain_model.hpp"
 #include "kinematics/kdl_chain.hpp"
@@ -28,24 +28,22 @@ enum class Outcome {
 struct IterationContext {
   const ChainModel& model;
   const SolverOptions& options;
-  /// T_base_tcp to reach, and where the tip link is then.
-  const Pose& target;
-  const Pose& tip_target;
-  /// Used instead of the kernel if not null; without the tool, or with it if there is a task.
+  const Goal& goal;
+  /// Where the tip link has to be: only for a full pose.
+  Pose tip_target;
+  /// Used instead of the kernel if not null: without the tool for a full pose, else with it.
   KdlChain* kdl;
   /// Source of restarts.
   Random& random;
-  /// What of the target is to be reached; null: the whole pose.
-  const TaskSpace* task = nullptr;
+  /// Part of the tolerances at which an attempt ends; after its last step they count whole.
+  double aim = 1;
+  /// Steps are made for the TCP, where `tip_target` is to be too.
+  bool steps_at_tcp = false;
   /// An attempt that is still far off after so many steps is given up.
   int patience = std::numeric_limits<int>::max();
 };
 
 /// Iterates q, in place, from the seed it holds. `steps` counts the steps taken. Never throws.
 Outcome iterate(const IterationContext& context, JointVector& q, int& steps);
-
-/// Lengths of the position [m] and rotation [rad] error of a pose.
-void measure_error(const Pose& target, const Frame<double>& pose, double& position_error,
-                   double& rotation_error);
 
 }  // namespace iksel

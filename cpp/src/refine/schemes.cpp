@@ -66,7 +66,7 @@ JointVector cwpi_step(const ChainModel& model, const JointVector& q, const Jacob
 }
 
 JointVector lm_step(const ChainModel& model, const JointVector& q, const JacobianMatrix& J,
-                    const Vector6& e, const SolverOptions& options, double squared_error) {
+                    const Vector6& e, double damping) {
   JacobianMatrix active = J;
   for (int i = 0; i < model.dof; ++i) {
     if (model.joints.is_periodic(i)) continue;
@@ -77,8 +77,7 @@ JointVector lm_step(const ChainModel& model, const JointVector& q, const Jacobia
     }
   }
   // The floor keeps the solve regular where the error is zero in double precision.
-  const double lambda = options.damping * squared_error + 1e-18;
-  JointVector step = damped_solve(active, lambda, e);
+  JointVector step = damped_solve(active, damping + 1e-18, e);
   for (int i = 0; i < model.dof; ++i) {
     if (model.joints.is_periodic(i)) continue;
     const double goal =
@@ -86,11 +85,6 @@ JointVector lm_step(const ChainModel& model, const JointVector& q, const Jacobia
     step[i] = goal - q[i];
   }
   return step;
-}
-
-JointVector lm_step(const ChainModel& model, const JointVector& q, const JacobianMatrix& J,
-                    const Vector6& e, const SolverOptions& options) {
-  return lm_step(model, q, J, e, options, e.squaredNorm());
 }
 
 }  // namespace iksel

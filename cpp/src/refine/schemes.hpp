@@ -30,12 +30,9 @@ JointVector cwln_step(const ChainModel& model, const JointVector& q, const Jacob
 JointVector cwpi_step(const ChainModel& model, const JointVector& q, const JacobianMatrix& J,
                       const Vector6& e, const SolverOptions& options);
 
-/// lm: J^T (J J^T + damping |e|^2 I)^-1 e, or with `squared_error` in place of |e|^2, with the
-/// columns of joints that stand at a limit and would leave it set to zero, and the step cut off at
-/// the limits.
+/// lm: J^T (J J^T + damping I)^-1 e, with the columns of joints that stand at a limit and would
+/// leave it set to zero, and the step cut off at the limits.
 JointVector lm_step(const ChainModel& model, const JointVector& q, const JacobianMatrix& J,
-                    const Vector6& e, const SolverOptions& options, double squared_error);
-JointVector lm_step(const ChainModel& model, const JointVector& q, const JacobianMatrix& J,
-                    const Vector6& e, const SolverOptions& options);
+                    const Vector6& e, double damping);
 
 }  // namespace iksel

@@ -6,7 +6,6 @@
 
 #include "refine/iterate.hpp"
 #include "refine/schemes.hpp"
-#include "refine/task_step.hpp"
 
 namespace iksel {
 namespace {
@@ -15,10 +14,11 @@ namespace {
 /// inside the joint limits and the task's box: min 1/2 s^T H s + g^T s under
 /// lower <= [J s; s] <= upper. By the primal active-set method (Nocedal and Wright: "Numerical
 /// Optimization", 2006, section 16.5), whose steps are solved for in the 6 rows of J only.
-class SlideStep {
+class SelfMotionStep {
  public:
-  SlideStep(const ChainModel& model, const TaskSpace& task, const JointVector& q, const Vector6& d,
-            const JacobianMatrix& J, const JointVector& gradient, const JointVector& curvature)
+  SelfMotionStep(const ChainModel& model, const TaskSpace& task, const JointVector& q,
+                 const Vector6& d, const JacobianMatrix& J, const JointVector& gradient,
+                 const JointVector& curvature)
       : J_(J), gradient_(gradient), curvature_(curvature), dof_(model.dof) {
     row_lower_ = task.aim_lower() - d;
     row_upper_ = task.aim_upper() - d;
@@ -138,40 +138,21 @@ class SlideStep {
 
 }  // namespace
 
-bool converge(const ChainModel& model, const SolverOptions& options, const TaskSpace& task,
-              const Pose& T_base_tip, int most, JointVector& q) {
-  Pose pose;
-  Jacobian of_pose;
-  // The default damping, whatever the scheme of the solver is.
-  const SolverOptions damped;
-  for (int i = 0;; ++i) {
-    model.fk_jacobian(q.data(), pose, of_pose);
-    JacobianMatrix J = of_pose;
-    Vector6 d;
-    Vector6 e;
-    if (task.is_full_pose()) {
-      e = pose_error(T_base_tip, pose);
-    } else {
-      d = task.deviation(T_base_tip, pose, J);
-      e = task_error(task, d);
-    }
-    const double position = e.head<3>().norm();
-    const double rotation = e.tail<3>().norm();
-    if (i == most || (position <= 0.01 * options.position_tolerance &&
-                      rotation <= 0.01 * options.rotation_tolerance)) {
-      return position <= options.position_tolerance && rotation <= options.rotation_tolerance &&
-             model.joints.contains(q.data());
-    }
-    const auto step = [&](const JacobianMatrix& rows, const Vector6& asked, double squared_error) {
-      return lm_step(model, q, rows, asked, damped, squared_error);
-    };
-    q += task.is_full_pose() ? step(J, e, e.squaredNorm()) : task_step(task, J, d, e, step);
-    if (!q.allFinite()) return false;
-  }
+bool converge(const ChainModel& model, const Goal& goal, int most, JointVector& q) {
+  // The default scheme, whatever that of the solver is.
+  SolverOptions options;
+  options.max_iterations = most;
+  options.whole_turns = false;
+  Random unused(0);
+  IterationContext context{model, options, goal, goal.target(), nullptr, unused};
+  context.aim = 0.01;
+  context.steps_at_tcp = true;
+  int steps = 0;
+  return iterate(context, q, steps) == Outcome::solved;
 }
 
-int slide(const ChainModel& model, const SolverOptions& options, const TaskSpace& task,
-          const Pose& T_base_tip, const JointCost& cost, int most, JointVector& q) {
+int descend_self_motion(const ChainModel& model, const Goal& goal, const JointCost& cost, int most,
+                        JointVector& q) {
   /// Longest step of a joint, within which the pose stays near enough to be corrected [rad or m].
   constexpr double kLongest = 0.5;
   constexpr double kSettled = 1e-7;
@@ -185,15 +166,16 @@ int slide(const ChainModel& model, const SolverOptions& options, const TaskSpace
   while (steps < most) {
     model.fk_jacobian(q.data(), pose, of_pose);
     JacobianMatrix J = of_pose;
-    const Vector6 d = task.deviation(T_base_tip, pose, J);
-    const JointVector step = SlideStep(model, task, q, d, J, gradient, curvature).solve();
+    const Vector6 d = goal.task().deviation(goal.target(), pose, J);
+    const JointVector step =
+        SelfMotionStep(model, goal.task(), q, d, J, gradient, curvature).solve();
     const double longest = step.cwiseAbs().maxCoeff();
     if (!(longest > kSettled)) return steps;
     double scale = std::min(1.0, kLongest / longest);
     bool better = false;
     for (int halving = 0; halving < 8 && !better; ++halving, scale /= 2) {
       JointVector next = model.joints.clamp(q + scale * step);
-      if (!converge(model, options, task, T_base_tip, kCorrections, next)) continue;
+      if (!converge(model, goal, kCorrections, next)) continue;
       const double next_value = cost(next, nullptr, nullptr);
       if (!(next_value < value)) continue;
       better = true;
@@ -203,6 +185,26 @@ int slide(const ChainModel& model, const SolverOptions& options, const TaskSpace
     if (!better) return steps;
     value = cost(q, &gradient, &curvature);
   }
+  return steps;
+}
+
+int descend_to_near(const ChainModel& model, const Goal& goal, const JointMove& move,
+                    const JointVector& near, JointVector& q) {
+  constexpr int kSteps = 20;
+  int steps = 0;
+  const auto descend = [&](double power) {
+    const MoveCost cost(move.weights(), near, power);
+    steps += descend_self_motion(model, goal, JointCost(cost), kSteps, q);
+  };
+  descend(2);
+  if (move.norm() == MoveNorm::two) return steps;
+  JointVector best = q;
+  // The p-norm tends to the max norm; each is easy to reach from the one before.
+  for (const double power : {4.0, 16.0, 64.0}) {
+    descend(power);
+    if (move.length(q - near) < move.length(best - near)) best = q;
+  }
+  q = best;
   return steps;
 }
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A redundant arm moves its joints while the tip stays where it is. Sliding along this self-motion
+// A redundant arm moves its joints while the tip stays where it is. Moving along this self-motion
 // makes a cost of the joint values small.
 #pragma once
 
 #include "base/function_ref.hpp"
-#include "goal/task_space.hpp"
-#include "iksel/options.hpp"
+#include "goal/goal.hpp"
+#include "goal/joint_move.hpp"
 #include "kinematics/chain_model.hpp"
 
 namespace iksel {
@@ -15,16 +15,19 @@ namespace iksel {
 using JointCost =
     FunctionRef<double(const JointVector& q, JointVector* gradient, JointVector* curvature)>;
 
-/// Slides q, a solution inside the limits, over what the task allows until the cost is at a local
+/// Moves q, a solution inside the limits, over what the goal allows until the cost is at a local
 /// minimum or after `most` steps. q is a solution inside the limits and costs no more than before
 /// when it ends. Returns the steps taken.
-int slide(const ChainModel& model, const SolverOptions& options, const TaskSpace& task,
-          const Pose& T_base_tip, const JointCost& cost, int most, JointVector& q);
+int descend_self_motion(const ChainModel& model, const Goal& goal, const JointCost& cost, int most,
+                        JointVector& q);
 
-/// Brings q to the task by Levenberg-Marquardt with the limits inside the step, to a hundredth of
+/// The same for the move from `near`.
+int descend_to_near(const ChainModel& model, const Goal& goal, const JointMove& move,
+                    const JointVector& near, JointVector& q);
+
+/// Brings q to the goal by Levenberg-Marquardt with the limits inside the step, to a hundredth of
 /// the tolerances, in at most `most` steps. False if it does not get within the tolerances and the
 /// limits.
-bool converge(const ChainModel& model, const SolverOptions& options, const TaskSpace& task,
-              const Pose& T_base_tip, int most, JointVector& q);
+bool converge(const ChainModel& model, const Goal& goal, int most, JointVector& q);
 
 }  // namespace iksel

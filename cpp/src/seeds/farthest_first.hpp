@@ -4,28 +4,27 @@
 #pragma once
 
 #include "base/constants.hpp"
-#include "kinematics/chain_model.hpp"
 #include "kinematics/joint_space.hpp"
 #include "simd/lane_types.hpp"
 
 namespace iksel {
 
-/// SampleBlocks whose seeds are iterated together, so that lanes find work.
+/// Blocks whose seeds are iterated together, so that lanes find work.
 inline constexpr int kBlocksAtOnce = 4;
 
 class FarthestFirstQueue {
  public:
-  FarthestFirstQueue(const ChainModel& model, const lanes::LaneKernels& kernels)
-      : dof_(model.dof), kernels_(kernels) {
+  FarthestFirstQueue(const JointSpace& joints, const lanes::LaneKernels& kernels)
+      : dof_(joints.dof()), kernels_(kernels) {
     for (int j = 0; j < dof_; ++j) {
-      per_turn_[j] = model.joints.is_periodic(j) ? static_cast<float>(1 / kTwoPi) : 0;
+      per_turn_[j] = joints.is_periodic(j) ? static_cast<float>(1 / kTwoPi) : 0;
     }
   }
 
   /// The seeds of `blocks` packs in place of those before. The packs are the caller's.
   void reset(const lanes::SeedPack* packs, int blocks) {
     packs_ = packs;
-    tiles_ = blocks;
+    blocks_ = blocks;
     // The best of each block first, then the second best, and so on, where no distance decides.
     for (int block = 0; block < blocks; ++block) {
       for (int rank = 0; rank < lanes::kBlock; ++rank) {
@@ -40,7 +39,7 @@ class FarthestFirstQueue {
   void add_known(const double* solution) {
     float from[lanes::kMaxJoints];
     for (int j = 0; j < dof_; ++j) from[j] = static_cast<float>(solution[j]);
-    for (int block = 0; block < tiles_; ++block) {
+    for (int block = 0; block < blocks_; ++block) {
       kernels_.add_known(dof_, per_turn_, from, packs_[block], nearest_ + block * lanes::kBlock);
     }
   }
@@ -48,8 +47,8 @@ class FarthestFirstQueue {
   /// Index of the next seed, -1 if none is left; and its distance from what it was to be kept from,
   /// in the joint where that is largest [rad or m]. Among those farther than kFar the order of the
   /// blocks decides.
-  int take(float& distance) {
-    const int k = kernels_.find_largest(tiles_ * lanes::kBlock, nearest_);
+  int pop(float& distance) {
+    const int k = kernels_.find_largest(blocks_ * lanes::kBlock, nearest_);
     distance = nearest_[k];
     if (distance < 0) return -1;
     nearest_[k] = kTaken;
@@ -72,7 +71,7 @@ class FarthestFirstQueue {
   int dof_;
   const lanes::LaneKernels& kernels_;
   const lanes::SeedPack* packs_ = nullptr;
-  int tiles_ = 0;
+  int blocks_ = 0;
   float per_turn_[lanes::kMaxJoints] = {};
   alignas(64) float nearest_[kMost] = {};
 };

@@ -1,56 +1,77 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Seeds that a caller gives, ranked and re-selected by the same rules as the database's.
+// Seeds that come with a request: the configuration to stay near, then those given, best first.
+// They come on top of max_attempts, which bounds how many of them are tried.
 #pragma once
 
-#include <cstddef>
+#include <algorithm>
 #include <vector>
 
 #include "base/function_ref.hpp"
-#include "goal/task_space.hpp"
-#include "iksel/options.hpp"
-#include "kinematics/chain_model.hpp"
+#include "base/work.hpp"
+#include "iksel/types.hpp"
+#include "seeds/seed_ranking.hpp"
 
 namespace iksel {
 
-/// Memory is taken at construction for kRoom seeds; more take it once, and it is kept.
 class GivenSeeds {
  public:
-  static constexpr std::size_t kRoom = 1024;
+  /// `near` may be null. A stage has `per_stage` seeds. `should_continue` is asked while they are
+  /// ranked.
+  GivenSeeds(SeedRanking& ranking, const Goal& goal, const JointVector* near,
+             const std::vector<JointVector>& seeds, int most, int per_stage,
+             FunctionRef<bool()> should_continue, Work& work)
+      : ranking_(ranking),
+        goal_(goal),
+        near_(near),
+        seeds_(seeds),
+        left_(most),
+        per_stage_(per_stage),
+        should_continue_(should_continue),
+        work_(work) {}
 
-  GivenSeeds(const ChainModel& model, const SolverOptions& options);
+  bool next_stage() {
+    at_near_ = near_ != nullptr && !near_done_;
+    near_done_ = true;
+    left_in_stage_ = at_near_ ? 1 : std::min(left_, per_stage_);
+    if (at_near_) return true;
+    left_ -= left_in_stage_;
+    if (seeds_.empty() || left_in_stage_ == 0 || is_empty_) return false;
+    if (!ranked_) {
+      // Told to stop meanwhile, it has an empty stage, after which the search is asked.
+      ranking_.rank(goal_, seeds_, should_continue_);
+      ranked_ = true;
+    }
+    return true;
+  }
 
-  /// Puts `seeds`, which must outlive their use, in order: n log n for n of them. Asks `go_on`
-  /// every few; false if it said no, and there are no seeds then.
-  bool rank(const TaskSpace& task, const Pose& T_base_tip, const std::vector<JointVector>& seeds,
-            FunctionRef<bool()> go_on);
-
-  /// The seed of the next attempt; null when there is none left. As the database's, seeds are
-  /// re-selected among the options' `candidates` best; the others follow by rank.
-  const double* next();
+  template <typename Refiner>
+  bool load(Refiner& refiner, int lane) {
+    if (left_in_stage_ == 0) return false;
+    --left_in_stage_;
+    const double* seed = at_near_ ? near_->data() : ranking_.next();
+    if (seed == nullptr) {
+      is_empty_ = true;
+      return false;
+    }
+    work_.take_on_top();
+    refiner.load_seed(lane, seed);
+    return true;
+  }
 
  private:
-  struct Ranked {
-    double score;  ///< squared norm of Eq. (2) or Eq. (5)
-    std::size_t index;
-    bool leaves_limits;
-    friend bool operator<(const Ranked& a, const Ranked& b) {
-      if (a.leaves_limits != b.leaves_limits) return b.leaves_limits;
-      return a.score != b.score ? a.score < b.score : a.index < b.index;
-    }
-  };
-  [[nodiscard]] Ranked rank_one(std::size_t index, const TaskSpace& task,
-                                const Pose& T_base_tip) const;
-  /// The error to be reduced, and the Jacobian J of what reduces it.
-  Vector6 error_of(const JointVector& q, const TaskSpace& task, const Pose& T_base_tip,
-                   JacobianMatrix& J) const;
-  void bring_farthest_forward();
-
-  const ChainModel& model_;
-  const SolverOptions& options_;
-  const std::vector<JointVector>* seeds_ = nullptr;
-  std::vector<Ranked> ranked_;
-  std::size_t taken_ = 0;
-  JointVector sum_of_failed_;
+  SeedRanking& ranking_;
+  const Goal& goal_;
+  const JointVector* near_;
+  const std::vector<JointVector>& seeds_;
+  int left_;
+  int per_stage_;
+  FunctionRef<bool()> should_continue_;
+  Work& work_;
+  bool near_done_ = false;
+  bool at_near_ = false;
+  bool ranked_ = false;
+  bool is_empty_ = false;
+  int left_in_stage_ = 0;
 };
 
 }  // namespace iksel

@@ -10,6 +10,7 @@
 #include "base/parallel.hpp"
 #include "base/pose_check.hpp"
 #include "iksel/error.hpp"
+#include "search/batch_stream.hpp"
 #include "solver/solver_impl.hpp"
 
 namespace iksel {
@@ -87,106 +88,146 @@ class Targets {
   std::vector<std::size_t> invalid_;
 };
 
+/// A request for many targets, each with its own `near` perhaps.
+template <typename Target, typename Near, typename OnResult>
+class Batch {
+ public:
+  /// `target(i)` for targets 0 to count - 1; `near(i)` may be null. `on_result(i, result)` is told
+  /// of each, in any order and from any thread.
+  Batch(const Solver::Impl& solver, std::size_t count, const SolveRequest& request,
+        const Target& target, const Near& near, const OnResult& on_result)
+      : solver_(solver),
+        count_(count),
+        request_(request),
+        target_(target),
+        near_(near),
+        on_result_(on_result) {}
+
+  template <typename OnProgress>
+  void run(int threads, const OnProgress& on_progress) const {
+    const bool plain = !request_.has_wishes() && (count_ == 0 || near_(0) == nullptr);
+    // Few at a time keep all threads busy; many are for the lanes and the filter.
+    constexpr std::size_t kFew = 8;
+    const std::size_t chunk = plain || request_.filter ? kMost : kFew;
+    std::mutex turn;
+    SolveRequest locked = request_;
+    if (request_.filter) {
+      locked.filter = [&](const double* q, std::size_t n, bool* keep) {
+        const std::lock_guard<std::mutex> lock(turn);
+        request_.filter(q, n, keep);
+      };
+    }
+    const auto make_worker = [&] {
+      return [&, own = locked, lease = std::make_shared<WorkspacePool::Lease>(solver_.workspaces)](
+                 std::size_t begin, std::size_t end) mutable {
+        if (plain) {
+          solve_plain(begin, end, lease->get(), on_result_);
+        } else if (own.filter && !std::isfinite(own.deadline)) {
+          solve_filtered(begin, end, own, lease->get());
+        } else {
+          // With a deadline every target has one search only.
+          for (std::size_t i = begin; i < end; ++i) on_result_(i, solve_one(i, own, lease->get()));
+        }
+      };
+    };
+    parallel_for(count_, chunk, threads, make_worker, on_progress);
+  }
+
+ private:
+  static constexpr std::size_t kMost = 256;
+
+  /// Without wishes: what comes out for one target does not depend on the others.
+  template <typename Tell>
+  void solve_plain(std::size_t first, std::size_t last, Workspace& workspace,
+                   const Tell& tell) const {
+    static const SolveRequest none;
+    const auto solve_alone = [&](std::size_t i) {
+      tell(i, solver_.find_first(target_(i), solver_.task, none, workspace, nullptr));
+    };
+    if (workspace.lanes == nullptr || !solver_.task.is_full_pose()) {
+      for (std::size_t i = first; i < last; ++i) solve_alone(i);
+      return;
+    }
+    auto& [refiner, query] = *workspace.lanes;
+    BatchStream<Target, Tell> stream(solver_.model(), solver_.task, solver_.options.max_attempts,
+                                     refiner, query, first, last, target_, tell);
+    Work work(0);  // each target has its own
+    search(refiner, stream, stream, work);
+    for (std::size_t i = first; i < last; ++i) {
+      if (stream.is_left(i)) solve_alone(i);
+    }
+  }
+
+  Result solve_one(std::size_t i, SolveRequest& request, Workspace& workspace) const {
+    if (const double* values = near_(i)) {
+      request.near = JointVector(Eigen::Map<const Eigen::VectorXd>(values, solver_.robot.dof()));
+    }
+    return solver_.solve(target_(i), request, workspace);
+  }
+
+  /// What is found without the filter is put before it in one go; where it refuses, the search for
+  /// that target goes on.
+  void solve_filtered(std::size_t first, std::size_t last, SolveRequest& request,
+                      Workspace& workspace) const {
+    std::vector<Result> answers(last - first);
+    Filter filter;
+    filter.swap(request.filter);
+    if (near_(first) == nullptr && !request.has_wishes()) {
+      const auto keep = [&](std::size_t i, const Result& result) { answers[i - first] = result; };
+      solve_plain(first, last, workspace, keep);
+    } else {
+      for (std::size_t i = first; i < last; ++i) {
+        answers[i - first] = solve_one(i, request, workspace);
+      }
+    }
+    filter.swap(request.filter);
+
+    std::vector<double> candidates;
+    for (const Result& answer : answers) {
+      candidates.insert(candidates.end(), answer.q.data(), answer.q.data() + answer.q.size());
+    }
+    std::array<bool, kMost> keep{};
+    const std::size_t count = candidates.size() / static_cast<std::size_t>(solver_.robot.dof());
+    if (count > 0) request.filter(candidates.data(), count, keep.data());
+
+    std::size_t asked = 0;
+    for (std::size_t i = first; i < last; ++i) {
+      Result& answer = answers[i - first];
+      if (answer.success() && !keep[asked++]) {
+        Result other = solve_one(i, request, workspace);
+        other.attempts += answer.attempts;
+        other.iterations += answer.iterations;
+        answer = other;
+      }
+      on_result_(i, answer);
+    }
+  }
+
+  const Solver::Impl& solver_;
+  std::size_t count_;
+  const SolveRequest& request_;
+  const Target& target_;
+  const Near& near_;
+  const OnResult& on_result_;
+};
+
 }  // namespace
 
-template <typename Target, typename Near, typename Settle>
-void Solver::Impl::solve_many(std::size_t first, std::size_t last, SolveRequest& request,
-                              Workspace& workspace, const Target& target, const Near& near,
-                              const Settle& settle) const {
-  const auto solve_one = [&](std::size_t i) {
-    if (const double* values = near(i)) {
-      request.near = JointVector(Eigen::Map<const Eigen::VectorXd>(values, robot.dof()));
-    }
-    return solve(target(i), request, workspace);
-  };
-  // With a deadline every target has one search only.
-  if (!request.filter || std::isfinite(request.deadline)) {
-    for (std::size_t i = first; i < last; ++i) settle(i, solve_one(i));
-    return;
-  }
-
-  // What is found without the filter is put before it in one go.
-  std::vector<Result> answers(last - first);
-  Filter filter;
-  filter.swap(request.filter);
-  if (near(first) == nullptr && !request.has_wishes()) {
-    solve_many(first, last, workspace, target,
-               [&](std::size_t i, const Result& result) { answers[i - first] = result; });
-  } else {
-    for (std::size_t i = first; i < last; ++i) answers[i - first] = solve_one(i);
-  }
-  filter.swap(request.filter);
-
-  std::vector<double> candidates;
-  for (const Result& answer : answers) {
-    candidates.insert(candidates.end(), answer.q.data(), answer.q.data() + answer.q.size());
-  }
-  std::array<bool, kMany> keep{};
-  const std::size_t count = candidates.size() / static_cast<std::size_t>(robot.dof());
-  if (count > 0) request.filter(candidates.data(), count, keep.data());
-
-  std::size_t asked = 0;
-  for (std::size_t i = first; i < last; ++i) {
-    Result& answer = answers[i - first];
-    if (answer.success() && !keep[asked++]) {
-      const Result other = solve_one(i);
-      const int attempts = answer.attempts + other.attempts;
-      const int iterations = answer.iterations + other.iterations;
-      answer = other;
-      answer.attempts = attempts;
-      answer.iterations = iterations;
-    }
-    settle(i, answer);
-  }
-}
-
-template <typename Target, typename Near, typename Settle, typename OnProgress>
-void Solver::Impl::solve_batch(std::size_t count, const SolveRequest& request, int threads,
-                               const Target& target, const Near& near, const Settle& settle,
-                               const OnProgress& on_progress) const {
-  std::mutex turn;
-  SolveRequest wishes = request;
-  if (request.filter) {
-    wishes.filter = [&](const double* q, std::size_t n, bool* keep) {
-      const std::lock_guard<std::mutex> lock(turn);
-      request.filter(q, n, keep);
-    };
-  }
-  // Few at a time keep all threads busy, many are for the filter.
-  constexpr std::size_t kFew = 8;
-  const std::size_t chunk = request.filter ? kMany : kFew;
-  const auto make_worker = [&] {
-    return [&, own = wishes, lease = std::make_shared<Lease>(*this)](std::size_t begin,
-                                                                     std::size_t end) mutable {
-      solve_many(begin, end, own, lease->get(), target, near, settle);
-    };
-  };
-  parallel_for(count, chunk, threads, make_worker, on_progress);
-}
-
-template <typename PoseAt, typename Near, typename Settle>
+template <typename PoseAt, typename Near, typename OnRow>
 void Solver::Impl::solve_rows(std::size_t count, const PoseAt& pose_at, const SolveRequest& request,
-                              const Near& near_of, int threads, const Settle& settle_row,
+                              const Near& near_of, int threads, const OnRow& on_row,
                               const Progress& progress) const {
   const Targets<PoseAt> targets(count, pose_at, request.on_invalid_pose);
-  for (const std::size_t row : targets.invalid_rows()) settle_row(row, no_pose());
-  const auto settle = [&](std::size_t i, const Result& result) {
-    settle_row(targets.row_of(i), result);
+  for (const std::size_t row : targets.invalid_rows()) on_row(row, no_pose());
+  const auto on_result = [&](std::size_t i, const Result& result) {
+    on_row(targets.row_of(i), result);
   };
   const auto on_progress = [&](std::size_t done) {
     if (progress) progress(done + targets.invalid_rows().size(), count);
   };
   const auto near = [&](std::size_t i) { return near_of(targets.row_of(i)); };
-  if (request.has_wishes() || near_of(0) != nullptr) {
-    solve_batch(targets.size(), request, threads, targets, near, settle, on_progress);
-    return;
-  }
-  const auto make_worker = [&] {
-    return [&, lease = std::make_shared<Lease>(*this)](std::size_t begin, std::size_t end) {
-      solve_many(begin, end, lease->get(), targets, settle);
-    };
-  };
-  parallel_for(targets.size(), kMany, threads, make_worker, on_progress);
+  const Batch batch(*this, targets.size(), request, targets, near, on_result);
+  batch.run(threads, on_progress);
 }
 
 std::vector<Result> Solver::solve_batch(const std::vector<Pose>& T_base_tip, int threads) const {
@@ -211,7 +252,7 @@ std::vector<Result> Solver::solve_batch(const std::vector<Pose>& T_base_tip,
   for (std::size_t i = 0; i < near.size(); ++i) {
     const std::string name = "near[" + std::to_string(i) + "]";
     check_joints(near[i], robot().dof(), name.c_str());
-    impl_->check_angles(near[i], name.c_str());
+    impl_->angles.check(near[i], name.c_str());
   }
   std::vector<Result> results(T_base_tip.size());
   impl_->solve_rows(
@@ -234,7 +275,7 @@ void Solver::solve_batch(const double* T_base_tip, std::size_t count, const Solv
     const JointVector q = Eigen::Map<const Eigen::VectorXd>(near_of(row), dof);
     const std::string name = "near[" + std::to_string(row) + "]";
     check_joints(q, dof, name.c_str());
-    impl_->check_angles(q, name.c_str());
+    impl_->angles.check(q, name.c_str());
   }
   impl_->solve_rows(
       count, [&](std::size_t row) { return to_pose(T_base_tip + 16 * row); }, request, near_of,

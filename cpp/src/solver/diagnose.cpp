@@ -74,18 +74,26 @@ JointVector violations(const ChainModel& model, JointVector q) {
 /// Seeds of a best effort.
 constexpr int kEfforts = 24;
 
-}  // namespace
+/// Puts q into a diagnosis; true if it is close to a singularity.
+bool describe(const ChainModel& model, const Goal& goal, const JointVector& q, Diagnosis& out) {
+  out.q = q;
+  goal.measure(q, out.position_error, out.rotation_error);
+  const auto [least, most] = extreme_singular_values(model, q);
+  out.least_singular_value = least;
+  return least < kNearlySingular * most;
+}
 
 /// The questions in turn; each says whether it found the reason.
-class Solver::Impl::Inquiry {
+class Diagnoser {
  public:
-  Inquiry(const Impl& solver, const Pose& T_base_tip, const SolveRequest& request)
+  Diagnoser(const Solver::Impl& solver, const Pose& target, const SolveRequest& request)
       : solver_(solver),
         model_(solver.robot.model()),
         task_(solver.task_of(request)),
         position_task_(position_of(task_.task()), solver.options.position_tolerance,
                        solver.options.rotation_tolerance),
-        T_base_tip_(T_base_tip),
+        goal_(model_, task_, target),
+        position_goal_(model_, position_task_, target),
         request_(request),
         open_(request),
         patient_(make_patient(solver.robot)) {
@@ -101,7 +109,7 @@ class Solver::Impl::Inquiry {
     SolveRequest patient_request = request_;
     patient_request.deadline = kInfinity;
     patient_request.database_seeds = true;
-    const Result found = patient_.solve(T_base_tip_, patient_request);
+    const Result found = patient_.solve(goal_.target(), patient_request);
     if (found.status == Status::rejected) return explain_refusals();
     if (!found.success()) return false;
     const bool singular = describe(found.q);
@@ -131,12 +139,12 @@ class Solver::Impl::Inquiry {
   bool find_outside_limits() {
     const Solver unlimited = make_patient(solver_.robot.without_limits());
     // The answers that violate the limits least are close to what does best inside them.
-    BestEffort effort = make_effort(task_);
+    BestEffort effort = make_effort(goal_);
     SolveRequest hinted = open_;
-    for (JointVector& seed : effort.from_anywhere(kEfforts)) {
-      if (solver_.first_large_angle(seed) < 0) hinted.seeds.push_back(std::move(seed));
+    for (JointVector& seed : effort.from_anywhere(kEfforts, solver_.options.seed)) {
+      if (solver_.angles.holds(seed)) hinted.seeds.push_back(std::move(seed));
     }
-    for (const Result& answer : unlimited.solve_all(T_base_tip_, {}, hinted).all) {
+    for (const Result& answer : unlimited.solve_all(goal_.target(), {}, hinted).all) {
       JointVector seed = answer.q;
       model_.joints.wrap(seed.data());
       effort.from(seed);
@@ -162,24 +170,24 @@ class Solver::Impl::Inquiry {
   bool find_position() {
     SolveRequest at_position = open_;
     at_position.task = position_task_.task();
-    const Result position = patient_.solve(T_base_tip_, at_position);
+    const Result position = patient_.solve(goal_.target(), at_position);
     if (!position.success()) return false;
     // From many configurations that have the position towards the rotation, the position weighing
     // more; then all the way back to the position.
     constexpr double kLittle = 0.01;
-    BestEffort effort = make_effort(task_);
+    BestEffort effort = make_effort(goal_);
     effort.weigh_rotation(kLittle);
     AllOptions spread_out;
     spread_out.max = kEfforts;
     spread_out.min_distance = 0.1;
-    for (const Result& answer : patient_.solve_all(T_base_tip_, spread_out, at_position).all) {
+    for (const Result& answer : patient_.solve_all(goal_.target(), spread_out, at_position).all) {
       effort.from(answer.q);
     }
     effort.from(position.q);
-    effort.from_anywhere(kEfforts);
+    effort.from_anywhere(kEfforts, solver_.options.seed);
     at_position.seeds = {effort.q()};
     at_position.near = effort.q();
-    const Result held = patient_.solve(T_base_tip_, at_position);
+    const Result held = patient_.solve(goal_.target(), at_position);
     describe(held.success() ? held.q : position.q);
     out_.cause = Cause::orientation;
     out_.rotation_gap = out_.rotation_error;
@@ -195,13 +203,13 @@ class Solver::Impl::Inquiry {
 
   /// What is left: the position is too far away.
   void measure_distance(Status plain) {
-    BestEffort nearest = make_effort(position_task_);
-    nearest.from_anywhere(2 * kEfforts);
+    BestEffort nearest = make_effort(position_goal_);
+    nearest.from_anywhere(2 * kEfforts, solver_.options.seed);
     double ignored = 0;
-    solver_.measure(position_task_, T_base_tip_, nearest.q(), out_.beyond_reach, ignored);
-    BestEffort effort = make_effort(task_);
+    position_goal_.measure(nearest.q(), out_.beyond_reach, ignored);
+    BestEffort effort = make_effort(goal_);
     effort.from(nearest.q());
-    effort.from_anywhere(kEfforts);
+    effort.from_anywhere(kEfforts, solver_.options.seed);
     describe(effort.q());
     out_.cause = Cause::out_of_reach;
     out_.message =
@@ -218,15 +226,14 @@ class Solver::Impl::Inquiry {
     return Solver(arm, generous(solver_.options), solver_.database, solver_.nominal,
                   Drift{kInfinity, kInfinity});
   }
-  [[nodiscard]] BestEffort make_effort(const TaskSpace& towards) const {
-    return BestEffort(model_, solver_.options, solver_.database.data().weight, towards,
-                      T_base_tip_);
+  [[nodiscard]] BestEffort make_effort(const Goal& towards) const {
+    return {model_, towards, solver_.database.data().weight};
   }
 
   bool explain_refusals() {
     AllOptions every;
     every.max = kPatientAttempts;
-    const Solutions refused = patient_.solve_all(T_base_tip_, every, open_);
+    const Solutions refused = patient_.solve_all(goal_.target(), every, open_);
     out_.cause = Cause::rejected;
     out_.refused = static_cast<int>(refused.all.size());
     if (!refused.all.empty()) describe(refused.all.front().q);
@@ -235,18 +242,14 @@ class Solver::Impl::Inquiry {
     return true;
   }
 
-  /// Puts q into the diagnosis; true if it is close to a singularity.
-  bool describe(const JointVector& q) {
-    solver_.describe(task_, T_base_tip_, q, out_);
-    const auto [least, most] = extreme_singular_values(model_, q);
-    return least < kNearlySingular * most;
-  }
+  bool describe(const JointVector& q) { return iksel::describe(model_, goal_, q, out_); }
 
-  const Impl& solver_;
+  const Solver::Impl& solver_;
   const ChainModel& model_;
   TaskSpace task_;
   TaskSpace position_task_;
-  const Pose& T_base_tip_;
+  Goal goal_;
+  Goal position_goal_;
   const SolveRequest& request_;
   /// The request without what refuses answers or prefers some.
   SolveRequest open_;
@@ -254,30 +257,29 @@ class Solver::Impl::Inquiry {
   Diagnosis out_;
 };
 
-void Solver::Impl::describe(const TaskSpace& of_call, const Pose& target, const JointVector& q,
-                            Diagnosis& out) const {
-  out.q = q;
-  measure(of_call, target, q, out.position_error, out.rotation_error);
-  out.least_singular_value = extreme_singular_values(robot.model(), q).first;
-}
+}  // namespace
 
-Diagnosis Solver::Impl::diagnose(const Pose& T_base_tip, const SolveRequest& request) const {
-  const Lease lease(*this);
-  const Result plain = solve(T_base_tip, request, lease.get());
+Diagnosis Solver::Impl::diagnose(const Pose& target, const SolveRequest& request) const {
+  Result plain;
+  {
+    const WorkspacePool::Lease lease(workspaces);
+    plain = solve(target, request, lease.get());
+  }
   if (plain.success()) {
+    const TaskSpace of_call = task_of(request);
     Diagnosis fine;
-    describe(task_of(request), T_base_tip, plain.q, fine);
+    describe(model(), Goal(model(), of_call, target), plain.q, fine);
     fine.q_is_solution = true;
     fine.message = "solved";
     return fine;
   }
-  Inquiry inquiry(*this, T_base_tip, request);
+  Diagnoser diagnoser(*this, target, request);
   if (plain.status != Status::out_of_reach &&
-      (inquiry.find_with_more_work(plain.status) || inquiry.find_outside_limits())) {
-    return inquiry.diagnosis();
+      (diagnoser.find_with_more_work(plain.status) || diagnoser.find_outside_limits())) {
+    return diagnoser.diagnosis();
   }
-  if (!inquiry.find_position()) inquiry.measure_distance(plain.status);
-  return inquiry.diagnosis();
+  if (!diagnoser.find_position()) diagnoser.measure_distance(plain.status);
+  return diagnoser.diagnosis();
 }
 
 Diagnosis Solver::diagnose(const Pose& T_base_tip, const SolveRequest& request) const {

@@ -16,7 +16,6 @@
 #include "goal/joint_move.hpp"
 #include "iksel/error.hpp"
 #include "refine/self_motion.hpp"
-#include "search/explore.hpp"
 #include "solver/solver_impl.hpp"
 
 namespace iksel {
@@ -24,6 +23,8 @@ namespace {
 
 /// Candidates nearer than this in every joint are one [rad or m].
 constexpr double kSameCandidate = 1e-4;
+/// The same for solutions of the database.
+constexpr double kSameSolution = 20 * kSameCandidate;
 /// Steps from a configuration to the next waypoint's at most.
 constexpr int kSteps = 20;
 
@@ -73,11 +74,8 @@ bool too_far(const JointVector& move, const JointVector& longest) {
 
 class PathSearch {
  public:
-  PathSearch(const ChainModel& model, const SolverOptions& solver_options, const TaskSpace& task,
-             const PathOptions& options)
+  PathSearch(const ChainModel& model, const PathOptions& options)
       : model_(model),
-        solver_options_(solver_options),
-        task_(task),
         options_(options),
         request_(make_request(options)),
         move_(model.dof, request_),
@@ -86,8 +84,8 @@ class PathSearch {
 
   [[nodiscard]] const SolveRequest& request() const { return request_; }
 
-  /// What the candidates of the layer before lead to at the next pose.
-  void add_continuations(const Pose& pose, const Layer& before, Layer& layer) const {
+  /// What the candidates of the layer before lead to at the next waypoint.
+  void add_continuations(const Goal& goal, const Layer& before, Layer& layer) const {
     // Copies by whole turns lead to copies: only one of them is iterated.
     constexpr double kCopy = 1e-11;
     std::vector<JointVector> origins;
@@ -100,7 +98,7 @@ class PathSearch {
       }
       if (same == origins.size()) {
         JointVector q = from;
-        if (!converge(model_, solver_options_, task_, pose, kSteps, q)) continue;
+        if (!converge(model_, goal, kSteps, q)) continue;
         origins.push_back(from);
         moves.emplace_back(q - from);
       }
@@ -235,8 +233,6 @@ class PathSearch {
   }
 
   const ChainModel& model_;
-  const SolverOptions& solver_options_;
-  const TaskSpace& task_;
   const PathOptions& options_;
   SolveRequest request_;
   JointMove move_;
@@ -248,60 +244,52 @@ class PathSearch {
 
 }  // namespace
 
-PathResult Solver::Impl::solve_path(const std::vector<Pose>& T_base_tip, const PathOptions& path,
+PathResult Solver::Impl::solve_path(const std::vector<Pose>& targets, const PathOptions& path,
                                     Workspace& workspace) const {
-  const ChainModel& model = robot.model();
-  const auto dof = static_cast<std::size_t>(model.dof);
-  PathSearch search(model, options, task, path);
+  const auto dof = static_cast<std::size_t>(robot.dof());
+  PathSearch search(model(), path);
   const Layer start = path.start
                           ? Layer{dof, {path.start->data(), path.start->data() + dof}, {0.0}, {0}}
                           : Layer{dof, {}, {}, {}};
 
   std::vector<Layer> layers;
-  layers.reserve(T_base_tip.size());
+  layers.reserve(targets.size());
   PathResult result;
   result.status = Status::solved;
-  for (std::size_t w = 0; w < T_base_tip.size(); ++w) {
+  for (std::size_t w = 0; w < targets.size(); ++w) {
     const Layer* before = !layers.empty() ? &layers.back() : path.start ? &start : nullptr;
+    const Goal goal(model(), task, targets[w]);
     Layer layer{dof, {}, {}, {}};
-    if (before != nullptr) search.add_continuations(T_base_tip[w], *before, layer);
-    SolutionSet& found = workspace.found;
-    const bool redundant = model.dof > task.fixed_axes();
+    if (before != nullptr) search.add_continuations(goal, *before, layer);
+    const SolutionSet& found = workspace.collected.found;
     // Of an arm that is not redundant all, which are few but where axes line up.
     constexpr std::size_t kBranches = 64;
     const auto candidates = static_cast<std::size_t>(path.candidates);
-    const std::size_t most = redundant ? candidates : std::max(candidates, kBranches);
-    const auto enough = [&](const Exploration&) { return found.size() >= most; };
-    Exploration exploration{T_base_tip[w],
-                            task,
-                            search.request(),
-                            kSameCandidate * 20,
-                            FunctionRef<bool(const Exploration&)>(enough),
-                            true};
-    explore(exploration, workspace);
+    const std::size_t most = goal.is_redundant() ? candidates : std::max(candidates, kBranches);
+    const auto is_satisfied = [&](const Collector&) { return found.size() >= most; };
+    Collector collector(model(), goal, search.request(), {kSameSolution, true, most_solutions},
+                        is_satisfied, options.max_attempts, workspace.collected);
+    collect(model(), options, collector, workspace);
     if (before != nullptr) {
       search.add_solutions(found, *before, layer);
     } else {
       search.add_first_solutions(found, layer);
     }
-    layer.keep_if([&](std::size_t i) {
-      Result measured;
-      return finish(task, T_base_tip[w], layer.at(i), measured);
-    });
+    layer.keep_if([&](std::size_t i) { return goal.is_solution(layer.at(i)); });
     const bool any = layer.size() > 0;
     search.apply_filter(layer);
     const bool kept = layer.size() > 0;
     search.connect(before, layer);
     if (layer.size() == 0) {
       result.broken = static_cast<std::ptrdiff_t>(w);
-      result.status = kept                                   ? Status::too_fast
-                      : any                                  ? Status::rejected
-                      : exploration.status == Status::solved ? Status::not_converged
-                                                             : exploration.status;
+      result.status = kept                                 ? Status::too_fast
+                      : any                                ? Status::rejected
+                      : collector.status == Status::solved ? Status::not_converged
+                                                           : collector.status;
       break;
     }
     layers.push_back(std::move(layer));
-    if (path.progress) path.progress(w + 1, T_base_tip.size());
+    if (path.progress) path.progress(w + 1, targets.size());
   }
   search.trace(layers, result);
   return result;
@@ -316,15 +304,15 @@ PathResult Solver::solve_path(const std::vector<Pose>& T_base_tip,
     targets[i] = to_rigid(targets[i], nearest, "poses", static_cast<std::ptrdiff_t>(i));
   }
   options.validate(robot().dof());
-  if (options.start) impl_->check_angles(*options.start, "start");
-  const Impl::Lease lease(*impl_);
+  if (options.start) impl_->angles.check(*options.start, "start");
+  const WorkspacePool::Lease lease(impl_->workspaces);
   return impl_->solve_path(targets, options, lease.get());
 }
 
 Tracker::Tracker(const Solver& solver, const JointVector& start) : solver_(solver), q_(start) {
   const Robot& robot = solver.robot();
   check_joints(start, robot.dof(), "start");
-  solver.impl_->check_angles(start, "start");
+  solver.impl_->angles.check(start, "start");
   q_ = q_.cwiseMax(robot.lower()).cwiseMin(robot.upper());
 }
 
@@ -335,19 +323,20 @@ Result Tracker::track(const Pose& T_base_tip, double dt) {
     throw InvalidArgumentError("dt: " + number_text(dt) + " s is not above 0");
   }
   const ChainModel& model = solver_.robot().model();
+  const Goal goal(model, solver_.impl_->task, target);
   Result result;
-  JointVector goal = q_;
+  JointVector end = q_;
   result.attempts = 1;
-  if (!converge(model, solver_.options(), solver_.impl_->task, target, kSteps, goal)) return result;
-  const JointVector move = goal - q_;
+  if (!converge(model, goal, kSteps, end)) return result;
+  const JointVector move = end - q_;
   const JointVector longest = longest_moves(model, dt);
   double part = 1;
   for (int j = 0; j < model.dof; ++j) {
     if (std::abs(move[j]) > longest[j]) part = std::min(part, longest[j] / std::abs(move[j]));
   }
   if (part == 1) {
-    if (!solver_.impl_->finish(solver_.impl_->task, target, goal, result)) return result;
-    q_ = goal;
+    if (!goal.check(end, result)) return result;
+    q_ = end;
   } else {
     result.status = Status::too_fast;
     q_ += part * move;

@@ -7,7 +7,6 @@
 
 #include "goal/joint_move.hpp"
 #include "goal/objective_cost.hpp"
-#include "search/explore.hpp"
 #include "solver/solver_impl.hpp"
 
 namespace iksel {
@@ -103,51 +102,49 @@ void take_first_of_each(std::size_t solutions, std::vector<Copy>& copies) {
 
 }  // namespace
 
-Solutions Solver::Impl::solve_all(const Pose& T_base_tip, const AllOptions& all,
+Solutions Solver::Impl::solve_all(const Pose& target, const AllOptions& all,
                                   const SolveRequest& request, Workspace& workspace) const {
-  const ChainModel& model = robot.model();
   const TaskSpace of_call = task_of(request);
-  const bool redundant = model.dof > of_call.fixed_axes();
+  const Goal goal(model(), of_call, target);
   const auto most = static_cast<std::size_t>(all.max);
-  SolutionSet& found = workspace.found;
-  const auto enough = [&](const Exploration&) {
-    return redundant && found.size() >= std::max<std::size_t>(kChoice * most, 64);
+  const SolutionSet& found = workspace.collected.found;
+  const auto is_satisfied = [&](const Collector&) {
+    return goal.is_redundant() && found.size() >= std::max<std::size_t>(kChoice * most, 64);
   };
-  Exploration search{
-      T_base_tip, of_call, request, all.min_distance, FunctionRef<bool(const Exploration&)>(enough),
-      true};
-  explore(search, workspace);
+  Collector search(model(), goal, request, {all.min_distance, true, most_solutions}, is_satisfied,
+                   options.max_attempts, workspace.collected);
+  collect(model(), options, search, workspace);
 
   Solutions solutions;
   solutions.status = search.status;
   solutions.attempts = search.work.attempts;
   solutions.iterations = search.work.iterations;
 
-  const JointMove move(model.dof, request);
-  const JointVector from = request.near ? *request.near : model.joints.middle();
+  const JointMove move(robot.dof(), request);
+  const JointVector from = request.near ? *request.near : model().joints.middle();
   std::vector<Copy> copies;
   copies.reserve(found.size());
   const auto add = [&](const JointVector& q, std::size_t i) {
-    copies.push_back({q, cost_of(model, all.order, move, from, q), i});
+    copies.push_back({q, cost_of(model(), all.order, move, from, q), i});
   };
   // Otherwise each is at the turns nearest to `from` already.
   const bool turned = all.whole_turns || request.filter;
   for (std::size_t i = 0; i < found.size(); ++i) {
     JointVector q = found.at(i);
     if (turned) {
-      model.joints.first_image(q);
+      model().joints.first_image(q);
       do {
         add(q, i);
-      } while (copies.size() < kMostCopies && model.joints.next_image(q));
+      } while (copies.size() < kMostCopies && model().joints.next_image(q));
     } else {
       add(q, i);
     }
   }
-  apply_filter(request.filter, model.dof, copies);
+  apply_filter(request.filter, robot.dof(), copies);
   std::sort(copies.begin(), copies.end(), cheaper);
   if (!all.whole_turns) take_first_of_each(found.size(), copies);
   if (copies.size() > most) {
-    if (redundant) spread(model, most, copies);
+    if (goal.is_redundant()) spread(model(), most, copies);
     copies.resize(most);
     std::sort(copies.begin(), copies.end(), cheaper);
   }
@@ -157,7 +154,7 @@ Solutions Solver::Impl::solve_all(const Pose& T_base_tip, const AllOptions& all,
     Result result;
     if (!turned) {
       result = found.result(copy.solution);
-    } else if (!finish(of_call, T_base_tip, copy.q, result)) {
+    } else if (!goal.check(copy.q, result)) {
       continue;
     }
     if (request.near) result.move = move.length(copy.q - from);
@@ -167,7 +164,7 @@ Solutions Solver::Impl::solve_all(const Pose& T_base_tip, const AllOptions& all,
   }
   if (solutions.all.empty()) {
     if (solutions.status == Status::solved) solutions.status = Status::rejected;
-    if (search.out_of_time) solutions.status = Status::out_of_time;
+    if (search.is_out_of_time) solutions.status = Status::out_of_time;
   }
   return solutions;
 }
@@ -177,7 +174,7 @@ Solutions Solver::solve_all(const Pose& T_base_tip, const AllOptions& options,
   const Pose target = check_pose(T_base_tip);
   options.validate();
   impl_->check(request);
-  const Impl::Lease lease(*impl_);
+  const WorkspacePool::Lease lease(impl_->workspaces);
   return impl_->solve_all(target, options, request, lease.get());
 }
 

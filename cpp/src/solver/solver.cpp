@@ -3,20 +3,17 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <limits>
-#include <thread>
-#include <utility>
 
 #include "base/error_check.hpp"
 #include "base/pose_check.hpp"
-#include "base/stage_clock.hpp"
+#include "goal/objective_cost.hpp"
 #include "iksel/error.hpp"
+#include "search/answer_selector.hpp"
+#include "seeds/fold_partner.hpp"
 #include "solver/solver_impl.hpp"
 
 namespace iksel {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 std::string hex(std::uint64_t value) {
   char text[17];
@@ -32,10 +29,12 @@ bool reduction_fits(const ChainModel& model, const DatabaseData& data) {
          data.reduction->right() == expected.right();
 }
 
-void check_fits(const Robot& robot, const Database& database) {
+/// The database, if it is fit for the robot.
+const Database& check_fits(const Robot& robot, const Database& database) {
+  database.data().check_intact();
   if (database.chain_hash() == robot.chain_hash() && database.dof() == robot.dof() &&
       reduction_fits(robot.model(), database.data())) {
-    return;
+    return database;
   }
   throw DatabaseMismatchError(
       "the database (" + std::to_string(database.dof()) + " joints, chain hash " +
@@ -43,173 +42,90 @@ void check_fits(const Robot& robot, const Database& database) {
       "' (" + std::to_string(robot.dof()) + " joints, chain hash " + hex(robot.chain_hash()) + ")");
 }
 
-}  // namespace
+/// Solutions nearer than this in every joint are looked at once [rad or m]: how far apart answers
+/// of one branch may lie at the default tolerances where the arm is singular.
+constexpr double kSame = 2e-3;
 
-Workspace::Workspace(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
-                     const SolverOptions& options)
-    : selection(model, nominal, data, options),
-      tasks(model, data, options, selection),
-      given(model, options),
-      found(model) {
-  partners.reserve(kPartners);
-  if (solves_in_lanes(model, data, options)) {
-    lanes = std::make_unique<LaneSearch>(model, nominal, data, options, lanes::choose_kernels());
-  }
-  if (options.kinematics == Kinematics::kdl) kdl = model.make_kdl(Pose::Identity());
-}
+const SolveRequest kNoWishes;
+
+}  // namespace
 
 Solver::Impl::Impl(const Robot& robot_in, const SolverOptions& options_in,
                    const Database& database_in, const Robot& nominal_in)
     : robot(robot_in),
       options(options_in),
-      database(database_in),
+      database(check_fits(nominal_in, database_in)),
       nominal(nominal_in),
       task(options.task, options.position_tolerance, options.rotation_tolerance),
-      damaged(database.data().storage->damaged()),
-      largest_angle(find_largest_angle()) {
-  database.data().check_intact();
-  check_fits(nominal, database);
-  check_limits();
-  const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
-  for (std::size_t i = 0; i < std::min(cores, kPlaces); ++i) {
-    idle_[i] = new Workspace(robot.model(), nominal.model(), database.data(), options);
+      angles(model(), options),
+      workspaces(robot, nominal, database, options),
+      most_solutions(count_most_solutions()) {}
+
+int Solver::Impl::count_most_solutions() const {
+  constexpr std::size_t kPoses = 64;
+  if (!task.is_full_pose() || !jacobian_signs_cancel(model())) return 0;
+  const Collector::Aim aim{AllOptions{}.min_distance, true};
+  const auto never = [](const Collector&) { return false; };
+  const WorkspacePool::Lease lease(workspaces);
+  const Matrix q = robot.random_configurations(kPoses, options.seed);
+  int most = 0;
+  for (Eigen::Index i = 0; i < q.rows(); ++i) {
+    const Pose target = robot.fk(q.row(i));
+    const Goal goal(model(), task, target);
+    Collector search(model(), goal, kNoWishes, aim, never, options.max_attempts,
+                     lease.get().collected);
+    collect(model(), options, search, lease.get());
+    most = std::max(most, search.solutions);
   }
-  most_solutions = count_most_solutions();
+  return most;
 }
 
-Solver::Impl::~Impl() {
-  for (auto& place : idle_) delete place.load();
+void Solver::Impl::check(const SolveRequest& request) const {
+  request.validate(robot.dof());
+  angles.check(request);
 }
 
-Solver::Impl::Lease::Lease(const Impl& solver) : solver_(solver) {
-  if (solver.damaged != nullptr) solver.database.data().check_intact();
-  for (auto& place : solver_.idle_) {
-    if (place.load(std::memory_order_relaxed) == nullptr) continue;
-    workspace_ = place.exchange(nullptr, std::memory_order_acquire);
-    if (workspace_ != nullptr) return;
-  }
-  workspace_ = new Workspace(solver.robot.model(), solver.nominal.model(), solver.database.data(),
-                             solver.options);
+TaskSpace Solver::Impl::task_of(const SolveRequest& request) const {
+  if (!request.task) return task;
+  return {*request.task, options.position_tolerance, options.rotation_tolerance};
 }
 
-Solver::Impl::Lease::~Lease() {
-  for (auto& place : solver_.idle_) {
-    Workspace* expected = nullptr;
-    if (place.compare_exchange_strong(expected, workspace_, std::memory_order_release,
-                                      std::memory_order_relaxed)) {
-      return;
-    }
-  }
-  delete workspace_;
-}
-
-Result Solver::Impl::solve(const Pose& T_base_tip, const JointVector* seed, Workspace& workspace,
-                           StageTimes* times) const {
-  const ChainModel& model = robot.model();
+Result Solver::Impl::find_first(const Pose& target, const TaskSpace& of_call,
+                                const SolveRequest& request, Workspace& workspace,
+                                StageTimes* times) const {
   StageClock clock(times);
+  const Goal goal(model(), of_call, target);
+  return iksel::find_first(model(), options, goal, request, workspace, clock);
+}
+
+Result Solver::Impl::solve(const Pose& target, const SolveRequest& request,
+                           Workspace& workspace) const {
+  const TaskSpace of_call = task_of(request);
+  const Goal goal(model(), of_call, target);
+  AnswerSelector selector(model(), goal, request, workspace.collected.found);
+  const auto is_satisfied = [&](const Collector& so_far) { return selector.is_satisfied(so_far); };
+  // With a filter the selector decides: nothing may have passed it yet.
+  const Collector::Aim aim{kSame, selector.wants_all() && !request.filter, most_solutions};
+  Collector search(model(), goal, request, aim, is_satisfied, options.max_attempts,
+                   workspace.collected);
+  collect(model(), options, search, workspace);
 
   Result result;
-  if (out_of_reach(task, T_base_tip)) {
-    result.status = Status::out_of_reach;
-    return result;
-  }
-  const auto accept = [&](JointVector& q) {
-    model.joints.wrap(q.data());
-    return finish(task, T_base_tip, q, result) ? Verdict::stop : Verdict::refine;
-  };
-
-  if (!task.is_full_pose()) {
-    Work work;
-    TaskSearch& tasks = workspace.tasks;
-    tasks.begin(T_base_tip, task, TaskSearch::kFew);
-    if (seed == nullptr || !tasks.attempt(*seed, clock, work, accept)) {
-      tasks.run(clock, work, accept);
-    }
-    if (!result.success() && tasks.left_limits()) result.status = Status::outside_limits;
-    result.attempts = work.attempts;
-    result.iterations = work.iterations;
-    return result;
-  }
-
-  if (workspace.lanes) {
-    Work work;
-    workspace.lanes->search(T_base_tip, seed, clock, work, accept);
-    result.attempts = work.attempts;
-    result.iterations = work.iterations;
-    return result;
-  }
-
-  const Pose tip_target = T_base_tip * Pose(model.tcp_inverse);
-  Random random(options.seed);
-  const IterationContext context{model, options, T_base_tip, tip_target, workspace.kdl.get(),
-                                 random};
   JointVector q;
-  const auto attempt = [&](const double* from) {
-    q = Eigen::Map<const Eigen::VectorXd>(from, model.dof);
-    ++result.attempts;
-    const Outcome outcome = iterate(context, q, result.iterations);
-    if (outcome == Outcome::outside_limits) result.status = Status::outside_limits;
-    return outcome == Outcome::solved && finish(task, T_base_tip, q, result);
-  };
-
-  if (seed != nullptr && attempt(seed->data())) {
-    clock.lap(&StageTimes::iterate);
-    return result;
-  }
-
-  Selection& selection = workspace.selection;
-  clock.lap(&StageTimes::iterate);
-  selection.query(tip_target);
-  clock.lap(&StageTimes::query);
-  selection.rank();
-  clock.lap(&StageTimes::rank);
-  for (int i = 0; i < options.max_attempts; ++i) {
-    const double* from = selection.next_seed(i);
-    clock.lap(&StageTimes::reselect);
-    if (from == nullptr) break;
-    const bool solved = attempt(from);
-    clock.lap(&StageTimes::iterate);
-    if (solved) break;
-  }
-  return result;
-}
-
-bool Solver::Impl::out_of_reach(const TaskSpace& of_call, const Pose& T_base_tip) const {
-  const double distance = of_call.is_full_pose()
-                              ? (T_base_tip.translation() - robot.reach_centre()).norm()
-                              : of_call.distance_from(T_base_tip, robot.reach_centre());
-  return distance > robot.reach() + options.position_tolerance;
-}
-
-void Solver::Impl::measure(const TaskSpace& of_call, const Pose& target, const JointVector& q,
-                           double& position, double& rotation, Jacobian* jacobian) const {
-  const ChainModel& model = robot.model();
-  if (!of_call.is_full_pose()) {
-    of_call.measure(target, model.fk(q.data()), position, rotation);
-  } else if (jacobian != nullptr) {
-    measure_error(target, model.fk_jacobian(q.data(), *jacobian), position, rotation);
+  if (search.status != Status::solved) {
+    result.status = search.status;
+  } else if (selector.select(q) && goal.check(q, result)) {
+    if (request.objective.is_set()) {
+      result.cost = ObjectiveCost(model(), request.objective).value(q);
+    }
+    if (request.near) result.move = JointMove(robot.dof(), request).length(q - *request.near);
   } else {
-    measure_error(target, forward(model.kernel, q.data()), position, rotation);
+    result.status = Status::rejected;
   }
-}
-
-bool Solver::Impl::within_tolerances(double position, double rotation) const {
-  return position <= options.position_tolerance && rotation <= options.rotation_tolerance;
-}
-
-bool Solver::Impl::finish(const TaskSpace& of_call, const Pose& target, const JointVector& q,
-                          Result& result) const {
-  double position = kNan;
-  double rotation = kNan;
-  measure(of_call, target, q, position, rotation);
-  if (!within_tolerances(position, rotation) || !robot.model().joints.contains(q.data())) {
-    return false;
-  }
-  result.status = Status::solved;
-  result.q = q;
-  result.position_error = position;
-  result.rotation_error = rotation;
-  return true;
+  if (!result.success() && search.is_out_of_time) result.status = Status::out_of_time;
+  result.attempts = search.work.attempts;
+  result.iterations = search.work.iterations;
+  return result;
 }
 
 Solver::Solver(const Robot& robot, const SolverOptions& options) {
@@ -234,24 +150,35 @@ std::size_t Solver::work_bound() const {
 Result Solver::solve(const Pose& T_base_tip) const {
   Pose nearest;
   const Pose& target = to_rigid(T_base_tip, nearest);
-  const Impl::Lease lease(*impl_);
-  return impl_->solve(target, nullptr, lease.get(), nullptr);
+  const WorkspacePool::Lease lease(impl_->workspaces);
+  return impl_->find_first(target, impl_->task, kNoWishes, lease.get(), nullptr);
 }
 
 Result Solver::solve(const Pose& T_base_tip, const JointVector& seed) const {
   Pose nearest;
   const Pose& target = to_rigid(T_base_tip, nearest);
   check_joints(seed, robot().dof(), "seed");
-  impl_->check_angles(seed, "seed");
-  const Impl::Lease lease(*impl_);
-  return impl_->solve(target, &seed, lease.get(), nullptr);
+  impl_->angles.check(seed, "seed");
+  const WorkspacePool::Lease lease(impl_->workspaces);
+  SolveRequest request;
+  request.near = seed;
+  return impl_->find_first(target, impl_->task, request, lease.get(), nullptr);
 }
 
 Result Solver::solve(const Pose& T_base_tip, StageTimes& times) const {
   Pose nearest;
   const Pose& target = to_rigid(T_base_tip, nearest);
-  const Impl::Lease lease(*impl_);
-  return impl_->solve(target, nullptr, lease.get(), &times);
+  const WorkspacePool::Lease lease(impl_->workspaces);
+  return impl_->find_first(target, impl_->task, kNoWishes, lease.get(), &times);
+}
+
+Result Solver::solve(const Pose& T_base_tip, const SolveRequest& request) const {
+  Pose nearest;
+  const Pose& target = to_rigid(T_base_tip, nearest);
+  impl_->check(request);
+  const WorkspacePool::Lease lease(impl_->workspaces);
+  if (request.has_wishes()) return impl_->solve(target, request, lease.get());
+  return impl_->find_first(target, impl_->task, request, lease.get(), nullptr);
 }
 
 }  // namespace iksel

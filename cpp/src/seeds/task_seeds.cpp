@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "seeds/task_search.hpp"
+#include "seeds/task_seeds.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -23,39 +23,47 @@ Eigen::Matrix3d random_rotation(Random& random) {
 
 }  // namespace
 
-TaskSearch::TaskSearch(const ChainModel& model, const DatabaseData& data,
-                       const SolverOptions& options, Selection& selection)
+TaskSeeds::TaskSeeds(const ChainModel& model, const DatabaseData& data,
+                     const SolverOptions& options, Selection& selection)
     : model_(model),
       data_(data),
       options_(options),
       selection_(selection),
       is_tried_(data.size, false) {
   tried_.reserve(data.size);
-  if (options.kinematics == Kinematics::kdl) kdl_ = model.make_kdl();
 }
 
-void TaskSearch::begin(const Pose& target, const TaskSpace& task, std::size_t neighbours) {
-  target_ = &target;
-  task_ = &task;
+void TaskSeeds::begin(const Goal& goal, std::size_t neighbours, int per_stage, Work& work,
+                      StageClock& clock) {
+  goal_ = &goal;
   neighbours_ = neighbours;
-  tip_target_ = target * Pose(model_.tcp_inverse);
-  left_limits_ = false;
+  per_stage_ = per_stage;
+  work_ = &work;
+  clock_ = &clock;
+  round_ = 0;
   random_ = Random(options_.seed);
   for (const std::uint32_t sample : tried_) is_tried_[sample] = false;
   tried_.clear();
 }
 
-JointVector TaskSearch::random_configuration() {
+JointVector TaskSeeds::next() {
+  const bool restart = round_ % 4 == 3;
+  JointVector seed = restart ? random_configuration() : seed_for(allowed_pose());
+  ++round_;
+  return seed;
+}
+
+JointVector TaskSeeds::random_configuration() {
   JointVector q(model_.dof);
   model_.joints.sample(random_, q);
   return q;
 }
 
-Pose TaskSearch::allowed_pose(int round) {
-  const Pose& target = *target_;
-  const TaskSpace& task = *task_;
+Pose TaskSeeds::allowed_pose() {
+  const Pose& target = goal_->target();
+  const TaskSpace& task = goal_->task();
   Vector6 d = Vector6::Zero().cwiseMax(task.lower()).cwiseMin(task.upper());
-  if (round == 0) return task.pose_at(target, d);
+  if (round_ == 0) return task.pose_at(target, d);
   // What is free is drawn from any pose in the ball that the arm can reach at all; what is within
   // bounds, from between them.
   const double reach = model_.reach + Eigen::Vector3d(model_.tcp.translation()).norm();
@@ -78,7 +86,7 @@ Pose TaskSearch::allowed_pose(int round) {
   return pose;
 }
 
-JointVector TaskSearch::seed_for(const Pose& allowed) {
+JointVector TaskSeeds::seed_for(const Pose& allowed) {
   // Some poses have the same neighbours: a spin about the last joint is not in a reduced key.
   const std::size_t found =
       selection_.nearest_seeds(allowed * Pose(model_.tcp_inverse), neighbours_ + tried_.size());
@@ -88,7 +96,8 @@ JointVector TaskSearch::seed_for(const Pose& allowed) {
     if (is_tried_[selection_.nearest_sample(i)]) continue;
     double position = 0;
     double rotation = 0;
-    task_->measure(*target_, model_.fk(selection_.nearest_seed(i)), position, rotation);
+    goal_->task().measure(goal_->target(), model_.fk(selection_.nearest_seed(i)), position,
+                          rotation);
     const double error = std::hypot(position, data_.weight * rotation);
     if (error < least) {
       least = error;

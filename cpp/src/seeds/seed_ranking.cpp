@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "seeds/given_seeds.hpp"
+#include "seeds/seed_ranking.hpp"
 
 #include <algorithm>
 
@@ -9,13 +9,13 @@
 
 namespace iksel {
 
-GivenSeeds::GivenSeeds(const ChainModel& model, const SolverOptions& options)
+SeedRanking::SeedRanking(const ChainModel& model, const SolverOptions& options)
     : model_(model), options_(options) {
   ranked_.reserve(kRoom);
 }
 
-bool GivenSeeds::rank(const TaskSpace& task, const Pose& T_base_tip,
-                      const std::vector<JointVector>& seeds, FunctionRef<bool()> go_on) {
+bool SeedRanking::rank(const Goal& goal, const std::vector<JointVector>& seeds,
+                       FunctionRef<bool()> should_continue) {
   /// Seeds between two questions: a fraction of a millisecond.
   constexpr std::size_t kStage = 16;
   seeds_ = &seeds;
@@ -24,31 +24,31 @@ bool GivenSeeds::rank(const TaskSpace& task, const Pose& T_base_tip,
   ranked_.clear();
   ranked_.reserve(seeds.size());
   for (std::size_t i = 0; i < seeds.size(); ++i) {
-    if (i % kStage == 0 && !go_on()) {
+    if (i % kStage == 0 && !should_continue()) {
       ranked_.clear();
       return false;
     }
-    ranked_.push_back(rank_one(i, task, T_base_tip));
+    ranked_.push_back(rank_one(i, goal));
   }
   std::sort(ranked_.begin(), ranked_.end());
   return true;
 }
 
-Vector6 GivenSeeds::error_of(const JointVector& q, const TaskSpace& task, const Pose& T_base_tip,
-                             JacobianMatrix& J) const {
+Vector6 SeedRanking::error_of(const JointVector& q, const Goal& goal, JacobianMatrix& J) const {
+  const TaskSpace& task = goal.task();
   Vector6 e;
   Pose pose;
   Jacobian of_pose;
   if (!task.is_full_pose()) {
     model_.fk_jacobian(q.data(), pose, of_pose);
     J = of_pose;
-    e = -task.outside(task.deviation(T_base_tip, pose, J));
+    e = -task.outside(task.deviation(goal.target(), pose, J));
     for (int i = 0; i < 6; ++i) {
       if (e[i] == 0) J.row(i).setZero();
     }
     return e;
   }
-  const Pose tip_target = T_base_tip * Pose(model_.tcp_inverse);
+  const Pose tip_target = goal.tip_target();
   model_.fk_jacobian(q.data(), pose, of_pose, false);
   J = of_pose;
   e.head<3>() = tip_target.translation() - pose.translation();
@@ -59,12 +59,12 @@ Vector6 GivenSeeds::error_of(const JointVector& q, const TaskSpace& task, const 
   return e;
 }
 
-GivenSeeds::Ranked GivenSeeds::rank_one(std::size_t index, const TaskSpace& task,
-                                        const Pose& T_base_tip) const {
+SeedRanking::Ranked SeedRanking::rank_one(std::size_t index, const Goal& goal) const {
   const JointVector& q = (*seeds_)[index];
   Ranked ranked{0, index, false};
+  if (seeds_->size() == 1) return ranked;
   JacobianMatrix J;
-  const Vector6 e = error_of(q, task, T_base_tip, J);
+  const Vector6 e = error_of(q, goal, J);
   ranked.score = e.squaredNorm();
   if (options_.ranking == Ranking::nearest && !options_.limit_aware) return ranked;
   const JointVector adjustment = TruncatedSvd(J, options_.database.pinv_cutoff).solve(e);
@@ -81,7 +81,7 @@ GivenSeeds::Ranked GivenSeeds::rank_one(std::size_t index, const TaskSpace& task
   return ranked;
 }
 
-const double* GivenSeeds::next() {
+const double* SeedRanking::next() {
   if (taken_ >= ranked_.size()) return nullptr;
   if (taken_ > 0) {
     if (options_.reselection == Reselection::none) return nullptr;
@@ -90,7 +90,7 @@ const double* GivenSeeds::next() {
   return (*seeds_)[ranked_[taken_++].index].data();
 }
 
-void GivenSeeds::bring_farthest_forward() {
+void SeedRanking::bring_farthest_forward() {
   const std::size_t candidates =
       std::min(ranked_.size(), static_cast<std::size_t>(options_.candidates));
   if (taken_ >= candidates) return;

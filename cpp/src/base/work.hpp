@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What one search has done, and may do.
+#pragma once
+
+#include <chrono>
+#include <cmath>
+
+namespace iksel {
+
+/// Seeds and iterations so far. Of seeds from the database and at random there are `max_attempts`
+/// at most; others come on top.
+class Work {
+ public:
+  explicit Work(int max_attempts) : left_(max_attempts) {}
+
+  [[nodiscard]] bool has_left() const { return left_ > 0; }
+  /// Counts a seed; false if there may be no more.
+  bool take() {
+    if (left_ <= 0) return false;
+    --left_;
+    ++attempts;
+    return true;
+  }
+  void take_on_top() { ++attempts; }
+
+  int attempts = 0;
+  int iterations = 0;
+
+ private:
+  int left_;
+};
+
+/// A wall-clock deadline; asks the clock only if there is one.
+class Deadline {
+ public:
+  explicit Deadline(double seconds) : set_(std::isfinite(seconds)) {
+    // Longer than a year is none: the clock's numbers end somewhere.
+    set_ = set_ && seconds < 3e7;
+    if (set_) {
+      end_ = Clock::now() +
+             std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+    }
+  }
+  [[nodiscard]] bool has_passed() const { return set_ && Clock::now() >= end_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  bool set_;
+  Clock::time_point end_;
+};
+
+}  // namespace iksel

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "goal/angle_bound.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "base/message_text.hpp"
+#include "iksel/error.hpp"
+
+namespace iksel {
+namespace {
+
+double find_largest(const ChainModel& model, const SolverOptions& options) {
+  // FK turns joint k by m_k q_k + offset_k, of which rounding takes at most half a unit in the last
+  // place: |m_k q_k| 2^-53. That turns the tip by as much, and moves it by its lever, which the
+  // reach bounds, times as much. All joints together are to stay within a tenth of the tolerances.
+  constexpr double kShare = 0.1;
+  // Below, what is lost is lost at any angle.
+  constexpr double kLeast = 100;
+  double angles = 0;
+  for (const KernelJoint& joint : model.kernel.joints) {
+    if (!joint.prismatic) angles += std::abs(joint.multiplier);
+  }
+  const double rotation =
+      std::min(options.rotation_tolerance,
+               options.position_tolerance / std::max(model.reach_of_tcp(), 1e-300));
+  return std::max(kLeast, kShare * rotation / (std::ldexp(1.0, -53) * std::max(angles, 1.0)));
+}
+
+}  // namespace
+
+AngleBound::AngleBound(const ChainModel& model, const SolverOptions& options)
+    : model_(model),
+      position_tolerance_(options.position_tolerance),
+      rotation_tolerance_(options.rotation_tolerance),
+      largest_(find_largest(model, options)) {
+  const auto finite = [](double limit) { return std::isfinite(limit) ? limit : 0.0; };
+  check(model.joints.lower.unaryExpr(finite), "lower limit");
+  check(model.joints.upper.unaryExpr(finite), "upper limit");
+}
+
+int AngleBound::first_beyond(const JointVector& q) const {
+  for (int j = 0; j < model_.dof; ++j) {
+    if (!(std::abs(q[j]) <= largest_) && turns_a_joint(model_, j)) return j;
+  }
+  return -1;
+}
+
+void AngleBound::check(const JointVector& q, const char* name) const {
+  const int j = first_beyond(q);
+  if (j < 0) return;
+  const bool slides = model_.joints.is_slide(j);
+  throw InvalidArgumentError(
+      std::string(name) + "[" + std::to_string(j) + "] (joint '" + model_.joints.name(j) +
+      "'): " + number_text(q[j]) + (slides ? " m, by which others turn" : " rad") +
+      "; at angles beyond " + number_text(largest_) +
+      " rad a double cannot tell poses of this robot apart to a tenth of the tolerances (" +
+      number_text(position_tolerance_) + " m, " + number_text(rotation_tolerance_) +
+      " rad): " + (slides ? "narrow its limits" : "take off whole turns"));
+}
+
+void AngleBound::check(const SolveRequest& request) const {
+  if (request.near) check(*request.near, "near");
+  if (request.objective.posture.size() != 0) check(request.objective.posture, "posture");
+  for (std::size_t i = 0; i < request.seeds.size(); ++i) {
+    // There may be many: names are made for the error only.
+    if (request.seeds[i].cwiseAbs().maxCoeff() <= largest_) continue;
+    check(request.seeds[i], ("seeds[" + std::to_string(i) + "]").c_str());
+  }
+}
+
+}  // namespace iksel

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "goal/goal.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace iksel {
+
+bool Goal::is_out_of_reach() const {
+  const double distance = is_full_pose() ? (target_.translation() - model_.reach_centre).norm()
+                                         : task_.distance_from(target_, model_.reach_centre);
+  return distance > model_.reach_of_tcp() + task_.position_tolerance();
+}
+
+void Goal::measure(const JointVector& q, double& position, double& rotation,
+                   Jacobian* jacobian) const {
+  if (!is_full_pose()) {
+    task_.measure(target_, model_.fk(q.data()), position, rotation);
+  } else if (jacobian != nullptr) {
+    measure_error(target_, model_.fk_jacobian(q.data(), *jacobian), position, rotation);
+  } else {
+    measure_error(target_, forward(model_.kernel, q.data()), position, rotation);
+  }
+}
+
+bool Goal::check(const JointVector& q, Result& result) const {
+  double position = std::numeric_limits<double>::quiet_NaN();
+  double rotation = position;
+  measure(q, position, rotation);
+  if (!is_reached(position, rotation) || !model_.joints.contains(q.data())) return false;
+  result.status = Status::solved;
+  result.q = q;
+  result.position_error = position;
+  result.rotation_error = rotation;
+  return true;
+}
+
+void measure_error(const Pose& target, const Frame<double>& f, double& position_error,
+                   double& rotation_error) {
+  double square = 0;
+  double sine2 = 0;  // |R_target R^T - its transpose|^2 / 4: sine of the angle, squared
+  double trace = 0;
+  for (int i = 0; i < 3; ++i) {
+    const int a = (i + 1) % 3;
+    const int b = (i + 2) % 3;
+    const double d = target(i, 3) - f.p[i];
+    const double v = 0.5 * (f.x[a] * target(b, 0) - f.x[b] * target(a, 0) + f.y[a] * target(b, 1) -
+                            f.y[b] * target(a, 1) + f.z[a] * target(b, 2) - f.z[b] * target(a, 2));
+    square += d * d;
+    sine2 += v * v;
+    trace += f.x[i] * target(i, 0) + f.y[i] * target(i, 1) + f.z[i] * target(i, 2);
+  }
+  const double sine = std::sqrt(sine2);
+  position_error = std::sqrt(square);
+  // asin by its series where that is exact to the last digit; it also spares an arc tangent.
+  const bool small = sine < 1e-4 && trace > 1;
+  rotation_error = small ? sine * (1 + sine2 / 6) : std::atan2(sine, 0.5 * (trace - 1));
+}
+
+}  // namespace iksel

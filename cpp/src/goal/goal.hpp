@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What one search has to reach: a task around a target, and the one check of an answer. A full pose
+// is a task like any other, whose error is measured faster.
+#pragma once
+
+#include "goal/task_space.hpp"
+#include "iksel/result.hpp"
+#include "kinematics/chain_model.hpp"
+
+namespace iksel {
+
+class Goal {
+ public:
+  /// All must outlive this.
+  Goal(const ChainModel& model, const TaskSpace& task, const Pose& T_base_tcp)
+      : model_(model), task_(task), target_(T_base_tcp) {}
+
+  [[nodiscard]] const TaskSpace& task() const { return task_; }
+  [[nodiscard]] bool is_full_pose() const { return task_.is_full_pose(); }
+  /// T_base_tcp.
+  [[nodiscard]] const Pose& target() const { return target_; }
+  /// Where the tip link is then.
+  [[nodiscard]] Pose tip_target() const { return target_ * Pose(model_.tcp_inverse); }
+  /// Whether the chain has more joints than the task fixes axes: then solutions come in families.
+  [[nodiscard]] bool is_redundant() const { return model_.dof > task_.fixed_axes(); }
+  /// Whether the target is farther away than the links are long together.
+  [[nodiscard]] bool is_out_of_reach() const;
+
+  /// The errors of q, position [m] and rotation [rad]; and for a full pose the Jacobian of the TCP,
+  /// if that is not null.
+  void measure(const JointVector& q, double& position, double& rotation,
+               Jacobian* jacobian = nullptr) const;
+  [[nodiscard]] bool is_reached(double position, double rotation) const {
+    return position <= task_.position_tolerance() && rotation <= task_.rotation_tolerance();
+  }
+  /// Nothing is an answer by hearsay: measures q itself, and only if that reaches the target inside
+  /// the limits, makes it the result.
+  bool check(const JointVector& q, Result& result) const;
+  [[nodiscard]] bool is_solution(const JointVector& q) const {
+    Result measured;
+    return check(q, measured);
+  }
+
+ private:
+  const ChainModel& model_;
+  const TaskSpace& task_;
+  const Pose& target_;
+};
+
+/// Lengths of the position [m] and rotation [rad] error of a pose.
+void measure_error(const Pose& target, const Frame<double>& pose, double& position_error,
+                   double& rotation_error);
+
+}  // namespace iksel

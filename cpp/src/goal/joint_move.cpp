@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "goal/joint_move.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace iksel {
+
+MoveCost::MoveCost(const JointVector& weights, const JointVector& from, double power)
+    : from_(from), power_(power) {
+  constexpr double kLeast = 1e-6;
+  weights_ = weights.cwiseMax(kLeast * weights.maxCoeff());
+}
+
+double MoveCost::operator()(const JointVector& q, JointVector* gradient,
+                            JointVector* curvature) const {
+  const JointVector d = weights_.cwiseProduct(q - from_);
+  const double largest = d.cwiseAbs().maxCoeff();
+  if (power_ == 2 || largest == 0) {
+    if (gradient != nullptr) *gradient = weights_.cwiseProduct(d);
+    if (curvature != nullptr) *curvature = weights_.cwiseAbs2();
+    return 0.5 * d.squaredNorm();
+  }
+  // (sum |d|^p)^(1/p), scaled by the largest against overflow. The curvature leaves out the rank
+  // one part, and is bounded below to stay positive where d is 0.
+  const JointVector r = d.cwiseAbs() / largest;
+  const double sum = r.array().pow(power_).sum();
+  const double value = largest * std::pow(sum, 1 / power_);
+  const double scale = std::pow(sum, 1 / power_ - 1);
+  for (Eigen::Index j = 0; j < d.size(); ++j) {
+    const double slope = scale * std::pow(r[j], power_ - 1);
+    if (gradient != nullptr) (*gradient)[j] = weights_[j] * std::copysign(slope, d[j]);
+    if (curvature != nullptr) {
+      constexpr double kFloor = 1e-3;
+      (*curvature)[j] = weights_[j] * weights_[j] * (power_ - 1) / largest *
+                        std::max(scale * std::pow(r[j], power_ - 2), kFloor);
+    }
+  }
+  return value;
+}
+
+}  // namespace iksel

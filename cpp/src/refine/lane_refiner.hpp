@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Seeds brought nearer to their goals in SIMD lanes, by Levenberg-Marquardt.
+#pragma once
+
+#include <algorithm>
+
+#include "goal/task_space.hpp"
+#include "iksel/options.hpp"
+#include "kinematics/chain_model.hpp"
+#include "simd/kernels.hpp"
+
+namespace iksel {
+
+/// When a lane is given up.
+struct Patience {
+  /// A seed that is still far off after so many iterations is given up: few such arrive later.
+  int far_off;
+  /// Any seed is, after so many.
+  int most;
+  /// Every so many iterations it may be looked where a seed is heading; 0: never.
+  int look = 0;
+};
+
+class LaneRefiner {
+ public:
+  LaneRefiner(const ChainModel& model, const SolverOptions& options,
+              const lanes::LaneKernels& kernels);
+
+  [[nodiscard]] int width() const { return kernels_.lanes; }
+  /// Before a search.
+  void begin(const Patience& patience);
+
+  /// Y of a target (reduction.hpp), for all lanes or for one.
+  void set_target(const Pose& Y);
+  void set_target(int lane, const Pose& Y);
+
+  /// Starts a lane at `value(joint)`, inside the limits.
+  template <typename Value>
+  void load(int lane, const Value& value) {
+    for (int j = 0; j < chain_.n; ++j) pack_.q[j][lane] = value(j);
+    age_[lane] = 0;
+    next_look_[lane] = patience_.look > 0 ? patience_.look : kNever;
+  }
+  /// Starts a lane at a configuration that came from elsewhere, held to the limits.
+  void load_seed(int lane, const double* q);
+  /// The lane's seed is followed to its end wherever it is heading.
+  void follow(int lane) { next_look_[lane] = kNever; }
+
+  /// Iterates the lanes of the mask `busy` until one arrives, or is to be looked at or given up.
+  /// Returns the iterations.
+  int advance(unsigned busy);
+  [[nodiscard]] bool has_arrived(int lane) const {
+    return (arrived_ >> static_cast<unsigned>(lane) & 1U) != 0;
+  }
+  [[nodiscard]] bool is_spent(int lane) const {
+    return age_[lane] >= patience_.most ||
+           (age_[lane] >= patience_.far_off && !(pack_.error2[lane] < kFarOff2));
+  }
+  /// Whether it is time to look where the lane is heading.
+  bool is_to_be_looked_at(int lane) {
+    if (age_[lane] < next_look_[lane]) return false;
+    next_look_[lane] = age_[lane] + patience_.look;
+    return true;
+  }
+  /// Iterations of the lane's seed.
+  [[nodiscard]] int age(int lane) const { return age_[lane]; }
+
+  /// The joint values of a lane.
+  struct Column {
+    const double (&rows)[lanes::kMaxJoints][lanes::kWidth];
+    int lane;
+    double operator[](int joint) const { return rows[joint][lane]; }
+  };
+  [[nodiscard]] Column at(int lane) const { return {pack_.q, lane}; }
+  [[nodiscard]] JointVector q(int lane) const {
+    JointVector q(chain_.n);
+    for (int j = 0; j < chain_.n; ++j) q[j] = pack_.q[j][lane];
+    return q;
+  }
+
+ private:
+  /// Squared error that counts as far off [mixed units].
+  static constexpr double kFarOff2 = 1e-4;
+  static constexpr int kNever = 1 << 30;
+
+  const lanes::LaneKernels& kernels_;
+  int max_iterations_;
+  lanes::LaneChain chain_;
+  lanes::LaneOptions options_;
+  lanes::LanePack pack_;
+  Patience patience_{};
+  int age_[lanes::kWidth] = {};
+  int next_look_[lanes::kWidth] = {};
+  unsigned arrived_ = 0;
+};
+
+}  // namespace iksel

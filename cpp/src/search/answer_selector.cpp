@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "search/answer_selector.hpp"
+
+#include <algorithm>
+
+#include "base/constants.hpp"
+#include "goal/objective_cost.hpp"
+#include "refine/self_motion.hpp"
+
+namespace iksel {
+namespace {
+
+/// Seeds for a redundant arm, whose solutions never end.
+constexpr int kRedundantSeeds = 64;
+/// The best solutions of a redundant arm that are brought to a least cost.
+constexpr std::size_t kDescents = 4;
+/// Images looked at, at most: joints with many turns have more than time allows.
+constexpr std::size_t kMostImages = 65536;
+
+}  // namespace
+
+AnswerSelector::AnswerSelector(const ChainModel& model, const Goal& goal,
+                               const SolveRequest& request, const SolutionSet& found)
+    : model_(model),
+      goal_(goal),
+      request_(request),
+      ranks_(ranks_answers(request)),
+      found_(found),
+      move_(model.dof, request) {}
+
+bool AnswerSelector::is_satisfied(const Collector& search) {
+  ask_filter();
+  if (first_kept_ == found_.size()) return false;
+  if (!ranks_) return true;
+  if (goal_.is_redundant()) return search.work.attempts >= kRedundantSeeds;
+  return search.is_likely_complete();
+}
+
+bool AnswerSelector::select(JointVector& q) {
+  if (first_kept_ == found_.size()) return select_image(kInfinity, q);
+  if (!ranks_) {
+    q = found_.at(first_kept_);
+    return true;
+  }
+  std::array<Ranked, SolutionSet::kMost> ranked;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < found_.size(); ++i) {
+    if (!is_kept(i)) continue;
+    const double cost = cost_of(found_.at(i));
+    if (cost < kInfinity) ranked[count++] = {cost, i};
+  }
+  if (count == 0) return select_image(kInfinity, q);
+  const std::size_t descents = goal_.is_redundant() ? std::min(count, kDescents) : 1;
+  std::partial_sort(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(descents),
+                    ranked.begin() + static_cast<std::ptrdiff_t>(count));
+  q = found_.at(ranked[0].index);
+  double best = ranked[0].cost;
+  if (goal_.is_redundant()) best = descend_from(ranked.data(), descents, q);
+  // An image of one that was refused, or costs infinitely much, may be better still.
+  if (count < found_.size()) select_image(best, q);
+  return true;
+}
+
+double AnswerSelector::cost_of(const JointVector& q) const {
+  if (!ranks_) return 0;
+  if (request_.objective.is_set()) return ObjectiveCost(model_, request_.objective).value(q);
+  return move_.length(q - *request_.near);
+}
+
+void AnswerSelector::ask_filter() {
+  if (request_.filter && asked_ < found_.size()) {
+    request_.filter(found_.q(asked_), found_.size() - asked_, &kept_[asked_]);
+  }
+  asked_ = found_.size();
+  while (first_kept_ < asked_ && !is_kept(first_kept_)) ++first_kept_;
+}
+
+double AnswerSelector::descend_from(const Ranked* ranked, std::size_t count, JointVector& q) {
+  double best = ranked[0].cost;
+  for (std::size_t k = 0; k < count; ++k) {
+    JointVector end = found_.at(ranked[k].index);
+    descend(end);
+    const double cost = cost_of(end);
+    if (!(cost < best) || !goal_.is_solution(end)) continue;
+    bool keep = true;
+    if (request_.filter) request_.filter(end.data(), 1, &keep);
+    if (!keep) continue;
+    best = cost;
+    q = end;
+  }
+  return best;
+}
+
+void AnswerSelector::descend(JointVector& q) {
+  if (request_.objective.is_set()) {
+    constexpr int kObjectiveSteps = 50;
+    const ObjectiveCost cost(model_, request_.objective);
+    steps_ += descend_self_motion(model_, goal_, JointCost(cost), kObjectiveSteps, q);
+  } else {
+    steps_ += descend_to_near(model_, goal_, move_, *request_.near, q);
+  }
+}
+
+bool AnswerSelector::select_image(double best, JointVector& q) {
+  constexpr std::size_t kChunk = 64;
+  const auto dof = static_cast<std::size_t>(model_.dof);
+  std::array<double, kChunk* static_cast<std::size_t>(kMaxDof)> images;
+  std::size_t count = 0;
+  bool any = false;
+  const auto flush = [&] {
+    std::array<bool, kChunk> keep{};
+    keep.fill(!request_.filter);
+    if (count > 0 && request_.filter) request_.filter(images.data(), count, keep.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      const JointVector image =
+          Eigen::Map<const Eigen::VectorXd>(images.data() + i * dof, model_.dof);
+      const double cost = cost_of(image);
+      if (!keep[i] || !(cost < best)) continue;
+      best = cost;
+      q = image;
+      any = true;
+    }
+    count = 0;
+  };
+  for (std::size_t i = 0; i < found_.size(); ++i) {
+    JointVector image = found_.at(i);
+    model_.joints.first_image(image);
+    std::size_t left = kMostImages / found_.size();
+    do {
+      if (!(cost_of(image) < best) || !goal_.is_solution(image)) continue;
+      std::copy_n(image.data(), dof, images.data() + count * dof);
+      if (++count == kChunk) flush();
+    } while (--left > 0 && model_.joints.next_image(image));
+  }
+  flush();
+  return any;
+}
+
+}  // namespace iksel

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The best of what a search collected, by the wishes of a request: nearest, cheapest, or the first
+// that a filter lets through.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "goal/joint_move.hpp"
+#include "search/collector.hpp"
+
+namespace iksel {
+
+class AnswerSelector {
+ public:
+  /// All must outlive this.
+  AnswerSelector(const ChainModel& model, const Goal& goal, const SolveRequest& request,
+                 const SolutionSet& found);
+
+  /// Puts what was found since the last look before the filter. True if the best of all that passed
+  /// is an answer.
+  bool is_satisfied(const Collector& search);
+  /// Whether the best can only be told when all are known.
+  [[nodiscard]] bool wants_all() const { return ranks_ && !goal_.is_redundant(); }
+  /// The best of what passed; false if nothing did.
+  bool select(JointVector& q);
+  /// Steps along self-motions so far.
+  [[nodiscard]] int steps() const { return steps_; }
+
+ private:
+  struct Ranked {
+    double cost;
+    std::size_t index;
+    friend bool operator<(const Ranked& a, const Ranked& b) {
+      return a.cost != b.cost ? a.cost < b.cost : a.index < b.index;
+    }
+  };
+
+  /// Smaller is better; 0 where nothing is.
+  [[nodiscard]] double cost_of(const JointVector& q) const;
+  [[nodiscard]] bool is_kept(std::size_t i) const { return !request_.filter || kept_[i]; }
+  void ask_filter();
+  /// Brings the best of what passed to the least cost along their self-motions; q is the best
+  /// before, and after. Its cost.
+  double descend_from(const Ranked* ranked, std::size_t count, JointVector& q);
+  void descend(JointVector& q);
+  /// As select, among the images whose cost is less than `best`. False if there is none, and q is
+  /// what it was.
+  bool select_image(double best, JointVector& q);
+
+  const ChainModel& model_;
+  const Goal& goal_;
+  const SolveRequest& request_;
+  /// Whether some answers are better than others.
+  bool ranks_;
+  const SolutionSet& found_;
+  JointMove move_;
+  std::array<bool, SolutionSet::kMost> kept_{};
+  std::size_t asked_ = 0;
+  std::size_t first_kept_ = 0;
+  int steps_ = 0;
+};
+
+}  // namespace iksel

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The answers of a search that goes on after the first: every distinct solution is kept.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "base/function_ref.hpp"
+#include "base/work.hpp"
+#include "goal/goal.hpp"
+#include "goal/joint_move.hpp"
+#include "iksel/request.hpp"
+#include "search/search.hpp"
+#include "search/solution_set.hpp"
+
+namespace iksel {
+
+/// Whether some answers to the request are better than others.
+inline bool ranks_answers(const SolveRequest& request) {
+  return request.near || request.objective.is_set();
+}
+
+/// What a Collector writes to. Memory is taken at construction, none later.
+struct CollectorMemory {
+  explicit CollectorMemory(const ChainModel& model) : found(model) { partners.reserve(kPartners); }
+
+  SolutionSet found;
+  /// Guesses at solutions that a found one told of, still to be tried (fold_partner.hpp).
+  std::vector<JointVector> partners;
+  /// Room for that many; there are fewer solutions that come in pairs.
+  static constexpr std::size_t kPartners = 64;
+};
+
+class Collector {
+ public:
+  /// What a search looks for.
+  struct Aim {
+    /// Solutions nearer than this in every joint are one [rad or m].
+    double min_distance;
+    /// Whether the search ends when it has most likely found all.
+    bool until_complete;
+    /// Solutions that a pose is known to have at most; 0: unknown.
+    int most = 0;
+  };
+
+  /// `is_satisfied` is asked between stages. All must outlive this.
+  Collector(const ChainModel& model, const Goal& goal, const SolveRequest& request, const Aim& aim,
+            FunctionRef<bool(const Collector&)> is_satisfied, int max_attempts,
+            CollectorMemory& memory);
+
+  Verdict offer(int lane, JointVector& q);
+  /// Whether q is on its way to a solution that is known.
+  template <typename Q>
+  [[nodiscard]] bool knows(const Q& q) const {
+    return basin_radius_ > 0 && found_.is_near_known(q, basin_radius_);
+  }
+  [[nodiscard]] bool should_continue();
+
+  /// The next guess at a solution, if there is one.
+  bool pop_partner(JointVector& q) const;
+  /// Whether more than the first answer is wanted.
+  [[nodiscard]] bool wants_more() const { return aim_.until_complete || ranks_answers(request_); }
+  [[nodiscard]] bool is_complete() const { return aim_.until_complete && is_likely_complete(); }
+  /// Whether all there is has most likely been found: many seeds in a row led to nothing new; or
+  /// fewer, and the signs of det J, of which a single solution more would leave one over, cancel.
+  [[nodiscard]] bool is_likely_complete() const;
+  /// Solutions that seeds are to be taken far from: none where all are followed.
+  [[nodiscard]] std::size_t known() const { return basin_radius_ > 0 ? found_.size() : 0; }
+  [[nodiscard]] const double* solution(std::size_t i) const { return found_.q(i); }
+  /// Seeds nearer to a solution need not be tried [rad or m]; 0: all are.
+  [[nodiscard]] double basin_radius() const { return basin_radius_; }
+
+  [[nodiscard]] const Goal& goal() const { return goal_; }
+  [[nodiscard]] const SolveRequest& request() const { return request_; }
+  [[nodiscard]] const SolutionSet& found() const { return found_; }
+
+  /// Solutions, those among them that the set had no room for included.
+  int solutions = 0;
+  Work work;
+  Status status = Status::not_converged;  ///< solved if anything was found
+  bool is_out_of_time = false;
+
+ private:
+  /// Brings a success to the image nearest to `near`, where it still is one.
+  void wrap_near(const JointVector& near, Result& answer) const;
+  void look_for_partner(const Jacobian& J, const JointVector& q);
+
+  const ChainModel& model_;
+  const Goal& goal_;
+  const SolveRequest& request_;
+  Aim aim_;
+  FunctionRef<bool(const Collector&)> is_satisfied_;
+  SolutionSet& found_;
+  std::vector<JointVector>& partners_;
+  JointMove move_;
+  Deadline deadline_;
+  /// To which images solutions are brought, if there is a wish.
+  std::optional<JointVector> images_near_;
+  bool counts_moves_;
+  bool comes_in_pairs_;
+  bool signs_cancel_;
+  double basin_radius_;
+  int last_new_ = 0;        ///< seeds tried until the last new solution
+  int jacobian_signs_ = 0;  ///< sum of the solutions' signs of det J
+};
+
+}  // namespace iksel

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "search/context.hpp"
+
+#include <algorithm>
+#include <thread>
+
+namespace iksel {
+namespace {
+
+/// True if the options and the chain can be solved in lanes.
+bool solves_in_lanes(const ChainModel& model, const DatabaseData& data,
+                     const SolverOptions& options) {
+  return options.iteration == Iteration::lm && options.kinematics == Kinematics::kernel &&
+         data.reduction != nullptr && is_simple(model);
+}
+
+}  // namespace
+
+Workspace::Workspace(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
+                     const SolverOptions& options)
+    : scheme(model, options),
+      selection(model, nominal, data, options),
+      task_seeds(model, data, options, selection),
+      given(model, options),
+      collected(model) {
+  if (!solves_in_lanes(model, data, options)) return;
+  const lanes::LaneKernels& kernels = lanes::choose_kernels();
+  lanes = std::unique_ptr<Lanes>(new Lanes{LaneRefiner(model, options, kernels),
+                                           LaneQuery(model, nominal, data, options, kernels)});
+}
+
+WorkspacePool::WorkspacePool(const Robot& robot, const Robot& nominal, const Database& database,
+                             const SolverOptions& options)
+    : robot_(robot),
+      nominal_(nominal),
+      database_(database),
+      options_(options),
+      damaged_(database.data().storage->damaged()) {
+  const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
+  for (std::size_t i = 0; i < std::min(cores, kPlaces); ++i) idle_[i] = make().release();
+}
+
+WorkspacePool::~WorkspacePool() {
+  for (auto& place : idle_) delete place.load();
+}
+
+std::unique_ptr<Workspace> WorkspacePool::make() const {
+  return std::make_unique<Workspace>(robot_.model(), nominal_.model(), database_.data(), options_);
+}
+
+WorkspacePool::Lease::Lease(const WorkspacePool& pool) : pool_(pool) {
+  if (pool.damaged_ != nullptr) pool.database_.data().check_intact();
+  for (auto& place : pool.idle_) {
+    if (place.load(std::memory_order_relaxed) == nullptr) continue;
+    workspace_ = place.exchange(nullptr, std::memory_order_acquire);
+    if (workspace_ != nullptr) return;
+  }
+  workspace_ = pool.make().release();
+}
+
+WorkspacePool::Lease::~Lease() {
+  for (auto& place : pool_.idle_) {
+    Workspace* expected = nullptr;
+    if (place.compare_exchange_strong(expected, workspace_, std::memory_order_release,
+                                      std::memory_order_relaxed)) {
+      return;
+    }
+  }
+  delete workspace_;
+}
+
+}  // namespace iksel

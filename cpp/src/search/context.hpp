@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the searches of one solver share, and what each of them writes to.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <memory>
+
+#include "goal/goal.hpp"
+#include "iksel/database.hpp"
+#include "iksel/options.hpp"
+#include "iksel/robot.hpp"
+#include "refine/lane_refiner.hpp"
+#include "refine/scheme_refiner.hpp"
+#include "search/collector.hpp"
+#include "seeds/lane_query.hpp"
+#include "seeds/seed_ranking.hpp"
+#include "seeds/selection.hpp"
+#include "seeds/task_seeds.hpp"
+
+namespace iksel {
+
+/// What one search writes to. Never shared between two at once.
+struct Workspace {
+  /// `nominal` is the chain that the data belongs to.
+  Workspace(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
+            const SolverOptions& options);
+
+  SchemeRefiner scheme;
+  Selection selection;
+  TaskSeeds task_seeds;
+  SeedRanking given;
+  CollectorMemory collected;
+
+  struct Lanes {
+    LaneRefiner refiner;
+    LaneQuery query;
+  };
+  /// Only if the options solve in lanes.
+  std::unique_ptr<Lanes> lanes;
+};
+
+/// Workspaces of a solver, each lent to one search at a time.
+class WorkspacePool {
+ public:
+  WorkspacePool(const Robot& robot, const Robot& nominal, const Database& database,
+                const SolverOptions& options);
+  WorkspacePool(const WorkspacePool&) = delete;
+  WorkspacePool& operator=(const WorkspacePool&) = delete;
+  ~WorkspacePool();
+
+  /// A workspace, given back when this goes. Throws DatabaseError if the database was damaged since
+  /// it was mapped.
+  class Lease {
+   public:
+    explicit Lease(const WorkspacePool& pool);
+    Lease(const Lease&) = delete;
+    Lease& operator=(const Lease&) = delete;
+    ~Lease();
+    [[nodiscard]] Workspace& get() const { return *workspace_; }
+
+   private:
+    const WorkspacePool& pool_;
+    Workspace* workspace_ = nullptr;
+  };
+
+ private:
+  [[nodiscard]] std::unique_ptr<Workspace> make() const;
+
+  const Robot& robot_;
+  const Robot& nominal_;
+  const Database& database_;
+  const SolverOptions& options_;
+  /// As Storage::damaged of the database.
+  const std::atomic<bool>* damaged_;
+  /// Those that lie idle; a null is a place to put one back. More solves at once than places make
+  /// their own.
+  static constexpr std::size_t kPlaces = 64;
+  mutable std::array<std::atomic<Workspace*>, kPlaces> idle_{};
+};
+
+}  // namespace iksel

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The answers of a search that ends with the first.
+#pragma once
+
+#include "base/work.hpp"
+#include "goal/goal.hpp"
+#include "search/search.hpp"
+
+namespace iksel {
+
+class FirstAnswer {
+ public:
+  /// `wraps`: answers are brought inside the limits by whole turns.
+  FirstAnswer(const JointSpace& joints, bool wraps, const Goal& goal, double deadline,
+              Result& result)
+      : joints_(joints), wraps_(wraps), goal_(goal), deadline_(deadline), result_(result) {}
+
+  Verdict offer(int /*lane*/, JointVector& q) {
+    if (wraps_) joints_.wrap(q.data());
+    return goal_.check(q, result_) ? Verdict::stop : Verdict::refine;
+  }
+  template <typename Q>
+  [[nodiscard]] bool knows(const Q& /*q*/) const {
+    return false;
+  }
+  [[nodiscard]] bool wants_more() const { return false; }
+  [[nodiscard]] bool should_continue() {
+    if (!deadline_.has_passed()) return true;
+    result_.status = Status::out_of_time;
+    return false;
+  }
+
+ private:
+  const JointSpace& joints_;
+  bool wraps_;
+  const Goal& goal_;
+  Deadline deadline_;
+  Result& result_;
+};
+
+}  // namespace iksel

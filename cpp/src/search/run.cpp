@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "search/run.hpp"
+
+#include "search/first_answer.hpp"
+#include "search/search.hpp"
+#include "seeds/given_seeds.hpp"
+#include "seeds/nearest_seeds.hpp"
+#include "seeds/random_seeds.hpp"
+#include "seeds/seed_sequence.hpp"
+#include "seeds/selected_seeds.hpp"
+#include "seeds/spread_seeds.hpp"
+
+namespace iksel {
+namespace {
+
+constexpr int kMostIterations = std::numeric_limits<int>::max();
+/// Where any answer will do.
+constexpr Patience kFirst{8, kMostIterations};
+/// Where a seed more or less does not matter: solutions arrive after 4 iterations in the mean, and
+/// what is far off after 6 costs more than what it finds.
+constexpr Patience kAll{6, kMostIterations, 2};
+
+/// Seeds for a task between two questions to a filter.
+constexpr int kFilterStage = 16;
+
+/// What one search works with.
+template <typename Answers>
+struct Search {
+  const ChainModel& model;
+  const SolverOptions& options;
+  const Goal& goal;
+  const SolveRequest& request;
+  Workspace& workspace;
+  Answers& answers;
+  Work& work;
+  StageClock& clock;
+
+  [[nodiscard]] const JointVector* near() const { return request.near ? &*request.near : nullptr; }
+  /// The first of two sources that has seeds: those given, and the database's.
+  [[nodiscard]] std::size_t first_source() const {
+    return request.near || !request.seeds.empty() ? 0 : 1;
+  }
+
+  /// One seed at a time, by a scheme. Returns whether one reached the goal outside the limits.
+  bool by_scheme() const;
+  void in_lanes() const;
+};
+
+template <typename Answers>
+bool Search<Answers>::by_scheme() const {
+  SchemeRefiner& refiner = workspace.scheme;
+  const auto should_continue = [&] { return answers.should_continue(); };
+  const bool is_task = !goal.is_full_pose();
+  const int per_stage = is_task && request.filter ? kFilterStage : 1;
+  GivenSeeds given(workspace.given, goal, near(), request.seeds, options.max_attempts, per_stage,
+                   should_continue, work);
+  if (is_task) {
+    TaskSeeds& database = workspace.task_seeds;
+    database.begin(goal, answers.wants_more() ? TaskSeeds::kMany : TaskSeeds::kFew, per_stage, work,
+                   clock);
+    refiner.begin(goal, database.random());
+    SeedSequence seeds(first_source(), request.database_seeds ? 2 : 1, given, database);
+    search(refiner, seeds, answers, work);
+  } else {
+    Random random(options.seed);
+    refiner.begin(goal, random);
+    SelectedSeeds database(workspace.selection, goal.tip_target(), work, clock);
+    SeedSequence seeds(first_source(), request.database_seeds ? 2 : 1, given, database);
+    search(refiner, seeds, answers, work);
+  }
+  clock.lap(&StageTimes::iterate);
+  return refiner.has_left_limits();
+}
+
+template <>
+void Search<FirstAnswer>::in_lanes() const {
+  const auto should_continue = [&] { return answers.should_continue(); };
+  auto& [refiner, query] = *workspace.lanes;
+  refiner.begin(kFirst);
+  refiner.set_target(query.set_target(goal.target()));
+  clock.lap(&StageTimes::query);
+  GivenSeeds given(workspace.given, goal, near(), request.seeds, options.max_attempts,
+                   lanes::kBlock, should_continue, work);
+  NearestSeeds nearest(query, work, clock);
+  RandomSeeds random(model.joints, options.seed, work);
+  SeedSequence seeds(first_source(), request.database_seeds ? 3 : 1, given, nearest, random);
+  search(refiner, seeds, answers, work);
+  clock.lap(&StageTimes::iterate);
+}
+
+template <>
+void Search<Collector>::in_lanes() const {
+  const auto should_continue = [&] { return answers.should_continue(); };
+  auto& [refiner, query] = *workspace.lanes;
+  refiner.begin(kFirst);
+  refiner.set_target(query.set_target(goal.target()));
+  GivenSeeds given(workspace.given, goal, near(), request.seeds, options.max_attempts,
+                   lanes::kBlock, should_continue, work);
+  search(refiner, given, answers, work);
+  if (!request.database_seeds || !answers.should_continue()) return;
+  refiner.begin(kAll);
+  SpreadSeeds spread(query, model.joints, options.seed, answers, work);
+  search(refiner, spread, answers, work);
+}
+
+}  // namespace
+
+Result find_first(const ChainModel& model, const SolverOptions& options, const Goal& goal,
+                  const SolveRequest& request, Workspace& workspace, StageClock& clock) {
+  Result result;
+  if (goal.is_out_of_reach()) {
+    result.status = Status::out_of_reach;
+    return result;
+  }
+  Work work(options.max_attempts);
+  FirstAnswer answers(model.joints, options.whole_turns, goal, request.deadline, result);
+  const Search<FirstAnswer> search{model, options, goal, request, workspace, answers, work, clock};
+  if (workspace.lanes && goal.is_full_pose()) {
+    search.in_lanes();
+  } else if (search.by_scheme() && result.status == Status::not_converged) {
+    result.status = Status::outside_limits;
+  }
+  result.attempts = work.attempts;
+  result.iterations = work.iterations;
+  return result;
+}
+
+void collect(const ChainModel& model, const SolverOptions& options, Collector& collector,
+             Workspace& workspace) {
+  const Goal& goal = collector.goal();
+  if (goal.is_out_of_reach()) {
+    collector.status = Status::out_of_reach;
+    return;
+  }
+  StageClock clock(nullptr);
+  const Search<Collector> search{model,     options,   goal,           collector.request(),
+                                 workspace, collector, collector.work, clock};
+  if (workspace.lanes && goal.is_full_pose()) {
+    search.in_lanes();
+  } else if (search.by_scheme() && collector.status == Status::not_converged) {
+    collector.status = Status::outside_limits;
+  }
+}
+
+}  // namespace iksel

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The one search: while a lane is free and there is a seed, load it; refine; offer what arrives; go
+// on until there is enough.
+//
+// What takes part is chosen by the caller:
+//   Refiner  width(), advance(busy), has_arrived, is_spent, is_to_be_looked_at, at and q of a lane
+//            (lane_refiner.hpp, scheme_refiner.hpp);
+//   Seeds    bool next_stage(), false if there are no more; bool load(refiner, lane), false if the
+//            stage has no more for this lane (seeds/);
+//   Answers  Verdict offer(lane, q); bool knows(q), where a seed need not be followed any further;
+//            bool should_continue(), asked between stages (first_answer.hpp, collector.hpp).
+#pragma once
+
+#include "base/work.hpp"
+#include "iksel/types.hpp"
+
+namespace iksel {
+
+/// What is to be done after a lane has arrived.
+enum class Verdict {
+  stop,    ///< nothing more is wanted
+  next,    ///< this seed is finished; go on with others
+  refine,  ///< it is not quite there; iterate it further
+};
+
+template <typename Refiner, typename Seeds, typename Answers>
+void search(Refiner& refiner, Seeds& seeds, Answers& answers, Work& work) {
+  const int width = refiner.width();
+  unsigned busy = 0;
+  const auto bit = [](int lane) { return 1U << static_cast<unsigned>(lane); };
+  const auto refill = [&](int lane) {
+    busy = seeds.load(refiner, lane) ? busy | bit(lane) : busy & ~bit(lane);
+  };
+  while (seeds.next_stage()) {
+    for (int lane = 0; lane < width; ++lane) refill(lane);
+    // NOLINTNEXTLINE(bugprone-infinite-loop): refill() ends it.
+    while (busy != 0) {
+      work.iterations += refiner.advance(busy);
+      for (int lane = 0; lane < width; ++lane) {
+        if ((busy & bit(lane)) == 0) continue;
+        bool finished = refiner.is_spent(lane);
+        if (refiner.is_to_be_looked_at(lane) && !finished && answers.knows(refiner.at(lane))) {
+          finished = true;
+        } else if (refiner.has_arrived(lane)) {
+          JointVector q = refiner.q(lane);
+          const Verdict verdict = answers.offer(lane, q);
+          if (verdict == Verdict::stop) return;
+          finished = finished || verdict == Verdict::next;
+        }
+        if (finished) refill(lane);
+      }
+    }
+    if (!answers.should_continue()) return;
+  }
+}
+
+}  // namespace iksel

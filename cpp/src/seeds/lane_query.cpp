@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "seeds/lane_query.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace iksel {
+
+LaneQuery::LaneQuery(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
+                     const SolverOptions& options, const lanes::LaneKernels& kernels)
+    : queue(model.joints, kernels),
+      data_(data),
+      kernels_(kernels),
+      base_inverse_(to_pose(model.kernel.base).inverse()),
+      tcp_inverse_(Pose(model.tcp_inverse) * to_pose(model.kernel.flange).inverse()),
+      seed_chain_(make_seed_chain(nominal, *data.reduction)),
+      nearest_(std::min<std::size_t>(static_cast<std::size_t>(options.neighbours), data.size)),
+      block_(static_cast<std::size_t>(lanes::block_rows(model.dof) * lanes::kBlock)),
+      block_distance2_(data.blocks.size()),
+      block_order_(data.blocks.size()) {}
+
+Pose LaneQuery::set_target(const Pose& T_base_tcp) {
+  Pose Y = base_inverse_ * T_base_tcp * tcp_inverse_;
+  data_.reduction->make_key(Y, key_);
+  seed_target_ = make_seed_target(Y);
+  return Y;
+}
+
+std::size_t LaneQuery::find_nearest(std::size_t k) {
+  const std::size_t found = data_.tree.nearest(key_, k, nearest_.data());
+  std::sort(nearest_.begin(), nearest_.begin() + static_cast<std::ptrdiff_t>(found));
+  return found;
+}
+
+void LaneQuery::prepare_nearest(std::size_t first, std::size_t end, lanes::SeedPack& seeds) {
+  for (std::size_t entry = 0; entry < lanes::kBlock; ++entry) {
+    const std::size_t i = std::min(first + entry, end - 1);
+    write_to_block(data_, nearest_[i].index, static_cast<int>(entry), block_.data());
+  }
+  prepare(block_.data(), seeds);
+}
+
+std::size_t LaneQuery::measure_blocks() {
+  const SampleBlocks& blocks = data_.blocks;
+  blocks.measure(key_, block_distance2_.data());
+  for (std::size_t block = 0; block < blocks.size(); ++block) {
+    // Squares are not negative, and so in the order of their bits; of equals the first.
+    std::uint32_t bits = 0;
+    std::memcpy(&bits, &block_distance2_[block], sizeof bits);
+    block_order_[block] = std::uint64_t{bits} << 32U | block;
+  }
+  return std::min((neighbours() + lanes::kBlock - 1) / lanes::kBlock, blocks.size());
+}
+
+void LaneQuery::prepare_blocks(std::size_t first, std::size_t count, lanes::SeedPack* seeds) {
+  const auto begin = block_order_.begin() + static_cast<std::ptrdiff_t>(first);
+  std::partial_sort(begin, begin + static_cast<std::ptrdiff_t>(count), block_order_.end());
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto block = static_cast<std::uint32_t>(block_order_[first + i]);
+    prepare(data_.blocks.block(block), seeds[i]);
+  }
+}
+
+}  // namespace iksel

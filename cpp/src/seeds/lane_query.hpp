@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One target asked of a reduced database, and the memory that its seeds for the lanes need.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "database/data.hpp"
+#include "database/key.hpp"
+#include "iksel/options.hpp"
+#include "kinematics/chain_model.hpp"
+#include "seeds/farthest_first.hpp"
+#include "simd/kernels.hpp"
+
+namespace iksel {
+
+class LaneQuery {
+ public:
+  /// `nominal` is the chain that the data belongs to; `model` may differ from it a little.
+  LaneQuery(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
+            const SolverOptions& options, const lanes::LaneKernels& kernels);
+
+  /// Returns Y (reduction.hpp).
+  Pose set_target(const Pose& T_base_tcp);
+
+  /// The samples of the leaf that the target falls into, as seeds.
+  void prepare_leaf(lanes::SeedPack& seeds) const { prepare(data_.leaves.block(key_), seeds); }
+
+  /// The k nearest samples, nearest first; k is at most neighbours(). Returns how many there are.
+  std::size_t find_nearest(std::size_t k);
+  [[nodiscard]] std::size_t neighbours() const { return nearest_.size(); }
+  /// Of those, number `first` to `end` - 1 as seeds, a block of them at most.
+  void prepare_nearest(std::size_t first, std::size_t end, lanes::SeedPack& seeds);
+
+  /// The blocks of samples that neighbours() fills, nearest first: to come before prepare_block.
+  /// Returns how many there are.
+  std::size_t measure_blocks();
+  /// Those with the ranks `first` to `first` + count - 1, which have to be asked for in turn, each
+  /// with its seeds in packs[i].
+  void prepare_blocks(std::size_t first, std::size_t count, lanes::SeedPack* packs);
+
+  /// Where sources keep their seeds.
+  lanes::SeedPack packs[kBlocksAtOnce] = {};
+  FarthestFirstQueue queue;
+
+ private:
+  void prepare(const float* block, lanes::SeedPack& seeds) const {
+    kernels_.prepare(seed_chain_, seed_target_, block, seeds);
+  }
+
+  const DatabaseData& data_;
+  const lanes::LaneKernels& kernels_;
+  Pose base_inverse_, tcp_inverse_;  ///< Y = base_inverse T_base_tcp tcp_inverse
+  lanes::SeedChain seed_chain_;
+  lanes::SeedTarget seed_target_{};
+  double key_[kMaxKeyDimension] = {};
+  std::vector<Neighbour> nearest_;
+  std::vector<float> block_;
+  std::vector<float> block_distance2_;
+  std::vector<std::uint64_t> block_order_;  ///< squared distance, and the block
+};
+
+}  // namespace iksel

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The samples nearest to the target: those of its leaf first, then the exact neighbours in widening
+// stages.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+#include "base/stage_clock.hpp"
+#include "base/work.hpp"
+#include "seeds/lane_query.hpp"
+
+namespace iksel {
+
+class NearestSeeds {
+ public:
+  NearestSeeds(LaneQuery& query, Work& work, StageClock& clock)
+      : query_(query), work_(work), clock_(clock) {}
+
+  bool next_stage() {
+    clock_.lap(&StageTimes::iterate);
+    rank_ = 0;
+    if (!leaf_done_) {
+      leaf_done_ = true;
+      query_.prepare_leaf(seeds());
+    } else if (!prepare_next()) {
+      return false;
+    }
+    clock_.lap(&StageTimes::rank);
+    return true;
+  }
+
+  template <typename Refiner>
+  bool load(Refiner& refiner, int lane) {
+    if (rank_ == lanes::kBlock || !work_.take()) return false;
+    const int entry = seeds().order[rank_++];
+    refiner.load(lane, [&](int j) { return static_cast<double>(seeds().q[j][entry]); });
+    return true;
+  }
+
+ private:
+  lanes::SeedPack& seeds() { return query_.packs[0]; }
+
+  /// Each stage asks for four times as many and tries those that were not tried yet. Their number
+  /// ends them, and not how many the tree finds: keys may be far out of its range.
+  bool prepare_next() {
+    while (done_ == found_) {
+      if (asked_ == query_.neighbours() || !work_.has_left()) return false;
+      asked_ = std::min(std::max<std::size_t>(64, 4 * asked_), query_.neighbours());
+      found_ = query_.find_nearest(asked_);
+      clock_.lap(&StageTimes::query);
+    }
+    query_.prepare_nearest(done_, found_, seeds());
+    done_ = std::min(done_ + lanes::kBlock, found_);
+    return true;
+  }
+
+  LaneQuery& query_;
+  Work& work_;
+  StageClock& clock_;
+  bool leaf_done_ = false;
+  int rank_ = 0;
+  std::size_t asked_ = 0;
+  std::size_t found_ = 0;
+  std::size_t done_ = 0;
+};
+
+}  // namespace iksel

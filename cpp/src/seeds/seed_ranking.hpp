@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Seeds that a caller gives, ranked and re-selected by the same rules as the database's.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "base/function_ref.hpp"
+#include "goal/goal.hpp"
+#include "iksel/options.hpp"
+#include "kinematics/chain_model.hpp"
+
+namespace iksel {
+
+/// Memory is taken at construction for kRoom seeds; more take it once, and it is kept.
+class SeedRanking {
+ public:
+  static constexpr std::size_t kRoom = 1024;
+
+  SeedRanking(const ChainModel& model, const SolverOptions& options);
+
+  /// Puts `seeds`, which must outlive their use, in order: n log n for n of them. Asks
+  /// `should_continue` every few; false if that said no, and there are no seeds then.
+  bool rank(const Goal& goal, const std::vector<JointVector>& seeds,
+            FunctionRef<bool()> should_continue);
+
+  /// The seed of the next attempt; null when there is none left. As the database's, seeds are
+  /// re-selected among the options' `candidates` best; the others follow by rank.
+  const double* next();
+
+ private:
+  struct Ranked {
+    double score;  ///< squared norm of Eq. (2) or Eq. (5)
+    std::size_t index;
+    bool leaves_limits;
+    friend bool operator<(const Ranked& a, const Ranked& b) {
+      if (a.leaves_limits != b.leaves_limits) return b.leaves_limits;
+      return a.score != b.score ? a.score < b.score : a.index < b.index;
+    }
+  };
+  [[nodiscard]] Ranked rank_one(std::size_t index, const Goal& goal) const;
+  /// The error to be reduced, and the Jacobian J of what reduces it.
+  Vector6 error_of(const JointVector& q, const Goal& goal, JacobianMatrix& J) const;
+  void bring_farthest_forward();
+
+  const ChainModel& model_;
+  const SolverOptions& options_;
+  const std::vector<JointVector>* seeds_ = nullptr;
+  std::vector<Ranked> ranked_;
+  std::size_t taken_ = 0;
+  JointVector sum_of_failed_;
+};
+
+}  // namespace iksel

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Seeds that spread over all solutions: through the database block by block, always the seed
+// farthest from what was found first, then at random; and before them guesses at solutions that a
+// found one told of.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include "base/work.hpp"
+#include "seeds/lane_query.hpp"
+#include "seeds/random_seeds.hpp"
+
+namespace iksel {
+
+/// `Known` tells of what was found: pop_partner(q), wants_more(), is_complete(), known(), their
+/// number, solution(i), and basin_radius(), within which seeds need not be tried.
+template <typename Known>
+class SpreadSeeds {
+ public:
+  SpreadSeeds(LaneQuery& query, const JointSpace& joints, std::uint64_t seed, const Known& known,
+              Work& work)
+      : query_(query),
+        known_(known),
+        work_(work),
+        random_(joints, seed, work, kBlocksAtOnce * lanes::kBlock),
+        blocks_(query.measure_blocks()) {}
+
+  bool next_stage() {
+    if (!work_.has_left()) return false;
+    at_random_ = done_ == blocks_;
+    if (at_random_) return random_.next_stage();
+    // One alone at first where any answer will do: it may have one.
+    const std::size_t most = done_ == 0 && !known_.wants_more() ? 1 : kBlocksAtOnce;
+    const std::size_t count = std::min(most, blocks_ - done_);
+    query_.prepare_blocks(done_, count, query_.packs);
+    done_ += count;
+    query_.queue.reset(query_.packs, static_cast<int>(count));
+    added_ = 0;
+    left_ = static_cast<int>(count) * lanes::kBlock;
+    return true;
+  }
+
+  template <typename Refiner>
+  bool load(Refiner& refiner, int lane) {
+    JointVector partner;
+    if (known_.pop_partner(partner)) {
+      refiner.load_seed(lane, partner.data());
+      refiner.follow(lane);
+      return true;
+    }
+    while (!known_.is_complete()) {
+      if (at_random_) return random_.load(refiner, lane);
+      if (left_ == 0 || !work_.take()) return false;
+      --left_;
+      for (; added_ < known_.known(); ++added_) query_.queue.add_known(known_.solution(added_));
+      float distance = 0;
+      const int k = query_.queue.pop(distance);
+      if (distance < known_.basin_radius()) continue;
+      refiner.load(lane, [&](int j) { return query_.queue.q(j, k); });
+      return true;
+    }
+    return false;
+  }
+
+ private:
+  LaneQuery& query_;
+  const Known& known_;
+  Work& work_;
+  RandomSeeds random_;
+  std::size_t blocks_;
+  std::size_t done_ = 0;
+  std::size_t added_ = 0;
+  int left_ = 0;
+  bool at_random_ = false;
+};
+
+}  // namespace iksel

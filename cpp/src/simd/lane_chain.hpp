@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A chain as the lanes know it.
+#pragma once
+
+#include "kinematics/chain_model.hpp"
+#include "simd/lane_types.hpp"
+
+namespace iksel {
+
+/// True if the degrees of freedom are the joints, one to one: no mimic joints.
+bool is_simple(const ChainModel& model);
+
+/// The part between the frames of the first and the last joint of a simple chain.
+lanes::LaneChain make_lane_chain(const ChainModel& model);
+
+}  // namespace iksel

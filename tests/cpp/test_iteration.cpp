@@ -29,8 +29,8 @@ Vector6 random_error(iksel::Random& random) {
 
 TEST(Steps, AgreeWithEigensOtherDecomposition) {
   iksel::Random random(iksel_test::seed());
-  for (const auto& c : iksel_test::all_robots()) {
-    const Robot robot = iksel_test::load(c);
+  for (const std::string& name : iksel_test::all_robots()) {
+    const Robot& robot = iksel_test::robot(name);
     const Eigen::MatrixXd q = robot.random_configurations(20, iksel_test::seed());
     for (Eigen::Index i = 0; i < q.rows(); ++i) {
       const JacobianMatrix J = robot.jacobian(q.row(i));
@@ -42,7 +42,7 @@ TEST(Steps, AgreeWithEigensOtherDecomposition) {
           Eigen::MatrixXd(J).completeOrthogonalDecomposition().solve(e);
       const double scale = 1e-6 * std::max(1.0, expected.norm());
       if (expected.norm() > 100) continue;  // nearly singular
-      EXPECT_LT((iksel::dls_step(J, e, options) - expected).norm(), scale) << c.name;
+      EXPECT_LT((iksel::dls_step(J, e, options) - expected).norm(), scale) << name;
       EXPECT_LT((iksel::pinv_step(J, e, options) - expected).norm(), scale);
       options.damping = 0.01;
       const Eigen::MatrixXd A =
@@ -90,7 +90,7 @@ TEST(Steps, TruncationIgnoresTheSingularDirection) {
 }
 
 TEST(Steps, ClampingWeightsFallToZeroAtTheLimits) {
-  const Robot robot = iksel_test::load(iksel_test::paper_robots()[0]);
+  const Robot& robot = iksel_test::robot("cvr038");
   const auto& model = robot.model();
   const JointVector range = robot.upper() - robot.lower();
   const auto weight = [&](double part) {
@@ -107,7 +107,7 @@ TEST(Steps, ClampingWeightsFallToZeroAtTheLimits) {
 }
 
 TEST(Steps, CwlnWithAllWeightsOneIsLeastNorm) {
-  const Robot robot = iksel_test::load(iksel_test::paper_robots()[3]);
+  const Robot& robot = iksel_test::robot("irb14050");
   const JointVector middle = 0.5 * (robot.lower() + robot.upper());
   JointVector q = middle;
   for (int i = 0; i < robot.dof(); ++i) q[i] += 0.2 * (i % 2 == 0 ? 1 : -1);
@@ -122,7 +122,7 @@ TEST(Steps, CwlnWithAllWeightsOneIsLeastNorm) {
 }
 
 TEST(Steps, CwlnPullsAJointBackFromItsLimit) {
-  const Robot robot = iksel_test::load(iksel_test::paper_robots()[3]);
+  const Robot& robot = iksel_test::robot("irb14050");
   JointVector q = 0.5 * (robot.lower() + robot.upper());
   q[3] = robot.upper()[3];
   const JacobianMatrix J = robot.jacobian(q);
@@ -133,8 +133,8 @@ TEST(Steps, CwlnPullsAJointBackFromItsLimit) {
 
 TEST(Steps, LmNeverLeavesTheLimits) {
   iksel::Random random(iksel_test::seed());
-  for (const auto& c : iksel_test::paper_robots()) {
-    const Robot robot = iksel_test::load(c);
+  for (const std::string& name : iksel_test::paper_robots()) {
+    const Robot& robot = iksel_test::robot(name);
     const Eigen::MatrixXd q = robot.random_configurations(200, iksel_test::seed());
     for (Eigen::Index i = 0; i < q.rows(); ++i) {
       JointVector at = q.row(i);
@@ -155,7 +155,7 @@ class Schemes : public testing::TestWithParam<std::tuple<Iteration, iksel::Kinem
 
 TEST_P(Schemes, ConvergeFromNearBy) {
   const auto [scheme, kinematics] = GetParam();
-  const Robot robot = iksel_test::load(iksel_test::paper_robots()[3]);
+  const Robot& robot = iksel_test::robot("irb14050");
   SolverOptions options = SolverOptions::paper();
   options.iteration = scheme;
   options.max_iterations = 30;

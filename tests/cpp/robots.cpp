@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstdlib>
@@ -125,9 +126,9 @@ const std::vector<std::string>& all_robots() {
   return names;
 }
 
-int cases(int normal) {
+int cases(int normal, int least) {
   const char* text = std::getenv("IKSEL_TEST_CASES");
-  return text != nullptr ? std::atoi(text) : normal;
+  return std::max(least, text != nullptr ? std::atoi(text) : normal);
 }
 
 std::uint64_t seed() {

@@ -51,8 +51,9 @@ class Judge {
 /// one in a batch.
 int count_solved(const iksel::Solver& solver, int n);
 
-/// Random cases per test: IKSEL_TEST_CASES, or `normal`.
-int cases(int normal);
+/// Random cases per test: IKSEL_TEST_CASES, or `normal`; no fewer than a test needs to say
+/// anything.
+int cases(int normal, int least = 1);
 
 /// The seed of all random cases: IKSEL_TEST_SEED, or 1. Print it with every failure.
 std::uint64_t seed();

@@ -39,7 +39,7 @@ TEST(Angles, FarFromZeroAreRightOrRefused) {
       const Solver solver(iksel_test::robot(name).without_limits(), options);
       const Robot& robot = solver.robot();
       iksel_test::Judge judge(robot);
-      const int n = iksel_test::cases(300) / 15;
+      const int n = iksel_test::cases(300, 30) / 15;
       const Matrix q = robot.random_configurations(static_cast<std::size_t>(n), iksel_test::seed());
       int refused = 0;
       int far = 0;

@@ -407,7 +407,7 @@ TEST_F(DatabaseFile, KilledSavesLeaveADatabaseAndNoFiles) {
   for (const bool nameless : {true, false}) {
     save(0, nameless);
     int changed = 0;
-    const int kills = iksel_test::cases(30);
+    const int kills = iksel_test::cases(30, 20);
     for (int kill = 0; kill < kills; ++kill) {
       const pid_t child = ::fork();
       ASSERT_GE(child, 0);

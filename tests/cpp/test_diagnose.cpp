@@ -178,7 +178,7 @@ TEST(Diagnose, FindsAReasonForWhateverFails) {
   for (const char* name : {"ur3", "panda", "cvr038", "xarm5"}) {
     const Robot& robot = iksel_test::robot(name);
     const Solver& solver = iksel_test::solver(name);
-    const int cases = iksel_test::cases(200) / 20;
+    const int cases = iksel_test::cases(200, 40) / 20;
     const Eigen::MatrixXd q = robot.random_configurations(2 * cases, iksel_test::seed());
     for (int i = 0; i < cases; ++i) {
       Pose target = robot.fk(q.row(2 * i));
@@ -201,7 +201,7 @@ TEST(DqDx, IsTheDerivativeOfAnswersSolvedAgain) {
     SolverOptions options;
     options.position_tolerance = options.rotation_tolerance = 1e-11;
     const Solver solver(robot, options);
-    const int cases = iksel_test::cases(200) / 4;
+    const int cases = iksel_test::cases(200, 40) / 4;
     const Eigen::MatrixXd q = robot.random_configurations(cases, iksel_test::seed());
     int compared = 0;
     for (int i = 0; i < cases; ++i) {

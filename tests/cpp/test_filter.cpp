@@ -26,7 +26,7 @@ TEST(Filter, FindsWheneverSolveAllHasOneThatPasses) {
     const Solver& solver = iksel_test::solver(name);
     const Robot& robot = solver.robot();
     iksel_test::Judge judge(robot);
-    const int n = iksel_test::cases(300) / 2;
+    const int n = iksel_test::cases(300, 60) / 2;
     const Eigen::MatrixXd q = robot.random_configurations(n, iksel_test::seed());
     int passed = 0;
     int rejected = 0;
@@ -63,7 +63,7 @@ TEST(Filter, NearestIsNearestOfAllThatPass) {
   const Solver& solver = iksel_test::solver("ur3");
   const Robot& robot = solver.robot();
   iksel_test::Judge judge(robot);
-  const int n = iksel_test::cases(300);
+  const int n = iksel_test::cases(300, 30);
   const Eigen::MatrixXd q = robot.random_configurations(n, iksel_test::seed());
   const iksel::Matrix noise = robot.random_configurations(n, iksel_test::seed() + 1);
   int turned = 0;

@@ -27,7 +27,7 @@ TEST_P(NearOfSixJoints, NearestIsNearestOfBruteForce) {
   const Solver& solver = iksel_test::solver(GetParam());
   const Robot& robot = solver.robot();
   iksel_test::Judge judge(robot);
-  const int n = iksel_test::cases(300) / 15;
+  const int n = iksel_test::cases(300, 30) / 15;
   const Eigen::MatrixXd q = robot.random_configurations(n, iksel_test::seed());
   const iksel::Matrix noise = robot.random_configurations(n, iksel_test::seed() + 1);
   int farther = 0;
@@ -80,7 +80,7 @@ TEST(Near, RedundantArmHasSlidToALocalMinimum) {
     const Solver& solver = iksel_test::solver(name);
     const Robot& robot = solver.robot();
     iksel_test::Judge judge(robot);
-    const int n = iksel_test::cases(300) / 10;
+    const int n = iksel_test::cases(300, 30) / 10;
     const Eigen::MatrixXd q = robot.random_configurations(n, iksel_test::seed());
     const iksel::Matrix noise = robot.random_configurations(n, iksel_test::seed() + 1);
     for (int i = 0; i < n; ++i) {

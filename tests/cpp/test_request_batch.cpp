@@ -39,7 +39,7 @@ struct Batch {
 TEST(RequestBatch, IsTheLoopOnAnyNumberOfThreads) {
   for (const char* name : {"ur3", "panda"}) {
     const Solver& solver = iksel_test::solver(name);
-    const Batch batch(solver.robot(), iksel_test::cases(300) / 5);
+    const Batch batch(solver.robot(), iksel_test::cases(300, 10) / 5);
     for (const int threads : {1, 2, 8}) {
       const auto rows = solver.solve_batch(batch.targets, SolveRequest{}, batch.near, threads);
       ASSERT_EQ(rows.size(), batch.targets.size());
@@ -63,7 +63,7 @@ TEST(RequestBatch, FilterIsAskedAboutManyAndFindsWhatSolveFinds) {
     const Solver solver(iksel_test::robot(name), options);
     const Robot& robot = solver.robot();
     iksel_test::Judge judge(robot);
-    const Batch batch(robot, iksel_test::cases(300));
+    const Batch batch(robot, iksel_test::cases(300, 20));
     std::size_t most = 0;
     SolveRequest request;
     request.filter = [&](const double* q, std::size_t count, bool* keep) {
@@ -74,7 +74,9 @@ TEST(RequestBatch, FilterIsAskedAboutManyAndFindsWhatSolveFinds) {
       const auto near = with_near ? batch.near : std::vector<JointVector>();
       most = 0;
       const auto rows = solver.solve_batch(batch.targets, request, near, 1);
-      EXPECT_EQ(most, std::min<std::size_t>(256, rows.size()));
+      // About one candidate of each row at least, and never about more than that many.
+      EXPECT_LE(most, 256U);
+      EXPECT_GE(most, std::min<std::size_t>(256, rows.size()));
       for (const int threads : {2, 8}) {
         const auto again = solver.solve_batch(batch.targets, request, near, threads);
         for (std::size_t i = 0; i < rows.size(); ++i) ASSERT_EQ(rows[i].q, again[i].q);

@@ -28,7 +28,7 @@ class SolveAllOfSixJoints : public testing::TestWithParam<const char*> {};
 TEST_P(SolveAllOfSixJoints, AllBranchesOfBruteForceAreFoundAndNoOther) {
   const Solver& solver = iksel_test::solver(GetParam());
   iksel_test::Judge judge(solver.robot());
-  const int n = iksel_test::cases(300) / 15;
+  const int n = iksel_test::cases(300, 30) / 15;
   const Eigen::MatrixXd q = solver.robot().random_configurations(n, iksel_test::seed());
   int missed = 0;
   for (int i = 0; i < n; ++i) {

@@ -49,7 +49,7 @@ std::vector<SolverOptions> presets() {
 TEST(Threads, BatchGivesTheSameBits) {
   for (const std::string& name : iksel_test::paper_robots()) {
     const Robot& robot = iksel_test::robot(name);
-    const auto targets = iksel_test::random_targets(robot, iksel_test::cases(600));
+    const auto targets = iksel_test::random_targets(robot, iksel_test::cases(600, 20));
     for (const SolverOptions& options : presets()) {
       const Solver solver(robot, options);
       std::vector<Result> expected;
@@ -73,7 +73,7 @@ TEST(Threads, BatchInLanesAnswersEachTargetByItself) {
   for (const std::string& name : iksel_test::paper_robots()) {
     const Robot& robot = iksel_test::robot(name);
     const Solver& solver = iksel_test::solver(name);
-    auto targets = iksel_test::random_targets(robot, iksel_test::cases(600));
+    auto targets = iksel_test::random_targets(robot, iksel_test::cases(600, 20));
     for (std::size_t i = 0; i < targets.size(); i += 7) targets[i].translation() *= 3;  // too far
     const std::vector<Result> batch = solver.solve_batch(targets, 1);
     std::vector<std::size_t> order(targets.size());
@@ -104,7 +104,7 @@ TEST(Threads, BatchWithWishesGivesTheSameBits) {
     SolverOptions options;
     options.max_attempts = 256;
     const Solver solver(robot, options);
-    const auto targets = iksel_test::random_targets(robot, iksel_test::cases(600));
+    const auto targets = iksel_test::random_targets(robot, iksel_test::cases(600, 20));
     std::vector<iksel::JointVector> near;
     const Eigen::MatrixXd q = robot.random_configurations(targets.size(), iksel_test::seed() + 1);
     for (Eigen::Index i = 0; i < q.rows(); ++i) near.emplace_back(q.row(i).transpose());

@@ -7,14 +7,14 @@
 # Usage: scripts/fuzz.sh [--seconds N] [--jobs N] [TARGET...]
 #
 #   --seconds N  for each target (default: 600)
-#   --jobs N     targets at a time (default: one per core)
+#   --jobs N     targets at a time (default: $CMAKE_BUILD_PARALLEL_LEVEL, or one per core)
 #   TARGET       urdf, database, pickle, cli (default: all)
 #
 # Starts from tests/fuzz/corpus; what is found on top is kept in build/fuzz/corpus. Fails on a
 # finding, kept in build/fuzz/findings, and says how to repeat it.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-seconds=600 jobs=$(nproc) targets=()
+seconds=600 jobs=$CMAKE_BUILD_PARALLEL_LEVEL targets=()
 while (($#)); do
   case $1 in
     --seconds) seconds=${2:?} && shift 2 ;;

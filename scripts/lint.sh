@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Checks formatting, types, names, licence lines and the stubs; changes nothing.
+# Checks formatting, spelling, types, names, licence lines and the stubs; changes nothing.
 #
 # Usage: scripts/lint.sh [--fast]
 #
@@ -52,6 +52,11 @@ clang_tidy() {
   fi
 }
 
+# Other people's robots, and what the fuzzers found, have words of their own.
+spelling() {
+  sources . ':!cpp/robots/*.urdf' ':!tests/fuzz/corpus' | xargs -0 "$venv/bin/codespell"
+}
+
 shell_check() {
   sources '*.sh' .ci/run | xargs -0 shellcheck
 }
@@ -72,6 +77,7 @@ spdx_lines() {
 scripts/bootstrap.sh --dev --lint
 
 check "SPDX lines" spdx_lines
+check "spelling" spelling
 check "ruff check" "$venv/bin/ruff" check
 check "ruff format" "$venv/bin/ruff" format --check
 check "mypy" "$venv/bin/mypy"

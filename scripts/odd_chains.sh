@@ -22,7 +22,7 @@ done
 scripts/bootstrap.sh --apt-only --dev
 step "build (dev)"
 cmake --preset dev >/dev/null
-cmake --build --preset dev --target test_odd_chains
+cmake --build --preset dev --target iksel_tests
 
 step "$cases cases in $jobs processes, seed $seed"
 # Each process has seeds of its own: that many chains none of them makes.
@@ -32,7 +32,7 @@ mkdir -p "$log"
 running=()
 for ((i = 0; i < jobs; i++)); do
   IKSEL_TEST_CASES=$each IKSEL_TEST_SEED=$((seed + i * apart)) \
-    build/release/tests/test_odd_chains >"$log/$i.log" 2>&1 &
+    build/release/tests/iksel_tests --gtest_filter='OddChains.*' >"$log/$i.log" 2>&1 &
   running+=($!)
 done
 trap 'kill "${running[@]}" 2>/dev/null || true' EXIT
@@ -47,4 +47,4 @@ for ((i = 0; i < jobs; i++)); do
   fi
 done
 trap - EXIT
-((failed == 0)) || die "findings; IKSEL_TEST_SEED=... IKSEL_TEST_CASES=100 build/release/tests/test_odd_chains repeats a chain"
+((failed == 0)) || die "findings; IKSEL_TEST_SEED=... IKSEL_TEST_CASES=100 build/release/tests/iksel_tests --gtest_filter=OddChains.* repeats a chain"

@@ -47,8 +47,7 @@ install_emulator
 unpack_libraries
 step "build (arm64)"
 cmake -S . -B "$work/build" -DCMAKE_BUILD_TYPE=Release -DIKSEL_BUILD_TESTS=ON \
-  -DCMAKE_TOOLCHAIN_FILE="$root/scripts/arm64.cmake" >/dev/null
-cmake --build "$work/build" --target test_lanes test_solver
+  -DIKSEL_TEST_FILES='lanes;solver' -DCMAKE_TOOLCHAIN_FILE="$root/scripts/arm64.cmake" >/dev/null
+cmake --build "$work/build" --target iksel_tests
 step "ctest (arm64)"
-IKSEL_TEST_CASES=${IKSEL_TEST_CASES:-60} ctest --test-dir "$work/build" --output-on-failure \
-  -R '^(test_)?(lanes|solver)$'
+IKSEL_TEST_CASES=${IKSEL_TEST_CASES:-60} ctest --test-dir "$work/build" --output-on-failure

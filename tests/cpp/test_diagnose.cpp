@@ -18,13 +18,6 @@ using iksel::Solver;
 using iksel::SolveRequest;
 using iksel::SolverOptions;
 
-Robot robot_named(const std::string& name) {
-  for (const auto& c : iksel_test::all_robots()) {
-    if (name == c.name) return iksel_test::load(c);
-  }
-  throw std::runtime_error(name);
-}
-
 /// Three parallel axes, links of 0.4, 0.3 and 0.2 m, joints within -limit .. limit.
 Robot planar_arm(const std::string& limit) {
   const std::string range = "<limit lower=\"-" + limit + "\" upper=\"" + limit +
@@ -53,8 +46,8 @@ void expect_honest(const Robot& robot, const Pose& target, const Diagnosis& diag
 }
 
 TEST(Diagnose, SaysNoneWhereThereIsAnAnswer) {
-  const Robot robot = robot_named("ur3");
-  const Solver solver(robot);
+  const Robot& robot = iksel_test::robot("ur3");
+  const Solver& solver = iksel_test::solver("ur3");
   const Pose target = robot.fk(JointVector::Constant(6, 0.5));
   const Diagnosis diagnosis = solver.diagnose(target);
   EXPECT_EQ(diagnosis.cause, Cause::none);
@@ -121,8 +114,8 @@ TEST(Diagnose, NamesTheJointThatWouldHaveToLeaveItsLimitsAndByHowMuch) {
 }
 
 TEST(Diagnose, CountsWhatAFilterRefuses) {
-  const Robot robot = robot_named("ur3");
-  const Solver solver(robot);
+  const Robot& robot = iksel_test::robot("ur3");
+  const Solver& solver = iksel_test::solver("ur3");
   const Pose target = robot.fk((JointVector(6) << 0.3, -1.1, 1.2, 0.4, 0.9, 0.2).finished());
   SolveRequest request;
   request.filter = iksel::filter_each(6, [](const JointVector&) { return false; });
@@ -134,7 +127,7 @@ TEST(Diagnose, CountsWhatAFilterRefuses) {
 }
 
 TEST(Diagnose, SaysWhenTheBoundsOnWorkAreTooLow) {
-  const Robot robot = robot_named("ur3");
+  const Robot& robot = iksel_test::robot("ur3");
   SolverOptions options;
   options.max_attempts = 1;
   options.max_iterations = 1;
@@ -165,8 +158,8 @@ TEST(Diagnose, SaysWhenTheOnlyAnswersAreSingular) {
 }
 
 TEST(Diagnose, SaysWhenADeadlinePassed) {
-  const Robot robot = robot_named("panda");
-  const Solver solver(robot);
+  const Robot& robot = iksel_test::robot("panda");
+  const Solver& solver = iksel_test::solver("panda");
   const Pose target = robot.fk(robot.random_configurations(1, 3).row(0));
   SolveRequest request;
   request.deadline = 1e-9;
@@ -183,9 +176,9 @@ TEST(Diagnose, SaysWhenADeadlinePassed) {
 TEST(Diagnose, FindsAReasonForWhateverFails) {
   // Any pose in the ball around the arm: most cannot be reached.
   for (const char* name : {"ur3", "panda", "cvr038", "xarm5"}) {
-    const Robot robot = robot_named(name);
-    const Solver solver(robot);
-    const int cases = iksel_test::cases(200) / 20;
+    const Robot& robot = iksel_test::robot(name);
+    const Solver& solver = iksel_test::solver(name);
+    const int cases = iksel_test::cases(200, 40) / 20;
     const Eigen::MatrixXd q = robot.random_configurations(2 * cases, iksel_test::seed());
     for (int i = 0; i < cases; ++i) {
       Pose target = robot.fk(q.row(2 * i));
@@ -204,11 +197,11 @@ TEST(Diagnose, FindsAReasonForWhateverFails) {
 
 TEST(DqDx, IsTheDerivativeOfAnswersSolvedAgain) {
   for (const char* name : {"ur3", "cvr038", "irb14050"}) {
-    const Robot robot = robot_named(name);
+    const Robot& robot = iksel_test::robot(name);
     SolverOptions options;
     options.position_tolerance = options.rotation_tolerance = 1e-11;
     const Solver solver(robot, options);
-    const int cases = iksel_test::cases(200) / 4;
+    const int cases = iksel_test::cases(200, 40) / 4;
     const Eigen::MatrixXd q = robot.random_configurations(cases, iksel_test::seed());
     int compared = 0;
     for (int i = 0; i < cases; ++i) {
@@ -255,7 +248,7 @@ TEST(DqDx, IsTheDerivativeOfAnswersSolvedAgain) {
 }
 
 TEST(DqDx, IsBoundedByItsDamping) {
-  const Robot robot = robot_named("panda");
+  const Robot& robot = iksel_test::robot("panda");
   const Eigen::MatrixXd q = robot.random_configurations(50, 2);
   for (Eigen::Index i = 0; i < q.rows(); ++i) {
     const Eigen::MatrixXd J = robot.jacobian(q.row(i));

@@ -15,10 +15,10 @@ using iksel::Kinematics;
 using iksel::Pose;
 using iksel::Robot;
 
-class AllRobots : public testing::TestWithParam<iksel_test::RobotCase> {};
+class KinematicsOfRobots : public testing::TestWithParam<std::string> {};
 
-TEST_P(AllRobots, KernelEqualsKdl) {
-  const Robot robot = iksel_test::load(GetParam());
+TEST_P(KinematicsOfRobots, KernelEqualsKdl) {
+  const Robot& robot = iksel_test::robot(GetParam());
   const Eigen::MatrixXd q = robot.random_configurations(iksel_test::cases(300), iksel_test::seed());
   for (Eigen::Index i = 0; i < q.rows(); ++i) {
     const JointVector at = q.row(i);
@@ -30,8 +30,8 @@ TEST_P(AllRobots, KernelEqualsKdl) {
   }
 }
 
-TEST_P(AllRobots, JacobianIsTheDerivative) {
-  const Robot robot = iksel_test::load(GetParam());
+TEST_P(KinematicsOfRobots, JacobianIsTheDerivative) {
+  const Robot& robot = iksel_test::robot(GetParam());
   const Eigen::MatrixXd q = robot.random_configurations(20, iksel_test::seed());
   constexpr double kStep = 1e-6;
   for (Eigen::Index i = 0; i < q.rows(); ++i) {
@@ -49,8 +49,8 @@ TEST_P(AllRobots, JacobianIsTheDerivative) {
   }
 }
 
-TEST_P(AllRobots, NothingLiesBeyondTheReach) {
-  const Robot robot = iksel_test::load(GetParam());
+TEST_P(KinematicsOfRobots, NothingLiesBeyondTheReach) {
+  const Robot& robot = iksel_test::robot(GetParam());
   const Eigen::MatrixXd q = robot.random_configurations(500, iksel_test::seed());
   for (Eigen::Index i = 0; i < q.rows(); ++i) {
     EXPECT_LE((robot.fk(q.row(i)).translation() - robot.reach_centre()).norm(),
@@ -58,8 +58,8 @@ TEST_P(AllRobots, NothingLiesBeyondTheReach) {
   }
 }
 
-TEST_P(AllRobots, ToolMovesThePoseAndNotTheHash) {
-  const Robot robot = iksel_test::load(GetParam());
+TEST_P(KinematicsOfRobots, ToolMovesThePoseAndNotTheHash) {
+  const Robot& robot = iksel_test::robot(GetParam());
   Pose tool = Pose::Identity();
   tool.translate(Eigen::Vector3d(0.1, -0.2, 0.3))
       .rotate(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()));
@@ -74,8 +74,8 @@ TEST_P(AllRobots, ToolMovesThePoseAndNotTheHash) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Robots, AllRobots, testing::ValuesIn(iksel_test::all_robots()),
-                         [](const auto& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(Robots, KinematicsOfRobots, testing::ValuesIn(iksel_test::all_robots()),
+                         iksel_test::name_of);
 
 TEST(Axes, NearlyOppositeToZKeepTheirDigits) {
   for (const char* axis : {"0 0 -1", "0 -1e-7 -1", "1e-7 0 -1", "3e-7 -2e-7 -1", "0 1e-9 -1",
@@ -98,7 +98,7 @@ TEST(Axes, NearlyOppositeToZKeepTheirDigits) {
 }
 
 TEST(RandomConfigurations, AreInsideTheLimitsAndRepeat) {
-  const Robot robot = iksel_test::load(iksel_test::all_robots()[5]);  // with a continuous joint
+  const Robot& robot = iksel_test::robot("ur3e");  // with a continuous joint
   const Eigen::MatrixXd q = robot.random_configurations(1000, 3);
   EXPECT_EQ(q, robot.random_configurations(1000, 3));
   EXPECT_NE(q, robot.random_configurations(1000, 4));
@@ -106,7 +106,7 @@ TEST(RandomConfigurations, AreInsideTheLimitsAndRepeat) {
 }
 
 TEST(Robot, RefusesAConfigurationOfTheWrongLength) {
-  const Robot robot = iksel_test::load(iksel_test::paper_robots()[0]);
+  const Robot& robot = iksel_test::robot("cvr038");
   EXPECT_THROW(robot.fk(JointVector::Zero(5)), iksel::InvalidArgumentError);
   EXPECT_THROW(robot.jacobian(JointVector::Constant(6, std::nan(""))), iksel::InvalidArgumentError);
 }

@@ -10,6 +10,7 @@
 #include "base/random.hpp"
 #include "database/reduction.hpp"
 #include "kinematics/chain_model.hpp"
+#include "levels.hpp"
 #include "robots.hpp"
 #include "simd/kernels.hpp"
 #include "simd/lane_math.hpp"
@@ -20,30 +21,8 @@ namespace lanes = iksel::lanes;
 using iksel::JointVector;
 using iksel::Pose;
 using iksel::Robot;
-
-/// Forces a level for as long as it lives.
-class ForcedLevel {
- public:
-  explicit ForcedLevel(const std::string& level) { ::setenv("IKSEL_SIMD", level.c_str(), 1); }
-  ForcedLevel(const ForcedLevel&) = delete;
-  ForcedLevel& operator=(const ForcedLevel&) = delete;
-  ~ForcedLevel() { ::unsetenv("IKSEL_SIMD"); }
-};
-
-/// Levels that this machine has.
-std::vector<std::string> levels() {
-  std::vector<std::string> found;
-  for (const char* level : {"avx512", "avx2", "sse2", "neon", "scalar"}) {
-    const ForcedLevel forced(level);
-    try {
-      iksel::simd_level();
-      found.emplace_back(level);
-    } catch (const iksel::InvalidArgumentError&) {
-      continue;
-    }
-  }
-  return found;
-}
+using iksel_test::ForcedLevel;
+using iksel_test::levels;
 
 TEST(LaneMath, SincosIsPreciseOverManyTurns) {
   iksel::Random random(iksel_test::seed());
@@ -78,7 +57,7 @@ TEST(Levels, ThereIsAlwaysScalar) {
 TEST(Levels, AnUnknownOneIsRefusedByName) {
   const ForcedLevel forced("mmx");
   try {
-    const iksel::Solver solver(iksel_test::load(iksel_test::paper_robots()[0]));
+    const iksel::Solver solver(iksel_test::robot("cvr038"));
     FAIL();
   } catch (const iksel::InvalidArgumentError& error) {
     EXPECT_NE(std::string(error.what()).find("'mmx'"), std::string::npos);
@@ -86,25 +65,10 @@ TEST(Levels, AnUnknownOneIsRefusedByName) {
   }
 }
 
-TEST(Levels, EachSolvesEverythingItCanReach) {
-  const auto n = static_cast<std::size_t>(iksel_test::cases(2000));
-  for (const std::string& level : levels()) {
-    const ForcedLevel forced(level);
-    ASSERT_EQ(iksel::simd_level(), level);
-    for (const auto& c : iksel_test::all_robots()) {
-      const Robot robot = iksel_test::load(c);
-      if (robot.dof() < 6) continue;
-      const iksel::Evaluation e = iksel::evaluate(iksel::Solver(robot), n, iksel_test::seed());
-      EXPECT_EQ(e.solved, n) << level << " " << c.name << " seed " << iksel_test::seed();
-      EXPECT_EQ(e.false_success, 0U) << level << " " << c.name;
-    }
-  }
-}
-
 TEST(Levels, EachGivesTheSameBitsForAnyNumberOfThreads) {
   for (const std::string& level : levels()) {
     const ForcedLevel forced(level);
-    const Robot robot = iksel_test::load(iksel_test::paper_robots()[3]);
+    const Robot& robot = iksel_test::robot("irb14050");
     const iksel::Solver solver(robot);
     const Eigen::MatrixXd q =
         robot.random_configurations(iksel_test::cases(2000), iksel_test::seed());
@@ -143,7 +107,7 @@ TEST(Kernels, EveryLaneReachesItsOwnTarget) {
   for (const std::string& level : levels()) {
     const ForcedLevel forced(level);
     const auto& kernels = lanes::choose_kernels();
-    const Robot robot = iksel_test::load(iksel_test::paper_robots()[3]).with_tcp(Pose::Identity());
+    const Robot robot = iksel_test::robot("irb14050").with_tcp(Pose::Identity());
     const int n = robot.dof();
     const iksel::Reduction reduction = iksel::Reduction::of(robot.model(), 1);
     const auto chain = iksel::make_lane_chain(robot.model());
@@ -183,7 +147,7 @@ TEST(Kernels, ALaneIsBlindToTheOthers) {
   for (const std::string& level : levels()) {
     const ForcedLevel forced(level);
     const auto& kernels = lanes::choose_kernels();
-    const Robot robot = iksel_test::load(iksel_test::paper_robots()[0]);
+    const Robot& robot = iksel_test::robot("cvr038");
     const int n = robot.dof();
     const auto chain = iksel::make_lane_chain(robot.model());
     const iksel::Reduction reduction = iksel::Reduction::of(robot.model(), 1);
@@ -209,7 +173,7 @@ TEST(Kernels, ALaneIsBlindToTheOthers) {
 
 TEST(Kernels, ANonFiniteLaneFailsAndEnds) {
   const auto& kernels = lanes::choose_kernels();
-  const Robot robot = iksel_test::load(iksel_test::paper_robots()[0]);
+  const Robot& robot = iksel_test::robot("cvr038");
   const auto chain = iksel::make_lane_chain(robot.model());
   lanes::LanePack pack{};
   for (int lane = 0; lane < lanes::kWidth; ++lane) {

@@ -118,8 +118,8 @@ std::vector<std::function<void()>> mistakes(const iksel::Solver& solver) {
 }
 
 TEST(Locale, MessagesAreTheSame) {
-  const Robot robot = iksel_test::load(iksel_test::paper_robots().front());
-  const iksel::Solver solver(robot);
+  const Robot& robot = iksel_test::robot("cvr038");
+  const iksel::Solver& solver = iksel_test::solver("cvr038");
   std::vector<std::string> expected;
   for (const auto& mistake : mistakes(solver)) expected.push_back(message_of(mistake));
   Pose far = robot.fk(0.5 * (robot.lower() + robot.upper()));

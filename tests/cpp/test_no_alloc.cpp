@@ -59,11 +59,11 @@ TEST(NoAllocation, TheWatchSeesAllocations) {
   EXPECT_GE(allocations.load(), 2);
 }
 
-class Schemes : public testing::TestWithParam<iksel::Iteration> {};
+class HeapFreeSchemes : public testing::TestWithParam<iksel::Iteration> {};
 
-TEST_P(Schemes, SolveWithoutTheHeap) {
-  for (const auto& c : iksel_test::paper_robots()) {
-    const iksel::Robot robot = iksel_test::load(c);
+TEST_P(HeapFreeSchemes, SolveWithoutTheHeap) {
+  for (const std::string& name : iksel_test::paper_robots()) {
+    const iksel::Robot& robot = iksel_test::robot(name);
     iksel::SolverOptions options = iksel::SolverOptions::paper();
     options.database.scale = iksel::Scale::small;
     options.iteration = GetParam();
@@ -85,13 +85,13 @@ TEST_P(Schemes, SolveWithoutTheHeap) {
       solved += solver.solve(target, seed).success();
     }
     watching = false;
-    EXPECT_EQ(allocations.load(), 0) << c.name;
+    EXPECT_EQ(allocations.load(), 0) << name;
     EXPECT_GT(solved, 50);
   }
 }
 
 TEST(NoAllocation, TasksSolveWithoutTheHeap) {
-  const iksel::Robot robot = iksel_test::load(iksel_test::paper_robots()[3]);
+  const iksel::Robot& robot = iksel_test::robot("irb14050");
   for (const iksel::Task& task : {iksel::Task::position_only(), iksel::Task::free_spin(),
                                   iksel::Task::box({0.01, 0.01, 0.01}, {0.1, 0.1, 0.1})}) {
     iksel::SolverOptions options;
@@ -111,11 +111,9 @@ TEST(NoAllocation, TasksSolveWithoutTheHeap) {
 }
 
 TEST(NoAllocation, NearFilteredAndTracking) {
-  for (const auto& c : iksel_test::all_robots()) {
-    const std::string name = c.name;
-    if (name != "ur3" && name != "panda" && name != "cvr038") continue;
-    const iksel::Robot robot = iksel_test::load(c);
-    const iksel::Solver solver(robot);
+  for (const char* name : {"ur3", "panda", "cvr038"}) {
+    const iksel::Robot& robot = iksel_test::robot(name);
+    const iksel::Solver& solver = iksel_test::solver(name);
     const Eigen::MatrixXd q = robot.random_configurations(100, iksel_test::seed());
     std::vector<iksel::Pose> targets;
     for (Eigen::Index i = 0; i < q.rows(); ++i) targets.push_back(robot.fk(q.row(i)));
@@ -145,7 +143,7 @@ TEST(NoAllocation, NearFilteredAndTracking) {
 
 TEST(NoAllocation, GivenSeeds) {
   for (const bool paper : {false, true}) {
-    const iksel::Robot robot = iksel_test::load(iksel_test::paper_robots()[0]);
+    const iksel::Robot& robot = iksel_test::robot("cvr038");
     iksel::SolverOptions options = paper ? iksel::SolverOptions::paper() : iksel::SolverOptions();
     options.database.scale = iksel::Scale::small;
     const iksel::Solver solver(robot, options);
@@ -168,7 +166,7 @@ TEST(NoAllocation, GivenSeeds) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Schemes,
+INSTANTIATE_TEST_SUITE_P(All, HeapFreeSchemes,
                          testing::Values(iksel::Iteration::dls, iksel::Iteration::pinv,
                                          iksel::Iteration::pinv_rr, iksel::Iteration::cwln,
                                          iksel::Iteration::cwpi, iksel::Iteration::lm));

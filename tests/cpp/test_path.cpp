@@ -20,13 +20,6 @@ using iksel::Status;
 
 constexpr double kTwoPi = 6.28318530717958647692;
 
-Solver make_solver(const char* name) {
-  for (const auto& c : iksel_test::all_robots()) {
-    if (std::string(c.name) == name) return Solver(iksel_test::load(c));
-  }
-  throw std::runtime_error(name);
-}
-
 /// n poses from `first` along a straight line.
 std::vector<Pose> line(const Pose& first, const Eigen::Vector3d& length, int n) {
   std::vector<Pose> poses;
@@ -43,13 +36,10 @@ void expect_path(const Solver& solver, const std::vector<Pose>& poses, const Pat
   ASSERT_TRUE(path.success()) << to_string(path.status) << " at " << path.broken;
   ASSERT_EQ(path.q.size(), poses.size());
   EXPECT_EQ(path.broken, -1);
+  iksel_test::Judge judge(solver.robot());
   double largest = 0;
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    const auto error =
-        iksel::pose_error(poses[i], solver.robot().fk(path.q[i], iksel::Kinematics::kdl));
-    EXPECT_LE(error.head<3>().norm(), 1.0001e-6);
-    EXPECT_LE(error.tail<3>().norm(), 1.0001e-6);
-    EXPECT_TRUE(solver.robot().within_limits(path.q[i]));
+    judge.expect_solution(poses[i], path.q[i]);
     if (i == 0 && !options.start) continue;
     const JointVector step = path.q[i] - (i == 0 ? *options.start : path.q[i - 1]);
     largest = std::max(largest, step.cwiseAbs().maxCoeff());
@@ -63,7 +53,7 @@ void expect_path(const Solver& solver, const std::vector<Pose>& poses, const Pat
 
 TEST(Path, StraightLineWithinTheVelocityLimits) {
   for (const char* name : {"panda", "cvr038"}) {
-    const Solver solver = make_solver(name);
+    const Solver& solver = iksel_test::solver(name);
     JointVector start = (solver.robot().lower() + solver.robot().upper()) / 2;
     if (std::string(name) == "cvr038") start[4] = 0.8;
     start[1] += 0.3;
@@ -78,7 +68,7 @@ TEST(Path, StraightLineWithinTheVelocityLimits) {
 TEST(Path, JointPathComesBackAndMovesNoMore) {
   // Poses of a joint path: a path through them exists, and the one found is no longer.
   for (const char* name : {"ur3", "irb14050"}) {
-    const Solver solver = make_solver(name);
+    const Solver& solver = iksel_test::solver(name);
     const auto& robot = solver.robot();
     const Eigen::MatrixXd ends = robot.random_configurations(2, iksel_test::seed());
     const JointVector from = ends.row(0).transpose();
@@ -97,7 +87,7 @@ TEST(Path, JointPathComesBackAndMovesNoMore) {
 }
 
 TEST(Path, FirstWaypointWithoutContinuationIsNamed) {
-  const Solver solver = make_solver("ur3");
+  const Solver& solver = iksel_test::solver("ur3");
   const JointVector start = (JointVector(6) << 0.3, -1.2, 1.4, -0.6, 1.2, 0.2).finished();
   // Straight out of reach.
   const auto poses = line(solver.robot().fk(start), {0.6, 0.6, 0.0}, 100);
@@ -122,7 +112,8 @@ TEST(Path, FirstWaypointWithoutContinuationIsNamed) {
 
 TEST(Path, WhatItGivesBeforeABreakIsMeasuredToo) {
   for (const char* name : {"ur3", "panda"}) {
-    const Solver solver = make_solver(name);
+    const Solver& solver = iksel_test::solver(name);
+    iksel_test::Judge judge(solver.robot());
     const auto& robot = solver.robot();
     const Eigen::MatrixXd q = robot.random_configurations(20, iksel_test::seed());
     int broken = 0;
@@ -135,10 +126,7 @@ TEST(Path, WhatItGivesBeforeABreakIsMeasuredToo) {
       broken += !path.success();
       ASSERT_EQ(path.q.size(), path.success() ? poses.size() : std::size_t(path.broken));
       for (std::size_t w = 0; w < path.q.size(); ++w) {
-        const auto error = iksel::pose_error(poses[w], robot.fk(path.q[w], iksel::Kinematics::kdl));
-        EXPECT_LE(error.head<3>().norm(), 1.0001e-6);
-        EXPECT_LE(error.tail<3>().norm(), 1.0001e-6);
-        EXPECT_TRUE(robot.within_limits(path.q[w]));
+        judge.expect_solution(poses[w], path.q[w]);
       }
     }
     EXPECT_GT(broken, 0);
@@ -146,7 +134,7 @@ TEST(Path, WhatItGivesBeforeABreakIsMeasuredToo) {
 }
 
 TEST(Path, FilterHoldsOnTheWholeWay) {
-  const Solver solver = make_solver("panda");
+  const Solver& solver = iksel_test::solver("panda");
   const auto& robot = solver.robot();
   PathOptions options;
   options.start = (robot.lower() + robot.upper()) / 2;
@@ -163,7 +151,7 @@ TEST(Path, FilterHoldsOnTheWholeWay) {
 }
 
 TEST(Path, TellsItsProgressAndStopsOnAnException) {
-  const Solver solver = make_solver("ur3");
+  const Solver& solver = iksel_test::solver("ur3");
   const std::vector<Pose> poses(5, solver.robot().fk(JointVector::Constant(6, 0.5)));
   PathOptions options;
   std::vector<std::size_t> told;
@@ -180,7 +168,7 @@ TEST(Path, TellsItsProgressAndStopsOnAnException) {
 }
 
 TEST(Path, BadInputIsNamed) {
-  const Solver solver = make_solver("ur3");
+  const Solver& solver = iksel_test::solver("ur3");
   std::vector<Pose> poses(3, solver.robot().fk(JointVector::Constant(6, 0.5)));
   const auto expect_error = [&](const PathOptions& options, const std::string& what) {
     try {
@@ -214,7 +202,7 @@ TEST(Path, BadInputIsNamed) {
 TEST(Path, BeginsAtTheTurnFromWhichItCanEnd) {
   // The last joint winds up by one and a half turns: of the copies that the first waypoint has,
   // only those low enough have room.
-  const Solver solver = make_solver("ur3");
+  const Solver& solver = iksel_test::solver("ur3");
   JointVector q = (JointVector(6) << 0.3, -1.2, 1.4, -0.6, 1.2, 1.0).finished();
   std::vector<Pose> poses;
   for (int i = 0; i <= 60; ++i) {
@@ -228,7 +216,7 @@ TEST(Path, BeginsAtTheTurnFromWhichItCanEnd) {
 
 TEST(Track, NeverFasterThanTheLimits) {
   for (const char* name : {"ur3", "panda"}) {
-    const Solver solver = make_solver(name);
+    const Solver& solver = iksel_test::solver(name);
     const auto& robot = solver.robot();
     const Eigen::MatrixXd ends = robot.random_configurations(10, iksel_test::seed());
     iksel::Tracker tracker(solver, ends.row(0).transpose());
@@ -255,7 +243,7 @@ TEST(Track, NeverFasterThanTheLimits) {
 }
 
 TEST(Track, StaysWhereThereIsNoContinuation) {
-  const Solver solver = make_solver("ur3");
+  const Solver& solver = iksel_test::solver("ur3");
   const JointVector start = (JointVector(6) << 0.3, -1.2, 1.4, -0.6, 1.2, 0.2).finished();
   iksel::Tracker tracker(solver, start);
   Pose far = solver.robot().fk(start);
@@ -267,7 +255,7 @@ TEST(Track, StaysWhereThereIsNoContinuation) {
 }
 
 TEST(Track, BadInputIsNamed) {
-  const Solver solver = make_solver("ur3");
+  const Solver& solver = iksel_test::solver("ur3");
   const JointVector start = JointVector::Constant(6, 0.5);
   const auto expect_error = [](const auto& call, const std::string& what) {
     try {
@@ -292,7 +280,7 @@ TEST(Track, BadInputIsNamed) {
 }
 
 TEST(Track, FollowsAJointPathAtEveryStep) {
-  const Solver solver = make_solver("panda");
+  const Solver& solver = iksel_test::solver("panda");
   const auto& robot = solver.robot();
   const JointVector start = (robot.lower() + robot.upper()) / 2;
   iksel::Tracker tracker(solver, start);

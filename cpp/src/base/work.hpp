@@ -22,12 +22,16 @@ class Work {
     return true;
   }
   void take_on_top() { ++attempts; }
+  /// Counts a guess at a solution by another one, which is no seed.
+  void take_guess() { ++guesses_; }
+  [[nodiscard]] int all_attempts() const { return attempts + guesses_; }
 
-  int attempts = 0;
+  int attempts = 0;  ///< without guesses
   int iterations = 0;
 
  private:
   int left_;
+  int guesses_ = 0;
 };
 
 /// A wall-clock deadline; asks the clock only if there is one.

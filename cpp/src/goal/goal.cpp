@@ -1,10 +1,52 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "goal/goal.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "base/constants.hpp"
+
 namespace iksel {
+namespace {
+
+/// Uniform over all rotations (Shoemake: "Uniform random rotations", Graphics Gems III, 1992).
+Eigen::Matrix3d random_rotation(Random& random) {
+  const double u = random.uniform();
+  const double a = random.uniform(-kPi, kPi);
+  const double b = random.uniform(-kPi, kPi);
+  const double root = std::sqrt(1 - u);
+  return Eigen::Quaterniond(std::sqrt(u) * std::cos(b), root * std::sin(a), root * std::cos(a),
+                            std::sqrt(u) * std::sin(b))
+      .toRotationMatrix();
+}
+
+}  // namespace
+
+Pose Goal::nearest_pose() const {
+  if (is_full_pose()) return target_;
+  return task_.pose_at(target_, Vector6::Zero().cwiseMax(task_.lower()).cwiseMin(task_.upper()));
+}
+
+Pose Goal::random_pose(Random& random) const {
+  const double reach = model_.reach_of_tcp();
+  Pose any = Pose::Identity();
+  any.linear() = random_rotation(random);
+  for (int i = 0; i < 3; ++i) {
+    any.translation()[i] = model_.reach_centre[i] + random.uniform(-reach, reach);
+  }
+  const Vector6 drawn = task_.deviation(target_, any);
+  Vector6 d;
+  for (int i = 0; i < 6; ++i) {
+    const double lower = task_.lower()[i];
+    const double upper = task_.upper()[i];
+    d[i] = std::isfinite(upper - lower) ? random.uniform(lower, upper)
+                                        : std::min(std::max(drawn[i], lower), upper);
+  }
+  Pose pose = task_.pose_at(target_, d);
+  if (task_.rotation_is_free()) pose.linear() = any.linear();
+  return pose;
+}
 
 bool Goal::is_out_of_reach() const {
   const double distance = is_full_pose() ? (target_.translation() - model_.reach_centre).norm()

@@ -3,6 +3,7 @@
 // is a task like any other, whose error is measured faster.
 #pragma once
 
+#include "base/random.hpp"
 #include "goal/task_space.hpp"
 #include "iksel/result.hpp"
 #include "kinematics/chain_model.hpp"
@@ -21,6 +22,11 @@ class Goal {
   [[nodiscard]] const Pose& target() const { return target_; }
   /// Where the tip link is then.
   [[nodiscard]] Pose tip_target() const { return target_ * Pose(model_.tcp_inverse); }
+  /// The pose nearest to the target that the task allows.
+  [[nodiscard]] Pose nearest_pose() const;
+  /// A pose that the task allows at random: what is free from any pose in the ball that the arm can
+  /// reach at all, what is within bounds from between them.
+  Pose random_pose(Random& random) const;
   /// Whether the chain has more joints than the task fixes axes: then solutions come in families.
   [[nodiscard]] bool is_redundant() const { return model_.dof > task_.fixed_axes(); }
   /// Whether the target is farther away than the links are long together.

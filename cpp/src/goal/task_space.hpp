@@ -32,6 +32,8 @@ class TaskSpace {
     return static_cast<int>((lower_.array() == upper_.array()).count());
   }
   [[nodiscard]] bool rotation_is_free() const { return rotation_free_; }
+  /// Axis of the twist; -1: the rotation vector is used.
+  [[nodiscard]] int twist_axis() const { return twist_; }
 
   /// Bounds of the deviation, and those that iterations aim at: narrower by the tolerances where
   /// there is room, so that answers end inside.
@@ -66,7 +68,6 @@ class TaskSpace {
   double position_tolerance_, rotation_tolerance_;
   bool full_pose_;
   int constrained_axes_;
-  /// Axis of the twist; -1: the rotation vector is used.
   int twist_ = -1;
   bool rotation_free_ = false;
   Vector6 lower_, upper_, aim_lower_, aim_upper_;

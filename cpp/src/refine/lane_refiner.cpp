@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "refine/lane_refiner.hpp"
 
+#include "base/constants.hpp"
 #include "simd/lane_chain.hpp"
 
 namespace iksel {
@@ -30,25 +31,66 @@ LaneRefiner::LaneRefiner(const ChainModel& model, const SolverOptions& options,
                          const lanes::LaneKernels& kernels)
     : kernels_(kernels),
       max_iterations_(options.max_iterations),
+      base_inverse_(to_pose(model.kernel.base).inverse()),
+      tip_(to_pose(model.kernel.tip)),
+      tip_inverse_(tip_.inverse()),
       chain_(make_lane_chain(model)),
       options_(make_lane_options(model, options)),
-      pack_{} {}
+      task_options_(options_),
+      pack_{} {
+  // A task's error is measured at the TCP.
+  task_options_.lever2 = 0;
+  task_options_.position2 *= 2;
+}
 
-void LaneRefiner::begin(const Patience& patience) {
+void LaneRefiner::begin(const TaskSpace& task, const Patience& patience) {
+  task_ = task.is_full_pose() ? nullptr : &task;
+  if (task_ != nullptr) make_task(task);
   patience_ = patience;
   patience_.far_off = std::min(patience.far_off, max_iterations_);
   patience_.most = std::min(patience.most, max_iterations_);
 }
 
-void LaneRefiner::set_target(const Pose& Y) {
-  // Columns after the position, as LanePack has them.
-  for (int row = 0; row < 12; ++row) {
-    std::fill_n(pack_.target[row], lanes::kWidth, Y(row % 3, (row / 3 + 3) % 4));
+void LaneRefiner::make_task(const TaskSpace& task) {
+  for (int i = 0; i < 6; ++i) {
+    lane_task_.lower[i] = task.aim_lower()[i];
+    lane_task_.upper[i] = task.aim_upper()[i];
+    lane_task_.fixed[i] = task.lower()[i] == task.upper()[i];
+    lane_task_.open[i] = task.lower()[i] == -kInfinity && task.upper()[i] == kInfinity;
+  }
+  lane_task_.twist = task.twist_axis();
+  for (int i = 0; i < 3; ++i) lane_task_.tcp[i] = tip_(i, 3);
+}
+
+void LaneRefiner::make_rows(const Pose& T_base_tcp, double (&rows)[lanes::kTargetRows]) const {
+  const auto write = [&](int at, const Eigen::Matrix3d& columns) {
+    for (int k = 0; k < 9; ++k) rows[at + k] = columns(k % 3, k / 3);
+  };
+  Pose X = base_inverse_ * T_base_tcp;
+  if (task_ == nullptr) X = X * tip_inverse_;
+  for (int i = 0; i < 3; ++i) rows[i] = X(i, 3);
+  if (task_ == nullptr) {
+    write(3, X.linear());
+    return;
+  }
+  const bool in_tool = task_->task().frame == TaskFrame::tool;
+  const Eigen::Matrix3d W = (in_tool ? X : base_inverse_).linear();
+  write(3, W);
+  write(12, tip_.linear() * X.linear().transpose() * W);
+}
+
+void LaneRefiner::set_target(const Pose& T_base_tcp) {
+  double rows[lanes::kTargetRows] = {};
+  make_rows(T_base_tcp, rows);
+  for (int row = 0; row < lanes::kTargetRows; ++row) {
+    std::fill_n(pack_.target[row], lanes::kWidth, rows[row]);
   }
 }
 
-void LaneRefiner::set_target(int lane, const Pose& Y) {
-  for (int row = 0; row < 12; ++row) pack_.target[row][lane] = Y(row % 3, (row / 3 + 3) % 4);
+void LaneRefiner::set_target(int lane, const Pose& T_base_tcp) {
+  double rows[lanes::kTargetRows] = {};
+  make_rows(T_base_tcp, rows);
+  for (int row = 0; row < lanes::kTargetRows; ++row) pack_.target[row][lane] = rows[row];
 }
 
 void LaneRefiner::load_seed(int lane, const double* q) {
@@ -65,7 +107,10 @@ int LaneRefiner::advance(unsigned busy) {
     const bool hasty = patience_.look == 0 && age_[lane] < patience_.far_off;
     budget = std::min(budget, (hasty ? patience_.far_off : patience_.most) - age_[lane]);
   }
-  const lanes::PackResult result = kernels_.advance(chain_, options_, busy, budget, pack_);
+  const lanes::PackResult result =
+      task_ == nullptr
+          ? kernels_.advance(chain_, options_, busy, budget, pack_)
+          : kernels_.advance_task(chain_, task_options_, lane_task_, busy, budget, pack_);
   arrived_ = result.done;
   for (int lane = 0; lane < width(); ++lane) age_[lane] += result.iterations;
   return result.iterations;

@@ -27,12 +27,12 @@ class LaneRefiner {
               const lanes::LaneKernels& kernels);
 
   [[nodiscard]] int width() const { return kernels_.lanes; }
-  /// Before a search.
-  void begin(const Patience& patience);
+  /// Before a search for goals of one task, which has to outlive it.
+  void begin(const TaskSpace& task, const Patience& patience);
 
-  /// Y of a target (reduction.hpp), for all lanes or for one.
-  void set_target(const Pose& Y);
-  void set_target(int lane, const Pose& Y);
+  /// What all lanes are to reach, or one.
+  void set_target(const Pose& T_base_tcp);
+  void set_target(int lane, const Pose& T_base_tcp);
 
   /// Starts a lane at `value(joint)`, inside the limits.
   template <typename Value>
@@ -79,14 +79,21 @@ class LaneRefiner {
   }
 
  private:
+  /// The rows of a LanePack.
+  void make_rows(const Pose& T_base_tcp, double (&rows)[lanes::kTargetRows]) const;
+  void make_task(const TaskSpace& task);
+
   /// Squared error that counts as far off [mixed units].
   static constexpr double kFarOff2 = 1e-4;
   static constexpr int kNever = 1 << 30;
 
   const lanes::LaneKernels& kernels_;
   int max_iterations_;
+  Pose base_inverse_, tip_, tip_inverse_;  ///< of the kernel chain; the tip is the TCP
   lanes::LaneChain chain_;
-  lanes::LaneOptions options_;
+  lanes::LaneOptions options_, task_options_;
+  const TaskSpace* task_ = nullptr;  ///< null: full poses
+  lanes::LaneTask lane_task_{};
   lanes::LanePack pack_;
   Patience patience_{};
   int age_[lanes::kWidth] = {};

@@ -10,7 +10,7 @@
 namespace iksel {
 namespace {
 
-/// Seeds for a redundant arm, whose solutions never end.
+/// Seeds where solutions come in families, which never end.
 constexpr int kRedundantSeeds = 64;
 /// The best solutions of a redundant arm that are brought to a least cost.
 constexpr std::size_t kDescents = 4;

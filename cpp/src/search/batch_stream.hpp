@@ -37,7 +37,7 @@ class BatchStream {
         on_result_(on_result) {
     // Any seed is given up after so many iterations.
     constexpr int kPatience = 8;
-    refiner.begin({kPatience, kPatience});
+    refiner.begin(task, {kPatience, kPatience});
   }
 
   /// Whether target i is left to be solved by itself.
@@ -53,7 +53,10 @@ class BatchStream {
       in = {};
       if (!take_target(in)) return false;
     }
-    refiner_.set_target(lane, query_.set_target(target_(in.index)));
+    const Pose& target = target_(in.index);
+    const Goal goal(model_, task_, target);
+    refiner_.set_target(lane, goal.target());
+    query_.set_target(goal.nearest_pose());
     lanes::SeedPack& seeds = query_.packs[0];
     query_.prepare_leaf(seeds);
     const int entry = seeds.order[in.seeds++];

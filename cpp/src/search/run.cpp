@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "search/run.hpp"
 
+#include <limits>
+#include <type_traits>
+
 #include "search/first_answer.hpp"
 #include "search/search.hpp"
+#include "seeds/allowed_seeds.hpp"
 #include "seeds/given_seeds.hpp"
 #include "seeds/nearest_seeds.hpp"
 #include "seeds/random_seeds.hpp"
@@ -72,35 +76,33 @@ bool Search<Answers>::by_scheme() const {
   return refiner.has_left_limits();
 }
 
-template <>
-void Search<FirstAnswer>::in_lanes() const {
+template <typename Answers>
+void Search<Answers>::in_lanes() const {
   const auto should_continue = [&] { return answers.should_continue(); };
   auto& [refiner, query] = *workspace.lanes;
-  refiner.begin(kFirst);
-  refiner.set_target(query.set_target(goal.target()));
+  refiner.begin(goal.task(), kFirst);
+  refiner.set_target(goal.target());
+  if (goal.is_full_pose()) query.set_target(goal.target());
   clock.lap(&StageTimes::query);
   GivenSeeds given(workspace.given, goal, near(), request.seeds, options.max_attempts,
                    lanes::kBlock, should_continue, work);
-  NearestSeeds nearest(query, work, clock);
-  RandomSeeds random(model.joints, options.seed, work);
-  SeedSequence seeds(first_source(), request.database_seeds ? 3 : 1, given, nearest, random);
-  search(refiner, seeds, answers, work);
+  if (!goal.is_full_pose()) {
+    AllowedSeeds allowed(query, model.joints, goal, options.seed, work, clock);
+    SeedSequence seeds(first_source(), request.database_seeds ? 2 : 1, given, allowed);
+    search(refiner, seeds, answers, work);
+  } else if constexpr (std::is_same_v<Answers, Collector>) {
+    search(refiner, given, answers, work);
+    if (!request.database_seeds) return;
+    refiner.begin(goal.task(), kAll);
+    SpreadSeeds spread(query, model.joints, options.seed, answers, work);
+    search(refiner, spread, answers, work);
+  } else {
+    NearestSeeds nearest(query, work, clock);
+    RandomSeeds random(model.joints, options.seed, work);
+    SeedSequence seeds(first_source(), request.database_seeds ? 3 : 1, given, nearest, random);
+    search(refiner, seeds, answers, work);
+  }
   clock.lap(&StageTimes::iterate);
-}
-
-template <>
-void Search<Collector>::in_lanes() const {
-  const auto should_continue = [&] { return answers.should_continue(); };
-  auto& [refiner, query] = *workspace.lanes;
-  refiner.begin(kFirst);
-  refiner.set_target(query.set_target(goal.target()));
-  GivenSeeds given(workspace.given, goal, near(), request.seeds, options.max_attempts,
-                   lanes::kBlock, should_continue, work);
-  search(refiner, given, answers, work);
-  if (!request.database_seeds || !answers.should_continue()) return;
-  refiner.begin(kAll);
-  SpreadSeeds spread(query, model.joints, options.seed, answers, work);
-  search(refiner, spread, answers, work);
 }
 
 }  // namespace
@@ -115,7 +117,7 @@ Result find_first(const ChainModel& model, const SolverOptions& options, const G
   Work work(options.max_attempts);
   FirstAnswer answers(model.joints, options.whole_turns, goal, request.deadline, result);
   const Search<FirstAnswer> search{model, options, goal, request, workspace, answers, work, clock};
-  if (workspace.lanes && goal.is_full_pose()) {
+  if (workspace.lanes) {
     search.in_lanes();
   } else if (search.by_scheme() && result.status == Status::not_converged) {
     result.status = Status::outside_limits;
@@ -135,7 +137,7 @@ void collect(const ChainModel& model, const SolverOptions& options, Collector& c
   StageClock clock(nullptr);
   const Search<Collector> search{model,     options,   goal,           collector.request(),
                                  workspace, collector, collector.work, clock};
-  if (workspace.lanes && goal.is_full_pose()) {
+  if (workspace.lanes) {
     search.in_lanes();
   } else if (search.by_scheme() && collector.status == Status::not_converged) {
     collector.status = Status::outside_limits;

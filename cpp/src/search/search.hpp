@@ -8,7 +8,7 @@
 //   Seeds    bool next_stage(), false if there are no more; bool load(refiner, lane), false if the
 //            stage has no more for this lane (seeds/);
 //   Answers  Verdict offer(lane, q); bool knows(q), where a seed need not be followed any further;
-//            bool should_continue(), asked between stages (first_answer.hpp, collector.hpp).
+//            bool should_continue(), asked before each stage and after the last (first_answer.hpp, collector.hpp).
 #pragma once
 
 #include "base/work.hpp"
@@ -31,7 +31,7 @@ void search(Refiner& refiner, Seeds& seeds, Answers& answers, Work& work) {
   const auto refill = [&](int lane) {
     busy = seeds.load(refiner, lane) ? busy | bit(lane) : busy & ~bit(lane);
   };
-  while (seeds.next_stage()) {
+  while (answers.should_continue() && seeds.next_stage()) {
     for (int lane = 0; lane < width; ++lane) refill(lane);
     // NOLINTNEXTLINE(bugprone-infinite-loop): refill() ends it.
     while (busy != 0) {
@@ -50,7 +50,6 @@ void search(Refiner& refiner, Seeds& seeds, Answers& answers, Work& work) {
         if (finished) refill(lane);
       }
     }
-    if (!answers.should_continue()) return;
   }
 }
 

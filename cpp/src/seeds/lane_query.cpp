@@ -17,13 +17,13 @@ LaneQuery::LaneQuery(const ChainModel& model, const ChainModel& nominal, const D
       nearest_(std::min<std::size_t>(static_cast<std::size_t>(options.neighbours), data.size)),
       block_(static_cast<std::size_t>(lanes::block_rows(model.dof) * lanes::kBlock)),
       block_distance2_(data.blocks.size()),
-      block_order_(data.blocks.size()) {}
+      block_order_(data.blocks.size()),
+      is_tried_(data.blocks.size()) {}
 
-Pose LaneQuery::set_target(const Pose& T_base_tcp) {
-  Pose Y = base_inverse_ * T_base_tcp * tcp_inverse_;
+void LaneQuery::set_target(const Pose& T_base_tcp) {
+  const Pose Y = base_inverse_ * T_base_tcp * tcp_inverse_;
   data_.reduction->make_key(Y, key_);
   seed_target_ = make_seed_target(Y);
-  return Y;
 }
 
 std::size_t LaneQuery::find_nearest(std::size_t k) {
@@ -60,5 +60,21 @@ void LaneQuery::prepare_blocks(std::size_t first, std::size_t count, lanes::Seed
     prepare(data_.blocks.block(block), seeds[i]);
   }
 }
+
+bool LaneQuery::prepare_untried(lanes::SeedPack& seeds) {
+  data_.blocks.measure(key_, block_distance2_.data());
+  const std::size_t blocks = block_distance2_.size();
+  std::size_t nearest = blocks;
+  for (std::size_t i = 0; i < blocks; ++i) {
+    if (is_tried_[i]) continue;
+    if (nearest == blocks || block_distance2_[i] < block_distance2_[nearest]) nearest = i;
+  }
+  if (nearest == blocks) return false;
+  is_tried_[nearest] = true;
+  prepare(data_.blocks.block(nearest), seeds);
+  return true;
+}
+
+void LaneQuery::forget() { is_tried_.assign(is_tried_.size(), false); }
 
 }  // namespace iksel

@@ -21,8 +21,7 @@ class LaneQuery {
   LaneQuery(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
             const SolverOptions& options, const lanes::LaneKernels& kernels);
 
-  /// Returns Y (reduction.hpp).
-  Pose set_target(const Pose& T_base_tcp);
+  void set_target(const Pose& T_base_tcp);
 
   /// The samples of the leaf that the target falls into, as seeds.
   void prepare_leaf(lanes::SeedPack& seeds) const { prepare(data_.leaves.block(key_), seeds); }
@@ -39,6 +38,11 @@ class LaneQuery {
   /// Those with the ranks `first` to `first` + count - 1, which have to be asked for in turn, each
   /// with its seeds in packs[i].
   void prepare_blocks(std::size_t first, std::size_t count, lanes::SeedPack* packs);
+
+  /// The nearest block of samples that was not asked for since the last forget(), as seeds; false
+  /// if there is none.
+  bool prepare_untried(lanes::SeedPack& seeds);
+  void forget();
 
   /// Where sources keep their seeds.
   lanes::SeedPack packs[kBlocksAtOnce] = {};
@@ -59,6 +63,7 @@ class LaneQuery {
   std::vector<float> block_;
   std::vector<float> block_distance2_;
   std::vector<std::uint64_t> block_order_;  ///< squared distance, and the block
+  std::vector<bool> is_tried_;              ///< of each block
 };
 
 }  // namespace iksel

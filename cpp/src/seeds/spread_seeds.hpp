@@ -46,6 +46,7 @@ class SpreadSeeds {
   bool load(Refiner& refiner, int lane) {
     JointVector partner;
     if (known_.pop_partner(partner)) {
+      work_.take_guess();
       refiner.load_seed(lane, partner.data());
       refiner.follow(lane);
       return true;

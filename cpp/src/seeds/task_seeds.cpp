@@ -5,24 +5,8 @@
 #include <cmath>
 
 #include "base/constants.hpp"
-#include "base/rotation.hpp"
 
 namespace iksel {
-namespace {
-
-/// Uniform over all rotations (Shoemake: "Uniform random rotations", Graphics Gems III, 1992).
-Eigen::Matrix3d random_rotation(Random& random) {
-  const double u = random.uniform();
-  const double a = random.uniform(-kPi, kPi);
-  const double b = random.uniform(-kPi, kPi);
-  const double root = std::sqrt(1 - u);
-  return Eigen::Quaterniond(std::sqrt(u) * std::cos(b), root * std::sin(a), root * std::cos(a),
-                            std::sqrt(u) * std::sin(b))
-      .toRotationMatrix();
-}
-
-}  // namespace
-
 TaskSeeds::TaskSeeds(const ChainModel& model, const DatabaseData& data,
                      const SolverOptions& options, Selection& selection)
     : model_(model),
@@ -48,7 +32,9 @@ void TaskSeeds::begin(const Goal& goal, std::size_t neighbours, int per_stage, W
 
 JointVector TaskSeeds::next() {
   const bool restart = round_ % 4 == 3;
-  JointVector seed = restart ? random_configuration() : seed_for(allowed_pose());
+  JointVector seed =
+      restart ? random_configuration()
+              : seed_for(round_ == 0 ? goal_->nearest_pose() : goal_->random_pose(random_));
   ++round_;
   return seed;
 }
@@ -57,33 +43,6 @@ JointVector TaskSeeds::random_configuration() {
   JointVector q(model_.dof);
   model_.joints.sample(random_, q);
   return q;
-}
-
-Pose TaskSeeds::allowed_pose() {
-  const Pose& target = goal_->target();
-  const TaskSpace& task = goal_->task();
-  Vector6 d = Vector6::Zero().cwiseMax(task.lower()).cwiseMin(task.upper());
-  if (round_ == 0) return task.pose_at(target, d);
-  // What is free is drawn from any pose in the ball that the arm can reach at all; what is within
-  // bounds, from between them.
-  const double reach = model_.reach + Eigen::Vector3d(model_.tcp.translation()).norm();
-  Pose any = Pose::Identity();
-  any.linear() = random_rotation(random_);
-  for (int i = 0; i < 3; ++i) {
-    any.translation()[i] = model_.reach_centre[i] + random_.uniform(-reach, reach);
-  }
-  const Vector6 drawn = task.deviation(target, any);
-  for (int i = 0; i < 6; ++i) {
-    const double width = task.upper()[i] - task.lower()[i];
-    if (std::isfinite(width)) {
-      d[i] = random_.uniform(task.lower()[i], task.upper()[i]);
-    } else {
-      d[i] = std::min(std::max(drawn[i], task.lower()[i]), task.upper()[i]);
-    }
-  }
-  Pose pose = task.pose_at(target, d);
-  if (task.rotation_is_free()) pose.linear() = any.linear();
-  return pose;
 }
 
 JointVector TaskSeeds::seed_for(const Pose& allowed) {

@@ -50,8 +50,6 @@ class TaskSeeds {
   /// The best seed, of samples not tried yet, for a pose that the task allows.
   JointVector seed_for(const Pose& allowed);
   JointVector random_configuration();
-  /// A pose that the task allows: the one nearest to the target first, then at random.
-  Pose allowed_pose();
 
   const ChainModel& model_;
   const DatabaseData& data_;

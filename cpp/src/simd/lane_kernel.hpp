@@ -3,7 +3,7 @@
 // step.
 #pragma once
 
-#include "base/symmetric.hpp"
+#include "simd/lane_goal.hpp"
 #include "simd/lane_math.hpp"
 #include "simd/lane_types.hpp"
 #include "simd/seed_kernel.hpp"
@@ -38,109 +38,133 @@ inline void multiply_rows(int n, const T (*J)[6], T (&A)[6][6]) {
   }
 }
 
-/// One for any number of joints: made for a known number it was no faster on AVX-512, AVX2 or SSE2.
+/// Frames of the joints at q: J has each joint's origin and axis, `f` the last one's frame.
 template <typename T>
-PackResult advance(const LaneChain& chain, const LaneOptions& options, unsigned watched,
-                   int iterations, LanePack& pack) {
+IKSEL_INLINE void place_joints(const LaneChain& chain, const T* q, T (*J)[6], LaneFrame<T>& f) {
   const int n = chain.n;
-  using L = Lanes<T>;
-  const auto target = [&](int row) { return L::load(pack.target[row]); };
+  for (int i = 0; i < 3; ++i) {
+    f.x[i] = T(i == 0 ? 1.0 : 0.0);
+    f.y[i] = T(i == 1 ? 1.0 : 0.0);
+    f.z[i] = T(i == 2 ? 1.0 : 0.0);
+    f.p[i] = T(0.0);
+  }
+  // The joints' sines first: they do not depend on each other, and the frames need the registers.
+  T sine[kMaxJoints];
+  T cosine[kMaxJoints];
+  for (int j = 0; j < n; ++j) sincos(q[j] + T(chain.joint[j].offset), sine[j], cosine[j]);
+#pragma GCC unroll 10
+  for (int j = 0; j < n; ++j) {
+    const LaneJoint& joint = chain.joint[j];
+    if (j > 0) {
+      for (int i = 0; i < 3; ++i) {
+        f.p[i] = f.p[i] + f.x[i] * T(joint.p[0]) + f.y[i] * T(joint.p[1]) + f.z[i] * T(joint.p[2]);
+      }
+      turn(f.y, f.z, T(joint.cos_alpha), T(joint.sin_alpha));
+    }
+    for (int i = 0; i < 3; ++i) J[j][3 + i] = f.z[i];
+    if (joint.prismatic) {
+      turn(f.x, f.y, T(joint.cos_turn), T(joint.sin_turn));
+      const T slide = q[j] + T(joint.offset);
+      for (int i = 0; i < 3; ++i) f.p[i] = f.p[i] + f.z[i] * slide;
+    } else if (j == 0) {
+      f.x[0] = cosine[0];
+      f.x[1] = sine[0];
+      f.y[0] = T(0.0) - sine[0];
+      f.y[1] = cosine[0];
+    } else {
+      turn(f.x, f.y, cosine[j], sine[j]);
+    }
+    for (int i = 0; i < 3; ++i) J[j][i] = f.p[i];
+  }
+}
 
+/// From origins and axes to the columns of the goal's Jacobian; those of joints that stand at a
+/// limit and would leave it are zero.
+template <typename T, typename Goal>
+IKSEL_INLINE void make_columns(const LaneChain& chain, const T* q, const Goal& goal,
+                               const LaneFrame<T>& f, const T (&e)[6], T (*J)[6]) {
+  const T* point = goal.point(f);
+#pragma GCC unroll 10
+  for (int j = 0; j < chain.n; ++j) {
+    const LaneJoint& joint = chain.joint[j];
+    T(&column)[6] = J[j];
+    const T* axis = column + 3;
+    if (joint.prismatic) {
+      for (int i = 0; i < 3; ++i) {
+        column[i] = axis[i];
+        column[3 + i] = T(0.0);
+      }
+    } else {
+      const T r[3] = {point[0] - column[0], point[1] - column[1], point[2] - column[2]};
+      for (int i = 0; i < 3; ++i) {
+        const int a = (i + 1) % 3;
+        const int b = (i + 2) % 3;
+        column[i] = axis[a] * r[b] - axis[b] * r[a];
+      }
+    }
+    goal.to_rows(column);
+    if (joint.limited) {
+      const auto low = q[j] <= T(joint.lower);
+      const auto high = q[j] >= T(joint.upper);
+      if (any(low | high)) {
+        T gradient = column[0] * e[0];
+        for (int i = 1; i < 6; ++i) gradient = gradient + column[i] * e[i];
+        const auto leaves = (low & (gradient < T(0.0))) | (high & (gradient > T(0.0)));
+        for (int i = 0; i < 6; ++i) column[i] = select(leaves, T(0.0), column[i]);
+      }
+    }
+  }
+}
+
+/// Adds J^T y to q, held to the limits; returns the squared length of the step.
+template <typename T>
+IKSEL_INLINE T move_joints(const LaneChain& chain, const T (*J)[6], const T (&y)[6], T* q) {
+  T dq2 = T(0.0);
+#pragma GCC unroll 10
+  for (int j = 0; j < chain.n; ++j) {
+    T dq = J[j][0] * y[0];
+#pragma GCC unroll 6
+    for (int i = 1; i < 6; ++i) dq = dq + J[j][i] * y[i];
+    dq2 = dq2 + dq * dq;
+    q[j] = q[j] + dq;
+    const LaneJoint& joint = chain.joint[j];
+    if (joint.limited) q[j] = min(max(q[j], T(joint.lower)), T(joint.upper));
+  }
+  return dq2;
+}
+
+/// The lanes where a condition holds, as bits.
+template <typename T, typename Mask>
+IKSEL_INLINE unsigned to_bits(const Mask& condition) {
+  unsigned bits = 0;
+  if (any(condition)) {
+    double hit[Lanes<T>::kCount];
+    Lanes<T>::store(select(condition, T(1.0), T(0.0)), hit);
+    for (int lane = 0; lane < Lanes<T>::kCount; ++lane) {
+      if (hit[lane] != 0.0) bits |= 1U << static_cast<unsigned>(lane);
+    }
+  }
+  return bits;
+}
+
+/// One for any number of joints: made for a known number it was no faster on AVX-512, AVX2 or SSE2.
+template <typename T, typename Goal>
+IKSEL_INLINE PackResult iterate_pack(const LaneChain& chain, const LaneOptions& options, Goal goal,
+                                     unsigned watched, int iterations, LanePack& pack) {
+  const int n = chain.n;
   T q[kMaxJoints];
-  for (int j = 0; j < n; ++j) q[j] = L::load(pack.q[j]);
+  for (int j = 0; j < n; ++j) q[j] = Lanes<T>::load(pack.q[j]);
 
   for (int iteration = 1;; ++iteration) {
-    // Columns of the Jacobian, which hold the origin and the axis of their joint at first; and the
-    // pose of the last frame.
     T J[kMaxJoints][6];
-    T x[3];
-    T y[3];
-    T z[3];
-    T p[3];
-    for (int i = 0; i < 3; ++i) {
-      x[i] = T(i == 0 ? 1.0 : 0.0);
-      y[i] = T(i == 1 ? 1.0 : 0.0);
-      z[i] = T(i == 2 ? 1.0 : 0.0);
-      p[i] = T(0.0);
-    }
-    // The joints' sines first: they do not depend on each other, and the frames need the registers.
-    T sine[kMaxJoints];
-    T cosine[kMaxJoints];
-    for (int j = 0; j < n; ++j) sincos(q[j] + T(chain.joint[j].offset), sine[j], cosine[j]);
-#pragma GCC unroll 10
-    for (int j = 0; j < n; ++j) {
-      const LaneJoint& joint = chain.joint[j];
-      if (j > 0) {
-        for (int i = 0; i < 3; ++i) {
-          p[i] = p[i] + x[i] * T(joint.p[0]) + y[i] * T(joint.p[1]) + z[i] * T(joint.p[2]);
-        }
-        turn(y, z, T(joint.cos_alpha), T(joint.sin_alpha));
-      }
-      for (int i = 0; i < 3; ++i) J[j][3 + i] = z[i];
-      if (joint.prismatic) {
-        turn(x, y, T(joint.cos_turn), T(joint.sin_turn));
-        const T slide = q[j] + T(joint.offset);
-        for (int i = 0; i < 3; ++i) p[i] = p[i] + z[i] * slide;
-      } else if (j == 0) {
-        x[0] = cosine[0];
-        x[1] = sine[0];
-        y[0] = T(0.0) - sine[0];
-        y[1] = cosine[0];
-      } else {
-        turn(x, y, cosine[j], sine[j]);
-      }
-      for (int i = 0; i < 3; ++i) J[j][i] = p[i];
-    }
-
-    // Error: position, and 2 sin(angle / 2) * axis of R_target R^T, which grows up to half a turn.
+    LaneFrame<T> frame;
+    place_joints(chain, q, J, frame);
     T e[6];
-    for (int i = 0; i < 3; ++i) e[i] = target(i) - p[i];
-    T trace = T(1.0);
-    for (int i = 0; i < 3; ++i) {
-      trace = trace + x[i] * target(3 + i) + y[i] * target(6 + i) + z[i] * target(9 + i);
-    }
-    const T factor = T(1.0) / sqrt(max(trace, T(1e-12)));
-    for (int i = 0; i < 3; ++i) {
-      const int a = (i + 1) % 3;
-      const int b = (i + 2) % 3;
-      const T twist = x[a] * target(3 + b) - x[b] * target(3 + a) + y[a] * target(6 + b) -
-                      y[b] * target(6 + a) + z[a] * target(9 + b) - z[b] * target(9 + a);
-      e[3 + i] = twist * factor;
-    }
+    goal.measure(frame, e);
     const T ep2 = e[0] * e[0] + e[1] * e[1] + e[2] * e[2];
     const T er2 = e[3] * e[3] + e[4] * e[4] + e[5] * e[5];
     const T e2 = ep2 + er2;
-
-    // Joints that stand at a limit and would leave it do not move.
-#pragma GCC unroll 10
-    for (int j = 0; j < n; ++j) {
-      const LaneJoint& joint = chain.joint[j];
-      T* column = J[j];
-      const T* axis = column + 3;
-      if (joint.prismatic) {
-        for (int i = 0; i < 3; ++i) {
-          column[i] = axis[i];
-          column[3 + i] = T(0.0);
-        }
-      } else {
-        const T r[3] = {p[0] - column[0], p[1] - column[1], p[2] - column[2]};
-        for (int i = 0; i < 3; ++i) {
-          const int a = (i + 1) % 3;
-          const int b = (i + 2) % 3;
-          column[i] = axis[a] * r[b] - axis[b] * r[a];
-        }
-      }
-      if (joint.limited) {
-        const auto low = q[j] <= T(joint.lower);
-        const auto high = q[j] >= T(joint.upper);
-        if (any(low | high)) {
-          T gradient = column[0] * e[0];
-          for (int i = 1; i < 6; ++i) gradient = gradient + column[i] * e[i];
-          const auto leaves = (low & (gradient < T(0.0))) | (high & (gradient > T(0.0)));
-          for (int i = 0; i < 6; ++i) column[i] = select(leaves, T(0.0), column[i]);
-        }
-      }
-    }
+    make_columns(chain, q, goal, frame, e, J);
     // dq = J^T (J J^T + lambda I)^-1 e.
     T A[6][6];
     multiply_rows<0, 3>(n, J, A);
@@ -148,45 +172,40 @@ PackResult advance(const LaneChain& chain, const LaneOptions& options, unsigned 
     multiply_rows<5, 6>(n, J, A);
     const T lambda = T(options.damping) * e2 + T(1e-18);
     T step[6];
-    SymmetricFactors<T>(A, lambda).solve(e, step);
+    goal.solve(A, lambda, e, step);
     // A lane that is there already stays: along a singular direction the step may be long.
     const auto there =
         (ep2 + er2 * T(options.lever2) <= T(options.position2)) & (er2 <= T(options.rotation2));
     for (T& part : step) part = select(there, T(0.0), part);
-    T dq2 = T(0.0);
-#pragma GCC unroll 10
-    for (int j = 0; j < n; ++j) {
-      T dq = J[j][0] * step[0];
-#pragma GCC unroll 6
-      for (int i = 1; i < 6; ++i) dq = dq + J[j][i] * step[i];
-      dq2 = dq2 + dq * dq;
-      q[j] = q[j] + dq;
-      const LaneJoint& joint = chain.joint[j];
-      if (joint.limited) q[j] = min(max(q[j], T(joint.lower)), T(joint.upper));
-    }
+    const T dq2 = move_joints(chain, J, step, q);
 
     // Steps shrink quadratically: after a short one the error needs no look.
-    const auto done = (dq2 <= T(options.last_step2)) & (e2 <= T(options.last_error2));
-    unsigned mask = 0;
-    if (any(done)) {
-      double hit[L::kCount];
-      L::store(select(done, T(1.0), T(0.0)), hit);
-      for (int lane = 0; lane < L::kCount; ++lane) {
-        if (hit[lane] != 0.0) mask |= 1U << static_cast<unsigned>(lane);
-      }
-      mask &= watched;
-    }
-    if (mask != 0 || iteration >= iterations) {
-      for (int j = 0; j < n; ++j) L::store(q[j], pack.q[j]);
-      L::store(e2, pack.error2);
-      return {mask, iteration};
+    const unsigned done =
+        watched & to_bits<T>((dq2 <= T(options.last_step2)) & (e2 <= T(options.last_error2)));
+    if (done != 0 || iteration >= iterations) {
+      for (int j = 0; j < n; ++j) Lanes<T>::store(q[j], pack.q[j]);
+      Lanes<T>::store(e2, pack.error2);
+      return {done, iteration};
     }
   }
 }
 
+template <typename T>
+PackResult advance(const LaneChain& chain, const LaneOptions& options, unsigned watched,
+                   int iterations, LanePack& pack) {
+  return iterate_pack<T>(chain, options, FullPose<T>(pack), watched, iterations, pack);
+}
+
+template <typename T>
+PackResult advance_task(const LaneChain& chain, const LaneOptions& options, const LaneTask& task,
+                        unsigned watched, int iterations, LanePack& pack) {
+  return iterate_pack<T>(chain, options, TaskGoal<T>(pack, task), watched, iterations, pack);
+}
+
 template <typename T, typename S>
 constexpr LaneKernels make_kernels(const char* name) {
-  return {name, Lanes<T>::kCount, advance<T>, prepare_seeds<S>, add_known<S>, find_largest<S>};
+  return {name,         Lanes<T>::kCount, advance<T>, advance_task<T>, prepare_seeds<S>,
+          add_known<S>, find_largest<S>};
 }
 
 }  // namespace iksel::lanes

@@ -10,6 +10,9 @@
 
 #include "base/sincos.hpp"
 
+/// Parts of a kernel that the compiler would otherwise call, with their vectors in memory.
+#define IKSEL_INLINE inline __attribute__((always_inline))
+
 namespace iksel::lanes {
 
 template <typename T>
@@ -43,6 +46,29 @@ inline float max(float a, float b) { return a > b ? a : b; }
 inline double min(double a, double b) { return a < b ? a : b; }
 inline float min(float a, float b) { return a < b ? a : b; }
 inline float abs(float x) { return __builtin_fabsf(x); }
+
+inline double abs(double x) { return __builtin_fabs(x); }
+
+/// asin(s) / s for 0 <= s <= 1, to 1e-15 (the rational function of Sun's fdlibm, e_asin.c).
+template <typename T>
+inline T asin_over(const T& s) {
+  const auto large = s > T(0.5);
+  const T t = select(large, T(0.5) - T(0.5) * s, s * s);
+  T p = T(3.47933107596021167570e-05);
+  p = p * t + T(7.91534994289814532176e-04);
+  p = p * t + T(-4.00555345006794114027e-02);
+  p = p * t + T(2.01212532134862925881e-01);
+  p = p * t + T(-3.25565818622400915405e-01);
+  p = (p * t + T(1.66666666666666657415e-01)) * t;
+  T q = T(7.70381505559019352791e-02);
+  q = q * t + T(-6.88283971605453293030e-01);
+  q = q * t + T(2.02094576023350569471e+00);
+  q = q * t + T(-2.40339491173441421878e+00);
+  q = q * t + T(1.0);
+  const T r = T(1.0) + p / q;
+  const T root = sqrt(max(t, T(0.0)));
+  return select(large, (T(1.57079632679489661923) - T(2.0) * root * r) / max(s, T(0.5)), r);
+}
 
 /// Single-precision atan2 to about 1e-5 rad, which is enough for a seed (Abramowitz and Stegun,
 /// 4.4.49).

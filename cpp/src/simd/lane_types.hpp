@@ -37,10 +37,23 @@ struct LaneOptions {
   double last_step2, last_error2;       ///< a step from below these is the last
 };
 
-/// What a pack of lanes works on, lane by lane. Rows of a target: position (3), columns x (3),
-/// y (3), z (3) of the last joint's frame seen from the first one's.
+/// What a task leaves open (goal/task_space.hpp). All vectors are in the first joint's frame.
+struct LaneTask {
+  double lower[6], upper[6];  ///< bounds to aim at: position and rotation along the task's axes
+  bool fixed[6];              ///< without any width
+  bool open[6];               ///< without bounds
+  int twist;                  ///< axis of the twist; -1: the rotation vector is used
+  double tcp[3];              ///< seen from the last joint
+};
+
+/// What a pack of lanes works on, lane by lane. Rows of a full pose: position (3), columns x (3),
+/// y (3), z (3) of the last joint's frame seen from the first one's. Rows of a task: position (3)
+/// of the TCP; columns of W (9), the task's axes; columns of K (9), by which the last joint's frame
+/// R gives the deviation E = W^T R K.
+inline constexpr int kFullPoseRows = 12;
+inline constexpr int kTargetRows = 21;
 struct LanePack {
-  alignas(64) double target[12][kWidth];
+  alignas(64) double target[kTargetRows][kWidth];
   alignas(64) double q[kMaxJoints][kWidth];
   /// Squared error before the last step.
   alignas(64) double error2[kWidth];
@@ -55,6 +68,10 @@ struct PackResult {
 /// Iterates a pack, until a lane of the mask `watched` arrives or the iterations are used up.
 using Advance = PackResult (*)(const LaneChain& chain, const LaneOptions& options, unsigned watched,
                                int iterations, LanePack& pack);
+/// The same for a task.
+using AdvanceTask = PackResult (*)(const LaneChain& chain, const LaneOptions& options,
+                                   const LaneTask& task, unsigned watched, int iterations,
+                                   LanePack& pack);
 
 /// How a side of the chain is left out of the samples (reduction.hpp).
 enum class Side : int { none, rotation, translation };
@@ -110,6 +127,7 @@ struct LaneKernels {
   const char* name;
   int lanes;
   Advance advance;
+  AdvanceTask advance_task;
   PrepareSeeds prepare;
   AddKnown add_known;
   FindLargest find_largest;

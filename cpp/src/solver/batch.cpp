@@ -144,7 +144,7 @@ class Batch {
     const auto solve_alone = [&](std::size_t i) {
       tell(i, solver_.find_first(target_(i), solver_.task, none, workspace, nullptr));
     };
-    if (workspace.lanes == nullptr || !solver_.task.is_full_pose()) {
+    if (workspace.lanes == nullptr) {
       for (std::size_t i = first; i < last; ++i) solve_alone(i);
       return;
     }

@@ -117,7 +117,7 @@ Solutions Solver::Impl::solve_all(const Pose& target, const AllOptions& all,
 
   Solutions solutions;
   solutions.status = search.status;
-  solutions.attempts = search.work.attempts;
+  solutions.attempts = search.work.all_attempts();
   solutions.iterations = search.work.iterations;
 
   const JointMove move(robot.dof(), request);
@@ -158,7 +158,7 @@ Solutions Solver::Impl::solve_all(const Pose& target, const AllOptions& all,
       continue;
     }
     if (request.near) result.move = move.length(copy.q - from);
-    result.attempts = search.work.attempts;
+    result.attempts = search.work.all_attempts();
     result.iterations = search.work.iterations;
     solutions.all.push_back(result);
   }

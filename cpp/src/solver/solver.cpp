@@ -101,6 +101,9 @@ Result Solver::Impl::find_first(const Pose& target, const TaskSpace& of_call,
 Result Solver::Impl::solve(const Pose& target, const SolveRequest& request,
                            Workspace& workspace) const {
   const TaskSpace of_call = task_of(request);
+  if (!ranks_answers(request) && !request.filter) {
+    return find_first(target, of_call, request, workspace, nullptr);
+  }
   const Goal goal(model(), of_call, target);
   AnswerSelector selector(model(), goal, request, workspace.collected.found);
   const auto is_satisfied = [&](const Collector& so_far) { return selector.is_satisfied(so_far); };
@@ -123,8 +126,8 @@ Result Solver::Impl::solve(const Pose& target, const SolveRequest& request,
     result.status = Status::rejected;
   }
   if (!result.success() && search.is_out_of_time) result.status = Status::out_of_time;
-  result.attempts = search.work.attempts;
-  result.iterations = search.work.iterations;
+  result.attempts = search.work.all_attempts();
+  result.iterations = search.work.iterations + selector.steps();
   return result;
 }
 
@@ -177,8 +180,7 @@ Result Solver::solve(const Pose& T_base_tip, const SolveRequest& request) const 
   const Pose& target = to_rigid(T_base_tip, nearest);
   impl_->check(request);
   const WorkspacePool::Lease lease(impl_->workspaces);
-  if (request.has_wishes()) return impl_->solve(target, request, lease.get());
-  return impl_->find_first(target, impl_->task, request, lease.get(), nullptr);
+  return impl_->solve(target, request, lease.get());
 }
 
 }  // namespace iksel

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Seeds for a task, a block at a time: samples near to poses that it allows, the pose nearest to
+// the target first; between them configurations at random.
+#pragma once
+
+#include <cstdint>
+
+#include "base/random.hpp"
+#include "base/stage_clock.hpp"
+#include "base/work.hpp"
+#include "goal/goal.hpp"
+#include "seeds/lane_query.hpp"
+
+namespace iksel {
+
+class AllowedSeeds {
+ public:
+  AllowedSeeds(LaneQuery& query, const JointSpace& joints, const Goal& goal, std::uint64_t seed,
+               Work& work, StageClock& clock)
+      : query_(query), joints_(joints), goal_(goal), random_(seed), work_(work), clock_(clock) {}
+
+  bool next_stage() {
+    clock_.lap(&StageTimes::iterate);
+    at_random_ = stage_ % 4 == 3;
+    rank_ = 0;
+    if (stage_ == 0) {
+      query_.set_target(goal_.nearest_pose());
+      query_.prepare_leaf(query_.packs[0]);
+      query_.forget();
+    } else if (!at_random_) {
+      // Some poses have the same samples: a spin about the last joint is not in a reduced key.
+      query_.set_target(goal_.random_pose(random_));
+      at_random_ = !query_.prepare_untried(query_.packs[0]);
+    }
+    ++stage_;
+    clock_.lap(&StageTimes::query);
+    return work_.has_left();
+  }
+
+  template <typename Refiner>
+  bool load(Refiner& refiner, int lane) {
+    if (rank_ == lanes::kBlock || !work_.take()) return false;
+    const int rank = rank_++;
+    if (at_random_) {
+      double q[kMaxDof];
+      joints_.sample(random_, q);
+      refiner.load(lane, [&](int j) { return q[j]; });
+    } else {
+      const lanes::SeedPack& seeds = query_.packs[0];
+      refiner.load(lane, [&](int j) { return static_cast<double>(seeds.q[j][seeds.order[rank]]); });
+    }
+    return true;
+  }
+
+ private:
+  LaneQuery& query_;
+  const JointSpace& joints_;
+  const Goal& goal_;
+  Random random_;
+  Work& work_;
+  StageClock& clock_;
+  int stage_ = 0;
+  bool at_random_ = false;
+  int rank_ = 0;
+};
+
+}  // namespace iksel

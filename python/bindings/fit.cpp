@@ -135,6 +135,14 @@ std::string type_names(PyObject* const* args, std::size_t count) {
   return join(names);
 }
 
+/// As the docstring says it where the types of C++ are not known (method.hpp).
+std::string signature_of(const py::detail::function_record& record) {
+  const std::string name = record.name;
+  const std::string doc = record.doc == nullptr ? "" : record.doc;
+  if (doc.rfind(name + "(", 0) == 0) return doc.substr(0, doc.find('\n'));
+  return name + record.signature;
+}
+
 std::string explain(const py::detail::function_record& record, PyObject* const* args,
                     std::size_t count, const Names& keywords) {
   std::string function = record.name;
@@ -148,7 +156,7 @@ std::string explain(const py::detail::function_record& record, PyObject* const* 
   const std::string sentence = call.sentence();
   if (!sentence.empty()) return sentence;
   return function + "() does not take (" + type_names(args, count + keywords.size()) + "); it is " +
-         record.name + record.signature;
+         signature_of(record);
 }
 
 }  // namespace

@@ -57,18 +57,9 @@ template <class T>
 struct CanValidate<T, std::void_t<decltype(std::declval<const T&>().validate())>> : std::true_type {
 };
 
-template <class Struct>
-const Struct& defaults_of() {
-  static const Struct defaults{};
-  return defaults;
-}
-
 template <class Struct, class T>
 Field field(const char* name, T Struct::*member, const char* doc) {
-  const Struct& any = defaults_of<Struct>();
-  const auto offset =
-      reinterpret_cast<const char*>(&(any.*member)) - reinterpret_cast<const char*>(&any);
-  return {name, doc, static_cast<std::size_t>(offset), &value_type<T>()};
+  return {name, doc, offset_of(member), &value_type<T>()};
 }
 
 template <class Struct>

@@ -6,6 +6,7 @@
 #include <pybind11/pybind11.h>
 
 #include <array>
+#include <cstddef>
 #include <string>
 #include <type_traits>
 
@@ -31,6 +32,20 @@ struct ValueType {
 template <class T>
 const T& as(const void* value) {
   return *static_cast<const T*>(value);
+}
+
+template <class Struct>
+const Struct& defaults_of() {
+  static const Struct defaults{};
+  return defaults;
+}
+
+/// Of a member in its struct [bytes].
+template <class Struct, class T>
+std::size_t offset_of(T Struct::*member) {
+  const Struct& any = defaults_of<Struct>();
+  return static_cast<std::size_t>(reinterpret_cast<const char*>(&(any.*member)) -
+                                  reinterpret_cast<const char*>(&any));
 }
 
 inline std::string repr_text(py::handle value) { return py::cast<std::string>(py::repr(value)); }

@@ -207,7 +207,7 @@ class Session {
 
   bool solve_all() {
     const Target target = some_target();
-    iksel::AllOptions options;
+    iksel::SolveAllOptions options;
     options.max = 1 + dice_.pick(64);
     options.whole_turns = dice_.chance(0.3);
     const iksel::Solutions found = solver_.solve_all(target.pose, options);

@@ -151,7 +151,7 @@ TEST(SolveAll, WholeTurnsAreAllCopiesInsideTheLimits) {
   const Eigen::MatrixXd q = robot.random_configurations(5, iksel_test::seed());
   for (int i = 0; i < 5; ++i) {
     const Pose target = robot.fk(q.row(i));
-    iksel::AllOptions options;
+    iksel::SolveAllOptions options;
     const auto once = solver.solve_all(target, options);
     options.whole_turns = true;
     options.max = 100'000;
@@ -179,7 +179,7 @@ TEST(SolveAll, MaxMinDistanceAndOrderHold) {
     const Solver solver(iksel_test::load(robot_case(name)));
     const Eigen::MatrixXd q = solver.robot().random_configurations(20, iksel_test::seed());
     for (int i = 0; i < 20; ++i) {
-      iksel::AllOptions options;
+      iksel::SolveAllOptions options;
       options.max = 5;
       options.min_distance = 0.2;
       SolveRequest request;
@@ -258,7 +258,7 @@ TEST(Filter, FindsWheneverSolveAllHasOneThatPasses) {
     for (int i = 0; i < n; ++i) {
       const Pose target = robot.fk(q.row(i));
       const auto passes = [](const JointVector& at) { return at[1] <= 0; };
-      iksel::AllOptions options;
+      iksel::SolveAllOptions options;
       options.whole_turns = true;
       options.max = 10'000;
       const auto all = solver.solve_all(target, options);
@@ -300,7 +300,7 @@ TEST(Filter, NearestIsNearestOfAllThatPass) {
     request.near = near;
     request.filter = iksel::filter_each(robot.dof(), passes);
     const Pose target = robot.fk(q.row(i));
-    iksel::AllOptions options;
+    iksel::SolveAllOptions options;
     options.whole_turns = true;
     options.max = 100'000;
     const auto all = solver.solve_all(target, options, request);
@@ -746,7 +746,7 @@ TEST(Angles, ThoseThatFollowASlideAreBoundedToo) {
 
 TEST(Requests, BadOptionsOfSolveAllAreNamed) {
   const Solver solver(iksel_test::load(robot_case("ur3")));
-  const auto expect_error = [&](const iksel::AllOptions& options, const std::string& what) {
+  const auto expect_error = [&](const iksel::SolveAllOptions& options, const std::string& what) {
     try {
       (void)solver.solve_all(Pose::Identity(), options);
       FAIL() << what;
@@ -754,7 +754,7 @@ TEST(Requests, BadOptionsOfSolveAllAreNamed) {
       EXPECT_NE(std::string(error.what()).find(what), std::string::npos) << error.what();
     }
   };
-  iksel::AllOptions options;
+  iksel::SolveAllOptions options;
   options.max = 0;
   expect_error(options, "max");
   options = {};

@@ -99,8 +99,8 @@ def test_q_of_wrong_shape_is_named(robot, shape):
 
 
 def test_seed_of_wrong_shape_is_named(solver, poses):
-    with pytest.raises(core.InvalidArgumentError, match=r"^seed: expected a \(6,\)"):
-        solver.solve(poses[0], seed=np.zeros(5))
+    with pytest.raises(core.InvalidArgumentError, match=r"^seeds: expected a \(6,\)"):
+        solver.solve(poses[0], seeds=np.zeros(5))
 
 
 @pytest.mark.parametrize(
@@ -195,8 +195,8 @@ def test_non_finite_joints_are_named(robot, solver, joints, poses, bad):
             function(rows[3])
         with pytest.raises(core.InvalidArgumentError, match=r"^q\[3\]: .* at joint 2"):
             function(rows)
-    with pytest.raises(core.InvalidArgumentError, match=r"^seed: "):
-        solver.solve(poses[0], seed=rows[3])
+    with pytest.raises(core.InvalidArgumentError, match=r"^seeds: "):
+        solver.solve(poses[0], seeds=rows[3])
 
 
 def test_empty_batches_are_fine(robot, solver):
@@ -349,7 +349,7 @@ def test_calls_leak_no_references(robot, solver, joints, poses):
     for _ in range(20):
         robot.fk(q)
         robot.jacobian(joints)
-        solver.solve(pose, seed=q)
+        solver.solve(pose, seeds=[q], near=q)
         solver.solve_batch(poses[:2])
         with pytest.raises(core.InvalidArgumentError):
             solver.solve(q)
@@ -362,7 +362,7 @@ def test_inputs_are_left_alone(robot, solver, joints, poses):
     joints_before, poses_before = joints.copy(), poses.copy()
     robot.fk(joints)
     solver.solve_batch(poses)
-    solver.solve(poses[0], seed=joints[0])
+    solver.solve(poses[0], seeds=joints)
     np.testing.assert_array_equal(joints, joints_before)
     np.testing.assert_array_equal(poses, poses_before)
 
@@ -826,10 +826,13 @@ def test_results_round_trip(solver, poses):
 
 def test_seed_is_tried_first(robot, solver, joints, poses):
     for q, pose in zip(joints, poses, strict=True):
-        result = solver.solve(pose, seed=q)
+        result = solver.solve(pose, seeds=[q])
         assert result.success
         assert result.attempts == 1
-        np.testing.assert_allclose(result.q, q, atol=1e-5)
+        turns = (result.q - q) / (2 * np.pi)
+        np.testing.assert_allclose(turns, np.round(turns), atol=1e-5)
+        single = solver.solve(pose, seeds=q)
+        np.testing.assert_array_equal(single.q, result.q)
 
 
 def test_batch_lets_other_threads_run(robot, solver):

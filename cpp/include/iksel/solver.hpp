@@ -91,7 +91,7 @@ class IKSEL_EXPORT Solver {
   /// Every distinct solution inside the limits that is found within the bounds on work: all
   /// branches of an arm with as many joints as the pose has directions, a spread over the families
   /// of a redundant one. Throws as solve.
-  [[nodiscard]] Solutions solve_all(const Pose& T_base_tip, const AllOptions& options = {},
+  [[nodiscard]] Solutions solve_all(const Pose& T_base_tip, const SolveAllOptions& options = {},
                                     const SolveRequest& request = {}) const;
 
   /// Why solve(T_base_tip, request) gives no answer, and the best that can be done. Spends more

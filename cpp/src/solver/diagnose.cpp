@@ -191,7 +191,7 @@ class Solver::Impl::Inquiry {
     constexpr double kLittle = 0.01;
     BestEffort effort = make_effort(task_);
     effort.weigh_rotation(kLittle);
-    AllOptions spread_out;
+    SolveAllOptions spread_out;
     spread_out.max = kEfforts;
     spread_out.min_distance = 0.1;
     for (const Result& answer : patient_.solve_all(T_base_tip_, spread_out, at_position).all) {
@@ -246,7 +246,7 @@ class Solver::Impl::Inquiry {
   }
 
   bool explain_refusals() {
-    AllOptions every;
+    SolveAllOptions every;
     every.max = kPatientAttempts;
     const Solutions refused = patient_.solve_all(T_base_tip_, every, open_);
     out_.cause = Cause::rejected;

@@ -131,7 +131,7 @@ int Solver::Impl::count_most_solutions() const {
   constexpr std::size_t kPoses = 64;
   if (!task.is_full_pose() || !orientations_cancel(robot.model())) return 0;
   const SolveRequest none;
-  const AllOptions all;
+  const SolveAllOptions all;
   const auto never = [](const Exploration&) { return false; };
   const Lease lease(*this);
   const Matrix q = robot.random_configurations(kPoses, options.seed);

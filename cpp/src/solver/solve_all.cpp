@@ -102,7 +102,7 @@ void take_first_of_each(std::size_t solutions, std::vector<Copy>& copies) {
 
 }  // namespace
 
-Solutions Solver::Impl::solve_all(const Pose& T_base_tip, const AllOptions& all,
+Solutions Solver::Impl::solve_all(const Pose& T_base_tip, const SolveAllOptions& all,
                                   const SolveRequest& request, Workspace& workspace) const {
   const ChainModel& model = robot.model();
   const TaskSpace of_call = task_of(request);
@@ -171,7 +171,7 @@ Solutions Solver::Impl::solve_all(const Pose& T_base_tip, const AllOptions& all,
   return solutions;
 }
 
-Solutions Solver::solve_all(const Pose& T_base_tip, const AllOptions& options,
+Solutions Solver::solve_all(const Pose& T_base_tip, const SolveAllOptions& options,
                             const SolveRequest& request) const {
   const Pose target = check_pose(T_base_tip);
   options.validate();

@@ -78,8 +78,8 @@ struct Solver::Impl {
 
   /// The whole pipeline for one valid target with wishes.
   Result solve(const Pose& T_base_tip, const SolveRequest& request, Workspace& workspace) const;
-  Solutions solve_all(const Pose& T_base_tip, const AllOptions& all, const SolveRequest& request,
-                      Workspace& workspace) const;
+  Solutions solve_all(const Pose& T_base_tip, const SolveAllOptions& all,
+                      const SolveRequest& request, Workspace& workspace) const;
 
   Diagnosis diagnose(const Pose& T_base_tip, const SolveRequest& request) const;
 

@@ -222,6 +222,27 @@ class Robot:
         Raises:
             InvalidArgumentError: wrong shape or dtype, or a number that is not finite.
         """
+    def link_poses(self, q: numpy.typing.ArrayLike, *, other_joints: collections.abc.Mapping[str, float] | None = None) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Poses of all links of the URDF in the base link's frame, in the order of link_names.
+
+        Side branches move with the arm's joints, too, and with what mimics them at any depth. The TCP plays
+        no part.
+
+        Args:
+            q: joint values [rad or m], (dof,) or (N, dof).
+            other_joints: values of joints that q does not move [rad or m], by name. Those not given are
+                where they are locked, or at 0; floating and planar joints are at their origin.
+
+        Returns:
+            (n_links, 4, 4), or (N, n_links, 4, 4) with the GIL released.
+
+        Raises:
+            InvalidArgumentError: wrong shape or dtype, a number that is not finite, or a joint in
+                other_joints that q moves.
+            UnknownNameError: a name in other_joints, or in a mimic tag, that is no joint's.
+            UrdfError: a joint off the chain is no good: it mimics itself, or has no axis.
+        """
     def random_configurations(self, n: int, seed: int | None = None) -> numpy.typing.NDArray[numpy.float64]:
         """
         n configurations uniform inside the limits (continuous joints in [-pi, pi)), (n, dof). The same seed gives the same numbers everywhere; None: other numbers in each call.

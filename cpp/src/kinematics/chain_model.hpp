@@ -11,6 +11,7 @@
 #include "iksel/robot.hpp"
 #include "kinematics/kdl_chain.hpp"
 #include "kinematics/kernel.hpp"
+#include "kinematics/link_poses.hpp"
 #include "math/constants.hpp"
 #include "urdf/chain_spec.hpp"
 
@@ -57,6 +58,8 @@ class ChainModel {
   Eigen::Matrix<double, 3, 1, Eigen::DontAlign> reach_centre;
   double reach;
   std::uint64_t hash;
+  /// Shared by all copies, which have the same URDF and locked joints.
+  std::shared_ptr<LinkPoseCache> link_poses = std::make_shared<LinkPoseCache>();
 
  private:
   void flatten();

@@ -51,7 +51,8 @@ std::size_t offset_of(T Struct::*member) {
 inline std::string repr_text(py::handle value) { return py::cast<std::string>(py::repr(value)); }
 
 /// Specialised for every type of field: kHasShortRepr, argument(), attribute(), get(), to_plain(),
-/// repr(), equal(). A value is read by FromPython.
+/// repr(), equal(). A value is read by FromPython. A std::variant of structs needs these two and
+/// nothing else: what is around fields never asks what they hold.
 template <class T, class Enable = void>
 struct ValueOf;
 

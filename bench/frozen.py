@@ -226,7 +226,7 @@ def _calls(solver: iksel.Solver, *, slow: bool) -> Calls:
     yield "solve", solve(poses)
     yield (
         "solve seed",
-        lambda: _each(poses, lambda i, pose: solver.solve(pose, home[i])),
+        lambda: _each(poses, lambda i, pose: solver.solve(pose, seeds=home[i])),
     )
     yield "solve seeds", solve(poses, seeds=home[:5])
     yield "solve seeds only", solve(poses, seeds=home[:5], database_seeds=False)

@@ -33,7 +33,7 @@ SAME_MOVE = 1e-3
 """Moves that differ by less are the same [rad]: near a singularity answers within the
 tolerances of the pose are that far apart."""
 APART = 0.01
-"""Branches differ by at least this in some joint [rad]: AllOptions.min_distance."""
+"""Branches differ by at least this in some joint [rad]: `min_distance`."""
 RESTARTS = 1_000
 """Random restarts that a branch count is compared with."""
 LIMIT_S = 300.0

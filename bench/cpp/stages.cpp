@@ -10,8 +10,8 @@
 
 #include "database/reduction.hpp"
 #include "kinematics/chain_model.hpp"
-#include "simd/kernels.hpp"
 #include "seeds/selection.hpp"
+#include "simd/kernels.hpp"
 
 namespace {
 
@@ -213,7 +213,7 @@ BENCHMARK(solve)->ArgNames({"arm", "paper"})->ArgsProduct({{0, 1}, {0, 1}});
 void solve_batch(benchmark::State& state) {
   const Problem& p = problem(state.range(0));
   const iksel::Solver& s = solver(state.range(0), state.range(1) != 0);
-  for (auto _ : state) benchmark::DoNotOptimize(s.solve_batch(p.targets, 1));
+  for (auto _ : state) benchmark::DoNotOptimize(s.solve_batch(p.targets, {}, {}, 1));
   state.SetItemsProcessed(static_cast<int64_t>(state.iterations() * kTargets));
 }
 BENCHMARK(solve_batch)->ArgNames({"arm", "paper"})->ArgsProduct({{0, 1}, {0, 1}});

@@ -24,7 +24,7 @@ class IkselDefault(PythonRival):
     def __init__(self, arm: Arm) -> None:
         """Build the database."""
         self._solver = iksel.Solver(arm.robot, self.options())
-        self.call = self._solver.solve  # type: ignore[method-assign]
+        self.call = self._solver.solve  # type: ignore[assignment, method-assign]
 
     @classmethod
     def version(cls) -> str:

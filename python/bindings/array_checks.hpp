@@ -8,6 +8,7 @@
 #include <pybind11/pybind11.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <string>
@@ -88,47 +89,82 @@ inline JointVector as_joints(py::handle value, int dof, const char* name) {
   return Eigen::Map<const Eigen::VectorXd>(array.data(), dof);
 }
 
+/// A (dof,) or (N, dof) array of numbers.
+inline DoubleArray as_joint_rows(py::handle value, int dof, const char* name) {
+  DoubleArray array = as_doubles(value, name);
+  const py::ssize_t n = array.ndim();
+  if ((n != 1 && n != 2) || array.shape(n - 1) != dof) {
+    const std::string text = std::to_string(dof);
+    throw_wrong_shape(name, "a (" + text + ",) or (N, " + text + ") array", array);
+  }
+  return array;
+}
+
+inline void check_row(const double* row, py::ssize_t index, int dof, const char* name) {
+  if (Eigen::Map<const Eigen::VectorXd>(row, dof).allFinite()) return;
+  check_finite(row, dof, std::string(name) + "[" + std::to_string(index) + "]");
+}
+
+/// Shape of what is computed of `q`: `item` for each row, if there are rows.
+inline std::vector<py::ssize_t> shape_for(const DoubleArray& q, std::vector<py::ssize_t> item) {
+  if (q.ndim() == 2) item.insert(item.begin(), q.shape(0));
+  return item;
+}
+
 /// Applies `function(const JointVector&, T* out)` to a (dof,) array, giving an array of shape
 /// `item`, or to every row of an (N, dof) array, giving (N, *item) with the GIL released; Ctrl-C
 /// ends it.
 template <class T = double, class Function>
 py::array_t<T> map_joints(py::handle value, int dof, const char* name,
                           const std::vector<py::ssize_t>& item, const Function& function) {
-  const DoubleArray array = as_doubles(value, name);
-  const bool single = array.ndim() == 1;
-  if ((!single && array.ndim() != 2) || array.shape(array.ndim() - 1) != dof) {
-    const std::string n = std::to_string(dof);
-    throw_wrong_shape(name, "a (" + n + ",) or (N, " + n + ") array", array);
-  }
+  const DoubleArray array = as_joint_rows(value, dof, name);
   const double* in = array.data();
-  if (single) {
+  py::array_t<T> out(shape_for(array, item));
+  T* to = out.mutable_data();
+  if (array.ndim() == 1) {
     check_finite(in, dof, name);
-    py::array_t<T> out(item);
-    function(JointVector(Eigen::Map<const Eigen::VectorXd>(in, dof)), out.mutable_data());
+    function(JointVector(Eigen::Map<const Eigen::VectorXd>(in, dof)), to);
     return out;
   }
-
   const py::ssize_t rows = array.shape(0);
-  std::vector<py::ssize_t> shape = {rows};
-  py::ssize_t item_size = 1;
-  for (const py::ssize_t extent : item) {
-    shape.push_back(extent);
-    item_size *= extent;
-  }
-  py::array_t<T> out(shape);
-  T* to = out.mutable_data();
+  const py::ssize_t item_size = rows == 0 ? 0 : out.size() / rows;
   {
     const GilRelease release;
     JointVector q(dof);
     InterruptCheck check_interrupt;
     for (py::ssize_t row = 0; row < rows; ++row, in += dof, to += item_size) {
       check_interrupt();
-      if (!Eigen::Map<const Eigen::VectorXd>(in, dof).allFinite()) {
-        check_finite(in, dof, std::string(name) + "[" + std::to_string(row) + "]");
-      }
+      check_row(in, row, dof, name);
       q = Eigen::Map<const Eigen::VectorXd>(in, dof);
       function(q, to);
     }
+  }
+  return out;
+}
+
+/// As map_joints, but applies `function(const double* q, std::size_t count, double* out)` to many
+/// rows at a time.
+template <class Function>
+py::array_t<double> map_joint_blocks(py::handle value, int dof, const char* name,
+                                     const std::vector<py::ssize_t>& item,
+                                     const Function& function) {
+  const DoubleArray array = as_joint_rows(value, dof, name);
+  const double* in = array.data();
+  py::array_t<double> out(shape_for(array, item));
+  double* to = out.mutable_data();
+  if (array.ndim() == 1) {
+    check_finite(in, dof, name);
+    function(in, 1, to);
+    return out;
+  }
+  const py::ssize_t rows = array.shape(0);
+  for (py::ssize_t i = 0; i < rows; ++i) check_row(in + i * dof, i, dof, name);
+  constexpr py::ssize_t kBlock = 256;
+  for (py::ssize_t first = 0; first < rows; first += kBlock) {
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    const GilRelease release;
+    function(in + first * dof, static_cast<std::size_t>(std::min(kBlock, rows - first)),
+             to + first * (out.size() / rows));
   }
   return out;
 }

@@ -17,8 +17,8 @@ struct FieldTable<Evaluation> {
   using E = Evaluation;
   static constexpr const char* kName = "Evaluation";
   static constexpr const char* kDoc = "Outcome of `evaluate`. Times include failures.";
-  static constexpr auto fields() {
-    return std::make_tuple(
+  static std::vector<Field> fields() {
+    return {
         field("targets", &E::targets, "Targets tried."),
         field("seed", &E::seed, "Seed of the targets."),
         field("solved", &E::solved, "Targets solved."),
@@ -45,7 +45,7 @@ struct FieldTable<Evaluation> {
         field("iterate_us", &E::iterate_us,
               "Mean time of the iterations [us]; 0 unless asked for."),
         field("reselect_us", &E::reselect_us,
-              "Mean time of the re-selections [us]; 0 unless asked for."));
+              "Mean time of the re-selections [us]; 0 unless asked for.")};
   }
 };
 
@@ -66,7 +66,7 @@ Evaluation evaluate_solver(const Loose<Solver>& given, const Loose<std::size_t>&
 }  // namespace
 
 void bind_evaluation(py::module_& m) {
-  bind_fields<Evaluation>(m, /*writable=*/false);
+  bind_fields<Evaluation>(m, FieldClass::result);
   m.def("evaluate", &evaluate_solver, py::arg("solver"), py::arg("targets"), py::arg("seed"),
         py::arg("stages") = false, py::arg("progress") = py::none(),
         R"(The paper's experiment protocol: success and time over random reachable targets.

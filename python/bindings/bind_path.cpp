@@ -9,7 +9,6 @@
 #include "angle_warning.hpp"
 #include "array_checks.hpp"
 #include "bindings.hpp"
-#include "filter.hpp"
 #include "gil.hpp"
 #include "html.hpp"
 #include "iksel/path.hpp"
@@ -19,6 +18,7 @@
 #include "property.hpp"
 #include "py_result.hpp"
 #include "python_types.hpp"
+#include "request_keywords.hpp"
 
 namespace iksel::python {
 
@@ -46,30 +46,18 @@ OptionalIndex optional_index(std::ptrdiff_t index) {
   return py::reinterpret_borrow<OptionalIndex>(value);
 }
 
-PyPath solve_path(const Solver& self, const PoseLike& poses, const std::optional<ArrayLike>& start,
-                  const Loose<double>& dt, const std::optional<ArrayLike>& weights,
-                  const Loose<MoveNorm>& norm, const std::optional<FilterCallable>& filter,
-                  const Loose<int>& candidates) {
+py::object solve_path(const Solver& self, py::handle poses, const Given& given) {
   const int dof = self.robot().dof();
   const DoubleArray array = as_poses(poses, "poses", &self.options().task);
   std::vector<Pose> targets(static_cast<std::size_t>(array.shape(0)));
   for (std::size_t i = 0; i < targets.size(); ++i) {
     targets[i].matrix() = Eigen::Map<const RowMajorPose>(array.data() + 16 * i);
   }
-  PathOptions options;
-  if (start) {
-    options.start = as_joints(*start, dof, "start");
-    warn_of_degrees(self.robot(), *options.start, "start");
-  }
-  options.dt = from_python<double>(dt, "dt");
-  if (weights) options.weights = as_joints(*weights, dof, "weights");
-  options.norm = from_python<MoveNorm>(norm, "norm");
-  if (filter) options.filter = make_filter(*filter, dof);
-  options.candidates = from_python<int>(candidates, "candidates");
+  auto options = given.read<PathOptions>(dof);
+  if (options.start) warn_of_degrees(self.robot(), {*options.start}, "start");
   const std::optional<ProgressCallable> no_callable;
   options.progress = make_progress(no_callable);
-  const GilRelease release;
-  return {self.solve_path(targets, options), dof};
+  return py::cast(PyPath{without_gil([&] { return self.solve_path(targets, options); }), dof});
 }
 
 py::object path_state(const PyPath& self) {
@@ -144,28 +132,16 @@ void bind_path_result(py::module_& m) {
 
 void bind_path(py::module_& m, py::class_<Solver>& cls) {
   bind_path_result(m);
-  const PathOptions path;
-  cls.def("solve_path", &solve_path, py::arg("poses"), py::arg("start") = py::none(), py::kw_only(),
-          py::arg("dt") = path.dt, py::arg("weights") = py::none(),
-          py::arg("norm") = enum_name(path.norm), py::arg("filter") = py::none(),
-          py::arg("candidates") = path.candidates,
-          R"(Joint values along a path of poses, by a choice among the solutions of all waypoints.
-
-Of all ways through the solutions that are found, the one with the least sum of joint moves.
-
-Args:
-    poses: T_base_tip of each waypoint, (N, 4, 4) [m], or others as in solve.
-    start: where the arm is one time step before the first waypoint, (dof,) [rad or m]; None: the
-        path may begin anywhere, and of its copies by whole turns the one that begins nearest to
-        the middle of the limits is taken.
-    dt: time from one waypoint to the next [s], in which no joint moves farther than its velocity
-        limit allows; 0: speeds are not limited.
-    weights, norm: how a move is measured, as in solve.
-    filter: called with candidates (n, dof) of one waypoint; returns n truth values.
-    candidates: candidates kept per waypoint at most.
-
-Raises:
-    InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, a number out of range.)");
+  def_method<1>(
+      cls,
+      {"solve_path",
+       "Joint values along a path of poses, by a choice among the solutions of all waypoints.\n\n"
+       "Of all ways through the solutions that are found, the one with the least sum of joint "
+       "moves.",
+       "poses", "T_base_tip of each waypoint, (N, 4, 4) [m], or others as in solve.", "PathResult",
+       R"(Raises:
+    InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, a number out of range.)"},
+      path_keywords(), {"start", "dt", "weights", "norm", "filter", "candidates"}, &solve_path);
 
   py::class_<Tracker> tracker(
       m, "Tracker",

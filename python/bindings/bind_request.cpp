@@ -6,10 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "angle_warning.hpp"
 #include "array_checks.hpp"
 #include "bindings.hpp"
-#include "filter.hpp"
 #include "gil.hpp"
 #include "html.hpp"
 #include "iksel/diagnosis.hpp"
@@ -18,10 +16,9 @@
 #include "pose_arguments.hpp"
 #include "property.hpp"
 #include "py_batch.hpp"
-#include "py_request.hpp"
 #include "py_result.hpp"
 #include "python_types.hpp"
-#include "task_fields.hpp"
+#include "request_keywords.hpp"
 
 namespace iksel::python {
 
@@ -56,55 +53,29 @@ struct PySolutions {
   }
 };
 
-PyResult solve_request(const Solver& self, const PoseLike& pose,
-                       const std::optional<ArrayLike>& near,
-                       const std::optional<ArrayLike>& weights, const Loose<MoveNorm>& norm,
-                       const std::optional<ArrayLike>& seeds, const Loose<bool>& database_seeds,
-                       const std::optional<FilterCallable>& filter,
-                       const std::optional<Loose<double>>& deadline,
-                       const std::optional<Loose<Task>>& task,
-                       const std::optional<ObjectiveLike>& objective) {
-  const SolveRequest request = make_request(self.robot().dof(), near, weights, norm, seeds,
-                                            database_seeds, filter, deadline, task, objective);
-  const Pose target = as_pose(pose, "pose", &task_of(self, request));
-  if (request.near) warn_of_degrees(self.robot(), *request.near, "near");
-  const GilRelease release;
-  return {self.solve(target, request), {}};
+PyResult solve_plainly(const Solver& self, py::handle pose) {
+  return {self.solve(as_pose(pose, "pose", &self.options().task)), {}};
 }
 
-PySolutions solve_all(const Solver& self, const PoseLike& pose, const Loose<int>& max,
-                      const Loose<double>& min_distance, const Loose<bool>& whole_turns,
-                      const Loose<SolutionOrder>& order, const std::optional<ArrayLike>& near,
-                      const std::optional<ArrayLike>& weights, const Loose<MoveNorm>& norm,
-                      const std::optional<ArrayLike>& seeds, const Loose<bool>& database_seeds,
-                      const std::optional<FilterCallable>& filter,
-                      const std::optional<Loose<double>>& deadline,
-                      const std::optional<Loose<Task>>& task) {
+py::object solve(const Solver& self, py::handle pose, const Given& given) {
+  const SolveRequest request = read_request(self, given);
+  const Pose target = as_pose(pose, "pose", &task_of(self, request));
+  return py::cast(PyResult{without_gil([&] { return self.solve(target, request); }), {}});
+}
+
+py::object solve_all(const Solver& self, py::handle pose, const Given& given) {
   const int dof = self.robot().dof();
-  AllOptions options;
-  options.max = from_python<int>(max, "max");
-  options.min_distance = from_python<double>(min_distance, "min_distance");
-  options.whole_turns = from_python<bool>(whole_turns, "whole_turns");
-  options.order = from_python<SolutionOrder>(order, "order");
-  const SolveRequest request =
-      make_request(dof, near, weights, norm, seeds, database_seeds, filter, deadline, task, {});
+  const auto options = given.read<SolveAllOptions>(dof);
+  const SolveRequest request = read_request(self, given);
   const Pose target = as_pose(pose, "pose", &task_of(self, request));
-  if (request.near) warn_of_degrees(self.robot(), *request.near, "near");
-  const GilRelease release;
-  return {self.solve_all(target, options, request), dof};
+  return py::cast(
+      PySolutions{without_gil([&] { return self.solve_all(target, options, request); }), dof});
 }
 
-Diagnosis diagnose(const Solver& self, const PoseLike& pose,
-                   const std::optional<FilterCallable>& filter,
-                   const std::optional<Loose<double>>& deadline,
-                   const std::optional<Loose<Task>>& task) {
-  SolveRequest request;
-  if (filter) request.filter = make_filter(*filter, self.robot().dof());
-  if (deadline) request.deadline = from_python<double>(*deadline, "deadline");
-  if (task) request.task = from_python<Task>(*task, "task");
+py::object diagnose(const Solver& self, py::handle pose, const Given& given) {
+  const SolveRequest request = read_request(self, given);
   const Pose target = as_pose(pose, "pose", &task_of(self, request));
-  const GilRelease release;
-  return self.diagnose(target, request);
+  return py::cast(without_gil([&] { return self.diagnose(target, request); }));
 }
 
 py::object solutions_state(const PySolutions& self) {
@@ -216,81 +187,58 @@ void bind_solutions(py::module_& m) {
 
 void bind_requests(py::module_& m, py::class_<Solver>& cls) {
   bind_solutions(m);
-  const SolveRequest wishes;
-  const AllOptions all;
-  const char* norm = enum_name(wishes.norm);
-  // A second overload, so that plain solving pays nothing for the wishes.
-  cls.def("solve", &solve_request, py::arg("pose"), py::kw_only(), py::arg("near") = py::none(),
-          py::arg("weights") = py::none(), py::arg("norm") = norm, py::arg("seeds") = py::none(),
-          py::arg("database_seeds") = wishes.database_seeds, py::arg("filter") = py::none(),
-          py::arg("deadline") = py::none(), py::arg("task") = py::none(),
-          py::arg("objective") = py::none(),
-          R"(As solve, with wishes.
-
-Args:
-    pose: T_base_tip [m], in one of the forms of solve above.
-    near: configuration to stay near, (dof,) [rad or m]; may lie outside the limits. The answer
-        is the one with the smallest joint move of all that are found, whole turns considered; a
-        redundant arm's has slid along its self-motion to where the move is smallest. Angles
-        here, in `seeds` and in a posture that are too large for a double to tell poses apart to
-        a tenth of the tolerances are refused: 1.5e8 rad for an arm of six joints and 1 m at the
-        default tolerances, never less than 100 rad.
-    weights: factor on each joint's part of the move, (dof,), >= 0; None: all 1.
-    norm: how the move is measured.
-    seeds: joint values to iterate from, (N, dof) [rad or m]; ranked as the database's seeds, and
-        tried before them: up to max_attempts, and as many of the database's on top.
-    database_seeds: whether the database's seeds follow the given ones.
-    filter: called with candidates (n, dof), each at the pose and inside the limits; returns n
-        truth values. The search goes on within its bounds while all are refused.
-    deadline: wall-clock time after which the search ends [s]; checked between its stages.
-    task: what of the pose has to be reached; None: what the solver's options say.
-    objective: what the answer is to be good at besides: an Objective, 'limits',
-        'manipulability', or a function of joint values (dof,) that returns a cost. Comes before
-        `near`. Of the answers found, the cheapest; a redundant arm's has slid to a local minimum.
-
-Returns:
+  {
+    // The same method where no keyword is given, so that plain solving pays nothing for them. Of
+    // the two, only the other has a docstring.
+    py::options options;
+    options.disable_function_signatures();
+    cls.def("solve", &solve_plainly, py::arg("pose"));
+  }
+  def_method<0>(
+      cls,
+      {"solve", "Joint values that put the tip (the TCP, if there is one) at a pose.", "pose",
+       "T_base_tip [m]: (4, 4) or (3, 4); a pair (position, rotation) with a (3, 3) "
+       "matrix or a scipy Rotation; an object with as_matrix(), .homogeneous or .A "
+       "(scipy, Pinocchio, spatialmath); (3,) if the task leaves the rotation free. One "
+       "that is rounded stands for the nearest rigid one (see check_pose), by which the "
+       "errors are measured.",
+       "Result",
+       R"(Returns:
     A Result. A pose that cannot be solved is no error but a status.
 
 Raises:
     InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, a number that is not
-        finite or out of range.)");
-  cls.def("solve_all", &solve_all, py::arg("pose"), py::arg("max") = all.max, py::kw_only(),
-          py::arg("min_distance") = all.min_distance, py::arg("whole_turns") = all.whole_turns,
-          py::arg("order") = enum_name(all.order), py::arg("near") = py::none(),
-          py::arg("weights") = py::none(), py::arg("norm") = norm, py::arg("seeds") = py::none(),
-          py::arg("database_seeds") = wishes.database_seeds, py::arg("filter") = py::none(),
-          py::arg("deadline") = py::none(), py::arg("task") = py::none(),
-          R"(Every distinct solution that is found: all branches, or a spread for a redundant arm.
-
-Args:
-    pose: T_base_tip [m], as in solve.
-    max: solutions given at most.
-    min_distance: solutions that differ by less in every joint are one [rad or m].
-    whole_turns: whether copies by whole turns inside the limits count as solutions of their own;
-        otherwise each comes once, at the turn nearest to `near` or to the middle of the limits.
-    order: what comes first.
-    near, weights, norm, seeds, database_seeds, filter, deadline, task: as in solve.
-
-Returns:
+        finite or out of range.)"},
+      request_keywords(),
+      {"near", "weights", "norm", "seeds", "database_seeds", "filter", "deadline", "task",
+       "objective"},
+      &solve);
+  def_method<1>(cls,
+                {"solve_all",
+                 "Every distinct solution that is found: all branches, or a spread for a redundant "
+                 "arm.",
+                 "pose", "T_base_tip [m], as in solve.", "Solutions",
+                 R"(Returns:
     Solutions; empty, with a status that says why, if there is none.
 
 Raises:
-    InvalidArgumentError: as solve.)");
-  cls.def("diagnose", &diagnose, py::arg("pose"), py::kw_only(), py::arg("filter") = py::none(),
-          py::arg("deadline") = py::none(), py::arg("task") = py::none(),
-          R"(Why solve() with the same arguments gives no answer, and the best that can be done.
-
-Spends much more than solving does, milliseconds to a second.
-
-Args:
-    pose: T_base_tip [m], as in solve.
-    filter, deadline, task: as in solve.
-
-Returns:
+    InvalidArgumentError: as solve.)"},
+                solve_all_keywords(),
+                {"max", "min_distance", "whole_turns", "order", "near", "weights", "norm", "seeds",
+                 "database_seeds", "filter", "deadline", "task"},
+                &solve_all);
+  def_method<0>(
+      cls,
+      {"diagnose",
+       "Why solve() with the same arguments gives no answer, and the best that can be done.\n\n"
+       "Spends much more than solving does, milliseconds to a second.",
+       "pose", "T_base_tip [m], as in solve.", "Diagnosis",
+       R"(Returns:
     A Diagnosis; its cause is `none` if there is an answer.
 
 Raises:
-    InvalidArgumentError: as solve.)");
+    InvalidArgumentError: as solve.)"},
+      request_keywords(), {"filter", "deadline", "task"}, &diagnose);
 }
 
 }  // namespace iksel::python

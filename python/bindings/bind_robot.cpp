@@ -100,6 +100,17 @@ py::array_t<double> jacobian(const Robot& self, const ArrayLike& q,
   });
 }
 
+py::array_t<double> link_poses(const Robot& self, const ArrayLike& q,
+                               const std::optional<JointValues>& other_joints) {
+  std::map<std::string, double> others;
+  if (other_joints) others = as_joint_values(*other_joints, "other_joints");
+  const auto links = static_cast<py::ssize_t>(self.link_names().size());
+  return map_joint_blocks(q, self.dof(), "q", {links, 4, 4},
+                          [&](const double* rows, std::size_t count, double* out) {
+                            self.link_poses(rows, count, others, out);
+                          });
+}
+
 std::string robot_repr(const Robot& self) {
   return "Robot(" + py::cast<std::string>(py::repr(py::str(self.name()))) +
          ", dof=" + std::to_string(self.dof()) + ", base_link='" + self.base_link() +
@@ -265,6 +276,26 @@ Returns:
 
 Raises:
     InvalidArgumentError: wrong shape or dtype, or a number that is not finite.)");
+  cls.def("link_poses", &link_poses, py::arg("q"), py::kw_only(),
+          py::arg("other_joints") = py::none(),
+          R"(Poses of all links of the URDF in the base link's frame, in the order of link_names.
+
+Side branches move with the arm's joints, too, and with what mimics them at any depth. The TCP plays
+no part.
+
+Args:
+    q: joint values [rad or m], (dof,) or (N, dof).
+    other_joints: values of joints that q does not move [rad or m], by name. Those not given are
+        where they are locked, or at 0; floating and planar joints are at their origin.
+
+Returns:
+    (n_links, 4, 4), or (N, n_links, 4, 4) with the GIL released.
+
+Raises:
+    InvalidArgumentError: wrong shape or dtype, a number that is not finite, or a joint in
+        other_joints that q moves.
+    UnknownNameError: a name in other_joints, or in a mimic tag, that is no joint's.
+    UrdfError: a joint off the chain is no good: it mimics itself, or has no axis.)");
   cls.def("jacobian", &jacobian, py::arg("q"), py::arg("kinematics") = kernel,
           R"(Geometric Jacobian: rows [linear; angular] in base axes at the tip.
 

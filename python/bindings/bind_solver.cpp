@@ -12,7 +12,6 @@
 #include "angle_warning.hpp"
 #include "array_checks.hpp"
 #include "bindings.hpp"
-#include "filter.hpp"
 #include "gil.hpp"
 #include "iksel/solver.hpp"
 #include "option_fields.hpp"
@@ -21,8 +20,7 @@
 #include "progress.hpp"
 #include "property.hpp"
 #include "py_batch.hpp"
-#include "py_request.hpp"
-#include "py_result.hpp"
+#include "request_keywords.hpp"
 
 namespace iksel::python {
 
@@ -62,49 +60,43 @@ Solver make_solver(const Loose<Robot>& given_robot,
                 database ? *database : Database::build(robot, options.database, interruptible));
 }
 
-PyResult solve(const Solver& self, const PoseLike& pose, const std::optional<ArrayLike>& seed) {
-  const Pose target = as_pose(pose, "pose", &self.options().task);
-  if (!seed) return {self.solve(target), {}};
-  const JointVector start = as_joints(*seed, self.robot().dof(), "seed");
-  warn_of_degrees(self.robot(), start, "seed");
-  return {self.solve(target, start), {}};
-}
-
 /// (N, dof) values, or (dof,) for all targets, which go into the request.
-std::optional<DoubleArray> as_near(const std::optional<ArrayLike>& value, py::ssize_t n, int dof,
+std::optional<DoubleArray> as_near(py::handle value, py::ssize_t n, const Robot& robot,
                                    SolveRequest& request) {
-  if (!value) return std::nullopt;
-  const DoubleArray array = as_doubles(*value, "near");
+  if (value.is_none()) return std::nullopt;
+  const DoubleArray array = as_doubles(value, "near");
   if (array.ndim() == 1) {
-    request.near = as_joints(array, dof, "near");
+    request.near = as_joints(array, robot.dof(), "near");
+    warn_of_degrees(robot, {*request.near}, "near");
     return std::nullopt;
   }
-  if (array.ndim() != 2 || array.shape(0) != n || array.shape(1) != dof) {
-    const std::string d = std::to_string(dof);
+  if (array.ndim() != 2 || array.shape(0) != n || array.shape(1) != robot.dof()) {
+    const std::string d = std::to_string(robot.dof());
     throw_wrong_shape("near", "a (" + d + ",) or (" + std::to_string(n) + ", " + d + ") array",
                       array);
   }
   return array;
 }
 
-PyBatchResult solve_batch(const Solver& self, const PoseLike& poses, const Loose<int>& threads,
-                          const std::optional<ArrayLike>& near,
-                          const std::optional<ArrayLike>& weights, const Loose<MoveNorm>& norm,
-                          const std::optional<ArrayLike>& seeds, const Loose<bool>& database_seeds,
-                          const std::optional<FilterCallable>& filter,
-                          const std::optional<Loose<double>>& deadline,
-                          const std::optional<Loose<Task>>& task,
-                          const std::optional<ObjectiveLike>& objective,
-                          const Loose<OnInvalidPose>& on_invalid_pose) {
-  SolveRequest request = make_request(self.robot().dof(), std::nullopt, weights, norm, seeds,
-                                      database_seeds, filter, deadline, task, objective);
-  request.on_invalid_pose = from_python<OnInvalidPose>(on_invalid_pose, "on_invalid_pose");
+/// What solve_batch takes besides a request.
+struct BatchOptions {
+  int threads = 0;
+};
+
+std::vector<Keyword> batch_keywords() {
+  std::vector<Keyword> all = {keyword("threads", &BatchOptions::threads, "0: one per core.")};
+  for (const Keyword& each : request_keywords()) all.push_back(each);
+  return all;
+}
+
+py::object solve_batch(const Solver& self, py::handle poses, const Given& given) {
+  const int joints = self.robot().dof();
+  SolveRequest request = read_request(self, given, /*except=*/"near");
   const DoubleArray targets = as_poses(poses, "poses", &task_of(self, request));
-  const auto thread_count = from_python<int>(threads, "threads");
+  const auto options = given.read<BatchOptions>(joints);
   const py::ssize_t n = targets.shape(0);
-  const py::ssize_t dof = self.robot().dof();
-  const auto nears = as_near(near, n, self.robot().dof(), request);
-  if (request.near) warn_of_degrees(self.robot(), *request.near, "near");
+  const py::ssize_t dof = joints;
+  const auto nears = as_near(given["near"], n, self.robot(), request);
   PyBatchResult out{py::array_t<double>({n, dof}), py::array_t<bool>(n),
                     py::array_t<std::uint8_t>(n),  py::array_t<double>(n),
                     py::array_t<double>(n),        py::array_t<std::int32_t>(n),
@@ -123,12 +115,12 @@ PyBatchResult solve_batch(const Solver& self, const PoseLike& poses, const Loose
   {
     const GilRelease release;
     self.solve_batch(in, static_cast<std::size_t>(n), request, nears ? nears->data() : nullptr,
-                     view, thread_count, interruptible);
+                     view, options.threads, interruptible);
     std::transform(view.status, view.status + n, success, [](std::uint8_t status) {
       return static_cast<Status>(status) == Status::solved;
     });
   }
-  return out;
+  return py::cast(std::move(out));
 }
 
 py::object solver_state(const Solver& self) {
@@ -196,52 +188,26 @@ Raises:
       [](const Solver& self) { return task_hint(self.robot(), self.options().task); },
       "For an arm with fewer joints than its task has axes, which hardly any target suits: tasks "
       "for which its joints are enough, in a sentence; else empty.");
-  cls.def("solve", &solve, py::arg("pose"), py::arg("seed") = py::none(),
-          R"(Joint values that put the tip (the TCP, if there is one) at a pose.
-
-Args:
-    pose: T_base_tip [m]: (4, 4) or (3, 4); a pair (position, rotation) with a (3, 3) matrix or a
-        scipy Rotation; an object with as_matrix(), .homogeneous or .A (scipy, Pinocchio,
-        spatialmath); (3,) if the task leaves the rotation free. One that is rounded stands for the
-        nearest rigid one (see check_pose), by which the errors are measured.
-    seed: joint values to iterate from first, (dof,) [rad or m]; may lie outside the limits.
-
-Returns:
-    A Result. A pose that cannot be solved is no error but a status.
-
-Raises:
-    InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, or a number that is
-        not finite.)");
   bind_requests(m, cls);
   bind_path(m, cls);
-  const SolveRequest wishes;
-  cls.def("solve_batch", &solve_batch, py::arg("poses"), py::arg("threads") = 0, py::kw_only(),
-          py::arg("near") = py::none(), py::arg("weights") = py::none(),
-          py::arg("norm") = enum_name(wishes.norm), py::arg("seeds") = py::none(),
-          py::arg("database_seeds") = wishes.database_seeds, py::arg("filter") = py::none(),
-          py::arg("deadline") = py::none(), py::arg("task") = py::none(),
-          py::arg("objective") = py::none(),
-          py::arg("on_invalid_pose") = enum_name(wishes.on_invalid_pose),
-          R"(Solves many targets with the GIL released; row i belongs to target i.
+  def_method<1>(
+      cls,
+      {"solve_batch",
+       R"(Solves many targets with the GIL released; row i belongs to target i.
 
 A row has the same bits whatever the number of threads and whatever else is in the batch. Its
 status is that of solve(), and so are its bits, but for seeds in SIMD lanes (the default preset):
 there a target has a lane to itself, and the answer may be another of its solutions, within the
-same tolerances.
-
-Args:
-    poses: T_base_tip, (N, 4, 4) [m], or others as in solve. Doubles in C order are read in place.
-    threads: 0: one per core.
-    near: configuration to stay near, (dof,), or one for each target, (N, dof) [rad or m].
-    filter: called with candidates (n, dof), first the answers of up to 256 targets at once;
-        returns n truth values. Where it refuses, the search for that target goes on.
-    weights, norm, seeds, database_seeds, deadline, task, objective: as in solve, for each target
-        by itself.
-    on_invalid_pose: what a row does that is no pose (see check_pose): "status", Status.invalid_pose
-        for it and NaN for its q; "raise", an error that names the first, and none is solved.
-
-Raises:
-    InvalidArgumentError: wrong shape or dtype, a bad wish, or by wish a bad pose.)");
+same tolerances. What is asked for holds for each target by itself.)",
+       "poses",
+       "T_base_tip, (N, 4, 4) [m], or others as in solve. Doubles in C order are read in place.",
+       "BatchResult",
+       R"(Raises:
+    InvalidArgumentError: wrong shape or dtype, a bad wish, or by wish a bad pose.)"},
+      batch_keywords(),
+      {"threads", "near", "weights", "norm", "seeds", "database_seeds", "filter", "deadline",
+       "task", "objective", "on_invalid_pose"},
+      &solve_batch);
   cls.def("__repr__", [](const Solver& self) {
     return "Solver(" + py::cast<std::string>(py::repr(py::cast(self.robot()))) + ", " +
            to_repr(self.options()) + ")";

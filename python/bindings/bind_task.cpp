@@ -8,7 +8,7 @@ namespace iksel::python {
 void bind_task(py::module_& m) {
   bind_enum<TaskFrame>(m);
   bind_enum<Axis>(m);
-  auto cls = bind_options_class<Task>(m, /*writable=*/false);
+  auto cls = bind_fields<Task>(m, FieldClass::immutable);
   cls.def_static("pose", &Task::pose, "The whole pose, exactly.");
   cls.def_static("position_only", &Task::position_only, "The position; any rotation.");
   const Loose<Axis> z = py::str(enum_name(Axis::z));

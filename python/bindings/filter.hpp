@@ -4,7 +4,6 @@
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
-#include <pybind11/typing.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -15,16 +14,11 @@
 
 namespace iksel::python {
 
-/// Checked by make_filter.
-class FilterCallable : public py::object {
-  PYBIND11_OBJECT_DEFAULT(FilterCallable, object, is_any_object)
-};
-
 /// A filter that calls `callable` with an (n, dof) array and expects n truth values; an exception
 /// passes through the solve to the caller. The callable must outlive the filter.
-inline Filter make_filter(const FilterCallable& callable, int dof) {
+inline Filter make_filter(py::handle callable, int dof) {
   check_callable(callable, "filter");
-  return [&callable, dof](const double* q, std::size_t count, bool* keep) {
+  return [callable, dof](const double* q, std::size_t count, bool* keep) {
     const GilAcquire acquire;
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     const auto n = static_cast<py::ssize_t>(count);
@@ -46,12 +40,3 @@ inline Filter make_filter(const FilterCallable& callable, int dof) {
 }
 
 }  // namespace iksel::python
-
-// NOLINTBEGIN(readability-identifier-naming): pybind11 looks for `name`.
-namespace pybind11::detail {
-template <>
-struct handle_type_name<iksel::python::FilterCallable> {
-  static constexpr auto name = handle_type_name<typing::Callable<object(array_t<double>)>>::name;
-};
-}  // namespace pybind11::detail
-// NOLINTEND(readability-identifier-naming)

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "signature.hpp"
@@ -51,9 +52,9 @@ struct Form {
   }
 };
 
-/// What other libraries call the configuration that a search begins from.
-const Names kNamesOfSeeds = {"q_init", "q0",     "x0",      "q_start",    "initial_guess", "guess",
-                             "init",   "q_seed", "ik_seed", "seed_state", "initial_q"};
+/// What other libraries, and this one once, call the configuration that a search begins from.
+const Names kNamesOfSeeds = {"seed",  "q_init", "q0",     "x0",      "q_start",    "initial_guess",
+                             "guess", "init",   "q_seed", "ik_seed", "seed_state", "initial_q"};
 
 struct MisfitCall {
   std::string function;
@@ -85,17 +86,19 @@ struct MisfitCall {
       if (takes_all) possible.push_back(form);
     }
     if (possible.empty()) return no_form_takes_all();
-    return misfit(*std::max_element(
-        possible.begin(), possible.end(),
-        [](const Form& a, const Form& b) { return a.positional < b.positional; }));
+    return misfit(
+        *std::max_element(possible.begin(), possible.end(), [](const Form& a, const Form& b) {
+          return std::make_pair(a.positional, a.names.size()) <
+                 std::make_pair(b.positional, b.names.size());
+        }));
   }
 
  private:
   [[nodiscard]] std::string unknown_keyword(const std::string& keyword, const Names& known) const {
     std::string hint = did_you_mean(keyword, known);
-    if (contains(kNamesOfSeeds, keyword) && contains(known, "seed") && contains(known, "near")) {
+    if (contains(kNamesOfSeeds, keyword) && contains(known, "seeds")) {
       hint =
-          "; say seed= for where the search begins, or near= for what the answer is to be "
+          "; write seeds=[q] for where the search begins, or near=q for what the answer is to be "
           "close to";
     }
     const std::string possible = known.empty() ? "none" : join(known);
@@ -111,8 +114,13 @@ struct MisfitCall {
 
   [[nodiscard]] std::string misfit(const Form& form) const {
     if (positional > form.positional) {
+      const bool one = form.positional == 1;
+      // solve(pose, q) had a seed there once.
+      const bool has_seeds = one && contains(form.names, "seeds");
       return function + "() takes at most " + std::to_string(form.positional) +
-             " arguments by position, got " + std::to_string(positional) +
+             (one ? " argument" : " arguments") + " by position, got " +
+             std::to_string(positional) +
+             (has_seeds ? "; write seeds=[q] for where the search begins" : "") +
              "; possible: " + form.text();
     }
     const Names given(form.names.begin(), form.names.begin() + static_cast<std::ptrdiff_t>(std::min(
@@ -135,6 +143,16 @@ std::string type_names(PyObject* const* args, std::size_t count) {
   return join(names);
 }
 
+/// As the docstring says it where the types of C++ are not known (method.hpp).
+std::string signature_of(const py::detail::function_record& record) {
+  const std::string name = record.name;
+  for (const auto* r = &record; r != nullptr; r = r->next) {
+    const std::string doc = r->doc == nullptr ? "" : r->doc;
+    if (doc.rfind(name + "(", 0) == 0) return doc.substr(0, doc.find('\n'));
+  }
+  return name + record.signature;
+}
+
 std::string explain(const py::detail::function_record& record, PyObject* const* args,
                     std::size_t count, const Names& keywords) {
   std::string function = record.name;
@@ -148,7 +166,7 @@ std::string explain(const py::detail::function_record& record, PyObject* const* 
   const std::string sentence = call.sentence();
   if (!sentence.empty()) return sentence;
   return function + "() does not take (" + type_names(args, count + keywords.size()) + "); it is " +
-         record.name + record.signature;
+         signature_of(record);
 }
 
 }  // namespace

@@ -46,6 +46,13 @@ class GilRelease {
   PyThreadState* state_;
 };
 
+/// What function() gives without the lock.
+template <typename Function>
+auto without_gil(const Function& function) {
+  const GilRelease release;
+  return function();
+}
+
 /// Has the lock, on any thread.
 class GilAcquire {
  public:

@@ -14,8 +14,8 @@ struct FieldTable<DatabaseOptions> {
   static constexpr const char* kName = "DatabaseOptions";
   static constexpr const char* kDoc =
       "How a database is built. Enums may be given by name, as in sampling='grid'.";
-  static constexpr auto fields() {
-    return std::make_tuple(
+  static std::vector<Field> fields() {
+    return {
         field("sampling", &O::sampling, "How the samples are spread over the limits."),
         field("scale", &O::scale,
               "Counts of a grid; for the other samplings only if `samples` is 0."),
@@ -33,7 +33,7 @@ struct FieldTable<DatabaseOptions> {
         field("cvt_updates", &O::cvt_updates, "Updates of MacQueen's method (cvt only)."),
         field("seed", &O::seed, "Seed of the random, cvt and low_discrepancy samplings."),
         field("threads", &O::threads,
-              "Threads that build; 0: one per core. The result has the same bits for any number."));
+              "Threads that build; 0: one per core. The result has the same bits for any number.")};
   }
 };
 
@@ -44,8 +44,8 @@ struct FieldTable<SolverOptions> {
   static constexpr const char* kDoc =
       "All settings of a Solver. SolverOptions() is the recommended preset, SolverOptions.paper() "
       "the paper. Enums may be given by name, as in iteration='dls'.";
-  static constexpr auto fields() {
-    return std::make_tuple(
+  static std::vector<Field> fields() {
+    return {
         field("position_tolerance", &O::position_tolerance,
               "An answer's position is at most this far from the target's [m]."),
         field("rotation_tolerance", &O::rotation_tolerance,
@@ -85,7 +85,7 @@ struct FieldTable<SolverOptions> {
         field("whole_turns", &O::whole_turns,
               "Bring joints with a range of more than 2 pi inside their limits by whole turns."),
         field("kinematics", &O::kinematics, "What computes FK and Jacobians."),
-        field("seed", &O::seed, "Seed of random restarts (pinv_rr)."));
+        field("seed", &O::seed, "Seed of random restarts (pinv_rr).")};
   }
 };
 

@@ -17,8 +17,8 @@ struct FieldTable<Task> {
       "free. The rotation's deviation is a rotation vector where its three widths are equal, else "
       "swing and twist about the axis whose width is unlike the other two's. An answer lies at "
       "most the solver's tolerances outside of the box. Immutable.";
-  static constexpr auto fields() {
-    return std::make_tuple(
+  static std::vector<Field> fields() {
+    return {
         field("frame", &T::frame, "Whose axes the bounds lie along."),
         field("position_lower", &T::position_lower,
               "Lower bounds of the position's deviation along x, y, z [m]; -inf: none."),
@@ -27,7 +27,7 @@ struct FieldTable<Task> {
         field("rotation_lower", &T::rotation_lower,
               "Lower bounds of the rotation's deviation about x, y, z [rad], from -pi, or -inf."),
         field("rotation_upper", &T::rotation_upper,
-              "Upper bounds of the rotation's deviation about x, y, z [rad], up to pi, or inf."));
+              "Upper bounds of the rotation's deviation about x, y, z [rad], up to pi, or inf.")};
   }
 };
 

@@ -14,9 +14,9 @@ from iksel._collision_shapes import place
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
+    from iksel._arm_links import ArmLinks
     from iksel._arrays import FloatArray
     from iksel._collision_shapes import Shapes
-    from iksel._link_tree import LinkTree
 
 Pair = tuple[str, str]
 
@@ -72,9 +72,9 @@ def srdf_text(name: str, ignored: dict[Pair, str]) -> str:
 class PairSampler:
     """Looks at pairs of links in sampled configurations."""
 
-    def __init__(self, shapes: Shapes, tree: LinkTree, q: FloatArray) -> None:
+    def __init__(self, shapes: Shapes, links: ArmLinks, q: FloatArray) -> None:
         self._shapes = shapes
-        self._chunks = list(place(shapes, tree, q))
+        self._chunks = list(place(shapes, links, q))
 
     def look(self, pairs: Iterable[Pair], margin: float, *, never: bool) -> Sampled:
         """Find the pairs that always touch and, if asked for, those that never do."""

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from iksel_cpp import InvalidArgumentError, UnknownNameError, UrdfError
 
-from iksel._link_tree import read_numbers, read_origin
+from iksel._urdf_xml import read_numbers, read_origin
 
 if TYPE_CHECKING:
     import xml.etree.ElementTree as ET
     from collections.abc import Iterator, Mapping, Sequence
 
+    from iksel._arm_links import ArmLinks
     from iksel._arrays import BoolArray, FloatArray, IntArray
-    from iksel._link_tree import LinkTree
 
 _CHUNK = 256  # configurations placed at a time, which bounds the memory
 
@@ -35,19 +35,19 @@ class Placed:
 
     def __init__(self, shapes: Shapes, poses: FloatArray) -> None:
         self._coal = shapes.coal
-        self._bodies = poses
+        self._links = poses
         # World boxes around the shapes, (n, shapes, 3) [m].
-        frames = poses[:, shapes.body]
+        frames = poses[:, shapes.link]
         centres = (frames[..., :3, :3] @ shapes.centre[..., None])[..., 0]
         self.centre = centres + frames[..., :3, 3]
         self.half = np.abs(frames[..., :3, :3] @ shapes.half_axes).sum(-1)
-        self._body, self._origin = shapes.body, shapes.in_body
+        self._link, self._origin = shapes.link, shapes.in_link
         self._made: dict[tuple[int, int], Any] = {}
 
     def at(self, n: int, shape: int) -> Any:
         """Coal's transform of a shape at configuration n."""
         if (n, shape) not in self._made:
-            pose = self._bodies[n, self._body[shape]] @ self._origin[shape]
+            pose = self._links[n, self._link[shape]] @ self._origin[shape]
             self._made[n, shape] = self._coal.Transform3s(pose[:3, :3], pose[:3, 3])
         return self._made[n, shape]
 
@@ -61,30 +61,28 @@ class Placed:
         return close
 
 
-def place(shapes: Shapes, tree: LinkTree, q: FloatArray) -> Iterator[Placed]:
+def place(shapes: Shapes, links: ArmLinks, q: FloatArray) -> Iterator[Placed]:
     """Place the shapes at configurations (n, dof), some of them at a time."""
     for start in range(0, len(q), _CHUNK):
-        yield Placed(shapes, tree.poses(q[start : start + _CHUNK]))
+        yield Placed(shapes, links.poses(q[start : start + _CHUNK]))
 
 
 class Shapes:
-    """All shapes of a URDF, in the bodies of a LinkTree."""
+    """All shapes of a URDF, on the links that an arm moves."""
 
-    def __init__(self, coal: Any, shapes: Sequence[Shape], tree: LinkTree) -> None:
+    def __init__(self, coal: Any, shapes: Sequence[Shape], links: ArmLinks) -> None:
         self.coal = coal
         self.links = list(dict.fromkeys(shape.link for shape in shapes))
         self.of_link = {
             link: [i for i, shape in enumerate(shapes) if shape.link == link]
             for link in self.links
         }
-        self.body = np.array([tree.body[shape.link] for shape in shapes])
-        self.in_body = np.array(
-            [tree.in_body[shape.link] @ shape.origin for shape in shapes]
-        )
+        self.link = np.array([links.index[shape.link] for shape in shapes])
+        self.in_link = np.array([shape.origin for shape in shapes])
         boxes = np.array([_local_box(shape.geometry) for shape in shapes])
-        rotation = self.in_body[:, :3, :3]
+        rotation = self.in_link[:, :3, :3]
         centre = (rotation @ boxes[:, 0, :, None])[..., 0]
-        self.centre = centre + self.in_body[:, :3, 3]
+        self.centre = centre + self.in_link[:, :3, 3]
         self.half_axes = rotation * boxes[:, 1, None, :]
         self._shapes = shapes
         self._tests: dict[tuple[int, int], tuple[Any, Any]] = {}

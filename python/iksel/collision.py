@@ -17,10 +17,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from iksel_cpp import InvalidArgumentError, UnknownNameError
 
+from iksel._arm_links import ArmLinks
 from iksel._arrays import as_floats
 from iksel._collision_pairs import PairSampler, srdf_pairs, srdf_text
 from iksel._collision_shapes import Shapes, import_coal, place, read_shapes
-from iksel._link_tree import LinkTree, read_xml
+from iksel._urdf_xml import read_xml
 
 if TYPE_CHECKING:
     import os
@@ -103,8 +104,8 @@ class SelfCollision:
         shapes = read_shapes(coal, root, folder, packages or {})
         self._dof = robot.dof
         self._name = root.get("name", "")
-        self._tree = LinkTree(root, robot, other_joints or {})
-        self._shapes = Shapes(coal, shapes, self._tree)
+        self._links = ArmLinks(root, robot, other_joints or {})
+        self._shapes = Shapes(coal, shapes, self._links)
         self._kept = self._read_pairs("keep", keep)
         self._ignored: dict[Pair, str] = {}
         self._ignore_listed(srdf, self._read_pairs("ignore", ignore))
@@ -161,7 +162,7 @@ class SelfCollision:
 
     def _first_colliding(self, q: FloatArray) -> list[Pair | None]:
         found: list[Pair | None] = []
-        for placed in place(self._shapes, self._tree, q):
+        for placed in place(self._shapes, self._links, q):
             near = placed.near(self._part_shapes, self._part_margins)
             found += [
                 self._first_touching(placed, n, row) for n, row in enumerate(near)
@@ -179,10 +180,10 @@ class SelfCollision:
         found = set()
         for pair in pairs:
             for link in pair:
-                if link not in self._tree.links:
+                if link not in self._links.links:
                     raise UnknownNameError(
                         f"{argument}: the URDF has no link {link!r}; it has: "
-                        f"{', '.join(self._tree.links)}"
+                        f"{', '.join(self._links.links)}"
                     )
             found.add(frozenset(pair))
         return found
@@ -197,9 +198,9 @@ class SelfCollision:
             )
         disabled = {}
         if srdf is not None:
-            disabled = srdf_pairs(read_xml("srdf", srdf)[0], self._tree.links)
-        adjacent = self._tree.neighbours(self._shapes.links)
-        body = self._tree.body
+            disabled = srdf_pairs(read_xml("srdf", srdf)[0], self._links.links)
+        adjacent = self._links.neighbours(self._shapes.links)
+        body = self._links.body
         for a, b in self._left():
             pair = frozenset((a, b))
             if pair in self._kept:
@@ -216,7 +217,7 @@ class SelfCollision:
     def _ignore_sampled(self, q: FloatArray, margin: float, *, never: bool) -> None:
         """Ignore pairs that always touch or never do; hold close ones to 0 m."""
         pairs = [pair for pair in self._left() if frozenset(pair) not in self._kept]
-        sampler = PairSampler(self._shapes, self._tree, q)
+        sampler = PairSampler(self._shapes, self._links, q)
         found = sampler.look(pairs, margin, never=never)
         self._ignored.update(dict.fromkeys(found.always, "always"))
         self._ignored.update(dict.fromkeys(found.never, "never"))

@@ -222,6 +222,27 @@ class Robot:
         Raises:
             InvalidArgumentError: wrong shape or dtype, or a number that is not finite.
         """
+    def link_poses(self, q: numpy.typing.ArrayLike, *, other_joints: collections.abc.Mapping[str, float] | None = None) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Poses of all links of the URDF in the base link's frame, in the order of link_names.
+
+        Side branches move with the arm's joints, too, and with what mimics them at any depth. The TCP plays
+        no part.
+
+        Args:
+            q: joint values [rad or m], (dof,) or (N, dof).
+            other_joints: values of joints that q does not move [rad or m], by name. Those not given are
+                where they are locked, or at 0; floating and planar joints are at their origin.
+
+        Returns:
+            (n_links, 4, 4), or (N, n_links, 4, 4) with the GIL released.
+
+        Raises:
+            InvalidArgumentError: wrong shape or dtype, a number that is not finite, or a joint in
+                other_joints that q moves.
+            UnknownNameError: a name in other_joints, or in a mimic tag, that is no joint's.
+            UrdfError: a joint off the chain is no good: it mimics itself, or has no axis.
+        """
     def random_configurations(self, n: int, seed: int | None = None) -> numpy.typing.NDArray[numpy.float64]:
         """
         n configurations uniform inside the limits (continuous joints in [-pi, pi)), (n, dof). The same seed gives the same numbers everywhere; None: other numbers in each call.
@@ -1440,7 +1461,12 @@ class Solver:
 
         Args:
             pose: T_base_tip [m], as in solve.
-            filter, deadline, task: as in solve.
+            filter: called with candidates (n, dof), each at the pose and inside the limits; returns n truth
+                values. The search goes on within its bounds while all are refused. In a batch it is asked
+                about the first answers of up to 256 targets at once, along a path about one waypoint's.
+            deadline: wall-clock time after which the search for a target ends [s]; checked between its
+                stages.
+            task: what of the pose has to be reached; None: what the solver's options say.
 
         Returns:
             A Diagnosis; its cause is `none` if there is an answer.
@@ -1448,8 +1474,7 @@ class Solver:
         Raises:
             InvalidArgumentError: as solve.
         """
-    @typing.overload
-    def solve(self, pose: numpy.typing.ArrayLike | typing.Any, seed: numpy.typing.ArrayLike | None = None) -> Result:
+    def solve(self, pose: numpy.typing.ArrayLike | typing.Any, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None) -> Result:
         """
         Joint values that put the tip (the TCP, if there is one) at a pose.
 
@@ -1458,40 +1483,27 @@ class Solver:
                 scipy Rotation; an object with as_matrix(), .homogeneous or .A (scipy, Pinocchio,
                 spatialmath); (3,) if the task leaves the rotation free. One that is rounded stands for the
                 nearest rigid one (see check_pose), by which the errors are measured.
-            seed: joint values to iterate from first, (dof,) [rad or m]; may lie outside the limits.
-
-        Returns:
-            A Result. A pose that cannot be solved is no error but a status.
-
-        Raises:
-            InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, or a number that is
-                not finite.
-        """
-    @typing.overload
-    def solve(self, pose: numpy.typing.ArrayLike | typing.Any, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None) -> Result:
-        """
-        As solve, with wishes.
-
-        Args:
-            pose: T_base_tip [m], in one of the forms of solve above.
-            near: configuration to stay near, (dof,) [rad or m]; may lie outside the limits. The answer
-                is the one with the smallest joint move of all that are found, whole turns considered; a
-                redundant arm's has slid along its self-motion to where the move is smallest. Angles
-                here, in `seeds` and in a posture that are too large for a double to tell poses apart to
-                a tenth of the tolerances are refused: 1.5e8 rad for an arm of six joints and 1 m at the
-                default tolerances, never less than 100 rad.
-            weights: factor on each joint's part of the move, (dof,), >= 0; None: all 1.
-            norm: how the move is measured.
-            seeds: joint values to iterate from, (N, dof) [rad or m]; ranked as the database's seeds, and
-                tried before them: up to max_attempts, and as many of the database's on top.
+            near: configuration to stay near, (dof,) [rad or m], for a batch also (N, dof), one for each
+                target; may lie outside the limits. The answer is the one with the smallest joint move of
+                all that are found, whole turns considered; a redundant arm's has slid along its self-motion
+                to where the move is smallest. Angles here, in `seeds` and in a posture that are too large
+                for a double to tell poses apart to a tenth of the tolerances are refused: 1.5e8 rad for an
+                arm of six joints and 1 m at the default tolerances, never less than 100 rad.
+            weights: factor on each joint's part of a move, (dof,), >= 0; None: all 1.
+            norm: how a move is measured.
+            seeds: joint values to iterate from, (dof,) or (N, dof) [rad or m]; may lie outside the limits.
+                They are ranked as the database's seeds, and tried before them: up to max_attempts, and as
+                many of the database's on top.
             database_seeds: whether the database's seeds follow the given ones.
-            filter: called with candidates (n, dof), each at the pose and inside the limits; returns n
-                truth values. The search goes on within its bounds while all are refused.
-            deadline: wall-clock time after which the search ends [s]; checked between its stages.
+            filter: called with candidates (n, dof), each at the pose and inside the limits; returns n truth
+                values. The search goes on within its bounds while all are refused. In a batch it is asked
+                about the first answers of up to 256 targets at once, along a path about one waypoint's.
+            deadline: wall-clock time after which the search for a target ends [s]; checked between its
+                stages.
             task: what of the pose has to be reached; None: what the solver's options say.
-            objective: what the answer is to be good at besides: an Objective, 'limits',
-                'manipulability', or a function of joint values (dof,) that returns a cost. Comes before
-                `near`. Of the answers found, the cheapest; a redundant arm's has slid to a local minimum.
+            objective: what the answer is to be good at besides: an Objective, 'limits', 'manipulability',
+                or a function of joint values (dof,) that returns a cost. Comes before `near`. Of the
+                answers found, the cheapest; a redundant arm's has slid to a local minimum.
 
         Returns:
             A Result. A pose that cannot be solved is no error but a status.
@@ -1511,7 +1523,24 @@ class Solver:
             whole_turns: whether copies by whole turns inside the limits count as solutions of their own;
                 otherwise each comes once, at the turn nearest to `near` or to the middle of the limits.
             order: what comes first.
-            near, weights, norm, seeds, database_seeds, filter, deadline, task: as in solve.
+            near: configuration to stay near, (dof,) [rad or m], for a batch also (N, dof), one for each
+                target; may lie outside the limits. The answer is the one with the smallest joint move of
+                all that are found, whole turns considered; a redundant arm's has slid along its self-motion
+                to where the move is smallest. Angles here, in `seeds` and in a posture that are too large
+                for a double to tell poses apart to a tenth of the tolerances are refused: 1.5e8 rad for an
+                arm of six joints and 1 m at the default tolerances, never less than 100 rad.
+            weights: factor on each joint's part of a move, (dof,), >= 0; None: all 1.
+            norm: how a move is measured.
+            seeds: joint values to iterate from, (dof,) or (N, dof) [rad or m]; may lie outside the limits.
+                They are ranked as the database's seeds, and tried before them: up to max_attempts, and as
+                many of the database's on top.
+            database_seeds: whether the database's seeds follow the given ones.
+            filter: called with candidates (n, dof), each at the pose and inside the limits; returns n truth
+                values. The search goes on within its bounds while all are refused. In a batch it is asked
+                about the first answers of up to 256 targets at once, along a path about one waypoint's.
+            deadline: wall-clock time after which the search for a target ends [s]; checked between its
+                stages.
+            task: what of the pose has to be reached; None: what the solver's options say.
 
         Returns:
             Solutions; empty, with a status that says why, if there is none.
@@ -1526,16 +1555,32 @@ class Solver:
         A row has the same bits whatever the number of threads and whatever else is in the batch. Its
         status is that of solve(), and so are its bits, but for seeds in SIMD lanes (the default preset):
         there a target has a lane to itself, and the answer may be another of its solutions, within the
-        same tolerances.
+        same tolerances. What is asked for holds for each target by itself.
 
         Args:
             poses: T_base_tip, (N, 4, 4) [m], or others as in solve. Doubles in C order are read in place.
             threads: 0: one per core.
-            near: configuration to stay near, (dof,), or one for each target, (N, dof) [rad or m].
-            filter: called with candidates (n, dof), first the answers of up to 256 targets at once;
-                returns n truth values. Where it refuses, the search for that target goes on.
-            weights, norm, seeds, database_seeds, deadline, task, objective: as in solve, for each target
-                by itself.
+            near: configuration to stay near, (dof,) [rad or m], for a batch also (N, dof), one for each
+                target; may lie outside the limits. The answer is the one with the smallest joint move of
+                all that are found, whole turns considered; a redundant arm's has slid along its self-motion
+                to where the move is smallest. Angles here, in `seeds` and in a posture that are too large
+                for a double to tell poses apart to a tenth of the tolerances are refused: 1.5e8 rad for an
+                arm of six joints and 1 m at the default tolerances, never less than 100 rad.
+            weights: factor on each joint's part of a move, (dof,), >= 0; None: all 1.
+            norm: how a move is measured.
+            seeds: joint values to iterate from, (dof,) or (N, dof) [rad or m]; may lie outside the limits.
+                They are ranked as the database's seeds, and tried before them: up to max_attempts, and as
+                many of the database's on top.
+            database_seeds: whether the database's seeds follow the given ones.
+            filter: called with candidates (n, dof), each at the pose and inside the limits; returns n truth
+                values. The search goes on within its bounds while all are refused. In a batch it is asked
+                about the first answers of up to 256 targets at once, along a path about one waypoint's.
+            deadline: wall-clock time after which the search for a target ends [s]; checked between its
+                stages.
+            task: what of the pose has to be reached; None: what the solver's options say.
+            objective: what the answer is to be good at besides: an Objective, 'limits', 'manipulability',
+                or a function of joint values (dof,) that returns a cost. Comes before `near`. Of the
+                answers found, the cheapest; a redundant arm's has slid to a local minimum.
             on_invalid_pose: what a row does that is no pose (see check_pose): "status", Status.invalid_pose
                 for it and NaN for its q; "raise", an error that names the first, and none is solved.
 
@@ -1551,12 +1596,15 @@ class Solver:
         Args:
             poses: T_base_tip of each waypoint, (N, 4, 4) [m], or others as in solve.
             start: where the arm is one time step before the first waypoint, (dof,) [rad or m]; None: the
-                path may begin anywhere, and of its copies by whole turns the one that begins nearest to
-                the middle of the limits is taken.
+                path may begin anywhere, and of its copies by whole turns the one that begins nearest to the
+                middle of the limits is taken.
             dt: time from one waypoint to the next [s], in which no joint moves farther than its velocity
                 limit allows; 0: speeds are not limited.
-            weights, norm: how a move is measured, as in solve.
-            filter: called with candidates (n, dof) of one waypoint; returns n truth values.
+            weights: factor on each joint's part of a move, (dof,), >= 0; None: all 1.
+            norm: how a move is measured.
+            filter: called with candidates (n, dof), each at the pose and inside the limits; returns n truth
+                values. The search goes on within its bounds while all are refused. In a batch it is asked
+                about the first answers of up to 256 targets at once, along a path about one waypoint's.
             candidates: candidates kept per waypoint at most.
 
         Raises:

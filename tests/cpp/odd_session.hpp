@@ -84,9 +84,9 @@ class Session : private Questions {
 
   bool solve() {
     const Target target = some_target();
-    const bool seeded = dice_.chance(0.3);
-    const Result result =
-        seeded ? solver_.solve(target.pose, away(some_q())) : solver_.solve(target.pose);
+    iksel::SolveRequest request;
+    if (dice_.chance(0.3)) request.seeds = {away(some_q())};
+    const Result result = solver_.solve(target.pose, request);
     count_reached(target, result);
     return take("solve", solver_.options(), {}, target, result);
   }
@@ -112,7 +112,7 @@ class Session : private Questions {
 
   bool solve_all() {
     const Target target = some_target();
-    iksel::AllOptions options;
+    iksel::SolveAllOptions options;
     options.max = 1 + dice_.pick(64);
     options.whole_turns = dice_.chance(0.3);
     const iksel::Solutions found = solver_.solve_all(target.pose, options);
@@ -182,8 +182,8 @@ class Session : private Questions {
       poses.push_back(targets.back().pose);
       if (wishes) near.push_back(away(some_q()));
     }
-    const std::vector<Result> results =
-        wishes ? solver_.solve_batch(poses, request, near, 1) : solver_.solve_batch(poses, 1);
+    const std::vector<Result> results = wishes ? solver_.solve_batch(poses, request, near, 1)
+                                               : solver_.solve_batch(poses, {}, {}, 1);
     EXPECT_EQ(results.size(), poses.size());
     for (std::size_t i = 0; i < results.size(); ++i) {
       count_reached(targets[i], results[i]);

@@ -67,4 +67,12 @@ std::vector<iksel::Pose> random_targets(const iksel::Robot& robot, int n);
 /// Names the cases of a suite by their parameter.
 inline std::string name_of(const testing::TestParamInfo<std::string>& info) { return info.param; }
 
+/// Solves from a seed first.
+inline iksel::Result solve_from(const iksel::Solver& solver, const iksel::Pose& target,
+                                const iksel::JointVector& seed) {
+  iksel::SolveRequest request;
+  request.seeds = {seed};
+  return solver.solve(target, request);
+}
+
 }  // namespace iksel_test

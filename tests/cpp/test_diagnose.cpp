@@ -226,7 +226,7 @@ TEST(DqDx, IsTheDerivativeOfAnswersSolvedAgain) {
           } else {
             moved.linear() = Eigen::AngleAxisd(step, Eigen::Vector3d::Unit(k - 3)) * pose.linear();
           }
-          const iksel::Result result = solver.solve(moved, at);
+          const iksel::Result result = iksel_test::solve_from(solver, moved, at);
           solved = solved && result.success();
           ends[side] = result.q;
         }

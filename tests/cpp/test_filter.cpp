@@ -33,7 +33,7 @@ TEST(Filter, FindsWheneverSolveAllHasOneThatPasses) {
     for (int i = 0; i < n; ++i) {
       const Pose target = robot.fk(q.row(i));
       const auto passes = [](const JointVector& at) { return at[1] <= 0; };
-      iksel::AllOptions options;
+      iksel::SolveAllOptions options;
       options.whole_turns = true;
       options.max = 10'000;
       const auto all = solver.solve_all(target, options);
@@ -76,7 +76,7 @@ TEST(Filter, NearestIsNearestOfAllThatPass) {
     request.near = near;
     request.filter = iksel::filter_each(robot.dof(), passes);
     const Pose target = robot.fk(q.row(i));
-    iksel::AllOptions options;
+    iksel::SolveAllOptions options;
     options.whole_turns = true;
     options.max = 100'000;
     const auto all = solver.solve_all(target, options, request);

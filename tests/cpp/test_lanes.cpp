@@ -74,9 +74,9 @@ TEST(Levels, EachGivesTheSameBitsForAnyNumberOfThreads) {
         robot.random_configurations(iksel_test::cases(2000), iksel_test::seed());
     std::vector<Pose> targets;
     for (Eigen::Index i = 0; i < q.rows(); ++i) targets.push_back(robot.fk(q.row(i)));
-    const auto one = solver.solve_batch(targets, 1);
+    const auto one = solver.solve_batch(targets, {}, {}, 1);
     for (const int threads : {2, 8}) {
-      const auto many = solver.solve_batch(targets, threads);
+      const auto many = solver.solve_batch(targets, {}, {}, threads);
       for (std::size_t i = 0; i < one.size(); ++i) EXPECT_EQ(one[i].q, many[i].q) << level;
     }
   }

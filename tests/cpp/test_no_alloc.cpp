@@ -75,7 +75,8 @@ TEST_P(HeapFreeSchemes, SolveWithoutTheHeap) {
     const Eigen::MatrixXd q = robot.random_configurations(100, iksel_test::seed());
     std::vector<iksel::Pose> targets;
     for (Eigen::Index i = 0; i < q.rows(); ++i) targets.push_back(robot.fk(q.row(i)));
-    const iksel::JointVector seed = iksel::JointVector::Zero(robot.dof());
+    iksel::SolveRequest seed;
+    seed.seeds = {iksel::JointVector::Zero(robot.dof())};
 
     allocations = 0;
     watching = true;

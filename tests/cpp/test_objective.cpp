@@ -134,7 +134,7 @@ TEST(Objectives, LeaveARedundantArmAtALocalMinimum) {
       for (const double step : {-0.02, 0.02}) {
         JointVector seed = result.q + step * along;
         seed = seed.cwiseMax(robot.lower()).cwiseMin(robot.upper());
-        const Result beside = solver.solve(target, seed);
+        const Result beside = iksel_test::solve_from(solver, target, seed);
         if (!beside.success() || (beside.q - seed).norm() > 0.05) continue;
         const double margin = 1e-5 * (1 + std::abs(result.cost));
         if (cost.value(beside.q) < result.cost - margin) least = false;

@@ -150,7 +150,8 @@ TEST(Seeds, ComeOnTopOfMaxAttempts) {
       const Solver solver(robot, options);
       ASSERT_FALSE(solver.solve(none).success());
       EXPECT_EQ(solver.solve(none).attempts, most);
-      EXPECT_EQ(solver.solve(none, JointVector::Constant(6, 0.1)).attempts, most + 1);
+      EXPECT_EQ(iksel_test::solve_from(solver, none, JointVector::Constant(6, 0.1)).attempts,
+                most + 1);
       SolveRequest request;
       request.near = JointVector::Constant(6, 0.1);
       EXPECT_EQ(solver.solve(none, request).attempts, most + 1);

@@ -59,7 +59,7 @@ TEST(SolveAll, WholeTurnsAreAllCopiesInsideTheLimits) {
   const Eigen::MatrixXd q = robot.random_configurations(5, iksel_test::seed());
   for (int i = 0; i < 5; ++i) {
     const Pose target = robot.fk(q.row(i));
-    iksel::AllOptions options;
+    iksel::SolveAllOptions options;
     const auto once = solver.solve_all(target, options);
     options.whole_turns = true;
     options.max = 100'000;
@@ -87,7 +87,7 @@ TEST(SolveAll, MaxMinDistanceAndOrderHold) {
     const Solver& solver = iksel_test::solver(name);
     const Eigen::MatrixXd q = solver.robot().random_configurations(20, iksel_test::seed());
     for (int i = 0; i < 20; ++i) {
-      iksel::AllOptions options;
+      iksel::SolveAllOptions options;
       options.max = 5;
       options.min_distance = 0.2;
       SolveRequest request;
@@ -107,7 +107,7 @@ TEST(SolveAll, MaxMinDistanceAndOrderHold) {
 
 TEST(SolveAll, BadOptionsAreNamed) {
   const Solver& solver = iksel_test::solver("ur3");
-  const auto expect_error = [&](const iksel::AllOptions& options, const std::string& what) {
+  const auto expect_error = [&](const iksel::SolveAllOptions& options, const std::string& what) {
     try {
       (void)solver.solve_all(Pose::Identity(), options);
       FAIL() << what;
@@ -115,7 +115,7 @@ TEST(SolveAll, BadOptionsAreNamed) {
       EXPECT_NE(std::string(error.what()).find(what), std::string::npos) << error.what();
     }
   };
-  iksel::AllOptions options;
+  iksel::SolveAllOptions options;
   options.max = 0;
   expect_error(options, "max");
   options = {};

@@ -69,7 +69,7 @@ TEST_P(SolverOfRobots, SolutionAsSeedIsTheAnswer) {
   const Eigen::MatrixXd q = robot.random_configurations(50, iksel_test::seed());
   for (Eigen::Index i = 0; i < q.rows(); ++i) {
     const JointVector seed = q.row(i);
-    const Result result = solver.solve(robot.fk(seed), seed);
+    const Result result = iksel_test::solve_from(solver, robot.fk(seed), seed);
     ASSERT_TRUE(result.success());
     EXPECT_EQ(result.attempts, 1);
     EXPECT_LE(result.iterations, 1);
@@ -90,7 +90,7 @@ TEST(Solver, TriesTheSeedFirstAndThenTheDatabase) {
   for (Eigen::Index i = 0; i < q.rows(); ++i) {
     // A singular seed far away leads nowhere by itself; it may even lie outside the limits.
     const JointVector seed = JointVector::Constant(6, i % 2 == 0 ? 0.0 : 7.0);
-    solved += solver.solve(robot.fk(q.row(i)), seed).success();
+    solved += iksel_test::solve_from(solver, robot.fk(q.row(i)), seed).success();
   }
   EXPECT_GE(solved, 99);
 }
@@ -135,7 +135,7 @@ TEST(Solver, BringsAnglesInsideTheLimitsByWholeTurns) {
     JointVector seed = q.row(i);
     const Pose target = robot.fk(seed);
     for (const int j : {0, 1, 3, 4, 5}) seed[j] += (i % 2 == 0 ? 1 : -1) * 4 * M_PI;
-    const Result result = solver.solve(target, seed);
+    const Result result = iksel_test::solve_from(solver, target, seed);
     ASSERT_TRUE(result.success());
     EXPECT_EQ(result.attempts, 1);
     EXPECT_TRUE(robot.within_limits(result.q));
@@ -198,8 +198,9 @@ TEST(Solver, RefusesBadInput) {
   Pose bad = Pose::Identity();
   bad.linear() *= 2;
   EXPECT_THROW(static_cast<void>(solver.solve(bad)), iksel::InvalidArgumentError);
-  EXPECT_THROW(static_cast<void>(solver.solve(Pose::Identity(), JointVector::Zero(5))),
-               iksel::InvalidArgumentError);
+  EXPECT_THROW(
+      static_cast<void>(iksel_test::solve_from(solver, Pose::Identity(), JointVector::Zero(5))),
+      iksel::InvalidArgumentError);
   std::vector<Pose> poses(10, Pose::Identity());
   poses[7].translation().z() = std::numeric_limits<double>::infinity();
   try {
@@ -228,7 +229,7 @@ TEST(Solver, BadRowsOfABatchHaveTheirOwnStatus) {
   }
   const std::vector<Result> expected = solver.solve_batch(good);
   for (const int threads : {1, 3}) {
-    const std::vector<Result> results = solver.solve_batch(mixed, threads);
+    const std::vector<Result> results = solver.solve_batch(mixed, {}, {}, threads);
     std::size_t row = 0;
     for (int i = 0; i < n; ++i) {
       if (i % 3 == 1) {

@@ -230,12 +230,13 @@ TEST(Tasks, TakeSeedsAndGiveTheSameBitsInBatches) {
   const Eigen::MatrixXd q = robot.random_configurations(cases, iksel_test::seed());
   std::vector<Pose> targets;
   for (int i = 0; i < cases; ++i) targets.push_back(robot.fk(q.row(i)));
-  const std::vector<Result> one = solver.solve_batch(targets, 1);
-  const std::vector<Result> batch = solver.solve_batch(targets, 3);
+  const std::vector<Result> one = solver.solve_batch(targets, {}, {}, 1);
+  const std::vector<Result> batch = solver.solve_batch(targets, {}, {}, 3);
   for (int i = 0; i < cases; ++i) {
     ASSERT_TRUE(one[static_cast<std::size_t>(i)].success());
     EXPECT_EQ(one[static_cast<std::size_t>(i)].q, batch[static_cast<std::size_t>(i)].q);
-    const Result seeded = solver.solve(targets[static_cast<std::size_t>(i)], q.row(i));
+    const Result seeded =
+        iksel_test::solve_from(solver, targets[static_cast<std::size_t>(i)], q.row(i));
     ASSERT_TRUE(seeded.success());
     EXPECT_EQ(seeded.attempts, 1);
     EXPECT_LT((seeded.q - q.row(i).transpose()).norm(), 1e-9);

@@ -54,12 +54,12 @@ TEST(Threads, BatchGivesTheSameBits) {
       const Solver solver(robot, options);
       std::vector<Result> expected;
       if (options.iteration == iksel::Iteration::lm) {
-        expected = solver.solve_batch(targets, 1);
+        expected = solver.solve_batch(targets, {}, {}, 1);
       } else {
         for (const Pose& target : targets) expected.push_back(solver.solve(target));
       }
       for (const int threads : {1, 2, 8}) {
-        const std::vector<Result> batch = solver.solve_batch(targets, threads);
+        const std::vector<Result> batch = solver.solve_batch(targets, {}, {}, threads);
         ASSERT_EQ(batch.size(), expected.size());
         for (std::size_t i = 0; i < expected.size(); ++i) expect_same(batch[i], expected[i]);
       }
@@ -75,14 +75,14 @@ TEST(Threads, BatchInLanesAnswersEachTargetByItself) {
     const Solver& solver = iksel_test::solver(name);
     auto targets = iksel_test::random_targets(robot, iksel_test::cases(600, 20));
     for (std::size_t i = 0; i < targets.size(); i += 7) targets[i].translation() *= 3;  // too far
-    const std::vector<Result> batch = solver.solve_batch(targets, 1);
+    const std::vector<Result> batch = solver.solve_batch(targets, {}, {}, 1);
     std::vector<std::size_t> order(targets.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::reverse(order.begin(), order.end());
     order.erase(order.begin(), order.begin() + 13);
     std::vector<Pose> others;
     for (const std::size_t i : order) others.push_back(targets[i]);
-    const std::vector<Result> shuffled = solver.solve_batch(others, 1);
+    const std::vector<Result> shuffled = solver.solve_batch(others, {}, {}, 1);
     for (std::size_t k = 0; k < order.size(); ++k) expect_same(shuffled[k], batch[order[k]]);
     for (std::size_t i = 0; i < targets.size(); ++i) {
       const Result single = solver.solve(targets[i]);

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <iksel/iksel.hpp>
+#include <map>
 #include <string>
+#include <vector>
 
 #include "database/data.hpp"
 #include "kinematics/chain_model.hpp"
@@ -162,6 +164,69 @@ TEST(Urdf, MimicOfAJointOffTheChainIsDrivenByIt) {
                                      joint("ac", "revolute", "a", "c", follower)),
                            "a", "c");
   EXPECT_EQ(robot.joint_names(), (std::vector<std::string>{"ab"}));
+}
+
+/// All links of `xml` at q, against KDL's chain to each.
+void expect_links_by_kdl(const std::string& xml, const std::string& base, const std::string& tip,
+                         const std::map<std::string, double>& others) {
+  const Robot robot = load(xml, base, tip);
+  const Eigen::MatrixXd rows = robot.random_configurations(20, iksel_test::seed());
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+    const JointVector q = rows.row(i);
+    std::map<std::string, double> values = others;
+    for (int j = 0; j < robot.dof(); ++j) {
+      values[robot.joint_names()[static_cast<std::size_t>(j)]] = q[j];
+    }
+    const std::vector<Pose> poses = robot.link_poses(q, others);
+    ASSERT_EQ(poses.size(), robot.link_names().size());
+    std::vector<double> flat(16 * poses.size());
+    robot.link_poses(q.data(), 1, others, flat.data());
+    for (std::size_t link = 0; link < poses.size(); ++link) {
+      EXPECT_EQ(flat[16 * link + 3], poses[link].translation().x());
+      const std::string& name = robot.link_names()[link];
+      if (name == base) {
+        EXPECT_TRUE(poses[link].matrix().isIdentity(0));
+        continue;
+      }
+      const Robot to_link = load(xml, base, name);
+      JointVector at(to_link.dof());
+      for (int j = 0; j < to_link.dof(); ++j) {
+        const auto value = values.find(to_link.joint_names()[static_cast<std::size_t>(j)]);
+        at[j] = value == values.end() ? 0.0 : value->second;
+      }
+      const Pose expected = to_link.fk(at, Kinematics::kdl);
+      EXPECT_LT((poses[link].matrix() - expected.matrix()).norm(), 1e-13) << name;
+    }
+  }
+}
+
+TEST(Urdf, PosesOfAllLinksAreThoseOfKdl) {
+  for (const char* base : {"a", "b", "c", "d"}) {
+    for (const char* tip : {"a", "b", "c", "d"}) {
+      if (std::string(base) != tip) expect_links_by_kdl(tree(), base, tip, {});
+    }
+  }
+  expect_links_by_kdl(tree(), "a", "c", {{"bd", 0.1}});
+  const auto follower = [](const std::string& source) {
+    return "<origin xyz='0 0 0.4' rpy='0.3 0 0'/><axis xyz='1 1 0'/><limit lower='-9' upper='9' "
+           "effort='0' velocity='1'/><mimic joint='" +
+           source + "' multiplier='-0.5' offset='0.25'/>";
+  };
+  const std::string of_each_other = robot_xml(joint("ab", "revolute", "a", "b", kTurn) +
+                                              joint("ac", "prismatic", "a", "c", follower("ab")) +
+                                              joint("cd", "revolute", "c", "d", follower("ac")) +
+                                              joint("de", "revolute", "d", "e", follower("cd")));
+  expect_links_by_kdl(of_each_other, "a", "b", {});
+  expect_links_by_kdl(of_each_other, "e", "b", {});
+}
+
+TEST(Urdf, ValuesOfJointsThatTheArmMovesAreRefused) {
+  const Robot robot = load(tree(), "a", "c");
+  const JointVector q = JointVector::Zero(2);
+  EXPECT_THROW((void)robot.link_poses(q, {{"ab", 0.1}}), iksel::InvalidArgumentError);
+  EXPECT_THROW((void)robot.link_poses(q, {{"bd", 1e9}}), iksel::InvalidArgumentError);
+  EXPECT_THROW((void)robot.link_poses(q, {{"be", 0.1}}), iksel::UnknownNameError);
+  EXPECT_THROW((void)robot.link_poses(JointVector::Zero(3)), iksel::InvalidArgumentError);
 }
 
 TEST(Urdf, CircleOfMimicsIsRefused) {

@@ -51,8 +51,8 @@ def test_q_of_wrong_shape_is_named(robot, shape):
 
 
 def test_seed_of_wrong_shape_is_named(solver, poses):
-    with pytest.raises(core.InvalidArgumentError, match=r"^seed: expected a \(6,\)"):
-        solver.solve(poses[0], seed=np.zeros(5))
+    with pytest.raises(core.InvalidArgumentError, match=r"^seeds: expected a \(6,\)"):
+        solver.solve(poses[0], seeds=np.zeros(5))
 
 
 @pytest.mark.parametrize(
@@ -147,8 +147,8 @@ def test_non_finite_joints_are_named(robot, solver, joints, poses, bad):
             function(rows[3])
         with pytest.raises(core.InvalidArgumentError, match=r"^q\[3\]: .* at joint 2"):
             function(rows)
-    with pytest.raises(core.InvalidArgumentError, match=r"^seed: "):
-        solver.solve(poses[0], seed=rows[3])
+    with pytest.raises(core.InvalidArgumentError, match=r"^seeds: "):
+        solver.solve(poses[0], seeds=rows[3])
 
 
 def test_empty_batches_are_fine(robot, solver):

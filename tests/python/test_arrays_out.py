@@ -144,7 +144,7 @@ def test_calls_leak_no_references(robot, solver, joints, poses):
     for _ in range(20):
         robot.fk(q)
         robot.jacobian(joints)
-        solver.solve(pose, seed=q)
+        solver.solve(pose, seeds=[q], near=q)
         solver.solve_batch(poses[:2])
         with pytest.raises(core.InvalidArgumentError):
             solver.solve(q)
@@ -157,7 +157,7 @@ def test_inputs_are_left_alone(robot, solver, joints, poses):
     joints_before, poses_before = joints.copy(), poses.copy()
     robot.fk(joints)
     solver.solve_batch(poses)
-    solver.solve(poses[0], seed=joints[0])
+    solver.solve(poses[0], seeds=joints)
     np.testing.assert_array_equal(joints, joints_before)
     np.testing.assert_array_equal(poses, poses_before)
 

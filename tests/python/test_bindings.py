@@ -252,7 +252,7 @@ def test_results_round_trip(solver, poses):
 
 def test_seed_is_tried_first(robot, solver, joints, poses):
     for q, pose in zip(joints, poses, strict=True):
-        result = solver.solve(pose, seed=q)
+        result = solver.solve(pose, seeds=[q])
         assert result.success
         assert result.attempts == 1
         np.testing.assert_allclose(result.q, q, atol=1e-5)

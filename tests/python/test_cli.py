@@ -181,7 +181,11 @@ def test_solve_reports_everything(run: Run) -> None:
 def test_solve_from_a_seed(run: Run) -> None:
     q = "0.1 -1 1 0.2 0.3 -0.4"
     answer = run(f"solve ur3 --from-q {q} --seed-q {q} --json").json()
+    assert answer["attempts"] == 1
+    answer = run(f"solve ur3 --from-q {q} --seed-q {q} --near {q} --json").json()
     np.testing.assert_allclose(answer["q"], [0.1, -1, 1, 0.2, 0.3, -0.4], atol=1e-9)
+    found = run(f"solve ur3 --from-q {q} --seed-q {q} --all --json").json()
+    assert len(found["q"]) > 1
 
 
 def test_solve_without_solution(run: Run) -> None:

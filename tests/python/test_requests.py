@@ -146,7 +146,7 @@ def test_deadline(made) -> None:
         ({"weights": np.full(6, np.nan)}, "weights: expected finite numbers"),
         ({"weights": np.zeros(6)}, "weights: all are 0"),
         ({"norm": "one"}, "norm: expected one of two, max"),
-        ({"seeds": np.zeros(6)}, r"seeds: expected an \(N, 6\) array"),
+        ({"seeds": np.zeros(5)}, r"seeds: expected a \(6,\) or \(N, 6\) array"),
         ({"seeds": np.full((2, 6), np.inf)}, r"seeds\[0\]: expected finite"),
         ({"database_seeds": 1}, "database_seeds: expected True or False"),
         ({"deadline": 0}, "deadline: 0.* s is not above 0"),

@@ -40,7 +40,7 @@ def test_arguments_are_not_changed(made) -> None:
     pose = solver.robot.fk(solver.robot.random_configurations(1, 19)[0])
     q = solver.robot.random_configurations(1, 19)[0]
     pose_before, q_before = pose.copy(), q.copy()
-    solver.solve(pose, seed=q)
+    solver.solve(pose, seeds=q)
     np.testing.assert_array_equal(pose, pose_before)
     np.testing.assert_array_equal(q, q_before)
     with pytest.raises(ValueError, match="read-only"):
@@ -83,11 +83,11 @@ def test_the_first_bad_pose_of_a_batch_is_named(made, culprit: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "seed", [[0.0] * 5, [[0.0] * 6], [0, 0, 0, 0, 0, math.inf], "seed", 1.0]
+    "seeds", [[0.0] * 5, [[0.0] * 7], [0, 0, 0, 0, 0, math.inf], "seed", 1.0]
 )
-def test_bad_seeds_are_refused(made, seed) -> None:
-    with pytest.raises(iksel.InvalidArgumentError, match="^seed"):
-        made.solver("ur3").solve(np.eye(4), seed=seed)
+def test_bad_seeds_are_refused(made, seeds) -> None:
+    with pytest.raises(iksel.InvalidArgumentError, match="^seeds"):
+        made.solver("ur3").solve(np.eye(4), seeds=seeds)
 
 
 @pytest.mark.parametrize("threads", [-1, 10**9, 1.5, "two", None])

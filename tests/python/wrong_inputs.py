@@ -82,9 +82,11 @@ TABLE: dict[str, tuple[str, ...]] = {
     ),
     "A request": (
         "solver.solve(pose, q_init=q)",
-        'solver.solve(pose, seed="home")',
+        'solver.solve(pose, seeds="home")',
         "solver.solve(pose, near=[0, 0, 0])",
-        "solver.solve(pose, seed=np.full(6, np.nan))",
+        "solver.solve(pose, seeds=np.full(6, np.nan))",
+        "solver.solve(pose, seed=q)",
+        "solver.solve(pose, q)",
         "solver.solve(pose, deadline=0)",
         "solver.solve(pose, filter=lambda q: None)",
         'solver.solve(pose, objective="manipulabilty")',

@@ -92,7 +92,7 @@ enum class SolutionOrder {
 };
 
 /// What solve_all gives.
-struct IKSEL_EXPORT AllOptions {
+struct IKSEL_EXPORT SolveAllOptions {
   /// Solutions given at most.
   int max = 64;
   /// Solutions that differ by less than this in every joint are one [rad or m]; a redundant arm's,

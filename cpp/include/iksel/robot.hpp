@@ -94,6 +94,19 @@ class IKSEL_EXPORT Robot {
   [[nodiscard]] Jacobian jacobian(const JointVector& q,
                                   Kinematics kinematics = Kinematics::kernel) const;
 
+  /// Poses of all links of the URDF in the base link's frame at q, in the order of link_names:
+  /// side branches move with the arm's joints, too, and with what mimics them. Joints that q does
+  /// not move are at their value in `other_joints` [rad or m], or else where they are locked, or
+  /// else at 0; floating and planar ones at their origin. Throws as fk, UnknownNameError and
+  /// InvalidArgumentError naming a bad entry of `other_joints`, and UrdfError if a joint off the
+  /// chain is no good. The first call reads the URDF again.
+  [[nodiscard]] std::vector<Pose> link_poses(
+      const JointVector& q, const std::map<std::string, double>& other_joints = {}) const;
+  /// The same at `count` configurations, one after the other, into 4x4 matrices row by row: those
+  /// of all links at the first, at the second, ... Does not check that q is finite.
+  void link_poses(const double* q, std::size_t count,
+                  const std::map<std::string, double>& other_joints, double* T_base_link) const;
+
   /// The derivative of an answer q by its target: dq = dq_dx * [linear; angular] for a small twist
   /// of the target in base axes at the tip, of all dq the least. dof x 6: J^T (J J^T + damping^2
   /// I)^-1, the damped pseudo-inverse (Nakamura and Hanafusa 1986); with damping 0 the

@@ -80,18 +80,15 @@ class IKSEL_EXPORT Solver {
   /// at the nearest rigid pose. Throws InvalidArgumentError if it is none (check_pose); a pose
   /// that cannot be solved is no error but a status. For arms of few joints see task_hint.
   [[nodiscard]] Result solve(const Pose& T_base_tip) const;
-  /// As above; iterates from `seed` first, then from the database's. The seed may lie outside the
-  /// limits. Throws InvalidArgumentError if it has not dof finite elements.
-  [[nodiscard]] Result solve(const Pose& T_base_tip, const JointVector& seed) const;
-  /// As solve, adding the time of each stage to `times`.
-  [[nodiscard]] Result solve(const Pose& T_base_tip, StageTimes& times) const;
-  /// As solve, with wishes. Without any it is solve(T_base_tip).
-  [[nodiscard]] Result solve(const Pose& T_base_tip, const SolveRequest& request) const;
+  /// As above, with the wishes of a request; the time of each stage is added to `times` if that is
+  /// not null. Without any wish it is solve(T_base_tip).
+  [[nodiscard]] Result solve(const Pose& T_base_tip, const SolveRequest& request,
+                             StageTimes* times = nullptr) const;
 
   /// Every distinct solution inside the limits that is found within the bounds on work: all
   /// branches of an arm with as many joints as the pose has directions, a spread over the families
   /// of a redundant one. Throws as solve.
-  [[nodiscard]] Solutions solve_all(const Pose& T_base_tip, const AllOptions& options = {},
+  [[nodiscard]] Solutions solve_all(const Pose& T_base_tip, const SolveAllOptions& options = {},
                                     const SolveRequest& request = {}) const;
 
   /// Why solve(T_base_tip, request) gives no answer, and the best that can be done. Spends more
@@ -109,22 +106,18 @@ class IKSEL_EXPORT Solver {
   /// seeds in lanes: there a target has a lane to itself, and the answer may be another of its
   /// solutions, within the same tolerances. `threads` = 0 takes one per core. A target that is no
   /// pose has Status::invalid_pose; SolveRequest::on_invalid_pose can have it thrown instead.
-  [[nodiscard]] std::vector<Result> solve_batch(const std::vector<Pose>& T_base_tip,
-                                                int threads = 0) const;
-  /// The same over `count` 4x4 matrices, row by row, into arrays that the caller owns. An exception
-  /// of `progress` ends the batch and reaches the caller.
-  void solve_batch(const double* T_base_tip, std::size_t count, const BatchView& out,
-                   int threads = 0, const Progress& progress = {}) const;
-
-  /// As solve_batch, with wishes, which hold for each target by itself. `near` is empty, or has one
+  ///
+  /// The wishes of a request hold for each target by itself. `near` is empty, or has one
   /// configuration for each target, which counts instead of the request's. A filter is asked about
   /// the first answers of up to 256 targets at once; only where it refuses, the search for that
   /// target goes on. Calls to it come from any thread, one at a time.
   [[nodiscard]] std::vector<Result> solve_batch(const std::vector<Pose>& T_base_tip,
-                                                const SolveRequest& request,
+                                                const SolveRequest& request = {},
                                                 const std::vector<JointVector>& near = {},
                                                 int threads = 0) const;
-  /// The same over arrays; `near` is null, or has (count, dof) values row by row.
+  /// The same over `count` 4x4 matrices, row by row, into arrays that the caller owns; `near` is
+  /// null, or has (count, dof) values row by row. An exception of `progress` ends the batch and
+  /// reaches the caller.
   void solve_batch(const double* T_base_tip, std::size_t count, const SolveRequest& request,
                    const double* near, const BatchView& out, int threads = 0,
                    const Progress& progress = {}) const;

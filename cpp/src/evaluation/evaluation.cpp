@@ -199,7 +199,7 @@ Evaluation evaluate(const Solver& solver, std::size_t targets, std::uint64_t see
   if (stages) {
     StageTimes total;
     for (const Pose& pose : poses) {
-      static_cast<void>(solver.solve(pose, total));
+      static_cast<void>(solver.solve(pose, {}, &total));
       pace(targets);
     }
     out.query_us = total.query / n / 1e3;

@@ -12,6 +12,7 @@
 #include "kinematics/joint_space.hpp"
 #include "kinematics/kdl_chain.hpp"
 #include "kinematics/kernel.hpp"
+#include "kinematics/link_poses.hpp"
 #include "urdf/chain_spec.hpp"
 
 namespace iksel {
@@ -49,6 +50,8 @@ class ChainModel {
   /// Farthest that the TCP may be from reach_centre [m].
   [[nodiscard]] double reach_of_tcp() const { return reach + tcp.translation().norm(); }
   std::uint64_t hash;
+  /// Shared by all copies, which have the same URDF and locked joints.
+  std::shared_ptr<LinkPoseCache> link_poses = std::make_shared<LinkPoseCache>();
 
  private:
   void flatten();

@@ -67,6 +67,31 @@ Jacobian Robot::jacobian(const JointVector& q, Kinematics kinematics) const {
   return J;
 }
 
+std::vector<Pose> Robot::link_poses(const JointVector& q,
+                                    const std::map<std::string, double>& other_joints) const {
+  check_joints(q, dof(), "q");
+  std::vector<Pose> poses(link_names().size());
+  model_->link_poses->with(*model_, other_joints,
+                           [&](const LinkPoses& links) { links.at(q.data(), poses.data()); });
+  return poses;
+}
+
+void Robot::link_poses(const double* q, std::size_t count,
+                       const std::map<std::string, double>& other_joints,
+                       double* T_base_link) const {
+  using RowMajor = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+  std::vector<Pose> poses(link_names().size());
+  model_->link_poses->with(*model_, other_joints, [&](const LinkPoses& links) {
+    for (std::size_t i = 0; i < count; ++i, q += dof()) {
+      links.at(q, poses.data());
+      for (const Pose& pose : poses) {
+        Eigen::Map<RowMajor>{T_base_link} = pose.matrix();
+        T_base_link += 16;
+      }
+    }
+  });
+}
+
 Matrix Robot::dq_dx(const JointVector& q, double damping) const {
   if (!(damping >= 0 && std::isfinite(damping))) {
     throw InvalidArgumentError("damping: " + number_text(damping) + " is not 0 or more");

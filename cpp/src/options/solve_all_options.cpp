@@ -7,7 +7,7 @@
 
 namespace iksel {
 
-void AllOptions::validate() const {
+void SolveAllOptions::validate() const {
   if (max < 1) throw InvalidArgumentError("max: " + std::to_string(max) + " is less than 1");
   if (!(min_distance > 0 && min_distance <= 1e3)) {
     throw InvalidArgumentError("min_distance: " + number_text(min_distance) +

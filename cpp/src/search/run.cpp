@@ -128,13 +128,12 @@ Result find_first(const ChainModel& model, const SolverOptions& options, const G
 }
 
 void collect(const ChainModel& model, const SolverOptions& options, Collector& collector,
-             Workspace& workspace) {
+             Workspace& workspace, StageClock& clock) {
   const Goal& goal = collector.goal();
   if (goal.is_out_of_reach()) {
     collector.status = Status::out_of_reach;
     return;
   }
-  StageClock clock(nullptr);
   const Search<Collector> search{model,     options,   goal,           collector.request(),
                                  workspace, collector, collector.work, clock};
   if (workspace.lanes) {

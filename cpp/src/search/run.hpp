@@ -14,6 +14,6 @@ Result find_first(const ChainModel& model, const SolverOptions& options, const G
 
 /// Collects solutions in workspace.collected.found, until the collector has enough.
 void collect(const ChainModel& model, const SolverOptions& options, Collector& collector,
-             Workspace& workspace);
+             Workspace& workspace, StageClock& clock);
 
 }  // namespace iksel

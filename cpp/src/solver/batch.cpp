@@ -140,7 +140,7 @@ class Batch {
   template <typename Tell>
   void solve_plain(std::size_t first, std::size_t last, Workspace& workspace,
                    const Tell& tell) const {
-    static const SolveRequest none;
+    const SolveRequest none;
     const auto solve_alone = [&](std::size_t i) {
       tell(i, solver_.find_first(target_(i), solver_.task, none, workspace, nullptr));
     };
@@ -162,7 +162,7 @@ class Batch {
     if (const double* values = near_(i)) {
       request.near = JointVector(Eigen::Map<const Eigen::VectorXd>(values, solver_.robot.dof()));
     }
-    return solver_.solve(target_(i), request, workspace);
+    return solver_.solve(target_(i), request, workspace, nullptr);
   }
 
   /// What is found without the filter is put before it in one go; where it refuses, the search for
@@ -228,15 +228,6 @@ void Solver::Impl::solve_rows(std::size_t count, const PoseAt& pose_at, const So
   const auto near = [&](std::size_t i) { return near_of(targets.row_of(i)); };
   const Batch batch(*this, targets.size(), request, targets, near, on_result);
   batch.run(threads, on_progress);
-}
-
-std::vector<Result> Solver::solve_batch(const std::vector<Pose>& T_base_tip, int threads) const {
-  return solve_batch(T_base_tip, SolveRequest{}, {}, threads);
-}
-
-void Solver::solve_batch(const double* T_base_tip, std::size_t count, const BatchView& out,
-                         int threads, const Progress& progress) const {
-  solve_batch(T_base_tip, count, SolveRequest{}, nullptr, out, threads, progress);
 }
 
 std::vector<Result> Solver::solve_batch(const std::vector<Pose>& T_base_tip,

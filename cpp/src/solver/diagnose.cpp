@@ -177,7 +177,7 @@ class Diagnoser {
     constexpr double kLittle = 0.01;
     BestEffort effort = make_effort(goal_);
     effort.weigh_rotation(kLittle);
-    AllOptions spread_out;
+    SolveAllOptions spread_out;
     spread_out.max = kEfforts;
     spread_out.min_distance = 0.1;
     for (const Result& answer : patient_.solve_all(goal_.target(), spread_out, at_position).all) {
@@ -231,7 +231,7 @@ class Diagnoser {
   }
 
   bool explain_refusals() {
-    AllOptions every;
+    SolveAllOptions every;
     every.max = kPatientAttempts;
     const Solutions refused = patient_.solve_all(goal_.target(), every, open_);
     out_.cause = Cause::rejected;
@@ -263,7 +263,7 @@ Diagnosis Solver::Impl::diagnose(const Pose& target, const SolveRequest& request
   Result plain;
   {
     const WorkspacePool::Lease lease(workspaces);
-    plain = solve(target, request, lease.get());
+    plain = solve(target, request, lease.get(), nullptr);
   }
   if (plain.success()) {
     const TaskSpace of_call = task_of(request);

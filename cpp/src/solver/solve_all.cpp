@@ -102,7 +102,7 @@ void take_first_of_each(std::size_t solutions, std::vector<Copy>& copies) {
 
 }  // namespace
 
-Solutions Solver::Impl::solve_all(const Pose& target, const AllOptions& all,
+Solutions Solver::Impl::solve_all(const Pose& target, const SolveAllOptions& all,
                                   const SolveRequest& request, Workspace& workspace) const {
   const TaskSpace of_call = task_of(request);
   const Goal goal(model(), of_call, target);
@@ -113,7 +113,8 @@ Solutions Solver::Impl::solve_all(const Pose& target, const AllOptions& all,
   };
   Collector search(model(), goal, request, {all.min_distance, true, most_solutions}, is_satisfied,
                    options.max_attempts, workspace.collected);
-  collect(model(), options, search, workspace);
+  StageClock clock(nullptr);
+  collect(model(), options, search, workspace, clock);
 
   Solutions solutions;
   solutions.status = search.status;
@@ -169,7 +170,7 @@ Solutions Solver::Impl::solve_all(const Pose& target, const AllOptions& all,
   return solutions;
 }
 
-Solutions Solver::solve_all(const Pose& T_base_tip, const AllOptions& options,
+Solutions Solver::solve_all(const Pose& T_base_tip, const SolveAllOptions& options,
                             const SolveRequest& request) const {
   const Pose target = check_pose(T_base_tip);
   options.validate();

@@ -64,7 +64,7 @@ Solver::Impl::Impl(const Robot& robot_in, const SolverOptions& options_in,
 int Solver::Impl::count_most_solutions() const {
   constexpr std::size_t kPoses = 64;
   if (!task.is_full_pose() || !jacobian_signs_cancel(model())) return 0;
-  const Collector::Aim aim{AllOptions{}.min_distance, true};
+  const Collector::Aim aim{SolveAllOptions{}.min_distance, true};
   const auto never = [](const Collector&) { return false; };
   const WorkspacePool::Lease lease(workspaces);
   const Matrix q = robot.random_configurations(kPoses, options.seed);
@@ -74,7 +74,8 @@ int Solver::Impl::count_most_solutions() const {
     const Goal goal(model(), task, target);
     Collector search(model(), goal, kNoWishes, aim, never, options.max_attempts,
                      lease.get().collected);
-    collect(model(), options, search, lease.get());
+    StageClock clock(nullptr);
+    collect(model(), options, search, lease.get(), clock);
     most = std::max(most, search.solutions);
   }
   return most;
@@ -98,11 +99,11 @@ Result Solver::Impl::find_first(const Pose& target, const TaskSpace& of_call,
   return iksel::find_first(model(), options, goal, request, workspace, clock);
 }
 
-Result Solver::Impl::solve(const Pose& target, const SolveRequest& request,
-                           Workspace& workspace) const {
+Result Solver::Impl::solve(const Pose& target, const SolveRequest& request, Workspace& workspace,
+                           StageTimes* times) const {
   const TaskSpace of_call = task_of(request);
   if (!ranks_answers(request) && !request.filter) {
-    return find_first(target, of_call, request, workspace, nullptr);
+    return find_first(target, of_call, request, workspace, times);
   }
   const Goal goal(model(), of_call, target);
   AnswerSelector selector(model(), goal, request, workspace.collected.found);
@@ -111,7 +112,8 @@ Result Solver::Impl::solve(const Pose& target, const SolveRequest& request,
   const Collector::Aim aim{kSame, selector.wants_all() && !request.filter, most_solutions};
   Collector search(model(), goal, request, aim, is_satisfied, options.max_attempts,
                    workspace.collected);
-  collect(model(), options, search, workspace);
+  StageClock clock(times);
+  collect(model(), options, search, workspace, clock);
 
   Result result;
   JointVector q;
@@ -157,30 +159,12 @@ Result Solver::solve(const Pose& T_base_tip) const {
   return impl_->find_first(target, impl_->task, kNoWishes, lease.get(), nullptr);
 }
 
-Result Solver::solve(const Pose& T_base_tip, const JointVector& seed) const {
-  Pose nearest;
-  const Pose& target = to_rigid(T_base_tip, nearest);
-  check_joints(seed, robot().dof(), "seed");
-  impl_->angles.check(seed, "seed");
-  const WorkspacePool::Lease lease(impl_->workspaces);
-  SolveRequest request;
-  request.near = seed;
-  return impl_->find_first(target, impl_->task, request, lease.get(), nullptr);
-}
-
-Result Solver::solve(const Pose& T_base_tip, StageTimes& times) const {
-  Pose nearest;
-  const Pose& target = to_rigid(T_base_tip, nearest);
-  const WorkspacePool::Lease lease(impl_->workspaces);
-  return impl_->find_first(target, impl_->task, kNoWishes, lease.get(), &times);
-}
-
-Result Solver::solve(const Pose& T_base_tip, const SolveRequest& request) const {
+Result Solver::solve(const Pose& T_base_tip, const SolveRequest& request, StageTimes* times) const {
   Pose nearest;
   const Pose& target = to_rigid(T_base_tip, nearest);
   impl_->check(request);
   const WorkspacePool::Lease lease(impl_->workspaces);
-  return impl_->solve(target, request, lease.get());
+  return impl_->solve(target, request, lease.get(), times);
 }
 
 }  // namespace iksel

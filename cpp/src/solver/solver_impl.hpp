@@ -25,8 +25,9 @@ struct Solver::Impl {
   Result find_first(const Pose& target, const TaskSpace& of_call, const SolveRequest& request,
                     Workspace& workspace, StageTimes* times) const;
   /// The best answer to the whole request.
-  Result solve(const Pose& target, const SolveRequest& request, Workspace& workspace) const;
-  Solutions solve_all(const Pose& target, const AllOptions& all, const SolveRequest& request,
+  Result solve(const Pose& target, const SolveRequest& request, Workspace& workspace,
+               StageTimes* times) const;
+  Solutions solve_all(const Pose& target, const SolveAllOptions& all, const SolveRequest& request,
                       Workspace& workspace) const;
   PathResult solve_path(const std::vector<Pose>& targets, const PathOptions& path,
                         Workspace& workspace) const;

@@ -4,20 +4,14 @@
 #include "base/message_text.hpp"
 #include "iksel/error.hpp"
 #include "urdf/chain_spec.hpp"
+#include "urdf/joint_frame.hpp"
 #include "urdf/joint_limits.hpp"
+#include "urdf/mimic.hpp"
 #include "urdf/parse.hpp"
 #include "urdf/size_check.hpp"
 
 namespace iksel {
 namespace {
-
-Eigen::Isometry3d to_eigen(const urdf::Pose& pose) {
-  const urdf::Rotation& r = pose.rotation;
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.linear() = Eigen::Quaterniond(r.w, r.x, r.y, r.z).normalized().toRotationMatrix();
-  T.translation() << pose.position.x, pose.position.y, pose.position.z;
-  return T;
-}
 
 class ChainReader {
  public:
@@ -33,7 +27,8 @@ class ChainReader {
     if (options_.tip_link.empty()) options_.tip_link = only_tip(tree);
     for (const auto& [name, value] : options_.locked_joints) {
       if (!model_.joints_.count(name)) {
-        throw_unknown_name("locked joint '" + name + "' is not in the URDF", name, joint_names());
+        throw_unknown_name("locked joint '" + name + "' is not in the URDF", name,
+                           joint_names_of(model_));
       }
       if (!(std::abs(value) <= kMaxCoordinate)) {
         throw InvalidArgumentError("locked joint '" + name + "': its value is " +
@@ -92,12 +87,6 @@ class ChainReader {
                        spec_.link_names);
   }
 
-  std::vector<std::string> joint_names() const {
-    std::vector<std::string> names;
-    for (const auto& entry : model_.joints_) names.push_back(entry.first);
-    return names;
-  }
-
   std::vector<const urdf::Link*> path_to_root(const urdf::Link* link) const {
     std::vector<const urdf::Link*> path;
     urdf::LinkSharedPtr parent;
@@ -115,10 +104,7 @@ class ChainReader {
   void add_joint(const urdf::Joint& joint, bool upwards) {
     ChainJoint segment;
     segment.name = joint.name;
-    const Eigen::Isometry3d origin = to_eigen(joint.parent_to_joint_origin_transform);
-    if (!origin.matrix().allFinite()) {
-      throw UrdfError("joint '" + joint.name + "': its origin is not finite");
-    }
+    const Eigen::Isometry3d origin = origin_of(joint);
     // Parent -> child is origin * motion(q); the way up is its inverse, motion(-q) * origin^-1.
     (upwards ? segment.after : segment.before) = upwards ? origin.inverse() : origin;
 
@@ -138,16 +124,10 @@ class ChainReader {
                         "; only revolute, continuous, prismatic and fixed joints can be solved");
     }
 
-    const Eigen::Vector3d axis(joint.axis.x, joint.axis.y, joint.axis.z);
-    if (!(axis.norm() >= 1e-9 && axis.norm() <= kMaxCoordinate)) {
-      throw UrdfError("joint '" + joint.name + "' has no axis: its axis vector has the length " +
-                      number_text(axis.norm()));
-    }
-    segment.axis = axis.normalized();
-
+    segment.axis = axis_of(joint);
     if (upwards) segment.axis = -segment.axis;
 
-    const Motion motion = resolve_mimic(joint);
+    const Motion motion = resolve_mimic(model_, joint);
     segment.multiplier = motion.multiplier;
     segment.offset = motion.offset;
     const auto locked = options_.locked_joints.find(motion.source->name);
@@ -161,38 +141,6 @@ class ChainReader {
       narrow_by_follower(joint, motion, options_, spec_.variables[segment.variable]);
     }
     spec_.joints.push_back(segment);
-  }
-
-  /// The joint that really moves `joint`, through any number of mimic tags.
-  Motion resolve_mimic(const urdf::Joint& joint) const {
-    Motion motion{&joint, 1.0, 0.0};
-    for (std::size_t steps = 0; motion.source->mimic; ++steps) {
-      const urdf::JointMimic& mimic = *motion.source->mimic;
-      const auto it = model_.joints_.find(mimic.joint_name);
-      if (it == model_.joints_.end()) {
-        throw_unknown_name("joint '" + motion.source->name + "' mimics '" + mimic.joint_name +
-                               "', which is not in the URDF",
-                           mimic.joint_name, joint_names());
-      }
-      if (steps > model_.joints_.size()) {
-        throw UrdfError("joint '" + joint.name + "' mimics itself through a circle of joints");
-      }
-      motion = {it->second.get(), motion.multiplier * mimic.multiplier,
-                motion.offset + motion.multiplier * mimic.offset};
-    }
-    for (const double number : {motion.multiplier, motion.offset}) {
-      if (std::abs(number) <= kMaxCoordinate) continue;
-      throw UrdfError("joint '" + joint.name + "': its mimic multiplier or offset is " +
-                      number_text(number) + "; at most " + number_text(kMaxCoordinate) +
-                      " can be computed with");
-    }
-    const auto type = motion.source->type;
-    if (type != urdf::Joint::REVOLUTE && type != urdf::Joint::CONTINUOUS &&
-        type != urdf::Joint::PRISMATIC) {
-      throw UrdfError("joint '" + joint.name + "' mimics '" + motion.source->name + "', which is " +
-                      joint_type_name(type));
-    }
-    return motion;
   }
 
   /// A locked joint is a fixed one: its motion by `value` becomes part of the constant transform.

@@ -6,15 +6,9 @@
 
 #include "iksel/robot.hpp"
 #include "urdf/chain_spec.hpp"
+#include "urdf/mimic.hpp"
 
 namespace iksel {
-
-/// What moves a joint: `source`'s value q, as multiplier * q + offset.
-struct Motion {
-  const urdf::Joint* source;
-  double multiplier;
-  double offset;
-};
 
 /// The degree of freedom that a joint is. Throws UrdfError if it has no limits and the options no
 /// default ones.

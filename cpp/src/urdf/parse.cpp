@@ -152,6 +152,12 @@ urdf::ModelInterfaceSharedPtr parse_urdf(const std::string& xml) {
   return model;
 }
 
+std::vector<std::string> joint_names_of(const urdf::ModelInterface& model) {
+  std::vector<std::string> names;
+  for (const auto& entry : model.joints_) names.push_back(entry.first);
+  return names;
+}
+
 const char* joint_type_name(int type) {
   switch (type) {
     case urdf::Joint::REVOLUTE:

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "iksel/error.hpp"
 #include "iksel/link_tree.hpp"
@@ -17,6 +18,9 @@ std::string read_urdf_file(const std::filesystem::path& path);
 
 /// Parses URDF text by urdfdom, whose console messages become the text of the UrdfError.
 urdf::ModelInterfaceSharedPtr parse_urdf(const std::string& xml);
+
+/// Names of all joints, in order of the alphabet.
+std::vector<std::string> joint_names_of(const urdf::ModelInterface& model);
 
 LinkTree make_link_tree(const urdf::ModelInterface& model);
 

@@ -63,7 +63,7 @@ def add_parser(commands: Any) -> None:
         "--seed-q",
         nargs="+",
         metavar="Q",
-        help="joint values to start the first attempt from [rad or m]",
+        help="joint values to try as a seed before the database's [rad or m]",
     )
     parser.add_argument(
         "--near",
@@ -105,22 +105,20 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         target = robot.fk(angles.read_joints("--from-q", arguments.from_q, robot))
     near = arguments.near and angles.read_joints("--near", arguments.near, robot)
-    if arguments.seed_q and (near or arguments.all):
-        raise InvalidArgumentError("--seed-q: cannot be used with --near or --all")
-    if arguments.objective and (arguments.all or arguments.seed_q):
-        raise InvalidArgumentError("--objective: cannot be used with --all or --seed-q")
     seed = arguments.seed_q and angles.read_joints("--seed-q", arguments.seed_q, robot)
+    if arguments.objective and arguments.all:
+        raise InvalidArgumentError("--objective: cannot be used with --all")
+    given = {"near": near, "seeds": seed, "objective": arguments.objective}
+    wishes: dict[str, Any] = {name: value for name, value in given.items() if value}
     options = solver_options(arguments)
     database = given_database(arguments)
     solver = Solver(robot, options, database)
 
     if arguments.all:
-        return run_all(solver, target, near, arguments, angles)
+        return run_all(solver, target, wishes, arguments, angles)
 
     def solve() -> Result:
-        if near or arguments.objective:
-            return solver.solve(target, near=near, objective=arguments.objective)
-        return solver.solve(target, seed=seed)
+        return solver.solve(target, **wishes)
 
     # The first call also fetches the database into the caches: time the second.
     solve()
@@ -203,14 +201,14 @@ def print_diagnosis(robot: Robot, diagnosis: Diagnosis) -> None:
 def run_all(
     solver: Solver,
     target: FloatArray,
-    near: list[float] | None,
+    wishes: dict[str, Any],
     arguments: Any,
     angles: Angles,
 ) -> int:
     """Find every distinct solution and print them."""
     robot = solver.robot
     start = time.perf_counter()
-    found = solver.solve_all(target, near=near)
+    found = solver.solve_all(target, **wishes)
     report = {
         "robot": robot.name,
         "preset": arguments.preset,

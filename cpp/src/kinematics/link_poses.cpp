@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kinematics/link_poses.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/message_text.hpp"
+#include "iksel/error.hpp"
+#include "kinematics/chain_model.hpp"
+
+namespace iksel {
+namespace {
+
+using Values = std::map<std::string, double>;
+
+Eigen::Isometry3d moved(const Eigen::Isometry3d& origin, const Eigen::Vector3d& axis,
+                        bool prismatic, double value) {
+  Eigen::Isometry3d T = origin;
+  if (prismatic) {
+    T.translate(value * axis);
+  } else {
+    T.rotate(Eigen::AngleAxisd(value, axis));
+  }
+  return T;
+}
+
+/// Index of the degree of freedom that moves a joint; -1 if it is held.
+int variable_of(const LinkJoint& joint, const ChainModel& model) {
+  const Values& locked = model.options.locked_joints;
+  if (!joint.moves || locked.count(joint.name) || locked.count(joint.source)) return -1;
+  const auto& names = model.joints.names;
+  const auto at = std::find(names.begin(), names.end(), joint.source);
+  return at == names.end() ? -1 : static_cast<int>(at - names.begin());
+}
+
+void check_other_joints(const ChainModel& model, const std::vector<LinkJoint>& joints,
+                        const Values& other_joints) {
+  for (const auto& [name, value] : other_joints) {
+    const auto joint = std::find_if(joints.begin(), joints.end(),
+                                    [&, &name = name](const auto& j) { return j.name == name; });
+    if (name.empty() || joint == joints.end()) {
+      std::vector<std::string> names;
+      for (const LinkJoint& each : joints) {
+        if (!each.name.empty()) names.push_back(each.name);
+      }
+      throw_unknown_name("other_joints: '" + name + "' is not in the URDF", name, names);
+    }
+    if (!(std::abs(value) <= kMaxCoordinate)) {
+      throw InvalidArgumentError("other_joints: the value of '" + name + "' is " +
+                                 number_text(value) + "; at most " + number_text(kMaxCoordinate) +
+                                 " can be computed with");
+    }
+    if (variable_of(*joint, model) < 0) continue;
+    throw InvalidArgumentError("other_joints: '" + name + "' moves with q's joint '" +
+                               joint->source + "'");
+  }
+}
+
+/// The value of a joint that is held: its own, or what it follows from, or 0.
+double held_value(const LinkJoint& joint, const Values& held) {
+  const auto own = held.find(joint.name);
+  if (own != held.end()) return own->second;
+  const auto source = held.find(joint.source);
+  return joint.multiplier * (source == held.end() ? 0.0 : source->second) + joint.offset;
+}
+
+}  // namespace
+
+LinkPoses::LinkPoses(const ChainModel& model, const std::vector<LinkJoint>& joints,
+                     const Values& other_joints) {
+  check_other_joints(model, joints, other_joints);
+  Values held = other_joints;
+  held.insert(model.options.locked_joints.begin(), model.options.locked_joints.end());
+  const auto& links = model.spec.link_names;
+  base_ = static_cast<std::size_t>(std::find(links.begin(), links.end(), model.options.base_link) -
+                                   links.begin());
+  for (const LinkJoint& joint : joints) {
+    Step step{
+        joint.parent,     joint.origin, joint.axis, joint.prismatic, variable_of(joint, model),
+        joint.multiplier, joint.offset};
+    if (joint.moves && step.variable < 0) {
+      step.origin = moved(joint.origin, joint.axis, joint.prismatic, held_value(joint, held));
+    }
+    steps_.push_back(step);
+  }
+}
+
+void LinkPoses::at(const double* q, Pose* T_base_link) const {
+  T_base_link[0] = Pose::Identity();
+  for (std::size_t i = 1; i < steps_.size(); ++i) {
+    const Step& step = steps_[i];
+    const Pose& above = T_base_link[step.parent];
+    if (step.variable < 0) {
+      T_base_link[i] = above * step.origin;
+    } else {
+      const double value = step.multiplier * q[step.variable] + step.offset;
+      T_base_link[i] = above * moved(step.origin, step.axis, step.prismatic, value);
+    }
+  }
+  if (base_ == 0) return;
+  // So far they are in the root's frame.
+  const Pose T_base_root = T_base_link[base_].inverse();
+  for (std::size_t i = 0; i < steps_.size(); ++i) T_base_link[i] = T_base_root * T_base_link[i];
+  T_base_link[base_] = Pose::Identity();
+}
+
+void LinkPoseCache::read(const ChainModel& model) {
+  std::call_once(once_, [&] {
+    joints_ = read_link_joints(model.urdf);
+    plain_ = std::make_unique<const LinkPoses>(model, joints_, Values{});
+  });
+}
+
+}  // namespace iksel

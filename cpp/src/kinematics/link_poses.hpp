@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Forward kinematics of all links of a URDF, on the chain or not.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "iksel/types.hpp"
+#include "urdf/link_joints.hpp"
+
+namespace iksel {
+
+class ChainModel;
+
+/// The links of a URDF as one arm moves them, the other joints held.
+class LinkPoses {
+ public:
+  /// Throws UnknownNameError or InvalidArgumentError naming a bad entry of `other_joints`.
+  LinkPoses(const ChainModel& model, const std::vector<LinkJoint>& joints,
+            const std::map<std::string, double>& other_joints);
+
+  /// Poses of all links in the base link's frame.
+  void at(const double* q, Pose* T_base_link) const;
+
+ private:
+  struct Step {
+    int parent;
+    Eigen::Isometry3d origin;  ///< what is held is part of it
+    Eigen::Vector3d axis;
+    bool prismatic;
+    int variable;  ///< -1: held
+    double multiplier, offset;
+  };
+  std::vector<Step> steps_;
+  std::size_t base_;
+};
+
+/// Reads the URDF when it is first asked for.
+class LinkPoseCache {
+ public:
+  template <class Use>
+  void with(const ChainModel& model, const std::map<std::string, double>& other_joints,
+            const Use& use) {
+    read(model);
+    if (other_joints.empty()) return use(*plain_);
+    use(LinkPoses(model, joints_, other_joints));
+  }
+
+ private:
+  void read(const ChainModel& model);
+
+  std::once_flag once_;
+  std::vector<LinkJoint> joints_;
+  std::unique_ptr<const LinkPoses> plain_;  ///< without values of other joints
+};
+
+}  // namespace iksel

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "request_keywords.hpp"
+
+#include <optional>
+#include <string>
+
+#include "angle_warning.hpp"
+#include "array_checks.hpp"
+#include "filter.hpp"
+#include "iksel/path.hpp"
+#include "objective.hpp"
+#include "task_fields.hpp"
+
+namespace iksel::python {
+
+namespace {
+
+/// Configurations, one or an (N, dof) array of them.
+std::vector<JointVector> as_seeds(py::handle value, const char* name, int dof) {
+  const DoubleArray array = as_doubles(value, name);
+  if (array.ndim() == 1 && array.shape(0) == dof) return {as_joints(array, dof, name)};
+  if (array.ndim() != 2 || array.shape(1) != dof) {
+    const std::string n = std::to_string(dof);
+    throw_wrong_shape(name, "a (" + n + ",) or (N, " + n + ") array", array);
+  }
+  std::vector<JointVector> seeds;
+  seeds.reserve(static_cast<std::size_t>(array.shape(0)));
+  for (py::ssize_t i = 0; i < array.shape(0); ++i) {
+    check_finite(array.data(i), dof, std::string(name) + "[" + std::to_string(i) + "]");
+    seeds.emplace_back(Eigen::Map<const Eigen::VectorXd>(array.data(i), dof));
+  }
+  return seeds;
+}
+
+}  // namespace
+
+struct ShownAsNone {
+  template <class T>
+  static py::object shown(const T& /*value*/) {
+    return py::none();
+  }
+};
+
+template <>
+struct ArgumentOf<JointVector> : ShownAsNone {
+  static std::string text() { return "numpy.typing.ArrayLike"; }
+  static JointVector read(py::handle given, const char* name, int dof) {
+    return as_joints(given, dof, name);
+  }
+};
+
+template <>
+struct ArgumentOf<std::vector<JointVector>> : ShownAsNone {
+  static std::string text() { return "numpy.typing.ArrayLike"; }
+  static std::vector<JointVector> read(py::handle given, const char* name, int dof) {
+    return as_seeds(given, name, dof);
+  }
+};
+
+template <>
+struct ArgumentOf<Filter> : ShownAsNone {
+  static std::string text() {
+    return "collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], object]";
+  }
+  static Filter read(py::handle given, const char* /*name*/, int dof) {
+    return make_filter(given, dof);
+  }
+};
+
+template <>
+struct ArgumentOf<Objective> : ShownAsNone {
+  static std::string text() {
+    return "iksel_cpp.Objective | str | collections.abc.Callable[[numpy.ndarray], float]";
+  }
+  static Objective read(py::handle given, const char* /*name*/, int /*dof*/) {
+    return as_objective(given);
+  }
+};
+
+template <class T>
+struct ArgumentOf<std::optional<T>> : ShownAsNone {
+  static std::string text() { return ArgumentOf<T>::text(); }
+  static std::optional<T> read(py::handle given, const char* name, int dof) {
+    return ArgumentOf<T>::read(given, name, dof);
+  }
+};
+
+/// No Python enum, see EnumTable.
+template <>
+struct ArgumentOf<OnInvalidPose> {
+  static std::string text() { return "typing.Literal['status', 'raise']"; }
+  static OnInvalidPose read(py::handle given, const char* name, int /*dof*/) {
+    return from_python<OnInvalidPose>(given, name);
+  }
+  static py::object shown(OnInvalidPose value) { return py::str(enum_name(value)); }
+};
+
+constexpr const char* kWeightsDoc =
+    "factor on each joint's part of a move, (dof,), >= 0; None: all 1.";
+constexpr const char* kNormDoc = "how a move is measured.";
+constexpr const char* kFilterDoc =
+    "called with candidates (n, dof), each at the pose and inside the limits; returns n truth "
+    "values. The search goes on within its bounds while all are refused. In a batch it is asked "
+    "about the first answers of up to 256 targets at once, along a path about one waypoint's.";
+
+std::vector<Keyword> request_keywords() {
+  using R = SolveRequest;
+  return {
+      keyword("near", &R::near,
+              "configuration to stay near, (dof,) [rad or m], for a batch also (N, dof), one for "
+              "each target; may lie outside the limits. The answer is the one with the smallest "
+              "joint move of all that are found, whole turns considered; a redundant arm's has "
+              "slid along its self-motion to where the move is smallest. Angles here, in `seeds` "
+              "and in a posture that are too large for a double to tell poses apart to a tenth "
+              "of the tolerances are refused: 1.5e8 rad for an arm of six joints and 1 m at the "
+              "default tolerances, never less than 100 rad."),
+      keyword("weights", &R::weights, kWeightsDoc),
+      keyword("norm", &R::norm, kNormDoc),
+      keyword("seeds", &R::seeds,
+              "joint values to iterate from, (dof,) or (N, dof) [rad or m]; may lie outside the "
+              "limits. They are ranked as the database's seeds, and tried before them: up to "
+              "max_attempts, and as many of the database's on top."),
+      keyword("database_seeds", &R::database_seeds,
+              "whether the database's seeds follow the given ones."),
+      keyword("filter", &R::filter, kFilterDoc),
+      keyword("deadline", &R::deadline,
+              "wall-clock time after which the search for a target ends [s]; checked between its "
+              "stages."),
+      keyword("task", &R::task,
+              "what of the pose has to be reached; None: what the solver's options say."),
+      keyword("objective", &R::objective,
+              "what the answer is to be good at besides: an Objective, 'limits', "
+              "'manipulability', or a function of joint values (dof,) that returns a cost. Comes "
+              "before `near`. Of the answers found, the cheapest; a redundant arm's has slid to "
+              "a local minimum."),
+      keyword("on_invalid_pose", &R::on_invalid_pose,
+              "what a row does that is no pose (see check_pose): \"status\", "
+              "Status.invalid_pose for it and NaN for its q; \"raise\", an error that names the "
+              "first, and none is solved."),
+  };
+}
+
+std::vector<Keyword> solve_all_keywords() {
+  using O = SolveAllOptions;
+  std::vector<Keyword> all = {
+      keyword("max", &O::max, "solutions given at most."),
+      keyword("min_distance", &O::min_distance,
+              "solutions that differ by less in every joint are one [rad or m]."),
+      keyword("whole_turns", &O::whole_turns,
+              "whether copies by whole turns inside the limits count as solutions of their own; "
+              "otherwise each comes once, at the turn nearest to `near` or to the middle of the "
+              "limits."),
+      keyword("order", &O::order, "what comes first."),
+  };
+  for (const Keyword& each : request_keywords()) all.push_back(each);
+  return all;
+}
+
+std::vector<Keyword> path_keywords() {
+  using O = PathOptions;
+  return {
+      keyword("start", &O::start,
+              "where the arm is one time step before the first waypoint, (dof,) [rad or m]; "
+              "None: the path may begin anywhere, and of its copies by whole turns the one that "
+              "begins nearest to the middle of the limits is taken."),
+      keyword("dt", &O::dt,
+              "time from one waypoint to the next [s], in which no joint moves farther than its "
+              "velocity limit allows; 0: speeds are not limited."),
+      keyword("weights", &O::weights, kWeightsDoc),
+      keyword("norm", &O::norm, kNormDoc),
+      keyword("filter", &O::filter, kFilterDoc),
+      keyword("candidates", &O::candidates, "candidates kept per waypoint at most."),
+  };
+}
+
+SolveRequest read_request(const Solver& solver, const Given& given, const char* except) {
+  auto request = given.read<SolveRequest>(solver.robot().dof(), except);
+  if (request.near) warn_of_degrees(solver.robot(), {*request.near}, "near");
+  warn_of_degrees(solver.robot(), request.seeds, "seeds");
+  return request;
+}
+
+}  // namespace iksel::python

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The keywords of Solver's methods, as iksel/request.hpp and iksel/path.hpp declare them.
+#pragma once
+
+#include <vector>
+
+#include "iksel/request.hpp"
+#include "iksel/solver.hpp"
+#include "keywords.hpp"
+
+namespace iksel::python {
+
+/// Of SolveRequest.
+std::vector<Keyword> request_keywords();
+/// Of SolveAllOptions and SolveRequest.
+std::vector<Keyword> solve_all_keywords();
+/// Of PathOptions.
+std::vector<Keyword> path_keywords();
+
+/// The request that keywords ask for, but for the field `except`; warns of angles that look like
+/// degrees.
+SolveRequest read_request(const Solver& solver, const Given& given, const char* except = "");
+
+/// The task of a request, or else the solver's.
+inline const Task& task_of(const Solver& solver, const SolveRequest& request) {
+  return request.task ? *request.task : solver.options().task;
+}
+
+}  // namespace iksel::python

@@ -53,12 +53,17 @@ def solver_options(preset: str, overrides: dict[str, Any]) -> iksel.SolverOption
         for name, value in overrides.items()
         if name.startswith(DATABASE)
     }
-    solver = {
+    rest = {
         name: value
         for name, value in overrides.items()
         if not name.startswith(DATABASE)
     }
-    return options.replace(database=options.database.replace(**database), **solver)
+    strategy = {name: rest.pop(name) for name in [*rest] if hasattr(iksel.Paper, name)}
+    return options.replace(
+        database=options.database.replace(**database),
+        strategy=options.strategy.replace(**strategy),
+        **rest,
+    )
 
 
 def command_line(settings: Settings) -> str:

@@ -34,7 +34,7 @@ def singular_first(solver: iksel.Solver, poses: Array) -> dict[str, Any]:
     first = 0
     among = 0.0
     for pose in poses:
-        near = database.nearest(pose, options.neighbours)
+        near = database.nearest(pose, options.strategy.neighbours)
         inverses = np.array([database.pseudo_inverse(i) for i in near])
         differences = _keys(pose) - _keys(np.array([database.pose(i) for i in near]))
         adjustments = np.einsum("kij,kj->ki", inverses, differences)

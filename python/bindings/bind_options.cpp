@@ -21,10 +21,19 @@ void bind_options(py::module_& m) {
   database.def("validate", &DatabaseOptions::validate,
                "Raises InvalidArgumentError naming the first option out of range.");
 
+  // Immutable, so that nobody changes the copy that SolverOptions.strategy is.
+  bind_fields<Lanes>(m, FieldClass::immutable)
+      .def("validate", &Lanes::validate,
+           "Raises InvalidArgumentError naming the first option out of range.");
+  bind_fields<Paper>(m, FieldClass::immutable)
+      .def("validate", &Paper::validate,
+           "Raises InvalidArgumentError naming the first option that is out of range, or that is "
+           "set though nothing reads it.");
+
   auto solver = bind_fields<SolverOptions>(m, FieldClass::options);
   solver.def_static("paper", &SolverOptions::paper,
-                    "The paper's setting: medium grid, k = 200, best 20, Eq. (5), one "
-                    "re-selection, DLS, 1e-4 m and 1e-3 rad.");
+                    "The paper's setting: medium grid, the defaults of Paper, one re-selection, "
+                    "1e-4 m and 1e-3 rad.");
   solver.def("validate", &SolverOptions::validate,
              "Raises InvalidArgumentError naming the first option out of range.");
 }

@@ -43,8 +43,10 @@ py::object wrap(Owned self, const StructType& type) {
     names.emplace_back(field.name);
     possible += (possible.empty() ? "" : ", ") + std::string(field.name);
   }
+  const std::string hint = type.hint == nullptr ? "" : type.hint(name);
   throw SignatureError(std::string(type.name) + ": no field '" + name + "'" +
-                       did_you_mean(name, names) + "; possible: " + possible);
+                       (hint.empty() ? did_you_mean(name, names) : hint) +
+                       "; possible: " + possible);
 }
 
 /// Signature and text of a method that takes all fields as keywords.

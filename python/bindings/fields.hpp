@@ -40,6 +40,8 @@ struct StructType {
   void (*destroy)(void* self);
   /// Throws InvalidArgumentError naming the first field out of range.
   void (*validate)(const void* self);
+  /// What else to say about a name that is no field; may be null.
+  std::string (*hint)(const std::string& name);
 };
 
 /// Specialised for every struct: kName, kDoc, fields() as a vector of Field.
@@ -56,6 +58,20 @@ struct CanValidate : std::false_type {};
 template <class T>
 struct CanValidate<T, std::void_t<decltype(std::declval<const T&>().validate())>> : std::true_type {
 };
+
+template <class T, class = void>
+struct HasHint : std::false_type {};
+template <class T>
+struct HasHint<T, std::void_t<decltype(&FieldTable<T>::hint)>> : std::true_type {};
+
+template <class Struct>
+auto hint_of() -> std::string (*)(const std::string&) {
+  if constexpr (HasHint<Struct>::value) {
+    return &FieldTable<Struct>::hint;
+  } else {
+    return nullptr;
+  }
+}
 
 template <class Struct, class T>
 Field field(const char* name, T Struct::*member, const char* doc) {
@@ -75,6 +91,7 @@ const StructType& struct_type() {
       [](const void* self) {
         if constexpr (CanValidate<Struct>::value) as<Struct>(self).validate();
       },
+      hint_of<Struct>(),
   };
   return type;
 }

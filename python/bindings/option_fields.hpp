@@ -2,6 +2,9 @@
 // The fields of the option structs, as iksel/options.hpp declares them.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "fields.hpp"
 #include "iksel/options.hpp"
 #include "task_fields.hpp"
@@ -38,43 +41,57 @@ struct FieldTable<DatabaseOptions> {
 };
 
 template <>
-struct FieldTable<SolverOptions> {
-  using O = SolverOptions;
-  static constexpr const char* kName = "SolverOptions";
+struct FieldTable<Lanes> {
+  using O = Lanes;
+  static constexpr const char* kName = "Lanes";
   static constexpr const char* kDoc =
-      "All settings of a Solver. SolverOptions() is the recommended preset, SolverOptions.paper() "
-      "the paper. Enums may be given by name, as in iteration='dls'.";
+      "The recommended strategy: seeds in SIMD lanes, many at once, by Levenberg-Marquardt with "
+      "the "
+      "limits inside the step. Over a database with a full key, and for chains with mimic joints, "
+      "the same scheme takes one seed at a time.";
   static std::vector<Field> fields() {
     return {
-        field("position_tolerance", &O::position_tolerance,
-              "An answer's position is at most this far from the target's [m]."),
-        field("rotation_tolerance", &O::rotation_tolerance,
-              "An answer's rotation vector error is at most this long [rad]."),
-        field("task", &O::task,
-              "What of a pose has to be reached: all of it, or a box with free axes."),
-        field("database", &O::database,
-              "Database that a solver builds for itself when it is given none."),
         field("neighbours", &O::neighbours,
-              "Neighbours asked from the KD-tree (k); lanes take them in widening stages."),
+              "Samples nearest to the target that are tried before seeds at random."),
+        field("damping", &O::damping, "Factor on |e|^2, which is added to the diagonal of J J^T."),
+    };
+  }
+};
+
+template <>
+struct FieldTable<Paper> {
+  using O = Paper;
+  static constexpr const char* kName = "Paper";
+  static constexpr const char* kDoc =
+      "The pipeline of the paper: query, rank, iterate, re-select, one seed at a time. The "
+      "defaults "
+      "are the paper's. Enums may be given by name, as in iteration='dls'. A field that the chosen "
+      "scheme does not read has to be at its default.";
+  static std::vector<Field> fields() {
+    return {
+        field("neighbours", &O::neighbours, "Neighbours asked from the KD-tree (k)."),
         field("ranking", &O::ranking, "How the neighbours are put in order."),
         field("rotation_difference", &O::rotation_difference,
-              "The rotation part of x_target - x_i in Eq. (4)."),
+              "The rotation part of x_target - x_i in Eq. (4); read where seeds are ranked by "
+              "Eq. (5) or limit-aware."),
         field("limit_aware", &O::limit_aware,
               "Rank candidates whose predicted q + J^+ e leaves the limits behind all others."),
-        field("candidates", &O::candidates, "Best candidates kept after ranking."),
+        field("candidates", &O::candidates,
+              "Best candidates kept after ranking; read unless re-selection is 'none'."),
         field("reselection", &O::reselection, "Which seed follows a failed one."),
-        field("max_attempts", &O::max_attempts,
-              "Seeds tried at most: 1 + the number of re-selections. Given seeds come on top."),
         field("iteration", &O::iteration, "Scheme of numerical iteration."),
-        field("max_iterations", &O::max_iterations, "Steps per attempt at most."),
         field("damping", &O::damping,
-              "dls: added to J J^T; 0: truncated least squares. lm: factor on |e|^2."),
+              "dls: added to J J^T; 0: truncated least squares. lm: factor on |e|^2. Read by these "
+              "two."),
         field("pinv_cutoff", &O::pinv_cutoff,
-              "Singular values below this part of the largest are cut off (truncated solves)."),
+              "Singular values below this part of the largest are cut off (dls, pinv, pinv_rr, "
+              "cwpi)."),
         field("position_clamp", &O::position_clamp,
-              "The position error fed to one step is shortened to at most this [m]."),
+              "The position error fed to one step is shortened to at most this [m]; by all but "
+              "lm."),
         field("rotation_clamp", &O::rotation_clamp,
-              "The rotation error fed to one step is shortened to at most this [rad]."),
+              "The rotation error fed to one step is shortened to at most this [rad]; by all but "
+              "lm."),
         field("growth_stop", &O::growth_stop,
               "Whether an attempt is given up when both errors have grown."),
         field("min_step", &O::min_step,
@@ -85,8 +102,57 @@ struct FieldTable<SolverOptions> {
         field("whole_turns", &O::whole_turns,
               "Bring joints with a range of more than 2 pi inside their limits by whole turns."),
         field("kinematics", &O::kinematics, "What computes FK and Jacobians."),
-        field("seed", &O::seed, "Seed of random restarts (pinv_rr).")};
+    };
   }
+};
+
+/// A strategy by its class, by its name, or as a mapping of a name and fields.
+template <>
+struct FromPython<Strategy> {
+  static Strategy convert(py::handle value, const char* name);
+};
+
+template <>
+struct ValueOf<Strategy> {
+  static constexpr bool kHasShortRepr = false;
+  static std::string attribute() { return "iksel_cpp.Lanes | iksel_cpp.Paper"; }
+  static std::string argument() {
+    return attribute() + " | str | collections.abc.Mapping[str, object]";
+  }
+  /// A copy: what is held may be of the other class later.
+  static py::object get(const Strategy& value, py::handle owner);
+  static py::object to_plain(const Strategy& value);
+  static std::string repr(const Strategy& value);
+  static bool equal(const Strategy& a, const Strategy& b);
+};
+
+template <>
+struct FieldTable<SolverOptions> {
+  using O = SolverOptions;
+  static constexpr const char* kName = "SolverOptions";
+  static constexpr const char* kDoc =
+      "All settings of a Solver. SolverOptions() is the recommended preset, SolverOptions.paper() "
+      "the paper. What only one strategy reads is a field of that: "
+      "SolverOptions(strategy=Paper(iteration='dls')).";
+  static std::vector<Field> fields() {
+    return {
+        field("position_tolerance", &O::position_tolerance,
+              "An answer's position is at most this far from the target's [m]."),
+        field("rotation_tolerance", &O::rotation_tolerance,
+              "An answer's rotation vector error is at most this long [rad]."),
+        field("task", &O::task,
+              "What of a pose has to be reached: all of it, or a box with free axes."),
+        field("max_attempts", &O::max_attempts,
+              "Seeds tried at most: 1 + the number of re-selections. Given seeds come on top."),
+        field("max_iterations", &O::max_iterations, "Steps per attempt at most."),
+        field("seed", &O::seed, "Seed of random restarts."),
+        field("database", &O::database,
+              "Database that a solver builds for itself when it is given none."),
+        field("strategy", &O::strategy, "How seeds are selected and iterated: Lanes or Paper."),
+    };
+  }
+  /// Where a field of a strategy belongs.
+  static std::string hint(const std::string& name);
 };
 
 }  // namespace iksel::python

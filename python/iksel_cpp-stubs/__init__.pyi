@@ -14,7 +14,7 @@ import numpy
 import numpy.typing
 import os
 import typing
-__all__: list[str] = ['AngleUnitWarning', 'Axis', 'BatchResult', 'Cause', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'Diagnosis', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'KeyScheme', 'Kinematics', 'LinkTree', 'LinkTreeJoint', 'MoveNorm', 'Objective', 'ObjectiveKind', 'PathResult', 'RIGID_TOLERANCE', 'Ranking', 'Reselection', 'Result', 'Robot', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'SignatureError', 'SolutionOrder', 'Solutions', 'Solver', 'SolverOptions', 'Status', 'Task', 'TaskFrame', 'Tracker', 'UnknownNameError', 'UrdfError', 'check_pose', 'evaluate', 'grid_counts', 'orthonormalized', 'pose_error', 'pose_matrices', 'rigid_deviation', 'simd_level', 'time_kdl_fk_jacobian']
+__all__: list[str] = ['AngleUnitWarning', 'Axis', 'BatchResult', 'Cause', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'Diagnosis', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'KeyScheme', 'Kinematics', 'Lanes', 'LinkTree', 'LinkTreeJoint', 'MoveNorm', 'Objective', 'ObjectiveKind', 'Paper', 'PathResult', 'RIGID_TOLERANCE', 'Ranking', 'Reselection', 'Result', 'Robot', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'SignatureError', 'SolutionOrder', 'Solutions', 'Solver', 'SolverOptions', 'Status', 'Task', 'TaskFrame', 'Tracker', 'UnknownNameError', 'UrdfError', 'check_pose', 'evaluate', 'grid_counts', 'orthonormalized', 'pose_error', 'pose_matrices', 'rigid_deviation', 'simd_level', 'time_kdl_fk_jacobian']
 class AngleUnitWarning(UserWarning):
     """
     Angles that look like degrees were given where radians are meant.
@@ -736,46 +736,20 @@ class DatabaseOptions:
     @threads.setter
     def threads(self, value: int) -> None:
         ...
-class SolverOptions:
+class Lanes:
     """
-    All settings of a Solver. SolverOptions() is the recommended preset, SolverOptions.paper() the paper. Enums may be given by name, as in iteration='dls'.
+    The recommended strategy: seeds in SIMD lanes, many at once, by Levenberg-Marquardt with the limits inside the step. Over a database with a full key, and for chains with mimic joints, the same scheme takes one seed at a time.
     """
     __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
-    @staticmethod
-    def paper() -> SolverOptions:
-        """
-        The paper's setting: medium grid, k = 200, best 20, Eq. (5), one re-selection, DLS, 1e-4 m and 1e-3 rad.
-        """
     def __eq__(self, other: object) -> bool:
         ...
-    def __init__(self, *, position_tolerance: float = 1e-06, rotation_tolerance: float = 1e-06, task: Task | collections.abc.Mapping[str, typing.Any] = ..., database: DatabaseOptions | collections.abc.Mapping[str, typing.Any] = ..., neighbours: int = 200, ranking: Ranking | str = 'joint_adjustment', rotation_difference: RotationDifference | str = 'geodesic', limit_aware: bool = True, candidates: int = 100, reselection: Reselection | str = 'farthest', max_attempts: int = 1024, iteration: Iteration | str = 'lm', max_iterations: int = 20, damping: float = 0.001, pinv_cutoff: float = 0.0001, position_clamp: float = 0.1, rotation_clamp: float = 0.3141592653589793, growth_stop: GrowthStop | str = 'by_scheme', min_step: float = 1e-06, limit_margin: float = 0.1, whole_turns: bool = True, kinematics: Kinematics | str = 'kernel', seed: int = 0) -> None:
+    def __init__(self, *, neighbours: int = 200, damping: float = 0.001) -> None:
         """
         Fields that are not given keep their default.
 
         Args:
-            position_tolerance: An answer's position is at most this far from the target's [m].
-            rotation_tolerance: An answer's rotation vector error is at most this long [rad].
-            task: What of a pose has to be reached: all of it, or a box with free axes.
-            database: Database that a solver builds for itself when it is given none.
-            neighbours: Neighbours asked from the KD-tree (k); lanes take them in widening stages.
-            ranking: How the neighbours are put in order.
-            rotation_difference: The rotation part of x_target - x_i in Eq. (4).
-            limit_aware: Rank candidates whose predicted q + J^+ e leaves the limits behind all others.
-            candidates: Best candidates kept after ranking.
-            reselection: Which seed follows a failed one.
-            max_attempts: Seeds tried at most: 1 + the number of re-selections. Given seeds come on top.
-            iteration: Scheme of numerical iteration.
-            max_iterations: Steps per attempt at most.
-            damping: dls: added to J J^T; 0: truncated least squares. lm: factor on |e|^2.
-            pinv_cutoff: Singular values below this part of the largest are cut off (truncated solves).
-            position_clamp: The position error fed to one step is shortened to at most this [m].
-            rotation_clamp: The rotation error fed to one step is shortened to at most this [rad].
-            growth_stop: Whether an attempt is given up when both errors have grown.
-            min_step: An attempt ends when |sum of the step| is below this (dls, pinv, pinv_rr) [rad or m].
-            limit_margin: Part of a joint's range, at each end, in which cwln and cwpi hold it back.
-            whole_turns: Bring joints with a range of more than 2 pi inside their limits by whole turns.
-            kinematics: What computes FK and Jacobians.
-            seed: Seed of random restarts (pinv_rr).
+            neighbours: Samples nearest to the target that are tried before seeds at random.
+            damping: Factor on |e|^2, which is added to the diagonal of J J^T.
 
         Raises:
             SignatureError: a keyword that is no field.
@@ -783,34 +757,13 @@ class SolverOptions:
         """
     def __repr__(self) -> str:
         ...
-    def replace(self, *, position_tolerance: float = ..., rotation_tolerance: float = ..., task: Task | collections.abc.Mapping[str, typing.Any] = ..., database: DatabaseOptions | collections.abc.Mapping[str, typing.Any] = ..., neighbours: int = ..., ranking: Ranking | str = ..., rotation_difference: RotationDifference | str = ..., limit_aware: bool = ..., candidates: int = ..., reselection: Reselection | str = ..., max_attempts: int = ..., iteration: Iteration | str = ..., max_iterations: int = ..., damping: float = ..., pinv_cutoff: float = ..., position_clamp: float = ..., rotation_clamp: float = ..., growth_stop: GrowthStop | str = ..., min_step: float = ..., limit_margin: float = ..., whole_turns: bool = ..., kinematics: Kinematics | str = ..., seed: int = ...) -> SolverOptions:
+    def replace(self, *, neighbours: int = ..., damping: float = ...) -> Lanes:
         """
         A copy in which the given fields have another value.
 
         Args:
-            position_tolerance: An answer's position is at most this far from the target's [m].
-            rotation_tolerance: An answer's rotation vector error is at most this long [rad].
-            task: What of a pose has to be reached: all of it, or a box with free axes.
-            database: Database that a solver builds for itself when it is given none.
-            neighbours: Neighbours asked from the KD-tree (k); lanes take them in widening stages.
-            ranking: How the neighbours are put in order.
-            rotation_difference: The rotation part of x_target - x_i in Eq. (4).
-            limit_aware: Rank candidates whose predicted q + J^+ e leaves the limits behind all others.
-            candidates: Best candidates kept after ranking.
-            reselection: Which seed follows a failed one.
-            max_attempts: Seeds tried at most: 1 + the number of re-selections. Given seeds come on top.
-            iteration: Scheme of numerical iteration.
-            max_iterations: Steps per attempt at most.
-            damping: dls: added to J J^T; 0: truncated least squares. lm: factor on |e|^2.
-            pinv_cutoff: Singular values below this part of the largest are cut off (truncated solves).
-            position_clamp: The position error fed to one step is shortened to at most this [m].
-            rotation_clamp: The rotation error fed to one step is shortened to at most this [rad].
-            growth_stop: Whether an attempt is given up when both errors have grown.
-            min_step: An attempt ends when |sum of the step| is below this (dls, pinv, pinv_rr) [rad or m].
-            limit_margin: Part of a joint's range, at each end, in which cwln and cwpi hold it back.
-            whole_turns: Bring joints with a range of more than 2 pi inside their limits by whole turns.
-            kinematics: What computes FK and Jacobians.
-            seed: Seed of random restarts (pinv_rr).
+            neighbours: Samples nearest to the target that are tried before seeds at random.
+            damping: Factor on |e|^2, which is added to the diagonal of J J^T.
 
         Raises:
             SignatureError: a keyword that is no field.
@@ -825,21 +778,222 @@ class SolverOptions:
         Raises InvalidArgumentError naming the first option out of range.
         """
     @property
+    def damping(self) -> float:
+        """
+        Factor on |e|^2, which is added to the diagonal of J J^T.
+        """
+    @property
+    def neighbours(self) -> int:
+        """
+        Samples nearest to the target that are tried before seeds at random.
+        """
+class Paper:
+    """
+    The pipeline of the paper: query, rank, iterate, re-select, one seed at a time. The defaults are the paper's. Enums may be given by name, as in iteration='dls'. A field that the chosen scheme does not read has to be at its default.
+    """
+    __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
+    def __eq__(self, other: object) -> bool:
+        ...
+    def __init__(self, *, neighbours: int = 200, ranking: Ranking | str = 'joint_adjustment', rotation_difference: RotationDifference | str = 'rotation_vector', limit_aware: bool = False, candidates: int = 20, reselection: Reselection | str = 'farthest', iteration: Iteration | str = 'dls', damping: float = 0.0, pinv_cutoff: float = 0.0001, position_clamp: float = 0.1, rotation_clamp: float = 0.3141592653589793, growth_stop: GrowthStop | str = 'by_scheme', min_step: float = 1e-06, limit_margin: float = 0.1, whole_turns: bool = False, kinematics: Kinematics | str = 'kernel') -> None:
+        """
+        Fields that are not given keep their default.
+
+        Args:
+            neighbours: Neighbours asked from the KD-tree (k).
+            ranking: How the neighbours are put in order.
+            rotation_difference: The rotation part of x_target - x_i in Eq. (4); read where seeds are ranked by Eq. (5) or limit-aware.
+            limit_aware: Rank candidates whose predicted q + J^+ e leaves the limits behind all others.
+            candidates: Best candidates kept after ranking; read unless re-selection is 'none'.
+            reselection: Which seed follows a failed one.
+            iteration: Scheme of numerical iteration.
+            damping: dls: added to J J^T; 0: truncated least squares. lm: factor on |e|^2. Read by these two.
+            pinv_cutoff: Singular values below this part of the largest are cut off (dls, pinv, pinv_rr, cwpi).
+            position_clamp: The position error fed to one step is shortened to at most this [m]; by all but lm.
+            rotation_clamp: The rotation error fed to one step is shortened to at most this [rad]; by all but lm.
+            growth_stop: Whether an attempt is given up when both errors have grown.
+            min_step: An attempt ends when |sum of the step| is below this (dls, pinv, pinv_rr) [rad or m].
+            limit_margin: Part of a joint's range, at each end, in which cwln and cwpi hold it back.
+            whole_turns: Bring joints with a range of more than 2 pi inside their limits by whole turns.
+            kinematics: What computes FK and Jacobians.
+
+        Raises:
+            SignatureError: a keyword that is no field.
+            InvalidArgumentError: a value of the wrong type or out of range.
+        """
+    def __repr__(self) -> str:
+        ...
+    def replace(self, *, neighbours: int = ..., ranking: Ranking | str = ..., rotation_difference: RotationDifference | str = ..., limit_aware: bool = ..., candidates: int = ..., reselection: Reselection | str = ..., iteration: Iteration | str = ..., damping: float = ..., pinv_cutoff: float = ..., position_clamp: float = ..., rotation_clamp: float = ..., growth_stop: GrowthStop | str = ..., min_step: float = ..., limit_margin: float = ..., whole_turns: bool = ..., kinematics: Kinematics | str = ...) -> Paper:
+        """
+        A copy in which the given fields have another value.
+
+        Args:
+            neighbours: Neighbours asked from the KD-tree (k).
+            ranking: How the neighbours are put in order.
+            rotation_difference: The rotation part of x_target - x_i in Eq. (4); read where seeds are ranked by Eq. (5) or limit-aware.
+            limit_aware: Rank candidates whose predicted q + J^+ e leaves the limits behind all others.
+            candidates: Best candidates kept after ranking; read unless re-selection is 'none'.
+            reselection: Which seed follows a failed one.
+            iteration: Scheme of numerical iteration.
+            damping: dls: added to J J^T; 0: truncated least squares. lm: factor on |e|^2. Read by these two.
+            pinv_cutoff: Singular values below this part of the largest are cut off (dls, pinv, pinv_rr, cwpi).
+            position_clamp: The position error fed to one step is shortened to at most this [m]; by all but lm.
+            rotation_clamp: The rotation error fed to one step is shortened to at most this [rad]; by all but lm.
+            growth_stop: Whether an attempt is given up when both errors have grown.
+            min_step: An attempt ends when |sum of the step| is below this (dls, pinv, pinv_rr) [rad or m].
+            limit_margin: Part of a joint's range, at each end, in which cwln and cwpi hold it back.
+            whole_turns: Bring joints with a range of more than 2 pi inside their limits by whole turns.
+            kinematics: What computes FK and Jacobians.
+
+        Raises:
+            SignatureError: a keyword that is no field.
+            InvalidArgumentError: a value of the wrong type or out of range.
+        """
+    def to_dict(self) -> dict[str, typing.Any]:
+        """
+        All fields by name as plain Python data, with the names of enums in their place.
+        """
+    def validate(self) -> None:
+        """
+        Raises InvalidArgumentError naming the first option that is out of range, or that is set though nothing reads it.
+        """
+    @property
     def candidates(self) -> int:
         """
-        Best candidates kept after ranking.
+        Best candidates kept after ranking; read unless re-selection is 'none'.
         """
-    @candidates.setter
-    def candidates(self, value: int) -> None:
-        ...
     @property
     def damping(self) -> float:
         """
-        dls: added to J J^T; 0: truncated least squares. lm: factor on |e|^2.
+        dls: added to J J^T; 0: truncated least squares. lm: factor on |e|^2. Read by these two.
         """
-    @damping.setter
-    def damping(self, value: float) -> None:
+    @property
+    def growth_stop(self) -> GrowthStop:
+        """
+        Whether an attempt is given up when both errors have grown.
+        """
+    @property
+    def iteration(self) -> Iteration:
+        """
+        Scheme of numerical iteration.
+        """
+    @property
+    def kinematics(self) -> Kinematics:
+        """
+        What computes FK and Jacobians.
+        """
+    @property
+    def limit_aware(self) -> bool:
+        """
+        Rank candidates whose predicted q + J^+ e leaves the limits behind all others.
+        """
+    @property
+    def limit_margin(self) -> float:
+        """
+        Part of a joint's range, at each end, in which cwln and cwpi hold it back.
+        """
+    @property
+    def min_step(self) -> float:
+        """
+        An attempt ends when |sum of the step| is below this (dls, pinv, pinv_rr) [rad or m].
+        """
+    @property
+    def neighbours(self) -> int:
+        """
+        Neighbours asked from the KD-tree (k).
+        """
+    @property
+    def pinv_cutoff(self) -> float:
+        """
+        Singular values below this part of the largest are cut off (dls, pinv, pinv_rr, cwpi).
+        """
+    @property
+    def position_clamp(self) -> float:
+        """
+        The position error fed to one step is shortened to at most this [m]; by all but lm.
+        """
+    @property
+    def ranking(self) -> Ranking:
+        """
+        How the neighbours are put in order.
+        """
+    @property
+    def reselection(self) -> Reselection:
+        """
+        Which seed follows a failed one.
+        """
+    @property
+    def rotation_clamp(self) -> float:
+        """
+        The rotation error fed to one step is shortened to at most this [rad]; by all but lm.
+        """
+    @property
+    def rotation_difference(self) -> RotationDifference:
+        """
+        The rotation part of x_target - x_i in Eq. (4); read where seeds are ranked by Eq. (5) or limit-aware.
+        """
+    @property
+    def whole_turns(self) -> bool:
+        """
+        Bring joints with a range of more than 2 pi inside their limits by whole turns.
+        """
+class SolverOptions:
+    """
+    All settings of a Solver. SolverOptions() is the recommended preset, SolverOptions.paper() the paper. What only one strategy reads is a field of that: SolverOptions(strategy=Paper(iteration='dls')).
+    """
+    __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
+    @staticmethod
+    def paper() -> SolverOptions:
+        """
+        The paper's setting: medium grid, the defaults of Paper, one re-selection, 1e-4 m and 1e-3 rad.
+        """
+    def __eq__(self, other: object) -> bool:
         ...
+    def __init__(self, *, position_tolerance: float = 1e-06, rotation_tolerance: float = 1e-06, task: Task | collections.abc.Mapping[str, typing.Any] = ..., max_attempts: int = 1024, max_iterations: int = 20, seed: int = 0, database: DatabaseOptions | collections.abc.Mapping[str, typing.Any] = ..., strategy: Lanes | Paper | str | collections.abc.Mapping[str, typing.Any] = ...) -> None:
+        """
+        Fields that are not given keep their default.
+
+        Args:
+            position_tolerance: An answer's position is at most this far from the target's [m].
+            rotation_tolerance: An answer's rotation vector error is at most this long [rad].
+            task: What of a pose has to be reached: all of it, or a box with free axes.
+            max_attempts: Seeds tried at most: 1 + the number of re-selections. Given seeds come on top.
+            max_iterations: Steps per attempt at most.
+            seed: Seed of random restarts.
+            database: Database that a solver builds for itself when it is given none.
+            strategy: How seeds are selected and iterated: Lanes or Paper.
+
+        Raises:
+            SignatureError: a keyword that is no field.
+            InvalidArgumentError: a value of the wrong type or out of range.
+        """
+    def __repr__(self) -> str:
+        ...
+    def replace(self, *, position_tolerance: float = ..., rotation_tolerance: float = ..., task: Task | collections.abc.Mapping[str, typing.Any] = ..., max_attempts: int = ..., max_iterations: int = ..., seed: int = ..., database: DatabaseOptions | collections.abc.Mapping[str, typing.Any] = ..., strategy: Lanes | Paper | str | collections.abc.Mapping[str, typing.Any] = ...) -> SolverOptions:
+        """
+        A copy in which the given fields have another value.
+
+        Args:
+            position_tolerance: An answer's position is at most this far from the target's [m].
+            rotation_tolerance: An answer's rotation vector error is at most this long [rad].
+            task: What of a pose has to be reached: all of it, or a box with free axes.
+            max_attempts: Seeds tried at most: 1 + the number of re-selections. Given seeds come on top.
+            max_iterations: Steps per attempt at most.
+            seed: Seed of random restarts.
+            database: Database that a solver builds for itself when it is given none.
+            strategy: How seeds are selected and iterated: Lanes or Paper.
+
+        Raises:
+            SignatureError: a keyword that is no field.
+            InvalidArgumentError: a value of the wrong type or out of range.
+        """
+    def to_dict(self) -> dict[str, typing.Any]:
+        """
+        All fields by name as plain Python data, with the names of enums in their place.
+        """
+    def validate(self) -> None:
+        """
+        Raises InvalidArgumentError naming the first option out of range.
+        """
     @property
     def database(self) -> DatabaseOptions:
         """
@@ -847,46 +1001,6 @@ class SolverOptions:
         """
     @database.setter
     def database(self, value: DatabaseOptions | collections.abc.Mapping[str, typing.Any]) -> None:
-        ...
-    @property
-    def growth_stop(self) -> GrowthStop:
-        """
-        Whether an attempt is given up when both errors have grown.
-        """
-    @growth_stop.setter
-    def growth_stop(self, value: GrowthStop | str) -> None:
-        ...
-    @property
-    def iteration(self) -> Iteration:
-        """
-        Scheme of numerical iteration.
-        """
-    @iteration.setter
-    def iteration(self, value: Iteration | str) -> None:
-        ...
-    @property
-    def kinematics(self) -> Kinematics:
-        """
-        What computes FK and Jacobians.
-        """
-    @kinematics.setter
-    def kinematics(self, value: Kinematics | str) -> None:
-        ...
-    @property
-    def limit_aware(self) -> bool:
-        """
-        Rank candidates whose predicted q + J^+ e leaves the limits behind all others.
-        """
-    @limit_aware.setter
-    def limit_aware(self, value: bool) -> None:
-        ...
-    @property
-    def limit_margin(self) -> float:
-        """
-        Part of a joint's range, at each end, in which cwln and cwpi hold it back.
-        """
-    @limit_margin.setter
-    def limit_margin(self, value: float) -> None:
         ...
     @property
     def max_attempts(self) -> int:
@@ -905,76 +1019,12 @@ class SolverOptions:
     def max_iterations(self, value: int) -> None:
         ...
     @property
-    def min_step(self) -> float:
-        """
-        An attempt ends when |sum of the step| is below this (dls, pinv, pinv_rr) [rad or m].
-        """
-    @min_step.setter
-    def min_step(self, value: float) -> None:
-        ...
-    @property
-    def neighbours(self) -> int:
-        """
-        Neighbours asked from the KD-tree (k); lanes take them in widening stages.
-        """
-    @neighbours.setter
-    def neighbours(self, value: int) -> None:
-        ...
-    @property
-    def pinv_cutoff(self) -> float:
-        """
-        Singular values below this part of the largest are cut off (truncated solves).
-        """
-    @pinv_cutoff.setter
-    def pinv_cutoff(self, value: float) -> None:
-        ...
-    @property
-    def position_clamp(self) -> float:
-        """
-        The position error fed to one step is shortened to at most this [m].
-        """
-    @position_clamp.setter
-    def position_clamp(self, value: float) -> None:
-        ...
-    @property
     def position_tolerance(self) -> float:
         """
         An answer's position is at most this far from the target's [m].
         """
     @position_tolerance.setter
     def position_tolerance(self, value: float) -> None:
-        ...
-    @property
-    def ranking(self) -> Ranking:
-        """
-        How the neighbours are put in order.
-        """
-    @ranking.setter
-    def ranking(self, value: Ranking | str) -> None:
-        ...
-    @property
-    def reselection(self) -> Reselection:
-        """
-        Which seed follows a failed one.
-        """
-    @reselection.setter
-    def reselection(self, value: Reselection | str) -> None:
-        ...
-    @property
-    def rotation_clamp(self) -> float:
-        """
-        The rotation error fed to one step is shortened to at most this [rad].
-        """
-    @rotation_clamp.setter
-    def rotation_clamp(self, value: float) -> None:
-        ...
-    @property
-    def rotation_difference(self) -> RotationDifference:
-        """
-        The rotation part of x_target - x_i in Eq. (4).
-        """
-    @rotation_difference.setter
-    def rotation_difference(self, value: RotationDifference | str) -> None:
         ...
     @property
     def rotation_tolerance(self) -> float:
@@ -987,10 +1037,18 @@ class SolverOptions:
     @property
     def seed(self) -> int:
         """
-        Seed of random restarts (pinv_rr).
+        Seed of random restarts.
         """
     @seed.setter
     def seed(self, value: int) -> None:
+        ...
+    @property
+    def strategy(self) -> Lanes | Paper:
+        """
+        How seeds are selected and iterated: Lanes or Paper.
+        """
+    @strategy.setter
+    def strategy(self, value: Lanes | Paper | str | collections.abc.Mapping[str, typing.Any]) -> None:
         ...
     @property
     def task(self) -> Task:
@@ -999,14 +1057,6 @@ class SolverOptions:
         """
     @task.setter
     def task(self, value: Task | collections.abc.Mapping[str, typing.Any]) -> None:
-        ...
-    @property
-    def whole_turns(self) -> bool:
-        """
-        Bring joints with a range of more than 2 pi inside their limits by whole turns.
-        """
-    @whole_turns.setter
-    def whole_turns(self, value: bool) -> None:
         ...
 class Database:
     """

@@ -77,8 +77,9 @@ class Session : private Questions {
     constexpr iksel::Iteration kSchemes[] = {iksel::Iteration::dls,     iksel::Iteration::pinv,
                                              iksel::Iteration::pinv_rr, iksel::Iteration::cwln,
                                              iksel::Iteration::cwpi,    iksel::Iteration::lm};
-    options.iteration = kSchemes[dice_.pick(6)];
-    if (dice_.chance(0.3)) options.ranking = iksel::Ranking::nearest;
+    auto& paper = std::get<iksel::Paper>(options.strategy);
+    paper.iteration = kSchemes[dice_.pick(6)];
+    if (dice_.chance(0.3)) paper.ranking = iksel::Ranking::nearest;
     return options;
   }
 

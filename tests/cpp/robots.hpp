@@ -75,4 +75,10 @@ inline iksel::Result solve_from(const iksel::Solver& solver, const iksel::Pose& 
   return solver.solve(target, request);
 }
 
+/// The strategy of options that take one seed at a time; makes it the paper's if it is not.
+inline iksel::Paper& paper_of(iksel::SolverOptions& options) {
+  if (!std::holds_alternative<iksel::Paper>(options.strategy)) options.strategy = iksel::Paper{};
+  return std::get<iksel::Paper>(options.strategy);
+}
+
 }  // namespace iksel_test

@@ -36,20 +36,20 @@ TEST(Steps, AgreeWithEigensOtherDecomposition) {
     for (Eigen::Index i = 0; i < q.rows(); ++i) {
       const JacobianMatrix J = robot.jacobian(q.row(i));
       const Vector6 e = random_error(random);
-      SolverOptions options;
-      options.damping = 0;
-      options.pinv_cutoff = 0;
+      iksel::Paper scheme;
+      scheme.damping = 0;
+      scheme.pinv_cutoff = 0;
       const Eigen::VectorXd expected =
           Eigen::MatrixXd(J).completeOrthogonalDecomposition().solve(e);
       const double scale = 1e-6 * std::max(1.0, expected.norm());
       if (expected.norm() > 100) continue;  // nearly singular
-      EXPECT_LT((iksel::dls_step(J, e, options) - expected).norm(), scale) << name;
-      EXPECT_LT((iksel::pinv_step(J, e, options) - expected).norm(), scale);
-      options.damping = 0.01;
+      EXPECT_LT((iksel::dls_step(J, e, scheme) - expected).norm(), scale) << name;
+      EXPECT_LT((iksel::pinv_step(J, e, scheme) - expected).norm(), scale);
+      scheme.damping = 0.01;
       const Eigen::MatrixXd A =
           J.transpose() * J + 0.01 * Eigen::MatrixXd::Identity(robot.dof(), robot.dof());
       const Eigen::VectorXd damped = A.ldlt().solve(J.transpose() * e);
-      EXPECT_LT((iksel::dls_step(J, e, options) - damped).norm(), 1e-9);
+      EXPECT_LT((iksel::dls_step(J, e, scheme) - damped).norm(), 1e-9);
     }
   }
 }
@@ -83,11 +83,11 @@ TEST(Steps, TruncationIgnoresTheSingularDirection) {
   J.col(5) = J.col(4) * (1 + 1e-9);
   J(5, 5) = 1e-6;
   const Vector6 e = Vector6::Ones();
-  SolverOptions options;
-  options.damping = 0;
-  EXPECT_LT(iksel::dls_step(J, e, options).norm(), 10);
-  options.pinv_cutoff = 0;
-  EXPECT_GT(iksel::dls_step(J, e, options).norm(), 1e4);
+  iksel::Paper scheme;
+  scheme.damping = 0;
+  EXPECT_LT(iksel::dls_step(J, e, scheme).norm(), 10);
+  scheme.pinv_cutoff = 0;
+  EXPECT_GT(iksel::dls_step(J, e, scheme).norm(), 1e4);
 }
 
 TEST(Steps, ClampingWeightsFallToZeroAtTheLimits) {
@@ -115,11 +115,9 @@ TEST(Steps, CwlnWithAllWeightsOneIsLeastNorm) {
   const JacobianMatrix J = robot.jacobian(q);
   iksel::Random random(iksel_test::seed());
   const Vector6 e = random_error(random);
-  const JointVector expected = iksel::pinv_step(J, e, SolverOptions::paper());
-  EXPECT_LT((iksel::cwln_step(robot.model(), q, J, e, SolverOptions::paper()) - expected).norm(),
-            1e-5);
-  EXPECT_LT((iksel::cwpi_step(robot.model(), q, J, e, SolverOptions::paper()) - expected).norm(),
-            1e-9);
+  const JointVector expected = iksel::pinv_step(J, e, iksel::Paper{});
+  EXPECT_LT((iksel::cwln_step(robot.model(), q, J, e, iksel::Paper{}) - expected).norm(), 1e-5);
+  EXPECT_LT((iksel::cwpi_step(robot.model(), q, J, e, iksel::Paper{}) - expected).norm(), 1e-9);
 }
 
 TEST(Steps, CwlnPullsAJointBackFromItsLimit) {
@@ -127,8 +125,7 @@ TEST(Steps, CwlnPullsAJointBackFromItsLimit) {
   JointVector q = 0.5 * (robot.lower() + robot.upper());
   q[3] = robot.upper()[3];
   const JacobianMatrix J = robot.jacobian(q);
-  const JointVector step =
-      iksel::cwln_step(robot.model(), q, J, Vector6::Zero(), SolverOptions::paper());
+  const JointVector step = iksel::cwln_step(robot.model(), q, J, Vector6::Zero(), iksel::Paper{});
   EXPECT_LT(step[3], 0);
 }
 
@@ -158,8 +155,7 @@ TEST_P(Schemes, ConvergeFromNearBy) {
   const auto [scheme, kinematics] = GetParam();
   const Robot& robot = iksel_test::robot("irb14050");
   SolverOptions options = SolverOptions::paper();
-  options.iteration = scheme;
-  options.max_iterations = 30;
+  iksel_test::paper_of(options).iteration = scheme;
   iksel::Random random(iksel_test::seed());
   const auto kdl = robot.model().make_kdl(Pose::Identity());
   int solved = 0;
@@ -177,7 +173,8 @@ TEST_P(Schemes, ConvergeFromNearBy) {
     for (int j = 0; j < robot.dof(); ++j) q[j] += random.uniform(-0.1, 0.1);
     const iksel::IterationContext context{
         robot.model(),
-        options,
+        std::get<iksel::Paper>(options.strategy),
+        30,
         goal,
         goal.tip_target(),
         kinematics == iksel::Kinematics::kdl ? kdl.get() : nullptr,

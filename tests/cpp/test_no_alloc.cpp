@@ -66,11 +66,12 @@ TEST_P(HeapFreeSchemes, SolveWithoutTheHeap) {
     const iksel::Robot& robot = iksel_test::robot(name);
     iksel::SolverOptions options = iksel::SolverOptions::paper();
     options.database.scale = iksel::Scale::small;
-    options.iteration = GetParam();
     options.max_attempts = 10;
-    options.rotation_difference = iksel::RotationDifference::geodesic;
-    options.limit_aware = true;
-    options.whole_turns = true;
+    iksel::Paper& paper = iksel_test::paper_of(options);
+    paper.iteration = GetParam();
+    paper.rotation_difference = iksel::RotationDifference::geodesic;
+    paper.limit_aware = true;
+    paper.whole_turns = true;
     const iksel::Solver solver(robot, options);
     const Eigen::MatrixXd q = robot.random_configurations(100, iksel_test::seed());
     std::vector<iksel::Pose> targets;

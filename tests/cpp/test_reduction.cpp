@@ -137,8 +137,9 @@ TEST_P(Kinds, SolvesWhatItCanReach) {
   // The same database by the paper's pipeline, one seed at a time.
   iksel::SolverOptions options = iksel::SolverOptions::paper();
   options.database = {};
-  options.rotation_difference = iksel::RotationDifference::geodesic;
-  options.limit_aware = true;
+  iksel::Paper& paper = iksel_test::paper_of(options);
+  paper.rotation_difference = iksel::RotationDifference::geodesic;
+  paper.limit_aware = true;
   options.max_attempts = 20;
   EXPECT_GE(iksel_test::count_solved(iksel::Solver(robot, options), n / 2), n / 2 * 85 / 100 - 5);
 }

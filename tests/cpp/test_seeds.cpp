@@ -118,7 +118,7 @@ TEST(Seeds, EndAtTheDeadline) {
 TEST(Seeds, AreTriedOnceEachInAnOrderOfTheirOwn) {
   // More seeds than take part in re-selection: none is lost, whatever order they are given in.
   iksel::SolverOptions options;
-  options.candidates = 10;
+  iksel_test::paper_of(options).candidates = 10;
   const Solver solver(iksel_test::robot("cvr038"), options);
   Matrix seeds = solver.robot().random_configurations(100, iksel_test::seed());
   const Pose target = solver.robot().fk(seeds.row(0));

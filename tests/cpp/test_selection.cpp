@@ -20,11 +20,10 @@ using iksel::JointVector;
 using iksel::Ranking;
 using iksel::Reselection;
 using iksel::Robot;
-using iksel::SolverOptions;
 
 struct Bench {
   Robot robot = iksel_test::robot("irb14050");
-  SolverOptions options = SolverOptions::paper();
+  iksel::Paper paper;
   Database database = [this] {
     iksel::DatabaseOptions o;
     o.samples = 4000;
@@ -55,17 +54,17 @@ std::vector<std::size_t> reference_order(const Bench& s, const iksel::Pose& targ
   std::iota(order.begin(), order.end(), 0U);
   std::sort(order.begin(), order.end(),
             [&](std::size_t a, std::size_t b) { return distance[a] < distance[b]; });
-  order.resize(static_cast<std::size_t>(s.options.neighbours));
-  if (s.options.ranking == Ranking::joint_adjustment) {
+  order.resize(static_cast<std::size_t>(s.paper.neighbours));
+  if (s.paper.ranking == Ranking::joint_adjustment) {
     std::sort(order.begin(), order.end(),
               [&](std::size_t a, std::size_t b) { return adjustment[a] < adjustment[b]; });
   }
-  order.resize(static_cast<std::size_t>(s.options.candidates));
+  order.resize(static_cast<std::size_t>(s.paper.candidates));
   return order;
 }
 
 std::vector<JointVector> seeds(const Bench& s, const iksel::Pose& target, int attempts) {
-  iksel::Selection selection(s.robot.model(), s.robot.model(), s.database.data(), s.options);
+  iksel::Selection selection(s.robot.model(), s.robot.model(), s.database.data(), s.paper);
   selection.query(target);
   selection.rank();
   std::vector<JointVector> out;
@@ -81,8 +80,8 @@ class Rankings : public testing::TestWithParam<Ranking> {};
 
 TEST_P(Rankings, FollowThePaper) {
   Bench s;
-  s.options.ranking = GetParam();
-  s.options.reselection = Reselection::next;
+  s.paper.ranking = GetParam();
+  s.paper.reselection = Reselection::next;
   const Eigen::MatrixXd q = s.robot.random_configurations(30, iksel_test::seed());
   for (Eigen::Index i = 0; i < q.rows(); ++i) {
     const iksel::Pose target = s.bare.fk(q.row(i));
@@ -127,16 +126,16 @@ TEST(Reselection, TakesTheFarthestFromTheFailed) {
 
 TEST(Reselection, NoneTriesOneSeed) {
   Bench s;
-  s.options.reselection = Reselection::none;
+  s.paper.reselection = Reselection::none;
   const iksel::Pose target = s.bare.fk(s.robot.random_configurations(1, 1).row(0));
   EXPECT_EQ(seeds(s, target, 20).size(), 1U);
 }
 
 TEST(LimitAware, PutsSeedsThatWouldLeaveTheLimitsLast) {
   Bench s;
-  s.options.limit_aware = true;
-  s.options.reselection = Reselection::next;
-  s.options.candidates = s.options.neighbours;
+  s.paper.limit_aware = true;
+  s.paper.reselection = Reselection::next;
+  s.paper.candidates = s.paper.neighbours;
   const Eigen::MatrixXd q = s.robot.random_configurations(30, iksel_test::seed());
   int mixed = 0;
   for (Eigen::Index i = 0; i < q.rows(); ++i) {
@@ -144,7 +143,7 @@ TEST(LimitAware, PutsSeedsThatWouldLeaveTheLimitsLast) {
     bool seen_leaving = false;
     bool seen_staying = false;
     double last = -1;
-    for (const JointVector& seed : seeds(s, target, s.options.neighbours)) {
+    for (const JointVector& seed : seeds(s, target, s.paper.neighbours)) {
       // The sample is found again by its joints.
       const auto near = s.database.nearest(target, 200);
       const auto index = *std::find_if(near.begin(), near.end(),
@@ -174,7 +173,7 @@ class RotationKeys : public testing::TestWithParam<iksel::RotationKey> {};
 
 TEST_P(RotationKeys, SolveAlike) {
   const Robot& robot = iksel_test::robot("irb14050");
-  SolverOptions options = SolverOptions::paper();
+  iksel::SolverOptions options = iksel::SolverOptions::paper();
   options.database.scale = iksel::Scale::small;
   options.database.rotation_key = GetParam();
   const iksel::Solver solver(robot, options);

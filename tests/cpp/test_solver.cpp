@@ -181,7 +181,7 @@ TEST(Solver, GivesTheSameAnswersWhenItIteratesByKdl) {
   SolverOptions options = SolverOptions::paper();
   options.database.scale = iksel::Scale::small;
   const Solver kernel(robot, options);
-  options.kinematics = iksel::Kinematics::kdl;
+  iksel_test::paper_of(options).kinematics = iksel::Kinematics::kdl;
   const Solver kdl(robot, options, kernel.database());
   const Eigen::MatrixXd q = robot.random_configurations(300, iksel_test::seed());
   int same = 0;
@@ -256,8 +256,11 @@ TEST(SolverOptions, AreCheckedByName) {
   };
   EXPECT_NE(refused([](auto& o) { o.position_tolerance = 0; }).find("position_tolerance"),
             std::string::npos);
-  EXPECT_NE(refused([](auto& o) { o.neighbours = 0; }).find("neighbours"), std::string::npos);
-  EXPECT_NE(refused([](auto& o) { o.damping = std::nan(""); }).find("damping"), std::string::npos);
+  EXPECT_NE(refused([](auto& o) { o.strategy = iksel::Lanes{0}; }).find("neighbours"),
+            std::string::npos);
+  EXPECT_NE(
+      refused([](auto& o) { iksel_test::paper_of(o).damping = std::nan(""); }).find("damping"),
+      std::string::npos);
   EXPECT_NE(refused([](auto& o) { o.max_attempts = -1; }).find("max_attempts"), std::string::npos);
   EXPECT_EQ(refused([](auto& o) { o.database.samples = 100; }), "");
 }

@@ -204,8 +204,11 @@ TEST(Tasks, SolveWithEverySchemeAndByKdl) {
         iksel::Iteration::pinv_rr, iksel::Iteration::cwln, iksel::Iteration::cwpi}) {
     for (const auto kinematics : {iksel::Kinematics::kernel, iksel::Kinematics::kdl}) {
       SolverOptions options;
-      options.iteration = iteration;
-      options.kinematics = kinematics;
+      iksel::Paper& paper = iksel_test::paper_of(options);
+      paper.iteration = iteration;
+      paper.kinematics = kinematics;
+      paper.candidates = 100;
+      paper.whole_turns = true;
       options.task = Task::free_spin();
       const Solver solver(robot, options, database);
       int solved = 0;

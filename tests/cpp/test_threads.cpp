@@ -39,9 +39,9 @@ std::vector<SolverOptions> presets() {
   paper.database.sampling = iksel::Sampling::random;
   paper.database.samples = 2000;
   SolverOptions random_restarts = paper;
-  random_restarts.iteration = iksel::Iteration::pinv_rr;
+  iksel_test::paper_of(random_restarts).iteration = iksel::Iteration::pinv_rr;
   SolverOptions kdl = paper;
-  kdl.kinematics = iksel::Kinematics::kdl;
+  iksel_test::paper_of(kdl).kinematics = iksel::Kinematics::kdl;
   return {SolverOptions{}, paper, random_restarts, kdl};
 }
 
@@ -53,7 +53,7 @@ TEST(Threads, BatchGivesTheSameBits) {
     for (const SolverOptions& options : presets()) {
       const Solver solver(robot, options);
       std::vector<Result> expected;
-      if (options.iteration == iksel::Iteration::lm) {
+      if (std::holds_alternative<iksel::Lanes>(options.strategy)) {
         expected = solver.solve_batch(targets, {}, {}, 1);
       } else {
         for (const Pose& target : targets) expected.push_back(solver.solve(target));

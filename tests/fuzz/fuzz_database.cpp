@@ -10,8 +10,8 @@
 #include <iksel/iksel.hpp>
 #include <string>
 
-#include "check_answer.hpp"
 #include "base/hash.hpp"
+#include "check_answer.hpp"
 
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t room);
 

@@ -41,6 +41,8 @@ def make_samples() -> list[Any]:
         ARM,
         options,
         iksel.SolverOptions.paper(),
+        iksel.Lanes(),
+        iksel.Paper(),
         options.database,
         iksel.Task.free_spin(),
         iksel.Objective.near_posture([0.1, 0.2]),

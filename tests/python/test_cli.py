@@ -207,16 +207,21 @@ def test_solve_with_a_file_of_ones_own(run: Run, urdf: Path) -> None:
 
 
 def test_every_option_is_a_flag(run: Run) -> None:
-    words = ["solve", "ur3", "--from-q", *Q, "--json"]
+    words = ["solve", "ur3", "--from-q", *Q, "--json", "--strategy", "paper"]
     database = iksel.DatabaseOptions(samples=0, scale="small")
     options = iksel.SolverOptions(database=database).to_dict()
+    strategy = iksel.Paper().to_dict()
     renamed = {
         ("solver", "seed"): "--solver-seed",
         ("database", "seed"): "--database-seed",
         ("database", "pinv_cutoff"): "--database-pinv-cutoff",
         ("database", "threads"): "--database-threads",
     }
-    for group, fields in (("solver", options), ("database", options["database"])):
+    for group, fields in (
+        ("solver", options),
+        ("strategy", strategy),
+        ("database", options["database"]),
+    ):
         for field, value in fields.items():
             if isinstance(value, dict):
                 continue
@@ -226,6 +231,20 @@ def test_every_option_is_a_flag(run: Run) -> None:
             else:
                 words += [flag, str(value)]
     assert assert_good(run(*words)).json()["success"]
+
+
+def test_flags_that_the_strategy_does_not_read_are_refused(run: Run) -> None:
+    words = ["solve", "ur3", "--from-q", *Q]
+    answer = run(*words, "--ranking", "nearest")
+    assert answer.code == 2
+    assert "--ranking: the strategy 'lanes' does not read it" in answer.err
+    assert "--strategy paper" in answer.err
+    assert_good(run(*words, "--strategy", "paper", "--ranking", "nearest"))
+    assert_good(run(*words, "--preset", "paper", "--ranking", "nearest"))
+    assert_good(run(*words, "--neighbours", "100", "--damping", "0.01"))
+    answer = run(*words, "--preset", "paper", "--limit-margin", "0.2")
+    assert answer.code == 2
+    assert "limit_margin: only read by iteration 'cwln' and 'cwpi'" in answer.err
 
 
 def test_solve_near(run: Run, made) -> None:

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 OPTION_CLASSES = (core.DatabaseOptions, core.SolverOptions)
+STRATEGIES = (core.Lanes, core.Paper)
 # A field of each kind with another value than its default.
 CHANGES = {
     core.DatabaseOptions: {
@@ -22,15 +23,16 @@ CHANGES = {
     },
     core.SolverOptions: {
         "position_tolerance": 1e-5,
-        "neighbours": 17,
-        "limit_aware": False,
-        "iteration": "dls",
+        "max_attempts": 17,
         "database": {"samples": 123},
+        "strategy": {"name": "paper", "limit_aware": True, "iteration": "pinv"},
     },
+    core.Lanes: {"neighbours": 17, "damping": 0.5},
+    core.Paper: {"neighbours": 17, "limit_aware": True, "iteration": "pinv"},
 }
 
 
-@pytest.mark.parametrize("cls", OPTION_CLASSES)
+@pytest.mark.parametrize("cls", [*OPTION_CLASSES, *STRATEGIES])
 def test_defaults_show_nothing(cls):
     assert repr(cls()) == f"{cls.__name__}()"
     assert cls() == cls()
@@ -38,8 +40,8 @@ def test_defaults_show_nothing(cls):
 
 def test_repr_shows_what_differs():
     assert (
-        repr(core.SolverOptions(max_attempts=2, iteration="dls"))
-        == "SolverOptions(max_attempts=2, iteration='dls')"
+        repr(core.SolverOptions(max_attempts=2, strategy=core.Paper(iteration="pinv")))
+        == "SolverOptions(max_attempts=2, strategy=Paper(iteration='pinv'))"
     )
     nested = core.SolverOptions(database=core.DatabaseOptions(samples=5))
     assert repr(nested) == "SolverOptions(database=DatabaseOptions(samples=5))"
@@ -49,6 +51,21 @@ def test_repr_shows_what_differs():
 def test_repr_makes_an_equal_object(cls):
     for options in (cls(), cls.paper(), cls(**CHANGES[cls])):
         assert eval(repr(options), vars(core)) == options
+
+
+@pytest.mark.parametrize("cls", STRATEGIES)
+def test_strategies_are_values(cls):
+    strategy = cls(**CHANGES[cls])
+    assert eval(repr(strategy), vars(core)) == strategy
+    assert cls(**strategy.to_dict()) == strategy
+    assert pickle.loads(pickle.dumps(strategy)) == strategy
+    options = core.SolverOptions(strategy=strategy)
+    assert options.strategy == strategy
+    assert options.to_dict()["strategy"]["name"] == cls.__name__.lower()
+    with pytest.raises(AttributeError):
+        options.strategy.damping = 1.0
+    options.strategy = cls.__name__.lower()
+    assert options.strategy == cls()
 
 
 @pytest.mark.parametrize("cls", OPTION_CLASSES)
@@ -76,7 +93,7 @@ def test_options_are_copied_whole(cls, via):
     assert twin != options
 
 
-@pytest.mark.parametrize("cls", OPTION_CLASSES)
+@pytest.mark.parametrize("cls", [*OPTION_CLASSES, *STRATEGIES])
 def test_replace_leaves_the_original(cls):
     options = cls()
     changed = options.replace(**CHANGES[cls])
@@ -98,7 +115,11 @@ def test_every_field_makes_a_difference(cls):
         elif isinstance(value, float):
             other = value * 0.5 or 0.5
         elif isinstance(value, dict):
-            other = {"samples": 1} if name == "database" else core.Task.free_spin()
+            other = {
+                "database": {"samples": 1},
+                "strategy": "paper",
+                "task": core.Task.free_spin(),
+            }[name]
         else:
             enum = type(getattr(cls(), name))
             other = next(member.name for member in enum if member.name != value)
@@ -111,11 +132,12 @@ def test_every_field_makes_a_difference(cls):
 
 
 def test_enums_are_taken_as_members_and_names():
-    options = core.SolverOptions(iteration=core.Iteration.pinv)
-    assert options == core.SolverOptions(iteration="pinv")
-    assert options.iteration is core.Iteration.pinv
-    options.iteration = "cwln"
-    assert options.iteration is core.Iteration.cwln
+    options = core.DatabaseOptions(sampling=core.Sampling.cvt)
+    assert options == core.DatabaseOptions(sampling="cvt")
+    assert options.sampling is core.Sampling.cvt
+    options.sampling = "grid"
+    assert options.sampling is core.Sampling.grid
+    assert core.Paper(iteration="pinv").iteration is core.Iteration.pinv
     assert {member.name for member in core.Iteration} == {
         "dls", "pinv", "pinv_rr", "cwln", "cwpi", "lm",
     }  # fmt: skip
@@ -124,10 +146,9 @@ def test_enums_are_taken_as_members_and_names():
 @pytest.mark.parametrize("value", ["newton", "", "DLS", 0, None, core.Scale.small])
 def test_wrong_enum_lists_the_possible_names(value):
     match = r"^iteration: expected one of dls, pinv, pinv_rr, cwln, cwpi, lm, got "
-    with pytest.raises(core.InvalidArgumentError, match=match):
-        core.SolverOptions(iteration=value)
-    with pytest.raises(core.InvalidArgumentError, match=match):
-        core.SolverOptions().iteration = value
+    for call in (core.Paper, core.Paper().replace):
+        with pytest.raises(core.InvalidArgumentError, match=match):
+            call(iteration=value)
 
 
 @pytest.mark.parametrize("cls", OPTION_CLASSES)
@@ -144,17 +165,15 @@ def test_unknown_keyword_is_named_with_the_possible_ones(cls):
 @pytest.mark.parametrize(
     ("name", "value"),
     [
-        ("neighbours", "many"),
-        ("neighbours", 1.5),
-        ("neighbours", True),
-        ("neighbours", 2**40),
-        ("neighbours", 0),
+        ("max_attempts", "many"),
+        ("max_attempts", 1.5),
+        ("max_attempts", True),
+        ("max_attempts", 2**40),
+        ("max_attempts", 0),
         ("position_tolerance", "small"),
         ("position_tolerance", True),
         ("position_tolerance", -1.0),
         ("position_tolerance", np.nan),
-        ("limit_aware", 1),
-        ("limit_aware", "yes"),
         ("seed", -1),
         ("database", 3),
         ("database", {"samples": -1}),
@@ -168,14 +187,14 @@ def test_wrong_value_names_its_field(name, value):
 
 def test_numpy_numbers_are_numbers():
     options = core.SolverOptions(
-        neighbours=np.int32(7),
+        max_attempts=np.int32(7),
         position_tolerance=np.float32(0.5),
-        limit_aware=np.bool_(False),  # noqa: FBT003
+        strategy=core.Paper(limit_aware=np.bool_(True)),  # noqa: FBT003
         rotation_tolerance=1,
     )
-    assert options.neighbours == 7
+    assert options.max_attempts == 7
     assert options.position_tolerance == 0.5
-    assert options.limit_aware is False
+    assert options.strategy.limit_aware is True
     assert options.rotation_tolerance == 1.0
 
 

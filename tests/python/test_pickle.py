@@ -48,7 +48,10 @@ def test_options(protocol: int) -> None:
     for options in (
         iksel.SolverOptions(),
         iksel.SolverOptions.paper(),
-        iksel.SolverOptions(iteration="cwpi", database={"sampling": "cvt", "seed": 5}),
+        iksel.SolverOptions(
+            strategy=iksel.Paper(iteration="cwpi"),
+            database={"sampling": "cvt", "seed": 5},
+        ),
         iksel.DatabaseOptions.paper(),
         iksel.DatabaseOptions(key_scheme="full", rotation_key="matrix", samples=3),
     ):

@@ -95,7 +95,9 @@ def test_paper_preset_answers_are_answers(
 @pytest.mark.parametrize("scheme", SCHEMES)
 @pytest.mark.parametrize("name", ["cvr038", "gen3_6dof", "xarm5"])
 def test_every_scheme_gives_answers(made, cases: int, name: str, scheme: str) -> None:
-    options = iksel.SolverOptions.paper().replace(iteration=scheme)
+    options = iksel.SolverOptions.paper().replace(
+        strategy=iksel.Paper(iteration=scheme)
+    )
     full = iksel.DatabaseOptions.paper().replace(
         sampling="low_discrepancy", samples=10_000
     )
@@ -104,40 +106,101 @@ def test_every_scheme_gives_answers(made, cases: int, name: str, scheme: str) ->
     assert check_answers(solver, poses, solver.solve_batch(poses)) > 0.3
 
 
-# Solvers by one seed after the other, and by many at a time.
 @pytest.mark.parametrize(
-    ("iteration", "change"),
+    ("base", "change", "reader"),
+    [
+        ({"iteration": "cwln"}, {"damping": 0.1}, "'dls' and 'lm'"),
+        ({"iteration": "cwln"}, {"min_step": 0.1}, "'pinv_rr'"),
+        ({"iteration": "cwln"}, {"pinv_cutoff": 0.1}, "'cwpi'"),
+        ({"iteration": "lm"}, {"position_clamp": 0.2}, "all iterations but 'lm'"),
+        ({"iteration": "lm"}, {"rotation_clamp": 0.2}, "all iterations but 'lm'"),
+        ({}, {"limit_margin": 0.2}, "'cwln' and 'cwpi'"),
+        ({"reselection": "none"}, {"candidates": 5}, "a re-selection"),
+        (
+            {"ranking": "nearest"},
+            {"rotation_difference": "geodesic"},
+            "'joint_adjustment'",
+        ),
+    ],
+    ids=str,
+)
+def test_options_that_nothing_reads_are_refused(base, change, reader: str) -> None:
+    (name,) = change
+    with pytest.raises(
+        iksel.InvalidArgumentError, match=f"{name}: only read .*{reader}"
+    ):
+        iksel.Paper(**base, **change)
+
+
+def test_neighbours_bound_what_lanes_take_from_the_database(made) -> None:
+    few = iksel.Solver(
+        made.robot("panda"), iksel.SolverOptions(strategy=iksel.Lanes(neighbours=16))
+    )
+    pose = few.robot.fk(few.robot.random_configurations(1, 12)[0])
+    all_of_few = few.solve_all(pose)
+    all_of_many = made.solver("panda").solve_all(pose)
+    assert all_of_few.success
+    assert all_of_few.q.shape != all_of_many.q.shape or (
+        (all_of_few.q != all_of_many.q).any()
+    )
+
+
+def test_without_reselection_there_is_one_attempt(made) -> None:
+    options = iksel.SolverOptions(strategy=iksel.Paper(reselection="none"))
+    solver = iksel.Solver(made.robot("ur3"), options)
+    batch = solver.solve_batch(targets(solver.robot, 100, 11))
+    assert (batch.attempts == 1).all()
+    assert not batch.success.all()
+
+
+# What each strategy reads changes its answers; what it does not, it refuses.
+LANES = iksel.Lanes()
+PAPER = iksel.Paper(limit_aware=True, candidates=100, whole_turns=True)
+
+
+@pytest.mark.parametrize(
+    ("strategy", "change"),
     [
         *[
-            (iteration, change)
-            for iteration in ("dls", "lm")
+            (strategy, change)
+            for strategy in (LANES, PAPER)
             for change in (
-                {"kinematics": "kdl"},
                 {"max_iterations": 1},
                 {"position_tolerance": 1e-9, "rotation_tolerance": 1e-9},
                 {"position_tolerance": 1e-2, "rotation_tolerance": 1e-1},
             )
         ],
-        ("dls", {"ranking": "nearest"}),
-        ("dls", {"rotation_difference": "rotation_vector"}),
-        ("dls", {"limit_aware": False}),
-        ("dls", {"reselection": "none"}),
-        ("dls", {"reselection": "next"}),
-        ("dls", {"whole_turns": False}),
-        ("dls", {"neighbours": 1, "candidates": 1}),
-        ("dls", {"neighbours": 1_000_000, "candidates": 1_000_000}),
-        ("dls", {"candidates": 3, "max_attempts": 50}),
-        ("pinv_rr", {"growth_stop": "on"}),
+        (LANES, {"damping": 1.0}),
+        (PAPER, {"kinematics": "kdl"}),
+        (PAPER, {"ranking": "nearest"}),
+        (PAPER, {"rotation_difference": "geodesic"}),
+        (PAPER, {"limit_aware": False}),
+        (PAPER, {"reselection": "next"}),
+        (PAPER, {"whole_turns": False}),
+        (PAPER, {"neighbours": 1, "candidates": 1}),
+        (PAPER, {"neighbours": 1_000_000, "candidates": 1_000_000}),
+        (PAPER, {"candidates": 3, "max_attempts": 50}),
+        (PAPER, {"damping": 0.1}),
+        (PAPER, {"pinv_cutoff": 0.2}),
+        (PAPER, {"position_clamp": 0.01}),
+        (PAPER, {"rotation_clamp": 0.01}),
+        (PAPER, {"min_step": 0.1}),
+        (PAPER.replace(iteration="cwln"), {"limit_margin": 0.3}),
+        (PAPER.replace(iteration="pinv_rr"), {"growth_stop": "on"}),
+        (PAPER.replace(iteration="pinv_rr"), {"seed": 5}),
     ],
     ids=str,
 )
 def test_every_option_changes_the_answers_and_keeps_them_right(
-    made, iteration: str, change
+    made, strategy, change
 ) -> None:
     few = iksel.DatabaseOptions(samples=2000)
-    options = iksel.SolverOptions(database=few, iteration=iteration)
+    options = iksel.SolverOptions(database=few, strategy=strategy)
     plain = iksel.Solver(made.robot("pr2_right_arm"), options)
-    other = iksel.Solver(plain.robot, options.replace(**change), plain.database)
+    of_strategy = {k: v for k, v in change.items() if hasattr(strategy, k)}
+    rest = {k: v for k, v in change.items() if k not in of_strategy}
+    changed = options.replace(strategy=strategy.replace(**of_strategy), **rest)
+    other = iksel.Solver(plain.robot, changed, plain.database)
     poses = targets(plain.robot, 50, 4)
     answers = [solver.solve_batch(poses) for solver in (plain, other)]
     for solver, batch in zip((plain, other), answers, strict=True):
@@ -184,10 +247,11 @@ def test_batch_is_the_loop_bit_for_bit(made, name: str) -> None:
             np.testing.assert_array_equal(one.q, batch.q[i])
 
 
-@pytest.mark.parametrize("scheme", ["lm", "dls", "pinv_rr"])
+@pytest.mark.parametrize("scheme", ["lanes", "dls", "pinv_rr"])
 @pytest.mark.parametrize("name", ["cvr038", "irb14050"])
 def test_threads_and_order_change_no_bit(made, name: str, scheme: str) -> None:
-    options = iksel.SolverOptions(iteration=scheme, max_attempts=4)
+    strategy = iksel.Lanes() if scheme == "lanes" else iksel.Paper(iteration=scheme)
+    options = iksel.SolverOptions(strategy=strategy, max_attempts=4)
     solver = iksel.Solver(made.robot(name), options, made.solver(name).database)
     poses = targets(solver.robot, 101, 7)
     one = solver.solve_batch(poses, threads=1)
@@ -259,7 +323,7 @@ def test_limits_are_told_from_failure(made) -> None:
     )
     q = wide.random_configurations(200, 10)
     outside = ((q < robot.lower - 0.3) | (q > robot.upper + 0.3)).any(axis=1)
-    options = iksel.SolverOptions(iteration="dls", max_attempts=20)
+    options = iksel.SolverOptions(strategy="paper", max_attempts=20)
     solver = iksel.Solver(robot, options, made.solver("valkyrie_right_arm").database)
     batch = solver.solve_batch(wide.fk(q[outside]))
     assert (batch.status == iksel.Status.outside_limits.value).any()

@@ -102,15 +102,18 @@ def test_bad_thread_counts_are_refused(made, threads) -> None:
         ({"position_tolerance": 0.0}, "position_tolerance"),
         ({"position_tolerance": math.nan}, "position_tolerance"),
         ({"rotation_tolerance": -1.0}, "rotation_tolerance"),
-        ({"neighbours": 0}, "neighbours"),
-        ({"candidates": -1}, "candidates"),
+        ({"strategy": {"name": "lanes", "neighbours": 0}}, "neighbours"),
+        ({"strategy": {"name": "paper", "candidates": -1}}, "candidates"),
         ({"max_attempts": 0}, "max_attempts"),
         ({"max_iterations": 2.5}, "max_iterations"),
-        ({"damping": "small"}, "damping"),
-        ({"whole_turns": 1}, "whole_turns"),
+        ({"strategy": {"name": "lanes", "damping": "small"}}, "damping"),
+        ({"strategy": {"name": "paper", "whole_turns": 1}}, "whole_turns"),
         ({"seed": -1}, "seed"),
-        ({"iteration": "newton"}, "iteration.*dls.*lm"),
-        ({"ranking": 3}, "ranking.*nearest.*joint_adjustment"),
+        ({"strategy": {"name": "paper", "iteration": "newton"}}, "iteration.*dls.*lm"),
+        ({"strategy": {"name": "paper", "ranking": 3}}, "ranking.*nearest"),
+        ({"strategy": "newton"}, "no strategy 'newton'; there are: lanes, paper"),
+        ({"strategy": 3}, "strategy: expected Lanes, Paper"),
+        ({"strategy": {"damping": 1}}, "strategy: a mapping needs 'name'"),
         ({"database": {"sampling": "sobol"}}, "sampling.*grid.*cvt"),
         ({"database": {"threads": -2}}, "threads"),
         ({"database": {"rotation_weight": -1.0}}, "rotation_weight"),
@@ -122,6 +125,14 @@ def test_bad_options_are_named(options, culprit: str) -> None:
         iksel.SolverOptions(**options)
     with pytest.raises(iksel.InvalidArgumentError, match=culprit):
         iksel.SolverOptions().replace(**options)
+
+
+@pytest.mark.parametrize("field", ["ranking", "iteration", "damping"])
+def test_fields_of_a_strategy_are_told_where_they_belong(field: str) -> None:
+    where = rf"no field '{field}'; it belongs to the strategy: .*Paper\({field}="
+    with pytest.raises(iksel.SignatureError, match=where):
+        iksel.SolverOptions(**{field: 1})
+    assert not hasattr(iksel.SolverOptions(), field)
 
 
 def test_unknown_options_list_the_known() -> None:

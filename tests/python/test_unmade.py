@@ -56,6 +56,8 @@ def examples(solver: iksel.Solver) -> list[object]:
         tree.joints[1],
         solver,
         solver.options,
+        iksel.Lanes(damping=0.5),
+        iksel.Paper(iteration="cwln"),
         solver.options.database,
         solver.database,
         iksel.Task.free_spin(),

@@ -100,7 +100,10 @@ TABLE: dict[str, tuple[str, ...]] = {
     "Settings and databases": (
         "iksel.SolverOptions(max_atempts=5)",
         "iksel.SolverOptions(tolerance=1e-3)",
-        'iksel.SolverOptions(iteration="newton")',
+        'iksel.SolverOptions(iteration="dls")',
+        'iksel.SolverOptions(strategy="newton")',
+        'iksel.Paper(iteration="newton")',
+        "iksel.Paper(limit_margin=0.2)",
         "iksel.SolverOptions(max_attempts=1.5)",
         "iksel.Solver(ur3, iksel.SolverOptions(position_tolerance=-1))",
         'iksel.Database.load("ur3.iks")',

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <variant>
 
 #include "iksel/export.hpp"
 #include "iksel/task.hpp"
@@ -77,15 +78,14 @@ enum class RotationDifference {
   geodesic,         ///< rotvec(R_target R_i^T), the same error that iterations reduce
 };
 
-/// One scheme of numerical iteration (paper, Table II; formulas in iteration/schemes.hpp).
+/// One scheme of numerical iteration (paper, Table II; formulas in refine/schemes.hpp).
 enum class Iteration {
   dls,      ///< damped least squares; truncated least squares if `damping` is 0
   pinv,     ///< truncated pseudo-inverse
   pinv_rr,  ///< as pinv; restarts at random on a limit violation or local minimum
   cwln,     ///< clamping weighted least-norm (Huang et al. 2016)
   cwpi,     ///< as cwln with the truncated pseudo-inverse
-  lm,       ///< Levenberg-Marquardt with the limits inside the step; over a reduced database many
-            ///< seeds at once, one per SIMD lane, which ranks and re-selects by nearness only
+  lm,       ///< Levenberg-Marquardt with the limits inside the step
 };
 
 /// Which seed follows a failed one.
@@ -102,39 +102,41 @@ enum class GrowthStop {
   off,
 };
 
-/// All settings of a Solver. `SolverOptions{}` is the recommended preset, `paper()` the paper.
-struct IKSEL_EXPORT SolverOptions {
-  /// An answer's position is at most this far from the target's [m].
-  double position_tolerance = 1e-6;
-  /// An answer's rotation vector error is at most this long [rad].
-  double rotation_tolerance = 1e-6;
-  /// What of a pose has to be reached: all of it, or a box with free axes.
-  Task task;
+/// Seeds in SIMD lanes, many at once, by Levenberg-Marquardt with the limits inside the step: the
+/// recommended strategy. Over a database with a full key, and for chains with mimic joints, which
+/// lanes cannot solve, the same scheme takes one seed at a time.
+struct IKSEL_EXPORT Lanes {
+  /// Samples nearest to the target that are tried before seeds at random.
+  int neighbours = 200;
+  /// Factor on |e|^2, which is added to the diagonal of J J^T [mixed units].
+  double damping = 1e-3;
 
-  /// Database that a solver builds for itself when it is given none.
-  DatabaseOptions database;
+  /// Throws InvalidArgumentError naming the first option out of range.
+  void validate() const;
+};
 
-  /// Neighbours asked from the KD-tree (k); solving in lanes takes them in widening stages.
+/// The pipeline of the paper: query, rank, iterate, re-select, one seed at a time. The defaults are
+/// the paper's: k = 200, Eq. (5), best 20, farthest first, DLS.
+struct IKSEL_EXPORT Paper {
+  /// Neighbours asked from the KD-tree (k).
   int neighbours = 200;
   Ranking ranking = Ranking::joint_adjustment;
-  RotationDifference rotation_difference = RotationDifference::geodesic;
+  /// Read where seeds are ranked by Eq. (5) or limit-aware.
+  RotationDifference rotation_difference = RotationDifference::rotation_vector;
   /// Rank candidates whose predicted q + J^+ e leaves the limits behind all others.
-  bool limit_aware = true;
-  /// Best candidates kept after ranking.
-  int candidates = 100;
-
+  bool limit_aware = false;
+  /// Best candidates kept after ranking; read unless re-selection is `none`.
+  int candidates = 20;
   Reselection reselection = Reselection::farthest;
-  /// Seeds tried at most: 1 + the number of re-selections (#ReA). Given seeds come on top.
-  int max_attempts = 1024;
 
-  Iteration iteration = Iteration::lm;
-  /// Steps per attempt at most.
-  int max_iterations = 20;
-  /// dls: added to J J^T [mixed units]; 0: truncated least squares. lm: factor on |e|^2.
-  double damping = 1e-3;
-  /// Singular values below this part of the largest are cut off (truncated solves).
+  Iteration iteration = Iteration::dls;
+  /// dls: added to J J^T [mixed units]; 0: truncated least squares. lm: factor on |e|^2. Read by
+  /// these two.
+  double damping = 0;
+  /// Singular values below this part of the largest are cut off (dls, pinv, pinv_rr, cwpi).
   double pinv_cutoff = 1e-4;
-  /// The error fed to one step is shortened to at most this: position [m] and rotation [rad].
+  /// The error fed to one step is shortened to at most this: position [m] and rotation [rad]. Read
+  /// by all but lm.
   double position_clamp = 0.1;
   double rotation_clamp = 0.3141592653589793;
   GrowthStop growth_stop = GrowthStop::by_scheme;
@@ -144,13 +146,40 @@ struct IKSEL_EXPORT SolverOptions {
   double limit_margin = 0.1;
 
   /// Bring joints with a range of more than 2 pi inside their limits by whole turns.
-  bool whole_turns = true;
+  bool whole_turns = false;
   Kinematics kinematics = Kinematics::kernel;
-  /// Seed of random restarts (pinv_rr).
+
+  /// Throws InvalidArgumentError naming the first option that is out of range, or that differs from
+  /// its default though nothing reads it.
+  void validate() const;
+};
+
+using Strategy = std::variant<Lanes, Paper>;
+
+/// All settings of a Solver. `SolverOptions{}` is the recommended preset, `paper()` the paper.
+struct IKSEL_EXPORT SolverOptions {
+  /// An answer's position is at most this far from the target's [m].
+  double position_tolerance = 1e-6;
+  /// An answer's rotation vector error is at most this long [rad].
+  double rotation_tolerance = 1e-6;
+  /// What of a pose has to be reached: all of it, or a box with free axes.
+  Task task;
+
+  /// Seeds tried at most: 1 + the number of re-selections (#ReA). Given seeds come on top.
+  int max_attempts = 1024;
+  /// Steps per attempt at most.
+  int max_iterations = 20;
+  /// Seed of random restarts.
   std::uint64_t seed = 0;
 
-  /// The paper's setting: medium grid, k = 200, best 20, Eq. (5), one re-selection, DLS, 1e-4 m and
-  /// 1e-3 rad.
+  /// Database that a solver builds for itself when it is given none.
+  DatabaseOptions database;
+
+  /// How seeds are selected and iterated.
+  Strategy strategy;
+
+  /// The paper's setting: medium grid, the defaults of Paper, one re-selection, 1e-4 m and 1e-3
+  /// rad.
   [[nodiscard]] static SolverOptions paper();
   /// Throws InvalidArgumentError naming the first option out of range.
   void validate() const;

@@ -12,14 +12,14 @@ namespace iksel {
 namespace {
 
 /// Shortens the two halves of an error to the clamps.
-void clamp_error(Vector6& e, double position, double rotation, const SolverOptions& options) {
-  if (position > options.position_clamp) e.head<3>() *= options.position_clamp / position;
-  if (rotation > options.rotation_clamp) e.tail<3>() *= options.rotation_clamp / rotation;
+void clamp_error(Vector6& e, double position, double rotation, const Paper& scheme) {
+  if (position > scheme.position_clamp) e.head<3>() *= scheme.position_clamp / position;
+  if (rotation > scheme.rotation_clamp) e.tail<3>() *= scheme.rotation_clamp / rotation;
 }
 
-bool stops_on_growth(const SolverOptions& options) {
-  if (options.growth_stop != GrowthStop::by_scheme) return options.growth_stop == GrowthStop::on;
-  return options.iteration == Iteration::dls || options.iteration == Iteration::pinv;
+bool stops_on_growth(const Paper& scheme) {
+  if (scheme.growth_stop != GrowthStop::by_scheme) return scheme.growth_stop == GrowthStop::on;
+  return scheme.iteration == Iteration::dls || scheme.iteration == Iteration::pinv;
 }
 
 bool stops_on_small_step(Iteration iteration) {
@@ -30,28 +30,28 @@ bool stops_on_small_step(Iteration iteration) {
 /// `squared_error` is what lm damps by.
 JointVector make_step(const IterationContext& context, const JointVector& q,
                       const JacobianMatrix& J, const Vector6& e, double squared_error) {
-  const SolverOptions& options = context.options;
-  switch (options.iteration) {
+  const Paper& scheme = context.scheme;
+  switch (scheme.iteration) {
     case Iteration::dls:
-      return dls_step(J, e, options);
+      return dls_step(J, e, scheme);
     case Iteration::pinv:
     case Iteration::pinv_rr:
-      return pinv_step(J, e, options);
+      return pinv_step(J, e, scheme);
     case Iteration::cwln:
-      return cwln_step(context.model, q, J, e, options);
+      return cwln_step(context.model, q, J, e, scheme);
     case Iteration::cwpi:
-      return cwpi_step(context.model, q, J, e, options);
+      return cwpi_step(context.model, q, J, e, scheme);
     case Iteration::lm:
       break;
   }
-  return lm_step(context.model, q, J, e, options.damping * squared_error);
+  return lm_step(context.model, q, J, e, scheme.damping * squared_error);
 }
 
 /// What follows a step besides adding it; true if the attempt goes on.
 void after_step(const IterationContext& context, JointVector& q) {
-  if (context.options.iteration == Iteration::pinv_rr && !context.model.joints.contains(q.data())) {
+  if (context.scheme.iteration == Iteration::pinv_rr && !context.model.joints.contains(q.data())) {
     context.model.joints.sample(context.random, q);
-  } else if (context.options.iteration == Iteration::cwln) {
+  } else if (context.scheme.iteration == Iteration::cwln) {
     for (int i = 0; i < context.model.dof; ++i) {
       if (!context.model.joints.is_slide(i)) {
         q[i] = std::remainder(q[i], kTwoPi);
@@ -113,37 +113,37 @@ Outcome iterate(const IterationContext& context, JointVector& q, int& steps) {
   /// Squared error that counts as far off [mixed units].
   constexpr double kFarOff2 = 1e-4;
   const ChainModel& model = context.model;
-  const SolverOptions& options = context.options;
+  const Paper& scheme = context.scheme;
   const TaskSpace& task = context.goal.task();
-  const bool growth_stop = stops_on_growth(options);
-  const bool small_step_stop = stops_on_small_step(options.iteration);
+  const bool growth_stop = stops_on_growth(scheme);
+  const bool small_step_stop = stops_on_small_step(scheme.iteration);
   Outcome outcome = Outcome::failed;
   double last_position = kInfinity;
   double last_rotation = kInfinity;
 
   for (int step = 0;; ++step) {
     Standing at = evaluate(context, q);
-    const double part = step == options.max_iterations ? 1 : context.aim;
+    const double part = step == context.max_iterations ? 1 : context.aim;
     if (at.tcp_position < part * task.position_tolerance() &&
         at.rotation < part * task.rotation_tolerance()) {
-      if (options.whole_turns) model.joints.wrap(q.data());
+      if (scheme.whole_turns) model.joints.wrap(q.data());
       if (model.joints.contains(q.data())) return Outcome::solved;
       outcome = Outcome::outside_limits;
       // Only the paper's first schemes go on from here; the others have nothing left to gain.
-      if (!stops_on_small_step(options.iteration)) return outcome;
+      if (!stops_on_small_step(scheme.iteration)) return outcome;
     }
     if (growth_stop && at.position > last_position && at.rotation > last_rotation) return outcome;
     last_position = at.position;
     last_rotation = at.rotation;
-    if (step == options.max_iterations) return outcome;
+    if (step == context.max_iterations) return outcome;
     if (step >= context.patience && at.e.squaredNorm() > kFarOff2) return outcome;
 
-    if (options.iteration != Iteration::lm) clamp_error(at.e, at.position, at.rotation, options);
+    if (scheme.iteration != Iteration::lm) clamp_error(at.e, at.position, at.rotation, scheme);
     const JointVector adjustment = adjust(context, q, at);
     ++steps;
     if (!adjustment.allFinite()) return outcome;
-    if (small_step_stop && std::abs(adjustment.sum()) < options.min_step) {
-      if (options.iteration != Iteration::pinv_rr) return outcome;
+    if (small_step_stop && std::abs(adjustment.sum()) < scheme.min_step) {
+      if (scheme.iteration != Iteration::pinv_rr) return outcome;
       model.joints.sample(context.random, q);
       continue;
     }

@@ -27,7 +27,8 @@ enum class Outcome {
 /// What an attempt needs besides its seed.
 struct IterationContext {
   const ChainModel& model;
-  const SolverOptions& options;
+  const Paper& scheme;
+  int max_iterations;
   const Goal& goal;
   /// Where the tip link has to be: only for a full pose.
   Pose tip_target;

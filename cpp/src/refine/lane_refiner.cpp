@@ -7,12 +7,13 @@
 namespace iksel {
 namespace {
 
+/// `options` solve in lanes.
 lanes::LaneOptions make_lane_options(const ChainModel& model, const SolverOptions& options) {
   lanes::LaneOptions lanes{};
   const double position = options.position_tolerance;
   const double rotation = options.rotation_tolerance;
   const Frame<double>& tip = model.kernel.tip;
-  lanes.damping = options.damping;
+  lanes.damping = std::get<Lanes>(options.strategy).damping;
   // |error at the TCP| <= |position error| + lever * |rotation error|, and the square of a sum of
   // two is at most twice the sum of their squares.
   lanes.lever2 = tip.p[0] * tip.p[0] + tip.p[1] * tip.p[1] + tip.p[2] * tip.p[2];

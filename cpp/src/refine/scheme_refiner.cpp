@@ -3,9 +3,12 @@
 
 namespace iksel {
 
-SchemeRefiner::SchemeRefiner(const ChainModel& model, const SolverOptions& options)
-    : model_(model), options_(options), q_(JointVector::Zero(model.dof)) {
-  if (options.kinematics != Kinematics::kdl) return;
+SchemeRefiner::SchemeRefiner(const ChainModel& model, const Paper& scheme, int max_iterations)
+    : model_(model),
+      scheme_(scheme),
+      max_iterations_(max_iterations),
+      q_(JointVector::Zero(model.dof)) {
+  if (scheme.kinematics != Kinematics::kdl) return;
   kdl_tip_ = model.make_kdl(Pose::Identity());
   kdl_tcp_ = model.make_kdl();
 }
@@ -24,8 +27,8 @@ int SchemeRefiner::advance(unsigned /*busy*/) {
   constexpr int kTaskPatience = 8;
   constexpr int kHastyAttempts = 32;
   KdlChain* kdl = goal_->is_full_pose() ? kdl_tip_.get() : kdl_tcp_.get();
-  IterationContext context{model_, options_, *goal_, tip_target_, kdl, *random_};
-  if (!goal_->is_full_pose() && options_.iteration == Iteration::lm &&
+  IterationContext context{model_, scheme_, max_iterations_, *goal_, tip_target_, kdl, *random_};
+  if (!goal_->is_full_pose() && scheme_.iteration == Iteration::lm &&
       attempts_++ < kHastyAttempts) {
     context.patience = kTaskPatience;
   }

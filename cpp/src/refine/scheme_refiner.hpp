@@ -11,7 +11,7 @@ namespace iksel {
 
 class SchemeRefiner {
  public:
-  SchemeRefiner(const ChainModel& model, const SolverOptions& options);
+  SchemeRefiner(const ChainModel& model, const Paper& scheme, int max_iterations);
 
   /// Before a search; all must outlive it.
   void begin(const Goal& goal, Random& random);
@@ -39,7 +39,8 @@ class SchemeRefiner {
 
  private:
   const ChainModel& model_;
-  const SolverOptions& options_;
+  const Paper& scheme_;
+  int max_iterations_;
   /// Only if the options iterate by KDL, whose objects are not safe to share: to the tip link for a
   /// full pose, else to the TCP.
   std::unique_ptr<KdlChain> kdl_tip_, kdl_tcp_;

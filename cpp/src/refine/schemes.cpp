@@ -35,19 +35,19 @@ JointVector pull_back(const ChainModel& model, const JointVector& q, const Joint
   return c;
 }
 
-JointVector dls_step(const JacobianMatrix& J, const Vector6& e, const SolverOptions& options) {
-  if (options.damping == 0) return TruncatedSvd(J, options.pinv_cutoff).solve(e);
-  return damped_solve(J, options.damping, e);
+JointVector dls_step(const JacobianMatrix& J, const Vector6& e, const Paper& scheme) {
+  if (scheme.damping == 0) return TruncatedSvd(J, scheme.pinv_cutoff).solve(e);
+  return damped_solve(J, scheme.damping, e);
 }
 
-JointVector pinv_step(const JacobianMatrix& J, const Vector6& e, const SolverOptions& options) {
-  return TruncatedSvd(J, options.pinv_cutoff).inverse() * e;
+JointVector pinv_step(const JacobianMatrix& J, const Vector6& e, const Paper& scheme) {
+  return TruncatedSvd(J, scheme.pinv_cutoff).inverse() * e;
 }
 
 JointVector cwln_step(const ChainModel& model, const JointVector& q, const JacobianMatrix& J,
-                      const Vector6& e, const SolverOptions& options) {
+                      const Vector6& e, const Paper& scheme) {
   constexpr double kDamping = 1e-9;
-  const JointVector weights = joint_weights(model, q, options.limit_margin);
+  const JointVector weights = joint_weights(model, q, scheme.limit_margin);
   const JointVector c = pull_back(model, q, weights);
   Matrix6 A = J * weights.asDiagonal() * J.transpose();
   A.diagonal().array() += kDamping;
@@ -56,12 +56,12 @@ JointVector cwln_step(const ChainModel& model, const JointVector& q, const Jacob
 }
 
 JointVector cwpi_step(const ChainModel& model, const JointVector& q, const JacobianMatrix& J,
-                      const Vector6& e, const SolverOptions& options) {
-  const JointVector weights = joint_weights(model, q, options.limit_margin);
+                      const Vector6& e, const Paper& scheme) {
+  const JointVector weights = joint_weights(model, q, scheme.limit_margin);
   const JointVector c = pull_back(model, q, weights);
   const JointVector root = weights.cwiseSqrt();
   const JacobianMatrix weighted = J * root.asDiagonal();
-  const JointVector y = TruncatedSvd(weighted, options.pinv_cutoff).solve(e - J * c);
+  const JointVector y = TruncatedSvd(weighted, scheme.pinv_cutoff).solve(e - J * c);
   return c + root.cwiseProduct(y);
 }
 

@@ -9,10 +9,10 @@
 namespace iksel {
 
 /// dls: J^T (J J^T + damping I)^-1 e; truncated least squares in the undamped limit.
-JointVector dls_step(const JacobianMatrix& J, const Vector6& e, const SolverOptions& options);
+JointVector dls_step(const JacobianMatrix& J, const Vector6& e, const Paper& scheme);
 
 /// pinv, pinv_rr: J^+ e.
-JointVector pinv_step(const JacobianMatrix& J, const Vector6& e, const SolverOptions& options);
+JointVector pinv_step(const JacobianMatrix& J, const Vector6& e, const Paper& scheme);
 
 /// Weight of each joint in cwln and cwpi: 1 inside, falling as 3 s^2 - 2 s^3 to 0 over the margin
 /// at each end of the range, s the distance to the limit over the margin (Huang et al. 2016).
@@ -24,11 +24,11 @@ JointVector pull_back(const ChainModel& model, const JointVector& q, const Joint
 
 /// cwln: c + W J^T (J W J^T + 1e-9 I)^-1 (e - J c).
 JointVector cwln_step(const ChainModel& model, const JointVector& q, const JacobianMatrix& J,
-                      const Vector6& e, const SolverOptions& options);
+                      const Vector6& e, const Paper& scheme);
 
 /// cwpi: c + W^1/2 (J W^1/2)^+ (e - J c).
 JointVector cwpi_step(const ChainModel& model, const JointVector& q, const JacobianMatrix& J,
-                      const Vector6& e, const SolverOptions& options);
+                      const Vector6& e, const Paper& scheme);
 
 /// lm: J^T (J J^T + damping I)^-1 e, with the columns of joints that stand at a limit and would
 /// leave it set to zero, and the step cut off at the limits.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "options/strategy.hpp"
 #include "refine/iterate.hpp"
 #include "refine/schemes.hpp"
 
@@ -140,11 +141,10 @@ class SelfMotionStep {
 
 bool converge(const ChainModel& model, const Goal& goal, int most, JointVector& q) {
   // The default scheme, whatever that of the solver is.
-  SolverOptions options;
-  options.max_iterations = most;
-  options.whole_turns = false;
+  Paper scheme = one_at_a_time(Lanes{});
+  scheme.whole_turns = false;
   Random unused(0);
-  IterationContext context{model, options, goal, goal.target(), nullptr, unused};
+  IterationContext context{model, scheme, most, goal, goal.target(), nullptr, unused};
   context.aim = 0.01;
   context.steps_at_tcp = true;
   int steps = 0;

@@ -4,24 +4,28 @@
 #include <algorithm>
 #include <thread>
 
+#include "options/strategy.hpp"
+
 namespace iksel {
 bool solves_in_lanes(const ChainModel& model, const DatabaseData& data,
                      const SolverOptions& options) {
-  return options.iteration == Iteration::lm && options.kinematics == Kinematics::kernel &&
-         data.reduction != nullptr && is_simple(model);
+  return std::holds_alternative<Lanes>(options.strategy) && data.reduction != nullptr &&
+         is_simple(model);
 }
 
 Workspace::Workspace(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
                      const SolverOptions& options)
-    : scheme(model, options),
-      selection(model, nominal, data, options),
+    : one_at_a_time(iksel::one_at_a_time(options.strategy)),
+      scheme(model, one_at_a_time, options.max_iterations),
+      selection(model, nominal, data, one_at_a_time),
       task_seeds(model, data, options, selection),
-      given(model, options),
+      given(model, one_at_a_time, data.options.pinv_cutoff),
       collected(model) {
   if (!solves_in_lanes(model, data, options)) return;
   const lanes::LaneKernels& kernels = lanes::choose_kernels();
-  lanes = std::unique_ptr<Lanes>(new Lanes{LaneRefiner(model, options, kernels),
-                                           LaneQuery(model, nominal, data, options, kernels)});
+  lanes = std::unique_ptr<InLanes>(
+      new InLanes{LaneRefiner(model, options, kernels),
+                  LaneQuery(model, nominal, data, neighbours_of(options.strategy), kernels)});
 }
 
 WorkspacePool::WorkspacePool(const Robot& robot, const Robot& nominal, const Database& database,

@@ -30,18 +30,20 @@ struct Workspace {
   Workspace(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
             const SolverOptions& options);
 
+  /// What takes one seed at a time goes by this.
+  Paper one_at_a_time;
   SchemeRefiner scheme;
   Selection selection;
   TaskSeeds task_seeds;
   SeedRanking given;
   CollectorMemory collected;
 
-  struct Lanes {
+  struct InLanes {
     LaneRefiner refiner;
     LaneQuery query;
   };
   /// Only if the options solve in lanes.
-  std::unique_ptr<Lanes> lanes;
+  std::unique_ptr<InLanes> lanes;
 };
 
 /// Workspaces of a solver, each lent to one search at a time.

@@ -115,7 +115,8 @@ Result find_first(const ChainModel& model, const SolverOptions& options, const G
     return result;
   }
   Work work(options.max_attempts);
-  FirstAnswer answers(model.joints, options.whole_turns, goal, request.deadline, result);
+  const bool wraps = workspace.one_at_a_time.whole_turns;
+  FirstAnswer answers(model.joints, wraps, goal, request.deadline, result);
   const Search<FirstAnswer> search{model, options, goal, request, workspace, answers, work, clock};
   if (workspace.lanes) {
     search.in_lanes();

@@ -8,7 +8,8 @@
 //   Seeds    bool next_stage(), false if there are no more; bool load(refiner, lane), false if the
 //            stage has no more for this lane (seeds/);
 //   Answers  Verdict offer(lane, q); bool knows(q), where a seed need not be followed any further;
-//            bool should_continue(), asked before each stage and after the last (first_answer.hpp, collector.hpp).
+//            bool should_continue(), asked before each stage and after the last (first_answer.hpp,
+//            collector.hpp).
 #pragma once
 
 #include "base/work.hpp"

@@ -7,14 +7,14 @@
 namespace iksel {
 
 LaneQuery::LaneQuery(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
-                     const SolverOptions& options, const lanes::LaneKernels& kernels)
+                     int neighbours, const lanes::LaneKernels& kernels)
     : queue(model.joints, kernels),
       data_(data),
       kernels_(kernels),
       base_inverse_(to_pose(model.kernel.base).inverse()),
       tcp_inverse_(Pose(model.tcp_inverse) * to_pose(model.kernel.flange).inverse()),
       seed_chain_(make_seed_chain(nominal, *data.reduction)),
-      nearest_(std::min<std::size_t>(static_cast<std::size_t>(options.neighbours), data.size)),
+      nearest_(std::min<std::size_t>(static_cast<std::size_t>(neighbours), data.size)),
       block_(static_cast<std::size_t>(lanes::block_rows(model.dof) * lanes::kBlock)),
       block_distance2_(data.blocks.size()),
       block_order_(data.blocks.size()),

@@ -8,7 +8,6 @@
 
 #include "database/data.hpp"
 #include "database/key.hpp"
-#include "iksel/options.hpp"
 #include "kinematics/chain_model.hpp"
 #include "seeds/farthest_first.hpp"
 #include "simd/kernels.hpp"
@@ -17,9 +16,10 @@ namespace iksel {
 
 class LaneQuery {
  public:
-  /// `nominal` is the chain that the data belongs to; `model` may differ from it a little.
+  /// `nominal` is the chain that the data belongs to; `model` may differ from it a little. Of the
+  /// database that many `neighbours` are asked for at most.
   LaneQuery(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
-            const SolverOptions& options, const lanes::LaneKernels& kernels);
+            int neighbours, const lanes::LaneKernels& kernels);
 
   void set_target(const Pose& T_base_tcp);
 

@@ -9,8 +9,8 @@
 
 namespace iksel {
 
-SeedRanking::SeedRanking(const ChainModel& model, const SolverOptions& options)
-    : model_(model), options_(options) {
+SeedRanking::SeedRanking(const ChainModel& model, const Paper& scheme, double cutoff)
+    : model_(model), scheme_(scheme), cutoff_(cutoff) {
   ranked_.reserve(kRoom);
 }
 
@@ -52,7 +52,7 @@ Vector6 SeedRanking::error_of(const JointVector& q, const Goal& goal, JacobianMa
   model_.fk_jacobian(q.data(), pose, of_pose, false);
   J = of_pose;
   e.head<3>() = tip_target.translation() - pose.translation();
-  e.tail<3>() = options_.rotation_difference == RotationDifference::geodesic
+  e.tail<3>() = scheme_.rotation_difference == RotationDifference::geodesic
                     ? to_rotation_vector(tip_target.linear() * pose.linear().transpose())
                     : Eigen::Vector3d(to_rotation_vector(tip_target.linear()) -
                                       to_rotation_vector(pose.linear()));
@@ -66,10 +66,10 @@ SeedRanking::Ranked SeedRanking::rank_one(std::size_t index, const Goal& goal) c
   JacobianMatrix J;
   const Vector6 e = error_of(q, goal, J);
   ranked.score = e.squaredNorm();
-  if (options_.ranking == Ranking::nearest && !options_.limit_aware) return ranked;
-  const JointVector adjustment = TruncatedSvd(J, options_.database.pinv_cutoff).solve(e);
-  if (options_.ranking == Ranking::joint_adjustment) ranked.score = adjustment.squaredNorm();
-  if (options_.limit_aware) {
+  if (scheme_.ranking == Ranking::nearest && !scheme_.limit_aware) return ranked;
+  const JointVector adjustment = TruncatedSvd(J, cutoff_).solve(e);
+  if (scheme_.ranking == Ranking::joint_adjustment) ranked.score = adjustment.squaredNorm();
+  if (scheme_.limit_aware) {
     for (int j = 0; j < model_.dof; ++j) {
       const double predicted = q[j] + adjustment[j];
       ranked.leaves_limits =
@@ -84,15 +84,15 @@ SeedRanking::Ranked SeedRanking::rank_one(std::size_t index, const Goal& goal) c
 const double* SeedRanking::next() {
   if (taken_ >= ranked_.size()) return nullptr;
   if (taken_ > 0) {
-    if (options_.reselection == Reselection::none) return nullptr;
-    if (options_.reselection == Reselection::farthest) bring_farthest_forward();
+    if (scheme_.reselection == Reselection::none) return nullptr;
+    if (scheme_.reselection == Reselection::farthest) bring_farthest_forward();
   }
   return (*seeds_)[ranked_[taken_++].index].data();
 }
 
 void SeedRanking::bring_farthest_forward() {
   const std::size_t candidates =
-      std::min(ranked_.size(), static_cast<std::size_t>(options_.candidates));
+      std::min(ranked_.size(), static_cast<std::size_t>(scheme_.candidates));
   if (taken_ >= candidates) return;
   // As Selection does: the largest |m q - sum of the m failed q|.
   sum_of_failed_ += (*seeds_)[ranked_[taken_ - 1].index];

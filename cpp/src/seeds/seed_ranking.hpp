@@ -17,7 +17,8 @@ class SeedRanking {
  public:
   static constexpr std::size_t kRoom = 1024;
 
-  SeedRanking(const ChainModel& model, const SolverOptions& options);
+  /// `cutoff` is that of the database's pseudo-inverses.
+  SeedRanking(const ChainModel& model, const Paper& scheme, double cutoff);
 
   /// Puts `seeds`, which must outlive their use, in order: n log n for n of them. Asks
   /// `should_continue` every few; false if that said no, and there are no seeds then.
@@ -25,7 +26,7 @@ class SeedRanking {
             FunctionRef<bool()> should_continue);
 
   /// The seed of the next attempt; null when there is none left. As the database's, seeds are
-  /// re-selected among the options' `candidates` best; the others follow by rank.
+  /// re-selected among the scheme's `candidates` best; the others follow by rank.
   const double* next();
 
  private:
@@ -44,7 +45,8 @@ class SeedRanking {
   void bring_farthest_forward();
 
   const ChainModel& model_;
-  const SolverOptions& options_;
+  const Paper& scheme_;
+  double cutoff_;
   const std::vector<JointVector>* seeds_ = nullptr;
   std::vector<Ranked> ranked_;
   std::size_t taken_ = 0;

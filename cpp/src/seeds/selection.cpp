@@ -14,13 +14,13 @@
 namespace iksel {
 
 Selection::Selection(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
-                     const SolverOptions& options)
+                     const Paper& scheme)
     : model_(model),
       nominal_(nominal),
       data_(data),
-      options_(options),
+      scheme_(scheme),
       chain_{},
-      neighbours_(std::min<std::size_t>(static_cast<std::size_t>(options.neighbours), data.size)),
+      neighbours_(std::min<std::size_t>(static_cast<std::size_t>(scheme.neighbours), data.size)),
       candidates_(neighbours_.size()) {
   if (data.reduction) {
     chain_ = make_lane_chain(nominal);
@@ -53,9 +53,9 @@ void Selection::rank() {
     Candidate& candidate = candidates_[i];
     candidate = {neighbours_[i].distance, neighbours_[i].index, static_cast<std::uint32_t>(i),
                  false};
-    if (options_.ranking == Ranking::joint_adjustment || options_.limit_aware) score(candidate);
+    if (scheme_.ranking == Ranking::joint_adjustment || scheme_.limit_aware) score(candidate);
   }
-  kept_ = std::min(found_, static_cast<std::size_t>(options_.candidates));
+  kept_ = std::min(found_, static_cast<std::size_t>(scheme_.candidates));
   const auto begin = candidates_.begin();
   std::partial_sort(begin, begin + static_cast<std::ptrdiff_t>(kept_),
                     begin + static_cast<std::ptrdiff_t>(found_));
@@ -99,7 +99,7 @@ const double* Selection::seed_of(const Candidate& candidate) const {
 Vector6 Selection::error_of(const Candidate& candidate) const {
   const double* x = data_.x(candidate.index);
   Vector6 e = Eigen::Map<const Vector6>(target_x_) - Eigen::Map<const Vector6>(x);
-  const bool geodesic = options_.rotation_difference == RotationDifference::geodesic;
+  const bool geodesic = scheme_.rotation_difference == RotationDifference::geodesic;
   if (!geodesic && !data_.reduction) return e;
   // A reduced sample has its first and last joint at zero: the target is brought there too.
   const Pose target =
@@ -124,13 +124,13 @@ void Selection::score(Candidate& candidate) const {
     const double* column = pseudo_inverse + j * dof;
     for (int i = 0; i < dof; ++i) adjustment[i] += column[i] * e[j];
   }
-  if (options_.ranking == Ranking::joint_adjustment) {
+  if (scheme_.ranking == Ranking::joint_adjustment) {
     double sum = 0;
     for (int i = 0; i < dof; ++i) sum += adjustment[i] * adjustment[i];
     // Not a number has no place in an order.
     candidate.score = std::isnan(sum) ? kInfinity : sum;
   }
-  if (options_.limit_aware) {
+  if (scheme_.limit_aware) {
     const double* q = seed_of(candidate);
     for (int i = 0; i < dof; ++i) {
       const double predicted = q[i] + adjustment[i];
@@ -147,10 +147,10 @@ void Selection::score(Candidate& candidate) const {
 
 const double* Selection::next_seed(int attempt) {
   const auto position = static_cast<std::size_t>(attempt);
-  if (position >= kept_ || (attempt > 0 && options_.reselection == Reselection::none)) {
+  if (position >= kept_ || (attempt > 0 && scheme_.reselection == Reselection::none)) {
     return nullptr;
   }
-  if (attempt > 0 && options_.reselection == Reselection::farthest) {
+  if (attempt > 0 && scheme_.reselection == Reselection::farthest) {
     bring_farthest_forward(attempt);
   }
   return seed_of(candidates_[position]);

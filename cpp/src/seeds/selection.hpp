@@ -29,7 +29,7 @@ class Selection {
  public:
   /// `nominal` is the chain that the data belongs to; `model` may differ from it a little.
   Selection(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
-            const SolverOptions& options);
+            const Paper& scheme);
 
   /// The neighbours of T_base_flange (the tip link, without the tool).
   void query(const Pose& T_base_flange);
@@ -64,7 +64,7 @@ class Selection {
   const ChainModel& model_;
   const ChainModel& nominal_;
   const DatabaseData& data_;
-  const SolverOptions& options_;
+  const Paper& scheme_;
   /// Pose of the tip link, or Y of reduction.hpp.
   Pose target_;
   double target_x_[6];

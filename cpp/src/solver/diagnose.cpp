@@ -8,6 +8,7 @@
 #include "base/constants.hpp"
 #include "base/message_text.hpp"
 #include "base/pseudo_inverse.hpp"
+#include "options/strategy.hpp"
 #include "refine/best_effort.hpp"
 #include "solver/solver_impl.hpp"
 
@@ -28,9 +29,9 @@ std::string format(const std::string& pattern, double value) {
 }
 
 SolverOptions generous(SolverOptions options) {
-  options.iteration = Iteration::lm;
-  options.damping = SolverOptions{}.damping;
-  options.whole_turns = true;
+  Lanes lanes;
+  lanes.neighbours = neighbours_of(options.strategy);
+  options.strategy = lanes;
   options.max_attempts = std::max(options.max_attempts, kPatientAttempts);
   options.max_iterations = std::max(options.max_iterations, kPatientIterations);
   return options;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A flag for every field of SolverOptions and DatabaseOptions, made from the fields."""
+"""A flag for every field of the option classes, made from the fields."""
 
 from __future__ import annotations
 
@@ -12,6 +12,8 @@ from iksel_cpp import (
     Database,
     DatabaseOptions,
     InvalidArgumentError,
+    Lanes,
+    Paper,
     SolverOptions,
     Task,
 )
@@ -19,9 +21,10 @@ from iksel_cpp import (
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-Options = DatabaseOptions | SolverOptions
+Options = DatabaseOptions | SolverOptions | Lanes | Paper
 
 PRESETS = ("default", "paper")
+STRATEGIES = {"lanes": Lanes, "paper": Paper}
 
 TASK_FORMS = (
     "pose, position_only, free_spin[:AXIS] (any spin about an axis of the tool), "
@@ -38,7 +41,7 @@ _DATABASE_FLAGS = {
     "seed": "--database-seed",
     "threads": "--database-threads",
 }
-_SOLVER, _DATABASE = "solver.", "database."
+_SOLVER, _DATABASE, _STRATEGY = "solver.", "database.", "strategy."
 
 # Who names a scale means the paper's databases, which have their sizes from it.
 _WITH_SCALE = {"sampling": "grid", "key_scheme": "full", "samples": 0}
@@ -80,6 +83,18 @@ def add_solver_options(parser: argparse.ArgumentParser) -> None:
         help=f"what of a pose has to be reached: {TASK_FORMS}",
     )
     _add_fields(group, SolverOptions, _SOLVER, _SOLVER_FLAGS)
+    group = parser.add_argument_group(
+        "strategy options",
+        "only those that the strategy reads can be used; lanes reads --neighbours and "
+        "--damping",
+    )
+    group.add_argument(
+        "--strategy",
+        choices=list(STRATEGIES),
+        help="seeds in SIMD lanes, or one at a time as in the paper (default: the "
+        "preset's)",
+    )
+    _add_fields(group, Paper, _STRATEGY, {})
     add_database_options(parser)
 
 
@@ -107,7 +122,30 @@ def solver_options(arguments: argparse.Namespace) -> SolverOptions:
     options = SolverOptions.paper() if paper else SolverOptions()
     database = options.database.replace(**changes)
     task = parse_task(arguments.task) if arguments.task else options.task
-    return options.replace(database=database, task=task, **_given(arguments, _SOLVER))
+    return options.replace(
+        database=database,
+        task=task,
+        strategy=_strategy(arguments, options.strategy),
+        **_given(arguments, _SOLVER),
+    )
+
+
+def _strategy(arguments: argparse.Namespace, preset: Lanes | Paper) -> Lanes | Paper:
+    """The preset's strategy, or another one, with the given flags on top.
+
+    Raises:
+        InvalidArgumentError: A flag that the strategy does not read.
+    """
+    name = arguments.strategy
+    strategy = preset if name is None else STRATEGIES[name]()
+    given = _given(arguments, _STRATEGY)
+    for field in given:
+        if not hasattr(strategy, field):
+            raise InvalidArgumentError(
+                f"{_flag(field, {})}: the strategy 'lanes' does not read it; it "
+                "belongs to --strategy paper, which --preset paper has too"
+            )
+    return strategy.replace(**given)
 
 
 def given_database(arguments: argparse.Namespace) -> Database | None:
@@ -165,7 +203,17 @@ def overrides(arguments: argparse.Namespace) -> dict[str, Any]:
     return {
         **({"task": task} if task else {}),
         **_given(arguments, _SOLVER),
+        **_strategy_overrides(arguments),
         **{_DATABASE + name: value for name, value in database.items()},
+    }
+
+
+def _strategy_overrides(arguments: argparse.Namespace) -> dict[str, Any]:
+    name = getattr(arguments, "strategy", None)
+    given = _given(arguments, _STRATEGY)
+    return {
+        **({"strategy": name} if name else {}),
+        **given,
     }
 
 
@@ -206,7 +254,8 @@ def _add_fields(
     renamed: Mapping[str, str],
 ) -> None:
     """A flag per field of `options`; those that are not used leave no trace."""
-    defaults, paper = options().to_dict(), options.paper().to_dict()
+    defaults = options().to_dict()
+    paper = defaults if options is Paper else options.paper().to_dict()  # type: ignore[union-attr]
     for field, default in defaults.items():
         if isinstance(default, dict):
             continue

@@ -100,26 +100,7 @@ void bind_samples(py::class_<Database>& cls) {
           "link, nearest first; Eq. (2) of the paper.");
 }
 
-}  // namespace
-
-void bind_database(py::module_& m) {
-  py::class_<Database> cls(m, "Database",
-                           "An immutable set of samples (q_i, x_i, J_i^+) of a robot under a "
-                           "KD-tree. Safe to use from many threads at once.");
-  cls.def_static("build", &build, py::arg("robot"),
-                 py::arg_v("options", DatabaseOptions{}, "DatabaseOptions()"),
-                 py::arg("progress") = py::none(),
-                 R"(Samples the joint limits and computes pose, Jacobian and pseudo-inverse.
-
-Args:
-    robot: the chain; its TCP plays no part.
-    options: how to sample.
-    progress: called now and then with (samples done, samples in all). What it raises ends
-        the build. The GIL is released between calls, and Ctrl-C works.
-
-Raises:
-    InvalidArgumentError: an option out of range.
-    DatabaseError: more samples than fit.)");
+void bind_files(py::class_<Database>& cls) {
   cls.def_static("load", &load, py::arg("path"), py::kw_only(), py::arg("mmap") = false,
                  R"(Reads a file, after which it may be changed or removed.
 
@@ -147,7 +128,29 @@ Raises:
   cls.def("to_bytes", &to_bytes, "The content of a file, for sending.");
   cls.def_static("from_bytes", &from_bytes, py::arg("content"),
                  "The database that `to_bytes` wrote. Raises as `load`.");
+}
 
+}  // namespace
+
+void bind_database(py::module_& m) {
+  py::class_<Database> cls(m, "Database",
+                           "An immutable set of samples (q_i, x_i, J_i^+) of a robot under a "
+                           "KD-tree. Safe to use from many threads at once.");
+  cls.def_static("build", &build, py::arg("robot"),
+                 py::arg_v("options", DatabaseOptions{}, "DatabaseOptions()"),
+                 py::arg("progress") = py::none(),
+                 R"(Samples the joint limits and computes pose, Jacobian and pseudo-inverse.
+
+Args:
+    robot: the chain; its TCP plays no part.
+    options: how to sample.
+    progress: called now and then with (samples done, samples in all). What it raises ends
+        the build. The GIL is released between calls, and Ctrl-C works.
+
+Raises:
+    InvalidArgumentError: an option out of range.
+    DatabaseError: more samples than fit.)");
+  bind_files(cls);
   add_property(
       cls, "options", [](const Database& self) { return self.options(); },
       "A copy of the options it was built with.");

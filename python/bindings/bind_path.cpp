@@ -128,21 +128,7 @@ void bind_path_result(py::module_& m) {
   });
 }
 
-}  // namespace
-
-void bind_path(py::module_& m, py::class_<Solver>& cls) {
-  bind_path_result(m);
-  def_method<1>(
-      cls,
-      {"solve_path",
-       "Joint values along a path of poses, by a choice among the solutions of all waypoints.\n\n"
-       "Of all ways through the solutions that are found, the one with the least sum of joint "
-       "moves.",
-       "poses", "T_base_tip of each waypoint, (N, 4, 4) [m], or others as in solve.", "PathResult",
-       R"(Raises:
-    InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, a number out of range.)"},
-      path_keywords(), {"start", "dt", "weights", "norm", "filter", "candidates"}, &solve_path);
-
+void bind_tracker(py::module_& m) {
   py::class_<Tracker> tracker(
       m, "Tracker",
       "Follows a stream of poses: each answer continues from the last, within the velocity limits. "
@@ -195,6 +181,24 @@ Raises:
         const auto solver = in.value<Solver>("solver");
         return Tracker(solver, as_joints(in.object(), solver.robot().dof(), "pickled Tracker, q"));
       }));
+}
+
+}  // namespace
+
+void bind_path(py::module_& m, py::class_<Solver>& cls) {
+  bind_path_result(m);
+  def_method<1>(
+      cls,
+      {"solve_path",
+       "Joint values along a path of poses, by a choice among the solutions of all waypoints.\n\n"
+       "Of all ways through the solutions that are found, the one with the least sum of joint "
+       "moves.",
+       "poses", "T_base_tip of each waypoint, (N, 4, 4) [m], or others as in solve.", "PathResult",
+       R"(Raises:
+    InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, a number out of range.)"},
+      path_keywords(), {"start", "dt", "weights", "norm", "filter", "candidates"}, &solve_path);
+
+  bind_tracker(m);
   cls.def(
       "tracker",
       [](const Solver& self, const ArrayLike& start) {

@@ -14,6 +14,7 @@
 #include "gil.hpp"
 #include "html.hpp"
 #include "iksel/robot.hpp"
+#include "joint_values.hpp"
 #include "pickle.hpp"
 #include "pose_arguments.hpp"
 #include "property.hpp"
@@ -41,18 +42,6 @@ struct handle_type_name<iksel::python::BoolOrArray> {
 namespace iksel::python {
 
 namespace {
-
-std::map<std::string, double> as_joint_values(const JointValues& value, const char* name) {
-  if (!py::hasattr(value, "keys")) throw_wrong_type(name, "a mapping of names to numbers", value);
-  std::map<std::string, double> joints;
-  for (const auto& [key, number] : py::dict(py::object(value))) {
-    if (!py::isinstance<py::str>(key)) throw_wrong_type(name, "joint names as keys", key);
-    const std::string joint = as_text(key, name);
-    const std::string culprit = std::string(name) + "['" + joint + "']";
-    joints[joint] = from_python<double>(number, culprit.c_str());
-  }
-  return joints;
-}
 
 std::pair<double, double> as_limits(const ArrayLike& value, const char* name) {
   const DoubleArray array = as_doubles(value, name);
@@ -82,33 +71,6 @@ Robot from_urdf(const PathLike& path_or_xml, const std::optional<Loose<std::stri
   return read_urdf(
       path_or_xml, [&](const std::string& xml) { return Robot::from_urdf_string(xml, options); },
       [&](const std::filesystem::path& path) { return Robot::from_urdf_file(path, options); });
-}
-
-py::array_t<double> fk(const Robot& self, const ArrayLike& q, const Loose<Kinematics>& kinematics) {
-  const auto how = from_python<Kinematics>(kinematics, "kinematics");
-  return map_joints(q, self.dof(), "q", {4, 4}, [&](const JointVector& joints, double* out) {
-    Eigen::Map<RowMajorPose>{out} = self.fk(joints, how).matrix();
-  });
-}
-
-py::array_t<double> jacobian(const Robot& self, const ArrayLike& q,
-                             const Loose<Kinematics>& kinematics) {
-  const auto how = from_python<Kinematics>(kinematics, "kinematics");
-  const int dof = self.dof();
-  return map_joints(q, dof, "q", {6, dof}, [&](const JointVector& joints, double* out) {
-    Eigen::Map<RowMajorMatrix>(out, 6, dof) = self.jacobian(joints, how);
-  });
-}
-
-py::array_t<double> link_poses(const Robot& self, const ArrayLike& q,
-                               const std::optional<JointValues>& other_joints) {
-  std::map<std::string, double> others;
-  if (other_joints) others = as_joint_values(*other_joints, "other_joints");
-  const auto links = static_cast<py::ssize_t>(self.link_names().size());
-  return map_joint_blocks(q, self.dof(), "q", {links, 4, 4},
-                          [&](const double* rows, std::size_t count, double* out) {
-                            self.link_poses(rows, count, others, out);
-                          });
 }
 
 std::string robot_repr(const Robot& self) {
@@ -211,17 +173,8 @@ void bind_chain(py::class_<Robot>& cls) {
                "Hash of the chain up to the tip link: equal for chains that may share a database.");
 }
 
-}  // namespace
-
-void bind_robot(py::module_& m) {
-  bind_enum<JointType>(m);
-  bind_enum<Kinematics>(m);
-
+void bind_from_urdf(py::class_<Robot>& cls) {
   const RobotOptions defaults;
-  const Loose<Kinematics> kernel = py::str(enum_name(Kinematics::kernel));
-  py::class_<Robot> cls(m, "Robot",
-                        "An immutable serial chain between two links of a URDF, with its limits. "
-                        "Safe to use from many threads at once.");
   cls.def_static("from_urdf", &from_urdf, py::arg("path_or_xml"), py::arg("base_link") = py::none(),
                  py::arg("tip_link") = py::none(), py::arg("tcp") = py::none(),
                  py::arg("locked_joints") = py::none(),
@@ -245,13 +198,9 @@ Raises:
         has them all.
     UnknownNameError: no such link or joint.
     InvalidArgumentError: tcp is no rigid transform, or a number in the options is no good.)");
-  bind_chain(cls);
-  cls.def(
-      "with_tcp",
-      [](const Robot& self, const PoseLike& tcp) { return self.with_tcp(as_pose(tcp, "tcp")); },
-      py::arg("tcp"),
-      "The same chain with another tool T_tip_tcp, (4, 4). Databases built for one serve the "
-      "other.");
+}
+
+void bind_configurations(py::class_<Robot>& cls) {
   cls.def(
       "within_limits",
       [](const Robot& self, const ArrayLike& q) {
@@ -264,74 +213,6 @@ Raises:
       py::arg("q"),
       "Whether q [rad or m], (dof,), lies inside the position limits; of (N, dof) values each, "
       "(N,).");
-  cls.def("fk", &fk, py::arg("q"), py::arg("kinematics") = kernel,
-          R"(Forward kinematics: T_base_tip (of the TCP, if there is one).
-
-Args:
-    q: joint values [rad or m], (dof,) or (N, dof).
-    kinematics: what computes it.
-
-Returns:
-    (4, 4), or (N, 4, 4) with the GIL released.
-
-Raises:
-    InvalidArgumentError: wrong shape or dtype, or a number that is not finite.)");
-  cls.def("link_poses", &link_poses, py::arg("q"), py::kw_only(),
-          py::arg("other_joints") = py::none(),
-          R"(Poses of all links of the URDF in the base link's frame, in the order of link_names.
-
-Side branches move with the arm's joints, too, and with what mimics them at any depth. The TCP plays
-no part.
-
-Args:
-    q: joint values [rad or m], (dof,) or (N, dof).
-    other_joints: values of joints that q does not move [rad or m], by name. Those not given are
-        where they are locked, or at 0; floating and planar joints are at their origin.
-
-Returns:
-    (n_links, 4, 4), or (N, n_links, 4, 4) with the GIL released.
-
-Raises:
-    InvalidArgumentError: wrong shape or dtype, a number that is not finite, or a joint in
-        other_joints that q moves.
-    UnknownNameError: a name in other_joints, or in a mimic tag, that is no joint's.
-    UrdfError: a joint off the chain is no good: it mimics itself, or has no axis.)");
-  cls.def("jacobian", &jacobian, py::arg("q"), py::arg("kinematics") = kernel,
-          R"(Geometric Jacobian: rows [linear; angular] in base axes at the tip.
-
-Args:
-    q: joint values [rad or m], (dof,) or (N, dof).
-    kinematics: what computes it.
-
-Returns:
-    (6, dof), or (N, 6, dof) with the GIL released.
-
-Raises:
-    InvalidArgumentError: wrong shape or dtype, or a number that is not finite.)");
-  cls.def(
-      "dq_dx",
-      [](const Robot& self, const ArrayLike& q, const Loose<double>& damping) {
-        const auto factor = from_python<double>(damping, "damping");
-        const int dof = self.dof();
-        return map_joints(q, dof, "q", {dof, 6}, [&](const JointVector& joints, double* out) {
-          Eigen::Map<RowMajorMatrix>(out, dof, 6) = self.dq_dx(joints, factor);
-        });
-      },
-      py::arg("q"), py::arg("damping") = 0.0,
-      R"(Derivative of an answer q by its target, for differentiable use.
-
-dq = dq_dx @ [linear; angular] for a small twist of the target in base axes at the tip, of all dq
-the least: the damped pseudo-inverse J^T (J J^T + damping^2 I)^-1 (Nakamura and Hanafusa 1986).
-
-Args:
-    q: joint values [rad or m], (dof,) or (N, dof).
-    damping: bounds dq near singularities; 0: the pseudo-inverse.
-
-Returns:
-    (dof, 6), or (N, dof, 6) with the GIL released.
-
-Raises:
-    InvalidArgumentError: wrong shape or dtype, a number that is not finite, damping below 0.)");
   cls.def(
       "random_configurations",
       [](const Robot& self, const Loose<std::size_t>& n,
@@ -343,6 +224,27 @@ Raises:
       py::arg("n"), py::arg("seed") = py::none(),
       "n configurations uniform inside the limits (continuous joints in [-pi, pi)), (n, dof). The "
       "same seed gives the same numbers everywhere; None: other numbers in each call.");
+}
+
+}  // namespace
+
+void bind_robot(py::module_& m) {
+  bind_enum<JointType>(m);
+  bind_enum<Kinematics>(m);
+
+  py::class_<Robot> cls(m, "Robot",
+                        "An immutable serial chain between two links of a URDF, with its limits. "
+                        "Safe to use from many threads at once.");
+  bind_from_urdf(cls);
+  bind_chain(cls);
+  cls.def(
+      "with_tcp",
+      [](const Robot& self, const PoseLike& tcp) { return self.with_tcp(as_pose(tcp, "tcp")); },
+      py::arg("tcp"),
+      "The same chain with another tool T_tip_tcp, (4, 4). Databases built for one serve the "
+      "other.");
+  bind_kinematics(cls);
+  bind_configurations(cls);
   cls.def("__repr__", &robot_repr);
   cls.def("_repr_html_", &robot_html);
   cls.def("__copy__", [](const Robot& self) { return self; });

@@ -139,15 +139,7 @@ Solver solver_from_state(const py::object& state) {
   return Solver(robot, options, database, nominal, Drift{kAny, kAny});
 }
 
-}  // namespace
-
-void bind_solver(py::module_& m) {
-  bind_enum<MoveNorm>(m);
-  bind_enum<SolutionOrder>(m);
-
-  py::class_<Solver> cls(m, "Solver",
-                         "Solves inverse kinematics for one robot. Immutable, safe to use from "
-                         "many threads at once; the same input gives the same bits.");
+void bind_construction(py::class_<Solver>& cls) {
   cls.def(py::init(&make_solver), py::arg("robot"), py::arg("options") = py::none(),
           py::arg("database") = py::none(), py::kw_only(), py::arg("nominal") = py::none(),
           py::arg("max_drift") = py::none(),
@@ -165,6 +157,9 @@ Args:
 Raises:
     InvalidArgumentError: an option out of range.
     DatabaseMismatchError: the database belongs to another chain, or the drift is too large.)");
+}
+
+void bind_properties(py::class_<Solver>& cls) {
   add_property(cls, "nominal", &Solver::nominal,
                "The chain that the database was built for: the robot itself, unless "
                "that is a calibrated one.");
@@ -188,8 +183,9 @@ Raises:
       [](const Solver& self) { return task_hint(self.robot(), self.options().task); },
       "For an arm with fewer joints than its task has axes, which hardly any target suits: tasks "
       "for which its joints are enough, in a sentence; else empty.");
-  bind_requests(m, cls);
-  bind_path(m, cls);
+}
+
+void bind_batch(py::class_<Solver>& cls) {
   def_method<1>(
       cls,
       {"solve_batch",
@@ -208,6 +204,22 @@ same tolerances. What is asked for holds for each target by itself.)",
       {"threads", "near", "weights", "norm", "seeds", "database_seeds", "filter", "deadline",
        "task", "objective", "on_invalid_pose"},
       &solve_batch);
+}
+
+}  // namespace
+
+void bind_solver(py::module_& m) {
+  bind_enum<MoveNorm>(m);
+  bind_enum<SolutionOrder>(m);
+
+  py::class_<Solver> cls(m, "Solver",
+                         "Solves inverse kinematics for one robot. Immutable, safe to use from "
+                         "many threads at once; the same input gives the same bits.");
+  bind_construction(cls);
+  bind_properties(cls);
+  bind_requests(m, cls);
+  bind_path(m, cls);
+  bind_batch(cls);
   cls.def("__repr__", [](const Solver& self) {
     return "Solver(" + py::cast<std::string>(py::repr(py::cast(self.robot()))) + ", " +
            to_repr(self.options()) + ")";

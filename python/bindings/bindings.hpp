@@ -5,6 +5,7 @@
 #include <pybind11/pybind11.h>
 
 namespace iksel {
+class Robot;
 class Solver;
 }
 
@@ -14,6 +15,8 @@ void bind_errors(pybind11::module_& m);
 void bind_link_tree(pybind11::module_& m);
 void bind_pose(pybind11::module_& m);
 void bind_robot(pybind11::module_& m);
+/// The methods of Robot that compute poses and Jacobians.
+void bind_kinematics(pybind11::class_<Robot>& robot);
 /// To come before the options, one of which is a task.
 void bind_task(pybind11::module_& m);
 void bind_options(pybind11::module_& m);

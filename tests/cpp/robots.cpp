@@ -13,6 +13,7 @@
 
 #include "kinematics/chain_model.hpp"
 #include "kinematics/kdl_chain.hpp"
+#include "task_errors.hpp"
 
 namespace iksel_test {
 
@@ -152,7 +153,8 @@ iksel::Pose Judge::fk(const iksel::JointVector& q) { return kdl_->fk(q); }
 
 void Judge::expect_solution(const iksel::Pose& target, const iksel::JointVector& q,
                             const iksel::SolverOptions& options) {
-  const auto error = iksel::pose_error(target, kdl_->fk(q));
+  const Vector6 error =
+      outside_of(options.task, task_deviation(options.task, target, kdl_->fk(q)));
   EXPECT_LE(error.head<3>().norm(), options.position_tolerance + 1e-12) << q.transpose();
   EXPECT_LE(error.tail<3>().norm(), options.rotation_tolerance + 1e-12) << q.transpose();
   EXPECT_TRUE(robot_.within_limits(q)) << q.transpose();

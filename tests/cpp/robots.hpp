@@ -38,7 +38,8 @@ class Judge {
 
   iksel::Pose fk(const iksel::JointVector& q);
 
-  /// Expects q to reach the target within the tolerances, and to lie inside the limits.
+  /// Expects q to reach the options' task within the tolerances, and to lie inside the limits; by
+  /// KDL and task_errors.hpp.
   void expect_solution(const iksel::Pose& target, const iksel::JointVector& q,
                        const iksel::SolverOptions& options = {});
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// That solving reaches tasks, measured by KDL's FK and by formulas of this file's own.
+// That solving reaches tasks, measured by KDL's FK and by the formulas of task_errors.hpp.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "base/random.hpp"
-#include "base/rotation.hpp"
 #include "goal/task_space.hpp"
 #include "iksel/iksel.hpp"
 #include "robots.hpp"
+#include "task_errors.hpp"
 #include "tasks.hpp"
 
 namespace {
@@ -25,10 +25,8 @@ using iksel::Solver;
 using iksel::SolverOptions;
 using iksel::Status;
 using iksel::Task;
-using iksel::TaskFrame;
 using iksel::TaskSpace;
 using iksel::Vector6;
-using iksel_test::angle_between;
 using iksel_test::tasks;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -36,56 +34,16 @@ constexpr double kPi = 3.14159265358979323846;
 
 /// What a task asks for, by formulas that share nothing with the library's.
 void expect_reached(const Task& task, const Pose& target, const Pose& pose, const char* what) {
-  constexpr double kTolerance = 1e-6 + 1e-12;
-  const bool tool = task.frame == TaskFrame::tool;
-  const Eigen::Vector3d p = pose.translation() - target.translation();
-  const Eigen::Vector3d d = tool ? Eigen::Vector3d(target.linear().transpose() * p) : p;
-  const Eigen::Matrix3d E = tool ? Eigen::Matrix3d(target.linear().transpose() * pose.linear())
-                                 : Eigen::Matrix3d(pose.linear() * target.linear().transpose());
+  const Vector6 outside =
+      iksel_test::outside_of(task, iksel_test::task_deviation(task, target, pose));
+  EXPECT_LE(outside.head<3>().norm(), 1e-6 + 1e-12) << what;
+  EXPECT_LE(outside.tail<3>().norm(), 1e-6 + 1e-12) << what;
   for (int i = 0; i < 3; ++i) {
     const auto k = static_cast<std::size_t>(i);
     // Where there is room, answers lie within the bounds, not only within the tolerance.
-    const bool room = task.position_upper[k] - task.position_lower[k] > 1e-5;
-    const double slack = room ? 1e-12 : kTolerance;
-    EXPECT_GE(d[i], task.position_lower[k] - slack) << what;
-    EXPECT_LE(d[i], task.position_upper[k] + slack) << what;
+    if (task.position_upper[k] - task.position_lower[k] <= 1e-5) continue;
+    EXPECT_NEAR(outside[i], 0, 1e-12) << what;
   }
-  const auto free = [&](std::size_t i) { return std::isinf(task.rotation_upper[i]); };
-  const int open = free(0) + free(1) + free(2);
-  if (open == 3) return;
-  if (open == 0) {
-    const Eigen::AngleAxisd rotation(E);
-    // Rotation vectors and swing-twist agree to second order; these boxes are small enough.
-    const Eigen::Vector3d w = rotation.angle() * rotation.axis();
-    for (int i = 0; i < 3; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      const double slack = kTolerance + 0.6 * w.squaredNorm();
-      EXPECT_GE(w[i], task.rotation_lower[k] - slack) << what;
-      EXPECT_LE(w[i], task.rotation_upper[k] + slack) << what;
-    }
-    return;
-  }
-  if (open == 1) {
-    const int axis = free(0) ? 0 : free(1) ? 1 : 2;
-    const Eigen::Vector3d a = Eigen::Vector3d::Unit(axis);
-    const Eigen::Vector3d u = E.col(axis);
-    Eigen::Vector3d swing = a.cross(u);
-    if (swing.norm() > 1e-12) swing *= angle_between(a, u) / swing.norm();
-    for (int i = 0; i < 3; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      if (i == axis) continue;
-      EXPECT_GE(swing[i], task.rotation_lower[k] - kTolerance) << what;
-      EXPECT_LE(swing[i], task.rotation_upper[k] + kTolerance) << what;
-    }
-    return;
-  }
-  // Only the twist about one axis counts: 2 atan2(q_axis, q_w).
-  const int axis = !free(0) ? 0 : !free(1) ? 1 : 2;
-  const Eigen::Vector4d q = iksel::to_quaternion_wxyz(E);
-  const double twist = std::remainder(2 * std::atan2(q[1 + axis], q[0]), 2 * kPi);
-  const auto k = static_cast<std::size_t>(axis);
-  EXPECT_GE(twist, task.rotation_lower[k] - kTolerance) << what;
-  EXPECT_LE(twist, task.rotation_upper[k] + kTolerance) << what;
 }
 
 class TasksOfRobots : public testing::TestWithParam<std::string> {};

@@ -9,6 +9,7 @@
 #include "base/random.hpp"
 #include "goal/task_space.hpp"
 #include "robots.hpp"
+#include "task_errors.hpp"
 #include "tasks.hpp"
 
 namespace {
@@ -29,6 +30,25 @@ using iksel_test::tasks;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 TaskSpace space_of(const Task& task) { return {task, 1e-6, 1e-6}; }
+
+/// Bounds of every kind, about either frame: fixed, symmetric, one-sided and free.
+Task random_task(Random& random) {
+  Task task;
+  task.frame = random.uniform(0, 1) < 0.5 ? TaskFrame::tool : TaskFrame::base;
+  const auto set = [&](double widest, double& lower, double& upper) {
+    const double kind = random.uniform(0, 4);
+    lower = kind < 1 ? 0 : -random.uniform(0, widest);
+    upper = kind < 1 ? 0 : kind < 2 ? -lower : kind < 3 ? 0 : random.uniform(0, widest);
+  };
+  for (std::size_t k = 0; k < 3; ++k) {
+    set(1, task.position_lower[k], task.position_upper[k]);
+    set(1, task.rotation_lower[k], task.rotation_upper[k]);
+    if (random.uniform(0, 1) > 0.3) continue;
+    task.rotation_lower[k] = -kInfinity;
+    task.rotation_upper[k] = kInfinity;
+  }
+  return task;
+}
 
 TEST(TaskSpace, FindsTheDeviationThatAPoseWasMadeWith) {
   const Robot& robot = iksel_test::robot("panda");
@@ -100,6 +120,32 @@ TEST(TaskSpace, FreeSpinMeasuresTheAngleBetweenTheAxes) {
           angle_between(target.linear().row(axis).transpose(), pose.linear().row(axis).transpose()),
           1e-12);
     }
+  }
+}
+
+TEST(TaskSpace, AgreesWithTheDefinitionOfATask) {
+  const Robot& robot = iksel_test::robot("ur3");
+  Random random(iksel_test::seed());
+  for (int i = 0; i < iksel_test::cases(20'000); ++i) {
+    const Task task = random_task(random);
+    const Eigen::MatrixXd q = robot.random_configurations(2, random.next());
+    const Pose target = robot.fk(q.row(0));
+    Pose pose = robot.fk(q.row(1));
+    if (i % 4 == 0) {  // close by, as answers are
+      Vector6 d;
+      for (int k = 0; k < 6; ++k) d[k] = random.uniform(-1e-6, 1e-6);
+      pose = space_of(Task::pose()).pose_at(target, d);
+    }
+    const Vector6 outside =
+        iksel_test::outside_of(task, iksel_test::task_deviation(task, target, pose));
+    double position = 0;
+    double rotation = 0;
+    space_of(task).measure(target, pose, position, rotation);
+    EXPECT_NEAR(position, outside.head<3>().norm(), 1e-12)
+        << "case " << i << ", seed " << iksel_test::seed();
+    // Near a half turn the axis, and so what is outside, is only as good as its distance from it.
+    EXPECT_NEAR(rotation, outside.tail<3>().norm(), 1e-9)
+        << "case " << i << ", seed " << iksel_test::seed();
   }
 }
 

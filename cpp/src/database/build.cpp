@@ -31,7 +31,7 @@ void check_samples(const double* first, std::size_t count, const ChainModel& mod
 }
 
 /// Samples that a thread takes at a time.
-constexpr std::size_t kSamplesPerTurn = 512;
+constexpr std::size_t kSamplesPerChunk = 512;
 
 /// What the samples of one database are made with, by one thread.
 class SampleMaker {
@@ -98,87 +98,120 @@ class SampleMaker {
   std::unique_ptr<KdlChain> kdl_;
 };
 
-/// Fills `data`; its size is known as soon as memory is asked for.
-void build_data(const ChainModel& model, const DatabaseOptions& options, const Progress& progress,
-                const std::shared_ptr<DatabaseData>& data) {
-  data->options = options;
-  if (!is_simple(model)) data->options.key_scheme = KeyScheme::full;
-  data->dof = model.dof;
-  data->chain_hash = model.hash;
-  data->weight = rotation_weight(options, model.reach);
-  data->key_dim = iksel::key_dimension(options.rotation_key);
-  if (data->options.key_scheme == KeyScheme::reduced) {
-    data->reduction = std::make_shared<Reduction>(Reduction::of(model, data->weight));
-    data->key_dim = data->reduction->key_dimension();
-  }
-  const SampleSpace space = sample_space(model, data->reduction.get());
-  data->size = sample_count(space, options);
-  if (data->size > std::numeric_limits<std::uint32_t>::max()) {
-    throw DatabaseError("a database of " + std::to_string(data->size) +
-                        " samples is too large; at most 4294967295 are possible");
-  }
-  const std::size_t updates = options.sampling == Sampling::cvt ? options.cvt_updates : 0;
-  const std::size_t total = updates + data->size;
-  // Only what is new, so that every call tells more than the one before.
-  std::size_t next_told = 0;
-  const auto report = [&](std::size_t done) {
-    if (!progress || done < next_told) return;
-    next_told = done + 1;
-    progress(done, total);
-  };
-  report(0);
+/// Makes the content of one database.
+class DatabaseBuilder {
+ public:
+  DatabaseBuilder(const ChainModel& model, const DatabaseOptions& options, const Progress& progress,
+                  DatabaseData& data)
+      : model_(model), options_(options), progress_(progress), data_(data) {}
 
-  const std::vector<double> samples = make_samples(space, options, report);
-  const std::size_t width = space.dof();
-  const auto key_dim = static_cast<std::size_t>(data->key_dim);
-  const std::size_t length = DatabaseData::record_length(model.dof);
-  const int threads = resolve_threads(options.threads);
-  const auto make_worker = [&] {
-    return std::make_shared<SampleMaker>(model, data->options, data->weight, data->reduction.get());
-  };
+  void build() {
+    const SampleSpace space = describe();
+    updates_ = options_.sampling == Sampling::cvt ? options_.cvt_updates : 0;
+    report(0);
+    samples_ = make_samples(space, options_, [this](std::size_t done) { report(done); });
+    width_ = space.dof();
 
-  // Keys first: the tree made of them tells the order in which everything is then stored.
-  std::vector<double> keys(data->size * key_dim);
-  const auto make_key_worker = [&] {
-    return [&, maker = make_worker()](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        maker->make_key(&samples[i * width], &keys[i * key_dim]);
-      }
+    const std::vector<double> keys = make_keys();
+    // The tree made of the keys tells the order in which everything is stored.
+    const std::vector<std::uint32_t> order = KdTree(keys.data(), data_.size, data_.key_dim).order();
+    const std::size_t record_length = DatabaseData::record_length(model_.dof);
+    const auto storage =
+        std::make_shared<HeapStorage>(data_.size * (key_dim() + record_length) * sizeof(double));
+    auto* payload = reinterpret_cast<double*>(storage->writable() + kHeaderSize);
+    for (std::size_t i = 0; i < data_.size; ++i) {
+      std::copy_n(&keys[order[i] * key_dim()], key_dim(), payload + i * key_dim());
+    }
+    make_records(order, payload + data_.size * key_dim());
+    write_header(data_, storage->writable(), storage->size());
+    data_.use(storage);
+    report(total());
+  }
+
+ private:
+  /// Sets what does not depend on the samples' values; their number is known before memory for
+  /// them is asked for.
+  SampleSpace describe() {
+    data_.options = options_;
+    if (!is_simple(model_)) data_.options.key_scheme = KeyScheme::full;
+    data_.dof = model_.dof;
+    data_.chain_hash = model_.hash;
+    data_.weight = rotation_weight(options_, model_.reach);
+    data_.key_dim = iksel::key_dimension(options_.rotation_key);
+    if (data_.options.key_scheme == KeyScheme::reduced) {
+      data_.reduction = std::make_shared<Reduction>(Reduction::of(model_, data_.weight));
+      data_.key_dim = data_.reduction->key_dimension();
+    }
+    SampleSpace space = sample_space(model_, data_.reduction.get());
+    data_.size = sample_count(space, options_);
+    if (data_.size > std::numeric_limits<std::uint32_t>::max()) {
+      throw DatabaseError("a database of " + std::to_string(data_.size) +
+                          " samples is too large; at most 4294967295 are possible");
+    }
+    return space;
+  }
+
+  std::vector<double> make_keys() {
+    std::vector<double> keys(data_.size * key_dim());
+    // Half of a sample's work.
+    for_all_samples(
+        [&](SampleMaker& maker, std::size_t i) {
+          maker.make_key(&samples_[i * width_], &keys[i * key_dim()]);
+        },
+        [this](std::size_t done) { report(updates_ + done / 2); });
+    check_samples(keys.data(), keys.size(), model_);
+    return keys;
+  }
+
+  void make_records(const std::vector<std::uint32_t>& order, double* records) {
+    const std::size_t length = DatabaseData::record_length(model_.dof);
+    for_all_samples(
+        [&](SampleMaker& maker, std::size_t i) {
+          maker.make_record(&samples_[order[i] * width_], records + i * length);
+        },
+        [this](std::size_t done) {
+          // The end is told when all is done.
+          const std::size_t halves = updates_ + (data_.size + done) / 2;
+          if (halves < total()) report(halves);
+        });
+    check_samples(records, data_.size * length, model_);
+  }
+
+  /// work(maker, i) for every sample, with a maker per thread.
+  template <typename Work, typename OnProgress>
+  void for_all_samples(const Work& work, const OnProgress& on_progress) {
+    const auto make_worker = [&] {
+      return [&work, maker = std::make_shared<SampleMaker>(model_, data_.options, data_.weight,
+                                                           data_.reduction.get())](
+                 std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) work(*maker, i);
+      };
     };
-  };
-  // Half of a sample's work.
-  parallel_for(data->size, kSamplesPerTurn, threads, make_key_worker,
-               [&](std::size_t done) { report(updates + done / 2); });
-  check_samples(keys.data(), keys.size(), model);
-  const std::vector<std::uint32_t> order = KdTree(keys.data(), data->size, data->key_dim).order();
-
-  const auto storage =
-      std::make_shared<HeapStorage>(data->size * (key_dim + length) * sizeof(double));
-  auto* payload = reinterpret_cast<double*>(storage->writable() + kHeaderSize);
-  double* records = payload + data->size * key_dim;
-  for (std::size_t i = 0; i < data->size; ++i) {
-    std::copy_n(&keys[order[i] * key_dim], key_dim, payload + i * key_dim);
+    parallel_for(data_.size, kSamplesPerChunk, resolve_threads(options_.threads), make_worker,
+                 on_progress);
   }
-  parallel_for(
-      data->size, kSamplesPerTurn, threads,
-      [&] {
-        return [&, maker = make_worker()](std::size_t begin, std::size_t end) {
-          for (std::size_t i = begin; i < end; ++i) {
-            maker->make_record(&samples[order[i] * width], records + i * length);
-          }
-        };
-      },
-      [&](std::size_t done) {
-        // The end is told when all is done.
-        const std::size_t halves = updates + (data->size + done) / 2;
-        if (halves < total) report(halves);
-      });
 
-  check_samples(records, data->size * length, model);
-  write_header(*data, storage->writable(), storage->size());
-  data->use(storage);
-  report(total);
-}
+  /// Only what is new, so that every call tells more than the one before.
+  void report(std::size_t done) {
+    if (!progress_ || done < next_told_) return;
+    next_told_ = done + 1;
+    progress_(done, total());
+  }
+
+  [[nodiscard]] std::size_t total() const { return updates_ + data_.size; }
+  [[nodiscard]] std::size_t key_dim() const { return static_cast<std::size_t>(data_.key_dim); }
+
+  const ChainModel& model_;
+  const DatabaseOptions& options_;
+  const Progress& progress_;
+  DatabaseData& data_;
+  /// Steps of the tessellation before the first key.
+  std::size_t updates_ = 0;
+  /// Joint values that the samples are spread over, `width_` each.
+  std::vector<double> samples_;
+  std::size_t width_ = 0;
+  std::size_t next_told_ = 0;
+};
 
 }  // namespace
 
@@ -187,7 +220,7 @@ Database Database::build(const Robot& robot, const DatabaseOptions& options,
   options.validate();
   const auto data = std::make_shared<DatabaseData>();
   try {
-    build_data(robot.model(), options, progress, data);
+    DatabaseBuilder(robot.model(), options, progress, *data).build();
   } catch (const std::bad_alloc&) {
     throw DatabaseError("no memory for a database of " + std::to_string(data->size) + " samples");
   }

@@ -31,6 +31,10 @@ class LeafIndex {
   [[nodiscard]] std::size_t leaves() const { return dimension_.size() + 1; }
 
  private:
+  /// Splits every node's samples at the median of the coordinate that spreads widest. Returns where
+  /// in `order` the samples of each leaf begin, and the end.
+  std::vector<std::size_t> split(const DatabaseData& data, std::vector<std::uint32_t>& order);
+
   int depth_ = 0;
   std::size_t block_size_ = 0;
   // Inner nodes in heap order: the children of i are 2 i + 1 and 2 i + 2.

@@ -85,4 +85,11 @@ bool JointSpace::next_image(JointVector& q) const {
   return false;
 }
 
+JointVector JointSpace::longest_moves(double dt) const {
+  if (dt == 0) return JointVector::Constant(dof(), kInfinity);
+  // A little more, so that a joint may run at its limit in spite of rounding.
+  constexpr double kSlack = 1e-9;
+  return velocity * (dt * (1 + kSlack));
+}
+
 }  // namespace iksel

@@ -72,6 +72,10 @@ class JointSpace {
     return largest;
   }
 
+  /// The farthest that each joint may move in a time step by its velocity limit; infinite where
+  /// dt is 0.
+  [[nodiscard]] JointVector longest_moves(double dt) const;
+
   /// Range that samples are taken from: the limits, or [-pi, pi) where there are none.
   [[nodiscard]] double sample_lower(int joint) const {
     return type(joint) == JointType::continuous ? -kPi : lower[joint];

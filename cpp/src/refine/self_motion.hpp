@@ -25,6 +25,9 @@ int descend_self_motion(const ChainModel& model, const Goal& goal, const JointCo
 int descend_to_near(const ChainModel& model, const Goal& goal, const JointMove& move,
                     const JointVector& near, JointVector& q);
 
+/// Steps from a configuration to the next pose of a path at most.
+inline constexpr int kStepsToNext = 20;
+
 /// Brings q to the goal by Levenberg-Marquardt with the limits inside the step, to a hundredth of
 /// the tolerances, in at most `most` steps. False if it does not get within the tolerances and the
 /// limits.

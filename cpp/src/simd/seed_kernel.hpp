@@ -17,138 +17,165 @@ inline T wrap_near(const T& q, float middle) {
   return q - turns * T(6.2831853F);
 }
 
+/// Poses of a pack of samples or of the target, seen from the first joint: position and columns.
 template <typename T>
-void prepare_seeds(const SeedChain& chain, const SeedTarget& target, const float* block,
-                   SeedPack& out) {
-  using L = Lanes<T>;
-  constexpr int kVectors = kBlock / L::kCount;
-  const int n = chain.n;
-  const int right = n - 1;
-  T score[kVectors];
-  for (int v = 0; v < kVectors; ++v) {
-    const auto row = [&](int r) { return L::load(block + r * kBlock + v * L::kCount); };
-    T p[3] = {row(0), row(1), row(2)};
-    T x[3] = {row(3), row(4), row(5)};
-    T y[3] = {row(6), row(7), row(8)};
-    const T z[3] = {row(9), row(10), row(11)};
+struct SeedFrame {
+  T p[3], x[3], y[3], z[3];
+};
 
-    // The left side first; c, s is the turn about the first axis, by which the target is turned
-    // back to where the samples are.
-    T first = T(0.0F);
-    T c = T(1.0F);
-    T s = T(0.0F);
-    if (chain.left == Side::rotation) {
-      const T w2 = T(chain.weight2);
-      T px = p[0];
-      T py = p[1];
-      float tx = target.p[0];
-      float ty = target.p[1];
-      if (chain.right == Side::translation) {
-        // The slide moves the position, but not the foot of the perpendicular onto its line.
-        const T along = p[0] * z[0] + p[1] * z[1] + p[2] * z[2];
-        px = px - along * z[0];
-        py = py - along * z[1];
-        const float target_along = tx * target.z[0] + ty * target.z[1] + target.p[2] * target.z[2];
-        tx -= target_along * target.z[0];
-        ty -= target_along * target.z[1];
-      }
-      const T S = px * T(ty) - py * T(tx) + w2 * (z[0] * T(target.z[1]) - z[1] * T(target.z[0]));
-      const T C = px * T(tx) + py * T(ty) + w2 * (z[0] * T(target.z[0]) + z[1] * T(target.z[1]));
-      const T scale = T(1.0F) / sqrt(max(S * S + C * C, T(1e-30F)));
-      c = select(C * C + S * S > T(1e-30F), C * scale, T(1.0F));
-      s = S * scale;
-      first = wrap_near(rough_atan2(S, C) - T(chain.offset_first), chain.middle[0]);
-    } else if (chain.left == Side::translation) {
-      first = T(target.p[2]) - p[2] - T(chain.offset_first);
-      p[2] = T(target.p[2]);
+/// Joint values left out of the samples, and what they do to the poses.
+template <typename T>
+struct LeftOut {
+  T first = T(0.0F), last = T(0.0F);
+  /// Of a rotation on the left; it turns the target back to where the samples are.
+  T cosine = T(1.0F), sine = T(0.0F);
+  /// Displacement by a translation on the right, along the samples' z.
+  T slide = T(0.0F);
+};
+
+/// The left side: the first joint's value that brings the sample nearest to the target.
+template <typename T>
+IKSEL_INLINE void set_first(const SeedChain& chain, const SeedTarget& target, SeedFrame<T>& sample,
+                            LeftOut<T>& out) {
+  const auto& z = sample.z;
+  auto& p = sample.p;
+  if (chain.left == Side::rotation) {
+    const T w2 = T(chain.weight2);
+    T px = p[0];
+    T py = p[1];
+    float tx = target.p[0];
+    float ty = target.p[1];
+    if (chain.right == Side::translation) {
+      // The slide moves the position, but not the foot of the perpendicular onto its line.
+      const T along = p[0] * z[0] + p[1] * z[1] + p[2] * z[2];
+      px = px - along * z[0];
+      py = py - along * z[1];
+      const float target_along = tx * target.z[0] + ty * target.z[1] + target.p[2] * target.z[2];
+      tx -= target_along * target.z[0];
+      ty -= target_along * target.z[1];
     }
-    const auto turned_back = [&](const float(&t)[3], T(&to)[3]) {
-      to[0] = c * T(t[0]) + s * T(t[1]);
-      to[1] = c * T(t[1]) - s * T(t[0]);
-      to[2] = T(t[2]);
-    };
-    T tp[3];
-    T tx[3];
-    T ty[3];
-    T tz[3];
-    turned_back(target.p, tp);
-    turned_back(target.x, tx);
-    turned_back(target.y, ty);
-    turned_back(target.z, tz);
+    const T S = px * T(ty) - py * T(tx) + w2 * (z[0] * T(target.z[1]) - z[1] * T(target.z[0]));
+    const T C = px * T(tx) + py * T(ty) + w2 * (z[0] * T(target.z[0]) + z[1] * T(target.z[1]));
+    const T scale = T(1.0F) / sqrt(max(S * S + C * C, T(1e-30F)));
+    out.cosine = select(C * C + S * S > T(1e-30F), C * scale, T(1.0F));
+    out.sine = S * scale;
+    out.first = wrap_near(rough_atan2(S, C) - T(chain.offset_first), chain.middle[0]);
+  } else if (chain.left == Side::translation) {
+    out.first = T(target.p[2]) - p[2] - T(chain.offset_first);
+    p[2] = T(target.p[2]);
+  }
+}
 
-    T last = T(0.0F);
-    T slide = T(0.0F);
-    if (chain.right == Side::rotation) {
-      const T sine =
-          y[0] * tx[0] + y[1] * tx[1] + y[2] * tx[2] - (x[0] * ty[0] + x[1] * ty[1] + x[2] * ty[2]);
-      const T cosine =
-          x[0] * tx[0] + x[1] * tx[1] + x[2] * tx[2] + y[0] * ty[0] + y[1] * ty[1] + y[2] * ty[2];
-      const T square = sine * sine + cosine * cosine;
-      const T scale = T(1.0F) / sqrt(max(square, T(1e-30F)));
-      const T cn = select(square > T(1e-30F), cosine * scale, T(1.0F));
-      const T sn = sine * scale;
-      for (int i = 0; i < 3; ++i) {
-        const T a = x[i];
-        x[i] = a * cn + y[i] * sn;
-        y[i] = y[i] * cn - a * sn;
-      }
-      last = wrap_near(rough_atan2(sine, cosine) - T(chain.offset_last), chain.middle[right]);
-    } else if (chain.right == Side::translation) {
-      for (int i = 0; i < 3; ++i) slide = slide + (tp[i] - p[i]) * z[i];
-      last = slide - T(chain.offset_last);
-    }
+/// The target as the samples see it after set_first.
+template <typename T>
+IKSEL_INLINE void turn_back(const SeedTarget& target, const LeftOut<T>& left, SeedFrame<T>& out) {
+  const auto turned_back = [&](const float(&t)[3], T(&to)[3]) {
+    to[0] = left.cosine * T(t[0]) + left.sine * T(t[1]);
+    to[1] = left.cosine * T(t[1]) - left.sine * T(t[0]);
+    to[2] = T(t[2]);
+  };
+  turned_back(target.p, out.p);
+  turned_back(target.x, out.x);
+  turned_back(target.y, out.y);
+  turned_back(target.z, out.z);
+}
 
-    L::store(first, out.first + v * L::kCount);
-    L::store(last, out.last + v * L::kCount);
-
-    // What is left of the error, as the iteration measures it, at the sample's own origin, where
-    // its pseudo-inverse was taken.
-    T e[6];
-    T trace = T(1.0F);
-    for (int i = 0; i < 3; ++i) trace = trace + x[i] * tx[i] + y[i] * ty[i] + z[i] * tz[i];
-    const T factor = T(1.0F) / sqrt(max(trace, T(1e-6F)));
+/// The right side: the last joint's value, and the sample's columns turned by it.
+template <typename T>
+IKSEL_INLINE void set_last(const SeedChain& chain, const SeedFrame<T>& target, SeedFrame<T>& sample,
+                           LeftOut<T>& out) {
+  auto& x = sample.x;
+  auto& y = sample.y;
+  if (chain.right == Side::rotation) {
+    const auto& tx = target.x;
+    const auto& ty = target.y;
+    const T sine =
+        y[0] * tx[0] + y[1] * tx[1] + y[2] * tx[2] - (x[0] * ty[0] + x[1] * ty[1] + x[2] * ty[2]);
+    const T cosine =
+        x[0] * tx[0] + x[1] * tx[1] + x[2] * tx[2] + y[0] * ty[0] + y[1] * ty[1] + y[2] * ty[2];
+    const T square = sine * sine + cosine * cosine;
+    const T scale = T(1.0F) / sqrt(max(square, T(1e-30F)));
+    const T cn = select(square > T(1e-30F), cosine * scale, T(1.0F));
+    const T sn = sine * scale;
     for (int i = 0; i < 3; ++i) {
+      const T a = x[i];
+      x[i] = a * cn + y[i] * sn;
+      y[i] = y[i] * cn - a * sn;
+    }
+    out.last =
+        wrap_near(rough_atan2(sine, cosine) - T(chain.offset_last), chain.middle[chain.n - 1]);
+  } else if (chain.right == Side::translation) {
+    for (int i = 0; i < 3; ++i) {
+      out.slide = out.slide + (target.p[i] - sample.p[i]) * sample.z[i];
+    }
+    out.last = out.slide - T(chain.offset_last);
+  }
+}
+
+/// What is left of the error, as the iteration measures it, at the sample's own origin, where its
+/// pseudo-inverse was taken.
+template <typename T>
+IKSEL_INLINE void measure_rest(const SeedChain& chain, const SeedFrame<T>& target,
+                               const SeedFrame<T>& sample, const T& slide, T (&e)[6]) {
+  const auto& [p, x, y, z] = sample;
+  const auto& [tp, tx, ty, tz] = target;
+  T trace = T(1.0F);
+  for (int i = 0; i < 3; ++i) trace = trace + x[i] * tx[i] + y[i] * ty[i] + z[i] * tz[i];
+  const T factor = T(1.0F) / sqrt(max(trace, T(1e-6F)));
+  for (int i = 0; i < 3; ++i) {
+    const int a = (i + 1) % 3;
+    const int b = (i + 2) % 3;
+    e[3 + i] =
+        (x[a] * tx[b] - x[b] * tx[a] + y[a] * ty[b] - y[b] * ty[a] + z[a] * tz[b] - z[b] * tz[a]) *
+        factor;
+  }
+  for (int i = 0; i < 3; ++i) {
+    e[i] = tp[i] - p[i];
+    if (chain.right == Side::translation) {
       const int a = (i + 1) % 3;
       const int b = (i + 2) % 3;
-      e[3 + i] = (x[a] * tx[b] - x[b] * tx[a] + y[a] * ty[b] - y[b] * ty[a] + z[a] * tz[b] -
-                  z[b] * tz[a]) *
-                 factor;
+      e[i] = e[i] - slide * z[i] - slide * (e[3 + a] * z[b] - e[3 + b] * z[a]);
     }
-    for (int i = 0; i < 3; ++i) {
-      e[i] = tp[i] - p[i];
-      if (chain.right == Side::translation) {
-        const int a = (i + 1) % 3;
-        const int b = (i + 2) % 3;
-        e[i] = e[i] - slide * z[i] - slide * (e[3 + a] * z[b] - e[3 + b] * z[a]);
-      }
-    }
-
-    T dq[kMaxJoints];
-    T dq2 = T(0.0F);
-    for (int j = 0; j < n; ++j) {
-      const int at = kPoseRows + n + 6 * j;
-      dq[j] = row(at) * e[0];
-      for (int r = 1; r < 6; ++r) dq[j] = dq[j] + row(at + r) * e[r];
-      dq2 = dq2 + dq[j] * dq[j];
-    }
-    // Far from the sample its pseudo-inverse is no guide: only so long a step in its direction.
-    const T shorten = min(T(1.0F), T(chain.longest_step) / sqrt(max(dq2, T(1e-20F))));
-    T outside = T(0.0F);
-    for (int j = 0; j < n; ++j) {
-      T q = row(kPoseRows + j);
-      if (j == 0 && chain.left != Side::none) q = first;
-      if (j == right && chain.right != Side::none) q = last;
-      q = q + dq[j] * shorten;
-      if (chain.wraps[j]) q = wrap_near(q, chain.middle[j]);
-      const T inside = min(max(q, T(chain.lower[j])), T(chain.upper[j]));
-      outside = outside + (q - inside) * (q - inside);
-      L::store(inside, out.q[j] + v * L::kCount);
-    }
-    score[v] = dq2 + T(chain.outside_weight) * outside;
-    L::store(score[v], out.score + v * L::kCount);
   }
+}
 
-  // Rank of a seed: how many others are better; of equals the first.
+/// One step by the stored pseudo-inverse, into the limits, for the samples of the block from
+/// `offset` on. Returns the seeds' score: smaller is better.
+template <typename T>
+IKSEL_INLINE T take_first_step(const SeedChain& chain, const float* block, const LeftOut<T>& left,
+                               const T (&e)[6], int offset, SeedPack& out) {
+  using L = Lanes<T>;
+  const int n = chain.n;
+  const int right = n - 1;
+  const auto row = [&](int r) { return L::load(block + r * kBlock + offset); };
+  T dq[kMaxJoints];
+  T dq2 = T(0.0F);
+  for (int j = 0; j < n; ++j) {
+    const int at = kPoseRows + n + 6 * j;
+    dq[j] = row(at) * e[0];
+    for (int r = 1; r < 6; ++r) dq[j] = dq[j] + row(at + r) * e[r];
+    dq2 = dq2 + dq[j] * dq[j];
+  }
+  // Far from the sample its pseudo-inverse is no guide: only so long a step in its direction.
+  const T shorten = min(T(1.0F), T(chain.longest_step) / sqrt(max(dq2, T(1e-20F))));
+  T outside = T(0.0F);
+  for (int j = 0; j < n; ++j) {
+    T q = row(kPoseRows + j);
+    if (j == 0 && chain.left != Side::none) q = left.first;
+    if (j == right && chain.right != Side::none) q = left.last;
+    q = q + dq[j] * shorten;
+    if (chain.wraps[j]) q = wrap_near(q, chain.middle[j]);
+    const T inside = min(max(q, T(chain.lower[j])), T(chain.upper[j]));
+    outside = outside + (q - inside) * (q - inside);
+    L::store(inside, out.q[j] + offset);
+  }
+  return dq2 + T(chain.outside_weight) * outside;
+}
+
+/// Puts the seeds in order. The rank of a seed is how many others are better; of equals the first.
+template <typename T, int kVectors>
+IKSEL_INLINE void rank_seeds(const T (&score)[kVectors], SeedPack& out) {
+  using L = Lanes<T>;
   T rank[kVectors];
   for (int v = 0; v < kVectors; ++v) rank[v] = T(0.0F);
   for (int other = 0; other < kBlock; ++other) {
@@ -165,6 +192,35 @@ void prepare_seeds(const SeedChain& chain, const SeedTarget& target, const float
   for (int entry = 0; entry < kBlock; ++entry) {
     out.order[static_cast<int>(ranks[entry])] = static_cast<unsigned char>(entry);
   }
+}
+
+template <typename T>
+void prepare_seeds(const SeedChain& chain, const SeedTarget& target, const float* block,
+                   SeedPack& out) {
+  using L = Lanes<T>;
+  constexpr int kVectors = kBlock / L::kCount;
+  T score[kVectors];
+  for (int v = 0; v < kVectors; ++v) {
+    const int offset = v * L::kCount;
+    const auto row = [&](int r) { return L::load(block + r * kBlock + offset); };
+    SeedFrame<T> sample = {{row(0), row(1), row(2)},
+                           {row(3), row(4), row(5)},
+                           {row(6), row(7), row(8)},
+                           {row(9), row(10), row(11)}};
+    LeftOut<T> left_out;
+    SeedFrame<T> turned;
+    set_first(chain, target, sample, left_out);
+    turn_back(target, left_out, turned);
+    set_last(chain, turned, sample, left_out);
+    L::store(left_out.first, out.first + offset);
+    L::store(left_out.last, out.last + offset);
+
+    T e[6];
+    measure_rest(chain, turned, sample, left_out.slide, e);
+    score[v] = take_first_step(chain, block, left_out, e, offset, out);
+    L::store(score[v], out.score + offset);
+  }
+  rank_seeds(score, out);
 }
 
 template <typename T>

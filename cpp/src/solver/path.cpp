@@ -16,57 +16,14 @@
 #include "goal/joint_move.hpp"
 #include "iksel/error.hpp"
 #include "refine/self_motion.hpp"
+#include "solver/path_layer.hpp"
 #include "solver/solver_impl.hpp"
 
 namespace iksel {
 namespace {
 
-/// Candidates nearer than this in every joint are one [rad or m].
-constexpr double kSameCandidate = 1e-4;
-/// The same for solutions of the database.
+/// Solutions of the database nearer than this in every joint are one [rad or m].
 constexpr double kSameSolution = 20 * kSameCandidate;
-/// Steps from a configuration to the next waypoint's at most.
-constexpr int kSteps = 20;
-
-/// Candidates of one waypoint, with the cheapest way to each.
-struct Layer {
-  std::size_t dof;
-  std::vector<double> q;
-  std::vector<double> cost;
-  std::vector<std::size_t> parent;
-
-  [[nodiscard]] std::size_t size() const { return q.size() / dof; }
-  [[nodiscard]] JointVector at(std::size_t i) const {
-    return Eigen::Map<const Eigen::VectorXd>(&q[i * dof], static_cast<Eigen::Index>(dof));
-  }
-  /// Adds a candidate unless it is there; copies by whole turns are others.
-  void add(const JointVector& candidate) {
-    for (const double* known = q.data(); known != q.data() + q.size(); known += dof) {
-      std::size_t j = 0;
-      while (j < dof && std::abs(known[j] - candidate.data()[j]) < kSameCandidate) ++j;
-      if (j == dof) return;
-    }
-    q.insert(q.end(), candidate.data(), candidate.data() + dof);
-  }
-  /// Leaves only the candidates for which keep(index) is true.
-  template <typename Keep>
-  void keep_if(const Keep& keep) {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < size(); ++i) {
-      if (keep(i)) std::copy_n(&q[i * dof], dof, &q[kept++ * dof]);
-    }
-    q.resize(kept * dof);
-  }
-};
-
-/// Moves allowed in one time step; infinite where they are not limited.
-JointVector longest_moves(const ChainModel& model, double dt) {
-  JointVector longest = JointVector::Constant(model.dof, kInfinity);
-  // A hair more, so that a joint may run at its limit in spite of rounding.
-  constexpr double kSlack = 1e-9;
-  if (dt > 0) longest = model.joints.velocity * (dt * (1 + kSlack));
-  return longest;
-}
 
 bool too_far(const JointVector& move, const JointVector& longest) {
   return (move.array().abs() > longest.array()).any();
@@ -79,7 +36,7 @@ class PathSearch {
         options_(options),
         request_(make_request(options)),
         move_(model.dof, request_),
-        longest_(longest_moves(model, options.dt)),
+        longest_(model.joints.longest_moves(options.dt)),
         middle_(model.joints.middle()) {}
 
   [[nodiscard]] const SolveRequest& request() const { return request_; }
@@ -98,7 +55,7 @@ class PathSearch {
       }
       if (same == origins.size()) {
         JointVector q = from;
-        if (!converge(model_, goal, kSteps, q)) continue;
+        if (!converge(model_, goal, kStepsToNext, q)) continue;
         origins.push_back(from);
         moves.emplace_back(q - from);
       }
@@ -308,42 +265,6 @@ PathResult Solver::solve_path(const std::vector<Pose>& T_base_tip,
   if (options.start) impl_->angles.check(*options.start, "start");
   const WorkspacePool::Lease lease(impl_->workspaces);
   return impl_->solve_path(targets, options, lease.get());
-}
-
-Tracker::Tracker(const Solver& solver, const JointVector& start) : solver_(solver), q_(start) {
-  const Robot& robot = solver.robot();
-  check_joints(start, robot.dof(), "start");
-  solver.impl_->angles.check(start, "start");
-  q_ = q_.cwiseMax(robot.lower()).cwiseMin(robot.upper());
-}
-
-Result Tracker::track(const Pose& T_base_tip, double dt) {
-  Pose nearest;
-  const Pose& target = to_rigid(T_base_tip, nearest);
-  if (!(dt > 0)) {
-    throw InvalidArgumentError("dt: " + number_text(dt) + " s is not above 0");
-  }
-  const ChainModel& model = solver_.robot().model();
-  const Goal goal(model, solver_.impl_->task, target);
-  Result result;
-  JointVector end = q_;
-  result.attempts = 1;
-  if (!converge(model, goal, kSteps, end)) return result;
-  const JointVector move = end - q_;
-  const JointVector longest = longest_moves(model, dt);
-  double part = 1;
-  for (int j = 0; j < model.dof; ++j) {
-    if (std::abs(move[j]) > longest[j]) part = std::min(part, longest[j] / std::abs(move[j]));
-  }
-  if (part == 1) {
-    if (!goal.check(end, result)) return result;
-    q_ = end;
-  } else {
-    result.status = Status::too_fast;
-    q_ += part * move;
-  }
-  result.move = part * move.norm();
-  return result;
 }
 
 }  // namespace iksel

@@ -71,6 +71,26 @@ void spread(const ChainModel& model, std::size_t count, std::vector<Copy>& copie
   }
 }
 
+/// The solutions found, each at all its images inside the limits or as it is.
+template <typename Cost>
+std::vector<Copy> copies_of(const JointSpace& joints, const SolutionSet& found, bool with_images,
+                            const Cost& cost) {
+  std::vector<Copy> copies;
+  copies.reserve(found.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    JointVector q = found.at(i);
+    if (!with_images) {
+      copies.push_back({q, cost(q), i});
+      continue;
+    }
+    joints.first_image(q);
+    do {
+      copies.push_back({q, cost(q), i});
+    } while (copies.size() < kMostCopies && joints.next_image(q));
+  }
+  return copies;
+}
+
 /// Takes out what the filter refuses.
 void apply_filter(const Filter& filter, int dof, std::vector<Copy>& copies) {
   if (!filter || copies.empty()) return;
@@ -123,24 +143,12 @@ Solutions Solver::Impl::solve_all(const Pose& target, const SolveAllOptions& all
 
   const JointMove move(robot.dof(), request);
   const JointVector from = request.near ? *request.near : model().joints.middle();
-  std::vector<Copy> copies;
-  copies.reserve(found.size());
-  const auto add = [&](const JointVector& q, std::size_t i) {
-    copies.push_back({q, cost_of(model(), all.order, move, from, q), i});
+  const auto cost = [&](const JointVector& q) {
+    return cost_of(model(), all.order, move, from, q);
   };
-  // Otherwise each is at the turns nearest to `from` already.
-  const bool turned = all.whole_turns || request.filter;
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    JointVector q = found.at(i);
-    if (turned) {
-      model().joints.first_image(q);
-      do {
-        add(q, i);
-      } while (copies.size() < kMostCopies && model().joints.next_image(q));
-    } else {
-      add(q, i);
-    }
-  }
+  // Without, each solution is at the image nearest to `from` already.
+  const bool with_images = all.whole_turns || request.filter;
+  std::vector<Copy> copies = copies_of(model().joints, found, with_images, cost);
   apply_filter(request.filter, robot.dof(), copies);
   std::sort(copies.begin(), copies.end(), cheaper);
   if (!all.whole_turns) take_first_of_each(found.size(), copies);
@@ -153,14 +161,14 @@ Solutions Solver::Impl::solve_all(const Pose& target, const SolveAllOptions& all
   solutions.all.reserve(copies.size());
   for (const Copy& copy : copies) {
     Result result;
-    if (!turned) {
+    if (!with_images) {
       result = found.result(copy.solution);
     } else if (!goal.check(copy.q, result)) {
       continue;
     }
     if (request.near) result.move = move.length(copy.q - from);
-    result.attempts = search.work.all_attempts();
-    result.iterations = search.work.iterations;
+    result.attempts = solutions.attempts;
+    result.iterations = solutions.iterations;
     solutions.all.push_back(result);
   }
   if (solutions.all.empty()) {

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+
+#include "base/error_check.hpp"
+#include "base/message_text.hpp"
+#include "base/pose_check.hpp"
+#include "iksel/error.hpp"
+#include "iksel/path.hpp"
+#include "refine/self_motion.hpp"
+#include "solver/solver_impl.hpp"
+
+namespace iksel {
+
+Tracker::Tracker(const Solver& solver, const JointVector& start) : solver_(solver), q_(start) {
+  const Robot& robot = solver.robot();
+  check_joints(start, robot.dof(), "start");
+  solver.impl_->angles.check(start, "start");
+  q_ = robot.model().joints.clamp(q_);
+}
+
+Result Tracker::track(const Pose& T_base_tip, double dt) {
+  Pose nearest;
+  const Pose& target = to_rigid(T_base_tip, nearest);
+  if (!(dt > 0)) {
+    throw InvalidArgumentError("dt: " + number_text(dt) + " s is not above 0");
+  }
+  const ChainModel& model = solver_.robot().model();
+  const Goal goal(model, solver_.impl_->task, target);
+  Result result;
+  JointVector end = q_;
+  result.attempts = 1;
+  if (!converge(model, goal, kStepsToNext, end)) return result;
+  const JointVector move = end - q_;
+  const JointVector longest = model.joints.longest_moves(dt);
+  double part = 1;
+  for (int j = 0; j < model.dof; ++j) {
+    if (std::abs(move[j]) > longest[j]) part = std::min(part, longest[j] / std::abs(move[j]));
+  }
+  if (part == 1) {
+    if (!goal.check(end, result)) return result;
+    q_ = end;
+  } else {
+    result.status = Status::too_fast;
+    q_ += part * move;
+  }
+  result.move = part * move.norm();
+  return result;
+}
+
+}  // namespace iksel

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pybind11/stl.h>
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "array_checks.hpp"
+#include "bindings.hpp"
+#include "enums.hpp"
+#include "iksel/robot.hpp"
+#include "joint_values.hpp"
+#include "pose_arguments.hpp"
+
+namespace iksel::python {
+
+namespace {
+
+py::array_t<double> fk(const Robot& self, const ArrayLike& q, const Loose<Kinematics>& kinematics) {
+  const auto how = from_python<Kinematics>(kinematics, "kinematics");
+  return map_joints(q, self.dof(), "q", {4, 4}, [&](const JointVector& joints, double* out) {
+    Eigen::Map<RowMajorPose>{out} = self.fk(joints, how).matrix();
+  });
+}
+
+py::array_t<double> jacobian(const Robot& self, const ArrayLike& q,
+                             const Loose<Kinematics>& kinematics) {
+  const auto how = from_python<Kinematics>(kinematics, "kinematics");
+  const int dof = self.dof();
+  return map_joints(q, dof, "q", {6, dof}, [&](const JointVector& joints, double* out) {
+    Eigen::Map<RowMajorMatrix>(out, 6, dof) = self.jacobian(joints, how);
+  });
+}
+
+py::array_t<double> link_poses(const Robot& self, const ArrayLike& q,
+                               const std::optional<JointValues>& other_joints) {
+  std::map<std::string, double> others;
+  if (other_joints) others = as_joint_values(*other_joints, "other_joints");
+  const auto links = static_cast<py::ssize_t>(self.link_names().size());
+  return map_joint_blocks(q, self.dof(), "q", {links, 4, 4},
+                          [&](const double* rows, std::size_t count, double* out) {
+                            self.link_poses(rows, count, others, out);
+                          });
+}
+
+void bind_jacobians(py::class_<Robot>& cls, const Loose<Kinematics>& kernel) {
+  cls.def("jacobian", &jacobian, py::arg("q"), py::arg("kinematics") = kernel,
+          R"(Geometric Jacobian: rows [linear; angular] in base axes at the tip.
+
+Args:
+    q: joint values [rad or m], (dof,) or (N, dof).
+    kinematics: what computes it.
+
+Returns:
+    (6, dof), or (N, 6, dof) with the GIL released.
+
+Raises:
+    InvalidArgumentError: wrong shape or dtype, or a number that is not finite.)");
+  cls.def(
+      "dq_dx",
+      [](const Robot& self, const ArrayLike& q, const Loose<double>& damping) {
+        const auto factor = from_python<double>(damping, "damping");
+        const int dof = self.dof();
+        return map_joints(q, dof, "q", {dof, 6}, [&](const JointVector& joints, double* out) {
+          Eigen::Map<RowMajorMatrix>(out, dof, 6) = self.dq_dx(joints, factor);
+        });
+      },
+      py::arg("q"), py::arg("damping") = 0.0,
+      R"(Derivative of an answer q by its target, for differentiable use.
+
+dq = dq_dx @ [linear; angular] for a small twist of the target in base axes at the tip, of all dq
+the least: the damped pseudo-inverse J^T (J J^T + damping^2 I)^-1 (Nakamura and Hanafusa 1986).
+
+Args:
+    q: joint values [rad or m], (dof,) or (N, dof).
+    damping: bounds dq near singularities; 0: the pseudo-inverse.
+
+Returns:
+    (dof, 6), or (N, dof, 6) with the GIL released.
+
+Raises:
+    InvalidArgumentError: wrong shape or dtype, a number that is not finite, damping below 0.)");
+}
+
+}  // namespace
+
+void bind_kinematics(py::class_<Robot>& cls) {
+  const Loose<Kinematics> kernel = py::str(enum_name(Kinematics::kernel));
+  cls.def("fk", &fk, py::arg("q"), py::arg("kinematics") = kernel,
+          R"(Forward kinematics: T_base_tip (of the TCP, if there is one).
+
+Args:
+    q: joint values [rad or m], (dof,) or (N, dof).
+    kinematics: what computes it.
+
+Returns:
+    (4, 4), or (N, 4, 4) with the GIL released.
+
+Raises:
+    InvalidArgumentError: wrong shape or dtype, or a number that is not finite.)");
+  cls.def("link_poses", &link_poses, py::arg("q"), py::kw_only(),
+          py::arg("other_joints") = py::none(),
+          R"(Poses of all links of the URDF in the base link's frame, in the order of link_names.
+
+Side branches move with the arm's joints, too, and with what mimics them at any depth. The TCP plays
+no part.
+
+Args:
+    q: joint values [rad or m], (dof,) or (N, dof).
+    other_joints: values of joints that q does not move [rad or m], by name. Those not given are
+        where they are locked, or at 0; floating and planar joints are at their origin.
+
+Returns:
+    (n_links, 4, 4), or (N, n_links, 4, 4) with the GIL released.
+
+Raises:
+    InvalidArgumentError: wrong shape or dtype, a number that is not finite, or a joint in
+        other_joints that q moves.
+    UnknownNameError: a name in other_joints, or in a mimic tag, that is no joint's.
+    UrdfError: a joint off the chain is no good: it mimics itself, or has no axis.)");
+  bind_jacobians(cls, kernel);
+}
+
+}  // namespace iksel::python

@@ -190,7 +190,7 @@ void lane_iteration(benchmark::State& state) {
     for (int j = 0; j < p.robot.dof(); ++j) {
       for (double& value : pack.q[j]) value = q[j];
     }
-    benchmark::DoNotOptimize(kernels.advance(chain, options, ~0U, kIterations, pack));
+    benchmark::DoNotOptimize(kernels.advance(chain, options, nullptr, ~0U, kIterations, pack));
   }
   state.SetItemsProcessed(static_cast<int64_t>(state.iterations()) * kIterations * kernels.lanes);
   state.counters["per_iteration"] =

@@ -123,7 +123,7 @@ TEST(Kernels, EveryLaneReachesItsOwnTarget) {
       }
       auto watched = (1U << static_cast<unsigned>(kernels.lanes)) - 1;
       for (int used = 0; watched != 0 && used < 60;) {
-        const auto result = kernels.advance(chain, options, watched, 60 - used, pack);
+        const auto result = kernels.advance(chain, options, nullptr, watched, 60 - used, pack);
         EXPECT_EQ(result.done & ~watched, 0U);
         used += result.iterations;
         for (int lane = 0; lane < kernels.lanes; ++lane) {
@@ -163,8 +163,8 @@ TEST(Kernels, ALaneIsBlindToTheOthers) {
         for (auto& row : alone.target) row[lane] = row[0];
         for (int j = 0; j < n; ++j) alone.q[j][lane] = alone.q[j][0];
       }
-      kernels.advance(chain, options, 0, 12, pack);
-      kernels.advance(chain, options, 0, 12, alone);
+      kernels.advance(chain, options, nullptr, 0, 12, pack);
+      kernels.advance(chain, options, nullptr, 0, 12, alone);
       for (int j = 0; j < n; ++j) EXPECT_EQ(pack.q[j][0], alone.q[j][0]) << level;
       EXPECT_EQ(pack.error2[0], alone.error2[0]) << level;
     }
@@ -180,7 +180,7 @@ TEST(Kernels, ANonFiniteLaneFailsAndEnds) {
     set_target(pack, lane, Pose::Identity());
     for (int j = 0; j < robot.dof(); ++j) pack.q[j][lane] = NAN;
   }
-  const auto result = kernels.advance(chain, lane_options(1e-6), ~0U, 20, pack);
+  const auto result = kernels.advance(chain, lane_options(1e-6), nullptr, ~0U, 20, pack);
   EXPECT_EQ(result.done, 0U);
   EXPECT_EQ(result.iterations, 20);
 }

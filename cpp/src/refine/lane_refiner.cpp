@@ -34,7 +34,6 @@ LaneRefiner::LaneRefiner(const ChainModel& model, const SolverOptions& options,
       max_iterations_(options.max_iterations),
       base_inverse_(to_pose(model.kernel.base).inverse()),
       tip_(to_pose(model.kernel.tip)),
-      tip_inverse_(tip_.inverse()),
       chain_(make_lane_chain(model)),
       options_(make_lane_options(model, options)),
       task_options_(options_),
@@ -63,35 +62,39 @@ void LaneRefiner::make_task(const TaskSpace& task) {
   for (int i = 0; i < 3; ++i) lane_task_.tcp[i] = tip_(i, 3);
 }
 
-void LaneRefiner::make_rows(const Pose& T_base_tcp, double (&rows)[lanes::kTargetRows]) const {
-  const auto write = [&](int at, const Eigen::Matrix3d& columns) {
-    for (int k = 0; k < 9; ++k) rows[at + k] = columns(k % 3, k / 3);
+template <typename Write>
+void LaneRefiner::make_rows(const Pose& T_base_tcp, const Write& write) const {
+  const auto write_columns = [&](int at, const Eigen::Matrix3d& columns) {
+    for (int k = 0; k < 9; ++k) write(at + k, columns(k % 3, k / 3));
   };
-  Pose X = base_inverse_ * T_base_tcp;
-  if (task_ == nullptr) X = X * tip_inverse_;
-  for (int i = 0; i < 3; ++i) rows[i] = X(i, 3);
-  if (task_ == nullptr) {
-    write(3, X.linear());
-    return;
-  }
+  const Pose X = base_inverse_ * T_base_tcp;
   const bool in_tool = task_->task().frame == TaskFrame::tool;
   const Eigen::Matrix3d W = (in_tool ? X : base_inverse_).linear();
-  write(3, W);
-  write(12, tip_.linear() * X.linear().transpose() * W);
+  for (int i = 0; i < 3; ++i) write(i, X(i, 3));
+  write_columns(3, W);
+  write_columns(12, tip_.linear() * X.linear().transpose() * W);
 }
 
-void LaneRefiner::set_target(const Pose& T_base_tcp) {
-  double rows[lanes::kTargetRows] = {};
-  make_rows(T_base_tcp, rows);
-  for (int row = 0; row < lanes::kTargetRows; ++row) {
-    std::fill_n(pack_.target[row], lanes::kWidth, rows[row]);
+void LaneRefiner::set_pose(const Pose& Y) {
+  // Columns after the position, as LanePack has them.
+  for (int row = 0; row < lanes::kFullPoseRows; ++row) {
+    std::fill_n(pack_.target[row], lanes::kWidth, Y(row % 3, (row / 3 + 3) % 4));
   }
 }
 
-void LaneRefiner::set_target(int lane, const Pose& T_base_tcp) {
-  double rows[lanes::kTargetRows] = {};
-  make_rows(T_base_tcp, rows);
-  for (int row = 0; row < lanes::kTargetRows; ++row) pack_.target[row][lane] = rows[row];
+void LaneRefiner::set_pose(int lane, const Pose& Y) {
+  for (int row = 0; row < lanes::kFullPoseRows; ++row) {
+    pack_.target[row][lane] = Y(row % 3, (row / 3 + 3) % 4);
+  }
+}
+
+void LaneRefiner::set_task(const Pose& T_base_tcp) {
+  make_rows(T_base_tcp,
+            [&](int row, double value) { std::fill_n(pack_.target[row], lanes::kWidth, value); });
+}
+
+void LaneRefiner::set_task(int lane, const Pose& T_base_tcp) {
+  make_rows(T_base_tcp, [&](int row, double value) { pack_.target[row][lane] = value; });
 }
 
 void LaneRefiner::load_seed(int lane, const double* q) {
@@ -110,8 +113,8 @@ int LaneRefiner::advance(unsigned busy) {
   }
   const lanes::PackResult result =
       task_ == nullptr
-          ? kernels_.advance(chain_, options_, busy, budget, pack_)
-          : kernels_.advance_task(chain_, task_options_, lane_task_, busy, budget, pack_);
+          ? kernels_.advance(chain_, options_, nullptr, busy, budget, pack_)
+          : kernels_.advance_task(chain_, task_options_, &lane_task_, busy, budget, pack_);
   arrived_ = result.done;
   for (int lane = 0; lane < width(); ++lane) age_[lane] += result.iterations;
   return result.iterations;

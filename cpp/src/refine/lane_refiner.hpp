@@ -30,9 +30,11 @@ class LaneRefiner {
   /// Before a search for goals of one task, which has to outlive it.
   void begin(const TaskSpace& task, const Patience& patience);
 
-  /// What all lanes are to reach, or one.
-  void set_target(const Pose& T_base_tcp);
-  void set_target(int lane, const Pose& T_base_tcp);
+  /// What all lanes are to reach, or one: a full pose by its Y (reduction.hpp), or a task.
+  void set_pose(const Pose& Y);
+  void set_pose(int lane, const Pose& Y);
+  void set_task(const Pose& T_base_tcp);
+  void set_task(int lane, const Pose& T_base_tcp);
 
   /// Starts a lane at `value(joint)`, inside the limits.
   template <typename Value>
@@ -79,8 +81,9 @@ class LaneRefiner {
   }
 
  private:
-  /// The rows of a LanePack.
-  void make_rows(const Pose& T_base_tcp, double (&rows)[lanes::kTargetRows]) const;
+  /// Writes the rows of a task's target, each by write(row, value).
+  template <typename Write>
+  void make_rows(const Pose& T_base_tcp, const Write& write) const;
   void make_task(const TaskSpace& task);
 
   /// Squared error that counts as far off [mixed units].
@@ -89,7 +92,7 @@ class LaneRefiner {
 
   const lanes::LaneKernels& kernels_;
   int max_iterations_;
-  Pose base_inverse_, tip_, tip_inverse_;  ///< of the kernel chain; the tip is the TCP
+  Pose base_inverse_, tip_;  ///< of the kernel chain; the tip is the TCP
   lanes::LaneChain chain_;
   lanes::LaneOptions options_, task_options_;
   const TaskSpace* task_ = nullptr;  ///< null: full poses

@@ -54,9 +54,12 @@ class BatchStream {
       if (!take_target(in)) return false;
     }
     const Pose& target = target_(in.index);
-    const Goal goal(model_, task_, target);
-    refiner_.set_target(lane, goal.target());
-    query_.set_target(goal.nearest_pose());
+    if (task_.is_full_pose()) {
+      refiner_.set_pose(lane, query_.set_target(target));
+    } else {
+      refiner_.set_task(lane, target);
+      query_.set_target(Goal(model_, task_, target).nearest_pose());
+    }
     lanes::SeedPack& seeds = query_.packs[0];
     query_.prepare_leaf(seeds);
     const int entry = seeds.order[in.seeds++];

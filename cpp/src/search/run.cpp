@@ -81,8 +81,11 @@ void Search<Answers>::in_lanes() const {
   const auto should_continue = [&] { return answers.should_continue(); };
   auto& [refiner, query] = *workspace.lanes;
   refiner.begin(goal.task(), kFirst);
-  refiner.set_target(goal.target());
-  if (goal.is_full_pose()) query.set_target(goal.target());
+  if (goal.is_full_pose()) {
+    refiner.set_pose(query.set_target(goal.target()));
+  } else {
+    refiner.set_task(goal.target());
+  }
   clock.lap(&StageTimes::query);
   GivenSeeds given(workspace.given, goal, near(), request.seeds, options.max_attempts,
                    lanes::kBlock, should_continue, work);

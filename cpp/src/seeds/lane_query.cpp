@@ -20,10 +20,11 @@ LaneQuery::LaneQuery(const ChainModel& model, const ChainModel& nominal, const D
       block_order_(data.blocks.size()),
       is_tried_(data.blocks.size()) {}
 
-void LaneQuery::set_target(const Pose& T_base_tcp) {
-  const Pose Y = base_inverse_ * T_base_tcp * tcp_inverse_;
+Pose LaneQuery::set_target(const Pose& T_base_tcp) {
+  Pose Y = base_inverse_ * T_base_tcp * tcp_inverse_;
   data_.reduction->make_key(Y, key_);
   seed_target_ = make_seed_target(Y);
+  return Y;
 }
 
 std::size_t LaneQuery::find_nearest(std::size_t k) {

@@ -21,7 +21,8 @@ class LaneQuery {
   LaneQuery(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
             int neighbours, const lanes::LaneKernels& kernels);
 
-  void set_target(const Pose& T_base_tcp);
+  /// Returns Y (reduction.hpp).
+  Pose set_target(const Pose& T_base_tcp);
 
   /// The samples of the leaf that the target falls into, as seeds.
   void prepare_leaf(lanes::SeedPack& seeds) const { prepare(data_.leaves.block(key_), seeds); }

@@ -19,7 +19,7 @@ struct LaneFrame {
 template <typename T>
 class FullPose {
  public:
-  explicit FullPose(const LanePack& pack) : pack_(pack) {}
+  FullPose(const LanePack& pack, const LaneTask* /*task*/) : pack_(pack) {}
 
   IKSEL_INLINE void measure(const LaneFrame<T>& f, T (&e)[6]) {
     for (int i = 0; i < 3; ++i) e[i] = row(i) - f.p[i];
@@ -55,7 +55,7 @@ class FullPose {
 template <typename T>
 class TaskGoal {
  public:
-  TaskGoal(const LanePack& pack, const LaneTask& task) : pack_(pack), task_(task) {}
+  TaskGoal(const LanePack& pack, const LaneTask* task) : pack_(pack), task_(*task) {}
 
   void measure(const LaneFrame<T>& f, T (&e)[6]) {
     const T* axes[3] = {f.x, f.y, f.z};

@@ -83,9 +83,10 @@ IKSEL_INLINE void place_joints(const LaneChain& chain, const T* q, T (*J)[6], La
 template <typename T, typename Goal>
 IKSEL_INLINE void make_columns(const LaneChain& chain, const T* q, const Goal& goal,
                                const LaneFrame<T>& f, const T (&e)[6], T (*J)[6]) {
+  const int n = chain.n;
   const T* point = goal.point(f);
 #pragma GCC unroll 10
-  for (int j = 0; j < chain.n; ++j) {
+  for (int j = 0; j < n; ++j) {
     const LaneJoint& joint = chain.joint[j];
     T(&column)[6] = J[j];
     const T* axis = column + 3;
@@ -119,9 +120,10 @@ IKSEL_INLINE void make_columns(const LaneChain& chain, const T* q, const Goal& g
 /// Adds J^T y to q, held to the limits; returns the squared length of the step.
 template <typename T>
 IKSEL_INLINE T move_joints(const LaneChain& chain, const T (*J)[6], const T (&y)[6], T* q) {
+  const int n = chain.n;
   T dq2 = T(0.0);
 #pragma GCC unroll 10
-  for (int j = 0; j < chain.n; ++j) {
+  for (int j = 0; j < n; ++j) {
     T dq = J[j][0] * y[0];
 #pragma GCC unroll 6
     for (int i = 1; i < 6; ++i) dq = dq + J[j][i] * y[i];
@@ -148,13 +150,15 @@ IKSEL_INLINE unsigned to_bits(const Mask& condition) {
 }
 
 /// One for any number of joints: made for a known number it was no faster on AVX-512, AVX2 or SSE2.
+/// Nothing to be inlined: GCC 12 then keeps a tenth less of it in registers.
 template <typename T, typename Goal>
-IKSEL_INLINE PackResult iterate_pack(const LaneChain& chain, const LaneOptions& options, Goal goal,
-                                     unsigned watched, int iterations, LanePack& pack) {
+PackResult advance(const LaneChain& chain, const LaneOptions& options, const LaneTask* task,
+                   unsigned watched, int iterations, LanePack& pack) {
   const int n = chain.n;
   T q[kMaxJoints];
   for (int j = 0; j < n; ++j) q[j] = Lanes<T>::load(pack.q[j]);
 
+  Goal goal(pack, task);
   for (int iteration = 1;; ++iteration) {
     T J[kMaxJoints][6];
     LaneFrame<T> frame;
@@ -190,22 +194,15 @@ IKSEL_INLINE PackResult iterate_pack(const LaneChain& chain, const LaneOptions& 
   }
 }
 
-template <typename T>
-PackResult advance(const LaneChain& chain, const LaneOptions& options, unsigned watched,
-                   int iterations, LanePack& pack) {
-  return iterate_pack<T>(chain, options, FullPose<T>(pack), watched, iterations, pack);
-}
-
-template <typename T>
-PackResult advance_task(const LaneChain& chain, const LaneOptions& options, const LaneTask& task,
-                        unsigned watched, int iterations, LanePack& pack) {
-  return iterate_pack<T>(chain, options, TaskGoal<T>(pack, task), watched, iterations, pack);
-}
-
 template <typename T, typename S>
 constexpr LaneKernels make_kernels(const char* name) {
-  return {name,         Lanes<T>::kCount, advance<T>, advance_task<T>, prepare_seeds<S>,
-          add_known<S>, find_largest<S>};
+  return {name,
+          Lanes<T>::kCount,
+          advance<T, FullPose<T>>,
+          advance<T, TaskGoal<T>>,
+          prepare_seeds<S>,
+          add_known<S>,
+          find_largest<S>};
 }
 
 }  // namespace iksel::lanes

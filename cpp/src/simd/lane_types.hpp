@@ -66,12 +66,10 @@ struct PackResult {
 };
 
 /// Iterates a pack, until a lane of the mask `watched` arrives or the iterations are used up.
-using Advance = PackResult (*)(const LaneChain& chain, const LaneOptions& options, unsigned watched,
-                               int iterations, LanePack& pack);
-/// The same for a task.
-using AdvanceTask = PackResult (*)(const LaneChain& chain, const LaneOptions& options,
-                                   const LaneTask& task, unsigned watched, int iterations,
-                                   LanePack& pack);
+/// `task` is null for full poses.
+using Advance = PackResult (*)(const LaneChain& chain, const LaneOptions& options,
+                               const LaneTask* task, unsigned watched, int iterations,
+                               LanePack& pack);
 
 /// How a side of the chain is left out of the samples (reduction.hpp).
 enum class Side : int { none, rotation, translation };
@@ -127,7 +125,7 @@ struct LaneKernels {
   const char* name;
   int lanes;
   Advance advance;
-  AdvanceTask advance_task;
+  Advance advance_task;
   PrepareSeeds prepare;
   AddKnown add_known;
   FindLargest find_largest;

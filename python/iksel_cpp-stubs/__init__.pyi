@@ -177,23 +177,6 @@ class Robot:
         ...
     def _repr_html_(self) -> str:
         ...
-    def dq_dx(self, q: numpy.typing.ArrayLike, damping: float = 0.0) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        Derivative of an answer q by its target, for differentiable use.
-
-        dq = dq_dx @ [linear; angular] for a small twist of the target in base axes at the tip, of all dq
-        the least: the damped pseudo-inverse J^T (J J^T + damping^2 I)^-1 (Nakamura and Hanafusa 1986).
-
-        Args:
-            q: joint values [rad or m], (dof,) or (N, dof).
-            damping: bounds dq near singularities; 0: the pseudo-inverse.
-
-        Returns:
-            (dof, 6), or (N, dof, 6) with the GIL released.
-
-        Raises:
-            InvalidArgumentError: wrong shape or dtype, a number that is not finite, damping below 0.
-        """
     def fk(self, q: numpy.typing.ArrayLike, kinematics: Kinematics | str = 'kernel') -> numpy.typing.NDArray[numpy.float64]:
         """
         Forward kinematics: T_base_tip (of the TCP, if there is one).
@@ -208,9 +191,26 @@ class Robot:
         Raises:
             InvalidArgumentError: wrong shape or dtype, or a number that is not finite.
         """
+    def inverse_jacobian(self, q: numpy.typing.ArrayLike, damping: float = 0.0) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Derivative of an answer q by its target, for differentiable use.
+
+        dq = inverse_jacobian @ [linear; angular] for a small twist of the target in base axes at the TCP,
+        of all dq the least: the damped pseudo-inverse J^T (J J^T + damping^2 I)^-1 (Nakamura and Hanafusa 1986).
+
+        Args:
+            q: joint values [rad or m], (dof,) or (N, dof).
+            damping: bounds dq near singularities; 0: the pseudo-inverse.
+
+        Returns:
+            (dof, 6), or (N, dof, 6) with the GIL released.
+
+        Raises:
+            InvalidArgumentError: wrong shape or dtype, a number that is not finite, damping below 0.
+        """
     def jacobian(self, q: numpy.typing.ArrayLike, kinematics: Kinematics | str = 'kernel') -> numpy.typing.NDArray[numpy.float64]:
         """
-        Geometric Jacobian: rows [linear; angular] in base axes at the tip.
+        Geometric Jacobian: rows [linear; angular] in base axes at the TCP.
 
         Args:
             q: joint values [rad or m], (dof,) or (N, dof).
@@ -1434,7 +1434,7 @@ class Solver:
         ...
     def __deepcopy__(self, memo: dict[int, object]) -> Solver:
         ...
-    def __init__(self, robot: Robot, options: SolverOptions | collections.abc.Mapping[str, typing.Any] | None = None, database: Database | None = None, *, nominal: Robot | None = None, max_drift: collections.abc.Sequence[float] | None = None) -> None:
+    def __init__(self, robot: Robot, options: SolverOptions | collections.abc.Mapping[str, typing.Any] | None = None, database: Database | None = None, *, nominal: Robot | None = None, max_calibration_deviation: collections.abc.Sequence[float] | None = None) -> None:
         """
         Uses a database, or builds one by `options.database` if it is given none.
 
@@ -1444,12 +1444,13 @@ class Solver:
             database: built for the same chain; its TCP may differ.
             nominal: for a calibrated arm, the chain that the database was built for, whose constants
                 differ a little. Seeds come from it; iterations, tolerances and limits are the robot's.
-            max_drift: the largest drift of the robot from `nominal`, (position [m], rotation [rad]);
-                None: (0.05, 0.1).
+            max_calibration_deviation: the largest deviation of the robot from `nominal`,
+                (position [m], rotation [rad]); None: (0.05, 0.1).
 
         Raises:
             InvalidArgumentError: an option out of range.
-            DatabaseMismatchError: the database belongs to another chain, or the drift is too large.
+            DatabaseMismatchError: the database belongs to another chain, or the deviation is too
+                large.
         """
     def __repr__(self) -> str:
         ...
@@ -1615,14 +1616,14 @@ class Solver:
         Tracker(self, start).
         """
     @property
+    def calibration_deviation(self) -> tuple[float, float]:
+        """
+        The largest difference between the robot's tip link and `nominal`'s at the same joint values over 2000 configurations: (position [m], rotation [rad]).
+        """
+    @property
     def database(self) -> Database:
         """
         The database it selects seeds from.
-        """
-    @property
-    def drift(self) -> tuple[float, float]:
-        """
-        How far the robot's tip drifts from `nominal`'s at the same joint values, at most over 2000 configurations: (position [m], rotation [rad]).
         """
     @property
     def nominal(self) -> Robot:
@@ -1714,7 +1715,7 @@ class PathResult:
     def __repr__(self) -> str:
         ...
     @property
-    def broken(self) -> int | None:
+    def first_unreachable(self) -> int | None:
         """
         Index of the first waypoint that has no continuation; None if solved.
         """
@@ -1741,12 +1742,12 @@ class PathResult:
     @property
     def q(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Joint values [rad or m], (N, dof); if the path is broken, of the waypoints before.
+        Joint values [rad or m], (N, dof); unless solved, of the waypoints before that.
         """
     @property
     def status(self) -> Status:
         """
-        `solved`, or why waypoint `broken` has none: `too_fast` if it has solutions, but no joint path leads there in time.
+        `solved`, or why waypoint `first_unreachable` has none: `too_fast` if it has solutions, but no joint path leads there in time.
         """
     @property
     def success(self) -> bool:

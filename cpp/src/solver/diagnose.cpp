@@ -224,7 +224,7 @@ class Diagnoser {
   /// A solver that works harder. The nominal chain is the one that it was accepted for.
   [[nodiscard]] Solver make_patient(const Robot& arm) const {
     return Solver(arm, generous(solver_.options), solver_.database, solver_.nominal,
-                  Drift{kInfinity, kInfinity});
+                  CalibrationDeviation{kInfinity, kInfinity});
   }
   [[nodiscard]] BestEffort make_effort(const Goal& towards) const {
     return {model_, towards, solver_.database.data().weight};

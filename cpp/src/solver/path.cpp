@@ -239,7 +239,7 @@ PathResult Solver::Impl::solve_path(const std::vector<Pose>& targets, const Path
     const bool kept = layer.size() > 0;
     search.connect(before, layer);
     if (layer.size() == 0) {
-      result.broken = static_cast<std::ptrdiff_t>(w);
+      result.first_unreachable = static_cast<std::ptrdiff_t>(w);
       result.status = kept                                 ? Status::too_fast
                       : any                                ? Status::rejected
                       : collector.status == Status::solved ? Status::not_converged

@@ -87,7 +87,7 @@ Raises:
 void bind_kinematics(py::class_<Robot>& cls) {
   const Loose<Kinematics> kernel = py::str(enum_name(Kinematics::kernel));
   cls.def("fk", &fk, py::arg("q"), py::arg("kinematics") = kernel,
-          R"(Forward kinematics: T_base_tip (of the TCP, if there is one).
+          R"(Forward kinematics: T_base_tip, of the TCP if there is a tool.
 
 Args:
     q: joint values [rad or m], (dof,) or (N, dof).

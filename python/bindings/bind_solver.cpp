@@ -185,7 +185,7 @@ void bind_properties(py::class_<Solver>& cls) {
       cls, "task_hint",
       [](const Solver& self) { return task_hint(self.robot(), self.options().task); },
       "For an arm with fewer joints than its task has axes, which hardly any target suits: tasks "
-      "for which its joints are enough, in a sentence; else empty.");
+      "whose axes its joints can all move, in a sentence; else empty.");
 }
 
 void bind_batch(py::class_<Solver>& cls) {
@@ -197,12 +197,13 @@ void bind_batch(py::class_<Solver>& cls) {
 A row has the same bits whatever the number of threads and whatever else is in the batch. Its
 status is that of solve(), and so are its bits, but for seeds in SIMD lanes (the default preset):
 there a target has a lane to itself, and the answer may be another of its solutions, within the
-same tolerances. What is asked for holds for each target by itself.)",
+same tolerances. The request holds for each target by itself.)",
        "poses",
        "T_base_tip, (N, 4, 4) [m], or others as in solve. Doubles in C order are read in place.",
        "BatchResult",
        R"(Raises:
-    InvalidArgumentError: wrong shape or dtype, a bad wish, or by wish a bad pose.)"},
+    InvalidArgumentError: wrong shape or dtype, a bad argument, or with on_invalid_pose="raise"
+        a bad pose.)"},
       batch_keywords(),
       {"threads", "near", "weights", "norm", "seeds", "database_seeds", "filter", "deadline",
        "task", "objective", "on_invalid_pose"},

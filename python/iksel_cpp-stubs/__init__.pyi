@@ -2,10 +2,10 @@
 """
 IKSel: inverse kinematics from precomputed seeds.
 
-A pose is base -> tip, a (4, 4) homogeneous matrix; lengths are metres, angles radians. A
-twist is [linear; angular] in base axes at the tip. The method is that of "IKSel: Selecting
-Good Seed Joint Values for Fast Numerical Inverse Kinematics Iterations" (Yuan, Wan, Harada,
-2025), called the paper below.
+A pose is that of the TCP, or of the tip link if there is no tool, in the base frame: a (4, 4)
+homogeneous matrix; lengths are metres, angles radians. A twist is [linear; angular] in base axes at
+the TCP. The method is that of "IKSel: Selecting Good Seed Joint Values for Fast Numerical Inverse
+Kinematics Iterations" (Yuan, Wan, Harada, 2025), called the paper below.
 """
 from __future__ import annotations
 import collections.abc
@@ -179,7 +179,7 @@ class Robot:
         ...
     def fk(self, q: numpy.typing.ArrayLike, kinematics: Kinematics | str = 'kernel') -> numpy.typing.NDArray[numpy.float64]:
         """
-        Forward kinematics: T_base_tip (of the TCP, if there is one).
+        Forward kinematics: T_base_tip, of the TCP if there is a tool.
 
         Args:
             q: joint values [rad or m], (dof,) or (N, dof).
@@ -378,7 +378,7 @@ class Axis(enum.Enum):
         ...
 class Task:
     """
-    What of a pose has to be reached: a box around the target for the deviation of the tip, along the axes of `frame`. Zero width asks for an axis exactly, infinite width leaves it free. The rotation's deviation is a rotation vector where its three widths are equal, else swing and twist about the axis whose width is unlike the other two's. An answer lies at most the solver's tolerances outside of the box. Immutable.
+    What of a pose has to be reached: a box around the target for the deviation of the TCP, along the axes of `frame`. Zero width asks for an axis exactly, infinite width leaves it free. The rotation's deviation is a rotation vector where its three widths are equal, else swing and twist about the axis whose width is unlike the other two's. An answer lies at most the solver's tolerances outside of the box. Immutable.
     """
     @staticmethod
     def box(position: collections.abc.Sequence[float], rotation: collections.abc.Sequence[float], frame: TaskFrame | str = 'tool') -> Task:
@@ -1134,7 +1134,7 @@ class ObjectiveKind(enum.Enum):
         ...
 class Objective:
     """
-    What an answer is to be good at besides reaching the target: a cost of joint values, the smaller the better. Of all answers found the cheapest is taken; where the arm is free to move (more joints than fixed axes) the best have slid to a local minimum of the cost first. Immutable.
+    What an answer is to be good at besides reaching the target: a cost of joint values, the smaller the better. Of all answers found the cheapest is taken; where the arm is free to move (more joints than fixed axes) the best are first moved along their self-motion to a local minimum of the cost. Immutable.
     """
     @staticmethod
     def custom(cost: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any], gradient: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None) -> Objective:
@@ -1463,7 +1463,7 @@ class Solver:
         Args:
             pose: T_base_tip [m], as in solve.
             filter: called with candidates (n, dof), each at the pose and inside the limits; returns n truth
-                values. The search goes on within its bounds while all are refused. In a batch it is asked
+                values. The search continues within its bounds while all are refused. In a batch it is asked
                 about the first answers of up to 256 targets at once, along a path about one waypoint's.
             deadline: wall-clock time after which the search for a target ends [s]; checked between its
                 stages.
@@ -1477,7 +1477,7 @@ class Solver:
         """
     def solve(self, pose: numpy.typing.ArrayLike | typing.Any, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None) -> Result:
         """
-        Joint values that put the tip (the TCP, if there is one) at a pose.
+        Joint values that put the TCP (the tip link's frame, if there is no tool) at a pose.
 
         Args:
             pose: T_base_tip [m]: (4, 4) or (3, 4); a pair (position, rotation) with a (3, 3) matrix or a
@@ -1486,7 +1486,7 @@ class Solver:
                 nearest rigid one (see check_pose), by which the errors are measured.
             near: configuration to stay near, (dof,) [rad or m], for a batch also (N, dof), one for each
                 target; may lie outside the limits. The answer is the one with the smallest joint move of
-                all that are found, whole turns considered; a redundant arm's has slid along its self-motion
+                all that are found, whole turns considered; a redundant arm's is moved along its self-motion
                 to where the move is smallest. Angles here, in `seeds` and in a posture that are too large
                 for a double to tell poses apart to a tenth of the tolerances are refused: 1.5e8 rad for an
                 arm of six joints and 1 m at the default tolerances, never less than 100 rad.
@@ -1497,14 +1497,15 @@ class Solver:
                 many of the database's on top.
             database_seeds: whether the database's seeds follow the given ones.
             filter: called with candidates (n, dof), each at the pose and inside the limits; returns n truth
-                values. The search goes on within its bounds while all are refused. In a batch it is asked
+                values. The search continues within its bounds while all are refused. In a batch it is asked
                 about the first answers of up to 256 targets at once, along a path about one waypoint's.
             deadline: wall-clock time after which the search for a target ends [s]; checked between its
                 stages.
             task: what of the pose has to be reached; None: what the solver's options say.
             objective: what the answer is to be good at besides: an Objective, 'limits', 'manipulability',
                 or a function of joint values (dof,) that returns a cost. Comes before `near`. Of the
-                answers found, the cheapest; a redundant arm's has slid to a local minimum.
+                answers found, the cheapest; a redundant arm's is moved along its self-motion to a local
+                minimum.
 
         Returns:
             A Result. A pose that cannot be solved is no error but a status.
@@ -1521,12 +1522,12 @@ class Solver:
             pose: T_base_tip [m], as in solve.
             max: solutions given at most.
             min_distance: solutions that differ by less in every joint are one [rad or m].
-            whole_turns: whether copies by whole turns inside the limits count as solutions of their own;
-                otherwise each comes once, at the turn nearest to `near` or to the middle of the limits.
+            whole_turns: whether periodic images inside the limits count as solutions of their own;
+                otherwise each comes once, at the image nearest to `near` or to the middle of the limits.
             order: what comes first.
             near: configuration to stay near, (dof,) [rad or m], for a batch also (N, dof), one for each
                 target; may lie outside the limits. The answer is the one with the smallest joint move of
-                all that are found, whole turns considered; a redundant arm's has slid along its self-motion
+                all that are found, whole turns considered; a redundant arm's is moved along its self-motion
                 to where the move is smallest. Angles here, in `seeds` and in a posture that are too large
                 for a double to tell poses apart to a tenth of the tolerances are refused: 1.5e8 rad for an
                 arm of six joints and 1 m at the default tolerances, never less than 100 rad.
@@ -1537,7 +1538,7 @@ class Solver:
                 many of the database's on top.
             database_seeds: whether the database's seeds follow the given ones.
             filter: called with candidates (n, dof), each at the pose and inside the limits; returns n truth
-                values. The search goes on within its bounds while all are refused. In a batch it is asked
+                values. The search continues within its bounds while all are refused. In a batch it is asked
                 about the first answers of up to 256 targets at once, along a path about one waypoint's.
             deadline: wall-clock time after which the search for a target ends [s]; checked between its
                 stages.
@@ -1556,14 +1557,14 @@ class Solver:
         A row has the same bits whatever the number of threads and whatever else is in the batch. Its
         status is that of solve(), and so are its bits, but for seeds in SIMD lanes (the default preset):
         there a target has a lane to itself, and the answer may be another of its solutions, within the
-        same tolerances. What is asked for holds for each target by itself.
+        same tolerances. The request holds for each target by itself.
 
         Args:
             poses: T_base_tip, (N, 4, 4) [m], or others as in solve. Doubles in C order are read in place.
             threads: 0: one per core.
             near: configuration to stay near, (dof,) [rad or m], for a batch also (N, dof), one for each
                 target; may lie outside the limits. The answer is the one with the smallest joint move of
-                all that are found, whole turns considered; a redundant arm's has slid along its self-motion
+                all that are found, whole turns considered; a redundant arm's is moved along its self-motion
                 to where the move is smallest. Angles here, in `seeds` and in a posture that are too large
                 for a double to tell poses apart to a tenth of the tolerances are refused: 1.5e8 rad for an
                 arm of six joints and 1 m at the default tolerances, never less than 100 rad.
@@ -1574,19 +1575,21 @@ class Solver:
                 many of the database's on top.
             database_seeds: whether the database's seeds follow the given ones.
             filter: called with candidates (n, dof), each at the pose and inside the limits; returns n truth
-                values. The search goes on within its bounds while all are refused. In a batch it is asked
+                values. The search continues within its bounds while all are refused. In a batch it is asked
                 about the first answers of up to 256 targets at once, along a path about one waypoint's.
             deadline: wall-clock time after which the search for a target ends [s]; checked between its
                 stages.
             task: what of the pose has to be reached; None: what the solver's options say.
             objective: what the answer is to be good at besides: an Objective, 'limits', 'manipulability',
                 or a function of joint values (dof,) that returns a cost. Comes before `near`. Of the
-                answers found, the cheapest; a redundant arm's has slid to a local minimum.
+                answers found, the cheapest; a redundant arm's is moved along its self-motion to a local
+                minimum.
             on_invalid_pose: what a row does that is no pose (see check_pose): "status", Status.invalid_pose
                 for it and NaN for its q; "raise", an error that names the first, and none is solved.
 
         Raises:
-            InvalidArgumentError: wrong shape or dtype, a bad wish, or by wish a bad pose.
+            InvalidArgumentError: wrong shape or dtype, a bad argument, or with on_invalid_pose="raise"
+                a bad pose.
         """
     def solve_path(self, poses: numpy.typing.ArrayLike | typing.Any, start: numpy.typing.ArrayLike | None = None, *, dt: float = 0.0, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, candidates: int = 64) -> PathResult:
         """
@@ -1597,14 +1600,14 @@ class Solver:
         Args:
             poses: T_base_tip of each waypoint, (N, 4, 4) [m], or others as in solve.
             start: where the arm is one time step before the first waypoint, (dof,) [rad or m]; None: the
-                path may begin anywhere, and of its copies by whole turns the one that begins nearest to the
+                path may begin anywhere, and of its periodic images the one that begins nearest to the
                 middle of the limits is taken.
             dt: time from one waypoint to the next [s], in which no joint moves farther than its velocity
                 limit allows; 0: speeds are not limited.
             weights: factor on each joint's part of a move, (dof,), >= 0; None: all 1.
             norm: how a move is measured.
             filter: called with candidates (n, dof), each at the pose and inside the limits; returns n truth
-                values. The search goes on within its bounds while all are refused. In a batch it is asked
+                values. The search continues within its bounds while all are refused. In a batch it is asked
                 about the first answers of up to 256 targets at once, along a path about one waypoint's.
             candidates: candidates kept per waypoint at most.
 
@@ -1643,7 +1646,7 @@ class Solver:
     @property
     def task_hint(self) -> str:
         """
-        For an arm with fewer joints than its task has axes, which hardly any target suits: tasks for which its joints are enough, in a sentence; else empty.
+        For an arm with fewer joints than its task has axes, which hardly any target suits: tasks whose axes its joints can all move, in a sentence; else empty.
         """
     @property
     def work_bound(self) -> int:

@@ -16,7 +16,7 @@ namespace iksel {
 /// How solve_path chooses among the solutions of each waypoint.
 struct IKSEL_EXPORT PathOptions {
   /// Where the arm is one time step before the first waypoint; may lie outside the limits. Empty:
-  /// the path may begin anywhere; of its copies by whole turns, the one that begins nearest to the
+  /// the path may begin anywhere; of its periodic images, the one that begins nearest to the
   /// middle of the limits is taken.
   std::optional<JointVector> start;
   /// Time from one waypoint to the next [s]: no joint then moves farther than its velocity limit

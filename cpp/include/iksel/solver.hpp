@@ -77,12 +77,13 @@ class IKSEL_EXPORT Solver {
   /// Result::iterations, so that solves in lanes stay below this by the number of lanes.
   [[nodiscard]] std::size_t work_bound() const;
 
-  /// Joint values that put the tip (the TCP, if there is one) at T_base_tip, or if that is rounded
-  /// at the nearest rigid pose. Throws InvalidArgumentError if it is none (check_pose); a pose
-  /// that cannot be solved is no error but a status. For arms of few joints see task_hint.
+  /// Joint values that put the TCP (the tip link's frame, if there is no tool) at T_base_tip, or if
+  /// that is rounded at the nearest rigid pose. Throws InvalidArgumentError if it is none
+  /// (check_pose); a pose that cannot be solved is no error but a status. For arms of few joints
+  /// see task_hint.
   [[nodiscard]] Result solve(const Pose& T_base_tip) const;
-  /// As above, with the wishes of a request; the time of each stage is added to `times` if that is
-  /// not null. Without any wish it is solve(T_base_tip).
+  /// As above, for a request; the time of each stage is added to `times` if that is not null. A
+  /// request that asks for nothing gives solve(T_base_tip).
   [[nodiscard]] Result solve(const Pose& T_base_tip, const SolveRequest& request,
                              StageTimes* times = nullptr) const;
 
@@ -108,10 +109,10 @@ class IKSEL_EXPORT Solver {
   /// solutions, within the same tolerances. `threads` = 0 takes one per core. A target that is no
   /// pose has Status::invalid_pose; SolveRequest::on_invalid_pose can have it thrown instead.
   ///
-  /// The wishes of a request hold for each target by itself. `near` is empty, or has one
+  /// The request holds for each target by itself. `near` is empty, or has one
   /// configuration for each target, which counts instead of the request's. A filter is asked about
   /// the first answers of up to 256 targets at once; only where it refuses, the search for that
-  /// target goes on. Calls to it come from any thread, one at a time.
+  /// target continues. Calls to it come from any thread, one at a time.
   [[nodiscard]] std::vector<Result> solve_batch(const std::vector<Pose>& T_base_tip,
                                                 const SolveRequest& request = {},
                                                 const std::vector<JointVector>& near = {},

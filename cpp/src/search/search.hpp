@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The one search: while a lane is free and there is a seed, load it; refine; offer what arrives; go
-// on until there is enough.
+// The one search: while a lane is free and there is a seed, load it; refine; offer what arrives;
+// until the answers ask for no more.
 //
 // What takes part is chosen by the caller:
 //   Refiner  width(), advance(busy), has_arrived, is_spent, is_to_be_looked_at, at and q of a lane
@@ -8,7 +8,8 @@
 //   Seeds    bool next_stage(), false if there are no more; bool load(refiner, lane), false if the
 //            stage has no more for this lane (seeds/);
 //   Answers  Verdict offer(lane, q); bool knows(q), where a seed need not be followed any further;
-//            bool should_continue(), asked before each stage and after the last (first_answer.hpp, collector.hpp).
+//            bool should_continue(), asked before each stage and after the last (first_answer.hpp,
+//            collector.hpp).
 #pragma once
 
 #include "base/work.hpp"
@@ -19,7 +20,7 @@ namespace iksel {
 /// What is to be done after a lane has arrived.
 enum class Verdict {
   stop,    ///< nothing more is wanted
-  next,    ///< this seed is finished; go on with others
+  next,    ///< this seed is finished; continue with others
   refine,  ///< it is not quite there; iterate it further
 };
 

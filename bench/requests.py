@@ -299,7 +299,7 @@ def path(settings: Settings) -> dict[str, Any]:
         "count": len(poses),
         "dt": dt,
         "status": whole.status.name,
-        "broken": whole.broken,
+        "broken": whole.first_unreachable,
         "path": _smoothness(arm, poses, whole.q, dt),
         "path_s": middle - begin,
         "points": _smoothness(arm, poses, np.array(points), dt),

@@ -36,13 +36,13 @@ int run() {
   print("2 cm of room", solver.solve(target, request).q);
 
   // Seven joints for six directions: the one left makes the answer a better one.
-  iksel::SolveRequest wish;
-  wish.objective = iksel::Objective::far_from_limits();
-  print("far from limits", solver.solve(target, wish).q);
+  iksel::SolveRequest request;
+  request.objective = iksel::Objective::far_from_limits();
+  print("far from limits", solver.solve(target, request).q);
   // Any function will do.
-  wish.objective =
+  request.objective =
       iksel::Objective::custom([](const iksel::JointVector& q) { return 1 - std::cos(q[2]); });
-  std::printf("elbow in         cost %.3f\n", solver.solve(target, wish).cost);
+  std::printf("elbow in         cost %.3f\n", solver.solve(target, request).cost);
 
   // Beyond what the arm reaches.
   target.translation() *= 1.5 / target.translation().norm();

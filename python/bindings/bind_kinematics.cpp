@@ -45,7 +45,7 @@ py::array_t<double> link_poses(const Robot& self, const ArrayLike& q,
 
 void bind_jacobians(py::class_<Robot>& cls, const Loose<Kinematics>& kernel) {
   cls.def("jacobian", &jacobian, py::arg("q"), py::arg("kinematics") = kernel,
-          R"(Geometric Jacobian: rows [linear; angular] in base axes at the tip.
+          R"(Geometric Jacobian: rows [linear; angular] in base axes at the TCP.
 
 Args:
     q: joint values [rad or m], (dof,) or (N, dof).
@@ -57,19 +57,19 @@ Returns:
 Raises:
     InvalidArgumentError: wrong shape or dtype, or a number that is not finite.)");
   cls.def(
-      "dq_dx",
+      "inverse_jacobian",
       [](const Robot& self, const ArrayLike& q, const Loose<double>& damping) {
         const auto factor = from_python<double>(damping, "damping");
         const int dof = self.dof();
         return map_joints(q, dof, "q", {dof, 6}, [&](const JointVector& joints, double* out) {
-          Eigen::Map<RowMajorMatrix>(out, dof, 6) = self.dq_dx(joints, factor);
+          Eigen::Map<RowMajorMatrix>(out, dof, 6) = self.inverse_jacobian(joints, factor);
         });
       },
       py::arg("q"), py::arg("damping") = 0.0,
       R"(Derivative of an answer q by its target, for differentiable use.
 
-dq = dq_dx @ [linear; angular] for a small twist of the target in base axes at the tip, of all dq
-the least: the damped pseudo-inverse J^T (J J^T + damping^2 I)^-1 (Nakamura and Hanafusa 1986).
+dq = inverse_jacobian @ [linear; angular] for a small twist of the target in base axes at the TCP,
+of all dq the least: the damped pseudo-inverse J^T (J J^T + damping^2 I)^-1 (Nakamura and Hanafusa 1986).
 
 Args:
     q: joint values [rad or m], (dof,) or (N, dof).
@@ -87,7 +87,7 @@ Raises:
 void bind_kinematics(py::class_<Robot>& cls) {
   const Loose<Kinematics> kernel = py::str(enum_name(Kinematics::kernel));
   cls.def("fk", &fk, py::arg("q"), py::arg("kinematics") = kernel,
-          R"(Forward kinematics: T_base_tip (of the TCP, if there is one).
+          R"(Forward kinematics: T_base_tip, of the TCP if there is a tool.
 
 Args:
     q: joint values [rad or m], (dof,) or (N, dof).

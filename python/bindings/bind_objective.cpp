@@ -83,8 +83,8 @@ void bind_objective(py::module_& m) {
       m, "Objective",
       "What an answer is to be good at besides reaching the target: a cost of joint values, the "
       "smaller the better. Of all answers found the cheapest is taken; where the arm is free to "
-      "move (more joints than fixed axes) the best have slid to a local minimum of the cost "
-      "first. Immutable.");
+      "move (more joints than fixed axes) the best are first moved along their self-motion to "
+      "a local minimum of the cost. Immutable.");
   cls.def_static(
       "near_posture",
       [](const ArrayLike& posture, const std::optional<ArrayLike>& weights) {

@@ -62,7 +62,7 @@ py::object solve_path(const Solver& self, py::handle poses, const Given& given) 
 
 py::object path_state(const PyPath& self) {
   const PathResult& p = self.path;
-  return py::make_tuple(enum_name(p.status), self.q(), p.broken, p.largest_step,
+  return py::make_tuple(enum_name(p.status), self.q(), p.first_unreachable, p.largest_step,
                         p.largest_step_joint, p.largest_step_waypoint, p.move);
 }
 
@@ -78,10 +78,11 @@ PyPath path_from_state(const py::object& state) {
     check_finite(q.data(i), out.dof, "pickled PathResult, q[" + std::to_string(i) + "]");
     path.q.emplace_back(Eigen::Map<const Eigen::VectorXd>(q.data(i), out.dof));
   }
-  // A broken path has the waypoints before the break.
-  path.broken = in.index<std::ptrdiff_t>("broken", n + 1);
-  if (path.broken != (path.success() ? -1 : n)) {
-    in.refuse("broken", "the number of waypoints unless solved", std::to_string(path.broken));
+  // A path that is not solved has the waypoints before the first unreachable one.
+  path.first_unreachable = in.index<std::ptrdiff_t>("first_unreachable", n + 1);
+  if (path.first_unreachable != (path.success() ? -1 : n)) {
+    in.refuse("first_unreachable", "the number of waypoints unless solved",
+              std::to_string(path.first_unreachable));
   }
   path.largest_step = in.length("largest_step", /*may_be_nan=*/false);
   path.largest_step_joint = in.index<int>("largest_step_joint", out.dof);
@@ -98,13 +99,14 @@ void bind_path_result(py::module_& m) {
       "Whether there is a configuration for every waypoint.");
   add_property(
       cls, "status", [](const PyPath& self) { return self.path.status; },
-      "`solved`, or why waypoint `broken` has none: `too_fast` if it has solutions, but no joint "
+      "`solved`, or why waypoint `first_unreachable` has none: `too_fast` if it has solutions, but "
+      "no joint "
       "path leads there in time.");
+  add_property(cls, "q", &PyPath::q,
+               "Joint values [rad or m], (N, dof); unless solved, of the waypoints before that.");
   add_property(
-      cls, "q", &PyPath::q,
-      "Joint values [rad or m], (N, dof); if the path is broken, of the waypoints before.");
-  add_property(
-      cls, "broken", [](const PyPath& self) { return optional_index(self.path.broken); },
+      cls, "first_unreachable",
+      [](const PyPath& self) { return optional_index(self.path.first_unreachable); },
       "Index of the first waypoint that has no continuation; None if solved.");
   add_property(
       cls, "largest_step", [](const PyPath& self) { return self.path.largest_step; },
@@ -124,7 +126,10 @@ void bind_path_result(py::module_& m) {
   cls.def("__repr__", [](const PyPath& self) {
     return std::string("PathResult(") + enum_name(self.path.status) + ", " +
            std::to_string(self.path.q.size()) + " waypoints" +
-           (self.path.success() ? "" : ", broken=" + std::to_string(self.path.broken)) + ")";
+           (self.path.success()
+                ? ""
+                : ", first_unreachable=" + std::to_string(self.path.first_unreachable)) +
+           ")";
   });
 }
 

@@ -196,7 +196,9 @@ void bind_requests(py::module_& m, py::class_<Solver>& cls) {
   }
   def_method<0>(
       cls,
-      {"solve", "Joint values that put the tip (the TCP, if there is one) at a pose.", "pose",
+      {"solve",
+       "Joint values that put the TCP (the tip link's frame, if there is no tool) at a pose.",
+       "pose",
        "T_base_tip [m]: (4, 4) or (3, 4); a pair (position, rotation) with a (3, 3) "
        "matrix or a scipy Rotation; an object with as_matrix(), .homogeneous or .A "
        "(scipy, Pinocchio, spatialmath); (3,) if the task leaves the rotation free. One "

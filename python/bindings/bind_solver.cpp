@@ -36,15 +36,16 @@ Solver make_solver(const Loose<Robot>& given_robot,
                    const std::optional<Loose<SolverOptions>>& given,
                    const std::optional<Loose<Database>>& given_database,
                    const std::optional<Loose<Robot>>& given_nominal,
-                   const std::optional<Loose<std::array<double, 2>>>& max_drift) {
+                   const std::optional<Loose<std::array<double, 2>>>& max_deviation) {
   const auto robot = from_python<Robot>(given_robot, "robot");
   const auto options = given ? from_python<SolverOptions>(*given, "options") : SolverOptions{};
   options.validate();
   const auto database = from_optional<Database>(given_database, "database");
   const auto nominal = from_optional<Robot>(given_nominal, "nominal");
-  Drift bound = Solver::kMostDrift;
-  if (max_drift) {
-    const auto [position, rotation] = from_python<std::array<double, 2>>(*max_drift, "max_drift");
+  CalibrationDeviation bound = Solver::kMaxCalibrationDeviation;
+  if (max_deviation) {
+    const auto [position, rotation] =
+        from_python<std::array<double, 2>>(*max_deviation, "max_calibration_deviation");
     bound = {position, rotation};
   }
   // Built here and not by Solver, so that Ctrl-C ends a long build.
@@ -136,13 +137,13 @@ Solver solver_from_state(const py::object& state) {
   if (nominal.chain_hash() == robot.chain_hash()) return Solver(robot, options, database);
   // It was within its bound when it was made.
   constexpr double kAny = std::numeric_limits<double>::infinity();
-  return Solver(robot, options, database, nominal, Drift{kAny, kAny});
+  return Solver(robot, options, database, nominal, CalibrationDeviation{kAny, kAny});
 }
 
 void bind_construction(py::class_<Solver>& cls) {
   cls.def(py::init(&make_solver), py::arg("robot"), py::arg("options") = py::none(),
           py::arg("database") = py::none(), py::kw_only(), py::arg("nominal") = py::none(),
-          py::arg("max_drift") = py::none(),
+          py::arg("max_calibration_deviation") = py::none(),
           R"(Uses a database, or builds one by `options.database` if it is given none.
 
 Args:
@@ -151,12 +152,13 @@ Args:
     database: built for the same chain; its TCP may differ.
     nominal: for a calibrated arm, the chain that the database was built for, whose constants
         differ a little. Seeds come from it; iterations, tolerances and limits are the robot's.
-    max_drift: the largest drift of the robot from `nominal`, (position [m], rotation [rad]);
-        None: (0.05, 0.1).
+    max_calibration_deviation: the largest deviation of the robot from `nominal`,
+        (position [m], rotation [rad]); None: (0.05, 0.1).
 
 Raises:
     InvalidArgumentError: an option out of range.
-    DatabaseMismatchError: the database belongs to another chain, or the drift is too large.)");
+    DatabaseMismatchError: the database belongs to another chain, or the deviation is too
+        large.)");
 }
 
 void bind_properties(py::class_<Solver>& cls) {
@@ -164,12 +166,13 @@ void bind_properties(py::class_<Solver>& cls) {
                "The chain that the database was built for: the robot itself, unless "
                "that is a calibrated one.");
   add_property(
-      cls, "drift",
+      cls, "calibration_deviation",
       [](const Solver& self) {
-        const Drift drift = self.drift();
-        return std::make_pair(drift.position, drift.rotation);
+        const CalibrationDeviation deviation = self.calibration_deviation();
+        return std::make_pair(deviation.position, deviation.rotation);
       },
-      "How far the robot's tip drifts from `nominal`'s at the same joint values, at most over "
+      "The largest difference between the robot's tip link and `nominal`'s at the same joint "
+      "values over "
       "2000 configurations: (position [m], rotation [rad]).");
   add_property(cls, "robot", &Solver::robot, "The robot it solves for.");
   add_property(
@@ -182,7 +185,7 @@ void bind_properties(py::class_<Solver>& cls) {
       cls, "task_hint",
       [](const Solver& self) { return task_hint(self.robot(), self.options().task); },
       "For an arm with fewer joints than its task has axes, which hardly any target suits: tasks "
-      "for which its joints are enough, in a sentence; else empty.");
+      "whose axes its joints can all move, in a sentence; else empty.");
 }
 
 void bind_batch(py::class_<Solver>& cls) {
@@ -194,12 +197,13 @@ void bind_batch(py::class_<Solver>& cls) {
 A row has the same bits whatever the number of threads and whatever else is in the batch. Its
 status is that of solve(), and so are its bits, but for seeds in SIMD lanes (the default preset):
 there a target has a lane to itself, and the answer may be another of its solutions, within the
-same tolerances. What is asked for holds for each target by itself.)",
+same tolerances. The request holds for each target by itself.)",
        "poses",
        "T_base_tip, (N, 4, 4) [m], or others as in solve. Doubles in C order are read in place.",
        "BatchResult",
        R"(Raises:
-    InvalidArgumentError: wrong shape or dtype, a bad wish, or by wish a bad pose.)"},
+    InvalidArgumentError: wrong shape or dtype, a bad argument, or with on_invalid_pose="raise"
+        a bad pose.)"},
       batch_keywords(),
       {"threads", "near", "weights", "norm", "seeds", "database_seeds", "filter", "deadline",
        "task", "objective", "on_invalid_pose"},

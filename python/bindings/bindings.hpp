@@ -7,7 +7,7 @@
 namespace iksel {
 class Robot;
 class Solver;
-}
+}  // namespace iksel
 
 namespace iksel::python {
 
@@ -25,7 +25,7 @@ void bind_objective(pybind11::module_& m);
 void bind_diagnosis(pybind11::module_& m);
 void bind_result(pybind11::module_& m);
 void bind_solver(pybind11::module_& m);
-/// The methods of Solver that take wishes.
+/// The methods of Solver that take a request's keywords.
 void bind_requests(pybind11::module_& m, pybind11::class_<Solver>& solver);
 void bind_path(pybind11::module_& m, pybind11::class_<Solver>& solver);
 void bind_evaluation(pybind11::module_& m);

@@ -4,14 +4,12 @@
 #include "signature.hpp"
 
 PYBIND11_MODULE(iksel_cpp, m) {
-  m.doc() =
-      "IKSel: inverse kinematics from precomputed seeds.\n\n"
-      "A pose is base -> tip, a (4, 4) homogeneous matrix; lengths are metres, angles radians. A\n"
-      "twist is [linear; angular] in base axes at the tip. The method is that of \"IKSel: "
-      "Selecting\n"
-      "Good Seed Joint Values for Fast Numerical Inverse Kinematics Iterations\" (Yuan, Wan, "
-      "Harada,\n"
-      "2025), called the paper below.";
+  m.doc() = R"(IKSel: inverse kinematics from precomputed seeds.
+
+A pose is that of the TCP, or of the tip link if there is no tool, in the base frame: a (4, 4)
+homogeneous matrix; lengths are metres, angles radians. A twist is [linear; angular] in base axes at
+the TCP. The method is that of "IKSel: Selecting Good Seed Joint Values for Fast Numerical Inverse
+Kinematics Iterations" (Yuan, Wan, Harada, 2025), called the paper below.)";
   m.attr("__version__") = iksel::kVersion;
   iksel::python::bind_errors(m);
   iksel::python::bind_link_tree(m);

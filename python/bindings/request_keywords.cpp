@@ -100,7 +100,7 @@ constexpr const char* kWeightsDoc =
 constexpr const char* kNormDoc = "how a move is measured.";
 constexpr const char* kFilterDoc =
     "called with candidates (n, dof), each at the pose and inside the limits; returns n truth "
-    "values. The search goes on within its bounds while all are refused. In a batch it is asked "
+    "values. The search continues within its bounds while all are refused. In a batch it is asked "
     "about the first answers of up to 256 targets at once, along a path about one waypoint's.";
 
 std::vector<Keyword> request_keywords() {
@@ -109,8 +109,8 @@ std::vector<Keyword> request_keywords() {
       keyword("near", &R::near,
               "configuration to stay near, (dof,) [rad or m], for a batch also (N, dof), one for "
               "each target; may lie outside the limits. The answer is the one with the smallest "
-              "joint move of all that are found, whole turns considered; a redundant arm's has "
-              "slid along its self-motion to where the move is smallest. Angles here, in `seeds` "
+              "joint move of all that are found, whole turns considered; a redundant arm's is "
+              "moved along its self-motion to where the move is smallest. Angles here, in `seeds` "
               "and in a posture that are too large for a double to tell poses apart to a tenth "
               "of the tolerances are refused: 1.5e8 rad for an arm of six joints and 1 m at the "
               "default tolerances, never less than 100 rad."),
@@ -131,8 +131,8 @@ std::vector<Keyword> request_keywords() {
       keyword("objective", &R::objective,
               "what the answer is to be good at besides: an Objective, 'limits', "
               "'manipulability', or a function of joint values (dof,) that returns a cost. Comes "
-              "before `near`. Of the answers found, the cheapest; a redundant arm's has slid to "
-              "a local minimum."),
+              "before `near`. Of the answers found, the cheapest; a redundant arm's is moved along "
+              "its self-motion to a local minimum."),
       keyword("on_invalid_pose", &R::on_invalid_pose,
               "what a row does that is no pose (see check_pose): \"status\", "
               "Status.invalid_pose for it and NaN for its q; \"raise\", an error that names the "
@@ -147,8 +147,8 @@ std::vector<Keyword> solve_all_keywords() {
       keyword("min_distance", &O::min_distance,
               "solutions that differ by less in every joint are one [rad or m]."),
       keyword("whole_turns", &O::whole_turns,
-              "whether copies by whole turns inside the limits count as solutions of their own; "
-              "otherwise each comes once, at the turn nearest to `near` or to the middle of the "
+              "whether periodic images inside the limits count as solutions of their own; "
+              "otherwise each comes once, at the image nearest to `near` or to the middle of the "
               "limits."),
       keyword("order", &O::order, "what comes first."),
   };
@@ -161,7 +161,7 @@ std::vector<Keyword> path_keywords() {
   return {
       keyword("start", &O::start,
               "where the arm is one time step before the first waypoint, (dof,) [rad or m]; "
-              "None: the path may begin anywhere, and of its copies by whole turns the one that "
+              "None: the path may begin anywhere, and of its periodic images the one that "
               "begins nearest to the middle of the limits is taken."),
       keyword("dt", &O::dt,
               "time from one waypoint to the next [s], in which no joint moves farther than its "

@@ -12,7 +12,7 @@ struct FieldTable<Task> {
   using T = Task;
   static constexpr const char* kName = "Task";
   static constexpr const char* kDoc =
-      "What of a pose has to be reached: a box around the target for the deviation of the tip, "
+      "What of a pose has to be reached: a box around the target for the deviation of the TCP, "
       "along the axes of `frame`. Zero width asks for an axis exactly, infinite width leaves it "
       "free. The rotation's deviation is a rotation vector where its three widths are equal, else "
       "swing and twist about the axis whose width is unlike the other two's. An answer lies at "

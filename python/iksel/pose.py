@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Poses from and to quaternions, rotation vectors and Euler angles.
 
-A pose is a 4x4 homogeneous matrix T_base_tip: it takes coordinates in the tip frame to
-coordinates in the base frame; lengths are metres, angles radians. Quaternions are
+A pose is a 4x4 homogeneous matrix T_base_tip: it takes coordinates in the TCP's frame
+to coordinates in the base frame; lengths are metres, angles radians. Quaternions are
 (w, x, y, z). Every function works on one pose or on arrays of them: leading axes are
 kept, and those of two arguments are broadcast against each other.
 
@@ -47,8 +47,8 @@ def pose_from_matrix(position: npt.ArrayLike, rotation: npt.ArrayLike) -> FloatA
     """Pose from a position and a rotation matrix.
 
     Args:
-        position: Origin of the tip in the base frame, (..., 3) [m].
-        rotation: R_base_tip, (..., 3, 3); its columns are the tip's axes. One that is
+        position: Origin of the TCP in the base frame, (..., 3) [m].
+        rotation: R_base_tip, (..., 3, 3); its columns are the TCP's axes. One that is
             off by RIGID_TOLERANCE or less is projected to the nearest rotation.
 
     Returns:
@@ -69,7 +69,7 @@ def pose_from_quaternion(
     """Pose from a position and a quaternion.
 
     Args:
-        position: Origin of the tip in the base frame, (..., 3) [m].
+        position: Origin of the TCP in the base frame, (..., 3) [m].
         quaternion: Rotation, (..., 4). A norm up to 1e-3 away from 1 is normalised; q
             and -q are the same rotation.
         order: "wxyz": the scalar first (Eigen's constructor, MuJoCo, Pinocchio's text);
@@ -104,7 +104,7 @@ def pose_from_rotation_vector(
     """Pose from a position and a rotation vector (axis times angle).
 
     Args:
-        position: Origin of the tip in the base frame, (..., 3) [m].
+        position: Origin of the TCP in the base frame, (..., 3) [m].
         rotation_vector: Axis times angle in the base frame, (..., 3) [rad].
 
     Returns:
@@ -122,7 +122,7 @@ def pose_from_euler(position: npt.ArrayLike, rpy: npt.ArrayLike) -> FloatArray:
     """Pose from a position and roll, pitch, yaw as in a URDF: R = Rz(y) Ry(p) Rx(r).
 
     Args:
-        position: Origin of the tip in the base frame, (..., 3) [m].
+        position: Origin of the TCP in the base frame, (..., 3) [m].
         rpy: Roll, pitch and yaw, (..., 3) [rad]. Whole numbers beyond 2 pi look like
             degrees: an AngleUnitWarning.
 

@@ -2,10 +2,10 @@
 """
 IKSel: inverse kinematics from precomputed seeds.
 
-A pose is base -> tip, a (4, 4) homogeneous matrix; lengths are metres, angles radians. A
-twist is [linear; angular] in base axes at the tip. The method is that of "IKSel: Selecting
-Good Seed Joint Values for Fast Numerical Inverse Kinematics Iterations" (Yuan, Wan, Harada,
-2025), called the paper below.
+A pose is that of the TCP, or of the tip link if there is no tool, in the base frame: a (4, 4)
+homogeneous matrix; lengths are metres, angles radians. A twist is [linear; angular] in base axes at
+the TCP. The method is that of "IKSel: Selecting Good Seed Joint Values for Fast Numerical Inverse
+Kinematics Iterations" (Yuan, Wan, Harada, 2025), called the paper below.
 """
 from __future__ import annotations
 import collections.abc
@@ -177,26 +177,9 @@ class Robot:
         ...
     def _repr_html_(self) -> str:
         ...
-    def dq_dx(self, q: numpy.typing.ArrayLike, damping: float = 0.0) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        Derivative of an answer q by its target, for differentiable use.
-
-        dq = dq_dx @ [linear; angular] for a small twist of the target in base axes at the tip, of all dq
-        the least: the damped pseudo-inverse J^T (J J^T + damping^2 I)^-1 (Nakamura and Hanafusa 1986).
-
-        Args:
-            q: joint values [rad or m], (dof,) or (N, dof).
-            damping: bounds dq near singularities; 0: the pseudo-inverse.
-
-        Returns:
-            (dof, 6), or (N, dof, 6) with the GIL released.
-
-        Raises:
-            InvalidArgumentError: wrong shape or dtype, a number that is not finite, damping below 0.
-        """
     def fk(self, q: numpy.typing.ArrayLike, kinematics: Kinematics | str = 'kernel') -> numpy.typing.NDArray[numpy.float64]:
         """
-        Forward kinematics: T_base_tip (of the TCP, if there is one).
+        Forward kinematics: T_base_tip, of the TCP if there is a tool.
 
         Args:
             q: joint values [rad or m], (dof,) or (N, dof).
@@ -208,9 +191,26 @@ class Robot:
         Raises:
             InvalidArgumentError: wrong shape or dtype, or a number that is not finite.
         """
+    def inverse_jacobian(self, q: numpy.typing.ArrayLike, damping: float = 0.0) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Derivative of an answer q by its target, for differentiable use.
+
+        dq = inverse_jacobian @ [linear; angular] for a small twist of the target in base axes at the TCP,
+        of all dq the least: the damped pseudo-inverse J^T (J J^T + damping^2 I)^-1 (Nakamura and Hanafusa 1986).
+
+        Args:
+            q: joint values [rad or m], (dof,) or (N, dof).
+            damping: bounds dq near singularities; 0: the pseudo-inverse.
+
+        Returns:
+            (dof, 6), or (N, dof, 6) with the GIL released.
+
+        Raises:
+            InvalidArgumentError: wrong shape or dtype, a number that is not finite, damping below 0.
+        """
     def jacobian(self, q: numpy.typing.ArrayLike, kinematics: Kinematics | str = 'kernel') -> numpy.typing.NDArray[numpy.float64]:
         """
-        Geometric Jacobian: rows [linear; angular] in base axes at the tip.
+        Geometric Jacobian: rows [linear; angular] in base axes at the TCP.
 
         Args:
             q: joint values [rad or m], (dof,) or (N, dof).
@@ -378,7 +378,7 @@ class Axis(enum.Enum):
         ...
 class Task:
     """
-    What of a pose has to be reached: a box around the target for the deviation of the tip, along the axes of `frame`. Zero width asks for an axis exactly, infinite width leaves it free. The rotation's deviation is a rotation vector where its three widths are equal, else swing and twist about the axis whose width is unlike the other two's. An answer lies at most the solver's tolerances outside of the box. Immutable.
+    What of a pose has to be reached: a box around the target for the deviation of the TCP, along the axes of `frame`. Zero width asks for an axis exactly, infinite width leaves it free. The rotation's deviation is a rotation vector where its three widths are equal, else swing and twist about the axis whose width is unlike the other two's. An answer lies at most the solver's tolerances outside of the box. Immutable.
     """
     @staticmethod
     def box(position: collections.abc.Sequence[float], rotation: collections.abc.Sequence[float], frame: TaskFrame | str = 'tool') -> Task:
@@ -1184,7 +1184,7 @@ class ObjectiveKind(enum.Enum):
         ...
 class Objective:
     """
-    What an answer is to be good at besides reaching the target: a cost of joint values, the smaller the better. Of all answers found the cheapest is taken; where the arm is free to move (more joints than fixed axes) the best have slid to a local minimum of the cost first. Immutable.
+    What an answer is to be good at besides reaching the target: a cost of joint values, the smaller the better. Of all answers found the cheapest is taken; where the arm is free to move (more joints than fixed axes) the best are first moved along their self-motion to a local minimum of the cost. Immutable.
     """
     @staticmethod
     def custom(cost: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any], gradient: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None) -> Objective:
@@ -1484,7 +1484,7 @@ class Solver:
         ...
     def __deepcopy__(self, memo: dict[int, object]) -> Solver:
         ...
-    def __init__(self, robot: Robot, options: SolverOptions | collections.abc.Mapping[str, typing.Any] | None = None, database: Database | None = None, *, nominal: Robot | None = None, max_drift: collections.abc.Sequence[float] | None = None) -> None:
+    def __init__(self, robot: Robot, options: SolverOptions | collections.abc.Mapping[str, typing.Any] | None = None, database: Database | None = None, *, nominal: Robot | None = None, max_calibration_deviation: collections.abc.Sequence[float] | None = None) -> None:
         """
         Uses a database, or builds one by `options.database` if it is given none.
 
@@ -1494,12 +1494,13 @@ class Solver:
             database: built for the same chain; its TCP may differ.
             nominal: for a calibrated arm, the chain that the database was built for, whose constants
                 differ a little. Seeds come from it; iterations, tolerances and limits are the robot's.
-            max_drift: the largest drift of the robot from `nominal`, (position [m], rotation [rad]);
-                None: (0.05, 0.1).
+            max_calibration_deviation: the largest deviation of the robot from `nominal`,
+                (position [m], rotation [rad]); None: (0.05, 0.1).
 
         Raises:
             InvalidArgumentError: an option out of range.
-            DatabaseMismatchError: the database belongs to another chain, or the drift is too large.
+            DatabaseMismatchError: the database belongs to another chain, or the deviation is too
+                large.
         """
     def __repr__(self) -> str:
         ...
@@ -1512,7 +1513,7 @@ class Solver:
         Args:
             pose: T_base_tip [m], as in solve.
             filter: called with candidates (n, dof), each at the pose and inside the limits; returns n truth
-                values. The search goes on within its bounds while all are refused. In a batch it is asked
+                values. The search continues within its bounds while all are refused. In a batch it is asked
                 about the first answers of up to 256 targets at once, along a path about one waypoint's.
             deadline: wall-clock time after which the search for a target ends [s]; checked between its
                 stages.
@@ -1526,7 +1527,7 @@ class Solver:
         """
     def solve(self, pose: numpy.typing.ArrayLike | typing.Any, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None) -> Result:
         """
-        Joint values that put the tip (the TCP, if there is one) at a pose.
+        Joint values that put the TCP (the tip link's frame, if there is no tool) at a pose.
 
         Args:
             pose: T_base_tip [m]: (4, 4) or (3, 4); a pair (position, rotation) with a (3, 3) matrix or a
@@ -1535,7 +1536,7 @@ class Solver:
                 nearest rigid one (see check_pose), by which the errors are measured.
             near: configuration to stay near, (dof,) [rad or m], for a batch also (N, dof), one for each
                 target; may lie outside the limits. The answer is the one with the smallest joint move of
-                all that are found, whole turns considered; a redundant arm's has slid along its self-motion
+                all that are found, whole turns considered; a redundant arm's is moved along its self-motion
                 to where the move is smallest. Angles here, in `seeds` and in a posture that are too large
                 for a double to tell poses apart to a tenth of the tolerances are refused: 1.5e8 rad for an
                 arm of six joints and 1 m at the default tolerances, never less than 100 rad.
@@ -1546,14 +1547,15 @@ class Solver:
                 many of the database's on top.
             database_seeds: whether the database's seeds follow the given ones.
             filter: called with candidates (n, dof), each at the pose and inside the limits; returns n truth
-                values. The search goes on within its bounds while all are refused. In a batch it is asked
+                values. The search continues within its bounds while all are refused. In a batch it is asked
                 about the first answers of up to 256 targets at once, along a path about one waypoint's.
             deadline: wall-clock time after which the search for a target ends [s]; checked between its
                 stages.
             task: what of the pose has to be reached; None: what the solver's options say.
             objective: what the answer is to be good at besides: an Objective, 'limits', 'manipulability',
                 or a function of joint values (dof,) that returns a cost. Comes before `near`. Of the
-                answers found, the cheapest; a redundant arm's has slid to a local minimum.
+                answers found, the cheapest; a redundant arm's is moved along its self-motion to a local
+                minimum.
 
         Returns:
             A Result. A pose that cannot be solved is no error but a status.
@@ -1570,12 +1572,12 @@ class Solver:
             pose: T_base_tip [m], as in solve.
             max: solutions given at most.
             min_distance: solutions that differ by less in every joint are one [rad or m].
-            whole_turns: whether copies by whole turns inside the limits count as solutions of their own;
-                otherwise each comes once, at the turn nearest to `near` or to the middle of the limits.
+            whole_turns: whether periodic images inside the limits count as solutions of their own;
+                otherwise each comes once, at the image nearest to `near` or to the middle of the limits.
             order: what comes first.
             near: configuration to stay near, (dof,) [rad or m], for a batch also (N, dof), one for each
                 target; may lie outside the limits. The answer is the one with the smallest joint move of
-                all that are found, whole turns considered; a redundant arm's has slid along its self-motion
+                all that are found, whole turns considered; a redundant arm's is moved along its self-motion
                 to where the move is smallest. Angles here, in `seeds` and in a posture that are too large
                 for a double to tell poses apart to a tenth of the tolerances are refused: 1.5e8 rad for an
                 arm of six joints and 1 m at the default tolerances, never less than 100 rad.
@@ -1586,7 +1588,7 @@ class Solver:
                 many of the database's on top.
             database_seeds: whether the database's seeds follow the given ones.
             filter: called with candidates (n, dof), each at the pose and inside the limits; returns n truth
-                values. The search goes on within its bounds while all are refused. In a batch it is asked
+                values. The search continues within its bounds while all are refused. In a batch it is asked
                 about the first answers of up to 256 targets at once, along a path about one waypoint's.
             deadline: wall-clock time after which the search for a target ends [s]; checked between its
                 stages.
@@ -1605,14 +1607,14 @@ class Solver:
         A row has the same bits whatever the number of threads and whatever else is in the batch. Its
         status is that of solve(), and so are its bits, but for seeds in SIMD lanes (the default preset):
         there a target has a lane to itself, and the answer may be another of its solutions, within the
-        same tolerances. What is asked for holds for each target by itself.
+        same tolerances. The request holds for each target by itself.
 
         Args:
             poses: T_base_tip, (N, 4, 4) [m], or others as in solve. Doubles in C order are read in place.
             threads: 0: one per core.
             near: configuration to stay near, (dof,) [rad or m], for a batch also (N, dof), one for each
                 target; may lie outside the limits. The answer is the one with the smallest joint move of
-                all that are found, whole turns considered; a redundant arm's has slid along its self-motion
+                all that are found, whole turns considered; a redundant arm's is moved along its self-motion
                 to where the move is smallest. Angles here, in `seeds` and in a posture that are too large
                 for a double to tell poses apart to a tenth of the tolerances are refused: 1.5e8 rad for an
                 arm of six joints and 1 m at the default tolerances, never less than 100 rad.
@@ -1623,19 +1625,21 @@ class Solver:
                 many of the database's on top.
             database_seeds: whether the database's seeds follow the given ones.
             filter: called with candidates (n, dof), each at the pose and inside the limits; returns n truth
-                values. The search goes on within its bounds while all are refused. In a batch it is asked
+                values. The search continues within its bounds while all are refused. In a batch it is asked
                 about the first answers of up to 256 targets at once, along a path about one waypoint's.
             deadline: wall-clock time after which the search for a target ends [s]; checked between its
                 stages.
             task: what of the pose has to be reached; None: what the solver's options say.
             objective: what the answer is to be good at besides: an Objective, 'limits', 'manipulability',
                 or a function of joint values (dof,) that returns a cost. Comes before `near`. Of the
-                answers found, the cheapest; a redundant arm's has slid to a local minimum.
+                answers found, the cheapest; a redundant arm's is moved along its self-motion to a local
+                minimum.
             on_invalid_pose: what a row does that is no pose (see check_pose): "status", Status.invalid_pose
                 for it and NaN for its q; "raise", an error that names the first, and none is solved.
 
         Raises:
-            InvalidArgumentError: wrong shape or dtype, a bad wish, or by wish a bad pose.
+            InvalidArgumentError: wrong shape or dtype, a bad argument, or with on_invalid_pose="raise"
+                a bad pose.
         """
     def solve_path(self, poses: numpy.typing.ArrayLike | typing.Any, start: numpy.typing.ArrayLike | None = None, *, dt: float = 0.0, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, candidates: int = 64) -> PathResult:
         """
@@ -1646,14 +1650,14 @@ class Solver:
         Args:
             poses: T_base_tip of each waypoint, (N, 4, 4) [m], or others as in solve.
             start: where the arm is one time step before the first waypoint, (dof,) [rad or m]; None: the
-                path may begin anywhere, and of its copies by whole turns the one that begins nearest to the
+                path may begin anywhere, and of its periodic images the one that begins nearest to the
                 middle of the limits is taken.
             dt: time from one waypoint to the next [s], in which no joint moves farther than its velocity
                 limit allows; 0: speeds are not limited.
             weights: factor on each joint's part of a move, (dof,), >= 0; None: all 1.
             norm: how a move is measured.
             filter: called with candidates (n, dof), each at the pose and inside the limits; returns n truth
-                values. The search goes on within its bounds while all are refused. In a batch it is asked
+                values. The search continues within its bounds while all are refused. In a batch it is asked
                 about the first answers of up to 256 targets at once, along a path about one waypoint's.
             candidates: candidates kept per waypoint at most.
 
@@ -1665,14 +1669,14 @@ class Solver:
         Tracker(self, start).
         """
     @property
+    def calibration_deviation(self) -> tuple[float, float]:
+        """
+        The largest difference between the robot's tip link and `nominal`'s at the same joint values over 2000 configurations: (position [m], rotation [rad]).
+        """
+    @property
     def database(self) -> Database:
         """
         The database it selects seeds from.
-        """
-    @property
-    def drift(self) -> tuple[float, float]:
-        """
-        How far the robot's tip drifts from `nominal`'s at the same joint values, at most over 2000 configurations: (position [m], rotation [rad]).
         """
     @property
     def nominal(self) -> Robot:
@@ -1692,7 +1696,7 @@ class Solver:
     @property
     def task_hint(self) -> str:
         """
-        For an arm with fewer joints than its task has axes, which hardly any target suits: tasks for which its joints are enough, in a sentence; else empty.
+        For an arm with fewer joints than its task has axes, which hardly any target suits: tasks whose axes its joints can all move, in a sentence; else empty.
         """
     @property
     def work_bound(self) -> int:
@@ -1764,7 +1768,7 @@ class PathResult:
     def __repr__(self) -> str:
         ...
     @property
-    def broken(self) -> int | None:
+    def first_unreachable(self) -> int | None:
         """
         Index of the first waypoint that has no continuation; None if solved.
         """
@@ -1791,12 +1795,12 @@ class PathResult:
     @property
     def q(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Joint values [rad or m], (N, dof); if the path is broken, of the waypoints before.
+        Joint values [rad or m], (N, dof); unless solved, of the waypoints before that.
         """
     @property
     def status(self) -> Status:
         """
-        `solved`, or why waypoint `broken` has none: `too_fast` if it has solutions, but no joint path leads there in time.
+        `solved`, or why waypoint `first_unreachable` has none: `too_fast` if it has solutions, but no joint path leads there in time.
         """
     @property
     def success(self) -> bool:

@@ -153,8 +153,7 @@ iksel::Pose Judge::fk(const iksel::JointVector& q) { return kdl_->fk(q); }
 
 void Judge::expect_solution(const iksel::Pose& target, const iksel::JointVector& q,
                             const iksel::SolverOptions& options) {
-  const Vector6 error =
-      outside_of(options.task, task_deviation(options.task, target, kdl_->fk(q)));
+  const Vector6 error = outside_of(options.task, task_deviation(options.task, target, kdl_->fk(q)));
   EXPECT_LE(error.head<3>().norm(), options.position_tolerance + 1e-12) << q.transpose();
   EXPECT_LE(error.tail<3>().norm(), options.rotation_tolerance + 1e-12) << q.transpose();
   EXPECT_TRUE(robot_.within_limits(q)) << q.transpose();

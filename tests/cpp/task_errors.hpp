@@ -40,7 +40,7 @@ inline Eigen::Vector3d vector_of(Eigen::Quaterniond rotation) {
 
 /// [position; rotation] along the axes of the task, all six of them.
 inline Vector6 task_deviation(const iksel::Task& task, const iksel::Pose& target,
-                                     const iksel::Pose& pose) {
+                              const iksel::Pose& pose) {
   const bool in_tool = task.frame == iksel::TaskFrame::tool;
   const Eigen::Quaterniond to(target.linear());
   const Eigen::Quaterniond at(pose.linear());

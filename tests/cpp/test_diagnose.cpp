@@ -207,7 +207,7 @@ TEST(DqDx, IsTheDerivativeOfAnswersSolvedAgain) {
     for (int i = 0; i < cases; ++i) {
       const JointVector at = q.row(i);
       const Pose pose = robot.fk(at);
-      const iksel::Matrix derivative = robot.dq_dx(at);
+      const iksel::Matrix derivative = robot.inverse_jacobian(at);
       ASSERT_EQ(derivative.rows(), robot.dof());
       // Steps much smaller than the distance from a singularity and from the limits.
       if (derivative.norm() > 30) continue;
@@ -253,16 +253,18 @@ TEST(DqDx, IsBoundedByItsDamping) {
   for (Eigen::Index i = 0; i < q.rows(); ++i) {
     const Eigen::MatrixXd J = robot.jacobian(q.row(i));
     constexpr double kDamping = 0.05;
-    const Eigen::MatrixXd damped = robot.dq_dx(q.row(i), kDamping);
+    const Eigen::MatrixXd damped = robot.inverse_jacobian(q.row(i), kDamping);
     // Another form of the same: (J^T J + d^2 I)^-1 J^T.
     const Eigen::MatrixXd A =
         J.transpose() * J + kDamping * kDamping * Eigen::MatrixXd::Identity(7, 7);
     EXPECT_LT((damped - A.inverse() * J.transpose()).norm(), 1e-9);
     // The largest of s / (s^2 + d^2) is 1 / (2 d).
     EXPECT_LE(damped.norm(), std::sqrt(6.0) / (2 * kDamping) + 1e-9);
-    EXPECT_LT((J * robot.dq_dx(q.row(i)) - Eigen::MatrixXd::Identity(6, 6)).norm(), 1e-6);
+    EXPECT_LT((J * robot.inverse_jacobian(q.row(i)) - Eigen::MatrixXd::Identity(6, 6)).norm(),
+              1e-6);
   }
-  EXPECT_THROW(static_cast<void>(robot.dq_dx(q.row(0), -1)), iksel::InvalidArgumentError);
+  EXPECT_THROW(static_cast<void>(robot.inverse_jacobian(q.row(0), -1)),
+               iksel::InvalidArgumentError);
 }
 
 }  // namespace

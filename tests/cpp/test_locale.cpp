@@ -113,7 +113,7 @@ std::vector<std::function<void()>> mistakes(const iksel::Solver& solver) {
       with([](auto& options) { options.max_iterations = -12345; }),
       with([](auto& options) { options.task.position_lower[0] = 1234.5; }),
       path(-1234.5),
-      [&solver] { (void)solver.robot().dq_dx(solver.robot().lower(), -0.5); },
+      [&solver] { (void)solver.robot().inverse_jacobian(solver.robot().lower(), -0.5); },
   };
 }
 

@@ -223,10 +223,10 @@ TEST(Calibration, ADatabaseOfTheNominalChainServesACalibratedOne) {
       }
       const Solver solver(robot, options, database, nominal);
       const Solver own(robot, options);
-      EXPECT_GT(solver.drift().position, 1e-4);
-      EXPECT_LT(solver.drift().position, 0.03);
-      EXPECT_LT(solver.drift().rotation, 0.03);
-      EXPECT_EQ(own.drift().position, 0);
+      EXPECT_GT(solver.calibration_deviation().position, 1e-4);
+      EXPECT_LT(solver.calibration_deviation().position, 0.03);
+      EXPECT_LT(solver.calibration_deviation().rotation, 0.03);
+      EXPECT_EQ(own.calibration_deviation().position, 0);
       const int cases = iksel_test::cases(2000);
       const Eigen::MatrixXd q = robot.random_configurations(cases, iksel_test::seed());
       int solved = 0;
@@ -296,17 +296,18 @@ TEST(Objective, AnInfiniteCostRefuses) {
   }
 }
 
-TEST(Calibration, TooMuchDriftIsRefusedWithItsSize) {
+TEST(Calibration, TooMuchDeviationIsRefusedWithItsSize) {
   const Robot& nominal = iksel_test::robot("ur3");
   const Robot robot = perturbed(nominal, 1e-3, 1e-3, 1);
   const iksel::Database database = iksel::Database::build(nominal);
-  const iksel::Drift drift = iksel::measure_drift(robot, nominal);
+  const iksel::CalibrationDeviation deviation =
+      iksel::measure_calibration_deviation(robot, nominal);
   try {
-    const Solver solver(robot, {}, database, nominal, {drift.position / 2, 1});
+    const Solver solver(robot, {}, database, nominal, {deviation.position / 2, 1});
     FAIL() << "accepted";
   } catch (const iksel::DatabaseMismatchError& error) {
     std::ostringstream number;
-    number << drift.position;
+    number << deviation.position;
     EXPECT_NE(std::string(error.what()).find(number.str()), std::string::npos) << error.what();
   }
   // The database has to be the nominal chain's.

@@ -33,9 +33,9 @@ std::vector<Pose> line(const Pose& first, const Eigen::Vector3d& length, int n) 
 
 void expect_path(const Solver& solver, const std::vector<Pose>& poses, const PathOptions& options,
                  const PathResult& path) {
-  ASSERT_TRUE(path.success()) << to_string(path.status) << " at " << path.broken;
+  ASSERT_TRUE(path.success()) << to_string(path.status) << " at " << path.first_unreachable;
   ASSERT_EQ(path.q.size(), poses.size());
-  EXPECT_EQ(path.broken, -1);
+  EXPECT_EQ(path.first_unreachable, -1);
   iksel_test::Judge judge(solver.robot());
   double largest = 0;
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -95,9 +95,9 @@ TEST(Path, FirstWaypointWithoutContinuationIsNamed) {
   options.start = start;
   const PathResult path = solver.solve_path(poses, options);
   ASSERT_FALSE(path.success());
-  ASSERT_GT(path.broken, 0);
-  EXPECT_EQ(path.q.size(), static_cast<std::size_t>(path.broken));
-  const auto broken = static_cast<std::size_t>(path.broken);
+  ASSERT_GT(path.first_unreachable, 0);
+  EXPECT_EQ(path.q.size(), static_cast<std::size_t>(path.first_unreachable));
+  const auto broken = static_cast<std::size_t>(path.first_unreachable);
   EXPECT_TRUE(solver.solve(poses[broken - 1]).success());
   EXPECT_FALSE(solver.solve(poses[broken]).success());
 
@@ -107,7 +107,7 @@ TEST(Path, FirstWaypointWithoutContinuationIsNamed) {
   options.dt = 0.01;
   const PathResult fast = solver.solve_path(flip, options);
   EXPECT_EQ(fast.status, Status::too_fast);
-  EXPECT_EQ(fast.broken, 1);
+  EXPECT_EQ(fast.first_unreachable, 1);
 }
 
 TEST(Path, WhatItGivesBeforeABreakIsMeasuredToo) {
@@ -124,7 +124,7 @@ TEST(Path, WhatItGivesBeforeABreakIsMeasuredToo) {
       const auto poses = line(robot.fk(q.row(i)), {0.2, 0.3, 0.6}, 40);
       const PathResult path = solver.solve_path(poses, options);
       broken += !path.success();
-      ASSERT_EQ(path.q.size(), path.success() ? poses.size() : std::size_t(path.broken));
+      ASSERT_EQ(path.q.size(), path.success() ? poses.size() : std::size_t(path.first_unreachable));
       for (std::size_t w = 0; w < path.q.size(); ++w) {
         judge.expect_solution(poses[w], path.q[w]);
       }
@@ -146,7 +146,7 @@ TEST(Path, FilterHoldsOnTheWholeWay) {
   options.filter = iksel::filter_each(7, [](const JointVector&) { return false; });
   const PathResult none = solver.solve_path(poses, options);
   EXPECT_EQ(none.status, Status::rejected);
-  EXPECT_EQ(none.broken, 0);
+  EXPECT_EQ(none.first_unreachable, 0);
   EXPECT_TRUE(none.q.empty());
 }
 

@@ -300,7 +300,7 @@ def test_path_of_a_file(run: Run, made, poses: Path) -> None:
     words = ["path", "ur3", poses, "--start", *Q, "--dt", "0.01"]
     answer = assert_good(run(*words, "--json")).json()
     assert answer["success"] is True
-    assert answer["broken"] is None
+    assert answer["first_unreachable"] is None
     assert answer["joint_names"] == robot.joint_names
     q = np.array(answer["q"])
     assert q.shape == (20, 6)
@@ -312,7 +312,7 @@ def test_path_of_a_file(run: Run, made, poses: Path) -> None:
     text = assert_good(run(*words)).out
     for word in ("waypoints     20", "solved", "largest step", "wrist_3_joint"):
         assert word in text
-    assert "broken" not in text
+    assert "first unreachable" not in text
 
 
 def test_path_with_settings(run: Run, poses: Path, tmp_path: Path) -> None:
@@ -329,10 +329,10 @@ def test_path_that_breaks(run: Run, poses: Path) -> None:
     with poses.open("a", encoding="utf-8") as file:
         file.write("\n9 0 0 0 0 0\n")
     answer = assert_good(run("path", "ur3", poses, "--json"), code=1).json()
-    assert (answer["broken"], answer["status"]) == (20, "out_of_reach")
+    assert (answer["first_unreachable"], answer["status"]) == (20, "out_of_reach")
     assert len(answer["q"]) == 20
     text = assert_good(run("path", "ur3", poses), code=1).out
-    assert "broken at" in text
+    assert "first unreachable" in text
     assert "waypoint 20 (from 0)" in text
 
 

@@ -52,12 +52,12 @@ def rows(made) -> np.ndarray:
     )
 
 
-@pytest.mark.parametrize("name", ["fk", "jacobian", "dq_dx"])
+@pytest.mark.parametrize("name", ["fk", "jacobian", "inverse_jacobian"])
 @pytest.mark.parametrize("kinematics", ["kernel", "kdl"])
 def test_kinematics_of_many_rows(made, rows, name: str, kinematics: str) -> None:
     robot = made.robot("panda")
     function = getattr(robot, name)
-    how = {} if name == "dq_dx" else {"kinematics": kinematics}
+    how = {} if name == "inverse_jacobian" else {"kinematics": kinematics}
     function(rows[:1000], **how)
     # A machine that other work keeps busy is given a second chance.
     assert min(time_to_interrupt(lambda: function(rows, **how)) for _ in range(2)) < 0.2

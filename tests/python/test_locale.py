@@ -33,7 +33,7 @@ PROGRAM = """
     for wrong in (
         lambda: iksel.Solver(robot, options.replace(position_tolerance=-0.25)),
         lambda: solver.solve(robot.fk(result.q), deadline=-0.25),
-        lambda: robot.dq_dx(result.q, -0.25),
+        lambda: robot.inverse_jacobian(result.q, -0.25),
         lambda: iksel.Robot.from_urdf(robot.urdf, default_limits=(1.5, 0.25)),
     ):
         try:

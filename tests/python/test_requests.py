@@ -248,7 +248,7 @@ def test_path_and_tracker(made) -> None:
     line[:, 1, 3] += 0.002 * np.arange(1, 51)
     path = solver.solve_path(line, start, dt=0.02)
     assert path.success
-    assert path.broken is None
+    assert path.first_unreachable is None
     steps = np.abs(np.diff(path.q, axis=0, prepend=start[None]))
     assert (steps <= robot.velocity_limit * 0.02 * (1 + 1e-8)).all()
     assert path.largest_step == steps.max()
@@ -270,7 +270,7 @@ def test_path_and_tracker(made) -> None:
 
     line[30:, 0, 3] += 5
     broken = solver.solve_path(line, start, dt=0.02)
-    assert (broken.broken, len(broken.q)) == (30, 30)
+    assert (broken.first_unreachable, len(broken.q)) == (30, 30)
     assert broken.status is iksel.Status.out_of_reach
 
 

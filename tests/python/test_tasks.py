@@ -281,24 +281,24 @@ def test_a_diagnosis_names_the_joint(made) -> None:
 # Derivatives and calibrated arms
 
 
-def test_dq_dx_follows_a_moving_target(made) -> None:
+def test_inverse_jacobian_follows_a_moving_target(made) -> None:
     robot = made.robot("ur3")
     qs = robot.random_configurations(CASES, 11)
-    derivatives = robot.dq_dx(qs)
+    derivatives = robot.inverse_jacobian(qs)
     assert derivatives.shape == (CASES, 6, 6)
     rng = np.random.default_rng(12)
     for q, derivative in zip(qs, derivatives, strict=True):
-        np.testing.assert_array_equal(derivative, robot.dq_dx(q))
+        np.testing.assert_array_equal(derivative, robot.inverse_jacobian(q))
         if np.linalg.norm(derivative) > 30:
             continue
         twist = 1e-6 * rng.normal(size=6)
         moved = robot.fk(q + derivative @ twist)
         error = iksel_cpp.pose_error(moved, robot.fk(q))
         np.testing.assert_allclose(error, twist, atol=1e-9)
-        damped = robot.dq_dx(q, damping=0.1)
+        damped = robot.inverse_jacobian(q, damping=0.1)
         assert np.linalg.norm(damped, 2) <= 5 + 1e-9
     with pytest.raises(iksel.InvalidArgumentError, match="damping"):
-        robot.dq_dx(qs[0], damping=-1)
+        robot.inverse_jacobian(qs[0], damping=-1)
 
 
 def test_a_calibrated_arm_uses_the_nominal_database(made) -> None:
@@ -315,7 +315,7 @@ def test_a_calibrated_arm_uses_the_nominal_database(made) -> None:
     with pytest.raises(iksel.DatabaseMismatchError, match="another chain"):
         iksel.Solver(robot, database=database)
     solver = iksel.Solver(robot, database=database, nominal=nominal)
-    assert 1e-4 < solver.drift[0] < 0.02
+    assert 1e-4 < solver.calibration_deviation[0] < 0.02
     targets = robot.fk(robot.random_configurations(10 * CASES, 14))
     for one in (solver, pickle.loads(pickle.dumps(solver))):
         batch = one.solve_batch(targets)
@@ -323,8 +323,13 @@ def test_a_calibrated_arm_uses_the_nominal_database(made) -> None:
         for target, q in zip(targets, batch.q, strict=True):
             assert np.abs(iksel.pose_error(target, robot.fk(q))).max() <= 1e-6
         assert one.nominal.chain_hash == nominal.chain_hash
-    with pytest.raises(iksel.DatabaseMismatchError, match="drifts by"):
-        iksel.Solver(robot, database=database, nominal=nominal, max_drift=(1e-6, 1e-6))
+    with pytest.raises(iksel.DatabaseMismatchError, match="deviates by"):
+        iksel.Solver(
+            robot,
+            database=database,
+            nominal=nominal,
+            max_calibration_deviation=(1e-6, 1e-6),
+        )
 
 
 # Command line

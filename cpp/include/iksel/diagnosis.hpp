@@ -59,8 +59,8 @@ struct Diagnosis {
   bool q_is_solution = false;
 };
 
-/// What to ask of an arm that has fewer joints than `task` has axes, in a sentence: tasks for which
-/// its joints are enough, told by the rank of their Jacobians. Empty if it has as many.
+/// What to ask of an arm that has fewer joints than `task` has axes, in a sentence: tasks whose
+/// axes its joints can all move, by the rank of their Jacobians. Empty if it has as many.
 IKSEL_EXPORT std::string task_hint(const Robot& robot, const Task& task);
 
 }  // namespace iksel

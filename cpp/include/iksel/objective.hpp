@@ -10,8 +10,8 @@
 namespace iksel {
 
 /// A cost of joint values, the smaller the better. Among all answers found the cheapest is taken;
-/// where the task leaves the arm free to move (more joints than fixed axes) the best have slid to a
-/// local minimum of the cost first.
+/// where the task leaves the arm free to move (more joints than fixed axes) the best are
+/// first moved along their self-motion to a local minimum of the cost.
 struct IKSEL_EXPORT Objective {
   enum class Kind {
     none,

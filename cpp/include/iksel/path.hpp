@@ -16,7 +16,7 @@ namespace iksel {
 /// How solve_path chooses among the solutions of each waypoint.
 struct IKSEL_EXPORT PathOptions {
   /// Where the arm is one time step before the first waypoint; may lie outside the limits. Empty:
-  /// the path may begin anywhere; of its copies by whole turns, the one that begins nearest to the
+  /// the path may begin anywhere; of its periodic images, the one that begins nearest to the
   /// middle of the limits is taken.
   std::optional<JointVector> start;
   /// Time from one waypoint to the next [s]: no joint then moves farther than its velocity limit
@@ -39,12 +39,12 @@ struct IKSEL_EXPORT PathOptions {
 /// Joint values along a path.
 struct PathResult {
   /// `solved` if there is a configuration for every waypoint. Else why there is none for waypoint
-  /// `broken`: too_fast if it has solutions, but no joint path leads there in time.
+  /// `first_unreachable`: too_fast if it has solutions, but no joint path leads there in time.
   Status status = Status::not_converged;
-  /// One configuration per waypoint [rad or m]; if the path is broken, of those before the break.
+  /// One configuration per waypoint [rad or m]; if there is none for one, of those before it.
   std::vector<JointVector> q;
   /// Index of the first waypoint that has no continuation; -1 if the path is solved.
-  std::ptrdiff_t broken = -1;
+  std::ptrdiff_t first_unreachable = -1;
   /// The farthest that a joint moves between two waypoints (or start and the first) [rad or m].
   double largest_step = 0;
   /// Which joint does, and on the way to which waypoint; -1 if there is no step.

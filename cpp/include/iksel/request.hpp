@@ -36,10 +36,10 @@ using Filter = std::function<void(const double* q, std::size_t count, bool* keep
 /// A filter that is asked about one configuration at a time.
 IKSEL_EXPORT Filter filter_each(int dof, std::function<bool(const JointVector&)> keep);
 
-/// A solve with wishes. The defaults wish nothing.
+/// What is asked of an answer besides reaching the pose. The defaults ask for nothing.
 ///
 /// Angles of `near`, `seeds` and the objective's posture are refused where their rounding alone
-/// could move the tip by a tenth of the tolerances: beyond 2^53 / 10 min(rotation_tolerance,
+/// could move the TCP by a tenth of the tolerances: beyond 2^53 / 10 min(rotation_tolerance,
 /// position_tolerance / reach) / (number of joints that turn), 1.5e8 rad for an arm of six joints
 /// with 1 m of reach at the default tolerances; up to 100 rad always pass.
 struct IKSEL_EXPORT SolveRequest {
@@ -54,22 +54,22 @@ struct IKSEL_EXPORT SolveRequest {
 
   /// Configuration to stay near, typically where the arm is. May lie outside the limits, as
   /// measured joint values do. The answer is then the one with the smallest move of all that are
-  /// found within the bounds on work; a redundant arm's has slid along its self-motion until the
-  /// move is a local minimum.
+  /// found within the bounds on work; a redundant arm's is moved along its self-motion to a local
+  /// minimum of the move.
   std::optional<JointVector> near;
   /// Factor on each joint's part of the move, >= 0 and not all 0 (so that radians and metres can be
   /// compared); empty: all 1.
   JointVector weights;
   MoveNorm norm = MoveNorm::two;
 
-  /// Refuses candidates; the search goes on within its bounds. Empty: takes all.
+  /// Refuses candidates; the search then continues within its bounds. Empty: takes all.
   Filter filter;
   /// Wall-clock time after which no new stage of the search begins [s], above 0. What was found by
   /// then is judged. The one option under which the same input may give different answers.
   double deadline = std::numeric_limits<double>::infinity();
 
   /// What the answer is to be good at besides; comes before `near`, which then only measures the
-  /// move and says which turns are meant where the objective does not care.
+  /// move, and chooses among periodic images that cost the same.
   Objective objective;
 
   /// What of the pose has to be reached; empty: what the solver's options say.
@@ -79,7 +79,7 @@ struct IKSEL_EXPORT SolveRequest {
   OnInvalidPose on_invalid_pose = OnInvalidPose::status;
 
   /// Whether anything is asked for; weights, norm and on_invalid_pose alone ask for nothing.
-  [[nodiscard]] bool has_wishes() const;
+  [[nodiscard]] bool has_requirements() const;
   /// Throws InvalidArgumentError naming the first field that does not fit a chain of `dof` joints.
   void validate(int dof) const;
 };
@@ -98,8 +98,8 @@ struct IKSEL_EXPORT SolveAllOptions {
   /// Solutions that differ by less than this in every joint are one [rad or m]; a redundant arm's,
   /// which come in families, are spread at least this far.
   double min_distance = 0.01;
-  /// Whether copies by whole turns inside the limits count as solutions of their own. Otherwise
-  /// each is given once: at the turn nearest to `near`, or else to the middle of the limits.
+  /// Whether periodic images inside the limits count as solutions of their own. Otherwise each is
+  /// given once: at the image nearest to `near`, or else to the middle of the limits.
   bool whole_turns = false;
   SolutionOrder order = SolutionOrder::move;
 

@@ -107,12 +107,12 @@ class IKSEL_EXPORT Robot {
   void link_poses(const double* q, std::size_t count,
                   const std::map<std::string, double>& other_joints, double* T_base_link) const;
 
-  /// The derivative of an answer q by its target: dq = dq_dx * [linear; angular] for a small twist
-  /// of the target in base axes at the tip, of all dq the least. dof x 6: J^T (J J^T + damping^2
-  /// I)^-1, the damped pseudo-inverse (Nakamura and Hanafusa 1986); with damping 0 the
+  /// The derivative of an answer q by its target: dq = inverse_jacobian * [linear; angular] for a
+  /// small twist of the target in base axes at the TCP, of all dq the least. dof x 6: J^T (J J^T +
+  /// damping^2 I)^-1, the damped pseudo-inverse (Nakamura and Hanafusa 1986); with damping 0 the
   /// pseudo-inverse, singular values under 1e-9 of the largest cut off. Throws as fk, and if the
   /// damping is negative or not finite.
-  [[nodiscard]] Matrix dq_dx(const JointVector& q, double damping = 0) const;
+  [[nodiscard]] Matrix inverse_jacobian(const JointVector& q, double damping = 0) const;
 
   /// n configurations uniform inside the limits (continuous joints in [-pi, pi)), one per row. The
   /// same seed gives the same numbers everywhere.

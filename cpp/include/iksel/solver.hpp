@@ -20,17 +20,18 @@ namespace iksel {
 /// environment variable IKSEL_SIMD forces one. Throws InvalidArgumentError if it is not to be had.
 IKSEL_EXPORT const char* simd_level();
 
-/// How far two chains put their tips apart at the same joint values, at most.
-struct Drift {
+/// The largest difference between the tip links' poses of a calibrated chain and its nominal one at
+/// the same joint values.
+struct CalibrationDeviation {
   double position = 0;  ///< [m]
   double rotation = 0;  ///< [rad]
 };
 
-/// The drift of a chain from its nominal one, the largest over `samples` configurations uniform
-/// inside the limits; tools are left out. Throws InvalidArgumentError if the numbers of joints
-/// differ.
-IKSEL_EXPORT Drift measure_drift(const Robot& robot, const Robot& nominal,
-                                 std::size_t samples = 2'000);
+/// That of `robot` from `nominal` over `samples` configurations uniform inside the limits; tools
+/// are left out. Throws InvalidArgumentError if the numbers of joints differ.
+IKSEL_EXPORT CalibrationDeviation measure_calibration_deviation(const Robot& robot,
+                                                                const Robot& nominal,
+                                                                std::size_t samples = 2'000);
 
 struct PathOptions;
 struct PathResult;
@@ -55,33 +56,34 @@ class IKSEL_EXPORT Solver {
   /// A calibrated arm: uses a database that was built for `nominal`, whose constants differ a
   /// little from the robot's. Seeds come from the nominal chain; iterations, tolerances and limits
   /// are the robot's own. Throws DatabaseMismatchError if the database does not belong to
-  /// `nominal`, or the robot's drift from it (see `drift`) is beyond `bound`.
+  /// `nominal`, or calibration_deviation() is beyond `bound`.
   Solver(const Robot& robot, const SolverOptions& options, const Database& database,
-         const Robot& nominal, const Drift& bound = kMostDrift);
+         const Robot& nominal, const CalibrationDeviation& bound = kMaxCalibrationDeviation);
 
-  /// Drift up to which a database serves a calibrated chain: several times what calibrations of
-  /// industrial arms find.
-  static constexpr Drift kMostDrift{0.05, 0.1};
+  /// Deviation up to which a database serves a calibrated chain: several times what calibrations
+  /// of industrial arms find.
+  static constexpr CalibrationDeviation kMaxCalibrationDeviation{0.05, 0.1};
 
   [[nodiscard]] const Robot& robot() const;
   [[nodiscard]] const SolverOptions& options() const;
   [[nodiscard]] const Database& database() const;
   /// The chain that the database was built for: the robot itself, unless that is a calibrated one.
   [[nodiscard]] const Robot& nominal() const;
-  /// The robot's drift from `nominal`.
-  [[nodiscard]] Drift drift() const;
+  /// The robot's deviation from `nominal`.
+  [[nodiscard]] CalibrationDeviation calibration_deviation() const;
 
   /// Most iteration steps that one solve without given seeds can spend, over all its seeds:
   /// max_attempts * max_iterations. A step of a whole pack of lanes counts once in
   /// Result::iterations, so that solves in lanes stay below this by the number of lanes.
   [[nodiscard]] std::size_t work_bound() const;
 
-  /// Joint values that put the tip (the TCP, if there is one) at T_base_tip, or if that is rounded
-  /// at the nearest rigid pose. Throws InvalidArgumentError if it is none (check_pose); a pose
-  /// that cannot be solved is no error but a status. For arms of few joints see task_hint.
+  /// Joint values that put the TCP (the tip link's frame, if there is no tool) at T_base_tip, or if
+  /// that is rounded at the nearest rigid pose. Throws InvalidArgumentError if it is none
+  /// (check_pose); a pose that cannot be solved is no error but a status. For arms of few joints
+  /// see task_hint.
   [[nodiscard]] Result solve(const Pose& T_base_tip) const;
-  /// As above, with the wishes of a request; the time of each stage is added to `times` if that is
-  /// not null. Without any wish it is solve(T_base_tip).
+  /// As above, for a request; the time of each stage is added to `times` if that is not null. A
+  /// request that asks for nothing gives solve(T_base_tip).
   [[nodiscard]] Result solve(const Pose& T_base_tip, const SolveRequest& request,
                              StageTimes* times = nullptr) const;
 
@@ -107,10 +109,10 @@ class IKSEL_EXPORT Solver {
   /// solutions, within the same tolerances. `threads` = 0 takes one per core. A target that is no
   /// pose has Status::invalid_pose; SolveRequest::on_invalid_pose can have it thrown instead.
   ///
-  /// The wishes of a request hold for each target by itself. `near` is empty, or has one
+  /// The request holds for each target by itself. `near` is empty, or has one
   /// configuration for each target, which counts instead of the request's. A filter is asked about
   /// the first answers of up to 256 targets at once; only where it refuses, the search for that
-  /// target goes on. Calls to it come from any thread, one at a time.
+  /// target continues. Calls to it come from any thread, one at a time.
   [[nodiscard]] std::vector<Result> solve_batch(const std::vector<Pose>& T_base_tip,
                                                 const SolveRequest& request = {},
                                                 const std::vector<JointVector>& near = {},

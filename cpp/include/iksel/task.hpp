@@ -17,10 +17,10 @@ enum class TaskFrame {
 /// One axis of a frame.
 enum class Axis { x, y, z };
 
-/// What of a pose has to be reached: a box around the target for the deviation of the tip, along
+/// What of a pose has to be reached: a box around the target for the deviation of the TCP, along
 /// the axes of `frame`. Zero width asks for the axis exactly, infinite width leaves it free.
 ///
-/// The deviation of a tip at (R, p) from a target (R_t, p_t) has six parts:
+/// The deviation of a TCP at (R, p) from a target (R_t, p_t) has six parts:
 ///   * position: p - p_t [m];
 ///   * rotation: that of E = R R_t^T [rad] (in tool axes E = R_t^T R), as the rotation vector of E
 ///     where the three widths are equal, else as swing and twist, E = swing * twist about the axis

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The conventions of the whole library, stated once:
-//   * A pose is base -> tip, written T_base_tip: it takes coordinates in the tip frame to
-//   coordinates
-//     in the base frame. Lengths are metres, angles radians.
-//   * A twist is [linear; angular] in base axes, taken at the tip origin; a Jacobian maps joint
+//   * A pose is that of the TCP, or of the tip link if there is no tool, written T_base_tip: it
+//     takes coordinates in that frame to coordinates in the base frame. Lengths are metres, angles
+//     radians.
+//   * A twist is [linear; angular] in base axes, taken at the TCP; a Jacobian maps joint
 //     velocities to it.
 //   * The rotation error between a target and a pose is the rotation vector of R_target * R^T.
 //   * Quaternions in helpers are (w, x, y, z).
@@ -29,7 +29,7 @@ inline constexpr double kMaxCoordinate = 1e8;
 /// flags.
 using JointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::DontAlign, kMaxDof, 1>;
 
-/// Geometric Jacobian, 6 x dof: rows [linear; angular] in base axes at the tip.
+/// Geometric Jacobian, 6 x dof: rows [linear; angular] in base axes at the TCP.
 using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::DontAlign, 6, kMaxDof>;
 
 /// A matrix on the heap. Unaligned too: what the library allocates, the caller's Eigen must be able

@@ -113,7 +113,7 @@ class DatabaseBuilder {
     width_ = space.dof();
 
     const std::vector<double> keys = make_keys();
-    // The tree made of the keys tells the order in which everything is stored.
+    // The tree made of the keys sets the order in which everything is stored.
     const std::vector<std::uint32_t> order = KdTree(keys.data(), data_.size, data_.key_dim).order();
     const std::size_t record_length = DatabaseData::record_length(model_.dof);
     const auto storage =
@@ -170,7 +170,7 @@ class DatabaseBuilder {
           maker.make_record(&samples_[order[i] * width_], records + i * length);
         },
         [this](std::size_t done) {
-          // The end is told when all is done.
+          // The end is reported when all is done.
           const std::size_t halves = updates_ + (data_.size + done) / 2;
           if (halves < total()) report(halves);
         });
@@ -191,7 +191,7 @@ class DatabaseBuilder {
                  on_progress);
   }
 
-  /// Only what is new, so that every call tells more than the one before.
+  /// Only what is new, so that every call reports more than the one before.
   void report(std::size_t done) {
     if (!progress_ || done < next_told_) return;
     next_told_ = done + 1;

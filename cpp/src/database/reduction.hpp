@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The symmetry that makes a database small: FK commutes with the first joint, and the last joint
-// only moves the tip about or along its own axis.
+// only moves the tip link about or along its own axis.
 //
 // With B and F constant, T_base_tip = B * first(q_1) * M(q_2 .. q_n-1) * last(q_n) * F. For a
 // target X let Y = B^-1 X F^-1, with position c and columns x, y, z. A first joint that turns,

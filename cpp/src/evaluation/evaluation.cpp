@@ -158,8 +158,8 @@ Evaluation evaluate(const Solver& solver, std::size_t targets, std::uint64_t see
   Evaluation out;
   out.targets = targets;
   out.seed = seed;
-  // The yardstick is taken before and after, so that a machine that speeds up or slows down
-  // meanwhile does not tilt the ratio.
+  // KDL is timed before and after, so that a machine whose speed changes meanwhile does not distort
+  // the ratio.
   const double kdl_before = time_kdl_fk_jacobian(robot);
   const std::size_t warm_up = std::min<std::size_t>(targets, 200);
   for (std::size_t i = 0; i < warm_up; ++i) {

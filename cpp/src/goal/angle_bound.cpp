@@ -13,7 +13,7 @@ namespace {
 
 double find_largest(const ChainModel& model, const SolverOptions& options) {
   // FK turns joint k by m_k q_k + offset_k, of which rounding takes at most half a unit in the last
-  // place: |m_k q_k| 2^-53. That turns the tip by as much, and moves it by its lever, which the
+  // place: |m_k q_k| 2^-53. That rotates the TCP by as much, and moves it by its lever, which the
   // reach bounds, times as much. All joints together are to stay within a tenth of the tolerances.
   constexpr double kShare = 0.1;
   // Below, what is lost is lost at any angle.

@@ -39,8 +39,8 @@ class Goal {
   [[nodiscard]] bool is_reached(double position, double rotation) const {
     return position <= task_.position_tolerance() && rotation <= task_.rotation_tolerance();
   }
-  /// Nothing is an answer by hearsay: measures q itself, and only if that reaches the target inside
-  /// the limits, makes it the result.
+  /// Computes the errors of q anew, whatever a search has found them to be; only if q reaches the
+  /// target inside the limits, it becomes the result.
   bool check(const JointVector& q, Result& result) const;
   [[nodiscard]] bool is_solution(const JointVector& q) const {
     Result measured;

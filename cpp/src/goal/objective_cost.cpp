@@ -122,7 +122,7 @@ double ObjectiveCost::estimate_curvature(const JointVector& q, const JointVector
   if (last_q_.size() != 0) {
     const JointVector dq = q - last_q_;
     const double along = dq.dot(gradient - last_gradient_);
-    // Where the cost is concave a step as long as may be is right: the slide bounds it.
+    // Where the cost is concave a step as long as may be is right: the descent bounds it.
     curvature = along > 0 ? along / dq.squaredNorm() : 0.5 * last_curvature_;
   }
   last_q_ = q;

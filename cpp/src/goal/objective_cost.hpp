@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An Objective as the slide wants it: value, gradient, and a diagonal second derivative.
+// An Objective as descents along self-motions need it: value, gradient, and a diagonal second
+// derivative.
 #pragma once
 
 #include "iksel/objective.hpp"
@@ -10,8 +11,8 @@ namespace iksel {
 /// sqrt(det(J J^T)), or sqrt(det(J^T J)) for fewer than 6 joints (Yoshikawa 1985).
 double manipulability(const ChainModel& model, const JointVector& q);
 
-/// For one slide: where the second derivative is not known, it is estimated from the gradients that
-/// were asked for so far (Barzilai and Borwein 1988).
+/// For one descent: where the second derivative is not known, it is estimated from the gradients
+/// that were asked for so far (Barzilai and Borwein 1988).
 class ObjectiveCost {
  public:
   /// Both must outlive this.

@@ -51,7 +51,7 @@ bool JointSpace::wrap_nearest(const JointVector& near, double slack, JointVector
     const double high = upper[j] + slack;
     double value = q[j];
     if (std::abs(near[j] - value) > kPi) value += kTwoPi * std::round((near[j] - value) / kTwoPi);
-    // The nearest turn of all lies outside: then the nearest inside.
+    // The nearest image of all lies outside: then the nearest inside.
     if (value > high) value -= kTwoPi * std::ceil((value - high) / kTwoPi);
     if (value < low) value += kTwoPi * std::ceil((low - value) / kTwoPi);
     if (value < low || value > high) continue;

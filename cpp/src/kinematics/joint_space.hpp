@@ -42,8 +42,8 @@ class JointSpace {
   /// The middle of the limits; 0 where there are none.
   [[nodiscard]] JointVector middle() const;
 
-  /// Brings joints that are outside inside the limits by whole turns, to the nearest turn, and
-  /// those without limits to (-pi, pi]; where no turn lies inside, the value stays.
+  /// Brings joints that are outside inside the limits by whole turns, to their nearest image, and
+  /// those without limits to (-pi, pi]; where no image lies inside, the value stays.
   void wrap(double* q) const;
   /// Brings each periodic joint to the image nearest to `near` inside the limits; q lies inside
   /// them before and after. An image that lies outside by no more than `slack` [rad] is taken too,

@@ -92,7 +92,7 @@ void Robot::link_poses(const double* q, std::size_t count,
   });
 }
 
-Matrix Robot::dq_dx(const JointVector& q, double damping) const {
+Matrix Robot::inverse_jacobian(const JointVector& q, double damping) const {
   if (!(damping >= 0 && std::isfinite(damping))) {
     throw InvalidArgumentError("damping: " + number_text(damping) + " is not 0 or more");
   }

@@ -19,7 +19,7 @@ Filter filter_each(int dof, std::function<bool(const JointVector&)> keep) {
   };
 }
 
-bool SolveRequest::has_wishes() const {
+bool SolveRequest::has_requirements() const {
   return !seeds.empty() || !database_seeds || near || filter || objective.is_set() || task ||
          std::isfinite(deadline);
 }

@@ -41,11 +41,11 @@ double descend(const ChainModel& model, const Goal& goal, double weight, JointVe
         model.joints.clamp(q + lm_step(model, q, weighted, asked, damping * asked.squaredNorm()));
     const double next_error = error_of(next);
     if (next_error < error) {
-      const bool settled = error - next_error < 1e-9 * error;
+      const bool converged = error - next_error < 1e-9 * error;
       q = next;
       error = next_error;
       damping = std::max(damping / 5, 1e-6);
-      if (settled) break;
+      if (converged) break;
     } else {
       damping *= 5;
     }

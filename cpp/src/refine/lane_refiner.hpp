@@ -13,7 +13,8 @@ namespace iksel {
 
 /// When a lane is given up.
 struct Patience {
-  /// A seed that is still far off after so many iterations is given up: few such arrive later.
+  /// A seed that is still far off after so many iterations is given up: few such seeds
+  /// converge later.
   int far_off;
   /// Any seed is, after so many.
   int most;

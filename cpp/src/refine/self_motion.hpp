@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A redundant arm moves its joints while the tip stays where it is. Moving along this self-motion
+// A redundant arm moves its joints while the TCP stays where it is. Moving along this self-motion
 // makes a cost of the joint values small.
 #pragma once
 

@@ -14,7 +14,7 @@ namespace {
 constexpr int kRedundantSeeds = 64;
 /// The best solutions of a redundant arm that are brought to a least cost.
 constexpr std::size_t kDescents = 4;
-/// Images looked at, at most: joints with many turns have more than time allows.
+/// Images looked at, at most: joints with a wide range have more than time allows.
 constexpr std::size_t kMostImages = 65536;
 
 }  // namespace

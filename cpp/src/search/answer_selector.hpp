@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The best of what a search collected, by the wishes of a request: nearest, cheapest, or the first
+// The best of what a search collected, by what a request asks for: nearest, cheapest, or the first
 // that a filter lets through.
 #pragma once
 
@@ -20,7 +20,7 @@ class AnswerSelector {
   /// Puts what was found since the last look before the filter. True if the best of all that passed
   /// is an answer.
   bool is_satisfied(const Collector& search);
-  /// Whether the best can only be told when all are known.
+  /// Whether the best is known only when all are.
   [[nodiscard]] bool wants_all() const { return ranks_ && !goal_.is_redundant(); }
   /// The best of what passed; false if nothing did.
   bool select(JointVector& q);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The answers of a search that goes on after the first: every distinct solution is kept.
+// The answers of a search that continues after the first: every distinct solution is kept.
 #pragma once
 
 #include <optional>
@@ -25,7 +25,7 @@ struct CollectorMemory {
   explicit CollectorMemory(const ChainModel& model) : found(model) { partners.reserve(kPartners); }
 
   SolutionSet found;
-  /// Guesses at solutions that a found one told of, still to be tried (fold_partner.hpp).
+  /// Predicted partners of solutions that were found, still to be tried (fold_partner.hpp).
   std::vector<JointVector> partners;
   /// Room for that many; there are fewer solutions that come in pairs.
   static constexpr std::size_t kPartners = 64;
@@ -56,7 +56,7 @@ class Collector {
   }
   [[nodiscard]] bool should_continue();
 
-  /// The next guess at a solution, if there is one.
+  /// The next predicted partner, if there is one.
   bool pop_partner(JointVector& q) const;
   /// Whether more than the first answer is wanted.
   [[nodiscard]] bool wants_more() const { return aim_.until_complete || ranks_answers(request_); }
@@ -94,7 +94,7 @@ class Collector {
   std::vector<JointVector>& partners_;
   JointMove move_;
   Deadline deadline_;
-  /// To which images solutions are brought, if there is a wish.
+  /// Solutions are brought to their images nearest to this, if the request asks for it.
   std::optional<JointVector> images_near_;
   bool counts_moves_;
   bool comes_in_pairs_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The one search: while a lane is free and there is a seed, load it; refine; offer what arrives; go
-// on until there is enough.
+// The one search: while a lane is free and there is a seed, load it; refine; offer what arrives;
+// until the answers ask for no more.
 //
 // What takes part is chosen by the caller:
 //   Refiner  width(), advance(busy), has_arrived, is_spent, is_to_be_looked_at, at and q of a lane
@@ -20,7 +20,7 @@ namespace iksel {
 /// What is to be done after a lane has arrived.
 enum class Verdict {
   stop,    ///< nothing more is wanted
-  next,    ///< this seed is finished; go on with others
+  next,    ///< this seed is finished; continue with others
   refine,  ///< it is not quite there; iterate it further
 };
 

@@ -61,7 +61,7 @@ class FarthestFirstQueue {
 
  private:
   static constexpr int kMost = kBlocksAtOnce * lanes::kBlock;
-  /// Farther than this makes no difference [rad or m]. With 0.3 and with 2, more seeds in vain were
+  /// Farther than this makes no difference [rad or m]. With 0.3 and with 2, more seeds were
   /// needed for as many solutions.
   static constexpr float kFar = 1;
   /// Between one seed and the next in the order of the blocks.

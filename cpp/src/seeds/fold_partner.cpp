@@ -14,8 +14,8 @@ namespace {
 constexpr int kAxes = 6;
 
 /// How the twist J v changes in unit time while the joints move at the rates v: a joint's axis and
-/// origin turn with the joints before it, and the tip moves past it with those behind. A variable
-/// that moves several joints counts as one, which is near enough for a guess.
+/// origin turn with the joints before it, and the TCP moves past it with those behind. A variable
+/// that moves several joints counts as one, which a prediction may.
 Vector6 acceleration(const Jacobian& J, const Vector6& v, const Vector6& twist) {
   Eigen::Vector3d turned = Eigen::Vector3d::Zero();
   Eigen::Vector3d behind = twist.head<3>();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a solution tells about others: they come in pairs that meet where the arm is singular.
+// From a solution to its partner: solutions come in pairs that meet where the arm is singular.
 #pragma once
 
 #include "kinematics/chain_model.hpp"
@@ -12,7 +12,7 @@ struct FoldPartner {
   int jacobian_sign = 0;
   /// Whether the other solution of a pair that meets at a near singularity can be seen, and about
   /// where it is. Along the joint direction v of the least singular value, u its direction of
-  /// motion, the tip moves by u (sigma t + kappa t^2 / 2): it is back at t = -2 sigma / kappa.
+  /// motion, the TCP moves by u (sigma t + kappa t^2 / 2): it is back at t = -2 sigma / kappa.
   bool paired = false;
   JointVector other;
 };

@@ -37,7 +37,7 @@ class GivenSeeds {
     left_ -= left_in_stage_;
     if (seeds_.empty() || left_in_stage_ == 0 || is_empty_) return false;
     if (!ranked_) {
-      // Told to stop meanwhile, it has an empty stage, after which the search is asked.
+      // Interrupted by the deadline, the stage is empty, and the search then ends.
       ranking_.rank(goal_, seeds_, should_continue_);
       ranked_ = true;
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Seeds that spread over all solutions: through the database block by block, always the seed
-// farthest from what was found first, then at random; and before them guesses at solutions that a
-// found one told of.
+// farthest from what was found first, then at random; and before them the partners predicted from
+// solutions that were found.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace iksel {
 
-/// `Known` tells of what was found: pop_partner(q), wants_more(), is_complete(), known(), their
+/// `Known` has what was found: pop_partner(q), wants_more(), is_complete(), known(), their
 /// number, solution(i), and basin_radius(), within which seeds need not be tried.
 template <typename Known>
 class SpreadSeeds {

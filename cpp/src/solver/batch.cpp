@@ -105,15 +105,15 @@ class Batch {
 
   template <typename OnProgress>
   void run(int threads, const OnProgress& on_progress) const {
-    const bool plain = !request_.has_wishes() && (count_ == 0 || near_(0) == nullptr);
+    const bool plain = !request_.has_requirements() && (count_ == 0 || near_(0) == nullptr);
     // Few at a time keep all threads busy; many are for the lanes and the filter.
     constexpr std::size_t kFew = 8;
     const std::size_t chunk = plain || request_.filter ? kMost : kFew;
-    std::mutex turn;
+    std::mutex one_at_a_time;
     SolveRequest locked = request_;
     if (request_.filter) {
       locked.filter = [&](const double* q, std::size_t n, bool* keep) {
-        const std::lock_guard<std::mutex> lock(turn);
+        const std::lock_guard<std::mutex> lock(one_at_a_time);
         request_.filter(q, n, keep);
       };
     }
@@ -136,7 +136,7 @@ class Batch {
  private:
   static constexpr std::size_t kMost = 256;
 
-  /// Without wishes: what comes out for one target does not depend on the others.
+  /// For a request that asks for nothing: the answer for a target does not depend on the others.
   template <typename Tell>
   void solve_plain(std::size_t first, std::size_t last, Workspace& workspace,
                    const Tell& tell) const {
@@ -166,13 +166,13 @@ class Batch {
   }
 
   /// What is found without the filter is put before it in one go; where it refuses, the search for
-  /// that target goes on.
+  /// that target continues.
   void solve_filtered(std::size_t first, std::size_t last, SolveRequest& request,
                       Workspace& workspace) const {
     std::vector<Result> answers(last - first);
     Filter filter;
     filter.swap(request.filter);
-    if (near_(first) == nullptr && !request.has_wishes()) {
+    if (near_(first) == nullptr && !request.has_requirements()) {
       const auto keep = [&](std::size_t i, const Result& result) { answers[i - first] = result; };
       solve_plain(first, last, workspace, keep);
     } else {

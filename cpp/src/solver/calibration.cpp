@@ -8,7 +8,8 @@
 
 namespace iksel {
 
-Drift measure_drift(const Robot& robot, const Robot& nominal, std::size_t samples) {
+CalibrationDeviation measure_calibration_deviation(const Robot& robot, const Robot& nominal,
+                                                   std::size_t samples) {
   if (robot.dof() != nominal.dof()) {
     throw InvalidArgumentError("nominal: robot '" + nominal.name() + "' has " +
                                std::to_string(nominal.dof()) + " joints, '" + robot.name() + "' " +
@@ -16,39 +17,39 @@ Drift measure_drift(const Robot& robot, const Robot& nominal, std::size_t sample
   }
   const Robot a = robot.with_tcp(Pose::Identity());
   const Robot b = nominal.with_tcp(Pose::Identity());
-  Drift drift;
+  CalibrationDeviation deviation;
   const Matrix q = nominal.random_configurations(samples, 0);
   for (Eigen::Index i = 0; i < q.rows(); ++i) {
     const JointVector joints = q.row(i);
     const Eigen::Matrix<double, 6, 1> e = pose_error(a.fk(joints), b.fk(joints));
-    drift.position = std::max(drift.position, e.head<3>().norm());
-    drift.rotation = std::max(drift.rotation, e.tail<3>().norm());
+    deviation.position = std::max(deviation.position, e.head<3>().norm());
+    deviation.rotation = std::max(deviation.rotation, e.tail<3>().norm());
   }
-  return drift;
+  return deviation;
 }
 
 Solver::Solver(const Robot& robot, const SolverOptions& options, const Database& database,
-               const Robot& nominal, const Drift& bound) {
+               const Robot& nominal, const CalibrationDeviation& bound) {
   options.validate();
   if (robot.dof() != nominal.dof()) {
     throw DatabaseMismatchError("robot '" + robot.name() + "' has " + std::to_string(robot.dof()) +
                                 " joints, its nominal chain " + std::to_string(nominal.dof()));
   }
-  const Drift drift = measure_drift(robot, nominal);
+  const CalibrationDeviation deviation = measure_calibration_deviation(robot, nominal);
   // Written so that NaN is beyond.
-  if (!(drift.position <= bound.position && drift.rotation <= bound.rotation)) {
+  if (!(deviation.position <= bound.position && deviation.rotation <= bound.rotation)) {
     MessageStream text;
-    text << "robot '" << robot.name() << "' drifts by " << drift.position << " m and "
-         << drift.rotation << " rad from the chain of the database, more than " << bound.position
-         << " m or " << bound.rotation << " rad: build a database for it";
+    text << "robot '" << robot.name() << "' deviates by " << deviation.position << " m and "
+         << deviation.rotation << " rad from the chain of the database, more than "
+         << bound.position << " m or " << bound.rotation << " rad: build a database for it";
     throw DatabaseMismatchError(text.str());
   }
   const auto impl = std::make_shared<Impl>(robot, options, database, nominal);
-  impl->drift = drift;
+  impl->deviation = deviation;
   impl_ = impl;
 }
 
 const Robot& Solver::nominal() const { return impl_->nominal; }
-Drift Solver::drift() const { return impl_->drift; }
+CalibrationDeviation Solver::calibration_deviation() const { return impl_->deviation; }
 
 }  // namespace iksel

@@ -55,7 +55,7 @@ std::pair<double, double> extreme_singular_values(const ChainModel& model, const
   return {sigma.minCoeff(), sigma.maxCoeff()};
 }
 
-/// How far each joint lies outside its limits, at the nearest turn.
+/// How far each joint lies outside its limits, at the image nearest to them.
 JointVector violations(const ChainModel& model, JointVector q) {
   model.joints.wrap(q.data());
   JointVector outside = JointVector::Zero(model.dof);
@@ -65,8 +65,8 @@ JointVector violations(const ChainModel& model, JointVector q) {
     };
     outside[j] = beyond(q[j]);
     if (model.joints.is_slide(j)) continue;
-    for (const double turn : {-kTwoPi, kTwoPi}) {
-      outside[j] = std::min(outside[j], beyond(q[j] + turn));
+    for (const double whole_turn : {-kTwoPi, kTwoPi}) {
+      outside[j] = std::min(outside[j], beyond(q[j] + whole_turn));
     }
   }
   return outside;
@@ -84,7 +84,7 @@ bool describe(const ChainModel& model, const Goal& goal, const JointVector& q, D
   return least < kNearlySingular * most;
 }
 
-/// The questions in turn; each says whether it found the reason.
+/// The possible causes, one after the other; each check returns whether it was the reason.
 class Diagnoser {
  public:
   Diagnoser(const Solver::Impl& solver, const Pose& target, const SolveRequest& request)
@@ -198,7 +198,7 @@ class Diagnoser {
             "or more: ",
             out_.rotation_gap) +
         (model_.dof < task_.constrained_axes() ? task_hint(solver_.robot, task_.task())
-                                               : "turn the target, or leave an axis free");
+                                               : "rotate the target, or leave an axis free");
     return true;
   }
 
@@ -225,7 +225,7 @@ class Diagnoser {
   /// A solver that works harder. The nominal chain is the one that it was accepted for.
   [[nodiscard]] Solver make_patient(const Robot& arm) const {
     return Solver(arm, generous(solver_.options), solver_.database, solver_.nominal,
-                  Drift{kInfinity, kInfinity});
+                  CalibrationDeviation{kInfinity, kInfinity});
   }
   [[nodiscard]] BestEffort make_effort(const Goal& towards) const {
     return {model_, towards, solver_.database.data().weight};

@@ -43,7 +43,7 @@ class PathSearch {
 
   /// What the candidates of the layer before lead to at the next waypoint.
   void add_continuations(const Goal& goal, const Layer& before, Layer& layer) const {
-    // Copies by whole turns lead to copies: only one of them is iterated.
+    // Images of a configuration lead to images: only one of them is iterated.
     constexpr double kCopy = 1e-11;
     std::vector<JointVector> origins;
     std::vector<JointVector> moves;
@@ -64,7 +64,7 @@ class PathSearch {
     }
   }
 
-  /// The solutions found for the first waypoint of a path without a start, at all turns; those
+  /// The solutions found for the first waypoint of a path without a start, at all images; those
   /// nearest to the middle of the limits first, should there be too many.
   void add_first_solutions(const SolutionSet& found, Layer& layer) const {
     for (std::size_t i = 0; i < found.size(); ++i) {
@@ -77,17 +77,17 @@ class PathSearch {
       model_.joints.first_image(q);
       do {
         layer.add(q);
-      } while (layer.size() < kMostTurns && model_.joints.next_image(q));
+      } while (layer.size() < kMostImages && model_.joints.next_image(q));
     }
   }
 
-  /// The solutions found from the database, each at the turns nearest to where the path may come
+  /// The solutions found from the database, each at the images nearest to where the path may come
   /// from.
   void add_solutions(const SolutionSet& found, const Layer& before, Layer& layer) const {
     for (std::size_t i = 0; i < found.size(); ++i) {
       const JointVector solution = found.at(i);
       JointVector q = solution;
-      // Many that the path may come from lie in the same turn.
+      // Many that the path may come from have the same nearest image.
       std::set<std::vector<long>> known;
       std::vector<long> turns(before.dof);
       for (std::size_t k = 0; k < before.size(); ++k) {
@@ -169,13 +169,13 @@ class PathSearch {
   }
 
  private:
-  /// Copies by whole turns at the first waypoint, at most: those of sixteen solutions, of seven
-  /// joints that have two turns each.
-  static constexpr std::size_t kMostTurns = 2048;
+  /// Images at the first waypoint, at most: those of sixteen solutions, of seven joints that have
+  /// two images each.
+  static constexpr std::size_t kMostImages = 2048;
   /// Candidates from the database at a later waypoint, at most.
-  static constexpr std::size_t kMostCandidates = 2 * kMostTurns;
+  static constexpr std::size_t kMostCandidates = 2 * kMostImages;
 
-  /// A path that begins anywhere costs the same at all whole turns: of those, the one that begins
+  /// A path that begins anywhere costs the same at all its images: of those, the one that begins
   /// nearest to the middle of the limits. Small beside all costs, and large beside their rounding.
   [[nodiscard]] double tie_break(const JointVector& q) const {
     constexpr double kPart = 1e-9;
@@ -239,7 +239,7 @@ PathResult Solver::Impl::solve_path(const std::vector<Pose>& targets, const Path
     const bool kept = layer.size() > 0;
     search.connect(before, layer);
     if (layer.size() == 0) {
-      result.broken = static_cast<std::ptrdiff_t>(w);
+      result.first_unreachable = static_cast<std::ptrdiff_t>(w);
       result.status = kept                                 ? Status::too_fast
                       : any                                ? Status::rejected
                       : collector.status == Status::solved ? Status::not_converged

@@ -25,7 +25,7 @@ struct Layer {
   [[nodiscard]] JointVector at(std::size_t i) const {
     return Eigen::Map<const Eigen::VectorXd>(&q[i * dof], static_cast<Eigen::Index>(dof));
   }
-  /// Adds a candidate unless it is there; copies by whole turns are others.
+  /// Adds a candidate unless it is there; periodic images are candidates of their own.
   void add(const JointVector& candidate) {
     for (const double* known = q.data(); known != q.data() + q.size(); known += dof) {
       std::size_t j = 0;

@@ -14,16 +14,17 @@ namespace {
 
 /// Solutions of a redundant arm from which the asked for are spread: so many for each.
 constexpr std::size_t kChoice = 4;
-/// Copies by whole turns looked at, at most.
-constexpr std::size_t kMostCopies = 65536;
+/// Images looked at, at most.
+constexpr std::size_t kImageBound = 65536;
 
-struct Copy {
+/// A solution, or one of its periodic images.
+struct Image {
   JointVector q;
   double cost;
-  std::size_t solution;  ///< of which it is a copy
+  std::size_t solution;  ///< of which it is an image
 };
 
-bool cheaper(const Copy& a, const Copy& b) {
+bool cheaper(const Image& a, const Image& b) {
   if (a.cost != b.cost) return a.cost < b.cost;
   return std::lexicographical_compare(a.q.data(), a.q.data() + a.q.size(), b.q.data(),
                                       b.q.data() + b.q.size());
@@ -57,67 +58,67 @@ double cost_of(const ChainModel& model, SolutionOrder order, const JointMove& mo
 
 /// Moves `count` to the front that lie far from each other: after the best, always the one farthest
 /// from those before.
-void spread(const ChainModel& model, std::size_t count, std::vector<Copy>& copies) {
-  std::vector<double> distance(copies.size(), std::numeric_limits<double>::infinity());
+void spread(const ChainModel& model, std::size_t count, std::vector<Image>& images) {
+  std::vector<double> distance(images.size(), std::numeric_limits<double>::infinity());
   for (std::size_t chosen = 1; chosen < count; ++chosen) {
     std::size_t farthest = chosen;
-    for (std::size_t i = chosen; i < copies.size(); ++i) {
-      const double d = model.joints.distance(copies[chosen - 1].q, copies[i].q, distance[i]);
+    for (std::size_t i = chosen; i < images.size(); ++i) {
+      const double d = model.joints.distance(images[chosen - 1].q, images[i].q, distance[i]);
       distance[i] = std::min(distance[i], d);
       if (distance[i] > distance[farthest]) farthest = i;
     }
-    std::swap(copies[chosen], copies[farthest]);
+    std::swap(images[chosen], images[farthest]);
     std::swap(distance[chosen], distance[farthest]);
   }
 }
 
 /// The solutions found, each at all its images inside the limits or as it is.
 template <typename Cost>
-std::vector<Copy> copies_of(const JointSpace& joints, const SolutionSet& found, bool with_images,
-                            const Cost& cost) {
-  std::vector<Copy> copies;
-  copies.reserve(found.size());
+std::vector<Image> images_of(const JointSpace& joints, const SolutionSet& found, bool with_images,
+                             const Cost& cost) {
+  std::vector<Image> images;
+  images.reserve(found.size());
   for (std::size_t i = 0; i < found.size(); ++i) {
     JointVector q = found.at(i);
     if (!with_images) {
-      copies.push_back({q, cost(q), i});
+      images.push_back({q, cost(q), i});
       continue;
     }
     joints.first_image(q);
     do {
-      copies.push_back({q, cost(q), i});
-    } while (copies.size() < kMostCopies && joints.next_image(q));
+      images.push_back({q, cost(q), i});
+    } while (images.size() < kImageBound && joints.next_image(q));
   }
-  return copies;
+  return images;
 }
 
 /// Takes out what the filter refuses.
-void apply_filter(const Filter& filter, int dof, std::vector<Copy>& copies) {
-  if (!filter || copies.empty()) return;
+void apply_filter(const Filter& filter, int dof, std::vector<Image>& images) {
+  if (!filter || images.empty()) return;
   std::vector<double> q;
-  q.reserve(copies.size() * static_cast<std::size_t>(dof));
-  for (const Copy& copy : copies) q.insert(q.end(), copy.q.data(), copy.q.data() + dof);
-  const std::unique_ptr<bool[]> keep(new bool[copies.size()]());
-  filter(q.data(), copies.size(), keep.get());
+  q.reserve(images.size() * static_cast<std::size_t>(dof));
+  for (const Image& image : images) q.insert(q.end(), image.q.data(), image.q.data() + dof);
+  const std::unique_ptr<bool[]> keep(new bool[images.size()]());
+  filter(q.data(), images.size(), keep.get());
   std::size_t kept = 0;
-  for (std::size_t i = 0; i < copies.size(); ++i) {
+  for (std::size_t i = 0; i < images.size(); ++i) {
     if (!keep[i]) continue;
-    if (kept != i) copies[kept] = std::move(copies[i]);
+    if (kept != i) images[kept] = std::move(images[i]);
     ++kept;
   }
-  copies.resize(kept);
+  images.resize(kept);
 }
 
-/// Of the copies of each solution, in order, the first.
-void take_first_of_each(std::size_t solutions, std::vector<Copy>& copies) {
+/// Of the images of each solution, in order, the first.
+void take_first_of_each(std::size_t solutions, std::vector<Image>& images) {
   std::vector<bool> seen(solutions);
-  copies.erase(std::remove_if(copies.begin(), copies.end(),
-                              [&](const Copy& copy) {
-                                const bool again = seen[copy.solution];
-                                seen[copy.solution] = true;
+  images.erase(std::remove_if(images.begin(), images.end(),
+                              [&](const Image& image) {
+                                const bool again = seen[image.solution];
+                                seen[image.solution] = true;
                                 return again;
                               }),
-               copies.end());
+               images.end());
 }
 
 }  // namespace
@@ -148,25 +149,25 @@ Solutions Solver::Impl::solve_all(const Pose& target, const SolveAllOptions& all
   };
   // Without, each solution is at the image nearest to `from` already.
   const bool with_images = all.whole_turns || request.filter;
-  std::vector<Copy> copies = copies_of(model().joints, found, with_images, cost);
-  apply_filter(request.filter, robot.dof(), copies);
-  std::sort(copies.begin(), copies.end(), cheaper);
-  if (!all.whole_turns) take_first_of_each(found.size(), copies);
-  if (copies.size() > most) {
-    if (goal.is_redundant()) spread(model(), most, copies);
-    copies.resize(most);
-    std::sort(copies.begin(), copies.end(), cheaper);
+  std::vector<Image> images = images_of(model().joints, found, with_images, cost);
+  apply_filter(request.filter, robot.dof(), images);
+  std::sort(images.begin(), images.end(), cheaper);
+  if (!all.whole_turns) take_first_of_each(found.size(), images);
+  if (images.size() > most) {
+    if (goal.is_redundant()) spread(model(), most, images);
+    images.resize(most);
+    std::sort(images.begin(), images.end(), cheaper);
   }
 
-  solutions.all.reserve(copies.size());
-  for (const Copy& copy : copies) {
+  solutions.all.reserve(images.size());
+  for (const Image& image : images) {
     Result result;
     if (!with_images) {
-      result = found.result(copy.solution);
-    } else if (!goal.check(copy.q, result)) {
+      result = found.result(image.solution);
+    } else if (!goal.check(image.q, result)) {
       continue;
     }
-    if (request.near) result.move = move.length(copy.q - from);
+    if (request.near) result.move = move.length(image.q - from);
     result.attempts = solutions.attempts;
     result.iterations = solutions.iterations;
     solutions.all.push_back(result);

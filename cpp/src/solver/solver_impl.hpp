@@ -43,7 +43,7 @@ struct Solver::Impl {
   SolverOptions options;
   Database database;
   Robot nominal;
-  Drift drift;
+  CalibrationDeviation deviation;
   TaskSpace task;
   AngleBound angles;
   WorkspacePool workspaces;

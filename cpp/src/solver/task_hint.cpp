@@ -30,7 +30,7 @@ std::array<NamedTask, 10> named_tasks() {
            {"planar('y')", Task::planar(Axis::y)}}};
 }
 
-/// Whether the arm can move the tip freely along all axes of the task at almost every
+/// Whether the arm can move the TCP freely along all axes of the task at almost every
 /// configuration.
 bool fits(const Robot& robot, const Task& task) {
   if (robot.dof() < task.constrained_axes()) return false;

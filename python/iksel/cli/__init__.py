@@ -66,7 +66,8 @@ def make_parser() -> Parser:
     parser = Parser(
         prog="iksel",
         description="Fast numerical inverse kinematics. Lengths are metres, angles "
-        "radians; a pose is that of the tip (or tool) in the base link's frame.",
+        "radians; a pose is that of the TCP, or of the tip link without a "
+        "tool, in the base link's frame.",
         epilog=EXAMPLES,
     )
     parser.add_argument("--version", action="version", version=f"iksel {__version__}")

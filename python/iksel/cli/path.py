@@ -85,7 +85,7 @@ def run(arguments: argparse.Namespace) -> int:
                 "joint_names": robot.joint_names,
                 "success": path.success,
                 "status": path.status.name,
-                "broken": path.broken,
+                "first_unreachable": path.first_unreachable,
                 "angle_unit": angles.unit,
                 "largest_step": largest_step(robot, path, angles),
                 "largest_step_joint": path.largest_step_joint,
@@ -138,8 +138,10 @@ def print_text(robot: Robot, path: PathResult, count: int, angles: Angles) -> No
         ("waypoints", str(count)),
         ("status", path.status.name),
     ]
-    if path.broken is not None:
-        rows.append(("broken at", f"waypoint {path.broken} (from 0)"))
+    if path.first_unreachable is not None:
+        rows.append(
+            ("first unreachable", f"waypoint {path.first_unreachable} (from 0)")
+        )
     if path.largest_step_joint is not None:
         joint = robot.joint_names[path.largest_step_joint]
         unit = angles.unit if turning(robot)[path.largest_step_joint] else "m"

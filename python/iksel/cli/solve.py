@@ -47,7 +47,7 @@ def add_parser(commands: Any) -> None:
         "solve",
         usage="iksel solve ROBOT (--pose ... | --from-q ...) [options]",
         help="find joint values for one pose",
-        description="Find joint values that put the tip (or tool) at a pose.",
+        description="Find joint values that put the TCP (or tip link) at a pose.",
         epilog=EXAMPLES,
     )
     add_robot(parser)
@@ -82,7 +82,7 @@ def add_parser(commands: Any) -> None:
         "--objective",
         choices=("limits", "manipulability"),
         help="of all answers found, the one farthest from the limits, or the most "
-        "manipulable; a redundant arm's slides there",
+        "manipulable; a redundant arm is moved there along its self-motion",
     )
     parser.add_argument(
         "--diagnose",
@@ -109,16 +109,16 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.objective and arguments.all:
         raise InvalidArgumentError("--objective: cannot be used with --all")
     given = {"near": near, "seeds": seed, "objective": arguments.objective}
-    wishes: dict[str, Any] = {name: value for name, value in given.items() if value}
+    request: dict[str, Any] = {name: value for name, value in given.items() if value}
     options = solver_options(arguments)
     database = given_database(arguments)
     solver = Solver(robot, options, database)
 
     if arguments.all:
-        return run_all(solver, target, wishes, arguments, angles)
+        return run_all(solver, target, request, arguments, angles)
 
     def solve() -> Result:
-        return solver.solve(target, **wishes)
+        return solver.solve(target, **request)
 
     # The first call also fetches the database into the caches: time the second.
     solve()
@@ -201,14 +201,14 @@ def print_diagnosis(robot: Robot, diagnosis: Diagnosis) -> None:
 def run_all(
     solver: Solver,
     target: FloatArray,
-    wishes: dict[str, Any],
+    request: dict[str, Any],
     arguments: Any,
     angles: Angles,
 ) -> int:
     """Find every distinct solution and print them."""
     robot = solver.robot
     start = time.perf_counter()
-    found = solver.solve_all(target, **wishes)
+    found = solver.solve_all(target, **request)
     report = {
         "robot": robot.name,
         "preset": arguments.preset,

@@ -32,8 +32,8 @@ class SolutionSet {
 
   void clear() { size_ = 0; }
 
-  /// Adds a success unless one lies nearer than `min_distance` in every joint, copies by whole
-  /// turns not counted; or there is no room. Of two that lie so near, the one of smaller cost
+  /// Adds a success unless one lies nearer than `min_distance` in every joint, whole turns
+  /// not counted; or there is no room. Of two that lie so near, the one of smaller cost
   /// stays, at the place of the first. True if it is a new one.
   bool add(const Result& solution, double cost, double min_distance) {
     for (std::size_t i = 0; i < size_; ++i) {

@@ -198,7 +198,7 @@ class Diagnoser {
             "or more: ",
             out_.rotation_gap) +
         (model_.dof < task_.constrained_axes() ? task_hint(solver_.robot, task_.task())
-                                               : "rotate the target, or leave an axis free");
+                                               : "turn the target, or leave an axis free");
     return true;
   }
 

@@ -36,7 +36,7 @@ int run() {
   print("2 cm of room", solver.solve(target, request).q);
 
   // Seven joints for six directions: the one left makes the answer a better one.
-  iksel::SolveRequest request;
+  request = {};
   request.objective = iksel::Objective::far_from_limits();
   print("far from limits", solver.solve(target, request).q);
   // Any function will do.

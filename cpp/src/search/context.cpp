@@ -13,6 +13,12 @@ bool solves_in_lanes(const ChainModel& model, const DatabaseData& data,
          is_simple(model);
 }
 
+Workspace::InLanes::InLanes(const ChainModel& model, const ChainModel& nominal,
+                            const DatabaseData& data, const SolverOptions& options,
+                            const lanes::LaneKernels& kernels)
+    : refiner(model, options, kernels),
+      query(model, nominal, data, neighbours_of(options.strategy), kernels) {}
+
 Workspace::Workspace(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
                      const SolverOptions& options)
     : one_at_a_time(iksel::one_at_a_time(options.strategy)),
@@ -22,10 +28,7 @@ Workspace::Workspace(const ChainModel& model, const ChainModel& nominal, const D
       given(model, one_at_a_time, data.options.pinv_cutoff),
       collected(model) {
   if (!solves_in_lanes(model, data, options)) return;
-  const lanes::LaneKernels& kernels = lanes::choose_kernels();
-  lanes = std::unique_ptr<InLanes>(
-      new InLanes{LaneRefiner(model, options, kernels),
-                  LaneQuery(model, nominal, data, neighbours_of(options.strategy), kernels)});
+  lanes = std::make_unique<InLanes>(model, nominal, data, options, lanes::choose_kernels());
 }
 
 WorkspacePool::WorkspacePool(const Robot& robot, const Robot& nominal, const Database& database,

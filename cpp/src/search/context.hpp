@@ -39,6 +39,9 @@ struct Workspace {
   CollectorMemory collected;
 
   struct InLanes {
+    InLanes(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
+            const SolverOptions& options, const lanes::LaneKernels& kernels);
+
     LaneRefiner refiner;
     LaneQuery query;
   };

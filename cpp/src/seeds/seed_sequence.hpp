@@ -34,9 +34,9 @@ class SeedSequence {
  private:
   static constexpr auto kAll = std::index_sequence_for<Sources...>{};
 
-  template <typename Action, std::size_t... I>
-  void visit(const Action& action, std::index_sequence<I...> /*all*/) {
-    ((I == at_ ? action(std::get<I>(sources_)) : void()), ...);
+  template <typename Action, std::size_t... kIndex>
+  void visit(const Action& action, std::index_sequence<kIndex...> /*all*/) {
+    ((kIndex == at_ ? action(std::get<kIndex>(sources_)) : void()), ...);
   }
 
   std::size_t at_, end_;

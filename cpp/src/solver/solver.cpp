@@ -46,7 +46,11 @@ const Database& check_fits(const Robot& robot, const Database& database) {
 /// of one branch may lie at the default tolerances where the arm is singular.
 constexpr double kSame = 2e-3;
 
-const SolveRequest kEmptyRequest;
+/// A request for nothing. Never destroyed: threads may still solve while a program ends.
+const SolveRequest& no_request() {
+  static const SolveRequest& none = *new SolveRequest;
+  return none;
+}
 
 }  // namespace
 
@@ -72,7 +76,7 @@ int Solver::Impl::count_most_solutions() const {
   for (Eigen::Index i = 0; i < q.rows(); ++i) {
     const Pose target = robot.fk(q.row(i));
     const Goal goal(model(), task, target);
-    Collector search(model(), goal, kEmptyRequest, aim, never, options.max_attempts,
+    Collector search(model(), goal, no_request(), aim, never, options.max_attempts,
                      lease.get().collected);
     StageClock clock(nullptr);
     collect(model(), options, search, lease.get(), clock);
@@ -156,7 +160,7 @@ Result Solver::solve(const Pose& T_base_tip) const {
   Pose nearest;
   const Pose& target = to_rigid(T_base_tip, nearest);
   const WorkspacePool::Lease lease(impl_->workspaces);
-  return impl_->find_first(target, impl_->task, kEmptyRequest, lease.get(), nullptr);
+  return impl_->find_first(target, impl_->task, no_request(), lease.get(), nullptr);
 }
 
 Result Solver::solve(const Pose& T_base_tip, const SolveRequest& request, StageTimes* times) const {

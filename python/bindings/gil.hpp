@@ -18,9 +18,11 @@ namespace iksel::python {
 
 namespace py = pybind11;
 
-/// function(), which asks for the lock; does not return if Python ends this thread.
+/// function(), which asks for the lock; does not return if Python ends this thread, or has ended:
+/// it would give the thread a state made of what is no more there.
 template <typename Function>
 auto outlive_python(const Function& function) {
+  while (Py_IsInitialized() == 0) ::pause();
 #ifdef __GLIBCXX__
   try {
     return function();

@@ -46,12 +46,6 @@ const Database& check_fits(const Robot& robot, const Database& database) {
 /// of one branch may lie at the default tolerances where the arm is singular.
 constexpr double kSame = 2e-3;
 
-/// A request for nothing. Never destroyed: threads may still solve while a program ends.
-const SolveRequest& no_request() {
-  static const SolveRequest& none = *new SolveRequest;
-  return none;
-}
-
 }  // namespace
 
 Solver::Impl::Impl(const Robot& robot_in, const SolverOptions& options_in,
@@ -76,7 +70,7 @@ int Solver::Impl::count_most_solutions() const {
   for (Eigen::Index i = 0; i < q.rows(); ++i) {
     const Pose target = robot.fk(q.row(i));
     const Goal goal(model(), task, target);
-    Collector search(model(), goal, no_request(), aim, never, options.max_attempts,
+    Collector search(model(), goal, nothing, aim, never, options.max_attempts,
                      lease.get().collected);
     StageClock clock(nullptr);
     collect(model(), options, search, lease.get(), clock);
@@ -160,7 +154,7 @@ Result Solver::solve(const Pose& T_base_tip) const {
   Pose nearest;
   const Pose& target = to_rigid(T_base_tip, nearest);
   const WorkspacePool::Lease lease(impl_->workspaces);
-  return impl_->find_first(target, impl_->task, no_request(), lease.get(), nullptr);
+  return impl_->find_first(target, impl_->task, impl_->nothing, lease.get(), nullptr);
 }
 
 Result Solver::solve(const Pose& T_base_tip, const SolveRequest& request, StageTimes* times) const {

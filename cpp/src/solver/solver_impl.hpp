@@ -47,6 +47,8 @@ struct Solver::Impl {
   TaskSpace task;
   AngleBound angles;
   WorkspacePool workspaces;
+  /// A request for nothing.
+  SolveRequest nothing;
   /// The most solutions that one of some poses has, if the signs of det J tell when a search has
   /// them all; else 0.
   int most_solutions;

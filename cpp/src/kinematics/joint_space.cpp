@@ -18,6 +18,14 @@ bool JointSpace::contains(const double* q) const {
   return true;
 }
 
+bool JointSpace::leaves(const double* q, const double* step) const {
+  for (int j = 0; j < dof(); ++j) {
+    const double end = q[j] + step[j];
+    if ((end < lower[j] || end > upper[j]) && !is_periodic(j)) return true;
+  }
+  return false;
+}
+
 JointVector JointSpace::middle() const {
   JointVector middle(dof());
   for (int j = 0; j < dof(); ++j) {

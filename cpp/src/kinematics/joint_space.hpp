@@ -39,6 +39,8 @@ class JointSpace {
   [[nodiscard]] JointVector clamp(const JointVector& q) const {
     return q.cwiseMax(lower).cwiseMin(upper);
   }
+  /// Whether q + step lies outside; a periodic joint never does, as it can be wrapped.
+  [[nodiscard]] bool leaves(const double* q, const double* step) const;
   /// The middle of the limits; 0 where there are none.
   [[nodiscard]] JointVector middle() const;
 

@@ -17,15 +17,10 @@ class SchemeRefiner {
   void begin(const Goal& goal, Random& random);
 
   [[nodiscard]] int width() const { return 1; }
-  template <typename Value>
-  void load(int /*lane*/, const Value& value) {
-    for (int j = 0; j < model_.dof; ++j) q_[j] = value(j);
-  }
   /// As the reference does, also from outside the limits.
   void load_seed(int /*lane*/, const double* q) {
     q_ = Eigen::Map<const Eigen::VectorXd>(q, model_.dof);
   }
-  void follow(int /*lane*/) {}
 
   /// An attempt from beginning to end. Returns the steps.
   int advance(unsigned busy);

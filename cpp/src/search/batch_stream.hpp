@@ -62,8 +62,7 @@ class BatchStream {
     }
     lanes::SeedPack& seeds = query_.packs[0];
     query_.prepare_leaf(seeds);
-    const int entry = seeds.order[in.seeds++];
-    refiner_.load(lane, [&](int j) { return static_cast<double>(seeds.q[j][entry]); });
+    load_ranked(seeds, in.seeds++, refiner_, lane);
     return true;
   }
 

@@ -72,7 +72,6 @@ class Collector {
 
   [[nodiscard]] const Goal& goal() const { return goal_; }
   [[nodiscard]] const SolveRequest& request() const { return request_; }
-  [[nodiscard]] const SolutionSet& found() const { return found_; }
 
   /// Solutions, those among them that the set had no room for included.
   int solutions = 0;

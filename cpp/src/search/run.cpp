@@ -4,6 +4,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "base/stage_clock.hpp"
 #include "search/first_answer.hpp"
 #include "search/search.hpp"
 #include "seeds/allowed_seeds.hpp"
@@ -111,12 +112,13 @@ void Search<Answers>::in_lanes() const {
 }  // namespace
 
 Result find_first(const ChainModel& model, const SolverOptions& options, const Goal& goal,
-                  const SolveRequest& request, Workspace& workspace, StageClock& clock) {
+                  const SolveRequest& request, Workspace& workspace, StageTimes* times) {
   Result result;
   if (goal.is_out_of_reach()) {
     result.status = Status::out_of_reach;
     return result;
   }
+  StageClock clock(times);
   Work work(options.max_attempts);
   const bool wraps = workspace.one_at_a_time.whole_turns;
   FirstAnswer answers(model.joints, wraps, goal, request.deadline, result);
@@ -132,12 +134,13 @@ Result find_first(const ChainModel& model, const SolverOptions& options, const G
 }
 
 void collect(const ChainModel& model, const SolverOptions& options, Collector& collector,
-             Workspace& workspace, StageClock& clock) {
+             Workspace& workspace, StageTimes* times) {
   const Goal& goal = collector.goal();
   if (goal.is_out_of_reach()) {
     collector.status = Status::out_of_reach;
     return;
   }
+  StageClock clock(times);
   const Search<Collector> search{model,     options,   goal,           collector.request(),
                                  workspace, collector, collector.work, clock};
   if (workspace.lanes) {

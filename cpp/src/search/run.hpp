@@ -2,18 +2,19 @@
 // Which seeds and which refiner a goal is searched with.
 #pragma once
 
-#include "base/stage_clock.hpp"
 #include "iksel/request.hpp"
+#include "iksel/solver.hpp"
 #include "search/context.hpp"
 
 namespace iksel {
 
-/// The first answer; `request` is read for its seeds, `near` and deadline only.
+/// The first answer; `times` may be null; `request` is read for its seeds, `near` and deadline
+/// only.
 Result find_first(const ChainModel& model, const SolverOptions& options, const Goal& goal,
-                  const SolveRequest& request, Workspace& workspace, StageClock& clock);
+                  const SolveRequest& request, Workspace& workspace, StageTimes* times);
 
 /// Collects solutions in workspace.collected.found, until the collector has enough.
 void collect(const ChainModel& model, const SolverOptions& options, Collector& collector,
-             Workspace& workspace, StageClock& clock);
+             Workspace& workspace, StageTimes* times = nullptr);
 
 }  // namespace iksel

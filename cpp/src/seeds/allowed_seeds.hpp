@@ -10,6 +10,7 @@
 #include "base/work.hpp"
 #include "goal/goal.hpp"
 #include "seeds/lane_query.hpp"
+#include "seeds/random_seeds.hpp"
 
 namespace iksel {
 
@@ -21,6 +22,7 @@ class AllowedSeeds {
 
   bool next_stage() {
     clock_.lap(&StageTimes::iterate);
+    if (!work_.has_left()) return false;
     at_random_ = stage_ % 4 == 3;
     rank_ = 0;
     if (stage_ == 0) {
@@ -34,7 +36,7 @@ class AllowedSeeds {
     }
     ++stage_;
     clock_.lap(&StageTimes::query);
-    return work_.has_left();
+    return true;
   }
 
   template <typename Refiner>
@@ -42,12 +44,9 @@ class AllowedSeeds {
     if (rank_ == lanes::kBlock || !work_.take()) return false;
     const int rank = rank_++;
     if (at_random_) {
-      double q[kMaxDof];
-      joints_.sample(random_, q);
-      refiner.load(lane, [&](int j) { return q[j]; });
+      load_random(joints_, random_, refiner, lane);
     } else {
-      const lanes::SeedPack& seeds = query_.packs[0];
-      refiner.load(lane, [&](int j) { return static_cast<double>(seeds.q[j][seeds.order[rank]]); });
+      load_ranked(query_.packs[0], rank, refiner, lane);
     }
     return true;
   }

@@ -14,6 +14,13 @@
 
 namespace iksel {
 
+/// Starts a lane at the seed of that rank.
+template <typename Refiner>
+void load_ranked(const lanes::SeedPack& seeds, int rank, Refiner& refiner, int lane) {
+  const int entry = seeds.order[rank];
+  refiner.load(lane, [&](int j) { return static_cast<double>(seeds.q[j][entry]); });
+}
+
 class LaneQuery {
  public:
   /// `nominal` is the chain that the data belongs to; `model` may differ from it a little. Of the

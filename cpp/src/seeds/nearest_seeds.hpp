@@ -33,8 +33,7 @@ class NearestSeeds {
   template <typename Refiner>
   bool load(Refiner& refiner, int lane) {
     if (rank_ == lanes::kBlock || !work_.take()) return false;
-    const int entry = seeds().order[rank_++];
-    refiner.load(lane, [&](int j) { return static_cast<double>(seeds().q[j][entry]); });
+    load_ranked(seeds(), rank_++, refiner, lane);
     return true;
   }
 

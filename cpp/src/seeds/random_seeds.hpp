@@ -11,6 +11,14 @@
 
 namespace iksel {
 
+/// Starts a lane at random.
+template <typename Refiner>
+void load_random(const JointSpace& joints, Random& random, Refiner& refiner, int lane) {
+  double q[kMaxDof];
+  joints.sample(random, q);
+  refiner.load(lane, [&](int j) { return q[j]; });
+}
+
 class RandomSeeds {
  public:
   RandomSeeds(const JointSpace& joints, std::uint64_t seed, Work& work,
@@ -26,9 +34,7 @@ class RandomSeeds {
   bool load(Refiner& refiner, int lane) {
     if (in_stage_ == per_stage_ || !work_.take()) return false;
     ++in_stage_;
-    double q[kMaxDof];
-    joints_.sample(random_, q);
-    refiner.load(lane, [&](int j) { return q[j]; });
+    load_random(joints_, random_, refiner, lane);
     return true;
   }
 

@@ -69,15 +69,7 @@ SeedRanking::Ranked SeedRanking::rank_one(std::size_t index, const Goal& goal) c
   if (scheme_.ranking == Ranking::nearest && !scheme_.limit_aware) return ranked;
   const JointVector adjustment = TruncatedSvd(J, cutoff_).solve(e);
   if (scheme_.ranking == Ranking::joint_adjustment) ranked.score = adjustment.squaredNorm();
-  if (scheme_.limit_aware) {
-    for (int j = 0; j < model_.dof; ++j) {
-      const double predicted = q[j] + adjustment[j];
-      ranked.leaves_limits =
-          ranked.leaves_limits ||
-          (!model_.joints.is_periodic(j) &&
-           (predicted < model_.joints.lower[j] || predicted > model_.joints.upper[j]));
-    }
-  }
+  ranked.leaves_limits = scheme_.limit_aware && model_.joints.leaves(q.data(), adjustment.data());
   return ranked;
 }
 

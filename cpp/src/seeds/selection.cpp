@@ -130,19 +130,8 @@ void Selection::score(Candidate& candidate) const {
     // Not a number has no place in an order.
     candidate.score = std::isnan(sum) ? kInfinity : sum;
   }
-  if (scheme_.limit_aware) {
-    const double* q = seed_of(candidate);
-    for (int i = 0; i < dof; ++i) {
-      const double predicted = q[i] + adjustment[i];
-      // A whole turn or more of range can always be wrapped.
-      if ((predicted < model_.joints.lower[i] || predicted > model_.joints.upper[i]) &&
-          !(model_.joints.upper[i] - model_.joints.lower[i] >= kTwoPi &&
-            !model_.joints.is_slide(i))) {
-        candidate.leaves_limits = true;
-        return;
-      }
-    }
-  }
+  candidate.leaves_limits =
+      scheme_.limit_aware && model_.joints.leaves(seed_of(candidate), adjustment);
 }
 
 const double* Selection::next_seed(int attempt) {

@@ -226,8 +226,7 @@ PathResult Solver::Impl::solve_path(const std::vector<Pose>& targets, const Path
     const auto is_satisfied = [&](const Collector&) { return found.size() >= most; };
     Collector collector(model(), goal, search.request(), {kSameSolution, true, most_solutions},
                         is_satisfied, options.max_attempts, workspace.collected);
-    StageClock clock(nullptr);
-    collect(model(), options, collector, workspace, clock);
+    collect(model(), options, collector, workspace);
     if (before != nullptr) {
       search.add_solutions(found, *before, layer);
     } else {

@@ -134,8 +134,7 @@ Solutions Solver::Impl::solve_all(const Pose& target, const SolveAllOptions& all
   };
   Collector search(model(), goal, request, {all.min_distance, true, most_solutions}, is_satisfied,
                    options.max_attempts, workspace.collected);
-  StageClock clock(nullptr);
-  collect(model(), options, search, workspace, clock);
+  collect(model(), options, search, workspace);
 
   Solutions solutions;
   solutions.status = search.status;

@@ -72,8 +72,7 @@ int Solver::Impl::count_most_solutions() const {
     const Goal goal(model(), task, target);
     Collector search(model(), goal, nothing, aim, never, options.max_attempts,
                      lease.get().collected);
-    StageClock clock(nullptr);
-    collect(model(), options, search, lease.get(), clock);
+    collect(model(), options, search, lease.get());
     most = std::max(most, search.solutions);
   }
   return most;
@@ -92,9 +91,8 @@ TaskSpace Solver::Impl::task_of(const SolveRequest& request) const {
 Result Solver::Impl::find_first(const Pose& target, const TaskSpace& of_call,
                                 const SolveRequest& request, Workspace& workspace,
                                 StageTimes* times) const {
-  StageClock clock(times);
   const Goal goal(model(), of_call, target);
-  return iksel::find_first(model(), options, goal, request, workspace, clock);
+  return iksel::find_first(model(), options, goal, request, workspace, times);
 }
 
 Result Solver::Impl::solve(const Pose& target, const SolveRequest& request, Workspace& workspace,
@@ -110,8 +108,7 @@ Result Solver::Impl::solve(const Pose& target, const SolveRequest& request, Work
   const Collector::Aim aim{kSame, selector.wants_all() && !request.filter, most_solutions};
   Collector search(model(), goal, request, aim, is_satisfied, options.max_attempts,
                    workspace.collected);
-  StageClock clock(times);
-  collect(model(), options, search, workspace, clock);
+  collect(model(), options, search, workspace, times);
 
   Result result;
   JointVector q;

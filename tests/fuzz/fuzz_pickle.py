@@ -188,7 +188,9 @@ def damage_array(
     if how == 1:
         return array.ravel()[1:]
     if how == 2:
-        return array.astype(dice.PickValueInList(["f4", "i8", "O", "U9", "?"]))
+        # An earlier damage may have put words among the numbers.
+        with contextlib.suppress(ValueError, TypeError, OverflowError):
+            return array.astype(dice.PickValueInList(["f4", "i8", "O", "U9", "?"]))
     changed = array.copy()
     number = dice.PickValueInList([0, 1, 2, math.nan, 1e308])
     at = dice.ConsumeIntInRange(0, array.size - 1)

@@ -4,9 +4,10 @@
 # line's arguments. The first two are libFuzzer's under the address and undefined-behaviour
 # sanitizers; the others run through Python by atheris.
 #
-# Usage: scripts/fuzz.sh [--seconds N] [--jobs N] [TARGET...]
+# Usage: scripts/fuzz.sh [--seconds N] [--seed N] [--jobs N] [TARGET...]
 #
 #   --seconds N  for each target (default: 600)
+#   --seed N     of the inputs (default: another each time)
 #   --jobs N     targets at a time (default: $CMAKE_BUILD_PARALLEL_LEVEL, or one per core)
 #   TARGET       urdf, database, pickle, cli (default: all)
 #
@@ -14,10 +15,11 @@
 # finding, kept in build/fuzz/findings, and says how to repeat it.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-seconds=600 jobs=$CMAKE_BUILD_PARALLEL_LEVEL targets=()
+seconds=600 seed=0 jobs=$CMAKE_BUILD_PARALLEL_LEVEL targets=()
 while (($#)); do
   case $1 in
     --seconds) seconds=${2:?} && shift 2 ;;
+    --seed) seed=${2:?} && shift 2 ;;
     --jobs) jobs=${2:?} && shift 2 ;;
     -h | --help) usage && exit ;;
     urdf | database | pickle | cli) targets+=("$1") && shift ;;
@@ -63,7 +65,7 @@ fuzz() {
   # Arguments are chosen by few bytes.
   local longest=16384
   if [[ $target == cli ]]; then longest=256; fi
-  local settings=("-max_total_time=$seconds" "-timeout=$hang" -rss_limit_mb=4096
+  local settings=("-max_total_time=$seconds" "-seed=$seed" "-timeout=$hang" -rss_limit_mb=4096
     "-max_len=$longest" -len_control=0 "-artifact_prefix=$found" -print_final_stats=1)
   if [[ -f tests/fuzz/$target.dict ]]; then settings+=("-dict=tests/fuzz/$target.dict"); fi
   if "${command[@]}" "${settings[@]}" "build/fuzz/corpus/$target" "tests/fuzz/corpus/$target" \

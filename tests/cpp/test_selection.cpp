@@ -69,7 +69,7 @@ std::vector<JointVector> seeds(const Bench& s, const iksel::Pose& target, int at
   selection.rank();
   std::vector<JointVector> out;
   for (int i = 0; i < attempts; ++i) {
-    const double* q = selection.next_seed(i);
+    const double* q = selection.next_seed();
     if (q == nullptr) break;
     out.emplace_back(Eigen::Map<const Eigen::VectorXd>(q, s.robot.dof()));
   }

@@ -294,7 +294,9 @@ TEST(Urdf, LockedPandaSolvesInLanesAndAnswersForTheWholeArm) {
 
   const iksel::Solver solver(locked);
   EXPECT_EQ(solver.database().options().key_scheme, iksel::KeyScheme::reduced);
-  EXPECT_TRUE(iksel::solves_in_lanes(locked.model(), solver.database().data(), solver.options()));
+  const iksel::Workspace workspace(locked.model(), locked.model(), solver.database().data(),
+                                   solver.options());
+  EXPECT_NE(workspace.lanes, nullptr);
 
   const Eigen::MatrixXd q = locked.random_configurations(500, iksel_test::seed());
   std::size_t solved = 0;

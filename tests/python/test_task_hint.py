@@ -110,5 +110,5 @@ def test_where_it_is_said(made, run) -> None:
     words = ["solve", "xarm5", "--pose", *map(str, target.ravel())]
     failed = run(*words)
     assert failed.code == 1
-    assert failed.err == f"hint: {solver.task_hint}\n"
+    assert failed.err == f"iksel: hint: {solver.task_hint}\n"
     assert run(*words, "--task", "position_only").err == ""

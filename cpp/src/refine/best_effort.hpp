@@ -11,7 +11,6 @@
 
 namespace iksel {
 
-/// The least error found from many seeds, for a task without an answer.
 class BestEffort {
  public:
   /// `weight` is the length that 1 rad counts [m].
@@ -28,6 +27,9 @@ class BestEffort {
   [[nodiscard]] const JointVector& q() const { return q_; }
 
  private:
+  /// What is left of both errors [m].
+  [[nodiscard]] double error_of(const JointVector& q) const;
+
   const ChainModel& model_;
   const Goal& goal_;
   double weight_;

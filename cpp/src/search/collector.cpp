@@ -19,8 +19,6 @@ constexpr int kStagnation = 160;
 /// The same where the signs of det J cancel. In 10,000 poses of a UR10e, 15 solutions of 71,798
 /// were lost with 14, 7 with 20, and 1 with 28 as with 40.
 constexpr int kStagnationBalanced = 28;
-/// The same where there are as many solutions as the chain was ever seen to have.
-constexpr int kStagnationMost = 2;
 
 /// Where an objective wants the images of an answer, if it cares.
 std::optional<JointVector> cheapest_images(const JointSpace& joints, const Objective& objective) {
@@ -76,7 +74,7 @@ Verdict Collector::offer(int /*lane*/, JointVector& q) {
   const double cost = counts_moves_ ? move_.length(answer.q - *request_.near) : 0.0;
   if (!found_.add(answer, cost, aim_.min_distance)) return Verdict::next;
   status = Status::solved;
-  ++solutions;
+  ++solutions_;
   last_new_ = work.attempts;
   if (comes_in_pairs_) look_for_partner(J, answer.q);
   return Verdict::next;
@@ -119,10 +117,8 @@ bool Collector::pop_partner(JointVector& q) const {
 
 bool Collector::is_likely_complete() const {
   const bool balanced = signs_cancel_ && jacobian_signs_ == 0;
-  const int limit = !balanced                ? kStagnation
-                    : solutions == aim_.most ? kStagnationMost
-                                             : kStagnationBalanced;
-  return solutions > 0 && work.attempts - last_new_ >= limit;
+  const int limit = balanced ? kStagnationBalanced : kStagnation;
+  return solutions_ > 0 && work.attempts - last_new_ >= limit;
 }
 
 }  // namespace iksel

@@ -39,8 +39,6 @@ class Collector {
     double min_distance;
     /// Whether the search ends when it has most likely found all.
     bool until_complete;
-    /// Solutions that a pose is known to have at most; 0: unknown.
-    int most = 0;
   };
 
   /// `is_satisfied` is asked between stages. All must outlive this.
@@ -73,8 +71,6 @@ class Collector {
   [[nodiscard]] const Goal& goal() const { return goal_; }
   [[nodiscard]] const SolveRequest& request() const { return request_; }
 
-  /// Solutions, those among them that the set had no room for included.
-  int solutions = 0;
   Work work;
   Status status = Status::not_converged;  ///< solved if anything was found
   bool is_out_of_time = false;
@@ -99,6 +95,7 @@ class Collector {
   bool comes_in_pairs_;
   bool signs_cancel_;
   double basin_radius_;
+  int solutions_ = 0;       ///< those that the set had no room for included
   int last_new_ = 0;        ///< seeds tried until the last new solution
   int jacobian_signs_ = 0;  ///< sum of the solutions' signs of det J
 };

@@ -7,11 +7,16 @@
 #include "options/strategy.hpp"
 
 namespace iksel {
+
+namespace {
+
 bool solves_in_lanes(const ChainModel& model, const DatabaseData& data,
                      const SolverOptions& options) {
   return std::holds_alternative<Lanes>(options.strategy) && data.reduction != nullptr &&
          is_simple(model);
 }
+
+}  // namespace
 
 Workspace::InLanes::InLanes(const ChainModel& model, const ChainModel& nominal,
                             const DatabaseData& data, const SolverOptions& options,
@@ -19,16 +24,23 @@ Workspace::InLanes::InLanes(const ChainModel& model, const ChainModel& nominal,
     : refiner(model, options, kernels),
       query(model, nominal, data, neighbours_of(options.strategy), kernels) {}
 
+Workspace::OneAtATime::OneAtATime(const ChainModel& model, const ChainModel& nominal,
+                                  const DatabaseData& data, const SolverOptions& options,
+                                  const Paper& scheme)
+    : refiner(model, scheme, options.max_iterations),
+      selection(model, nominal, data, scheme),
+      task_samples(model, data, selection) {}
+
 Workspace::Workspace(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
                      const SolverOptions& options)
-    : one_at_a_time(iksel::one_at_a_time(options.strategy)),
-      scheme(model, one_at_a_time, options.max_iterations),
-      selection(model, nominal, data, one_at_a_time),
-      task_seeds(model, data, options, selection),
-      given(model, one_at_a_time, data.options.pinv_cutoff),
+    : scheme(iksel::one_at_a_time(options.strategy)),
+      given(model, scheme, data.options.pinv_cutoff),
       collected(model) {
-  if (!solves_in_lanes(model, data, options)) return;
-  lanes = std::make_unique<InLanes>(model, nominal, data, options, lanes::choose_kernels());
+  if (solves_in_lanes(model, data, options)) {
+    lanes = std::make_unique<InLanes>(model, nominal, data, options, lanes::choose_kernels());
+  } else {
+    one_at_a_time = std::make_unique<OneAtATime>(model, nominal, data, options, scheme);
+  }
 }
 
 WorkspacePool::WorkspacePool(const Robot& robot, const Robot& nominal, const Database& database,

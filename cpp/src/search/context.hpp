@@ -16,13 +16,9 @@
 #include "seeds/lane_query.hpp"
 #include "seeds/seed_ranking.hpp"
 #include "seeds/selection.hpp"
-#include "seeds/task_seeds.hpp"
+#include "seeds/task_samples.hpp"
 
 namespace iksel {
-
-/// True if the options and the chain can be solved in lanes.
-bool solves_in_lanes(const ChainModel& model, const DatabaseData& data,
-                     const SolverOptions& options);
 
 /// What one search writes to. Never shared between two at once.
 struct Workspace {
@@ -30,14 +26,12 @@ struct Workspace {
   Workspace(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
             const SolverOptions& options);
 
-  /// What takes one seed at a time goes by this.
-  Paper one_at_a_time;
-  SchemeRefiner scheme;
-  Selection selection;
-  TaskSeeds task_seeds;
+  /// The scheme of one seed at a time, by which given seeds are ranked too.
+  Paper scheme;
   SeedRanking given;
   CollectorMemory collected;
 
+  /// One of two ways to search: lanes, if the options, the chain and the database allow it.
   struct InLanes {
     InLanes(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
             const SolverOptions& options, const lanes::LaneKernels& kernels);
@@ -45,8 +39,16 @@ struct Workspace {
     LaneRefiner refiner;
     LaneQuery query;
   };
-  /// Only if the options solve in lanes.
+  struct OneAtATime {
+    OneAtATime(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
+               const SolverOptions& options, const Paper& scheme);
+
+    SchemeRefiner refiner;
+    Selection selection;
+    TaskSamples task_samples;
+  };
   std::unique_ptr<InLanes> lanes;
+  std::unique_ptr<OneAtATime> one_at_a_time;
 };
 
 /// Workspaces of a solver, each lent to one search at a time.

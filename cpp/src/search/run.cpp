@@ -25,9 +25,6 @@ constexpr Patience kFirst{8, kMostIterations};
 /// what is far off after 6 costs more than what it finds.
 constexpr Patience kAll{6, kMostIterations, 2};
 
-/// Seeds for a task between two questions to a filter.
-constexpr int kFilterStage = 16;
-
 /// What one search works with.
 template <typename Answers>
 struct Search {
@@ -41,9 +38,14 @@ struct Search {
   StageClock& clock;
 
   [[nodiscard]] const JointVector* near() const { return request.near ? &*request.near : nullptr; }
-  /// The first of two sources that has seeds: those given, and the database's.
-  [[nodiscard]] std::size_t first_source() const {
-    return request.near || !request.seeds.empty() ? 0 : 1;
+  /// With the seeds given first, if there are any, and then those of other sources, if they are
+  /// asked for.
+  template <typename Refiner, typename... Others>
+  void run(Refiner& refiner, GivenSeeds& given, Others&... others) const {
+    const std::size_t first = request.near || !request.seeds.empty() ? 0 : 1;
+    const std::size_t end = request.database_seeds ? 1 + sizeof...(others) : 1;
+    SeedSequence seeds(first, end, given, others...);
+    search(refiner, seeds, answers, work);
   }
 
   /// One seed at a time, by a scheme. Returns whether one reached the goal outside the limits.
@@ -53,25 +55,19 @@ struct Search {
 
 template <typename Answers>
 bool Search<Answers>::by_scheme() const {
-  SchemeRefiner& refiner = workspace.scheme;
+  auto& [refiner, selection, task_samples] = *workspace.one_at_a_time;
   const auto should_continue = [&] { return answers.should_continue(); };
-  const bool is_task = !goal.is_full_pose();
-  const int per_stage = is_task && request.filter ? kFilterStage : 1;
-  GivenSeeds given(workspace.given, goal, near(), request.seeds, options.max_attempts, per_stage,
+  GivenSeeds given(workspace.given, goal, near(), request.seeds, options.max_attempts, 1,
                    should_continue, work);
-  if (is_task) {
-    TaskSeeds& database = workspace.task_seeds;
-    database.begin(goal, answers.wants_more() ? TaskSeeds::kMany : TaskSeeds::kFew, per_stage, work,
-                   clock);
-    refiner.begin(goal, database.random());
-    SeedSequence seeds(first_source(), request.database_seeds ? 2 : 1, given, database);
-    search(refiner, seeds, answers, work);
+  Random random(options.seed);
+  refiner.begin(goal, random);
+  if (goal.is_full_pose()) {
+    SelectedSeeds selected(selection, goal.tip_target(), work, clock);
+    run(refiner, given, selected);
   } else {
-    Random random(options.seed);
-    refiner.begin(goal, random);
-    SelectedSeeds database(workspace.selection, goal.tip_target(), work, clock);
-    SeedSequence seeds(first_source(), request.database_seeds ? 2 : 1, given, database);
-    search(refiner, seeds, answers, work);
+    task_samples.begin(answers.wants_more() ? TaskSamples::kMany : TaskSamples::kFew);
+    AllowedSeeds allowed(task_samples, model.joints, goal, random, work, clock);
+    run(refiner, given, allowed);
   }
   clock.lap(&StageTimes::iterate);
   return refiner.has_left_limits();
@@ -91,9 +87,9 @@ void Search<Answers>::in_lanes() const {
   GivenSeeds given(workspace.given, goal, near(), request.seeds, options.max_attempts,
                    lanes::kBlock, should_continue, work);
   if (!goal.is_full_pose()) {
-    AllowedSeeds allowed(query, model.joints, goal, options.seed, work, clock);
-    SeedSequence seeds(first_source(), request.database_seeds ? 2 : 1, given, allowed);
-    search(refiner, seeds, answers, work);
+    Random random(options.seed);
+    AllowedSeeds allowed(query, model.joints, goal, random, work, clock);
+    run(refiner, given, allowed);
   } else if constexpr (std::is_same_v<Answers, Collector>) {
     search(refiner, given, answers, work);
     if (!request.database_seeds) return;
@@ -103,8 +99,7 @@ void Search<Answers>::in_lanes() const {
   } else {
     NearestSeeds nearest(query, work, clock);
     RandomSeeds random(model.joints, options.seed, work);
-    SeedSequence seeds(first_source(), request.database_seeds ? 3 : 1, given, nearest, random);
-    search(refiner, seeds, answers, work);
+    run(refiner, given, nearest, random);
   }
   clock.lap(&StageTimes::iterate);
 }
@@ -120,7 +115,7 @@ Result find_first(const ChainModel& model, const SolverOptions& options, const G
   }
   StageClock clock(times);
   Work work(options.max_attempts);
-  const bool wraps = workspace.one_at_a_time.whole_turns;
+  const bool wraps = workspace.scheme.whole_turns;
   FirstAnswer answers(model.joints, wraps, goal, request.deadline, result);
   const Search<FirstAnswer> search{model, options, goal, request, workspace, answers, work, clock};
   if (workspace.lanes) {

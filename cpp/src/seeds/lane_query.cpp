@@ -62,7 +62,15 @@ void LaneQuery::prepare_blocks(std::size_t first, std::size_t count, lanes::Seed
   }
 }
 
-bool LaneQuery::prepare_untried(lanes::SeedPack& seeds) {
+bool LaneQuery::find_first(const Goal& goal) {
+  set_target(goal.nearest_pose());
+  prepare_leaf(packs[0]);
+  is_tried_.assign(is_tried_.size(), false);
+  return true;
+}
+
+bool LaneQuery::find_next(const Goal& /*goal*/, const Pose& allowed) {
+  set_target(allowed);
   data_.blocks.measure(key_, block_distance2_.data());
   const std::size_t blocks = block_distance2_.size();
   std::size_t nearest = blocks;
@@ -72,10 +80,8 @@ bool LaneQuery::prepare_untried(lanes::SeedPack& seeds) {
   }
   if (nearest == blocks) return false;
   is_tried_[nearest] = true;
-  prepare(data_.blocks.block(nearest), seeds);
+  prepare(data_.blocks.block(nearest), packs[0]);
   return true;
 }
-
-void LaneQuery::forget() { is_tried_.assign(is_tried_.size(), false); }
 
 }  // namespace iksel

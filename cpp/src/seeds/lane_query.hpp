@@ -8,6 +8,7 @@
 
 #include "database/data.hpp"
 #include "database/key.hpp"
+#include "goal/goal.hpp"
 #include "kinematics/chain_model.hpp"
 #include "seeds/farthest_first.hpp"
 #include "simd/kernels.hpp"
@@ -47,10 +48,14 @@ class LaneQuery {
   /// with its seeds in packs[i].
   void prepare_blocks(std::size_t first, std::size_t count, lanes::SeedPack* packs);
 
-  /// The nearest block of samples that was not asked for since the last forget(), as seeds; false
-  /// if there is none.
-  bool prepare_untried(lanes::SeedPack& seeds);
-  void forget();
+  /// For AllowedSeeds: a leaf, and then the nearest block of samples that was not taken yet.
+  static constexpr int kPerPose = lanes::kBlock;
+  bool find_first(const Goal& goal);
+  bool find_next(const Goal& goal, const Pose& allowed);
+  template <typename Refiner>
+  void load_found(int rank, Refiner& refiner, int lane) const {
+    load_ranked(packs[0], rank, refiner, lane);
+  }
 
   /// Where sources keep their seeds.
   lanes::SeedPack packs[kBlocksAtOnce] = {};

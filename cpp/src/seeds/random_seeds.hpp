@@ -16,7 +16,7 @@ template <typename Refiner>
 void load_random(const JointSpace& joints, Random& random, Refiner& refiner, int lane) {
   double q[kMaxDof];
   joints.sample(random, q);
-  refiner.load(lane, [&](int j) { return q[j]; });
+  refiner.load_seed(lane, q);
 }
 
 class RandomSeeds {

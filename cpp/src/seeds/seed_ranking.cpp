@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "seeds/seed_ranking.hpp"
 
-#include <algorithm>
-
 #include "base/pseudo_inverse.hpp"
 #include "base/rotation.hpp"
 #include "kinematics/joint_space.hpp"
@@ -10,27 +8,19 @@
 namespace iksel {
 
 SeedRanking::SeedRanking(const ChainModel& model, const Paper& scheme, double cutoff)
-    : model_(model), scheme_(scheme), cutoff_(cutoff) {
-  ranked_.reserve(kRoom);
-}
+    : model_(model), scheme_(scheme), cutoff_(cutoff), queue_(model.dof, scheme, kRoom) {}
 
 bool SeedRanking::rank(const Goal& goal, const std::vector<JointVector>& seeds,
                        FunctionRef<bool()> should_continue) {
   /// Seeds between two questions: a fraction of a millisecond.
   constexpr std::size_t kStage = 16;
   seeds_ = &seeds;
-  taken_ = 0;
-  sum_of_failed_.setZero(model_.dof);
-  ranked_.clear();
-  ranked_.reserve(seeds.size());
+  queue_.clear(seeds.size());
   for (std::size_t i = 0; i < seeds.size(); ++i) {
-    if (i % kStage == 0 && !should_continue()) {
-      ranked_.clear();
-      return false;
-    }
-    ranked_.push_back(rank_one(i, goal));
+    if (i % kStage == 0 && !should_continue()) return false;
+    queue_.push(rank_one(i, goal));
   }
-  std::sort(ranked_.begin(), ranked_.end());
+  queue_.sort(seeds.size());
   return true;
 }
 
@@ -59,9 +49,9 @@ Vector6 SeedRanking::error_of(const JointVector& q, const Goal& goal, JacobianMa
   return e;
 }
 
-SeedRanking::Ranked SeedRanking::rank_one(std::size_t index, const Goal& goal) const {
+Candidate SeedRanking::rank_one(std::size_t index, const Goal& goal) const {
   const JointVector& q = (*seeds_)[index];
-  Ranked ranked{0, index, false};
+  Candidate ranked{0, static_cast<std::uint32_t>(index), 0, false};
   if (seeds_->size() == 1) return ranked;
   JacobianMatrix J;
   const Vector6 e = error_of(q, goal, J);
@@ -71,36 +61,6 @@ SeedRanking::Ranked SeedRanking::rank_one(std::size_t index, const Goal& goal) c
   if (scheme_.ranking == Ranking::joint_adjustment) ranked.score = adjustment.squaredNorm();
   ranked.leaves_limits = scheme_.limit_aware && model_.joints.leaves(q.data(), adjustment.data());
   return ranked;
-}
-
-const double* SeedRanking::next() {
-  if (taken_ >= ranked_.size()) return nullptr;
-  if (taken_ > 0) {
-    if (scheme_.reselection == Reselection::none) return nullptr;
-    if (scheme_.reselection == Reselection::farthest) bring_farthest_forward();
-  }
-  return (*seeds_)[ranked_[taken_++].index].data();
-}
-
-void SeedRanking::bring_farthest_forward() {
-  const std::size_t candidates =
-      std::min(ranked_.size(), static_cast<std::size_t>(scheme_.candidates));
-  if (taken_ >= candidates) return;
-  // As Selection does: the largest |m q - sum of the m failed q|.
-  sum_of_failed_ += (*seeds_)[ranked_[taken_ - 1].index];
-  const auto first = ranked_.begin() + static_cast<std::ptrdiff_t>(taken_);
-  const auto end = ranked_.begin() + static_cast<std::ptrdiff_t>(candidates);
-  const auto m = static_cast<double>(taken_);
-  auto best = first;
-  double best_distance = -1;
-  for (auto i = first; i != end; ++i) {
-    const double distance = (m * (*seeds_)[i->index] - sum_of_failed_).squaredNorm();
-    if (distance > best_distance) {
-      best_distance = distance;
-      best = i;
-    }
-  }
-  std::rotate(first, best, best + 1);
 }
 
 }  // namespace iksel

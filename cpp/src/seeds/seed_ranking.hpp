@@ -9,6 +9,7 @@
 #include "goal/goal.hpp"
 #include "iksel/options.hpp"
 #include "kinematics/chain_model.hpp"
+#include "seeds/candidate_queue.hpp"
 
 namespace iksel {
 
@@ -25,32 +26,21 @@ class SeedRanking {
   bool rank(const Goal& goal, const std::vector<JointVector>& seeds,
             FunctionRef<bool()> should_continue);
 
-  /// The seed of the next attempt; null when there is none left. As the database's, seeds are
-  /// re-selected among the scheme's `candidates` best; the others follow by rank.
-  const double* next();
+  /// The seed of the next attempt; null when there is none left.
+  const double* next() {
+    return queue_.next([&](const Candidate& each) { return (*seeds_)[each.index].data(); });
+  }
 
  private:
-  struct Ranked {
-    double score;  ///< squared norm of Eq. (2) or Eq. (5)
-    std::size_t index;
-    bool leaves_limits;
-    friend bool operator<(const Ranked& a, const Ranked& b) {
-      if (a.leaves_limits != b.leaves_limits) return b.leaves_limits;
-      return a.score != b.score ? a.score < b.score : a.index < b.index;
-    }
-  };
-  [[nodiscard]] Ranked rank_one(std::size_t index, const Goal& goal) const;
+  [[nodiscard]] Candidate rank_one(std::size_t index, const Goal& goal) const;
   /// The error to be reduced, and the Jacobian J of what reduces it.
   Vector6 error_of(const JointVector& q, const Goal& goal, JacobianMatrix& J) const;
-  void bring_farthest_forward();
 
   const ChainModel& model_;
   const Paper& scheme_;
   double cutoff_;
   const std::vector<JointVector>* seeds_ = nullptr;
-  std::vector<Ranked> ranked_;
-  std::size_t taken_ = 0;
-  JointVector sum_of_failed_;
+  CandidateQueue queue_;
 };
 
 }  // namespace iksel

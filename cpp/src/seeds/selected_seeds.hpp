@@ -15,13 +15,14 @@ class SelectedSeeds {
 
   bool next_stage() {
     clock_.lap(&StageTimes::iterate);
-    if (next_ == 0) {
+    if (!ranked_) {
+      ranked_ = true;
       selection_.query(tip_target_);
       clock_.lap(&StageTimes::query);
       selection_.rank();
       clock_.lap(&StageTimes::rank);
     }
-    seed_ = work_.has_left() ? selection_.next_seed(next_++) : nullptr;
+    seed_ = work_.has_left() ? selection_.next_seed() : nullptr;
     clock_.lap(&StageTimes::reselect);
     return seed_ != nullptr;
   }
@@ -39,7 +40,7 @@ class SelectedSeeds {
   Pose tip_target_;
   Work& work_;
   StageClock& clock_;
-  int next_ = 0;
+  bool ranked_ = false;
   const double* seed_ = nullptr;
 };
 

@@ -21,7 +21,7 @@ Selection::Selection(const ChainModel& model, const ChainModel& nominal, const D
       scheme_(scheme),
       chain_{},
       neighbours_(std::min<std::size_t>(static_cast<std::size_t>(scheme.neighbours), data.size)),
-      candidates_(neighbours_.size()) {
+      queue_(model.dof, scheme, neighbours_.size()) {
   if (data.reduction) {
     chain_ = make_lane_chain(nominal);
     seeds_.resize(neighbours_.size() * static_cast<std::size_t>(model.dof));
@@ -49,17 +49,14 @@ void Selection::query(const Pose& T_base_flange, std::size_t k) {
 
 void Selection::rank() {
   if (data_.reduction) prepare_seeds();
+  queue_.clear(found_);
   for (std::size_t i = 0; i < found_; ++i) {
-    Candidate& candidate = candidates_[i];
-    candidate = {neighbours_[i].distance, neighbours_[i].index, static_cast<std::uint32_t>(i),
-                 false};
+    Candidate candidate{neighbours_[i].distance, neighbours_[i].index,
+                        static_cast<std::uint32_t>(i), false};
     if (scheme_.ranking == Ranking::joint_adjustment || scheme_.limit_aware) score(candidate);
+    queue_.push(candidate);
   }
-  kept_ = std::min(found_, static_cast<std::size_t>(scheme_.candidates));
-  const auto begin = candidates_.begin();
-  std::partial_sort(begin, begin + static_cast<std::ptrdiff_t>(kept_),
-                    begin + static_cast<std::ptrdiff_t>(found_));
-  sum_of_failed_.setZero(model_.dof);
+  queue_.sort(static_cast<std::size_t>(scheme_.candidates));
 }
 
 void Selection::prepare_seeds() {
@@ -132,42 +129,6 @@ void Selection::score(Candidate& candidate) const {
   }
   candidate.leaves_limits =
       scheme_.limit_aware && model_.joints.leaves(seed_of(candidate), adjustment);
-}
-
-const double* Selection::next_seed(int attempt) {
-  const auto position = static_cast<std::size_t>(attempt);
-  if (position >= kept_ || (attempt > 0 && scheme_.reselection == Reselection::none)) {
-    return nullptr;
-  }
-  if (attempt > 0 && scheme_.reselection == Reselection::farthest) {
-    bring_farthest_forward(attempt);
-  }
-  return seed_of(candidates_[position]);
-}
-
-void Selection::bring_farthest_forward(int attempt) {
-  // Of the candidates not tried yet, the one with the largest |m q - sum of the m failed q|.
-  const auto dof = model_.dof;
-  const auto position = static_cast<std::size_t>(attempt);
-  sum_of_failed_ += Eigen::Map<const Eigen::VectorXd>(seed_of(candidates_[position - 1]), dof);
-  std::size_t best = position;
-  double best_distance = -1;
-  for (std::size_t i = position; i < kept_; ++i) {
-    const double* q = seed_of(candidates_[i]);
-    double distance = 0;
-    for (int j = 0; j < dof; ++j) {
-      const double d = attempt * q[j] - sum_of_failed_[j];
-      distance += d * d;
-    }
-    if (distance > best_distance) {
-      best_distance = distance;
-      best = i;
-    }
-  }
-  // The others keep their order.
-  std::rotate(candidates_.begin() + static_cast<std::ptrdiff_t>(position),
-              candidates_.begin() + static_cast<std::ptrdiff_t>(best),
-              candidates_.begin() + static_cast<std::ptrdiff_t>(best) + 1);
 }
 
 }  // namespace iksel

@@ -2,27 +2,14 @@
 // Query and rank: the seeds for one target, best first; and re-selection among them.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "database/data.hpp"
 #include "iksel/options.hpp"
 #include "kinematics/chain_model.hpp"
+#include "seeds/candidate_queue.hpp"
 
 namespace iksel {
-
-/// A database sample as a seed; the lowest rank comes first.
-struct Candidate {
-  double score;         ///< squared norm of Eq. (2) or Eq. (5)
-  std::uint32_t index;  ///< of the sample
-  std::uint32_t place;  ///< among the neighbours
-  bool leaves_limits;   ///< q + J^+ e is outside (only asked if limit_aware)
-
-  friend bool operator<(const Candidate& a, const Candidate& b) {
-    if (a.leaves_limits != b.leaves_limits) return b.leaves_limits;
-    return a.score != b.score ? a.score < b.score : a.index < b.index;
-  }
-};
 
 /// Picks seeds for one target. Memory is taken at construction, none later.
 class Selection {
@@ -45,8 +32,10 @@ class Selection {
   [[nodiscard]] std::uint32_t nearest_sample(std::size_t i) const { return neighbours_[i].index; }
   /// Puts the neighbours in order and keeps the best.
   void rank();
-  /// The seed of the next attempt (0, 1, ...), dof values; null when there is none left.
-  const double* next_seed(int attempt);
+  /// The seed of the next attempt, dof values; null when there is none left.
+  const double* next_seed() {
+    return queue_.next([&](const Candidate& candidate) { return seed_of(candidate); });
+  }
 
  private:
   void score(Candidate& candidate) const;
@@ -59,7 +48,6 @@ class Selection {
   void query(const Pose& T_base_flange, std::size_t k);
   /// Makes the seeds of all neighbours of a reduced key; drops those outside the limits.
   void prepare_seeds();
-  void bring_farthest_forward(int attempt);
 
   const ChainModel& model_;
   const ChainModel& nominal_;
@@ -72,10 +60,8 @@ class Selection {
   lanes::LaneChain chain_;
   std::vector<double> seeds_;
   std::vector<Neighbour> neighbours_;
-  std::vector<Candidate> candidates_;
   std::size_t found_ = 0;
-  std::size_t kept_ = 0;
-  JointVector sum_of_failed_;
+  CandidateQueue queue_;
 };
 
 }  // namespace iksel

@@ -224,8 +224,8 @@ PathResult Solver::Impl::solve_path(const std::vector<Pose>& targets, const Path
     const auto candidates = static_cast<std::size_t>(path.candidates);
     const std::size_t most = goal.is_redundant() ? candidates : std::max(candidates, kBranches);
     const auto is_satisfied = [&](const Collector&) { return found.size() >= most; };
-    Collector collector(model(), goal, search.request(), {kSameSolution, true, most_solutions},
-                        is_satisfied, options.max_attempts, workspace.collected);
+    Collector collector(model(), goal, search.request(), {kSameSolution, true}, is_satisfied,
+                        options.max_attempts, workspace.collected);
     collect(model(), options, collector, workspace);
     if (before != nullptr) {
       search.add_solutions(found, *before, layer);

@@ -132,7 +132,7 @@ Solutions Solver::Impl::solve_all(const Pose& target, const SolveAllOptions& all
   const auto is_satisfied = [&](const Collector&) {
     return goal.is_redundant() && found.size() >= std::max<std::size_t>(kChoice * most, 64);
   };
-  Collector search(model(), goal, request, {all.min_distance, true, most_solutions}, is_satisfied,
+  Collector search(model(), goal, request, {all.min_distance, true}, is_satisfied,
                    options.max_attempts, workspace.collected);
   collect(model(), options, search, workspace);
 

@@ -9,7 +9,6 @@
 #include "goal/objective_cost.hpp"
 #include "iksel/error.hpp"
 #include "search/answer_selector.hpp"
-#include "seeds/fold_partner.hpp"
 #include "solver/solver_impl.hpp"
 
 namespace iksel {
@@ -56,27 +55,7 @@ Solver::Impl::Impl(const Robot& robot_in, const SolverOptions& options_in,
       nominal(nominal_in),
       task(options.task, options.position_tolerance, options.rotation_tolerance),
       angles(model(), options),
-      workspaces(robot, nominal, database, options),
-      most_solutions(count_most_solutions()) {}
-
-int Solver::Impl::count_most_solutions() const {
-  constexpr std::size_t kPoses = 64;
-  if (!task.is_full_pose() || !jacobian_signs_cancel(model())) return 0;
-  const Collector::Aim aim{SolveAllOptions{}.min_distance, true};
-  const auto never = [](const Collector&) { return false; };
-  const WorkspacePool::Lease lease(workspaces);
-  const Matrix q = robot.random_configurations(kPoses, options.seed);
-  int most = 0;
-  for (Eigen::Index i = 0; i < q.rows(); ++i) {
-    const Pose target = robot.fk(q.row(i));
-    const Goal goal(model(), task, target);
-    Collector search(model(), goal, nothing, aim, never, options.max_attempts,
-                     lease.get().collected);
-    collect(model(), options, search, lease.get());
-    most = std::max(most, search.solutions);
-  }
-  return most;
-}
+      workspaces(robot, nominal, database, options) {}
 
 void Solver::Impl::check(const SolveRequest& request) const {
   request.validate(robot.dof());
@@ -105,7 +84,7 @@ Result Solver::Impl::solve(const Pose& target, const SolveRequest& request, Work
   AnswerSelector selector(model(), goal, request, workspace.collected.found);
   const auto is_satisfied = [&](const Collector& so_far) { return selector.is_satisfied(so_far); };
   // With a filter the selector decides: nothing may have passed it yet.
-  const Collector::Aim aim{kSame, selector.wants_all() && !request.filter, most_solutions};
+  const Collector::Aim aim{kSame, selector.wants_all() && !request.filter};
   Collector search(model(), goal, request, aim, is_satisfied, options.max_attempts,
                    workspace.collected);
   collect(model(), options, search, workspace, times);

@@ -49,12 +49,6 @@ struct Solver::Impl {
   WorkspacePool workspaces;
   /// A request for nothing.
   SolveRequest nothing;
-  /// The most solutions that one of some poses has, if the signs of det J tell when a search has
-  /// them all; else 0.
-  int most_solutions;
-
- private:
-  [[nodiscard]] int count_most_solutions() const;
 };
 
 }  // namespace iksel

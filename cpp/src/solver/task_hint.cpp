@@ -66,7 +66,7 @@ std::string task_hint(const Robot& robot, const Task& task) {
     last_axes = candidate.task.constrained_axes();
     names += std::string(names.empty() ? "task=" : " or task=") + candidate.name;
   }
-  if (names.empty()) names = "tolerances (Task::box)";
+  if (names.empty()) names = "tolerances, task=box(...)";
   return "the arm has " + std::to_string(robot.dof()) + " joints, too few for the " +
          std::to_string(axes) + " axes of the task: leave axes free by " + names;
 }

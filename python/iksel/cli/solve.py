@@ -160,7 +160,7 @@ def run(arguments: argparse.Namespace) -> int:
 def print_hint(solver: Solver, result: Result) -> None:
     """If nothing else explains it, say which tasks suit an arm with few joints."""
     if solver.task_hint and result.status == Status.not_converged:
-        print(f"hint: {solver.task_hint}", file=sys.stderr)
+        print(f"iksel: hint: {solver.task_hint}", file=sys.stderr)
 
 
 def diagnosis_report(

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// For a pose that a task allows the one sample near to it, of those not tried yet, that comes
+// nearest to the task.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "goal/goal.hpp"
+#include "seeds/selection.hpp"
+
+namespace iksel {
+
+class TaskSamples {
+ public:
+  static constexpr int kPerPose = 1;
+  /// Samples looked at: few where any answer will do, many to find answers that differ.
+  static constexpr std::size_t kFew = 4;
+  static constexpr std::size_t kMany = 16;
+
+  /// All must outlive this.
+  TaskSamples(const ChainModel& model, const DatabaseData& data, Selection& selection);
+
+  /// Before a search.
+  void begin(std::size_t neighbours);
+  bool find_first(const Goal& goal) { return find_next(goal, goal.nearest_pose()); }
+  bool find_next(const Goal& goal, const Pose& allowed);
+  template <typename Refiner>
+  void load_found(int /*rank*/, Refiner& refiner, int lane) const {
+    refiner.load_seed(lane, selection_.nearest_seed(found_));
+  }
+
+ private:
+  const ChainModel& model_;
+  const DatabaseData& data_;
+  Selection& selection_;
+  std::size_t neighbours_ = kMany;
+  std::size_t found_ = 0;
+  /// Whether a sample of the database was a seed already, and which were.
+  std::vector<bool> is_tried_;
+  std::vector<std::uint32_t> tried_;
+};
+
+}  // namespace iksel

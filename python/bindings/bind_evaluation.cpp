@@ -8,6 +8,7 @@
 #include "bindings.hpp"
 #include "fields.hpp"
 #include "gil.hpp"
+#include "iksel/simd.hpp"
 #include "progress.hpp"
 
 namespace iksel::python {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bindings.hpp"
+#include "iksel/pose.hpp"
 #include "iksel/robot.hpp"
 #include "pose_arguments.hpp"
 #include "progress.hpp"

@@ -13,6 +13,7 @@
 #include "enums.hpp"
 #include "gil.hpp"
 #include "html.hpp"
+#include "iksel/pose.hpp"
 #include "iksel/robot.hpp"
 #include "joint_values.hpp"
 #include "pickle.hpp"

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <iksel/error.hpp>
+#include <iksel/pose.hpp>
 #include <iksel/robot.hpp>
 
 #include "base/random.hpp"

@@ -18,10 +18,6 @@ namespace iksel {
 
 struct DatabaseData;
 
-/// Called now and then by the thread that builds, with samples done and samples in all. An
-/// exception it throws ends the build and reaches the caller.
-using Progress = std::function<void(std::size_t done, std::size_t total)>;
-
 /// An immutable set of samples (q_i, x_i, J_i^+); copies are cheap and share the data. Safe to use
 /// from many threads at once.
 class IKSEL_EXPORT Database {

@@ -2,18 +2,21 @@
 // All of the library.
 #pragma once
 
-#include "iksel/database.hpp"    // IWYU pragma: export
-#include "iksel/diagnosis.hpp"   // IWYU pragma: export
-#include "iksel/error.hpp"       // IWYU pragma: export
-#include "iksel/evaluation.hpp"  // IWYU pragma: export
-#include "iksel/link_tree.hpp"   // IWYU pragma: export
-#include "iksel/objective.hpp"   // IWYU pragma: export
-#include "iksel/options.hpp"     // IWYU pragma: export
-#include "iksel/path.hpp"        // IWYU pragma: export
-#include "iksel/request.hpp"     // IWYU pragma: export
-#include "iksel/result.hpp"      // IWYU pragma: export
-#include "iksel/robot.hpp"       // IWYU pragma: export
-#include "iksel/solver.hpp"      // IWYU pragma: export
-#include "iksel/task.hpp"        // IWYU pragma: export
-#include "iksel/types.hpp"       // IWYU pragma: export
-#include "iksel/version.hpp"     // IWYU pragma: export
+#include "iksel/database.hpp"       // IWYU pragma: export
+#include "iksel/diagnosis.hpp"      // IWYU pragma: export
+#include "iksel/error.hpp"          // IWYU pragma: export
+#include "iksel/evaluation.hpp"     // IWYU pragma: export
+#include "iksel/link_tree.hpp"      // IWYU pragma: export
+#include "iksel/objective.hpp"      // IWYU pragma: export
+#include "iksel/options.hpp"        // IWYU pragma: export
+#include "iksel/path.hpp"           // IWYU pragma: export
+#include "iksel/pose.hpp"           // IWYU pragma: export
+#include "iksel/request.hpp"        // IWYU pragma: export
+#include "iksel/result.hpp"         // IWYU pragma: export
+#include "iksel/robot.hpp"          // IWYU pragma: export
+#include "iksel/robot_options.hpp"  // IWYU pragma: export
+#include "iksel/simd.hpp"           // IWYU pragma: export
+#include "iksel/solver.hpp"         // IWYU pragma: export
+#include "iksel/task.hpp"           // IWYU pragma: export
+#include "iksel/types.hpp"          // IWYU pragma: export
+#include "iksel/version.hpp"        // IWYU pragma: export

@@ -3,38 +3,13 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <vector>
 
 #include "iksel/export.hpp"
-#include "iksel/request.hpp"
 #include "iksel/result.hpp"
 #include "iksel/solver.hpp"
 
 namespace iksel {
-
-/// How solve_path chooses among the solutions of each waypoint.
-struct IKSEL_EXPORT PathOptions {
-  /// Where the arm is one time step before the first waypoint; may lie outside the limits. Empty:
-  /// the path may begin anywhere; of its periodic images, the one that begins nearest to the
-  /// middle of the limits is taken.
-  std::optional<JointVector> start;
-  /// Time from one waypoint to the next [s]: no joint then moves farther than its velocity limit
-  /// allows. 0: speeds are not limited.
-  double dt = 0;
-  /// The path with the least sum of the moves is taken, each measured so (as in SolveRequest).
-  JointVector weights;
-  MoveNorm norm = MoveNorm::two;
-  /// Refuses candidates, those of one waypoint at a time.
-  Filter filter;
-  /// Candidates kept per waypoint at most.
-  int candidates = 64;
-  /// Told after each waypoint; its exceptions end the search and reach the caller.
-  Progress progress;
-
-  /// Throws InvalidArgumentError naming the first option that does not fit a chain of `dof` joints.
-  void validate(int dof) const;
-};
 
 /// Joint values along a path.
 struct PathResult {

@@ -61,6 +61,14 @@ struct Solutions {
   [[nodiscard]] bool success() const { return status == Status::solved; }
 };
 
+/// Time spent in each stage of one or more solves [ns].
+struct StageTimes {
+  double query = 0;
+  double rank = 0;
+  double iterate = 0;
+  double reselect = 0;
+};
+
 /// Answers to many targets as arrays; row i belongs to target i. The pointers are the caller's.
 struct BatchView {
   double* q;               ///< (n, dof) row by row; NaN where not solved

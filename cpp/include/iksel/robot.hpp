@@ -6,42 +6,16 @@
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "iksel/export.hpp"
+#include "iksel/robot_options.hpp"
 #include "iksel/types.hpp"
 
 namespace iksel {
 
 class ChainModel;
-
-/// How a degree of freedom moves.
-enum class JointType {
-  revolute,    ///< turns between limits [rad]
-  continuous,  ///< turns without limits [rad]
-  prismatic,   ///< slides between limits [m]
-};
-
-/// What to take out of a URDF.
-struct RobotOptions {
-  /// Link the poses are relative to; empty: the root link.
-  std::string base_link;
-  /// Link whose pose is solved for; empty: the one link without children, if there is just one.
-  std::string tip_link;
-  /// T_tip_tcp: tool centre point appended to the tip link. Poses, FK and IK are then of the TCP.
-  StoredPose tcp = StoredPose::Identity();
-  /// Joints held at a value [rad or m]; they are no degrees of freedom.
-  std::map<std::string, double> locked_joints;
-  /// Narrow the position limits to the URDF's safety_controller soft limits where there are any.
-  bool soft_limits = false;
-  /// Lower and upper limit [rad or m] of revolute and prismatic joints whose limits the URDF leaves
-  /// out or has as 0, 0; none: such a joint is an error. A mimic joint of that kind has no limits
-  /// beside those of the joint that it follows.
-  std::optional<std::pair<double, double>> default_limits;
-};
 
 /// An immutable serial chain with its limits; copies are cheap and share the data. Safe to use from
 /// many threads at once.
@@ -134,24 +108,5 @@ class IKSEL_EXPORT Robot {
   explicit Robot(std::shared_ptr<const ChainModel> model);
   std::shared_ptr<const ChainModel> model_;
 };
-
-/// The rotation vector and position differences of two poses: [p_target - p; rotvec(R_target R^T)].
-IKSEL_EXPORT Eigen::Matrix<double, 6, 1> pose_error(const Pose& target, const Pose& pose);
-
-/// The rigid transform that `pose` stands for: itself, bit for bit, if it is one to rounding
-/// (|R^T R - I| <= 1e-12), else the nearest, by polar decomposition. Throws InvalidArgumentError if
-/// it is not finite, its rotation is off by more than kRigidTolerance or mirrored, or its last row
-/// is not 0 0 0 1; `name` names the culprit in the message. Every pose that comes into the library
-/// goes through this.
-IKSEL_EXPORT Pose check_pose(const Pose& pose, const char* name = "pose");
-
-/// Largest element of |R^T R - I|; infinite if `pose` is not finite, mirrored, or not 0 0 0 1 in
-/// its last row.
-[[nodiscard]] IKSEL_EXPORT double rigid_deviation(const Pose& pose);
-
-/// The rigid transform nearest to `pose`, however far off its rotation is: scaled, sheared or
-/// rounded to two decimals. Throws InvalidArgumentError if it is not finite, singular or mirrored,
-/// or its last row is not 0 0 0 1.
-[[nodiscard]] IKSEL_EXPORT Pose orthonormalized(const Pose& pose, const char* name = "pose");
 
 }  // namespace iksel

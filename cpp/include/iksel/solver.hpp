@@ -16,10 +16,6 @@
 
 namespace iksel {
 
-/// The instruction set whose lanes solve on this machine: avx512, avx2, sse2, neon or scalar. The
-/// environment variable IKSEL_SIMD forces one. Throws InvalidArgumentError if it is not to be had.
-IKSEL_EXPORT const char* simd_level();
-
 /// The largest difference between the tip links' poses of a calibrated chain and its nominal one at
 /// the same joint values.
 struct CalibrationDeviation {
@@ -33,16 +29,7 @@ IKSEL_EXPORT CalibrationDeviation measure_calibration_deviation(const Robot& rob
                                                                 const Robot& nominal,
                                                                 std::size_t samples = 2'000);
 
-struct PathOptions;
 struct PathResult;
-
-/// Time spent in each stage of one or more solves [ns].
-struct StageTimes {
-  double query = 0;
-  double rank = 0;
-  double iterate = 0;
-  double reselect = 0;
-};
 
 /// Solves inverse kinematics for one robot. Immutable; copies share the data. Safe to use from many
 /// threads at once, and the same input gives the same bits from any of them. Solving allocates

@@ -13,6 +13,8 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <cstddef>
+#include <functional>
 
 namespace iksel {
 
@@ -51,5 +53,16 @@ enum class Kinematics {
   kernel,  ///< the library's flattened chain (default)
   kdl,     ///< Orocos KDL, the reference
 };
+
+/// How a degree of freedom moves.
+enum class JointType {
+  revolute,    ///< turns between limits [rad]
+  continuous,  ///< turns without limits [rad]
+  prismatic,   ///< slides between limits [m]
+};
+
+/// Called now and then by the thread that works, with what is done and what there is in all. An
+/// exception it throws ends the work and reaches the caller.
+using Progress = std::function<void(std::size_t done, std::size_t total)>;
 
 }  // namespace iksel

@@ -8,7 +8,7 @@
 
 #include "base/error_check.hpp"
 #include "base/message_text.hpp"
-#include "iksel/robot.hpp"
+#include "iksel/pose.hpp"
 
 namespace iksel {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <chrono>
 
-#include "iksel/solver.hpp"
+#include "iksel/result.hpp"
 
 namespace iksel {
 

@@ -10,6 +10,7 @@
 #include "database/file.hpp"
 #include "database/key.hpp"
 #include "iksel/error.hpp"
+#include "iksel/pose.hpp"
 
 namespace iksel {
 namespace {

@@ -9,6 +9,7 @@
 #include "base/hash.hpp"
 #include "base/message_text.hpp"
 #include "iksel/error.hpp"
+#include "iksel/pose.hpp"
 
 namespace iksel {
 namespace {

@@ -13,7 +13,7 @@
 
 #include "base/constants.hpp"
 #include "base/random.hpp"
-#include "iksel/robot.hpp"
+#include "iksel/types.hpp"
 
 namespace iksel {
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "iksel/robot.hpp"
+#include "iksel/pose.hpp"
 
 #include <cmath>
 #include <string>

@@ -4,7 +4,7 @@
 #include "base/error_check.hpp"
 #include "base/message_text.hpp"
 #include "iksel/error.hpp"
-#include "iksel/path.hpp"
+#include "iksel/request.hpp"
 
 namespace iksel {
 

@@ -6,6 +6,7 @@
 
 #include "base/constants.hpp"
 #include "base/rotation.hpp"
+#include "iksel/pose.hpp"
 #include "refine/schemes.hpp"
 #include "refine/task_step.hpp"
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "iksel/request.hpp"
-#include "iksel/solver.hpp"
 #include "search/context.hpp"
 
 namespace iksel {

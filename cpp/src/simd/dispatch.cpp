@@ -5,7 +5,7 @@
 
 #include "base/message_text.hpp"
 #include "iksel/error.hpp"
-#include "iksel/solver.hpp"
+#include "iksel/simd.hpp"
 #include "simd/kernels.hpp"
 
 namespace iksel {

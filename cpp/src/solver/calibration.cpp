@@ -4,6 +4,7 @@
 
 #include "base/message_text.hpp"
 #include "iksel/error.hpp"
+#include "iksel/pose.hpp"
 #include "solver/solver_impl.hpp"
 
 namespace iksel {

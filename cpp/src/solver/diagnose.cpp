@@ -8,6 +8,7 @@
 #include "base/constants.hpp"
 #include "base/message_text.hpp"
 #include "base/pseudo_inverse.hpp"
+#include "iksel/pose.hpp"
 #include "options/strategy.hpp"
 #include "refine/best_effort.hpp"
 #include "solver/solver_impl.hpp"

@@ -7,6 +7,7 @@
 
 #include "goal/joint_move.hpp"
 #include "goal/objective_cost.hpp"
+#include "iksel/pose.hpp"
 #include "solver/solver_impl.hpp"
 
 namespace iksel {
@@ -58,7 +59,7 @@ double cost_of(const ChainModel& model, SolutionOrder order, const JointMove& mo
 
 /// Moves `count` to the front that lie far from each other: after the best, always the one farthest
 /// from those before.
-void spread(const ChainModel& model, std::size_t count, std::vector<Image>& images) {
+void move_apart(const ChainModel& model, std::size_t count, std::vector<Image>& images) {
   std::vector<double> distance(images.size(), std::numeric_limits<double>::infinity());
   for (std::size_t chosen = 1; chosen < count; ++chosen) {
     std::size_t farthest = chosen;
@@ -153,7 +154,7 @@ Solutions Solver::Impl::solve_all(const Pose& target, const SolveAllOptions& all
   std::sort(images.begin(), images.end(), cheaper);
   if (!all.whole_turns) take_first_of_each(found.size(), images);
   if (images.size() > most) {
-    if (goal.is_redundant()) spread(model(), most, images);
+    if (goal.is_redundant()) move_apart(model(), most, images);
     images.resize(most);
     std::sort(images.begin(), images.end(), cheaper);
   }

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "iksel/robot.hpp"
+#include "iksel/robot_options.hpp"
 
 namespace iksel {
 

@@ -4,7 +4,7 @@
 
 #include <urdf_model/joint.h>
 
-#include "iksel/robot.hpp"
+#include "iksel/robot_options.hpp"
 #include "urdf/chain_spec.hpp"
 #include "urdf/mimic.hpp"
 

@@ -98,7 +98,8 @@ BENCHMARK(kernel_fk_jacobian)->Arg(0)->Arg(1);
 void query(benchmark::State& state) {
   const Problem& p = problem(state.range(0));
   const iksel::Solver& s = solver(state.range(0), true);
-  iksel::Selection selection(p.robot.model(), p.robot.model(), s.database().data(), s.options());
+  const auto& paper = std::get<iksel::Paper>(s.options().strategy);
+  iksel::Selection selection(p.robot.model(), p.robot.model(), s.database().data(), paper);
   std::size_t i = 0;
   for (auto _ : state) selection.query(p.targets[i++ % kTargets]);
 }
@@ -107,7 +108,8 @@ BENCHMARK(query)->Arg(0)->Arg(1);
 void query_and_rank(benchmark::State& state) {
   const Problem& p = problem(state.range(0));
   const iksel::Solver& s = solver(state.range(0), true);
-  iksel::Selection selection(p.robot.model(), p.robot.model(), s.database().data(), s.options());
+  const auto& paper = std::get<iksel::Paper>(s.options().strategy);
+  iksel::Selection selection(p.robot.model(), p.robot.model(), s.database().data(), paper);
   std::size_t i = 0;
   for (auto _ : state) {
     selection.query(p.targets[i++ % kTargets]);

@@ -18,6 +18,7 @@ LAYERS = [
     "urdf",
     "kinematics",
     "simd",
+    "structure",
     "goal",
     "database",
     "refine",

@@ -127,12 +127,12 @@ TEST(Diagnose, CountsWhatAFilterRefuses) {
 }
 
 TEST(Diagnose, SaysWhenTheBoundsOnWorkAreTooLow) {
-  const Robot& robot = iksel_test::robot("ur3");
+  const Robot& robot = iksel_test::robot("cvr038");
   SolverOptions options;
   options.max_attempts = 1;
   options.max_iterations = 1;
   const Solver solver(robot, options);
-  const Pose target = robot.fk((JointVector(6) << 0.3, -1.1, 1.2, 0.4, 0.9, 0.2).finished());
+  const Pose target = robot.fk(robot.random_configurations(1, 1).row(0));
   ASSERT_FALSE(solver.solve(target).success());
   const Diagnosis diagnosis = solver.diagnose(target);
   EXPECT_EQ(diagnosis.cause, Cause::budget) << diagnosis.message;

@@ -135,7 +135,7 @@ TEST(Seeds, AreTriedOnceEachInAnOrderOfTheirOwn) {
 
 /// With one attempt, and a seed or three that lead nowhere, the database's best is tried too.
 TEST(Seeds, ComeOnTopOfMaxAttempts) {
-  const Robot& robot = iksel_test::robot("ur3");
+  const Robot& robot = iksel_test::robot("cvr038");
   iksel::SolverOptions fast;
   iksel::SolverOptions paper = iksel::SolverOptions::paper();
   paper.database.samples = 2000;

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 import subprocess
@@ -431,6 +432,15 @@ def test_places_that_cannot_be_written_are_named(database, tmp_path: Path) -> No
     with pytest.raises(iksel.DatabaseIoError, match="folder"):
         database.save(tmp_path / "folder")
     assert [path.name for path in tmp_path.iterdir()] == ["folder"]
+
+
+def test_saving_never_replaces_a_device(database, tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    with pytest.raises(iksel.DatabaseIoError, match="pipe': it is no regular file"):
+        database.save(pipe)
+    assert pipe.is_fifo()
+    assert list(tmp_path.iterdir()) == [pipe]
 
 
 def test_a_full_disk_leaves_the_old_file(database, tmp_path: Path) -> None:

@@ -17,6 +17,7 @@
 #include "iksel/robot_options.hpp"  // IWYU pragma: export
 #include "iksel/simd.hpp"           // IWYU pragma: export
 #include "iksel/solver.hpp"         // IWYU pragma: export
+#include "iksel/structure.hpp"      // IWYU pragma: export
 #include "iksel/task.hpp"           // IWYU pragma: export
 #include "iksel/types.hpp"          // IWYU pragma: export
 #include "iksel/version.hpp"        // IWYU pragma: export

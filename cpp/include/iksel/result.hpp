@@ -15,7 +15,8 @@ namespace iksel {
 /// Why a solve ended.
 enum class Status : std::uint8_t {
   solved,          ///< q reaches the target within both tolerances and lies inside the limits
-  not_converged,   ///< no attempt reached the tolerances within the allowed work
+  not_converged,   ///< no attempt reached the tolerances within the allowed work; Result::proof may
+                   ///< say that none can
   outside_limits,  ///< attempts reached the target, but only with joints outside their limits
   out_of_reach,  ///< the target's position is farther away than the arm is long; nothing was tried
   rejected,      ///< attempts reached the target inside the limits, but the filter refused each
@@ -27,9 +28,21 @@ enum class Status : std::uint8_t {
 /// Lower-case name of a status.
 IKSEL_EXPORT const char* to_string(Status status);
 
+/// How certain it is that there is no answer.
+enum class Proof : std::uint8_t {
+  none,         ///< there is an answer, or it was searched for and not found
+  reach,        ///< the target lies farther away than the links are long together
+  closed_form,  ///< all branches are known (Structure), and none of them lies inside the limits
+};
+
+/// Lower-case name of a proof.
+IKSEL_EXPORT const char* to_string(Proof proof);
+
 /// Answer to one target. Everything in it is measured on the returned q, not predicted.
 struct Result {
   Status status = Status::not_converged;
+  /// Of a failure, whether there is certainly no answer; `none` of a success.
+  Proof proof = Proof::none;
   /// Joint values [rad or m]; empty unless solved, so that no other q can be taken for an answer.
   JointVector q;
   /// |p_target - p(q)| [m], or what of it a task does not allow; NaN unless solved.
@@ -53,6 +66,9 @@ struct Result {
 struct Solutions {
   /// `solved` if there is at least one; else why there is none.
   Status status = Status::not_converged;
+  /// Of an empty set, whether there is certainly no solution; of another, whether there are
+  /// certainly no more (all of them were found in closed form).
+  Proof proof = Proof::none;
   /// Each is a success by itself; `attempts` and `iterations` are those of the whole search.
   std::vector<Result> all;
   int attempts = 0;
@@ -78,6 +94,7 @@ struct BatchView {
   std::int32_t* attempts;
   std::int32_t* iterations;
   double* move = nullptr;  ///< (n); NaN where not solved or without a `near`; null: not wanted
+  std::uint8_t* proof = nullptr;  ///< (n) values of Proof; null: not wanted
 };
 
 }  // namespace iksel

@@ -116,6 +116,11 @@ void write_file(const fs::path& path, const Storage& storage, bool nameless) {
     throw DatabaseIoError(std::string("cannot ") + what + " database '" + path.string() +
                           "': " + system_error(error));
   };
+  // Renaming would put a file in the place of a device.
+  struct stat there {};
+  if (::stat(path.c_str(), &there) == 0 && !S_ISREG(there.st_mode)) {
+    throw DatabaseIoError("cannot write database '" + path.string() + "': it is no regular file");
+  }
   remove_abandoned(folder);
   Descriptor file;
   if (nameless) file = open_nameless(folder);

@@ -5,6 +5,18 @@
 
 namespace iksel {
 
+const char* to_string(Proof proof) {
+  switch (proof) {
+    case Proof::none:
+      return "none";
+    case Proof::reach:
+      return "reach";
+    case Proof::closed_form:
+      return "closed_form";
+  }
+  return "unknown";
+}
+
 const char* to_string(Status status) {
   switch (status) {
     case Status::solved:

@@ -105,6 +105,9 @@ void LaneRefiner::load_seed(int lane, const double* q) {
 }
 
 int LaneRefiner::advance(unsigned busy) {
+  arrived_ = there_ & busy;
+  there_ = 0;
+  if (arrived_ != 0) return 0;
   int budget = patience_.look > 0 ? std::min(patience_.look, patience_.most) : patience_.most;
   for (int lane = 0; lane < width(); ++lane) {
     if ((busy >> static_cast<unsigned>(lane) & 1U) == 0) continue;

@@ -46,6 +46,11 @@ class LaneRefiner {
   }
   /// Starts a lane at a configuration that came from elsewhere, held to the limits.
   void load_seed(int lane, const double* q);
+  /// Starts a lane at an answer, which is there already as far as its seed's maker can tell.
+  void load_answer(int lane, const double* q) {
+    load_seed(lane, q);
+    there_ |= 1U << static_cast<unsigned>(lane);
+  }
   /// The lane's seed is followed to its end wherever it is heading.
   void follow(int lane) { next_look_[lane] = kNever; }
 
@@ -103,6 +108,7 @@ class LaneRefiner {
   int age_[lanes::kWidth] = {};
   int next_look_[lanes::kWidth] = {};
   unsigned arrived_ = 0;
+  unsigned there_ = 0;  ///< lanes loaded with answers since the last advance()
 };
 
 }  // namespace iksel

@@ -55,10 +55,12 @@ class BatchStream {
     }
     const Pose& target = target_(in.index);
     if (task_.is_full_pose()) {
-      refiner_.set_pose(lane, query_.set_target(target));
+      const Pose Y = query_.reduce(target);
+      refiner_.set_pose(lane, Y);
+      query_.set_target(Y);
     } else {
       refiner_.set_task(lane, target);
-      query_.set_target(Goal(model_, task_, target).nearest_pose());
+      query_.set_target(query_.reduce(Goal(model_, task_, target).nearest_pose()));
     }
     lanes::SeedPack& seeds = query_.packs[0];
     query_.prepare_leaf(seeds);

@@ -62,7 +62,8 @@ Verdict Collector::offer(int /*lane*/, JointVector& q) {
   model_.joints.wrap(q.data());
   Result answer;
   Jacobian J;
-  goal_.measure(q, answer.position_error, answer.rotation_error, comes_in_pairs_ ? &J : nullptr);
+  const bool pairs = comes_in_pairs_ && looks_for_partners_;
+  goal_.measure(q, answer.position_error, answer.rotation_error, pairs ? &J : nullptr);
   if (!goal_.is_reached(answer.position_error, answer.rotation_error)) return Verdict::refine;
   if (!model_.joints.contains(q.data())) {
     status = Status::outside_limits;
@@ -76,7 +77,7 @@ Verdict Collector::offer(int /*lane*/, JointVector& q) {
   status = Status::solved;
   ++solutions_;
   last_new_ = work.attempts;
-  if (comes_in_pairs_) look_for_partner(J, answer.q);
+  if (pairs) look_for_partner(J, answer.q);
   return Verdict::next;
 }
 

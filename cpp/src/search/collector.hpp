@@ -56,6 +56,9 @@ class Collector {
 
   /// The next predicted partner, if there is one.
   bool pop_partner(JointVector& q) const;
+  [[nodiscard]] bool has_any() const { return solutions_ > 0; }
+  /// Whether partners of solutions are to be looked for: not where all are known.
+  void look_for_partners(bool look) { looks_for_partners_ = look; }
   /// Whether more than the first answer is wanted.
   [[nodiscard]] bool wants_more() const { return aim_.until_complete || ranks_answers(request_); }
   [[nodiscard]] bool is_complete() const { return aim_.until_complete && is_likely_complete(); }
@@ -73,6 +76,7 @@ class Collector {
 
   Work work;
   Status status = Status::not_converged;  ///< solved if anything was found
+  Proof proof = Proof::none;              ///< that there are no more solutions
   bool is_out_of_time = false;
 
  private:
@@ -93,6 +97,7 @@ class Collector {
   std::optional<JointVector> images_near_;
   bool counts_moves_;
   bool comes_in_pairs_;
+  bool looks_for_partners_ = true;
   bool signs_cancel_;
   double basin_radius_;
   int solutions_ = 0;       ///< those that the set had no room for included

@@ -20,9 +20,13 @@ bool solves_in_lanes(const ChainModel& model, const DatabaseData& data,
 
 Workspace::InLanes::InLanes(const ChainModel& model, const ChainModel& nominal,
                             const DatabaseData& data, const SolverOptions& options,
-                            const lanes::LaneKernels& kernels)
+                            const ClosedFormChain* closed_form, const lanes::LaneKernels& kernels)
     : refiner(model, options, kernels),
-      query(model, nominal, data, neighbours_of(options.strategy), kernels) {}
+      query(model, nominal, data, neighbours_of(options.strategy), kernels) {
+  if (closed_form == nullptr) return;
+  branches.emplace(model, *closed_form, &model == &nominal, options.position_tolerance,
+                   options.rotation_tolerance, kernels);
+}
 
 Workspace::OneAtATime::OneAtATime(const ChainModel& model, const ChainModel& nominal,
                                   const DatabaseData& data, const SolverOptions& options,
@@ -32,12 +36,13 @@ Workspace::OneAtATime::OneAtATime(const ChainModel& model, const ChainModel& nom
       task_samples(model, data, selection) {}
 
 Workspace::Workspace(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
-                     const SolverOptions& options)
+                     const SolverOptions& options, const ClosedFormChain* closed_form)
     : scheme(iksel::one_at_a_time(options.strategy)),
       given(model, scheme, data.options.pinv_cutoff),
       collected(model) {
   if (solves_in_lanes(model, data, options)) {
-    lanes = std::make_unique<InLanes>(model, nominal, data, options, lanes::choose_kernels());
+    lanes = std::make_unique<InLanes>(model, nominal, data, options, closed_form,
+                                      lanes::choose_kernels());
   } else {
     one_at_a_time = std::make_unique<OneAtATime>(model, nominal, data, options, scheme);
   }
@@ -49,6 +54,7 @@ WorkspacePool::WorkspacePool(const Robot& robot, const Robot& nominal, const Dat
       nominal_(nominal),
       database_(database),
       options_(options),
+      closed_form_(find_closed_form(nominal.model())),
       damaged_(database.data().storage->damaged()) {
   const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
   for (std::size_t i = 0; i < std::min(cores, kPlaces); ++i) idle_[i] = make().release();
@@ -59,7 +65,8 @@ WorkspacePool::~WorkspacePool() {
 }
 
 std::unique_ptr<Workspace> WorkspacePool::make() const {
-  return std::make_unique<Workspace>(robot_.model(), nominal_.model(), database_.data(), options_);
+  return std::make_unique<Workspace>(robot_.model(), nominal_.model(), database_.data(), options_,
+                                     closed_form_ ? &*closed_form_ : nullptr);
 }
 
 WorkspacePool::Lease::Lease(const WorkspacePool& pool) : pool_(pool) {

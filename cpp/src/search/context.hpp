@@ -5,6 +5,7 @@
 #include <array>
 #include <atomic>
 #include <memory>
+#include <optional>
 
 #include "goal/goal.hpp"
 #include "iksel/database.hpp"
@@ -13,6 +14,7 @@
 #include "refine/lane_refiner.hpp"
 #include "refine/scheme_refiner.hpp"
 #include "search/collector.hpp"
+#include "seeds/enumeration.hpp"
 #include "seeds/lane_query.hpp"
 #include "seeds/seed_ranking.hpp"
 #include "seeds/selection.hpp"
@@ -22,9 +24,9 @@ namespace iksel {
 
 /// What one search writes to. Never shared between two at once.
 struct Workspace {
-  /// `nominal` is the chain that the data belongs to.
+  /// `nominal` is the chain that the data belongs to; `closed_form` is null, or its own.
   Workspace(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
-            const SolverOptions& options);
+            const SolverOptions& options, const ClosedFormChain* closed_form);
 
   /// The scheme of one seed at a time, by which given seeds are ranked too.
   Paper scheme;
@@ -34,10 +36,13 @@ struct Workspace {
   /// One of two ways to search: lanes, if the options, the chain and the database allow it.
   struct InLanes {
     InLanes(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
-            const SolverOptions& options, const lanes::LaneKernels& kernels);
+            const SolverOptions& options, const ClosedFormChain* closed_form,
+            const lanes::LaneKernels& kernels);
 
     LaneRefiner refiner;
     LaneQuery query;
+    /// Only of a chain that can be solved in closed form.
+    std::optional<Enumeration> branches;
   };
   struct OneAtATime {
     OneAtATime(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
@@ -82,6 +87,7 @@ class WorkspacePool {
   const Robot& nominal_;
   const Database& database_;
   const SolverOptions& options_;
+  std::optional<ClosedFormChain> closed_form_;
   /// As Storage::damaged of the database.
   const std::atomic<bool>* damaged_;
   /// Those that lie idle; a null is a place to put one back. More solves at once than places make

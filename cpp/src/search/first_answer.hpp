@@ -24,6 +24,8 @@ class FirstAnswer {
     return false;
   }
   [[nodiscard]] bool wants_more() const { return false; }
+  void look_for_partners(bool /*look*/) {}
+  [[nodiscard]] bool has_any() const { return result_.success(); }
   [[nodiscard]] bool should_continue() {
     if (!deadline_.has_passed()) return true;
     result_.status = Status::out_of_time;

@@ -24,6 +24,8 @@ constexpr Patience kFirst{8, kMostIterations};
 /// Where a seed more or less does not matter: solutions arrive after 4 iterations in the mean, and
 /// what is far off after 6 costs more than what it finds.
 constexpr Patience kAll{6, kMostIterations, 2};
+/// Where seeds are answers, or as near to one as a singularity or a limit lets it be told.
+constexpr Patience kThere{8, 16};
 
 /// What one search works with.
 template <typename Answers>
@@ -37,71 +39,103 @@ struct Search {
   Work& work;
   StageClock& clock;
 
-  [[nodiscard]] const JointVector* near() const { return request.near ? &*request.near : nullptr; }
-  /// With the seeds given first, if there are any, and then those of other sources, if they are
-  /// asked for.
-  template <typename Refiner, typename... Others>
-  void run(Refiner& refiner, GivenSeeds& given, Others&... others) const {
-    const std::size_t first = request.near || !request.seeds.empty() ? 0 : 1;
-    const std::size_t end = request.database_seeds ? 1 + sizeof...(others) : 1;
-    SeedSequence seeds(first, end, given, others...);
-    search(refiner, seeds, answers, work);
+  [[nodiscard]] NearSeed near_seed() const {
+    return {request.near ? &*request.near : nullptr, work};
+  }
+  [[nodiscard]] GivenSeeds given_seeds(int per_stage, FunctionRef<bool()> should_continue) const {
+    return {workspace.given, goal, request.seeds, options.max_attempts, per_stage,
+            should_continue, work};
+  }
+  /// From what the request gives, and then from other sources, if they are asked for. Returns
+  /// whether the answers want no more.
+  template <typename Refiner, typename Given, typename... Others>
+  bool run(Refiner& refiner, NearSeed& near, Given& given, Others&... others) const {
+    SeedSequence seeds(request.database_seeds ? 2 + sizeof...(others) : 2, near, given, others...);
+    return search(refiner, seeds, answers, work);
   }
 
   /// One seed at a time, by a scheme. Returns whether one reached the goal outside the limits.
   bool by_scheme() const;
-  void in_lanes() const;
+  /// Returns whether there certainly are no answers but those found.
+  Proof in_lanes() const;
+  /// The same by all branches of Y; is_done: there is nothing left to search for.
+  Proof in_closed_form(GivenSeeds& given, const Pose& Y, bool& is_done) const;
 };
 
 template <typename Answers>
 bool Search<Answers>::by_scheme() const {
   auto& [refiner, selection, task_samples] = *workspace.one_at_a_time;
   const auto should_continue = [&] { return answers.should_continue(); };
-  GivenSeeds given(workspace.given, goal, near(), request.seeds, options.max_attempts, 1,
-                   should_continue, work);
+  NearSeed near = near_seed();
+  GivenSeeds given = given_seeds(1, should_continue);
   Random random(options.seed);
   refiner.begin(goal, random);
   if (goal.is_full_pose()) {
     SelectedSeeds selected(selection, goal.tip_target(), work, clock);
-    run(refiner, given, selected);
+    run(refiner, near, given, selected);
   } else {
     task_samples.begin(answers.wants_more() ? TaskSamples::kMany : TaskSamples::kFew);
     AllowedSeeds allowed(task_samples, model.joints, goal, random, work, clock);
-    run(refiner, given, allowed);
+    run(refiner, near, given, allowed);
   }
   clock.lap(&StageTimes::iterate);
   return refiner.has_left_limits();
 }
 
 template <typename Answers>
-void Search<Answers>::in_lanes() const {
+Proof Search<Answers>::in_lanes() const {
+  LaneRefiner& refiner = workspace.lanes->refiner;
+  LaneQuery& query = workspace.lanes->query;
   const auto should_continue = [&] { return answers.should_continue(); };
-  auto& [refiner, query] = *workspace.lanes;
+  NearSeed near = near_seed();
+  GivenSeeds given = given_seeds(lanes::kBlock, should_continue);
   refiner.begin(goal.task(), kFirst);
-  if (goal.is_full_pose()) {
-    refiner.set_pose(query.set_target(goal.target()));
-  } else {
-    refiner.set_task(goal.target());
-  }
-  clock.lap(&StageTimes::query);
-  GivenSeeds given(workspace.given, goal, near(), request.seeds, options.max_attempts,
-                   lanes::kBlock, should_continue, work);
   if (!goal.is_full_pose()) {
+    refiner.set_task(goal.target());
+    clock.lap(&StageTimes::query);
     Random random(options.seed);
     AllowedSeeds allowed(query, model.joints, goal, random, work, clock);
-    run(refiner, given, allowed);
-  } else if constexpr (std::is_same_v<Answers, Collector>) {
-    search(refiner, given, answers, work);
-    if (!request.database_seeds) return;
+    run(refiner, near, given, allowed);
+    clock.lap(&StageTimes::iterate);
+    return Proof::none;
+  }
+  const Pose Y = query.reduce(goal.target());
+  refiner.set_pose(Y);
+  if (workspace.lanes->branches && request.database_seeds) {
+    bool is_done = false;
+    const Proof proof = in_closed_form(given, Y, is_done);
+    if (is_done) return proof;
+  }
+  query.set_target(Y);
+  clock.lap(&StageTimes::query);
+  if constexpr (std::is_same_v<Answers, Collector>) {
+    if (run(refiner, near, given) || !request.database_seeds) return Proof::none;
     refiner.begin(goal.task(), kAll);
     SpreadSeeds spread(query, model.joints, options.seed, answers, work);
     search(refiner, spread, answers, work);
   } else {
     NearestSeeds nearest(query, work, clock);
     RandomSeeds random(model.joints, options.seed, work);
-    run(refiner, given, nearest, random);
+    run(refiner, near, given, nearest, random);
   }
   clock.lap(&StageTimes::iterate);
+  return Proof::none;
+}
+
+template <typename Answers>
+Proof Search<Answers>::in_closed_form(GivenSeeds& given, const Pose& Y, bool& is_done) const {
+  LaneRefiner& refiner = workspace.lanes->refiner;
+  EnumeratedSeeds enumerated(*workspace.lanes->branches, Y, work, clock);
+  SeedSequence seeds(2, given, enumerated);
+  refiner.begin(goal.task(), kThere);
+  answers.look_for_partners(false);
+  is_done = search(refiner, seeds, answers, work);
+  answers.look_for_partners(true);
+  clock.lap(&StageTimes::iterate);
+  if (is_done) return Proof::none;
+  is_done = enumerated.is_certain() || (enumerated.is_complete() && !answers.wants_more());
+  refiner.begin(goal.task(), kFirst);
+  return enumerated.is_certain() ? Proof::closed_form : Proof::none;
 }
 
 }  // namespace
@@ -111,6 +145,7 @@ Result find_first(const ChainModel& model, const SolverOptions& options, const G
   Result result;
   if (goal.is_out_of_reach()) {
     result.status = Status::out_of_reach;
+    result.proof = Proof::reach;
     return result;
   }
   StageClock clock(times);
@@ -119,7 +154,7 @@ Result find_first(const ChainModel& model, const SolverOptions& options, const G
   FirstAnswer answers(model.joints, wraps, goal, request.deadline, result);
   const Search<FirstAnswer> search{model, options, goal, request, workspace, answers, work, clock};
   if (workspace.lanes) {
-    search.in_lanes();
+    result.proof = search.in_lanes();
   } else if (search.by_scheme() && result.status == Status::not_converged) {
     result.status = Status::outside_limits;
   }
@@ -133,13 +168,14 @@ void collect(const ChainModel& model, const SolverOptions& options, Collector& c
   const Goal& goal = collector.goal();
   if (goal.is_out_of_reach()) {
     collector.status = Status::out_of_reach;
+    collector.proof = Proof::reach;
     return;
   }
   StageClock clock(times);
   const Search<Collector> search{model,     options,   goal,           collector.request(),
                                  workspace, collector, collector.work, clock};
   if (workspace.lanes) {
-    search.in_lanes();
+    collector.proof = search.in_lanes();
   } else if (search.by_scheme() && collector.status == Status::not_converged) {
     collector.status = Status::outside_limits;
   }

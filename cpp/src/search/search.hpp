@@ -24,15 +24,18 @@ enum class Verdict {
   refine,  ///< it is not quite there; iterate it further
 };
 
+/// Returns whether the answers want no more; else the seeds have come to their end.
 template <typename Refiner, typename Seeds, typename Answers>
-void search(Refiner& refiner, Seeds& seeds, Answers& answers, Work& work) {
+bool search(Refiner& refiner, Seeds& seeds, Answers& answers, Work& work) {
   const int width = refiner.width();
   unsigned busy = 0;
   const auto bit = [](int lane) { return 1U << static_cast<unsigned>(lane); };
   const auto refill = [&](int lane) {
     busy = seeds.load(refiner, lane) ? busy | bit(lane) : busy & ~bit(lane);
   };
-  while (answers.should_continue() && seeds.next_stage()) {
+  while (true) {
+    if (!answers.should_continue()) return true;
+    if (!seeds.next_stage()) return false;
     for (int lane = 0; lane < width; ++lane) refill(lane);
     // NOLINTNEXTLINE(bugprone-infinite-loop): refill() ends it.
     while (busy != 0) {
@@ -45,7 +48,7 @@ void search(Refiner& refiner, Seeds& seeds, Answers& answers, Work& work) {
         } else if (refiner.has_arrived(lane)) {
           JointVector q = refiner.q(lane);
           const Verdict verdict = answers.offer(lane, q);
-          if (verdict == Verdict::stop) return;
+          if (verdict == Verdict::stop) return true;
           finished = finished || verdict == Verdict::next;
         }
         if (finished) refill(lane);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Seeds that come with a request: the configuration to stay near, then those given, best first.
-// They come on top of max_attempts, which bounds how many of them are tried.
+// Seeds that come with a request: the configuration to stay near, and those given, best first. They
+// come on top of max_attempts, which bounds how many of those given are tried.
 #pragma once
 
 #include <algorithm>
@@ -13,16 +13,40 @@
 
 namespace iksel {
 
+class NearSeed {
+ public:
+  /// `near` may be null.
+  NearSeed(const JointVector* near, Work& work) : near_(near), work_(work) {}
+
+  bool next_stage() {
+    if (near_ == nullptr || done_) return false;
+    done_ = true;
+    return true;
+  }
+
+  template <typename Refiner>
+  bool load(Refiner& refiner, int lane) {
+    if (loaded_) return false;
+    loaded_ = true;
+    work_.take_on_top();
+    refiner.load_seed(lane, near_->data());
+    return true;
+  }
+
+ private:
+  const JointVector* near_;
+  Work& work_;
+  bool done_ = false;
+  bool loaded_ = false;
+};
+
 class GivenSeeds {
  public:
-  /// `near` may be null. A stage has `per_stage` seeds. `should_continue` is asked while they are
-  /// ranked.
-  GivenSeeds(SeedRanking& ranking, const Goal& goal, const JointVector* near,
-             const std::vector<JointVector>& seeds, int most, int per_stage,
-             FunctionRef<bool()> should_continue, Work& work)
+  /// A stage has `per_stage` seeds. `should_continue` is asked while they are ranked.
+  GivenSeeds(SeedRanking& ranking, const Goal& goal, const std::vector<JointVector>& seeds,
+             int most, int per_stage, FunctionRef<bool()> should_continue, Work& work)
       : ranking_(ranking),
         goal_(goal),
-        near_(near),
         seeds_(seeds),
         left_(most),
         per_stage_(per_stage),
@@ -30,10 +54,7 @@ class GivenSeeds {
         work_(work) {}
 
   bool next_stage() {
-    at_near_ = near_ != nullptr && !near_done_;
-    near_done_ = true;
-    left_in_stage_ = at_near_ ? 1 : std::min(left_, per_stage_);
-    if (at_near_) return true;
+    left_in_stage_ = std::min(left_, per_stage_);
     left_ -= left_in_stage_;
     if (seeds_.empty() || left_in_stage_ == 0 || is_empty_) return false;
     if (!ranked_) {
@@ -48,7 +69,7 @@ class GivenSeeds {
   bool load(Refiner& refiner, int lane) {
     if (left_in_stage_ == 0) return false;
     --left_in_stage_;
-    const double* seed = at_near_ ? near_->data() : ranking_.next();
+    const double* seed = ranking_.next();
     if (seed == nullptr) {
       is_empty_ = true;
       return false;
@@ -61,14 +82,11 @@ class GivenSeeds {
  private:
   SeedRanking& ranking_;
   const Goal& goal_;
-  const JointVector* near_;
   const std::vector<JointVector>& seeds_;
   int left_;
   int per_stage_;
   FunctionRef<bool()> should_continue_;
   Work& work_;
-  bool near_done_ = false;
-  bool at_near_ = false;
   bool ranked_ = false;
   bool is_empty_ = false;
   int left_in_stage_ = 0;

@@ -20,11 +20,9 @@ LaneQuery::LaneQuery(const ChainModel& model, const ChainModel& nominal, const D
       block_order_(data.blocks.size()),
       is_tried_(data.blocks.size()) {}
 
-Pose LaneQuery::set_target(const Pose& T_base_tcp) {
-  Pose Y = base_inverse_ * T_base_tcp * tcp_inverse_;
+void LaneQuery::set_target(const Pose& Y) {
   data_.reduction->make_key(Y, key_);
   seed_target_ = make_seed_target(Y);
-  return Y;
 }
 
 std::size_t LaneQuery::find_nearest(std::size_t k) {
@@ -63,14 +61,14 @@ void LaneQuery::prepare_blocks(std::size_t first, std::size_t count, lanes::Seed
 }
 
 bool LaneQuery::find_first(const Goal& goal) {
-  set_target(goal.nearest_pose());
+  set_target(reduce(goal.nearest_pose()));
   prepare_leaf(packs[0]);
   is_tried_.assign(is_tried_.size(), false);
   return true;
 }
 
 bool LaneQuery::find_next(const Goal& /*goal*/, const Pose& allowed) {
-  set_target(allowed);
+  set_target(reduce(allowed));
   data_.blocks.measure(key_, block_distance2_.data());
   const std::size_t blocks = block_distance2_.size();
   std::size_t nearest = blocks;

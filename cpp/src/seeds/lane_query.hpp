@@ -29,8 +29,12 @@ class LaneQuery {
   LaneQuery(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
             int neighbours, const lanes::LaneKernels& kernels);
 
-  /// Returns Y (reduction.hpp).
-  Pose set_target(const Pose& T_base_tcp);
+  /// Y (reduction.hpp).
+  [[nodiscard]] Pose reduce(const Pose& T_base_tcp) const {
+    return base_inverse_ * T_base_tcp * tcp_inverse_;
+  }
+  /// What seeds are asked for from now on.
+  void set_target(const Pose& Y);
 
   /// The samples of the leaf that the target falls into, as seeds.
   void prepare_leaf(lanes::SeedPack& seeds) const { prepare(data_.leaves.block(key_), seeds); }

@@ -11,9 +11,8 @@ namespace iksel {
 template <typename... Sources>
 class SeedSequence {
  public:
-  /// All must outlive this. Those before number `first`, and from number `end` on, are not asked.
-  SeedSequence(std::size_t first, std::size_t end, Sources&... sources)
-      : at_(first), end_(end), sources_(sources...) {}
+  /// All must outlive this. Those from number `end` on are not asked.
+  SeedSequence(std::size_t end, Sources&... sources) : end_(end), sources_(sources...) {}
 
   bool next_stage() {
     for (; at_ < end_; ++at_) {
@@ -39,7 +38,8 @@ class SeedSequence {
     ((kIndex == at_ ? action(std::get<kIndex>(sources_)) : void()), ...);
   }
 
-  std::size_t at_, end_;
+  std::size_t at_ = 0;
+  std::size_t end_;
   std::tuple<Sources&...> sources_;
 };
 

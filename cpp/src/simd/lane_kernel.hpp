@@ -3,6 +3,7 @@
 // step.
 #pragma once
 
+#include "simd/branch_kernel.hpp"
 #include "simd/lane_goal.hpp"
 #include "simd/lane_math.hpp"
 #include "simd/lane_types.hpp"
@@ -202,7 +203,8 @@ constexpr LaneKernels make_kernels(const char* name) {
           advance<T, TaskGoal<T>>,
           prepare_seeds<S>,
           add_known<S>,
-          find_largest<S>};
+          find_largest<S>,
+          solve_branches<T>};
 }
 
 }  // namespace iksel::lanes

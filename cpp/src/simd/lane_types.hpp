@@ -120,6 +120,11 @@ using AddKnown = void (*)(int n, const float* per_turn, const float* from, const
 /// Index of the largest of `count` numbers, a multiple of kBlock; of equals the first.
 using FindLargest = int (*)(int count, const float* numbers);
 
+struct ClosedForm;
+struct BranchPack;
+/// The angles of all lanes of a pack (branch_types.hpp).
+using SolveBranches = void (*)(const ClosedForm& form, BranchPack& pack);
+
 /// The kernels of one instruction set.
 struct LaneKernels {
   const char* name;
@@ -129,6 +134,7 @@ struct LaneKernels {
   PrepareSeeds prepare;
   AddKnown add_known;
   FindLargest find_largest;
+  SolveBranches solve_branches;
 };
 
 }  // namespace iksel::lanes

@@ -29,6 +29,7 @@ void write_row(const Result& result, std::size_t row, int dof, const BatchView& 
   out.attempts[row] = result.attempts;
   out.iterations[row] = result.iterations;
   if (out.move != nullptr) out.move[row] = result.move;
+  if (out.proof != nullptr) out.proof[row] = static_cast<std::uint8_t>(result.proof);
 }
 
 /// A row that has no pose.
@@ -144,11 +145,13 @@ class Batch {
     const auto solve_alone = [&](std::size_t i) {
       tell(i, solver_.find_first(target_(i), solver_.task, none, workspace, nullptr));
     };
-    if (workspace.lanes == nullptr) {
+    // In closed form a target is solved at once.
+    if (workspace.lanes == nullptr || (workspace.lanes->branches && solver_.task.is_full_pose())) {
       for (std::size_t i = first; i < last; ++i) solve_alone(i);
       return;
     }
-    auto& [refiner, query] = *workspace.lanes;
+    LaneRefiner& refiner = workspace.lanes->refiner;
+    LaneQuery& query = workspace.lanes->query;
     BatchStream<Target, Tell> stream(solver_.model(), solver_.task, solver_.options.max_attempts,
                                      refiner, query, first, last, target_, tell);
     Work work(0);  // each target has its own

@@ -139,6 +139,7 @@ Solutions Solver::Impl::solve_all(const Pose& target, const SolveAllOptions& all
 
   Solutions solutions;
   solutions.status = search.status;
+  solutions.proof = search.proof;
   solutions.attempts = search.work.all_attempts();
   solutions.iterations = search.work.iterations;
 

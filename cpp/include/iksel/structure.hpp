@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How the axes of a chain lie, and what that makes of the solutions of a pose.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "iksel/export.hpp"
+
+namespace iksel {
+
+class Robot;
+
+/// How the solutions of a pose can be found.
+enum class StructureKind : std::uint8_t {
+  closed_form,  ///< all of them in closed form: that there is none is proven
+  searched,     ///< by search only
+};
+
+/// Lower-case name of a kind.
+IKSEL_EXPORT const char* to_string(StructureKind kind);
+
+/// What follows from how the axes of a chain lie.
+struct Structure {
+  StructureKind kind = StructureKind::searched;
+  /// Which axes, numbered from 1, are parallel or meet, or that none do that would help; a sentence
+  /// without its full stop.
+  std::string description;
+};
+
+/// That of a robot. Axes are taken to be parallel, or to meet, up to 1e-9 rad, or 1e-9 of the
+/// robot's reach: what is left of a rounded pi.
+[[nodiscard]] IKSEL_EXPORT Structure find_structure(const Robot& robot);
+
+}  // namespace iksel

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// All solutions of a pose in closed form: seeds that are there already, and when there are none the
+// proof of it.
+#pragma once
+
+#include <array>
+
+#include "base/stage_clock.hpp"
+#include "base/work.hpp"
+#include "simd/kernels.hpp"
+#include "structure/closed_form.hpp"
+
+namespace iksel {
+
+/// The branches of one pose.
+class Enumeration {
+ public:
+  static constexpr int kMost = lanes::kWidth;
+
+  /// `chain` is the nominal chain's; seeds are those of `model`, which outlives this. Tolerances
+  /// are the solver's [m, rad].
+  Enumeration(const ChainModel& model, const ClosedFormChain& chain, bool is_nominal,
+              double position_tolerance, double rotation_tolerance,
+              const lanes::LaneKernels& kernels);
+
+  /// Finds the branches of Y (reduction.hpp) that lie inside the limits, or so near to them that it
+  /// cannot be told.
+  void find(const Pose& Y);
+  [[nodiscard]] int size() const { return size_; }
+  /// Inside the limits [rad].
+  [[nodiscard]] const double* q(int i) const { return q_[static_cast<std::size_t>(i)].data(); }
+  /// Whether each solution is near to one of these. Not where the arm is so close to a singularity
+  /// that branches say nothing.
+  [[nodiscard]] bool is_complete() const { return complete_; }
+  /// Whether each of these is a solution. Not where one is so close to a singularity, or to a
+  /// limit, that what the tolerances allow could make a difference.
+  [[nodiscard]] bool is_certain() const { return certain_; }
+
+ private:
+  /// Takes a lane's branch if it may be one.
+  void take(int lane);
+
+  const ChainModel& model_;
+  ClosedFormChain chain_;
+  const lanes::LaneKernels& kernels_;
+  bool is_nominal_;
+  lanes::BranchPack pack_{};
+  std::array<std::array<double, 6>, kMost> q_{};
+  int size_ = 0;
+  bool complete_ = false;
+  bool certain_ = false;
+};
+
+/// These as a source of seeds.
+class EnumeratedSeeds {
+ public:
+  EnumeratedSeeds(Enumeration& branches, const Pose& Y, Work& work, StageClock& clock)
+      : branches_(branches), Y_(Y), work_(work), clock_(clock) {}
+
+  bool next_stage() {
+    if (done_ || !work_.has_left()) return false;
+    done_ = true;
+    branches_.find(Y_);
+    clock_.lap(&StageTimes::query);
+    return true;
+  }
+
+  template <typename Refiner>
+  bool load(Refiner& refiner, int lane) {
+    if (next_ == branches_.size() || !work_.take()) return false;
+    refiner.load_answer(lane, branches_.q(next_++));
+    return true;
+  }
+
+  /// Whether all solutions that there are have been tried.
+  [[nodiscard]] bool is_complete() const {
+    return done_ && branches_.is_complete() && next_ == branches_.size();
+  }
+  /// Whether these are they, no more and no less.
+  [[nodiscard]] bool is_certain() const { return is_complete() && branches_.is_certain(); }
+
+ private:
+  Enumeration& branches_;
+  const Pose& Y_;
+  Work& work_;
+  StageClock& clock_;
+  bool done_ = false;
+  int next_ = 0;
+};
+
+}  // namespace iksel

@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Six joints in closed form by subproblems of one and two angles (Paden 1986; Elias and Wen:
+// "Canonical subproblems for robot inverse kinematics", 2022), a branch or a pose in each lane.
+//
+// With the axes h_j at zero angles, R_j = R(h_j, q_j) and p_j,j+1 the way between points on the
+// axes: R_06 = R_1 ... R_6, and the way from the point on axis 1 to that on axis 6 is
+// w = R_1 (p_12 + R_2 (p_23 + R_3 (p_34 + ...))). Where axes meet, their points are one.
+#pragma once
+
+#include "simd/branch_types.hpp"
+#include "simd/lane_math.hpp"
+
+namespace iksel::lanes {
+
+template <typename T>
+struct Vec {
+  T x, y, z;
+};
+
+template <typename T>
+IKSEL_INLINE Vec<T> constant(const double (&v)[3]) {
+  return {T(v[0]), T(v[1]), T(v[2])};
+}
+template <typename T>
+IKSEL_INLINE T dot(const Vec<T>& a, const Vec<T>& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+template <typename T>
+IKSEL_INLINE Vec<T> cross(const Vec<T>& a, const Vec<T>& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+/// a + s b
+template <typename T>
+IKSEL_INLINE Vec<T> add(const Vec<T>& a, const T& s, const Vec<T>& b) {
+  return {a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
+}
+
+/// An angle by its cosine and sine.
+template <typename T>
+struct Angle {
+  T c = T(1.0);
+  T s = T(0.0);
+};
+
+/// R(k, t) v, or R(k, -t) v.
+template <typename T>
+IKSEL_INLINE Vec<T> turned(const Vec<T>& k, const Angle<T>& t, const Vec<T>& v) {
+  const Vec<T> kv = cross(k, v);
+  const T along = (T(1.0) - t.c) * dot(k, v);
+  return {t.c * v.x + t.s * kv.x + along * k.x, t.c * v.y + t.s * kv.y + along * k.y,
+          t.c * v.z + t.s * kv.z + along * k.z};
+}
+template <typename T>
+IKSEL_INLINE Vec<T> turned_back(const Vec<T>& k, const Angle<T>& t, const Vec<T>& v) {
+  return turned(k, Angle<T>{t.c, T(0.0) - t.s}, v);
+}
+
+/// The angle in -pi .. pi, to 1e-15.
+template <typename T>
+IKSEL_INLINE T to_radians(const Angle<T>& t) {
+  const T c = abs(t.c);
+  const T s = abs(t.s);
+  const T least = min(min(c, s), T(1.0));
+  T a = least * asin_over(least);
+  a = select(s > c, T(1.57079632679489661923) - a, a);
+  a = select(t.c < T(0.0), T(3.14159265358979323846) - a, a);
+  return select(t.s < T(0.0), T(0.0) - a, a);
+}
+
+/// What BranchPack says of the angles found so far.
+template <typename T>
+struct Quality {
+  T best = T(1.0);
+  T worst = T(1.0);
+  /// Of the angles so far.
+  T error;
+
+  /// An angle follows from a quotient by a number of the size `size`.
+  IKSEL_INLINE void divide_by(const T& size) {
+    error = error * (T(1.0) + T(1.0) / max(size, T(1e-12)));
+  }
+  /// An angle follows from a cosine C / r; `slack` is 1 - (C / r)^2.
+  IKSEL_INLINE void divide_by(const T& r, const T& slack) {
+    // Of the slack.
+    const T of_slack = T(2.0) * error / max(r, T(1e-12));
+    best = min(best, slack + of_slack);
+    worst = min(worst, slack - of_slack);
+    divide_by(r * sqrt(max(slack, of_slack)));
+  }
+};
+
+/// One of the two angles with a cos(t) + b sin(t) = rest; where there is none, the nearest.
+template <typename T>
+IKSEL_INLINE Angle<T> solve_angle(const T& a, const T& b, const T& rest, const T& sign,
+                                  Quality<T>& quality) {
+  const T r = sqrt(max(a * a + b * b, T(1e-30)));
+  const T inverse = T(1.0) / r;
+  const T ratio = rest * inverse;
+  const T slack = T(1.0) - ratio * ratio;
+  const T root = sqrt(max(slack, T(0.0)));
+  quality.divide_by(r, slack);
+  const T cosine = min(max(ratio, T(-1.0)), T(1.0)) * inverse;
+  const T sine = sign * root * inverse;
+  return {a * cosine - b * sine, b * cosine + a * sine};
+}
+
+/// One of the two angles with x . R(k, t) y = rest.
+template <typename T>
+IKSEL_INLINE Angle<T> solve_angle(const Turned& turned, const T& rest, const T& sign,
+                                  Quality<T>& quality) {
+  return solve_angle(T(turned.a), T(turned.b), rest - T(turned.c), sign, quality);
+}
+
+/// The angle about k that takes u to v.
+template <typename T>
+IKSEL_INLINE Angle<T> angle_between(const Vec<T>& k, const Vec<T>& u, const Vec<T>& v,
+                                    Quality<T>& quality) {
+  T c = dot(u, v) - dot(k, u) * dot(k, v);
+  T s = dot(k, cross(u, v));
+  const T size2 = c * c + s * s;
+  const T size = sqrt(max(size2, T(1e-60)));
+  // Lengths are multiplied here.
+  quality.divide_by(sqrt(size));
+  const auto none = size2 < T(1e-56);
+  const T inverse = T(1.0) / size;
+  c = select(none, T(1.0), c * inverse);
+  s = select(none, T(0.0), s * inverse);
+  return {c, s};
+}
+
+/// A vector with z . k1 = along1, z . k2 = along2 and the square length2, one of two, where
+/// k1 . k2 = c.
+template <typename T>
+IKSEL_INLINE Vec<T> solve_common(const Vec<T>& k1, const Vec<T>& k2, const T& c, const T& along1,
+                                 const T& along2, const T& length2, const T& sign,
+                                 Quality<T>& quality) {
+  const T inverse = T(1.0) / (T(1.0) - c * c);
+  const T alpha = (along1 - c * along2) * inverse;
+  const T beta = (along2 - c * along1) * inverse;
+  const T rest2 = length2 - alpha * along1 - beta * along2;
+  quality.divide_by(sqrt(length2), rest2 / max(length2, T(1e-30)));
+  const T gamma = sign * sqrt(max(rest2 * inverse, T(0.0)));
+  const Vec<T> plane{alpha * k1.x + beta * k2.x, alpha * k1.y + beta * k2.y,
+                     alpha * k1.z + beta * k2.z};
+  return add(plane, gamma, cross(k1, k2));
+}
+
+/// A pose as BranchPack has it.
+template <typename T>
+struct BranchTarget {
+  Vec<T> X, Y, Z, w;
+};
+
+template <typename T>
+struct Branch {
+  Angle<T> q[6];
+  Quality<T> quality;
+};
+
+/// Joints 1 to 3, which bring the wrist to w.
+template <typename T>
+IKSEL_INLINE void place_wrist(const ClosedForm& form, const BranchTarget<T>& target,
+                              const T (&sign)[3], Branch<T>& out) {
+  Quality<T>& quality = out.quality;
+  const Vec<T> h1 = constant<T>(form.h[0]);
+  const Vec<T> h2 = constant<T>(form.h[1]);
+  const Vec<T> h3 = constant<T>(form.h[2]);
+  const Vec<T> p12 = constant<T>(form.p[0]);
+  const Vec<T> p23 = constant<T>(form.p[1]);
+  const Vec<T> p34 = constant<T>(form.p[2]);
+  const Vec<T>& w = target.w;
+  const auto elbow_for = [&](const T& distance2) {
+    return solve_angle(form.elbow, T(0.5) * (distance2 - T(form.arm2)), sign[1], quality);
+  };
+  const auto arm_at = [&](const Angle<T>& q3) { return add(p23, T(1.0), turned(h3, q3, p34)); };
+  switch (form.closure) {
+    case Closure::parallel_23: {
+      // h2 . R_1^T w does not depend on joints 2 and 3.
+      const T along1 = dot(h1, w);
+      const Vec<T> h1w = cross(h1, w);
+      out.q[0] = solve_angle(dot(h2, w) - T(form.cross12) * along1, T(0.0) - dot(h2, h1w),
+                             T(form.rest) - T(form.cross12) * along1, sign[0], quality);
+      const Vec<T> v = add(turned_back(h1, out.q[0], w), T(-1.0), p12);
+      out.q[2] = elbow_for(dot(v, v));
+      out.q[1] = angle_between(h2, arm_at(out.q[2]), v, quality);
+      return;
+    }
+    case Closure::intersect_12: {
+      const T distance2 = dot(w, w);
+      out.q[2] = elbow_for(distance2);
+      const Vec<T> arm = arm_at(out.q[2]);
+      const Vec<T> v = solve_common(h1, h2, T(form.cross12), dot(h1, w), dot(h2, arm), distance2,
+                                    sign[0], quality);
+      out.q[1] = angle_between(h2, arm, v, quality);
+      out.q[0] = angle_between(h1, v, w, quality);
+      return;
+    }
+    case Closure::intersect_23: {
+      // |R_1^T w - p12| does not depend on joints 2 and 3.
+      const T along1 = dot(h1, w);
+      const Vec<T> h1w = cross(h1, w);
+      const T axial = dot(h1, p12);
+      out.q[0] =
+          solve_angle(dot(p12, w) - axial * along1, T(0.0) - dot(p12, h1w),
+                      T(0.5) * (dot(w, w) - T(form.rest)) - axial * along1, sign[0], quality);
+      const Vec<T> v = add(turned_back(h1, out.q[0], w), T(-1.0), p12);
+      const Vec<T> u = solve_common(h2, h3, T(form.cross23), dot(h2, v), dot(h3, p34), dot(v, v),
+                                    sign[1], quality);
+      out.q[2] = angle_between(h3, p34, u, quality);
+      out.q[1] = angle_between(h2, u, v, quality);
+      return;
+    }
+    case Closure::parallel_12: {
+      out.q[2] = solve_angle(form.shoulder, dot(h1, w) - T(form.rest), sign[0], quality);
+      const Vec<T> arm = arm_at(out.q[2]);
+      const T axial = dot(h2, arm);
+      const T rest = T(0.5) * (dot(w, w) - dot(p12, p12) - dot(arm, arm));
+      out.q[1] = solve_angle(dot(p12, arm) - axial * dot(h2, p12), dot(p12, cross(h2, arm)),
+                             rest - axial * dot(h2, p12), sign[1], quality);
+      out.q[0] = angle_between(h1, add(p12, T(1.0), turned(h2, out.q[1], arm)), w, quality);
+      return;
+    }
+    case Closure::three_parallel:
+      return;
+  }
+}
+
+/// Joints 4 to 6, whose axes meet, after joints 1 to 3.
+template <typename T>
+IKSEL_INLINE void turn_wrist(const ClosedForm& form, const BranchTarget<T>& target, const T& sign,
+                             Branch<T>& out) {
+  const Vec<T> h4 = constant<T>(form.h[3]);
+  const Vec<T> h5 = constant<T>(form.h[4]);
+  const Vec<T> h6 = constant<T>(form.h[5]);
+  const auto before = [&](const Vec<T>& v) {
+    const Vec<T> v1 = turned_back(constant<T>(form.h[0]), out.q[0], v);
+    const Vec<T> v2 = turned_back(constant<T>(form.h[1]), out.q[1], v1);
+    return turned_back(constant<T>(form.h[2]), out.q[2], v2);
+  };
+  // R_4 R_5 R_6 takes h6 to `axis`, and the first of the basis to `side`.
+  const Vec<T> axis = before(target.Z);
+  const Vec<T> side = before(target.X);
+  out.q[4] = solve_angle(form.wrist, dot(h4, axis), sign, out.quality);
+  out.q[3] = angle_between(h4, turned(h5, out.q[4], h6), axis, out.quality);
+  const Vec<T> rest = turned_back(h5, out.q[4], turned_back(h4, out.q[3], side));
+  out.q[5] = {dot(constant<T>(form.basis[0]), rest), dot(constant<T>(form.basis[1]), rest)};
+}
+
+/// All six joints of three parallel axes.
+template <typename T>
+IKSEL_INLINE void solve_three_parallel(const ClosedForm& form, const BranchTarget<T>& target,
+                                       const T (&sign)[3], Branch<T>& out) {
+  Quality<T>& quality = out.quality;
+  const Vec<T> h1 = constant<T>(form.h[0]);
+  const Vec<T> h = constant<T>(form.h[1]);
+  const Vec<T> h5 = constant<T>(form.h[4]);
+  const Vec<T> p34 = constant<T>(form.p[2]);
+  const Vec<T>& w = target.w;
+  const T along1 = dot(h1, w);
+  const Vec<T> h1w = cross(h1, w);
+  out.q[0] = solve_angle(dot(h, w) - T(form.cross12) * along1, T(0.0) - dot(h, h1w),
+                         T(form.rest) - T(form.cross12) * along1, sign[0], quality);
+  const auto before = [&](const Vec<T>& v) { return turned_back(h1, out.q[0], v); };
+  // h . R_1^T R_06 h6 = h . R_5 h6, and R_06^T R_1 h = R_6^T R_5^T h.
+  const Vec<T> X = before(target.X);
+  const Vec<T> Y = before(target.Y);
+  const Vec<T> Z = before(target.Z);
+  out.q[4] = solve_angle(form.wrist, dot(h, Z), sign[2], quality);
+  const Vec<T> from = turned_back(h5, out.q[4], h);
+  const T u = dot(constant<T>(form.basis[0]), from);
+  const T v = dot(constant<T>(form.basis[1]), from);
+  const T x = dot(X, h);
+  const T y = dot(Y, h);
+  // Of (u, v) = R(q6) (x, y).
+  T c = u * x + v * y;
+  T s = v * x - u * y;
+  const T size = sqrt(max(c * c + s * s, T(1e-60)));
+  quality.divide_by(sqrt(size));
+  const auto none = size < T(1e-28);
+  c = select(none, T(1.0), c / size);
+  s = select(none, T(0.0), s / size);
+  out.q[5] = {c, s};
+  // R_2 R_3 R_4 turns about h, and so a vector e across it: R_2 R_3 R_4 e = R_1^T R_06 R_6^T R_5^T
+  // e.
+  const Vec<T> e = constant<T>(form.across);
+  const Vec<T> back = turned_back(h5, out.q[4], e);
+  const T b0 = dot(constant<T>(form.basis[0]), back);
+  const T b1 = dot(constant<T>(form.basis[1]), back);
+  const T b2 = dot(constant<T>(form.basis[2]), back);
+  // R_6^T in the basis.
+  const T r0 = c * b0 + s * b1;
+  const T r1 = c * b1 - s * b0;
+  const Vec<T> ahead{r0 * X.x + r1 * Y.x + b2 * Z.x, r0 * X.y + r1 * Y.y + b2 * Z.y,
+                     r0 * X.z + r1 * Y.z + b2 * Z.z};
+  const Angle<T> all = angle_between(h, e, ahead, quality);
+  const Vec<T> reach = add(add(before(w), T(-1.0), constant<T>(form.p[0])), T(-1.0),
+                           turned(h, all, constant<T>(form.p[3])));
+  const Angle<T> about =
+      solve_angle(form.elbow, T(0.5) * (dot(reach, reach) - T(form.arm2)), sign[1], quality);
+  const Vec<T> arm = add(constant<T>(form.p[1]), T(1.0), turned(h, about, p34));
+  out.q[1] = angle_between(h, arm, reach, quality);
+  out.q[2] = {about.c, T(form.side3) * about.s};
+  // all = q2 + about + side4 q4.
+  const Angle<T> two{out.q[1].c * about.c - out.q[1].s * about.s,
+                     out.q[1].s * about.c + out.q[1].c * about.s};
+  out.q[3] = {all.c * two.c + all.s * two.s, T(form.side4) * (all.s * two.c - all.c * two.s)};
+}
+
+template <typename T>
+void solve_branches(const ClosedForm& form, BranchPack& pack) {
+  for (int first = 0; first < kWidth; first += Lanes<T>::kCount) {
+    const auto row = [&](const double(&of)[kWidth]) { return Lanes<T>::load(of + first); };
+    const auto vector = [&](int i) {
+      return Vec<T>{row(pack.target[i]), row(pack.target[i + 1]), row(pack.target[i + 2])};
+    };
+    const BranchTarget<T> target{vector(0), vector(3), vector(6), vector(9)};
+    const T sign[3] = {row(pack.sign[0]), row(pack.sign[1]), row(pack.sign[2])};
+    Branch<T> branch;
+    branch.quality.error = T(form.error);
+    if (form.closure == Closure::three_parallel) {
+      solve_three_parallel(form, target, sign, branch);
+    } else {
+      place_wrist(form, target, sign, branch);
+      turn_wrist(form, target, sign[2], branch);
+    }
+    for (int j = 0; j < 6; ++j) Lanes<T>::store(to_radians(branch.q[j]), pack.angle[j] + first);
+    Lanes<T>::store(branch.quality.best, pack.best + first);
+    Lanes<T>::store(branch.quality.worst, pack.worst + first);
+    Lanes<T>::store(branch.quality.error, pack.error + first);
+  }
+}
+
+}  // namespace iksel::lanes

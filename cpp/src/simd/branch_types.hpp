@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the closed-form kernels work on: the geometry of six joints, and poses lane by lane.
+#pragma once
+
+#include "simd/lane_types.hpp"
+
+namespace iksel::lanes {
+
+/// What makes six turning joints solvable in closed form. All but `three_parallel` end in axes
+/// 4, 5 and 6 that meet in one point.
+enum class Closure : int {
+  parallel_23,     ///< axes 2 and 3 are parallel
+  intersect_12,    ///< axes 1 and 2 meet
+  intersect_23,    ///< axes 2 and 3 meet
+  parallel_12,     ///< axes 1 and 2 are parallel
+  three_parallel,  ///< axes 2, 3 and 4 are parallel, 5 and 6 meet
+};
+
+/// x . R(k, t) y = a cos(t) + b sin(t) + c, for constant x, k and y.
+struct Turned {
+  double a, b, c;
+};
+
+/// Six joints where their angles are zero, in product-of-exponentials form. Lengths are in units of
+/// the chain's reach.
+struct ClosedForm {
+  Closure closure;
+  double error;        ///< relative error of a target that is still the same one
+  double h[6][3];      ///< unit vectors along the axes
+  double p[4][3];      ///< from a point on axis j to one on axis j + 1; where axes meet, one point
+  double basis[3][3];  ///< right-handed, h6 last
+  double across[3];    ///< a unit vector across h2
+  double cross12;      ///< h1 . h2
+  double cross23;      ///< h2 . h3
+  double side3;        ///< of parallel axes 3 and 2: 1, or -1 if they point opposite ways
+  double side4;        ///< the same of axes 4 and 2
+  double arm2;         ///< |p23|^2 + |p34|^2
+  double rest;         ///< what the way along parallel axes adds up to; of intersect_23 |p34|^2 -
+                       ///< |p12|^2
+  Turned elbow;        ///< p23 . R(h3) p34
+  Turned shoulder;     ///< of parallel_12, h1 . R(h3) p34
+  Turned wrist;        ///< h4 . R(h5) h6; of three_parallel, h2 . R(h5) h6
+};
+
+/// Poses and branches, lane by lane. Rows of a target: columns X, Y and Z of R_06 E, where E has a
+/// right-handed basis with h6 last, and the way from the point on axis 1 to that on axis 6 [units].
+struct BranchPack {
+  alignas(64) double target[12][kWidth];
+  /// +-1: which of two solutions each of three subproblems takes.
+  alignas(64) double sign[3][kWidth];
+  /// Of the six joints [rad], within -pi .. pi.
+  alignas(64) double angle[6][kWidth];
+  /// A subproblem a cos + b sin = C has solutions where 1 - (C / r)^2 is not below 0, r^2 = a^2 +
+  /// b^2. The least of these, at best and at worst for targets within ClosedForm::error: there is
+  /// no branch where the best is below 0, and certainly one where the worst is not.
+  alignas(64) double best[kWidth];
+  alignas(64) double worst[kWidth];
+  /// What such an error may have grown to in the angles, to first order [rad].
+  alignas(64) double error[kWidth];
+};
+
+}  // namespace iksel::lanes

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "structure/closed_form.hpp"
+
+#include <algorithm>
+
+#include "simd/lane_chain.hpp"
+
+namespace iksel {
+namespace {
+
+using Eigen::Vector3d;
+using lanes::Closure;
+
+constexpr int kSix = 6;
+
+void write(const Vector3d& v, double (&out)[3]) {
+  for (int i = 0; i < 3; ++i) out[i] = v[i];
+}
+
+/// x . R(k, t) y.
+lanes::Turned turned(const Vector3d& x, const Vector3d& k, const Vector3d& y) {
+  const double c = k.dot(x) * k.dot(y);
+  return {x.dot(y) - c, x.dot(k.cross(y)), c};
+}
+
+/// Tells how the axes of six joints lie, and moves their points to where they meet.
+class Geometry {
+ public:
+  explicit Geometry(ScrewAxes axes, double reach) : axes_(std::move(axes)), reach_(reach) {}
+
+  [[nodiscard]] bool are_parallel(std::size_t i, std::size_t j) const {
+    return axes_.angle(i, j) <= kStructureTolerance;
+  }
+  [[nodiscard]] bool meet(std::size_t i, std::size_t j) const {
+    return axes_.angle(i, j) > kClearlyNot && is_on(axes_.middle(i, j), j);
+  }
+  [[nodiscard]] bool three_meet(std::size_t i) const {
+    return meet(i, i + 1) && meet(i + 1, i + 2) && is_on(axes_.middle(i, i + 1), i + 2);
+  }
+  [[nodiscard]] bool is_on(const Vector3d& point, std::size_t i) const {
+    return axes_.distance(i, point) <= kStructureTolerance * reach_;
+  }
+  /// Where axes i and i + 1 meet becomes the point on both, and on `more` others.
+  void join(std::size_t i, std::size_t more = 0) {
+    const Vector3d middle = axes_.middle(i, i + 1);
+    for (std::size_t k = i; k <= i + 1 + more; ++k) axes_.p[k] = middle;
+  }
+
+  /// What closes the form, with the points where they are to be.
+  std::optional<Closure> find_closure() {
+    if (are_parallel(1, 2) && are_parallel(2, 3) && meet(4, 5) && !are_parallel(0, 1)) {
+      join(4);
+      return Closure::three_parallel;
+    }
+    if (!three_meet(3)) return std::nullopt;
+    join(3, 1);
+    if (are_parallel(1, 2) && !are_parallel(0, 1)) return Closure::parallel_23;
+    if (meet(0, 1)) {
+      join(0);
+      return Closure::intersect_12;
+    }
+    if (meet(1, 2)) {
+      join(1);
+      return Closure::intersect_23;
+    }
+    if (are_parallel(0, 1) && !are_parallel(1, 2)) return Closure::parallel_12;
+    return std::nullopt;
+  }
+
+  [[nodiscard]] const ScrewAxes& axes() const { return axes_; }
+
+ private:
+  /// Axes at a smaller angle are neither parallel nor can it be said where they meet [rad].
+  static constexpr double kClearlyNot = 1e-3;
+
+  ScrewAxes axes_;
+  double reach_;
+};
+
+lanes::ClosedForm make_form(Closure closure, const ScrewAxes& axes, double unit) {
+  const auto& h = axes.h;
+  const auto way = [&](std::size_t j) { return Vector3d((axes.p[j + 1] - axes.p[j]) / unit); };
+  const Vector3d p12 = way(0);
+  const Vector3d p23 = way(1);
+  const Vector3d p34 = way(2);
+  const Vector3d p45 = way(3);
+  const auto side_of = [&](std::size_t j) { return h[j].dot(h[1]) < 0 ? -1.0 : 1.0; };
+  lanes::ClosedForm form{};
+  form.closure = closure;
+  for (std::size_t j = 0; j < kSix; ++j) write(h[j], form.h[j]);
+  for (std::size_t j = 0; j < 4; ++j) write(way(j), form.p[j]);
+  const Vector3d e1 = h[5].unitOrthogonal();
+  write(e1, form.basis[0]);
+  write(h[5].cross(e1), form.basis[1]);
+  write(h[5], form.basis[2]);
+  write(h[1].unitOrthogonal(), form.across);
+  form.cross12 = h[0].dot(h[1]);
+  form.cross23 = h[1].dot(h[2]);
+  form.side3 = side_of(2);
+  form.side4 = side_of(3);
+  form.arm2 = p23.squaredNorm() + p34.squaredNorm();
+  form.elbow = turned(p23, closure == Closure::three_parallel ? h[1] : h[2], p34);
+  form.shoulder = turned(h[0], h[2], p34);
+  form.wrist = turned(closure == Closure::three_parallel ? h[1] : h[3], h[4], h[5]);
+  switch (closure) {
+    case Closure::parallel_23:
+      form.rest = h[1].dot(p12 + p23 + p34);
+      break;
+    case Closure::three_parallel:
+      form.rest = h[1].dot(p12 + p23 + p34 + p45);
+      break;
+    case Closure::intersect_23:
+      form.rest = p34.squaredNorm() - p12.squaredNorm();
+      break;
+    case Closure::parallel_12:
+      form.rest = h[0].dot(p12 + p23);
+      break;
+    case Closure::intersect_12:
+      break;
+  }
+  return form;
+}
+
+std::string describe(Closure closure, const int (&joints)[kSix]) {
+  const auto axis = [&](int j) { return std::to_string(joints[j] + 1); };
+  const auto list = [&](int a, int b) {
+    return joints[a] < joints[b] ? axis(a) + " and " + axis(b) : axis(b) + " and " + axis(a);
+  };
+  const auto three = [&](int a) {
+    const int first = std::min(joints[a], joints[a + 2]);
+    return "axes " + std::to_string(first + 1) + ", " + std::to_string(first + 2) + " and " +
+           std::to_string(first + 3);
+  };
+  switch (closure) {
+    case Closure::three_parallel:
+      return three(1) + " are parallel, " + list(4, 5) + " meet";
+    case Closure::parallel_23:
+      return three(3) + " meet, " + list(1, 2) + " are parallel";
+    case Closure::parallel_12:
+      return three(3) + " meet, " + list(0, 1) + " are parallel";
+    case Closure::intersect_12:
+      return three(3) + " meet, " + list(0, 1) + " meet";
+    case Closure::intersect_23:
+      return three(3) + " meet, " + list(1, 2) + " meet";
+  }
+  return {};
+}
+
+}  // namespace
+
+void ClosedFormChain::write_target(const Pose& Y, double (&rows)[12]) const {
+  const Eigen::Matrix3d RE = Y.linear() * to_basis;
+  const Vector3d w = (Y.translation() - first - RE * tail) / unit;
+  for (int i = 0; i < 9; ++i) rows[i] = RE(i % 3, i / 3);
+  for (int i = 0; i < 3; ++i) rows[9 + i] = w[i];
+}
+
+std::optional<ClosedFormChain> find_closed_form(const ChainModel& model) {
+  if (model.dof != kSix || !is_simple(model)) return std::nullopt;
+  for (const KernelJoint& joint : model.kernel.joints) {
+    if (joint.prismatic) return std::nullopt;
+  }
+  const ScrewAxes forward = ScrewAxes::of(model);
+  for (const bool reversed : {false, true}) {
+    Geometry geometry(reversed ? forward.reversed() : forward, model.reach);
+    const std::optional<Closure> closure = geometry.find_closure();
+    if (!closure) continue;
+    const ScrewAxes& axes = geometry.axes();
+    ClosedFormChain chain;
+    for (int j = 0; j < kSix; ++j) chain.joints[j] = reversed ? kSix - 1 - j : j;
+    chain.reversed = reversed;
+    chain.unit = model.reach;
+    chain.form = make_form(*closure, axes, chain.unit);
+    Eigen::Matrix3d E;
+    for (int k = 0; k < 3; ++k) E.col(k) = Vector3d(chain.form.basis[k]);
+    chain.first = axes.p[0];
+    chain.tail = E.transpose() * (axes.end.translation() - axes.p[5]);
+    chain.to_basis = axes.end.linear().transpose() * E;
+    chain.description = describe(*closure, chain.joints);
+    return chain;
+  }
+  return std::nullopt;
+}
+
+}  // namespace iksel

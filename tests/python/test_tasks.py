@@ -252,9 +252,7 @@ def test_diagnoses(made) -> None:
     # Not solved in closed form.
     robot = iksel.load_robot("cvr038")
     reached = robot.fk(robot.random_configurations(1, seed=1)[0])
-    hurried = iksel.Solver(
-        robot, iksel.SolverOptions(max_attempts=1, max_iterations=1)
-    )
+    hurried = iksel.Solver(robot, iksel.SolverOptions(max_attempts=1, max_iterations=1))
     budget = hurried.diagnose(reached)
     assert budget.cause is iksel.Cause.budget
     assert np.abs(iksel.pose_error(reached, robot.fk(budget.q))).max() <= 1e-6

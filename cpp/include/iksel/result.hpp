@@ -28,11 +28,11 @@ enum class Status : std::uint8_t {
 /// Lower-case name of a status.
 IKSEL_EXPORT const char* to_string(Status status);
 
-/// How certain it is that there is no answer.
+/// How certain it is that there is no other answer.
 enum class Proof : std::uint8_t {
-  none,         ///< there is an answer, or it was searched for and not found
+  none,         ///< one was found and others were not looked for, or it was searched only
   reach,        ///< the target lies farther away than the links are long together
-  closed_form,  ///< all branches are known (Structure), and none of them lies inside the limits
+  closed_form,  ///< all branches are known (find_structure), and no other lies inside the limits
 };
 
 /// Lower-case name of a proof.

@@ -25,7 +25,7 @@ constexpr Patience kFirst{8, kMostIterations};
 /// what is far off after 6 costs more than what it finds.
 constexpr Patience kAll{6, kMostIterations, 2};
 /// Where seeds are answers, or as near to one as a singularity or a limit lets it be told.
-constexpr Patience kThere{8, 16};
+constexpr Patience kThere{8, 64};
 
 /// What one search works with.
 template <typename Answers>
@@ -125,7 +125,8 @@ Proof Search<Answers>::in_lanes() const {
 template <typename Answers>
 Proof Search<Answers>::in_closed_form(GivenSeeds& given, const Pose& Y, bool& is_done) const {
   LaneRefiner& refiner = workspace.lanes->refiner;
-  EnumeratedSeeds enumerated(*workspace.lanes->branches, Y, work, clock);
+  EnumeratedSeeds enumerated(*workspace.lanes->branches, goal, Y, answers.wants_more(), work,
+                             clock);
   SeedSequence seeds(2, given, enumerated);
   refiner.begin(goal.task(), kThere);
   answers.look_for_partners(false);

@@ -4,20 +4,32 @@
 #include <algorithm>
 
 namespace iksel {
+namespace {
+
+/// A target is taken to be off by so many tolerances, to be on the safe side.
+constexpr double kMargin = 4;
+
+}  // namespace
 
 Enumeration::Enumeration(const ChainModel& model, const ClosedFormChain& chain, bool is_nominal,
                          double position_tolerance, double rotation_tolerance,
                          const lanes::LaneKernels& kernels)
     : model_(model), chain_(chain), kernels_(kernels), is_nominal_(is_nominal) {
-  // Beyond the tolerances by as much as to be sure.
-  chain_.form.error =
-      4 * std::max({position_tolerance / chain.unit, rotation_tolerance, kStructureTolerance});
+  for (int i = 0; i < 6; ++i) {
+    const int j = chain_.joints[i];
+    const bool ends = model.joints.type(j) != JointType::continuous;
+    chain_.form.offset[i] = model.kernel.joints[static_cast<std::size_t>(j)].offset;
+    chain_.form.lower[i] = ends ? model.joints.lower[j] : -kPi;
+    chain_.form.upper[i] = ends ? model.joints.upper[j] : kPi;
+  }
+  chain_.form.error = kMargin * std::max({position_tolerance / chain.unit, rotation_tolerance,
+                                          kStructureTolerance});
   for (int lane = 0; lane < kMost; ++lane) {
     for (int s = 0; s < 3; ++s) pack_.sign[s][lane] = (lane >> s & 1) == 0 ? 1 : -1;
   }
 }
 
-void Enumeration::find(const Pose& Y) {
+void Enumeration::find(const Goal& goal, const Pose& Y, bool wants_all) {
   double rows[12];
   chain_.write_target(chain_.reversed ? Y.inverse() : Y, rows);
   for (int i = 0; i < 12; ++i) std::fill_n(pack_.target[i], kMost, rows[i]);
@@ -25,44 +37,56 @@ void Enumeration::find(const Pose& Y) {
   size_ = 0;
   complete_ = is_nominal_;
   certain_ = is_nominal_;
-  for (int lane = 0; lane < kMost; ++lane) take(lane);
+  for (int lane = 0; lane < kMost; ++lane) take(goal, lane, wants_all);
 }
 
-void Enumeration::take(int lane) {
-  // An angle off by more says nothing.
-  constexpr double kVague = 0.3;
+void Enumeration::take(const Goal& goal, int lane, bool wants_all) {
   if (pack_.best[lane] < 0) return;
-  const double bound = pack_.error[lane];
-  // Written so that NaN is vague.
-  const bool is_vague = !(bound < kVague);
-  bool is_sure = !is_vague && pack_.worst[lane] >= 0;
   std::array<double, 6>& q = q_[static_cast<std::size_t>(size_)];
   for (int i = 0; i < 6; ++i) {
-    const int j = chain_.joints[i];
-    q[static_cast<std::size_t>(j)] =
-        pack_.angle[i][lane] - model_.kernel.joints[static_cast<std::size_t>(j)].offset;
+    q[static_cast<std::size_t>(chain_.joints[i])] = pack_.q[i][lane];
   }
-  const JointSpace& joints = model_.joints;
-  joints.wrap(q.data());
-  for (int j = 0; j < 6; ++j) {
-    double& value = q[static_cast<std::size_t>(j)];
-    if (joints.type(j) == JointType::continuous) continue;
-    const double inside = std::min(std::max(value, joints.lower[j]), joints.upper[j]);
-    double beyond = std::abs(value - inside);
-    if (beyond > 0) {
-      // The other limit may be nearer, a whole turn away.
-      const double image = value < inside ? value + kTwoPi : value - kTwoPi;
-      const double inside2 = std::min(std::max(image, joints.lower[j]), joints.upper[j]);
-      const bool is_nearer = std::abs(image - inside2) < beyond;
-      beyond = std::min(beyond, std::abs(image - inside2));
-      if (!is_vague && beyond > bound) return;
-      is_sure = false;
-      value = is_nearer ? inside2 : inside;
+  double beyond = pack_.beyond[lane];
+  if (beyond > 0) {
+    // Limits may be more than a turn away.
+    const JointSpace& joints = model_.joints;
+    joints.wrap(q.data());
+    beyond = 0;
+    for (int j = 0; j < 6; ++j) {
+      const double value = q[static_cast<std::size_t>(j)];
+      beyond = std::max({beyond, joints.lower[j] - value, value - joints.upper[j]});
     }
   }
-  complete_ = complete_ && !is_vague;
-  certain_ = certain_ && is_sure;
+  // An angle off by more says nothing; written so that NaN does not either.
+  constexpr double kVague = 0.3;
+  double bound = pack_.error[lane];
+  if (bound < kVague && beyond > bound) return;
+  bool is_sure = bound < kVague && pack_.worst[lane] >= 0;
+  if (!is_sure && (wants_all || beyond > 0)) is_sure = is_regular(goal, q, bound);
+  if (is_sure && beyond > bound) return;
+  complete_ = complete_ && (is_sure || bound < kVague);
+  certain_ = certain_ && is_sure && !(beyond > 0);
   ++size_;
+}
+
+bool Enumeration::is_regular(const Goal& goal, const std::array<double, 6>& q,
+                             double& bound) const {
+  constexpr double kFarthest = 0.01;
+  const JointVector at = Eigen::Map<const Eigen::Matrix<double, 6, 1>>(q.data());
+  double position = 0;
+  double rotation = 0;
+  Jacobian J;
+  goal.measure(at, position, rotation, &J);
+  if (!goal.is_reached(position, rotation)) return false;
+  const TaskSpace& task = goal.task();
+  Vector6 tolerance;
+  tolerance << Eigen::Vector3d::Constant(task.position_tolerance()),
+      Eigen::Vector3d::Constant(task.rotation_tolerance());
+  const Matrix6 inverse = Matrix6(J).partialPivLu().inverse();
+  const double moved = kMargin * (inverse * tolerance.asDiagonal()).norm();
+  if (!(moved < kFarthest)) return false;
+  bound = moved;
+  return true;
 }
 
 }  // namespace iksel

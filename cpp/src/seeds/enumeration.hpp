@@ -7,6 +7,7 @@
 
 #include "base/stage_clock.hpp"
 #include "base/work.hpp"
+#include "goal/goal.hpp"
 #include "simd/kernels.hpp"
 #include "structure/closed_form.hpp"
 
@@ -23,9 +24,10 @@ class Enumeration {
               double position_tolerance, double rotation_tolerance,
               const lanes::LaneKernels& kernels);
 
-  /// Finds the branches of Y (reduction.hpp) that lie inside the limits, or so near to them that it
-  /// cannot be told.
-  void find(const Pose& Y);
+  /// Finds the branches of the goal, a full pose, that lie inside the limits, or so near to them
+  /// that it cannot be told. Y as in reduction.hpp. Where not all are wanted, branches inside the
+  /// limits are not looked at any closer: one of them will do.
+  void find(const Goal& goal, const Pose& Y, bool wants_all);
   [[nodiscard]] int size() const { return size_; }
   /// Inside the limits [rad].
   [[nodiscard]] const double* q(int i) const { return q_[static_cast<std::size_t>(i)].data(); }
@@ -38,7 +40,10 @@ class Enumeration {
 
  private:
   /// Takes a lane's branch if it may be one.
-  void take(int lane);
+  void take(const Goal& goal, int lane, bool wants_all);
+  /// Whether q reaches the goal far enough from singularities to tell by how much the tolerances
+  /// may move it [rad].
+  bool is_regular(const Goal& goal, const std::array<double, 6>& q, double& bound) const;
 
   const ChainModel& model_;
   ClosedFormChain chain_;
@@ -54,13 +59,19 @@ class Enumeration {
 /// These as a source of seeds.
 class EnumeratedSeeds {
  public:
-  EnumeratedSeeds(Enumeration& branches, const Pose& Y, Work& work, StageClock& clock)
-      : branches_(branches), Y_(Y), work_(work), clock_(clock) {}
+  EnumeratedSeeds(Enumeration& branches, const Goal& goal, const Pose& Y, bool wants_all,
+                  Work& work, StageClock& clock)
+      : branches_(branches),
+        goal_(goal),
+        Y_(Y),
+        wants_all_(wants_all),
+        work_(work),
+        clock_(clock) {}
 
   bool next_stage() {
     if (done_ || !work_.has_left()) return false;
     done_ = true;
-    branches_.find(Y_);
+    branches_.find(goal_, Y_, wants_all_);
     clock_.lap(&StageTimes::query);
     return true;
   }
@@ -81,7 +92,9 @@ class EnumeratedSeeds {
 
  private:
   Enumeration& branches_;
+  const Goal& goal_;
   const Pose& Y_;
+  bool wants_all_;
   Work& work_;
   StageClock& clock_;
   bool done_ = false;

@@ -55,37 +55,62 @@ IKSEL_INLINE Vec<T> turned_back(const Vec<T>& k, const Angle<T>& t, const Vec<T>
   return turned(k, Angle<T>{t.c, T(0.0) - t.s}, v);
 }
 
-/// The angle in -pi .. pi, to 1e-15.
+/// The angle in -pi .. pi, to 1e-15. Without a division, of which a kernel has enough: reduced to
+/// pi / 8 at most, and by the series of the arc sine.
 template <typename T>
 IKSEL_INLINE T to_radians(const Angle<T>& t) {
   const T c = abs(t.c);
   const T s = abs(t.s);
-  const T least = min(min(c, s), T(1.0));
-  T a = least * asin_over(least);
+  const T low = min(c, s);
+  const T high = max(c, s);
+  const T x = low * T(0.92387953251128675613) - high * T(0.38268343236508977173);
+  const T x2 = x * x;
+  T a = T(0.004240907093679363);
+  a = a * x2 + T(0.004660143486915096);
+  a = a * x2 + T(0.005153309682319905);
+  a = a * x2 + T(0.005740037670841924);
+  a = a * x2 + T(0.006447210311889649);
+  a = a * x2 + T(0.0073125258735988454);
+  a = a * x2 + T(0.008390335809616815);
+  a = a * x2 + T(0.009761609529194078);
+  a = a * x2 + T(0.011551800896139705);
+  a = a * x2 + T(0.01396484375);
+  a = a * x2 + T(0.017352764423076924);
+  a = a * x2 + T(0.022372159090909092);
+  a = a * x2 + T(0.030381944444444444);
+  a = a * x2 + T(0.044642857142857144);
+  a = a * x2 + T(0.075);
+  a = a * x2 + T(0.16666666666666666);
+  a = a * x2 + T(1.0);
+  a = a * x + T(0.39269908169872415481);
   a = select(s > c, T(1.57079632679489661923) - a, a);
   a = select(t.c < T(0.0), T(3.14159265358979323846) - a, a);
   return select(t.s < T(0.0), T(0.0) - a, a);
 }
 
-/// What BranchPack says of the angles found so far.
+/// How certain the angles found so far are.
 template <typename T>
 struct Quality {
+  /// As in BranchPack.
   T best = T(1.0);
   T worst = T(1.0);
-  /// Of the angles so far.
+  /// Error of the angles so far: of this numerator and denominator, so as not to divide each time.
   T error;
+  T scale = T(1.0);
 
   /// An angle follows from a quotient by a number of the size `size`.
   IKSEL_INLINE void divide_by(const T& size) {
-    error = error * (T(1.0) + T(1.0) / max(size, T(1e-12)));
+    error = error * (size + T(1.0));
+    scale = scale * max(size, T(1e-12));
   }
-  /// An angle follows from a cosine C / r; `slack` is 1 - (C / r)^2.
-  IKSEL_INLINE void divide_by(const T& r, const T& slack) {
-    // Of the slack.
-    const T of_slack = T(2.0) * error / max(r, T(1e-12));
-    best = min(best, slack + of_slack);
-    worst = min(worst, slack - of_slack);
-    divide_by(r * sqrt(max(slack, of_slack)));
+  /// An angle follows from the root of `square`, the difference of squares of a number near to
+  /// `near` where that is near 0.
+  IKSEL_INLINE void take_root(const T& square, const T& near, const T& root) {
+    const T scaled = square * scale;
+    const T of_square = T(2.0) * error * near;
+    best = min(best, scaled + of_square);
+    worst = min(worst, scaled - of_square);
+    divide_by(root);
   }
 };
 
@@ -93,13 +118,12 @@ struct Quality {
 template <typename T>
 IKSEL_INLINE Angle<T> solve_angle(const T& a, const T& b, const T& rest, const T& sign,
                                   Quality<T>& quality) {
-  const T r = sqrt(max(a * a + b * b, T(1e-30)));
-  const T inverse = T(1.0) / r;
-  const T ratio = rest * inverse;
-  const T slack = T(1.0) - ratio * ratio;
-  const T root = sqrt(max(slack, T(0.0)));
-  quality.divide_by(r, slack);
-  const T cosine = min(max(ratio, T(-1.0)), T(1.0)) * inverse;
+  const T r2 = a * a + b * b;
+  const T square = r2 - rest * rest;
+  const T root = sqrt(max(square, T(0.0)));
+  quality.take_root(square, abs(rest), root);
+  const T inverse = T(1.0) / max(r2, T(1e-30));
+  const T cosine = rest * inverse;
   const T sine = sign * root * inverse;
   return {a * cosine - b * sine, b * cosine + a * sine};
 }
@@ -108,38 +132,46 @@ IKSEL_INLINE Angle<T> solve_angle(const T& a, const T& b, const T& rest, const T
 template <typename T>
 IKSEL_INLINE Angle<T> solve_angle(const Turned& turned, const T& rest, const T& sign,
                                   Quality<T>& quality) {
-  return solve_angle(T(turned.a), T(turned.b), rest - T(turned.c), sign, quality);
+  const T left = rest - T(turned.c);
+  const T square = T(turned.r2) - left * left;
+  const T root = sqrt(max(square, T(0.0)));
+  quality.take_root(square, abs(left), root);
+  const T cosine = left * T(turned.inverse);
+  const T sine = sign * root * T(turned.inverse);
+  return {T(turned.a) * cosine - T(turned.b) * sine, T(turned.b) * cosine + T(turned.a) * sine};
+}
+
+/// The angle with cosine c and sine s times the product of two lengths, mostly equal ones.
+template <typename T>
+IKSEL_INLINE Angle<T> normalized(const T& c, const T& s, Quality<T>& quality) {
+  const T size2 = c * c + s * s;
+  const T size = sqrt(max(size2, T(1e-60)));
+  quality.divide_by(sqrt(size));
+  const auto none = size2 < T(1e-56);
+  const T inverse = T(1.0) / size;
+  return {select(none, T(1.0), c * inverse), select(none, T(0.0), s * inverse)};
 }
 
 /// The angle about k that takes u to v.
 template <typename T>
 IKSEL_INLINE Angle<T> angle_between(const Vec<T>& k, const Vec<T>& u, const Vec<T>& v,
                                     Quality<T>& quality) {
-  T c = dot(u, v) - dot(k, u) * dot(k, v);
-  T s = dot(k, cross(u, v));
-  const T size2 = c * c + s * s;
-  const T size = sqrt(max(size2, T(1e-60)));
-  // Lengths are multiplied here.
-  quality.divide_by(sqrt(size));
-  const auto none = size2 < T(1e-56);
-  const T inverse = T(1.0) / size;
-  c = select(none, T(1.0), c * inverse);
-  s = select(none, T(0.0), s * inverse);
-  return {c, s};
+  return normalized(dot(u, v) - dot(k, u) * dot(k, v), dot(k, cross(u, v)), quality);
 }
 
 /// A vector with z . k1 = along1, z . k2 = along2 and the square length2, one of two, where
 /// k1 . k2 = c.
 template <typename T>
-IKSEL_INLINE Vec<T> solve_common(const Vec<T>& k1, const Vec<T>& k2, const T& c, const T& along1,
+IKSEL_INLINE Vec<T> solve_common(const Vec<T>& k1, const Vec<T>& k2, double c, const T& along1,
                                  const T& along2, const T& length2, const T& sign,
                                  Quality<T>& quality) {
-  const T inverse = T(1.0) / (T(1.0) - c * c);
-  const T alpha = (along1 - c * along2) * inverse;
-  const T beta = (along2 - c * along1) * inverse;
-  const T rest2 = length2 - alpha * along1 - beta * along2;
-  quality.divide_by(sqrt(length2), rest2 / max(length2, T(1e-30)));
-  const T gamma = sign * sqrt(max(rest2 * inverse, T(0.0)));
+  const T inverse = T(1.0 / (1.0 - c * c));
+  const T alpha = (along1 - T(c) * along2) * inverse;
+  const T beta = (along2 - T(c) * along1) * inverse;
+  const T square = length2 - alpha * along1 - beta * along2;
+  const T root = sqrt(max(square, T(0.0)));
+  quality.take_root(square, T(1.0), root);
+  const T gamma = sign * root * T(__builtin_sqrt(1.0 / (1.0 - c * c)));
   const Vec<T> plane{alpha * k1.x + beta * k2.x, alpha * k1.y + beta * k2.y,
                      alpha * k1.z + beta * k2.z};
   return add(plane, gamma, cross(k1, k2));
@@ -189,8 +221,8 @@ IKSEL_INLINE void place_wrist(const ClosedForm& form, const BranchTarget<T>& tar
       const T distance2 = dot(w, w);
       out.q[2] = elbow_for(distance2);
       const Vec<T> arm = arm_at(out.q[2]);
-      const Vec<T> v = solve_common(h1, h2, T(form.cross12), dot(h1, w), dot(h2, arm), distance2,
-                                    sign[0], quality);
+      const Vec<T> v =
+          solve_common(h1, h2, form.cross12, dot(h1, w), dot(h2, arm), distance2, sign[0], quality);
       out.q[1] = angle_between(h2, arm, v, quality);
       out.q[0] = angle_between(h1, v, w, quality);
       return;
@@ -204,8 +236,8 @@ IKSEL_INLINE void place_wrist(const ClosedForm& form, const BranchTarget<T>& tar
           solve_angle(dot(p12, w) - axial * along1, T(0.0) - dot(p12, h1w),
                       T(0.5) * (dot(w, w) - T(form.rest)) - axial * along1, sign[0], quality);
       const Vec<T> v = add(turned_back(h1, out.q[0], w), T(-1.0), p12);
-      const Vec<T> u = solve_common(h2, h3, T(form.cross23), dot(h2, v), dot(h3, p34), dot(v, v),
-                                    sign[1], quality);
+      const Vec<T> u =
+          solve_common(h2, h3, form.cross23, dot(h2, v), dot(h3, p34), dot(v, v), sign[1], quality);
       out.q[2] = angle_between(h3, p34, u, quality);
       out.q[1] = angle_between(h2, u, v, quality);
       return;
@@ -272,14 +304,9 @@ IKSEL_INLINE void solve_three_parallel(const ClosedForm& form, const BranchTarge
   const T x = dot(X, h);
   const T y = dot(Y, h);
   // Of (u, v) = R(q6) (x, y).
-  T c = u * x + v * y;
-  T s = v * x - u * y;
-  const T size = sqrt(max(c * c + s * s, T(1e-60)));
-  quality.divide_by(sqrt(size));
-  const auto none = size < T(1e-28);
-  c = select(none, T(1.0), c / size);
-  s = select(none, T(0.0), s / size);
-  out.q[5] = {c, s};
+  out.q[5] = normalized(u * x + v * y, v * x - u * y, quality);
+  const T& c = out.q[5].c;
+  const T& s = out.q[5].s;
   // R_2 R_3 R_4 turns about h, and so a vector e across it: R_2 R_3 R_4 e = R_1^T R_06 R_6^T R_5^T
   // e.
   const Vec<T> e = constant<T>(form.across);
@@ -306,6 +333,8 @@ IKSEL_INLINE void solve_three_parallel(const ClosedForm& form, const BranchTarge
   out.q[3] = {all.c * two.c + all.s * two.s, T(form.side4) * (all.s * two.c - all.c * two.s)};
 }
 
+inline constexpr double kWholeTurn = 6.28318530717958647693;
+
 template <typename T>
 void solve_branches(const ClosedForm& form, BranchPack& pack) {
   for (int first = 0; first < kWidth; first += Lanes<T>::kCount) {
@@ -323,10 +352,21 @@ void solve_branches(const ClosedForm& form, BranchPack& pack) {
       place_wrist(form, target, sign, branch);
       turn_wrist(form, target, sign[2], branch);
     }
-    for (int j = 0; j < 6; ++j) Lanes<T>::store(to_radians(branch.q[j]), pack.angle[j] + first);
+    T beyond = T(0.0);
+    for (int j = 0; j < 6; ++j) {
+      const T lower = T(form.lower[j]);
+      const T upper = T(form.upper[j]);
+      T q = to_radians(branch.q[j]) - T(form.offset[j]);
+      q = select(q < lower, q + T(kWholeTurn), q);
+      const T turned = q - T(kWholeTurn);
+      q = select(q - upper > max(lower - turned, T(0.0)), turned, q);
+      beyond = max(beyond, max(lower - q, q - upper));
+      Lanes<T>::store(q, pack.q[j] + first);
+    }
     Lanes<T>::store(branch.quality.best, pack.best + first);
     Lanes<T>::store(branch.quality.worst, pack.worst + first);
-    Lanes<T>::store(branch.quality.error, pack.error + first);
+    Lanes<T>::store(branch.quality.error / branch.quality.scale, pack.error + first);
+    Lanes<T>::store(beyond, pack.beyond + first);
   }
 }
 

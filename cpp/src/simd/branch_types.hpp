@@ -19,14 +19,17 @@ enum class Closure : int {
 /// x . R(k, t) y = a cos(t) + b sin(t) + c, for constant x, k and y.
 struct Turned {
   double a, b, c;
+  double r2, inverse;  ///< a^2 + b^2, and 1 / r2
 };
 
 /// Six joints where their angles are zero, in product-of-exponentials form. Lengths are in units of
 /// the chain's reach.
 struct ClosedForm {
   Closure closure;
-  double error;        ///< relative error of a target that is still the same one
-  double h[6][3];      ///< unit vectors along the axes
+  double error;               ///< relative error of a target that is still the same one
+  double offset[6];           ///< what angles are more than joint values [rad]
+  double lower[6], upper[6];  ///< of the joint values, one turn of those that have no limits [rad]
+  double h[6][3];             ///< unit vectors along the axes
   double p[4][3];      ///< from a point on axis j to one on axis j + 1; where axes meet, one point
   double basis[3][3];  ///< right-handed, h6 last
   double across[3];    ///< a unit vector across h2
@@ -48,11 +51,13 @@ struct BranchPack {
   alignas(64) double target[12][kWidth];
   /// +-1: which of two solutions each of three subproblems takes.
   alignas(64) double sign[3][kWidth];
-  /// Of the six joints [rad], within -pi .. pi.
-  alignas(64) double angle[6][kWidth];
-  /// A subproblem a cos + b sin = C has solutions where 1 - (C / r)^2 is not below 0, r^2 = a^2 +
-  /// b^2. The least of these, at best and at worst for targets within ClosedForm::error: there is
-  /// no branch where the best is below 0, and certainly one where the worst is not.
+  /// Of the six joints [rad], by a whole turn inside the limits where one is enough.
+  alignas(64) double q[6][kWidth];
+  /// How far one of them lies outside of them, 0 or less if none does [rad].
+  alignas(64) double beyond[kWidth];
+  /// Subproblems have solutions where a difference of squares is not below 0. The least of these,
+  /// at best and at worst for targets within ClosedForm::error: there is no branch where the best
+  /// is below 0, and certainly one where the worst is not. Their sizes mean nothing.
   alignas(64) double best[kWidth];
   alignas(64) double worst[kWidth];
   /// What such an error may have grown to in the angles, to first order [rad].

@@ -93,7 +93,6 @@ Result Solver::Impl::solve(const Pose& target, const SolveRequest& request, Work
   JointVector q;
   if (search.status != Status::solved) {
     result.status = search.status;
-    result.proof = search.proof;
   } else if (selector.select(q) && goal.check(q, result)) {
     if (request.objective.is_set()) {
       result.cost = ObjectiveCost(model(), request.objective).value(q);
@@ -102,7 +101,10 @@ Result Solver::Impl::solve(const Pose& target, const SolveRequest& request, Work
   } else {
     result.status = Status::rejected;
   }
-  if (!result.success() && search.is_out_of_time) result.status = Status::out_of_time;
+  if (!result.success()) {
+    result.proof = search.proof;
+    if (search.is_out_of_time) result.status = Status::out_of_time;
+  }
   result.attempts = search.work.all_attempts();
   result.iterations = search.work.iterations + selector.steps();
   return result;

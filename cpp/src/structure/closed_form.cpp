@@ -20,7 +20,10 @@ void write(const Vector3d& v, double (&out)[3]) {
 /// x . R(k, t) y.
 lanes::Turned turned(const Vector3d& x, const Vector3d& k, const Vector3d& y) {
   const double c = k.dot(x) * k.dot(y);
-  return {x.dot(y) - c, x.dot(k.cross(y)), c};
+  const double a = x.dot(y) - c;
+  const double b = x.dot(k.cross(y));
+  const double r2 = a * a + b * b;
+  return {a, b, c, r2, 1 / std::max(r2, 1e-30)};
 }
 
 /// Tells how the axes of six joints lie, and moves their points to where they meet.

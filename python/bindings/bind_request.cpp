@@ -82,11 +82,11 @@ py::object solutions_state(const PySolutions& self) {
   const Solutions& s = self.solutions;
   return py::make_tuple(enum_name(s.status), self.q(), self.column(&Result::position_error),
                         self.column(&Result::rotation_error), self.column(&Result::move),
-                        self.column(&Result::cost), s.attempts, s.iterations);
+                        self.column(&Result::cost), s.attempts, s.iterations, enum_name(s.proof));
 }
 
 PySolutions solutions_from_state(const py::object& state) {
-  PickleState in(state, "Solutions", 8);
+  PickleState in(state, "Solutions", 9);
   Solutions out;
   out.status = in.value<Status>("status");
   const auto q = in.rows("q");
@@ -99,6 +99,7 @@ PySolutions solutions_from_state(const py::object& state) {
   const auto cost = in.column<double>("cost", n);
   out.attempts = in.count("attempts");
   out.iterations = in.count("iterations");
+  out.proof = in.value<Proof>("proof");
   for (py::ssize_t i = 0; i < n; ++i) {
     check_finite(q.data(i), dof, "pickled Solutions, q[" + std::to_string(i) + "]");
     if (!(position_error.at(i) >= 0 && rotation_error.at(i) >= 0)) {
@@ -124,7 +125,7 @@ std::string solutions_repr(const PySolutions& self) {
     const JointVector& q = all.front().q;
     best = ", best q=" + short_numbers(q.data(), static_cast<std::size_t>(q.size()));
   }
-  return std::string("Solutions(") + enum_name(self.solutions.status) + ", " +
+  return "Solutions(" + status_text(self.solutions.status, self.solutions.proof) + ", " +
          std::to_string(all.size()) + " solutions" + best + ")";
 }
 
@@ -133,7 +134,8 @@ std::string solutions_html(const PySolutions& self) {
   std::vector<std::string> header = {""};
   for (int i = 0; i < self.dof; ++i) header.push_back("q[" + std::to_string(i) + "]");
   header.insert(header.end(), {"position error [m]", "rotation error [rad]", "move"});
-  HtmlTable table(std::to_string(all.size()) + " solutions, " + enum_name(self.solutions.status),
+  HtmlTable table(std::to_string(all.size()) + " solutions, " +
+                      status_text(self.solutions.status, self.solutions.proof),
                   header);
   const std::size_t shown = std::min(all.size(), HtmlTable::kMostRows);
   for (std::size_t i = 0; i < shown; ++i) {
@@ -159,6 +161,13 @@ void bind_solutions(py::module_& m) {
   add_property(
       cls, "status", [](const S& self) { return self.solutions.status; },
       "`solved`, or why there is none.");
+  add_property(
+      cls, "proof", [](const S& self) { return self.solutions.proof; },
+      "How it is known that there is certainly no solution or, of a set that is not empty, that "
+      "there are certainly no more; `none` if it is not.");
+  add_property(
+      cls, "proven", [](const S& self) { return is_proven(self.solutions.proof); },
+      "Whether these are certainly all: `proof` is `reach` or `closed_form`.");
   add_property(cls, "q", &S::q, "Joint values [rad or m], (n, dof).");
   add_property(
       cls, "position_error", [](const S& self) { return self.column(&Result::position_error); },

@@ -31,14 +31,14 @@ PyBatchResult PyBatchResult::rows(const RowsLike& index) const {
   };
   return {
       take(q),        take(success),    take(status), take(position_error), take(rotation_error),
-      take(attempts), take(iterations), take(move)};
+      take(attempts), take(iterations), take(move),   take(proof)};
 }
 
 namespace {
 
 std::string result_repr(const PyResult& self) {
   const Result& r = self.result;
-  std::string text = std::string("Result(") + enum_name(r.status);
+  std::string text = "Result(" + status_text(r.status, r.proof);
   if (r.success()) {
     text += ", q=" + short_numbers(r.q.data(), static_cast<std::size_t>(r.q.size())) +
             ", position_error=" + short_number(r.position_error, 3) +
@@ -55,6 +55,8 @@ std::string result_html(const PyResult& self) {
     table.add_row({"q", short_numbers(r.q.data(), static_cast<std::size_t>(r.q.size()))});
     table.add_row({"position error [m]", short_number(r.position_error, 3)});
     table.add_row({"rotation error [rad]", short_number(r.rotation_error, 3)});
+  } else {
+    table.add_row({"proof", enum_name(r.proof)});
   }
   table.add_row({"attempts", std::to_string(r.attempts)});
   table.add_row({"iterations", std::to_string(r.iterations)});
@@ -64,11 +66,11 @@ std::string result_html(const PyResult& self) {
 py::object result_state(PyResult& self) {
   const Result& r = self.result;
   return py::make_tuple(enum_name(r.status), self.joints(), r.position_error, r.rotation_error,
-                        r.attempts, r.iterations, r.move, r.cost);
+                        r.attempts, r.iterations, r.move, r.cost, enum_name(r.proof));
 }
 
 PyResult result_from_state(const py::object& state) {
-  PickleState in(state, "Result", 8);
+  PickleState in(state, "Result", 9);
   Result r;
   r.status = in.value<Status>("status");
   if (r.success()) {
@@ -82,6 +84,10 @@ PyResult result_from_state(const py::object& state) {
   r.iterations = in.count("iterations");
   r.move = in.length("move", /*may_be_nan=*/true);
   r.cost = in.value<double>("cost");
+  r.proof = in.value<Proof>("proof");
+  if (r.success() && r.proof != Proof::none) {
+    in.refuse("proof", "none, as it is solved", enum_name(r.proof));
+  }
   return {r, {}};
 }
 
@@ -95,6 +101,13 @@ void bind_single(py::module_& m) {
   add_property(
       cls, "status", [](const PyResult& self) { return self.result.status; },
       "Why the solve ended.");
+  add_property(
+      cls, "proof", [](const PyResult& self) { return self.result.proof; },
+      "Of a failure, how it is known that there is certainly no answer, if it is; `none` of a "
+      "success.");
+  add_property(
+      cls, "proven", [](const PyResult& self) { return is_proven(self.result.proof); },
+      "Whether there is certainly no answer: `proof` is `reach` or `closed_form`.");
   add_property(cls, "q", &PyResult::joints, "Joint values [rad or m], (dof,); None unless solved.");
   add_property(
       cls, "position_error", [](const PyResult& self) { return self.result.position_error; },
@@ -121,15 +134,15 @@ void bind_single(py::module_& m) {
 
 std::string batch_html(const PyBatchResult& self) {
   const auto text = [](double x) { return short_number(x, 3); };
-  HtmlTable table(
-      std::to_string(self.solved()) + " of " + std::to_string(self.size()) + " solved",
-      {"", "status", "q", "position error [m]", "rotation error [rad]", "attempts", "iterations"});
+  HtmlTable table(std::to_string(self.solved()) + " of " + std::to_string(self.size()) + " solved",
+                  {"", "status", "proof", "q", "position error [m]", "rotation error [rad]",
+                   "attempts", "iterations"});
   const auto rows = static_cast<std::size_t>(self.size());
   const std::size_t shown = std::min(rows, HtmlTable::kMostRows);
   for (std::size_t i = 0; i < shown; ++i) {
     const Result r = self.row(RowIndex(py::int_(i))).result;
     table.add_row(
-        {std::to_string(i), enum_name(r.status),
+        {std::to_string(i), enum_name(r.status), r.success() ? "" : enum_name(r.proof),
          r.success() ? short_numbers(r.q.data(), static_cast<std::size_t>(r.q.size())) : "",
          r.success() ? text(r.position_error) : "", r.success() ? text(r.rotation_error) : "",
          std::to_string(r.attempts), std::to_string(r.iterations)});
@@ -140,19 +153,26 @@ std::string batch_html(const PyBatchResult& self) {
 
 py::object batch_state(const PyBatchResult& self) {
   return py::make_tuple(self.q, self.success, self.status, self.position_error, self.rotation_error,
-                        self.attempts, self.iterations, self.move);
+                        self.attempts, self.iterations, self.move, self.proof);
 }
 
-/// Statuses that there are, and numbers where there are answers.
+/// Statuses and proofs that there are, and numbers where there are answers.
 void check_rows(const PyBatchResult& batch, const PickleState& in) {
   constexpr auto kStatuses = std::size(EnumTable<Status>::kValues);
+  constexpr auto kProofs = std::size(EnumTable<Proof>::kValues);
   for (py::ssize_t i = 0; i < batch.size(); ++i) {
     const std::string row = "row " + std::to_string(i);
     if (batch.status.at(i) >= kStatuses) {
       in.refuse("status", "values of Status", std::to_string(batch.status.at(i)) + " in " + row);
     }
+    if (batch.proof.at(i) >= kProofs) {
+      in.refuse("proof", "values of Proof", std::to_string(batch.proof.at(i)) + " in " + row);
+    }
     const bool solved = static_cast<Status>(batch.status.at(i)) == Status::solved;
     if (batch.success.at(i) != solved) in.refuse("success", "the same as status says", row);
+    if (solved && static_cast<Proof>(batch.proof.at(i)) != Proof::none) {
+      in.refuse("proof", "none where solved", row);
+    }
     if (solved && !(batch.position_error.at(i) >= 0 && batch.rotation_error.at(i) >= 0)) {
       in.refuse("errors", "0 or more where solved", row);
     }
@@ -164,7 +184,7 @@ void check_rows(const PyBatchResult& batch, const PickleState& in) {
 }
 
 PyBatchResult batch_from_state(const py::object& state) {
-  PickleState in(state, "BatchResult", 8);
+  PickleState in(state, "BatchResult", 9);
   PyBatchResult batch;
   batch.q = in.rows("q");
   const py::ssize_t n = batch.q.shape(0);
@@ -175,6 +195,7 @@ PyBatchResult batch_from_state(const py::object& state) {
   batch.attempts = in.column<std::int32_t>("attempts", n);
   batch.iterations = in.column<std::int32_t>("iterations", n);
   batch.move = in.column<double>("move", n);
+  batch.proof = in.column<std::uint8_t>("proof", n);
   check_rows(batch, in);
   return batch;
 }
@@ -197,6 +218,7 @@ void bind_batch(py::module_& m) {
   add_property(cls, "q", &B::q, "Joint values [rad or m], (N, dof); NaN where not solved.");
   add_property(cls, "success", &B::success, "Whether each target is solved, (N,).");
   add_property(cls, "status", &B::status, "Values of Status, (N,).");
+  add_property(cls, "proof", &B::proof, "Values of Proof, (N,); 0, which is `none`, where solved.");
   add_property(cls, "position_error", &B::position_error,
                "Distances to the targets [m], (N,); NaN where not solved.");
   add_property(cls, "rotation_error", &B::rotation_error,
@@ -229,6 +251,7 @@ void bind_batch(py::module_& m) {
 
 void bind_result(py::module_& m) {
   bind_enum<Status>(m);
+  bind_enum<Proof>(m);
   bind_single(m);
   bind_batch(m);
 }

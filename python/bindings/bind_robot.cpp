@@ -15,6 +15,7 @@
 #include "html.hpp"
 #include "iksel/pose.hpp"
 #include "iksel/robot.hpp"
+#include "iksel/structure.hpp"
 #include "joint_values.hpp"
 #include "pickle.hpp"
 #include "pose_arguments.hpp"
@@ -170,6 +171,9 @@ void bind_chain(py::class_<Robot>& cls) {
       cls, "reach_centre",
       [](const Robot& self) { return to_array(JointVector(self.reach_centre())); },
       "A point on the first joint's axis, in the base frame [m], (3,).");
+  add_property(
+      cls, "structure", [](const Robot& self) { return find_structure(self); },
+      "How the axes lie, and whether that gives all solutions of a pose in closed form.");
   add_property(cls, "chain_hash", &Robot::chain_hash,
                "Hash of the chain up to the tip link: equal for chains that may share a database.");
 }

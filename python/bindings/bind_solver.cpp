@@ -98,17 +98,18 @@ py::object solve_batch(const Solver& self, py::handle poses, const Given& given)
   const py::ssize_t n = targets.shape(0);
   const py::ssize_t dof = joints;
   const auto nears = as_near(given["near"], n, self.robot(), request);
-  PyBatchResult out{py::array_t<double>({n, dof}), py::array_t<bool>(n),
-                    py::array_t<std::uint8_t>(n),  py::array_t<double>(n),
-                    py::array_t<double>(n),        py::array_t<std::int32_t>(n),
-                    py::array_t<std::int32_t>(n),  py::array_t<double>(n)};
+  PyBatchResult out{
+      py::array_t<double>({n, dof}), py::array_t<bool>(n),   py::array_t<std::uint8_t>(n),
+      py::array_t<double>(n),        py::array_t<double>(n), py::array_t<std::int32_t>(n),
+      py::array_t<std::int32_t>(n),  py::array_t<double>(n), py::array_t<std::uint8_t>(n)};
   const BatchView view{out.q.mutable_data(),
                        out.status.mutable_data(),
                        out.position_error.mutable_data(),
                        out.rotation_error.mutable_data(),
                        out.attempts.mutable_data(),
                        out.iterations.mutable_data(),
-                       out.move.mutable_data()};
+                       out.move.mutable_data(),
+                       out.proof.mutable_data()};
   const std::optional<ProgressCallable> no_callable;
   const Progress interruptible = make_progress(no_callable);
   bool* success = out.success.mutable_data();

@@ -14,6 +14,7 @@
 #include "iksel/request.hpp"
 #include "iksel/result.hpp"
 #include "iksel/robot.hpp"
+#include "iksel/structure.hpp"
 
 namespace iksel::python {
 
@@ -49,6 +50,17 @@ struct EnumTable<JointType> {
       {"revolute", JointType::revolute, "turns between limits [rad]"},
       {"continuous", JointType::continuous, "turns without limits [rad]"},
       {"prismatic", JointType::prismatic, "slides between limits [m]"},
+  };
+};
+
+template <>
+struct EnumTable<StructureKind> {
+  static constexpr const char* kName = "StructureKind";
+  static constexpr const char* kDoc = "How the solutions of a pose can be found.";
+  static constexpr EnumValue<StructureKind> kValues[] = {
+      {"closed_form", StructureKind::closed_form,
+       "all of them in closed form: that there is none is proven"},
+      {"searched", StructureKind::searched, "by search only"},
   };
 };
 
@@ -170,7 +182,8 @@ struct EnumTable<Status> {
       {"solved", Status::solved,
        "q reaches the target within both tolerances and lies inside the limits"},
       {"not_converged", Status::not_converged,
-       "no attempt reached the tolerances within the allowed work"},
+       "no attempt reached the tolerances within the allowed work; Result.proof may say that none "
+       "can"},
       {"outside_limits", Status::outside_limits,
        "attempts reached the target, but only with joints outside their limits"},
       {"out_of_reach", Status::out_of_reach,
@@ -182,6 +195,18 @@ struct EnumTable<Status> {
        "answers exist, but joints would have to move faster than their velocity limits"},
       {"invalid_pose", Status::invalid_pose,
        "the target is no pose; in batches only, for a single pose it is an error"},
+  };
+};
+
+template <>
+struct EnumTable<Proof> {
+  static constexpr const char* kName = "Proof";
+  static constexpr const char* kDoc = "How certain it is that there is no answer.";
+  static constexpr EnumValue<Proof> kValues[] = {
+      {"none", Proof::none, "there is an answer, or it was searched for and not found"},
+      {"reach", Proof::reach, "the target lies farther away than the links are long together"},
+      {"closed_form", Proof::closed_form,
+       "all branches are known (Robot.structure), and none of them lies inside the limits"},
   };
 };
 
@@ -305,8 +330,9 @@ inline void show_names(const py::object& cls) {
 /// Makes the Python enum; to come before any function that takes or returns it.
 template <class E>
 void bind_enum(py::module_& m) {
-  // Statuses stand as numbers in batch results, and compare with them.
-  constexpr const char* kBase = std::is_same_v<E, Status> ? "enum.IntEnum" : "enum.Enum";
+  // Statuses and proofs stand as numbers in batch results, and compare with them.
+  constexpr bool kIsColumn = std::is_same_v<E, Status> || std::is_same_v<E, Proof>;
+  constexpr const char* kBase = kIsColumn ? "enum.IntEnum" : "enum.Enum";
   py::native_enum<E> binding(m, EnumTable<E>::kName, kBase, EnumTable<E>::kDoc);
   for (const auto& entry : EnumTable<E>::kValues) binding.value(entry.name, entry.value, entry.doc);
   binding.finalize();

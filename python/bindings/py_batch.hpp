@@ -51,6 +51,7 @@ struct PyBatchResult {
   py::array_t<std::int32_t> attempts;
   py::array_t<std::int32_t> iterations;
   py::array_t<double> move;
+  py::array_t<std::uint8_t> proof;
 
   [[nodiscard]] py::ssize_t size() const { return status.shape(0); }
 
@@ -63,6 +64,7 @@ struct PyBatchResult {
     const py::ssize_t i = as_row(index, size(), "row");
     PyResult out;
     out.result.status = static_cast<Status>(status.at(i));
+    out.result.proof = static_cast<Proof>(proof.at(i));
     if (out.result.success()) {
       out.result.q = Eigen::Map<const Eigen::VectorXd>(q.data(i), q.shape(1));
     }

@@ -6,7 +6,10 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/typing.h>
 
+#include <string>
+
 #include "array_checks.hpp"
+#include "enums.hpp"
 #include "iksel/result.hpp"
 
 namespace iksel::python {
@@ -23,6 +26,27 @@ struct PyResult {
     return py::reinterpret_borrow<OptionalJoints>(q);
   }
 };
+
+/// Whether it leaves no doubt.
+inline bool is_proven(Proof proof) {
+  switch (proof) {
+    case Proof::reach:
+    case Proof::closed_form:
+      return true;
+    case Proof::none:
+      return false;
+  }
+  return false;
+}
+
+/// "not_converged, proven: closed_form".
+inline std::string status_text(Status status, Proof proof) {
+  std::string text = enum_name(status);
+  if (status != Status::solved && is_proven(proof)) {
+    text += std::string(", proven: ") + enum_name(proof);
+  }
+  return text;
+}
 
 /// An iterator over what has __len__ and __getitem__ that takes an int.
 inline py::typing::Iterator<PyResult> iterate_rows(const py::object& self) {

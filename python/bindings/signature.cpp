@@ -17,6 +17,7 @@ constexpr std::pair<const char*, const char*> kMakers[] = {
     {"Robot", "iksel.load_robot(name) or Robot.from_urdf(path_or_xml)"},
     {"LinkTree", "LinkTree.from_urdf(path_or_xml)"},
     {"LinkTreeJoint", "LinkTree.from_urdf(path_or_xml).joints"},
+    {"Structure", "Robot.structure"},
     {"Database", "Database.build(robot) or Database.load(path)"},
     {"Objective",
      "Objective.near_posture(posture), far_from_limits(), most_manipulable() or custom(cost)"},

@@ -14,7 +14,7 @@ import numpy
 import numpy.typing
 import os
 import typing
-__all__: list[str] = ['AngleUnitWarning', 'Axis', 'BatchResult', 'Cause', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'Diagnosis', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'KeyScheme', 'Kinematics', 'Lanes', 'LinkTree', 'LinkTreeJoint', 'MoveNorm', 'Objective', 'ObjectiveKind', 'Paper', 'PathResult', 'RIGID_TOLERANCE', 'Ranking', 'Reselection', 'Result', 'Robot', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'SignatureError', 'SolutionOrder', 'Solutions', 'Solver', 'SolverOptions', 'Status', 'Task', 'TaskFrame', 'Tracker', 'UnknownNameError', 'UrdfError', 'check_pose', 'evaluate', 'grid_counts', 'orthonormalized', 'pose_error', 'pose_matrices', 'rigid_deviation', 'simd_level', 'time_kdl_fk_jacobian']
+__all__: list[str] = ['AngleUnitWarning', 'Axis', 'BatchResult', 'Cause', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'Diagnosis', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'KeyScheme', 'Kinematics', 'Lanes', 'LinkTree', 'LinkTreeJoint', 'MoveNorm', 'Objective', 'ObjectiveKind', 'Paper', 'PathResult', 'Proof', 'RIGID_TOLERANCE', 'Ranking', 'Reselection', 'Result', 'Robot', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'SignatureError', 'SolutionOrder', 'Solutions', 'Solver', 'SolverOptions', 'Status', 'Structure', 'StructureKind', 'Task', 'TaskFrame', 'Tracker', 'UnknownNameError', 'UrdfError', 'check_pose', 'evaluate', 'grid_counts', 'orthonormalized', 'pose_error', 'pose_matrices', 'rigid_deviation', 'simd_level', 'time_kdl_fk_jacobian']
 class AngleUnitWarning(UserWarning):
     """
     Angles that look like degrees were given where radians are meant.
@@ -121,6 +121,32 @@ class LinkTree:
     def tips(self) -> list[tuple[str, int]]:
         """
         The links without children, each with the number of joints that move it.
+        """
+class StructureKind(enum.Enum):
+    """
+    How the solutions of a pose can be found.
+    """
+    closed_form = 0
+    searched = 1
+    def __format__(self, arg0: str) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
+class Structure:
+    """
+    What follows from how the axes of a chain lie.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def description(self) -> str:
+        """
+        Which axes, numbered from 1, are parallel or meet, or that none do that would help; a sentence without its full stop.
+        """
+    @property
+    def kind(self) -> StructureKind:
+        """
+        How the solutions of a pose can be found.
         """
 class JointType(enum.Enum):
     """
@@ -329,6 +355,11 @@ class Robot:
     def soft_upper(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         Upper limits of the safety controller [rad or m], (dof,); `upper` where the URDF has none.
+        """
+    @property
+    def structure(self) -> Structure:
+        """
+        How the axes lie, and whether that gives all solutions of a pose in closed form.
         """
     @property
     def tcp(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -1313,6 +1344,17 @@ class Status(enum.IntEnum):
         ...
     def __str__(self) -> str:
         ...
+class Proof(enum.IntEnum):
+    """
+    How certain it is that there is no answer.
+    """
+    closed_form = 2
+    none = 0
+    reach = 1
+    def __format__(self, arg0: str) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
 @typing.type_check_only
 class _Result:
     """
@@ -1346,6 +1388,16 @@ class _Result:
     def position_error(self) -> float:
         """
         Distance to the target [m]; NaN unless solved.
+        """
+    @property
+    def proof(self) -> Proof:
+        """
+        Of a failure, how it is known that there is certainly no answer, if it is; `none` of a success.
+        """
+    @property
+    def proven(self) -> bool:
+        """
+        Whether there is certainly no answer: `proof` is `reach` or `closed_form`.
         """
     @property
     def rotation_error(self) -> float:
@@ -1429,6 +1481,11 @@ class BatchResult:
     def position_error(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         Distances to the targets [m], (N,); NaN where not solved.
+        """
+    @property
+    def proof(self) -> numpy.typing.NDArray[numpy.uint8]:
+        """
+        Values of Proof, (N,); 0, which is `none`, where solved.
         """
     @property
     def q(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -1738,6 +1795,16 @@ class Solutions:
     def position_error(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         Distances to the target [m], (n,).
+        """
+    @property
+    def proof(self) -> Proof:
+        """
+        How it is known that there is certainly no solution or, of a set that is not empty, that there are certainly no more; `none` if it is not.
+        """
+    @property
+    def proven(self) -> bool:
+        """
+        Whether these are certainly all: `proof` is `reach` or `closed_form`.
         """
     @property
     def q(self) -> numpy.typing.NDArray[numpy.float64]:

@@ -39,6 +39,7 @@ def make_samples() -> list[Any]:
     solver = iksel.Solver(ARM, options)
     return [
         ARM,
+        ARM.structure,
         options,
         iksel.SolverOptions.paper(),
         iksel.Lanes(),

@@ -78,13 +78,17 @@ def test_a_result_shows_its_joints_and_errors(solver, poses) -> None:
     assert f"position_error={result.position_error:.3g}" in text
     assert f"rotation_error={result.rotation_error:.3g}" in text
     assert len(text) < 200
-    assert str(solver.solve(poses[3])).startswith("Result(out_of_reach, attempts=0")
+    assert str(solver.solve(poses[3])).startswith(
+        "Result(out_of_reach, proven: reach, attempts=0"
+    )
 
 
 def test_other_answers_show_theirs(solver, poses) -> None:
     found = solver.solve_all(poses[0])
     assert f"Solutions(solved, {len(found)} solutions, best q=[" in repr(found)
-    assert repr(solver.solve_all(poses[3])) == "Solutions(out_of_reach, 0 solutions)"
+    assert repr(solver.solve_all(poses[3])) == (
+        "Solutions(out_of_reach, proven: reach, 0 solutions)"
+    )
     assert repr(solver.solve_batch(poses)) == "BatchResult(3 of 4 solved)"
 
 
@@ -98,7 +102,9 @@ def test_members_of_enums_are_written_by_name(enum) -> None:
 
 
 def test_all_bound_enums_are_tried() -> None:
-    assert {"Status", "Cause", "ObjectiveKind"} <= {enum.__name__ for enum in ENUMS}
+    assert {"Status", "Proof", "Cause", "ObjectiveKind"} <= {
+        enum.__name__ for enum in ENUMS
+    }
 
 
 # Tables
@@ -156,7 +162,9 @@ def test_tables_of_answers(solver, poses) -> None:
     table = Table(result._repr_html_())
     assert "solved" in table.cells
     assert f"{result.position_error:.3g}" in table.cells
-    assert "out_of_reach" in Table(solver.solve(poses[3])._repr_html_()).cells
+    failed = Table(solver.solve(poses[3])._repr_html_()).cells
+    assert "out_of_reach" in failed
+    assert failed[failed.index("proof") + 1] == "reach"
     found = solver.solve_all(poses[0])
     assert Table(found._repr_html_()).rows == 1 + len(found)
     for q in found.q:
@@ -165,6 +173,7 @@ def test_tables_of_answers(solver, poses) -> None:
     table = Table(batch._repr_html_())
     assert table.rows == 1 + len(batch)
     assert table.cells.count("solved") == 3
+    assert table.cells.count("reach") == 1
     assert "3 of 4 solved" in table.cells
 
 
@@ -191,7 +200,15 @@ def test_rows_of_a_batch_are_a_batch(solver, poses) -> None:
         rows = np.arange(8)[index]
         assert [repr(row) for row in part] == [repr(batch[int(i)]) for i in rows]
         assert part.solved == batch.success[rows].sum()
-        for name in ("q", "success", "status", "position_error", "attempts", "move"):
+        for name in (
+            "q",
+            "success",
+            "status",
+            "proof",
+            "position_error",
+            "attempts",
+            "move",
+        ):
             one, other = getattr(part, name), getattr(batch, name)
             np.testing.assert_array_equal(one, other[rows], err_msg=name)
             assert not np.shares_memory(one, other)

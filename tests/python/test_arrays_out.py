@@ -85,6 +85,7 @@ def test_batch_arrays_have_the_documented_types(solver, poses):
         ("q", "float64", (n, 6)),
         ("success", "bool", (n,)),
         ("status", "uint8", (n,)),
+        ("proof", "uint8", (n,)),
         ("position_error", "float64", (n,)),
         ("rotation_error", "float64", (n,)),
         ("attempts", "int32", (n,)),

@@ -17,6 +17,7 @@ FIELDS = (
     "attempts",
     "iterations",
     "move",
+    "proof",
 )
 
 

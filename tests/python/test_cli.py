@@ -114,6 +114,11 @@ def test_info_shows_every_robot(run: Run, made, name: str) -> None:
     assert (info["base_link"], info["tip_link"]) == (robot.base_link, robot.tip_link)
     np.testing.assert_array_equal(info["tcp"], robot.tcp)
     assert info["reach"] == robot.reach
+    assert f"structure   {robot.structure.description}\n" in text
+    assert info["structure"] == {
+        "kind": robot.structure.kind.name,
+        "description": robot.structure.description,
+    }
     for i, joint in enumerate(info["joints"]):
         assert joint["type"] == robot.joint_types[i].name
         upper = None if math.isinf(robot.upper[i]) else robot.upper[i]
@@ -169,6 +174,7 @@ def test_solve_reports_everything(run: Run) -> None:
     answer = run("solve ur3 --from-q 0.1 -1 1 0.2 0.3 -4e-1 --json").json()
     assert answer["success"] is True
     assert answer["status"] == "solved"
+    assert answer["proof"] == "none"
     assert answer["joint_names"] == iksel.load_robot("ur3").joint_names
     assert len(answer["q"]) == 6
     assert answer["attempts"] >= 1
@@ -176,6 +182,7 @@ def test_solve_reports_everything(run: Run) -> None:
     text = assert_good(run("solve ur3 --from-q 0.1 -1 1 0.2 0.3 -0.4")).out
     for word in ("solved", "rad", "deg", "wrist_3_joint", "us", "position error"):
         assert word in text
+    assert "proof" not in text
 
 
 def test_solve_from_a_seed(run: Run) -> None:
@@ -192,11 +199,13 @@ def test_solve_without_solution(run: Run) -> None:
     output = run("solve", "ur3", *FAR, *FEW)
     assert_good(output, code=1)
     assert "out_of_reach" in output.out
+    assert "proof       reach: certainly there is no solution\n" in output.out
     answer = run("solve", "ur3", *FAR, *FEW, "--json")
     assert answer.code == 1
     assert answer.json()["q"] is None
     assert answer.json()["position_error"] is None
     assert answer.json()["success"] is False
+    assert answer.json()["proof"] == "reach"
 
 
 def test_solve_with_a_file_of_ones_own(run: Run, urdf: Path) -> None:
@@ -270,9 +279,11 @@ def test_solve_all(run: Run, made) -> None:
     assert near["move"] == sorted(near["move"])
     text = assert_good(run(*words)).out
     assert "solutions  8" in text
+    assert answer["proof"] in {"none", "closed_form"}
     assert "wrist_3_joint" in text
     nothing = assert_good(run("solve", "ur3", *FAR, "--all", "--json"), code=1).json()
     assert (nothing["q"], nothing["status"]) == ([], "out_of_reach")
+    assert nothing["proof"] == "reach"
     assert "wrist_3" not in run("solve", "ur3", *FAR, "--all").out
 
 

@@ -63,7 +63,7 @@ def test_options(protocol: int) -> None:
 
 @each_protocol
 def test_enums(protocol: int) -> None:
-    for kind in (iksel.Iteration, iksel.Status, iksel.JointType, iksel.Sampling):
+    for kind in (iksel.Iteration, iksel.Status, iksel.Proof, iksel.StructureKind):
         for member in kind:
             assert again(member, protocol) is member
 
@@ -82,12 +82,13 @@ def test_solvers_databases_and_results(made, protocol: int) -> None:
     poses[3, 0, 3] += 10.0
     batch = solver.solve_batch(poses)
     for same in (other.solve_batch(poses), again(batch, protocol)):
-        for field in ("q", "success", "status", "position_error", "iterations"):
+        for field in ("q", "success", "status", "proof", "position_error"):
             np.testing.assert_array_equal(getattr(same, field), getattr(batch, field))
     for pose in poses[2:4]:
         result = solver.solve(pose)
         same = again(result, protocol)
         assert same.status == result.status
+        assert same.proof == result.proof
         assert same.iterations == result.iterations
         np.testing.assert_array_equal(same.q, result.q)
         np.testing.assert_array_equal(same.position_error, result.position_error)

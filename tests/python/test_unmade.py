@@ -52,6 +52,7 @@ def examples(solver: iksel.Solver) -> list[object]:
     tree = iksel.LinkTree.from_urdf(robot.urdf)
     return [
         robot,
+        robot.structure,
         tree,
         tree.joints[1],
         solver,
@@ -213,9 +214,32 @@ def test_arrays_that_do_not_fit_each_other_are_refused(solver) -> None:
     success[2] = False
     with pytest.raises(iksel.InvalidArgumentError, match="success"):
         unpickled(iksel.BatchResult, (q, success, *state[2:]))
+    proof = state[-1].copy()
+    for value in (1, 200):
+        proof[2] = value
+        with pytest.raises(iksel.InvalidArgumentError, match="proof.*row 2"):
+            unpickled(iksel.BatchResult, (*state[:-1], proof))
     q[3, 2] = math.nan
     with pytest.raises(iksel.InvalidArgumentError, match="row 3.*joint 2"):
         unpickled(iksel.BatchResult, (q, *state[1:]))
+
+
+def test_proofs_that_there_are_not_are_refused(solver) -> None:
+    far = np.eye(4)
+    far[0, 3] = 9.0
+    here = solver.robot.fk(np.zeros(6))
+    failed, solved = states(solver.solve(far)), states(solver.solve(here))
+    assert (failed[-1], solved[-1]) == ("reach", "none")
+    for wrong in ("perhaps", 1, None):
+        with pytest.raises(iksel.InvalidArgumentError, match="pickled Result, proof"):
+            unpickled(iksel.Result, (*failed[:-1], wrong))
+        found = states(solver.solve_all(far))
+        with pytest.raises(iksel.InvalidArgumentError, match="Solutions, proof"):
+            unpickled(iksel.Solutions, (*found[:-1], wrong))
+        with pytest.raises(iksel.InvalidArgumentError, match="Structure, kind"):
+            unpickled(iksel.Structure, (wrong, "text"))
+    with pytest.raises(iksel.InvalidArgumentError, match="as it is solved"):
+        unpickled(iksel.Result, (*solved[:-1], "reach"))
 
 
 def test_joint_values_of_another_length_are_refused(solver) -> None:

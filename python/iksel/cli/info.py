@@ -52,7 +52,8 @@ def add_parser(commands: Any) -> None:
         "info",
         usage="iksel info ROBOT [options]",
         help="show a robot's joints, limits and reach",
-        description="Show a robot's links, tool, reach, joints and their limits.",
+        description="Show a robot's links, tool, reach, joints and their limits, and "
+        "whether it is solved in closed form or by search.",
         epilog=EXAMPLES,
     )
     add_robot(parser)
@@ -87,6 +88,7 @@ def run(arguments: argparse.Namespace) -> int:
             ("chain", f"{robot.base_link} -> {robot.tip_link}"),
             ("tcp", pose_text(robot.tcp)),
             ("reach", reach),
+            ("structure", robot.structure.description),
             ("chain hash", f"{robot.chain_hash:016x}"),
             *((field, text) for field, text in origin.items() if text),
         ]
@@ -126,6 +128,7 @@ def as_dict(robot: Robot, angles: Angles) -> dict[str, Any]:
         strict=True,
     )
     names = ("name", "type", *LIMIT_FIELDS)
+    structure = robot.structure
     return {
         "name": robot.name,
         "base_link": robot.base_link,
@@ -135,6 +138,10 @@ def as_dict(robot: Robot, angles: Angles) -> dict[str, Any]:
         "tcp": robot.tcp,
         "reach": robot.reach,
         "reach_centre": robot.reach_centre,
+        "structure": {
+            "kind": structure.kind.name,
+            "description": structure.description,
+        },
         "chain_hash": f"{robot.chain_hash:016x}",
         "joints": [dict(zip(names, joint, strict=True)) for joint in columns],
     }

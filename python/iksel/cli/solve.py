@@ -20,7 +20,7 @@ from iksel.cli.info import pose_text
 if TYPE_CHECKING:
     import argparse
 
-    from iksel_cpp import Diagnosis, Result, Robot
+    from iksel_cpp import Diagnosis, Result, Robot, Solutions
 
     from iksel._arrays import FloatArray
 
@@ -133,6 +133,7 @@ def run(arguments: argparse.Namespace) -> int:
         "target": target,
         "success": result.success,
         "status": result.status.name,
+        "proof": result.proof.name,
         "angle_unit": angles.unit,
         "q": angles.show_optional(robot, result.q),
         "position_error": result.position_error,
@@ -216,6 +217,7 @@ def run_all(
         "target": target,
         "success": found.success,
         "status": found.status.name,
+        "proof": found.proof.name,
         "angle_unit": angles.unit,
         "q": angles.show(robot, found.q),
         "position_error": found.position_error,
@@ -234,6 +236,7 @@ def run_all(
                 ("target", pose_text(target)),
                 ("status", found.status.name),
                 ("solutions", str(len(found))),
+                *proof_row(found),
             ]
         )
         if found.success:
@@ -248,6 +251,7 @@ def print_text(robot: Robot, result: Result, report: dict[str, Any]) -> None:
         ("robot", f"{robot.name}, {robot.base_link} -> {robot.tip_link}"),
         ("target", pose_text(report["target"])),
         ("status", result.status.name),
+        *proof_row(result),
         ("attempts", str(result.attempts)),
         ("iterations", str(result.iterations)),
         ("time", f"{number(report['time_us'], 1)} us"),
@@ -266,6 +270,14 @@ def print_text(robot: Robot, result: Result, report: dict[str, Any]) -> None:
         return
     print()
     print_joints(robot, result.q.tolist())
+
+
+def proof_row(answer: Result | Solutions) -> list[tuple[str, str]]:
+    """What is certain, in a row; none where nothing is."""
+    if not answer.proven:
+        return []
+    certain = "these are all" if answer.success else "there is no solution"
+    return [("proof", f"{answer.proof.name}: certainly {certain}")]
 
 
 def print_configurations(robot: Robot, q: FloatArray, angles: Angles) -> None:

@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What follows from how a robot's axes lie, and failures that are proven by it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import iksel
+
+SEED = 19
+COUNT = 100
+
+none = iksel.Proof.none
+reach = iksel.Proof.reach
+closed_form = iksel.Proof.closed_form
+
+
+def turned_at_random(robot: iksel.Robot) -> np.ndarray:
+    """Positions that are reached, each with some rotation or other."""
+    poses = robot.fk(robot.random_configurations(COUNT, SEED))
+    rng = np.random.default_rng(SEED)
+    for pose in poses:
+        rotation, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+        pose[:3, :3] = rotation * np.linalg.det(rotation)
+    return poses
+
+
+@pytest.fixture(scope="module")
+def solver(made) -> iksel.Solver:
+    return made.solver("ur3")
+
+
+@pytest.fixture(scope="module")
+def poses(solver) -> np.ndarray:
+    """Some with solutions, some without, and at the end some out of reach."""
+    poses = turned_at_random(solver.robot)
+    poses[-10:, :3, 3] += 5.0
+    return poses
+
+
+# Structure
+
+
+@pytest.mark.parametrize("name", ["ur3", "irb120", "vs060"])
+def test_arms_in_closed_form(made, name: str) -> None:
+    structure = made.robot(name).structure
+    assert structure.kind is iksel.StructureKind.closed_form
+    assert "axes" in structure.description
+    assert structure.description.endswith("solved in closed form")
+
+
+@pytest.mark.parametrize("name", ["cvr038", "panda"])
+def test_arms_that_are_searched(made, name: str) -> None:
+    structure = made.robot(name).structure
+    assert structure.kind is iksel.StructureKind.searched
+    assert structure.description.endswith("solved by search")
+
+
+def test_a_structure_shows_its_kind_and_description(made) -> None:
+    structure = made.robot("ur3").structure
+    assert repr(structure) == f"Structure(closed_form: {structure.description})"
+    with pytest.raises(AttributeError):
+        structure.kind = iksel.StructureKind.searched
+
+
+def test_a_joint_less_is_another_structure(made) -> None:
+    wrist = made.robot("ur3").joint_names[-1]
+    locked = iksel.load_robot("ur3", locked_joints={wrist: 0.0})
+    assert locked.structure.kind is not iksel.StructureKind.closed_form
+
+
+# Proofs
+
+
+def test_beyond_reach_is_proven_for_every_arm(made) -> None:
+    for name in ("ur3", "panda"):
+        pose = np.eye(4)
+        pose[0, 3] = 9.0
+        solver = made.solver(name)
+        for answer in (solver.solve(pose), solver.solve_all(pose)):
+            assert answer.status is iksel.Status.out_of_reach
+            assert answer.proof is reach
+            assert answer.proven is True
+
+
+def test_failures_of_closed_forms_are_proven(solver, poses) -> None:
+    seen = set()
+    for pose in poses:
+        result = solver.solve(pose)
+        seen.add((result.success, result.proof))
+        assert result.proven is (result.proof is not none)
+        assert not (result.success and result.proven)
+        found = solver.solve_all(pose)
+        assert found.success is result.success
+        if result.proven:
+            assert (len(found), found.proof) == (0, result.proof)
+    assert {(True, none), (False, closed_form), (False, reach)} <= seen, f"seed {SEED}"
+
+
+def test_nothing_is_found_where_there_is_none(made, solver, poses) -> None:
+    searching = made.solver("ur3", "paper")
+    assert searching.solve(poses[-1]).proof is reach
+    for pose in poses:
+        if solver.solve(pose).proof is closed_form:
+            other = searching.solve(pose)
+            assert not other, f"seed {SEED}"
+            assert not other.proven
+
+
+@pytest.mark.parametrize("name", ["ur3", "irb120", "vs060", "cvr038", "panda"])
+def test_what_has_a_solution_is_never_proven_to_have_none(made, name: str) -> None:
+    robot = made.robot(name)
+    poses = robot.fk(robot.random_configurations(COUNT, SEED))
+    batch = made.solver(name).solve_batch(poses)
+    assert not batch.proof.any(), f"seed {SEED}"
+    for pose in poses[:10]:
+        assert not made.solver(name).solve(pose, near=robot.lower.clip(-1)).proven
+
+
+def test_all_solutions_are_all_that_there_are(solver, poses) -> None:
+    complete = [found for found in map(solver.solve_all, poses) if found.success]
+    assert complete
+    assert all(found.proof in {none, closed_form} for found in complete)
+    assert any(found.proven for found in complete)
+
+
+def test_a_search_proves_nothing(made) -> None:
+    robot = made.robot("cvr038")
+    batch = made.solver("cvr038").solve_batch(turned_at_random(robot))
+    missed = batch[~batch.success]
+    assert len(missed) > 0
+    assert set(missed.proof.tolist()) <= {none, reach}
+    assert "proven" not in repr(missed[missed.proof == none][0])
+
+
+# Batches
+
+
+@pytest.mark.parametrize("near", [None, np.zeros(6)])
+def test_the_proofs_of_a_batch_are_those_of_its_rows(solver, poses, near) -> None:
+    broken = np.concatenate([poses, np.zeros((1, 4, 4))])
+    batch = solver.solve_batch(broken, near=near)
+    assert (batch.proof.dtype, batch.proof.shape) == ("uint8", (COUNT + 1,))
+    proofs = [solver.solve(pose, near=near).proof for pose in poses]
+    assert batch.proof.tolist() == [*proofs, none]
+    assert [row.proof for row in batch] == [*proofs, none]
+    assert (batch.proof[-11:-1] == reach).all()
+    assert (batch.proof == closed_form).any()
+
+
+# Text
+
+
+def test_answers_say_that_they_are_proven(solver, poses) -> None:
+    batch = solver.solve_batch(poses)
+    i = int(np.flatnonzero(batch.proof == closed_form)[0])
+    result, found = solver.solve(poses[i]), solver.solve_all(poses[i])
+    start = f"{result.status}, proven: closed_form, "
+    assert repr(result).startswith(f"Result({start}attempts=")
+    assert repr(found) == f"Solutions({start}0 solutions)"
+    assert repr(batch[i]) == repr(result)
+    assert "<td>closed_form</td>" in result._repr_html_()
+    assert "proven: closed_form" in found._repr_html_()
+    cells = batch[i : i + 1]._repr_html_()
+    assert "<th>proof</th>" in cells
+    assert "<td>closed_form</td>" in cells
+
+
+def test_successes_say_nothing_of_proofs(solver, poses) -> None:
+    batch = solver.solve_batch(poses)
+    result = batch[int(np.flatnonzero(batch.success)[0])]
+    assert "prove" not in repr(result)
+    assert "proof" not in result._repr_html_()

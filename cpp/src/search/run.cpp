@@ -134,7 +134,7 @@ Proof Search<Answers>::in_closed_form(GivenSeeds& given, const Pose& Y, bool& is
   answers.look_for_partners(true);
   clock.lap(&StageTimes::iterate);
   if (is_done) return Proof::none;
-  is_done = enumerated.is_certain() || (enumerated.is_complete() && !answers.wants_more());
+  is_done = enumerated.is_certain();
   refiner.begin(goal.task(), kFirst);
   return enumerated.is_certain() ? Proof::closed_form : Proof::none;
 }

@@ -62,7 +62,7 @@ void Enumeration::take(const Goal& goal, int lane, bool wants_all) {
   double bound = pack_.error[lane];
   if (bound < kVague && beyond > bound) return;
   bool is_sure = bound < kVague && pack_.worst[lane] >= 0;
-  if (!is_sure && (wants_all || beyond > 0)) is_sure = is_regular(goal, q, bound);
+  if (beyond > 0 || (wants_all && !is_sure)) is_sure = is_regular(goal, q, bound);
   if (is_sure && beyond > bound) return;
   complete_ = complete_ && (is_sure || bound < kVague);
   certain_ = certain_ && is_sure && !(beyond > 0);

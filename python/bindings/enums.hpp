@@ -60,6 +60,8 @@ struct EnumTable<StructureKind> {
   static constexpr EnumValue<StructureKind> kValues[] = {
       {"closed_form", StructureKind::closed_form,
        "all of them in closed form: that there is none is proven"},
+      {"swept", StructureKind::swept,
+       "in closed form for each value of one joint, which is swept over its range"},
       {"searched", StructureKind::searched, "by search only"},
   };
 };
@@ -201,12 +203,16 @@ struct EnumTable<Status> {
 template <>
 struct EnumTable<Proof> {
   static constexpr const char* kName = "Proof";
-  static constexpr const char* kDoc = "How certain it is that there is no answer.";
+  static constexpr const char* kDoc = "How certain it is that there is no other answer.";
   static constexpr EnumValue<Proof> kValues[] = {
-      {"none", Proof::none, "there is an answer, or it was searched for and not found"},
+      {"none", Proof::none,
+       "one was found and others were not looked for, or it was searched only"},
       {"reach", Proof::reach, "the target lies farther away than the links are long together"},
       {"closed_form", Proof::closed_form,
-       "all branches are known (Robot.structure), and none of them lies inside the limits"},
+       "all branches are known (Robot.structure), and no other lies inside the limits"},
+      {"sweep", Proof::sweep,
+       "not proven: a joint was swept over its range (Robot.structure), and no branch came inside "
+       "the limits at its values or beside them"},
   };
 };
 

@@ -33,6 +33,7 @@ inline bool is_proven(Proof proof) {
     case Proof::reach:
     case Proof::closed_form:
       return true;
+    case Proof::sweep:
     case Proof::none:
       return false;
   }

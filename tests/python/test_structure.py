@@ -50,7 +50,14 @@ def test_arms_in_closed_form(made, name: str) -> None:
     assert structure.description.endswith("solved in closed form")
 
 
-@pytest.mark.parametrize("name", ["cvr038", "panda"])
+@pytest.mark.parametrize(("name", "joint"), [("panda", 7), ("iiwa14", 1), ("xarm7", 7)])
+def test_arms_of_which_a_joint_is_swept(made, name: str, joint: int) -> None:
+    structure = made.robot(name).structure
+    assert structure.kind is iksel.StructureKind.swept
+    assert f"angle of joint {joint}, which is swept" in structure.description
+
+
+@pytest.mark.parametrize("name", ["cvr038", "baxter_right"])
 def test_arms_that_are_searched(made, name: str) -> None:
     structure = made.robot(name).structure
     assert structure.kind is iksel.StructureKind.searched

@@ -14,6 +14,7 @@ class Robot;
 /// How the solutions of a pose can be found.
 enum class StructureKind : std::uint8_t {
   closed_form,  ///< all of them in closed form: that there is none is proven
+  swept,        ///< in closed form for each value of one joint, which is swept over its range
   searched,     ///< by search only
 };
 

@@ -13,6 +13,8 @@ const char* to_string(Proof proof) {
       return "reach";
     case Proof::closed_form:
       return "closed_form";
+    case Proof::sweep:
+      return "sweep";
   }
   return "unknown";
 }

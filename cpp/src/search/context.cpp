@@ -24,6 +24,10 @@ Workspace::InLanes::InLanes(const ChainModel& model, const ChainModel& nominal,
     : refiner(model, options, kernels),
       query(model, nominal, data, neighbours_of(options.strategy), kernels) {
   if (closed_form == nullptr) return;
+  if (closed_form->held >= 0) {
+    sweep.emplace(model, *closed_form, kernels);
+    return;
+  }
   branches.emplace(model, *closed_form, &model == &nominal, options.position_tolerance,
                    options.rotation_tolerance, kernels);
 }

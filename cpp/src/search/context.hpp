@@ -18,6 +18,7 @@
 #include "seeds/lane_query.hpp"
 #include "seeds/seed_ranking.hpp"
 #include "seeds/selection.hpp"
+#include "seeds/sweep.hpp"
 #include "seeds/task_samples.hpp"
 
 namespace iksel {
@@ -41,8 +42,9 @@ struct Workspace {
 
     LaneRefiner refiner;
     LaneQuery query;
-    /// Only of a chain that can be solved in closed form.
+    /// Only of a chain that can be solved in closed form, at once or for each value of a joint.
     std::optional<Enumeration> branches;
+    std::optional<Sweep> sweep;
   };
   struct OneAtATime {
     OneAtATime(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,

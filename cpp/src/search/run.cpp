@@ -26,7 +26,6 @@ constexpr Patience kFirst{8, kMostIterations};
 constexpr Patience kAll{6, kMostIterations, 2};
 /// Where seeds are answers, or as near to one as a singularity or a limit lets it be told.
 constexpr Patience kThere{8, 64};
-
 /// What one search works with.
 template <typename Answers>
 struct Search {
@@ -114,7 +113,14 @@ Proof Search<Answers>::in_lanes() const {
     SpreadSeeds spread(query, model.joints, options.seed, answers, work);
     search(refiner, spread, answers, work);
   } else {
-    NearestSeeds nearest(query, work, clock);
+    if (workspace.lanes->sweep && request.database_seeds) {
+      NearestSeeds leaf(query, /*only_leaf=*/true, work, clock);
+      SweptSeeds swept(*workspace.lanes->sweep, Y, work, clock);
+      if (run(refiner, near, given, leaf)) return Proof::none;
+      if (search(refiner, swept, answers, work)) return Proof::none;
+      if (swept.is_none()) return Proof::sweep;
+    }
+    NearestSeeds nearest(query, /*only_leaf=*/false, work, clock);
     RandomSeeds random(model.joints, options.seed, work);
     run(refiner, near, given, nearest, random);
   }
@@ -155,7 +161,8 @@ Result find_first(const ChainModel& model, const SolverOptions& options, const G
   FirstAnswer answers(model.joints, wraps, goal, request.deadline, result);
   const Search<FirstAnswer> search{model, options, goal, request, workspace, answers, work, clock};
   if (workspace.lanes) {
-    result.proof = search.in_lanes();
+    const Proof proof = search.in_lanes();
+    if (!result.success()) result.proof = proof;
   } else if (search.by_scheme() && result.status == Status::not_converged) {
     result.status = Status::outside_limits;
   }

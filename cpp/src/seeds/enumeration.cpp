@@ -15,13 +15,7 @@ Enumeration::Enumeration(const ChainModel& model, const ClosedFormChain& chain, 
                          double position_tolerance, double rotation_tolerance,
                          const lanes::LaneKernels& kernels)
     : model_(model), chain_(chain), kernels_(kernels), is_nominal_(is_nominal) {
-  for (int i = 0; i < 6; ++i) {
-    const int j = chain_.joints[i];
-    const bool ends = model.joints.type(j) != JointType::continuous;
-    chain_.form.offset[i] = model.kernel.joints[static_cast<std::size_t>(j)].offset;
-    chain_.form.lower[i] = ends ? model.joints.lower[j] : -kPi;
-    chain_.form.upper[i] = ends ? model.joints.upper[j] : kPi;
-  }
+  chain_.use_limits(model);
   chain_.form.error = kMargin * std::max({position_tolerance / chain.unit, rotation_tolerance,
                                           kStructureTolerance});
   for (int lane = 0; lane < kMost; ++lane) {
@@ -30,9 +24,7 @@ Enumeration::Enumeration(const ChainModel& model, const ClosedFormChain& chain, 
 }
 
 void Enumeration::find(const Goal& goal, const Pose& Y, bool wants_all) {
-  double rows[12];
-  chain_.write_target(chain_.reversed ? Y.inverse() : Y, rows);
-  for (int i = 0; i < 12; ++i) std::fill_n(pack_.target[i], kMost, rows[i]);
+  chain_.set_target(Y, pack_);
   kernels_.solve_branches(chain_.form, pack_);
   size_ = 0;
   complete_ = is_nominal_;

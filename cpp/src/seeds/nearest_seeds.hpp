@@ -14,8 +14,9 @@ namespace iksel {
 
 class NearestSeeds {
  public:
-  NearestSeeds(LaneQuery& query, Work& work, StageClock& clock)
-      : query_(query), work_(work), clock_(clock) {}
+  /// `only_leaf`: the first of them only.
+  NearestSeeds(LaneQuery& query, bool only_leaf, Work& work, StageClock& clock)
+      : query_(query), only_leaf_(only_leaf), work_(work), clock_(clock) {}
 
   bool next_stage() {
     clock_.lap(&StageTimes::iterate);
@@ -23,7 +24,7 @@ class NearestSeeds {
     if (!leaf_done_) {
       leaf_done_ = true;
       query_.prepare_leaf(seeds());
-    } else if (!prepare_next()) {
+    } else if (only_leaf_ || !prepare_next()) {
       return false;
     }
     clock_.lap(&StageTimes::rank);
@@ -55,6 +56,7 @@ class NearestSeeds {
   }
 
   LaneQuery& query_;
+  bool only_leaf_;
   Work& work_;
   StageClock& clock_;
   bool leaf_done_ = false;

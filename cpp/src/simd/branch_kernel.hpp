@@ -88,10 +88,10 @@ IKSEL_INLINE T to_radians(const Angle<T>& t) {
   return select(t.s < T(0.0), T(0.0) - a, a);
 }
 
-/// How certain the angles found so far are.
+/// How certain the angles found so far are, as BranchPack has it.
 template <typename T>
-struct Quality {
-  /// As in BranchPack.
+struct Certainty {
+  T least = T(1.0);
   T best = T(1.0);
   T worst = T(1.0);
   /// Error of the angles so far: of this numerator and denominator, so as not to divide each time.
@@ -103,21 +103,35 @@ struct Quality {
     error = error * (size + T(1.0));
     scale = scale * max(size, T(1e-12));
   }
+  /// The same by the product of two lengths, mostly equal ones.
+  IKSEL_INLINE void divide_by_product(const T& product) { divide_by(sqrt(product)); }
   /// An angle follows from the root of `square`, the difference of squares of a number near to
   /// `near` where that is near 0.
   IKSEL_INLINE void take_root(const T& square, const T& near, const T& root) {
     const T scaled = square * scale;
     const T of_square = T(2.0) * error * near;
+    least = min(least, square);
     best = min(best, scaled + of_square);
     worst = min(worst, scaled - of_square);
     divide_by(root);
   }
 };
 
-/// One of the two angles with a cos(t) + b sin(t) = rest; where there is none, the nearest.
+/// Whether there are such angles is all that is asked.
 template <typename T>
+struct Existence {
+  T least = T(1.0);
+
+  IKSEL_INLINE void divide_by_product(const T& /*product*/) {}
+  IKSEL_INLINE void take_root(const T& square, const T& /*near*/, const T& /*root*/) {
+    least = min(least, square);
+  }
+};
+
+/// One of the two angles with a cos(t) + b sin(t) = rest; where there is none, the nearest.
+template <typename T, typename Q>
 IKSEL_INLINE Angle<T> solve_angle(const T& a, const T& b, const T& rest, const T& sign,
-                                  Quality<T>& quality) {
+                                  Q& quality) {
   const T r2 = a * a + b * b;
   const T square = r2 - rest * rest;
   const T root = sqrt(max(square, T(0.0)));
@@ -129,9 +143,8 @@ IKSEL_INLINE Angle<T> solve_angle(const T& a, const T& b, const T& rest, const T
 }
 
 /// One of the two angles with x . R(k, t) y = rest.
-template <typename T>
-IKSEL_INLINE Angle<T> solve_angle(const Turned& turned, const T& rest, const T& sign,
-                                  Quality<T>& quality) {
+template <typename T, typename Q>
+IKSEL_INLINE Angle<T> solve_angle(const Turned& turned, const T& rest, const T& sign, Q& quality) {
   const T left = rest - T(turned.c);
   const T square = T(turned.r2) - left * left;
   const T root = sqrt(max(square, T(0.0)));
@@ -142,29 +155,27 @@ IKSEL_INLINE Angle<T> solve_angle(const Turned& turned, const T& rest, const T& 
 }
 
 /// The angle with cosine c and sine s times the product of two lengths, mostly equal ones.
-template <typename T>
-IKSEL_INLINE Angle<T> normalized(const T& c, const T& s, Quality<T>& quality) {
+template <typename T, typename Q>
+IKSEL_INLINE Angle<T> normalized(const T& c, const T& s, Q& quality) {
   const T size2 = c * c + s * s;
   const T size = sqrt(max(size2, T(1e-60)));
-  quality.divide_by(sqrt(size));
+  quality.divide_by_product(size);
   const auto none = size2 < T(1e-56);
   const T inverse = T(1.0) / size;
   return {select(none, T(1.0), c * inverse), select(none, T(0.0), s * inverse)};
 }
 
 /// The angle about k that takes u to v.
-template <typename T>
-IKSEL_INLINE Angle<T> angle_between(const Vec<T>& k, const Vec<T>& u, const Vec<T>& v,
-                                    Quality<T>& quality) {
+template <typename T, typename Q>
+IKSEL_INLINE Angle<T> angle_between(const Vec<T>& k, const Vec<T>& u, const Vec<T>& v, Q& quality) {
   return normalized(dot(u, v) - dot(k, u) * dot(k, v), dot(k, cross(u, v)), quality);
 }
 
 /// A vector with z . k1 = along1, z . k2 = along2 and the square length2, one of two, where
 /// k1 . k2 = c.
-template <typename T>
+template <typename T, typename Q>
 IKSEL_INLINE Vec<T> solve_common(const Vec<T>& k1, const Vec<T>& k2, double c, const T& along1,
-                                 const T& along2, const T& length2, const T& sign,
-                                 Quality<T>& quality) {
+                                 const T& along2, const T& length2, const T& sign, Q& quality) {
   const T inverse = T(1.0 / (1.0 - c * c));
   const T alpha = (along1 - T(c) * along2) * inverse;
   const T beta = (along2 - T(c) * along1) * inverse;
@@ -183,17 +194,31 @@ struct BranchTarget {
   Vec<T> X, Y, Z, w;
 };
 
+/// The target of the joints behind the held one, at an angle of that.
 template <typename T>
+IKSEL_INLINE void hold(const ClosedForm& form, const T& angle, BranchTarget<T>& target) {
+  Angle<T> t;
+  sincos(angle, t.s, t.c);
+  const Vec<T> axis = constant<T>(form.held_axis);
+  const Vec<T> from = constant<T>(form.held_from);
+  target.X = turned_back(axis, t, target.X);
+  target.Y = turned_back(axis, t, target.Y);
+  target.Z = turned_back(axis, t, target.Z);
+  target.w = add(turned_back(axis, t, add(target.w, T(1.0), from)), T(-1.0), from);
+}
+
+/// Q is Certainty or Existence.
+template <typename T, typename Q>
 struct Branch {
   Angle<T> q[6];
-  Quality<T> quality;
+  Q quality;
 };
 
 /// Joints 1 to 3, which bring the wrist to w.
-template <typename T>
+template <typename T, typename Q>
 IKSEL_INLINE void place_wrist(const ClosedForm& form, const BranchTarget<T>& target,
-                              const T (&sign)[3], Branch<T>& out) {
-  Quality<T>& quality = out.quality;
+                              const T (&sign)[3], Branch<T, Q>& out) {
+  Q& quality = out.quality;
   const Vec<T> h1 = constant<T>(form.h[0]);
   const Vec<T> h2 = constant<T>(form.h[1]);
   const Vec<T> h3 = constant<T>(form.h[2]);
@@ -258,13 +283,13 @@ IKSEL_INLINE void place_wrist(const ClosedForm& form, const BranchTarget<T>& tar
 }
 
 /// Joints 4 to 6, whose axes meet, after joints 1 to 3.
-template <typename T>
+template <typename T, typename Q>
 IKSEL_INLINE void turn_wrist(const ClosedForm& form, const BranchTarget<T>& target, const T& sign,
-                             Branch<T>& out) {
+                             Branch<T, Q>& out) {
   const Vec<T> h4 = constant<T>(form.h[3]);
   const Vec<T> h5 = constant<T>(form.h[4]);
   const Vec<T> h6 = constant<T>(form.h[5]);
-  const auto before = [&](const Vec<T>& v) {
+  const auto before = [&](const Vec<T>& v) __attribute__((always_inline)) {
     const Vec<T> v1 = turned_back(constant<T>(form.h[0]), out.q[0], v);
     const Vec<T> v2 = turned_back(constant<T>(form.h[1]), out.q[1], v1);
     return turned_back(constant<T>(form.h[2]), out.q[2], v2);
@@ -279,10 +304,10 @@ IKSEL_INLINE void turn_wrist(const ClosedForm& form, const BranchTarget<T>& targ
 }
 
 /// All six joints of three parallel axes.
-template <typename T>
+template <typename T, typename Q>
 IKSEL_INLINE void solve_three_parallel(const ClosedForm& form, const BranchTarget<T>& target,
-                                       const T (&sign)[3], Branch<T>& out) {
-  Quality<T>& quality = out.quality;
+                                       const T (&sign)[3], Branch<T, Q>& out) {
+  Q& quality = out.quality;
   const Vec<T> h1 = constant<T>(form.h[0]);
   const Vec<T> h = constant<T>(form.h[1]);
   const Vec<T> h5 = constant<T>(form.h[4]);
@@ -335,38 +360,66 @@ IKSEL_INLINE void solve_three_parallel(const ClosedForm& form, const BranchTarge
 
 inline constexpr double kWholeTurn = 6.28318530717958647693;
 
+/// The joint values, and how far they are outside of their limits.
+template <typename T, typename Q>
+IKSEL_INLINE void store_joints(const ClosedForm& form, const Branch<T, Q>& branch, int first,
+                               BranchPack& pack) {
+  T beyond = T(0.0);
+  for (int j = 0; j < 6; ++j) {
+    const T lower = T(form.lower[j]);
+    const T upper = T(form.upper[j]);
+    T q = to_radians(branch.q[j]) - T(form.offset[j]);
+    q = select(q < lower, q + T(kWholeTurn), q);
+    const T turned = q - T(kWholeTurn);
+    q = select(q - upper > max(lower - turned, T(0.0)), turned, q);
+    beyond = max(beyond, max(lower - q, q - upper));
+    Lanes<T>::store(q, pack.q[j] + first);
+  }
+  Lanes<T>::store(beyond, pack.beyond + first);
+  Lanes<T>::store(branch.quality.least, pack.least + first);
+}
+
+/// The lanes from `first` on.
+template <typename T, typename Q>
+IKSEL_INLINE Branch<T, Q> solve_branch(const ClosedForm& form, int first, Q quality,
+                                       BranchPack& pack) {
+  const auto vector = [&](int i) {
+    return Vec<T>{T(pack.target[i]), T(pack.target[i + 1]), T(pack.target[i + 2])};
+  };
+  BranchTarget<T> target{vector(0), vector(3), vector(6), vector(9)};
+  if (form.is_held) hold(form, Lanes<T>::load(pack.held + first), target);
+  const T sign[3] = {Lanes<T>::load(pack.sign[0] + first), Lanes<T>::load(pack.sign[1] + first),
+                     Lanes<T>::load(pack.sign[2] + first)};
+  Branch<T, Q> branch;
+  branch.quality = quality;
+  if (form.closure == Closure::three_parallel) {
+    solve_three_parallel(form, target, sign, branch);
+  } else {
+    place_wrist(form, target, sign, branch);
+    turn_wrist(form, target, sign[2], branch);
+  }
+  store_joints(form, branch, first, pack);
+  return branch;
+}
+
+/// Of a form without a held joint, and how certain it is.
 template <typename T>
 void solve_branches(const ClosedForm& form, BranchPack& pack) {
   for (int first = 0; first < kWidth; first += Lanes<T>::kCount) {
-    const auto row = [&](const double(&of)[kWidth]) { return Lanes<T>::load(of + first); };
-    const auto vector = [&](int i) {
-      return Vec<T>{row(pack.target[i]), row(pack.target[i + 1]), row(pack.target[i + 2])};
-    };
-    const BranchTarget<T> target{vector(0), vector(3), vector(6), vector(9)};
-    const T sign[3] = {row(pack.sign[0]), row(pack.sign[1]), row(pack.sign[2])};
-    Branch<T> branch;
-    branch.quality.error = T(form.error);
-    if (form.closure == Closure::three_parallel) {
-      solve_three_parallel(form, target, sign, branch);
-    } else {
-      place_wrist(form, target, sign, branch);
-      turn_wrist(form, target, sign[2], branch);
-    }
-    T beyond = T(0.0);
-    for (int j = 0; j < 6; ++j) {
-      const T lower = T(form.lower[j]);
-      const T upper = T(form.upper[j]);
-      T q = to_radians(branch.q[j]) - T(form.offset[j]);
-      q = select(q < lower, q + T(kWholeTurn), q);
-      const T turned = q - T(kWholeTurn);
-      q = select(q - upper > max(lower - turned, T(0.0)), turned, q);
-      beyond = max(beyond, max(lower - q, q - upper));
-      Lanes<T>::store(q, pack.q[j] + first);
-    }
-    Lanes<T>::store(branch.quality.best, pack.best + first);
-    Lanes<T>::store(branch.quality.worst, pack.worst + first);
-    Lanes<T>::store(branch.quality.error / branch.quality.scale, pack.error + first);
-    Lanes<T>::store(beyond, pack.beyond + first);
+    Certainty<T> start;
+    start.error = T(form.error);
+    const Certainty<T> quality = solve_branch<T>(form, first, start, pack).quality;
+    Lanes<T>::store(quality.best, pack.best + first);
+    Lanes<T>::store(quality.worst, pack.worst + first);
+    Lanes<T>::store(quality.error / quality.scale, pack.error + first);
+  }
+}
+
+/// Of any form, without `best`, `worst` and `error`.
+template <typename T>
+void find_branches(const ClosedForm& form, BranchPack& pack) {
+  for (int first = 0; first < kWidth; first += Lanes<T>::kCount) {
+    solve_branch<T>(form, first, Existence<T>{}, pack);
   }
 }
 

@@ -30,34 +30,42 @@ struct ClosedForm {
   double offset[6];           ///< what angles are more than joint values [rad]
   double lower[6], upper[6];  ///< of the joint values, one turn of those that have no limits [rad]
   double h[6][3];             ///< unit vectors along the axes
-  double p[4][3];      ///< from a point on axis j to one on axis j + 1; where axes meet, one point
-  double basis[3][3];  ///< right-handed, h6 last
-  double across[3];    ///< a unit vector across h2
-  double cross12;      ///< h1 . h2
-  double cross23;      ///< h2 . h3
-  double side3;        ///< of parallel axes 3 and 2: 1, or -1 if they point opposite ways
-  double side4;        ///< the same of axes 4 and 2
-  double arm2;         ///< |p23|^2 + |p34|^2
-  double rest;         ///< what the way along parallel axes adds up to; of intersect_23 |p34|^2 -
-                       ///< |p12|^2
-  Turned elbow;        ///< p23 . R(h3) p34
-  Turned shoulder;     ///< of parallel_12, h1 . R(h3) p34
-  Turned wrist;        ///< h4 . R(h5) h6; of three_parallel, h2 . R(h5) h6
+  double p[4][3];       ///< from a point on axis j to one on axis j + 1; where axes meet, one point
+  double basis[3][3];   ///< right-handed, h6 last
+  double across[3];     ///< a unit vector across h2
+  double cross12;       ///< h1 . h2
+  double cross23;       ///< h2 . h3
+  double side3;         ///< of parallel axes 3 and 2: 1, or -1 if they point opposite ways
+  double side4;         ///< the same of axes 4 and 2
+  double arm2;          ///< |p23|^2 + |p34|^2
+  double rest;          ///< what the way along parallel axes adds up to; of intersect_23 |p34|^2 -
+                        ///< |p12|^2
+  bool is_held;         ///< whether there is a joint before the first, which is held at an angle
+  double held_axis[3];  ///< a unit vector along it
+  double held_from[3];  ///< from a point on it to that on axis 1
+  Turned elbow;         ///< p23 . R(h3) p34
+  Turned shoulder;      ///< of parallel_12, h1 . R(h3) p34
+  Turned wrist;         ///< h4 . R(h5) h6; of three_parallel, h2 . R(h5) h6
 };
 
-/// Poses and branches, lane by lane. Rows of a target: columns X, Y and Z of R_06 E, where E has a
-/// right-handed basis with h6 last, and the way from the point on axis 1 to that on axis 6 [units].
+/// A pose, and branches of it lane by lane. Rows of the target: columns X, Y and Z of R_06 E, where
+/// E has the form's basis as columns, and the way from the point on axis 1 to that on axis 6
+/// [units]; where a joint is held, as they are at its angle 0.
 struct BranchPack {
-  alignas(64) double target[12][kWidth];
+  double target[12];
+  /// Angle of the held joint, if the form has one [rad].
+  alignas(64) double held[kWidth];
   /// +-1: which of two solutions each of three subproblems takes.
   alignas(64) double sign[3][kWidth];
   /// Of the six joints [rad], by a whole turn inside the limits where one is enough.
   alignas(64) double q[6][kWidth];
   /// How far one of them lies outside of them, 0 or less if none does [rad].
   alignas(64) double beyond[kWidth];
-  /// Subproblems have solutions where a difference of squares is not below 0. The least of these,
-  /// at best and at worst for targets within ClosedForm::error: there is no branch where the best
-  /// is below 0, and certainly one where the worst is not. Their sizes mean nothing.
+  /// Subproblems have solutions where a difference of squares is not below 0. The least of these;
+  /// and at best and at worst for targets within ClosedForm::error: there is no branch where the
+  /// best is below 0, and certainly one where the worst is not. The sizes of these two mean
+  /// nothing.
+  alignas(64) double least[kWidth];
   alignas(64) double best[kWidth];
   alignas(64) double worst[kWidth];
   /// What such an error may have grown to in the angles, to first order [rad].

@@ -204,7 +204,8 @@ constexpr LaneKernels make_kernels(const char* name) {
           prepare_seeds<S>,
           add_known<S>,
           find_largest<S>,
-          solve_branches<T>};
+          solve_branches<T>,
+          find_branches<T>};
 }
 
 }  // namespace iksel::lanes

@@ -122,7 +122,8 @@ using FindLargest = int (*)(int count, const float* numbers);
 
 struct ClosedForm;
 struct BranchPack;
-/// The angles of all lanes of a pack (branch_types.hpp).
+/// The angles of all lanes of a pack (branch_types.hpp); find_branches does not say how certain
+/// they are.
 using SolveBranches = void (*)(const ClosedForm& form, BranchPack& pack);
 
 /// The kernels of one instruction set.
@@ -135,6 +136,7 @@ struct LaneKernels {
   AddKnown add_known;
   FindLargest find_largest;
   SolveBranches solve_branches;
+  SolveBranches find_branches;
 };
 
 }  // namespace iksel::lanes

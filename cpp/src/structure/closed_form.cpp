@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/constants.hpp"
 #include "simd/lane_chain.hpp"
 
 namespace iksel {
@@ -29,10 +30,11 @@ lanes::Turned turned(const Vector3d& x, const Vector3d& k, const Vector3d& y) {
 /// Tells how the axes of six joints lie, and moves their points to where they meet.
 class Geometry {
  public:
-  explicit Geometry(ScrewAxes axes, double reach) : axes_(std::move(axes)), reach_(reach) {}
+  Geometry(ScrewAxes axes, double reach, double tolerance)
+      : axes_(std::move(axes)), reach_(reach), tolerance_(tolerance) {}
 
   [[nodiscard]] bool are_parallel(std::size_t i, std::size_t j) const {
-    return axes_.angle(i, j) <= kStructureTolerance;
+    return axes_.angle(i, j) <= tolerance_;
   }
   [[nodiscard]] bool meet(std::size_t i, std::size_t j) const {
     return axes_.angle(i, j) > kClearlyNot && is_on(axes_.middle(i, j), j);
@@ -41,7 +43,7 @@ class Geometry {
     return meet(i, i + 1) && meet(i + 1, i + 2) && is_on(axes_.middle(i, i + 1), i + 2);
   }
   [[nodiscard]] bool is_on(const Vector3d& point, std::size_t i) const {
-    return axes_.distance(i, point) <= kStructureTolerance * reach_;
+    return axes_.distance(i, point) <= tolerance_ * reach_;
   }
   /// Where axes i and i + 1 meet becomes the point on both, and on `more` others.
   void join(std::size_t i, std::size_t more = 0) {
@@ -78,6 +80,7 @@ class Geometry {
 
   ScrewAxes axes_;
   double reach_;
+  double tolerance_;
 };
 
 lanes::ClosedForm make_form(Closure closure, const ScrewAxes& axes, double unit) {
@@ -151,34 +154,58 @@ std::string describe(Closure closure, const int (&joints)[kSix]) {
 
 }  // namespace
 
-void ClosedFormChain::write_target(const Pose& Y, double (&rows)[12]) const {
-  const Eigen::Matrix3d RE = Y.linear() * to_basis;
-  const Vector3d w = (Y.translation() - first - RE * tail) / unit;
-  for (int i = 0; i < 9; ++i) rows[i] = RE(i % 3, i / 3);
-  for (int i = 0; i < 3; ++i) rows[9 + i] = w[i];
+void ClosedFormChain::set_target(const Pose& Y, lanes::BranchPack& pack) const {
+  const Pose target = reversed ? Y.inverse() : Y;
+  const Eigen::Matrix3d RE = target.linear() * to_basis;
+  const Vector3d w = (target.translation() - first - RE * tail) / unit;
+  for (int i = 0; i < 9; ++i) pack.target[i] = RE(i % 3, i / 3);
+  for (int i = 0; i < 3; ++i) pack.target[9 + i] = w[i];
+}
+
+void ClosedFormChain::use_limits(const ChainModel& model) {
+  for (int i = 0; i < kSix; ++i) {
+    const int j = joints[i];
+    const bool ends = model.joints.type(j) != JointType::continuous;
+    form.offset[i] = model.kernel.joints[static_cast<std::size_t>(j)].offset;
+    form.lower[i] = ends ? model.joints.lower[j] : -kPi;
+    form.upper[i] = ends ? model.joints.upper[j] : kPi;
+  }
 }
 
 std::optional<ClosedFormChain> find_closed_form(const ChainModel& model) {
-  if (model.dof != kSix || !is_simple(model)) return std::nullopt;
+  if (model.dof < kSix || model.dof > kSix + 1 || !is_simple(model)) return std::nullopt;
   for (const KernelJoint& joint : model.kernel.joints) {
     if (joint.prismatic) return std::nullopt;
   }
   const ScrewAxes forward = ScrewAxes::of(model);
   for (const bool reversed : {false, true}) {
-    Geometry geometry(reversed ? forward.reversed() : forward, model.reach);
+    ScrewAxes axes = reversed ? forward.reversed() : forward;
+    ClosedFormChain chain;
+    const int before = model.dof - kSix;
+    const auto joint = [&](int i) { return reversed ? model.dof - 1 - i : i; };
+    const Vector3d held_axis = axes.h.front();
+    const Vector3d held_point = axes.p.front();
+    if (before > 0) {
+      chain.held = joint(0);
+      axes.h.erase(axes.h.begin());
+      axes.p.erase(axes.p.begin());
+    }
+    Geometry geometry(std::move(axes), model.reach,
+                      before > 0 ? kSweptTolerance : kStructureTolerance);
     const std::optional<Closure> closure = geometry.find_closure();
     if (!closure) continue;
-    const ScrewAxes& axes = geometry.axes();
-    ClosedFormChain chain;
-    for (int j = 0; j < kSix; ++j) chain.joints[j] = reversed ? kSix - 1 - j : j;
+    for (int i = 0; i < kSix; ++i) chain.joints[i] = joint(before + i);
     chain.reversed = reversed;
     chain.unit = model.reach;
-    chain.form = make_form(*closure, axes, chain.unit);
+    chain.form = make_form(*closure, geometry.axes(), chain.unit);
     Eigen::Matrix3d E;
     for (int k = 0; k < 3; ++k) E.col(k) = Vector3d(chain.form.basis[k]);
-    chain.first = axes.p[0];
-    chain.tail = E.transpose() * (axes.end.translation() - axes.p[5]);
-    chain.to_basis = axes.end.linear().transpose() * E;
+    chain.first = geometry.axes().p[0];
+    chain.form.is_held = before > 0;
+    write(held_axis, chain.form.held_axis);
+    write((chain.first - held_point) / chain.unit, chain.form.held_from);
+    chain.tail = E.transpose() * (geometry.axes().end.translation() - geometry.axes().p[5]);
+    chain.to_basis = geometry.axes().end.linear().transpose() * E;
     chain.description = describe(*closure, chain.joints);
     return chain;
   }

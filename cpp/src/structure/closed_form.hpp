@@ -14,11 +14,16 @@ namespace iksel {
 /// Deviation of axes from being parallel [rad] or meeting [in units of the reach] up to which they
 /// are taken to be: beyond what is left of a rounded pi, and far below any tolerance.
 inline constexpr double kStructureTolerance = 1e-9;
+/// The same where what is found is refined anyway, and nothing is proven: a pi of four decimals.
+inline constexpr double kSweptTolerance = 1e-4;
 
-/// Six consecutive joints of a chain, seen from either end.
+/// Six consecutive joints of a chain, seen from either end; before them there may be one that is
+/// held.
 struct ClosedFormChain {
   /// `joints[i]` is the chain's joint that the form counts as its i-th.
   int joints[6];
+  /// The chain's joint that is held; -1: there are but six.
+  int held = -1;
   bool reversed;
   lanes::ClosedForm form;
   double unit;               ///< [m]
@@ -27,8 +32,10 @@ struct ClosedFormChain {
   Eigen::Matrix3d to_basis;  ///< R_06 E = R * to_basis
   std::string description;
 
-  /// Rows of a BranchPack for Y (reduction.hpp), or its inverse if reversed.
-  void write_target(const Pose& Y, double (&rows)[12]) const;
+  /// Sets the form's limits and offsets to those of a model.
+  void use_limits(const ChainModel& model);
+  /// Sets a pack's target to Y (reduction.hpp), or its inverse if reversed.
+  void set_target(const Pose& Y, lanes::BranchPack& pack) const;
 };
 
 /// What makes the chain solvable, if anything does.

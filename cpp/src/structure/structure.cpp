@@ -9,6 +9,8 @@ const char* to_string(StructureKind kind) {
   switch (kind) {
     case StructureKind::closed_form:
       return "closed_form";
+    case StructureKind::swept:
+      return "swept";
     case StructureKind::searched:
       return "searched";
   }
@@ -18,7 +20,11 @@ const char* to_string(StructureKind kind) {
 Structure find_structure(const Robot& robot) {
   const auto form = find_closed_form(robot.model());
   if (form) {
-    return {StructureKind::closed_form, form->description + ": solved in closed form"};
+    if (form->held < 0) {
+      return {StructureKind::closed_form, form->description + ": solved in closed form"};
+    }
+    return {StructureKind::swept, form->description + ": in closed form for each angle of joint " +
+                                      std::to_string(form->held + 1) + ", which is swept"};
   }
   return {StructureKind::searched, "no axes lie so that it would help: solved by search"};
 }

@@ -194,6 +194,7 @@ Outcome iterate(const IterationContext& context, JointVector& q, int& steps) {
       continue;
     }
     q += adjustment;
+    if (context.descent_length > 0) q = model.joints.clamp(q);
     after_step(context, q);
   }
 }

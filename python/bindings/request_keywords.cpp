@@ -122,8 +122,7 @@ std::vector<Keyword> request_keywords() {
               "max_attempts, and as many of the database's on top."),
       keyword("database_seeds", &R::database_seeds,
               "whether other seeds follow the given ones: the database's, random ones, and those "
-              "that a "
-              "closed form gives."),
+              "that a closed form gives."),
       keyword("filter", &R::filter, kFilterDoc),
       keyword("deadline", &R::deadline,
               "wall-clock time after which the search for a target ends [s]; checked between its "

@@ -93,10 +93,10 @@ class IKSEL_EXPORT Solver {
 
   /// Solves many targets; result i belongs to target i and has the same bits whatever the number
   /// of threads and whatever else is in the batch. It has the bits that solve() gives, but for
-  /// seeds in lanes of an arm that is not solved in closed form: there a target has a lane to
-  /// itself, and the answer may be another of its solutions, within the same tolerances. `threads`
-  /// = 0 takes one per core. A target that is no pose has Status::invalid_pose;
-  /// SolveRequest::on_invalid_pose can have it thrown instead.
+  /// seeds in lanes where there is no closed form: there a target has a lane to itself, and the
+  /// answer may be another of its solutions, within the same tolerances. `threads` = 0 takes one
+  /// per core. A target that is no pose has Status::invalid_pose; SolveRequest::on_invalid_pose can
+  /// have it thrown instead.
   ///
   /// The request holds for each target by itself. `near` is empty, or has one
   /// configuration for each target, which counts instead of the request's. A filter is asked about

@@ -11,7 +11,7 @@ import pytest
 
 pytest.importorskip("bench", reason="the benchmarks are in the repository only")
 
-from bench import check, frozen, guard, noes, plan, run, targets
+from bench import check, frozen, guard, no, plan, run, targets
 from bench.arms import load_arm
 from bench.command import main
 from bench.rivals.axes import axes_of
@@ -294,11 +294,11 @@ class TestGuard:
         assert names == [(row["robot"], row["what"]) for row in guard.ROWS]
 
 
-class TestNoes:
+class TestNo:
     @pytest.mark.parametrize("name", ["ur3", "panda", "cvr038"])
     def test_each_target_counts_once(self, name):
-        for kind in noes.KINDS:
-            row = noes.measure(name, kind, COUNT, SEED)
+        for kind in no.KINDS:
+            row = no.measure(name, kind, COUNT, SEED)
             counts = [row[w] for w in ("solved", "proven", "swept", "searched")]
             assert sum(counts) == row["targets"] == COUNT
             assert row["wrong"] == 0
@@ -311,9 +311,9 @@ class TestNoes:
         assert [line.count("|") for line in told.splitlines()[2:]] == [14] * 4
 
     def test_proofs_against_reachable_targets_are_told(self, capsys, monkeypatch):
-        row = {**noes.measure("ur3", "uniform", COUNT, SEED), "wrong": 1}
-        monkeypatch.setattr(noes, "measure", lambda *_: row)
-        assert noes.noes(["ur3"], COUNT, SEED) == 1
+        row = {**no.measure("ur3", "uniform", COUNT, SEED), "wrong": 1}
+        monkeypatch.setattr(no, "measure", lambda *_: row)
+        assert no.no(["ur3"], COUNT, SEED) == 1
         assert "ur3, uniform: 1 are wrong" in capsys.readouterr().out
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a no costs, beside a yes, and how many of the noes are proven.
+"""What a no costs, beside a yes, and how many of them are proven.
 
 Two kinds of targets per robot (bench.targets): `uniform`, which can all be reached, and
 `any_rotation`, reachable positions with rotations at random, of which many cannot.
@@ -44,7 +44,7 @@ HEADER = (
     "structure",
     "targets",
     "solved",
-    "noes: proven",
+    "no: proven",
     "by sweep",
     "searched",
     "most steps",
@@ -56,7 +56,7 @@ HEADER = (
 )
 
 
-def noes(robots: Sequence[str], count: int, seed: int) -> int:
+def no(robots: Sequence[str], count: int, seed: int) -> int:
     """Print a table; the exit status is 1 if an answer or a proof is wrong."""
     rows = [measure(name, kind, count, seed) for name in robots for kind in KINDS]
     sys.stdout.write(

@@ -14,6 +14,7 @@ from bench.cells import WORK
 from bench.frozen import compare, record
 from bench.guard import guard
 from bench.machine import fingerprint, stale
+from bench.no import ROBOTS, no
 from bench.report import (
     collect,
     installed_rivals,
@@ -86,6 +87,18 @@ def parser() -> argparse.ArgumentParser:
     )
     frozen.add_argument("action", choices=["record", "compare"])
     frozen.add_argument("file", type=Path, help="where, e.g. build/frozen.json")
+    no_command = commands.add_parser(
+        "no", help="measure what a no costs, and how many of them are proven"
+    )
+    no_command.add_argument(
+        "robots",
+        nargs="*",
+        metavar="ROBOT",
+        default=ROBOTS,
+        help=f"default: {' '.join(ROBOTS)}",
+    )
+    no_command.add_argument("--targets", type=int, default=10_000, help="of each kind")
+    no_command.add_argument("--seed", type=int, default=1)
     return top
 
 
@@ -98,6 +111,8 @@ def main(arguments: list[str] | None = None) -> int:
     if options.command == "frozen":
         action = record if options.action == "record" else compare
         return action(options.file)
+    if options.command == "no":
+        return no(options.robots, options.targets, options.seed)
     if options.command == "render":
         render(load_report(options.output), options.output)
         return 0

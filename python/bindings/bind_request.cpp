@@ -215,7 +215,8 @@ void bind_requests(py::module_& m, py::class_<Solver>& cls) {
        "errors are measured.",
        "Result",
        R"(Returns:
-    A Result. A pose that cannot be solved is no error but a status.
+    A Result. A pose that cannot be solved is no error but a status, and `proof` says how certain
+    that is.
 
 Raises:
     InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, a number that is not
@@ -226,8 +227,8 @@ Raises:
       &solve);
   def_method<1>(cls,
                 {"solve_all",
-                 "Every distinct solution that is found: all branches, or a spread for a redundant "
-                 "arm.",
+                 "Every distinct solution that is found: all branches (there certainly are no "
+                 "others where `proven` says so), or a spread for a redundant arm.",
                  "pose", "T_base_tip [m], as in solve.", "Solutions",
                  R"(Returns:
     Solutions; empty, with a status that says why, if there is none.

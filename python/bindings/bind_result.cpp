@@ -103,8 +103,7 @@ void bind_single(py::module_& m) {
       "Why the solve ended.");
   add_property(
       cls, "proof", [](const PyResult& self) { return self.result.proof; },
-      "Of a failure, how it is known that there is certainly no answer, if it is; `none` of a "
-      "success.");
+      "Of a failure, how certain it is that there is no answer; `none` of a success.");
   add_property(
       cls, "proven", [](const PyResult& self) { return is_proven(self.result.proof); },
       "Whether there is certainly no answer: `proof` is `reach` or `closed_form`.");

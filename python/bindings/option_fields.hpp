@@ -46,9 +46,9 @@ struct FieldTable<Lanes> {
   static constexpr const char* kName = "Lanes";
   static constexpr const char* kDoc =
       "The recommended strategy: seeds in SIMD lanes, many at once, by Levenberg-Marquardt with "
-      "the "
-      "limits inside the step. Over a database with a full key, and for chains with mimic joints, "
-      "the same scheme takes one seed at a time.";
+      "the limits inside the step; for an arm with a closed form (Robot.structure) seeds come from "
+      "that first. Over a database with a full key, and for chains with mimic joints, the same "
+      "scheme takes one seed at a time.";
   static std::vector<Field> fields() {
     return {
         field("neighbours", &O::neighbours,

@@ -121,7 +121,8 @@ std::vector<Keyword> request_keywords() {
               "limits. They are ranked as the database's seeds, and tried before them: up to "
               "max_attempts, and as many of the database's on top."),
       keyword("database_seeds", &R::database_seeds,
-              "whether the database's seeds follow the given ones."),
+              "whether other seeds follow the given ones: the database's, random ones, and those "
+              "that a closed form gives."),
       keyword("filter", &R::filter, kFilterDoc),
       keyword("deadline", &R::deadline,
               "wall-clock time after which the search for a target ends [s]; checked between its "

@@ -127,7 +127,8 @@ class StructureKind(enum.Enum):
     How the solutions of a pose can be found.
     """
     closed_form = 0
-    searched = 1
+    searched = 2
+    swept = 1
     def __format__(self, arg0: str) -> str:
         ...
     def __str__(self) -> str:
@@ -769,7 +770,7 @@ class DatabaseOptions:
         ...
 class Lanes:
     """
-    The recommended strategy: seeds in SIMD lanes, many at once, by Levenberg-Marquardt with the limits inside the step. Over a database with a full key, and for chains with mimic joints, the same scheme takes one seed at a time.
+    The recommended strategy: seeds in SIMD lanes, many at once, by Levenberg-Marquardt with the limits inside the step; for an arm with a closed form (Robot.structure) seeds come from that first. Over a database with a full key, and for chains with mimic joints, the same scheme takes one seed at a time.
     """
     __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
     def __eq__(self, other: object) -> bool:
@@ -1346,11 +1347,12 @@ class Status(enum.IntEnum):
         ...
 class Proof(enum.IntEnum):
     """
-    How certain it is that there is no answer.
+    How certain it is that there is no other answer.
     """
     closed_form = 2
     none = 0
     reach = 1
+    sweep = 3
     def __format__(self, arg0: str) -> str:
         ...
     def __str__(self) -> str:
@@ -1392,7 +1394,7 @@ class _Result:
     @property
     def proof(self) -> Proof:
         """
-        Of a failure, how it is known that there is certainly no answer, if it is; `none` of a success.
+        Of a failure, how certain it is that there is no answer; `none` of a success.
         """
     @property
     def proven(self) -> bool:
@@ -1602,7 +1604,8 @@ class Solver:
             seeds: joint values to iterate from, (dof,) or (N, dof) [rad or m]; may lie outside the limits.
                 They are ranked as the database's seeds, and tried before them: up to max_attempts, and as
                 many of the database's on top.
-            database_seeds: whether the database's seeds follow the given ones.
+            database_seeds: whether other seeds follow the given ones: the database's, random ones, and
+                those that a closed form gives.
             filter: called with candidates (n, dof), each at the pose and inside the limits; returns n truth
                 values. The search continues within its bounds while all are refused. In a batch it is asked
                 about the first answers of up to 256 targets at once, along a path about one waypoint's.
@@ -1615,7 +1618,8 @@ class Solver:
                 minimum.
 
         Returns:
-            A Result. A pose that cannot be solved is no error but a status.
+            A Result. A pose that cannot be solved is no error but a status, and `proof` says how certain
+            that is.
 
         Raises:
             InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, a number that is not
@@ -1623,7 +1627,7 @@ class Solver:
         """
     def solve_all(self, pose: numpy.typing.ArrayLike | typing.Any, max: int = 64, *, min_distance: float = 0.01, whole_turns: bool = False, order: SolutionOrder | str = 'move', near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None) -> Solutions:
         """
-        Every distinct solution that is found: all branches, or a spread for a redundant arm.
+        Every distinct solution that is found: all branches (there certainly are no others where `proven` says so), or a spread for a redundant arm.
 
         Args:
             pose: T_base_tip [m], as in solve.
@@ -1643,7 +1647,8 @@ class Solver:
             seeds: joint values to iterate from, (dof,) or (N, dof) [rad or m]; may lie outside the limits.
                 They are ranked as the database's seeds, and tried before them: up to max_attempts, and as
                 many of the database's on top.
-            database_seeds: whether the database's seeds follow the given ones.
+            database_seeds: whether other seeds follow the given ones: the database's, random ones, and
+                those that a closed form gives.
             filter: called with candidates (n, dof), each at the pose and inside the limits; returns n truth
                 values. The search continues within its bounds while all are refused. In a batch it is asked
                 about the first answers of up to 256 targets at once, along a path about one waypoint's.
@@ -1662,9 +1667,9 @@ class Solver:
         Solves many targets with the GIL released; row i belongs to target i.
 
         A row has the same bits whatever the number of threads and whatever else is in the batch. Its
-        status is that of solve(), and so are its bits, but for seeds in SIMD lanes (the default preset):
-        there a target has a lane to itself, and the answer may be another of its solutions, within the
-        same tolerances. The request holds for each target by itself.
+        status is that of solve(), and so are its bits, but for seeds in SIMD lanes (the default preset) where
+        there is no closed form: there a target has a lane to itself, and the answer may be another of its
+        solutions, within the same tolerances. The request holds for each target by itself.
 
         Args:
             poses: T_base_tip, (N, 4, 4) [m], or others as in solve. Doubles in C order are read in place.
@@ -1680,7 +1685,8 @@ class Solver:
             seeds: joint values to iterate from, (dof,) or (N, dof) [rad or m]; may lie outside the limits.
                 They are ranked as the database's seeds, and tried before them: up to max_attempts, and as
                 many of the database's on top.
-            database_seeds: whether the database's seeds follow the given ones.
+            database_seeds: whether other seeds follow the given ones: the database's, random ones, and
+                those that a closed form gives.
             filter: called with candidates (n, dof), each at the pose and inside the limits; returns n truth
                 values. The search continues within its bounds while all are refused. In a batch it is asked
                 about the first answers of up to 256 targets at once, along a path about one waypoint's.

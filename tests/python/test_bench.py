@@ -11,8 +11,9 @@ import pytest
 
 pytest.importorskip("bench", reason="the benchmarks are in the repository only")
 
-from bench import check, frozen, guard, plan, run, targets
+from bench import check, frozen, guard, no, plan, run, targets
 from bench.arms import load_arm
+from bench.command import main
 from bench.rivals.axes import axes_of
 from bench.rivals.base import UnsupportedError
 from bench.store import Store
@@ -291,6 +292,29 @@ class TestGuard:
         committed = json.loads(guard.PATH.read_text(encoding="utf-8"))["rows"]
         names = [(row["robot"], row["what"]) for row in committed]
         assert names == [(row["robot"], row["what"]) for row in guard.ROWS]
+
+
+class TestNo:
+    @pytest.mark.parametrize("name", ["ur3", "panda", "cvr038"])
+    def test_each_target_counts_once(self, name):
+        for kind in no.KINDS:
+            row = no.measure(name, kind, COUNT, SEED)
+            counts = [row[w] for w in ("solved", "proven", "swept", "searched")]
+            assert sum(counts) == row["targets"] == COUNT
+            assert row["wrong"] == 0
+            assert (row["no"] is None) == (row["solved"] == COUNT)
+
+    def test_the_command_prints_a_row_for_each_kind(self, capsys):
+        assert main(["no", "ur3", "--targets", "20"]) == 0
+        told = capsys.readouterr().out
+        assert told.startswith("20 targets of each kind, seed 1")
+        assert [line.count("|") for line in told.splitlines()[2:]] == [14] * 4
+
+    def test_proofs_against_reachable_targets_are_told(self, capsys, monkeypatch):
+        row = {**no.measure("ur3", "uniform", COUNT, SEED), "wrong": 1}
+        monkeypatch.setattr(no, "measure", lambda *_: row)
+        assert no.no(["ur3"], COUNT, SEED) == 1
+        assert "ur3, uniform: 1 are wrong" in capsys.readouterr().out
 
 
 def test_frozen_names_the_calls_that_differ(

@@ -103,8 +103,9 @@ enum class GrowthStop {
 };
 
 /// Seeds in SIMD lanes, many at once, by Levenberg-Marquardt with the limits inside the step: the
-/// recommended strategy. Over a database with a full key, and for chains with mimic joints, which
-/// lanes cannot solve, the same scheme takes one seed at a time.
+/// recommended strategy. Where the chain has a closed form (find_structure), seeds come from that
+/// first. Over a database with a full key, and for chains with mimic joints, which lanes cannot
+/// solve, the same scheme takes one seed at a time.
 struct IKSEL_EXPORT Lanes {
   /// Samples nearest to the target that are tried before seeds at random.
   int neighbours = 200;

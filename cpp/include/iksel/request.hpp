@@ -49,7 +49,8 @@ struct IKSEL_EXPORT SolveRequest {
   /// tried, and how many of the database's after them. Ranking n takes time n log n, ends at the
   /// deadline, and up to 1,024 need no memory.
   std::vector<JointVector> seeds;
-  /// Whether the database's seeds follow the given ones; random restarts belong to the database's.
+  /// Whether other seeds follow the given ones: the database's, random ones, and those that a
+  /// closed form gives (find_structure).
   bool database_seeds = true;
 
   /// Configuration to stay near, typically where the arm is. May lie outside the limits, as

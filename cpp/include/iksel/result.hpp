@@ -43,7 +43,7 @@ IKSEL_EXPORT const char* to_string(Proof proof);
 /// Answer to one target. Everything in it is measured on the returned q, not predicted.
 struct Result {
   Status status = Status::not_converged;
-  /// Of a failure, whether there is certainly no answer; `none` of a success.
+  /// Of a failure, how certain it is that there is no answer; `none` of a success.
   Proof proof = Proof::none;
   /// Joint values [rad or m]; empty unless solved, so that no other q can be taken for an answer.
   JointVector q;

@@ -66,8 +66,8 @@ class IKSEL_EXPORT Solver {
 
   /// Joint values that put the TCP (the tip link's frame, if there is no tool) at T_base_tip, or if
   /// that is rounded at the nearest rigid pose. Throws InvalidArgumentError if it is none
-  /// (check_pose); a pose that cannot be solved is no error but a status. For arms of few joints
-  /// see task_hint.
+  /// (check_pose); a pose that cannot be solved is no error but a status, and Result::proof says
+  /// how certain that is. For arms of few joints see task_hint.
   [[nodiscard]] Result solve(const Pose& T_base_tip) const;
   /// As above, for a request; the time of each stage is added to `times` if that is not null. A
   /// request that asks for nothing gives solve(T_base_tip).
@@ -75,8 +75,9 @@ class IKSEL_EXPORT Solver {
                              StageTimes* times = nullptr) const;
 
   /// Every distinct solution inside the limits that is found within the bounds on work: all
-  /// branches of an arm with as many joints as the pose has directions, a spread over the families
-  /// of a redundant one. Throws as solve.
+  /// branches of an arm with as many joints as the pose has directions (Solutions::proof says
+  /// whether there certainly are no others), a spread over the families of a redundant one. Throws
+  /// as solve.
   [[nodiscard]] Solutions solve_all(const Pose& T_base_tip, const SolveAllOptions& options = {},
                                     const SolveRequest& request = {}) const;
 
@@ -92,9 +93,10 @@ class IKSEL_EXPORT Solver {
 
   /// Solves many targets; result i belongs to target i and has the same bits whatever the number
   /// of threads and whatever else is in the batch. It has the bits that solve() gives, but for
-  /// seeds in lanes: there a target has a lane to itself, and the answer may be another of its
-  /// solutions, within the same tolerances. `threads` = 0 takes one per core. A target that is no
-  /// pose has Status::invalid_pose; SolveRequest::on_invalid_pose can have it thrown instead.
+  /// seeds in lanes where there is no closed form: there a target has a lane to itself, and the
+  /// answer may be another of its solutions, within the same tolerances. `threads` = 0 takes one
+  /// per core. A target that is no pose has Status::invalid_pose; SolveRequest::on_invalid_pose can
+  /// have it thrown instead.
   ///
   /// The request holds for each target by itself. `near` is empty, or has one
   /// configuration for each target, which counts instead of the request's. A filter is asked about

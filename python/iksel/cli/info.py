@@ -53,7 +53,7 @@ def add_parser(commands: Any) -> None:
         usage="iksel info ROBOT [options]",
         help="show a robot's joints, limits and reach",
         description="Show a robot's links, tool, reach, joints and their limits, and "
-        "whether it is solved in closed form or by search.",
+        "whether it is solved in closed form, by a sweep over one joint or by search.",
         epilog=EXAMPLES,
     )
     add_robot(parser)

@@ -24,12 +24,15 @@ Workspace::InLanes::InLanes(const ChainModel& model, const ChainModel& nominal,
     : refiner(model, options, kernels),
       query(model, nominal, data, neighbours_of(options.strategy), kernels) {
   if (closed_form == nullptr) return;
+  const bool is_nominal = &model == &nominal;
+  const double position = options.position_tolerance;
+  const double rotation = options.rotation_tolerance;
   if (closed_form->held >= 0) {
-    sweep.emplace(model, *closed_form, kernels);
-    return;
+    const double largest = std::max(position / closed_form->unit, rotation);
+    sweep.emplace(model, *closed_form, is_nominal && largest <= Sweep::kMostTolerance, kernels);
+  } else {
+    branches.emplace(model, *closed_form, is_nominal, position, rotation, kernels);
   }
-  branches.emplace(model, *closed_form, &model == &nominal, options.position_tolerance,
-                   options.rotation_tolerance, kernels);
 }
 
 Workspace::OneAtATime::OneAtATime(const ChainModel& model, const ChainModel& nominal,

@@ -16,8 +16,13 @@ Enumeration::Enumeration(const ChainModel& model, const ClosedFormChain& chain, 
                          const lanes::LaneKernels& kernels)
     : model_(model), chain_(chain), kernels_(kernels), is_nominal_(is_nominal) {
   chain_.use_limits(model);
-  chain_.form.error = kMargin * std::max({position_tolerance / chain.unit, rotation_tolerance,
-                                          kStructureTolerance});
+  // A rotation moves what the form sees of a target by the tool's length, and seen from the other
+  // end by the arm's.
+  const double lever = chain.tail.norm() + to_pose(model.kernel.tip).translation().norm() +
+                       (chain.reversed ? model.reach_of_tcp() : 0.0);
+  chain_.form.error =
+      kMargin * std::max({(position_tolerance + lever * rotation_tolerance) / chain.unit,
+                          rotation_tolerance, kStructureTolerance});
   for (int lane = 0; lane < kMost; ++lane) {
     for (int s = 0; s < 3; ++s) pack_.sign[s][lane] = (lane >> s & 1) == 0 ? 1 : -1;
   }
@@ -38,17 +43,7 @@ void Enumeration::take(const Goal& goal, int lane, bool wants_all) {
   for (int i = 0; i < 6; ++i) {
     q[static_cast<std::size_t>(chain_.joints[i])] = pack_.q[i][lane];
   }
-  double beyond = pack_.beyond[lane];
-  if (beyond > 0) {
-    // Limits may be more than a turn away.
-    const JointSpace& joints = model_.joints;
-    joints.wrap(q.data());
-    beyond = 0;
-    for (int j = 0; j < 6; ++j) {
-      const double value = q[static_cast<std::size_t>(j)];
-      beyond = std::max({beyond, joints.lower[j] - value, value - joints.upper[j]});
-    }
-  }
+  const double beyond = pack_.beyond[lane];
   // An angle off by more says nothing; written so that NaN does not either.
   constexpr double kVague = 0.3;
   double bound = pack_.error[lane];

@@ -8,10 +8,11 @@
 
 namespace iksel {
 
-Sweep::Sweep(const ChainModel& model, const ClosedFormChain& chain,
+Sweep::Sweep(const ChainModel& model, const ClosedFormChain& chain, bool is_exact,
              const lanes::LaneKernels& kernels)
     : chain_(chain),
       kernels_(kernels),
+      is_exact_(is_exact),
       lower_(model.joints.sample_lower(chain.held)),
       offset_(model.kernel.joints[static_cast<std::size_t>(chain.held)].offset),
       turns_(model.joints.is_periodic(chain.held)),

@@ -19,8 +19,10 @@ class Sweep {
   /// Values of the swept joint that are looked at, evenly over its range.
   static constexpr int kSamples = 64;
 
-  /// `chain` is the nominal chain's, with a joint that is held; its limits are the model's.
-  Sweep(const ChainModel& model, const ClosedFormChain& chain, const lanes::LaneKernels& kernels);
+  /// `chain` has a joint that is held; its limits are the model's. `is_exact`: it is the model's
+  /// own, and the tolerances are small (kMostTolerance).
+  Sweep(const ChainModel& model, const ClosedFormChain& chain, bool is_exact,
+        const lanes::LaneKernels& kernels);
 
   /// Looks for an answer to Y (reduction.hpp): at the samples, and where branches come near to one,
   /// between them. True if there is one.
@@ -28,7 +30,10 @@ class Sweep {
   /// The answer [rad].
   [[nodiscard]] const double* q() const { return q_.data(); }
   /// If there was none: whether none came so close to one that it might have been missed.
-  [[nodiscard]] bool is_none() const { return least_ > kClose; }
+  [[nodiscard]] bool is_none() const { return is_exact_ && least_ > kClose; }
+  /// Beyond such tolerances answers lie far from where branches are [rad, and m in units of the
+  /// reach].
+  static constexpr double kMostTolerance = 1e-4;
 
  private:
   static constexpr int kBranches = lanes::kWidth;
@@ -59,6 +64,7 @@ class Sweep {
 
   ClosedFormChain chain_;
   const lanes::LaneKernels& kernels_;
+  bool is_exact_;
   double lower_, step_, offset_;  ///< of the swept joint [rad]
   /// Whether the last sample is beside the first.
   bool turns_;

@@ -366,13 +366,11 @@ IKSEL_INLINE void store_joints(const ClosedForm& form, const Branch<T, Q>& branc
                                BranchPack& pack) {
   T beyond = T(0.0);
   for (int j = 0; j < 6; ++j) {
-    const T lower = T(form.lower[j]);
-    const T upper = T(form.upper[j]);
     T q = to_radians(branch.q[j]) - T(form.offset[j]);
-    q = select(q < lower, q + T(kWholeTurn), q);
-    const T turned = q - T(kWholeTurn);
-    q = select(q - upper > max(lower - turned, T(0.0)), turned, q);
-    beyond = max(beyond, max(lower - q, q - upper));
+    // The image nearest to the middle of the limits lies inside them if one does.
+    const T turns = nearest_integer((T(form.middle[j]) - q) * T(1 / kWholeTurn));
+    q = q + T(kWholeTurn) * turns;
+    beyond = max(beyond, abs(q - T(form.middle[j])) - T(form.reach[j]));
     Lanes<T>::store(q, pack.q[j] + first);
   }
   Lanes<T>::store(beyond, pack.beyond + first);

@@ -26,10 +26,11 @@ struct Turned {
 /// the chain's reach.
 struct ClosedForm {
   Closure closure;
-  double error;               ///< relative error of a target that is still the same one
-  double offset[6];           ///< what angles are more than joint values [rad]
-  double lower[6], upper[6];  ///< of the joint values, one turn of those that have no limits [rad]
-  double h[6][3];             ///< unit vectors along the axes
+  double error;      ///< relative error of a target that is still the same one
+  double offset[6];  ///< what angles are more than joint values [rad]
+  /// Middle of each joint's limits, and half their range; of a joint that has none, 0 and pi [rad].
+  double middle[6], reach[6];
+  double h[6][3];       ///< unit vectors along the axes
   double p[4][3];       ///< from a point on axis j to one on axis j + 1; where axes meet, one point
   double basis[3][3];   ///< right-handed, h6 last
   double across[3];     ///< a unit vector across h2
@@ -57,7 +58,7 @@ struct BranchPack {
   alignas(64) double held[kWidth];
   /// +-1: which of two solutions each of three subproblems takes.
   alignas(64) double sign[3][kWidth];
-  /// Of the six joints [rad], by a whole turn inside the limits where one is enough.
+  /// Of the six joints [rad], by whole turns inside the limits where they can be.
   alignas(64) double q[6][kWidth];
   /// How far one of them lies outside of them, 0 or less if none does [rad].
   alignas(64) double beyond[kWidth];

@@ -167,8 +167,8 @@ void ClosedFormChain::use_limits(const ChainModel& model) {
     const int j = joints[i];
     const bool ends = model.joints.type(j) != JointType::continuous;
     form.offset[i] = model.kernel.joints[static_cast<std::size_t>(j)].offset;
-    form.lower[i] = ends ? model.joints.lower[j] : -kPi;
-    form.upper[i] = ends ? model.joints.upper[j] : kPi;
+    form.middle[i] = ends ? 0.5 * (model.joints.lower[j] + model.joints.upper[j]) : 0;
+    form.reach[i] = ends ? 0.5 * (model.joints.upper[j] - model.joints.lower[j]) : kPi;
   }
 }
 

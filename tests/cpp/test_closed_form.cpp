@@ -104,20 +104,20 @@ TEST_P(ClosedChains, BranchesAreSolutionsAndHoldTheOneThatWasPutIn) {
       const Pose target = robot.fk(q.row(i));
       chain.set_target(iksel_test::reduced(robot, target), pack);
       kernels.solve_branches(chain.form, pack);
-      double nearest = 10;
+      bool is_known = false;
       for (int lane = 0; lane < lanes::kWidth; ++lane) {
         if (pack.best[lane] < 0) continue;
         ++branches;
         EXPECT_LE(pack.beyond[lane], 1e-15);
         const JointVector at = branch_of(chain, pack, lane);
-        nearest = std::min(nearest, turned_away(at, q.row(i)));
+        is_known = is_known || turned_away(at, q.row(i)) <= 1e-9 + pack.error[lane];
         // Rounding has grown as the error has, from a thousandth of it.
         vague += pack.error[lane] > kUnclear;
         if (pack.error[lane] > kUnclear || pack.least[lane] < 0) continue;
         EXPECT_LE(iksel::pose_error(target, robot.fk(at)).norm(), 1e-8)
             << "lane " << lane << " of q = " << q.row(i);
       }
-      EXPECT_LE(nearest, 1e-7) << q.row(i);
+      EXPECT_TRUE(is_known) << q.row(i);
     }
   });
   EXPECT_LE(vague, branches / 20);
@@ -177,10 +177,10 @@ TEST_P(ClosedChains, EveryLevelGivesTheSameBranches) {
             lanes::choose_kernels().find_branches(chain.form, found);
             for (int lane = 0; lane < lanes::kWidth; ++lane) {
               const double least = reference.least[lane];
-              EXPECT_NEAR(pack.least[lane], least, 1e-12 * (1 + std::abs(least))) << level;
+              EXPECT_NEAR(pack.least[lane], least, 1e-10 * (1 + std::abs(least))) << level;
               EXPECT_EQ(pack.least[lane], found.least[lane]) << level;
               EXPECT_EQ(pack.beyond[lane], found.beyond[lane]) << level;
-              if (least < 1e-12 || reference.error[lane] > 1e-6) continue;
+              if (least < 1e-12 || reference.error[lane] > 1e-8) continue;
               const JointVector expected = branch_of(chain, reference, lane);
               EXPECT_LE(turned_away(branch_of(chain, pack, lane), expected), 1e-9) << level;
               EXPECT_EQ(branch_of(chain, pack, lane), branch_of(chain, found, lane)) << level;
@@ -203,7 +203,7 @@ TEST_P(ClosedChains, IsOneUpToRoundingOnly) {
       AxisChain other = axes;
       other.h[i] = (axes.h[i] + off * across).normalized();
       // Turned about its point, it must not pass through where the others meet.
-      other.p[i] += 0.3 * (at == 4 ? axes.h[i] : Eigen::Vector3d::Zero());
+      other.p[i] += 0.5 * (at == 4 ? axes.h[i] : Eigen::Vector3d::Zero());
       EXPECT_EQ(iksel::find_structure(iksel_test::make_robot(other, dice)).kind,
                 off < 1e-9 ? iksel::StructureKind::closed_form : iksel::StructureKind::searched)
           << off;

@@ -209,4 +209,58 @@ TEST(ProofsOfOddOnes, TolerancesOfAnySizeAreAllowedFor) {
   }
 }
 
+/// A UR3 whose tool is longer than the arm: the wrist moves by much where the tool turns by little.
+TEST(ProofsOfOddOnes, DISABLED_LongTools) {
+  Pose tool = Pose::Identity();
+  tool.translation() = Eigen::Vector3d(5, 3, 20);
+  iksel::SolverOptions options;
+  options.rotation_tolerance = 1e-5;
+  const Solver solver(iksel_test::robot("ur3").with_tcp(tool), options);
+  const Robot& robot = solver.robot();
+  Dice dice(iksel_test::seed());
+  const int n = iksel_test::cases(2000);
+  const Eigen::MatrixXd random = robot.random_configurations(n, iksel_test::seed());
+  for (int i = 0; i < n; ++i) {
+    JointVector q = random.row(i);
+    // Stretched, so that what is a little farther away has no branch.
+    q[2] = 0;
+    const Pose target = iksel_test::shifted(robot.fk(q), 0, 0.99e-5, dice);
+    const Result result = solver.solve(target);
+    EXPECT_TRUE(result.success() || result.proof == Proof::none) << i << ": " << q.transpose();
+  }
+}
+
+/// Joints at limits that are more than a turn away from 0.
+TEST(ProofsOfOddOnes, DISABLED_LimitsTurnsAway) {
+  Dice dice(iksel_test::seed());
+  iksel::SolverOptions options;
+  options.database.samples = 300;
+  for (const double from : {-15.0, -9.0, -4.0, 4.0, 9.0, 15.0}) {
+    iksel_test::OddChain chain;
+    const auto axes = iksel_test::AxisMaker(dice).make(iksel_test::Closure::parallel_23, false);
+    Eigen::Vector3d before = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < 6; ++i) {
+      iksel_test::OddJoint joint;
+      joint.xyz = axes.p[i] - before;
+      joint.axis = axes.h[i];
+      joint.lower = from - 1;
+      joint.upper = from + 1;
+      before = axes.p[i];
+      chain.joints.push_back(joint);
+    }
+    const Solver solver(
+        Robot::from_urdf_string(iksel_test::urdf_of(chain), iksel_test::robot_options(chain)),
+        options);
+    const Robot& robot = solver.robot();
+    const Eigen::MatrixXd random = robot.random_configurations(100, iksel_test::seed());
+    for (int i = 0; i < random.rows(); ++i) {
+      JointVector q = random.row(i);
+      for (int j = 0; j < 6; ++j) {
+        if (dice.chance(0.5)) q[j] = dice.chance(0.5) ? robot.lower()[j] : robot.upper()[j];
+      }
+      EXPECT_TRUE(solver.solve(robot.fk(q)).success()) << from << ": " << q.transpose();
+    }
+  }
+}
+
 }  // namespace

@@ -164,6 +164,39 @@ TEST_P(Sweeps, NoOneElseSolvesWhatHasNone) {
   EXPECT_GE(none, 1);
 }
 
+TEST_P(Sweeps, DISABLED_LargeTolerancesAreAllowedFor) {
+  iksel::SolverOptions options;
+  options.position_tolerance = 0.03;
+  options.rotation_tolerance = 0.1;
+  const Solver rough(robot(), options);
+  Dice dice(iksel_test::seed());
+  for (const JointVector& q : at_limits(iksel_test::cases(100), 3, dice)) {
+    const Pose target = iksel_test::shifted(robot().fk(q), 0.029, 0.099, dice);
+    const Result result = rough.solve(target);
+    EXPECT_EQ(result.proof, Proof::none) << q.transpose();
+  }
+}
+
+/// The nominal chain is swept, the answers are the robot's own: up to 0.1 rad and 5 cm away.
+TEST_P(Sweeps, DISABLED_ACalibratedRobotIsNotSweptByItsNominalChainAlone) {
+  std::string urdf = robot().urdf();
+  // The last joint's axis is turned by 0.04 rad.
+  const std::string axis = "<axis xyz=\"0 0 1\"/>";
+  const auto at = urdf.rfind(axis);
+  if (at == std::string::npos) GTEST_SKIP() << "another axis";
+  urdf.replace(at, axis.size(), "<axis xyz=\"0.02 0.03 1\"/>");
+  const Robot calibrated = Robot::from_urdf_string(urdf, robot().options());
+  if (calibrated.chain_hash() == robot().chain_hash()) GTEST_SKIP() << "not of the chain";
+  const Solver by_nominal(calibrated, {}, solver().database(), robot());
+  Dice dice(iksel_test::seed());
+  for (const int joints : {0, 2, 3}) {
+    for (const JointVector& q : at_limits(iksel_test::cases(1000), joints, dice)) {
+      const Result result = by_nominal.solve(calibrated.fk(q));
+      EXPECT_EQ(result.proof, Proof::none) << joints << ": " << q.transpose();
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Robots, Sweeps,
                          testing::Values("panda", "fr3", "iiwa7", "iiwa14", "xarm7",
                                          "pr2_right_arm", "valkyrie_right_arm"),

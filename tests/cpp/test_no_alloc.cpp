@@ -143,6 +143,34 @@ TEST(NoAllocation, NearFilteredAndTracking) {
   }
 }
 
+/// Six joints in closed form, seven by a sweep, and by search.
+TEST(NoAllocation, PosesWithoutAnAnswer) {
+  for (const char* name : {"ur3", "irb120", "panda", "iiwa14", "cvr038"}) {
+    const iksel::Robot& robot = iksel_test::robot(name);
+    const iksel::Solver& solver = iksel_test::solver(name);
+    std::vector<iksel::Pose> targets;
+    std::vector<iksel::Pose> rotations = iksel_test::random_targets(robot, 600);
+    for (std::size_t i = 0; i + 1 < rotations.size() && targets.size() < 20; ++i) {
+      iksel::Pose target = rotations[i];
+      target.linear() = rotations[i + 1].linear();
+      if (!solver.solve(target).success()) targets.push_back(target);
+    }
+    ASSERT_GE(targets.size(), 5U) << name;
+    allocations = 0;
+    watching = true;
+    int proven = 0;
+    for (const iksel::Pose& target : targets) {
+      const iksel::Result result = solver.solve(target);
+      proven += result.proof != iksel::Proof::none;
+    }
+    watching = false;
+    EXPECT_EQ(allocations.load(), 0) << name;
+    if (iksel::find_structure(robot).kind != iksel::StructureKind::searched) {
+      EXPECT_GE(proven, 1) << name;
+    }
+  }
+}
+
 TEST(NoAllocation, GivenSeeds) {
   for (const bool paper : {false, true}) {
     const iksel::Robot& robot = iksel_test::robot("cvr038");

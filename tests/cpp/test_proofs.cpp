@@ -210,7 +210,7 @@ TEST(ProofsOfOddOnes, TolerancesOfAnySizeAreAllowedFor) {
 }
 
 /// A UR3 whose tool is longer than the arm: the wrist moves by much where the tool turns by little.
-TEST(ProofsOfOddOnes, DISABLED_LongTools) {
+TEST(ProofsOfOddOnes, LongTools) {
   Pose tool = Pose::Identity();
   tool.translation() = Eigen::Vector3d(5, 3, 20);
   iksel::SolverOptions options;
@@ -231,7 +231,7 @@ TEST(ProofsOfOddOnes, DISABLED_LongTools) {
 }
 
 /// Joints at limits that are more than a turn away from 0.
-TEST(ProofsOfOddOnes, DISABLED_LimitsTurnsAway) {
+TEST(ProofsOfOddOnes, LimitsTurnsAway) {
   Dice dice(iksel_test::seed());
   iksel::SolverOptions options;
   options.database.samples = 300;

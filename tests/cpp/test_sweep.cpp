@@ -29,7 +29,7 @@ class Sweeps : public testing::TestWithParam<const char*> {
   [[nodiscard]] const Solver& solver() const { return iksel_test::solver(GetParam()); }
   [[nodiscard]] const Robot& robot() const { return solver().robot(); }
   [[nodiscard]] Sweep make_sweep() const {
-    return {robot().model(), *iksel::find_closed_form(robot().model()),
+    return {robot().model(), *iksel::find_closed_form(robot().model()), /*is_nominal=*/true, 1e-6,
             iksel::lanes::choose_kernels()};
   }
   /// So many configurations with `joints` of them at one of their limits.
@@ -164,7 +164,7 @@ TEST_P(Sweeps, NoOneElseSolvesWhatHasNone) {
   EXPECT_GE(none, 1);
 }
 
-TEST_P(Sweeps, DISABLED_LargeTolerancesAreAllowedFor) {
+TEST_P(Sweeps, LargeTolerancesAreAllowedFor) {
   iksel::SolverOptions options;
   options.position_tolerance = 0.03;
   options.rotation_tolerance = 0.1;
@@ -178,7 +178,7 @@ TEST_P(Sweeps, DISABLED_LargeTolerancesAreAllowedFor) {
 }
 
 /// The nominal chain is swept, the answers are the robot's own: up to 0.1 rad and 5 cm away.
-TEST_P(Sweeps, DISABLED_ACalibratedRobotIsNotSweptByItsNominalChainAlone) {
+TEST_P(Sweeps, ACalibratedRobotIsNotSweptByItsNominalChainAlone) {
   std::string urdf = robot().urdf();
   // The last joint's axis is turned by 0.04 rad.
   const std::string axis = "<axis xyz=\"0 0 1\"/>";

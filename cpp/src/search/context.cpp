@@ -28,8 +28,8 @@ Workspace::InLanes::InLanes(const ChainModel& model, const ChainModel& nominal,
   const double position = options.position_tolerance;
   const double rotation = options.rotation_tolerance;
   if (closed_form->held >= 0) {
-    const double largest = std::max(position / closed_form->unit, rotation);
-    sweep.emplace(model, *closed_form, is_nominal && largest <= Sweep::kMostTolerance, kernels);
+    const double tolerance = std::max(position / closed_form->unit, rotation);
+    sweep.emplace(model, *closed_form, is_nominal, tolerance, kernels);
   } else {
     branches.emplace(model, *closed_form, is_nominal, position, rotation, kernels);
   }

@@ -8,11 +8,12 @@
 
 namespace iksel {
 
-Sweep::Sweep(const ChainModel& model, const ClosedFormChain& chain, bool is_exact,
-             const lanes::LaneKernels& kernels)
+Sweep::Sweep(const ChainModel& model, const ClosedFormChain& chain, bool is_nominal,
+             double tolerance, const lanes::LaneKernels& kernels)
     : chain_(chain),
       kernels_(kernels),
-      is_exact_(is_exact),
+      concludes_(is_nominal && tolerance <= kMostTolerance),
+      close_(std::max(0.01, 4 * std::sqrt(2 * tolerance))),
       lower_(model.joints.sample_lower(chain.held)),
       offset_(model.kernel.joints[static_cast<std::size_t>(chain.held)].offset),
       turns_(model.joints.is_periodic(chain.held)),

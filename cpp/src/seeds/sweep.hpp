@@ -19,9 +19,9 @@ class Sweep {
   /// Values of the swept joint that are looked at, evenly over its range.
   static constexpr int kSamples = 64;
 
-  /// `chain` has a joint that is held; its limits are the model's. `is_exact`: it is the model's
-  /// own, and the tolerances are small (kMostTolerance).
-  Sweep(const ChainModel& model, const ClosedFormChain& chain, bool is_exact,
+  /// `chain` has a joint that is held; its limits are the model's. `is_nominal`: it is the model's
+  /// own. `tolerance` is the larger of the solver's [rad, and m in units of the reach].
+  Sweep(const ChainModel& model, const ClosedFormChain& chain, bool is_nominal, double tolerance,
         const lanes::LaneKernels& kernels);
 
   /// Looks for an answer to Y (reduction.hpp): at the samples, and where branches come near to one,
@@ -30,10 +30,7 @@ class Sweep {
   /// The answer [rad].
   [[nodiscard]] const double* q() const { return q_.data(); }
   /// If there was none: whether none came so close to one that it might have been missed.
-  [[nodiscard]] bool is_none() const { return is_exact_ && least_ > kClose; }
-  /// Beyond such tolerances answers lie far from where branches are [rad, and m in units of the
-  /// reach].
-  static constexpr double kMostTolerance = 1e-4;
+  [[nodiscard]] bool is_none() const { return concludes_ && least_ > close_; }
 
  private:
   static constexpr int kBranches = lanes::kWidth;
@@ -41,9 +38,9 @@ class Sweep {
   static constexpr std::size_t kFollowed = 8;
   /// And such only as come so near to an answer at a sample [mixed units].
   static constexpr double kNear = 0.3;
-  /// A branch that comes so near to an answer may be one that rounding hides, or the tolerances
-  /// allow [mixed units].
-  static constexpr double kClose = 0.01;
+  /// Of a chain other than the nominal one, and beyond such tolerances, answers lie too far from
+  /// where branches are to conclude anything.
+  static constexpr double kMostTolerance = 1e-4;
 
   /// Where a branch comes nearer to an answer than at the samples beside.
   struct Near {
@@ -64,7 +61,10 @@ class Sweep {
 
   ClosedFormChain chain_;
   const lanes::LaneKernels& kernels_;
-  bool is_exact_;
+  bool concludes_;
+  /// A branch that comes so near to an answer may be one that rounding hides, or the tolerances
+  /// allow: beside a fold by their root [mixed units].
+  double close_;
   double lower_, step_, offset_;  ///< of the swept joint [rad]
   /// Whether the last sample is beside the first.
   bool turns_;

@@ -80,10 +80,16 @@ fuzz() {
 }
 
 for target in "${targets[@]}"; do
-  if native "$target"; then build_native && break; fi
+  if native "$target"; then
+    build_native
+    break
+  fi
 done
 for target in "${targets[@]}"; do
-  if ! native "$target"; then prepare_python && break; fi
+  if ! native "$target"; then
+    prepare_python
+    break
+  fi
 done
 
 step "fuzz ${targets[*]}, $seconds s each"

@@ -14,7 +14,7 @@ constexpr double kMargin = 4;
 Enumeration::Enumeration(const ChainModel& model, const ClosedFormChain& chain, bool is_nominal,
                          double position_tolerance, double rotation_tolerance,
                          const lanes::LaneKernels& kernels)
-    : model_(model), chain_(chain), kernels_(kernels), is_nominal_(is_nominal) {
+    : chain_(chain), kernels_(kernels), is_nominal_(is_nominal) {
   chain_.use_limits(model);
   // A rotation moves what the form sees of a target by the tool's length, and seen from the other
   // end by the arm's.

@@ -18,7 +18,7 @@ class Enumeration {
  public:
   static constexpr int kMost = lanes::kWidth;
 
-  /// `chain` is the nominal chain's; seeds are those of `model`, which outlives this. Tolerances
+  /// `chain` is the nominal chain's; `is_nominal`: that of `model`, whose limits count. Tolerances
   /// are the solver's [m, rad].
   Enumeration(const ChainModel& model, const ClosedFormChain& chain, bool is_nominal,
               double position_tolerance, double rotation_tolerance,
@@ -45,7 +45,6 @@ class Enumeration {
   /// may move it [rad].
   bool is_regular(const Goal& goal, const std::array<double, 6>& q, double& bound) const;
 
-  const ChainModel& model_;
   ClosedFormChain chain_;
   const lanes::LaneKernels& kernels_;
   bool is_nominal_;

@@ -12,7 +12,7 @@ template <typename... Sources>
 class SeedSequence {
  public:
   /// All must outlive this. Those from number `end` on are not asked.
-  SeedSequence(std::size_t end, Sources&... sources) : end_(end), sources_(sources...) {}
+  explicit SeedSequence(std::size_t end, Sources&... sources) : end_(end), sources_(sources...) {}
 
   bool next_stage() {
     for (; at_ < end_; ++at_) {

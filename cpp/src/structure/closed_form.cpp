@@ -156,9 +156,9 @@ std::string describe(Closure closure, const int (&joints)[kSix]) {
 
 void ClosedFormChain::set_target(const Pose& Y, lanes::BranchPack& pack) const {
   const Pose target = reversed ? Y.inverse() : Y;
-  const Eigen::Matrix3d RE = target.linear() * to_basis;
-  const Vector3d w = (target.translation() - first - RE * tail) / unit;
-  for (int i = 0; i < 9; ++i) pack.target[i] = RE(i % 3, i / 3);
+  const Eigen::Matrix3d columns = target.linear() * to_basis;
+  const Vector3d w = (target.translation() - first - columns * tail) / unit;
+  for (int i = 0; i < 9; ++i) pack.target[i] = columns(i % 3, i / 3);
   for (int i = 0; i < 3; ++i) pack.target[9 + i] = w[i];
 }
 

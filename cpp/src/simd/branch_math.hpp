@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Subproblems of one and two angles (Paden 1986; Elias and Wen: "Canonical subproblems for robot
+// inverse kinematics", 2022), lane by lane. Angles stay pairs of cosine and sine until the end.
+#pragma once
+
+#include "simd/branch_types.hpp"
+#include "simd/lane_math.hpp"
+
+namespace iksel::lanes {
+
+template <typename T>
+struct Vec {
+  T x, y, z;
+};
+
+template <typename T>
+IKSEL_INLINE Vec<T> constant(const double (&v)[3]) {
+  return {T(v[0]), T(v[1]), T(v[2])};
+}
+template <typename T>
+IKSEL_INLINE T dot(const Vec<T>& a, const Vec<T>& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+template <typename T>
+IKSEL_INLINE Vec<T> cross(const Vec<T>& a, const Vec<T>& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+/// a + s b
+template <typename T>
+IKSEL_INLINE Vec<T> add(const Vec<T>& a, const T& s, const Vec<T>& b) {
+  return {a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
+}
+
+/// An angle by its cosine and sine.
+template <typename T>
+struct Angle {
+  T c = T(1.0);
+  T s = T(0.0);
+};
+
+/// R(k, t) v, or R(k, -t) v.
+template <typename T>
+IKSEL_INLINE Vec<T> turned(const Vec<T>& k, const Angle<T>& t, const Vec<T>& v) {
+  const Vec<T> kv = cross(k, v);
+  const T along = (T(1.0) - t.c) * dot(k, v);
+  return {t.c * v.x + t.s * kv.x + along * k.x, t.c * v.y + t.s * kv.y + along * k.y,
+          t.c * v.z + t.s * kv.z + along * k.z};
+}
+template <typename T>
+IKSEL_INLINE Vec<T> turned_back(const Vec<T>& k, const Angle<T>& t, const Vec<T>& v) {
+  return turned(k, Angle<T>{t.c, T(0.0) - t.s}, v);
+}
+
+/// The angle in -pi .. pi, to 1e-15. Without a division, of which a kernel has enough: reduced to
+/// pi / 8 at most, and by the series of the arc sine.
+template <typename T>
+IKSEL_INLINE T to_radians(const Angle<T>& t) {
+  const T c = abs(t.c);
+  const T s = abs(t.s);
+  const T low = min(c, s);
+  const T high = max(c, s);
+  const T x = low * T(0.92387953251128675613) - high * T(0.38268343236508977173);
+  const T x2 = x * x;
+  T a = T(0.004240907093679363);
+  a = a * x2 + T(0.004660143486915096);
+  a = a * x2 + T(0.005153309682319905);
+  a = a * x2 + T(0.005740037670841924);
+  a = a * x2 + T(0.006447210311889649);
+  a = a * x2 + T(0.0073125258735988454);
+  a = a * x2 + T(0.008390335809616815);
+  a = a * x2 + T(0.009761609529194078);
+  a = a * x2 + T(0.011551800896139705);
+  a = a * x2 + T(0.01396484375);
+  a = a * x2 + T(0.017352764423076924);
+  a = a * x2 + T(0.022372159090909092);
+  a = a * x2 + T(0.030381944444444444);
+  a = a * x2 + T(0.044642857142857144);
+  a = a * x2 + T(0.075);
+  a = a * x2 + T(0.16666666666666666);
+  a = a * x2 + T(1.0);
+  a = a * x + T(0.39269908169872415481);
+  a = select(s > c, T(1.57079632679489661923) - a, a);
+  a = select(t.c < T(0.0), T(3.14159265358979323846) - a, a);
+  return select(t.s < T(0.0), T(0.0) - a, a);
+}
+
+/// How certain the angles found so far are, as BranchPack has it.
+template <typename T>
+struct Certainty {
+  T least = T(1.0);
+  T best = T(1.0);
+  T worst = T(1.0);
+  /// Error of the angles so far: of this numerator and denominator, so as not to divide each time.
+  T error;
+  T scale = T(1.0);
+
+  /// An angle follows from a quotient by a number of the size `size`.
+  IKSEL_INLINE void divide_by(const T& size) {
+    error = error * (size + T(1.0));
+    scale = scale * max(size, T(1e-12));
+  }
+  /// The same by the product of two lengths, mostly equal ones.
+  IKSEL_INLINE void divide_by_product(const T& product) { divide_by(sqrt(product)); }
+  /// An angle follows from the root of `square`, the difference of squares of a number near to
+  /// `near` where that is near 0.
+  IKSEL_INLINE void take_root(const T& square, const T& near, const T& root) {
+    const T scaled = square * scale;
+    const T of_square = T(2.0) * error * near;
+    least = min(least, square);
+    best = min(best, scaled + of_square);
+    worst = min(worst, scaled - of_square);
+    divide_by(root);
+  }
+};
+
+/// Whether there are such angles is all that is asked.
+template <typename T>
+struct Existence {
+  T least = T(1.0);
+
+  IKSEL_INLINE void divide_by_product(const T& /*product*/) {}
+  IKSEL_INLINE void take_root(const T& square, const T& /*near*/, const T& /*root*/) {
+    least = min(least, square);
+  }
+};
+
+/// One of the two angles with a cos(t) + b sin(t) = rest. Where there is none, about the nearest:
+/// cosine and sine are then more than 1 together, and what is made of them means nothing.
+template <typename T, typename Q>
+IKSEL_INLINE Angle<T> solve_angle(const T& a, const T& b, const T& rest, const T& sign,
+                                  Q& quality) {
+  const T r2 = a * a + b * b;
+  const T square = r2 - rest * rest;
+  const T root = sqrt(max(square, T(0.0)));
+  quality.take_root(square, abs(rest), root);
+  const T inverse = T(1.0) / max(r2, T(1e-30));
+  const T cosine = rest * inverse;
+  const T sine = sign * root * inverse;
+  return {a * cosine - b * sine, b * cosine + a * sine};
+}
+
+/// One of the two angles with x . R(k, t) y = rest.
+template <typename T, typename Q>
+IKSEL_INLINE Angle<T> solve_angle(const Turned& turned, const T& rest, const T& sign, Q& quality) {
+  const T left = rest - T(turned.c);
+  const T square = T(turned.r2) - left * left;
+  const T root = sqrt(max(square, T(0.0)));
+  quality.take_root(square, abs(left), root);
+  const T cosine = left * T(turned.inverse);
+  const T sine = sign * root * T(turned.inverse);
+  return {T(turned.a) * cosine - T(turned.b) * sine, T(turned.b) * cosine + T(turned.a) * sine};
+}
+
+/// The angle with cosine c and sine s times the product of two lengths, mostly equal ones.
+template <typename T, typename Q>
+IKSEL_INLINE Angle<T> normalized(const T& c, const T& s, Q& quality) {
+  const T size2 = c * c + s * s;
+  const T size = sqrt(max(size2, T(1e-60)));
+  quality.divide_by_product(size);
+  const auto none = size2 < T(1e-56);
+  const T inverse = T(1.0) / size;
+  return {select(none, T(1.0), c * inverse), select(none, T(0.0), s * inverse)};
+}
+
+/// The angle about k that takes u to v.
+template <typename T, typename Q>
+IKSEL_INLINE Angle<T> angle_between(const Vec<T>& k, const Vec<T>& u, const Vec<T>& v, Q& quality) {
+  return normalized(dot(u, v) - dot(k, u) * dot(k, v), dot(k, cross(u, v)), quality);
+}
+
+/// A vector with z . k1 = along1, z . k2 = along2 and the square length2, one of two, where
+/// k1 . k2 = c.
+template <typename T, typename Q>
+IKSEL_INLINE Vec<T> solve_common(const Vec<T>& k1, const Vec<T>& k2, double c, const T& along1,
+                                 const T& along2, const T& length2, const T& sign, Q& quality) {
+  const T inverse = T(1.0 / (1.0 - c * c));
+  const T alpha = (along1 - T(c) * along2) * inverse;
+  const T beta = (along2 - T(c) * along1) * inverse;
+  const T square = length2 - alpha * along1 - beta * along2;
+  const T root = sqrt(max(square, T(0.0)));
+  quality.take_root(square, T(1.0), root);
+  const T gamma = sign * root * T(__builtin_sqrt(1.0 / (1.0 - c * c)));
+  const Vec<T> plane{alpha * k1.x + beta * k2.x, alpha * k1.y + beta * k2.y,
+                     alpha * k1.z + beta * k2.z};
+  return add(plane, gamma, cross(k1, k2));
+}
+
+}  // namespace iksel::lanes

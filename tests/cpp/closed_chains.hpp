@@ -123,20 +123,11 @@ inline iksel::Pose reduced(const iksel::Robot& robot, const iksel::Pose& T_base_
   return iksel::to_pose(kernel.base).inverse() * T_base_tcp * iksel::to_pose(kernel.tip).inverse();
 }
 
-/// A pack that has each branch in a lane.
-inline iksel::lanes::BranchPack all_branches() {
-  iksel::lanes::BranchPack pack{};
-  for (int lane = 0; lane < iksel::lanes::kWidth; ++lane) {
-    for (int s = 0; s < 3; ++s) pack.sign[s][lane] = (lane >> s & 1) == 0 ? 1 : -1;
-  }
-  return pack;
-}
-
 /// The joint values in a lane.
 inline iksel::JointVector branch_of(const iksel::ClosedFormChain& chain,
                                     const iksel::lanes::BranchPack& pack, int lane) {
   iksel::JointVector q(6);
-  for (int i = 0; i < 6; ++i) q[chain.joints[i]] = pack.q[i][lane];
+  chain.copy_joints(pack, lane, q.data());
   return q;
 }
 

@@ -16,11 +16,11 @@
 namespace {
 
 namespace lanes = iksel::lanes;
+using iksel::all_branches;
 using iksel::ClosedFormChain;
 using iksel::JointVector;
 using iksel::Pose;
 using iksel::Robot;
-using iksel_test::all_branches;
 using iksel_test::AxisChain;
 using iksel_test::AxisMaker;
 using iksel_test::branch_of;

@@ -75,6 +75,20 @@ TEST_P(Proofs, AllSolutionsAreThoseOfManySeeds) {
   EXPECT_GE(proven, n * 9 / 10);
 }
 
+TEST_P(Proofs, SolutionsThatAreLeftOutAreNotDenied) {
+  iksel::SolveAllOptions one;
+  one.max = 1;
+  int several = 0;
+  const Eigen::MatrixXd q = robot().random_configurations(20, iksel_test::seed());
+  for (int i = 0; i < q.rows(); ++i) {
+    const Pose target = robot().fk(q.row(i));
+    if (solver().solve_all(target).all.size() < 2) continue;
+    ++several;
+    EXPECT_EQ(solver().solve_all(target, one).proof, Proof::none) << q.row(i);
+  }
+  EXPECT_GE(several, 5);
+}
+
 TEST_P(Proofs, NoOneElseSolvesWhatHasNoSolution) {
   iksel::SolverOptions options = iksel::SolverOptions::paper();
   iksel::Paper& paper = iksel_test::paper_of(options);

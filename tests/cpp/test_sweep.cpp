@@ -68,7 +68,7 @@ TEST_P(Sweeps, TheBranchesAtAnAngleHoldTheOneThatWasPutIn) {
   chain.use_limits(robot().model());
   chain.form.error = 1e-6;
   const double offset = robot().model().kernel.joints[static_cast<std::size_t>(chain.held)].offset;
-  auto pack = iksel_test::all_branches();
+  auto pack = iksel::all_branches();
   const int n = iksel_test::cases(200);
   const Eigen::MatrixXd random = robot().random_configurations(n, iksel_test::seed());
   int found = 0;
@@ -81,7 +81,7 @@ TEST_P(Sweeps, TheBranchesAtAnAngleHoldTheOneThatWasPutIn) {
     for (int lane = 0; lane < iksel::lanes::kWidth; ++lane) {
       if (pack.least[lane] < 0) continue;
       JointVector q = random.row(i);
-      for (int j = 0; j < 6; ++j) q[chain.joints[j]] = pack.q[j][lane];
+      chain.copy_joints(pack, lane, q.data());
       nearest = std::min(nearest, iksel_test::distance(robot(), q, random.row(i)));
       // Axes that meet but for a rounded pi leave the branch that far from the target.
       EXPECT_LE(iksel::pose_error(target, robot().fk(q)).norm(), 1e-3) << i << " lane " << lane;

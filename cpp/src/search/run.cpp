@@ -2,6 +2,7 @@
 #include "search/run.hpp"
 
 #include <limits>
+#include <optional>
 #include <type_traits>
 
 #include "base/stage_clock.hpp"
@@ -26,6 +27,7 @@ constexpr Patience kFirst{8, kMostIterations};
 constexpr Patience kAll{6, kMostIterations, 2};
 /// Where seeds are answers, or as near to one as a singularity or a limit lets it be told.
 constexpr Patience kThere{8, 64};
+
 /// What one search works with.
 template <typename Answers>
 struct Search {
@@ -47,8 +49,8 @@ struct Search {
   }
   /// From what the request gives, and then from other sources, if they are asked for. Returns
   /// whether the answers want no more.
-  template <typename Refiner, typename Given, typename... Others>
-  bool run(Refiner& refiner, NearSeed& near, Given& given, Others&... others) const {
+  template <typename Refiner, typename... Others>
+  bool run(Refiner& refiner, NearSeed& near, GivenSeeds& given, Others&... others) const {
     SeedSequence seeds(request.database_seeds ? 2 + sizeof...(others) : 2, near, given, others...);
     return search(refiner, seeds, answers, work);
   }
@@ -57,8 +59,8 @@ struct Search {
   bool by_scheme() const;
   /// Returns whether there certainly are no answers but those found.
   Proof in_lanes() const;
-  /// The same by all branches of Y; is_done: there is nothing left to search for.
-  Proof in_closed_form(GivenSeeds& given, const Pose& Y, bool& is_done) const;
+  /// The same by all branches of Y; nothing if there may be answers left to search for.
+  std::optional<Proof> in_closed_form(GivenSeeds& given, const Pose& Y) const;
 };
 
 template <typename Answers>
@@ -101,9 +103,7 @@ Proof Search<Answers>::in_lanes() const {
   const Pose Y = query.reduce(goal.target());
   refiner.set_pose(Y);
   if (workspace.lanes->branches && request.database_seeds) {
-    bool is_done = false;
-    const Proof proof = in_closed_form(given, Y, is_done);
-    if (is_done) return proof;
+    if (const auto proof = in_closed_form(given, Y)) return *proof;
   }
   query.set_target(Y);
   clock.lap(&StageTimes::query);
@@ -129,20 +129,23 @@ Proof Search<Answers>::in_lanes() const {
 }
 
 template <typename Answers>
-Proof Search<Answers>::in_closed_form(GivenSeeds& given, const Pose& Y, bool& is_done) const {
+std::optional<Proof> Search<Answers>::in_closed_form(GivenSeeds& given, const Pose& Y) const {
   LaneRefiner& refiner = workspace.lanes->refiner;
   EnumeratedSeeds enumerated(*workspace.lanes->branches, goal, Y, answers.wants_more(), work,
                              clock);
   SeedSequence seeds(2, given, enumerated);
   refiner.begin(goal.task(), kThere);
   answers.look_for_partners(false);
-  is_done = search(refiner, seeds, answers, work);
+  const bool is_satisfied = search(refiner, seeds, answers, work);
   answers.look_for_partners(true);
   clock.lap(&StageTimes::iterate);
-  if (is_done) return Proof::none;
-  is_done = enumerated.is_certain();
+  if (is_satisfied) return Proof::none;
+  // Branches of which none could be refined to the tolerances prove nothing.
+  if (enumerated.is_certain() && (enumerated.is_empty() || answers.has_any())) {
+    return Proof::closed_form;
+  }
   refiner.begin(goal.task(), kFirst);
-  return enumerated.is_certain() ? Proof::closed_form : Proof::none;
+  return std::nullopt;
 }
 
 }  // namespace

@@ -23,16 +23,12 @@ Enumeration::Enumeration(const ChainModel& model, const ClosedFormChain& chain, 
   chain_.form.error =
       kMargin * std::max({(position_tolerance + lever * rotation_tolerance) / chain.unit,
                           rotation_tolerance, kStructureTolerance});
-  for (int lane = 0; lane < kMost; ++lane) {
-    for (int s = 0; s < 3; ++s) pack_.sign[s][lane] = (lane >> s & 1) == 0 ? 1 : -1;
-  }
 }
 
 void Enumeration::find(const Goal& goal, const Pose& Y, bool wants_all) {
   chain_.set_target(Y, pack_);
   kernels_.solve_branches(chain_.form, pack_);
   size_ = 0;
-  complete_ = is_nominal_;
   certain_ = is_nominal_;
   for (int lane = 0; lane < kMost; ++lane) take(goal, lane, wants_all);
 }
@@ -40,9 +36,7 @@ void Enumeration::find(const Goal& goal, const Pose& Y, bool wants_all) {
 void Enumeration::take(const Goal& goal, int lane, bool wants_all) {
   if (pack_.best[lane] < 0) return;
   std::array<double, 6>& q = q_[static_cast<std::size_t>(size_)];
-  for (int i = 0; i < 6; ++i) {
-    q[static_cast<std::size_t>(chain_.joints[i])] = pack_.q[i][lane];
-  }
+  chain_.copy_joints(pack_, lane, q.data());
   const double beyond = pack_.beyond[lane];
   // An angle off by more says nothing; written so that NaN does not either.
   constexpr double kVague = 0.3;
@@ -51,7 +45,6 @@ void Enumeration::take(const Goal& goal, int lane, bool wants_all) {
   bool is_sure = bound < kVague && pack_.worst[lane] >= 0;
   if (beyond > 0 || (wants_all && !is_sure)) is_sure = is_regular(goal, q, bound);
   if (is_sure && beyond > bound) return;
-  complete_ = complete_ && (is_sure || bound < kVague);
   certain_ = certain_ && is_sure && !(beyond > 0);
   ++size_;
 }

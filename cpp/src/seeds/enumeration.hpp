@@ -31,11 +31,9 @@ class Enumeration {
   [[nodiscard]] int size() const { return size_; }
   /// Inside the limits [rad].
   [[nodiscard]] const double* q(int i) const { return q_[static_cast<std::size_t>(i)].data(); }
-  /// Whether each solution is near to one of these. Not where the arm is so close to a singularity
-  /// that branches say nothing.
-  [[nodiscard]] bool is_complete() const { return complete_; }
-  /// Whether each of these is a solution. Not where one is so close to a singularity, or to a
-  /// limit, that what the tolerances allow could make a difference.
+  /// Whether these are the solutions, no more and no less. Not where the arm is so close to a
+  /// singularity, or a branch so close to a limit, that what the tolerances allow could make a
+  /// difference.
   [[nodiscard]] bool is_certain() const { return certain_; }
 
  private:
@@ -48,10 +46,9 @@ class Enumeration {
   ClosedFormChain chain_;
   const lanes::LaneKernels& kernels_;
   bool is_nominal_;
-  lanes::BranchPack pack_{};
+  lanes::BranchPack pack_ = all_branches();
   std::array<std::array<double, 6>, kMost> q_{};
   int size_ = 0;
-  bool complete_ = false;
   bool certain_ = false;
 };
 
@@ -82,12 +79,12 @@ class EnumeratedSeeds {
     return true;
   }
 
-  /// Whether all solutions that there are have been tried.
-  [[nodiscard]] bool is_complete() const {
-    return done_ && branches_.is_complete() && next_ == branches_.size();
+  /// Whether there are certainly no solutions but these, and each was tried.
+  [[nodiscard]] bool is_certain() const {
+    return done_ && branches_.is_certain() && next_ == branches_.size();
   }
-  /// Whether these are they, no more and no less.
-  [[nodiscard]] bool is_certain() const { return is_complete() && branches_.is_certain(); }
+  /// Whether there are none.
+  [[nodiscard]] bool is_empty() const { return branches_.size() == 0; }
 
  private:
   Enumeration& branches_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "base/constants.hpp"
 
@@ -22,22 +23,19 @@ Sweep::Sweep(const ChainModel& model, const ClosedFormChain& chain, bool is_nomi
   // Both ends of a range; but of a whole turn one is enough.
   const double range = model.joints.sample_upper(chain.held) - lower_;
   step_ = turns_ ? kTwoPi / kSamples : range / (kSamples - 1);
-  for (int lane = 0; lane < kBranches; ++lane) {
-    for (int s = 0; s < 3; ++s) pack_.sign[s][lane] = (lane >> s & 1) == 0 ? 1 : -1;
-  }
 }
 
-void Sweep::solve(Row& off) {
-  kernels_.find_branches(chain_.form, pack_);
+void Sweep::solve(lanes::BranchPack& pack, Row& off) const {
+  kernels_.find_branches(chain_.form, pack);
   for (int lane = 0; lane < kBranches; ++lane) {
     off[static_cast<std::size_t>(lane)] =
-        std::max(pack_.beyond[lane], 0.0) + std::sqrt(std::max(-pack_.least[lane], 0.0));
+        std::max(pack.beyond[lane], 0.0) + std::sqrt(std::max(-pack.least[lane], 0.0));
   }
 }
 
 bool Sweep::find(const Pose& Y) {
   chain_.set_target(Y, pack_);
-  chain_.set_target(Y, followed_);
+  std::copy(std::begin(pack_.target), std::end(pack_.target), followed_.target);
   for (int k = 0; k < kSamples; ++k) {
     // Far from each other first, so that an answer is soon found; coprime to the number of samples.
     constexpr int kStride = 19;
@@ -45,10 +43,10 @@ bool Sweep::find(const Pose& Y) {
     const double q = lower_ + step_ * place;
     std::fill_n(pack_.held, kBranches, q + offset_);
     Row& off = rows_[static_cast<std::size_t>(place)];
-    solve(off);
+    solve(pack_, off);
     const auto best = std::min_element(off.begin(), off.end());
     if (*best > 0) continue;
-    take(q, static_cast<int>(best - off.begin()));
+    take(pack_, q, static_cast<int>(best - off.begin()));
     return true;
   }
   find_nearest();
@@ -89,10 +87,9 @@ const Sweep::Row& Sweep::row_at(int place) const {
 bool Sweep::follow(const Near& near) {
   // Each round looks at so many places between the neighbours of the best so far.
   constexpr int kRounds = 4;
-  const double signs[3] = {pack_.sign[0][near.lane], pack_.sign[1][near.lane],
-                           pack_.sign[2][near.lane]};
-  std::swap(pack_, followed_);
-  for (int s = 0; s < 3; ++s) std::fill_n(pack_.sign[s], kBranches, signs[s]);
+  for (int s = 0; s < 3; ++s) {
+    std::fill_n(followed_.sign[s], kBranches, pack_.sign[s][near.lane]);
+  }
   double middle = lower_ + step_ * near.place;
   double width = step_;
   bool found = false;
@@ -102,23 +99,22 @@ bool Sweep::follow(const Near& near) {
       const double q = middle - width + spacing * static_cast<double>(lane + 1);
       return turns_ ? q : std::min(std::max(q, lower_), lower_ + step_ * (kSamples - 1));
     };
-    for (int lane = 0; lane < kBranches; ++lane) pack_.held[lane] = place(lane) + offset_;
+    for (int lane = 0; lane < kBranches; ++lane) followed_.held[lane] = place(lane) + offset_;
     Row off;
-    solve(off);
+    solve(followed_, off);
     const auto best = std::min_element(off.begin(), off.end());
     least_ = std::min(least_, *best);
     found = *best <= 0;
-    if (found) take(place(best - off.begin()), static_cast<int>(best - off.begin()));
+    if (found) take(followed_, place(best - off.begin()), static_cast<int>(best - off.begin()));
     middle = place(best - off.begin());
     width = spacing;
   }
-  std::swap(pack_, followed_);
   return found;
 }
 
-void Sweep::take(double swept, int lane) {
+void Sweep::take(const lanes::BranchPack& pack, double swept, int lane) {
   q_[static_cast<std::size_t>(chain_.held)] = swept;
-  for (int i = 0; i < 6; ++i) q_[static_cast<std::size_t>(chain_.joints[i])] = pack_.q[i][lane];
+  chain_.copy_joints(pack, lane, q_.data());
 }
 
 }  // namespace iksel

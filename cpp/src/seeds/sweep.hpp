@@ -51,13 +51,13 @@ class Sweep {
   /// How far each branch of a sample is from being an answer [mixed units].
   using Row = std::array<double, kBranches>;
 
-  /// Solves the pack; `off` gets how far each lane is from being an answer.
-  void solve(Row& off);
+  /// Solves a pack; `off` gets how far each lane is from being an answer.
+  void solve(lanes::BranchPack& pack, Row& off) const;
   [[nodiscard]] const Row& row_at(int place) const;
   void find_nearest();
   /// Looks between the samples beside; true if there is an answer.
   bool follow(const Near& near);
-  void take(double swept, int lane);
+  void take(const lanes::BranchPack& pack, double swept, int lane);
 
   ClosedFormChain chain_;
   const lanes::LaneKernels& kernels_;
@@ -69,7 +69,8 @@ class Sweep {
   /// Whether the last sample is beside the first.
   bool turns_;
   std::vector<Row> rows_;
-  lanes::BranchPack pack_{}, followed_{};
+  lanes::BranchPack pack_ = all_branches();
+  lanes::BranchPack followed_{};  ///< one branch in all lanes
   std::array<Near, kFollowed> nearest_{};
   std::size_t near_count_ = 0;
   double least_ = 0;  ///< how far the nearest branch was from being an answer

@@ -155,6 +155,7 @@ Solutions Solver::Impl::solve_all(const Pose& target, const SolveAllOptions& all
   std::sort(images.begin(), images.end(), cheaper);
   if (!all.whole_turns) take_first_of_each(found.size(), images);
   if (images.size() > most) {
+    solutions.proof = Proof::none;  // others are left out
     if (goal.is_redundant()) move_apart(model(), most, images);
     images.resize(most);
     std::sort(images.begin(), images.end(), cheaper);

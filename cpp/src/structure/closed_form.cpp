@@ -162,6 +162,18 @@ void ClosedFormChain::set_target(const Pose& Y, lanes::BranchPack& pack) const {
   for (int i = 0; i < 3; ++i) pack.target[9 + i] = w[i];
 }
 
+void ClosedFormChain::copy_joints(const lanes::BranchPack& pack, int lane, double* q) const {
+  for (int i = 0; i < kSix; ++i) q[joints[i]] = pack.q[i][lane];
+}
+
+lanes::BranchPack all_branches() {
+  lanes::BranchPack pack{};
+  for (int lane = 0; lane < lanes::kWidth; ++lane) {
+    for (int s = 0; s < 3; ++s) pack.sign[s][lane] = (lane >> s & 1) == 0 ? 1 : -1;
+  }
+  return pack;
+}
+
 void ClosedFormChain::use_limits(const ChainModel& model) {
   for (int i = 0; i < kSix; ++i) {
     const int j = joints[i];

@@ -36,7 +36,12 @@ struct ClosedFormChain {
   void use_limits(const ChainModel& model);
   /// Sets a pack's target to Y (reduction.hpp), or its inverse if reversed.
   void set_target(const Pose& Y, lanes::BranchPack& pack) const;
+  /// Writes the six joints of a lane to where they belong in q, the chain's joint values.
+  void copy_joints(const lanes::BranchPack& pack, int lane, double* q) const;
 };
+
+/// A pack with another branch in each lane.
+lanes::BranchPack all_branches();
 
 /// What makes the chain solvable, if anything does.
 std::optional<ClosedFormChain> find_closed_form(const ChainModel& model);

@@ -144,8 +144,8 @@ Proof Search<Answers>::in_lanes() const {
 
 template <typename Answers>
 template <typename Branches>
-std::optional<Proof> Search<Answers>::by_branches(Branches& branches, Proof kind,
-                                                  GivenSeeds& given, const Pose& Y) const {
+std::optional<Proof> Search<Answers>::by_branches(Branches& branches, Proof kind, GivenSeeds& given,
+                                                  const Pose& Y) const {
   LaneRefiner& refiner = workspace.lanes->refiner;
   EnumeratedSeeds enumerated(branches, goal, Y, answers.wants_more(), work, clock);
   SeedSequence seeds(2, given, enumerated);

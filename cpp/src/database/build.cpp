@@ -114,17 +114,19 @@ class DatabaseBuilder {
 
     const std::vector<double> keys = make_keys();
     // The tree made of the keys sets the order in which everything is stored.
-    const std::vector<std::uint32_t> order = KdTree(keys.data(), data_.size, data_.key_dim).order();
+    const std::vector<std::uint32_t> order =
+        make_kd_tree(keys.data(), data_.size, data_.key_dim)->order();
     const std::size_t record_length = DatabaseData::record_length(model_.dof);
-    const auto storage =
-        std::make_shared<HeapStorage>(data_.size * (key_dim() + record_length) * sizeof(double));
-    auto* payload = reinterpret_cast<double*>(storage->writable() + kHeaderSize);
+    const std::size_t size =
+        kHeaderSize + data_.size * (key_dim() + record_length) * sizeof(double);
+    const std::shared_ptr<unsigned char> bytes = allocate(size);
+    auto* payload = reinterpret_cast<double*>(bytes.get() + kHeaderSize);
     for (std::size_t i = 0; i < data_.size; ++i) {
       std::copy_n(&keys[order[i] * key_dim()], key_dim(), payload + i * key_dim());
     }
     make_records(order, payload + data_.size * key_dim());
-    write_header(data_, storage->writable(), storage->size());
-    data_.use(storage);
+    write_header(data_, bytes.get(), size);
+    data_.use({bytes, size});
     report(total());
   }
 

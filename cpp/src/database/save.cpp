@@ -94,10 +94,10 @@ Descriptor open_named(const fs::path& folder, fs::path& name) {
 
 bool write_all(const Descriptor& file, const Storage& storage) {
   std::size_t written = 0;
-  while (written < storage.size()) {
+  while (written < storage.size) {
     constexpr std::size_t kPiece = 1U << 30U;
-    const ssize_t n =
-        ::write(file.get(), storage.data() + written, std::min(kPiece, storage.size() - written));
+    const ssize_t n = ::write(file.get(), storage.bytes.get() + written,
+                              std::min(kPiece, storage.size - written));
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) return false;
     written += static_cast<std::size_t>(n);
@@ -110,16 +110,15 @@ bool write_all(const Descriptor& file, const Storage& storage) {
 void write_file(const fs::path& path, const Storage& storage, bool nameless) {
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   fs::path name;
-  const auto fail = [&](const char* what) {
+  const auto fail = [&](const char* act) {
     const int error = errno;
     if (!name.empty()) ::unlink(name.c_str());
-    throw DatabaseIoError(std::string("cannot ") + what + " database '" + path.string() +
-                          "': " + system_error(error));
+    throw_io(act, path, system_error(error));
   };
   // Renaming would put a file in the place of a device.
   struct stat there {};
   if (::stat(path.c_str(), &there) == 0 && !S_ISREG(there.st_mode)) {
-    throw DatabaseIoError("cannot write database '" + path.string() + "': it is no regular file");
+    throw_io("write", path, "it is no regular file");
   }
   remove_abandoned(folder);
   Descriptor file;

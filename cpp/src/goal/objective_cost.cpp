@@ -7,7 +7,6 @@
 
 #include "base/constants.hpp"
 #include "base/determinant.hpp"
-#include "base/error_check.hpp"
 #include "base/message_text.hpp"
 #include "base/pseudo_inverse.hpp"
 #include "goal/joint_move.hpp"
@@ -16,9 +15,8 @@
 namespace iksel {
 
 double manipulability(const ChainModel& model, const JointVector& q) {
-  Pose pose;
   Jacobian J;
-  model.fk_jacobian(q.data(), pose, J);
+  model.fk_jacobian(q.data(), J);
   // With fewer joints than six, of J^T J, filled up by the identity.
   double gram[6][6] = {};
   for (int i = 0; i < 6; ++i) {

@@ -14,8 +14,8 @@
 namespace iksel {
 namespace {
 
-Frame<double> to_frame(const Eigen::Isometry3d& T) {
-  Frame<double> f;
+Frame to_frame(const Eigen::Isometry3d& T) {
+  Frame f;
   for (int i = 0; i < 3; ++i) {
     f.x[i] = T.linear()(i, 0);
     f.y[i] = T.linear()(i, 1);
@@ -80,7 +80,7 @@ Pose check_tool(const Pose& T_tip_tcp) {
 
 }  // namespace
 
-Pose to_pose(const Frame<double>& f) {
+Pose to_pose(const Frame& f) {
   Pose pose;
   pose.matrix() << f.x[0], f.y[0], f.z[0], f.p[0], f.x[1], f.y[1], f.z[1], f.p[1], f.x[2], f.y[2],
       f.z[2], f.p[2], 0, 0, 0, 1;
@@ -223,7 +223,7 @@ void ChainModel::measure_reach() {
       reach += std::max(std::abs(low + k.offset), std::abs(high + k.offset));
     }
   }
-  const Frame<double>& f = kernel.flange;
+  const Frame& f = kernel.flange;
   reach += Eigen::Vector3d(f.p[0], f.p[1], f.p[2]).norm();
 }
 
@@ -256,9 +256,9 @@ std::uint64_t ChainModel::compute_hash() const {
 
 Pose ChainModel::fk(const double* q) const { return to_pose(forward(kernel, q)); }
 
-Frame<double> ChainModel::fk_jacobian(const double* q, Jacobian& jacobian, bool with_tool) const {
+Frame ChainModel::fk_jacobian(const double* q, Jacobian& jacobian, bool with_tool) const {
   jacobian.resize(6, dof);
-  const Frame<double>& end = with_tool ? kernel.tip : kernel.flange;
+  const Frame& end = with_tool ? kernel.tip : kernel.flange;
   return forward_jacobian(kernel, end, dof, q, jacobian.data());
 }
 

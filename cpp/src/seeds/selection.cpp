@@ -44,7 +44,7 @@ void Selection::query(const Pose& T_base_flange, std::size_t k) {
   rotation = to_rotation_vector(target_.linear());
   double key[kMaxKeyDimension];
   data_.make_key(T_base_flange, key);
-  found_ = data_.tree.nearest(key, k, neighbours_.data());
+  found_ = data_.tree->nearest(key, k, neighbours_.data());
 }
 
 void Selection::rank() {

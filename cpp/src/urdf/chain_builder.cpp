@@ -4,11 +4,9 @@
 #include "base/message_text.hpp"
 #include "iksel/error.hpp"
 #include "urdf/chain_spec.hpp"
-#include "urdf/joint_frame.hpp"
 #include "urdf/joint_limits.hpp"
-#include "urdf/mimic.hpp"
+#include "urdf/joint_motion.hpp"
 #include "urdf/parse.hpp"
-#include "urdf/size_check.hpp"
 
 namespace iksel {
 namespace {
@@ -145,11 +143,7 @@ class ChainReader {
 
   /// A locked joint is a fixed one: its motion by `value` becomes part of the constant transform.
   static void lock(ChainJoint& segment, double value) {
-    if (segment.prismatic) {
-      segment.before.translate(value * segment.axis);
-    } else {
-      segment.before.rotate(Eigen::AngleAxisd(value, segment.axis));
-    }
+    segment.before = moved(segment.before, segment.axis, segment.prismatic, value);
     segment.fixed = true;
   }
 

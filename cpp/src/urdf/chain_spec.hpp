@@ -25,6 +25,17 @@ struct ChainJoint {
   double offset = 0.0;
 };
 
+/// T, and then a motion by `value` along or about `axis`.
+inline Eigen::Isometry3d moved(Eigen::Isometry3d T, const Eigen::Vector3d& axis, bool prismatic,
+                               double value) {
+  if (prismatic) {
+    T.translate(value * axis);
+  } else {
+    T.rotate(Eigen::AngleAxisd(value, axis));
+  }
+  return T;
+}
+
 /// One degree of freedom.
 struct ChainVariable {
   std::string name;
@@ -43,5 +54,9 @@ struct ChainSpec {
 
 /// Reads the chain that `options` choose; fills in their base and tip link where they are empty.
 ChainSpec read_chain(const std::string& urdf_xml, RobotOptions& options);
+
+/// Throws UrdfError, naming the joint, where a length or joint value of the chain, or the chain as
+/// a whole, is beyond kMaxCoordinate or not finite.
+void check_sizes(const ChainSpec& spec);
 
 }  // namespace iksel

@@ -6,7 +6,7 @@
 
 #include "iksel/robot_options.hpp"
 #include "urdf/chain_spec.hpp"
-#include "urdf/mimic.hpp"
+#include "urdf/joint_motion.hpp"
 
 namespace iksel {
 

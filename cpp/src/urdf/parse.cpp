@@ -8,7 +8,6 @@
 #include <cerrno>
 #include <exception>
 #include <fstream>
-#include <map>
 #include <mutex>
 #include <string>
 #include <system_error>
@@ -92,17 +91,6 @@ void replace_what_is_no_utf8(std::string& text) {
   }
 }
 
-/// urdfdom keeps the last joint of those that carry the same link.
-void check_one_parent(const urdf::ModelInterface& model) {
-  std::map<std::string, std::string> carried_by;
-  for (const auto& [name, joint] : model.joints_) {
-    const auto [first, is_new] = carried_by.try_emplace(joint->child_link_name, name);
-    if (is_new) continue;
-    throw UrdfError("link '" + joint->child_link_name + "' is the child of two joints: '" +
-                    first->second + "' and '" + name + "'");
-  }
-}
-
 }  // namespace
 
 std::string read_urdf_file(const std::filesystem::path& path) {
@@ -148,7 +136,6 @@ urdf::ModelInterfaceSharedPtr parse_urdf(const std::string& xml) {
     throw UrdfError("URDF does not parse: " +
                     (messages.empty() ? "no robot in it" : one_line(messages)));
   }
-  check_one_parent(*model);
   return model;
 }
 

@@ -80,49 +80,38 @@ class UrdfScan {
   bool in_joint_ = false;
 };
 
-/// Links that form a circle never end a walk to the root, and urdfdom loses their memory: each owns
-/// the next.
-void check_circles(const std::vector<JointElement>& joints) {
-  std::map<std::string_view, std::vector<const JointElement*>> below;
-  std::map<std::string_view, int> parents;
+/// Of several joints that carry one link urdfdom keeps the last; and links that form a circle never
+/// end a walk to the root, and are memory that urdfdom loses: each owns the next.
+void check_tree(const std::vector<JointElement>& joints) {
+  std::map<std::string_view, const JointElement*> carriers;
   for (const JointElement& joint : joints) {
     if (joint.parent.empty() || joint.child.empty()) continue;
-    below[joint.parent].push_back(&joint);
-    parents[joint.parent];
-    ++parents[joint.child];
+    const auto [first, is_new] = carriers.try_emplace(joint.child, &joint);
+    if (is_new) continue;
+    throw UrdfError("link '" + std::string(joint.child) + "' is the child of two joints: '" +
+                    std::string(first->second->name) + "' and '" + std::string(joint.name) + "'");
   }
-  // Take away links without parents, one after the other: what is left hangs on a circle.
-  std::vector<std::string_view> roots;
-  for (const auto& [link, count] : parents) {
-    if (count == 0) roots.push_back(link);
-  }
-  std::size_t left = parents.size();
-  while (!roots.empty()) {
-    const std::string_view root = roots.back();
-    roots.pop_back();
-    --left;
-    for (const JointElement* joint : below[root]) {
-      if (--parents[joint->child] == 0) roots.push_back(joint->child);
+  std::set<std::string_view> hang_on_root;
+  for (const auto& carrier : carriers) {
+    std::set<std::string_view> way;
+    auto at = carriers.find(carrier.first);
+    for (; at != carriers.end() && !hang_on_root.count(at->first);
+         at = carriers.find(at->second->parent)) {
+      if (way.insert(at->first).second) continue;
+      const JointElement& joint = *at->second;
+      throw UrdfError("URDF is no tree: joint '" + std::string(joint.name) + "' from link '" +
+                      std::string(joint.parent) + "' to link '" + std::string(joint.child) +
+                      "' closes a circle of links");
     }
+    hang_on_root.merge(way);
   }
-  if (left == 0) return;
-  std::map<std::string_view, const JointElement*> above;
-  for (const JointElement& joint : joints) {
-    if (parents[joint.child] > 0 && parents[joint.parent] > 0) above[joint.child] = &joint;
-  }
-  std::set<std::string_view> seen;
-  const JointElement* joint = above.begin()->second;
-  while (seen.insert(joint->child).second) joint = above.at(joint->parent);
-  throw UrdfError("URDF is no tree: joint '" + std::string(joint->name) + "' from link '" +
-                  std::string(joint->parent) + "' to link '" + std::string(joint->child) +
-                  "' closes a circle of links");
 }
 
 }  // namespace
 
 std::string prepare_urdf(const std::string& xml) {
   const UrdfScan scan(xml);
-  check_circles(scan.joints());
+  check_tree(scan.joints());
   std::string text;
   std::size_t done = 0;
   for (const Insertion& insertion : scan.insertions()) {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "urdf/size_check.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -8,6 +6,7 @@
 #include "base/constants.hpp"
 #include "base/message_text.hpp"
 #include "iksel/error.hpp"
+#include "urdf/chain_spec.hpp"
 
 namespace iksel {
 namespace {

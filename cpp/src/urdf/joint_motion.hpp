@@ -1,11 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which joint really moves one that mimics another.
+// Where a joint of the URDF is, how it moves, and which joint really moves one that mimics another.
 #pragma once
 
 #include <urdf_model/joint.h>
 #include <urdf_model/model.h>
 
+#include <Eigen/Geometry>
+
 namespace iksel {
+
+/// Pose of the joint in its parent link. Throws UrdfError if it is not finite.
+Eigen::Isometry3d origin_of(const urdf::Joint& joint);
+
+/// Unit vector about or along which the joint moves. Throws UrdfError if it has no direction.
+Eigen::Vector3d axis_of(const urdf::Joint& joint);
 
 /// What moves a joint: `source`'s value q, as multiplier * q + offset.
 struct Motion {

@@ -69,6 +69,11 @@ std::string number_text(double value, int digits) {
   return text.str();
 }
 
+std::string too_large_text(double value, const std::string& unit) {
+  return number_text(value) + (unit.empty() ? "" : " " + unit) + "; at most " +
+         number_text(kMaxCoordinate) + " can be computed with";
+}
+
 void throw_unknown_name(const std::string& problem, const std::string& name,
                         const std::vector<std::string>& known) {
   std::string hint;

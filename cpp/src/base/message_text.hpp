@@ -22,6 +22,9 @@ class MessageStream : public std::ostringstream {
 /// A number with that many significant digits, the same in every locale.
 std::string number_text(double value, int digits = 6);
 
+/// "1e+09 m; at most 1e+08 can be computed with", of what is beyond kMaxCoordinate.
+std::string too_large_text(double value, const std::string& unit = "");
+
 /// "a, b, c" (the first 20, and how many more).
 std::string list_names(const std::vector<std::string>& names);
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <chrono>
-#include <cmath>
 
 #include "iksel/result.hpp"
 
@@ -39,9 +38,8 @@ class Work {
 /// A wall-clock deadline; asks the clock only if there is one.
 class Deadline {
  public:
-  explicit Deadline(double seconds) : set_(std::isfinite(seconds)) {
-    // Longer than a year is none: the clock's numbers end somewhere.
-    set_ = set_ && seconds < 3e7;
+  /// Longer than a year is none: the clock's numbers end somewhere.
+  explicit Deadline(double seconds) : set_(seconds < 3e7) {
     if (set_) {
       end_ = Clock::now() +
              std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));

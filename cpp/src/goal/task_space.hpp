@@ -55,6 +55,10 @@ class TaskSpace {
   [[nodiscard]] Vector6 outside(const Vector6& deviation) const {
     return deviation - deviation.cwiseMax(lower_).cwiseMin(upper_);
   }
+  /// What is missing from a deviation to the bounds that iterations aim at.
+  [[nodiscard]] Vector6 missing(const Vector6& deviation) const {
+    return deviation.cwiseMax(aim_lower_).cwiseMin(aim_upper_) - deviation;
+  }
   /// Distances of a TCP pose from the box: position [m] and rotation [rad].
   void measure(const Pose& target, const Pose& pose, double& position, double& rotation) const;
 

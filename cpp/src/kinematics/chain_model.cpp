@@ -73,9 +73,8 @@ Pose check_tool(const Pose& T_tip_tcp) {
   Pose tool = check_pose(T_tip_tcp, "tcp");
   const double distance = tool.translation().stableNorm();
   if (distance <= kMaxCoordinate) return tool;
-  throw InvalidArgumentError("tcp: its origin is " + number_text(distance) +
-                             " m from the tip link's; at most " + number_text(kMaxCoordinate) +
-                             " can be computed with");
+  throw InvalidArgumentError("tcp: its origin is " +
+                             too_large_text(distance, "m from the tip link's"));
 }
 
 }  // namespace
@@ -211,20 +210,17 @@ void ChainModel::set_tool(const Pose& T_tip_tcp) {
 
 void ChainModel::measure_reach() {
   // The triangle inequality over the constant offsets and the slides; the tool is added by callers.
-  reach_centre = Eigen::Vector3d(kernel.base.p[0], kernel.base.p[1], kernel.base.p[2]);
+  reach_centre = Eigen::Vector3d::Map(kernel.base.p);
   reach = 0;
-  bool first = true;
   for (const KernelJoint& k : kernel.joints) {
-    if (!first) reach += Eigen::Vector3d(k.p[0], k.p[1], k.p[2]).norm();
-    first = false;
+    reach += Eigen::Vector3d::Map(k.p).norm();
     if (k.prismatic) {
       const double low = k.multiplier * joints.lower[k.variable];
       const double high = k.multiplier * joints.upper[k.variable];
       reach += std::max(std::abs(low + k.offset), std::abs(high + k.offset));
     }
   }
-  const Frame& f = kernel.flange;
-  reach += Eigen::Vector3d(f.p[0], f.p[1], f.p[2]).norm();
+  reach += Eigen::Vector3d::Map(kernel.flange.p).norm();
 }
 
 std::uint64_t ChainModel::compute_hash() const {

@@ -36,8 +36,7 @@ void check_other_joints(const ChainModel& model, const std::vector<LinkJoint>& j
     }
     if (!(std::abs(value) <= kMaxCoordinate)) {
       throw InvalidArgumentError("other_joints: the value of '" + name + "' is " +
-                                 number_text(value) + "; at most " + number_text(kMaxCoordinate) +
-                                 " can be computed with");
+                                 too_large_text(value));
     }
     if (variable_of(*joint, model) < 0) continue;
     throw InvalidArgumentError("other_joints: '" + name + "' moves with q's joint '" +

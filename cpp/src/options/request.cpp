@@ -68,7 +68,6 @@ void SolveAllOptions::validate() const {
 
 void PathOptions::validate(int dof) const {
   SolveRequest request;
-  request.near = start;
   request.weights = weights;
   request.norm = norm;
   if (start) check_joints(*start, dof, "start");

@@ -30,8 +30,7 @@ class ChainReader {
       }
       if (!(std::abs(value) <= kMaxCoordinate)) {
         throw InvalidArgumentError("locked joint '" + name + "': its value is " +
-                                   number_text(value) + "; at most " + number_text(kMaxCoordinate) +
-                                   " can be computed with");
+                                   too_large_text(value));
       }
     }
 

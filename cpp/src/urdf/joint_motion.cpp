@@ -51,8 +51,7 @@ Motion resolve_mimic(const urdf::ModelInterface& model, const urdf::Joint& joint
   for (const double number : {motion.multiplier, motion.offset}) {
     if (std::abs(number) <= kMaxCoordinate) continue;
     throw UrdfError("joint '" + joint.name + "': its mimic multiplier or offset is " +
-                    number_text(number) + "; at most " + number_text(kMaxCoordinate) +
-                    " can be computed with");
+                    too_large_text(number));
   }
   const auto type = motion.source->type;
   if (type != urdf::Joint::REVOLUTE && type != urdf::Joint::CONTINUOUS &&

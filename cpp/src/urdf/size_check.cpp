@@ -13,9 +13,8 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& joint, const std::string& what, double value,
                          const char* unit) {
-  throw UrdfError("joint '" + joint + "': " + what + " is " + number_text(value) + " " + unit +
-                  "; at most " + number_text(kMaxCoordinate) +
-                  " can be computed with (lengths are metres, angles radians)");
+  throw UrdfError("joint '" + joint + "': " + what + " is " + too_large_text(value, unit) +
+                  " (lengths are metres, angles radians)");
 }
 
 /// Written so that NaN is none.

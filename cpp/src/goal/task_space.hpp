@@ -26,7 +26,7 @@ class TaskSpace {
   [[nodiscard]] double position_tolerance() const { return position_tolerance_; }
   [[nodiscard]] double rotation_tolerance() const { return rotation_tolerance_; }
   [[nodiscard]] bool is_full_pose() const { return full_pose_; }
-  [[nodiscard]] int constrained_axes() const { return constrained_axes_; }
+  [[nodiscard]] int constrained_axes() const { return task_.constrained_axes(); }
   /// Number of axes without any width: a chain with more joints has families of solutions.
   [[nodiscard]] int fixed_axes() const {
     return static_cast<int>((lower_.array() == upper_.array()).count());
@@ -71,7 +71,6 @@ class TaskSpace {
   Task task_;
   double position_tolerance_, rotation_tolerance_;
   bool full_pose_;
-  int constrained_axes_;
   int twist_ = -1;
   bool rotation_free_ = false;
   Vector6 lower_, upper_, aim_lower_, aim_upper_;

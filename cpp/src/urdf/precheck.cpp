@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "urdf/precheck.hpp"
 
-#include <algorithm>
 #include <map>
 #include <set>
 #include <string_view>
@@ -20,64 +19,64 @@ constexpr int kMaxDepth = 200;
 constexpr int kJointDepth = 2;  // robot, joint
 
 struct JointElement {
-  std::string_view name, type, parent, child;
-  std::size_t content = 0;  ///< where it begins
-  bool has_limit = false;
+  std::string_view name, parent, child;
 };
 
-struct Insertion {
-  std::size_t at;
-  std::string_view text;
-};
-
+/// Reads the joints, and adds to the text what urdfdom insists on.
 class UrdfScan {
  public:
-  explicit UrdfScan(const std::string& xml) {
+  explicit UrdfScan(const std::string& xml) : xml_(xml) {
     XmlTag tag;
     for (XmlScanner scanner(xml); scanner.next(tag);) {
       if (tag.depth > kMaxDepth) {
         throw UrdfError("URDF does not parse: its elements are nested deeper than " +
                         std::to_string(kMaxDepth) + " levels");
       }
-      if (tag.opens) read(tag);
+      if (tag.opens) {
+        open(tag);
+      } else if (tag.depth == kJointDepth && lacks_limit_) {
+        insert(tag.begin - kBeforeName, R"(<limit effort="0" velocity="0"/>)");
+        lacks_limit_ = false;
+      }
     }
+    text_.append(xml, copied_);
   }
 
   [[nodiscard]] const std::vector<JointElement>& joints() const { return joints_; }
-
-  [[nodiscard]] std::vector<Insertion> insertions() const {
-    std::vector<Insertion> all = in_limits_;
-    for (const JointElement& joint : joints_) {
-      if (joint.has_limit || (joint.type != "revolute" && joint.type != "prismatic")) continue;
-      all.push_back({joint.content, R"(<limit effort="0" velocity="0"/>)"});
-    }
-    std::stable_sort(all.begin(), all.end(),
-                     [](const Insertion& a, const Insertion& b) { return a.at < b.at; });
-    return all;
-  }
+  [[nodiscard]] const std::string& text() const { return text_; }
 
  private:
-  void read(const XmlTag& tag) {
+  static constexpr std::size_t kBeforeName = 2;  ///< characters of "</"
+
+  void open(const XmlTag& tag) {
     const auto value = [&](std::string_view key) { return tag.attribute(key).value_or(""); };
     if (tag.depth == kJointDepth) {
       in_joint_ = tag.name == "joint" && !tag.closes;
-      if (in_joint_) joints_.push_back({value("name"), value("type"), {}, {}, tag.end});
+      if (in_joint_) joints_.push_back({value("name"), {}, {}});
+      lacks_limit_ = in_joint_ && (value("type") == "revolute" || value("type") == "prismatic");
     } else if (in_joint_ && tag.depth == kJointDepth + 1) {
-      JointElement& joint = joints_.back();
-      if (tag.name == "parent") joint.parent = value("link");
-      if (tag.name == "child") joint.child = value("link");
+      if (tag.name == "parent") joints_.back().parent = value("link");
+      if (tag.name == "child") joints_.back().child = value("link");
       if (tag.name == "limit") {
-        joint.has_limit = true;
+        lacks_limit_ = false;
         const std::size_t behind_name = tag.begin + tag.name.size();
-        if (!tag.attribute("effort")) in_limits_.push_back({behind_name, R"( effort="0")"});
-        if (!tag.attribute("velocity")) in_limits_.push_back({behind_name, R"( velocity="0")"});
+        if (!tag.attribute("effort")) insert(behind_name, R"( effort="0")");
+        if (!tag.attribute("velocity")) insert(behind_name, R"( velocity="0")");
       }
     }
   }
 
+  void insert(std::size_t at, std::string_view what) {
+    text_.append(xml_, copied_, at - copied_).append(what);
+    copied_ = at;
+  }
+
+  const std::string& xml_;
+  std::string text_;
+  std::size_t copied_ = 0;
   std::vector<JointElement> joints_;
-  std::vector<Insertion> in_limits_;
   bool in_joint_ = false;
+  bool lacks_limit_ = false;
 };
 
 /// Of several joints that carry one link urdfdom keeps the last; and links that form a circle never
@@ -112,13 +111,7 @@ void check_tree(const std::vector<JointElement>& joints) {
 std::string prepare_urdf(const std::string& xml) {
   const UrdfScan scan(xml);
   check_tree(scan.joints());
-  std::string text;
-  std::size_t done = 0;
-  for (const Insertion& insertion : scan.insertions()) {
-    text.append(xml, done, insertion.at - done).append(insertion.text);
-    done = insertion.at;
-  }
-  return text.append(xml, done);
+  return scan.text();
 }
 
 std::string explain_broken_xml(const std::string& xml) {

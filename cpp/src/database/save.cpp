@@ -23,24 +23,22 @@ namespace fs = std::filesystem;
 // Files on their way bear names of their own, by chance: process numbers come again, in containers
 // soon. Whoever writes one holds a lock on it until it has its place, and so one without a lock has
 // nobody who will finish it.
-constexpr char kPrefix[] = "iksel-";
-constexpr char kSuffix[] = ".tmp";
-constexpr std::size_t kDigits = 16;
+std::string temporary_name(unsigned first, unsigned second) {
+  char name[32];
+  std::snprintf(name, sizeof name, "iksel-%08x%08x.tmp", first, second);
+  return name;
+}
 
 std::string temporary_name() {
   std::random_device random;
-  char digits[kDigits + 1];
-  std::snprintf(digits, sizeof digits, "%08x%08x", static_cast<unsigned>(random()),
-                static_cast<unsigned>(random()));
-  return std::string(kPrefix) + digits + kSuffix;
+  return temporary_name(random(), random());
 }
 
 bool is_temporary_name(const std::string& name) {
-  constexpr std::size_t kHead = sizeof kPrefix - 1;
-  constexpr std::size_t kTail = sizeof kSuffix - 1;
-  return name.size() == kHead + kDigits + kTail && name.compare(0, kHead, kPrefix) == 0 &&
-         name.compare(kHead + kDigits, kTail, kSuffix) == 0 &&
-         name.find_first_not_of("0123456789abcdef", kHead) == kHead + kDigits;
+  unsigned first = 0;
+  unsigned second = 0;
+  return std::sscanf(name.c_str(), "iksel-%8x%8x", &first, &second) == 2 &&
+         name == temporary_name(first, second);
 }
 
 bool lock(const Descriptor& file) { return ::flock(file.get(), LOCK_EX | LOCK_NB) == 0; }

@@ -52,14 +52,12 @@ class ChainReader {
     for (std::size_t i = common_tip; i-- > 0;) add_joint(*tip_up[i]->parent_joint, false);
 
     for (const ChainVariable& variable : spec_.variables) check_limits(variable);
-    if (spec_.variables.empty()) {
-      throw UrdfError("the chain from '" + options_.base_link + "' to '" + options_.tip_link +
-                      "' has no movable joint");
-    }
+    const std::string chain =
+        "the chain from '" + options_.base_link + "' to '" + options_.tip_link + "' has ";
+    if (spec_.variables.empty()) throw UrdfError(chain + "no movable joint");
     if (spec_.variables.size() > static_cast<std::size_t>(kMaxDof)) {
-      throw UrdfError("the chain from '" + options_.base_link + "' to '" + options_.tip_link +
-                      "' has " + std::to_string(spec_.variables.size()) +
-                      " movable joints; at most " + std::to_string(kMaxDof) + " are possible");
+      throw UrdfError(chain + std::to_string(spec_.variables.size()) + " movable joints; at most " +
+                      std::to_string(kMaxDof) + " are possible");
     }
     check_sizes(spec_);
     return std::move(spec_);

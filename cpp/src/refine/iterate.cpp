@@ -48,7 +48,7 @@ JointVector make_step(const IterationContext& context, const JointVector& q,
   return lm_step(context.model, q, J, e, scheme.damping * squared_error);
 }
 
-/// What follows a step besides adding it; true if the attempt goes on.
+/// What follows a step besides adding it.
 void after_step(const IterationContext& context, JointVector& q) {
   if (context.scheme.iteration == Iteration::pinv_rr && !context.model.joints.contains(q.data())) {
     context.model.joints.sample(context.random, q);

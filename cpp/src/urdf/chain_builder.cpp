@@ -1,15 +1,59 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cmath>
+#include <string>
 
+#include "base/constants.hpp"
 #include "base/message_text.hpp"
 #include "iksel/error.hpp"
 #include "urdf/chain_spec.hpp"
-#include "urdf/joint_limits.hpp"
-#include "urdf/joint_motion.hpp"
+#include "urdf/joint.hpp"
 #include "urdf/parse.hpp"
 
 namespace iksel {
 namespace {
+
+/// Written so that NaN fails.
+void check_size(const std::string& joint, const std::string& what, double value, const char* unit) {
+  if (std::abs(value) <= kMaxCoordinate) return;
+  throw UrdfError("joint '" + joint + "': " + what + " is " + too_large_text(value, unit) +
+                  " (lengths are metres, angles radians)");
+}
+
+/// Largest value that the motion of a joint takes.
+double largest_motion(const ChainJoint& joint, const ChainVariable& variable) {
+  const bool free = variable.type == JointType::continuous;
+  const double low = joint.multiplier * (free ? -kPi : variable.lower) + joint.offset;
+  const double high = joint.multiplier * (free ? kPi : variable.upper) + joint.offset;
+  return std::max(std::abs(low), std::abs(high));
+}
+
+/// Throws UrdfError, naming the joint, where a length or joint value of the chain, or the chain as
+/// a whole, is beyond kMaxCoordinate or not finite.
+void check_sizes(const ChainSpec& spec) {
+  for (const ChainVariable& variable : spec.variables) {
+    if (variable.type == JointType::continuous) continue;
+    const char* unit = variable.type == JointType::prismatic ? "m" : "rad";
+    for (const double limit : {variable.lower, variable.upper}) {
+      check_size(variable.name, "a limit (a joint that turns freely is 'continuous')", limit, unit);
+    }
+  }
+  double length = 0;
+  for (const ChainJoint& joint : spec.joints) {
+    for (const auto* T : {&joint.before, &joint.after}) {
+      const double offset = T->translation().stableNorm();
+      check_size(joint.name, "the length of its origin", offset, "m");
+      length += offset;
+    }
+    if (joint.fixed) continue;
+    const double motion =
+        largest_motion(joint, spec.variables[static_cast<std::size_t>(joint.variable)]);
+    check_size(joint.name, "its largest value", motion, joint.prismatic ? "m" : "rad");
+    if (joint.prismatic) length += motion;
+    check_size(joint.name, "the chain's length up to it", length, "m");
+  }
+  check_size(spec.joints.back().name, "the chain's length up to it", length, "m");
+}
 
 class ChainReader {
  public:

@@ -55,8 +55,4 @@ struct ChainSpec {
 /// Reads the chain that `options` choose; fills in their base and tip link where they are empty.
 ChainSpec read_chain(const std::string& urdf_xml, RobotOptions& options);
 
-/// Throws UrdfError, naming the joint, where a length or joint value of the chain, or the chain as
-/// a whole, is beyond kMaxCoordinate or not finite.
-void check_sizes(const ChainSpec& spec);
-
 }  // namespace iksel

@@ -3,7 +3,7 @@
 
 #include <map>
 
-#include "urdf/joint_motion.hpp"
+#include "urdf/joint.hpp"
 #include "urdf/parse.hpp"
 
 namespace iksel {

@@ -22,7 +22,7 @@ namespace {
 /// one handler for the whole process, so only one collector lives at a time.
 class MessageCollector : public console_bridge::OutputHandler {
  public:
-  MessageCollector() : lock_(mutex_), level_(console_bridge::getLogLevel()) {
+  MessageCollector() : lock_(mutex), level_(console_bridge::getLogLevel()) {
     console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_ERROR);
     previous_ = console_bridge::getOutputHandler();
     console_bridge::useOutputHandler(this);
@@ -43,7 +43,7 @@ class MessageCollector : public console_bridge::OutputHandler {
   [[nodiscard]] const std::string& text() const { return text_; }
 
  private:
-  static inline std::mutex mutex_;
+  static inline std::mutex mutex;
   std::lock_guard<std::mutex> lock_;
   console_bridge::LogLevel level_;
   console_bridge::OutputHandler* previous_ = nullptr;

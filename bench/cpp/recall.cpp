@@ -75,7 +75,7 @@ int main(int argc, char** argv) {
       double key[12];
       data.make_key(target, key);
       iksel::Neighbour nearest[iksel::lanes::kBlock];
-      data.tree.nearest(key, iksel::lanes::kBlock, nearest);
+      data.tree->nearest(key, iksel::lanes::kBlock, nearest);
       recalled += static_cast<std::size_t>(held(data, data.leaves.block(key), nearest));
       solved += solver.solve(target).success() ? 1U : 0U;
     }

@@ -140,7 +140,7 @@ void exact_query(benchmark::State& state) {
   std::size_t i = 0;
   for (auto _ : state) {
     data.make_key(p.targets[i++ % kTargets], key);
-    benchmark::DoNotOptimize(data.tree.nearest(key, iksel::lanes::kBlock, nearest));
+    benchmark::DoNotOptimize(data.tree->nearest(key, iksel::lanes::kBlock, nearest));
   }
 }
 BENCHMARK(exact_query)->Arg(0)->Arg(1);

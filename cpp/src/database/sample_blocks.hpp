@@ -55,6 +55,8 @@ class LeafIndex {
     return &blocks_[(node - dimension_.size()) * block_size_];
   }
 
+  [[nodiscard]] std::size_t leaves() const { return dimension_.size() + 1; }
+
  private:
   /// Splits every node's samples at the median of the coordinate that spreads widest. Returns where
   /// in `order` the samples of each leaf begin, and the end.

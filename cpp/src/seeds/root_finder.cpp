@@ -31,11 +31,13 @@ void RootFinder::find(const lanes::ResidualForm& form) {
   brackets_size_ = 0;
   is_complete_ = true;
   if (turns_) {
-    kernels_.find_residuals(form, angles_.data() + kBefore, kCells, values_.data() + kBefore);
+    least_divisor_ =
+        kernels_.find_residuals(form, angles_.data() + kBefore, kCells, values_.data() + kBefore);
     std::copy_n(values_.data() + kCells, kBefore, values_.data());
     std::copy_n(values_.data() + kBefore, kAfter, values_.data() + kBefore + kCells);
   } else {
-    kernels_.find_residuals(form, angles_.data(), static_cast<int>(angles_.size()), values_.data());
+    least_divisor_ = kernels_.find_residuals(form, angles_.data(), static_cast<int>(angles_.size()),
+                                             values_.data());
   }
   std::array<double, kCells> counts;
   kernels_.count_roots(values_.data() + kBefore, kCells, counts.data());

@@ -33,6 +33,9 @@ class RootFinder {
   void find(const lanes::ResidualForm& form);
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] const Root& operator[](std::size_t i) const { return roots_[i]; }
+  /// The least of what the residual was divided by: it is of no use where that is near 0
+  /// [units^2].
+  [[nodiscard]] double least_divisor() const { return least_divisor_; }
   /// Whether these are all.
   [[nodiscard]] bool is_complete() const { return is_complete_; }
 
@@ -70,6 +73,7 @@ class RootFinder {
   std::array<Root, kMost> roots_{};
   std::size_t size_ = 0;
   bool is_complete_ = false;
+  double least_divisor_ = 0;
 };
 
 }  // namespace iksel

@@ -10,6 +10,10 @@
 namespace iksel {
 namespace {
 
+/// So many times the tolerances, and what the axes lie off, away from axis 1, joint 1 is known well
+/// enough: one reachable target of a million of gen3_6dof, whose pi is rounded, had been lost.
+constexpr double kBesideAxis = 1000;
+
 RootFinder make_finder(const ChainModel& model, int joint, double vague,
                        const lanes::LaneKernels& kernels) {
   constexpr double kBeyond = 0.05;
@@ -27,6 +31,7 @@ RootSweep::RootSweep(const ChainModel& model, const ClosedFormChain& chain, bool
       kernels_(kernels),
       concludes_(is_nominal && tolerance <= kMostTolerance),
       vague_(2 * std::sqrt(tolerance + chain.deviation)),
+      vague_divisor_(std::pow(kBesideAxis * (tolerance + chain.deviation), 2)),
       roots_(make_finder(model, chain.held, vague_, kernels)) {
   chain_.use_limits(model);
   for (int lane = 0; lane < lanes::kWidth; ++lane) pack_.sign[2][lane] = 1;
@@ -36,7 +41,7 @@ void RootSweep::find(const Goal& /*goal*/, const Pose& Y, bool /*wants_all*/) {
   chain_.set_target(Y, pack_);
   roots_.find(make_residual(chain_, pack_));
   size_ = 0;
-  certain_ = concludes_ && roots_.is_complete();
+  certain_ = concludes_ && roots_.is_complete() && roots_.least_divisor() > vague_divisor_;
   constexpr std::size_t kAtOnce = lanes::kWidth / kBranches;
   for (std::size_t first = 0; first < roots_.size(); first += kAtOnce) {
     const std::size_t n = std::min(kAtOnce, roots_.size() - first) * kBranches;

@@ -43,7 +43,8 @@ class RootSweep {
   ClosedFormChain chain_;
   const lanes::LaneKernels& kernels_;
   bool concludes_;
-  double vague_;  ///< by how much roots that are nearly double may be off [rad]
+  double vague_;          ///< by how much roots that are nearly double may be off [rad]
+  double vague_divisor_;  ///< nothing is concluded from residuals divided by less [units^2]
   RootFinder roots_;
   lanes::BranchPack pack_ = all_branches();
   std::array<std::array<double, 6>, kMost> q_{};

@@ -48,7 +48,7 @@ struct Surds {
 };
 
 template <typename T>
-IKSEL_INLINE T residual_at(const ResidualForm& form, const T& angle) {
+IKSEL_INLINE T residual_at(const ResidualForm& form, const T& angle, T& least) {
   T sine, cosine;
   sincos(angle, sine, cosine);
   const auto at = [&](const Linear& v) __attribute__((always_inline)) {
@@ -58,6 +58,7 @@ IKSEL_INLINE T residual_at(const ResidualForm& form, const T& angle) {
   const T B = at(form.B);
   const T C = at(form.C);
   const T R = A * A + B * B;
+  least = min(least, R);
   const T inverse = T(1.0) / max(R, T(1e-30));
   const Surds<T> in{R - C * C};
   const Surd<T> c1{A * C * inverse, T(0.0) - B * inverse};
@@ -95,12 +96,19 @@ IKSEL_INLINE T residual_at(const ResidualForm& form, const T& angle) {
   return (both.x * both.x - both.y * both.y * in.square) * (R * R);
 }
 
-/// At `n` angles [rad], a multiple of kWidth.
+/// At `n` angles [rad], a multiple of kWidth. Returns the least A^2 + B^2: how near to axis 1 the
+/// point P comes.
 template <typename T>
-void find_residuals(const ResidualForm& form, const double* angles, int n, double* residuals) {
+double find_residuals(const ResidualForm& form, const double* angles, int n, double* residuals) {
+  T least = T(1e30);
   for (int i = 0; i < n; i += Lanes<T>::kCount) {
-    Lanes<T>::store(residual_at(form, Lanes<T>::load(angles + i)), residuals + i);
+    Lanes<T>::store(residual_at(form, Lanes<T>::load(angles + i), least), residuals + i);
   }
+  double lanes[kWidth];
+  Lanes<T>::store(least, lanes);
+  double all = lanes[0];
+  for (int i = 1; i < Lanes<T>::kCount; ++i) all = min(all, lanes[i]);
+  return all;
 }
 
 /// Sign changes along the coefficients, at most: inner ones may be off by the margin.

@@ -19,9 +19,11 @@ ROOT = Path(__file__).resolve().parents[1]
 
 MEASURING = (
     "arms.py",
+    "branches.py",
     "cells.py",
     "chain.py",
     "check.py",
+    "no.py",
     "targets.py",
     "timing.py",
     "paper/artefact.py",

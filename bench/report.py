@@ -12,14 +12,14 @@ from bench import machine
 from bench.plots import draw_all
 from bench.rivals import RIVALS
 from bench.rivals.base import UnsupportedError
-from bench.sections import paper, requests, rivals, robots
+from bench.sections import no, paper, requests, rivals, robots
 from bench.store import write_json
 from bench.view import View
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from bench.plan import Job, Size
+    from bench.size import Job, Size
     from bench.store import Store
     from bench.view import Report
 
@@ -95,6 +95,7 @@ def render(report: Report, folder: Path) -> None:
         for part in (
             _head(report),
             rivals.text(view),
+            no.text(view),
             paper.text(view),
             robots.text(view),
             requests.text(view),

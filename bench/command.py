@@ -20,6 +20,7 @@ from bench.report import (
     collect,
     installed_rivals,
     load_report,
+    merged,
     render,
     save_report,
 )
@@ -78,6 +79,11 @@ def parser() -> argparse.ArgumentParser:
     )
     report.add_argument(
         "--fresh", action="store_true", help="measure again what was measured before"
+    )
+    report.add_argument(
+        "--keep",
+        action="store_true",
+        help="with --only and -o: keep what the folder's report has besides",
     )
     again = commands.add_parser("render", help="write the text and plots again")
     again.add_argument("-o", "--output", type=Path, default=BENCH, metavar="FOLDER")
@@ -172,6 +178,10 @@ def _report(options: argparse.Namespace, given: list[str]) -> int:
     report = _measured(jobs, size, versions, given, fresh=options.fresh)
     if report is None:
         return 130
+    if options.keep:
+        every = plan.plan(size, None, None)
+        sections = [part for part in plan.SECTIONS if part in (options.only or ())]
+        report = merged(load_report(output), report, every, sections)
     save_report(report, output)
     render(report, output)
     sys.stderr.write(f"wrote {output / 'RESULTS.md'}\n")

@@ -45,6 +45,12 @@ class View:
         """Whether anything of that kind was measured."""
         return any(entry["settings"]["cell"] == cell for entry in self.report["cells"])
 
+    def machine(self, section: str) -> dict[str, Any]:
+        """What a section was measured on."""
+        part = self.report.get("parts", {}).get(section, self.report)
+        facts: dict[str, Any] = part["machine"]
+        return facts
+
     def robots(self, cell: str) -> list[str]:
         """The robots that cells of that kind were measured on, in the plan's order."""
         settings = [entry["settings"] for entry in self.report["cells"]]

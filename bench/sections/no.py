@@ -90,7 +90,7 @@ def _conditions(view: View) -> str:
 
 
 def _machine(view: View) -> str:
-    facts = view.report["machine"]
+    facts = view.machine("no")
     return f"SIMD level {facts['simd']}, {facts['cpu']}, {facts['cores']} cores."
 
 

@@ -13,6 +13,7 @@ pytest.importorskip("bench", reason="the benchmarks are in the repository only")
 
 from bench import branches, check, command, frozen, guard, no, plan, run, targets
 from bench.arms import load_arm
+from bench.report import merged
 from bench.rivals.axes import axes_of
 from bench.rivals.base import Run, UnsupportedError
 from bench.sections import no as no_section
@@ -261,6 +262,30 @@ class TestPlan:
         result = store.load(cell)
         assert result is not None
         assert (result["targets"], result["false_success"]) == (20, 0)
+
+
+class TestReport:
+    def test_a_section_measured_by_itself_says_on_what(self):
+        def report(cells, machine):
+            return {
+                "machine": machine,
+                "command": f"on {machine}",
+                "seconds": 1,
+                "size": {"no": 3},
+                "versions": {machine: "1"},
+                "missing": {},
+                "failures": {},
+                "cells": [{"settings": {"cell": c}, "result": machine} for c in cells],
+            }
+
+        old, new = report(["a", "b", "left out"], "old"), report(["b", "c"], "new")
+        wanted = [Job("all", "no", [{"cell": name} for name in ("a", "b", "c", "d")])]
+        both = merged(old, new, wanted, ["no"])
+        found = {c["settings"]["cell"]: c["result"] for c in both["cells"]}
+        assert found == {"a": "old", "b": "new", "c": "new"}
+        assert (both["machine"], both["parts"]["no"]["machine"]) == ("old", "new")
+        view = View({**both, "size": vars(QUICK)})
+        assert (view.machine("no"), view.machine("rivals")) == ("new", "old")
 
 
 class TestGuard:

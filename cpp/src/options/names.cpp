@@ -51,6 +51,8 @@ const char* to_string(Cause cause) {
       return "orientation";
     case Cause::joint_limits:
       return "joint_limits";
+    case Cause::no_branch:
+      return "no_branch";
     case Cause::rejected:
       return "rejected";
     case Cause::singular:

@@ -95,7 +95,7 @@ MissingAngle find_missing_angle(const ClosedFormChain& chain, const lanes::Branc
   MissingAngle missing;
   missing.found = trace.failed;
   missing.joint = joints_by_call(form.closure)[static_cast<std::size_t>(trace.failed)];
-  missing.sine2 = trace.square;
+  missing.square = trace.square;
   missing.is_elbow = missing.joint == 2 && bends_elbow(form.closure);
   if (missing.is_elbow) missing.span = span_of(chain, branch.q[2], trace.square);
   return missing;

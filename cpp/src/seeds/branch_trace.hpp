@@ -21,8 +21,8 @@ struct MissingAngle {
   int found = -1;
   /// The joint whose angle there is not, as the form counts.
   int joint = -1;
-  /// Of that angle, its sine squared if there were one, below 0: how much is missing to it.
-  double sine2 = 0;
+  /// The difference of squares that its subproblem takes the root of, below 0.
+  double square = 0;
   /// Whether that joint is the elbow, which bends for the distance from axis 2 to axis 4 as the
   /// form counts them: where those are parallel, across them.
   bool is_elbow = false;

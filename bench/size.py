@@ -41,7 +41,7 @@ class Size:
     """Targets that are restarted a thousand times each."""
     no: int = 10_000
     """Targets of each kind for the noes, and what goes with them."""
-    no_slow: int = 200
+    no_slow: int = 100
     """The same for slow solvers, which may take a tenth of a second for a no."""
     no_seed: int = SEED
     """Their seed."""

@@ -59,8 +59,11 @@ struct Search {
   bool by_scheme() const;
   /// Returns whether there certainly are no answers but those found.
   Proof in_lanes() const;
-  /// The same by all branches of Y; nothing if there may be answers left to search for.
-  std::optional<Proof> in_closed_form(GivenSeeds& given, const Pose& Y) const;
+  /// The same by given seeds and all branches of Y; nothing if there may be answers left to search
+  /// for. `kind`: the proof that branches give.
+  template <typename Branches>
+  std::optional<Proof> by_branches(Branches& branches, Proof kind, GivenSeeds& given,
+                                   const Pose& Y) const;
 };
 
 template <typename Answers>
@@ -103,10 +106,19 @@ Proof Search<Answers>::in_lanes() const {
   const Pose Y = query.reduce(goal.target());
   refiner.set_pose(Y);
   if (workspace.lanes->branches && request.database_seeds) {
-    if (const auto proof = in_closed_form(given, Y)) return *proof;
+    const auto proof = by_branches(*workspace.lanes->branches, Proof::closed_form, given, Y);
+    if (proof) return *proof;
   }
   query.set_target(Y);
   clock.lap(&StageTimes::query);
+  if (workspace.lanes->roots && request.database_seeds) {
+    if constexpr (!std::is_same_v<Answers, Collector>) {
+      NearestSeeds leaf(query, /*only_leaf=*/true, work, clock);
+      if (run(refiner, near, given, leaf)) return Proof::none;
+    }
+    const auto proof = by_branches(*workspace.lanes->roots, Proof::sweep, given, Y);
+    if (proof) return *proof;
+  }
   if constexpr (std::is_same_v<Answers, Collector>) {
     if (run(refiner, near, given) || !request.database_seeds) return Proof::none;
     refiner.begin(goal.task(), kAll);
@@ -129,10 +141,11 @@ Proof Search<Answers>::in_lanes() const {
 }
 
 template <typename Answers>
-std::optional<Proof> Search<Answers>::in_closed_form(GivenSeeds& given, const Pose& Y) const {
+template <typename Branches>
+std::optional<Proof> Search<Answers>::by_branches(Branches& branches, Proof kind,
+                                                  GivenSeeds& given, const Pose& Y) const {
   LaneRefiner& refiner = workspace.lanes->refiner;
-  EnumeratedSeeds enumerated(*workspace.lanes->branches, goal, Y, answers.wants_more(), work,
-                             clock);
+  EnumeratedSeeds enumerated(branches, goal, Y, answers.wants_more(), work, clock);
   SeedSequence seeds(2, given, enumerated);
   refiner.begin(goal.task(), kThere);
   answers.look_for_partners(false);
@@ -142,7 +155,7 @@ std::optional<Proof> Search<Answers>::in_closed_form(GivenSeeds& given, const Po
   if (is_satisfied) return Proof::none;
   // Branches of which none could be refined to the tolerances prove nothing.
   if (enumerated.is_certain() && (enumerated.is_empty() || answers.has_any())) {
-    return Proof::closed_form;
+    return kind;
   }
   refiner.begin(goal.task(), kFirst);
   return std::nullopt;

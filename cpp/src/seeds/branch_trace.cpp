@@ -42,6 +42,9 @@ std::array<int, 3> joints_by_call(Closure closure) {
       return {2, 1, 4};
     case Closure::three_parallel:
       return {0, 4, 2};
+    case Closure::sweep_4:
+    case Closure::sweep_6:
+      break;
   }
   return {};
 }

@@ -7,6 +7,7 @@
 #include "simd/lane_goal.hpp"
 #include "simd/lane_math.hpp"
 #include "simd/lane_types.hpp"
+#include "simd/residual_kernel.hpp"
 #include "simd/seed_kernel.hpp"
 
 namespace iksel::lanes {
@@ -205,7 +206,9 @@ constexpr LaneKernels make_kernels(const char* name) {
           add_known<S>,
           find_largest<S>,
           solve_branches<T>,
-          find_branches<T>};
+          find_branches<T>,
+          find_residuals<T>,
+          count_roots<T>};
 }
 
 }  // namespace iksel::lanes

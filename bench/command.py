@@ -8,7 +8,7 @@ import sys
 import time
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from bench import plan
 from bench.arms import RIVAL_ARMS
@@ -50,6 +50,28 @@ def parser() -> argparse.ArgumentParser:
     """The commands and their options."""
     top = argparse.ArgumentParser(prog="python -m bench", description=__doc__)
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    _add_report(commands)
+    again = commands.add_parser("render", help="write the text and plots again")
+    again.add_argument("-o", "--output", type=Path, default=BENCH, metavar="FOLDER")
+    check = commands.add_parser(
+        "guard", help="compare speed and success with bench/guard.json"
+    )
+    check.add_argument(
+        "--update", action="store_true", help="write bench/guard.json instead"
+    )
+    frozen = commands.add_parser(
+        "frozen",
+        help="compare the bits of every call's answers before and after a change",
+        description="Records what every public call answers, on every built-in robot, "
+        "at both presets and every SIMD level of this machine, or compares with that.",
+    )
+    frozen.add_argument("action", choices=["record", "compare"])
+    frozen.add_argument("file", type=Path, help="where, e.g. build/frozen.json")
+    _add_no(commands)
+    return top
+
+
+def _add_report(commands: Any) -> None:
     report = commands.add_parser(
         "report",
         help="measure everything and write the report",
@@ -85,22 +107,9 @@ def parser() -> argparse.ArgumentParser:
         action="store_true",
         help="with --only and -o: keep what the folder's report has besides",
     )
-    again = commands.add_parser("render", help="write the text and plots again")
-    again.add_argument("-o", "--output", type=Path, default=BENCH, metavar="FOLDER")
-    check = commands.add_parser(
-        "guard", help="compare speed and success with bench/guard.json"
-    )
-    check.add_argument(
-        "--update", action="store_true", help="write bench/guard.json instead"
-    )
-    frozen = commands.add_parser(
-        "frozen",
-        help="compare the bits of every call's answers before and after a change",
-        description="Records what every public call answers, on every built-in robot, "
-        "at both presets and every SIMD level of this machine, or compares with that.",
-    )
-    frozen.add_argument("action", choices=["record", "compare"])
-    frozen.add_argument("file", type=Path, help="where, e.g. build/frozen.json")
+
+
+def _add_no(commands: Any) -> None:
     noes = commands.add_parser(
         "no",
         help="the report's section on poses without an answer, printed",
@@ -127,7 +136,6 @@ def parser() -> argparse.ArgumentParser:
     noes.add_argument(
         "--fresh", action="store_true", help="measure again what was measured before"
     )
-    return top
 
 
 def main(arguments: list[str] | None = None) -> int:

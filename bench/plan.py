@@ -201,7 +201,6 @@ when one of seven joints is held; none of these."""
 NO_RIVALS = (
     "IKSel",
     BRANCH_RIVAL,
-    "IK-Geo",
     "Robotics Toolbox",
     "OptIK",
     "TRAC-IK (pytracik)",

@@ -156,8 +156,8 @@ def _made(part: dict[str, Any]) -> str:
         f"there already not counted), with IKSel {facts['iksel']} (lanes: "
         f"{facts['simd']}) at commit {facts['commit']}, Python {facts['python']}, "
         f"numpy {facts['numpy']}, on {facts['cpu']}, {facts['cores']} cores, "
-        f"{facts['system']}. Times move from machine to machine; what is compared "
-        "here was timed in the same run."
+        f"{facts['system']}{machine.load_text(facts)}. Times move from machine to "
+        "machine; what is compared here was timed in the same run."
     )
     if facts.get("stale"):
         made += " The sources have changed since this IKSel was built and installed."

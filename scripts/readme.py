@@ -77,9 +77,10 @@ def machine(report: dict[str, Any], section: str) -> str:
     """What a section was measured on, and by which command."""
     part = report.get("parts", {}).get(section, report)
     facts = part["machine"]
+    load = f", load average {facts['load']:g}" if "load" in facts else ""
     return (
-        f"SIMD level {facts['simd']}, {facts['cpu']} ({facts['cores']} cores). Made by "
-        f"`{part['command']}`."
+        f"SIMD level {facts['simd']}, {facts['cpu']} ({facts['cores']} cores{load}). "
+        f"Made by `{part['command']}`."
     )
 
 
@@ -145,7 +146,7 @@ def microseconds(value: float | None) -> str:
     """A time with as many digits as mean something."""
     if value is None:
         return NONE
-    return f"{value:,.2f}" if value < 10 else f"{value:,.0f}"
+    return f"{value:,.{2 if value < 10 else 1 if value < 100 else 0}f}"
 
 
 def rival_noes(found: dict[str, Result]) -> tuple[str, str]:

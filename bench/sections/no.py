@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from bench import branches, plan
 from bench.check import POSITION_TOLERANCE, ROTATION_TOLERANCE
+from bench.machine import load_text
 from bench.markdown import NONE, microseconds, percent, table
 from bench.rivals import RIVALS
 
@@ -91,7 +92,10 @@ def _conditions(view: View) -> str:
 
 def _machine(view: View) -> str:
     facts = view.machine("no")
-    return f"SIMD level {facts['simd']}, {facts['cpu']}, {facts['cores']} cores."
+    return (
+        f"SIMD level {facts['simd']}, {facts['cpu']}, {facts['cores']} cores"
+        f"{load_text(facts)}."
+    )
 
 
 def _time(times: list[float] | None) -> str:

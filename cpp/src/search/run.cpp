@@ -27,6 +27,8 @@ constexpr Patience kFirst{8, kMostIterations};
 constexpr Patience kAll{6, kMostIterations, 2};
 /// Where seeds are answers, or as near to one as a singularity or a limit lets it be told.
 constexpr Patience kThere{8, 64};
+/// Seeds after all roots of a sweep led nowhere: double ones, or just outside a limit.
+constexpr int kBesideRoots = 96;
 
 /// What one search works with.
 template <typename Answers>
@@ -142,8 +144,8 @@ Proof Search<Answers>::in_lanes() const {
 
 template <typename Answers>
 template <typename Branches>
-std::optional<Proof> Search<Answers>::by_branches(Branches& branches, Proof kind,
-                                                  GivenSeeds& given, const Pose& Y) const {
+std::optional<Proof> Search<Answers>::by_branches(Branches& branches, Proof kind, GivenSeeds& given,
+                                                  const Pose& Y) const {
   LaneRefiner& refiner = workspace.lanes->refiner;
   EnumeratedSeeds enumerated(branches, goal, Y, answers.wants_more(), work, clock);
   SeedSequence seeds(2, given, enumerated);
@@ -154,8 +156,9 @@ std::optional<Proof> Search<Answers>::by_branches(Branches& branches, Proof kind
   clock.lap(&StageTimes::iterate);
   if (is_satisfied) return Proof::none;
   // Branches of which none could be refined to the tolerances prove nothing.
-  if (enumerated.is_certain() && (enumerated.is_empty() || answers.has_any())) {
-    return kind;
+  if (enumerated.is_certain()) {
+    if (enumerated.is_empty() || answers.has_any()) return kind;
+    if (kind == Proof::sweep) work.leave(kBesideRoots);
   }
   refiner.begin(goal.task(), kFirst);
   return std::nullopt;

@@ -35,8 +35,7 @@ void RootFinder::find(const lanes::ResidualForm& form) {
     std::copy_n(values_.data() + kCells, kBefore, values_.data());
     std::copy_n(values_.data() + kBefore, kAfter, values_.data() + kBefore + kCells);
   } else {
-    kernels_.find_residuals(form, angles_.data(), static_cast<int>(angles_.size()),
-                            values_.data());
+    kernels_.find_residuals(form, angles_.data(), static_cast<int>(angles_.size()), values_.data());
   }
   std::array<double, kCells> counts;
   kernels_.count_roots(values_.data() + kBefore, kCells, counts.data());

@@ -42,7 +42,8 @@ class RootFinder {
   struct Bracket {
     double left, right, at_left, at_right;
   };
-  /// Looks into the interval of this length from `left` on, at more angles; `depth` of those around.
+  /// Looks into the interval of this length from `left` on, at more angles; `depth` of those
+  /// around.
   void look_closer(const lanes::ResidualForm& form, double left, double length, int depth);
   void add_bracket(double left, double length, const double* value);
   void add(double angle, bool is_vague);

@@ -53,15 +53,14 @@ void RootSweep::find(const Goal& /*goal*/, const Pose& Y, bool /*wants_all*/) {
 void RootSweep::take(bool is_vague, int lane) {
   // Roots are off by what the tolerances allow, many times over; but where there are two, by its
   // square root.
-  const double slack = is_vague ? 4 * vague_ : 100 * vague_ * vague_;
+  const double slack = is_vague ? 4 * vague_ : 25 * vague_ * vague_;
   if (!(std::abs(pack_.residual[lane]) < slack && pack_.least[lane] > -slack &&
         pack_.beyond[lane] < slack)) {
     return;
   }
-  if (size_ == kMost) {
-    certain_ = false;
-    return;
-  }
+  // At a limit, what the tolerances allow decides.
+  if (size_ == kMost || (!is_vague && pack_.beyond[lane] > 0)) certain_ = false;
+  if (size_ == kMost) return;
   chain_.copy_joints(pack_, lane, q_[static_cast<std::size_t>(size_++)].data());
 }
 

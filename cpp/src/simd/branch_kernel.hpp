@@ -229,8 +229,7 @@ IKSEL_INLINE void solve_sweep_6(const ClosedForm& form, const BranchTarget<T>& t
   const Vec<T> axis = before_wrist(form, out, ahead(h5));
   residual = dot(h4, axis) - T(form.along45);
   out.q[3] = angle_between(h4, h5, axis, out.quality);
-  const Vec<T> rest =
-      turned_back(h4, out.q[3], before_wrist(form, out, target.Z));
+  const Vec<T> rest = turned_back(h4, out.q[3], before_wrist(form, out, target.Z));
   out.q[4] = angle_between(h5, h6, rest, out.quality);
 }
 

@@ -32,15 +32,15 @@ struct ClosedForm {
   double offset[6];  ///< what angles are more than joint values [rad]
   /// Middle of each joint's limits, and half their range; of a joint that has none, 0 and pi [rad].
   double middle[6], reach[6];
-  double h[6][3];       ///< unit vectors along the axes
-  double p[5][3];       ///< from a point on axis j to one on axis j + 1; where axes meet, one point
-  double basis[3][3];   ///< right-handed, h6 last
-  double across[3];     ///< a unit vector across h2
-  double cross12;       ///< h1 . h2
-  double cross23;       ///< h2 . h3
-  double side3;         ///< of parallel axes 3 and 2: 1, or -1 if they point opposite ways
-  double side4;         ///< the same of axes 4 and 2
-  double arm2;          ///< |p23|^2 + |p34|^2
+  double h[6][3];      ///< unit vectors along the axes
+  double p[5][3];      ///< from a point on axis j to one on axis j + 1; where axes meet, one point
+  double basis[3][3];  ///< right-handed, h6 last
+  double across[3];    ///< a unit vector across h2
+  double cross12;      ///< h1 . h2
+  double cross23;      ///< h2 . h3
+  double side3;        ///< of parallel axes 3 and 2: 1, or -1 if they point opposite ways
+  double side4;        ///< the same of axes 4 and 2
+  double arm2;         ///< |p23|^2 + |p34|^2
   double along45, along56;  ///< h4 . h5 and h5 . h6
   double rest;          ///< what the way along parallel axes adds up to; of intersect_23 |p34|^2 -
                         ///< |p12|^2

@@ -118,8 +118,8 @@ IKSEL_INLINE T most_sign_changes(const T (&b)[6], const T& margin) {
 }
 
 /// For each of `n` cells between two of the evenly spaced values and the next, how many roots there
-/// are: none, one, or 2 where that is not certain. By Descartes' rule of signs for the polynomial of
-/// fifth degree through the six values around, in Bernstein form; what it may differ from the
+/// are: none, one, or 2 where that is not certain. By Descartes' rule of signs for the polynomial
+/// of fifth degree through the six values around, in Bernstein form; what it may differ from the
 /// function is told by the sixth difference. There are 3 values before the first and 4 after the
 /// last cell's left one, and `n` is a multiple of kWidth.
 template <typename T>

@@ -18,10 +18,10 @@ struct ResidualForm {
   /// From axis 2 to P, and the direction d, both as joint 1 leaves them: parts of each coordinate
   /// that are constant, go by cos(q1), and by sin(q1).
   Linear w[2][3], d[3][3];
-  Linear a[2];     ///< from axis 3 to the point
-  Linear k[3];     ///< the direction that is carried
-  double along;    ///< k . d at solutions
-  double p23_2;    ///< squared distance of axes 2 and 3
+  Linear a[2];   ///< from axis 3 to the point
+  Linear k[3];   ///< the direction that is carried
+  double along;  ///< k . d at solutions
+  double p23_2;  ///< squared distance of axes 2 and 3
 };
 
 }  // namespace iksel::lanes

@@ -241,9 +241,10 @@ def no_conditions(report: dict[str, Any], found: dict[str, dict[str, Result]]) -
         f"{size['no']:,} targets per robot ({size['no_slow']:,} for numerical "
         f"rivals), seed {size['no_seed']}, tolerances of 1e-6 m and 1e-6 rad, one "
         "thread, from Python (KDL's own solvers from C++), the least time of three of "
-        f"each call; {machine(report, 'no')} Of {count:,} targets that can be reached "
-        f"{solved:,} were solved; proofs refuted by another solver's answer: "
-        f"{disproved}."
+        f"each call; `solve_all` and `near` over all targets, or over a tenth of them "
+        f"where there is no closed form; {machine(report, 'no')} Of {count:,} targets "
+        f"that can be reached {solved:,} were solved; proofs refuted by another "
+        f"solver's answer: {disproved}."
     )
 
 

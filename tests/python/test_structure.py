@@ -57,7 +57,7 @@ def test_arms_of_which_a_joint_is_swept(made, name: str, joint: int) -> None:
     assert f"angle of joint {joint}, which is swept" in structure.description
 
 
-@pytest.mark.parametrize("name", ["cvr038", "baxter_right"])
+@pytest.mark.parametrize("name", ["irb14050", "baxter_right"])
 def test_arms_that_are_searched(made, name: str) -> None:
     structure = made.robot(name).structure
     assert structure.kind is iksel.StructureKind.searched
@@ -133,8 +133,8 @@ def test_all_solutions_are_all_that_there_are(solver, poses) -> None:
 
 
 def test_a_search_proves_nothing(made) -> None:
-    robot = made.robot("cvr038")
-    batch = made.solver("cvr038").solve_batch(turned_at_random(robot))
+    robot = made.robot("irb14050")
+    batch = made.solver("irb14050").solve_batch(turned_at_random(robot))
     missed = batch[~batch.success]
     assert len(missed) > 0
     assert set(missed.proof.tolist()) <= {none, reach}

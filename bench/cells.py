@@ -17,10 +17,12 @@ import numpy as np
 
 import iksel
 from bench.arms import load_arm
+from bench.branches import all_branches, near_branches, restarts
 from bench.check import judge, right
 from bench.machine import fingerprint
+from bench.no import answered
 from bench.paper.artefact import singular_first
-from bench.requests import ON_TARGETS, path
+from bench.requests import near_moves, path
 from bench.rivals import RIVALS
 from bench.rivals.base import UnsupportedError
 from bench.targets import cached_targets
@@ -29,6 +31,7 @@ from bench.timing import summary
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from bench.arms import Arm
     from bench.rivals.base import Rival
     from bench.store import Settings
     from bench.targets import Targets
@@ -251,8 +254,18 @@ def seeds(settings: Settings) -> dict[str, Any]:
     }
 
 
+ON_TARGETS: dict[str, Callable[[Arm, Targets, Settings], dict[str, Any]]] = {
+    "no": answered,
+    "near_branches": near_branches,
+    "near_moves": near_moves,
+    "all_branches": all_branches,
+    "restarts": restarts,
+}
+"""Functions of an arm, its targets and settings, by the names under "cell"."""
+
+
 def _on_targets(name: str, settings: Settings) -> dict[str, Any]:
-    """A function of bench.requests, or why there is no such solver."""
+    """One of ON_TARGETS, or why there is no such solver."""
     try:
         return ON_TARGETS[name](
             load_arm(settings["robot"]), targets_of(settings), settings

@@ -82,6 +82,11 @@ class Chain:
         inside = (q >= self.lower - slack) & (q <= self.upper + slack)
         return np.asarray(inside.all(axis=1))
 
+    def middle(self) -> Array:
+        """Of the limits, (dof,); 0 of a joint that has none."""
+        middle = (self.lower + self.upper) / 2.0
+        return np.asarray(np.where(np.isfinite(middle), middle, 0.0))
+
     def _moved(self, i: int, values: Array) -> Array:
         """Z(q) of joint i for many values, (N, 4, 4)."""
         moved = np.zeros((len(values), 4, 4))

@@ -62,6 +62,8 @@ def right(
     q: Array,
     position_tolerance: float = POSITION_TOLERANCE,
     rotation_tolerance: float = ROTATION_TOLERANCE,
+    *,
+    slack: float = LIMIT_SLACK,
 ) -> npt.NDArray[np.bool_]:
     """Which answers q, (N, dof), are right at their poses, (N, 4, 4)."""
     usable = np.isfinite(q).all(axis=1)
@@ -70,7 +72,7 @@ def right(
     result[usable] = (
         (position <= position_tolerance)
         & (rotation <= rotation_tolerance)
-        & chain.within_limits(q[usable], LIMIT_SLACK)
+        & chain.within_limits(q[usable], slack)
     )
     return result
 

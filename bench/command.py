@@ -6,7 +6,9 @@ from __future__ import annotations
 import argparse
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from bench import plan
 from bench.arms import RIVAL_ARMS
@@ -14,17 +16,24 @@ from bench.cells import WORK
 from bench.frozen import compare, record
 from bench.guard import guard
 from bench.machine import fingerprint, stale
-from bench.no import ROBOTS, no
 from bench.report import (
     collect,
     installed_rivals,
     load_report,
+    merged,
     render,
     save_report,
 )
 from bench.rivals import RIVALS
 from bench.run import run_jobs
+from bench.sections import no
+from bench.size import FULL, QUICK, SEED
 from bench.store import Store
+from bench.view import View
+
+if TYPE_CHECKING:
+    from bench.size import Job, Size
+    from bench.view import Report
 
 BENCH = Path(__file__).resolve().parent
 
@@ -41,6 +50,28 @@ def parser() -> argparse.ArgumentParser:
     """The commands and their options."""
     top = argparse.ArgumentParser(prog="python -m bench", description=__doc__)
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    _add_report(commands)
+    again = commands.add_parser("render", help="write the text and plots again")
+    again.add_argument("-o", "--output", type=Path, default=BENCH, metavar="FOLDER")
+    check = commands.add_parser(
+        "guard", help="compare speed and success with bench/guard.json"
+    )
+    check.add_argument(
+        "--update", action="store_true", help="write bench/guard.json instead"
+    )
+    frozen = commands.add_parser(
+        "frozen",
+        help="compare the bits of every call's answers before and after a change",
+        description="Records what every public call answers, on every built-in robot, "
+        "at both presets and every SIMD level of this machine, or compares with that.",
+    )
+    frozen.add_argument("action", choices=["record", "compare"])
+    frozen.add_argument("file", type=Path, help="where, e.g. build/frozen.json")
+    _add_no(commands)
+    return top
+
+
+def _add_report(commands: Any) -> None:
     report = commands.add_parser(
         "report",
         help="measure everything and write the report",
@@ -71,35 +102,40 @@ def parser() -> argparse.ArgumentParser:
     report.add_argument(
         "--fresh", action="store_true", help="measure again what was measured before"
     )
-    again = commands.add_parser("render", help="write the text and plots again")
-    again.add_argument("-o", "--output", type=Path, default=BENCH, metavar="FOLDER")
-    check = commands.add_parser(
-        "guard", help="compare speed and success with bench/guard.json"
+    report.add_argument(
+        "--keep",
+        action="store_true",
+        help="with --only and -o: keep what the folder's report has besides",
     )
-    check.add_argument(
-        "--update", action="store_true", help="write bench/guard.json instead"
+
+
+def _add_no(commands: Any) -> None:
+    noes = commands.add_parser(
+        "no",
+        help="the report's section on poses without an answer, printed",
+        description="Measures what a yes and a no cost each solver, how many are "
+        "right, and all answers and the nearest. Results are kept as the report's are.",
     )
-    frozen = commands.add_parser(
-        "frozen",
-        help="compare the bits of every call's answers before and after a change",
-        description="Records what every public call answers, on every built-in robot, "
-        "at both presets and every SIMD level of this machine, or compares with that.",
-    )
-    frozen.add_argument("action", choices=["record", "compare"])
-    frozen.add_argument("file", type=Path, help="where, e.g. build/frozen.json")
-    no_command = commands.add_parser(
-        "no", help="measure what a no costs, and how many of them are proven"
-    )
-    no_command.add_argument(
+    noes.add_argument(
         "robots",
         nargs="*",
         metavar="ROBOT",
-        default=ROBOTS,
-        help=f"default: {' '.join(ROBOTS)}",
+        default=plan.NO_ARMS,
+        help=f"default: {' '.join(plan.NO_ARMS)}",
     )
-    no_command.add_argument("--targets", type=int, default=10_000, help="of each kind")
-    no_command.add_argument("--seed", type=int, default=1)
-    return top
+    noes.add_argument("--quick", action="store_true", help="fewer targets")
+    noes.add_argument(
+        "--solvers",
+        nargs="+",
+        metavar="SOLVER",
+        choices=plan.NO_RIVALS,
+        help="only these",
+    )
+    noes.add_argument("--targets", type=int, help="of each kind, for the fast solvers")
+    noes.add_argument("--seed", type=int, default=SEED)
+    noes.add_argument(
+        "--fresh", action="store_true", help="measure again what was measured before"
+    )
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -112,29 +148,68 @@ def main(arguments: list[str] | None = None) -> int:
         action = record if options.action == "record" else compare
         return action(options.file)
     if options.command == "no":
-        return no(options.robots, options.targets, options.seed)
+        return _no(options, given)
     if options.command == "render":
         render(load_report(options.output), options.output)
         return 0
     return _report(options, given)
 
 
+def _no(options: argparse.Namespace, given: list[str]) -> int:
+    size = QUICK if options.quick else FULL
+    size = replace(size, no=options.targets or size.no, no_seed=options.seed)
+    versions = installed_rivals()
+    wanted = [name for name in versions if name in (options.solvers or plan.NO_RIVALS)]
+    jobs = plan.no_plan(size, options.robots, wanted)
+    report = _measured(jobs, size, versions, given, fresh=options.fresh)
+    if report is None:
+        return 130
+    view = View(report)
+    sys.stdout.write(no.text(view) + "\n")
+    bad = no.wrong(view)
+    for line in bad:
+        sys.stdout.write(f"WRONG: {line}\n")
+    return 1 if bad or report["failures"] else 0
+
+
 def _report(options: argparse.Namespace, given: list[str]) -> int:
-    size = plan.QUICK if options.quick else plan.FULL
+    size = QUICK if options.quick else FULL
     versions = installed_rivals()
     jobs = plan.plan(size, options.robots, options.only, versions)
     if not jobs:
         sys.stderr.write("bench: nothing to do for these robots and parts\n")
         return 2
-    store = Store(WORK / "cells", fingerprint(), versions)
-    if options.fresh:
-        for job in jobs:
-            for cell in job.cells:
-                store.forget(cell)
     output = options.output
     if output is None:
         whole = not (options.quick or options.robots or options.only)
         output = BENCH if whole else WORK / "quick"
+    report = _measured(jobs, size, versions, given, fresh=options.fresh)
+    if report is None:
+        return 130
+    if options.keep:
+        every = plan.plan(size, None, None)
+        sections = [part for part in plan.SECTIONS if part in (options.only or ())]
+        report = merged(load_report(output), report, every, sections)
+    save_report(report, output)
+    render(report, output)
+    sys.stderr.write(f"wrote {output / 'RESULTS.md'}\n")
+    return 1 if report["failures"] else 0
+
+
+def _measured(
+    jobs: list[Job],
+    size: Size,
+    versions: dict[str, str],
+    given: list[str],
+    *,
+    fresh: bool,
+) -> Report | None:
+    """What the jobs gave, failures told; None if interrupted."""
+    store = Store(WORK / "cells", fingerprint(), versions)
+    if fresh:
+        for job in jobs:
+            for cell in job.cells:
+                store.forget(cell)
     if stale():
         sys.stderr.write(
             "bench: cpp/ or python/ has changed since this iksel was installed\n"
@@ -144,14 +219,11 @@ def _report(options: argparse.Namespace, given: list[str]) -> int:
         failures = run_jobs(jobs, store, WORK)
     except KeyboardInterrupt:
         sys.stderr.write("bench: interrupted; the same command goes on from here\n")
-        return 130
+        return None
     command = " ".join(["python -m bench", *given])
     seconds = time.monotonic() - begin
     report = collect(jobs, store, size, command=command, seconds=seconds)
     report["failures"] = failures
-    save_report(report, output)
-    render(report, output)
     for name, reason in failures.items():
         sys.stderr.write(f"bench: {name}: {reason}\n")
-    sys.stderr.write(f"wrote {output / 'RESULTS.md'}\n")
-    return 1 if failures else 0
+    return report

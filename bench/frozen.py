@@ -146,7 +146,7 @@ def _each(poses: Iterable[np.ndarray], solve: Callable[[int, Any], Any]) -> Dige
     for i, pose in enumerate(poses):
         answer = solve(i, pose)
         digest.solved += bool(answer)
-        digest.bits(answer.status.name)
+        digest.bits(answer.status.name, answer.proof.name)
         digest.work(answer)
         if isinstance(answer, iksel.Solutions):
             digest.bits(answer.q, answer.position_error, answer.rotation_error)
@@ -161,7 +161,7 @@ def _batch(answer: iksel.BatchResult) -> Digest:
     digest = Digest()
     digest.solved = answer.solved
     digest.bits(answer.q, answer.status, answer.position_error, answer.rotation_error)
-    digest.bits(answer.move)
+    digest.bits(answer.move, answer.proof)
     digest.work(answer)
     return digest
 

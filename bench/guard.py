@@ -19,11 +19,11 @@ import numpy as np
 
 import iksel
 from bench.arms import load_arm
+from bench.branches import LIMIT_S, near_of
 from bench.cells import solver_options
 from bench.check import right
 from bench.machine import facts
 from bench.markdown import table
-from bench.requests import LIMIT_S, near_of
 from bench.store import write_json
 from bench.targets import make_targets
 from bench.timing import time_calls
@@ -31,10 +31,15 @@ from bench.timing import time_calls
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from bench.arms import Arm
+    from bench.targets import Targets
+
 PATH = Path(__file__).with_name("guard.json")
 
 RUNS = 3
 """Runs for the least ratio; a row that fails gets as many again."""
+UPDATE_RUNS = 9
+"""Runs for the middle ratio, which is committed."""
 SLOWER = 1.6
 """A ratio may be this many times the committed one."""
 SEED = 1
@@ -56,10 +61,15 @@ ROWS: tuple[dict[str, Any], ...] = (
     {"robot": "ur3", "what": "solve_all", "targets": 2_000, "points": 0.5},
     {"robot": "ur3", "what": "near", "targets": 2_000, "points": 0.1},
     {"robot": "panda", "what": "near", "targets": 500, "points": 0.1},
+    # Of each class one: closed form, two of the swept ones, searched.
+    {"robot": "ur3", "what": "no", "targets": 5_000, "points": 0.05},
+    {"robot": "cvr038", "what": "no", "targets": 1_000, "points": 0.2},
+    {"robot": "panda", "what": "no", "targets": 1_000, "points": 0.2},
+    {"robot": "irb14050", "what": "no", "targets": 300, "points": 0.4},
 )
-"""What is run: solve by a preset, or another call by the default one. `points` is how
-far `per_100` may fall. The same targets every time, so only the code and the last bits
-of the arithmetic can move it."""
+"""What is run: solve by a preset, or another call by the default one; of `no` only the
+poses that have no answer are timed. `points` is how far `per_100` may fall. The same
+targets every time, so only the code and the last bits of the arithmetic can move it."""
 
 LEVELS = ("scalar", "sse2", "neon", "avx2", "avx512")
 """Instruction sets; the committed ratios are of one of them."""
@@ -136,10 +146,10 @@ def _measured(row: dict[str, Any], limit: float | None = None) -> dict[str, Any]
     """A row's figures; `per_100` targets are solved, or that many solutions found.
 
     With a limit the least ratio of RUNS runs, of twice as many if it is above the
-    limit; without, the middle one.
+    limit; without, the middle one of UPDATE_RUNS.
     """
     measure = _solve(row) if row["what"] in PRESETS else _request(row)
-    runs = [measure() for _ in range(RUNS)]
+    runs = [measure() for _ in range(UPDATE_RUNS if limit is None else RUNS)]
     ratios = sorted(run["ratio"] for run in runs)
     if limit is not None and ratios[0] > limit:
         runs += [measure() for _ in range(RUNS)]
@@ -173,35 +183,37 @@ def _solve(row: dict[str, Any]) -> Callable[[], dict[str, Any]]:
 def _request(row: dict[str, Any]) -> Callable[[], dict[str, Any]]:
     """One run of another call; the solver and its targets are made once."""
     arm = load_arm(row["robot"])
-    goals = make_targets(arm, "uniform", row["targets"], SEED)
+    kind = "any_rotation" if row["what"] == "no" else "uniform"
+    goals = make_targets(arm, kind, row["targets"], SEED)
     solver = iksel.Solver(arm.robot)
-    near = near_of(goals, SEED)
+    arguments: list[tuple[Any, ...]] = [(pose,) for pose in goals.poses]
+    call: Callable[..., Any] = solver.solve
+    if row["what"] == "near":
+        arguments = list(zip(goals.poses, near_of(goals, SEED), strict=True))
+
+        def call(pose: Any, near: Any) -> iksel.Result:
+            return solver.solve(pose, near=near)
+
+    elif row["what"] == "solve_all":
+        call = solver.solve_all
 
     def measure() -> dict[str, Any]:
-        if row["what"] == "near":
-            times, answers = time_calls(
-                lambda pose, q: solver.solve(pose, near=q),
-                list(zip(goals.poses, near, strict=True)),
-                LIMIT_S,
-            )
-            found = [a.q[None] if a.success else np.empty((0, 0)) for a in answers]
-        else:
-            times, answers = time_calls(
-                solver.solve_all, [(pose,) for pose in goals.poses], LIMIT_S
-            )
-            found = [a.q for a in answers]
-        wrong = [
-            np.count_nonzero(
-                ~right(arm.chain, np.broadcast_to(pose, (len(q), 4, 4)), q)
-            )
-            for pose, q in zip(goals.poses, found, strict=True)
-            if len(q)
-        ]
+        times, answers = time_calls(call, arguments, LIMIT_S)
+        found = [list(np.atleast_2d(a.q)) if a else [] for a in answers]
+        if row["what"] == "no":
+            times = times[[not a for a in answers]]
         kdl_us = iksel.evaluate(solver, 1_000, SEED).kdl_fk_jac_us
         return {
             "ratio": float(times.mean()) / 1e3 / kdl_us,
             "per_100": 100.0 * sum(map(len, found)) / len(goals),
-            "false_success": int(sum(wrong)),
+            "false_success": _wrong(arm, goals, found),
         }
 
     return measure
+
+
+def _wrong(arm: Arm, goals: Targets, found: list[list[Any]]) -> int:
+    """Answers that are none."""
+    owner = np.repeat(np.arange(len(found)), list(map(len, found)))
+    q = np.array([q for some in found for q in some]).reshape(-1, arm.chain.dof)
+    return int(np.count_nonzero(~right(arm.chain, goals.poses[owner], q)))

@@ -19,9 +19,11 @@ ROOT = Path(__file__).resolve().parents[1]
 
 MEASURING = (
     "arms.py",
+    "branches.py",
     "cells.py",
     "chain.py",
     "check.py",
+    "no.py",
     "targets.py",
     "timing.py",
     "paper/artefact.py",
@@ -44,7 +46,14 @@ def facts() -> dict[str, Any]:
         "simd": iksel_cpp.simd_level(),
         "commit": commit(),
         "stale": stale(),
+        "load": round(os.getloadavg()[2], 1),
     }
+
+
+def load_text(some_facts: dict[str, Any]) -> str:
+    """How much else ran, if that is known: one process measures."""
+    load = some_facts.get("load")
+    return "" if load is None else f", load average {load:g} of 15 minutes"
 
 
 def cpu_name() -> str:

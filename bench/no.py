@@ -1,138 +1,134 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a no costs, beside a yes, and how many of them are proven.
+"""A cell on yes and no: what each costs a solver, and how many are right.
 
-Two kinds of targets per robot (bench.targets): `uniform`, which can all be reached, and
+Of two kinds of targets (bench.targets): `uniform`, which can all be reached, and
 `any_rotation`, reachable positions with rotations at random, of which many cannot.
-Times are of calls from Python in one thread.
 """
 
 from __future__ import annotations
 
-import os
-import sys
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 import iksel
-from bench.arms import load_arm
-from bench.check import right
-from bench.machine import cpu_name
-from bench.markdown import NONE, microseconds, table
-from bench.requests import LIMIT_S
-from bench.targets import make_targets
-from bench.timing import time_calls
+from bench.branches import ROUNDING, TOLERANCE, nearest_turns
+from bench.check import judge, right
+from bench.rivals import RIVALS
+from bench.timing import least_times
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-ROBOTS = (
-    "ur3",
-    "ur10e",
-    "irb120",
-    "vs060",
-    "cvr038",
-    "panda",
-    "iiwa14",
-    "xarm7",
-    "baxter_right",
-)
-"""Of every structure some."""
-KINDS = ("uniform", "any_rotation")
-HEADER = (
-    "robot",
-    "structure",
-    "targets",
-    "solved",
-    "no: proven",
-    "by sweep",
-    "searched",
-    "most steps",
-    "yes",
-    "no",
-    "solve_all",
-    "near",
-    "unit",
-)
+    import numpy.typing as npt
+
+    from bench.arms import Arm
+    from bench.chain import Array, Chain
+    from bench.rivals.base import Rival
+    from bench.store import Settings
+    from bench.targets import Targets
+
+PASSES = 3
+"""Runs of a solver through all targets; of each the least time counts."""
+SHORT_S = 10.0
+"""A solver whose first run takes longer gets no second one [s]."""
+UNIT_RUNS = 20
+"""Runs for the least time of one KDL FK + Jacobian."""
 
 
-def no(robots: Sequence[str], count: int, seed: int) -> int:
-    """Print a table; the exit status is 1 if an answer or a proof is wrong."""
-    rows = [measure(name, kind, count, seed) for name in robots for kind in KINDS]
-    sys.stdout.write(
-        f"{count:,} targets of each kind, seed {seed}; tolerances 1e-6 m and 1e-6 rad; "
-        f"one thread, from Python; SIMD {iksel.simd_level()}, {cpu_name()} "
-        f"({os.cpu_count()} cores). Times [us]: mean, median (mean in units); a unit "
-        "is one KDL FK + Jacobian.\n\n"
-    )
-    sys.stdout.write(table(HEADER, map(_shown, rows)) + "\n")
-    wrong = [row for row in rows if row["wrong"]]
-    for row in wrong:
-        sys.stdout.write(f"{row['robot']}, {row['kind']}: {row['wrong']} are wrong\n")
-    return 1 if wrong else 0
-
-
-def measure(name: str, kind: str, count: int, seed: int) -> dict[str, Any]:
-    """A robot's figures on targets of one kind; times [us]."""
-    arm = load_arm(name)
-    goals = make_targets(arm, kind, count, seed)
+def answered(arm: Arm, goals: Targets, settings: Settings) -> dict[str, Any]:
+    """A solver's yes and no, judged beside IKSel's and the known solutions."""
+    rival = RIVALS[settings["rival"]](arm)
+    times, given = _run(rival, goals)
+    goals = goals.first(len(times))
+    claims = given if rival.keeps_limits else [_inside(arm.chain, q) for q in given]
+    verdict = judge(arm.chain, goals.poses, claims)
     solver = iksel.Solver(arm.robot)
-    poses = [(pose,) for pose in goals.poses]
-    times, results = time_calls(solver.solve, poses, LIMIT_S)
-    goals = goals.first(len(results))
-    near = list(zip(goals.poses, goals.starts, strict=True))
-    solved = np.array([result.success for result in results])
-    proven = np.array([result.proven for result in results])
-    swept = np.array([result.proof == iksel.Proof.sweep for result in results])
-    # An answer that is none, and a proof against a target made by joint values.
-    wrong = proven & np.isfinite(goals.witnesses).all(axis=1)
-    answers = np.array([r.q for r in results if r.success]).reshape(-1, arm.chain.dof)
-    wrong[solved] |= ~right(arm.chain, goals.poses[solved], answers)
+    ours = [solver.solve(pose) for pose in goals.poses]
+    solved = _solved(arm.chain, goals, ours)
+    known = np.isfinite(goals.witnesses).all(axis=1)
+    # At the tolerances of the default preset: what is right to the judge alone would be
+    # no answer of IKSel's.
+    exact = _exact(arm.chain, goals.poses, claims)
+    proven = np.array([result.proven for result in ours])
+    result = {
+        "count": len(goals),
+        "yes": int(verdict.right.sum()),
+        "false": verdict.false_claims,
+        "missed": int(np.count_nonzero(~verdict.right & (solved | known))),
+        "only": int(np.count_nonzero(exact & ~solved)),
+        "disproved": int(np.count_nonzero(proven & (exact | known))),
+        "yes_us": _mean_median(times[verdict.claimed]),
+        "no_us": _mean_median(times[~verdict.claimed]),
+    }
+    if settings["rival"] == "IKSel":
+        result |= _proofs(arm, ours) | {"unit_us": _unit(solver, settings["seed"])}
+    return result
+
+
+def _run(
+    rival: Rival, goals: Targets
+) -> tuple[npt.NDArray[np.int64], list[list[Array]]]:
+    """Times and answers; the least times of a few runs where those are short."""
+    run = rival.run(goals)
+    runs = [run]
+    if run.times_ns.sum() < SHORT_S * 1e9:
+        runs += [rival.run(goals) for _ in range(PASSES - 1)]
+    times = least_times([again.times_ns for again in runs])
+    return times, run.answers[: len(times)]
+
+
+def _inside(chain: Chain, branches: Sequence[Array]) -> list[Array]:
+    """Those that lie inside the limits at some whole turns."""
+    if not branches:
+        return []
+    turned = nearest_turns(chain, np.array(branches), chain.middle())
+    return list(turned[np.isfinite(turned).all(axis=1)])
+
+
+def _exact(
+    chain: Chain, poses: Array, claims: Sequence[Sequence[Array]]
+) -> npt.NDArray[np.bool_]:
+    tolerance = TOLERANCE + ROUNDING
+    owner = np.repeat(np.arange(len(claims)), [len(q) for q in claims])
+    flat = np.array([q for some in claims for q in some], dtype=float)
+    flat = flat.reshape(-1, chain.dof)
+    good = right(chain, poses[owner], flat, tolerance, tolerance, slack=0.0)
+    result = np.zeros(len(claims), dtype=bool)
+    np.logical_or.at(result, owner, good)
+    return result
+
+
+def _solved(
+    chain: Chain, goals: Targets, results: Sequence[iksel.Result]
+) -> npt.NDArray[np.bool_]:
+    """Where an answer of IKSel's is one."""
+    claims = [[result.q] if result.success else [] for result in results]
+    return judge(chain, goals.poses, claims).right
+
+
+def _proofs(arm: Arm, results: Sequence[iksel.Result]) -> dict[str, Any]:
+    """How certain each no is."""
+    noes = [result for result in results if not result.success]
+    swept = sum(result.proof == iksel.Proof.sweep for result in noes)
+    proven = sum(result.proven for result in noes)
     return {
-        "robot": name,
-        "kind": kind,
-        "structure": str(arm.robot.structure.kind),
-        "targets": len(results),
-        "solved": int(solved.sum()),
-        "proven": int(proven.sum()),
-        "swept": int(swept.sum()),
-        "searched": int((~solved & ~proven & ~swept).sum()),
-        "wrong": int(wrong.sum()),
+        "structure": arm.robot.structure.kind.name,
+        "proven": proven,
+        "swept": swept,
+        "searched": len(noes) - proven - swept,
         "most_iterations": max(result.iterations for result in results),
-        "yes": _mean_median(times[solved]),
-        "no": _mean_median(times[~solved]),
-        "solve_all": _mean_median(time_calls(solver.solve_all, poses, LIMIT_S)[0]),
-        "near": _mean_median(
-            time_calls(lambda pose, q: solver.solve(pose, near=q), near, LIMIT_S)[0]
-        ),
-        "unit": _unit(solver, seed),
     }
 
 
 def _unit(solver: iksel.Solver, seed: int) -> float:
     """The least of a few: other work only adds to it, and makes no ratio smaller."""
-    return min(iksel.evaluate(solver, 1_000, seed).kdl_fk_jac_us for _ in range(20))
+    runs = (iksel.evaluate(solver, 1_000, seed) for _ in range(UNIT_RUNS))
+    return min(run.kdl_fk_jac_us for run in runs)
 
 
-def _mean_median(times_ns: np.ndarray) -> tuple[float, float] | None:
+def _mean_median(times_ns: npt.NDArray[np.int64]) -> list[float] | None:
+    """Both [us]; None of no times."""
     if len(times_ns) == 0:
         return None
-    return float(times_ns.mean()) / 1e3, float(np.median(times_ns)) / 1e3
-
-
-def _shown(row: dict[str, Any]) -> list[str]:
-    def time(what: str) -> str:
-        if row[what] is None:
-            return NONE
-        mean, median = map(microseconds, row[what])
-        return f"{mean}, {median} ({row[what][0] / row['unit']:.1f})"
-
-    counts = ("solved", "proven", "swept", "searched", "most_iterations")
-    return [
-        row["robot"],
-        row["structure"],
-        row["kind"],
-        *(f"{row[what]:,}" for what in counts),
-        *(time(what) for what in ("yes", "no", "solve_all", "near")),
-        microseconds(row["unit"]),
-    ]
+    return [float(times_ns.mean()) / 1e3, float(np.median(times_ns)) / 1e3]

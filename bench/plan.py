@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a report measures: jobs of cells, in two sizes.
+"""What a report measures: jobs of cells.
 
 Times are taken with nothing else running, so timed jobs go one after another. A job is
 one process.
@@ -7,112 +7,22 @@ one process.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import iksel
-from bench.arms import PAPER_ARMS, RIVAL_ARMS
-from bench.cells import CEILING_ATTEMPTS
+from bench.arms import RIVAL_ARMS
+from bench.paper.plan import paper_jobs
 from bench.rivals import RIVALS
+from bench.size import SEED, Job, Size
 
 if TYPE_CHECKING:
     from collections.abc import Collection
 
     from bench.store import Settings
 
-SEED = 1
-"""Seed of all targets."""
-
-SECTIONS = ("paper", "rivals", "robots", "requests")
+SECTIONS = ("paper", "rivals", "no", "robots", "requests")
 """What --only takes."""
-
-ABLATION_1_SCALES = ("small", "medium", "large")
-
-SELECTIONS: dict[str, dict[str, Any]] = {
-    "Eq. (5), farthest": {},
-    "Eq. (5), in order": {"reselection": "next"},
-    "Eq. (2), in order": {"ranking": "nearest", "reselection": "next"},
-}
-"""The three methods of the paper's figures, as changes to the paper preset."""
-
-ROTATION_KEYS = ("rotation_vector", "matrix", "euler", "quaternion")
-
-
-@dataclass(frozen=True)
-class Size:
-    """How much is measured."""
-
-    paper: int
-    """Targets of the paper's tables."""
-    figure: int
-    """Targets for the times of the figures."""
-    figure_attempts: tuple[int, ...]
-    """#ReA that the figures' times are taken at."""
-    cvt_scales: tuple[str, ...]
-    """Sizes of the databases that are also sampled by CVT."""
-    rivals: dict[str, int]
-    """Targets per kind for a solver whose share is 1."""
-    robots: int
-    """Targets for the table of all robots."""
-    batch: int
-    """Poses in a batch."""
-    artefact: int
-    """Queries looked at for singular samples."""
-    share: float = 10.0
-    """Largest share that a solver may have."""
-    requests: int = 10_000
-    """Targets of the requests."""
-    restarts: int = 1_000
-    """Targets that are restarted a thousand times each."""
-
-
-FULL = Size(
-    paper=10_000,
-    figure=2_000,
-    figure_attempts=tuple(range(1, 21)),
-    cvt_scales=("small", "medium"),
-    rivals={
-        "uniform": 2_000,
-        "near_limits": 1_000,
-        "near_singular": 1_000,
-        "lines": 1_000,
-        "any_rotation": 100,
-        "unreachable": 100,
-    },
-    robots=100_000,
-    batch=10_000,
-    artefact=1_000,
-)
-
-QUICK = Size(
-    paper=1_000,
-    figure=200,
-    figure_attempts=(1, 5, 20),
-    cvt_scales=(),
-    rivals={
-        "uniform": 100,
-        "near_limits": 40,
-        "near_singular": 40,
-        "lines": 40,
-        "any_rotation": 5,
-        "unreachable": 5,
-    },
-    robots=2_000,
-    batch=2_000,
-    artefact=200,
-    requests=500,
-    restarts=50,
-)
-
-
-@dataclass(frozen=True)
-class Job:
-    """Cells measured by one process."""
-
-    name: str
-    section: str
-    cells: list[Settings]
-    timed: bool = True
 
 
 def plan(
@@ -130,12 +40,25 @@ def plan(
         rivals: The solvers that can be had.
     """
     jobs = [
-        *_paper_jobs(size),
+        *paper_jobs(size),
         *_rival_jobs(size),
+        *no_jobs(size),
         _robots_job(size),
         *_request_jobs(size),
     ]
-    jobs = [_kept(job, robots, only, rivals) for job in jobs]
+    return _ordered([_kept(job, robots, only, rivals) for job in jobs])
+
+
+def no_plan(
+    size: Size, robots: Collection[str], rivals: Collection[str] = tuple(RIVALS)
+) -> list[Job]:
+    """The jobs of the section "no" alone, on any robots."""
+    jobs = no_jobs(size, robots)
+    return _ordered([_kept(job, None, None, rivals) for job in jobs])
+
+
+def _ordered(jobs: list[Job]) -> list[Job]:
+    """Those with cells, and before them those that make their targets."""
     jobs = [*_target_jobs(jobs), *(job for job in jobs if job.cells)]
     return sorted(jobs, key=lambda job: job.timed)
 
@@ -165,6 +88,7 @@ SECONDS_PER_TARGET = {
     "batch": 1e-5,
     "artefact": 1e-2,
     "seeds": 5e-3,
+    "no": 1e-3,
     "near_branches": 1e-3,
     "near_moves": 1e-3,
     "all_branches": 1e-3,
@@ -193,165 +117,15 @@ def rival_count(size: Size, name: str, kind: str) -> int:
     return max(1, round(size.rivals[kind] * share))
 
 
-def paper_cell(
-    robot: str, size: Size, overrides: dict[str, Any], count: int | None = None
-) -> Settings:
-    """The paper preset with some options changed, by iksel.evaluate."""
-    return {
-        "cell": "evaluate",
-        "robot": robot,
-        "preset": "paper",
-        "overrides": overrides,
-        "count": size.paper if count is None else count,
-        "seed": SEED,
-    }
-
-
-def attempts_cell(robot: str, size: Size, overrides: dict[str, Any]) -> Settings:
-    """Success after each number of attempts."""
-    return {**paper_cell(robot, size, overrides), "cell": "attempts"}
-
-
-def curve_cell(
-    robot: str, size: Size, sampling: dict[str, Any], selection: str
-) -> Settings:
-    """Success over #ReA 1 to 20."""
-    changes = {**sampling, **SELECTIONS[selection], "max_attempts": 21}
-    return attempts_cell(robot, size, changes)
-
-
-def ceiling_cell(robot: str, size: Size, sampling: dict[str, Any]) -> Settings:
-    """Success after 100 attempts."""
-    many = {"max_attempts": CEILING_ATTEMPTS, "candidates": CEILING_ATTEMPTS}
-    return attempts_cell(robot, size, {**sampling, **many})
-
-
-def sampling_of(name: str, scale: str = "medium") -> dict[str, Any]:
-    """Overrides for a grid or CVT of a scale; the preset's own are left out."""
-    changes: dict[str, Any] = {}
-    if name == "cvt":
-        changes = {"database.sampling": "cvt", "database.samples": 0}
-    if scale != "medium":
-        changes["database.scale"] = scale
-    return changes
-
-
-def ablation_2(scheme: str) -> dict[str, Any]:
-    """Overrides of a row of Table II; a note after the name is another reading."""
-    name, _, note = scheme.partition(", ")
-    changes: dict[str, Any] = {} if name == "dls" else {"iteration": name}
-    return {**changes, **ABLATION_2_NOTES.get(note, {})}
-
-
-ABLATION_2_NOTES: dict[str, dict[str, Any]] = {
-    "6 steps": {"max_iterations": 6},
-    "growth stop on": {"growth_stop": "on"},
-}
-
-ABLATION_2_ROWS = (
-    "dls",
-    "pinv",
-    "pinv_rr",
-    "pinv_rr, 6 steps",
-    "cwln",
-    "cwpi",
-    "cwpi, growth stop on",
-)
-
-ABLATION_3_ROWS: dict[str, dict[str, Any]] = {
-    "Eq. (2)": {"ranking": "nearest", "reselection": "next"},
-    "Eq. (2), farthest": {"ranking": "nearest"},
-    "Eq. (5)": {},
-    "#ReA 3": {"max_attempts": 4},
-    "#ReA 5": {"max_attempts": 6},
-    "#ReA 10": {"max_attempts": 11},
-    "#ReA 20": {"max_attempts": 21},
-}
-
-
-def figure_cell(robot: str, size: Size, selection: str, rea: int) -> Settings:
-    """Mean and deviation of the time at one #ReA."""
-    changes = {**SELECTIONS[selection], "max_attempts": rea + 1}
-    return paper_cell(robot, size, changes, size.figure)
-
-
-def artefact_cell(robot: str, size: Size, overrides: dict[str, Any]) -> Settings:
-    """Singular samples that rank first."""
-    return {**paper_cell(robot, size, overrides, size.artefact), "cell": "artefact"}
-
-
-def artefact_rows(size: Size) -> dict[str, dict[str, Any]]:
-    """Overrides of the databases that are searched for singular samples."""
-    rows = {f"grid, {scale}": sampling_of("grid", scale) for scale in ABLATION_1_SCALES}
-    for scale in dict.fromkeys(("small", *size.cvt_scales)):
-        rows[f"cvt, {scale}"] = sampling_of("cvt", scale)
-    even = {"database.sampling": "low_discrepancy", "database.samples": 0}
-    return {**rows, "low_discrepancy, medium": even}
-
-
-def seeds_cell(robot: str, size: Size) -> Settings:
-    """IK-Geo's solutions as seeds of the paper's iteration."""
-    count = min(size.paper, 2_000)
-    cell = paper_cell(robot, size, {}, count)
-    return {**cell, "cell": "seeds", "rival": "IK-Geo", "kind": "uniform"}
-
-
-def _paper_jobs(size: Size) -> list[Job]:
-    jobs = []
-    for robot, short in PAPER_ARMS.items():
-        for sampling in ("grid", "cvt"):
-            scales = ABLATION_1_SCALES if sampling == "grid" else size.cvt_scales
-            cells = _table_cells(robot, size, sampling, scales)
-            curves = [cell for cell in cells if cell["cell"] == "attempts"]
-            timed = [cell for cell in cells if cell["cell"] != "attempts"]
-            name = f"paper, {short}, {sampling}"
-            jobs.append(Job(f"{name}, curves", "paper", curves, timed=False))
-            jobs.append(Job(name, "paper", timed))
-        figure = [
-            figure_cell(robot, size, selection, rea)
-            for selection in SELECTIONS
-            for rea in size.figure_attempts
-        ]
-        jobs.append(Job(f"paper, {short}, figures", "paper", figure))
-        keys = [
-            attempts_cell(robot, size, {"database.rotation_key": key})
-            for key in ROTATION_KEYS
-        ]
-        name = f"paper, {short}, rotation keys"
-        jobs.append(Job(name, "paper", keys, timed=False))
-    rows = artefact_rows(size).values()
-    artefact = [artefact_cell("ur3_wrs", size, row) for row in rows]
-    jobs.append(Job("paper, grid artefact", "paper", artefact, timed=False))
-    seeded = [seeds_cell(robot, size) for robot in ("cvr038", "cvrb1213", "ur3_wrs")]
-    jobs.append(Job("paper, IK-Geo as seed", "paper", seeded))
-    return jobs
-
-
-def _table_cells(
-    robot: str, size: Size, sampling: str, scales: tuple[str, ...]
-) -> list[Settings]:
-    """The cells of the three ablations with one sampling, each once."""
-    cells = [paper_cell(robot, size, sampling_of(sampling, scale)) for scale in scales]
-    if "medium" in scales:
-        base = sampling_of(sampling)
-        rows = [ablation_2(scheme) for scheme in ABLATION_2_ROWS]
-        rows += ABLATION_3_ROWS.values()
-        cells += [paper_cell(robot, size, {**base, **row}) for row in rows]
-        cells += [curve_cell(robot, size, base, name) for name in SELECTIONS]
-        cells.append(ceiling_cell(robot, size, base))
-        cwln = {**base, **ablation_2("cwln")}
-        cells.append(attempts_cell(robot, size, cwln))
-    # One option changed from the preset may be none: rows of two tables are one cell.
-    return [cell for i, cell in enumerate(cells) if cell not in cells[:i]]
-
-
 def _target_jobs(jobs: list[Job]) -> list[Job]:
     """One job per robot for the targets that other jobs read."""
     wanted: dict[str, list[Settings]] = {}
     for job in jobs:
         for cell in job.cells:
             if "kind" in cell:
-                made = target_cell(cell["robot"], cell["kind"], cell["count"])
+                made = target_cell(
+                    cell["robot"], cell["kind"], cell["count"], cell["seed"]
+                )
                 cells = wanted.setdefault(cell["robot"], [])
                 if made not in cells:
                     cells.append(made)
@@ -361,14 +135,14 @@ def _target_jobs(jobs: list[Job]) -> list[Job]:
     ]
 
 
-def target_cell(robot: str, kind: str, count: int) -> Settings:
+def target_cell(robot: str, kind: str, count: int, seed: int = SEED) -> Settings:
     """Targets, made once for all solvers with that count."""
     return {
         "cell": "targets",
         "robot": robot,
         "kind": kind,
         "count": count,
-        "seed": SEED,
+        "seed": seed,
     }
 
 
@@ -411,6 +185,65 @@ def _rival_jobs(size: Size) -> list[Job]:
     return [*jobs, Job("batches", "rivals", batches)]
 
 
+NO_KINDS = ("uniform", "any_rotation")
+"""Targets that all have an answer, and targets of which many have none."""
+BRANCH_RIVAL = "EAIK"
+BRANCH_ARMS = ("ur3", "ur3_wrs", "ur10e", "irb120", "vs060")
+"""Robots whose branches an analytic solver knows."""
+NO_ARMS = (
+    *BRANCH_ARMS,
+    *("cvr038", "cvrb1213", "gen3_6dof", "xarm6"),
+    *("panda", "iiwa14", "xarm7", "pr2_right_arm"),
+    *("irb14050", "synthetic10"),
+)
+"""Of every structure some: closed form; two axes that are parallel or meet; closed form
+when one of seven joints is held; none of these."""
+NO_RIVALS = (
+    "IKSel",
+    BRANCH_RIVAL,
+    "Robotics Toolbox",
+    "OptIK",
+    "TRAC-IK (pytracik)",
+    "Pinocchio",
+    "KDL LMA",
+    "KDL NR_JL",
+)
+MANY = 10.0
+"""Share of a solver that is fast enough for all targets of the noes."""
+
+
+def no_cell(robot: str, name: str, kind: str, size: Size) -> Settings:
+    """One solver's yes and no to targets of a kind."""
+    count = size.no if RIVALS[name].share >= MANY else size.no_slow
+    cell = target_cell(robot, kind, count, size.no_seed)
+    return {**cell, "cell": "no", "rival": name}
+
+
+def branch_cell(cell: str, robot: str, kind: str, size: Size) -> Settings:
+    """All branches or the nearest, beside a solver that knows them if there is one."""
+    known = robot in BRANCH_ARMS
+    count = size.no if known else max(1, size.no // 10)
+    settings = {**target_cell(robot, kind, count, size.no_seed), "cell": cell}
+    return {**settings, "beside": BRANCH_RIVAL} if known else settings
+
+
+def no_jobs(size: Size, arms: Collection[str] = NO_ARMS) -> list[Job]:
+    """Each solver's yes and no; all branches, and the nearest."""
+    answered = {
+        name: [no_cell(robot, name, kind, size) for robot in arms for kind in NO_KINDS]
+        for name in NO_RIVALS
+    }
+    branches = {
+        title: [
+            branch_cell(cell, robot, kind, size) for robot in arms for kind in NO_KINDS
+        ]
+        for title, cell in (("all", "all_branches"), ("nearest", "near_branches"))
+    }
+    return [
+        Job(f"no, {name}", "no", cells) for name, cells in (answered | branches).items()
+    ]
+
+
 def all_robots() -> list[str]:
     """The built-in robots that have at least 6 joints."""
     return [name for name in iksel.robot_names() if iksel.robot_info(name).dof >= 6]
@@ -434,9 +267,6 @@ def _robots_job(size: Size) -> Job:
     return Job("every robot", "robots", cells)
 
 
-BRANCH_ARMS = ("ur3", "ur10e")
-"""Robots whose branches an analytic solver knows."""
-NEAR_ARM = BRANCH_ARMS[0]
 RESTART_ARMS = ("cvr038", "cvrb1213")
 """Robots whose branches none of them knows."""
 MOVE_ARMS = ("panda", "iiwa14")
@@ -452,13 +282,11 @@ PATHS = (
     ("ur3", "flip_beside"),
     ("ur3", "flip_free"),
 )
-BRANCH_RIVAL = "EAIK"
 
 
-def request_cell(cell: str, robot: str, count: int, rival: str = "") -> Settings:
-    """One request on one robot, beside a solver if there is one."""
-    settings = {**target_cell(robot, "uniform", count), "cell": cell}
-    return {**settings, "rival": rival} if rival else settings
+def request_cell(cell: str, robot: str, count: int) -> Settings:
+    """One request on one robot."""
+    return {**target_cell(robot, "uniform", count), "cell": cell}
 
 
 def moves_cell(robot: str, name: str, size: Size) -> Settings:
@@ -475,11 +303,6 @@ def path_cell(robot: str, name: str) -> Settings:
 
 
 def _request_jobs(size: Size) -> list[Job]:
-    near = request_cell("near_branches", NEAR_ARM, size.requests, BRANCH_RIVAL)
-    branches = [
-        request_cell("all_branches", robot, size.requests, BRANCH_RIVAL)
-        for robot in BRANCH_ARMS
-    ]
     counts = [request_cell("restarts", robot, size.restarts) for robot in RESTART_ARMS]
     paths = [path_cell(robot, name) for robot, name in PATHS]
     moves = [
@@ -491,9 +314,7 @@ def _request_jobs(size: Size) -> list[Job]:
         for name in MOVE_RIVALS
     ]
     return [
-        Job("near, branches", "requests", [near]),
         *moves,
-        Job("all solutions", "requests", branches),
         Job("restarts", "requests", counts),
         Job("paths", "requests", paths),
     ]

@@ -9,6 +9,7 @@ import numpy as np
 
 from bench import plan
 from bench.arms import PAPER_ARMS, RIVAL_ARMS
+from bench.paper import plan as paper_plan
 from bench.paper.published import ROBOTS
 from bench.rivals import RIVALS
 from bench.sections.ablations import curve
@@ -187,7 +188,7 @@ def _paper_attempts(view: View, plt: Any) -> Any:
             x, mean, _ = _times(view, robot, selection)
             lower.plot(x, mean, style, color="C0")
         ceiling = view.get(
-            plan.ceiling_cell(robot, view.size, plan.sampling_of("grid"))
+            paper_plan.ceiling_cell(robot, view.size, paper_plan.sampling_of("grid"))
         )
         if ceiling is not None:
             value = 100.0 * ceiling["solved"][-1] / ceiling["count"]
@@ -204,7 +205,7 @@ def _times(view: View, robot: str, selection: str) -> tuple[list[int], Any, Any]
     """#ReA, mean and standard deviation of the time [us]."""
     x, mean, std = [], [], []
     for rea in view.size.figure_attempts:
-        cell = view.get(plan.figure_cell(robot, view.size, selection, rea))
+        cell = view.get(paper_plan.figure_cell(robot, view.size, selection, rea))
         if cell is not None:
             x.append(rea)
             mean.append(cell["mean_us"])

@@ -12,15 +12,16 @@ from bench import machine
 from bench.plots import draw_all
 from bench.rivals import RIVALS
 from bench.rivals.base import UnsupportedError
-from bench.sections import paper, requests, rivals, robots
+from bench.sections import no, paper, requests, rivals, robots
 from bench.store import write_json
 from bench.view import View
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from pathlib import Path
 
-    from bench.plan import Job, Size
-    from bench.store import Store
+    from bench.size import Job, Size
+    from bench.store import Settings, Store
     from bench.view import Report
 
 PLOTTED = "uniform"
@@ -39,7 +40,7 @@ def collect(
         for settings in job.cells:
             result = store.load(settings)
             if result is not None and settings["cell"] != "targets":
-                key = json.dumps(settings, sort_keys=True)
+                key = _key(settings)
                 if settings.get("kind", PLOTTED) != PLOTTED:
                     result = _without_quantiles(result)
                 cells[key] = {"settings": settings, "result": _rounded(result)}
@@ -52,6 +53,31 @@ def collect(
         "missing": missing_rivals(),
         "failures": {},
         "cells": list(cells.values()),
+    }
+
+
+def merged(
+    old: Report, new: Report, wanted: list[Job], sections: Iterable[str]
+) -> Report:
+    """A report with some sections measured anew, on whatever they were measured.
+
+    Args:
+        old: Has the others.
+        new: Has those sections.
+        wanted: The jobs of a whole report: cells that are of none are left out.
+        sections: Which ones.
+    """
+    cells = {_key(cell["settings"]): cell for cell in [*old["cells"], *new["cells"]]}
+    keys = [_key(cell) for job in wanted for cell in job.cells]
+    part = {name: new[name] for name in ("machine", "command", "seconds")}
+    return {
+        **old,
+        "size": new["size"],
+        "versions": {**old["versions"], **new["versions"]},
+        "missing": new["missing"],
+        "failures": new["failures"],
+        "parts": {**old.get("parts", {}), **dict.fromkeys(sections, part)},
+        "cells": [cells[key] for key in dict.fromkeys(keys) if key in cells],
     }
 
 
@@ -95,6 +121,7 @@ def render(report: Report, folder: Path) -> None:
         for part in (
             _head(report),
             rivals.text(view),
+            no.text(view),
             paper.text(view),
             robots.text(view),
             requests.text(view),
@@ -114,18 +141,27 @@ def render(report: Report, folder: Path) -> None:
 
 
 def _head(report: Report) -> str:
-    facts = report["machine"]
+    lines = [_made(report)]
+    for section, part in report.get("parts", {}).items():
+        lines.append(f"Section `{section}`: {_made(part)}")
+    title = "# Results\n\nGenerated; nothing in here is written by hand."
+    return "\n\n".join([title, *lines])
+
+
+def _made(part: dict[str, Any]) -> str:
+    """How a report, or a section that was measured by itself, was made."""
+    facts = part["machine"]
     made = (
-        f"Made by `{report['command']}` in {report['seconds']} s (results that were "
+        f"Made by `{part['command']}` in {part['seconds']} s (results that were "
         f"there already not counted), with IKSel {facts['iksel']} (lanes: "
         f"{facts['simd']}) at commit {facts['commit']}, Python {facts['python']}, "
         f"numpy {facts['numpy']}, on {facts['cpu']}, {facts['cores']} cores, "
-        f"{facts['system']}. Times move from machine to machine; what is compared "
-        "here was timed in the same run."
+        f"{facts['system']}{machine.load_text(facts)}. Times move from machine to "
+        "machine; what is compared here was timed in the same run."
     )
     if facts.get("stale"):
         made += " The sources have changed since this IKSel was built and installed."
-    return f"# Results\n\nGenerated; nothing in here is written by hand.\n\n{made}"
+    return made
 
 
 def _tail(report: Report) -> str:
@@ -134,6 +170,10 @@ def _tail(report: Report) -> str:
         return ""
     lines = [f"- {name}: {reason}" for name, reason in failures.items()]
     return "\n".join(["## Failed", "", *lines])
+
+
+def _key(settings: Settings) -> str:
+    return json.dumps(settings, sort_keys=True)
 
 
 def _without_quantiles(result: dict[str, Any]) -> dict[str, Any]:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from typing_extensions import Self
 
-    from bench.plan import Job
+    from bench.size import Job
     from bench.store import Settings, Store
 
 BAR_WIDTH = 24

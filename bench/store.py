@@ -27,7 +27,8 @@ class Store:
 
     def path(self, settings: Settings) -> Path:
         """The cell's file."""
-        version = self.versions.get(settings.get("rival", ""), "")
+        other = settings.get("rival") or settings.get("beside") or ""
+        version = self.versions.get(other, "")
         key = json.dumps([self.fingerprint, version, settings], sort_keys=True)
         name = hashlib.sha256(key.encode()).hexdigest()[:20]
         return self.folder / f"{name}.json"

@@ -59,6 +59,15 @@ def time_calls(
     return times[: len(returned)], returned
 
 
+def least_times(runs: Sequence[npt.NDArray[np.int64]]) -> npt.NDArray[np.int64]:
+    """Of each call the least time of some runs: what other work added is left out.
+
+    A run that was cut short ends the others where it ended.
+    """
+    count = min(map(len, runs))
+    return np.asarray(np.min([times[:count] for times in runs], axis=0))
+
+
 def summary(times_ns: npt.NDArray[Any]) -> dict[str, Any]:
     """Mean, deviation and quantiles [us], failures included."""
     us = np.asarray(times_ns, dtype=float) / 1e3

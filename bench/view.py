@@ -6,7 +6,7 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any
 
-from bench.plan import Size
+from bench.size import Size
 
 if TYPE_CHECKING:
     from bench.store import Settings
@@ -44,6 +44,17 @@ class View:
     def has_any(self, cell: str) -> bool:
         """Whether anything of that kind was measured."""
         return any(entry["settings"]["cell"] == cell for entry in self.report["cells"])
+
+    def machine(self, section: str) -> dict[str, Any]:
+        """What a section was measured on."""
+        part = self.report.get("parts", {}).get(section, self.report)
+        facts: dict[str, Any] = part["machine"]
+        return facts
+
+    def robots(self, cell: str) -> list[str]:
+        """The robots that cells of that kind were measured on, in the plan's order."""
+        settings = [entry["settings"] for entry in self.report["cells"]]
+        return list(dict.fromkeys(s["robot"] for s in settings if s["cell"] == cell))
 
 
 def _key(settings: Settings) -> str:

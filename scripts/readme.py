@@ -45,52 +45,77 @@ def robots() -> str:
     return "\n".join(rows)
 
 
+OURS = "IKSel"
 ANALYTIC = ("EAIK", "IK-Geo")
+UNREACHED = "any_rotation"
+"""The targets of which many have no answer."""
+NONE = "\N{EN DASH}"
+
+Result = dict[str, Any]
+
+
+def load_report() -> dict[str, Any]:
+    """What `python -m bench report` kept."""
+    path = ROOT / "bench" / "results" / "report.json"
+    report: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    return report
+
+
+def by_solver(report: dict[str, Any], cell: str, kind: str) -> dict[str, Result]:
+    """The results of a kind of cell on one kind of targets, by robot and solver."""
+    found: dict[str, dict[str, Result]] = {}
+    for entry in report["cells"]:
+        settings, result = entry["settings"], entry["result"]
+        if settings["cell"] == cell and settings["kind"] == kind:
+            by_name = found.setdefault(settings["robot"], {})
+            if "unsupported" not in result:
+                by_name[settings.get("rival", OURS)] = result
+    return found
+
+
+def machine(report: dict[str, Any], section: str) -> str:
+    """What a section was measured on, and by which command."""
+    part = report.get("parts", {}).get(section, report)
+    facts = part["machine"]
+    load = f", load average {facts['load']:g}" if "load" in facts else ""
+    return (
+        f"SIMD level {facts['simd']}, {facts['cpu']} ({facts['cores']} cores{load}). "
+        f"Made by `{part['command']}`."
+    )
 
 
 def results() -> str:
-    """The default preset beside its rivals, from what `python -m bench report` kept."""
-    path = ROOT / "bench" / "results" / "report.json"
-    report: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-    cells: dict[str, dict[str, dict[str, Any]]] = {}
-    for cell in report["cells"]:
-        settings, result = cell["settings"], cell["result"]
-        if settings["cell"] == "rival" and settings["kind"] == "uniform":
-            by_solver = cells.setdefault(settings["robot"], {})
-            if result.get("right"):
-                by_solver[settings["rival"]] = result
-    rows = [
-        "| robot | success | mean | p99 | next fastest numerical solver | analytic |",
-        "|---|---|---|---|---|---|",
+    """The default preset beside its rivals."""
+    report = load_report()
+    cells = by_solver(report, "rival", "uniform")
+    noes = by_solver(report, "no", UNREACHED)
+    header = "| robot | success | mean | p99 | next fastest numerical solver | analytic"
+    rows = [f"{header} | no |", "|---|---|---|---|---|---|---|"]
+    rows += [
+        f"| `{robot}` | {beside(found)} | {a_no(noes.get(robot, {}))} |"
+        for robot, found in cells.items()
     ]
-    rows += [f"| `{robot}` | {beside(found)} |" for robot, found in cells.items()]
-    facts = report["machine"]
-    count = next(iter(cells.values()))["IKSel"]["count"]
+    count = next(iter(cells.values()))[OURS]["count"]
     conditions = (
         f"{count:,} targets per robot (fewer for the slower solvers), uniform in the "
         "joint limits; one pose at a time from Python (KDL's and SLSQP's from C++); "
         "every answer checked to 1e-5 m, 1e-5 rad and the limits; failures included in "
-        f"the times; SIMD level {facts['simd']}, {facts['cpu']} ({facts['cores']} "
-        f"cores). Made by `{report['command']}`."
+        f"the times; {machine(report, 'rivals')} *no*: mean time to say that a pose "
+        "has no answer, then the fastest numerical solver's and an analytic one's; "
+        "measured as [below](#when-there-is-no-answer)."
     )
     plot = "![Share of targets solved over time](bench/plots/success_over_time.svg)"
     return "\n".join([plot, "", *rows, "", conditions])
 
 
-def beside(found: dict[str, dict[str, Any]]) -> str:
+def beside(found: dict[str, Result]) -> str:
     """One robot's row."""
-    ours = found["IKSel"]
-    numerical = {
-        name: result
-        for name, result in found.items()
-        if not name.startswith("IKSel") and name not in ANALYTIC
-    }
-    name = min(numerical, key=lambda solver: float(numerical[solver]["mean_us"]))
-    mean = numerical[name]["mean_us"]
+    ours = found[OURS]
+    name, mean = fastest(found)
     analytic = ", ".join(
         f"{solver} {found[solver]['mean_us']:.1f} µs"
         for solver in ANALYTIC
-        if solver in found
+        if found.get(solver, {}).get("right")
     )
     return (
         f"{100.0 * ours['right'] / ours['count']:.3f} % | {ours['mean_us']:.2f} µs "
@@ -100,11 +125,135 @@ def beside(found: dict[str, dict[str, Any]]) -> str:
     )
 
 
+def fastest(found: dict[str, Result]) -> tuple[str, float]:
+    """The numerical rival with the least mean, of those that solve any."""
+    means = {
+        name: float(result["mean_us"])
+        for name, result in found.items()
+        if not name.startswith(OURS) and name not in ANALYTIC and result["right"]
+    }
+    name = min(means, key=lambda solver: means[solver])
+    return name, means[name]
+
+
+def mean_no(result: Result | None) -> float | None:
+    """Mean time of a no [us]; None of none."""
+    times = None if result is None else result["no_us"]
+    return None if times is None else float(times[0])
+
+
+def microseconds(value: float | None) -> str:
+    """A time with as many digits as mean something."""
+    if value is None:
+        return NONE
+    return f"{value:,.{2 if value < 10 else 1 if value < 100 else 0}f}"
+
+
+def rival_noes(found: dict[str, Result]) -> tuple[str, str]:
+    """The mean no of the analytic solver, and the least of the numerical ones'."""
+    analytic = mean_no(found.get(ANALYTIC[0]))
+    numerical = {
+        name: mean
+        for name, result in found.items()
+        if not name.startswith(OURS) and name not in ANALYTIC
+        if (mean := mean_no(result)) is not None
+    }
+    if not numerical:
+        return microseconds(analytic), NONE
+    name = min(numerical, key=lambda solver: numerical[solver])
+    return microseconds(analytic), f"{name} {microseconds(numerical[name])}"
+
+
+def a_no(found: dict[str, Result]) -> str:
+    """A no in one cell of a table."""
+    ours = mean_no(found.get(OURS))
+    if ours is None:
+        return "not measured"
+    analytic, numerical = rival_noes(found)
+    parts = [f"{microseconds(ours)} µs"]
+    if numerical != NONE:
+        parts.append(f"{numerical} µs")
+    if analytic != NONE:
+        parts.append(f"{ANALYTIC[0]} {analytic} µs")
+    return "; ".join(parts)
+
+
+def noes() -> str:
+    """What poses without an answer cost on each robot."""
+    report = load_report()
+    found = by_solver(report, "no", UNREACHED)
+    every = by_solver(report, "all_branches", UNREACHED)
+    near = by_solver(report, "near_branches", UNREACHED)
+    if not found:
+        return "Not measured: `python -m bench report --only no`."
+    header = (
+        "| robot | structure | solved | no: proven | by sweep | searched | yes | no"
+    )
+    theirs = f"| {ANALYTIC[0]}'s no | fastest numerical no"
+    rows = [
+        f"{header} {theirs} | `solve_all` | `near` | KDL |",
+        "|---|---|" + "---:|" * 11,
+    ]
+    for robot, solvers in found.items():
+        ours = solvers.get(OURS)
+        if ours is None:
+            continue
+        counts = (ours[what] for what in ("yes", "proven", "swept", "searched"))
+        times = (two_times(ours[what]) for what in ("yes_us", "no_us"))
+        rest = (
+            microseconds(cells.get(robot, {}).get(OURS, {}).get("mean_us"))
+            for cells in (every, near)
+        )
+        columns = [
+            ours["structure"].replace("_", " "),
+            *(f"{count:,}" for count in counts),
+            *times,
+            *rival_noes(solvers),
+            *rest,
+            microseconds(ours["unit_us"]),
+        ]
+        rows.append(f"| `{robot}` | " + " | ".join(columns) + " |")
+    return "\n".join([*rows, "", no_conditions(report, found)])
+
+
+def two_times(times: list[float] | None) -> str:
+    """Mean and median."""
+    if times is None:
+        return NONE
+    return ", ".join(map(microseconds, times))
+
+
+def no_conditions(report: dict[str, Any], found: dict[str, dict[str, Result]]) -> str:
+    """How the noes were measured."""
+    size = report["size"]
+    solved, count = (
+        sum(
+            solvers[OURS][what]
+            for solvers in by_solver(report, "no", "uniform").values()
+            if OURS in solvers
+        )
+        for what in ("yes", "count")
+    )
+    disproved = sum(
+        result["disproved"] for solvers in found.values() for result in solvers.values()
+    )
+    return (
+        f"{size['no']:,} targets per robot ({size['no_slow']:,} for numerical "
+        f"rivals), seed {size['no_seed']}, tolerances of 1e-6 m and 1e-6 rad, one "
+        "thread, from Python (KDL's own solvers from C++), the least time of three of "
+        f"each call; `solve_all` and `near` over all targets, or over a tenth of them "
+        f"where there is no closed form; {machine(report, 'no')} Of {count:,} targets "
+        f"that can be reached {solved:,} were solved; proofs refuted by another "
+        f"solver's answer: {disproved}."
+    )
+
+
 BLOCKS: dict[str, Callable[[], str]] = {
     "python example": lambda: code("python/examples/01_solve.py", "python"),
     "cpp example": lambda: code("cpp/examples/01_solve.cpp", "cpp"),
     "robots": robots,
     "results": results,
+    "no": noes,
 }
 
 

@@ -45,6 +45,8 @@ class Rival(ABC):
     """Settings, as the report states them."""
     measured: ClassVar[str] = "each call from Python"
     """What a time is of."""
+    keeps_limits: ClassVar[bool] = True
+    """Whether joint limits are its business: else answers outside them are left out."""
     share: ClassVar[float] = 1.0
     """Part of the usual number of targets, for the slow ones."""
     limit_s: ClassVar[float] = 60.0

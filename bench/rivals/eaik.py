@@ -22,6 +22,7 @@ class Eaik(PythonRival):
     name = "EAIK"
     distribution = "EAIK"
     settings = "all branches, double precision; limits are not its business"
+    keeps_limits = False
     share = 10.0
 
     def __init__(self, arm: Arm) -> None:

@@ -32,6 +32,7 @@ class IkGeo(PythonRival):
     name = "IK-Geo"
     distribution = "ik-geo"
     settings = "the family that fits, all branches; limits are not its business"
+    keeps_limits = False
     limit_s = 3.0
 
     def __init__(self, arm: Arm) -> None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from bench.rivals.base import PythonRival
+from bench.rivals.base import PythonRival, UnsupportedError
 
 if TYPE_CHECKING:
     from bench.arms import Arm
@@ -34,6 +34,8 @@ class OptIk(PythonRival):
     def __init__(self, arm: Arm) -> None:
         """Hand it the chain's URDF."""
         module = importlib.import_module("optik")
+        if not np.isfinite(arm.chain.lower).all():
+            raise UnsupportedError("it has no continuous joints")
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "arm.urdf"
             path.write_text(arm.urdf, encoding="utf-8")

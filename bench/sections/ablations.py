@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from bench import plan
 from bench.arms import PAPER_ARMS
 from bench.markdown import NONE, percent, signed, table
+from bench.paper import plan as paper_plan
 from bench.paper import published
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ Rows = list[tuple[str, dict[str, Any], published.Row | None]]
 def rows_1() -> Rows:
     """Ablation I."""
     return [
-        (scale, plan.sampling_of("grid", scale), row)
+        (scale, paper_plan.sampling_of("grid", scale), row)
         for scale, row in published.ABLATION_1.items()
     ]
 
@@ -67,8 +67,12 @@ def rows_1() -> Rows:
 def rows_2() -> Rows:
     """Ablation II, with the second readings."""
     return [
-        (label, plan.ablation_2(label), published.ABLATION_2[label.partition(",")[0]])
-        for label in plan.ABLATION_2_ROWS
+        (
+            label,
+            paper_plan.ablation_2(label),
+            published.ABLATION_2[label.partition(",")[0]],
+        )
+        for label in paper_plan.ABLATION_2_ROWS
     ]
 
 
@@ -76,7 +80,7 @@ def rows_3() -> Rows:
     """Ablation III, with the second reading."""
     return [
         (label, changes, published.ABLATION_3[label.partition(",")[0]])
-        for label, changes in plan.ABLATION_3_ROWS.items()
+        for label, changes in paper_plan.ABLATION_3_ROWS.items()
     ]
 
 
@@ -84,7 +88,8 @@ def _ablation(view: View, number: str, what: str, rows: Rows) -> list[str]:
     success, times = [], []
     for label, overrides, row in rows:
         cells = [
-            view.get(plan.paper_cell(robot, view.size, overrides)) for robot in ROBOTS
+            view.get(paper_plan.paper_cell(robot, view.size, overrides))
+            for robot in ROBOTS
         ]
         if not any(cells):
             continue
@@ -128,7 +133,7 @@ def differences(view: View) -> list[tuple[str, str, str, float]]:
     ):
         for label, overrides, row in rows:
             for i, robot in enumerate(ROBOTS):
-                cell = view.get(plan.paper_cell(robot, view.size, overrides))
+                cell = view.get(paper_plan.paper_cell(robot, view.size, overrides))
                 if cell is not None and row is not None:
                     difference = cell["success_percent"] - row.success[i]
                     found.append((number, label, robot, difference))
@@ -158,7 +163,9 @@ def _distances(view: View) -> str:
 def _cwln_outside(view: View) -> str:
     rows = []
     for robot in ROBOTS:
-        cell = view.get(plan.attempts_cell(robot, view.size, plan.ablation_2("cwln")))
+        cell = view.get(
+            paper_plan.attempts_cell(robot, view.size, paper_plan.ablation_2("cwln"))
+        )
         if cell is not None:
             outside = percent(cell["converged_outside_limits"], cell["count"])
             rows.append(f"{PAPER_ARMS[robot]} {outside} %")
@@ -224,24 +231,25 @@ def _second_seed(values: list[float] | None) -> str:
 
 
 def _percents(view: View, robot: str, rows: Sequence[dict[str, Any]]) -> list[float]:
-    cells = [view.get(plan.paper_cell(robot, view.size, row)) for row in rows]
+    cells = [view.get(paper_plan.paper_cell(robot, view.size, row)) for row in rows]
     return [cell["success_percent"] for cell in cells if cell is not None]
 
 
 def _larger(view: View) -> dict[str, bool]:
-    rows = [plan.sampling_of("grid", scale) for scale in published.ABLATION_1]
+    rows = [paper_plan.sampling_of("grid", scale) for scale in published.ABLATION_1]
     return _increasing(view, rows)
 
 
 def _eq5(view: View) -> dict[str, bool]:
     return _increasing(
-        view, [plan.ABLATION_3_ROWS["Eq. (2)"], plan.ABLATION_3_ROWS["Eq. (5)"]]
+        view,
+        [paper_plan.ABLATION_3_ROWS["Eq. (2)"], paper_plan.ABLATION_3_ROWS["Eq. (5)"]],
     )
 
 
 def _rising(view: View) -> dict[str, bool]:
     labels = ("Eq. (5)", "#ReA 3", "#ReA 5", "#ReA 10", "#ReA 20")
-    return _increasing(view, [plan.ABLATION_3_ROWS[label] for label in labels])
+    return _increasing(view, [paper_plan.ABLATION_3_ROWS[label] for label in labels])
 
 
 def _increasing(view: View, rows: Sequence[dict[str, Any]]) -> dict[str, bool]:
@@ -255,8 +263,8 @@ def _increasing(view: View, rows: Sequence[dict[str, Any]]) -> dict[str, bool]:
 
 def curve(view: View, robot: str, sampling: str, selection: str) -> list[float] | None:
     """Success in percent at #ReA 0, 1, ... 20."""
-    base = plan.sampling_of(sampling)
-    cell = view.get(plan.curve_cell(robot, view.size, base, selection))
+    base = paper_plan.sampling_of(sampling)
+    cell = view.get(paper_plan.curve_cell(robot, view.size, base, selection))
     return None if cell is None else [100.0 * n / cell["count"] for n in cell["solved"]]
 
 
@@ -273,15 +281,16 @@ def _farthest(view: View, sampling: str) -> dict[str, bool]:
 
 def _cvt(view: View) -> list[str]:
     scales = view.size.cvt_scales
-    changes = {f"I {scale}": plan.sampling_of("cvt", scale) for scale in scales}
+    changes = {f"I {scale}": paper_plan.sampling_of("cvt", scale) for scale in scales}
     if "medium" in scales:
-        base = plan.sampling_of("cvt")
+        base = paper_plan.sampling_of("cvt")
         changes |= {f"II {label}": {**base, **row} for label, row, _ in rows_2()}
         changes |= {f"III {label}": {**base, **row} for label, row, _ in rows_3()}
     rows = []
     for label, overrides in changes.items():
         cells = [
-            view.get(plan.paper_cell(robot, view.size, overrides)) for robot in ROBOTS
+            view.get(paper_plan.paper_cell(robot, view.size, overrides))
+            for robot in ROBOTS
         ]
         if any(cells):
             rows.append([label, *(beside(cell, None, 0) for cell in cells)])
@@ -323,16 +332,17 @@ def _figures(view: View) -> list[str]:
                 f"{sampling}, {selection}",
                 [curve(view, robot, sampling, selection) for robot in ROBOTS],
             )
-            for selection in plan.SELECTIONS
+            for selection in paper_plan.SELECTIONS
         ]
         rows += [
             [label, *(_at_attempts(values) for values in found)]
             for label, found in curves
             if any(found)
         ]
-        base = plan.sampling_of(sampling)
+        base = paper_plan.sampling_of(sampling)
         cells = [
-            view.get(plan.ceiling_cell(robot, view.size, base)) for robot in ROBOTS
+            view.get(paper_plan.ceiling_cell(robot, view.size, base))
+            for robot in ROBOTS
         ]
         row = [
             NONE if cell is None else percent(cell["solved"][-1], cell["count"])

@@ -10,6 +10,7 @@ import numpy as np
 from bench import plan
 from bench.arms import PAPER_ARMS
 from bench.markdown import NONE, microseconds, percent, signed, table
+from bench.paper import plan as paper_plan
 from bench.paper import published
 from bench.sections.ablations import HEADER, ROBOTS, beside, rows_2, rows_3
 from bench.timing import QUANTILES
@@ -97,7 +98,7 @@ def _nearest_rows(view: View, row: published.Row) -> list[list[str]]:
     for number, rows in (("II", rows_2()), ("III", rows_3())):
         for label, overrides, _ in rows:
             cells = [
-                view.get(plan.paper_cell(robot, view.size, overrides))
+                view.get(paper_plan.paper_cell(robot, view.size, overrides))
                 for robot in ROBOTS
             ]
             if all(cells):
@@ -113,11 +114,13 @@ def _nearest_rows(view: View, row: published.Row) -> list[list[str]]:
 
 def _rotation(view: View) -> list[str]:
     rows = []
-    for key in plan.ROTATION_KEYS:
+    for key in paper_plan.ROTATION_KEYS:
         row = [key]
         for robot in ROBOTS:
             cell = view.get(
-                plan.attempts_cell(robot, view.size, {"database.rotation_key": key})
+                paper_plan.attempts_cell(
+                    robot, view.size, {"database.rotation_key": key}
+                )
             )
             row.append(
                 NONE if cell is None else percent(cell["solved"][-1], cell["count"])
@@ -134,8 +137,8 @@ def _rotation(view: View) -> list[str]:
 
 def _artefact(view: View) -> list[str]:
     rows = []
-    for label, overrides in plan.artefact_rows(view.size).items():
-        cell = view.get(plan.artefact_cell("ur3_wrs", view.size, overrides))
+    for label, overrides in paper_plan.artefact_rows(view.size).items():
+        cell = view.get(paper_plan.artefact_cell("ur3_wrs", view.size, overrides))
         if cell is not None:
             rows.append(
                 [
@@ -177,7 +180,7 @@ def _artefact(view: View) -> list[str]:
 def _ik_geo(view: View) -> list[str]:
     rows, reasons = [], []
     for robot in ("cvr038", "cvrb1213", "ur3_wrs"):
-        settings = plan.seeds_cell(robot, view.size)
+        settings = paper_plan.seeds_cell(robot, view.size)
         cell = view.get(settings)
         theirs = [published.IK_GEO[how].get(robot) for how in ("direct", "as seed")]
         if cell is None:

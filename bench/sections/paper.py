@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bench import plan
 from bench.cells import command_line
+from bench.paper import plan as paper_plan
 from bench.sections import ablations, comparisons
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ def text(view: View) -> str:
         return ""
     size = view.size
     noise = 100.0 * np.sqrt(0.88 * 0.12 / size.paper)
-    example = command_line(plan.paper_cell("cvr038", size, {}))
+    example = command_line(paper_plan.paper_cell("cvr038", size, {}))
     conditions = (
         f"{size.paper:,} targets per robot, uniform in the limits, seed 1; times "
         "inside C++ around each solve, failures included. A cell has the success in "

@@ -1,64 +1,37 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Nearest, all solutions and paths, as text."""
+"""Moves of redundant arms, branches beside restarts, and paths, as text."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from bench import plan, requests
+from bench import branches, plan
 from bench.markdown import microseconds, percent, table
 
 if TYPE_CHECKING:
     from bench.view import View
 
-ENOUGH_PERCENT = 99.9
-"""Poses whose nearest solution, or all, are to be found."""
 RESTARTS_PERCENT = 99.5
 """Poses whose branch count is to agree with the restarts'."""
-TIMES_SLOWER = 5.0
-"""Times of the analytic solver's mean that all solutions may take."""
 
 
 def text(view: View) -> str:
     """The whole section."""
-    parts = [*_near(view), *_moves(view), *_branches(view), *_restarts(view)]
-    parts += _paths(view)
+    parts = [*_moves(view), *_restarts(view), *_paths(view)]
     if not parts:
         return ""
     conditions = (
         "Targets uniform in the joint limits, seed 1, default options, called from "
         "Python one pose at a time; every answer judged by bench's own forward "
         f"kinematics and the limits. *near* is a solution with normal noise of "
-        f"{requests.NOISE} rad on every joint."
+        f"{branches.NOISE} rad on every joint."
     )
-    return "\n\n".join(["## Nearest, all, paths", conditions, *parts])
+    return "\n\n".join(["## Moves, restarts, paths", conditions, *parts])
 
 
 def _verdict(part: float, whole: float, enough: float) -> str:
     word = "holds" if 100.0 * part >= enough * whole else "missed"
     return f"{percent(part, whole)} ({enough} aimed at: {word})"
-
-
-def _near(view: View) -> list[str]:
-    settings = plan.request_cell(
-        "near_branches", plan.NEAR_ARM, view.size.requests, plan.BRANCH_RIVAL
-    )
-    cell = view.get(settings)
-    if cell is None:
-        return []
-    return [
-        "### Nearest of all branches",
-        (
-            f"`{plan.NEAR_ARM}`, {cell['count']:,} poses: solved "
-            f"{percent(cell['solved'], cell['count'])} %; the move is the smallest "
-            f"over all of {plan.BRANCH_RIVAL}'s branches and their whole turns inside "
-            f"the limits (give or take {requests.SAME_MOVE:g} rad) in "
-            f"{_verdict(cell['smallest'], cell['count'], ENOUGH_PERCENT)} % of them, "
-            f"and smaller than that in {cell['shorter']} poses. Mean "
-            f"{microseconds(cell['mean_us'])} µs, p99 "
-            f"{microseconds(cell['p99_us'])} µs."
-        ),
-    ]
 
 
 def _moves(view: View) -> list[str]:
@@ -96,29 +69,6 @@ def _move_columns(
     ]
 
 
-def _branches(view: View) -> list[str]:
-    lines = []
-    for robot in plan.BRANCH_ARMS:
-        settings = plan.request_cell(
-            "all_branches", robot, view.size.requests, plan.BRANCH_RIVAL
-        )
-        cell = view.get(settings)
-        if cell is None:
-            continue
-        times = cell["mean_us"] / cell["rival_mean_us"]
-        word = "holds" if times <= TIMES_SLOWER else "missed"
-        lines.append(
-            f"- `{robot}`, {cell['count']:,} poses, {cell['branches']:,} solutions: "
-            f"all branches of {plan.BRANCH_RIVAL} in "
-            f"{_verdict(cell['same'], cell['count'], ENOUGH_PERCENT)} %, one that it "
-            f"does not have in {cell['more']}, wrong {cell['wrong']}; mean "
-            f"{microseconds(cell['mean_us'])} µs, {times:.1f} times "
-            f"{plan.BRANCH_RIVAL}'s {microseconds(cell['rival_mean_us'])} µs "
-            f"({TIMES_SLOWER:.0f} allowed: {word})."
-        )
-    return ["### All branches", "\n".join(lines)] if lines else []
-
-
 def _restarts(view: View) -> list[str]:
     lines = []
     for robot in plan.RESTART_ARMS:
@@ -127,7 +77,7 @@ def _restarts(view: View) -> list[str]:
             continue
         lines.append(
             f"- `{robot}`, {cell['count']:,} poses, {cell['branches']:,} solutions: as "
-            f"many as {requests.RESTARTS:,} random restarts find in "
+            f"many as {branches.RESTARTS:,} random restarts find in "
             f"{_verdict(cell['agrees'], cell['count'], RESTARTS_PERCENT)} %, more in "
             f"{cell['more']}, fewer in {cell['fewer']}, wrong {cell['wrong']}; mean "
             f"{microseconds(cell['mean_us'])} µs."

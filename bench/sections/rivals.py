@@ -50,12 +50,7 @@ def text(view: View) -> str:
         if kind == "lines":
             continue
         parts.append(_enough(view, kind))
-    parts += [
-        "### Reachable positions, random rotations",
-        "Some have no solution, and a solver has to find that out.",
-        _rights_and_times(view, "any_rotation"),
-        *_complete(view),
-    ]
+    parts += []
     parts += [
         "### Out of reach: mean (p99) in µs until a solver says so",
         _times(view, "unreachable"),
@@ -199,23 +194,6 @@ def _enough(view: View, kind: str) -> str:
         f"IKSel's least is {worst:.3f} % (`{where}`): the aim of {ENOUGH_PERCENT} % "
         f"{word}."
     )
-
-
-def _complete(view: View) -> list[str]:
-    """IKSel beside the solver that finds every solution there is."""
-    lines = []
-    for robot in RIVAL_ARMS:
-        ours, theirs = (
-            view.get(rival_cell(robot, name, "any_rotation", view.size))
-            for name in (OURS, ANALYTIC[0])
-        )
-        if ours and theirs and ours["count"] == theirs["count"]:
-            lines.append(
-                f"On `{robot}` {ANALYTIC[0]}, which finds all solutions there are, "
-                f"solves {theirs['right']:,} of {theirs['count']:,}, {OURS} "
-                f"{ours['right']:,}."
-            )
-    return lines
 
 
 def _unreachable_claims(view: View) -> str:

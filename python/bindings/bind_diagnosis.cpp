@@ -1,10 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "array_checks.hpp"
-#include "bindings.hpp"
 #include "iksel/diagnosis.hpp"
-#include "pickle.hpp"
-#include "property.hpp"
-#include "py_result.hpp"
 
 #include <pybind11/stl.h>
 
@@ -13,6 +8,7 @@
 #include "array_checks.hpp"
 #include "bindings.hpp"
 #include "pickle.hpp"
+#include "property.hpp"
 #include "py_result.hpp"
 
 namespace iksel::python {
@@ -23,11 +19,12 @@ py::object diagnosis_state(const Diagnosis& self) {
   return py::make_tuple(enum_name(self.cause), self.message, self.beyond_reach, self.rotation_gap,
                         self.joint, self.limit_violation, self.refused, self.least_singular_value,
                         to_array(self.q), self.position_error, self.rotation_error,
-                        self.q_is_solution);
+                        self.q_is_solution, enum_name(self.proof), self.attempts,
+                        to_array(self.branch));
 }
 
 Diagnosis diagnosis_from_state(const py::object& state) {
-  PickleState in(state, "Diagnosis", 12);
+  PickleState in(state, "Diagnosis", 15);
   constexpr bool kMayBeNan = true;
   Diagnosis out;
   out.cause = in.value<Cause>("cause");
@@ -42,11 +39,25 @@ Diagnosis diagnosis_from_state(const py::object& state) {
   out.position_error = in.length("position_error", kMayBeNan);
   out.rotation_error = in.length("rotation_error", kMayBeNan);
   out.q_is_solution = in.value<bool>("q_is_solution");
+  out.proof = in.value<Proof>("proof");
+  out.attempts = in.count("attempts");
+  out.branch = in.joints("branch");
+  if (out.branch.size() != 0 && out.branch.size() != out.q.size()) {
+    in.refuse("branch", "as many joints as q, or none", std::to_string(out.branch.size()));
+  }
+  if (out.q_is_solution && out.proof != Proof::none) {
+    in.refuse("proof", "none, as there is an answer", enum_name(out.proof));
+  }
   if (out.joint >= out.q.size()) in.refuse("joint", "one of q's", std::to_string(out.joint));
   if (out.q_is_solution && (out.q.size() == 0 || !(out.position_error >= 0))) {
     in.refuse("q_is_solution", "False without joint values and errors", "True");
   }
   return out;
+}
+
+/// None of no joint values.
+py::object array_or_none(const JointVector& q) {
+  return q.size() == 0 ? py::object(py::none()) : to_array(q);
 }
 
 }  // namespace
@@ -61,26 +72,42 @@ void bind_diagnosis(py::module_& m) {
   add_property(cls, "cause", &D::cause, "Why there is no answer; `none` if there is one.");
   add_property(cls, "message", &D::message,
                "What is wrong and what to do about it, in a sentence.");
+  add_property(
+      cls, "proof", &D::proof,
+      "How certain it is that there is no answer, as Result.proof; `none` if there is one.");
+  add_property(
+      cls, "proven", [](const D& self) { return is_proven(self.proof); },
+      "Whether there is certainly no answer: `proof` is `reach` or `closed_form`.");
+  add_property(cls, "attempts", &D::attempts,
+               "Seeds that were tried to find the cause; 0 where `proof` is `closed_form`: the "
+               "branches say it.");
   add_property(cls, "beyond_reach", &D::beyond_reach,
-               "out_of_reach: distance from the nearest position that was reached [m].");
+               "out_of_reach: distance from the nearest position that was reached [m]. no_branch: "
+               "how much too long or too short the distance is that `joint`, an elbow, would have "
+               "to bend for; NaN if it is no elbow.");
   add_property(cls, "rotation_gap", &D::rotation_gap,
                "orientation: least rotation error that was reached with the position held "
                "[rad].");
   add_property(cls, "joint", &D::joint,
                "joint_limits: index of the joint that lies farthest outside its limits in the "
-               "answer that violates them least; -1 otherwise.");
+               "answer that violates them least. no_branch: of the joint of which there is no "
+               "angle. -1 otherwise.");
   add_property(cls, "limit_violation", &D::limit_violation,
                "joint_limits: by how much that joint lies outside [rad or m].");
+  add_property(
+      cls, "branch",
+      [](const D& self) {
+        return py::reinterpret_borrow<OptionalJoints>(array_or_none(self.branch));
+      },
+      "joint_limits: that answer, which reaches the target outside the limits, (dof,) [rad or m]; "
+      "None otherwise.");
   add_property(cls, "refused", &D::refused, "rejected: how many answers the filter refused.");
   add_property(cls, "least_singular_value", &D::least_singular_value,
                "Least singular value of the Jacobian at q [mixed units]: small where it is "
                "close to a singularity.");
   add_property(
       cls, "q",
-      [](const D& self) {
-        const py::object q = self.q.size() == 0 ? py::object(py::none()) : to_array(self.q);
-        return py::reinterpret_borrow<OptionalJoints>(q);
-      },
+      [](const D& self) { return py::reinterpret_borrow<OptionalJoints>(array_or_none(self.q)); },
       "Best effort inside the limits, (dof,) [rad or m]. NO SOLUTION unless q_is_solution.");
   add_property(cls, "position_error", &D::position_error, "Position error of q [m].");
   add_property(cls, "rotation_error", &D::rotation_error, "Rotation error of q [rad].");

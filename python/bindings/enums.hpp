@@ -270,8 +270,9 @@ template <>
 struct EnumTable<Cause> {
   static constexpr const char* kName = "Cause";
   static constexpr const char* kDoc =
-      "Why a solve gave no answer. All but `out_of_reach` beyond Robot.reach are found by search "
-      "and so are likely, not proven.";
+      "Why a solve gave no answer. Certain where Diagnosis.proven is true; else found by search "
+      "and "
+      "so likely.";
   static constexpr EnumValue<Cause> kValues[] = {
       {"none", Cause::none, "there is an answer"},
       {"out_of_reach", Cause::out_of_reach, "the position lies beyond what the arm reaches"},
@@ -279,6 +280,8 @@ struct EnumTable<Cause> {
        "the position can be reached, but not with this rotation"},
       {"joint_limits", Cause::joint_limits,
        "answers exist, but all with joints outside their limits"},
+      {"no_branch", Cause::no_branch,
+       "no joint values reach the pose, whatever the limits: known in closed form"},
       {"rejected", Cause::rejected, "answers exist, but the filter refuses each"},
       {"singular", Cause::singular,
        "more work finds an answer, where the arm is close to a singularity"},

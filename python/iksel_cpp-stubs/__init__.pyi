@@ -1245,90 +1245,6 @@ class Objective:
         """
         What it counts.
         """
-class Cause(enum.Enum):
-    """
-    Why a solve gave no answer. All but `out_of_reach` beyond Robot.reach are found by search and so are likely, not proven.
-    """
-    budget = 6
-    joint_limits = 3
-    none = 0
-    orientation = 2
-    out_of_reach = 1
-    out_of_time = 7
-    rejected = 4
-    singular = 5
-    def __format__(self, arg0: str) -> str:
-        ...
-    def __str__(self) -> str:
-        ...
-class Diagnosis:
-    """
-    What Solver.diagnose found; true if q_is_solution. Numbers that do not belong to the cause are NaN.
-    """
-    def __bool__(self) -> bool:
-        ...
-    def __repr__(self) -> str:
-        ...
-    @property
-    def beyond_reach(self) -> float:
-        """
-        out_of_reach: distance from the nearest position that was reached [m].
-        """
-    @property
-    def cause(self) -> Cause:
-        """
-        Why there is no answer; `none` if there is one.
-        """
-    @property
-    def joint(self) -> int:
-        """
-        joint_limits: index of the joint that lies farthest outside its limits in the answer that violates them least; -1 otherwise.
-        """
-    @property
-    def least_singular_value(self) -> float:
-        """
-        Least singular value of the Jacobian at q [mixed units]: small where it is close to a singularity.
-        """
-    @property
-    def limit_violation(self) -> float:
-        """
-        joint_limits: by how much that joint lies outside [rad or m].
-        """
-    @property
-    def message(self) -> str:
-        """
-        What is wrong and what to do about it, in a sentence.
-        """
-    @property
-    def position_error(self) -> float:
-        """
-        Position error of q [m].
-        """
-    @property
-    def q(self) -> numpy.typing.NDArray[numpy.float64] | None:
-        """
-        Best effort inside the limits, (dof,) [rad or m]. NO SOLUTION unless q_is_solution.
-        """
-    @property
-    def q_is_solution(self) -> bool:
-        """
-        Whether q is an answer: within the tolerances, inside the limits, passed by the filter.
-        """
-    @property
-    def refused(self) -> int:
-        """
-        rejected: how many answers the filter refused.
-        """
-    @property
-    def rotation_error(self) -> float:
-        """
-        Rotation error of q [rad].
-        """
-    @property
-    def rotation_gap(self) -> float:
-        """
-        orientation: least rotation error that was reached with the position held [rad].
-        """
 class Status(enum.IntEnum):
     """
     Why a solve ended.
@@ -1513,6 +1429,111 @@ class BatchResult:
     def success(self) -> numpy.typing.NDArray[numpy.bool_]:
         """
         Whether each target is solved, (N,).
+        """
+class Cause(enum.Enum):
+    """
+    Why a solve gave no answer. Certain where Diagnosis.proven is true; else found by search and so likely.
+    """
+    budget = 7
+    joint_limits = 3
+    no_branch = 4
+    none = 0
+    orientation = 2
+    out_of_reach = 1
+    out_of_time = 8
+    rejected = 5
+    singular = 6
+    def __format__(self, arg0: str) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
+class Diagnosis:
+    """
+    What Solver.diagnose found; true if q_is_solution. Numbers that do not belong to the cause are NaN.
+    """
+    def __bool__(self) -> bool:
+        ...
+    def __repr__(self) -> str:
+        ...
+    @property
+    def attempts(self) -> int:
+        """
+        Seeds that were tried to find the cause; 0 where `proof` is `closed_form`: the branches say it.
+        """
+    @property
+    def beyond_reach(self) -> float:
+        """
+        out_of_reach: distance from the nearest position that was reached [m]. no_branch: how much too long or too short the distance is that `joint`, an elbow, would have to bend for; NaN if it is no elbow.
+        """
+    @property
+    def branch(self) -> numpy.typing.NDArray[numpy.float64] | None:
+        """
+        joint_limits: that answer, which reaches the target outside the limits, (dof,) [rad or m]; None otherwise.
+        """
+    @property
+    def cause(self) -> Cause:
+        """
+        Why there is no answer; `none` if there is one.
+        """
+    @property
+    def joint(self) -> int:
+        """
+        joint_limits: index of the joint that lies farthest outside its limits in the answer that violates them least. no_branch: of the joint of which there is no angle. -1 otherwise.
+        """
+    @property
+    def least_singular_value(self) -> float:
+        """
+        Least singular value of the Jacobian at q [mixed units]: small where it is close to a singularity.
+        """
+    @property
+    def limit_violation(self) -> float:
+        """
+        joint_limits: by how much that joint lies outside [rad or m].
+        """
+    @property
+    def message(self) -> str:
+        """
+        What is wrong and what to do about it, in a sentence.
+        """
+    @property
+    def position_error(self) -> float:
+        """
+        Position error of q [m].
+        """
+    @property
+    def proof(self) -> Proof:
+        """
+        How certain it is that there is no answer, as Result.proof; `none` if there is one.
+        """
+    @property
+    def proven(self) -> bool:
+        """
+        Whether there is certainly no answer: `proof` is `reach` or `closed_form`.
+        """
+    @property
+    def q(self) -> numpy.typing.NDArray[numpy.float64] | None:
+        """
+        Best effort inside the limits, (dof,) [rad or m]. NO SOLUTION unless q_is_solution.
+        """
+    @property
+    def q_is_solution(self) -> bool:
+        """
+        Whether q is an answer: within the tolerances, inside the limits, passed by the filter.
+        """
+    @property
+    def refused(self) -> int:
+        """
+        rejected: how many answers the filter refused.
+        """
+    @property
+    def rotation_error(self) -> float:
+        """
+        Rotation error of q [rad].
+        """
+    @property
+    def rotation_gap(self) -> float:
+        """
+        orientation: least rotation error that was reached with the position held [rad].
         """
 class MoveNorm(enum.Enum):
     """

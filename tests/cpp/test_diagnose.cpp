@@ -2,6 +2,7 @@
 // Each reason of a failure, produced on purpose.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "iksel/iksel.hpp"
@@ -184,14 +185,133 @@ TEST(Diagnose, FindsAReasonForWhateverFails) {
       Pose target = robot.fk(q.row(2 * i));
       target.linear() = robot.fk(q.row(2 * i + 1)).linear();
       target.translation() *= 1 + 0.5 * std::sin(i);
-      const bool solved = solver.solve(target).success();
+      const iksel::Result result = solver.solve(target);
       const Diagnosis diagnosis = solver.diagnose(target);
-      EXPECT_EQ(diagnosis.cause == Cause::none, solved) << name << ", case " << i;
+      EXPECT_EQ(diagnosis.cause == Cause::none, result.success()) << name << ", case " << i;
+      EXPECT_EQ(diagnosis.proof, result.proof) << name << ", case " << i;
       EXPECT_EQ(diagnosis.q_is_solution,
                 diagnosis.position_error <= 1e-6 && diagnosis.rotation_error <= 1e-6)
           << name << ", case " << i << ": " << diagnosis.message;
       expect_honest(robot, target, diagnosis);
     }
+  }
+}
+
+/// By how much q lies outside of the limits at the whole turns nearest to them.
+double violation(const Robot& robot, JointVector q) {
+  const JointVector middle = (robot.lower() + robot.upper()) / 2;
+  for (int j = 0; j < robot.dof(); ++j)
+    q[j] = middle[j] + std::remainder(q[j] - middle[j], 2 * M_PI);
+  return (robot.lower() - q).cwiseMax(q - robot.upper()).maxCoeff();
+}
+
+TEST(Diagnose, ExplainsAProvenNoByItsBranchesWithoutASearch) {
+  int outside = 0;
+  int none = 0;
+  for (const char* name : {"ur3", "irb120", "vs060"}) {
+    const Robot& robot = iksel_test::robot(name);
+    const Solver& solver = iksel_test::solver(name);
+    const Solver unlimited(robot.without_limits());
+    const int cases = iksel_test::cases(200, 40);
+    const Eigen::MatrixXd q = robot.random_configurations(2 * cases, iksel_test::seed());
+    for (int i = 0; i < cases; ++i) {
+      Pose target = robot.fk(q.row(2 * i));
+      target.linear() = robot.fk(q.row(2 * i + 1)).linear();
+      if (solver.solve(target).proof != iksel::Proof::closed_form) continue;
+      const Diagnosis diagnosis = solver.diagnose(target);
+      SCOPED_TRACE(std::string(name) + ", case " + std::to_string(i) + ": " + diagnosis.message);
+      EXPECT_EQ(diagnosis.proof, iksel::Proof::closed_form);
+      EXPECT_EQ(diagnosis.attempts, 0);
+      expect_honest(robot, target, diagnosis);
+      double least = 10;
+      for (const auto& branch : unlimited.solve_all(target).all) {
+        least = std::min(least, violation(robot, branch.q));
+      }
+      if (diagnosis.cause == Cause::joint_limits) {
+        ++outside;
+        const auto e = iksel::pose_error(target, robot.fk(diagnosis.branch));
+        EXPECT_LT(e.norm(), 1e-9);
+        EXPECT_NEAR(diagnosis.limit_violation, least, 1e-5);
+        EXPECT_DOUBLE_EQ(diagnosis.limit_violation, violation(robot, diagnosis.branch));
+        const double at = diagnosis.branch[diagnosis.joint];
+        EXPECT_DOUBLE_EQ(diagnosis.limit_violation, std::max(robot.lower()[diagnosis.joint] - at,
+                                                             at - robot.upper()[diagnosis.joint]));
+      } else {
+        ++none;
+        ASSERT_EQ(diagnosis.cause, Cause::no_branch);
+        EXPECT_EQ(least, 10) << "a branch by search";
+        EXPECT_EQ(diagnosis.branch.size(), 0);
+        EXPECT_FALSE(diagnosis.beyond_reach <= 0);
+      }
+      const auto joint = static_cast<std::size_t>(diagnosis.joint);
+      EXPECT_NE(diagnosis.message.find("'" + robot.joint_names()[joint] + "'"), std::string::npos);
+    }
+  }
+  EXPECT_GT(outside, 0);
+  EXPECT_GT(none, 0);
+}
+
+/// From the axis of joint 2 to where a link is, across that axis.
+Eigen::Vector3d across_axis_2(const Robot& robot, const JointVector& q, const std::string& from,
+                              const std::string& to) {
+  const auto& names = robot.link_names();
+  const std::vector<Pose> links = robot.link_poses(q);
+  const auto place = [&](const std::string& name) {
+    const auto i = std::find(names.begin(), names.end(), name) - names.begin();
+    return links.at(static_cast<std::size_t>(i)).translation();
+  };
+  JointVector turned = q;
+  turned[1] += 0.1;
+  const Eigen::Vector3d axis =
+      iksel::pose_error(robot.fk(turned), robot.fk(q)).tail<3>().normalized();
+  const Eigen::Vector3d way = place(to) - place(from);
+  return way - axis * axis.dot(way);
+}
+
+TEST(Diagnose, SaysByHowMuchAnElbowIsTooShort) {
+  // Stretched out as far as joint 3 lets it, and the target moved on by what is then missing.
+  constexpr double kMissing = 0.02;
+  const std::string ends[][3] = {{"ur3", "upper_arm_link", "wrist_1_link"},
+                                 {"irb120", "link_2", "link_5"}};
+  for (const auto& [name, from, to] : ends) {
+    const Robot& robot = iksel_test::robot(name);
+    const Solver& solver = iksel_test::solver(name);
+    const Eigen::MatrixXd q = robot.random_configurations(40, iksel_test::seed());
+    int same = 0;
+    for (Eigen::Index i = 0; i < q.rows(); ++i) {
+      JointVector at = q.row(i);
+      double low = -M_PI;
+      double high = M_PI;
+      const auto length = [&](double elbow) {
+        at[2] = elbow;
+        return across_axis_2(robot, at, from, to).norm();
+      };
+      // Of angles all around, the best, and then between its neighbours.
+      double best = low;
+      for (double elbow = low; elbow < high; elbow += 0.1) {
+        if (length(elbow) > length(best)) best = elbow;
+      }
+      low = best - 0.1;
+      high = best + 0.1;
+      while (high - low > 1e-7) {
+        const double third = (high - low) / 3;
+        if (length(low + third) < length(high - third)) {
+          low += third;
+        } else {
+          high -= third;
+        }
+      }
+      length(low);
+      Pose target = robot.fk(at);
+      target.translation() += kMissing * across_axis_2(robot, at, from, to).normalized();
+      const Diagnosis diagnosis = solver.diagnose(target);
+      if (diagnosis.cause != Cause::no_branch || diagnosis.joint != 2) continue;
+      // Another branch may come nearer.
+      EXPECT_LE(diagnosis.beyond_reach, kMissing + 1e-9) << name << ": " << diagnosis.message;
+      EXPECT_GT(diagnosis.beyond_reach, 0);
+      same += std::abs(diagnosis.beyond_reach - kMissing) < 1e-9;
+    }
+    EXPECT_GT(same, 5) << name;
   }
 }
 

@@ -11,12 +11,15 @@ import pytest
 
 pytest.importorskip("bench", reason="the benchmarks are in the repository only")
 
-from bench import check, frozen, guard, no, plan, run, targets
+from bench import branches, check, command, frozen, guard, no, plan, run, targets
 from bench.arms import load_arm
-from bench.command import main
+from bench.report import merged
 from bench.rivals.axes import axes_of
-from bench.rivals.base import UnsupportedError
+from bench.rivals.base import Run, UnsupportedError
+from bench.sections import no as no_section
+from bench.size import FULL, QUICK, Job
 from bench.store import Store
+from bench.view import View
 
 ARMS = ("cvrb1213", "ur3_wrs", "panda")
 COUNT = 30
@@ -216,7 +219,7 @@ class TestStore:
             return ""
 
         monkeypatch.setattr(run, "_run_worker", worker)
-        job = plan.Job("a job", "paper", cells)
+        job = Job("a job", "paper", cells)
         failures = run.run_jobs([job], store, tmp_path)
         assert failures == {"a job, ur3, evaluate": "exit status -11"}
         assert asked == [[2, 3], [3]]
@@ -229,36 +232,60 @@ class TestStore:
 
 class TestPlan:
     def test_every_cell_once(self):
-        for size in (plan.QUICK, plan.FULL):
+        for size in (QUICK, FULL):
             jobs = plan.plan(size, None, None)
             cells = [json.dumps(c, sort_keys=True) for job in jobs for c in job.cells]
             repeated = {cell for cell in cells if cells.count(cell) > 1}
             assert not repeated
 
     def test_untimed_jobs_first(self):
-        timed = [job.timed for job in plan.plan(plan.QUICK, None, None)]
+        timed = [job.timed for job in plan.plan(QUICK, None, None)]
         assert timed == sorted(timed)
 
     def test_only_and_robots(self):
-        jobs = plan.plan(plan.QUICK, ["ur3_wrs"], ["EAIK"])
+        jobs = plan.plan(QUICK, ["ur3_wrs"], ["EAIK"])
         cells = [cell for job in jobs if job.timed for cell in job.cells]
         assert {cell["rival"] for cell in cells} == {"EAIK"}
         assert {cell["robot"] for cell in cells} == {"ur3_wrs"}
 
     def test_rivals_that_are_not_there_are_left_out(self):
-        jobs = plan.plan(plan.QUICK, None, None, ["IKSel", "EAIK"])
+        jobs = plan.plan(QUICK, None, None, ["IKSel", "EAIK"])
         cells = [cell for job in jobs for cell in job.cells]
         assert {cell.get("rival", "EAIK") for cell in cells} == {"IKSel", "EAIK"}
 
     def test_worker_measures_a_cell(self, tmp_path):
         """One real cell through a real process."""
-        size = plan.QUICK
+        size = QUICK
         cell = {**plan.robot_cell("ur3", size), "count": 20, "stages": False}
         store = Store(tmp_path / "cells", "a")
-        assert run.run_jobs([plan.Job("one", "robots", [cell])], store, tmp_path) == {}
+        assert run.run_jobs([Job("one", "robots", [cell])], store, tmp_path) == {}
         result = store.load(cell)
         assert result is not None
         assert (result["targets"], result["false_success"]) == (20, 0)
+
+
+class TestReport:
+    def test_a_section_measured_by_itself_says_on_what(self):
+        def report(cells, machine):
+            return {
+                "machine": machine,
+                "command": f"on {machine}",
+                "seconds": 1,
+                "size": {"no": 3},
+                "versions": {machine: "1"},
+                "missing": {},
+                "failures": {},
+                "cells": [{"settings": {"cell": c}, "result": machine} for c in cells],
+            }
+
+        old, new = report(["a", "b", "left out"], "old"), report(["b", "c"], "new")
+        wanted = [Job("all", "no", [{"cell": name} for name in ("a", "b", "c", "d")])]
+        both = merged(old, new, wanted, ["no"])
+        found = {c["settings"]["cell"]: c["result"] for c in both["cells"]}
+        assert found == {"a": "old", "b": "new", "c": "new"}
+        assert (both["machine"], both["parts"]["no"]["machine"]) == ("old", "new")
+        view = View({**both, "size": vars(QUICK)})
+        assert (view.machine("no"), view.machine("rivals")) == ("new", "old")
 
 
 class TestGuard:
@@ -295,26 +322,95 @@ class TestGuard:
 
 
 class TestNo:
-    @pytest.mark.parametrize("name", ["ur3", "panda", "cvr038"])
+    @pytest.mark.parametrize("name", ["ur3", "panda", "irb14050"])
     def test_each_target_counts_once(self, name):
-        for kind in no.KINDS:
-            row = no.measure(name, kind, COUNT, SEED)
-            counts = [row[w] for w in ("solved", "proven", "swept", "searched")]
-            assert sum(counts) == row["targets"] == COUNT
-            assert row["wrong"] == 0
-            assert (row["no"] is None) == (row["solved"] == COUNT)
+        arm = load_arm(name)
+        for kind in plan.NO_KINDS:
+            goals = targets.make_targets(arm, kind, COUNT, SEED)
+            cell = no.answered(arm, goals, {"rival": "IKSel", "seed": SEED})
+            counts = [cell[w] for w in ("yes", "proven", "swept", "searched")]
+            assert sum(counts) == cell["count"] == COUNT
+            assert cell["false"] == cell["missed"] == cell["disproved"] == 0
+            assert (cell["no_us"] is None) == (cell["yes"] == COUNT)
+            assert (cell["yes_us"] is None) == (cell["yes"] == 0)
 
-    def test_the_command_prints_a_row_for_each_kind(self, capsys):
-        assert main(["no", "ur3", "--targets", "20"]) == 0
+    def test_what_others_find_and_miss(self, monkeypatch):
+        """A solver that knows every other solution, and says nonsense of the rest."""
+        arm = load_arm("ur3")
+        goals = targets.make_targets(arm, "uniform", 20, SEED)
+
+        class Half(no.RIVALS["IKSel"]):
+            def run(self, goals):
+                answers = [
+                    [q] if i % 2 else [q + 0.1] if i % 4 else []
+                    for i, q in enumerate(goals.witnesses)
+                ]
+                return Run(np.full(len(goals), 1_000), answers)
+
+        monkeypatch.setitem(no.RIVALS, "half", Half)
+        cell = no.answered(arm, goals, {"rival": "half", "seed": SEED})
+        assert (cell["yes"], cell["false"], cell["missed"]) == (10, 5, 10)
+        assert cell["only"] == cell["disproved"] == 0
+        assert cell["no_us"] == cell["yes_us"] == [1.0, 1.0]
+
+    def test_the_command_prints_the_section(self, capsys, monkeypatch, tmp_path):
+        monkeypatch.setattr(command, "WORK", tmp_path)
+        words = ["no", "ur3", "--targets", "20", "--solvers", "IKSel"]
+        assert command.main(words) == 0
         told = capsys.readouterr().out
-        assert told.startswith("20 targets of each kind, seed 1")
-        assert [line.count("|") for line in told.splitlines()[2:]] == [14] * 4
+        assert "random, 20 per robot" in told
+        assert "| `ur3`, random rotations | closed form |" in told
 
-    def test_proofs_against_reachable_targets_are_told(self, capsys, monkeypatch):
-        row = {**no.measure("ur3", "uniform", COUNT, SEED), "wrong": 1}
-        monkeypatch.setattr(no, "measure", lambda *_: row)
-        assert no.no(["ur3"], COUNT, SEED) == 1
-        assert "ur3, uniform: 1 are wrong" in capsys.readouterr().out
+    def test_wrong_proofs_and_answers_are_told(self):
+        wanted = plan.no_cell("ur3", "IKSel", "uniform", QUICK)
+        cell = {"disproved": 1, "false": 2}
+        every = plan.branch_cell("all_branches", "ur3", "uniform", QUICK)
+        cells = [
+            {"settings": wanted, "result": cell},
+            {"settings": every, "result": {"wrong": 3}},
+        ]
+        view = View({"size": vars(QUICK), "cells": cells})
+        assert no_section.wrong(view) == [
+            "ur3, uniform: 1 proofs",
+            "ur3, uniform: 2 answers",
+            "ur3, uniform, all_branches: 3 answers",
+        ]
+
+
+class TestBranches:
+    def test_turns_and_gaps(self, arm):
+        chain = arm.chain
+        q = arm.robot.random_configurations(COUNT, SEED)
+        turned = q + 2 * np.pi * np.resize([-2, 0, 1], chain.dof)
+        again = branches.nearest_turns(chain, turned, q)
+        assert np.abs(again - q).max() < 1e-12
+        assert branches.gap(turned, q).diagonal().max() < 1e-12
+        outside = np.where(chain.upper - chain.lower < 6, chain.upper + 0.1, q)
+        assert np.isnan(branches.nearest_turns(chain, outside, q)).all(
+            axis=1
+        ).any() == ((chain.upper - chain.lower < 6).any())
+
+    def test_judged_and_compared(self, arm):
+        q = arm.robot.random_configurations(2, SEED)
+        poses = arm.chain.fk(q)
+        found = branches.judged(arm.chain, poses, [[q[0], q[1]], []])
+        assert [len(right) for right in found.right] == [1, 0]
+        assert found.wrong == 1
+        sets = branches._compared([q[:1], q[:1], q], [q, q[:1], q[1:]])
+        counts = [sets[what] for what in ("same", "fewer", "more")]
+        assert counts == [1, 1, 1]
+        assert (sets["missed"], sets["added"]) == ([0], [2])
+
+    @pytest.mark.parametrize("name", ["ur3", "cvr038"])
+    def test_nearest_of_all(self, name):
+        arm = load_arm(name)
+        for kind in plan.NO_KINDS:
+            goals = targets.make_targets(arm, kind, COUNT, SEED)
+            near = branches.near_branches(arm, goals, {"seed": SEED})
+            every = branches.all_branches(arm, goals, {"seed": SEED})
+            assert near["smallest"] == near["solvable"] == near["solved"]
+            assert near["wrong"] == every["wrong"] == 0
+            assert every["branches"] >= near["solvable"]
 
 
 def test_frozen_names_the_calls_that_differ(

@@ -277,6 +277,34 @@ def test_a_diagnosis_names_the_joint(made) -> None:
     assert diagnosed > 0
 
 
+def test_a_proven_no_is_explained_by_its_branches(made) -> None:
+    arm = made.robot("irb120")
+    solver = made.solver("irb120")
+    poses = arm.fk(arm.random_configurations(60, 8))
+    poses[:, :3, :3] = poses[::-1, :3, :3].copy()
+    causes = set()
+    for pose in poses:
+        result = solver.solve(pose)
+        diagnosis = solver.diagnose(pose)
+        assert (diagnosis.proof, diagnosis.proven) == (result.proof, result.proven)
+        if diagnosis.proof is not iksel.Proof.closed_form:
+            continue
+        causes.add(diagnosis.cause)
+        assert diagnosis.attempts == 0
+        assert diagnosis.message.startswith("certainly no answer: ")
+        assert f"'{arm.joint_names[diagnosis.joint]}'" in diagnosis.message
+        if diagnosis.cause is iksel.Cause.joint_limits:
+            assert np.abs(iksel.pose_error(pose, arm.fk(diagnosis.branch))).max() < 1e-9
+            outside = np.maximum(
+                arm.lower - diagnosis.branch, diagnosis.branch - arm.upper
+            )
+            assert outside.argmax() == diagnosis.joint
+            assert outside.max() == diagnosis.limit_violation > 0
+        else:
+            assert diagnosis.branch is None
+    assert causes == {iksel.Cause.no_branch, iksel.Cause.joint_limits}
+
+
 # Derivatives and calibrated arms
 
 

@@ -72,12 +72,28 @@ def examples(solver: iksel.Solver) -> list[object]:
         solver.solve_path(broken, start=q[0]),
         solver.diagnose(poses[0]),
         solver.diagnose(far),
+        *proven_noes(solver),
         iksel.Objective.near_posture(q[0], weights=np.arange(6.0)),
         iksel.Objective.far_from_limits(),
         iksel.Objective.custom(half_square, np.negative),
         iksel.evaluate(solver, 10, seed=1),
         tracker,
     ]
+
+
+def proven_noes(solver: iksel.Solver) -> list[iksel.Diagnosis]:
+    """One for each cause that a closed form proves."""
+    robot = solver.robot
+    poses = robot.fk(robot.random_configurations(40, seed=9))
+    poses[:, :3, :3] = poses[::-1, :3, :3].copy()
+    found = {}
+    for name in ("ur3", "irb120"):
+        other = iksel.Solver(iksel.load_robot(name))
+        for diagnosis in map(other.diagnose, poses):
+            if diagnosis.proof == iksel.Proof.closed_form:
+                found[diagnosis.cause] = diagnosis
+    assert set(found) == {iksel.Cause.no_branch, iksel.Cause.joint_limits}
+    return list(found.values())
 
 
 def contents(thing: object) -> dict[str, object]:

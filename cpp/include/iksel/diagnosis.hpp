@@ -7,6 +7,7 @@
 #include <string>
 
 #include "iksel/export.hpp"
+#include "iksel/result.hpp"
 #include "iksel/types.hpp"
 
 namespace iksel {
@@ -14,13 +15,14 @@ namespace iksel {
 class Robot;
 struct Task;
 
-/// Why a solve gave no answer. All but `out_of_reach` beyond Robot::reach are found by search and
-/// so are likely, not proven.
+/// Why a solve gave no answer. Certain where Diagnosis::proof is `reach` or `closed_form`; else
+/// found by search and so likely.
 enum class Cause : std::uint8_t {
   none,          ///< there is an answer
   out_of_reach,  ///< the position lies beyond what the arm reaches
   orientation,   ///< the position can be reached, but not with this rotation
   joint_limits,  ///< answers exist, but all with joints outside their limits
+  no_branch,     ///< no joint values reach the pose, whatever the limits: known in closed form
   rejected,      ///< answers exist, but the filter refuses each
   singular,      ///< more work finds an answer, where the arm is close to a singularity
   budget,        ///< more work finds an answer: the bounds on attempts or iterations are too low
@@ -35,14 +37,24 @@ struct Diagnosis {
   Cause cause = Cause::none;
   /// What is wrong and what to do about it, in a sentence.
   std::string message;
-  /// out_of_reach: distance from the nearest position that was reached [m].
+  /// That there is no answer, as Result::proof of a solve; `none` if there is one.
+  Proof proof = Proof::none;
+  /// Seeds that were tried to find the cause; 0 where `proof` is `closed_form`: the branches say
+  /// it.
+  int attempts = 0;
+  /// out_of_reach: distance from the nearest position that was reached [m]. no_branch: how much too
+  /// long or too short the distance is that `joint`, an elbow, would have to bend for; NaN if it is
+  /// no elbow.
   double beyond_reach = std::numeric_limits<double>::quiet_NaN();
   /// orientation: least rotation error that was reached with the position held [rad].
   double rotation_gap = std::numeric_limits<double>::quiet_NaN();
   /// joint_limits: the joint that lies farthest outside its limits in the answer that violates
-  /// them least, and by how much [rad or m]; -1 otherwise.
+  /// them least, and by how much [rad or m]. no_branch: the joint of which there is no angle. -1
+  /// otherwise.
   int joint = -1;
   double limit_violation = std::numeric_limits<double>::quiet_NaN();
+  /// joint_limits: that answer, which reaches the target outside the limits [rad or m]; else empty.
+  JointVector branch;
   /// rejected: how many answers the filter refused.
   int refused = 0;
   /// Least singular value of the Jacobian at `q` [mixed units]: small where it is close to a

@@ -81,8 +81,9 @@ class IKSEL_EXPORT Solver {
   [[nodiscard]] Solutions solve_all(const Pose& T_base_tip, const SolveAllOptions& options = {},
                                     const SolveRequest& request = {}) const;
 
-  /// Why solve(T_base_tip, request) gives no answer, and the best that can be done. Spends more
-  /// than solving does, milliseconds. Throws as solve.
+  /// Why solve(T_base_tip, request) gives no answer, and the best that can be done. Where a closed
+  /// form proves that there is none, its branches say why: no search. Else it spends more than
+  /// solving does, milliseconds. Throws as solve.
   [[nodiscard]] Diagnosis diagnose(const Pose& T_base_tip, const SolveRequest& request = {}) const;
 
   /// Joint values along a path of poses, by a choice among the solutions of all waypoints that

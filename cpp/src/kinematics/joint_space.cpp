@@ -35,6 +35,14 @@ JointVector JointSpace::middle() const {
   return middle;
 }
 
+JointVector JointSpace::turned_to_middle(JointVector q) const {
+  const JointVector to = middle();
+  for (int j = 0; j < dof(); ++j) {
+    if (!is_slide(j)) q[j] += kTwoPi * std::round((to[j] - q[j]) / kTwoPi);
+  }
+  return q;
+}
+
 void JointSpace::wrap(double* q) const {
   for (int j = 0; j < dof(); ++j) {
     if (is_slide(j)) continue;

@@ -39,6 +39,13 @@ class JointSpace {
   [[nodiscard]] JointVector clamp(const JointVector& q) const {
     return q.cwiseMax(lower).cwiseMin(upper);
   }
+  /// How far each joint lies outside its limits, 0 inside [rad or m].
+  [[nodiscard]] JointVector violations(const JointVector& q) const {
+    return (lower - q).cwiseMax(q - upper).cwiseMax(0.0);
+  }
+  /// Each joint that turns at the whole turn nearest to the middle of its limits, where it violates
+  /// them least.
+  [[nodiscard]] JointVector turned_to_middle(JointVector q) const;
   /// Whether q + step lies outside; a periodic joint never does, as it can be wrapped.
   [[nodiscard]] bool leaves(const double* q, const double* step) const;
   /// The middle of the limits; 0 where there are none.

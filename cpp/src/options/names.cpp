@@ -26,8 +26,8 @@ const char* to_string(Status status) {
 }
 
 const char* to_string(Cause cause) {
-  return name_of(cause, {"none", "out_of_reach", "orientation", "joint_limits", "rejected",
-                         "singular", "budget", "out_of_time"});
+  return name_of(cause, {"none", "out_of_reach", "orientation", "joint_limits", "no_branch",
+                         "rejected", "singular", "budget", "out_of_time"});
 }
 
 }  // namespace iksel

@@ -35,6 +35,10 @@ class Enumeration {
   /// difference.
   [[nodiscard]] bool is_certain() const { return certain_; }
 
+  /// What the last find() solved: those outside the limits too, and lanes without a branch.
+  [[nodiscard]] const ClosedFormChain& chain() const { return chain_; }
+  [[nodiscard]] const lanes::BranchPack& pack() const { return pack_; }
+
  private:
   /// Takes a lane's branch if it may be one.
   void take(const Goal& goal, int lane, bool wants_all);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Why not: questions asked one after the other with more work and fewer demands.
+// Why not: by all branches, or by questions with more work and fewer demands, one after the other.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "iksel/pose.hpp"
 #include "options/strategy.hpp"
 #include "refine/best_effort.hpp"
+#include "solver/diagnose_branches.hpp"
 #include "solver/solver_impl.hpp"
 
 namespace iksel {
@@ -47,32 +49,6 @@ Task position_of(Task task) {
   return task;
 }
 
-/// Smallest and largest singular value of the Jacobian.
-std::pair<double, double> extreme_singular_values(const ChainModel& model, const JointVector& q) {
-  Pose pose;
-  Jacobian J;
-  model.fk_jacobian(q.data(), pose, J);
-  const auto sigma = singular_values(JacobianMatrix(J));
-  return {sigma.minCoeff(), sigma.maxCoeff()};
-}
-
-/// How far each joint lies outside its limits, at the image nearest to them.
-JointVector violations(const ChainModel& model, JointVector q) {
-  model.joints.wrap(q.data());
-  JointVector outside = JointVector::Zero(model.dof);
-  for (int j = 0; j < model.dof; ++j) {
-    const auto beyond = [&](double at) {
-      return std::max({model.joints.lower[j] - at, at - model.joints.upper[j], 0.0});
-    };
-    outside[j] = beyond(q[j]);
-    if (model.joints.is_slide(j)) continue;
-    for (const double whole_turn : {-kTwoPi, kTwoPi}) {
-      outside[j] = std::min(outside[j], beyond(q[j] + whole_turn));
-    }
-  }
-  return outside;
-}
-
 /// Seeds of a best effort.
 constexpr int kEfforts = 24;
 
@@ -80,9 +56,12 @@ constexpr int kEfforts = 24;
 bool describe(const ChainModel& model, const Goal& goal, const JointVector& q, Diagnosis& out) {
   out.q = q;
   goal.measure(q, out.position_error, out.rotation_error);
-  const auto [least, most] = extreme_singular_values(model, q);
-  out.least_singular_value = least;
-  return least < kNearlySingular * most;
+  Pose ignored;
+  Jacobian J;
+  model.fk_jacobian(q.data(), ignored, J);
+  const auto sigma = singular_values(JacobianMatrix(J));
+  out.least_singular_value = sigma.minCoeff();
+  return out.least_singular_value < kNearlySingular * sigma.maxCoeff();
 }
 
 /// The possible causes, one after the other; each check returns whether it was the reason.
@@ -97,8 +76,7 @@ class Diagnoser {
         goal_(model_, task_, target),
         position_goal_(model_, position_task_, target),
         request_(request),
-        open_(request),
-        patient_(make_patient(solver.robot)) {
+        open_(request) {
     open_.filter = nullptr;
     open_.near.reset();
     open_.objective = {};
@@ -106,12 +84,27 @@ class Diagnoser {
     open_.database_seeds = true;
   }
 
+  /// Whether all branches are known, of which none is an answer.
+  bool explain_by_branches(Workspace& workspace) {
+    const auto& lanes = workspace.lanes;
+    if (!lanes || !lanes->branches) return false;
+    auto reasons =
+        explain_branches(model_, goal_, lanes->query.reduce(goal_.target()), *lanes->branches);
+    if (!reasons) return false;
+    out_ = std::move(reasons->diagnosis);
+    BestEffort effort = make_effort(goal_);
+    for (const JointVector& seed : reasons->seeds) effort.from(seed);
+    describe(effort.q());
+    return true;
+  }
+
   /// Whether more work or more time finds an answer.
   bool find_with_more_work(Status plain) {
     SolveRequest patient_request = request_;
     patient_request.deadline = kInfinity;
     patient_request.database_seeds = true;
-    const Result found = patient_.solve(goal_.target(), patient_request);
+    const Result found = patient().solve(goal_.target(), patient_request);
+    out_.attempts += found.attempts;
     if (found.status == Status::rejected) return explain_refusals();
     if (!found.success()) return false;
     const bool singular = describe(found.q);
@@ -146,15 +139,17 @@ class Diagnoser {
     for (JointVector& seed : effort.from_anywhere(kEfforts, solver_.options.seed)) {
       if (solver_.angles.holds(seed)) hinted.seeds.push_back(std::move(seed));
     }
-    for (const Result& answer : unlimited.solve_all(goal_.target(), {}, hinted).all) {
-      JointVector seed = answer.q;
-      model_.joints.wrap(seed.data());
-      effort.from(seed);
+    const Solutions answers = unlimited.solve_all(goal_.target(), {}, hinted);
+    out_.attempts += answers.attempts;
+    for (const Result& answer : answers.all) {
+      const JointVector branch = model_.joints.turned_to_middle(answer.q);
+      effort.from(branch);
       int joint = 0;
-      const double violation = violations(model_, answer.q).maxCoeff(&joint);
+      const double violation = model_.joints.violations(branch).maxCoeff(&joint);
       if (out_.joint >= 0 && violation >= out_.limit_violation) continue;
       out_.joint = joint;
       out_.limit_violation = violation;
+      out_.branch = branch;
     }
     if (out_.joint < 0) return false;
     describe(effort.q());
@@ -172,7 +167,8 @@ class Diagnoser {
   bool find_position() {
     SolveRequest at_position = open_;
     at_position.task = position_task_.task();
-    const Result position = patient_.solve(goal_.target(), at_position);
+    const Result position = patient().solve(goal_.target(), at_position);
+    out_.attempts += position.attempts;
     if (!position.success()) return false;
     // From many configurations that have the position towards the rotation, the position weighing
     // more; then all the way back to the position.
@@ -182,14 +178,15 @@ class Diagnoser {
     SolveAllOptions spread_out;
     spread_out.max = kEfforts;
     spread_out.min_distance = 0.1;
-    for (const Result& answer : patient_.solve_all(goal_.target(), spread_out, at_position).all) {
-      effort.from(answer.q);
-    }
+    const Solutions spread = patient().solve_all(goal_.target(), spread_out, at_position);
+    out_.attempts += spread.attempts;
+    for (const Result& answer : spread.all) effort.from(answer.q);
     effort.from(position.q);
     effort.from_anywhere(kEfforts, solver_.options.seed);
     at_position.seeds = {effort.q()};
     at_position.near = effort.q();
-    const Result held = patient_.solve(goal_.target(), at_position);
+    const Result held = patient().solve(goal_.target(), at_position);
+    out_.attempts += held.attempts;
     describe(held.success() ? held.q : position.q);
     out_.cause = Cause::orientation;
     out_.rotation_gap = out_.rotation_error;
@@ -220,9 +217,17 @@ class Diagnoser {
         ": move the target or the base, or allow a tolerance";
   }
 
-  [[nodiscard]] const Diagnosis& diagnosis() const { return out_; }
+  /// With what the plain solve has proven.
+  [[nodiscard]] const Diagnosis& diagnosis(Proof proof) {
+    out_.proof = out_.q_is_solution ? Proof::none : proof;
+    return out_;
+  }
 
  private:
+  Solver& patient() {
+    if (!patient_) patient_.emplace(make_patient(solver_.robot));
+    return *patient_;
+  }
   /// A solver that works harder. The nominal chain is the one that it was accepted for.
   [[nodiscard]] Solver make_patient(const Robot& arm) const {
     return Solver(arm, generous(solver_.options), solver_.database, solver_.nominal,
@@ -235,7 +240,8 @@ class Diagnoser {
   bool explain_refusals() {
     SolveAllOptions every;
     every.max = kPatientAttempts;
-    const Solutions refused = patient_.solve_all(goal_.target(), every, open_);
+    const Solutions refused = patient().solve_all(goal_.target(), every, open_);
+    out_.attempts += refused.attempts;
     out_.cause = Cause::rejected;
     out_.refused = static_cast<int>(refused.all.size());
     if (!refused.all.empty()) describe(refused.all.front().q);
@@ -255,18 +261,15 @@ class Diagnoser {
   const SolveRequest& request_;
   /// The request without what refuses answers or prefers some.
   SolveRequest open_;
-  Solver patient_;
+  std::optional<Solver> patient_;
   Diagnosis out_;
 };
 
 }  // namespace
 
 Diagnosis Solver::Impl::diagnose(const Pose& target, const SolveRequest& request) const {
-  Result plain;
-  {
-    const WorkspacePool::Lease lease(workspaces);
-    plain = solve(target, request, lease.get(), nullptr);
-  }
+  const WorkspacePool::Lease lease(workspaces);
+  const Result plain = solve(target, request, lease.get(), nullptr);
   if (plain.success()) {
     const TaskSpace of_call = task_of(request);
     Diagnosis fine;
@@ -276,12 +279,13 @@ Diagnosis Solver::Impl::diagnose(const Pose& target, const SolveRequest& request
     return fine;
   }
   Diagnoser diagnoser(*this, target, request);
-  if (plain.status != Status::out_of_reach &&
-      (diagnoser.find_with_more_work(plain.status) || diagnoser.find_outside_limits())) {
-    return diagnoser.diagnosis();
+  bool is_explained = plain.proof == Proof::closed_form && plain.status != Status::rejected &&
+                      diagnoser.explain_by_branches(lease.get());
+  if (!is_explained && plain.status != Status::out_of_reach) {
+    is_explained = diagnoser.find_with_more_work(plain.status) || diagnoser.find_outside_limits();
   }
-  if (!diagnoser.find_position()) diagnoser.measure_distance(plain.status);
-  return diagnoser.diagnosis();
+  if (!is_explained && !diagnoser.find_position()) diagnoser.measure_distance(plain.status);
+  return diagnoser.diagnosis(plain.proof);
 }
 
 Diagnosis Solver::diagnose(const Pose& T_base_tip, const SolveRequest& request) const {

@@ -172,10 +172,12 @@ def diagnosis_report(
     return {
         "cause": diagnosis.cause.name,
         "message": diagnosis.message,
+        "proof": diagnosis.proof.name,
         "beyond_reach": diagnosis.beyond_reach,
         "rotation_gap": diagnosis.rotation_gap,
         "joint": robot.joint_names[joint] if joint >= 0 else None,
         "limit_violation": diagnosis.limit_violation,
+        "branch": angles.show_optional(robot, diagnosis.branch),
         "least_singular_value": diagnosis.least_singular_value,
         "best_effort_q": angles.show_optional(robot, diagnosis.q),
         "best_effort_is_solution": diagnosis.q_is_solution,

@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What is measured of the paper's tables and figures."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from bench.arms import PAPER_ARMS
+from bench.cells import CEILING_ATTEMPTS
+from bench.size import SEED, Job, Size
+
+if TYPE_CHECKING:
+    from bench.store import Settings
+
+ABLATION_1_SCALES = ("small", "medium", "large")
+
+SELECTIONS: dict[str, dict[str, Any]] = {
+    "Eq. (5), farthest": {},
+    "Eq. (5), in order": {"reselection": "next"},
+    "Eq. (2), in order": {"ranking": "nearest", "reselection": "next"},
+}
+"""The three methods of the paper's figures, as changes to the paper preset."""
+
+ROTATION_KEYS = ("rotation_vector", "matrix", "euler", "quaternion")
+
+
+def paper_cell(
+    robot: str, size: Size, overrides: dict[str, Any], count: int | None = None
+) -> Settings:
+    """The paper preset with some options changed, by iksel.evaluate."""
+    return {
+        "cell": "evaluate",
+        "robot": robot,
+        "preset": "paper",
+        "overrides": overrides,
+        "count": size.paper if count is None else count,
+        "seed": SEED,
+    }
+
+
+def attempts_cell(robot: str, size: Size, overrides: dict[str, Any]) -> Settings:
+    """Success after each number of attempts."""
+    return {**paper_cell(robot, size, overrides), "cell": "attempts"}
+
+
+def curve_cell(
+    robot: str, size: Size, sampling: dict[str, Any], selection: str
+) -> Settings:
+    """Success over #ReA 1 to 20."""
+    changes = {**sampling, **SELECTIONS[selection], "max_attempts": 21}
+    return attempts_cell(robot, size, changes)
+
+
+def ceiling_cell(robot: str, size: Size, sampling: dict[str, Any]) -> Settings:
+    """Success after 100 attempts."""
+    many = {"max_attempts": CEILING_ATTEMPTS, "candidates": CEILING_ATTEMPTS}
+    return attempts_cell(robot, size, {**sampling, **many})
+
+
+def sampling_of(name: str, scale: str = "medium") -> dict[str, Any]:
+    """Overrides for a grid or CVT of a scale; the preset's own are left out."""
+    changes: dict[str, Any] = {}
+    if name == "cvt":
+        changes = {"database.sampling": "cvt", "database.samples": 0}
+    if scale != "medium":
+        changes["database.scale"] = scale
+    return changes
+
+
+def ablation_2(scheme: str) -> dict[str, Any]:
+    """Overrides of a row of Table II; a note after the name is another reading."""
+    name, _, note = scheme.partition(", ")
+    changes: dict[str, Any] = {} if name == "dls" else {"iteration": name}
+    return {**changes, **ABLATION_2_NOTES.get(note, {})}
+
+
+ABLATION_2_NOTES: dict[str, dict[str, Any]] = {
+    "6 steps": {"max_iterations": 6},
+    "growth stop on": {"growth_stop": "on"},
+}
+
+ABLATION_2_ROWS = (
+    "dls",
+    "pinv",
+    "pinv_rr",
+    "pinv_rr, 6 steps",
+    "cwln",
+    "cwpi",
+    "cwpi, growth stop on",
+)
+
+ABLATION_3_ROWS: dict[str, dict[str, Any]] = {
+    "Eq. (2)": {"ranking": "nearest", "reselection": "next"},
+    "Eq. (2), farthest": {"ranking": "nearest"},
+    "Eq. (5)": {},
+    "#ReA 3": {"max_attempts": 4},
+    "#ReA 5": {"max_attempts": 6},
+    "#ReA 10": {"max_attempts": 11},
+    "#ReA 20": {"max_attempts": 21},
+}
+
+
+def figure_cell(robot: str, size: Size, selection: str, rea: int) -> Settings:
+    """Mean and deviation of the time at one #ReA."""
+    changes = {**SELECTIONS[selection], "max_attempts": rea + 1}
+    return paper_cell(robot, size, changes, size.figure)
+
+
+def artefact_cell(robot: str, size: Size, overrides: dict[str, Any]) -> Settings:
+    """Singular samples that rank first."""
+    return {**paper_cell(robot, size, overrides, size.artefact), "cell": "artefact"}
+
+
+def artefact_rows(size: Size) -> dict[str, dict[str, Any]]:
+    """Overrides of the databases that are searched for singular samples."""
+    rows = {f"grid, {scale}": sampling_of("grid", scale) for scale in ABLATION_1_SCALES}
+    for scale in dict.fromkeys(("small", *size.cvt_scales)):
+        rows[f"cvt, {scale}"] = sampling_of("cvt", scale)
+    even = {"database.sampling": "low_discrepancy", "database.samples": 0}
+    return {**rows, "low_discrepancy, medium": even}
+
+
+def seeds_cell(robot: str, size: Size) -> Settings:
+    """IK-Geo's solutions as seeds of the paper's iteration."""
+    count = min(size.paper, 2_000)
+    cell = paper_cell(robot, size, {}, count)
+    return {**cell, "cell": "seeds", "rival": "IK-Geo", "kind": "uniform"}
+
+
+def paper_jobs(size: Size) -> list[Job]:
+    """All jobs of the paper."""
+    jobs = []
+    for robot, short in PAPER_ARMS.items():
+        for sampling in ("grid", "cvt"):
+            scales = ABLATION_1_SCALES if sampling == "grid" else size.cvt_scales
+            cells = _table_cells(robot, size, sampling, scales)
+            curves = [cell for cell in cells if cell["cell"] == "attempts"]
+            timed = [cell for cell in cells if cell["cell"] != "attempts"]
+            name = f"paper, {short}, {sampling}"
+            jobs.append(Job(f"{name}, curves", "paper", curves, timed=False))
+            jobs.append(Job(name, "paper", timed))
+        figure = [
+            figure_cell(robot, size, selection, rea)
+            for selection in SELECTIONS
+            for rea in size.figure_attempts
+        ]
+        jobs.append(Job(f"paper, {short}, figures", "paper", figure))
+        keys = [
+            attempts_cell(robot, size, {"database.rotation_key": key})
+            for key in ROTATION_KEYS
+        ]
+        name = f"paper, {short}, rotation keys"
+        jobs.append(Job(name, "paper", keys, timed=False))
+    rows = artefact_rows(size).values()
+    artefact = [artefact_cell("ur3_wrs", size, row) for row in rows]
+    jobs.append(Job("paper, grid artefact", "paper", artefact, timed=False))
+    seeded = [seeds_cell(robot, size) for robot in ("cvr038", "cvrb1213", "ur3_wrs")]
+    jobs.append(Job("paper, IK-Geo as seed", "paper", seeded))
+    return jobs
+
+
+def _table_cells(
+    robot: str, size: Size, sampling: str, scales: tuple[str, ...]
+) -> list[Settings]:
+    """The cells of the three ablations with one sampling, each once."""
+    cells = [paper_cell(robot, size, sampling_of(sampling, scale)) for scale in scales]
+    if "medium" in scales:
+        base = sampling_of(sampling)
+        rows = [ablation_2(scheme) for scheme in ABLATION_2_ROWS]
+        rows += ABLATION_3_ROWS.values()
+        cells += [paper_cell(robot, size, {**base, **row}) for row in rows]
+        cells += [curve_cell(robot, size, base, name) for name in SELECTIONS]
+        cells.append(ceiling_cell(robot, size, base))
+        cwln = {**base, **ablation_2("cwln")}
+        cells.append(attempts_cell(robot, size, cwln))
+    # One option changed from the preset may be none: rows of two tables are one cell.
+    return [cell for i, cell in enumerate(cells) if cell not in cells[:i]]

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""How much a report measures, in two sizes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from bench.store import Settings
+
+SEED = 1
+"""Seed of all targets."""
+
+
+@dataclass(frozen=True)
+class Size:
+    """How much is measured."""
+
+    paper: int
+    """Targets of the paper's tables."""
+    figure: int
+    """Targets for the times of the figures."""
+    figure_attempts: tuple[int, ...]
+    """#ReA that the figures' times are taken at."""
+    cvt_scales: tuple[str, ...]
+    """Sizes of the databases that are also sampled by CVT."""
+    rivals: dict[str, int]
+    """Targets per kind for a solver whose share is 1."""
+    robots: int
+    """Targets for the table of all robots."""
+    batch: int
+    """Poses in a batch."""
+    artefact: int
+    """Queries looked at for singular samples."""
+    share: float = 10.0
+    """Largest share that a solver may have."""
+    requests: int = 10_000
+    """Targets of the requests."""
+    restarts: int = 1_000
+    """Targets that are restarted a thousand times each."""
+    no: int = 10_000
+    """Targets of each kind for the noes, and what goes with them."""
+    no_slow: int = 100
+    """The same for slow solvers, which may take a tenth of a second for a no."""
+    no_seed: int = SEED
+    """Their seed."""
+
+
+FULL = Size(
+    paper=10_000,
+    figure=2_000,
+    figure_attempts=tuple(range(1, 21)),
+    cvt_scales=("small", "medium"),
+    rivals={
+        "uniform": 2_000,
+        "near_limits": 1_000,
+        "near_singular": 1_000,
+        "lines": 1_000,
+        "unreachable": 100,
+    },
+    robots=100_000,
+    batch=10_000,
+    artefact=1_000,
+)
+
+QUICK = Size(
+    paper=1_000,
+    figure=200,
+    figure_attempts=(1, 5, 20),
+    cvt_scales=(),
+    rivals={
+        "uniform": 100,
+        "near_limits": 40,
+        "near_singular": 40,
+        "lines": 40,
+        "unreachable": 5,
+    },
+    robots=2_000,
+    batch=2_000,
+    artefact=200,
+    requests=500,
+    restarts=50,
+    no=500,
+    no_slow=10,
+)
+
+
+@dataclass(frozen=True)
+class Job:
+    """Cells measured by one process."""
+
+    name: str
+    section: str
+    cells: list[Settings]
+    timed: bool = True

@@ -31,7 +31,9 @@ def test_every_configuration_reaches_the_pose(solver) -> None:
         for arc in motion:
             assert arc.q.shape == (len(arc), 7)
             assert arc.elbow.shape in {(0,), (len(arc),)}
-            error = iksel.pose_error(np.broadcast_to(pose, (len(arc), 4, 4)), robot.fk(arc.q))
+            error = iksel.pose_error(
+                np.broadcast_to(pose, (len(arc), 4, 4)), robot.fk(arc.q)
+            )
             assert np.abs(error).max() <= 2e-6
             assert ((arc.q >= robot.lower) & (arc.q <= robot.upper)).all()
 
@@ -97,7 +99,9 @@ def test_pickle(solver) -> None:
 
 def test_errors_name_the_culprit(made) -> None:
     pose = np.eye(4)
-    with pytest.raises(iksel.InvalidArgumentError, match="robot 'ur3' has no self-motion"):
+    with pytest.raises(
+        iksel.InvalidArgumentError, match="robot 'ur3' has no self-motion"
+    ):
         made.solver("ur3").self_motion(pose)
     panda = made.solver("panda")
     with pytest.raises(iksel.InvalidArgumentError, match=r"^spacing: "):

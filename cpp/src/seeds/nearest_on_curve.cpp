@@ -5,7 +5,6 @@
 #include <cmath>
 
 namespace iksel {
-
 namespace {
 
 /// Rounds of eight values in which a least is looked for, and a fold.
@@ -26,8 +25,7 @@ NearestOnCurve::NearestOnCurve(const ChainModel& model, const ClosedFormChain& c
       places_(branches_.places(kSamples)),
       joints_(model.joints),
       is_nominal_(is_nominal),
-      concludes_(is_nominal && tolerance <= kMostTolerance),
-      close_(std::max(0.01, 4 * std::sqrt(2 * tolerance))),
+      miss_(is_nominal, tolerance),
       rows_(kSamples),
       samples_(kSamples) {}
 
@@ -165,6 +163,8 @@ void NearestOnCurve::follow(const LeastPlace& least) {
   best.cost = minimize(
       branches_, bracket, value, [&](int lane) { return cost(lane); }, kRefused, take,
       [&](double so_far, int round) { return is_hopeless(so_far, round); });
+  // The sample itself may be all there is.
+  if (least.value < best.cost) best = {least.value, sample(least.place, least.branch).q};
   if (best.cost < kRefused) {
     add(best);
   } else {

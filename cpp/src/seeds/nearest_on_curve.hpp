@@ -27,7 +27,7 @@ class NearestOnCurve {
   /// The nearest first [rad].
   [[nodiscard]] const double* q(std::size_t i) const { return found_[i].q.data(); }
   /// If there is none: whether none came so close to one that it might have been missed.
-  [[nodiscard]] bool is_none() const { return size_ == 0 && concludes_ && least_off_ > close_; }
+  [[nodiscard]] bool is_none() const { return size_ == 0 && miss_.rules_out_answers(least_off_); }
   /// Whether these are local minima but for rounding: those of the chain itself.
   [[nodiscard]] bool is_settled() const { return is_nominal_; }
 
@@ -40,7 +40,6 @@ class NearestOnCurve {
   static constexpr double kRefused = 1e9;
   /// Branches are followed only if they come so near to an answer at a sample [mixed units].
   static constexpr double kNear = 0.3;
-  static constexpr double kMostTolerance = 1e-4;
 
   struct Found {
     double cost;
@@ -104,8 +103,7 @@ class NearestOnCurve {
   Places places_;
   const JointSpace& joints_;
   bool is_nominal_;
-  bool concludes_;
-  double close_;
+  NearMiss miss_;
 
   // Of the last search.
   std::array<double, SweptBranches::kDof> near_{}, weight_{};

@@ -79,8 +79,7 @@ bool SelfMotionArcs::add_partner(int branch, const BranchSpan& span, double part
   const double ahead = fold_at + (part < 0.5 ? places_.step : -places_.step);
   SweptBranches::Row values;
   for (int lane = 0; lane < kLanes; ++lane) {
-    values[static_cast<std::size_t>(lane)] =
-        inside + (ahead - inside) * lane / (kLanes - 1);
+    values[static_cast<std::size_t>(lane)] = inside + (ahead - inside) * lane / (kLanes - 1);
   }
   branches_.solve_one(branch, values);
   constexpr double kMerged = 0.1;

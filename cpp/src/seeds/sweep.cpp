@@ -10,8 +10,7 @@ Sweep::Sweep(const ChainModel& model, const ClosedFormChain& chain, bool is_nomi
              double tolerance, const lanes::LaneKernels& kernels)
     : branches_(model, chain, kernels),
       places_(branches_.places(kSamples)),
-      concludes_(is_nominal && tolerance <= kMostTolerance),
-      close_(std::max(0.01, 4 * std::sqrt(2 * tolerance))),
+      miss_(is_nominal, tolerance),
       rows_(kSamples) {}
 
 bool Sweep::find(const Pose& Y) {

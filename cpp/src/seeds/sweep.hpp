@@ -31,7 +31,7 @@ class Sweep {
   /// The answer [rad].
   [[nodiscard]] const double* q() const { return q_.data(); }
   /// If there was none: whether none came so close to one that it might have been missed.
-  [[nodiscard]] bool is_none() const { return concludes_ && least_ > close_; }
+  [[nodiscard]] bool is_none() const { return miss_.rules_out_answers(least_); }
 
  private:
   static constexpr int kBranches = SweptBranches::kCount;
@@ -39,19 +39,13 @@ class Sweep {
   static constexpr std::size_t kFollowed = 8;
   /// And such only as come so near to an answer at a sample [mixed units].
   static constexpr double kNear = 0.3;
-  /// Of a chain other than the nominal one, and beyond such tolerances, answers lie too far from
-  /// where branches are to conclude anything.
-  static constexpr double kMostTolerance = 1e-4;
 
   /// Looks between the samples beside; true if there is an answer.
   bool follow(const LeastPlace& near);
 
   SweptBranches branches_;
   Places places_;
-  bool concludes_;
-  /// A branch that comes so near to an answer may be one that rounding hides, or the tolerances
-  /// allow: beside a fold by their root [mixed units].
-  double close_;
+  NearMiss miss_;
   /// How far each branch of a sample is from being an answer [mixed units].
   std::vector<SweptBranches::Row> rows_;
   /// Where a branch comes nearer to an answer than at the samples beside.

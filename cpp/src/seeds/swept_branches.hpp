@@ -107,6 +107,29 @@ class SweptBranches {
   const lanes::BranchPack* last_ = &all_;
 };
 
+/// Whether no answer can have been missed, by how near the nearest branch came to one.
+class NearMiss {
+ public:
+  /// `is_nominal`: the branches are the model's own. `tolerance` is the larger of the solver's
+  /// [rad, and m in units of the reach].
+  NearMiss(bool is_nominal, double tolerance)
+      : concludes_(is_nominal && tolerance <= kMostTolerance),
+        close_(std::max(0.01, 4 * std::sqrt(2 * tolerance))) {}
+
+  /// `least`: how far it was from being an answer [mixed units].
+  [[nodiscard]] bool rules_out_answers(double least) const { return concludes_ && least > close_; }
+
+ private:
+  /// Of a chain other than the nominal one, and beyond such tolerances, answers lie too far from
+  /// where branches are to conclude anything.
+  static constexpr double kMostTolerance = 1e-4;
+
+  bool concludes_;
+  /// A branch that comes so near to an answer may be one that rounding hides, or the tolerances
+  /// allow: beside a fold by their root [mixed units].
+  double close_;
+};
+
 /// Where a branch has a value that is less than at the places beside.
 struct LeastPlace {
   double value;

@@ -1973,6 +1973,8 @@ class SelfMotionArc:
     """
     A connected piece of a self-motion inside the limits.
     """
+    def __iter__(self) -> collections.abc.Iterator:
+        ...
     def __len__(self) -> int:
         ...
     def __repr__(self) -> str:

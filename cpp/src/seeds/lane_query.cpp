@@ -26,7 +26,7 @@ void LaneQuery::set_target(const Pose& Y) {
 }
 
 std::size_t LaneQuery::find_nearest(std::size_t k) {
-  const std::size_t found = data_.tree.nearest(key_, k, nearest_.data());
+  const std::size_t found = data_.tree->nearest(key_, k, nearest_.data());
   std::sort(nearest_.begin(), nearest_.begin() + static_cast<std::ptrdiff_t>(found));
   return found;
 }

@@ -6,7 +6,6 @@
 #include <array>
 #include <vector>
 
-#include "base/stage_clock.hpp"
 #include "base/work.hpp"
 #include "goal/joint_move.hpp"
 #include "seeds/swept_branches.hpp"

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "base/stage_clock.hpp"
 #include "base/work.hpp"
 #include "seeds/lane_query.hpp"
 

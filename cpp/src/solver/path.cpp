@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "iksel/path.hpp"
 
-#include "base/error_check.hpp"
 #include "base/message_text.hpp"
 #include "base/pose_check.hpp"
 #include "iksel/error.hpp"

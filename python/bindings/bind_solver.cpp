@@ -224,6 +224,7 @@ void bind_solver(py::module_& m) {
   bind_properties(cls);
   bind_requests(m, cls);
   bind_path(m, cls);
+  bind_self_motion(m, cls);
   bind_batch(cls);
   cls.def("__repr__", [](const Solver& self) {
     return "Solver(" + py::cast<std::string>(py::repr(py::cast(self.robot()))) + ", " +

@@ -30,6 +30,7 @@ void bind_solver(pybind11::module_& m);
 /// The methods of Solver that take a request's keywords.
 void bind_requests(pybind11::module_& m, pybind11::class_<Solver>& solver);
 void bind_path(pybind11::module_& m, pybind11::class_<Solver>& solver);
+void bind_self_motion(pybind11::module_& m, pybind11::class_<Solver>& solver);
 void bind_evaluation(pybind11::module_& m);
 
 }  // namespace iksel::python

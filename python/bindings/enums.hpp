@@ -14,6 +14,7 @@
 #include "iksel/request.hpp"
 #include "iksel/result.hpp"
 #include "iksel/robot.hpp"
+#include "iksel/self_motion.hpp"
 #include "iksel/structure.hpp"
 
 namespace iksel::python {
@@ -63,6 +64,17 @@ struct EnumTable<StructureKind> {
       {"swept", StructureKind::swept,
        "in closed form for each value of one joint, which is swept over its range"},
       {"searched", StructureKind::searched, "by search only"},
+  };
+};
+
+template <>
+struct EnumTable<ArcEnd> {
+  static constexpr const char* kName = "ArcEnd";
+  static constexpr const char* kDoc = "What ends an arc of a self-motion.";
+  static constexpr EnumValue<ArcEnd> kValues[] = {
+      {"limit", ArcEnd::limit, "a joint is at its limit"},
+      {"fold", ArcEnd::fold, "branches merge in a singularity, from which no way on was found"},
+      {"closed", ArcEnd::closed, "nothing does: the last configuration leads on to the first"},
   };
 };
 

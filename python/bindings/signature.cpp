@@ -25,6 +25,9 @@ constexpr std::pair<const char*, const char*> kMakers[] = {
     {"BatchResult", "Solver.solve_batch"},
     {"Solutions", "Solver.solve_all"},
     {"PathResult", "Solver.solve_path"},
+    {"SelfMotion", "Solver.self_motion"},
+    {"SelfMotionArc", "Solver.self_motion"},
+    {"SelfMotionEnd", "Solver.self_motion"},
     {"Diagnosis", "Solver.diagnose"},
     {"Evaluation", "evaluate"},
 };

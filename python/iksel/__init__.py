@@ -23,6 +23,7 @@ except ImportError as _error:
 
 from iksel_cpp import (
     AngleUnitWarning,
+    ArcEnd,
     Axis,
     BatchResult,
     Cause,
@@ -58,6 +59,9 @@ from iksel_cpp import (
     RotationKey,
     Sampling,
     Scale,
+    SelfMotion,
+    SelfMotionArc,
+    SelfMotionEnd,
     SignatureError,
     SolutionOrder,
     Solutions,
@@ -97,6 +101,7 @@ __version__: str = _core.__version__
 
 __all__ = [
     "AngleUnitWarning",
+    "ArcEnd",
     "Axis",
     "BatchResult",
     "Cause",
@@ -133,6 +138,9 @@ __all__ = [
     "RotationKey",
     "Sampling",
     "Scale",
+    "SelfMotion",
+    "SelfMotionArc",
+    "SelfMotionEnd",
     "SignatureError",
     "SolutionOrder",
     "Solutions",

@@ -14,7 +14,7 @@ import numpy
 import numpy.typing
 import os
 import typing
-__all__: list[str] = ['AngleUnitWarning', 'Axis', 'BatchResult', 'Cause', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'Diagnosis', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'KeyScheme', 'Kinematics', 'Lanes', 'LinkTree', 'LinkTreeJoint', 'MoveNorm', 'Objective', 'ObjectiveKind', 'Paper', 'PathResult', 'Proof', 'RIGID_TOLERANCE', 'Ranking', 'Reselection', 'Result', 'Robot', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'SignatureError', 'SolutionOrder', 'Solutions', 'Solver', 'SolverOptions', 'Status', 'Structure', 'StructureKind', 'Task', 'TaskFrame', 'Tracker', 'UnknownNameError', 'UrdfError', 'check_pose', 'evaluate', 'grid_counts', 'orthonormalized', 'pose_error', 'pose_matrices', 'rigid_deviation', 'simd_level', 'time_kdl_fk_jacobian']
+__all__: list[str] = ['AngleUnitWarning', 'ArcEnd', 'Axis', 'BatchResult', 'Cause', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'Diagnosis', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'KeyScheme', 'Kinematics', 'Lanes', 'LinkTree', 'LinkTreeJoint', 'MoveNorm', 'Objective', 'ObjectiveKind', 'Paper', 'PathResult', 'Proof', 'RIGID_TOLERANCE', 'Ranking', 'Reselection', 'Result', 'Robot', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'SelfMotion', 'SelfMotionArc', 'SelfMotionEnd', 'SignatureError', 'SolutionOrder', 'Solutions', 'Solver', 'SolverOptions', 'Status', 'Structure', 'StructureKind', 'Task', 'TaskFrame', 'Tracker', 'UnknownNameError', 'UrdfError', 'check_pose', 'evaluate', 'grid_counts', 'orthonormalized', 'pose_error', 'pose_matrices', 'rigid_deviation', 'simd_level', 'time_kdl_fk_jacobian']
 class AngleUnitWarning(UserWarning):
     """
     Angles that look like degrees were given where radians are meant.
@@ -1605,6 +1605,26 @@ class Solver:
         Raises:
             InvalidArgumentError: as solve.
         """
+    def self_motion(self, pose: numpy.typing.ArrayLike | typing.Any, spacing: float = 0.1) -> SelfMotion:
+        """
+        All solutions of a redundant arm at once: the arcs of its self-motion inside the limits.
+
+        Seven joints that turn, of which one can be swept (`Robot.structure`). Joints with a range of a
+        whole turn or more end no arc. An arc shorter than what 64 samples of the swept joint tell apart may
+        be missed. Of a calibrated arm the arcs are those of its nominal chain, moved onto its own solutions.
+
+        Args:
+            pose: T_base_tip [m], as in solve.
+            spacing: farthest that a joint moves from one configuration of an arc to the next, 0.0001 to pi
+                [rad].
+
+        Returns:
+            A SelfMotion; empty, with a status that says why, if there is no solution.
+
+        Raises:
+            InvalidArgumentError: a robot of another structure, a task with free axes, another strategy than
+                Lanes, a spacing out of range; else as solve.
+        """
     def solve(self, pose: numpy.typing.ArrayLike | typing.Any, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None) -> Result:
         """
         Joint values that put the TCP (the tip link's frame, if there is no tool) at a pose.
@@ -1937,6 +1957,107 @@ class Tracker:
     def q(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         Where the arm is now, (dof,) [rad or m]; always inside the limits.
+        """
+class ArcEnd(enum.Enum):
+    """
+    What ends an arc of a self-motion.
+    """
+    closed = 2
+    fold = 1
+    limit = 0
+    def __format__(self, arg0: str) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
+class SelfMotionEnd:
+    """
+    One end of an arc of a self-motion.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def at_upper(self) -> bool:
+        """
+        Whether it is at the upper one of its limits.
+        """
+    @property
+    def joint(self) -> int:
+        """
+        Index of the joint that is at its limit; -1 unless `limit`.
+        """
+    @property
+    def kind(self) -> ArcEnd:
+        """
+        What ends the arc there.
+        """
+class SelfMotionArc:
+    """
+    A connected piece of a self-motion inside the limits.
+    """
+    def __iter__(self) -> collections.abc.Iterator:
+        ...
+    def __len__(self) -> int:
+        ...
+    def __repr__(self) -> str:
+        ...
+    @property
+    def begin(self) -> SelfMotionEnd:
+        """
+        What ends it before its first configuration.
+        """
+    @property
+    def elbow(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        The elbow's angle at each about the line from shoulder to wrist, (n,) [rad]: 0 on the side where the first axis points to, NaN where shoulder and wrist lie on that axis. Empty unless three axes meet in a shoulder and three in a wrist.
+        """
+    @property
+    def end(self) -> SelfMotionEnd:
+        """
+        What ends it behind its last configuration.
+        """
+    @property
+    def is_closed(self) -> bool:
+        """
+        Whether the last configuration leads on to the first.
+        """
+    @property
+    def length(self) -> float:
+        """
+        Sum of the joint moves along it [rad].
+        """
+    @property
+    def q(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Configurations along it, (n, dof) [rad], its ends included; each reaches the pose. A closed arc does not repeat the first.
+        """
+class SelfMotion:
+    """
+    The arcs of a pose's self-motion, the longest first; true if there are any. Indexing gives a SelfMotionArc.
+    """
+    def __bool__(self) -> bool:
+        ...
+    def __getitem__(self, i: typing.SupportsInt | typing.SupportsIndex) -> SelfMotionArc:
+        ...
+    def __iter__(self) -> collections.abc.Iterator[SelfMotionArc]:
+        ...
+    def __len__(self) -> int:
+        ...
+    def __repr__(self) -> str:
+        ...
+    @property
+    def proof(self) -> Proof:
+        """
+        How certain it is that there is none.
+        """
+    @property
+    def status(self) -> Status:
+        """
+        `solved`, or why there is none.
+        """
+    @property
+    def success(self) -> bool:
+        """
+        Whether there is at least one arc.
         """
 class Evaluation:
     """

@@ -134,11 +134,11 @@ def test_options_that_nothing_reads_are_refused(base, change, reader: str) -> No
 
 def test_neighbours_bound_what_lanes_take_from_the_database(made) -> None:
     few = iksel.Solver(
-        made.robot("panda"), iksel.SolverOptions(strategy=iksel.Lanes(neighbours=16))
+        made.robot("irb14050"), iksel.SolverOptions(strategy=iksel.Lanes(neighbours=16))
     )
     pose = few.robot.fk(few.robot.random_configurations(1, 12)[0])
     all_of_few = few.solve_all(pose)
-    all_of_many = made.solver("panda").solve_all(pose)
+    all_of_many = made.solver("irb14050").solve_all(pose)
     assert all_of_few.success
     assert all_of_few.q.shape != all_of_many.q.shape or (
         (all_of_few.q != all_of_many.q).any()

@@ -50,6 +50,10 @@ def examples(solver: iksel.Solver) -> list[object]:
     tracker = solver.tracker(q[0])
     tracker.track(line[1], dt=0.1)
     tree = iksel.LinkTree.from_urdf(robot.urdf)
+    seven = iksel.Solver(iksel.load_robot("panda"), solver.options)
+    motion = seven.self_motion(
+        seven.robot.fk(seven.robot.random_configurations(1, 3)[0])
+    )
     return [
         robot,
         robot.structure,
@@ -70,6 +74,9 @@ def examples(solver: iksel.Solver) -> list[object]:
         solver.solve_all(far),
         solver.solve_path(line, start=q[0]),
         solver.solve_path(broken, start=q[0]),
+        motion,
+        motion[0],
+        motion[0].end,
         solver.diagnose(poses[0]),
         solver.diagnose(far),
         *proven_noes(solver),

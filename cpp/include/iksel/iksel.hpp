@@ -15,6 +15,7 @@
 #include "iksel/result.hpp"         // IWYU pragma: export
 #include "iksel/robot.hpp"          // IWYU pragma: export
 #include "iksel/robot_options.hpp"  // IWYU pragma: export
+#include "iksel/self_motion.hpp"    // IWYU pragma: export
 #include "iksel/simd.hpp"           // IWYU pragma: export
 #include "iksel/solver.hpp"         // IWYU pragma: export
 #include "iksel/structure.hpp"      // IWYU pragma: export

@@ -30,6 +30,7 @@ IKSEL_EXPORT CalibrationDeviation measure_calibration_deviation(const Robot& rob
                                                                 std::size_t samples = 2'000);
 
 struct PathResult;
+struct SelfMotion;
 
 /// Solves inverse kinematics for one robot. Immutable; copies share the data. Safe to use from many
 /// threads at once, and the same input gives the same bits from any of them. Solving allocates
@@ -80,6 +81,15 @@ class IKSEL_EXPORT Solver {
   /// as solve.
   [[nodiscard]] Solutions solve_all(const Pose& T_base_tip, const SolveAllOptions& options = {},
                                     const SolveRequest& request = {}) const;
+
+  /// All solutions of a redundant arm at once: the arcs of its self-motion inside the limits, with
+  /// what ends each (iksel/self_motion.hpp). For seven joints of which one can be swept
+  /// (find_structure); one joint moves by at most `spacing` from a sample to the next [rad]. An arc
+  /// shorter than the sweep's 64 samples tell apart may be missed. Of a calibrated arm the arcs are
+  /// those of its nominal chain, moved onto its own solutions. Throws InvalidArgumentError on a
+  /// robot of another structure, a task with free axes, a strategy other than Lanes, a spacing not
+  /// in [0.0001, pi], and a pose that is none.
+  [[nodiscard]] SelfMotion self_motion(const Pose& T_base_tip, double spacing = 0.1) const;
 
   /// Why solve(T_base_tip, request) gives no answer, and the best that can be done. Where a closed
   /// form proves that there is none, its branches say why: no search. Else it spends more than

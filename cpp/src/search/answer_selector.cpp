@@ -36,7 +36,7 @@ bool AnswerSelector::is_satisfied(const Collector& search) {
   return search.is_likely_complete();
 }
 
-bool AnswerSelector::select(JointVector& q) {
+bool AnswerSelector::select(const Collector& search, JointVector& q) {
   if (first_kept_ == found_.size()) return select_image(kInfinity, q);
   if (!ranks_) {
     q = found_.at(first_kept_);
@@ -50,12 +50,13 @@ bool AnswerSelector::select(JointVector& q) {
     if (cost < kInfinity) ranked[count++] = {cost, i};
   }
   if (count == 0) return select_image(kInfinity, q);
-  const std::size_t descents = goal_.is_redundant() ? std::min(count, kDescents) : 1;
+  const bool descends = goal_.is_redundant() && !search.is_settled;
+  const std::size_t descents = descends ? std::min(count, kDescents) : 1;
   std::partial_sort(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(descents),
                     ranked.begin() + static_cast<std::ptrdiff_t>(count));
   q = found_.at(ranked[0].index);
   double best = ranked[0].cost;
-  if (goal_.is_redundant()) best = descend_from(ranked.data(), descents, q);
+  if (descends) best = descend_from(ranked.data(), descents, q);
   // An image of one that was refused, or costs infinitely much, may be better still.
   if (count < found_.size()) select_image(best, q);
   return true;

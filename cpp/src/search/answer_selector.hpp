@@ -22,8 +22,8 @@ class AnswerSelector {
   bool is_satisfied(const Collector& search);
   /// Whether the best is known only when all are.
   [[nodiscard]] bool wants_all() const { return ranks_ && !goal_.is_redundant(); }
-  /// The best of what passed; false if nothing did.
-  bool select(JointVector& q);
+  /// The best of what passed of a search; false if nothing did.
+  bool select(const Collector& search, JointVector& q);
   /// Steps along self-motions so far.
   [[nodiscard]] int steps() const { return steps_; }
 

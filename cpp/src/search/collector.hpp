@@ -39,6 +39,8 @@ class Collector {
     double min_distance;
     /// Whether the search ends when it has most likely found all.
     bool until_complete;
+    /// Of a redundant arm, so many solutions spread evenly over its self-motion will do; 0: no.
+    int spread = 0;
   };
 
   /// `is_satisfied` is asked between stages. All must outlive this.
@@ -61,6 +63,15 @@ class Collector {
   void look_for_partners(bool look) { looks_for_partners_ = look; }
   /// Whether more than the first answer is wanted.
   [[nodiscard]] bool wants_more() const { return aim_.until_complete || ranks_answers(request_); }
+  /// Whether nothing but the nearest is wanted, and no filter may refuse it.
+  [[nodiscard]] bool wants_nearest() const {
+    return !aim_.until_complete && request_.near && !request_.objective.is_set() &&
+           !request_.filter;
+  }
+  /// How many solutions are to be spread over the self-motion, and how near to each other; 0: they
+  /// need not be.
+  [[nodiscard]] int spread() const { return aim_.spread; }
+  [[nodiscard]] double min_distance() const { return aim_.min_distance; }
   [[nodiscard]] bool is_complete() const { return aim_.until_complete && is_likely_complete(); }
   /// Whether all there is has most likely been found: many seeds in a row led to nothing new; or
   /// fewer, and the signs of det J, of which a single solution more would leave one over, cancel.
@@ -78,6 +89,7 @@ class Collector {
   Status status = Status::not_converged;  ///< solved if anything was found
   Proof proof = Proof::none;              ///< that there are no more solutions
   bool is_out_of_time = false;
+  bool is_settled = false;  ///< the nearest that was found is the least move already
 
  private:
   /// Brings a success to the image nearest to `near`, where it still is one.

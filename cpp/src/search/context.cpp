@@ -32,6 +32,8 @@ Workspace::InLanes::InLanes(const ChainModel& model, const ChainModel& nominal,
     branches.emplace(model, *closed_form, is_nominal, position, rotation, kernels);
   } else if (closed_form->form.is_held) {
     sweep.emplace(model, *closed_form, is_nominal, tolerance, kernels);
+    nearest_on_curve.emplace(model, *closed_form, is_nominal, tolerance, kernels);
+    arcs.emplace(model, *closed_form, kernels);
   } else {
     roots.emplace(model, *closed_form, is_nominal, tolerance, kernels);
   }
@@ -64,6 +66,7 @@ WorkspacePool::WorkspacePool(const Robot& robot, const Robot& nominal, const Dat
       database_(database),
       options_(options),
       closed_form_(find_closed_form(nominal.model())),
+      solves_in_lanes_(iksel::solves_in_lanes(robot.model(), database.data(), options)),
       damaged_(database.data().storage.damaged) {
   const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
   for (std::size_t i = 0; i < std::min(cores, kPlaces); ++i) idle_[i] = make().release();

@@ -16,9 +16,11 @@
 #include "search/collector.hpp"
 #include "seeds/enumeration.hpp"
 #include "seeds/lane_query.hpp"
+#include "seeds/nearest_on_curve.hpp"
 #include "seeds/root_sweep.hpp"
 #include "seeds/seed_ranking.hpp"
 #include "seeds/selection.hpp"
+#include "seeds/self_motion_arcs.hpp"
 #include "seeds/sweep.hpp"
 #include "seeds/task_samples.hpp"
 
@@ -47,6 +49,8 @@ struct Workspace {
     std::optional<Enumeration> branches;
     std::optional<Sweep> sweep;
     std::optional<RootSweep> roots;
+    std::optional<NearestOnCurve> nearest_on_curve;
+    std::optional<SelfMotionArcs> arcs;
   };
   struct OneAtATime {
     OneAtATime(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
@@ -68,6 +72,12 @@ class WorkspacePool {
   WorkspacePool(const WorkspacePool&) = delete;
   WorkspacePool& operator=(const WorkspacePool&) = delete;
   ~WorkspacePool();
+
+  /// Whether its workspaces solve in lanes.
+  [[nodiscard]] bool solves_in_lanes() const { return solves_in_lanes_; }
+
+  /// Whether the self-motion is known as arcs.
+  [[nodiscard]] bool has_arcs() const { return closed_form_ && closed_form_->form.is_held; }
 
   /// A workspace, given back when this goes. Throws DatabaseError if the database was damaged since
   /// it was mapped.
@@ -92,6 +102,7 @@ class WorkspacePool {
   const Database& database_;
   const SolverOptions& options_;
   std::optional<ClosedFormChain> closed_form_;
+  bool solves_in_lanes_;
   /// As Storage::damaged of the database.
   const std::atomic<bool>* damaged_;
   /// Those that lie idle; a null is a place to put one back. More solves at once than places make

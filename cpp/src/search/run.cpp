@@ -12,6 +12,7 @@
 #include "seeds/given_seeds.hpp"
 #include "seeds/nearest_seeds.hpp"
 #include "seeds/random_seeds.hpp"
+#include "seeds/row_seeds.hpp"
 #include "seeds/seed_sequence.hpp"
 #include "seeds/selected_seeds.hpp"
 #include "seeds/spread_seeds.hpp"
@@ -66,6 +67,10 @@ struct Search {
   template <typename Branches>
   std::optional<Proof> by_branches(Branches& branches, Proof kind, GivenSeeds& given,
                                    const Pose& Y) const;
+  /// The same by the self-motion of a chain that is swept.
+  std::optional<Proof> on_curve(const Pose& Y) const;
+  /// Solutions all over it.
+  std::optional<Proof> over_curve(const Pose& Y) const;
 };
 
 template <typename Answers>
@@ -122,6 +127,9 @@ Proof Search<Answers>::in_lanes() const {
     if (proof) return *proof;
   }
   if constexpr (std::is_same_v<Answers, Collector>) {
+    if (workspace.lanes->sweep && request.database_seeds) {
+      if (const auto proof = on_curve(Y)) return *proof;
+    }
     if (run(refiner, near, given) || !request.database_seeds) return Proof::none;
     refiner.begin(goal.task(), kAll);
     SpreadSeeds spread(query, model.joints, options.seed, answers, work);
@@ -162,6 +170,46 @@ std::optional<Proof> Search<Answers>::by_branches(Branches& branches, Proof kind
   }
   refiner.begin(goal.task(), kFirst);
   return std::nullopt;
+}
+
+template <typename Answers>
+std::optional<Proof> Search<Answers>::over_curve(const Pose& Y) const {
+  // Between points no farther apart, a straight line is near enough to the curve [rad].
+  constexpr double kStraight = 0.3;
+  LaneRefiner& refiner = workspace.lanes->refiner;
+  SelfMotionArcs& arcs = *workspace.lanes->arcs;
+  arcs.find(Y, kStraight);
+  const std::vector<SelfMotionArcs::Joints> points =
+      arcs.spread(answers.spread(), answers.min_distance());
+  clock.lap(&StageTimes::query);
+  RowSeeds seeds(points.empty() ? nullptr : points[0].data(), points.size(), SweptBranches::kDof,
+                 /*are_answers=*/false, work);
+  refiner.begin(goal.task(), kThere);
+  search(refiner, seeds, answers, work);
+  refiner.begin(goal.task(), kFirst);
+  clock.lap(&StageTimes::iterate);
+  if (answers.has_any()) return Proof::none;
+  Sweep& sweep = *workspace.lanes->sweep;
+  if (points.empty() && !sweep.find(Y) && sweep.is_none()) return Proof::sweep;
+  return std::nullopt;
+}
+
+template <typename Answers>
+std::optional<Proof> Search<Answers>::on_curve(const Pose& Y) const {
+  if (answers.spread() > 0) return over_curve(Y);
+  if (!answers.wants_nearest()) return std::nullopt;
+  NearestOnCurve& curve = *workspace.lanes->nearest_on_curve;
+  LaneRefiner& refiner = workspace.lanes->refiner;
+  const JointMove move(model.dof, request);
+  NearestOnCurveSeeds nearest(curve, Y, *request.near, move, answers, work, clock);
+  refiner.begin(goal.task(), kThere);
+  search(refiner, nearest, answers, work);
+  refiner.begin(goal.task(), kFirst);
+  clock.lap(&StageTimes::iterate);
+  if (curve.is_none()) return Proof::sweep;
+  if (!answers.has_any()) return std::nullopt;
+  answers.is_settled = curve.is_settled();
+  return Proof::none;
 }
 
 }  // namespace

@@ -7,9 +7,7 @@
 #include <vector>
 
 #include "base/work.hpp"
-#include "kinematics/chain_model.hpp"
-#include "simd/branch_types.hpp"
-#include "structure/closed_form.hpp"
+#include "seeds/swept_branches.hpp"
 
 namespace iksel {
 
@@ -26,54 +24,33 @@ class Sweep {
   /// Looks for an answer to Y (reduction.hpp): at the samples, and where branches come near to one,
   /// between them. True if there is one.
   bool find(const Pose& Y);
+  /// Adds the branches inside the limits at every `stride`-th sample from `first` on, seven joint
+  /// values each [rad].
+  void add_samples(const Pose& Y, int first, int stride, std::vector<double>& q);
   /// The answer [rad].
   [[nodiscard]] const double* q() const { return q_.data(); }
   /// If there was none: whether none came so close to one that it might have been missed.
-  [[nodiscard]] bool is_none() const { return concludes_ && least_ > close_; }
+  [[nodiscard]] bool is_none() const { return miss_.rules_out_answers(least_); }
 
  private:
-  static constexpr int kBranches = lanes::kWidth;
+  static constexpr int kBranches = SweptBranches::kCount;
   /// Branches that are followed between samples, at most.
   static constexpr std::size_t kFollowed = 8;
   /// And such only as come so near to an answer at a sample [mixed units].
   static constexpr double kNear = 0.3;
-  /// Of a chain other than the nominal one, and beyond such tolerances, answers lie too far from
-  /// where branches are to conclude anything.
-  static constexpr double kMostTolerance = 1e-4;
 
-  /// Where a branch comes nearer to an answer than at the samples beside.
-  struct Near {
-    double off;
-    int place, lane;
-    friend bool operator<(const Near& a, const Near& b) { return a.off < b.off; }
-  };
-  /// How far each branch of a sample is from being an answer [mixed units].
-  using Row = std::array<double, kBranches>;
-
-  /// Solves a pack; `off` gets how far each lane is from being an answer.
-  void solve(lanes::BranchPack& pack, Row& off) const;
-  [[nodiscard]] const Row& row_at(int place) const;
-  void find_nearest();
   /// Looks between the samples beside; true if there is an answer.
-  bool follow(const Near& near);
-  void take(const lanes::BranchPack& pack, double swept, int lane);
+  bool follow(const LeastPlace& near);
 
-  ClosedFormChain chain_;
-  const lanes::LaneKernels& kernels_;
-  bool concludes_;
-  /// A branch that comes so near to an answer may be one that rounding hides, or the tolerances
-  /// allow: beside a fold by their root [mixed units].
-  double close_;
-  double lower_, step_, offset_;  ///< of the swept joint [rad]
-  /// Whether the last sample is beside the first.
-  bool turns_;
-  std::vector<Row> rows_;
-  lanes::BranchPack pack_ = all_branches();
-  lanes::BranchPack followed_{};  ///< one branch in all lanes
-  std::array<Near, kFollowed> nearest_{};
-  std::size_t near_count_ = 0;
+  SweptBranches branches_;
+  Places places_;
+  NearMiss miss_;
+  /// How far each branch of a sample is from being an answer [mixed units].
+  std::vector<SweptBranches::Row> rows_;
+  /// Where a branch comes nearer to an answer than at the samples beside.
+  LeastPlaces<kFollowed> nearest_;
   double least_ = 0;  ///< how far the nearest branch was from being an answer
-  std::array<double, 7> q_{};
+  std::array<double, SweptBranches::kDof> q_{};
 };
 
 /// These as a source of seeds.

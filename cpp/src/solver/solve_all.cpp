@@ -15,6 +15,8 @@ namespace {
 
 /// Solutions of a redundant arm from which the asked for are spread: so many for each.
 constexpr std::size_t kChoice = 4;
+/// Solutions spread over a self-motion, at most: as many as a set can hold.
+constexpr int kMostSpread = static_cast<int>(SolutionSet::kMost / kChoice);
 /// Images looked at, at most.
 constexpr std::size_t kImageBound = 65536;
 
@@ -133,8 +135,14 @@ Solutions Solver::Impl::solve_all(const Pose& target, const SolveAllOptions& all
   const auto is_satisfied = [&](const Collector&) {
     return goal.is_redundant() && found.size() >= std::max<std::size_t>(kChoice * most, 64);
   };
-  Collector search(model(), goal, request, {all.min_distance, true}, is_satisfied,
-                   options.max_attempts, workspace.collected);
+  // A few more than asked for, as branches come near to each other; what a filter refuses is
+  // replaced by others.
+  const int most_spread = std::min(all.max, kMostSpread);
+  const int spread =
+      request.filter ? static_cast<int>(kChoice) * most_spread : most_spread + most_spread / 4 + 8;
+  const Collector::Aim aim{all.min_distance, true, goal.is_redundant() ? spread : 0};
+  Collector search(model(), goal, request, aim, is_satisfied, options.max_attempts,
+                   workspace.collected);
   collect(model(), options, search, workspace);
 
   Solutions solutions;

@@ -93,7 +93,7 @@ Result Solver::Impl::solve(const Pose& target, const SolveRequest& request, Work
   JointVector q;
   if (search.status != Status::solved) {
     result.status = search.status;
-  } else if (selector.select(q) && goal.check(q, result)) {
+  } else if (selector.select(search, q) && goal.check(q, result)) {
     if (request.objective.is_set()) {
       result.cost = ObjectiveCost(model(), request.objective).value(q);
     }

@@ -4,6 +4,7 @@
 
 #include "goal/angle_bound.hpp"
 #include "iksel/path.hpp"
+#include "iksel/self_motion.hpp"
 #include "iksel/solver.hpp"
 #include "search/context.hpp"
 #include "search/run.hpp"
@@ -31,6 +32,10 @@ struct Solver::Impl {
                       Workspace& workspace) const;
   PathResult solve_path(const std::vector<Pose>& targets, const PathOptions& path,
                         Workspace& workspace) const;
+  /// Throws InvalidArgumentError unless there is a self-motion to be asked for.
+  void check_self_motion(double spacing) const;
+  [[nodiscard]] SelfMotion self_motion(const Pose& target, double spacing,
+                                       Workspace& workspace) const;
   /// A batch: `on_row(row, result)` for each row of `pose_at`, in any order and from any thread;
   /// near_of(row) may be null.
   template <typename PoseAt, typename Near, typename OnRow>

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The least joint move to the self-motion of seven joints of which one is swept: of the whole curve
+// inside the limits, not only down from where a seed happens to end.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "base/work.hpp"
+#include "goal/joint_move.hpp"
+#include "seeds/swept_branches.hpp"
+
+namespace iksel {
+
+class NearestOnCurve {
+ public:
+  /// As Sweep.
+  NearestOnCurve(const ChainModel& model, const ClosedFormChain& chain, bool is_nominal,
+                 double tolerance, const lanes::LaneKernels& kernels);
+
+  /// Looks for the local minima of the move from `near` to answers to Y (reduction.hpp), each at
+  /// its nearest periodic image. Only as far from `near` as an answer may be nearer than those
+  /// found.
+  void find(const Pose& Y, const JointVector& near, const JointMove& move);
+  [[nodiscard]] std::size_t size() const { return size_; }
+  /// The nearest first [rad].
+  [[nodiscard]] const double* q(std::size_t i) const { return found_[i].q.data(); }
+  /// If there is none: whether none came so close to one that it might have been missed.
+  [[nodiscard]] bool is_none() const { return size_ == 0 && miss_.rules_out_answers(least_off_); }
+  /// Whether these are local minima but for rounding: those of the chain itself.
+  [[nodiscard]] bool is_settled() const { return is_nominal_; }
+
+ private:
+  static constexpr int kSamples = 64;
+  static constexpr std::size_t kMost = 8;
+  /// Samples of a short span.
+  static constexpr int kShort = 8;
+  /// What is no answer counts more than any move, and the more the farther it is from one.
+  static constexpr double kRefused = 1e9;
+  /// Branches are followed only if they come so near to an answer at a sample [mixed units].
+  static constexpr double kNear = 0.3;
+
+  struct Found {
+    double cost;
+    std::array<double, SweptBranches::kDof> q;
+  };
+  /// A branch at a sample of the swept joint.
+  struct Sample {
+    bool is_known = false;
+    bool exists = false;
+    /// The move to it by its joints' nearest images, inside the limits or not.
+    double loose = 0;
+    std::array<double, SweptBranches::kDof> q{};
+
+    [[nodiscard]] bool is_none() const { return is_known && !exists; }
+  };
+
+  /// A move by images inside the limits only, and by any.
+  struct Move {
+    double loose, inside;
+  };
+  /// To what a lane holds.
+  [[nodiscard]] Move move_to(int lane) const;
+  /// The move to what a lane holds, or more than kRefused.
+  [[nodiscard]] double cost(int lane) const;
+  /// At least how long the move is to any answer at a value of the swept joint; and how much less
+  /// that may be one sample nearer.
+  [[nodiscard]] double least_move(double value) const;
+  [[nodiscard]] double margin_of_step() const {
+    return weight_[static_cast<std::size_t>(branches_.joint())] * places_.step;
+  }
+  /// Solves the samples from the one nearest to `near` on, as far as it may be worth it.
+  void look_around();
+  /// The shortest move there.
+  double solve_at(int place);
+  /// By whole turns of the swept joint; not known where that has none.
+  [[nodiscard]] const Sample& sample(int place, int branch) const {
+    static constexpr Sample kNone{};
+    const int at = places_.find(place);
+    return at < 0 ? kNone
+                  : samples_[static_cast<std::size_t>(at)][static_cast<std::size_t>(branch)];
+  }
+
+  /// Whether there may be a shorter move than the best so far beside a sample.
+  [[nodiscard]] bool may_be_shorter(const LeastPlace& least) const;
+  void follow(const LeastPlace& least);
+  /// Beside folds the other joints turn a lot from one sample to the next: above all where the arm
+  /// is stretched, and a branch may exist for few samples only.
+  void look_beside_folds(int branch);
+  /// Whether a joint is at one limit at a sample and beyond the other at the one before: between
+  /// them it may be outside of both.
+  [[nodiscard]] bool jumps(int place, int branch) const;
+  /// Between two samples, of which the second may not exist.
+  [[nodiscard]] bool may_lead_to_shorter(int place, int beside, int branch) const;
+  /// Whether a search that came so far after some rounds need not go on.
+  [[nodiscard]] bool is_hopeless(double so_far, int round) const;
+  /// Looks for the least moves in a span, over so many packs of values.
+  void look_into(const BranchSpan& span, int packs);
+  void add(const Found& found);
+
+  SweptBranches branches_;
+  Places places_;
+  const JointSpace& joints_;
+  bool is_nominal_;
+  NearMiss miss_;
+
+  // Of the last search.
+  std::array<double, SweptBranches::kDof> near_{}, weight_{};
+  bool takes_largest_ = false;
+  double least_off_ = 0;  ///< how far the nearest branch was from being an answer
+  std::vector<SweptBranches::Row> rows_;
+  std::vector<std::array<Sample, SweptBranches::kCount>> samples_;
+  LeastPlaces<2 * kMost> least_;
+  std::array<Found, kMost> found_{};
+  std::size_t size_ = 0;
+};
+
+/// These as a source of seeds: the nearest alone first, the others if it cannot be refined.
+/// `Known` tells whether something was found: has_any().
+template <typename Known>
+class NearestOnCurveSeeds {
+ public:
+  NearestOnCurveSeeds(NearestOnCurve& curve, const Pose& Y, const JointVector& near,
+                      const JointMove& move, const Known& known, Work& work, StageClock& clock)
+      : curve_(curve), Y_(Y), near_(near), move_(move), known_(known), work_(work), clock_(clock) {}
+
+  bool next_stage() {
+    if (known_.has_any() || !work_.has_left()) return false;
+    if (!done_) {
+      done_ = true;
+      curve_.find(Y_, near_, move_);
+      clock_.lap(&StageTimes::query);
+      end_ = std::min<std::size_t>(curve_.size(), 1);
+    } else {
+      end_ = curve_.size();
+    }
+    return next_ < end_;
+  }
+
+  template <typename Refiner>
+  bool load(Refiner& refiner, int lane) {
+    if (next_ == end_ || !work_.take()) return false;
+    refiner.load_answer(lane, curve_.q(next_++));
+    return true;
+  }
+
+ private:
+  NearestOnCurve& curve_;
+  const Pose& Y_;
+  const JointVector& near_;
+  const JointMove& move_;
+  const Known& known_;
+  Work& work_;
+  StageClock& clock_;
+  bool done_ = false;
+  std::size_t next_ = 0;
+  std::size_t end_ = 0;
+};
+
+}  // namespace iksel

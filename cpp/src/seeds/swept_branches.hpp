@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Seven joints of which one is swept over its range: for each of its values the others are known in
+// closed form, eight branches of them.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "base/constants.hpp"
+#include "kinematics/chain_model.hpp"
+#include "simd/kernels.hpp"
+#include "structure/closed_form.hpp"
+
+namespace iksel {
+
+/// Values of a swept joint, evenly over its range.
+struct Places {
+  double lower, step;  ///< [rad]
+  int count;
+  /// Whether the last is beside the first.
+  bool turns;
+
+  [[nodiscard]] double value(int place) const { return lower + step * place; }
+  /// The place's number by whole turns; -1 if it lies outside.
+  [[nodiscard]] int find(int place) const {
+    if (turns) return (place % count + count) % count;
+    return place < 0 || place >= count ? -1 : place;
+  }
+};
+
+/// Values of the swept joint for which a branch exists, without others between.
+struct BranchSpan {
+  int branch;
+  double lower, upper;  ///< [rad]
+  /// Whether the branch merges with another there, and the curve turns back.
+  bool folds_below, folds_above;
+
+  /// The value at a part of the way, 0 to 1, in which the other joints change evenly: beside a fold
+  /// they change as the root of the swept one.
+  [[nodiscard]] double value(double part) const {
+    const double range = upper - lower;
+    if (folds_below && folds_above) return lower + range * 0.5 * (1 - std::cos(kPi * part));
+    if (folds_below) return lower + range * (1 - std::cos(0.5 * kPi * part));
+    if (folds_above) return lower + range * std::sin(0.5 * kPi * part);
+    return lower + range * part;
+  }
+};
+
+class SweptBranches {
+ public:
+  static constexpr int kCount = lanes::kWidth;
+  static constexpr int kDof = 7;
+  using Row = std::array<double, kCount>;
+
+  /// `chain` has a joint that is held: the one to be swept; limits are the model's.
+  SweptBranches(const ChainModel& model, const ClosedFormChain& chain,
+                const lanes::LaneKernels& kernels);
+
+  /// The joint that is swept.
+  [[nodiscard]] int joint() const { return chain_.held; }
+  /// So many values of it: both ends of a range, but of a whole turn one is enough.
+  [[nodiscard]] Places places(int count) const;
+  /// The value, held to the joint's range.
+  [[nodiscard]] double clamp(double value) const {
+    return turns_ ? value : std::min(std::max(value, lower_), upper_);
+  }
+
+  /// Y as in reduction.hpp.
+  void set_target(const Pose& Y);
+  /// Solves every branch at a value of the swept joint, each in its lane [rad].
+  void solve_all(double value);
+  /// Solves one branch at a value in each lane [rad].
+  void solve_one(int branch, const Row& values);
+
+  /// Where a branch ends between `inside`, where it exists, and `outside`, where it does not: to
+  /// about the square of 1 / 9^rounds of the way.
+  double find_fold(int branch, double inside, double outside, int rounds);
+
+  // What the last of these found in a lane.
+
+  /// How far it is from being an answer: 0 if it is one [mixed units].
+  [[nodiscard]] double off(int lane) const {
+    return std::max(last_->beyond[lane], 0.0) + std::sqrt(std::max(-last_->least[lane], 0.0));
+  }
+  /// Whether there is such a branch at all: below 0 if there is none [mixed units].
+  [[nodiscard]] double least(int lane) const { return last_->least[lane]; }
+  /// The value of the swept joint.
+  [[nodiscard]] double value(int lane) const { return last_->held[lane] - offset_; }
+  /// All seven joint values, by whole turns inside the limits where they can be [rad].
+  void copy_joints(int lane, double* q) const {
+    double swept = value(lane);
+    if (turns_ && swept < lower_) swept += kTwoPi;
+    if (turns_ && swept > upper_) swept -= kTwoPi;
+    q[chain_.held] = swept;
+    chain_.copy_joints(*last_, lane, q);
+  }
+
+ private:
+  ClosedFormChain chain_;
+  const lanes::LaneKernels& kernels_;
+  double lower_, upper_, offset_;  ///< of the swept joint [rad]
+  bool turns_;
+  lanes::BranchPack all_ = all_branches();
+  lanes::BranchPack one_{};
+  const lanes::BranchPack* last_ = &all_;
+};
+
+/// Whether no answer can have been missed, by how near the nearest branch came to one.
+class NearMiss {
+ public:
+  /// `is_nominal`: the branches are the model's own. `tolerance` is the larger of the solver's
+  /// [rad, and m in units of the reach].
+  NearMiss(bool is_nominal, double tolerance)
+      : concludes_(is_nominal && tolerance <= kMostTolerance),
+        close_(std::max(0.01, 4 * std::sqrt(2 * tolerance))) {}
+
+  /// `least`: how far it was from being an answer [mixed units].
+  [[nodiscard]] bool rules_out_answers(double least) const { return concludes_ && least > close_; }
+
+ private:
+  /// Of a chain other than the nominal one, and beyond such tolerances, answers lie too far from
+  /// where branches are to conclude anything.
+  static constexpr double kMostTolerance = 1e-4;
+
+  bool concludes_;
+  /// A branch that comes so near to an answer may be one that rounding hides, or the tolerances
+  /// allow: beside a fold by their root [mixed units].
+  double close_;
+};
+
+/// Where a branch has a value that is less than at the places beside.
+struct LeastPlace {
+  double value;
+  int place, branch;
+};
+
+/// The least of these, at most so many.
+template <std::size_t kMost>
+class LeastPlaces {
+ public:
+  /// Of values at all places, of every branch; only those up to `bound`.
+  void find(const Places& places, const std::vector<SweptBranches::Row>& rows, double bound) {
+    static constexpr SweptBranches::Row kNone{kInfinity, kInfinity, kInfinity, kInfinity,
+                                              kInfinity, kInfinity, kInfinity, kInfinity};
+    const auto row = [&](int place) -> const SweptBranches::Row& {
+      const int at = places.find(place);
+      return at < 0 ? kNone : rows[static_cast<std::size_t>(at)];
+    };
+    size_ = 0;
+    for (int place = 0; place < places.count; ++place) {
+      const SweptBranches::Row& here = row(place);
+      const SweptBranches::Row& before = row(place - 1);
+      const SweptBranches::Row& behind = row(place + 1);
+      for (std::size_t i = 0; i < here.size(); ++i) {
+        if (here[i] > bound || here[i] > before[i] || here[i] > behind[i]) continue;
+        add({here[i], place, static_cast<int>(i)});
+      }
+    }
+  }
+  [[nodiscard]] const LeastPlace* begin() const { return all_.data(); }
+  [[nodiscard]] const LeastPlace* end() const { return all_.data() + size_; }
+
+ private:
+  void add(const LeastPlace& least) {
+    if (size_ == kMost && !(least.value < all_[kMost - 1].value)) return;
+    if (size_ < kMost) ++size_;
+    std::size_t at = size_ - 1;
+    for (; at > 0 && least.value < all_[at - 1].value; --at) all_[at] = all_[at - 1];
+    all_[at] = least;
+  }
+
+  std::array<LeastPlace, kMost> all_{};
+  std::size_t size_ = 0;
+};
+
+/// Where to look for the least of a branch's costs.
+struct Bracket {
+  int branch;
+  double middle, width;  ///< up to so far to both sides
+  int rounds;            ///< of eight places each, at most
+  double finest = 0;     ///< less far than this it need not be looked
+  /// Whether the cost is smooth but for where the branch ends: a parabola then tells where it is
+  /// least.
+  bool is_smooth = false;
+};
+
+/// Looks for the least of `cost(lane)` of a branch, each round around the least so far, where
+/// `value(place)` is the swept joint's. Calls `found(lane, place)` with each that is the least so
+/// far; returns the least cost. The search ends early where `is_enough(cost)`; a cost from
+/// `no_cost` on is none.
+template <typename Value, typename Cost, typename Found, typename IsEnough>
+double minimize(SweptBranches& branches, const Bracket& bracket, const Value& value,
+                const Cost& cost, double no_cost, const Found& found, const IsEnough& is_enough) {
+  constexpr int kCount = SweptBranches::kCount;
+  double least = kInfinity;
+  double middle = bracket.middle;
+  double width = bracket.width;
+  // A guess is looked at closely; where it fails, the bracket is that of before.
+  bool guessed = false;
+  bool at_end = false;
+  double at = middle;
+  double behind = width;
+  for (int round = 0; round < bracket.rounds && width > bracket.finest; ++round) {
+    if (is_enough(least, round)) break;
+    const double spacing = 2 * width / (kCount + 1);
+    const auto place = [&](int lane) { return middle - width + spacing * (lane + 1); };
+    SweptBranches::Row values;
+    SweptBranches::Row costs;
+    for (int lane = 0; lane < kCount; ++lane) {
+      values[static_cast<std::size_t>(lane)] = value(place(lane));
+    }
+    branches.solve_one(bracket.branch, values);
+    for (int lane = 0; lane < kCount; ++lane) costs[static_cast<std::size_t>(lane)] = cost(lane);
+    const auto best =
+        static_cast<int>(std::min_element(costs.begin(), costs.end()) - costs.begin());
+    const double here = costs[static_cast<std::size_t>(best)];
+    const bool is_inside = best > 0 && best < kCount - 1;
+    if (here < least) {
+      least = here;
+      found(best, place(best));
+      middle = at = place(best);
+    }
+    if (guessed && !(here == least && (is_inside || at_end))) {
+      // The guess was wrong.
+      middle = at;
+      width = behind;
+      guessed = false;
+      continue;
+    }
+    width = behind = spacing;
+    guessed = false;
+    if (!is_inside) continue;
+    const double left = costs[static_cast<std::size_t>(best - 1)];
+    const double right = costs[static_cast<std::size_t>(best + 1)];
+    if ((left < no_cost) != (right < no_cost) && here < no_cost) {
+      // Where the branch ends, most often: between the best and what is none.
+      width = 0.5 * spacing;
+      middle += left < no_cost ? width : -width;
+      guessed = at_end = true;
+      continue;
+    }
+    if (!bracket.is_smooth) continue;
+    const double curvature = left - 2 * here + right;
+    if (!(left < no_cost && right < no_cost && curvature > 0)) continue;
+    middle += 0.5 * (left - right) / curvature * spacing;
+    width = 0.2 * spacing;
+    guessed = true;
+    at_end = false;
+  }
+  return least;
+}
+
+}  // namespace iksel

@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Paths as shortest paths: a layer of candidates per waypoint, the cost of an edge is the move
+// between its ends, and edges that are too fast are none.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <set>
+#include <vector>
+
+#include "base/constants.hpp"
+#include "goal/joint_move.hpp"
+#include "iksel/path.hpp"
+#include "refine/self_motion.hpp"
+#include "search/context.hpp"
+#include "search/row_answers.hpp"
+#include "solver/path_layer.hpp"
+
+namespace iksel {
+
+/// Solutions of the database nearer than this in every joint are one [rad or m].
+inline constexpr double kSameSolution = 20 * kSameCandidate;
+
+class PathSearch {
+ public:
+  PathSearch(const ChainModel& model, const PathOptions& options)
+      : model_(model),
+        options_(options),
+        request_(make_request(options)),
+        move_(model.dof, request_),
+        longest_(model.joints.longest_moves(options.dt)),
+        middle_(model.joints.middle()) {
+    for (int j = 0; j < model.dof; ++j) has_images_ = has_images_ || model.joints.is_periodic(j);
+  }
+
+  [[nodiscard]] const SolveRequest& request() const { return request_; }
+
+  /// What the candidates of the layer before lead to at the next waypoint.
+  void add_continuations(const Goal& goal, const Layer& before, Layer& layer) const {
+    // Images of a configuration lead to images: only one of them is iterated.
+    constexpr double kCopy = 1e-11;
+    std::vector<JointVector> origins;
+    std::vector<JointVector> moves;
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      const JointVector from = before.at(i);
+      std::size_t same = 0;
+      while (same < origins.size() && model_.joints.distance(origins[same], from, kCopy) >= kCopy) {
+        ++same;
+      }
+      if (same == origins.size()) {
+        JointVector q = from;
+        if (!converge(model_, goal, kStepsToNext, q)) continue;
+        origins.push_back(from);
+        moves.emplace_back(q - from);
+      }
+      const JointVector q = from + moves[same];
+      if (model_.joints.contains(q.data())) layer.add(q);
+    }
+  }
+
+  /// The same for an arm that is swept, all candidates at once in lanes, and if asked for with them
+  /// some of the self-motion's other configurations, at each waypoint others.
+  void add_on_curve(const Goal& goal, const Layer& before, std::size_t waypoint, bool with_others,
+                    Workspace::InLanes& lanes, Layer& layer) const {
+    /// Every so many samples of the sweep are looked at.
+    constexpr int kStride = 8;
+    const Pose Y = lanes.query.reduce(goal.target());
+    std::vector<double> q = before.q;
+    const int first = static_cast<int>(waypoint % kStride);
+    if (with_others) lanes.sweep->add_samples(Y, first, kStride, q);
+    refine_rows(goal, Y, q, lanes, [&](std::size_t row, const JointVector& answer) {
+      if (row < before.size()) {
+        layer.add(answer);
+      } else {
+        add_nearest_images(answer, before, layer);
+      }
+    });
+  }
+
+  /// Configurations of the first waypoint that lie beside one of them on its arc.
+  void add_beside(const Goal& goal, const JointVector& start, Workspace::InLanes& lanes,
+                  Layer& layer) const {
+    constexpr double kSpacing = 0.02;
+    constexpr double kFarthest = 0.25;
+    const Pose Y = lanes.query.reduce(goal.target());
+    lanes.arcs->find(Y, kSpacing);
+    std::vector<double> q(start.data(), start.data() + start.size());
+    for (const SelfMotionArcs::Arc& arc : lanes.arcs->arcs()) {
+      for (const SelfMotionArcs::Joints& point : arc.q) {
+        if (model_.joints.distance(point.data(), start, kFarthest) >= kFarthest) continue;
+        JointVector image = Eigen::Map<const Eigen::VectorXd>(point.data(), model_.dof);
+        model_.joints.wrap_nearest(start, 0, image);
+        q.insert(q.end(), image.data(), image.data() + model_.dof);
+      }
+    }
+    refine_rows(goal, Y, q, lanes,
+                [&](std::size_t /*row*/, const JointVector& answer) { layer.add(answer); });
+  }
+
+  /// The solutions found for the first waypoint of a path without a start, at all images; those
+  /// nearest to the middle of the limits first, should there be too many.
+  void add_first_solutions(const SolutionSet& found, Layer& layer) const {
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      JointVector q = found.at(i);
+      model_.joints.wrap_nearest(middle_, 0, q);
+      layer.add(q);
+    }
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      JointVector q = found.at(i);
+      model_.joints.first_image(q);
+      do {
+        layer.add(q);
+      } while (layer.size() < kMostImages && model_.joints.next_image(q));
+    }
+  }
+
+  /// The solutions found from the database, each at the images nearest to where the path may come
+  /// from.
+  void add_solutions(const SolutionSet& found, const Layer& before, Layer& layer) const {
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      add_nearest_images(found.at(i), before, layer);
+    }
+  }
+
+  void apply_filter(Layer& layer) const {
+    if (!options_.filter || layer.size() == 0) return;
+    const std::unique_ptr<bool[]> keep(new bool[layer.size()]());
+    options_.filter(layer.q.data(), layer.size(), keep.get());
+    layer.keep_if([&](std::size_t i) { return keep[i]; });
+  }
+
+  /// The cheapest way to each candidate; keeps the cheapest, and those only that can be reached.
+  void connect(const Layer* before, Layer& layer) {
+    struct Edge {
+      double cost;
+      std::size_t parent;
+      std::size_t index;
+    };
+    std::vector<Edge> edges;
+    for (std::size_t i = 0; i < layer.size(); ++i) {
+      const JointVector q = layer.at(i);
+      Edge best{before == nullptr ? tie_break(q) : kInfinity, 0, i};
+      for (std::size_t k = 0; before != nullptr && k < before->size(); ++k) {
+        if (before->cost[k] >= best.cost) continue;
+        if (too_far(q.data(), before->q.data() + k * before->dof)) continue;
+        const JointVector difference = q - before->at(k);
+        const double cost = before->cost[k] + move_.length(difference);
+        if (cost < best.cost) best = {cost, k, i};
+      }
+      if (best.cost < kInfinity) edges.push_back(best);
+    }
+    std::stable_sort(edges.begin(), edges.end(),
+                     [](const Edge& a, const Edge& b) { return a.cost < b.cost; });
+    // Without a start all candidates of the first waypoint are needed.
+    const std::size_t most = std::max(static_cast<std::size_t>(options_.candidates), first_layer_);
+    if (before != nullptr && edges.size() > most) edges.resize(most);
+    if (before == nullptr) first_layer_ = edges.size();
+    Layer kept{layer.dof, {}, {}, {}};
+    for (const Edge& edge : edges) {
+      const JointVector q = layer.at(edge.index);
+      kept.q.insert(kept.q.end(), q.data(), q.data() + model_.dof);
+      kept.cost.push_back(edge.cost);
+      kept.parent.push_back(edge.parent);
+    }
+    layer = std::move(kept);
+  }
+
+  /// Walks back from the cheapest end.
+  void trace(const std::vector<Layer>& layers, PathResult& result) const {
+    if (layers.empty()) return;
+    result.q.resize(layers.size());
+    std::size_t i = 0;
+    for (std::size_t w = layers.size(); w-- > 0;) {
+      result.q[w] = layers[w].at(i);
+      i = layers[w].parent[i];
+    }
+    const bool from_start = options_.start.has_value();
+    for (std::size_t w = from_start ? 0 : 1; w < result.q.size(); ++w) {
+      const JointVector step = result.q[w] - (w == 0 ? *options_.start : result.q[w - 1]);
+      result.move += move_.length(step);
+      int joint = 0;
+      const double largest = step.cwiseAbs().maxCoeff(&joint);
+      if (result.largest_step_joint >= 0 && largest <= result.largest_step) continue;
+      result.largest_step = largest;
+      result.largest_step_joint = joint;
+      result.largest_step_waypoint = static_cast<std::ptrdiff_t>(w);
+    }
+  }
+
+ private:
+  /// Refines rows of seeds; calls `found(row, q)` with each that leads to a solution.
+  template <typename Found>
+  void refine_rows(const Goal& goal, const Pose& Y, const std::vector<double>& q,
+                   Workspace::InLanes& lanes, const Found& found) const {
+    constexpr Patience kNext{8, kStepsToNext};
+    const auto dof = static_cast<std::size_t>(model_.dof);
+    Work work(0);
+    RowSeeds seeds(q.data(), q.size() / dof, dof, /*are_answers=*/false, work);
+    RowAnswers answers(model_.joints, goal, seeds);
+    lanes.refiner.begin(goal.task(), kNext);
+    lanes.refiner.set_pose(Y);
+    search(lanes.refiner, seeds, answers, work);
+    for (std::size_t row = 0; row < seeds.count(); ++row) {
+      if (answers.at(row).success()) found(row, answers.at(row).q);
+    }
+  }
+
+  /// Whether a joint has to move farther than it can, most often the first already.
+  [[nodiscard]] bool too_far(const double* a, const double* b) const {
+    for (int j = 0; j < model_.dof; ++j) {
+      if (std::abs(a[j] - b[j]) > longest_[j]) return true;
+    }
+    return false;
+  }
+
+  void add_nearest_images(const JointVector& solution, const Layer& before, Layer& layer) const {
+    if (!has_images_) {
+      layer.add(solution);
+      return;
+    }
+    JointVector q = solution;
+    // Many that the path may come from have the same nearest image.
+    std::set<std::vector<long>> known;
+    std::vector<long> turns(before.dof);
+    for (std::size_t k = 0; k < before.size(); ++k) {
+      model_.joints.wrap_nearest(before.at(k), 0, q);
+      for (std::size_t j = 0; j < turns.size(); ++j) {
+        const auto joint = static_cast<Eigen::Index>(j);
+        turns[j] = std::lround((q[joint] - solution[joint]) / kTwoPi);
+      }
+      if (!known.insert(turns).second) continue;
+      if (layer.size() >= kMostCandidates) return;
+      layer.add(q);
+    }
+  }
+
+  /// Images at the first waypoint, at most: those of sixteen solutions, of seven joints that have
+  /// two images each.
+  static constexpr std::size_t kMostImages = 2048;
+  /// Candidates from the database at a later waypoint, at most.
+  static constexpr std::size_t kMostCandidates = 2 * kMostImages;
+
+  /// A path that begins anywhere costs the same at all its images: of those, the one that begins
+  /// nearest to the middle of the limits. Small beside all costs, and large beside their rounding.
+  [[nodiscard]] double tie_break(const JointVector& q) const {
+    constexpr double kPart = 1e-9;
+    return kPart * (q - middle_).norm();
+  }
+
+  static SolveRequest make_request(const PathOptions& options) {
+    SolveRequest request;
+    request.weights = options.weights;
+    request.norm = options.norm;
+    return request;
+  }
+
+  const ChainModel& model_;
+  const PathOptions& options_;
+  SolveRequest request_;
+  JointMove move_;
+  JointVector longest_;
+  JointVector middle_;
+  bool has_images_ = false;
+  /// Candidates of the first waypoint, if the path has no start.
+  std::size_t first_layer_ = 0;
+};
+
+}  // namespace iksel

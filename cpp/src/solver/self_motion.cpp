@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "iksel/self_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "base/message_text.hpp"
+#include "base/pose_check.hpp"
+#include "iksel/error.hpp"
+#include "iksel/pose.hpp"
+#include "iksel/structure.hpp"
+#include "search/row_answers.hpp"
+#include "solver/solver_impl.hpp"
+#include "structure/elbow.hpp"
+
+namespace iksel {
+
+const char* to_string(ArcEnd end) {
+  switch (end) {
+    case ArcEnd::limit:
+      return "limit";
+    case ArcEnd::fold:
+      return "fold";
+    case ArcEnd::closed:
+      return "closed";
+  }
+  return "unknown";
+}
+
+namespace {
+
+/// Holds a joint to its limit, and moves the six others to the goal; where that fails, q stays.
+void hold_to_limit(const ChainModel& model, const Goal& goal, const SelfMotionEnd& end,
+                   JointVector& q) {
+  constexpr int kSteps = 4;
+  if (end.kind != ArcEnd::limit) return;
+  JointVector held = q;
+  held[end.joint] = end.at_upper ? model.joints.upper[end.joint] : model.joints.lower[end.joint];
+  for (int step = 0; step < kSteps && !goal.is_solution(held); ++step) {
+    Pose pose;
+    Jacobian of_pose;
+    model.fk_jacobian(held.data(), pose, of_pose);
+    Matrix6 J;
+    for (int j = 0, k = 0; j < model.dof; ++j) {
+      if (j != end.joint) J.col(k++) = of_pose.col(j);
+    }
+    const Vector6 move = J.partialPivLu().solve(pose_error(goal.target(), pose));
+    if (!move.allFinite()) return;
+    for (int j = 0, k = 0; j < model.dof; ++j) {
+      if (j != end.joint) held[j] += move[k++];
+    }
+    held = model.joints.clamp(held);
+  }
+  if (goal.is_solution(held)) q = held;
+}
+
+/// The arc through what was refined of its points, `first` the first of them.
+SelfMotionArc make_arc(const ChainModel& model, const Goal& goal, const SelfMotionArcs::Arc& found,
+                       std::size_t first, const RowAnswers& answers,
+                       const std::optional<Elbow>& elbow) {
+  SelfMotionArc arc;
+  arc.begin = found.begin;
+  arc.end = found.end;
+  for (std::size_t i = 0; i < found.q.size(); ++i) {
+    const Result& answer = answers.at(first + i);
+    if (!answer.success()) continue;
+    JointVector q = answer.q;
+    if (i == 0) hold_to_limit(model, goal, arc.begin, q);
+    if (i + 1 == found.q.size()) hold_to_limit(model, goal, arc.end, q);
+    if (!arc.q.empty()) {
+      JointVector image = q;
+      model.joints.wrap_nearest(arc.q.back(), 0, image);
+      if (goal.is_solution(image)) q = image;
+    }
+    arc.q.push_back(q);
+  }
+  const auto move = [&](const JointVector& a, const JointVector& b) {
+    JointVector d = b - a;
+    for (int j = 0; j < model.dof; ++j) {
+      if (model.joints.is_periodic(j)) d[j] = std::remainder(d[j], kTwoPi);
+    }
+    return d.norm();
+  };
+  for (std::size_t i = 1; i < arc.q.size(); ++i) arc.length += move(arc.q[i - 1], arc.q[i]);
+  if (arc.is_closed() && !arc.q.empty()) arc.length += move(arc.q.back(), arc.q.front());
+  if (elbow) {
+    for (const JointVector& q : arc.q) arc.elbow.push_back(elbow->angle(q.data()));
+  }
+  return arc;
+}
+
+}  // namespace
+
+void Solver::Impl::check_self_motion(double spacing) const {
+  const std::string who = "self_motion: robot '" + robot.name() + "'";
+  if (!workspaces.has_arcs()) {
+    const Structure structure = find_structure(nominal);
+    throw InvalidArgumentError(who + " has no self-motion that could be swept (" +
+                               to_string(structure.kind) + ": " + structure.description +
+                               "); it takes seven joints that turn, three of whose axes meet");
+  }
+  if (!task.is_full_pose()) {
+    throw InvalidArgumentError(who + " is asked for a task with free axes, " +
+                               std::to_string(task.task().constrained_axes()) +
+                               " of 6 fixed; only full poses have a self-motion of one dimension");
+  }
+  if (!workspaces.solves_in_lanes()) {
+    throw InvalidArgumentError(who +
+                               " is solved one seed at a time, by strategy Paper or over a "
+                               "database of full keys; it takes strategy Lanes and reduced keys");
+  }
+  constexpr double kLeast = 1e-4;
+  if (!(spacing >= kLeast && spacing <= kPi)) {
+    throw InvalidArgumentError("spacing: " + number_text(spacing) + " is not in [0.0001, pi]");
+  }
+}
+
+SelfMotion Solver::Impl::self_motion(const Pose& target, double spacing,
+                                     Workspace& workspace) const {
+  SelfMotion motion;
+  const Goal goal(model(), task, target);
+  if (goal.is_out_of_reach()) {
+    motion.status = Status::out_of_reach;
+    motion.proof = Proof::reach;
+    return motion;
+  }
+  Workspace::InLanes& lanes = *workspace.lanes;
+  const Pose Y = lanes.query.reduce(target);
+  lanes.arcs->find(Y, spacing);
+  std::vector<SelfMotionArcs::Joints> points;
+  for (const auto& arc : lanes.arcs->arcs())
+    points.insert(points.end(), arc.q.begin(), arc.q.end());
+  constexpr Patience kThere{8, 64};
+  Work work(options.max_attempts);
+  RowSeeds seeds(points.empty() ? nullptr : points[0].data(), points.size(), SweptBranches::kDof,
+                 /*are_answers=*/true, work);
+  RowAnswers answers(model().joints, goal, seeds);
+  lanes.refiner.begin(task, kThere);
+  lanes.refiner.set_pose(Y);
+  search(lanes.refiner, seeds, answers, work);
+  const std::optional<Elbow> elbow = Elbow::of(model());
+  std::size_t first = 0;
+  for (const auto& found : lanes.arcs->arcs()) {
+    SelfMotionArc arc = make_arc(model(), goal, found, first, answers, elbow);
+    first += found.q.size();
+    if (!arc.q.empty()) motion.arcs.push_back(std::move(arc));
+  }
+  std::stable_sort(
+      motion.arcs.begin(), motion.arcs.end(),
+      [](const SelfMotionArc& a, const SelfMotionArc& b) { return a.length > b.length; });
+  if (!motion.arcs.empty()) {
+    motion.status = Status::solved;
+  } else if (!lanes.sweep->find(Y) && lanes.sweep->is_none()) {
+    motion.proof = Proof::sweep;
+  }
+  return motion;
+}
+
+SelfMotion Solver::self_motion(const Pose& T_base_tip, double spacing) const {
+  const Pose target = check_pose(T_base_tip);
+  impl_->check_self_motion(spacing);
+  const WorkspacePool::Lease lease(impl_->workspaces);
+  return impl_->self_motion(target, spacing, lease.get());
+}
+
+}  // namespace iksel

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "structure/elbow.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "simd/lane_chain.hpp"
+#include "structure/closed_form.hpp"
+
+namespace iksel {
+
+using Eigen::Vector3d;
+
+std::optional<Elbow> Elbow::of(const ChainModel& model) {
+  constexpr int kJoints = 7;
+  constexpr double kParallel = 1e-3;
+  if (model.dof != kJoints || !is_simple(model)) return std::nullopt;
+  for (const KernelJoint& joint : model.kernel.joints) {
+    if (joint.prismatic) return std::nullopt;
+  }
+  Elbow elbow;
+  elbow.axes_ = ScrewAxes::of(model);
+  const ScrewAxes& axes = elbow.axes_;
+  const double tolerance = kSweptTolerance * model.reach;
+  // Where three axes from one on meet.
+  const auto centre = [&](std::size_t i, Vector3d& point) {
+    if (axes.angle(i, i + 1) <= kParallel || axes.angle(i + 1, i + 2) <= kParallel) return false;
+    point = axes.middle(i, i + 1);
+    return axes.distance(i, point) <= tolerance && axes.distance(i + 1, point) <= tolerance &&
+           axes.distance(i + 2, point) <= tolerance;
+  };
+  if (!centre(0, elbow.shoulder_) || !centre(4, elbow.wrist_)) return std::nullopt;
+  elbow.elbow_ = axes.p[3] + axes.h[3] * axes.h[3].dot(elbow.shoulder_ - axes.p[3]);
+  for (std::size_t j = 0; j < 4; ++j) elbow.offset_[j] = model.kernel.joints[j].offset;
+  return elbow;
+}
+
+double Elbow::angle(const double* q) const {
+  constexpr double kNone = 1e-9;
+  const auto turn = [&](std::size_t j) {
+    return Eigen::AngleAxisd(q[j] + offset_[j], axes_.h[j]).toRotationMatrix();
+  };
+  const Eigen::Matrix3d upper = turn(0) * turn(1) * turn(2);
+  const Vector3d to_elbow = upper * (elbow_ - shoulder_);
+  const Vector3d to_wrist = to_elbow + upper * (turn(3) * (wrist_ - elbow_));
+  const Vector3d line = to_wrist.normalized();
+  const Vector3d from = axes_.h[0] - line * line.dot(axes_.h[0]);
+  const Vector3d side = to_elbow - line * line.dot(to_elbow);
+  if (!(from.norm() > kNone && side.norm() > kNone * to_elbow.norm())) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  return std::atan2(line.dot(from.cross(side)), from.dot(side));
+}
+
+}  // namespace iksel

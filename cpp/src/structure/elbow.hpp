@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The elbow of an arm of seven joints with a shoulder and a wrist, in each of which three axes
+// meet.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+
+#include "structure/screw_axes.hpp"
+
+namespace iksel {
+
+class Elbow {
+ public:
+  /// That of a chain, if it has one.
+  static std::optional<Elbow> of(const ChainModel& model);
+
+  /// The angle about the line from shoulder to wrist, from the side of that line where the first
+  /// axis points to [rad]; NaN where both lie on the first axis, or the elbow on their line.
+  [[nodiscard]] double angle(const double* q) const;
+
+ private:
+  ScrewAxes axes_;
+  Eigen::Vector3d shoulder_, elbow_, wrist_;  ///< with all angles at zero [m]
+  double offset_[4];
+};
+
+}  // namespace iksel

@@ -37,7 +37,7 @@ class BatchStream {
         on_result_(on_result) {
     // Any seed is given up after so many iterations.
     constexpr int kPatience = 8;
-    refiner.begin(task, {kPatience, kPatience});
+    refiner.begin(task, {kPatience, kPatience}, Width::wide);
   }
 
   /// Whether target i is left to be solved by itself.

@@ -90,7 +90,7 @@ Proof Search<Answers>::in_lanes() const {
   const auto should_continue = [&] { return answers.should_continue(); };
   NearSeed near = near_seed();
   GivenSeeds given = given_seeds(lanes::kBlock, should_continue);
-  refiner.begin(goal.task(), kFirst);
+  refiner.begin(goal.task(), kFirst, Width::narrow);
   if (!goal.is_full_pose()) {
     refiner.set_task(goal.target());
     clock.lap(&StageTimes::query);
@@ -109,7 +109,7 @@ Proof Search<Answers>::in_lanes() const {
   clock.lap(&StageTimes::query);
   if constexpr (std::is_same_v<Answers, Collector>) {
     if (run(refiner, near, given) || !request.database_seeds) return Proof::none;
-    refiner.begin(goal.task(), kAll);
+    refiner.begin(goal.task(), kAll, Width::wide);
     SpreadSeeds spread(query, model.joints, options.seed, answers, work);
     search(refiner, spread, answers, work);
   } else {
@@ -134,7 +134,7 @@ std::optional<Proof> Search<Answers>::in_closed_form(GivenSeeds& given, const Po
   EnumeratedSeeds enumerated(*workspace.lanes->branches, goal, Y, answers.wants_more(), work,
                              clock);
   SeedSequence seeds(2, given, enumerated);
-  refiner.begin(goal.task(), kThere);
+  refiner.begin(goal.task(), kThere, Width::narrow);
   answers.look_for_partners(false);
   const bool is_satisfied = search(refiner, seeds, answers, work);
   answers.look_for_partners(true);
@@ -144,7 +144,7 @@ std::optional<Proof> Search<Answers>::in_closed_form(GivenSeeds& given, const Po
   if (enumerated.is_certain() && (enumerated.is_empty() || answers.has_any())) {
     return Proof::closed_form;
   }
-  refiner.begin(goal.task(), kFirst);
+  refiner.begin(goal.task(), kFirst, Width::narrow);
   return std::nullopt;
 }
 

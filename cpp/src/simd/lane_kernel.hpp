@@ -195,17 +195,22 @@ PackResult advance(const LaneChain& chain, const LaneOptions& options, const Lan
   }
 }
 
-template <typename T, typename S>
+template <typename T>
+constexpr PackKernels make_pack_kernels() {
+  return {Lanes<T>::kCount, advance<T, FullPose<T>>, advance<T, TaskGoal<T>>};
+}
+
+/// Of packs of doubles, narrow and wide, and of single precision.
+template <typename Narrow, typename Wide, typename Single>
 constexpr LaneKernels make_kernels(const char* name) {
   return {name,
-          Lanes<T>::kCount,
-          advance<T, FullPose<T>>,
-          advance<T, TaskGoal<T>>,
-          prepare_seeds<S>,
-          add_known<S>,
-          find_largest<S>,
-          solve_branches<T>,
-          find_branches<T>};
+          make_pack_kernels<Narrow>(),
+          make_pack_kernels<Wide>(),
+          prepare_seeds<Single>,
+          add_known<Single>,
+          find_largest<Single>,
+          solve_branches<Wide>,
+          find_branches<Wide>};
 }
 
 }  // namespace iksel::lanes

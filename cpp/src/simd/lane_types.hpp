@@ -126,12 +126,19 @@ struct BranchPack;
 /// they are.
 using SolveBranches = void (*)(const ClosedForm& form, BranchPack& pack);
 
-/// The kernels of one instruction set.
-struct LaneKernels {
-  const char* name;
+/// Iterations of packs of one width.
+struct PackKernels {
   int lanes;
   Advance advance;
   Advance advance_task;
+};
+
+/// The kernels of one instruction set.
+struct LaneKernels {
+  const char* name;
+  /// Lanes iterate in lockstep. `narrow` takes the least time for an iteration, which is what the
+  /// first answer for one pose waits for; `wide` the least for each lane.
+  PackKernels narrow, wide;
   PrepareSeeds prepare;
   AddKnown add_known;
   FindLargest find_largest;

@@ -185,7 +185,7 @@ void lane_iteration(benchmark::State& state) {
       for (int c = 0; c < 3; ++c) pack.target[3 + 3 * c + r][lane] = Y(r, c);
     }
   }
-  const iksel::lanes::LaneOptions options{1e-3, 0, 0, 0, 0, 0};  // never there
+  const iksel::lanes::LaneOptions options{1e-3, 1e-18, 0, 0, 0, 0, 0};  // never there
   constexpr int kIterations = 16;
   std::size_t i = 0;
   for (auto _ : state) {

@@ -89,6 +89,7 @@ TEST(Levels, EachGivesTheSameBitsForAnyNumberOfThreads) {
 lanes::LaneOptions lane_options(double tolerance) {
   lanes::LaneOptions options{};
   options.damping = 1e-3;
+  options.least_damping = 1e-18;
   options.position2 = options.rotation2 = tolerance * tolerance;
   options.last_step2 = tolerance;
   options.last_error2 = 16 * tolerance;

@@ -14,6 +14,7 @@ lanes::LaneOptions make_lane_options(const ChainModel& model, const SolverOption
   const double rotation = options.rotation_tolerance;
   const Frame<double>& tip = model.kernel.tip;
   lanes.damping = std::get<Lanes>(options.strategy).damping;
+  lanes.least_damping = 1e-18;
   // |error at the TCP| <= |position error| + lever * |rotation error|, and the square of a sum of
   // two is at most twice the sum of their squares.
   lanes.lever2 = tip.p[0] * tip.p[0] + tip.p[1] * tip.p[1] + tip.p[2] * tip.p[2];

@@ -16,6 +16,7 @@
 #include "search/collector.hpp"
 #include "seeds/enumeration.hpp"
 #include "seeds/lane_query.hpp"
+#include "seeds/screened_seeds.hpp"
 #include "seeds/seed_ranking.hpp"
 #include "seeds/selection.hpp"
 #include "seeds/sweep.hpp"
@@ -42,6 +43,7 @@ struct Workspace {
 
     LaneRefiner refiner;
     LaneQuery query;
+    SeedScreen screen;
     /// Only of a chain that can be solved in closed form, at once or for each value of a joint.
     std::optional<Enumeration> branches;
     std::optional<Sweep> sweep;

@@ -10,8 +10,8 @@
 #include "search/search.hpp"
 #include "seeds/allowed_seeds.hpp"
 #include "seeds/given_seeds.hpp"
-#include "seeds/nearest_seeds.hpp"
-#include "seeds/random_seeds.hpp"
+#include "seeds/leaf_seeds.hpp"
+#include "seeds/screened_seeds.hpp"
 #include "seeds/seed_sequence.hpp"
 #include "seeds/selected_seeds.hpp"
 #include "seeds/spread_seeds.hpp"
@@ -25,6 +25,8 @@ constexpr Patience kFirst{8, kMostIterations};
 /// Where a seed more or less does not matter: solutions arrive after 4 iterations in the mean, and
 /// what is far off after 6 costs more than what it finds.
 constexpr Patience kAll{6, kMostIterations, 2};
+/// Where seeds were iterated before in single precision.
+constexpr Patience kScreened{4, kMostIterations};
 /// Where seeds are answers, or as near to one as a singularity or a limit lets it be told.
 constexpr Patience kThere{8, 64};
 
@@ -113,16 +115,17 @@ Proof Search<Answers>::in_lanes() const {
     SpreadSeeds spread(query, model.joints, options.seed, answers, work);
     search(refiner, spread, answers, work);
   } else {
-    if (workspace.lanes->sweep && request.database_seeds) {
-      NearestSeeds leaf(query, /*only_leaf=*/true, work, clock);
+    LeafSeeds leaf(query, work, clock);
+    if (run(refiner, near, given, leaf) || !request.database_seeds) return Proof::none;
+    if (workspace.lanes->sweep) {
       SweptSeeds swept(*workspace.lanes->sweep, Y, work, clock);
-      if (run(refiner, near, given, leaf)) return Proof::none;
       if (search(refiner, swept, answers, work)) return Proof::none;
       if (swept.is_none()) return Proof::sweep;
     }
-    NearestSeeds nearest(query, /*only_leaf=*/false, work, clock);
-    RandomSeeds random(model.joints, options.seed, work);
-    run(refiner, near, given, nearest, random);
+    refiner.begin(goal.task(), kScreened, Width::wide);
+    ScreenedSeeds screened(query, workspace.lanes->screen, Y, model.joints, options.seed, work,
+                           clock);
+    search(refiner, screened, answers, work);
   }
   clock.lap(&StageTimes::iterate);
   return Proof::none;

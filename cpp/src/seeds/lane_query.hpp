@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/rotation.hpp"
 #include "database/data.hpp"
 #include "database/key.hpp"
 #include "goal/goal.hpp"
@@ -31,13 +32,21 @@ class LaneQuery {
 
   /// Y (reduction.hpp).
   [[nodiscard]] Pose reduce(const Pose& T_base_tcp) const {
-    return base_inverse_ * T_base_tcp * tcp_inverse_;
+    return compose(compose(base_inverse_, T_base_tcp), tcp_inverse_);
   }
   /// What seeds are asked for from now on.
   void set_target(const Pose& Y);
 
   /// The samples of the leaf that the target falls into, as seeds.
   void prepare_leaf(lanes::SeedPack& seeds) const { prepare(data_.leaves.block(key_), seeds); }
+
+  /// The same in two steps: the leaf of Y, of which the samples are on their way into the cache
+  /// then; and its samples as seeds for Y.
+  [[nodiscard]] const float* fetch_leaf(const Pose& Y) const;
+  void prepare_leaf(const Pose& Y, const float* leaf, lanes::SeedPack& seeds) {
+    seed_target_ = make_seed_target(Y);
+    prepare(leaf, seeds);
+  }
 
   /// The blocks of samples, nearest first: to come before prepare_blocks. Returns how many there
   /// are.

@@ -45,6 +45,8 @@ class AxisMaker {
         case Closure::parallel_12:
           return j == 1;
         case Closure::parallel_23:
+        case Closure::sweep_4:
+        case Closure::sweep_6:
           return j == 2;
         case Closure::three_parallel:
           return j == 2 || j == 3;
@@ -62,8 +64,10 @@ class AxisMaker {
     for (int j = 0; j < 6; ++j) axes.p.push_back(dice_.vector(0.5));
     if (closure == Closure::intersect_12) meet(axes, 0, 2);
     if (closure == Closure::intersect_23) meet(axes, 1, 2);
-    if (closure == Closure::three_parallel) {
+    if (closure == Closure::three_parallel || closure == Closure::sweep_4) {
       meet(axes, 4, 2);
+    } else if (closure == Closure::sweep_6) {
+      meet(axes, 3, 2);
     } else {
       meet(axes, 3, 3);
     }

@@ -133,9 +133,11 @@ TEST(Seeds, AreTriedOnceEachInAnOrderOfTheirOwn) {
   }
 }
 
-/// With one attempt, and a seed or three that lead nowhere, the database's best is tried too.
+/// With one attempt, and a seed or three that lead nowhere, the database's best is tried too. Of a
+/// robot whose search ends by its attempts alone.
 TEST(Seeds, ComeOnTopOfMaxAttempts) {
-  const Robot& robot = iksel_test::robot("cvr038");
+  const Robot& robot = iksel_test::robot("irb14050");
+  const int dof = robot.dof();
   iksel::SolverOptions fast;
   iksel::SolverOptions paper = iksel::SolverOptions::paper();
   paper.database.samples = 2000;
@@ -150,13 +152,13 @@ TEST(Seeds, ComeOnTopOfMaxAttempts) {
       const Solver solver(robot, options);
       ASSERT_FALSE(solver.solve(none).success());
       EXPECT_EQ(solver.solve(none).attempts, most);
-      EXPECT_EQ(iksel_test::solve_from(solver, none, JointVector::Constant(6, 0.1)).attempts,
+      EXPECT_EQ(iksel_test::solve_from(solver, none, JointVector::Constant(dof, 0.1)).attempts,
                 most + 1);
       SolveRequest request;
-      request.near = JointVector::Constant(6, 0.1);
+      request.near = JointVector::Constant(dof, 0.1);
       EXPECT_EQ(solver.solve(none, request).attempts, most + 1);
       EXPECT_EQ(solver.solve_all(none, {}, request).attempts, most + 1);
-      for (int n = 0; n < 3; ++n) request.seeds.emplace_back(JointVector::Constant(6, 0.2 * n));
+      for (int n = 0; n < 3; ++n) request.seeds.emplace_back(JointVector::Constant(dof, 0.2 * n));
       const int given = 1 + std::min(most, 3);
       EXPECT_EQ(solver.solve(none, request).attempts, most + given);
       EXPECT_EQ(solver.solve_all(none, {}, request).attempts, most + given);
@@ -165,7 +167,7 @@ TEST(Seeds, ComeOnTopOfMaxAttempts) {
       EXPECT_EQ(solver.solve(none, request).attempts, given);
       request = {};
       request.task = iksel::Task::free_spin(iksel::Axis::z);
-      request.seeds = {JointVector::Zero(6)};
+      request.seeds = {JointVector::Zero(dof)};
       EXPECT_EQ(solver.solve(none, request).attempts, most + 1);
     }
   }

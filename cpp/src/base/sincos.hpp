@@ -38,8 +38,8 @@ template <typename T>
 inline void rough_sincos(const T& x, T& sine, T& cosine) {
   const T n = nearest_integer(x * T(0.31830988618F));
   // pi in three parts, of which the first two have 8 and 11 bits: n times them is exact.
-  const T r = ((x - n * T(3.140625F)) - n * T(9.67502593994140625e-4F)) -
-              n * T(1.50995799097837e-7F);
+  const T r =
+      ((x - n * T(3.140625F)) - n * T(9.67502593994140625e-4F)) - n * T(1.50995799097837e-7F);
   const T half = n * T(0.5F);
   const T parity = half - nearest_integer(half);
   const T sign = T(1.0F) - T(8.0F) * (parity * parity);

@@ -2,6 +2,7 @@
 // What one search has done, and may do.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -21,6 +22,8 @@ class Work {
     ++attempts;
     return true;
   }
+  /// From now on, so many seeds at most.
+  void leave(int most) { left_ = std::min(left_, most); }
   void take_on_top() { ++attempts; }
   /// Counts a guess at a solution by another one, which is no seed.
   void take_guess() { ++guesses_; }

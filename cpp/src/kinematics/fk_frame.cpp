@@ -5,8 +5,8 @@ namespace iksel {
 namespace {
 
 #if defined(__x86_64__)
-/// Chains of products and sums are what forward kinematics waits for, and a fused one takes half the
-/// time. All is inlined here, for what is called from here would be compiled without.
+/// Chains of products and sums are what forward kinematics waits for, and a fused one takes half
+/// the time. All is inlined here, for what is called from here would be compiled without.
 __attribute__((target("avx2,fma"), flatten)) Frame<double> forward_fused(const KernelChain& chain,
                                                                          const double* q) {
   return forward(chain, q);

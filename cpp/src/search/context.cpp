@@ -28,11 +28,13 @@ Workspace::InLanes::InLanes(const ChainModel& model, const ChainModel& nominal,
   const bool is_nominal = &model == &nominal;
   const double position = options.position_tolerance;
   const double rotation = options.rotation_tolerance;
-  if (closed_form->held >= 0) {
-    const double tolerance = std::max(position / closed_form->unit, rotation);
+  const double tolerance = std::max(position / closed_form->unit, rotation);
+  if (closed_form->held < 0) {
+    branches.emplace(model, *closed_form, is_nominal, position, rotation, kernels);
+  } else if (closed_form->form.is_held) {
     sweep.emplace(model, *closed_form, is_nominal, tolerance, kernels);
   } else {
-    branches.emplace(model, *closed_form, is_nominal, position, rotation, kernels);
+    roots.emplace(model, *closed_form, is_nominal, tolerance, kernels);
   }
 }
 

@@ -16,6 +16,7 @@
 #include "search/collector.hpp"
 #include "seeds/enumeration.hpp"
 #include "seeds/lane_query.hpp"
+#include "seeds/root_sweep.hpp"
 #include "seeds/screened_seeds.hpp"
 #include "seeds/seed_ranking.hpp"
 #include "seeds/selection.hpp"
@@ -47,6 +48,7 @@ struct Workspace {
     /// Only of a chain that can be solved in closed form, at once or for each value of a joint.
     std::optional<Enumeration> branches;
     std::optional<Sweep> sweep;
+    std::optional<RootSweep> roots;
   };
   struct OneAtATime {
     OneAtATime(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,

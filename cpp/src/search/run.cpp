@@ -29,6 +29,8 @@ constexpr Patience kAll{6, kMostIterations, 2};
 constexpr Patience kScreened{4, kMostIterations};
 /// Where seeds are answers, or as near to one as a singularity or a limit lets it be told.
 constexpr Patience kThere{8, 64};
+/// Seeds after all roots of a sweep led nowhere: double ones, or just outside a limit.
+constexpr int kBesideRoots = 96;
 
 /// What one search works with.
 template <typename Answers>
@@ -61,8 +63,11 @@ struct Search {
   bool by_scheme() const;
   /// Returns whether there certainly are no answers but those found.
   Proof in_lanes() const;
-  /// The same by all branches of Y; nothing if there may be answers left to search for.
-  std::optional<Proof> in_closed_form(GivenSeeds& given, const Pose& Y) const;
+  /// The same by given seeds and all branches of Y; nothing if there may be answers left to search
+  /// for. `kind`: the proof that branches give.
+  template <typename Branches>
+  std::optional<Proof> by_branches(Branches& branches, Proof kind, GivenSeeds& given,
+                                   const Pose& Y) const;
 };
 
 template <typename Answers>
@@ -105,18 +110,25 @@ Proof Search<Answers>::in_lanes() const {
   const Pose Y = query.reduce(goal.target());
   refiner.set_pose(Y);
   if (workspace.lanes->branches && request.database_seeds) {
-    if (const auto proof = in_closed_form(given, Y)) return *proof;
+    const auto proof = by_branches(*workspace.lanes->branches, Proof::closed_form, given, Y);
+    if (proof) return *proof;
   }
   query.set_target(Y);
   clock.lap(&StageTimes::query);
+  if constexpr (!std::is_same_v<Answers, Collector>) {
+    LeafSeeds leaf(query, work, clock);
+    if (run(refiner, near, given, leaf) || !request.database_seeds) return Proof::none;
+  }
+  if (workspace.lanes->roots && request.database_seeds) {
+    const auto proof = by_branches(*workspace.lanes->roots, Proof::sweep, given, Y);
+    if (proof) return *proof;
+  }
   if constexpr (std::is_same_v<Answers, Collector>) {
     if (run(refiner, near, given) || !request.database_seeds) return Proof::none;
     refiner.begin(goal.task(), kAll, Width::wide);
     SpreadSeeds spread(query, model.joints, options.seed, answers, work);
     search(refiner, spread, answers, work);
   } else {
-    LeafSeeds leaf(query, work, clock);
-    if (run(refiner, near, given, leaf) || !request.database_seeds) return Proof::none;
     if (workspace.lanes->sweep) {
       SweptSeeds swept(*workspace.lanes->sweep, Y, work, clock);
       if (search(refiner, swept, answers, work)) return Proof::none;
@@ -132,10 +144,11 @@ Proof Search<Answers>::in_lanes() const {
 }
 
 template <typename Answers>
-std::optional<Proof> Search<Answers>::in_closed_form(GivenSeeds& given, const Pose& Y) const {
+template <typename Branches>
+std::optional<Proof> Search<Answers>::by_branches(Branches& branches, Proof kind, GivenSeeds& given,
+                                                  const Pose& Y) const {
   LaneRefiner& refiner = workspace.lanes->refiner;
-  EnumeratedSeeds enumerated(*workspace.lanes->branches, goal, Y, answers.wants_more(), work,
-                             clock);
+  EnumeratedSeeds enumerated(branches, goal, Y, answers.wants_more(), work, clock);
   SeedSequence seeds(2, given, enumerated);
   refiner.begin(goal.task(), kThere, Width::narrow);
   answers.look_for_partners(false);
@@ -144,8 +157,9 @@ std::optional<Proof> Search<Answers>::in_closed_form(GivenSeeds& given, const Po
   clock.lap(&StageTimes::iterate);
   if (is_satisfied) return Proof::none;
   // Branches of which none could be refined to the tolerances prove nothing.
-  if (enumerated.is_certain() && (enumerated.is_empty() || answers.has_any())) {
-    return Proof::closed_form;
+  if (enumerated.is_certain()) {
+    if (enumerated.is_empty() || answers.has_any()) return kind;
+    if (kind == Proof::sweep) work.leave(kBesideRoots);
   }
   refiner.begin(goal.task(), kFirst, Width::narrow);
   return std::nullopt;

@@ -52,10 +52,11 @@ class Enumeration {
   bool certain_ = false;
 };
 
-/// These as a source of seeds.
+/// These as a source of seeds, or those of a RootSweep.
+template <typename Branches>
 class EnumeratedSeeds {
  public:
-  EnumeratedSeeds(Enumeration& branches, const Goal& goal, const Pose& Y, bool wants_all,
+  EnumeratedSeeds(Branches& branches, const Goal& goal, const Pose& Y, bool wants_all,
                   Work& work, StageClock& clock)
       : branches_(branches),
         goal_(goal),
@@ -87,7 +88,7 @@ class EnumeratedSeeds {
   [[nodiscard]] bool is_empty() const { return branches_.size() == 0; }
 
  private:
-  Enumeration& branches_;
+  Branches& branches_;
   const Goal& goal_;
   const Pose& Y_;
   bool wants_all_;

@@ -14,8 +14,9 @@ LaneQuery::LaneQuery(const ChainModel& model, const ChainModel& nominal, const D
       base_inverse_(to_pose(model.kernel.base).inverse()),
       tcp_inverse_(Pose(model.tcp_inverse) * to_pose(model.kernel.flange).inverse()),
       seed_chain_(make_seed_chain(nominal, *data.reduction)),
-      near_blocks_(std::min((static_cast<std::size_t>(neighbours) + lanes::kBlock - 1) / lanes::kBlock,
-                            data.blocks.size())),
+      near_blocks_(
+          std::min((static_cast<std::size_t>(neighbours) + lanes::kBlock - 1) / lanes::kBlock,
+                   data.blocks.size())),
       block_distance2_(data.blocks.size()),
       block_order_(data.blocks.size()),
       is_tried_(data.blocks.size()) {}

@@ -6,14 +6,16 @@
 
 namespace iksel::lanes {
 
-/// What makes six turning joints solvable in closed form. All but `three_parallel` end in axes
-/// 4, 5 and 6 that meet in one point.
+/// What makes six turning joints solvable in closed form. The first four end in axes 4, 5 and 6
+/// that meet in one point. The last two are closed for an angle of one joint, but for a residual.
 enum class Closure : int {
   parallel_23,     ///< axes 2 and 3 are parallel
   intersect_12,    ///< axes 1 and 2 meet
   intersect_23,    ///< axes 2 and 3 meet
   parallel_12,     ///< axes 1 and 2 are parallel
   three_parallel,  ///< axes 2, 3 and 4 are parallel, 5 and 6 meet
+  sweep_4,         ///< axes 2 and 3 are parallel, 5 and 6 meet; for an angle of joint 4
+  sweep_6,         ///< axes 2 and 3 are parallel, 4 and 5 meet; for an angle of joint 6
 };
 
 /// x . R(k, t) y = a cos(t) + b sin(t) + c, for constant x, k and y.
@@ -30,15 +32,16 @@ struct ClosedForm {
   double offset[6];  ///< what angles are more than joint values [rad]
   /// Middle of each joint's limits, and half their range; of a joint that has none, 0 and pi [rad].
   double middle[6], reach[6];
-  double h[6][3];       ///< unit vectors along the axes
-  double p[4][3];       ///< from a point on axis j to one on axis j + 1; where axes meet, one point
-  double basis[3][3];   ///< right-handed, h6 last
-  double across[3];     ///< a unit vector across h2
-  double cross12;       ///< h1 . h2
-  double cross23;       ///< h2 . h3
-  double side3;         ///< of parallel axes 3 and 2: 1, or -1 if they point opposite ways
-  double side4;         ///< the same of axes 4 and 2
-  double arm2;          ///< |p23|^2 + |p34|^2
+  double h[6][3];      ///< unit vectors along the axes
+  double p[5][3];      ///< from a point on axis j to one on axis j + 1; where axes meet, one point
+  double basis[3][3];  ///< right-handed, h6 last
+  double across[3];    ///< a unit vector across h2
+  double cross12;      ///< h1 . h2
+  double cross23;      ///< h2 . h3
+  double side3;        ///< of parallel axes 3 and 2: 1, or -1 if they point opposite ways
+  double side4;        ///< the same of axes 4 and 2
+  double arm2;         ///< |p23|^2 + |p34|^2
+  double along45, along56;  ///< h4 . h5 and h5 . h6
   double rest;          ///< what the way along parallel axes adds up to; of intersect_23 |p34|^2 -
                         ///< |p12|^2
   bool is_held;         ///< whether there is a joint before the first, which is held at an angle
@@ -54,7 +57,7 @@ struct ClosedForm {
 /// [units]; where a joint is held, as they are at its angle 0.
 struct BranchPack {
   double target[12];
-  /// Angle of the held joint, if the form has one [rad].
+  /// Angle of the held joint, or of that of sweep_4 or sweep_6, if the form has one [rad].
   alignas(64) double held[kWidth];
   /// +-1: which of two solutions each of three subproblems takes.
   alignas(64) double sign[3][kWidth];
@@ -67,6 +70,9 @@ struct BranchPack {
   /// best is below 0, and certainly one where the worst is not. The sizes of these two mean
   /// nothing.
   alignas(64) double least[kWidth];
+  /// Of sweep_4 and sweep_6, 0 at solutions: by how much the cosine of the angle between two axes
+  /// is off.
+  alignas(64) double residual[kWidth];
   alignas(64) double best[kWidth];
   alignas(64) double worst[kWidth];
   /// What such an error may have grown to in the angles, to first order [rad].

@@ -7,7 +7,6 @@ namespace iksel::lanes {
 
 using Arch = xsimd::fma3<xsimd::avx2>;
 using Doubles = xsimd::batch<double, Arch>;
-const LaneKernels kKernelsAvx2 =
-    make_kernels<Doubles, Doubles, xsimd::batch<float, Arch>>("avx2");
+const LaneKernels kKernelsAvx2 = make_kernels<Doubles, Doubles, xsimd::batch<float, Arch>>("avx2");
 
 }  // namespace iksel::lanes

@@ -7,7 +7,6 @@ namespace iksel::lanes {
 
 using Arch = xsimd::neon64;
 using Doubles = xsimd::batch<double, Arch>;
-const LaneKernels kKernelsNeon =
-    make_kernels<Doubles, Doubles, xsimd::batch<float, Arch>>("neon");
+const LaneKernels kKernelsNeon = make_kernels<Doubles, Doubles, xsimd::batch<float, Arch>>("neon");
 
 }  // namespace iksel::lanes

@@ -7,7 +7,6 @@ namespace iksel::lanes {
 
 using Arch = xsimd::sse2;
 using Doubles = xsimd::batch<double, Arch>;
-const LaneKernels kKernelsSse2 =
-    make_kernels<Doubles, Doubles, xsimd::batch<float, Arch>>("sse2");
+const LaneKernels kKernelsSse2 = make_kernels<Doubles, Doubles, xsimd::batch<float, Arch>>("sse2");
 
 }  // namespace iksel::lanes

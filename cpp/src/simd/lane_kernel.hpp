@@ -7,6 +7,7 @@
 #include "simd/lane_goal.hpp"
 #include "simd/lane_math.hpp"
 #include "simd/lane_types.hpp"
+#include "simd/residual_kernel.hpp"
 #include "simd/seed_kernel.hpp"
 
 namespace iksel::lanes {
@@ -41,7 +42,8 @@ inline void multiply_rows(int n, const T (*J)[6], T (&A)[6][6]) {
 
 /// Frames of the joints at q: J has each joint's origin and axis, `f` the last one's frame.
 template <typename T>
-IKSEL_INLINE void place_joints(const LaneChainOf<NumberOf<T>>& chain, const T* q, T (*J)[6], LaneFrame<T>& f) {
+IKSEL_INLINE void place_joints(const LaneChainOf<NumberOf<T>>& chain, const T* q, T (*J)[6],
+                               LaneFrame<T>& f) {
   const int n = chain.n;
   for (int i = 0; i < 3; ++i) {
     f.x[i] = T(i == 0 ? 1.0 : 0.0);
@@ -120,7 +122,8 @@ IKSEL_INLINE void make_columns(const LaneChainOf<NumberOf<T>>& chain, const T* q
 
 /// Adds J^T y to q, held to the limits; returns the squared length of the step.
 template <typename T>
-IKSEL_INLINE T move_joints(const LaneChainOf<NumberOf<T>>& chain, const T (*J)[6], const T (&y)[6], T* q) {
+IKSEL_INLINE T move_joints(const LaneChainOf<NumberOf<T>>& chain, const T (*J)[6], const T (&y)[6],
+                           T* q) {
   const int n = chain.n;
   T dq2 = T(0.0);
 #pragma GCC unroll 10
@@ -228,7 +231,9 @@ constexpr LaneKernels make_kernels(const char* name) {
           add_known<Single>,
           find_largest<Single>,
           solve_branches<Wide>,
-          find_branches<Wide>};
+          find_branches<Wide>,
+          find_residuals<Wide>,
+          count_roots<Wide>};
 }
 
 }  // namespace iksel::lanes

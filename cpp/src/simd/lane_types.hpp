@@ -142,6 +142,13 @@ struct BranchPack;
 /// they are.
 using SolveBranches = void (*)(const ClosedForm& form, BranchPack& pack);
 
+struct ResidualForm;
+/// The residuals of `n` angles, a multiple of kWidth (residual_kernel.hpp).
+using FindResiduals = void (*)(const ResidualForm& form, const double* angles, int n,
+                               double* residuals);
+/// The number of roots between values beside each other: 0, 1, or 2 if that is not certain.
+using CountRoots = void (*)(const double* values, int n, double* counts);
+
 /// Iterations of packs of one width.
 struct PackKernels {
   int lanes;
@@ -161,6 +168,8 @@ struct LaneKernels {
   FindLargest find_largest;
   SolveBranches solve_branches;
   SolveBranches find_branches;
+  FindResiduals find_residuals;
+  CountRoots count_roots;
 };
 
 }  // namespace iksel::lanes

@@ -36,6 +36,11 @@ class Geometry {
   [[nodiscard]] bool are_parallel(std::size_t i, std::size_t j) const {
     return axes_.angle(i, j) <= tolerance_;
   }
+  /// Of axes 2 and 3 from being parallel [rad], and of i and i + 1 from meeting [in units of the
+  /// reach].
+  [[nodiscard]] double deviation(std::size_t i) const {
+    return axes_.angle(1, 2) + axes_.distance(i + 1, axes_.p[i]) / reach_;
+  }
   [[nodiscard]] bool meet(std::size_t i, std::size_t j) const {
     return axes_.angle(i, j) > kClearlyNot && is_on(axes_.middle(i, j), j);
   }
@@ -72,6 +77,20 @@ class Geometry {
     return std::nullopt;
   }
 
+  /// What closes it for an angle of one joint.
+  std::optional<Closure> find_sweep() {
+    if (!are_parallel(1, 2) || are_parallel(0, 1) || are_parallel(4, 5)) return std::nullopt;
+    if (meet(4, 5)) {
+      join(4);
+      return Closure::sweep_4;
+    }
+    if (meet(3, 4)) {
+      join(3);
+      return Closure::sweep_6;
+    }
+    return std::nullopt;
+  }
+
   [[nodiscard]] const ScrewAxes& axes() const { return axes_; }
 
  private:
@@ -94,7 +113,7 @@ lanes::ClosedForm make_form(Closure closure, const ScrewAxes& axes, double unit)
   lanes::ClosedForm form{};
   form.closure = closure;
   for (std::size_t j = 0; j < kSix; ++j) write(h[j], form.h[j]);
-  for (std::size_t j = 0; j < 4; ++j) write(way(j), form.p[j]);
+  for (std::size_t j = 0; j < 5; ++j) write(way(j), form.p[j]);
   const Vector3d e1 = h[5].unitOrthogonal();
   write(e1, form.basis[0]);
   write(h[5].cross(e1), form.basis[1]);
@@ -102,6 +121,8 @@ lanes::ClosedForm make_form(Closure closure, const ScrewAxes& axes, double unit)
   write(h[1].unitOrthogonal(), form.across);
   form.cross12 = h[0].dot(h[1]);
   form.cross23 = h[1].dot(h[2]);
+  form.along45 = h[3].dot(h[4]);
+  form.along56 = h[4].dot(h[5]);
   form.side3 = side_of(2);
   form.side4 = side_of(3);
   form.arm2 = p23.squaredNorm() + p34.squaredNorm();
@@ -120,6 +141,10 @@ lanes::ClosedForm make_form(Closure closure, const ScrewAxes& axes, double unit)
       break;
     case Closure::parallel_12:
       form.rest = h[0].dot(p12 + p23);
+      break;
+    case Closure::sweep_4:
+    case Closure::sweep_6:
+      form.rest = h[1].dot(p12 + p23);
       break;
     case Closure::intersect_12:
       break;
@@ -148,6 +173,10 @@ std::string describe(Closure closure, const int (&joints)[kSix]) {
       return three(3) + " meet, " + list(0, 1) + " meet";
     case Closure::intersect_23:
       return three(3) + " meet, " + list(1, 2) + " meet";
+    case Closure::sweep_4:
+      return "axes " + list(1, 2) + " are parallel, " + list(4, 5) + " meet";
+    case Closure::sweep_6:
+      return "axes " + list(1, 2) + " are parallel, " + list(3, 4) + " meet";
   }
   return {};
 }
@@ -184,42 +213,60 @@ void ClosedFormChain::use_limits(const ChainModel& model) {
   }
 }
 
+namespace {
+
+/// The last six joints, seen from one end. `sweeps`: those that are closed for an angle of a joint.
+std::optional<ClosedFormChain> look_from(const ChainModel& model, bool reversed, bool sweeps) {
+  const ScrewAxes forward = ScrewAxes::of(model);
+  ScrewAxes axes = reversed ? forward.reversed() : forward;
+  ClosedFormChain chain;
+  const int before = model.dof - kSix;
+  const auto joint = [&](int i) { return reversed ? model.dof - 1 - i : i; };
+  const Vector3d held_axis = axes.h.front();
+  const Vector3d held_point = axes.p.front();
+  if (before > 0) {
+    chain.held = joint(0);
+    axes.h.erase(axes.h.begin());
+    axes.p.erase(axes.p.begin());
+  }
+  Geometry geometry(std::move(axes), model.reach, sweeps ? kSweptTolerance : kStructureTolerance);
+  const bool has_residual = sweeps && before == 0;
+  const auto closure = has_residual ? geometry.find_sweep() : geometry.find_closure();
+  if (!closure) return std::nullopt;
+  for (int i = 0; i < kSix; ++i) chain.joints[i] = joint(before + i);
+  if (has_residual) {
+    const bool is_4 = *closure == Closure::sweep_4;
+    chain.held = chain.joints[is_4 ? 3 : 5];
+    chain.deviation = geometry.deviation(is_4 ? 4 : 3);
+  }
+  chain.reversed = reversed;
+  chain.unit = model.reach;
+  chain.form = make_form(*closure, geometry.axes(), chain.unit);
+  Eigen::Matrix3d E;
+  for (int k = 0; k < 3; ++k) E.col(k) = Vector3d(chain.form.basis[k]);
+  chain.first = geometry.axes().p[0];
+  chain.form.is_held = before > 0;
+  write(held_axis, chain.form.held_axis);
+  write((chain.first - held_point) / chain.unit, chain.form.held_from);
+  chain.tail = E.transpose() * (geometry.axes().end.translation() - geometry.axes().p[5]);
+  chain.to_basis = geometry.axes().end.linear().transpose() * E;
+  chain.description = describe(*closure, chain.joints);
+  return chain;
+}
+
+}  // namespace
+
 std::optional<ClosedFormChain> find_closed_form(const ChainModel& model) {
   if (model.dof < kSix || model.dof > kSix + 1 || !is_simple(model)) return std::nullopt;
   for (const KernelJoint& joint : model.kernel.joints) {
     if (joint.prismatic) return std::nullopt;
   }
-  const ScrewAxes forward = ScrewAxes::of(model);
-  for (const bool reversed : {false, true}) {
-    ScrewAxes axes = reversed ? forward.reversed() : forward;
-    ClosedFormChain chain;
-    const int before = model.dof - kSix;
-    const auto joint = [&](int i) { return reversed ? model.dof - 1 - i : i; };
-    const Vector3d held_axis = axes.h.front();
-    const Vector3d held_point = axes.p.front();
-    if (before > 0) {
-      chain.held = joint(0);
-      axes.h.erase(axes.h.begin());
-      axes.p.erase(axes.p.begin());
+  for (const bool sweeps : {false, true}) {
+    if (!sweeps && model.dof > kSix) continue;
+    for (const bool reversed : {false, true}) {
+      auto chain = look_from(model, reversed, sweeps);
+      if (chain) return chain;
     }
-    Geometry geometry(std::move(axes), model.reach,
-                      before > 0 ? kSweptTolerance : kStructureTolerance);
-    const std::optional<Closure> closure = geometry.find_closure();
-    if (!closure) continue;
-    for (int i = 0; i < kSix; ++i) chain.joints[i] = joint(before + i);
-    chain.reversed = reversed;
-    chain.unit = model.reach;
-    chain.form = make_form(*closure, geometry.axes(), chain.unit);
-    Eigen::Matrix3d E;
-    for (int k = 0; k < 3; ++k) E.col(k) = Vector3d(chain.form.basis[k]);
-    chain.first = geometry.axes().p[0];
-    chain.form.is_held = before > 0;
-    write(held_axis, chain.form.held_axis);
-    write((chain.first - held_point) / chain.unit, chain.form.held_from);
-    chain.tail = E.transpose() * (geometry.axes().end.translation() - geometry.axes().p[5]);
-    chain.to_basis = geometry.axes().end.linear().transpose() * E;
-    chain.description = describe(*closure, chain.joints);
-    return chain;
   }
   return std::nullopt;
 }

@@ -27,6 +27,7 @@ struct ClosedFormChain {
   bool reversed;
   lanes::ClosedForm form;
   double unit;               ///< [m]
+  double deviation = 0;      ///< of axes from where the form has them [rad, units]
   Eigen::Vector3d first;     ///< the point on axis 1 [m]
   Eigen::Vector3d tail;      ///< from the point on axis 6 to the end, in the basis [m]
   Eigen::Matrix3d to_basis;  ///< R_06 E = R * to_basis

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The roots of a residual (residual_kernel.hpp) over a range of its angle.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "simd/kernels.hpp"
+#include "simd/residual_types.hpp"
+
+namespace iksel {
+
+class RootFinder {
+ public:
+  /// Intervals between angles at which the residual is looked at first. It is a trigonometric
+  /// polynomial, of degree 8 if axes 1 and 2 meet.
+  static constexpr int kCells = 128;
+  /// Roots that are kept, at most. There are 16 if axes 1 and 2 meet.
+  static constexpr std::size_t kMost = 48;
+
+  struct Root {
+    double angle;   ///< [rad]
+    bool is_vague;  ///< there may be two near to here, or just none
+  };
+
+  /// From `lower` on, over `range`, which is all if it is a whole turn or more [rad]. Where the
+  /// residual turns and its two roots are at most `vague` away, real or not, a root is vague [rad].
+  RootFinder(double lower, double range, double vague, const lanes::LaneKernels& kernels);
+
+  void find(const lanes::ResidualForm& form);
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] const Root& operator[](std::size_t i) const { return roots_[i]; }
+  /// Whether these are all.
+  [[nodiscard]] bool is_complete() const { return is_complete_; }
+
+ private:
+  /// Values before the first cell's left end, and after the last one's, that tell of the cell.
+  static constexpr int kBefore = 3;
+  static constexpr int kAfter = 4;
+
+  struct Bracket {
+    double left, right, at_left, at_right;
+  };
+  /// Looks into the interval of this length from `left` on, at more angles; `depth` of those
+  /// around.
+  void look_closer(const lanes::ResidualForm& form, double left, double length, int depth);
+  void add_bracket(double left, double length, const double* value);
+  void add(double angle, bool is_vague);
+  /// Narrows all brackets.
+  void polish(const lanes::ResidualForm& form);
+
+  const lanes::LaneKernels& kernels_;
+  bool turns_;
+  double vague_;
+  double step_;
+  std::vector<double> angles_, values_;  ///< with those before and after
+  std::array<Bracket, kMost> brackets_{};
+  std::size_t brackets_size_ = 0;
+  std::array<Root, kMost> roots_{};
+  std::size_t size_ = 0;
+  bool is_complete_ = false;
+};
+
+}  // namespace iksel

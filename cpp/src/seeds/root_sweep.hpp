@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Six joints of which one is swept over its range: for each of its values the others are known in
+// closed form but for a residual, whose roots are the solutions.
+#pragma once
+
+#include <array>
+
+#include "goal/goal.hpp"
+#include "kinematics/chain_model.hpp"
+#include "seeds/root_finder.hpp"
+#include "simd/branch_types.hpp"
+#include "structure/closed_form.hpp"
+
+namespace iksel {
+
+class RootSweep {
+ public:
+  static constexpr int kMost = 96;
+
+  /// `chain` is the nominal chain's, with a residual; its limits are the model's. `is_nominal`: it
+  /// is the model's own. `tolerance` is the larger of the solver's [rad, and m in units of the
+  /// reach].
+  RootSweep(const ChainModel& model, const ClosedFormChain& chain, bool is_nominal,
+            double tolerance, const lanes::LaneKernels& kernels);
+
+  /// Finds the solutions of the goal, a full pose, that lie inside the limits, or so near to them
+  /// that it cannot be told. Y as in reduction.hpp.
+  void find(const Goal& goal, const Pose& Y, bool wants_all);
+  [[nodiscard]] int size() const { return size_; }
+  /// Inside the limits, or nearly [rad].
+  [[nodiscard]] const double* q(int i) const { return q_[static_cast<std::size_t>(i)].data(); }
+  /// Whether there are no solutions but near to these.
+  [[nodiscard]] bool is_certain() const { return certain_; }
+
+ private:
+  /// Beyond such tolerances, solutions lie too far from roots to conclude anything.
+  static constexpr double kMostTolerance = 1e-4;
+  /// The first two of the three signs are read.
+  static constexpr std::size_t kBranches = 4;
+
+  void take(bool is_vague, int lane);
+
+  ClosedFormChain chain_;
+  const lanes::LaneKernels& kernels_;
+  bool concludes_;
+  double vague_;  ///< by how much roots that are nearly double may be off [rad]
+  RootFinder roots_;
+  lanes::BranchPack pack_ = all_branches();
+  std::array<std::array<double, 6>, kMost> q_{};
+  int size_ = 0;
+  bool certain_ = false;
+};
+
+}  // namespace iksel

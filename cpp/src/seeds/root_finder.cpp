@@ -110,38 +110,53 @@ void RootFinder::add(double angle, bool is_vague) {
 }
 
 void RootFinder::polish(const lanes::ResidualForm& form) {
-  // By regula falsi as Anderson and Bjorck have it, 1973.
-  constexpr int kRounds = 15;
-  constexpr double kThere = 1e-9;
+  constexpr int kRounds = 40;
   for (std::size_t first = 0; first < brackets_size_; first += kBlock) {
     const std::size_t n = std::min<std::size_t>(kBlock, brackets_size_ - first);
     std::array<double, kBlock> angles{};
     std::array<double, kBlock> values{};
-    double moved = step_;
-    for (int round = 0; round < kRounds && moved > kThere; ++round) {
-      moved = 0;
-      for (std::size_t i = 0; i < n; ++i) {
-        const Bracket& b = brackets_[first + i];
-        angles[i] = b.left + (b.right - b.left) * b.at_left / (b.at_left - b.at_right);
-      }
+    bool is_there = false;
+    for (int round = 0; round < kRounds && !is_there; ++round) {
+      for (std::size_t i = 0; i < n; ++i) angles[i] = brackets_[first + i].next();
       kernels_.find_residuals(form, angles.data(), kBlock, values.data());
+      is_there = true;
       for (std::size_t i = 0; i < n; ++i) {
-        Bracket& b = brackets_[first + i];
-        moved = std::max(moved, std::abs(angles[i] - b.right));
-        // `right` is the newer end, whichever side it is on.
-        if ((values[i] < 0) != (b.at_right < 0)) {
-          b.left = b.right;
-          b.at_left = b.at_right;
-        } else {
-          const double kept = 1 - values[i] / b.at_right;
-          b.at_left *= kept > 0 ? kept : 0.5;
-        }
-        b.right = angles[i];
-        b.at_right = values[i];
+        brackets_[first + i].narrow(angles[i], values[i]);
+        is_there = is_there && brackets_[first + i].is_narrow();
       }
     }
-    for (std::size_t i = 0; i < n; ++i) add(brackets_[first + i].right, false);
+    for (std::size_t i = 0; i < n; ++i) add(brackets_[first + i].best(), false);
   }
+}
+
+double RootFinder::Bracket::next() const {
+  // The share of the way from x1 to x2: by a straight line at first, then by the inverse parabola
+  // through three points where that is sure to lie between, else by halves.
+  double t = 0.5;
+  if (std::isnan(x3)) {
+    t = f1 / (f1 - f2);
+  } else {
+    const double xi = (x1 - x2) / (x3 - x2);
+    const double phi = (f1 - f2) / (f3 - f2);
+    if (phi * phi < xi && (1 - phi) * (1 - phi) < 1 - xi) {
+      t = f1 / (f2 - f1) * (f3 / (f2 - f3)) +
+          (x3 - x1) / (x2 - x1) * (f1 / (f3 - f1)) * (f2 / (f3 - f2));
+    }
+  }
+  const double least = std::min(0.5, kThere / std::abs(x2 - x1));
+  return x1 + std::min(std::max(t, least), 1 - least) * (x2 - x1);
+}
+
+void RootFinder::Bracket::narrow(double x, double f) {
+  const bool same_side = (f < 0) == (f1 < 0);
+  x3 = same_side ? x1 : x2;
+  f3 = same_side ? f1 : f2;
+  if (!same_side) {
+    x2 = x1;
+    f2 = f1;
+  }
+  x1 = x;
+  f1 = f;
 }
 
 }  // namespace iksel

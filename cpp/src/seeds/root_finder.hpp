@@ -3,7 +3,9 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "simd/kernels.hpp"
@@ -39,8 +41,16 @@ class RootFinder {
   static constexpr int kBefore = 3;
   static constexpr int kAfter = 4;
 
+  /// Two angles between which there is a root, narrowed by Chandrupatla's method (1997).
   struct Bracket {
-    double left, right, at_left, at_right;
+    static constexpr double kThere = 5e-10;  ///< [rad]
+    double x1, x2, f1, f2;                   ///< the latest, and that beyond the root
+    double x3 = std::numeric_limits<double>::quiet_NaN(), f3 = 0;  ///< the one before
+
+    [[nodiscard]] double next() const;
+    void narrow(double x, double f);
+    [[nodiscard]] bool is_narrow() const { return f1 == 0 || std::abs(x2 - x1) <= 2 * kThere; }
+    [[nodiscard]] double best() const { return std::abs(f1) < std::abs(f2) ? x1 : x2; }
   };
   /// Looks into the interval of this length from `left` on, at more angles; `depth` of those
   /// around.

@@ -15,7 +15,7 @@ namespace iksel {
 /// are taken to be: beyond what is left of a rounded pi, and far below any tolerance.
 inline constexpr double kStructureTolerance = 1e-9;
 /// The same where what is found is refined anyway, and nothing is proven: a pi of four decimals.
-inline constexpr double kSweptTolerance = 1e-4;
+inline constexpr double kSweptTolerance = 2e-5;
 
 /// Six consecutive joints of a chain, seen from either end; before them there may be one that is
 /// held.

@@ -42,7 +42,7 @@ class SeedScreen {
  private:
   /// What few seeds that fail come down to, and most that do not: squared error [mixed units].
   static constexpr float kNear2 = 1e-3F;
-  static constexpr int kIterations = 8;
+  static constexpr int kIterations = 7;
   /// Longer chains are too long for single precision [m].
   static constexpr double kLongest = 100;
 

@@ -401,7 +401,7 @@ TEST_F(DatabaseFile, KilledSavesLeaveADatabaseAndNoFiles) {
   const Database databases[] = {make(500), make(700)};
   const std::string contents[] = {databases[0].to_bytes(), databases[1].to_bytes()};
   const auto save = [&](int i, bool nameless) {
-    iksel::write_file(path("d.iksel"), *databases[i % 2].data().storage, nameless);
+    iksel::write_file(path("d.iksel"), databases[i % 2].data().storage, nameless);
   };
   iksel::Random random(iksel_test::seed());
   for (const bool nameless : {true, false}) {
@@ -455,7 +455,7 @@ TEST_F(DatabaseFile, SavesAtOnceDoNotDisturbEachOther) {
       if (child == 0) {
         try {
           for (int i = 0; i < 20; ++i) {
-            iksel::write_file(path("d.iksel"), *database.data().storage, nameless);
+            iksel::write_file(path("d.iksel"), database.data().storage, nameless);
           }
         } catch (const std::exception& error) {
           std::fputs(error.what(), stderr);

@@ -2,6 +2,7 @@
 #include "base/message_text.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <numeric>
 #include <utility>
@@ -68,6 +69,11 @@ std::string number_text(double value, int digits) {
   return text.str();
 }
 
+std::string too_large_text(double value, const std::string& unit) {
+  return number_text(value) + (unit.empty() ? "" : " " + unit) + "; at most " +
+         number_text(kMaxCoordinate) + " can be computed with";
+}
+
 void throw_unknown_name(const std::string& problem, const std::string& name,
                         const std::vector<std::string>& known) {
   std::string hint;
@@ -88,6 +94,23 @@ std::string list_names(const std::vector<std::string>& names) {
   }
   if (names.size() > kMost) text += " and " + std::to_string(names.size() - kMost) + " more";
   return text;
+}
+
+void throw_invalid(const char* name, std::ptrdiff_t index, const std::string& what) {
+  std::string text = name;
+  if (index >= 0) text += "[" + std::to_string(index) + "]";
+  throw InvalidArgumentError(text + ": " + what);
+}
+
+void check_joints(const JointVector& q, int dof, const char* name) {
+  if (q.size() != dof) {
+    throw_invalid(
+        name, -1,
+        "expected " + std::to_string(dof) + " joint values, got " + std::to_string(q.size()));
+  }
+  for (int i = 0; i < dof; ++i) {
+    if (!std::isfinite(q[i])) throw_invalid(name, i, "not finite");
+  }
 }
 
 }  // namespace iksel

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "base/error_check.hpp"
 #include "base/message_text.hpp"
 #include "iksel/pose.hpp"
 

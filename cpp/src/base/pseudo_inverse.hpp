@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Truncated and damped solves with a Jacobian, without a heap allocation. Eigen's decompositions
-// take a compiler long, and so are seen by one source only.
+// Truncated and damped solves with a Jacobian, and determinants, without a heap allocation. Eigen's
+// decompositions take a compiler long, and so are seen by one source only.
 #pragma once
 
 #include <Eigen/Core>
@@ -46,5 +46,9 @@ PseudoInverse damped_inverse(const JacobianMatrix& J, double lambda);
 
 /// J^T (J J^T + lambda I)^-1 e.
 JointVector damped_solve(const JacobianMatrix& J, double lambda, const Vector6& e);
+
+/// The determinant of a matrix of `rows`, which become its factors: by elimination, the largest of
+/// a column first. Everything is unrolled.
+double determinant(double (&rows)[6][6]);
 
 }  // namespace iksel

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What one search has done, and may do.
+// What one search has done and may do, and where its time went.
 #pragma once
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
+
+#include "iksel/result.hpp"
 
 namespace iksel {
 
@@ -40,9 +41,8 @@ class Work {
 /// A wall-clock deadline; asks the clock only if there is one.
 class Deadline {
  public:
-  explicit Deadline(double seconds) : set_(std::isfinite(seconds)) {
-    // Longer than a year is none: the clock's numbers end somewhere.
-    set_ = set_ && seconds < 3e7;
+  /// Longer than a year is none: the clock's numbers end somewhere.
+  explicit Deadline(double seconds) : set_(seconds < 3e7) {
     if (set_) {
       end_ = Clock::now() +
              std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
@@ -54,6 +54,26 @@ class Deadline {
   using Clock = std::chrono::steady_clock;
   bool set_;
   Clock::time_point end_;
+};
+
+/// Adds the time between laps to the stages of a solve; does nothing if there is nobody to tell.
+class StageClock {
+ public:
+  explicit StageClock(StageTimes* times) : times_(times) {
+    if (times_ != nullptr) last_ = Clock::now();
+  }
+
+  void lap(double StageTimes::*stage) {
+    if (times_ == nullptr) return;
+    const auto now = Clock::now();
+    times_->*stage += std::chrono::duration<double, std::nano>(now - last_).count();
+    last_ = now;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  StageTimes* times_;
+  Clock::time_point last_;
 };
 
 }  // namespace iksel

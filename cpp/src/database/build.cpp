@@ -36,22 +36,20 @@ constexpr std::size_t kSamplesPerChunk = 512;
 /// What the samples of one database are made with, by one thread.
 class SampleMaker {
  public:
-  SampleMaker(const ChainModel& model, const DatabaseOptions& options, double weight,
-              const Reduction* reduction)
-      : options_(options),
-        reduction_(reduction),
-        model_(model),
-        weight_(weight),
+  /// `data` knows how its samples are to be.
+  SampleMaker(const ChainModel& model, const DatabaseData& data)
+      : model_(model),
+        data_(data),
         base_inverse_(to_pose(model.kernel.base).inverse()),
         // Reduced samples are taken at the last joint's frame instead of the tip link.
-        kdl_(model.make_kdl(reduction != nullptr ? to_pose(model.kernel.flange).inverse()
-                                                 : Pose::Identity())) {}
+        kdl_(model.make_kdl(data.reduction ? to_pose(model.kernel.flange).inverse()
+                                           : Pose::Identity())) {}
 
   /// All joint values of a sample that has those of the sample space.
   [[nodiscard]] JointVector complete(const double* sample) const {
     JointVector q(model_.dof);
     for (int j = 0; j < model_.dof; ++j) {
-      const bool left_out = reduction_ != nullptr && reduction_->leaves_out(j);
+      const bool left_out = data_.reduction && data_.reduction->leaves_out(j);
       q[j] = left_out ? -model_.kernel.joints[static_cast<std::size_t>(j)].offset : *sample++;
     }
     return q;
@@ -59,10 +57,10 @@ class SampleMaker {
 
   void make_key(const double* sample, double* key) {
     const Pose pose = pose_of(complete(sample));
-    if (reduction_ != nullptr) {
-      reduction_->make_key(pose, key);
+    if (data_.reduction) {
+      data_.reduction->make_key(pose, key);
     } else {
-      iksel::make_key(options_, weight_, pose, key);
+      iksel::make_key(data_.options, data_.weight, pose, key);
     }
   }
 
@@ -76,24 +74,22 @@ class SampleMaker {
     rotation = to_rotation_vector(pose.linear());
     Eigen::Map<Eigen::VectorXd>(record + 6, model_.dof) = q;
     JacobianMatrix J = kdl_->jacobian(q);
-    if (reduction_ != nullptr) {
+    if (data_.reduction) {
       J.topRows<3>() = base_inverse_.linear() * J.topRows<3>().eval();
       J.bottomRows<3>() = base_inverse_.linear() * J.bottomRows<3>().eval();
     }
     Eigen::Map<Eigen::MatrixXd>(record + 6 + model_.dof, model_.dof, 6) =
-        TruncatedSvd(J, options_.pinv_cutoff).inverse();
+        TruncatedSvd(J, data_.options.pinv_cutoff).inverse();
   }
 
  private:
   Pose pose_of(const JointVector& q) {
     const Pose pose = kdl_->fk(q);
-    return reduction_ != nullptr ? base_inverse_ * pose : pose;
+    return data_.reduction ? base_inverse_ * pose : pose;
   }
 
-  const DatabaseOptions& options_;
-  const Reduction* reduction_;
   const ChainModel& model_;
-  double weight_;
+  const DatabaseData& data_;
   Pose base_inverse_;
   std::unique_ptr<KdlChain> kdl_;
 };
@@ -114,17 +110,19 @@ class DatabaseBuilder {
 
     const std::vector<double> keys = make_keys();
     // The tree made of the keys sets the order in which everything is stored.
-    const std::vector<std::uint32_t> order = KdTree(keys.data(), data_.size, data_.key_dim).order();
+    const std::vector<std::uint32_t> order =
+        make_kd_tree(keys.data(), data_.size, data_.key_dim)->order();
     const std::size_t record_length = DatabaseData::record_length(model_.dof);
-    const auto storage =
-        std::make_shared<HeapStorage>(data_.size * (key_dim() + record_length) * sizeof(double));
-    auto* payload = reinterpret_cast<double*>(storage->writable() + kHeaderSize);
+    const std::size_t size =
+        kHeaderSize + data_.size * (key_dim() + record_length) * sizeof(double);
+    const std::shared_ptr<unsigned char> bytes = allocate(size);
+    auto* payload = reinterpret_cast<double*>(bytes.get() + kHeaderSize);
     for (std::size_t i = 0; i < data_.size; ++i) {
       std::copy_n(&keys[order[i] * key_dim()], key_dim(), payload + i * key_dim());
     }
     make_records(order, payload + data_.size * key_dim());
-    write_header(data_, storage->writable(), storage->size());
-    data_.use(storage);
+    write_header(data_, bytes.get(), size);
+    data_.use({bytes, size});
     report(total());
   }
 
@@ -181,11 +179,10 @@ class DatabaseBuilder {
   template <typename Work, typename OnProgress>
   void for_all_samples(const Work& work, const OnProgress& on_progress) {
     const auto make_worker = [&] {
-      return [&work, maker = std::make_shared<SampleMaker>(model_, data_.options, data_.weight,
-                                                           data_.reduction.get())](
-                 std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) work(*maker, i);
-      };
+      return
+          [&work, maker = SampleMaker(model_, data_)](std::size_t begin, std::size_t end) mutable {
+            for (std::size_t i = begin; i < end; ++i) work(maker, i);
+          };
     };
     parallel_for(data_.size, kSamplesPerChunk, resolve_threads(options_.threads), make_worker,
                  on_progress);

@@ -8,36 +8,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <nanoflann.hpp>
 #include <vector>
 
 #include "base/parallel.hpp"
 #include "base/random.hpp"
+#include "database/kd_tree.hpp"
 #include "database/sampling.hpp"
 
 namespace iksel {
-namespace {
-
-/// Joint samples as nanoflann sees them.
-struct Generators {
-  const std::vector<double>* values;
-  std::size_t dof;
-
-  [[nodiscard]] std::size_t kdtree_get_point_count() const { return values->size() / dof; }
-  [[nodiscard]] double kdtree_get_pt(std::size_t index, std::size_t i) const {
-    return (*values)[index * dof + i];
-  }
-  template <typename Box>
-  bool kdtree_get_bbox(Box& /*box*/) const {
-    return false;
-  }
-};
-
-using Tree = nanoflann::KDTreeSingleIndexAdaptor<
-    nanoflann::L2_Simple_Adaptor<double, Generators, double, std::uint32_t>, Generators, -1,
-    std::uint32_t>;
-
-}  // namespace
 
 void refine_by_cvt(const SampleSpace& space, const DatabaseOptions& options,
                    std::vector<double>& samples,
@@ -59,30 +37,27 @@ void refine_by_cvt(const SampleSpace& space, const DatabaseOptions& options,
   // A generator should rarely be drawn twice in a round, and the tree not be built too often.
   const std::size_t round = std::max<std::size_t>(1, std::min(options.cvt_updates, count / 4 + 1));
   std::vector<double> draws(round * dof);
-  std::vector<std::uint32_t> nearest(round);
+  std::vector<Neighbour> nearest(round);
   std::vector<std::uint32_t> hits(count, 1);
   const int threads = resolve_threads(options.threads);
 
   for (std::size_t first = 0; first < options.cvt_updates; first += round) {
     const std::size_t size = std::min(round, options.cvt_updates - first);
-    const Generators generators{&samples, dof};
-    const Tree tree(static_cast<int>(dof), generators,
-                    nanoflann::KDTreeSingleIndexAdaptorParams(16));
+    const auto tree = make_kd_tree(samples.data(), count, static_cast<int>(dof));
     const auto look_up = [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         Random random = Random::stream(options.seed + 1, first + i);
         for (std::size_t j = 0; j < dof; ++j) {
           draws[i * dof + j] = lower[j] + range[j] * random.uniform();
         }
-        double distance = 0;
-        tree.knnSearch(&draws[i * dof], 1, &nearest[i], &distance);
+        tree->nearest(&draws[i * dof], 1, &nearest[i]);
       }
     };
     parallel_for(
         size, 1024, threads, [&] { return look_up; },
         [&](std::size_t done) { on_progress(first + done); });
     for (std::size_t i = 0; i < size; ++i) {
-      const std::uint32_t g = nearest[i];
+      const std::uint32_t g = nearest[i].index;
       const double share = 1.0 / ++hits[g];
       for (std::size_t j = 0; j < dof; ++j) {
         double& value = samples[g * dof + j];

@@ -10,24 +10,18 @@
 #include <vector>
 
 #include "database/kd_tree.hpp"
-#include "database/leaf_index.hpp"
 #include "database/reduction.hpp"
 #include "database/sample_blocks.hpp"
 #include "iksel/options.hpp"
 
 namespace iksel {
 
-/// A storage of bytes, on the heap or mapped from a file, aligned to 64 bytes at least.
-class Storage {
- public:
-  Storage() = default;
-  Storage(const Storage&) = delete;
-  Storage& operator=(const Storage&) = delete;
-  virtual ~Storage() = default;
-  [[nodiscard]] virtual const unsigned char* data() const = 0;
-  [[nodiscard]] virtual std::size_t size() const = 0;
+/// Bytes on the heap or mapped from a file, aligned to 64 bytes at least; copies share them.
+struct Storage {
+  std::shared_ptr<const unsigned char> bytes;
+  std::size_t size = 0;
   /// Null where nobody else can change the bytes; else whether some were lost since.
-  [[nodiscard]] virtual const std::atomic<bool>* damaged() const { return nullptr; }
+  const std::atomic<bool>* damaged = nullptr;
 };
 
 /// Whether a number may be in a database: finite, and so are squared distances between such.
@@ -42,7 +36,7 @@ struct DatabaseData {
   /// Length that a unit of the key's rotation part counts [m].
   double weight = 0;
   /// Header, keys and records, as in a file.
-  std::shared_ptr<const Storage> storage;
+  Storage storage;
   /// size x key_dim, in the order of the tree, so that neighbours lie close together.
   const double* keys = nullptr;
   /// The keys, if the storage may change.
@@ -50,7 +44,7 @@ struct DatabaseData {
   /// size x record_length: x_i = [position; rotation vector] of the tip link (6), q_i (dof), J_i^+
   /// column by column (dof x 6).
   const double* records = nullptr;
-  KdTree tree;
+  std::shared_ptr<const KdTree> tree;
   /// Not null: the key is reduced, and x_i and J_i^+ are those of the pose Y of reduction.hpp.
   std::shared_ptr<const Reduction> reduction;
   /// Only over a reduced key.
@@ -61,7 +55,7 @@ struct DatabaseData {
   void make_key(const Pose& T_base_tip, double* key) const;
   /// Takes keys and records from a storage, and makes the trees over them. Throws DatabaseError if
   /// one is not usable.
-  void use(std::shared_ptr<const Storage> with);
+  void use(Storage with);
   /// Throws DatabaseIoError if bytes of a mapped file were lost.
   void check_intact() const;
 

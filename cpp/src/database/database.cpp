@@ -41,28 +41,27 @@ Database Database::load(const std::filesystem::path& path, bool mmap) {
 
 void Database::save(const std::filesystem::path& path) const {
   data_->check_intact();
-  write_file(path, *data_->storage);
+  write_file(path, data_->storage);
 }
 
 std::string Database::to_bytes() const {
-  std::string bytes(reinterpret_cast<const char*>(data_->storage->data()), data_->storage->size());
+  const Storage& storage = data_->storage;
+  std::string bytes(reinterpret_cast<const char*>(storage.bytes.get()), storage.size);
   data_->check_intact();
   return bytes;
 }
 
 Database Database::from_bytes(const std::string& bytes) {
-  const std::size_t payload = bytes.size() > kHeaderSize ? bytes.size() - kHeaderSize : 0;
-  if (payload == 0) throw DatabaseCorruptError("database bytes: truncated, less than a header");
-  auto storage = std::make_shared<HeapStorage>(payload);
-  std::memcpy(storage->writable(), bytes.data(), bytes.size());
-  return Database(std::make_shared<DatabaseData>(read_storage(std::move(storage), "bytes")));
+  const std::shared_ptr<unsigned char> copy = allocate(bytes.size());
+  std::memcpy(copy.get(), bytes.data(), bytes.size());
+  return Database(std::make_shared<DatabaseData>(read_storage({copy, bytes.size()}, "bytes")));
 }
 
 const DatabaseOptions& Database::options() const { return data_->options; }
 std::size_t Database::size() const { return data_->size; }
 int Database::dof() const { return data_->dof; }
 int Database::key_dimension() const { return data_->key_dim; }
-std::size_t Database::bytes() const { return data_->storage->size(); }
+std::size_t Database::bytes() const { return data_->storage.size; }
 std::uint64_t Database::chain_hash() const { return data_->chain_hash; }
 
 JointVector Database::q(std::size_t i) const {
@@ -100,7 +99,7 @@ std::vector<std::size_t> Database::nearest(const Pose& T_base_tip, std::size_t k
   std::vector<Neighbour> neighbours(std::min(k, size()));
   std::vector<std::size_t> indices;
   if (neighbours.empty()) return indices;
-  neighbours.resize(data_->tree.nearest(key, neighbours.size(), neighbours.data()));
+  neighbours.resize(data_->tree->nearest(key, neighbours.size(), neighbours.data()));
   std::sort(neighbours.begin(), neighbours.end());
   for (const Neighbour& neighbour : neighbours) indices.push_back(neighbour.index);
   return indices;

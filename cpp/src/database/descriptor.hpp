@@ -4,11 +4,12 @@
 
 #include <unistd.h>
 
-#include <cstddef>
 #include <cstring>
 #include <filesystem>
 #include <string>
 #include <utility>
+
+#include "iksel/error.hpp"
 
 namespace iksel {
 
@@ -34,8 +35,10 @@ class Descriptor {
 
 inline std::string system_error(int error) { return std::strerror(error); }
 
-/// Opens a file that is as large as a header at least. Throws DatabaseIoError or
-/// DatabaseCorruptError.
-Descriptor open_database(const std::filesystem::path& path, std::size_t& size);
+/// Throws DatabaseIoError "cannot `act` database 'path': why".
+[[noreturn]] inline void throw_io(const char* act, const std::filesystem::path& path,
+                                  const std::string& why) {
+  throw DatabaseIoError(std::string("cannot ") + act + " database '" + path.string() + "': " + why);
+}
 
 }  // namespace iksel

@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <cstdlib>
 #include <cstring>
 #include <iterator>
 #include <limits>
+#include <new>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -61,41 +64,42 @@ std::uint64_t header_checksum(const Header& header) {
   throw DatabaseCorruptError("database " + name + ": " + what);
 }
 
-void store_pose(const StoredPose& pose, double* to) {
-  for (int i = 0; i < 12; ++i) to[i] = pose(i % 3, i / 3);
+/// copy(field, value) for every number of the header that the data hold as it is.
+template <typename Fields, typename Data, typename Copy>
+void for_each_number(Fields& header, Data& data, const Copy& copy) {
+  copy(header.chain_hash, data.chain_hash);
+  copy(header.samples, data.size);
+  copy(header.dof, data.dof);
+  copy(header.key_dim, data.key_dim);
+  copy(header.weight, data.weight);
+  copy(header.sampling, data.options.sampling);
+  copy(header.scale, data.options.scale);
+  copy(header.rotation_key, data.options.rotation_key);
+  copy(header.key_scheme, data.options.key_scheme);
+  copy(header.option_samples, data.options.samples);
+  copy(header.cvt_updates, data.options.cvt_updates);
+  copy(header.seed, data.options.seed);
+  copy(header.rotation_weight, data.options.rotation_weight);
+  copy(header.pinv_cutoff, data.options.pinv_cutoff);
 }
 
-StoredPose load_pose(const double* from) {
-  StoredPose pose = StoredPose::Identity();
-  for (int i = 0; i < 12; ++i) pose(i % 3, i / 3) = from[i];
-  return pose;
-}
+/// The rotation and position of a pose, column by column.
+using PoseNumbers = Eigen::Matrix<double, 3, 4>;
 
 /// What a header says of the data behind it.
 DatabaseData describe(const Header& header) {
   DatabaseData data;
-  data.options.sampling = static_cast<Sampling>(header.sampling);
-  data.options.scale = static_cast<Scale>(header.scale);
-  data.options.rotation_key = static_cast<RotationKey>(header.rotation_key);
-  data.options.key_scheme = static_cast<KeyScheme>(header.key_scheme);
-  data.options.samples = header.option_samples;
-  data.options.cvt_updates = header.cvt_updates;
-  data.options.seed = header.seed;
-  data.options.rotation_weight = header.rotation_weight;
-  data.options.pinv_cutoff = header.pinv_cutoff;
-  data.dof = static_cast<int>(header.dof);
-  data.key_dim = static_cast<int>(header.key_dim);
-  data.size = header.samples;
-  data.chain_hash = header.chain_hash;
-  data.weight = header.weight;
+  for_each_number(header, data, [](const auto& field, auto& value) {
+    value = static_cast<std::decay_t<decltype(value)>>(field);
+  });
   if (data.options.key_scheme == KeyScheme::reduced) {
     Reduction::Parameters p;
     p.left = static_cast<lanes::Side>(header.left);
     p.right = static_cast<lanes::Side>(header.right);
     p.dof = data.dof;
-    p.weight = header.weight;
-    p.base_inverse = load_pose(header.base_inverse);
-    p.flange_inverse = load_pose(header.flange_inverse);
+    p.weight = data.weight;
+    p.base_inverse.affine() = Eigen::Map<const PoseNumbers>(header.base_inverse);
+    p.flange_inverse.affine() = Eigen::Map<const PoseNumbers>(header.flange_inverse);
     data.reduction = std::make_shared<Reduction>(p);
   }
   return data;
@@ -139,12 +143,12 @@ DatabaseData read_header(const Header& header, const std::string& name) {
 
 }  // namespace
 
-void DatabaseData::use(std::shared_ptr<const Storage> with) {
+void DatabaseData::use(Storage with) {
   storage = std::move(with);
-  keys = reinterpret_cast<const double*>(storage->data() + kHeaderSize);
+  keys = reinterpret_cast<const double*>(storage.bytes.get() + kHeaderSize);
   const std::size_t count = size * static_cast<std::size_t>(key_dim);
   records = keys + count;
-  if (storage->damaged() != nullptr) {
+  if (storage.damaged != nullptr) {
     // What the trees lead through does not change under them.
     own_keys = std::make_shared<const std::vector<double>>(keys, keys + count);
     keys = own_keys->data();
@@ -153,7 +157,7 @@ void DatabaseData::use(std::shared_ptr<const Storage> with) {
       !std::all_of(records, records + size * record_length(dof), is_usable)) {
     throw DatabaseError("a sample is not finite, or farther out than 1e100");
   }
-  tree = KdTree(keys, size, key_dim);
+  tree = make_kd_tree(keys, size, key_dim);
   if (reduction) {
     leaves = LeafIndex(*this);
     blocks = SampleBlocks(*this);
@@ -161,8 +165,7 @@ void DatabaseData::use(std::shared_ptr<const Storage> with) {
 }
 
 void DatabaseData::check_intact() const {
-  const std::atomic<bool>* damaged = storage->damaged();
-  if (damaged == nullptr || !*damaged) return;
+  if (storage.damaged == nullptr || !*storage.damaged) return;
   throw DatabaseIoError(
       "a mapped database can no longer be read: its file was cut short, or the disk failed, after "
       "Database::load(..., mmap = true)");
@@ -173,26 +176,15 @@ void write_header(const DatabaseData& data, unsigned char* storage, std::size_t 
   std::memcpy(header.magic, kMagic, sizeof kMagic);
   header.byte_order = kByteOrder;
   header.version = kVersion;
-  header.chain_hash = data.chain_hash;
-  header.samples = data.size;
-  header.dof = static_cast<std::uint32_t>(data.dof);
-  header.key_dim = static_cast<std::uint32_t>(data.key_dim);
-  header.sampling = static_cast<std::uint32_t>(data.options.sampling);
-  header.scale = static_cast<std::uint32_t>(data.options.scale);
-  header.rotation_key = static_cast<std::uint32_t>(data.options.rotation_key);
-  header.key_scheme = static_cast<std::uint32_t>(data.options.key_scheme);
-  header.option_samples = data.options.samples;
-  header.cvt_updates = data.options.cvt_updates;
-  header.seed = data.options.seed;
-  header.rotation_weight = data.options.rotation_weight;
-  header.pinv_cutoff = data.options.pinv_cutoff;
-  header.weight = data.weight;
+  for_each_number(header, data, [](auto& field, const auto& value) {
+    field = static_cast<std::decay_t<decltype(field)>>(value);
+  });
   if (data.reduction) {
     const Reduction::Parameters& p = data.reduction->parameters();
     header.left = static_cast<std::uint32_t>(p.left);
     header.right = static_cast<std::uint32_t>(p.right);
-    store_pose(p.base_inverse, header.base_inverse);
-    store_pose(p.flange_inverse, header.flange_inverse);
+    Eigen::Map<PoseNumbers>(header.base_inverse) = p.base_inverse.affine();
+    Eigen::Map<PoseNumbers>(header.flange_inverse) = p.flange_inverse.affine();
   }
   header.payload_size = size - kHeaderSize;
   header.payload_checksum = checksum(storage + kHeaderSize, size - kHeaderSize);
@@ -200,12 +192,20 @@ void write_header(const DatabaseData& data, unsigned char* storage, std::size_t 
   std::memcpy(storage, &header, sizeof header);
 }
 
-DatabaseData read_storage(std::shared_ptr<const Storage> storage, const std::string& name) {
-  if (storage->size() < kHeaderSize) {
-    corrupt(name, "truncated: " + std::to_string(storage->size()) + " bytes, less than a header");
+std::shared_ptr<unsigned char> allocate(std::size_t size) {
+  constexpr std::size_t kAlignment = 64;
+  const std::size_t rounded = (size / kAlignment + 1) * kAlignment;
+  void* const bytes = std::aligned_alloc(kAlignment, rounded);
+  if (bytes == nullptr) throw std::bad_alloc();
+  return {static_cast<unsigned char*>(bytes), &std::free};
+}
+
+DatabaseData read_storage(const Storage& storage, const std::string& name) {
+  if (storage.size < kHeaderSize) {
+    corrupt(name, "truncated: " + std::to_string(storage.size) + " bytes, less than a header");
   }
   Header header;
-  std::memcpy(&header, storage->data(), sizeof header);
+  std::memcpy(&header, storage.bytes.get(), sizeof header);
   if (std::memcmp(header.magic, kMagic, sizeof kMagic) != 0) corrupt(name, "not an IKSel database");
   if (header.byte_order == __builtin_bswap32(kByteOrder)) {
     throw DatabaseMismatchError("database " + name +
@@ -221,16 +221,16 @@ DatabaseData read_storage(std::shared_ptr<const Storage> storage, const std::str
   }
 
   DatabaseData data = read_header(header, name);
-  if (storage->size() - kHeaderSize != header.payload_size) {
-    corrupt(name, "truncated: " + std::to_string(storage->size()) + " bytes instead of " +
+  if (storage.size - kHeaderSize != header.payload_size) {
+    corrupt(name, "truncated: " + std::to_string(storage.size) + " bytes instead of " +
                       std::to_string(kHeaderSize + header.payload_size));
   }
-  const unsigned char* payload = storage->data() + kHeaderSize;
+  const unsigned char* payload = storage.bytes.get() + kHeaderSize;
   if (checksum(payload, header.payload_size) != header.payload_checksum) {
     corrupt(name, "its content fails its checksum");
   }
   try {
-    data.use(std::move(storage));
+    data.use(storage);
   } catch (const DatabaseError& error) {
     corrupt(name, error.what());
   }

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 #include <nanoflann.hpp>
-#include <stdexcept>
+#include <type_traits>
 
 namespace iksel {
 namespace {
@@ -68,12 +68,13 @@ class HeapResult {
   std::size_t size_ = 0;
 };
 
+/// Of a dimension known at compile time; -1: of any, and then nanoflann allocates in every query.
 template <int kDimension>
-class NanoflannIndex final : public KdTree::Index {
+class NanoflannTree final : public KdTree {
  public:
-  NanoflannIndex(const double* data, std::size_t count)
-      : points_{data, count, kDimension},
-        tree_(kDimension, points_, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafSize)) {}
+  NanoflannTree(const double* data, std::size_t count, int dimension)
+      : points_{data, count, dimension},
+        tree_(dimension, points_, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafSize)) {}
 
   std::size_t nearest(const double* point, std::size_t k, Neighbour* out) const override {
     HeapResult result(out, std::min(k, points_.count));
@@ -89,36 +90,22 @@ class NanoflannIndex final : public KdTree::Index {
   nanoflann::KDTreeSingleIndexAdaptor<Metric, Points, kDimension, std::uint32_t> tree_;
 };
 
-/// Fixed dimensions only: nanoflann allocates in every query where it is not known at compile time.
-std::shared_ptr<const KdTree::Index> make_index(const double* points, std::size_t count,
-                                                int dimension) {
-  switch (dimension) {
-    case 5:
-      return std::make_shared<NanoflannIndex<5>>(points, count);
-    case 6:
-      return std::make_shared<NanoflannIndex<6>>(points, count);
-    case 7:
-      return std::make_shared<NanoflannIndex<7>>(points, count);
-    case 8:
-      return std::make_shared<NanoflannIndex<8>>(points, count);
-    case 9:
-      return std::make_shared<NanoflannIndex<9>>(points, count);
-    case 12:
-      return std::make_shared<NanoflannIndex<12>>(points, count);
-    default:
-      throw std::logic_error("no key has this dimension");
-  }
+template <int... kDimensions>
+std::shared_ptr<const KdTree> make_tree(const double* points, std::size_t count, int dimension) {
+  std::shared_ptr<const KdTree> tree;
+  const auto make = [&](auto known) {
+    tree = std::make_shared<NanoflannTree<known()>>(points, count, dimension);
+  };
+  ((dimension == kDimensions ? make(std::integral_constant<int, kDimensions>()) : void()), ...);
+  if (!tree) make(std::integral_constant<int, -1>());
+  return tree;
 }
 
 }  // namespace
 
-KdTree::KdTree(const double* points, std::size_t count, int dimension)
-    : index_(make_index(points, count, dimension)) {}
-
-std::vector<std::uint32_t> KdTree::order() const { return index_->order(); }
-
-std::size_t KdTree::nearest(const double* point, std::size_t k, Neighbour* out) const {
-  return index_->nearest(point, k, out);
+std::shared_ptr<const KdTree> make_kd_tree(const double* points, std::size_t count, int dimension) {
+  // Those of keys.
+  return make_tree<5, 6, 7, 8, 9, 12>(points, count, dimension);
 }
 
 }  // namespace iksel

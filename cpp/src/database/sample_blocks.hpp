@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// All samples in blocks of near ones, laid out for the lanes: what a search goes through that wants
-// more than the nearest few.
+// A database's samples laid out for the lanes, in blocks that a kernel loads at once
+// (lane_types.hpp).
 #pragma once
 
 #include <cstddef>
@@ -11,6 +11,10 @@ namespace iksel {
 
 struct DatabaseData;
 
+/// Writes sample `index` into place `entry` of a block.
+void write_to_block(const DatabaseData& data, std::size_t index, int entry, float* block);
+
+/// All samples, neighbours in a block.
 class SampleBlocks {
  public:
   SampleBlocks() = default;
@@ -18,7 +22,6 @@ class SampleBlocks {
   explicit SampleBlocks(const DatabaseData& data);
 
   [[nodiscard]] std::size_t size() const { return size_; }
-  /// A block's samples as a block of lanes (lane_types.hpp).
   [[nodiscard]] const float* block(std::size_t block) const {
     return &blocks_[block * block_size_];
   }
@@ -32,6 +35,37 @@ class SampleBlocks {
   std::vector<float> blocks_;
   /// Mean key of each block, dimension by dimension.
   std::vector<float> middles_;
+};
+
+/// A KD-tree that is only descended, never searched back: each leaf owns the samples nearest to the
+/// middle of its keys, so that a query is one walk and a few contiguous loads.
+class LeafIndex {
+ public:
+  LeafIndex() = default;
+  /// `data` has its keys, records and exact tree already.
+  explicit LeafIndex(const DatabaseData& data);
+
+  /// Samples of the leaf that a key falls into.
+  [[nodiscard]] const float* block(const double* key) const {
+    std::size_t node = 0;
+    for (int level = 0; level < depth_; ++level) {
+      const bool above = key[dimension_[node]] >= value_[node];
+      node = 2 * node + 1 + (above ? 1 : 0);
+    }
+    return &blocks_[(node - dimension_.size()) * block_size_];
+  }
+
+ private:
+  /// Splits every node's samples at the median of the coordinate that spreads widest. Returns where
+  /// in `order` the samples of each leaf begin, and the end.
+  std::vector<std::size_t> split(const DatabaseData& data, std::vector<std::uint32_t>& order);
+
+  int depth_ = 0;
+  std::size_t block_size_ = 0;
+  // Inner nodes in heap order: the children of i are 2 i + 1 and 2 i + 2.
+  std::vector<std::uint8_t> dimension_;
+  std::vector<double> value_;
+  std::vector<float> blocks_;
 };
 
 }  // namespace iksel

@@ -88,10 +88,7 @@ std::vector<int> grid_counts(int dof, Scale scale) {
     // of equals first, until there are no more samples than the paper has for 7 joints.
     const double most = product(paper_counts(kPaperDof, scale));
     while (product(counts) > most) {
-      auto largest = counts.begin();
-      for (auto it = counts.begin(); it != counts.end(); ++it) {
-        if (*it >= *largest) largest = it;
-      }
+      const auto largest = std::max_element(counts.rbegin(), counts.rend());
       if (*largest == 1) break;
       --*largest;
     }

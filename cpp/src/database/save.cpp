@@ -23,24 +23,22 @@ namespace fs = std::filesystem;
 // Files on their way bear names of their own, by chance: process numbers come again, in containers
 // soon. Whoever writes one holds a lock on it until it has its place, and so one without a lock has
 // nobody who will finish it.
-constexpr char kPrefix[] = "iksel-";
-constexpr char kSuffix[] = ".tmp";
-constexpr std::size_t kDigits = 16;
+std::string temporary_name(unsigned first, unsigned second) {
+  char name[32];
+  std::snprintf(name, sizeof name, "iksel-%08x%08x.tmp", first, second);
+  return name;
+}
 
 std::string temporary_name() {
   std::random_device random;
-  char digits[kDigits + 1];
-  std::snprintf(digits, sizeof digits, "%08x%08x", static_cast<unsigned>(random()),
-                static_cast<unsigned>(random()));
-  return std::string(kPrefix) + digits + kSuffix;
+  return temporary_name(random(), random());
 }
 
 bool is_temporary_name(const std::string& name) {
-  constexpr std::size_t kHead = sizeof kPrefix - 1;
-  constexpr std::size_t kTail = sizeof kSuffix - 1;
-  return name.size() == kHead + kDigits + kTail && name.compare(0, kHead, kPrefix) == 0 &&
-         name.compare(kHead + kDigits, kTail, kSuffix) == 0 &&
-         name.find_first_not_of("0123456789abcdef", kHead) == kHead + kDigits;
+  unsigned first = 0;
+  unsigned second = 0;
+  return std::sscanf(name.c_str(), "iksel-%8x%8x", &first, &second) == 2 &&
+         name == temporary_name(first, second);
 }
 
 bool lock(const Descriptor& file) { return ::flock(file.get(), LOCK_EX | LOCK_NB) == 0; }
@@ -94,10 +92,10 @@ Descriptor open_named(const fs::path& folder, fs::path& name) {
 
 bool write_all(const Descriptor& file, const Storage& storage) {
   std::size_t written = 0;
-  while (written < storage.size()) {
+  while (written < storage.size) {
     constexpr std::size_t kPiece = 1U << 30U;
-    const ssize_t n =
-        ::write(file.get(), storage.data() + written, std::min(kPiece, storage.size() - written));
+    const ssize_t n = ::write(file.get(), storage.bytes.get() + written,
+                              std::min(kPiece, storage.size - written));
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) return false;
     written += static_cast<std::size_t>(n);
@@ -110,16 +108,15 @@ bool write_all(const Descriptor& file, const Storage& storage) {
 void write_file(const fs::path& path, const Storage& storage, bool nameless) {
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   fs::path name;
-  const auto fail = [&](const char* what) {
+  const auto fail = [&](const char* act) {
     const int error = errno;
     if (!name.empty()) ::unlink(name.c_str());
-    throw DatabaseIoError(std::string("cannot ") + what + " database '" + path.string() +
-                          "': " + system_error(error));
+    throw_io(act, path, system_error(error));
   };
   // Renaming would put a file in the place of a device.
   struct stat there {};
   if (::stat(path.c_str(), &there) == 0 && !S_ISREG(there.st_mode)) {
-    throw DatabaseIoError("cannot write database '" + path.string() + "': it is no regular file");
+    throw_io("write", path, "it is no regular file");
   }
   remove_abandoned(folder);
   Descriptor file;

@@ -77,7 +77,7 @@ bool Goal::check(const JointVector& q, Result& result) const {
   return true;
 }
 
-void measure_error(const Pose& target, const Frame<double>& f, double& position_error,
+void measure_error(const Pose& target, const Frame& f, double& position_error,
                    double& rotation_error) {
   double square = 0;
   double sine2 = 0;  // |R_target R^T - its transpose|^2 / 4: sine of the angle, squared

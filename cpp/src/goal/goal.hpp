@@ -54,7 +54,7 @@ class Goal {
 };
 
 /// Lengths of the position [m] and rotation [rad] error of a pose.
-void measure_error(const Pose& target, const Frame<double>& pose, double& position_error,
+void measure_error(const Pose& target, const Frame& pose, double& position_error,
                    double& rotation_error);
 
 }  // namespace iksel

@@ -6,8 +6,6 @@
 #include <utility>
 
 #include "base/constants.hpp"
-#include "base/determinant.hpp"
-#include "base/error_check.hpp"
 #include "base/message_text.hpp"
 #include "base/pseudo_inverse.hpp"
 #include "goal/joint_move.hpp"
@@ -16,9 +14,8 @@
 namespace iksel {
 
 double manipulability(const ChainModel& model, const JointVector& q) {
-  Pose pose;
   Jacobian J;
-  model.fk_jacobian(q.data(), pose, J);
+  model.fk_jacobian(q.data(), J);
   // With fewer joints than six, of J^T J, filled up by the identity.
   double gram[6][6] = {};
   for (int i = 0; i < 6; ++i) {
@@ -77,22 +74,6 @@ double ObjectiveCost::of_custom(const JointVector& q) const {
   throw InvalidArgumentError(text.str());
 }
 
-double ObjectiveCost::value(const JointVector& q) const {
-  switch (objective_.kind) {
-    case Objective::Kind::posture:
-      return of_posture(q, nullptr, nullptr);
-    case Objective::Kind::limits:
-      return of_limits(q, nullptr, nullptr);
-    case Objective::Kind::manipulability:
-      return -manipulability(model_, q);
-    case Objective::Kind::custom:
-      return of_custom(q);
-    case Objective::Kind::none:
-      break;
-  }
-  return 0;
-}
-
 JointVector ObjectiveCost::slope(const JointVector& q) const {
   if (objective_.kind == Objective::Kind::custom && objective_.gradient) {
     JointVector given = objective_.gradient(q);
@@ -133,15 +114,24 @@ double ObjectiveCost::estimate_curvature(const JointVector& q, const JointVector
 
 double ObjectiveCost::operator()(const JointVector& q, JointVector* gradient,
                                  JointVector* curvature) const {
-  if (objective_.kind == Objective::Kind::posture) return of_posture(q, gradient, curvature);
-  if (objective_.kind == Objective::Kind::limits) return of_limits(q, gradient, curvature);
+  switch (objective_.kind) {
+    case Objective::Kind::none:
+      return 0;
+    case Objective::Kind::posture:
+      return of_posture(q, gradient, curvature);
+    case Objective::Kind::limits:
+      return of_limits(q, gradient, curvature);
+    case Objective::Kind::manipulability:
+    case Objective::Kind::custom:
+      break;
+  }
   if (gradient != nullptr) {
     *gradient = slope(q);
     if (curvature != nullptr) {
       curvature->setConstant(model_.dof, estimate_curvature(q, *gradient));
     }
   }
-  return value(q);
+  return objective_.kind == Objective::Kind::custom ? of_custom(q) : -manipulability(model_, q);
 }
 
 }  // namespace iksel

@@ -19,7 +19,7 @@ class ObjectiveCost {
   ObjectiveCost(const ChainModel& model, const Objective& objective)
       : model_(model), objective_(objective) {}
 
-  [[nodiscard]] double value(const JointVector& q) const;
+  [[nodiscard]] double value(const JointVector& q) const { return (*this)(q, nullptr, nullptr); }
   double operator()(const JointVector& q, JointVector* gradient, JointVector* curvature) const;
 
  private:

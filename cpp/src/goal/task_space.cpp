@@ -49,7 +49,6 @@ TaskSpace::TaskSpace(const Task& task, double position_tolerance, double rotatio
       position_tolerance_(position_tolerance),
       rotation_tolerance_(rotation_tolerance),
       full_pose_(task.is_full_pose()),
-      constrained_axes_(task.constrained_axes()),
       twist_(odd_axis(task)) {
   // Three axes may add up their distances, hence the root.
   const double root = std::sqrt(3.0);

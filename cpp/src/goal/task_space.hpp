@@ -26,7 +26,7 @@ class TaskSpace {
   [[nodiscard]] double position_tolerance() const { return position_tolerance_; }
   [[nodiscard]] double rotation_tolerance() const { return rotation_tolerance_; }
   [[nodiscard]] bool is_full_pose() const { return full_pose_; }
-  [[nodiscard]] int constrained_axes() const { return constrained_axes_; }
+  [[nodiscard]] int constrained_axes() const { return task_.constrained_axes(); }
   /// Number of axes without any width: a chain with more joints has families of solutions.
   [[nodiscard]] int fixed_axes() const {
     return static_cast<int>((lower_.array() == upper_.array()).count());
@@ -55,6 +55,10 @@ class TaskSpace {
   [[nodiscard]] Vector6 outside(const Vector6& deviation) const {
     return deviation - deviation.cwiseMax(lower_).cwiseMin(upper_);
   }
+  /// What is missing from a deviation to the bounds that iterations aim at.
+  [[nodiscard]] Vector6 missing(const Vector6& deviation) const {
+    return deviation.cwiseMax(aim_lower_).cwiseMin(aim_upper_) - deviation;
+  }
   /// Distances of a TCP pose from the box: position [m] and rotation [rad].
   void measure(const Pose& target, const Pose& pose, double& position, double& rotation) const;
 
@@ -67,7 +71,6 @@ class TaskSpace {
   Task task_;
   double position_tolerance_, rotation_tolerance_;
   bool full_pose_;
-  int constrained_axes_;
   int twist_ = -1;
   bool rotation_free_ = false;
   Vector6 lower_, upper_, aim_lower_, aim_upper_;

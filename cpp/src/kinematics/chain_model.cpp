@@ -14,8 +14,8 @@
 namespace iksel {
 namespace {
 
-Frame<double> to_frame(const Eigen::Isometry3d& T) {
-  Frame<double> f;
+Frame to_frame(const Eigen::Isometry3d& T) {
+  Frame f;
   for (int i = 0; i < 3; ++i) {
     f.x[i] = T.linear()(i, 0);
     f.y[i] = T.linear()(i, 1);
@@ -73,14 +73,13 @@ Pose check_tool(const Pose& T_tip_tcp) {
   Pose tool = check_pose(T_tip_tcp, "tcp");
   const double distance = tool.translation().stableNorm();
   if (distance <= kMaxCoordinate) return tool;
-  throw InvalidArgumentError("tcp: its origin is " + number_text(distance) +
-                             " m from the tip link's; at most " + number_text(kMaxCoordinate) +
-                             " can be computed with");
+  throw InvalidArgumentError("tcp: its origin is " +
+                             too_large_text(distance, "m from the tip link's"));
 }
 
 }  // namespace
 
-Pose to_pose(const Frame<double>& f) {
+Pose to_pose(const Frame& f) {
   Pose pose;
   pose.matrix() << f.x[0], f.y[0], f.z[0], f.p[0], f.x[1], f.y[1], f.z[1], f.p[1], f.x[2], f.y[2],
       f.z[2], f.p[2], 0, 0, 0, 1;
@@ -211,20 +210,17 @@ void ChainModel::set_tool(const Pose& T_tip_tcp) {
 
 void ChainModel::measure_reach() {
   // The triangle inequality over the constant offsets and the slides; the tool is added by callers.
-  reach_centre = Eigen::Vector3d(kernel.base.p[0], kernel.base.p[1], kernel.base.p[2]);
+  reach_centre = Eigen::Vector3d::Map(kernel.base.p);
   reach = 0;
-  bool first = true;
   for (const KernelJoint& k : kernel.joints) {
-    if (!first) reach += Eigen::Vector3d(k.p[0], k.p[1], k.p[2]).norm();
-    first = false;
+    reach += Eigen::Vector3d::Map(k.p).norm();
     if (k.prismatic) {
       const double low = k.multiplier * joints.lower[k.variable];
       const double high = k.multiplier * joints.upper[k.variable];
       reach += std::max(std::abs(low + k.offset), std::abs(high + k.offset));
     }
   }
-  const Frame<double>& f = kernel.flange;
-  reach += Eigen::Vector3d(f.p[0], f.p[1], f.p[2]).norm();
+  reach += Eigen::Vector3d::Map(kernel.flange.p).norm();
 }
 
 std::uint64_t ChainModel::compute_hash() const {
@@ -256,9 +252,9 @@ std::uint64_t ChainModel::compute_hash() const {
 
 Pose ChainModel::fk(const double* q) const { return to_pose(forward(kernel, q)); }
 
-Frame<double> ChainModel::fk_jacobian(const double* q, Jacobian& jacobian, bool with_tool) const {
+Frame ChainModel::fk_jacobian(const double* q, Jacobian& jacobian, bool with_tool) const {
   jacobian.resize(6, dof);
-  const Frame<double>& end = with_tool ? kernel.tip : kernel.flange;
+  const Frame& end = with_tool ? kernel.tip : kernel.flange;
   return forward_jacobian(kernel, end, dof, q, jacobian.data());
 }
 

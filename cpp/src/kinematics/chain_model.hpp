@@ -36,7 +36,7 @@ class ChainModel {
   /// Pose and Jacobian of the TCP, or of the tip link if not `with_tool`.
   void fk_jacobian(const double* q, Pose& pose, Jacobian& jacobian, bool with_tool = true) const;
   /// Jacobian of the TCP, whose frame is returned.
-  Frame<double> fk_jacobian(const double* q, Jacobian& jacobian, bool with_tool = true) const;
+  Frame fk_jacobian(const double* q, Jacobian& jacobian, bool with_tool = true) const;
 
   int dof;
   std::string urdf;
@@ -66,6 +66,6 @@ class ChainModel {
 bool turns_a_joint(const ChainModel& model, int variable);
 
 /// Frame of the kernel as a pose.
-Pose to_pose(const Frame<double>& frame);
+Pose to_pose(const Frame& frame);
 
 }  // namespace iksel

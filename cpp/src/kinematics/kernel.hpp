@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Forward kinematics and the Jacobian of a flattened chain, for any number type T: a double, or a
-// SIMD pack that holds one configuration per lane.
+// Forward kinematics and the Jacobian of a flattened chain.
 //
 // Every joint frame has its motion axis on z. A frame may be turned about its own z by a constant
 // that the joint angle takes over, so each constant rotation between two joints (Euler angles ZXZ)
@@ -10,6 +9,7 @@
 // that are nearly parallel.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -27,17 +27,16 @@ struct KernelJoint {
   bool prismatic;
 };
 
-/// Rotation by columns and position, for T = double or a pack.
-template <typename T>
+/// Rotation by columns and position.
 struct Frame {
-  T x[3], y[3], z[3], p[3];
+  double x[3], y[3], z[3], p[3];
 };
 
 struct KernelChain {
-  Frame<double> base;
+  Frame base;
   std::vector<KernelJoint> joints;
-  Frame<double> tip;     ///< last joint -> TCP
-  Frame<double> flange;  ///< last joint -> tip link
+  Frame tip;     ///< last joint -> TCP
+  Frame flange;  ///< last joint -> tip link
 };
 
 /// For angles of any size.
@@ -79,26 +78,23 @@ inline void sincos_all(int count, double* angle, double* sine, double* cosine) {
 }
 
 /// z axes and origins of the joint frames, as the Jacobian needs them.
-template <typename T>
 struct JointAxes {
-  T axis[kMaxMovingJoints][3];
-  T origin[kMaxMovingJoints][3];
+  double axis[kMaxMovingJoints][3];
+  double origin[kMaxMovingJoints][3];
 };
 
 /// (u, v) <- (c u + s v, c v - s u): turns two columns of a rotation about the third.
-template <typename T, typename C>
-inline void turn_columns(T (&u)[3], T (&v)[3], const C& c, const C& s) {
+inline void turn_columns(double (&u)[3], double (&v)[3], double c, double s) {
   for (int i = 0; i < 3; ++i) {
-    const T a = u[i];
+    const double a = u[i];
     u[i] = c * a + s * v[i];
     v[i] = c * v[i] - s * a;
   }
 }
 
 /// frame <- frame * local, for a constant `local`.
-template <typename T>
-inline void append(Frame<T>& frame, const Frame<double>& local) {
-  const Frame<T> f = frame;
+inline void append(Frame& frame, const Frame& local) {
+  const Frame f = frame;
   for (int i = 0; i < 3; ++i) {
     frame.x[i] = f.x[i] * local.x[0] + f.y[i] * local.x[1] + f.z[i] * local.x[2];
     frame.y[i] = f.x[i] * local.y[0] + f.y[i] * local.y[1] + f.z[i] * local.y[2];
@@ -108,19 +104,12 @@ inline void append(Frame<T>& frame, const Frame<double>& local) {
 }
 
 /// Pose of the last joint's frame; `axes` may be null.
-template <typename T>
-inline Frame<T> forward_to_last_joint(const KernelChain& chain, const T* q, JointAxes<T>* axes) {
-  Frame<T> f;
-  for (int i = 0; i < 3; ++i) {
-    f.x[i] = T(chain.base.x[i]);
-    f.y[i] = T(chain.base.y[i]);
-    f.z[i] = T(chain.base.z[i]);
-    f.p[i] = T(chain.base.p[i]);
-  }
+inline Frame forward_to_last_joint(const KernelChain& chain, const double* q, JointAxes* axes) {
+  Frame f = chain.base;
   // The joints' sines first: they do not depend on each other.
-  T sine[kMaxMovingJoints];
-  T cosine[kMaxMovingJoints];
-  T motion[kMaxMovingJoints];
+  double sine[kMaxMovingJoints];
+  double cosine[kMaxMovingJoints];
+  double motion[kMaxMovingJoints];
   int k = 0;
   for (const KernelJoint& joint : chain.joints) {
     motion[k++] = q[joint.variable] * joint.multiplier + joint.offset;
@@ -132,9 +121,6 @@ inline Frame<T> forward_to_last_joint(const KernelChain& chain, const T* q, Join
       f.p[i] += f.x[i] * joint.p[0] + f.y[i] * joint.p[1] + f.z[i] * joint.p[2];
     }
     turn_columns(f.y, f.z, joint.cos_alpha, joint.sin_alpha);
-    if (axes != nullptr) {
-      for (int i = 0; i < 3; ++i) axes->axis[k][i] = f.z[i];
-    }
     if (joint.prismatic) {
       turn_columns(f.x, f.y, joint.cos_turn, joint.sin_turn);
       for (int i = 0; i < 3; ++i) f.p[i] += f.z[i] * motion[k];
@@ -142,7 +128,8 @@ inline Frame<T> forward_to_last_joint(const KernelChain& chain, const T* q, Join
       turn_columns(f.x, f.y, cosine[k], sine[k]);
     }
     if (axes != nullptr) {
-      for (int i = 0; i < 3; ++i) axes->origin[k][i] = f.p[i];
+      std::copy_n(f.z, 3, axes->axis[k]);
+      std::copy_n(f.p, 3, axes->origin[k]);
     }
     ++k;
   }
@@ -150,32 +137,30 @@ inline Frame<T> forward_to_last_joint(const KernelChain& chain, const T* q, Join
 }
 
 /// Pose of the TCP.
-template <typename T>
-inline Frame<T> forward(const KernelChain& chain, const T* q) {
-  Frame<T> f = forward_to_last_joint<T>(chain, q, nullptr);
+inline Frame forward(const KernelChain& chain, const double* q) {
+  Frame f = forward_to_last_joint(chain, q, nullptr);
   append(f, chain.tip);
   return f;
 }
 
 /// Pose of `end` (chain.tip or chain.flange), and its Jacobian column by column:
 /// jacobian[6 * variable + row], `dof` columns.
-template <typename T>
-inline Frame<T> forward_jacobian(const KernelChain& chain, const Frame<double>& end, int dof,
-                                 const T* q, T* jacobian) {
-  JointAxes<T> axes;
-  Frame<T> f = forward_to_last_joint(chain, q, &axes);
+inline Frame forward_jacobian(const KernelChain& chain, const Frame& end, int dof, const double* q,
+                              double* jacobian) {
+  JointAxes axes;
+  Frame f = forward_to_last_joint(chain, q, &axes);
   append(f, end);
-  for (int i = 0; i < 6 * dof; ++i) jacobian[i] = T(0.0);
+  std::fill_n(jacobian, 6 * dof, 0.0);
   int k = 0;
   for (const KernelJoint& joint : chain.joints) {
-    T* column = jacobian + 6 * joint.variable;
-    const T* z = axes.axis[k];
+    double* column = jacobian + 6 * joint.variable;
+    const double* z = axes.axis[k];
     const double m = joint.multiplier;
     if (joint.prismatic) {
       for (int i = 0; i < 3; ++i) column[i] += z[i] * m;
     } else {
-      const T* o = axes.origin[k];
-      const T r[3] = {f.p[0] - o[0], f.p[1] - o[1], f.p[2] - o[2]};
+      const double* o = axes.origin[k];
+      const double r[3] = {f.p[0] - o[0], f.p[1] - o[1], f.p[2] - o[2]};
       column[0] += (z[1] * r[2] - z[2] * r[1]) * m;
       column[1] += (z[2] * r[0] - z[0] * r[2]) * m;
       column[2] += (z[0] * r[1] - z[1] * r[0]) * m;

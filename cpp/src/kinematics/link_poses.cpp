@@ -13,17 +13,6 @@ namespace {
 
 using Values = std::map<std::string, double>;
 
-Eigen::Isometry3d moved(const Eigen::Isometry3d& origin, const Eigen::Vector3d& axis,
-                        bool prismatic, double value) {
-  Eigen::Isometry3d T = origin;
-  if (prismatic) {
-    T.translate(value * axis);
-  } else {
-    T.rotate(Eigen::AngleAxisd(value, axis));
-  }
-  return T;
-}
-
 /// Index of the degree of freedom that moves a joint; -1 if it is held.
 int variable_of(const LinkJoint& joint, const ChainModel& model) {
   const Values& locked = model.options.locked_joints;
@@ -47,8 +36,7 @@ void check_other_joints(const ChainModel& model, const std::vector<LinkJoint>& j
     }
     if (!(std::abs(value) <= kMaxCoordinate)) {
       throw InvalidArgumentError("other_joints: the value of '" + name + "' is " +
-                                 number_text(value) + "; at most " + number_text(kMaxCoordinate) +
-                                 " can be computed with");
+                                 too_large_text(value));
     }
     if (variable_of(*joint, model) < 0) continue;
     throw InvalidArgumentError("other_joints: '" + name + "' moves with q's joint '" +
@@ -75,26 +63,23 @@ LinkPoses::LinkPoses(const ChainModel& model, const std::vector<LinkJoint>& join
   base_ = static_cast<std::size_t>(std::find(links.begin(), links.end(), model.options.base_link) -
                                    links.begin());
   for (const LinkJoint& joint : joints) {
-    Step step{
-        joint.parent,     joint.origin, joint.axis, joint.prismatic, variable_of(joint, model),
-        joint.multiplier, joint.offset};
-    if (joint.moves && step.variable < 0) {
-      step.origin = moved(joint.origin, joint.axis, joint.prismatic, held_value(joint, held));
-    }
-    steps_.push_back(step);
+    steps_.push_back({joint, variable_of(joint, model)});
+    if (!joint.moves || steps_.back().variable >= 0) continue;
+    steps_.back().joint.origin =
+        moved(joint.origin, joint.axis, joint.prismatic, held_value(joint, held));
   }
 }
 
 void LinkPoses::at(const double* q, Pose* T_base_link) const {
   T_base_link[0] = Pose::Identity();
   for (std::size_t i = 1; i < steps_.size(); ++i) {
-    const Step& step = steps_[i];
-    const Pose& above = T_base_link[step.parent];
-    if (step.variable < 0) {
-      T_base_link[i] = above * step.origin;
+    const auto& [joint, variable] = steps_[i];
+    const Pose& above = T_base_link[joint.parent];
+    if (variable < 0) {
+      T_base_link[i] = above * joint.origin;
     } else {
-      const double value = step.multiplier * q[step.variable] + step.offset;
-      T_base_link[i] = above * moved(step.origin, step.axis, step.prismatic, value);
+      const double value = joint.multiplier * q[variable] + joint.offset;
+      T_base_link[i] = above * moved(joint.origin, joint.axis, joint.prismatic, value);
     }
   }
   if (base_ == 0) return;

@@ -28,12 +28,8 @@ class LinkPoses {
 
  private:
   struct Step {
-    int parent;
-    Eigen::Isometry3d origin;  ///< what is held is part of it
-    Eigen::Vector3d axis;
-    bool prismatic;
-    int variable;  ///< -1: held
-    double multiplier, offset;
+    LinkJoint joint;  ///< of one that is held, the value is part of its origin
+    int variable;     ///< -1: held
   };
   std::vector<Step> steps_;
   std::size_t base_;

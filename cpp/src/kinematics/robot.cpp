@@ -6,7 +6,6 @@
 #include <string>
 #include <utility>
 
-#include "base/error_check.hpp"
 #include "base/message_text.hpp"
 #include "base/pseudo_inverse.hpp"
 #include "base/random.hpp"
@@ -62,9 +61,8 @@ Pose Robot::fk(const JointVector& q, Kinematics kinematics) const {
 Jacobian Robot::jacobian(const JointVector& q, Kinematics kinematics) const {
   check_joints(q, dof(), "q");
   if (kinematics == Kinematics::kdl) return model_->make_kdl()->jacobian(q);
-  Pose pose;
   Jacobian J;
-  model_->fk_jacobian(q.data(), pose, J);
+  model_->fk_jacobian(q.data(), J);
   return J;
 }
 

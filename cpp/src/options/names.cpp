@@ -1,66 +1,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The enums of results in words.
+// The enums of results in words, in the order of their values.
+#include <cstddef>
+
 #include "iksel/diagnosis.hpp"
 #include "iksel/result.hpp"
 
 namespace iksel {
+namespace {
+
+template <typename Enum, std::size_t kCount>
+const char* name_of(Enum value, const char* const (&names)[kCount]) {
+  const auto index = static_cast<std::size_t>(value);
+  return index < kCount ? names[index] : "unknown";
+}
+
+}  // namespace
 
 const char* to_string(Proof proof) {
-  switch (proof) {
-    case Proof::none:
-      return "none";
-    case Proof::reach:
-      return "reach";
-    case Proof::closed_form:
-      return "closed_form";
-    case Proof::sweep:
-      return "sweep";
-  }
-  return "unknown";
+  return name_of(proof, {"none", "reach", "closed_form", "sweep"});
 }
 
 const char* to_string(Status status) {
-  switch (status) {
-    case Status::solved:
-      return "solved";
-    case Status::not_converged:
-      return "not_converged";
-    case Status::outside_limits:
-      return "outside_limits";
-    case Status::out_of_reach:
-      return "out_of_reach";
-    case Status::rejected:
-      return "rejected";
-    case Status::out_of_time:
-      return "out_of_time";
-    case Status::too_fast:
-      return "too_fast";
-    case Status::invalid_pose:
-      return "invalid_pose";
-  }
-  return "unknown";
+  return name_of(status, {"solved", "not_converged", "outside_limits", "out_of_reach", "rejected",
+                          "out_of_time", "too_fast", "invalid_pose"});
 }
 
 const char* to_string(Cause cause) {
-  switch (cause) {
-    case Cause::none:
-      return "none";
-    case Cause::out_of_reach:
-      return "out_of_reach";
-    case Cause::orientation:
-      return "orientation";
-    case Cause::joint_limits:
-      return "joint_limits";
-    case Cause::rejected:
-      return "rejected";
-    case Cause::singular:
-      return "singular";
-    case Cause::budget:
-      return "budget";
-    case Cause::out_of_time:
-      return "out_of_time";
-  }
-  return "unknown";
+  return name_of(cause, {"none", "out_of_reach", "orientation", "joint_limits", "rejected",
+                         "singular", "budget", "out_of_time"});
 }
 
 }  // namespace iksel

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "base/error_check.hpp"
+#include "base/message_text.hpp"
 #include "iksel/error.hpp"
 
 namespace iksel {

@@ -5,7 +5,6 @@
 #include <string>
 #include <utility>
 
-#include "base/error_check.hpp"
 #include "base/message_text.hpp"
 #include "iksel/error.hpp"
 
@@ -51,6 +50,34 @@ void SolveRequest::validate(int dof) const {
   if (task) task->validate();
   if (!(deadline > 0)) {
     throw InvalidArgumentError("deadline: " + number_text(deadline) + " s is not above 0");
+  }
+}
+
+void SolveAllOptions::validate() const {
+  if (max < 1) throw InvalidArgumentError("max: " + std::to_string(max) + " is less than 1");
+  if (!(min_distance > 0 && min_distance <= 1e3)) {
+    throw InvalidArgumentError("min_distance: " + number_text(min_distance) +
+                               " is not above 0 and at most 1000");
+  }
+  if (order != SolutionOrder::move && order != SolutionOrder::limit_distance &&
+      order != SolutionOrder::manipulability) {
+    throw InvalidArgumentError(
+        "order: not a value of SolutionOrder (move, limit_distance, manipulability)");
+  }
+}
+
+void PathOptions::validate(int dof) const {
+  SolveRequest request;
+  request.weights = weights;
+  request.norm = norm;
+  if (start) check_joints(*start, dof, "start");
+  request.validate(dof);
+  if (!(dt >= 0 && dt <= 1e9)) {
+    throw InvalidArgumentError("dt: " + number_text(dt) + " s is not 0 or more");
+  }
+  if (candidates < 1 || candidates > 100'000) {
+    throw InvalidArgumentError("candidates: " + std::to_string(candidates) +
+                               " is not in 1 .. 100000");
   }
 }
 

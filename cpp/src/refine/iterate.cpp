@@ -8,7 +8,6 @@
 #include "base/rotation.hpp"
 #include "iksel/pose.hpp"
 #include "refine/schemes.hpp"
-#include "refine/task_step.hpp"
 
 namespace iksel {
 namespace {
@@ -49,7 +48,7 @@ JointVector make_step(const IterationContext& context, const JointVector& q,
   return lm_step(context.model, q, J, e, scheme.damping * squared_error);
 }
 
-/// What follows a step besides adding it; true if the attempt goes on.
+/// What follows a step besides adding it.
 void after_step(const IterationContext& context, JointVector& q) {
   if (context.scheme.iteration == Iteration::pinv_rr && !context.model.joints.contains(q.data())) {
     context.model.joints.sample(context.random, q);
@@ -59,6 +58,40 @@ void after_step(const IterationContext& context, JointVector& q) {
         q[i] = std::remainder(q[i], kTwoPi);
       }
     }
+  }
+}
+
+/// A step that brings the deviation d (its Jacobian J, its error e) into the box, made by
+/// `step(rows, asked, squared_error)`. Parts inside the box ask for nothing, unless the step would
+/// take them out of it: then they are to stay at the bound.
+template <typename Step>
+JointVector task_step(const TaskSpace& task, const JacobianMatrix& J, const Vector6& d,
+                      const Vector6& e, const Step& step) {
+  const Vector6& lower = task.aim_lower();
+  const Vector6& upper = task.aim_upper();
+  const double squared_error = e.squaredNorm();
+  Vector6 asked = e;
+  JacobianMatrix rows = J;
+  bool active[6];
+  for (int i = 0; i < 6; ++i) {
+    active[i] = e[i] != 0 || lower[i] == upper[i];
+    if (!active[i]) rows.row(i).setZero();
+  }
+  for (int round = 0;; ++round) {
+    JointVector adjustment = step(rows, asked, squared_error);
+    constexpr int kRounds = 3;
+    if (round == kRounds) return adjustment;
+    bool changed = false;
+    for (int i = 0; i < 6; ++i) {
+      if (active[i]) continue;
+      const double goal = d[i] + J.row(i).dot(adjustment);
+      if (goal >= lower[i] && goal <= upper[i]) continue;
+      active[i] = true;
+      changed = true;
+      rows.row(i) = J.row(i);
+      asked[i] = (goal < lower[i] ? lower[i] : upper[i]) - d[i];
+    }
+    if (!changed) return adjustment;
   }
 }
 
@@ -89,7 +122,7 @@ Standing evaluate(const IterationContext& context, const JointVector& q) {
     at.e = pose_error(context.tip_target, pose);
   } else {
     at.d = goal.task().deviation(goal.target(), pose, at.J);
-    at.e = task_error(goal.task(), at.d);
+    at.e = goal.task().missing(at.d);
   }
   at.position = at.tcp_position = at.e.head<3>().norm();
   at.rotation = at.e.tail<3>().norm();

@@ -12,7 +12,7 @@ lanes::LaneOptions make_lane_options(const ChainModel& model, const SolverOption
   lanes::LaneOptions lanes{};
   const double position = options.position_tolerance;
   const double rotation = options.rotation_tolerance;
-  const Frame<double>& tip = model.kernel.tip;
+  const Frame& tip = model.kernel.tip;
   lanes.damping = std::get<Lanes>(options.strategy).damping;
   lanes.least_damping = 1e-18;
   // |error at the TCP| <= |position error| + lever * |rotation error|, and the square of a sum of

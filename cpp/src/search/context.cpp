@@ -65,7 +65,7 @@ WorkspacePool::WorkspacePool(const Robot& robot, const Robot& nominal, const Dat
       database_(database),
       options_(options),
       closed_form_(find_closed_form(nominal.model())),
-      damaged_(database.data().storage->damaged()) {
+      damaged_(database.data().storage.damaged) {
   const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
   for (std::size_t i = 0; i < std::min(cores, kPlaces); ++i) idle_[i] = make().release();
 }

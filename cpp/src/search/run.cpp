@@ -5,7 +5,7 @@
 #include <optional>
 #include <type_traits>
 
-#include "base/stage_clock.hpp"
+#include "base/work.hpp"
 #include "search/first_answer.hpp"
 #include "search/search.hpp"
 #include "seeds/allowed_seeds.hpp"

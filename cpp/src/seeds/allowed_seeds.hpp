@@ -4,7 +4,6 @@
 #pragma once
 
 #include "base/random.hpp"
-#include "base/stage_clock.hpp"
 #include "base/work.hpp"
 #include "goal/goal.hpp"
 #include "seeds/random_seeds.hpp"

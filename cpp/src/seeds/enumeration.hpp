@@ -5,7 +5,6 @@
 
 #include <array>
 
-#include "base/stage_clock.hpp"
 #include "base/work.hpp"
 #include "goal/goal.hpp"
 #include "simd/kernels.hpp"

@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "base/determinant.hpp"
 #include "base/pseudo_inverse.hpp"
 #include "base/symmetric.hpp"
 #include "kinematics/joint_space.hpp"

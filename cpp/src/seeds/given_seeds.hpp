@@ -18,11 +18,7 @@ class NearSeed {
   /// `near` may be null.
   NearSeed(const JointVector* near, Work& work) : near_(near), work_(work) {}
 
-  bool next_stage() {
-    if (near_ == nullptr || done_) return false;
-    done_ = true;
-    return true;
-  }
+  [[nodiscard]] bool next_stage() const { return near_ != nullptr && !loaded_; }
 
   template <typename Refiner>
   bool load(Refiner& refiner, int lane) {
@@ -36,7 +32,6 @@ class NearSeed {
  private:
   const JointVector* near_;
   Work& work_;
-  bool done_ = false;
   bool loaded_ = false;
 };
 

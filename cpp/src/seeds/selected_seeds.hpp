@@ -2,7 +2,6 @@
 // The database's seeds as the paper selects them: query, rank, re-select; one a stage.
 #pragma once
 
-#include "base/stage_clock.hpp"
 #include "base/work.hpp"
 #include "seeds/selection.hpp"
 

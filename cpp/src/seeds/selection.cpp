@@ -28,10 +28,8 @@ Selection::Selection(const ChainModel& model, const ChainModel& nominal, const D
   }
 }
 
-void Selection::query(const Pose& T_base_flange) { query(T_base_flange, neighbours_.size()); }
-
 std::size_t Selection::nearest_seeds(const Pose& T_base_flange, std::size_t k) {
-  query(T_base_flange, std::min(k, neighbours_.size()));
+  query(T_base_flange, k);
   if (data_.reduction) prepare_seeds();
   return found_;
 }
@@ -44,7 +42,7 @@ void Selection::query(const Pose& T_base_flange, std::size_t k) {
   rotation = to_rotation_vector(target_.linear());
   double key[kMaxKeyDimension];
   data_.make_key(T_base_flange, key);
-  found_ = data_.tree.nearest(key, k, neighbours_.data());
+  found_ = data_.tree->nearest(key, std::min(k, neighbours_.size()), neighbours_.data());
 }
 
 void Selection::rank() {

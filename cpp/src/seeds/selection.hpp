@@ -2,6 +2,8 @@
 // Query and rank: the seeds for one target, best first; and re-selection among them.
 #pragma once
 
+#include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "database/data.hpp"
@@ -18,8 +20,8 @@ class Selection {
   Selection(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
             const Paper& scheme);
 
-  /// The neighbours of T_base_flange (the tip link, without the tool).
-  void query(const Pose& T_base_flange);
+  /// The neighbours of T_base_flange (the tip link, without the tool), k at most.
+  void query(const Pose& T_base_flange, std::size_t k = std::numeric_limits<std::size_t>::max());
   /// At most k seeds for T_base_flange, of the nearest neighbours in no order; those that a reduced
   /// key cannot bring inside the limits are left out. Returns how many.
   std::size_t nearest_seeds(const Pose& T_base_flange, std::size_t k);
@@ -44,8 +46,6 @@ class Selection {
   /// Joint values to start from: the sample's, with the joints that a reduced key leaves out set
   /// for this target.
   [[nodiscard]] const double* seed_of(const Candidate& candidate) const;
-  /// Asks the tree for k neighbours.
-  void query(const Pose& T_base_flange, std::size_t k);
   /// Makes the seeds of all neighbours of a reduced key; drops those outside the limits.
   void prepare_seeds();
 

@@ -6,7 +6,6 @@
 #include <array>
 #include <vector>
 
-#include "base/stage_clock.hpp"
 #include "base/work.hpp"
 #include "kinematics/chain_model.hpp"
 #include "simd/branch_types.hpp"

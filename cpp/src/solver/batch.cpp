@@ -6,7 +6,7 @@
 #include <mutex>
 #include <string>
 
-#include "base/error_check.hpp"
+#include "base/message_text.hpp"
 #include "base/parallel.hpp"
 #include "base/pose_check.hpp"
 #include "iksel/error.hpp"

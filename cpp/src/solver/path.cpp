@@ -10,7 +10,6 @@
 #include <string>
 
 #include "base/constants.hpp"
-#include "base/error_check.hpp"
 #include "base/message_text.hpp"
 #include "base/pose_check.hpp"
 #include "goal/joint_move.hpp"

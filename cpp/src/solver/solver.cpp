@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "base/error_check.hpp"
+#include "base/message_text.hpp"
 #include "base/pose_check.hpp"
 #include "goal/objective_cost.hpp"
 #include "iksel/error.hpp"

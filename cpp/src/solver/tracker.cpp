@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error_check.hpp"
 #include "base/message_text.hpp"
 #include "base/pose_check.hpp"
 #include "iksel/error.hpp"

@@ -1,17 +1,59 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cmath>
+#include <string>
 
+#include "base/constants.hpp"
 #include "base/message_text.hpp"
 #include "iksel/error.hpp"
 #include "urdf/chain_spec.hpp"
-#include "urdf/joint_frame.hpp"
-#include "urdf/joint_limits.hpp"
-#include "urdf/mimic.hpp"
+#include "urdf/joint.hpp"
 #include "urdf/parse.hpp"
-#include "urdf/size_check.hpp"
 
 namespace iksel {
 namespace {
+
+/// Written so that NaN fails.
+void check_size(const std::string& joint, const std::string& what, double value, const char* unit) {
+  if (std::abs(value) <= kMaxCoordinate) return;
+  throw UrdfError("joint '" + joint + "': " + what + " is " + too_large_text(value, unit) +
+                  " (lengths are metres, angles radians)");
+}
+
+/// Largest value that the motion of a joint takes.
+double largest_motion(const ChainJoint& joint, const ChainVariable& variable) {
+  const bool free = variable.type == JointType::continuous;
+  const double low = joint.multiplier * (free ? -kPi : variable.lower) + joint.offset;
+  const double high = joint.multiplier * (free ? kPi : variable.upper) + joint.offset;
+  return std::max(std::abs(low), std::abs(high));
+}
+
+/// Throws UrdfError, naming the joint, where a length or joint value of the chain, or the chain as
+/// a whole, is beyond kMaxCoordinate or not finite.
+void check_sizes(const ChainSpec& spec) {
+  for (const ChainVariable& variable : spec.variables) {
+    if (variable.type == JointType::continuous) continue;
+    const char* unit = variable.type == JointType::prismatic ? "m" : "rad";
+    for (const double limit : {variable.lower, variable.upper}) {
+      check_size(variable.name, "a limit (a joint that turns freely is 'continuous')", limit, unit);
+    }
+  }
+  double length = 0;
+  for (const ChainJoint& joint : spec.joints) {
+    for (const auto* T : {&joint.before, &joint.after}) {
+      const double offset = T->translation().stableNorm();
+      check_size(joint.name, "the length of its origin", offset, "m");
+      length += offset;
+    }
+    if (joint.fixed) continue;
+    const double motion =
+        largest_motion(joint, spec.variables[static_cast<std::size_t>(joint.variable)]);
+    check_size(joint.name, "its largest value", motion, joint.prismatic ? "m" : "rad");
+    if (joint.prismatic) length += motion;
+    check_size(joint.name, "the chain's length up to it", length, "m");
+  }
+  check_size(spec.joints.back().name, "the chain's length up to it", length, "m");
+}
 
 class ChainReader {
  public:
@@ -32,8 +74,7 @@ class ChainReader {
       }
       if (!(std::abs(value) <= kMaxCoordinate)) {
         throw InvalidArgumentError("locked joint '" + name + "': its value is " +
-                                   number_text(value) + "; at most " + number_text(kMaxCoordinate) +
-                                   " can be computed with");
+                                   too_large_text(value));
       }
     }
 
@@ -55,14 +96,12 @@ class ChainReader {
     for (std::size_t i = common_tip; i-- > 0;) add_joint(*tip_up[i]->parent_joint, false);
 
     for (const ChainVariable& variable : spec_.variables) check_limits(variable);
-    if (spec_.variables.empty()) {
-      throw UrdfError("the chain from '" + options_.base_link + "' to '" + options_.tip_link +
-                      "' has no movable joint");
-    }
+    const std::string chain =
+        "the chain from '" + options_.base_link + "' to '" + options_.tip_link + "' has ";
+    if (spec_.variables.empty()) throw UrdfError(chain + "no movable joint");
     if (spec_.variables.size() > static_cast<std::size_t>(kMaxDof)) {
-      throw UrdfError("the chain from '" + options_.base_link + "' to '" + options_.tip_link +
-                      "' has " + std::to_string(spec_.variables.size()) +
-                      " movable joints; at most " + std::to_string(kMaxDof) + " are possible");
+      throw UrdfError(chain + std::to_string(spec_.variables.size()) + " movable joints; at most " +
+                      std::to_string(kMaxDof) + " are possible");
     }
     check_sizes(spec_);
     return std::move(spec_);
@@ -145,11 +184,7 @@ class ChainReader {
 
   /// A locked joint is a fixed one: its motion by `value` becomes part of the constant transform.
   static void lock(ChainJoint& segment, double value) {
-    if (segment.prismatic) {
-      segment.before.translate(value * segment.axis);
-    } else {
-      segment.before.rotate(Eigen::AngleAxisd(value, segment.axis));
-    }
+    segment.before = moved(segment.before, segment.axis, segment.prismatic, value);
     segment.fixed = true;
   }
 

@@ -25,6 +25,17 @@ struct ChainJoint {
   double offset = 0.0;
 };
 
+/// T, and then a motion by `value` along or about `axis`.
+inline Eigen::Isometry3d moved(Eigen::Isometry3d T, const Eigen::Vector3d& axis, bool prismatic,
+                               double value) {
+  if (prismatic) {
+    T.translate(value * axis);
+  } else {
+    T.rotate(Eigen::AngleAxisd(value, axis));
+  }
+  return T;
+}
+
 /// One degree of freedom.
 struct ChainVariable {
   std::string name;

@@ -3,8 +3,7 @@
 
 #include <map>
 
-#include "urdf/joint_frame.hpp"
-#include "urdf/mimic.hpp"
+#include "urdf/joint.hpp"
 #include "urdf/parse.hpp"
 
 namespace iksel {

@@ -8,7 +8,6 @@
 #include <cerrno>
 #include <exception>
 #include <fstream>
-#include <map>
 #include <mutex>
 #include <string>
 #include <system_error>
@@ -23,7 +22,7 @@ namespace {
 /// one handler for the whole process, so only one collector lives at a time.
 class MessageCollector : public console_bridge::OutputHandler {
  public:
-  MessageCollector() : lock_(mutex()), level_(console_bridge::getLogLevel()) {
+  MessageCollector() : lock_(mutex), level_(console_bridge::getLogLevel()) {
     console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_ERROR);
     previous_ = console_bridge::getOutputHandler();
     console_bridge::useOutputHandler(this);
@@ -44,11 +43,7 @@ class MessageCollector : public console_bridge::OutputHandler {
   [[nodiscard]] const std::string& text() const { return text_; }
 
  private:
-  static std::mutex& mutex() {
-    static std::mutex instance;
-    return instance;
-  }
-
+  static inline std::mutex mutex;
   std::lock_guard<std::mutex> lock_;
   console_bridge::LogLevel level_;
   console_bridge::OutputHandler* previous_ = nullptr;
@@ -89,17 +84,6 @@ void replace_what_is_no_utf8(std::string& text) {
     const std::size_t length = utf8_length(text, i);
     if (length == 0) text[i] = '?';
     i += std::max<std::size_t>(length, 1);
-  }
-}
-
-/// urdfdom keeps the last joint of those that carry the same link.
-void check_one_parent(const urdf::ModelInterface& model) {
-  std::map<std::string, std::string> carried_by;
-  for (const auto& [name, joint] : model.joints_) {
-    const auto [first, is_new] = carried_by.try_emplace(joint->child_link_name, name);
-    if (is_new) continue;
-    throw UrdfError("link '" + joint->child_link_name + "' is the child of two joints: '" +
-                    first->second + "' and '" + name + "'");
   }
 }
 
@@ -148,7 +132,6 @@ urdf::ModelInterfaceSharedPtr parse_urdf(const std::string& xml) {
     throw UrdfError("URDF does not parse: " +
                     (messages.empty() ? "no robot in it" : one_line(messages)));
   }
-  check_one_parent(*model);
   return model;
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "urdf/precheck.hpp"
 
-#include <algorithm>
 #include <map>
 #include <set>
 #include <string_view>
@@ -20,116 +19,99 @@ constexpr int kMaxDepth = 200;
 constexpr int kJointDepth = 2;  // robot, joint
 
 struct JointElement {
-  std::string_view name, type, parent, child;
-  std::size_t content = 0;  ///< where it begins
-  bool has_limit = false;
+  std::string_view name, parent, child;
 };
 
-struct Insertion {
-  std::size_t at;
-  std::string_view text;
-};
-
+/// Reads the joints, and adds to the text what urdfdom insists on.
 class UrdfScan {
  public:
-  explicit UrdfScan(const std::string& xml) {
+  explicit UrdfScan(const std::string& xml) : xml_(xml) {
     XmlTag tag;
     for (XmlScanner scanner(xml); scanner.next(tag);) {
       if (tag.depth > kMaxDepth) {
         throw UrdfError("URDF does not parse: its elements are nested deeper than " +
                         std::to_string(kMaxDepth) + " levels");
       }
-      if (tag.opens) read(tag);
+      if (tag.opens) {
+        open(tag);
+      } else if (tag.depth == kJointDepth && lacks_limit_) {
+        insert(tag.begin - kBeforeName, R"(<limit effort="0" velocity="0"/>)");
+        lacks_limit_ = false;
+      }
     }
+    text_.append(xml, copied_);
   }
 
   [[nodiscard]] const std::vector<JointElement>& joints() const { return joints_; }
-
-  [[nodiscard]] std::vector<Insertion> insertions() const {
-    std::vector<Insertion> all = in_limits_;
-    for (const JointElement& joint : joints_) {
-      if (joint.has_limit || (joint.type != "revolute" && joint.type != "prismatic")) continue;
-      all.push_back({joint.content, R"(<limit effort="0" velocity="0"/>)"});
-    }
-    std::stable_sort(all.begin(), all.end(),
-                     [](const Insertion& a, const Insertion& b) { return a.at < b.at; });
-    return all;
-  }
+  [[nodiscard]] const std::string& text() const { return text_; }
 
  private:
-  void read(const XmlTag& tag) {
+  static constexpr std::size_t kBeforeName = 2;  ///< characters of "</"
+
+  void open(const XmlTag& tag) {
     const auto value = [&](std::string_view key) { return tag.attribute(key).value_or(""); };
     if (tag.depth == kJointDepth) {
       in_joint_ = tag.name == "joint" && !tag.closes;
-      if (in_joint_) joints_.push_back({value("name"), value("type"), {}, {}, tag.end});
+      if (in_joint_) joints_.push_back({value("name"), {}, {}});
+      lacks_limit_ = in_joint_ && (value("type") == "revolute" || value("type") == "prismatic");
     } else if (in_joint_ && tag.depth == kJointDepth + 1) {
-      JointElement& joint = joints_.back();
-      if (tag.name == "parent") joint.parent = value("link");
-      if (tag.name == "child") joint.child = value("link");
+      if (tag.name == "parent") joints_.back().parent = value("link");
+      if (tag.name == "child") joints_.back().child = value("link");
       if (tag.name == "limit") {
-        joint.has_limit = true;
+        lacks_limit_ = false;
         const std::size_t behind_name = tag.begin + tag.name.size();
-        if (!tag.attribute("effort")) in_limits_.push_back({behind_name, R"( effort="0")"});
-        if (!tag.attribute("velocity")) in_limits_.push_back({behind_name, R"( velocity="0")"});
+        if (!tag.attribute("effort")) insert(behind_name, R"( effort="0")");
+        if (!tag.attribute("velocity")) insert(behind_name, R"( velocity="0")");
       }
     }
   }
 
+  void insert(std::size_t at, std::string_view what) {
+    text_.append(xml_, copied_, at - copied_).append(what);
+    copied_ = at;
+  }
+
+  const std::string& xml_;
+  std::string text_;
+  std::size_t copied_ = 0;
   std::vector<JointElement> joints_;
-  std::vector<Insertion> in_limits_;
   bool in_joint_ = false;
+  bool lacks_limit_ = false;
 };
 
-/// Links that form a circle never end a walk to the root, and urdfdom loses their memory: each owns
-/// the next.
-void check_circles(const std::vector<JointElement>& joints) {
-  std::map<std::string_view, std::vector<const JointElement*>> below;
-  std::map<std::string_view, int> parents;
+/// Of several joints that carry one link urdfdom keeps the last; and links that form a circle never
+/// end a walk to the root, and are memory that urdfdom loses: each owns the next.
+void check_tree(const std::vector<JointElement>& joints) {
+  std::map<std::string_view, const JointElement*> carriers;
   for (const JointElement& joint : joints) {
     if (joint.parent.empty() || joint.child.empty()) continue;
-    below[joint.parent].push_back(&joint);
-    parents[joint.parent];
-    ++parents[joint.child];
+    const auto [first, is_new] = carriers.try_emplace(joint.child, &joint);
+    if (is_new) continue;
+    throw UrdfError("link '" + std::string(joint.child) + "' is the child of two joints: '" +
+                    std::string(first->second->name) + "' and '" + std::string(joint.name) + "'");
   }
-  // Take away links without parents, one after the other: what is left hangs on a circle.
-  std::vector<std::string_view> roots;
-  for (const auto& [link, count] : parents) {
-    if (count == 0) roots.push_back(link);
-  }
-  std::size_t left = parents.size();
-  while (!roots.empty()) {
-    const std::string_view root = roots.back();
-    roots.pop_back();
-    --left;
-    for (const JointElement* joint : below[root]) {
-      if (--parents[joint->child] == 0) roots.push_back(joint->child);
+  std::set<std::string_view> hang_on_root;
+  for (const auto& carrier : carriers) {
+    std::set<std::string_view> way;
+    auto at = carriers.find(carrier.first);
+    for (; at != carriers.end() && !hang_on_root.count(at->first);
+         at = carriers.find(at->second->parent)) {
+      if (way.insert(at->first).second) continue;
+      const JointElement& joint = *at->second;
+      throw UrdfError("URDF is no tree: joint '" + std::string(joint.name) + "' from link '" +
+                      std::string(joint.parent) + "' to link '" + std::string(joint.child) +
+                      "' closes a circle of links");
     }
+    hang_on_root.merge(way);
   }
-  if (left == 0) return;
-  std::map<std::string_view, const JointElement*> above;
-  for (const JointElement& joint : joints) {
-    if (parents[joint.child] > 0 && parents[joint.parent] > 0) above[joint.child] = &joint;
-  }
-  std::set<std::string_view> seen;
-  const JointElement* joint = above.begin()->second;
-  while (seen.insert(joint->child).second) joint = above.at(joint->parent);
-  throw UrdfError("URDF is no tree: joint '" + std::string(joint->name) + "' from link '" +
-                  std::string(joint->parent) + "' to link '" + std::string(joint->child) +
-                  "' closes a circle of links");
 }
 
 }  // namespace
 
 std::string prepare_urdf(const std::string& xml) {
   const UrdfScan scan(xml);
-  check_circles(scan.joints());
-  std::string text;
-  std::size_t done = 0;
-  for (const Insertion& insertion : scan.insertions()) {
-    text.append(xml, done, insertion.at - done).append(insertion.text);
-    done = insertion.at;
-  }
-  return text.append(xml, done);
+  check_tree(scan.joints());
+  return scan.text();
 }
 
 std::string explain_broken_xml(const std::string& xml) {

@@ -9,7 +9,7 @@ namespace iksel {
 
 /// The text that urdfdom is to parse: what it insists on and chains do not need, the effort and
 /// velocity of a limit or the limit itself, is there with zeros. Throws UrdfError where elements
-/// are nested too deeply, or links form a circle.
+/// are nested too deeply, or links are no tree.
 std::string prepare_urdf(const std::string& xml);
 
 /// What urdfdom's parser does not say of text that it cannot read; empty where nothing is known.

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "urdf/xml_scan.hpp"
 
-#include <algorithm>
-
 namespace iksel {
 namespace {
 
@@ -47,7 +45,6 @@ bool XmlScanner::next(XmlTag& tag) {
   tag.begin = at_ + (only_closes ? 2 : 1);
   const std::size_t last = end_of_tag(tag.begin);
   at_ = last == kNone ? last : last + 1;
-  tag.end = std::min(at_, xml_.size());
   std::string_view inside = xml_.substr(tag.begin, last == kNone ? last : last - tag.begin);
   tag.opens = !only_closes;
   tag.closes = only_closes || (!inside.empty() && inside.back() == '/');

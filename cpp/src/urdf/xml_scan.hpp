@@ -14,7 +14,6 @@ struct XmlTag {
   std::string_view name;
   std::string_view attributes;  ///< all of them, as written
   std::size_t begin = 0;        ///< of the name
-  std::size_t end = 0;          ///< behind the '>'
   int depth = 0;                ///< 1: the document's element
   bool opens = false;
   bool closes = false;  ///< with `opens`: an element without content

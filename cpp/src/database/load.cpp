@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Databases mapped from files.
+// Databases read, or mapped, from files.
 //
-// Whoever can write to a file can cut it short, and the next look at what is gone raises SIGBUS;
-// nothing that a process may hold on a file prevents it. So a handler of that signal, installed
-// with the first mapping, puts zeros in the place of what is gone and marks the mapping; solves
-// then end as they would with bad seeds, and the next call says what happened. All other faults go
-// to the handler that was there before.
+// Whoever can write to a mapped file can cut it short, and the next look at what is gone raises
+// SIGBUS; nothing that a process may hold on a file prevents it. So a handler of that signal,
+// installed with the first mapping, puts zeros in the place of what is gone and marks the mapping;
+// solves then end as they would with bad seeds, and the next call says what happened. All other
+// faults go to the handler that was there before.
+#include <fcntl.h>
 #include <sys/mman.h>
+#include <sys/stat.h>
 
 #include <array>
 #include <atomic>
@@ -14,6 +16,7 @@
 #include <csignal>
 #include <cstdint>
 #include <mutex>
+#include <new>
 #include <string>
 
 #include "database/descriptor.hpp"
@@ -93,46 +96,61 @@ Watched* watch(void* bytes, std::size_t size) {
   return nullptr;
 }
 
-class MappedStorage final : public Storage {
- public:
-  MappedStorage(void* bytes, std::size_t size) : bytes_(bytes), size_(size) {}
-  MappedStorage(const MappedStorage&) = delete;
-  MappedStorage& operator=(const MappedStorage&) = delete;
-  ~MappedStorage() override {
-    if (watched_ != nullptr) {
-      const std::lock_guard<std::mutex> lock(watched_mutex);
-      watched_->begin = 0;
-    }
-    ::munmap(bytes_, size_);
-  }
-  [[nodiscard]] bool watch() { return (watched_ = iksel::watch(bytes_, size_)) != nullptr; }
-  [[nodiscard]] const unsigned char* data() const override {
-    return static_cast<const unsigned char*>(bytes_);
-  }
-  [[nodiscard]] std::size_t size() const override { return size_; }
-  [[nodiscard]] const std::atomic<bool>* damaged() const override { return &watched_->damaged; }
-
- private:
-  void* bytes_;
-  std::size_t size_;
-  Watched* watched_ = nullptr;
-};
+/// Opens a regular file.
+Descriptor open_database(const std::filesystem::path& path, std::size_t& size) {
+  // Without O_NONBLOCK a pipe would wait for its writer.
+  Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  if (file.get() < 0) throw_io("open", path, system_error(errno));
+  struct stat info {};
+  if (::fstat(file.get(), &info) != 0) throw_io("read", path, system_error(errno));
+  if (!S_ISREG(info.st_mode)) throw_io("read", path, "not a regular file");
+  size = static_cast<std::size_t>(info.st_size);
+  return file;
+}
 
 }  // namespace
 
-std::shared_ptr<const Storage> map_file(const std::filesystem::path& path) {
+Storage read_file(const std::filesystem::path& path) {
   std::size_t size = 0;
   const Descriptor file = open_database(path, size);
+  std::shared_ptr<unsigned char> bytes;
+  try {
+    bytes = allocate(size);
+  } catch (const std::bad_alloc&) {
+    throw_io("read", path, "no memory for " + std::to_string(size) + " bytes");
+  }
+  for (std::size_t done = 0; done < size;) {
+    const ssize_t n = ::read(file.get(), bytes.get() + done, size - done);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) throw_io("read", path, system_error(errno));
+    if (n == 0) {
+      throw DatabaseCorruptError("database '" + path.string() + "': truncated while it was read");
+    }
+    done += static_cast<std::size_t>(n);
+  }
+  return {bytes, size};
+}
+
+Storage map_file(const std::filesystem::path& path) {
+  std::size_t size = 0;
+  const Descriptor file = open_database(path, size);
+  // Of an empty file nothing can be mapped.
+  if (size == 0) return {};
   void* bytes = ::mmap(nullptr, size, PROT_READ, MAP_SHARED, file.get(), 0);
-  if (bytes == MAP_FAILED) {
-    throw DatabaseIoError("cannot map database '" + path.string() + "': " + system_error(errno));
+  if (bytes == MAP_FAILED) throw_io("map", path, system_error(errno));
+  Watched* const place = watch(bytes, size);
+  const auto unmap = [bytes, size, place](const unsigned char* /*bytes*/) {
+    if (place != nullptr) {
+      const std::lock_guard<std::mutex> lock(watched_mutex);
+      place->begin = 0;
+    }
+    ::munmap(bytes, size);
+  };
+  std::shared_ptr<const unsigned char> mapped(static_cast<const unsigned char*>(bytes), unmap);
+  if (place == nullptr) {
+    throw_io("map", path, std::to_string(kMostMappings) + " are mapped already");
   }
-  auto storage = std::make_shared<MappedStorage>(bytes, size);
-  if (!storage->watch()) {
-    throw DatabaseIoError("cannot map database '" + path.string() +
-                          "': " + std::to_string(kMostMappings) + " are mapped already");
-  }
-  return storage;
+  return {mapped, size, &place->damaged};
 }
 
 }  // namespace iksel

@@ -1,13 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "options/strategy.hpp"
+#include "iksel/options.hpp"
 
 #include <string>
 
+#include "base/message_text.hpp"
+#include "base/parallel.hpp"
 #include "iksel/error.hpp"
-#include "options/option_check.hpp"
+#include "options/strategy.hpp"
 
 namespace iksel {
 namespace {
+
+/// Throws unless low <= value <= high; NaN fails.
+template <typename T>
+void check_range(const char* name, T value, T low, T high) {
+  if (value >= low && value <= high) return;
+  MessageStream text;
+  text << "option " << name << ": " << value << " is not in " << low << " .. " << high;
+  throw InvalidArgumentError(text.str());
+}
+
+/// The same for an enum whose last value is `last`.
+template <typename Enum>
+void check_enum(const char* name, Enum value, Enum last) {
+  check_range(name, static_cast<int>(value), 0, static_cast<int>(last));
+}
 
 constexpr int kMostNeighbours = 1'000'000;
 constexpr double kMostDamping = 1e6;
@@ -82,6 +99,56 @@ Paper one_at_a_time(const Strategy& strategy) {
   paper.damping = lanes.damping;
   paper.whole_turns = true;
   return paper;
+}
+
+DatabaseOptions DatabaseOptions::paper() {
+  DatabaseOptions options;
+  options.sampling = Sampling::grid;
+  options.scale = Scale::medium;
+  options.key_scheme = KeyScheme::full;
+  options.rotation_key = RotationKey::rotation_vector;
+  options.rotation_weight = 1.0;
+  options.pinv_cutoff = 1e-4;
+  return options;
+}
+
+void DatabaseOptions::validate() const {
+  check_enum("sampling", sampling, Sampling::random);
+  check_enum("scale", scale, Scale::large);
+  check_enum("key_scheme", key_scheme, KeyScheme::reduced);
+  check_enum("rotation_key", rotation_key, RotationKey::euler);
+  if (key_scheme == KeyScheme::reduced && rotation_key != RotationKey::rotation_vector) {
+    throw InvalidArgumentError(
+        "option rotation_key: only a full key writes rotations in different ways; set key_scheme "
+        "to full with it");
+  }
+  check_range<std::size_t>("samples", samples, 0, 4'000'000'000U);
+  check_range("rotation_weight", rotation_weight, 0.0, 1e6);
+  check_range("pinv_cutoff", pinv_cutoff, 0.0, 0.5);
+  check_range<std::size_t>("cvt_updates", cvt_updates, 0, 1'000'000'000U);
+  resolve_threads(threads);
+}
+
+SolverOptions SolverOptions::paper() {
+  SolverOptions options;
+  options.position_tolerance = 1e-4;
+  options.rotation_tolerance = 1e-3;
+  options.database = DatabaseOptions::paper();
+  options.max_attempts = 2;
+  // The reference implementation's "7 iterations" evaluate nine configurations, eight steps apart.
+  options.max_iterations = 8;
+  options.strategy = Paper{};
+  return options;
+}
+
+void SolverOptions::validate() const {
+  check_range("position_tolerance", position_tolerance, 1e-12, 1e3);
+  check_range("rotation_tolerance", rotation_tolerance, 1e-12, 4.0);
+  task.validate();
+  check_range("max_attempts", max_attempts, 1, 1'000'000);
+  check_range("max_iterations", max_iterations, 1, 100'000);
+  database.validate();
+  std::visit([](const auto& each) { each.validate(); }, strategy);
 }
 
 }  // namespace iksel

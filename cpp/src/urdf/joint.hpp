@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a joint of the URDF is to a chain: where it is, how it moves, which joint really moves one
+// that mimics another, and the limits of a degree of freedom: its joint's own, and those of the
+// joints that mimic it.
+#pragma once
+
+#include <urdf_model/joint.h>
+#include <urdf_model/model.h>
+
+#include <Eigen/Geometry>
+
+#include "iksel/robot_options.hpp"
+#include "urdf/chain_spec.hpp"
+
+namespace iksel {
+
+/// Pose of the joint in its parent link. Throws UrdfError if it is not finite.
+Eigen::Isometry3d origin_of(const urdf::Joint& joint);
+
+/// Unit vector about or along which the joint moves. Throws UrdfError if it has no direction.
+Eigen::Vector3d axis_of(const urdf::Joint& joint);
+
+/// What moves a joint: `source`'s value q, as multiplier * q + offset.
+struct Motion {
+  const urdf::Joint* source;
+  double multiplier;
+  double offset;
+};
+
+/// Through any number of mimic tags. Throws UnknownNameError if one names no joint, and UrdfError
+/// if they go in a circle, end at a joint that has no value, or a number is too large.
+Motion resolve_mimic(const urdf::ModelInterface& model, const urdf::Joint& joint);
+
+/// The degree of freedom that a joint is. Throws UrdfError if it has no limits and the options no
+/// default ones.
+ChainVariable make_variable(const urdf::Joint& joint, const RobotOptions& options);
+
+/// Narrows the limits of `variable` to those of a joint that follows it.
+void narrow_by_follower(const urdf::Joint& follower, const Motion& motion,
+                        const RobotOptions& options, ChainVariable& variable);
+
+/// Throws UrdfError unless the limits are finite with lower < upper, or the joint is continuous.
+void check_limits(const ChainVariable& variable);
+
+/// Throws InvalidArgumentError unless the default limits, if any, are finite with lower < upper.
+void check_default_limits(const RobotOptions& options);
+
+}  // namespace iksel

@@ -32,7 +32,7 @@ class ChainModel {
 
   [[nodiscard]] Pose fk(const double* q) const;
   /// The same as a frame, with fused multiply-adds where the processor has them.
-  [[nodiscard]] Frame<double> fk_frame(const double* q) const;
+  [[nodiscard]] Frame fk_frame(const double* q) const;
   /// Pose and Jacobian of the TCP, or of the tip link if not `with_tool`.
   void fk_jacobian(const double* q, Pose& pose, Jacobian& jacobian, bool with_tool = true) const;
   /// Jacobian of the TCP, whose frame is returned.

@@ -7,7 +7,7 @@ namespace {
 #if defined(__x86_64__)
 /// Chains of products and sums are what forward kinematics waits for, and a fused one takes half
 /// the time. All is inlined here, for what is called from here would be compiled without.
-__attribute__((target("avx2,fma"), flatten)) Frame<double> forward_fused(const KernelChain& chain,
+__attribute__((target("avx2,fma"), flatten)) Frame forward_fused(const KernelChain& chain,
                                                                          const double* q) {
   return forward(chain, q);
 }
@@ -20,7 +20,7 @@ bool can_fuse() {
 
 }  // namespace
 
-Frame<double> ChainModel::fk_frame(const double* q) const {
+Frame ChainModel::fk_frame(const double* q) const {
 #if defined(__x86_64__)
   if (can_fuse()) return forward_fused(kernel, q);
 #endif

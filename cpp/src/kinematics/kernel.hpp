@@ -52,13 +52,7 @@ inline void safe_sincos(double angle, double& sine, double& cosine) {
 /// Most joints that move on a chain (mimic joints come on top of the degrees of freedom).
 inline constexpr int kMaxMovingJoints = 64;
 
-/// Sines and cosines of `count` angles; those of prismatic joints may be anything.
-template <typename T>
-inline void sincos_all(int count, T* angle, T* sine, T* cosine) {
-  for (int k = 0; k < count; ++k) safe_sincos(angle[k], sine[k], cosine[k]);
-}
-
-/// Two at a time, which takes little longer than one.
+/// Sines and cosines of `count` angles, two at a time; those of prismatic joints may be anything.
 inline void sincos_all(int count, double* angle, double* sine, double* cosine) {
   int k = 0;
   for (; k + 1 < count; k += 2) {

@@ -2,7 +2,6 @@
 // The samples of the leaf that the target falls into, best first.
 #pragma once
 
-#include "base/stage_clock.hpp"
 #include "base/work.hpp"
 #include "seeds/lane_query.hpp"
 

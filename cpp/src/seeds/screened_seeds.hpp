@@ -8,7 +8,6 @@
 #include <cstdint>
 
 #include "base/random.hpp"
-#include "base/stage_clock.hpp"
 #include "base/work.hpp"
 #include "iksel/options.hpp"
 #include "kinematics/chain_model.hpp"

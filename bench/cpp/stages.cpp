@@ -170,12 +170,13 @@ void prepare_seeds(benchmark::State& state) {
 }
 BENCHMARK(prepare_seeds)->Arg(0)->Arg(1);
 
-/// One iteration of a pack; items are seeds.
+/// One iteration of a pack, narrow (0) or wide (1); items are seeds.
 void lane_iteration(benchmark::State& state) {
   const Problem& p = problem(state.range(0));
   const auto chain = iksel::make_lane_chain(p.robot.model());
   const iksel::Reduction reduction = iksel::Reduction::of(p.robot.model(), 1);
   const auto& kernels = iksel::lanes::choose_kernels();
+  const auto& packs = state.range(1) == 0 ? kernels.narrow : kernels.wide;
   iksel::lanes::LanePack pack{};
   for (int lane = 0; lane < iksel::lanes::kWidth; ++lane) {
     const iksel::Pose Y = reduction.reduce(p.targets[static_cast<std::size_t>(lane)]);
@@ -184,7 +185,7 @@ void lane_iteration(benchmark::State& state) {
       for (int c = 0; c < 3; ++c) pack.target[3 + 3 * c + r][lane] = Y(r, c);
     }
   }
-  const iksel::lanes::LaneOptions options{1e-3, 0, 0, 0, 0, 0};  // never there
+  const iksel::lanes::LaneOptions options{1e-3, 1e-18, 0, 0, 0, 0, 0};  // never there
   constexpr int kIterations = 16;
   std::size_t i = 0;
   for (auto _ : state) {
@@ -192,14 +193,14 @@ void lane_iteration(benchmark::State& state) {
     for (int j = 0; j < p.robot.dof(); ++j) {
       for (double& value : pack.q[j]) value = q[j];
     }
-    benchmark::DoNotOptimize(kernels.advance(chain, options, nullptr, ~0U, kIterations, pack));
+    benchmark::DoNotOptimize(packs.advance(chain, options, nullptr, ~0U, kIterations, pack));
   }
-  state.SetItemsProcessed(static_cast<int64_t>(state.iterations()) * kIterations * kernels.lanes);
+  state.SetItemsProcessed(static_cast<int64_t>(state.iterations()) * kIterations * packs.lanes);
   state.counters["per_iteration"] =
       benchmark::Counter(static_cast<double>(state.iterations()) * kIterations,
                          benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
-BENCHMARK(lane_iteration)->Arg(0)->Arg(1);
+BENCHMARK(lane_iteration)->ArgsProduct({{0, 1}, {0, 1}});
 
 void solve(benchmark::State& state) {
   const Problem& p = problem(state.range(0));

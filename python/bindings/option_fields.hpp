@@ -52,7 +52,9 @@ struct FieldTable<Lanes> {
   static std::vector<Field> fields() {
     return {
         field("neighbours", &O::neighbours,
-              "Samples nearest to the target that are tried before seeds at random."),
+              "Samples nearest to the target that are all tried, before the better half of the "
+              "others "
+              "and seeds at random."),
         field("damping", &O::damping, "Factor on |e|^2, which is added to the diagonal of J J^T."),
     };
   }

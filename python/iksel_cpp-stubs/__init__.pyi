@@ -780,7 +780,7 @@ class Lanes:
         Fields that are not given keep their default.
 
         Args:
-            neighbours: Samples nearest to the target that are tried before seeds at random.
+            neighbours: Samples nearest to the target that are all tried, before the better half of the others and seeds at random.
             damping: Factor on |e|^2, which is added to the diagonal of J J^T.
 
         Raises:
@@ -794,7 +794,7 @@ class Lanes:
         A copy in which the given fields have another value.
 
         Args:
-            neighbours: Samples nearest to the target that are tried before seeds at random.
+            neighbours: Samples nearest to the target that are all tried, before the better half of the others and seeds at random.
             damping: Factor on |e|^2, which is added to the diagonal of J J^T.
 
         Raises:
@@ -817,7 +817,7 @@ class Lanes:
     @property
     def neighbours(self) -> int:
         """
-        Samples nearest to the target that are tried before seeds at random.
+        Samples nearest to the target that are all tried, before the better half of the others and seeds at random.
         """
 class Paper:
     """

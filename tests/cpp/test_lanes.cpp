@@ -6,6 +6,9 @@
 #include <cmath>
 #include <cstdlib>
 #include <iksel/iksel.hpp>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "base/random.hpp"
 #include "database/reduction.hpp"
@@ -86,6 +89,7 @@ TEST(Levels, EachGivesTheSameBitsForAnyNumberOfThreads) {
 lanes::LaneOptions lane_options(double tolerance) {
   lanes::LaneOptions options{};
   options.damping = 1e-3;
+  options.least_damping = 1e-18;
   options.position2 = options.rotation2 = tolerance * tolerance;
   options.last_step2 = tolerance;
   options.last_error2 = 16 * tolerance;
@@ -99,14 +103,23 @@ void set_target(lanes::LanePack& pack, int lane, const Pose& Y) {
   }
 }
 
-/// Every lane of a pack with a target and a seed near its solution gets there, by the kernel for
-/// its number of joints and by the one for any number.
-TEST(Kernels, EveryLaneReachesItsOwnTarget) {
-  const double tolerance = 1e-9;
-  const lanes::LaneOptions options = lane_options(tolerance);
+/// Packs of every level and width.
+std::vector<std::pair<std::string, lanes::PackKernels>> all_packs() {
+  std::vector<std::pair<std::string, lanes::PackKernels>> packs;
   for (const std::string& level : levels()) {
     const ForcedLevel forced(level);
     const auto& kernels = lanes::choose_kernels();
+    packs.emplace_back(level + " narrow", kernels.narrow);
+    packs.emplace_back(level + " wide", kernels.wide);
+  }
+  return packs;
+}
+
+/// Every lane of a pack with a target and a seed near its solution gets there.
+TEST(Kernels, EveryLaneReachesItsOwnTarget) {
+  const double tolerance = 1e-9;
+  const lanes::LaneOptions options = lane_options(tolerance);
+  for (const auto& [level, packs] : all_packs()) {
     const Robot robot = iksel_test::robot("irb14050").with_tcp(Pose::Identity());
     const int n = robot.dof();
     const iksel::Reduction reduction = iksel::Reduction::of(robot.model(), 1);
@@ -115,18 +128,18 @@ TEST(Kernels, EveryLaneReachesItsOwnTarget) {
     int arrived = 0;
     for (int round = 0; round < 100; ++round) {
       const Eigen::MatrixXd q =
-          robot.random_configurations(static_cast<std::size_t>(kernels.lanes), 1000U + round);
+          robot.random_configurations(static_cast<std::size_t>(packs.lanes), 1000U + round);
       lanes::LanePack pack{};
-      for (int lane = 0; lane < kernels.lanes; ++lane) {
+      for (int lane = 0; lane < packs.lanes; ++lane) {
         set_target(pack, lane, reduction.reduce(robot.fk(q.row(lane))));
         for (int j = 0; j < n; ++j) pack.q[j][lane] = q(lane, j) + random.uniform(-0.03, 0.03);
       }
-      auto watched = (1U << static_cast<unsigned>(kernels.lanes)) - 1;
+      auto watched = (1U << static_cast<unsigned>(packs.lanes)) - 1;
       for (int used = 0; watched != 0 && used < 60;) {
-        const auto result = kernels.advance(chain, options, nullptr, watched, 60 - used, pack);
+        const auto result = packs.advance(chain, options, nullptr, watched, 60 - used, pack);
         EXPECT_EQ(result.done & ~watched, 0U);
         used += result.iterations;
-        for (int lane = 0; lane < kernels.lanes; ++lane) {
+        for (int lane = 0; lane < packs.lanes; ++lane) {
           if ((result.done >> static_cast<unsigned>(lane) & 1U) == 0) continue;
           JointVector found(n);
           for (int j = 0; j < n; ++j) found[j] = pack.q[j][lane];
@@ -137,16 +150,14 @@ TEST(Kernels, EveryLaneReachesItsOwnTarget) {
         watched &= ~result.done;
       }
     }
-    EXPECT_GT(arrived, 100 * kernels.lanes * 95 / 100) << level;
+    EXPECT_GT(arrived, 100 * packs.lanes * 95 / 100) << level;
   }
 }
 
 /// What a lane does depends on nothing in the other lanes: packs may be mixed at will.
 TEST(Kernels, ALaneIsBlindToTheOthers) {
   const lanes::LaneOptions options = lane_options(1e-9);
-  for (const std::string& level : levels()) {
-    const ForcedLevel forced(level);
-    const auto& kernels = lanes::choose_kernels();
+  for (const auto& [level, packs] : all_packs()) {
     const Robot& robot = iksel_test::robot("cvr038");
     const int n = robot.dof();
     const auto chain = iksel::make_lane_chain(robot.model());
@@ -154,17 +165,17 @@ TEST(Kernels, ALaneIsBlindToTheOthers) {
     for (unsigned round = 0; round < 50; ++round) {
       const Eigen::MatrixXd q = robot.random_configurations(2 * lanes::kWidth, 77 + round);
       lanes::LanePack pack{};
-      for (int lane = 0; lane < kernels.lanes; ++lane) {
+      for (int lane = 0; lane < packs.lanes; ++lane) {
         set_target(pack, lane, reduction.reduce(robot.fk(q.row(lane))));
         for (int j = 0; j < n; ++j) pack.q[j][lane] = q(lanes::kWidth + lane, j);
       }
       lanes::LanePack alone = pack;
-      for (int lane = 1; lane < kernels.lanes; ++lane) {
+      for (int lane = 1; lane < packs.lanes; ++lane) {
         for (auto& row : alone.target) row[lane] = row[0];
         for (int j = 0; j < n; ++j) alone.q[j][lane] = alone.q[j][0];
       }
-      kernels.advance(chain, options, nullptr, 0, 12, pack);
-      kernels.advance(chain, options, nullptr, 0, 12, alone);
+      packs.advance(chain, options, nullptr, 0, 12, pack);
+      packs.advance(chain, options, nullptr, 0, 12, alone);
       for (int j = 0; j < n; ++j) EXPECT_EQ(pack.q[j][0], alone.q[j][0]) << level;
       EXPECT_EQ(pack.error2[0], alone.error2[0]) << level;
     }
@@ -172,17 +183,19 @@ TEST(Kernels, ALaneIsBlindToTheOthers) {
 }
 
 TEST(Kernels, ANonFiniteLaneFailsAndEnds) {
-  const auto& kernels = lanes::choose_kernels();
   const Robot& robot = iksel_test::robot("cvr038");
   const auto chain = iksel::make_lane_chain(robot.model());
-  lanes::LanePack pack{};
+  lanes::LanePack nowhere{};
   for (int lane = 0; lane < lanes::kWidth; ++lane) {
-    set_target(pack, lane, Pose::Identity());
-    for (int j = 0; j < robot.dof(); ++j) pack.q[j][lane] = NAN;
+    set_target(nowhere, lane, Pose::Identity());
+    for (int j = 0; j < robot.dof(); ++j) nowhere.q[j][lane] = NAN;
   }
-  const auto result = kernels.advance(chain, lane_options(1e-6), nullptr, ~0U, 20, pack);
-  EXPECT_EQ(result.done, 0U);
-  EXPECT_EQ(result.iterations, 20);
+  for (const auto& [level, packs] : all_packs()) {
+    lanes::LanePack pack = nowhere;
+    const auto result = packs.advance(chain, lane_options(1e-6), nullptr, ~0U, 20, pack);
+    EXPECT_EQ(result.done, 0U) << level;
+    EXPECT_EQ(result.iterations, 20) << level;
+  }
 }
 
 /// Against one number after the other.

@@ -107,7 +107,8 @@ enum class GrowthStop {
 /// first. Over a database with a full key, and for chains with mimic joints, which lanes cannot
 /// solve, the same scheme takes one seed at a time.
 struct IKSEL_EXPORT Lanes {
-  /// Samples nearest to the target that are tried before seeds at random.
+  /// Samples nearest to the target that are all tried, before the better half of the others and
+  /// seeds at random.
   int neighbours = 200;
   /// Factor on |e|^2, which is added to the diagonal of J J^T [mixed units].
   double damping = 1e-3;

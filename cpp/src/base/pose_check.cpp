@@ -15,22 +15,33 @@ namespace {
 /// Deviation that rounding leaves in products of rotations; such a pose is taken bit for bit.
 constexpr double kRounding = 1e-12;
 
-bool is_affine(const Pose& pose) { return pose.matrix().row(3) == Eigen::RowVector4d(0, 0, 0, 1); }
+bool is_affine(const Pose& pose) {
+  const auto& T = pose.matrix();
+  return T(3, 0) == 0 && T(3, 1) == 0 && T(3, 2) == 0 && T(3, 3) == 1;
+}
 
-/// Largest element of |R^T R - I|.
+/// Largest element of |R^T R - I|; infinite where R is not finite.
 double deviation_of(const Eigen::Matrix3d& R) {
-  const Eigen::Matrix3d gram = R.transpose() * R;
+  const auto gram = [&](int i, int k) {
+    return R(0, i) * R(0, k) + R(1, i) * R(1, k) + R(2, i) * R(2, k);
+  };
+  const double xx = gram(0, 0);
+  const double yy = gram(1, 1);
+  const double zz = gram(2, 2);
   // Squares that overflow make the other elements NaN.
   constexpr double kHuge = 1e100;
-  if (!(gram.trace() < kHuge)) return std::numeric_limits<double>::infinity();
-  return (gram - Eigen::Matrix3d::Identity()).lpNorm<Eigen::Infinity>();
+  if (!(xx + yy + zz < kHuge)) return std::numeric_limits<double>::infinity();
+  const double along = std::max({std::abs(xx - 1), std::abs(yy - 1), std::abs(zz - 1)});
+  return std::max({along, std::abs(gram(0, 1)), std::abs(gram(0, 2)), std::abs(gram(1, 2))});
 }
 
 }  // namespace
 
 double rigid_deviation(const Pose& pose) {
   const Eigen::Matrix3d R = pose.linear();
-  if (!pose.matrix().allFinite() || !is_affine(pose) || R.determinant() < 0) {
+  const Eigen::Vector3d p = pose.translation();
+  const bool is_finite = std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+  if (!is_finite || !is_affine(pose) || R.determinant() < 0) {
     return std::numeric_limits<double>::infinity();
   }
   return deviation_of(R);

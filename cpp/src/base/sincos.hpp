@@ -33,10 +33,37 @@ inline T nearest_integer(const T& x) {
 /// Largest angle that sincos() is good for [rad].
 inline constexpr double kSincosRange = 1e6;
 
+/// Single-precision sine and cosine to about 1e-7, of angles up to a few thousand: as sincos().
+template <typename T>
+inline void rough_sincos(const T& x, T& sine, T& cosine) {
+  const T n = nearest_integer(x * T(0.31830988618F));
+  // pi in three parts, of which the first two have 8 and 11 bits: n times them is exact.
+  const T r =
+      ((x - n * T(3.140625F)) - n * T(9.67502593994140625e-4F)) - n * T(1.50995799097837e-7F);
+  const T half = n * T(0.5F);
+  const T parity = half - nearest_integer(half);
+  const T sign = T(1.0F) - T(8.0F) * (parity * parity);
+  const T r2 = r * r;
+  T s = T(-1.0F / 39916800.0F);  // 1/11!
+  s = s * r2 + T(1.0F / 362880.0F);
+  s = s * r2 + T(-1.0F / 5040.0F);
+  s = s * r2 + T(1.0F / 120.0F);
+  s = s * r2 + T(-1.0F / 6.0F);
+  T c = T(1.0F / 479001600.0F);  // 1/12!
+  c = c * r2 + T(-1.0F / 3628800.0F);
+  c = c * r2 + T(1.0F / 40320.0F);
+  c = c * r2 + T(-1.0F / 720.0F);
+  c = c * r2 + T(1.0F / 24.0F);
+  c = c * r2 + T(-0.5F);
+  sine = sign * (s * r2 * r + r);
+  cosine = sign * (c * r2 + T(1.0F));
+}
+
 /// Sine and cosine to the last digits or so: x = n pi + r, both Taylor series in r over
 /// [-pi/2, pi/2], and the sign (-1)^n.
 template <typename T>
 inline void sincos(const T& x, T& sine, T& cosine) {
+  if constexpr (sizeof(NumberOf<T>) == 4) return rough_sincos(x, sine, cosine);
   const T n = nearest_integer(x * T(0.318309886183790671538));
   // pi in three parts, of which the first two have 30 bits each: n times them is exact.
   const T r = ((x - n * T(3.141592651605606)) - n * T(1.9841871583270443e-09)) -

@@ -61,7 +61,7 @@ void Goal::measure(const JointVector& q, double& position, double& rotation,
   } else if (jacobian != nullptr) {
     measure_error(target_, model_.fk_jacobian(q.data(), *jacobian), position, rotation);
   } else {
-    measure_error(target_, forward(model_.kernel, q.data()), position, rotation);
+    measure_error(target_, model_.fk_frame(q.data()), position, rotation);
   }
 }
 

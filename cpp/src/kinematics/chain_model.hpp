@@ -31,6 +31,8 @@ class ChainModel {
   [[nodiscard]] std::unique_ptr<KdlChain> make_kdl(const Pose& T_tip_end) const;
 
   [[nodiscard]] Pose fk(const double* q) const;
+  /// The same as a frame, with fused multiply-adds where the processor has them.
+  [[nodiscard]] Frame fk_frame(const double* q) const;
   /// Pose and Jacobian of the TCP, or of the tip link if not `with_tool`.
   void fk_jacobian(const double* q, Pose& pose, Jacobian& jacobian, bool with_tool = true) const;
   /// Jacobian of the TCP, whose frame is returned.

@@ -14,6 +14,7 @@ lanes::LaneOptions make_lane_options(const ChainModel& model, const SolverOption
   const double rotation = options.rotation_tolerance;
   const Frame& tip = model.kernel.tip;
   lanes.damping = std::get<Lanes>(options.strategy).damping;
+  lanes.least_damping = 1e-18;
   // |error at the TCP| <= |position error| + lever * |rotation error|, and the square of a sum of
   // two is at most twice the sum of their squares.
   lanes.lever2 = tip.p[0] * tip.p[0] + tip.p[1] * tip.p[1] + tip.p[2] * tip.p[2];
@@ -31,6 +32,7 @@ lanes::LaneOptions make_lane_options(const ChainModel& model, const SolverOption
 LaneRefiner::LaneRefiner(const ChainModel& model, const SolverOptions& options,
                          const lanes::LaneKernels& kernels)
     : kernels_(kernels),
+      packs_(&kernels.narrow),
       max_iterations_(options.max_iterations),
       base_inverse_(to_pose(model.kernel.base).inverse()),
       tip_(to_pose(model.kernel.tip)),
@@ -43,7 +45,8 @@ LaneRefiner::LaneRefiner(const ChainModel& model, const SolverOptions& options,
   task_options_.position2 *= 2;
 }
 
-void LaneRefiner::begin(const TaskSpace& task, const Patience& patience) {
+void LaneRefiner::begin(const TaskSpace& task, const Patience& patience, Width width) {
+  packs_ = width == Width::narrow ? &kernels_.narrow : &kernels_.wide;
   task_ = task.is_full_pose() ? nullptr : &task;
   if (task_ != nullptr) make_task(task);
   patience_ = patience;
@@ -116,8 +119,8 @@ int LaneRefiner::advance(unsigned busy) {
   }
   const lanes::PackResult result =
       task_ == nullptr
-          ? kernels_.advance(chain_, options_, nullptr, busy, budget, pack_)
-          : kernels_.advance_task(chain_, task_options_, &lane_task_, busy, budget, pack_);
+          ? packs_->advance(chain_, options_, nullptr, busy, budget, pack_)
+          : packs_->advance_task(chain_, task_options_, &lane_task_, busy, budget, pack_);
   arrived_ = result.done;
   for (int lane = 0; lane < width(); ++lane) age_[lane] += result.iterations;
   return result.iterations;

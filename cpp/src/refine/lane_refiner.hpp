@@ -22,14 +22,17 @@ struct Patience {
   int look = 0;
 };
 
+/// Whether as few lanes as give an answer soonest, or as many as do most (lane_types.hpp).
+enum class Width { narrow, wide };
+
 class LaneRefiner {
  public:
   LaneRefiner(const ChainModel& model, const SolverOptions& options,
               const lanes::LaneKernels& kernels);
 
-  [[nodiscard]] int width() const { return kernels_.lanes; }
+  [[nodiscard]] int width() const { return packs_->lanes; }
   /// Before a search for goals of one task, which has to outlive it.
-  void begin(const TaskSpace& task, const Patience& patience);
+  void begin(const TaskSpace& task, const Patience& patience, Width width);
 
   /// What all lanes are to reach, or one: a full pose by its Y (reduction.hpp), or a task.
   void set_pose(const Pose& Y);
@@ -97,6 +100,7 @@ class LaneRefiner {
   static constexpr int kNever = 1 << 30;
 
   const lanes::LaneKernels& kernels_;
+  const lanes::PackKernels* packs_;
   int max_iterations_;
   Pose base_inverse_, tip_;  ///< of the kernel chain; the tip is the TCP
   lanes::LaneChain chain_;

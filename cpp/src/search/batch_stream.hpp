@@ -37,33 +37,36 @@ class BatchStream {
         on_result_(on_result) {
     // Any seed is given up after so many iterations.
     constexpr int kPatience = 8;
-    refiner.begin(task, {kPatience, kPatience});
+    refiner.begin(task, {kPatience, kPatience}, Width::wide);
+    find_coming();
   }
 
   /// Whether target i is left to be solved by itself.
   [[nodiscard]] bool is_left(std::size_t i) const { return left_[i - first_]; }
 
-  bool next_stage() { return next_ == first_ && first_ < last_; }
+  bool next_stage() {
+    const bool is_first = !begun_;
+    begun_ = true;
+    return is_first && coming_.is_open;
+  }
 
   bool load(LaneRefiner& /*refiner*/, int lane) {
     Lane& in = lanes_[lane];
     if (in.is_open) in.iterations += refiner_.age(lane);
     if (!in.is_open || in.seeds == most_seeds_) {
       if (in.is_open) left_.set(in.index - first_);
-      in = {};
-      if (!take_target(in)) return false;
-    }
-    const Pose& target = target_(in.index);
-    if (task_.is_full_pose()) {
-      const Pose Y = query_.reduce(target);
-      refiner_.set_pose(lane, Y);
-      query_.set_target(Y);
-    } else {
-      refiner_.set_task(lane, target);
-      query_.set_target(query_.reduce(Goal(model_, task_, target).nearest_pose()));
+      in.is_open = false;
+      if (!coming_.is_open) return false;
+      in = coming_;
+      find_coming();
+      if (task_.is_full_pose()) {
+        refiner_.set_pose(lane, in.Y);
+      } else {
+        refiner_.set_task(lane, in.target);
+      }
     }
     lanes::SeedPack& seeds = query_.packs[0];
-    query_.prepare_leaf(seeds);
+    query_.prepare_leaf(in.Y, in.leaf, seeds);
     load_ranked(seeds, in.seeds++, refiner_, lane);
     return true;
   }
@@ -72,7 +75,7 @@ class BatchStream {
     Lane& in = lanes_[lane];
     model_.joints.wrap(q.data());
     Result result;
-    if (!Goal(model_, task_, target_(in.index)).check(q, result)) return Verdict::refine;
+    if (!Goal(model_, task_, in.target).check(q, result)) return Verdict::refine;
     result.attempts = in.seeds;
     result.iterations = in.iterations + refiner_.age(lane);
     in.is_open = false;
@@ -91,22 +94,30 @@ class BatchStream {
 
   struct Lane {
     std::size_t index = 0;  ///< of the target
+    Pose target;
+    Pose Y;  ///< of the pose nearest to it that the task allows (reduction.hpp)
+    const float* leaf = nullptr;
     int seeds = 0;
     int iterations = 0;    ///< of the seeds before
     bool is_open = false;  ///< not solved yet
   };
 
-  bool take_target(Lane& in) {
-    for (; next_ < last_; ++next_) {
-      if (Goal(model_, task_, target_(next_)).is_out_of_reach()) {
+  /// The target that the next free lane takes. Its samples come from memory while others are
+  /// iterated.
+  void find_coming() {
+    coming_.is_open = false;
+    for (; next_ < last_ && !coming_.is_open; ++next_) {
+      coming_.index = next_;
+      coming_.target = target_(next_);
+      const Goal goal(model_, task_, coming_.target);
+      coming_.is_open = !goal.is_out_of_reach();
+      if (!coming_.is_open) {
         left_.set(next_ - first_);
         continue;
       }
-      in.index = next_++;
-      in.is_open = true;
-      return true;
+      coming_.Y = query_.reduce(task_.is_full_pose() ? coming_.target : goal.nearest_pose());
+      coming_.leaf = query_.fetch_leaf(coming_.Y);
     }
-    return false;
   }
 
   const ChainModel& model_;
@@ -117,6 +128,8 @@ class BatchStream {
   std::size_t first_, last_, next_;
   const Target& target_;
   const OnResult& on_result_;
+  bool begun_ = false;
+  Lane coming_;
   Lane lanes_[lanes::kWidth];
   std::bitset<kMost> left_;
 };

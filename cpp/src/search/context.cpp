@@ -22,7 +22,8 @@ Workspace::InLanes::InLanes(const ChainModel& model, const ChainModel& nominal,
                             const DatabaseData& data, const SolverOptions& options,
                             const ClosedFormChain* closed_form, const lanes::LaneKernels& kernels)
     : refiner(model, options, kernels),
-      query(model, nominal, data, neighbours_of(options.strategy), kernels) {
+      query(model, nominal, data, neighbours_of(options.strategy), kernels),
+      screen(model, options, kernels) {
   if (closed_form == nullptr) return;
   const bool is_nominal = &model == &nominal;
   const double position = options.position_tolerance;

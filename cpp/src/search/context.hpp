@@ -18,6 +18,7 @@
 #include "seeds/lane_query.hpp"
 #include "seeds/nearest_on_curve.hpp"
 #include "seeds/root_sweep.hpp"
+#include "seeds/screened_seeds.hpp"
 #include "seeds/seed_ranking.hpp"
 #include "seeds/selection.hpp"
 #include "seeds/self_motion_arcs.hpp"
@@ -45,6 +46,7 @@ struct Workspace {
 
     LaneRefiner refiner;
     LaneQuery query;
+    SeedScreen screen;
     /// Only of a chain that can be solved in closed form, at once or for each value of a joint.
     std::optional<Enumeration> branches;
     std::optional<Sweep> sweep;

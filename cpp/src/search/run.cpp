@@ -10,9 +10,9 @@
 #include "search/search.hpp"
 #include "seeds/allowed_seeds.hpp"
 #include "seeds/given_seeds.hpp"
-#include "seeds/nearest_seeds.hpp"
-#include "seeds/random_seeds.hpp"
+#include "seeds/leaf_seeds.hpp"
 #include "seeds/row_seeds.hpp"
+#include "seeds/screened_seeds.hpp"
 #include "seeds/seed_sequence.hpp"
 #include "seeds/selected_seeds.hpp"
 #include "seeds/spread_seeds.hpp"
@@ -26,6 +26,8 @@ constexpr Patience kFirst{8, kMostIterations};
 /// Where a seed more or less does not matter: solutions arrive after 4 iterations in the mean, and
 /// what is far off after 6 costs more than what it finds.
 constexpr Patience kAll{6, kMostIterations, 2};
+/// Where seeds were iterated before in single precision.
+constexpr Patience kScreened{4, kMostIterations};
 /// Where seeds are answers, or as near to one as a singularity or a limit lets it be told.
 constexpr Patience kThere{8, 64};
 /// Seeds after all roots of a sweep led nowhere: double ones, or just outside a limit.
@@ -100,7 +102,7 @@ Proof Search<Answers>::in_lanes() const {
   const auto should_continue = [&] { return answers.should_continue(); };
   NearSeed near = near_seed();
   GivenSeeds given = given_seeds(lanes::kBlock, should_continue);
-  refiner.begin(goal.task(), kFirst);
+  refiner.begin(goal.task(), kFirst, Width::narrow);
   if (!goal.is_full_pose()) {
     refiner.set_task(goal.target());
     clock.lap(&StageTimes::query);
@@ -118,11 +120,11 @@ Proof Search<Answers>::in_lanes() const {
   }
   query.set_target(Y);
   clock.lap(&StageTimes::query);
+  if constexpr (!std::is_same_v<Answers, Collector>) {
+    LeafSeeds leaf(query, work, clock);
+    if (run(refiner, near, given, leaf) || !request.database_seeds) return Proof::none;
+  }
   if (workspace.lanes->roots && request.database_seeds) {
-    if constexpr (!std::is_same_v<Answers, Collector>) {
-      NearestSeeds leaf(query, /*only_leaf=*/true, work, clock);
-      if (run(refiner, near, given, leaf)) return Proof::none;
-    }
     const auto proof = by_branches(*workspace.lanes->roots, Proof::sweep, given, Y);
     if (proof) return *proof;
   }
@@ -131,20 +133,19 @@ Proof Search<Answers>::in_lanes() const {
       if (const auto proof = on_curve(Y)) return *proof;
     }
     if (run(refiner, near, given) || !request.database_seeds) return Proof::none;
-    refiner.begin(goal.task(), kAll);
+    refiner.begin(goal.task(), kAll, Width::wide);
     SpreadSeeds spread(query, model.joints, options.seed, answers, work);
     search(refiner, spread, answers, work);
   } else {
-    if (workspace.lanes->sweep && request.database_seeds) {
-      NearestSeeds leaf(query, /*only_leaf=*/true, work, clock);
+    if (workspace.lanes->sweep) {
       SweptSeeds swept(*workspace.lanes->sweep, Y, work, clock);
-      if (run(refiner, near, given, leaf)) return Proof::none;
       if (search(refiner, swept, answers, work)) return Proof::none;
       if (swept.is_none()) return Proof::sweep;
     }
-    NearestSeeds nearest(query, /*only_leaf=*/false, work, clock);
-    RandomSeeds random(model.joints, options.seed, work);
-    run(refiner, near, given, nearest, random);
+    refiner.begin(goal.task(), kScreened, Width::wide);
+    ScreenedSeeds screened(query, workspace.lanes->screen, Y, model.joints, options.seed, work,
+                           clock);
+    search(refiner, screened, answers, work);
   }
   clock.lap(&StageTimes::iterate);
   return Proof::none;
@@ -157,7 +158,7 @@ std::optional<Proof> Search<Answers>::by_branches(Branches& branches, Proof kind
   LaneRefiner& refiner = workspace.lanes->refiner;
   EnumeratedSeeds enumerated(branches, goal, Y, answers.wants_more(), work, clock);
   SeedSequence seeds(2, given, enumerated);
-  refiner.begin(goal.task(), kThere);
+  refiner.begin(goal.task(), kThere, Width::narrow);
   answers.look_for_partners(false);
   const bool is_satisfied = search(refiner, seeds, answers, work);
   answers.look_for_partners(true);
@@ -168,7 +169,7 @@ std::optional<Proof> Search<Answers>::by_branches(Branches& branches, Proof kind
     if (enumerated.is_empty() || answers.has_any()) return kind;
     if (kind == Proof::sweep) work.leave(kBesideRoots);
   }
-  refiner.begin(goal.task(), kFirst);
+  refiner.begin(goal.task(), kFirst, Width::narrow);
   return std::nullopt;
 }
 
@@ -184,9 +185,9 @@ std::optional<Proof> Search<Answers>::over_curve(const Pose& Y) const {
   clock.lap(&StageTimes::query);
   RowSeeds seeds(points.empty() ? nullptr : points[0].data(), points.size(), SweptBranches::kDof,
                  /*are_answers=*/false, work);
-  refiner.begin(goal.task(), kThere);
+  refiner.begin(goal.task(), kThere, Width::wide);
   search(refiner, seeds, answers, work);
-  refiner.begin(goal.task(), kFirst);
+  refiner.begin(goal.task(), kFirst, Width::narrow);
   clock.lap(&StageTimes::iterate);
   if (answers.has_any()) return Proof::none;
   Sweep& sweep = *workspace.lanes->sweep;
@@ -202,9 +203,9 @@ std::optional<Proof> Search<Answers>::on_curve(const Pose& Y) const {
   LaneRefiner& refiner = workspace.lanes->refiner;
   const JointMove move(model.dof, request);
   NearestOnCurveSeeds nearest(curve, Y, *request.near, move, answers, work, clock);
-  refiner.begin(goal.task(), kThere);
+  refiner.begin(goal.task(), kThere, Width::narrow);
   search(refiner, nearest, answers, work);
-  refiner.begin(goal.task(), kFirst);
+  refiner.begin(goal.task(), kFirst, Width::narrow);
   clock.lap(&StageTimes::iterate);
   if (curve.is_none()) return Proof::sweep;
   if (!answers.has_any()) return std::nullopt;

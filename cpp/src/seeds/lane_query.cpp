@@ -14,8 +14,9 @@ LaneQuery::LaneQuery(const ChainModel& model, const ChainModel& nominal, const D
       base_inverse_(to_pose(model.kernel.base).inverse()),
       tcp_inverse_(Pose(model.tcp_inverse) * to_pose(model.kernel.flange).inverse()),
       seed_chain_(make_seed_chain(nominal, *data.reduction)),
-      nearest_(std::min<std::size_t>(static_cast<std::size_t>(neighbours), data.size)),
-      block_(static_cast<std::size_t>(lanes::block_rows(model.dof) * lanes::kBlock)),
+      near_blocks_(
+          std::min((static_cast<std::size_t>(neighbours) + lanes::kBlock - 1) / lanes::kBlock,
+                   data.blocks.size())),
       block_distance2_(data.blocks.size()),
       block_order_(data.blocks.size()),
       is_tried_(data.blocks.size()) {}
@@ -25,18 +26,13 @@ void LaneQuery::set_target(const Pose& Y) {
   seed_target_ = make_seed_target(Y);
 }
 
-std::size_t LaneQuery::find_nearest(std::size_t k) {
-  const std::size_t found = data_.tree->nearest(key_, k, nearest_.data());
-  std::sort(nearest_.begin(), nearest_.begin() + static_cast<std::ptrdiff_t>(found));
-  return found;
-}
-
-void LaneQuery::prepare_nearest(std::size_t first, std::size_t end, lanes::SeedPack& seeds) {
-  for (std::size_t entry = 0; entry < lanes::kBlock; ++entry) {
-    const std::size_t i = std::min(first + entry, end - 1);
-    write_to_block(data_, nearest_[i].index, static_cast<int>(entry), block_.data());
-  }
-  prepare(block_.data(), seeds);
+const float* LaneQuery::fetch_leaf(const Pose& Y) const {
+  double key[kMaxKeyDimension];
+  data_.reduction->make_key(Y, key);
+  const float* leaf = data_.leaves.block(key);
+  const int rows = lanes::block_rows(seed_chain_.n);
+  for (int row = 0; row < rows; ++row) __builtin_prefetch(leaf + row * lanes::kBlock);
+  return leaf;
 }
 
 std::size_t LaneQuery::measure_blocks() {
@@ -48,7 +44,7 @@ std::size_t LaneQuery::measure_blocks() {
     std::memcpy(&bits, &block_distance2_[block], sizeof bits);
     block_order_[block] = std::uint64_t{bits} << 32U | block;
   }
-  return std::min((neighbours() + lanes::kBlock - 1) / lanes::kBlock, blocks.size());
+  return blocks.size();
 }
 
 void LaneQuery::prepare_blocks(std::size_t first, std::size_t count, lanes::SeedPack* seeds) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/rotation.hpp"
 #include "database/data.hpp"
 #include "database/key.hpp"
 #include "goal/goal.hpp"
@@ -31,7 +32,7 @@ class LaneQuery {
 
   /// Y (reduction.hpp).
   [[nodiscard]] Pose reduce(const Pose& T_base_tcp) const {
-    return base_inverse_ * T_base_tcp * tcp_inverse_;
+    return compose(compose(base_inverse_, T_base_tcp), tcp_inverse_);
   }
   /// What seeds are asked for from now on.
   void set_target(const Pose& Y);
@@ -39,15 +40,19 @@ class LaneQuery {
   /// The samples of the leaf that the target falls into, as seeds.
   void prepare_leaf(lanes::SeedPack& seeds) const { prepare(data_.leaves.block(key_), seeds); }
 
-  /// The k nearest samples, nearest first; k is at most neighbours(). Returns how many there are.
-  std::size_t find_nearest(std::size_t k);
-  [[nodiscard]] std::size_t neighbours() const { return nearest_.size(); }
-  /// Of those, number `first` to `end` - 1 as seeds, a block of them at most.
-  void prepare_nearest(std::size_t first, std::size_t end, lanes::SeedPack& seeds);
+  /// The same in two steps: the leaf of Y, of which the samples are on their way into the cache
+  /// then; and its samples as seeds for Y.
+  [[nodiscard]] const float* fetch_leaf(const Pose& Y) const;
+  void prepare_leaf(const Pose& Y, const float* leaf, lanes::SeedPack& seeds) {
+    seed_target_ = make_seed_target(Y);
+    prepare(leaf, seeds);
+  }
 
-  /// The blocks of samples that neighbours() fills, nearest first: to come before prepare_block.
-  /// Returns how many there are.
+  /// The blocks of samples, nearest first: to come before prepare_blocks. Returns how many there
+  /// are.
   std::size_t measure_blocks();
+  /// Of those, how many the neighbours that are asked for fill.
+  [[nodiscard]] std::size_t near_blocks() const { return near_blocks_; }
   /// Those with the ranks `first` to `first` + count - 1, which have to be asked for in turn, each
   /// with its seeds in packs[i].
   void prepare_blocks(std::size_t first, std::size_t count, lanes::SeedPack* packs);
@@ -76,8 +81,7 @@ class LaneQuery {
   lanes::SeedChain seed_chain_;
   lanes::SeedTarget seed_target_{};
   double key_[kMaxKeyDimension] = {};
-  std::vector<Neighbour> nearest_;
-  std::vector<float> block_;
+  std::size_t near_blocks_;
   std::vector<float> block_distance2_;
   std::vector<std::uint64_t> block_order_;  ///< squared distance, and the block
   std::vector<bool> is_tried_;              ///< of each block

@@ -25,7 +25,9 @@ class SpreadSeeds {
         known_(known),
         work_(work),
         random_(joints, seed, work, kBlocksAtOnce * lanes::kBlock),
-        blocks_(query.measure_blocks()) {}
+        blocks_(query.near_blocks()) {
+    query.measure_blocks();
+  }
 
   bool next_stage() {
     if (!work_.has_left()) return false;

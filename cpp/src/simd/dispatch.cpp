@@ -19,7 +19,10 @@ std::vector<const LaneKernels*> available() {
   __builtin_cpu_init();
 #endif
 #if defined(IKSEL_SIMD_AVX512)
-  if (__builtin_cpu_supports("avx512f")) kernels.push_back(&kKernelsAvx512);
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+      __builtin_cpu_supports("avx512dq")) {
+    kernels.push_back(&kKernelsAvx512);
+  }
 #endif
 #if defined(IKSEL_SIMD_AVX2)
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {

@@ -6,7 +6,7 @@
 namespace iksel::lanes {
 
 using Arch = xsimd::fma3<xsimd::avx2>;
-const LaneKernels kKernelsAvx2 =
-    make_kernels<xsimd::batch<double, Arch>, xsimd::batch<float, Arch>>("avx2");
+using Doubles = xsimd::batch<double, Arch>;
+const LaneKernels kKernelsAvx2 = make_kernels<Doubles, Doubles, xsimd::batch<float, Arch>>("avx2");
 
 }  // namespace iksel::lanes

@@ -6,7 +6,7 @@
 namespace iksel::lanes {
 
 using Arch = xsimd::neon64;
-const LaneKernels kKernelsNeon =
-    make_kernels<xsimd::batch<double, Arch>, xsimd::batch<float, Arch>>("neon");
+using Doubles = xsimd::batch<double, Arch>;
+const LaneKernels kKernelsNeon = make_kernels<Doubles, Doubles, xsimd::batch<float, Arch>>("neon");
 
 }  // namespace iksel::lanes

@@ -4,6 +4,6 @@
 
 namespace iksel::lanes {
 
-const LaneKernels kKernelsScalar = make_kernels<double, float>("scalar");
+const LaneKernels kKernelsScalar = make_kernels<double, double, float>("scalar");
 
 }  // namespace iksel::lanes

@@ -6,7 +6,7 @@
 namespace iksel::lanes {
 
 using Arch = xsimd::sse2;
-const LaneKernels kKernelsSse2 =
-    make_kernels<xsimd::batch<double, Arch>, xsimd::batch<float, Arch>>("sse2");
+using Doubles = xsimd::batch<double, Arch>;
+const LaneKernels kKernelsSse2 = make_kernels<Doubles, Doubles, xsimd::batch<float, Arch>>("sse2");
 
 }  // namespace iksel::lanes

@@ -14,26 +14,40 @@ bool is_simple(const ChainModel& model) {
   return true;
 }
 
-lanes::LaneChain make_lane_chain(const ChainModel& model) {
-  lanes::LaneChain chain{};
+namespace {
+
+template <typename Number>
+lanes::LaneChainOf<Number> make_chain(const ChainModel& model) {
+  const auto number = [](double x) { return static_cast<Number>(x); };
+  lanes::LaneChainOf<Number> chain{};
   chain.n = model.dof;
   for (int j = 0; j < model.dof; ++j) {
     const KernelJoint& from = model.kernel.joints[static_cast<std::size_t>(j)];
-    lanes::LaneJoint& to = chain.joint[j];
-    for (int i = 0; i < 3; ++i) to.p[i] = from.p[i];
-    to.cos_alpha = from.cos_alpha;
-    to.sin_alpha = from.sin_alpha;
-    to.cos_turn = from.cos_turn;
-    to.sin_turn = from.sin_turn;
-    to.offset = from.offset;
+    auto& to = chain.joint[j];
+    for (int i = 0; i < 3; ++i) to.p[i] = number(from.p[i]);
+    to.cos_alpha = number(from.cos_alpha);
+    to.sin_alpha = number(from.sin_alpha);
+    to.cos_turn = number(from.cos_turn);
+    to.sin_turn = number(from.sin_turn);
+    to.offset = number(from.offset);
     to.prismatic = from.prismatic;
     const bool continuous = model.joints.type(j) == JointType::continuous;
     // A principal angle just off its interval is still the same angle.
-    to.lower = continuous ? -kPi - 1e-9 : model.joints.lower[j];
-    to.upper = continuous ? kPi + 1e-9 : model.joints.upper[j];
-    to.limited = from.prismatic || (!continuous && to.upper - to.lower < 2 * kPi);
+    const double lower = continuous ? -kPi - 1e-9 : model.joints.lower[j];
+    const double upper = continuous ? kPi + 1e-9 : model.joints.upper[j];
+    to.lower = number(lower);
+    to.upper = number(upper);
+    to.limited = from.prismatic || (!continuous && upper - lower < 2 * kPi);
   }
   return chain;
+}
+
+}  // namespace
+
+lanes::LaneChain make_lane_chain(const ChainModel& model) { return make_chain<double>(model); }
+
+lanes::LaneChainOf<float> make_rough_chain(const ChainModel& model) {
+  return make_chain<float>(model);
 }
 
 }  // namespace iksel

@@ -12,5 +12,7 @@ bool is_simple(const ChainModel& model);
 
 /// The part between the frames of the first and the last joint of a simple chain.
 lanes::LaneChain make_lane_chain(const ChainModel& model);
+/// The same in single precision.
+lanes::LaneChainOf<float> make_rough_chain(const ChainModel& model);
 
 }  // namespace iksel

@@ -16,10 +16,10 @@ struct LaneFrame {
 
 /// All of a pose. The error is the position's, and 2 sin(angle / 2) * axis of R_target R^T, which
 /// grows up to half a turn.
-template <typename T>
+template <typename T, typename Pack = LanePack>
 class FullPose {
  public:
-  FullPose(const LanePack& pack, const LaneTask* /*task*/) : pack_(pack) {}
+  FullPose(const Pack& pack, const LaneTask* /*task*/) : pack_(pack) {}
 
   IKSEL_INLINE void measure(const LaneFrame<T>& f, T (&e)[6]) {
     for (int i = 0; i < 3; ++i) e[i] = row(i) - f.p[i];
@@ -27,7 +27,9 @@ class FullPose {
     for (int i = 0; i < 3; ++i) {
       trace = trace + f.x[i] * row(3 + i) + f.y[i] * row(6 + i) + f.z[i] * row(9 + i);
     }
-    const T factor = T(1.0) / sqrt(max(trace, T(1e-12)));
+    // Above what rounding leaves of it at half a turn.
+    constexpr NumberOf<T> kLeastTrace = sizeof(NumberOf<T>) == 4 ? 1e-6 : 1e-12;
+    const T factor = T(1.0) / sqrt(max(trace, T(kLeastTrace)));
     for (int i = 0; i < 3; ++i) {
       const int a = (i + 1) % 3;
       const int b = (i + 2) % 3;
@@ -45,9 +47,11 @@ class FullPose {
   }
 
  private:
-  IKSEL_INLINE T row(int r) const { return Lanes<T>::load(pack_.target[r]); }
+  IKSEL_INLINE T row(int r) const { return row_of(pack_.target[r]); }
+  static IKSEL_INLINE T row_of(const NumberOf<T> (&lanes)[kWidth]) { return Lanes<T>::load(lanes); }
+  static IKSEL_INLINE T row_of(NumberOf<T> all) { return T(all); }
 
-  const LanePack& pack_;
+  const Pack& pack_;
 };
 
 /// A task: the deviation along its axes, as goal/task_space.hpp defines it, and what is missing of

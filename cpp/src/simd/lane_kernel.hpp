@@ -42,7 +42,8 @@ inline void multiply_rows(int n, const T (*J)[6], T (&A)[6][6]) {
 
 /// Frames of the joints at q: J has each joint's origin and axis, `f` the last one's frame.
 template <typename T>
-IKSEL_INLINE void place_joints(const LaneChain& chain, const T* q, T (*J)[6], LaneFrame<T>& f) {
+IKSEL_INLINE void place_joints(const LaneChainOf<NumberOf<T>>& chain, const T* q, T (*J)[6],
+                               LaneFrame<T>& f) {
   const int n = chain.n;
   for (int i = 0; i < 3; ++i) {
     f.x[i] = T(i == 0 ? 1.0 : 0.0);
@@ -56,7 +57,7 @@ IKSEL_INLINE void place_joints(const LaneChain& chain, const T* q, T (*J)[6], La
   for (int j = 0; j < n; ++j) sincos(q[j] + T(chain.joint[j].offset), sine[j], cosine[j]);
 #pragma GCC unroll 10
   for (int j = 0; j < n; ++j) {
-    const LaneJoint& joint = chain.joint[j];
+    const auto& joint = chain.joint[j];
     if (j > 0) {
       for (int i = 0; i < 3; ++i) {
         f.p[i] = f.p[i] + f.x[i] * T(joint.p[0]) + f.y[i] * T(joint.p[1]) + f.z[i] * T(joint.p[2]);
@@ -83,13 +84,13 @@ IKSEL_INLINE void place_joints(const LaneChain& chain, const T* q, T (*J)[6], La
 /// From origins and axes to the columns of the goal's Jacobian; those of joints that stand at a
 /// limit and would leave it are zero.
 template <typename T, typename Goal>
-IKSEL_INLINE void make_columns(const LaneChain& chain, const T* q, const Goal& goal,
+IKSEL_INLINE void make_columns(const LaneChainOf<NumberOf<T>>& chain, const T* q, const Goal& goal,
                                const LaneFrame<T>& f, const T (&e)[6], T (*J)[6]) {
   const int n = chain.n;
   const T* point = goal.point(f);
 #pragma GCC unroll 10
   for (int j = 0; j < n; ++j) {
-    const LaneJoint& joint = chain.joint[j];
+    const auto& joint = chain.joint[j];
     T(&column)[6] = J[j];
     const T* axis = column + 3;
     if (joint.prismatic) {
@@ -121,7 +122,8 @@ IKSEL_INLINE void make_columns(const LaneChain& chain, const T* q, const Goal& g
 
 /// Adds J^T y to q, held to the limits; returns the squared length of the step.
 template <typename T>
-IKSEL_INLINE T move_joints(const LaneChain& chain, const T (*J)[6], const T (&y)[6], T* q) {
+IKSEL_INLINE T move_joints(const LaneChainOf<NumberOf<T>>& chain, const T (*J)[6], const T (&y)[6],
+                           T* q) {
   const int n = chain.n;
   T dq2 = T(0.0);
 #pragma GCC unroll 10
@@ -131,7 +133,7 @@ IKSEL_INLINE T move_joints(const LaneChain& chain, const T (*J)[6], const T (&y)
     for (int i = 1; i < 6; ++i) dq = dq + J[j][i] * y[i];
     dq2 = dq2 + dq * dq;
     q[j] = q[j] + dq;
-    const LaneJoint& joint = chain.joint[j];
+    const auto& joint = chain.joint[j];
     if (joint.limited) q[j] = min(max(q[j], T(joint.lower)), T(joint.upper));
   }
   return dq2;
@@ -142,7 +144,7 @@ template <typename T, typename Mask>
 IKSEL_INLINE unsigned to_bits(const Mask& condition) {
   unsigned bits = 0;
   if (any(condition)) {
-    double hit[Lanes<T>::kCount];
+    NumberOf<T> hit[Lanes<T>::kCount];
     Lanes<T>::store(select(condition, T(1.0), T(0.0)), hit);
     for (int lane = 0; lane < Lanes<T>::kCount; ++lane) {
       if (hit[lane] != 0.0) bits |= 1U << static_cast<unsigned>(lane);
@@ -151,16 +153,15 @@ IKSEL_INLINE unsigned to_bits(const Mask& condition) {
   return bits;
 }
 
-/// One for any number of joints: made for a known number it was no faster on AVX-512, AVX2 or SSE2.
-/// Nothing to be inlined: GCC 12 then keeps a tenth less of it in registers.
-template <typename T, typename Goal>
-PackResult advance(const LaneChain& chain, const LaneOptions& options, const LaneTask* task,
-                   unsigned watched, int iterations, LanePack& pack) {
+/// Iterates the lanes of a pack from `first` on.
+template <typename T, typename Goal, typename Pack>
+IKSEL_INLINE PackResult iterate(const LaneChainOf<NumberOf<T>>& chain, const LaneOptions& options,
+                                Goal& goal, unsigned watched, int iterations, int first,
+                                Pack& pack) {
   const int n = chain.n;
   T q[kMaxJoints];
-  for (int j = 0; j < n; ++j) q[j] = Lanes<T>::load(pack.q[j]);
+  for (int j = 0; j < n; ++j) q[j] = Lanes<T>::load(pack.q[j] + first);
 
-  Goal goal(pack, task);
   for (int iteration = 1;; ++iteration) {
     T J[kMaxJoints][6];
     LaneFrame<T> frame;
@@ -176,7 +177,7 @@ PackResult advance(const LaneChain& chain, const LaneOptions& options, const Lan
     multiply_rows<0, 3>(n, J, A);
     multiply_rows<3, 5>(n, J, A);
     multiply_rows<5, 6>(n, J, A);
-    const T lambda = T(options.damping) * e2 + T(1e-18);
+    const T lambda = T(options.damping) * e2 + T(options.least_damping);
     T step[6];
     goal.solve(A, lambda, e, step);
     // A lane that is there already stays: along a singular direction the step may be long.
@@ -189,26 +190,50 @@ PackResult advance(const LaneChain& chain, const LaneOptions& options, const Lan
     const unsigned done =
         watched & to_bits<T>((dq2 <= T(options.last_step2)) & (e2 <= T(options.last_error2)));
     if (done != 0 || iteration >= iterations) {
-      for (int j = 0; j < n; ++j) Lanes<T>::store(q[j], pack.q[j]);
-      Lanes<T>::store(e2, pack.error2);
+      for (int j = 0; j < n; ++j) Lanes<T>::store(q[j], pack.q[j] + first);
+      Lanes<T>::store(e2, pack.error2 + first);
       return {done, iteration};
     }
   }
 }
 
-template <typename T, typename S>
+/// One for any number of joints: made for a known number it was no faster on AVX-512, AVX2 or SSE2.
+/// Nothing to be inlined: GCC 12 then keeps a tenth less of it in registers.
+template <typename T, typename Goal>
+PackResult advance(const LaneChain& chain, const LaneOptions& options, const LaneTask* task,
+                   unsigned watched, int iterations, LanePack& pack) {
+  Goal goal(pack, task);
+  return iterate<T>(chain, options, goal, watched, iterations, 0, pack);
+}
+
+template <typename T>
+void advance_roughly(const LaneChainOf<float>& chain, const LaneOptions& options, int iterations,
+                     RoughPack& pack) {
+  FullPose<T, RoughPack> goal(pack, nullptr);
+  for (int first = 0; first < kBlock; first += Lanes<T>::kCount) {
+    iterate<T>(chain, options, goal, 0, iterations, first, pack);
+  }
+}
+
+template <typename T>
+constexpr PackKernels make_pack_kernels() {
+  return {Lanes<T>::kCount, advance<T, FullPose<T>>, advance<T, TaskGoal<T>>};
+}
+
+/// Of packs of doubles, narrow and wide, and of single precision.
+template <typename Narrow, typename Wide, typename Single>
 constexpr LaneKernels make_kernels(const char* name) {
   return {name,
-          Lanes<T>::kCount,
-          advance<T, FullPose<T>>,
-          advance<T, TaskGoal<T>>,
-          prepare_seeds<S>,
-          add_known<S>,
-          find_largest<S>,
-          solve_branches<T>,
-          find_branches<T>,
-          find_residuals<T>,
-          count_roots<T>};
+          make_pack_kernels<Narrow>(),
+          make_pack_kernels<Wide>(),
+          advance_roughly<Single>,
+          prepare_seeds<Single>,
+          add_known<Single>,
+          find_largest<Single>,
+          solve_branches<Wide>,
+          find_branches<Wide>,
+          find_residuals<Wide>,
+          count_roots<Wide>};
 }
 
 }  // namespace iksel::lanes

@@ -14,25 +14,30 @@ inline constexpr int kBlock = 16;
 inline constexpr float kEntries[kBlock] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
 /// A joint of a chain whose degrees of freedom are its joints, one to one.
-struct LaneJoint {
-  double p[3];
-  double cos_alpha, sin_alpha;
-  double cos_turn, sin_turn;
-  double offset;
-  double lower, upper;
+template <typename Number>
+struct LaneJointOf {
+  Number p[3];
+  Number cos_alpha, sin_alpha;
+  Number cos_turn, sin_turn;
+  Number offset;
+  Number lower, upper;
   bool limited;  ///< false: a whole turn or more of range, wrapped at the end
   bool prismatic;
 };
+using LaneJoint = LaneJointOf<double>;
 
 /// The chain between the frames of its first and last joint.
-struct LaneChain {
+template <typename Number>
+struct LaneChainOf {
   int n;
-  LaneJoint joint[kMaxJoints];
+  LaneJointOf<Number> joint[kMaxJoints];
 };
+using LaneChain = LaneChainOf<double>;
 
 /// Numbers of the iteration, squared where they are compared with squares.
 struct LaneOptions {
-  double damping;
+  double damping;                       ///< part of the squared error that is added to J J^T
+  double least_damping;                 ///< and what comes on top, above rounding
   double position2, rotation2, lever2;  ///< |error| below these: there already
   double last_step2, last_error2;       ///< a step from below these is the last
 };
@@ -59,6 +64,13 @@ struct LanePack {
   alignas(64) double error2[kWidth];
 };
 
+/// The same in single precision, of one full pose for all lanes.
+struct RoughPack {
+  float target[kFullPoseRows];
+  alignas(64) float q[kMaxJoints][kBlock];
+  alignas(64) float error2[kBlock];
+};
+
 /// How an advance ended.
 struct PackResult {
   unsigned done;   ///< bit l: lane l arrived, as far as the step tells
@@ -70,6 +82,10 @@ struct PackResult {
 using Advance = PackResult (*)(const LaneChain& chain, const LaneOptions& options,
                                const LaneTask* task, unsigned watched, int iterations,
                                LanePack& pack);
+
+/// Iterates all lanes of a pack so often: seeds that are mostly going to fail need no precision.
+using AdvanceRoughly = void (*)(const LaneChainOf<float>& chain, const LaneOptions& options,
+                                int iterations, RoughPack& pack);
 
 /// How a side of the chain is left out of the samples (reduction.hpp).
 enum class Side : int { none, rotation, translation };
@@ -134,12 +150,20 @@ using FindResiduals = double (*)(const ResidualForm& form, const double* angles,
 /// The number of roots between values beside each other: 0, 1, or 2 if that is not certain.
 using CountRoots = void (*)(const double* values, int n, double* counts);
 
-/// The kernels of one instruction set.
-struct LaneKernels {
-  const char* name;
+/// Iterations of packs of one width.
+struct PackKernels {
   int lanes;
   Advance advance;
   Advance advance_task;
+};
+
+/// The kernels of one instruction set.
+struct LaneKernels {
+  const char* name;
+  /// Lanes iterate in lockstep. `narrow` takes the least time for an iteration, which is what the
+  /// first answer for one pose waits for; `wide` the least for each lane.
+  PackKernels narrow, wide;
+  AdvanceRoughly advance_roughly;
   PrepareSeeds prepare;
   AddKnown add_known;
   FindLargest find_largest;

@@ -198,7 +198,7 @@ class PathSearch {
     Work work(0);
     RowSeeds seeds(q.data(), q.size() / dof, dof, /*are_answers=*/false, work);
     RowAnswers answers(model_.joints, goal, seeds);
-    lanes.refiner.begin(goal.task(), kNext);
+    lanes.refiner.begin(goal.task(), kNext, Width::wide);
     lanes.refiner.set_pose(Y);
     search(lanes.refiner, seeds, answers, work);
     for (std::size_t row = 0; row < seeds.count(); ++row) {

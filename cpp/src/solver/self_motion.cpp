@@ -136,7 +136,7 @@ SelfMotion Solver::Impl::self_motion(const Pose& target, double spacing,
   RowSeeds seeds(points.empty() ? nullptr : points[0].data(), points.size(), SweptBranches::kDof,
                  /*are_answers=*/true, work);
   RowAnswers answers(model().joints, goal, seeds);
-  lanes.refiner.begin(task, kThere);
+  lanes.refiner.begin(task, kThere, Width::wide);
   lanes.refiner.set_pose(Y);
   search(lanes.refiner, seeds, answers, work);
   const std::optional<Elbow> elbow = Elbow::of(model());

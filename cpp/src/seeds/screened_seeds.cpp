@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "seeds/screened_seeds.hpp"
+
+#include <algorithm>
+
+#include "simd/lane_chain.hpp"
+
+namespace iksel {
+
+SeedScreen::SeedScreen(const ChainModel& model, const SolverOptions& options,
+                       const lanes::LaneKernels& kernels)
+    : chain_(make_rough_chain(model)),
+      advance_(kernels.advance_roughly),
+      iterations_(model.reach > kLongest ? 0 : std::min(kIterations, options.max_iterations)) {
+  options_.damping = std::get<Lanes>(options.strategy).damping;
+  options_.least_damping = 1e-6;
+}
+
+void SeedScreen::begin(const Pose& Y) {
+  for (int row = 0; row < lanes::kFullPoseRows; ++row) {
+    pack_.target[row] = static_cast<float>(Y(row % 3, (row / 3 + 3) % 4));
+  }
+  filled_ = 0;
+}
+
+int SeedScreen::run() {
+  const int filled = filled_;
+  filled_ = 0;
+  near_ = 0;
+  if (iterations_ > 0) advance_(chain_, options_, iterations_, pack_);
+  for (int place = 0; place < filled; ++place) {
+    if (iterations_ == 0 || pack_.error2[place] < kNear2) {
+      near_ |= 1U << static_cast<unsigned>(place);
+    }
+  }
+  return iterations_;
+}
+
+void SeedScreen::copy(int place, double* q) const {
+  for (int j = 0; j < chain_.n; ++j) q[j] = static_cast<double>(pack_.q[j][place]);
+}
+
+ScreenedSeeds::ScreenedSeeds(LaneQuery& query, SeedScreen& screen, const Pose& Y,
+                             const JointSpace& joints, std::uint64_t seed, Work& work,
+                             StageClock& clock)
+    : query_(query),
+      screen_(screen),
+      joints_(joints),
+      random_(seed),
+      work_(work),
+      clock_(clock),
+      blocks_(query.measure_blocks()) {
+  screen_.begin(Y);
+}
+
+bool ScreenedSeeds::next_stage() {
+  clock_.lap(&StageTimes::iterate);
+  if (!work_.has_left()) return false;
+  next_ = 0;
+  count_ = 0;
+  for (int pack = 0; pack < kPacks && work_.has_left(); ++pack) screen_one_pack();
+  clock_.lap(&StageTimes::rank);
+  return true;
+}
+
+bool ScreenedSeeds::take_block() {
+  if (next_block_ == blocks_) return false;
+  // Worse seeds of blocks farther away seldom lead anywhere else than the better ones.
+  last_rank_ = next_block_ < query_.near_blocks() ? lanes::kBlock : lanes::kBlock / 2;
+  rank_ = 0;
+  const std::size_t at = next_block_ % kBlocksAtOnce;
+  if (at == 0) {
+    const auto count = std::min<std::size_t>(kBlocksAtOnce, blocks_ - next_block_);
+    query_.prepare_blocks(next_block_, count, query_.packs);
+  }
+  block_ = &query_.packs[at];
+  ++next_block_;
+  return true;
+}
+
+void ScreenedSeeds::screen_one_pack() {
+  while (!screen_.is_full() && work_.take()) {
+    if (rank_ < last_rank_ || take_block()) {
+      const int entry = block_->order[rank_++];
+      screen_.add([&](int j) { return block_->q[j][entry]; });
+    } else {
+      double q[kMaxDof];
+      joints_.sample(random_, q);
+      screen_.add([&](int j) { return q[j]; });
+    }
+  }
+  work_.iterations += screen_.run();
+  for (int place = 0; place < lanes::kBlock; ++place) {
+    if ((screen_.near() >> static_cast<unsigned>(place) & 1U) != 0) {
+      screen_.copy(place, near_[count_++]);
+    }
+  }
+}
+
+}  // namespace iksel

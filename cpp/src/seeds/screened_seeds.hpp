@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The whole database as seeds, the samples near the target first, and then seeds at random. Most of
+// them fail, and of a target without an answer all: so each is first iterated in single precision,
+// and only those that have come near are handed on.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "base/random.hpp"
+#include "base/work.hpp"
+#include "iksel/options.hpp"
+#include "kinematics/chain_model.hpp"
+#include "seeds/lane_query.hpp"
+#include "simd/kernels.hpp"
+
+namespace iksel {
+
+/// Rough iterations of seeds, many abreast.
+class SeedScreen {
+ public:
+  SeedScreen(const ChainModel& model, const SolverOptions& options,
+             const lanes::LaneKernels& kernels);
+
+  /// Before seeds for Y (reduction.hpp).
+  void begin(const Pose& Y);
+  [[nodiscard]] bool is_full() const { return filled_ == lanes::kBlock; }
+  /// Takes a seed: value(joint), inside the limits.
+  template <typename Value>
+  void add(const Value& value) {
+    for (int j = 0; j < chain_.n; ++j) pack_.q[j][filled_] = static_cast<float>(value(j));
+    ++filled_;
+  }
+  /// Iterates what was added, and empties the places for more. Returns the iterations.
+  int run();
+  /// Seeds of the last run() that came near, as bits.
+  [[nodiscard]] unsigned near() const { return near_; }
+  /// Joint values of one of them; good until others are added.
+  void copy(int place, double* q) const;
+
+ private:
+  /// What few seeds that fail come down to, and most that do not: squared error [mixed units].
+  static constexpr float kNear2 = 1e-3F;
+  static constexpr int kIterations = 7;
+  /// Longer chains are too long for single precision [m].
+  static constexpr double kLongest = 100;
+
+  lanes::LaneChainOf<float> chain_;
+  lanes::LaneOptions options_{};
+  lanes::AdvanceRoughly advance_;
+  int iterations_;
+  lanes::RoughPack pack_{};
+  int filled_ = 0;
+  unsigned near_ = 0;
+};
+
+class ScreenedSeeds {
+ public:
+  /// Seeds of both kinds count as attempts when they are screened.
+  ScreenedSeeds(LaneQuery& query, SeedScreen& screen, const Pose& Y, const JointSpace& joints,
+                std::uint64_t seed, Work& work, StageClock& clock);
+
+  /// Screens some.
+  bool next_stage();
+
+  template <typename Refiner>
+  bool load(Refiner& refiner, int lane) {
+    if (next_ == count_) return false;
+    refiner.load_seed(lane, near_[next_++]);
+    return true;
+  }
+
+ private:
+  /// Packs of a stage: what is near of these fills the lanes.
+  static constexpr int kPacks = 4;
+
+  void screen_one_pack();
+  /// Goes on to the next block; false if there are no more.
+  bool take_block();
+
+  LaneQuery& query_;
+  SeedScreen& screen_;
+  const JointSpace& joints_;
+  Random random_;
+  Work& work_;
+  StageClock& clock_;
+  std::size_t blocks_;
+  std::size_t next_block_ = 0;
+  const lanes::SeedPack* block_ = nullptr;
+  int rank_ = 0;       ///< of the next seed in the block
+  int last_rank_ = 0;  ///< and how many of it are tried
+  double near_[kPacks * lanes::kBlock][lanes::kMaxJoints];
+  int count_ = 0;
+  int next_ = 0;
+};
+
+}  // namespace iksel

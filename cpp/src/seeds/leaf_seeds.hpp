@@ -9,8 +9,9 @@ namespace iksel {
 
 class LeafSeeds {
  public:
-  LeafSeeds(LaneQuery& query, Work& work, StageClock& clock)
-      : query_(query), work_(work), clock_(clock) {}
+  /// `most`: of the best of them.
+  LeafSeeds(LaneQuery& query, int most, Work& work, StageClock& clock)
+      : query_(query), most_(most), work_(work), clock_(clock) {}
 
   bool next_stage() {
     clock_.lap(&StageTimes::iterate);
@@ -23,13 +24,14 @@ class LeafSeeds {
 
   template <typename Refiner>
   bool load(Refiner& refiner, int lane) {
-    if (rank_ == lanes::kBlock || !work_.take()) return false;
+    if (rank_ == most_ || !work_.take()) return false;
     load_ranked(query_.packs[0], rank_++, refiner, lane);
     return true;
   }
 
  private:
   LaneQuery& query_;
+  int most_;
   Work& work_;
   StageClock& clock_;
   bool done_ = false;

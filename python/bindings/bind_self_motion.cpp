@@ -137,7 +137,10 @@ void bind_arc(py::module_& m) {
   add_property(cls, "begin", &A::begin, "What ends it before its first configuration.");
   add_property(cls, "end", &A::end, "What ends it behind its last configuration.");
   cls.def("__len__", [](const A& self) { return self.q.size(); });
-  cls.def("__iter__", [](const A& self) { return py::iter(arc_q(self)); });
+  cls.def("__iter__", [](const A& self) {
+    using Rows = py::typing::Iterator<py::array_t<double>>;
+    return py::reinterpret_steal<Rows>(py::iter(arc_q(self)).release());
+  });
   cls.def("__repr__", &arc_repr);
   cls.def(py::pickle(&arc_state, &arc_from_state));
 }

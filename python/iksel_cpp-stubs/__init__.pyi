@@ -1994,7 +1994,7 @@ class SelfMotionArc:
     """
     A connected piece of a self-motion inside the limits.
     """
-    def __iter__(self) -> collections.abc.Iterator:
+    def __iter__(self) -> collections.abc.Iterator[numpy.typing.NDArray[numpy.float64]]:
         ...
     def __len__(self) -> int:
         ...

@@ -231,7 +231,8 @@ TEST(SelfMotion, ErrorsNameTheCulprit) {
       EXPECT_NE(std::string(error.what()).find(what), std::string::npos) << error.what();
     }
   };
-  expect_error(iksel_test::solver("ur3"), 0.1, "robot 'ur3' has no self-motion that could be swept");
+  expect_error(iksel_test::solver("ur3"), 0.1,
+               "robot 'ur3' has no self-motion that could be swept");
   expect_error(iksel_test::solver("ur3"), 0.1, "closed_form: axes 2, 3 and 4 are parallel");
   expect_error(iksel_test::solver("irb14050"), 0.1, "searched: ");
   expect_error(iksel_test::paper_solver("panda"), 0.1, "strategy Paper");

@@ -8,7 +8,7 @@ namespace {
 /// Chains of products and sums are what forward kinematics waits for, and a fused one takes half
 /// the time. All is inlined here, for what is called from here would be compiled without.
 __attribute__((target("avx2,fma"), flatten)) Frame forward_fused(const KernelChain& chain,
-                                                                         const double* q) {
+                                                                 const double* q) {
   return forward(chain, q);
 }
 

@@ -59,8 +59,8 @@ class Enumeration {
 template <typename Branches>
 class EnumeratedSeeds {
  public:
-  EnumeratedSeeds(Branches& branches, const Goal& goal, const Pose& Y, bool wants_all,
-                  Work& work, StageClock& clock)
+  EnumeratedSeeds(Branches& branches, const Goal& goal, const Pose& Y, bool wants_all, Work& work,
+                  StageClock& clock)
       : branches_(branches),
         goal_(goal),
         Y_(Y),

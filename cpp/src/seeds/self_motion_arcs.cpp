@@ -63,7 +63,7 @@ void SelfMotionArcs::mark_between(int branch, int place) {
   const double left = sign * least(place - 1);
   const double right = sign * least(place + 1);
   if (left < 0 || right < 0 || here > left || here > right) return;
-  if (trough(left, here, right) > 0) return;
+  if (lowest_between(left, here, right) > 0) return;
   constexpr int kRounds = 6;
   double found_at = 0;
   const auto value = [&](double at) { return branches_.clamp(at); };

@@ -42,7 +42,7 @@ class SelfMotionArcs {
 
   /// What a function may come down to between three values of it: it may bend as sharply as where
   /// one limit takes over from another.
-  static double trough(double left, double here, double right) {
+  static double lowest_between(double left, double here, double right) {
     return here - std::max(left - here, right - here);
   }
 

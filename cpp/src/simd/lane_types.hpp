@@ -146,7 +146,7 @@ struct ResidualForm;
 /// The residuals of `n` angles, a multiple of kWidth (residual_kernel.hpp). Returns the least of
 /// what they are divided by.
 using FindResiduals = double (*)(const ResidualForm& form, const double* angles, int n,
-                               double* residuals);
+                                 double* residuals);
 /// The number of roots between values beside each other: 0, 1, or 2 if that is not certain.
 using CountRoots = void (*)(const double* values, int n, double* counts);
 

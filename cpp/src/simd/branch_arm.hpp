@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Joints 1 to 3 of six in closed form (branch_kernel.hpp), by how their axes lie.
+#pragma once
+
+#include "simd/branch_math.hpp"
+#include "simd/branch_types.hpp"
+
+namespace iksel::lanes {
+
+/// A pose as BranchPack has it.
+template <typename T>
+struct BranchTarget {
+  Vec<T> X, Y, Z, w;
+};
+
+/// The target of the joints behind the held one, at an angle of that.
+template <typename T>
+IKSEL_INLINE void hold(const ClosedForm& form, const T& angle, BranchTarget<T>& target) {
+  Angle<T> t;
+  sincos(angle, t.s, t.c);
+  const Vec<T> axis = constant<T>(form.held_axis);
+  const Vec<T> from = constant<T>(form.held_from);
+  target.X = turned_back(axis, t, target.X);
+  target.Y = turned_back(axis, t, target.Y);
+  target.Z = turned_back(axis, t, target.Z);
+  target.w = add(turned_back(axis, t, add(target.w, T(1.0), from)), T(-1.0), from);
+}
+
+/// Q is Certainty or Existence.
+template <typename T, typename Q>
+struct Branch {
+  Angle<T> q[6];
+  Q quality;
+};
+
+/// The angle of joint 3 that brings the wrist to a distance from the point on axis 2.
+template <typename T, typename Q>
+IKSEL_INLINE Angle<T> bend_elbow(const ClosedForm& form, const T& distance2, const T& sign,
+                                 Q& quality) {
+  return solve_angle(form.elbow, T(0.5) * (distance2 - T(form.arm2)), sign, quality);
+}
+
+/// From the point on axis 2 to the wrist, with joint 2 at zero.
+template <typename T>
+IKSEL_INLINE Vec<T> arm_at(const ClosedForm& form, const Angle<T>& q3) {
+  const Vec<T> forearm = turned(constant<T>(form.h[2]), q3, constant<T>(form.p[2]));
+  return add(constant<T>(form.p[1]), T(1.0), forearm);
+}
+
+/// The angle of joint 1 with x . R_1^T w = rest.
+template <typename T, typename Q>
+IKSEL_INLINE Angle<T> turn_base(const ClosedForm& form, const Vec<T>& x, const Vec<T>& w,
+                                const T& rest, const T& sign, Q& quality) {
+  const Vec<T> h1 = constant<T>(form.h[0]);
+  const T axial = dot(h1, x) * dot(h1, w);
+  return solve_angle(dot(x, w) - axial, T(0.0) - dot(x, cross(h1, w)), rest - axial, sign, quality);
+}
+
+/// R_1^T w - p12
+template <typename T>
+IKSEL_INLINE Vec<T> behind_base(const ClosedForm& form, const Angle<T>& q1, const Vec<T>& w) {
+  return add(turned_back(constant<T>(form.h[0]), q1, w), T(-1.0), constant<T>(form.p[0]));
+}
+
+// Joints 1 to 3, which bring the wrist to w, by how their axes lie.
+
+template <typename T, typename Q>
+IKSEL_INLINE void place_parallel_23(const ClosedForm& form, const Vec<T>& w, const T (&sign)[3],
+                                    Branch<T, Q>& out) {
+  // h2 . R_1^T w does not depend on joints 2 and 3.
+  const Vec<T> h2 = constant<T>(form.h[1]);
+  out.q[0] = turn_base(form, h2, w, T(form.rest), sign[0], out.quality);
+  const Vec<T> v = behind_base(form, out.q[0], w);
+  out.q[2] = bend_elbow(form, dot(v, v), sign[1], out.quality);
+  out.q[1] = angle_between(h2, arm_at(form, out.q[2]), v, out.quality);
+}
+
+template <typename T, typename Q>
+IKSEL_INLINE void place_intersect_12(const ClosedForm& form, const Vec<T>& w, const T (&sign)[3],
+                                     Branch<T, Q>& out) {
+  const Vec<T> h1 = constant<T>(form.h[0]);
+  const Vec<T> h2 = constant<T>(form.h[1]);
+  const T distance2 = dot(w, w);
+  out.q[2] = bend_elbow(form, distance2, sign[1], out.quality);
+  const Vec<T> arm = arm_at(form, out.q[2]);
+  const Vec<T> v =
+      solve_common(h1, h2, form.cross12, dot(h1, w), dot(h2, arm), distance2, sign[0], out.quality);
+  out.q[1] = angle_between(h2, arm, v, out.quality);
+  out.q[0] = angle_between(h1, v, w, out.quality);
+}
+
+template <typename T, typename Q>
+IKSEL_INLINE void place_intersect_23(const ClosedForm& form, const Vec<T>& w, const T (&sign)[3],
+                                     Branch<T, Q>& out) {
+  // |R_1^T w - p12| does not depend on joints 2 and 3.
+  const Vec<T> h2 = constant<T>(form.h[1]);
+  const Vec<T> h3 = constant<T>(form.h[2]);
+  const Vec<T> p34 = constant<T>(form.p[2]);
+  out.q[0] = turn_base(form, constant<T>(form.p[0]), w, T(0.5) * (dot(w, w) - T(form.rest)),
+                       sign[0], out.quality);
+  const Vec<T> v = behind_base(form, out.q[0], w);
+  const Vec<T> u =
+      solve_common(h2, h3, form.cross23, dot(h2, v), dot(h3, p34), dot(v, v), sign[1], out.quality);
+  out.q[2] = angle_between(h3, p34, u, out.quality);
+  out.q[1] = angle_between(h2, u, v, out.quality);
+}
+
+template <typename T, typename Q>
+IKSEL_INLINE void place_parallel_12(const ClosedForm& form, const Vec<T>& w, const T (&sign)[3],
+                                    Branch<T, Q>& out) {
+  const Vec<T> h1 = constant<T>(form.h[0]);
+  const Vec<T> h2 = constant<T>(form.h[1]);
+  const Vec<T> p12 = constant<T>(form.p[0]);
+  out.q[2] = solve_angle(form.shoulder, dot(h1, w) - T(form.rest), sign[0], out.quality);
+  const Vec<T> arm = arm_at(form, out.q[2]);
+  const T axial = dot(h2, arm) * dot(h2, p12);
+  const T rest = T(0.5) * (dot(w, w) - dot(p12, p12) - dot(arm, arm));
+  out.q[1] = solve_angle(dot(p12, arm) - axial, dot(p12, cross(h2, arm)), rest - axial, sign[1],
+                         out.quality);
+  const Vec<T> from = add(p12, T(1.0), turned(h2, out.q[1], arm));
+  out.q[0] = angle_between(h1, from, w, out.quality);
+}
+
+template <typename T, typename Q>
+IKSEL_INLINE void place_wrist(const ClosedForm& form, const Vec<T>& w, const T (&sign)[3],
+                              Branch<T, Q>& out) {
+  switch (form.closure) {
+    case Closure::parallel_23:
+      return place_parallel_23(form, w, sign, out);
+    case Closure::intersect_12:
+      return place_intersect_12(form, w, sign, out);
+    case Closure::intersect_23:
+      return place_intersect_23(form, w, sign, out);
+    case Closure::parallel_12:
+      return place_parallel_12(form, w, sign, out);
+    case Closure::three_parallel:
+    case Closure::sweep_4:
+    case Closure::sweep_6:
+      return;
+  }
+}
+
+/// (R_1 R_2 R_3)^T v
+template <typename T, typename Q>
+IKSEL_INLINE Vec<T> before_wrist(const ClosedForm& form, const Branch<T, Q>& branch,
+                                 const Vec<T>& v) {
+  const Vec<T> v1 = turned_back(constant<T>(form.h[0]), branch.q[0], v);
+  const Vec<T> v2 = turned_back(constant<T>(form.h[1]), branch.q[1], v1);
+  return turned_back(constant<T>(form.h[2]), branch.q[2], v2);
+}
+
+}  // namespace iksel::lanes

@@ -13,8 +13,8 @@ __attribute__((target("avx2,fma"), flatten)) Frame forward_fused(const KernelCha
 }
 
 bool can_fuse() {
-  static const bool can = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-  return can;
+  static const bool kCan = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  return kCan;
 }
 #endif
 

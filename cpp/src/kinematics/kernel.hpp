@@ -13,7 +13,6 @@
 #include <cmath>
 #include <vector>
 
-#include "base/double_pair.hpp"
 #include "base/sincos.hpp"
 
 namespace iksel {
@@ -52,25 +51,6 @@ inline void safe_sincos(double angle, double& sine, double& cosine) {
 /// Most joints that move on a chain (mimic joints come on top of the degrees of freedom).
 inline constexpr int kMaxMovingJoints = 64;
 
-/// Sines and cosines of `count` angles, two at a time; those of prismatic joints may be anything.
-inline void sincos_all(int count, double* angle, double* sine, double* cosine) {
-  int k = 0;
-  for (; k + 1 < count; k += 2) {
-    if (!(std::abs(angle[k]) <= kSincosRange && std::abs(angle[k + 1]) <= kSincosRange)) {
-      for (int i = k; i < k + 2; ++i) safe_sincos(angle[i], sine[i], cosine[i]);
-      continue;
-    }
-    DoublePair s;
-    DoublePair c;
-    sincos(DoublePair(angle[k], angle[k + 1]), s, c);
-    for (int i = 0; i < 2; ++i) {
-      sine[k + i] = s.v[i];
-      cosine[k + i] = c.v[i];
-    }
-  }
-  if (k < count) safe_sincos(angle[k], sine[k], cosine[k]);
-}
-
 /// z axes and origins of the joint frames, as the Jacobian needs them.
 struct JointAxes {
   double axis[kMaxMovingJoints][3];
@@ -106,9 +86,10 @@ inline Frame forward_to_last_joint(const KernelChain& chain, const double* q, Jo
   double motion[kMaxMovingJoints];
   int k = 0;
   for (const KernelJoint& joint : chain.joints) {
-    motion[k++] = q[joint.variable] * joint.multiplier + joint.offset;
+    motion[k] = q[joint.variable] * joint.multiplier + joint.offset;
+    safe_sincos(motion[k], sine[k], cosine[k]);
+    ++k;
   }
-  sincos_all(k, motion, sine, cosine);
   k = 0;
   for (const KernelJoint& joint : chain.joints) {
     for (int i = 0; i < 3; ++i) {

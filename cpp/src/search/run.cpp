@@ -29,7 +29,7 @@ constexpr Patience kAll{6, kMostIterations, 2};
 /// Where seeds were iterated before in single precision.
 constexpr Patience kScreened{4, kMostIterations};
 /// Where seeds are answers, or as near to one as a singularity or a limit lets it be told.
-constexpr Patience kThere{8, 64};
+constexpr Patience kNearAnswer{8, 64};
 /// Of the nearest leaf, before one of the joints is swept: more cost more than that.
 constexpr int kBeforeSweep = 4;
 /// Seeds after all roots of a sweep led nowhere: double ones, or just outside a limit.
@@ -161,7 +161,7 @@ std::optional<Proof> Search<Answers>::by_branches(Branches& branches, Proof kind
   LaneRefiner& refiner = workspace.lanes->refiner;
   EnumeratedSeeds enumerated(branches, goal, Y, answers.wants_more(), work, clock);
   SeedSequence seeds(2, given, enumerated);
-  refiner.begin(goal.task(), kThere, Width::narrow);
+  refiner.begin(goal.task(), kNearAnswer, Width::narrow);
   answers.look_for_partners(false);
   const bool is_satisfied = search(refiner, seeds, answers, work);
   answers.look_for_partners(true);
@@ -188,7 +188,7 @@ std::optional<Proof> Search<Answers>::over_curve(const Pose& Y) const {
   clock.lap(&StageTimes::query);
   RowSeeds seeds(points.empty() ? nullptr : points[0].data(), points.size(), SweptBranches::kDof,
                  /*are_answers=*/false, work);
-  refiner.begin(goal.task(), kThere, Width::wide);
+  refiner.begin(goal.task(), kNearAnswer, Width::wide);
   search(refiner, seeds, answers, work);
   refiner.begin(goal.task(), kFirst, Width::narrow);
   clock.lap(&StageTimes::iterate);
@@ -206,7 +206,7 @@ std::optional<Proof> Search<Answers>::on_curve(const Pose& Y) const {
   LaneRefiner& refiner = workspace.lanes->refiner;
   const JointMove move(model.dof, request);
   NearestOnCurveSeeds nearest(curve, Y, *request.near, move, answers, work, clock);
-  refiner.begin(goal.task(), kThere, Width::narrow);
+  refiner.begin(goal.task(), kNearAnswer, Width::narrow);
   search(refiner, nearest, answers, work);
   refiner.begin(goal.task(), kFirst, Width::narrow);
   clock.lap(&StageTimes::iterate);

@@ -8,7 +8,7 @@ namespace iksel {
 namespace {
 
 /// Rounds of eight values in which a least is looked for, and a fold.
-constexpr int kRounds = 9;
+constexpr int kNarrowings = 9;
 constexpr int kFoldRounds = 3;
 
 /// The move to where the curve ends may be so much shorter than at the sample before.
@@ -43,9 +43,9 @@ NearestOnCurve::Move NearestOnCurve::move_to(int lane) const {
       loose = d - kTwoPi * turns;
       if (joints_.is_periodic(j)) {
         // An image at a limit may lie beyond it once it is refined.
-        constexpr double kMargin = 1e-5;
-        const double least = std::ceil((joints_.lower[j] + kMargin - q[i]) / kTwoPi);
-        const double most = std::floor((joints_.upper[j] - kMargin - q[i]) / kTwoPi);
+        constexpr double kInside = 1e-5;
+        const double least = std::ceil((joints_.lower[j] + kInside - q[i]) / kTwoPi);
+        const double most = std::floor((joints_.upper[j] - kInside - q[i]) / kTwoPi);
         inside = d + kTwoPi * std::min(std::max(-turns, least), most);
       }
     }
@@ -159,7 +159,7 @@ void NearestOnCurve::follow(const LeastPlace& least) {
     if (branches_.least(lane) >= 0) exists_at = place;
   };
   const Bracket bracket{least.branch, places_.value(least.place), places_.step,
-                        kRounds,      kFinest * places_.step,     !takes_largest_};
+                        kNarrowings,  kFinest * places_.step,     !takes_largest_};
   best.cost = minimize(
       branches_, bracket, value, [&](int lane) { return cost(lane); }, kRefused, take,
       [&](double so_far, int round) { return is_hopeless(so_far, round); });
@@ -268,7 +268,7 @@ void NearestOnCurve::look_into(const BranchSpan& span, int packs) {
     Found best{kInfinity, {}};
     const auto take = [&](int lane, double) { branches_.copy_joints(lane, best.q.data()); };
     const Bracket bracket{span.branch, part(node),      1.0 / nodes,
-                          kRounds,     kFinest / nodes, !takes_largest_};
+                          kNarrowings, kFinest / nodes, !takes_largest_};
     best.cost = minimize(
         branches_, bracket, value, [&](int lane) { return cost(lane); }, kRefused, take,
         [&](double so_far, int round) { return is_hopeless(so_far, round); });

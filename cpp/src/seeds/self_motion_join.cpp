@@ -56,6 +56,7 @@ void SelfMotionArcs::find_partners() {
   // A span that begins and ends beside another of its branch, between two samples, is found by the
   // branch that it merges with.
   constexpr double kBeside = 1e-3;
+  // NOLINTNEXTLINE(modernize-loop-convert): the pieces become more.
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
     for (int side = 0; side < 2; ++side) {
       if (pieces_[i].ends[side].kind != ArcEnd::fold || pieces_[i].next[side] >= 0) continue;

@@ -36,7 +36,7 @@ std::optional<Elbow> Elbow::of(const ChainModel& model) {
 }
 
 double Elbow::angle(const double* q) const {
-  constexpr double kNone = 1e-9;
+  constexpr double kTooShort = 1e-9;
   const auto turn = [&](std::size_t j) {
     return Eigen::AngleAxisd(q[j] + offset_[j], axes_.h[j]).toRotationMatrix();
   };
@@ -46,7 +46,7 @@ double Elbow::angle(const double* q) const {
   const Vector3d line = to_wrist.normalized();
   const Vector3d from = axes_.h[0] - line * line.dot(axes_.h[0]);
   const Vector3d side = to_elbow - line * line.dot(to_elbow);
-  if (!(from.norm() > kNone && side.norm() > kNone * to_elbow.norm())) {
+  if (!(from.norm() > kTooShort && side.norm() > kTooShort * to_elbow.norm())) {
     return std::numeric_limits<double>::quiet_NaN();
   }
   return std::atan2(line.dot(from.cross(side)), from.dot(side));

@@ -52,13 +52,12 @@ lanes::ResidualForm make_residual(const ClosedFormChain& chain, const lanes::Bra
   for (int k = 0; k < 3; ++k) columns.col(k) = Vector3d(pack.target + 3 * k);
   const Vector3d w(pack.target + 9);
   Swept P, d, a, k;
-  double along;
+  double along = form.along56;
   if (form.closure == lanes::Closure::sweep_4) {
     P = constant(w);
     d = constant(columns.col(2));
     a = constant(p(3)) + turned(h(4), p(4));
     k = turned(h(4), h(5));
-    along = form.along56;
   } else {
     Matrix3d E;
     for (int i = 0; i < 3; ++i) E.col(i) = Vector3d(form.basis[i]);

@@ -37,7 +37,12 @@ def make_samples() -> list[Any]:
     """An object or more of every bound class."""
     options = iksel.SolverOptions(database={"samples": 6})
     solver = iksel.Solver(ARM, options)
+    panda = iksel.load_robot("panda")
+    motion = iksel.Solver(panda, options).self_motion(panda.fk(panda.random_configurations(1, 1)[0]))
     return [
+        motion,
+        motion[0],
+        motion[0].begin,
         ARM,
         ARM.structure,
         options,

@@ -38,7 +38,9 @@ def make_samples() -> list[Any]:
     options = iksel.SolverOptions(database={"samples": 6})
     solver = iksel.Solver(ARM, options)
     panda = iksel.load_robot("panda")
-    motion = iksel.Solver(panda, options).self_motion(panda.fk(panda.random_configurations(1, 1)[0]))
+    motion = iksel.Solver(panda, options).self_motion(
+        panda.fk(panda.random_configurations(1, 1)[0])
+    )
     return [
         motion,
         motion[0],

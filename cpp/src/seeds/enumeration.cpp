@@ -59,11 +59,14 @@ bool Enumeration::is_regular(const Goal& goal, const std::array<double, 6>& q,
   goal.measure(at, position, rotation, &J);
   if (!goal.is_reached(position, rotation)) return false;
   const TaskSpace& task = goal.task();
-  Vector6 tolerance;
-  tolerance << Eigen::Vector3d::Constant(task.position_tolerance()),
-      Eigen::Vector3d::Constant(task.rotation_tolerance());
-  const Matrix6 inverse = Matrix6(J).partialPivLu().inverse();
-  const double moved = kMargin * (inverse * tolerance.asDiagonal()).norm();
+  double columns[6][6];
+  for (int k = 0; k < 6; ++k) {
+    for (int row = 0; row < 6; ++row) {
+      columns[k][row] =
+          J(row, k) / (row < 3 ? task.position_tolerance() : task.rotation_tolerance());
+    }
+  }
+  const double moved = kMargin * inverse_norm(columns);
   if (!(moved < kFarthest)) return false;
   bound = moved;
   return true;

@@ -112,6 +112,13 @@ void apply_filter(const Filter& filter, int dof, std::vector<Image>& images) {
   images.resize(kept);
 }
 
+/// How many solutions to look for on a self-motion: a few more than asked for, as branches come
+/// near to each other; and what a filter refuses is replaced by others.
+int spread_for(int most, bool is_filtered) {
+  const int spread = std::min(most, kMostSpread);
+  return is_filtered ? static_cast<int>(kChoice) * spread : spread + spread / 4 + 8;
+}
+
 /// Of the images of each solution, in order, the first.
 void take_first_of_each(std::size_t solutions, std::vector<Image>& images) {
   std::vector<bool> seen(solutions);
@@ -135,12 +142,9 @@ Solutions Solver::Impl::solve_all(const Pose& target, const SolveAllOptions& all
   const auto is_satisfied = [&](const Collector&) {
     return goal.is_redundant() && found.size() >= std::max<std::size_t>(kChoice * most, 64);
   };
-  // A few more than asked for, as branches come near to each other; what a filter refuses is
-  // replaced by others.
-  const int most_spread = std::min(all.max, kMostSpread);
   const int spread =
-      request.filter ? static_cast<int>(kChoice) * most_spread : most_spread + most_spread / 4 + 8;
-  const Collector::Aim aim{all.min_distance, true, goal.is_redundant() ? spread : 0};
+      goal.is_redundant() ? spread_for(all.max, static_cast<bool>(request.filter)) : 0;
+  const Collector::Aim aim{all.min_distance, true, spread};
   Collector search(model(), goal, request, aim, is_satisfied, options.max_attempts,
                    workspace.collected);
   collect(model(), options, search, workspace);

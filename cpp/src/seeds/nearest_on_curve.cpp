@@ -217,17 +217,8 @@ void NearestOnCurve::look_beside_folds(int branch) {
 }
 
 bool NearestOnCurve::jumps(int place, int branch) const {
-  const Sample& before = sample(place - 1, branch);
-  const Sample& here = sample(place, branch);
-  if (!may_lead_to_shorter(place, place - 1, branch)) return false;
-  for (int j = 0; j < SweptBranches::kDof; ++j) {
-    const auto i = static_cast<std::size_t>(j);
-    const bool is_swept = j == branches_.joint();
-    if (std::abs(here.q[i] - before.q[i]) > kPi && !is_swept && !joints_.is_periodic(j)) {
-      return true;
-    }
-  }
-  return false;
+  return may_lead_to_shorter(place, place - 1, branch) &&
+         branches_.jumps(sample(place - 1, branch).q.data(), sample(place, branch).q.data());
 }
 
 bool NearestOnCurve::may_lead_to_shorter(int place, int beside, int branch) const {
@@ -249,11 +240,7 @@ void NearestOnCurve::look_into(const BranchSpan& span, int packs) {
   const auto part = [&](int node) { return (node + 0.5) / nodes; };
   const auto value = [&](double p) { return span.value(std::min(std::max(p, 0.0), 1.0)); };
   for (int first = 0; first < nodes; first += SweptBranches::kCount) {
-    SweptBranches::Row values;
-    for (int lane = 0; lane < SweptBranches::kCount; ++lane) {
-      values[static_cast<std::size_t>(lane)] = value(part(first + lane));
-    }
-    branches_.solve_one(span.branch, values);
+    branches_.solve_one(span.branch, [&](int lane) { return value(part(first + lane)); });
     for (int lane = 0; lane < SweptBranches::kCount; ++lane) {
       costs[static_cast<std::size_t>(first + lane)] = cost(lane);
     }

@@ -75,23 +75,6 @@ void SelfMotionArcs::mark_between(int branch, int place) {
   if (is_enough(found, kRounds)) marks_.push_back({found_at, !exists});
 }
 
-double SelfMotionArcs::last_existing(int branch, double inside, double outside) {
-  constexpr int kRounds = 8;
-  for (int round = 0; round < kRounds; ++round) {
-    const double step = (outside - inside) / (kLanes + 1);
-    SweptBranches::Row values;
-    for (int lane = 0; lane < kLanes; ++lane) {
-      values[static_cast<std::size_t>(lane)] = inside + step * (lane + 1);
-    }
-    branches_.solve_one(branch, values);
-    int end = 0;
-    while (end < kLanes && branches_.least(end) >= 0) ++end;
-    if (end < kLanes) outside = values[static_cast<std::size_t>(end)];
-    if (end > 0) inside = values[static_cast<std::size_t>(end - 1)];
-  }
-  return inside;
-}
-
 void SelfMotionArcs::find_spans(int branch) {
   const auto count = static_cast<int>(marks_.size());
   const auto exists = [&](int i) { return marks_[static_cast<std::size_t>(i % count)].exists; };
@@ -114,9 +97,11 @@ void SelfMotionArcs::find_spans(int branch) {
                     places_.turns || last + 1 < end};
     if (span.folds_below) {
       const double outside = value(i > 0 ? i - 1 : i - 1 + count) - (i > 0 ? 0.0 : kTwoPi);
-      span.lower = last_existing(branch, span.lower, outside);
+      span.lower = branches_.last_existing(branch, span.lower, outside, kEndRounds);
     }
-    if (span.folds_above) span.upper = last_existing(branch, span.upper, value(last + 1));
+    if (span.folds_above) {
+      span.upper = branches_.last_existing(branch, span.upper, value(last + 1), kEndRounds);
+    }
     add_span(span);
     i = last;
   }

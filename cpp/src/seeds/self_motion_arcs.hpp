@@ -39,6 +39,8 @@ class SelfMotionArcs {
  private:
   static constexpr int kSamples = 64;
   static constexpr int kLanes = SweptBranches::kCount;
+  /// In which the end of a branch is looked for.
+  static constexpr int kEndRounds = 8;
 
   /// What a function may come down to between three values of it: it may bend as sharply as where
   /// one limit takes over from another.
@@ -77,10 +79,11 @@ class SelfMotionArcs {
   void mark_between(int branch, int place);
   void find_spans(int branch);
   void add_span(const BranchSpan& span);
-  [[nodiscard]] double last_existing(int branch, double inside, double outside);
 
   [[nodiscard]] Node node(int lane, double part) const;
   [[nodiscard]] double beyond_limits(const Joints& q) const;
+  /// Nodes between two, evenly.
+  std::array<Node, kLanes> nodes_between(const BranchSpan& span, const Node& a, const Node& b);
   /// Solves a span at so many parts, evenly from 0 to 1.
   void sample(const BranchSpan& span, int count);
   /// Adds nodes where joints turn far from one to the next.
@@ -90,9 +93,10 @@ class SelfMotionArcs {
   /// Adds nodes where limits may be left, or come back to, between two.
   void sample_between(const BranchSpan& span);
   void cut(const BranchSpan& span);
-  /// Whether the way from one node to the next leads out of a joint's limits and in again from the
-  /// other side.
-  [[nodiscard]] bool jumps(const Joints& a, const Joints& b) const;
+  /// As SweptBranches::jumps, from one node to the next.
+  [[nodiscard]] bool jumps(const Joints& a, const Joints& b) const {
+    return branches_.jumps(a.data(), b.data());
+  }
   /// The last node inside the limits on the way to a part; and what ends it there.
   Node find_end(const BranchSpan& span, const Node& inside, double outside, SelfMotionEnd& end);
   [[nodiscard]] SelfMotionEnd culprit(const Joints& inside, const Joints& outside) const;

@@ -78,18 +78,14 @@ bool SelfMotionArcs::add_partner(int branch, const BranchSpan& span, double part
     if (known.branch == branch && known.lower <= inside && inside <= known.upper) return false;
   }
   const double ahead = fold_at + (part < 0.5 ? places_.step : -places_.step);
-  SweptBranches::Row values;
-  for (int lane = 0; lane < kLanes; ++lane) {
-    values[static_cast<std::size_t>(lane)] = inside + (ahead - inside) * lane / (kLanes - 1);
-  }
-  branches_.solve_one(branch, values);
+  const auto value = [&](int lane) { return inside + (ahead - inside) * lane / (kLanes - 1); };
+  branches_.solve_one(branch, value);
   constexpr double kMerged = 0.1;
   if (branches_.least(0) < 0 || distance(node(0, 0).q, fold) > kMerged) return false;
   int end = 1;
   while (end < kLanes && branches_.least(end) >= 0) ++end;
   if (end == kLanes) return false;
-  const double other = last_existing(branch, values[static_cast<std::size_t>(end - 1)],
-                                     values[static_cast<std::size_t>(end)]);
+  const double other = branches_.last_existing(branch, value(end - 1), value(end), kEndRounds);
   add_span({branch, std::min(fold_at, other), std::max(fold_at, other), true, true});
   return true;
 }
@@ -151,18 +147,7 @@ void SelfMotionArcs::append_between(const BranchSpan& span, const Node& a, const
                                     double spacing, int depth, Arc& arc) {
   constexpr int kDeepest = 6;
   if (depth == kDeepest || distance(a.q, b.q) <= spacing) return;
-  SweptBranches::Row values;
-  const auto part = [&](int lane) {
-    return a.part + (b.part - a.part) * (lane + 1) / (kLanes + 1);
-  };
-  for (int lane = 0; lane < kLanes; ++lane) {
-    values[static_cast<std::size_t>(lane)] = span.value(part(lane));
-  }
-  branches_.solve_one(span.branch, values);
-  std::array<Node, kLanes> between;
-  for (int lane = 0; lane < kLanes; ++lane) {
-    between[static_cast<std::size_t>(lane)] = node(lane, part(lane));
-  }
+  const std::array<Node, kLanes> between = nodes_between(span, a, b);
   const Node* before = &a;
   for (const Node& next : between) {
     append_between(span, *before, next, spacing, depth + 1, arc);

@@ -51,15 +51,24 @@ double SelfMotionArcs::beyond_limits(const Joints& q) const {
   return beyond;
 }
 
+std::array<SelfMotionArcs::Node, SelfMotionArcs::kLanes> SelfMotionArcs::nodes_between(
+    const BranchSpan& span, const Node& a, const Node& b) {
+  const auto part = [&](int lane) {
+    return a.part + (b.part - a.part) * (lane + 1) / (kLanes + 1);
+  };
+  branches_.solve_one(span.branch, [&](int lane) { return span.value(part(lane)); });
+  std::array<Node, kLanes> between;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    between[static_cast<std::size_t>(lane)] = node(lane, part(lane));
+  }
+  return between;
+}
+
 void SelfMotionArcs::sample(const BranchSpan& span, int count) {
   nodes_.clear();
   for (int first = 0; first < count; first += kLanes) {
     const auto part = [&](int lane) { return static_cast<double>(first + lane) / (count - 1); };
-    SweptBranches::Row values;
-    for (int lane = 0; lane < kLanes; ++lane) {
-      values[static_cast<std::size_t>(lane)] = span.value(part(lane));
-    }
-    branches_.solve_one(span.branch, values);
+    branches_.solve_one(span.branch, [&](int lane) { return span.value(part(lane)); });
     for (int lane = 0; lane < kLanes; ++lane) nodes_.push_back(node(lane, part(lane)));
   }
 }
@@ -78,18 +87,7 @@ void SelfMotionArcs::sample_densely(const BranchSpan& span) {
       ++i;
       continue;
     }
-    const auto part = [&](int lane) {
-      return a.part + (b.part - a.part) * (lane + 1) / (kLanes + 1);
-    };
-    SweptBranches::Row values;
-    for (int lane = 0; lane < kLanes; ++lane) {
-      values[static_cast<std::size_t>(lane)] = span.value(part(lane));
-    }
-    branches_.solve_one(span.branch, values);
-    std::array<Node, kLanes> between;
-    for (int lane = 0; lane < kLanes; ++lane) {
-      between[static_cast<std::size_t>(lane)] = node(lane, part(lane));
-    }
+    const std::array<Node, kLanes> between = nodes_between(span, a, b);
     nodes_.insert(nodes_.begin() + static_cast<std::ptrdiff_t>(i), between.begin(), between.end());
   }
 }
@@ -171,16 +169,6 @@ void SelfMotionArcs::cut(const BranchSpan& span) {
   }
 }
 
-bool SelfMotionArcs::jumps(const Joints& a, const Joints& b) const {
-  for (int j = 0; j < SweptBranches::kDof; ++j) {
-    const auto i = static_cast<std::size_t>(j);
-    if (!joints_.is_periodic(j) && std::abs(a[i] - b[i]) > kPi && j != branches_.joint()) {
-      return true;
-    }
-  }
-  return false;
-}
-
 SelfMotionArcs::Node SelfMotionArcs::find_end(const BranchSpan& span, const Node& inside,
                                               double outside, SelfMotionEnd& end) {
   constexpr int kRounds = 7;
@@ -188,13 +176,10 @@ SelfMotionArcs::Node SelfMotionArcs::find_end(const BranchSpan& span, const Node
   for (int round = 0; round < kRounds; ++round) {
     const double from = last.part;
     const double step = (outside - from) / (kLanes + 1);
-    SweptBranches::Row values;
+    const auto part = [&](int lane) { return from + step * (lane + 1); };
+    branches_.solve_one(span.branch, [&](int lane) { return span.value(part(lane)); });
     for (int lane = 0; lane < kLanes; ++lane) {
-      values[static_cast<std::size_t>(lane)] = span.value(from + step * (lane + 1));
-    }
-    branches_.solve_one(span.branch, values);
-    for (int lane = 0; lane < kLanes; ++lane) {
-      const Node next = node(lane, from + step * (lane + 1));
+      const Node next = node(lane, part(lane));
       if (next.beyond > 0 || jumps(last.q, next.q)) {
         outside = next.part;
         end = next.beyond == kInfinity ? SelfMotionEnd{ArcEnd::fold, -1, false}

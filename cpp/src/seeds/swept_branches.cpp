@@ -8,6 +8,7 @@ namespace iksel {
 SweptBranches::SweptBranches(const ChainModel& model, const ClosedFormChain& chain,
                              const lanes::LaneKernels& kernels)
     : chain_(chain),
+      joints_(model.joints),
       kernels_(kernels),
       lower_(model.joints.sample_lower(chain.held)),
       upper_(model.joints.sample_upper(chain.held)),
@@ -34,37 +35,47 @@ void SweptBranches::solve_all(double value) {
   last_ = &all_;
 }
 
-void SweptBranches::solve_one(int branch, const Row& values) {
-  for (int s = 0; s < 3; ++s) std::fill_n(one_.sign[s], kCount, all_.sign[s][branch]);
-  for (int lane = 0; lane < kCount; ++lane) {
-    one_.held[lane] = values[static_cast<std::size_t>(lane)] + offset_;
-  }
+void SweptBranches::solve_one() {
   kernels_.find_branches(chain_.form, one_);
   last_ = &one_;
 }
 
-double SweptBranches::find_fold(int branch, double inside, double outside, int rounds) {
-  double least_inside = 0;
-  double least_outside = -1;
+void SweptBranches::narrow(int branch, int rounds, Fold& fold) {
   for (int round = 0; round < rounds; ++round) {
-    const double step = (outside - inside) / (kCount + 1);
-    const double from = inside;
-    Row values;
-    for (int lane = 0; lane < kCount; ++lane) {
-      values[static_cast<std::size_t>(lane)] = from + step * (lane + 1);
-    }
-    solve_one(branch, values);
+    const double step = (fold.outside - fold.inside) / (kCount + 1);
+    const double from = fold.inside;
+    const auto value = [&](int lane) { return from + step * (lane + 1); };
+    solve_one(branch, value);
     for (int lane = 0; lane < kCount; ++lane) {
       if (least(lane) < 0) {
-        outside = values[static_cast<std::size_t>(lane)];
-        least_outside = least(lane);
+        fold.outside = value(lane);
+        fold.least_outside = least(lane);
         break;
       }
-      inside = values[static_cast<std::size_t>(lane)];
-      least_inside = least(lane);
+      fold.inside = value(lane);
+      fold.least_inside = least(lane);
     }
   }
-  return inside + (outside - inside) * least_inside / (least_inside - least_outside);
+}
+
+double SweptBranches::find_fold(int branch, double inside, double outside, int rounds) {
+  Fold fold{inside, outside};
+  narrow(branch, rounds, fold);
+  return fold.inside + (fold.outside - fold.inside) * fold.least_inside /
+                           (fold.least_inside - fold.least_outside);
+}
+
+double SweptBranches::last_existing(int branch, double inside, double outside, int rounds) {
+  Fold fold{inside, outside};
+  narrow(branch, rounds, fold);
+  return fold.inside;
+}
+
+bool SweptBranches::jumps(const double* a, const double* b) const {
+  for (int j = 0; j < kDof; ++j) {
+    if (!joints_.is_periodic(j) && std::abs(a[j] - b[j]) > kPi && j != joint()) return true;
+  }
+  return false;
 }
 
 }  // namespace iksel

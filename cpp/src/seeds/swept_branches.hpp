@@ -71,12 +71,22 @@ class SweptBranches {
   void set_target(const Pose& Y);
   /// Solves every branch at a value of the swept joint, each in its lane [rad].
   void solve_all(double value);
-  /// Solves one branch at a value in each lane [rad].
-  void solve_one(int branch, const Row& values);
+  /// Solves one branch at value(lane) in each lane [rad].
+  template <typename Value>
+  void solve_one(int branch, const Value& value) {
+    for (int s = 0; s < 3; ++s) std::fill_n(one_.sign[s], kCount, all_.sign[s][branch]);
+    for (int lane = 0; lane < kCount; ++lane) one_.held[lane] = value(lane) + offset_;
+    solve_one();
+  }
 
   /// Where a branch ends between `inside`, where it exists, and `outside`, where it does not: to
   /// about the square of 1 / 9^rounds of the way.
   double find_fold(int branch, double inside, double outside, int rounds);
+  /// The last value on that way where it was seen to exist.
+  double last_existing(int branch, double inside, double outside, int rounds);
+  /// Whether a joint turns so far from a to b that it was at one limit before and is beyond the
+  /// other: between them it may be outside of both.
+  [[nodiscard]] bool jumps(const double* a, const double* b) const;
 
   // What the last of these found in a lane.
 
@@ -98,7 +108,16 @@ class SweptBranches {
   }
 
  private:
+  /// Values of the swept joint on both sides of a branch's end, and how far it exists there.
+  struct Fold {
+    double inside, outside;
+    double least_inside = 0, least_outside = -1;
+  };
+  void solve_one();
+  void narrow(int branch, int rounds, Fold& fold);
+
   ClosedFormChain chain_;
+  const JointSpace& joints_;
   const lanes::LaneKernels& kernels_;
   double lower_, upper_, offset_;  ///< of the swept joint [rad]
   bool turns_;
@@ -206,12 +225,8 @@ double minimize(SweptBranches& branches, const Bracket& bracket, const Value& va
     if (is_enough(least, round)) break;
     const double spacing = 2 * width / (kCount + 1);
     const auto place = [&](int lane) { return middle - width + spacing * (lane + 1); };
-    SweptBranches::Row values;
+    branches.solve_one(bracket.branch, [&](int lane) { return value(place(lane)); });
     SweptBranches::Row costs;
-    for (int lane = 0; lane < kCount; ++lane) {
-      values[static_cast<std::size_t>(lane)] = value(place(lane));
-    }
-    branches.solve_one(bracket.branch, values);
     for (int lane = 0; lane < kCount; ++lane) costs[static_cast<std::size_t>(lane)] = cost(lane);
     const auto best =
         static_cast<int>(std::min_element(costs.begin(), costs.end()) - costs.begin());

@@ -107,7 +107,10 @@ double find_residuals(const ResidualForm& form, const double* angles, int n, dou
   double lanes[kWidth];
   Lanes<T>::store(least, lanes);
   double all = lanes[0];
-  for (int i = 1; i < Lanes<T>::kCount; ++i) all = min(all, lanes[i]);
+  // By hand: a function of one lane belongs to another instruction set.
+  for (int i = 1; i < Lanes<T>::kCount; ++i) {
+    if (lanes[i] < all) all = lanes[i];
+  }
   return all;
 }
 

@@ -76,7 +76,7 @@ void NearestOnCurve::find(const Pose& Y, const JointVector& near, const JointMov
   takes_largest_ = move.norm() == MoveNorm::max;
   branches_.set_target(Y);
   look_around();
-  size_ = 0;
+  found_.clear();
   least_off_ = kInfinity;
   least_.find(places_, rows_, kRefused + kNear);
   for (const LeastPlace& least : least_) {
@@ -132,8 +132,8 @@ double NearestOnCurve::solve_at(int place) {
 }
 
 bool NearestOnCurve::may_be_shorter(const LeastPlace& least) const {
-  if (size_ == 0) return true;
-  const double best = found_[0].cost;
+  if (found_.size() == 0) return true;
+  const double best = found_[0].value;
   if (least_move(places_.value(least.place)) - margin_of_step() > best) return false;
   if (least.value >= kRefused) return true;
   // Between samples the move gets shorter by no more than it does from one to the next, or at the
@@ -151,7 +151,7 @@ bool NearestOnCurve::may_be_shorter(const LeastPlace& least) const {
 }
 
 void NearestOnCurve::follow(const LeastPlace& least) {
-  Found best{kInfinity, {}};
+  SweptJoints best{kInfinity, {}};
   double exists_at = kInfinity;
   const auto value = [&](double place) { return branches_.clamp(place); };
   const auto take = [&](int lane, double place) {
@@ -160,15 +160,15 @@ void NearestOnCurve::follow(const LeastPlace& least) {
   };
   const Bracket bracket{least.branch, places_.value(least.place), places_.step,
                         kNarrowings,  kFinest * places_.step,     !takes_largest_};
-  best.cost = minimize(
+  best.value = minimize(
       branches_, bracket, value, [&](int lane) { return cost(lane); }, kRefused, take,
       [&](double so_far, int round) { return is_hopeless(so_far, round); });
   // The sample itself may be all there is.
-  if (least.value < best.cost) best = {least.value, sample(least.place, least.branch).q};
-  if (best.cost < kRefused) {
-    add(best);
+  if (least.value < best.value) best = {least.value, sample(least.place, least.branch).q};
+  if (best.value < kRefused) {
+    found_.add(best);
   } else {
-    least_off_ = std::min(least_off_, best.cost - kRefused);
+    least_off_ = std::min(least_off_, best.value - kRefused);
   }
   if (exists_at == kInfinity || sample(least.place, least.branch).exists) return;
   if (sample(least.place - 1, least.branch).exists) return;
@@ -194,7 +194,7 @@ void NearestOnCurve::look_beside_folds(int branch) {
         look_into({branch, places_.value(last - 1), places_.value(last), false, false}, 1);
       }
     }
-    if (size_ > 0 && least - margin_of_step() > found_[0].cost) continue;
+    if (found_.size() > 0 && least - margin_of_step() > found_[0].value) continue;
     BranchSpan span{branch, places_.value(first), places_.value(last),
                     sample(first - 1, branch).is_none(), sample(last + 1, branch).is_none()};
     const bool is_short = last - first < kShort;
@@ -223,14 +223,14 @@ bool NearestOnCurve::jumps(int place, int branch) const {
 
 bool NearestOnCurve::may_lead_to_shorter(int place, int beside, int branch) const {
   const double loose = std::min(sample(place, branch).loose, sample(beside, branch).loose);
-  return size_ == 0 || loose - kSteep < found_[0].cost;
+  return found_.size() == 0 || loose - kSteep < found_[0].value;
 }
 
 bool NearestOnCurve::is_hopeless(double so_far, int round) const {
   // What is left to be gained after a round, and after two.
   constexpr double kLittle[] = {0.2, 0.03};
-  return round >= 1 && size_ > 0 && so_far < kRefused &&
-         so_far - kLittle[std::min(round, 2) - 1] > found_[0].cost;
+  return round >= 1 && found_.size() > 0 && so_far < kRefused &&
+         so_far - kLittle[std::min(round, 2) - 1] > found_[0].value;
 }
 
 void NearestOnCurve::look_into(const BranchSpan& span, int packs) {
@@ -250,25 +250,17 @@ void NearestOnCurve::look_into(const BranchSpan& span, int packs) {
   };
   for (int node = 0; node < nodes; ++node) {
     if (at(node) > at(node - 1) || at(node) > at(node + 1)) continue;
-    if (size_ > 0 && at(node) < kRefused && at(node) - kSteep > found_[0].cost) continue;
+    if (found_.size() > 0 && at(node) < kRefused && at(node) - kSteep > found_[0].value) continue;
     if (at(node) > kRefused + kNear) continue;
-    Found best{kInfinity, {}};
+    SweptJoints best{kInfinity, {}};
     const auto take = [&](int lane, double) { branches_.copy_joints(lane, best.q.data()); };
     const Bracket bracket{span.branch, part(node),      1.0 / nodes,
                           kNarrowings, kFinest / nodes, !takes_largest_};
-    best.cost = minimize(
+    best.value = minimize(
         branches_, bracket, value, [&](int lane) { return cost(lane); }, kRefused, take,
         [&](double so_far, int round) { return is_hopeless(so_far, round); });
-    if (best.cost < kRefused) add(best);
+    if (best.value < kRefused) found_.add(best);
   }
-}
-
-void NearestOnCurve::add(const Found& found) {
-  if (size_ == kMost && !(found.cost < found_[kMost - 1].cost)) return;
-  if (size_ < kMost) ++size_;
-  std::size_t at = size_ - 1;
-  for (; at > 0 && found.cost < found_[at - 1].cost; --at) found_[at] = found_[at - 1];
-  found_[at] = found;
 }
 
 }  // namespace iksel

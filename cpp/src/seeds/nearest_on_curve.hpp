@@ -22,11 +22,11 @@ class NearestOnCurve {
   /// its nearest periodic image. Only as far from `near` as an answer may be nearer than those
   /// found.
   void find(const Pose& Y, const JointVector& near, const JointMove& move);
-  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] std::size_t size() const { return found_.size(); }
   /// The nearest first [rad].
   [[nodiscard]] const double* q(std::size_t i) const { return found_[i].q.data(); }
   /// If there is none: whether none came so close to one that it might have been missed.
-  [[nodiscard]] bool is_none() const { return size_ == 0 && miss_.rules_out_answers(least_off_); }
+  [[nodiscard]] bool is_none() const { return size() == 0 && miss_.rules_out_answers(least_off_); }
   /// Whether these are local minima but for rounding: those of the chain itself.
   [[nodiscard]] bool is_settled() const { return is_nominal_; }
 
@@ -40,10 +40,6 @@ class NearestOnCurve {
   /// Branches are followed only if they come so near to an answer at a sample [mixed units].
   static constexpr double kNear = 0.3;
 
-  struct Found {
-    double cost;
-    std::array<double, SweptBranches::kDof> q;
-  };
   /// A branch at a sample of the swept joint.
   struct Sample {
     bool is_known = false;
@@ -96,7 +92,6 @@ class NearestOnCurve {
   [[nodiscard]] bool is_hopeless(double so_far, int round) const;
   /// Looks for the least moves in a span, over so many packs of values.
   void look_into(const BranchSpan& span, int packs);
-  void add(const Found& found);
 
   SweptBranches branches_;
   Places places_;
@@ -111,8 +106,7 @@ class NearestOnCurve {
   std::vector<SweptBranches::Row> rows_;
   std::vector<std::array<Sample, SweptBranches::kCount>> samples_;
   LeastPlaces<2 * kMost> least_;
-  std::array<Found, kMost> found_{};
-  std::size_t size_ = 0;
+  Least<SweptJoints, kMost> found_;
 };
 
 /// These as a source of seeds: the nearest alone first, the others if it cannot be refined.

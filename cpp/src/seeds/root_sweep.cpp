@@ -29,7 +29,7 @@ RootSweep::RootSweep(const ChainModel& model, const ClosedFormChain& chain, bool
                      double tolerance, const lanes::LaneKernels& kernels)
     : chain_(chain),
       kernels_(kernels),
-      concludes_(is_nominal && tolerance <= kMostTolerance),
+      concludes_(concludes_from_branches(is_nominal, tolerance)),
       vague_(2 * std::sqrt(tolerance + chain.deviation)),
       vague_divisor_(std::pow(kBesideAxis * (tolerance + chain.deviation), 2)),
       roots_(make_finder(model, chain.held, vague_, kernels)) {

@@ -33,8 +33,6 @@ class RootSweep {
   [[nodiscard]] bool is_certain() const { return certain_; }
 
  private:
-  /// Beyond such tolerances, solutions lie too far from roots to conclude anything.
-  static constexpr double kMostTolerance = 1e-4;
   /// The first two of the three signs are read.
   static constexpr std::size_t kBranches = 4;
 

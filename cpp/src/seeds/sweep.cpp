@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace iksel {
 
@@ -15,27 +16,34 @@ Sweep::Sweep(const ChainModel& model, const ClosedFormChain& chain, bool is_nomi
 
 bool Sweep::find(const Pose& Y) {
   branches_.set_target(Y);
-  for (int k = 0; k < kSamples; ++k) {
-    // Far from each other first, so that an answer is soon found; coprime to the number of samples.
-    constexpr int kStride = 19;
-    const int place = k * kStride % kSamples;
-    branches_.solve_all(places_.value(place));
-    SweptBranches::Row& off = rows_[static_cast<std::size_t>(place)];
-    for (int lane = 0; lane < kBranches; ++lane) {
-      off[static_cast<std::size_t>(lane)] = branches_.off(lane);
+  for (int pack = 0; pack < kPacks; ++pack) {
+    // Far from each other first, so that an answer is soon found.
+    constexpr int kStride = 5;
+    static_assert(std::gcd(kStride, kPacks) == 1, "each pack once");
+    const int first = pack * kStride % kPacks * kBranches;
+    SweptBranches::Row* rows = &rows_[static_cast<std::size_t>(first)];
+    branches_.rate([&](int i) { return places_.value(first + i); }, kNear, rows);
+    for (int i = 0; i < kBranches; ++i) {
+      if (take_answer(first + i)) return true;
     }
-    const auto best = std::min_element(off.begin(), off.end());
-    if (*best > 0) continue;
-    branches_.copy_joints(static_cast<int>(best - off.begin()), q_.data());
-    return true;
   }
   nearest_.find(places_, rows_, kNear);
   least_ = kInfinity;
+  close_.clear();
   for (const LeastPlace& near : nearest_) {
     least_ = std::min(least_, near.value);
     if (follow(near)) return true;
   }
   return false;
+}
+
+bool Sweep::take_answer(int place) {
+  const SweptBranches::Row& off = rows_[static_cast<std::size_t>(place)];
+  const auto best = std::min_element(off.begin(), off.end());
+  if (*best > 0) return false;
+  branches_.solve_all(places_.value(place));
+  branches_.copy_joints(static_cast<int>(best - off.begin()), q_.data());
+  return true;
 }
 
 void Sweep::add_samples(const Pose& Y, int first, int stride, std::vector<double>& q) {
@@ -51,15 +59,26 @@ void Sweep::add_samples(const Pose& Y, int first, int stride, std::vector<double
 }
 
 bool Sweep::follow(const LeastPlace& near) {
-  constexpr int kRounds = 4;
+  constexpr int kRounds = 8;
+  // Of 4,491 answers found so, of five arms, none was farther off after one round, two and three
+  // than 0.09, 0.03 and 0.015.
+  constexpr std::array<double, 3> kHopeless{0.2, 0.1, 0.05};
   const auto value = [&](double place) { return branches_.clamp(place); };
   const auto off = [&](int lane) { return branches_.off(lane); };
-  const auto take = [&](int lane, double) { branches_.copy_joints(lane, q_.data()); };
-  const auto is_there = [](double least, int) { return least <= 0; };
+  SweptJoints best{kInfinity, {}};
+  const auto take = [&](int lane, double) { branches_.copy_joints(lane, best.q.data()); };
+  const auto is_enough = [&](double least, int round) {
+    if (least <= 0) return true;
+    const std::size_t looked = std::min(static_cast<std::size_t>(round), kHopeless.size());
+    return looked > 0 && least > kHopeless[looked - 1];
+  };
   const Bracket bracket{near.branch, places_.value(near.place), places_.step, kRounds};
-  const double least = minimize(branches_, bracket, value, off, kInfinity, take, is_there);
-  least_ = std::min(least_, least);
-  return least <= 0;
+  best.value = minimize(branches_, bracket, value, off, kInfinity, take, is_enough);
+  least_ = std::min(least_, best.value);
+  if (miss_.is_close(best.value)) close_.add(best);
+  if (best.value > 0) return false;
+  q_ = best.q;
+  return true;
 }
 
 }  // namespace iksel

@@ -14,7 +14,7 @@ namespace iksel {
 class Sweep {
  public:
   /// Values of the swept joint that are looked at, evenly over its range.
-  static constexpr int kSamples = 64;
+  static constexpr int kSamples = 96;
 
   /// `chain` has a joint that is held; its limits are the model's. `is_nominal`: it is the model's
   /// own. `tolerance` is the larger of the solver's [rad, and m in units of the reach].
@@ -29,16 +29,22 @@ class Sweep {
   void add_samples(const Pose& Y, int first, int stride, std::vector<double>& q);
   /// The answer [rad].
   [[nodiscard]] const double* q() const { return q_.data(); }
+  /// If there was none: where branches came so close to one that it might have been missed.
+  [[nodiscard]] std::size_t close_count() const { return close_.size(); }
+  [[nodiscard]] const double* close_to_answer(std::size_t i) const { return close_[i].q.data(); }
   /// If there was none: whether none came so close to one that it might have been missed.
   [[nodiscard]] bool is_none() const { return miss_.rules_out_answers(least_); }
 
  private:
   static constexpr int kBranches = SweptBranches::kCount;
+  static constexpr int kPacks = kSamples / kBranches;
   /// Branches that are followed between samples, at most.
-  static constexpr std::size_t kFollowed = 8;
+  static constexpr std::size_t kFollowed = 16;
   /// And such only as come so near to an answer at a sample [mixed units].
   static constexpr double kNear = 0.3;
 
+  /// Whether one of a sample's branches is an answer; it becomes the last one.
+  bool take_answer(int place);
   /// Looks between the samples beside; true if there is an answer.
   bool follow(const LeastPlace& near);
 
@@ -49,6 +55,7 @@ class Sweep {
   std::vector<SweptBranches::Row> rows_;
   /// Where a branch comes nearer to an answer than at the samples beside.
   LeastPlaces<kFollowed> nearest_;
+  Least<SweptJoints, kFollowed> close_;
   double least_ = 0;  ///< how far the nearest branch was from being an answer
   std::array<double, SweptBranches::kDof> q_{};
 };
@@ -67,11 +74,16 @@ class SweptSeeds {
     return true;
   }
 
+  /// The answer; if there is none, what comes close to one.
   template <typename Refiner>
   bool load(Refiner& refiner, int lane) {
-    if (!found_ || loaded_ || !work_.take()) return false;
-    loaded_ = true;
-    refiner.load_answer(lane, sweep_.q());
+    if (next_ == (found_ ? 1 : sweep_.close_count()) || !work_.take()) return false;
+    if (found_) {
+      refiner.load_answer(lane, sweep_.q());
+    } else {
+      refiner.load_seed(lane, sweep_.close_to_answer(next_));
+    }
+    ++next_;
     return true;
   }
   /// Whether there is no answer.
@@ -84,7 +96,7 @@ class SweptSeeds {
   StageClock& clock_;
   bool done_ = false;
   bool found_ = false;
-  bool loaded_ = false;
+  std::size_t next_ = 0;
 };
 
 }  // namespace iksel

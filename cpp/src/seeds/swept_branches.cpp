@@ -35,6 +35,14 @@ void SweptBranches::solve_all(double value) {
   last_ = &all_;
 }
 
+void SweptBranches::rate(double bound, Row* rows) {
+  double off[kCount][kCount];
+  kernels_.rate_branches(chain_.form, all_, bound, off);
+  for (std::size_t branch = 0; branch < kCount; ++branch) {
+    for (std::size_t i = 0; i < kCount; ++i) rows[i][branch] = off[branch][i];
+  }
+}
+
 void SweptBranches::solve_one() {
   kernels_.find_branches(chain_.form, one_);
   last_ = &one_;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/constants.hpp"
+#include "base/least.hpp"
 #include "kinematics/chain_model.hpp"
 #include "simd/kernels.hpp"
 #include "structure/closed_form.hpp"
@@ -71,6 +72,13 @@ class SweptBranches {
   void set_target(const Pose& Y);
   /// Solves every branch at a value of the swept joint, each in its lane [rad].
   void solve_all(double value);
+  /// How far every branch is from being an answer, at values(i) of the swept joint, in rows[i];
+  /// where that is more than `bound`, some number above it [rad, mixed units].
+  template <typename Values>
+  void rate(const Values& values, double bound, Row* rows) {
+    for (int i = 0; i < kCount; ++i) all_.held[i] = values(i) + offset_;
+    rate(bound, rows);
+  }
   /// Solves one branch at value(lane) in each lane [rad].
   template <typename Value>
   void solve_one(int branch, const Value& value) {
@@ -114,6 +122,7 @@ class SweptBranches {
     double least_inside = 0, least_outside = -1;
   };
   void solve_one();
+  void rate(double bound, Row* rows);
   void narrow(int branch, int rounds, Fold& fold);
 
   ClosedFormChain chain_;
@@ -126,27 +135,34 @@ class SweptBranches {
   const lanes::BranchPack* last_ = &all_;
 };
 
-/// Whether no answer can have been missed, by how near the nearest branch came to one.
+/// What a search over branches that found no answer lets conclude.
 class NearMiss {
  public:
   /// `is_nominal`: the branches are the model's own. `tolerance` is the larger of the solver's
   /// [rad, and m in units of the reach].
   NearMiss(bool is_nominal, double tolerance)
-      : concludes_(is_nominal && tolerance <= kMostTolerance),
+      : concludes_(concludes_from_branches(is_nominal, tolerance)),
         close_(std::max(0.01, 4 * std::sqrt(2 * tolerance))) {}
 
-  /// `least`: how far it was from being an answer [mixed units].
-  [[nodiscard]] bool rules_out_answers(double least) const { return concludes_ && least > close_; }
+  /// Whether something so far from being an answer may be one [mixed units].
+  [[nodiscard]] bool is_close(double off) const { return off <= close_; }
+  /// Whether no answer can have been missed. `least`: how far the nearest branch was from being one
+  /// [mixed units].
+  [[nodiscard]] bool rules_out_answers(double least) const {
+    return concludes_ && !is_close(least);
+  }
 
  private:
-  /// Of a chain other than the nominal one, and beyond such tolerances, answers lie too far from
-  /// where branches are to conclude anything.
-  static constexpr double kMostTolerance = 1e-4;
-
   bool concludes_;
   /// A branch that comes so near to an answer may be one that rounding hides, or the tolerances
   /// allow: beside a fold by their root [mixed units].
   double close_;
+};
+
+/// Seven joint values, and how far they are from what was looked for.
+struct SweptJoints {
+  double value;
+  std::array<double, SweptBranches::kDof> q;
 };
 
 /// Where a branch has a value that is less than at the places beside.
@@ -157,7 +173,7 @@ struct LeastPlace {
 
 /// The least of these, at most so many.
 template <std::size_t kMost>
-class LeastPlaces {
+class LeastPlaces : public Least<LeastPlace, kMost> {
  public:
   /// Of values at all places, of every branch; only those up to `bound`.
   void find(const Places& places, const std::vector<SweptBranches::Row>& rows, double bound) {
@@ -167,31 +183,17 @@ class LeastPlaces {
       const int at = places.find(place);
       return at < 0 ? kNone : rows[static_cast<std::size_t>(at)];
     };
-    size_ = 0;
+    this->clear();
     for (int place = 0; place < places.count; ++place) {
       const SweptBranches::Row& here = row(place);
       const SweptBranches::Row& before = row(place - 1);
       const SweptBranches::Row& behind = row(place + 1);
       for (std::size_t i = 0; i < here.size(); ++i) {
         if (here[i] > bound || here[i] > before[i] || here[i] > behind[i]) continue;
-        add({here[i], place, static_cast<int>(i)});
+        this->add({here[i], place, static_cast<int>(i)});
       }
     }
   }
-  [[nodiscard]] const LeastPlace* begin() const { return all_.data(); }
-  [[nodiscard]] const LeastPlace* end() const { return all_.data() + size_; }
-
- private:
-  void add(const LeastPlace& least) {
-    if (size_ == kMost && !(least.value < all_[kMost - 1].value)) return;
-    if (size_ < kMost) ++size_;
-    std::size_t at = size_ - 1;
-    for (; at > 0 && least.value < all_[at - 1].value; --at) all_[at] = all_[at - 1];
-    all_[at] = least;
-  }
-
-  std::array<LeastPlace, kMost> all_{};
-  std::size_t size_ = 0;
 };
 
 /// Where to look for the least of a branch's costs.

@@ -33,6 +33,29 @@ struct Branch {
   Q quality;
 };
 
+inline constexpr double kWholeTurn = 6.28318530717958647693;
+
+/// The joint value of an angle [rad]: of its images the one nearest to the middle of the limits,
+/// which lies inside them if one does.
+template <typename T>
+IKSEL_INLINE T joint_value(const ClosedForm& form, int j, const Angle<T>& angle) {
+  const T q = to_radians(angle) - T(form.offset[j]);
+  const T turns = nearest_integer((T(form.middle[j]) - q) * T(1 / kWholeTurn));
+  return q + T(kWholeTurn) * turns;
+}
+/// How far a joint value lies outside of its limits, 0 or less if it does not [rad].
+template <typename T>
+IKSEL_INLINE T beyond_limits(const ClosedForm& form, int j, const T& q) {
+  return abs(q - T(form.middle[j])) - T(form.reach[j]);
+}
+
+/// Whether nothing more needs to be known of a branch, now that joint j is known: for Prospect
+/// (sweep_kernel.hpp) only.
+template <typename T, typename Q>
+IKSEL_INLINE bool is_enough(const ClosedForm& /*form*/, int /*j*/, Branch<T, Q>& /*branch*/) {
+  return false;
+}
+
 /// The angle of joint 3 that brings the wrist to a distance from the point on axis 2.
 template <typename T, typename Q>
 IKSEL_INLINE Angle<T> bend_elbow(const ClosedForm& form, const T& distance2, const T& sign,
@@ -70,9 +93,12 @@ IKSEL_INLINE void place_parallel_23(const ClosedForm& form, const Vec<T>& w, con
   // h2 . R_1^T w does not depend on joints 2 and 3.
   const Vec<T> h2 = constant<T>(form.h[1]);
   out.q[0] = turn_base(form, h2, w, T(form.rest), sign[0], out.quality);
+  if (is_enough(form, 0, out)) return;
   const Vec<T> v = behind_base(form, out.q[0], w);
   out.q[2] = bend_elbow(form, dot(v, v), sign[1], out.quality);
+  if (is_enough(form, 2, out)) return;
   out.q[1] = angle_between(h2, arm_at(form, out.q[2]), v, out.quality);
+  is_enough(form, 1, out);
 }
 
 template <typename T, typename Q>
@@ -82,11 +108,14 @@ IKSEL_INLINE void place_intersect_12(const ClosedForm& form, const Vec<T>& w, co
   const Vec<T> h2 = constant<T>(form.h[1]);
   const T distance2 = dot(w, w);
   out.q[2] = bend_elbow(form, distance2, sign[1], out.quality);
+  if (is_enough(form, 2, out)) return;
   const Vec<T> arm = arm_at(form, out.q[2]);
   const Vec<T> v =
       solve_common(h1, h2, form.cross12, dot(h1, w), dot(h2, arm), distance2, sign[0], out.quality);
   out.q[1] = angle_between(h2, arm, v, out.quality);
+  if (is_enough(form, 1, out)) return;
   out.q[0] = angle_between(h1, v, w, out.quality);
+  is_enough(form, 0, out);
 }
 
 template <typename T, typename Q>
@@ -98,11 +127,14 @@ IKSEL_INLINE void place_intersect_23(const ClosedForm& form, const Vec<T>& w, co
   const Vec<T> p34 = constant<T>(form.p[2]);
   out.q[0] = turn_base(form, constant<T>(form.p[0]), w, T(0.5) * (dot(w, w) - T(form.rest)),
                        sign[0], out.quality);
+  if (is_enough(form, 0, out)) return;
   const Vec<T> v = behind_base(form, out.q[0], w);
   const Vec<T> u =
       solve_common(h2, h3, form.cross23, dot(h2, v), dot(h3, p34), dot(v, v), sign[1], out.quality);
   out.q[2] = angle_between(h3, p34, u, out.quality);
+  if (is_enough(form, 2, out)) return;
   out.q[1] = angle_between(h2, u, v, out.quality);
+  is_enough(form, 1, out);
 }
 
 template <typename T, typename Q>
@@ -112,13 +144,16 @@ IKSEL_INLINE void place_parallel_12(const ClosedForm& form, const Vec<T>& w, con
   const Vec<T> h2 = constant<T>(form.h[1]);
   const Vec<T> p12 = constant<T>(form.p[0]);
   out.q[2] = solve_angle(form.shoulder, dot(h1, w) - T(form.rest), sign[0], out.quality);
+  if (is_enough(form, 2, out)) return;
   const Vec<T> arm = arm_at(form, out.q[2]);
   const T axial = dot(h2, arm) * dot(h2, p12);
   const T rest = T(0.5) * (dot(w, w) - dot(p12, p12) - dot(arm, arm));
   out.q[1] = solve_angle(dot(p12, arm) - axial, dot(p12, cross(h2, arm)), rest - axial, sign[1],
                          out.quality);
+  if (is_enough(form, 1, out)) return;
   const Vec<T> from = add(p12, T(1.0), turned(h2, out.q[1], arm));
   out.q[0] = angle_between(h1, from, w, out.quality);
+  is_enough(form, 0, out);
 }
 
 template <typename T, typename Q>

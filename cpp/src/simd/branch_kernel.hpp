@@ -78,19 +78,14 @@ IKSEL_INLINE void solve_three_parallel(const ClosedForm& form, const BranchTarge
   out.q[3] = {all.c * two.c + all.s * two.s, T(form.side4) * (all.s * two.c - all.c * two.s)};
 }
 
-inline constexpr double kWholeTurn = 6.28318530717958647693;
-
 /// The joint values, and how far they are outside of their limits.
 template <typename T, typename Q>
 IKSEL_INLINE void store_joints(const ClosedForm& form, const Branch<T, Q>& branch, int first,
                                BranchPack& pack) {
   T beyond = T(0.0);
   for (int j = 0; j < 6; ++j) {
-    T q = to_radians(branch.q[j]) - T(form.offset[j]);
-    // The image nearest to the middle of the limits lies inside them if one does.
-    const T turns = nearest_integer((T(form.middle[j]) - q) * T(1 / kWholeTurn));
-    q = q + T(kWholeTurn) * turns;
-    beyond = max(beyond, abs(q - T(form.middle[j])) - T(form.reach[j]));
+    const T q = joint_value(form, j, branch.q[j]);
+    beyond = max(beyond, beyond_limits(form, j, q));
     Lanes<T>::store(q, pack.q[j] + first);
   }
   Lanes<T>::store(beyond, pack.beyond + first);

@@ -9,6 +9,7 @@
 #include "simd/lane_types.hpp"
 #include "simd/residual_kernel.hpp"
 #include "simd/seed_kernel.hpp"
+#include "simd/sweep_kernel.hpp"
 
 namespace iksel::lanes {
 
@@ -232,6 +233,7 @@ constexpr LaneKernels make_kernels(const char* name) {
           find_largest<Single>,
           solve_branches<Wide>,
           find_branches<Wide>,
+          rate_branches<Wide>,
           find_residuals<Wide>,
           count_roots<Wide>};
 }

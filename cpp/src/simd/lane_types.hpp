@@ -141,6 +141,9 @@ struct BranchPack;
 /// The angles of all lanes of a pack (branch_types.hpp); find_branches does not say how certain
 /// they are.
 using SolveBranches = void (*)(const ClosedForm& form, BranchPack& pack);
+/// How far branches are from being answers, at kWidth angles of the held joint (sweep_kernel.hpp).
+using RateBranches = void (*)(const ClosedForm& form, const BranchPack& pack, double bound,
+                              double (&off)[kWidth][kWidth]);
 
 struct ResidualForm;
 /// The residuals of `n` angles, a multiple of kWidth (residual_kernel.hpp). Returns the least of
@@ -169,6 +172,7 @@ struct LaneKernels {
   FindLargest find_largest;
   SolveBranches solve_branches;
   SolveBranches find_branches;
+  RateBranches rate_branches;
   FindResiduals find_residuals;
   CountRoots count_roots;
 };

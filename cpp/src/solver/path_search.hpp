@@ -64,7 +64,7 @@ class PathSearch {
   void add_on_curve(const Goal& goal, const Layer& before, std::size_t waypoint, bool with_others,
                     Workspace::InLanes& lanes, Layer& layer) const {
     /// Every so many samples of the sweep are looked at.
-    constexpr int kStride = 8;
+    constexpr int kStride = Sweep::kSamples / 8;
     const Pose Y = lanes.query.reduce(goal.target());
     std::vector<double> q = before.q;
     const int first = static_cast<int>(waypoint % kStride);

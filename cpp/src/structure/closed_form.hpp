@@ -41,6 +41,13 @@ struct ClosedFormChain {
   void copy_joints(const lanes::BranchPack& pack, int lane, double* q) const;
 };
 
+/// Whether answers lie so near to branches of a chain that something can be concluded from these:
+/// of a chain other than the nominal one, and beyond such tolerances, they lie too far away.
+/// `tolerance` is the larger of the solver's [rad, and m in units of the reach].
+inline bool concludes_from_branches(bool is_nominal, double tolerance) {
+  return is_nominal && tolerance <= 1e-4;
+}
+
 /// A pack with another branch in each lane.
 lanes::BranchPack all_branches();
 

@@ -20,14 +20,19 @@ bool solves_in_lanes(const ChainModel& model, const DatabaseData& data,
 
 Workspace::InLanes::InLanes(const ChainModel& model, const ChainModel& nominal,
                             const DatabaseData& data, const SolverOptions& options,
-                            const ClosedFormChain* closed_form, const lanes::LaneKernels& kernels)
+                            const ClosedForms& closed_forms, const lanes::LaneKernels& kernels)
     : refiner(model, options, kernels),
       query(model, nominal, data, neighbours_of(options.strategy), kernels),
       screen(model, options, kernels) {
-  if (closed_form == nullptr) return;
   const bool is_nominal = &model == &nominal;
   const double position = options.position_tolerance;
   const double rotation = options.rotation_tolerance;
+  for (const auto& [task, chain] : closed_forms.tasks) {
+    task_branches.emplace_back(task,
+                               Enumeration(model, chain, is_nominal, position, rotation, kernels));
+  }
+  const auto& closed_form = closed_forms.pose;
+  if (!closed_form) return;
   const double tolerance = std::max(position / closed_form->unit, rotation);
   if (closed_form->held < 0) {
     branches.emplace(model, *closed_form, is_nominal, position, rotation, kernels);
@@ -40,6 +45,14 @@ Workspace::InLanes::InLanes(const ChainModel& model, const ChainModel& nominal,
   }
 }
 
+Enumeration* Workspace::InLanes::branches_of(const TaskSpace& task) {
+  if (task.is_full_pose()) return branches ? &*branches : nullptr;
+  for (auto& [of_task, of_its_goals] : task_branches) {
+    if (of_task == task.task()) return &of_its_goals;
+  }
+  return nullptr;
+}
+
 Workspace::OneAtATime::OneAtATime(const ChainModel& model, const ChainModel& nominal,
                                   const DatabaseData& data, const SolverOptions& options,
                                   const Paper& scheme)
@@ -48,12 +61,12 @@ Workspace::OneAtATime::OneAtATime(const ChainModel& model, const ChainModel& nom
       task_samples(model, data, selection) {}
 
 Workspace::Workspace(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
-                     const SolverOptions& options, const ClosedFormChain* closed_form)
+                     const SolverOptions& options, const ClosedForms& closed_forms)
     : scheme(iksel::one_at_a_time(options.strategy)),
       given(model, scheme, data.options.pinv_cutoff),
       collected(model) {
   if (solves_in_lanes(model, data, options)) {
-    lanes = std::make_unique<InLanes>(model, nominal, data, options, closed_form,
+    lanes = std::make_unique<InLanes>(model, nominal, data, options, closed_forms,
                                       lanes::choose_kernels());
   } else {
     one_at_a_time = std::make_unique<OneAtATime>(model, nominal, data, options, scheme);
@@ -66,7 +79,7 @@ WorkspacePool::WorkspacePool(const Robot& robot, const Robot& nominal, const Dat
       nominal_(nominal),
       database_(database),
       options_(options),
-      closed_form_(find_closed_form(nominal.model())),
+      closed_forms_(ClosedForms::of(nominal.model())),
       solves_in_lanes_(iksel::solves_in_lanes(robot.model(), database.data(), options)),
       damaged_(database.data().storage.damaged) {
   const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
@@ -79,7 +92,7 @@ WorkspacePool::~WorkspacePool() {
 
 std::unique_ptr<Workspace> WorkspacePool::make() const {
   return std::make_unique<Workspace>(robot_.model(), nominal_.model(), database_.data(), options_,
-                                     closed_form_ ? &*closed_form_ : nullptr);
+                                     closed_forms_);
 }
 
 WorkspacePool::Lease::Lease(const WorkspacePool& pool) : pool_(pool) {

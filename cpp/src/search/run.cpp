@@ -106,20 +106,24 @@ Proof Search<Answers>::in_lanes() const {
   NearSeed near = near_seed();
   GivenSeeds given = given_seeds(lanes::kBlock, should_continue);
   refiner.begin(goal.task(), kFirst, Width::narrow);
-  if (!goal.is_full_pose()) {
+  const Pose Y = query.reduce(goal.target());
+  if (goal.is_full_pose()) {
+    refiner.set_pose(Y);
+  } else {
     refiner.set_task(goal.target());
+  }
+  Enumeration* branches = workspace.lanes->branches_of(goal.task());
+  if (branches != nullptr && request.database_seeds) {
+    const auto proof = by_branches(*branches, Proof::closed_form, given, Y);
+    if (proof) return *proof;
+  }
+  if (!goal.is_full_pose()) {
     clock.lap(&StageTimes::query);
     Random random(options.seed);
     AllowedSeeds allowed(query, model.joints, goal, random, work, clock);
     run(refiner, near, given, allowed);
     clock.lap(&StageTimes::iterate);
     return Proof::none;
-  }
-  const Pose Y = query.reduce(goal.target());
-  refiner.set_pose(Y);
-  if (workspace.lanes->branches && request.database_seeds) {
-    const auto proof = by_branches(*workspace.lanes->branches, Proof::closed_form, given, Y);
-    if (proof) return *proof;
   }
   query.set_target(Y);
   clock.lap(&StageTimes::query);
@@ -159,7 +163,7 @@ template <typename Branches>
 std::optional<Proof> Search<Answers>::by_branches(Branches& branches, Proof kind, GivenSeeds& given,
                                                   const Pose& Y) const {
   LaneRefiner& refiner = workspace.lanes->refiner;
-  EnumeratedSeeds enumerated(branches, goal, Y, answers.wants_more(), work, clock);
+  EnumeratedSeeds enumerated(branches, Y, answers.wants_more(), work, clock);
   SeedSequence seeds(2, given, enumerated);
   refiner.begin(goal.task(), kNearAnswer, Width::narrow);
   answers.look_for_partners(false);
@@ -169,7 +173,8 @@ std::optional<Proof> Search<Answers>::by_branches(Branches& branches, Proof kind
   if (is_satisfied) return Proof::none;
   // Branches of which none could be refined to the tolerances prove nothing.
   if (enumerated.is_certain()) {
-    if (enumerated.is_empty() || answers.has_any()) return kind;
+    if (enumerated.is_empty()) return kind;
+    if (answers.has_any() && !branches.has_families()) return kind;
     if (kind == Proof::sweep) work.leave(kBesideRoots);
   }
   refiner.begin(goal.task(), kFirst, Width::narrow);

@@ -146,7 +146,7 @@ class Batch {
       tell(i, solver_.find_first(target_(i), solver_.task, none, workspace, nullptr));
     };
     // In closed form a target is solved at once.
-    if (workspace.lanes == nullptr || (workspace.lanes->branches && solver_.task.is_full_pose())) {
+    if (workspace.lanes == nullptr || workspace.lanes->branches_of(solver_.task) != nullptr) {
       for (std::size_t i = first; i < last; ++i) solve_alone(i);
       return;
     }

@@ -30,7 +30,7 @@ class Completion {
       for (const Vector3d& direction : free) {
         way.free |= 1U << way.axes.h.size();
         way.axes.h.push_back(direction);
-        way.axes.p.push_back(tcp_.translation());
+        way.axes.p.emplace_back(tcp_.translation());
       }
       if (way.axes.h.size() == kWanted) ways.push_back(std::move(way));
     }

@@ -14,6 +14,7 @@
 #include "refine/lane_refiner.hpp"
 #include "refine/scheme_refiner.hpp"
 #include "search/collector.hpp"
+#include "seeds/branch_lanes.hpp"
 #include "seeds/enumeration.hpp"
 #include "seeds/lane_query.hpp"
 #include "seeds/nearest_on_curve.hpp"
@@ -31,7 +32,8 @@ namespace iksel {
 struct Workspace {
   /// `nominal` is the chain that the data belongs to; `closed_form` is null, or its own.
   Workspace(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
-            const SolverOptions& options, const ClosedFormChain* closed_form);
+            const SolverOptions& options, const ClosedFormChain* closed_form,
+            const BranchTrials* trials);
 
   /// The scheme of one seed at a time, by which given seeds are ranked too.
   Paper scheme;
@@ -42,13 +44,14 @@ struct Workspace {
   struct InLanes {
     InLanes(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
             const SolverOptions& options, const ClosedFormChain* closed_form,
-            const lanes::LaneKernels& kernels);
+            const BranchTrials* trials, const lanes::LaneKernels& kernels);
 
     LaneRefiner refiner;
     LaneQuery query;
     SeedScreen screen;
     /// Only of a chain that can be solved in closed form, at once or for each value of a joint.
     std::optional<Enumeration> branches;
+    std::optional<BranchLanes> branch_lanes;
     std::optional<Sweep> sweep;
     std::optional<RootSweep> roots;
     std::optional<NearestOnCurve> nearest_on_curve;
@@ -105,6 +108,7 @@ class WorkspacePool {
   const SolverOptions& options_;
   std::optional<ClosedFormChain> closed_form_;
   bool solves_in_lanes_;
+  std::optional<BranchTrials> trials_;
   /// As Storage::damaged of the database.
   const std::atomic<bool>* damaged_;
   /// Those that lie idle; a null is a place to put one back. More solves at once than places make

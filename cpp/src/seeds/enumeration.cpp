@@ -8,8 +8,16 @@ namespace {
 
 /// A target is taken to be off by so many tolerances, to be on the safe side.
 constexpr double kMargin = 4;
+/// An angle off by more says nothing [rad].
+constexpr double kVague = 0.3;
 
 }  // namespace
+
+bool is_ruled_out(const lanes::BranchPack& pack, int lane) {
+  if (pack.best[lane] < 0) return true;
+  // Written so that NaN says nothing either.
+  return pack.error[lane] < kVague && pack.beyond[lane] > pack.error[lane];
+}
 
 Enumeration::Enumeration(const ChainModel& model, const ClosedFormChain& chain, bool is_nominal,
                          double position_tolerance, double rotation_tolerance,
@@ -34,14 +42,11 @@ void Enumeration::find(const Goal& goal, const Pose& Y, bool wants_all) {
 }
 
 void Enumeration::take(const Goal& goal, int lane, bool wants_all) {
-  if (pack_.best[lane] < 0) return;
+  if (is_ruled_out(pack_, lane)) return;
   std::array<double, 6>& q = q_[static_cast<std::size_t>(size_)];
   chain_.copy_joints(pack_, lane, q.data());
   const double beyond = pack_.beyond[lane];
-  // An angle off by more says nothing; written so that NaN does not either.
-  constexpr double kVague = 0.3;
   double bound = pack_.error[lane];
-  if (bound < kVague && beyond > bound) return;
   bool is_sure = bound < kVague && pack_.worst[lane] >= 0;
   if (beyond > 0 || (wants_all && !is_sure)) is_sure = is_regular(goal, q, bound);
   if (is_sure && beyond > bound) return;

@@ -58,7 +58,8 @@ class BatchStream {
       in.is_open = true;
       const Pose Y = query_.reduce(task_.is_full_pose() ? in.target : goal.nearest_pose());
       seeds_.begin(refiner, lane, goal, Y);
-      return seeds_.load(refiner, lane);
+      if (seeds_.load(refiner, lane)) return true;
+      give_up(lane);
     }
     return false;
   }

@@ -14,6 +14,7 @@
 #include "refine/lane_refiner.hpp"
 #include "refine/scheme_refiner.hpp"
 #include "search/collector.hpp"
+#include "seeds/branch_lanes.hpp"
 #include "seeds/enumeration.hpp"
 #include "seeds/lane_query.hpp"
 #include "seeds/nearest_on_curve.hpp"
@@ -31,7 +32,8 @@ namespace iksel {
 struct Workspace {
   /// `nominal` is the chain that the data belongs to; `closed_forms` are its own.
   Workspace(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
-            const SolverOptions& options, const ClosedForms& closed_forms);
+            const SolverOptions& options, const ClosedForms& closed_forms,
+            const BranchTrials* trials);
 
   /// The scheme of one seed at a time, by which given seeds are ranked too.
   Paper scheme;
@@ -42,7 +44,7 @@ struct Workspace {
   struct InLanes {
     InLanes(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
             const SolverOptions& options, const ClosedForms& closed_forms,
-            const lanes::LaneKernels& kernels);
+            const BranchTrials* trials, const lanes::LaneKernels& kernels);
 
     LaneRefiner refiner;
     LaneQuery query;
@@ -53,6 +55,7 @@ struct Workspace {
     /// Only of a chain that can be solved in closed form, at once or for each value of a joint.
     std::optional<Enumeration> branches;
     std::vector<std::pair<Task, Enumeration>> task_branches;
+    std::optional<BranchLanes> branch_lanes;
     std::optional<Sweep> sweep;
     std::optional<RootSweep> roots;
     std::optional<NearestOnCurve> nearest_on_curve;
@@ -111,6 +114,7 @@ class WorkspacePool {
   const SolverOptions& options_;
   ClosedForms closed_forms_;
   bool solves_in_lanes_;
+  std::optional<BranchTrials> trials_;
   /// As Storage::damaged of the database.
   const std::atomic<bool>* damaged_;
   /// Those that lie idle; a null is a place to put one back. More solves at once than places make

@@ -8,8 +8,16 @@ namespace {
 
 /// A target is taken to be off by so many tolerances, to be on the safe side.
 constexpr double kMargin = 4;
+/// An angle off by more says nothing [rad].
+constexpr double kVague = 0.3;
 
 }  // namespace
+
+bool is_ruled_out(const lanes::BranchPack& pack, int lane) {
+  if (pack.best[lane] < 0) return true;
+  // Written so that NaN says nothing either.
+  return pack.error[lane] < kVague && pack.beyond[lane] > pack.error[lane];
+}
 
 Enumeration::Enumeration(const ChainModel& model, const ClosedFormChain& chain, bool is_nominal,
                          double position_tolerance, double rotation_tolerance,
@@ -41,15 +49,12 @@ void Enumeration::place_free_joints(double* q) const {
 }
 
 void Enumeration::take(int lane, bool wants_all) {
-  if (pack_.best[lane] < 0) return;
+  if (is_ruled_out(pack_, lane)) return;
   std::array<double, 6>& q = q_[static_cast<std::size_t>(size_)];
   chain_.copy_joints(pack_, lane, q.data());
   place_free_joints(q.data());
   const double beyond = pack_.beyond[lane];
-  // An angle off by more says nothing; written so that NaN does not either.
-  constexpr double kVague = 0.3;
   double bound = pack_.error[lane];
-  if (bound < kVague && beyond > bound) return;
   bool is_sure = bound < kVague && pack_.worst[lane] >= 0;
   if (beyond > 0 || (wants_all && !is_sure)) is_sure = is_regular(lane, bound);
   if (is_sure && beyond > bound) return;
@@ -72,9 +77,13 @@ bool Enumeration::is_regular(int lane, double& bound) const {
     R = R * Eigen::AngleAxisd(pack_.q[j][lane] + form.offset[j], h).toRotationMatrix();
   }
   const double close = form.error / kMargin;
-  if (!((point[5] - Vector3d(pack_.target + 9)).norm() <= close)) return false;
+  const auto target = [&](int row) {
+    return Vector3d(pack_.target[row][lane], pack_.target[row + 1][lane],
+                    pack_.target[row + 2][lane]);
+  };
+  if (!((point[5] - target(9)).norm() <= close)) return false;
   for (int k = 0; k < 3; ++k) {
-    const Vector3d off = R * Vector3d(form.basis[k]) - Vector3d(pack_.target + 3 * k);
+    const Vector3d off = R * Vector3d(form.basis[k]) - target(3 * k);
     if (!(off.norm() <= close)) return false;
   }
   double columns[6][6];

@@ -60,6 +60,10 @@ class Enumeration {
   bool certain_ = false;
 };
 
+/// Whether a lane that solve_branches solved has no branch inside the limits, or none at all, as
+/// far as the form's error lets it be told.
+bool is_ruled_out(const lanes::BranchPack& pack, int lane);
+
 /// These as a source of seeds, or those of a RootSweep.
 template <typename Branches>
 class EnumeratedSeeds {

@@ -158,12 +158,21 @@ lanes::ClosedForm make_form(Closure closure, const ScrewAxes& axes, double unit)
 
 }  // namespace
 
-void ClosedFormChain::set_target(const Pose& Y, lanes::BranchPack& pack) const {
+template <typename Write>
+void ClosedFormChain::make_rows(const Pose& Y, const Write& write) const {
   const Pose target = reversed ? Y.inverse() : Y;
   const Eigen::Matrix3d columns = target.linear() * to_basis;
   const Vector3d w = (target.translation() - first - columns * tail) / unit;
-  for (int i = 0; i < 9; ++i) pack.target[i] = columns(i % 3, i / 3);
-  for (int i = 0; i < 3; ++i) pack.target[9 + i] = w[i];
+  for (int i = 0; i < 9; ++i) write(i, columns(i % 3, i / 3));
+  for (int i = 0; i < 3; ++i) write(9 + i, w[i]);
+}
+
+void ClosedFormChain::set_target(const Pose& Y, lanes::BranchPack& pack) const {
+  make_rows(Y, [&](int row, double value) { std::fill_n(pack.target[row], lanes::kWidth, value); });
+}
+
+void ClosedFormChain::set_target(const Pose& Y, int lane, lanes::BranchPack& pack) const {
+  make_rows(Y, [&](int row, double value) { pack.target[row][lane] = value; });
 }
 
 void ClosedFormChain::copy_joints(const lanes::BranchPack& pack, int lane, double* q) const {
@@ -175,7 +184,7 @@ void ClosedFormChain::copy_joints(const lanes::BranchPack& pack, int lane, doubl
 lanes::BranchPack all_branches() {
   lanes::BranchPack pack{};
   for (int lane = 0; lane < lanes::kWidth; ++lane) {
-    for (int s = 0; s < 3; ++s) pack.sign[s][lane] = (lane >> s & 1) == 0 ? 1 : -1;
+    for (int s = 0; s < 3; ++s) pack.sign[s][lane] = branch_sign(lane, s);
   }
   return pack;
 }

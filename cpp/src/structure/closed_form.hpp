@@ -40,8 +40,10 @@ struct ClosedFormChain {
 
   /// Sets the form's limits and offsets to those of a model.
   void use_limits(const ChainModel& model);
-  /// Sets a pack's target to Y (reduction.hpp), or its inverse if reversed.
+  /// Sets the target of all lanes of a pack, or of one, to Y (reduction.hpp), or its inverse if
+  /// reversed.
   void set_target(const Pose& Y, lanes::BranchPack& pack) const;
+  void set_target(const Pose& Y, int lane, lanes::BranchPack& pack) const;
   [[nodiscard]] bool turns_freely(int joint) const { return (free >> joint & 1U) != 0; }
   /// Whether there are axes besides the chain's joints.
   [[nodiscard]] bool is_completed() const { return dof < 6 || free >> dof != 0; }
@@ -49,7 +51,15 @@ struct ClosedFormChain {
   [[nodiscard]] bool has_families() const { return (free & ((1U << dof) - 1)) != 0; }
   /// Writes the joints of a lane to where they belong in q, the chain's joint values.
   void copy_joints(const lanes::BranchPack& pack, int lane, double* q) const;
+
+ private:
+  /// The rows of a target, each by write(row, value).
+  template <typename Write>
+  void make_rows(const Pose& Y, const Write& write) const;
 };
+
+/// +-1: which solution of its subproblem number `of` a branch takes.
+inline double branch_sign(int branch, int of) { return (branch >> of & 1) == 0 ? 1 : -1; }
 
 /// A pack with another branch in each lane.
 lanes::BranchPack all_branches();

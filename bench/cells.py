@@ -121,7 +121,8 @@ def evaluate(settings: Settings) -> dict[str, Any]:
     solver = make_solver(settings)
     count, seed = settings["count"], settings["seed"]
     figures = iksel.evaluate(solver, count, seed, settings.get("stages", False))
-    return {**figures.to_dict(), "samples": len(solver.database)}
+    database = solver.database
+    return {**figures.to_dict(), "samples": len(database), "bytes": database.nbytes}
 
 
 def attempts(settings: Settings) -> dict[str, Any]:

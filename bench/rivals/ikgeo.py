@@ -26,6 +26,10 @@ def family(axes: Axes) -> str:
     return "gen_six_dof"
 
 
+PANIC = None
+"""What IkGeo.call returns where the package panicked."""
+
+
 class IkGeo(PythonRival):
     """All branches by subproblems, in closed form or with a search over one joint."""
 
@@ -54,15 +58,17 @@ class IkGeo(PythonRival):
         return (turned, np.ascontiguousarray(pose[:3, 3]))
 
     def call(self, *arguments: Any) -> Any:
-        """Solve; where the package panics, it has no answer."""
+        """Solve; PANIC where the package panics."""
         try:
             return self._get_ik(*arguments)
         except BaseException as error:
             # pyo3's PanicException is no Exception, and its class has no import path.
             if type(error).__name__ != "PanicException":
                 raise
-            return []
+            return PANIC
 
     def answers(self, returned: Any) -> list[Array]:
         """The exact branches (a least-squares one says that there is none)."""
+        if returned is PANIC:
+            return []
         return [np.asarray(q) for q, least_squares in returned if not least_squares]

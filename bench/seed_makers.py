@@ -75,7 +75,7 @@ def _learned(model: str, count: int) -> Callable[[Arm], SeedMaker]:
         try:
             module = importlib.import_module("bench.learned.evaluate")
         except ImportError as error:
-            raise UnsupportedError(f"no learned models here: {error}") from None
+            raise UnsupportedError(f"not measured: no {error.name}") from None
         maker: SeedMaker = module.seed_maker(arm, model, count)
         return maker
 
@@ -105,8 +105,8 @@ MAKERS: dict[str, Maker | Selection] = {
 
 
 def paper_solver(arm: Arm, attempts: int) -> iksel.Solver:
-    """The paper's iteration from so many given seeds, one after another."""
-    strategy = iksel.Paper(reselection="none")
+    """The paper's iteration from so many given seeds, in the order of Eq. (5)."""
+    strategy = iksel.Paper(reselection="none" if attempts == 1 else "next")
     options = iksel.SolverOptions.paper().replace(
         strategy=strategy, max_attempts=attempts
     )

@@ -26,9 +26,9 @@ if TYPE_CHECKING:
 
     Times = npt.NDArray[np.int64]
 
-LIMIT_S = 60.0
+LIMIT_S = 300.0
 """No further call is timed after this [s]."""
-PACKAGE_LIMIT_S = 20.0
+PACKAGE_LIMIT_S = 10.0
 """The same for the package, whose search may take a tenth of a second."""
 MANY = 64
 """Candidates that are iterated from at most, one after another until one arrives."""
@@ -44,9 +44,7 @@ def searched(arm: Arm, goals: Targets, settings: Settings) -> dict[str, Any]:
 
 def packaged(arm: Arm, goals: Targets, settings: Settings) -> dict[str, Any]:
     """The package from PyPI: what it returned, and its branches as seeds."""
-    del settings
-    IkGeo.version()
-    package = IkGeo(arm)
+    package = IkGeo(arm, settings["family"])
     asked = [
         package.prepare(*each) for each in zip(goals.poses, goals.starts, strict=True)
     ]
@@ -55,7 +53,6 @@ def packaged(arm: Arm, goals: Targets, settings: Settings) -> dict[str, Any]:
     branches = [np.array(package.answers(value)) for value in returned]
     found = [q[arm.chain.within_limits(q)] if len(q) else q for q in branches]
     return {
-        "family": package.family,
         "panics": sum(value is PANIC for value in returned),
         "empty": sum(value is not PANIC and len(value) == 0 for value in returned),
         "least_squares": sum(

@@ -41,8 +41,8 @@ interpolated: q4 by linear interpolation, joints 1 to 3 anew for it.
 bisected: q4 by bisection to the last digits, joints 1 to 3 anew for it.
 """
 
-BISECTIONS = 45
-"""Halvings of the distance between two values of q4: to 1e-13 rad."""
+BISECTIONS = 36
+"""Halvings of the distance between two values of q4, for 360 of them to 1e-12 rad."""
 ZERO = 1e-6
 """Of e, where bisection ended; above it the sign changed where a branch has a gap."""
 

@@ -19,6 +19,14 @@ TARGETS = 2_000
 IK_GEO_ARMS = ("cvr038", "cvrb1213")
 """What the paper used IK-Geo on."""
 
+SEARCHING = ("two_parallel", "two_intersecting", "gen_six_dof")
+FAMILIES = {
+    "cvr038": SEARCHING,
+    "cvrb1213": SEARCHING,
+    "ur3_wrs": ("three_parallel_two_intersecting",),
+}
+"""The families of the package that fit the arms, by their names in it."""
+
 SEARCHES: dict[str, tuple[int, Between]] = {
     "36 values of q4, interpolated; joints 1 to 3 of the lower": (36, "lower end"),
     "36 values, interpolated; joints 1 to 3 anew": (36, "interpolated"),
@@ -47,9 +55,10 @@ def search_cell(robot: str, name: str, size: Size) -> Settings:
     return {**cell, "values": values, "between": between}
 
 
-def package_cell(robot: str, size: Size) -> Settings:
-    """The package from PyPI."""
-    return {**seeding_cell("ikgeo_package", robot, size), "rival": "IK-Geo"}
+def package_cell(robot: str, family: str, size: Size) -> Settings:
+    """The package from PyPI by one of its families."""
+    cell = seeding_cell("ikgeo_package", robot, size)
+    return {**cell, "rival": "IK-Geo", "family": family}
 
 
 def enumeration_cell(robot: str, size: Size) -> Settings:
@@ -68,7 +77,11 @@ def seeding_jobs(size: Size) -> list[Job]:
         search_cell(robot, name, size) for robot in IK_GEO_ARMS for name in SEARCHES
     ]
     search += [enumeration_cell(robot, size) for robot in IK_GEO_ARMS]
-    package = [package_cell(robot, size) for robot in (*IK_GEO_ARMS, "ur3_wrs")]
+    package = [
+        package_cell(robot, family, size)
+        for robot, families in FAMILIES.items()
+        for family in families
+    ]
     makers = [
         Job(
             f"seeds, {name}",

@@ -39,11 +39,11 @@ class IkGeo(PythonRival):
     keeps_limits = False
     limit_s = 3.0
 
-    def __init__(self, arm: Arm) -> None:
-        """Choose the family."""
+    def __init__(self, arm: Arm, name: str | None = None) -> None:
+        """Take a family by its name in the package; None: choose one."""
         module = importlib.import_module("ik_geo")
         self._axes = axes_of(arm)
-        self.family = family(self._axes)
+        self.family = name or family(self._axes)
         make = getattr(module.Robot, self.family)
         robot = make(self._axes.h.tolist(), self._axes.p.tolist())
         self._get_ik = robot.get_ik

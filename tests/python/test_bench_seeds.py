@@ -149,6 +149,22 @@ class TestMakers:
         assert done.attempts.tolist() == [i != 3 for i in range(COUNT)]
         assert done.iterations.max() == 0
 
+    def test_the_next_seed_follows_a_failed_one(self):
+        """As often as all of them, each by itself, and never with more attempts."""
+        arm = load_arm("cvr038")
+        goals = targets.make_targets(arm, "uniform", COUNT, SEED)
+        seeds = arm.robot.random_configurations(8 * COUNT, SEED + 1)
+        seeds = seeds.reshape(COUNT, 8, 6)
+        together = from_seeds(paper_solver(arm, 8), arm, goals.poses, list(seeds))
+        once = paper_solver(arm, 1)
+        single = [
+            from_seeds(once, arm, goals.poses, list(seeds[:, [i]])).right
+            for i in range(8)
+        ]
+        assert 0 < together.right.sum() < COUNT
+        assert np.array_equal(together.right, np.any(single, axis=0))
+        assert (together.attempts[~together.right] == 8).all()
+
     @pytest.mark.parametrize("name", ["random", "IK-Geo, 36 values of q4"])
     def test_asked_outside_the_solver(self, name):
         arm = load_arm("cvr038")
@@ -185,12 +201,10 @@ class TestPackage:
         kinds = iter([*range(4), *range(4)] * 2)
 
         class Fake:
-            family = "fake"
-
-            def __init__(self, arm):
+            def __init__(self, arm, family):
+                assert family == "two_parallel"
                 self.rows = iter([*goals.witnesses, *goals.witnesses])
 
-            version = staticmethod(lambda: "1")
             prepare = staticmethod(lambda pose, start: (pose,))
             answers = package.IkGeo.answers
 
@@ -199,7 +213,7 @@ class TestPackage:
                 return [[(q, False)], [], [(q, True)], package.PANIC][next(kinds)]
 
         monkeypatch.setattr(ikgeo_cells, "IkGeo", Fake)
-        cell = ikgeo_cells.packaged(arm, goals, {})
+        cell = ikgeo_cells.packaged(arm, goals, {"family": "two_parallel"})
         counts = [cell[w] for w in ("count", "empty", "least_squares", "panics")]
         assert counts == [8, 2, 2, 2]
         assert cell["right"] == cell["seeded"] == cell["direct"] == 2
@@ -250,7 +264,7 @@ class TestText:
         told = ikgeo_section.text(view)
         assert f"| published | {NONE} | 94.06 |" in told
         assert "| IKSel, `solve_all` |" in told
-        assert "C1: not run: not measured" in told
+        assert "| C1, `two_parallel` |" in told
         told = makers_section.text(view)
         assert "Over C0, a first attempt arrives from" in told
         assert f"| C0, MDN | JAX | {NONE} |" in told

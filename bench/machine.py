@@ -28,6 +28,8 @@ MEASURING = (
     "timing.py",
     "paper/artefact.py",
     "requests.py",
+    "seed_makers.py",
+    "ikgeo/*.py",
     "rivals/*.py",
     "cpp/baselines/*",
 )

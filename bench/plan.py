@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import iksel
 from bench.arms import RIVAL_ARMS
 from bench.paper.plan import paper_jobs
+from bench.paper.seeding import seeding_jobs
 from bench.rivals import RIVALS
 from bench.size import SEED, Job, Size
 
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
     from bench.store import Settings
 
-SECTIONS = ("paper", "rivals", "no", "robots", "requests")
+SECTIONS = ("paper", "seeds", "rivals", "no", "robots", "requests")
 """What --only takes."""
 
 
@@ -41,6 +42,7 @@ def plan(
     """
     jobs = [
         *paper_jobs(size),
+        *seeding_jobs(size),
         *_rival_jobs(size),
         *no_jobs(size),
         _robots_job(size),
@@ -87,7 +89,10 @@ SECONDS_PER_TARGET = {
     "targets": 1e-4,
     "batch": 1e-5,
     "artefact": 1e-2,
-    "seeds": 5e-3,
+    "ikgeo_search": 5e-3,
+    "ikgeo_package": 1e-2,
+    "ikgeo_enumeration": 1e-4,
+    "first_attempt": 1e-3,
     "no": 1e-3,
     "near_branches": 1e-3,
     "near_moves": 1e-3,

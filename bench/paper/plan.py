@@ -138,13 +138,6 @@ def artefact_rows(size: Size) -> dict[str, dict[str, Any]]:
     return {**rows, "low_discrepancy, medium": even}
 
 
-def seeds_cell(robot: str, size: Size) -> Settings:
-    """IK-Geo's solutions as seeds of the paper's iteration."""
-    count = min(size.paper, 2_000)
-    cell = paper_cell(robot, size, {}, count)
-    return {**cell, "cell": "seeds", "rival": "IK-Geo", "kind": "uniform"}
-
-
 def paper_jobs(size: Size) -> list[Job]:
     """All jobs of the paper."""
     jobs = []
@@ -175,8 +168,6 @@ def paper_jobs(size: Size) -> list[Job]:
     rows = artefact_rows(size).values()
     artefact = [artefact_cell("ur3_wrs", size, row) for row in rows]
     jobs.append(Job("paper, grid artefact", "paper", artefact, timed=False))
-    seeded = [seeds_cell(robot, size) for robot in ("cvr038", "cvrb1213", "ur3_wrs")]
-    jobs.append(Job("paper, IK-Geo as seed", "paper", seeded))
     return jobs
 
 

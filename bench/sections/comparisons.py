@@ -6,7 +6,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from bench import plan
-from bench.arms import PAPER_ARMS
 from bench.markdown import NONE, microseconds, percent, table
 from bench.paper import plan as paper_plan
 from bench.paper import published
@@ -22,7 +21,6 @@ def parts(view: View) -> list[str]:
         *_trac_ik(view),
         *_rotation(view),
         *_artefact(view),
-        *_ik_geo(view),
         _learned(),
     ]
 
@@ -161,52 +159,6 @@ def _artefact(view: View) -> list[str]:
 
 def _of(part: float | None, whole: int) -> str:
     return NONE if part is None or whole == 0 else percent(part, whole, 1)
-
-
-def _ik_geo(view: View) -> list[str]:
-    rows, reasons = [], []
-    for robot in ("cvr038", "cvrb1213", "ur3_wrs"):
-        settings = paper_plan.seeds_cell(robot, view.size)
-        cell = view.get(settings)
-        theirs = [published.IK_GEO[how].get(robot) for how in ("direct", "as seed")]
-        if cell is None:
-            missing = view.report["missing"].get("IK-Geo")
-            reasons.append(f"`{robot}`: {missing or view.why_not(settings)}")
-            continue
-        rows.append(
-            [
-                PAPER_ARMS[robot],
-                *_pair(
-                    cell["direct_right"],
-                    cell["count"],
-                    cell["direct_mean_us"],
-                    theirs[0],
-                ),
-                *_pair(cell["right"], cell["count"], cell["mean_us"], theirs[1]),
-            ]
-        )
-    parts = [
-        "### IK-Geo, directly and as seed",
-        (
-            "Success in percent (published), mean time. The paper searched joint 4 "
-            "of C0 and C1 in 36 divisions in Python; the package ik-geo has closed "
-            "forms, and its own one-dimensional search for arms like C0 and C1."
-        ),
-    ]
-    header = ["", "direct %", "µs", "as seed %", "µs"]
-    if rows:
-        parts.append(table(header, rows))
-    if reasons:
-        parts.append("Not run: " + "; ".join(reasons) + ".")
-    return parts
-
-
-def _pair(
-    right: int, count: int, mean_us: float, theirs: tuple[float, float] | None
-) -> list[str]:
-    shown = percent(right, count) + (f" ({theirs[0]:.2f})" if theirs else "")
-    published_ms = f" ({theirs[1]:.2f} ms)" if theirs else ""
-    return [shown, microseconds(mean_us) + published_ms]
 
 
 def _learned() -> str:

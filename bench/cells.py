@@ -254,6 +254,15 @@ def seeds(settings: Settings) -> dict[str, Any]:
     }
 
 
+def learned(settings: Settings) -> dict[str, Any]:
+    """Outputs of a learned model, and they as seeds; bench.learned.evaluate."""
+    try:
+        from bench.learned.evaluate import measured  # noqa: PLC0415 - needs jax
+    except ModuleNotFoundError as missing:
+        return {"unsupported": f"{missing.name} is not installed"}
+    return measured(settings)
+
+
 ON_TARGETS: dict[str, Callable[[Arm, Targets, Settings], dict[str, Any]]] = {
     "no": answered,
     "near_branches": near_branches,
@@ -282,6 +291,7 @@ CELLS: dict[str, Callable[[Settings], dict[str, Any]]] = {
     "batch": batch,
     "artefact": artefact,
     "seeds": seeds,
+    "learned": learned,
     **{name: functools.partial(_on_targets, name) for name in ON_TARGETS},
     "path": path,
 }

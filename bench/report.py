@@ -12,7 +12,7 @@ from bench import machine
 from bench.plots import draw_all
 from bench.rivals import RIVALS
 from bench.rivals.base import UnsupportedError
-from bench.sections import no, paper, requests, rivals, robots
+from bench.sections import learned, no, paper, requests, rivals, robots
 from bench.store import write_json
 from bench.view import View
 
@@ -123,6 +123,7 @@ def render(report: Report, folder: Path) -> None:
             rivals.text(view),
             no.text(view),
             paper.text(view),
+            learned.text(view),
             robots.text(view),
             requests.text(view),
             _tail(report),

@@ -64,15 +64,6 @@ IK_GEO = {
 }
 """Table "ikgeo": success and mean ms; 1-D search over joint 4 in 36 divisions."""
 
-LEARNED = {
-    "MDN, as seed": (87.80, 59.30, 25.35, 92.90),
-    "IKFlow, first as seed": (88.98, 82.51, 42.61, 90.66),
-    "IKFlow, best of 32 as seed": (96.72, 95.10, 88.46, 98.56),
-    "IKDP, first as seed": (94.22, 90.06, 80.70, 90.81),
-    "IKDP, best of 32 as seed": (95.95, 96.50, 94.62, 97.59),
-}
-"""Table "learning": success of learned seeds; the models are not public."""
-
 CVT_ATTEMPTS = (2, 6, 21)
 CVT = {
     "cvr038": (90.1, 97.7, 98.9),

@@ -26,7 +26,6 @@ def parts(view: View) -> list[str]:
         *_rotation(view),
         *_artefact(view),
         *_ik_geo(view),
-        _learned(),
     ]
 
 
@@ -221,20 +220,3 @@ def _pair(
     shown = percent(right, count) + (f" ({theirs[0]:.2f})" if theirs else "")
     published_ms = f" ({theirs[1]:.2f} ms)" if theirs else ""
     return [shown, microseconds(mean_us) + published_ms]
-
-
-def _learned() -> str:
-    rows = [
-        [name, *(f"{value:.2f}" for value in values)]
-        for name, values in published.LEARNED.items()
-    ]
-    return "\n\n".join(
-        [
-            "### Not run: learned seeds",
-            (
-                "Published only: the authors trained these models for their robots. "
-                "`Solver.solve(pose, seeds=...)` takes what such a model gives."
-            ),
-            table(["success %", *HEADER], rows),
-        ]
-    )

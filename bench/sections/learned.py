@@ -35,17 +35,11 @@ CONDITIONS = (
 
 def text(view: View) -> str:
     """The whole section."""
-    cells = list(_cells(view))
-    if not cells:
+    if not view.has_any("learned"):
         return ""
-    parts = [
-        "## Learned seeds",
-        CONDITIONS,
-        _success(cells),
-        _costs(cells),
-        *_curves(cells),
-        *_missing(view),
-    ]
+    cells = list(_cells(view))
+    tables = [_success(cells), _costs(cells), *_curves(cells)] if cells else []
+    parts = ["## Learned seeds", CONDITIONS, *tables, *_missing(view)]
     return "\n\n".join(parts)
 
 

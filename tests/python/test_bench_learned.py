@@ -279,6 +279,9 @@ def test_section():
     }
     entries = [{"settings": cell, "result": result} for cell in cells[1:]]
     entries.append({"settings": cells[0], "result": {"unsupported": "no jax"}})
+    nothing = section.text(View({"size": vars(QUICK), "cells": entries[-1:]}))
+    assert "MDN, C0: no jax" in nothing
+    assert "MDN, C1: not measured" in nothing
     shown = section.text(View({"size": vars(QUICK), "cells": entries}))
     assert "MDN, C0: no jax" in shown
     assert "| diffusion (IKDP), IRB | 0.00 | 1.0 (21.9) | 1.0 (7.3) |" in shown

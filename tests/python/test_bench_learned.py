@@ -16,7 +16,7 @@ pytest.importorskip("optax", reason="trains the learned seeds")
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from bench.arms import load_arm
+from bench.arms import PAPER_ARMS, load_arm
 from bench.learned import data, evaluate, flow, models, plan, train
 from bench.learned.diffusion import Diffusion, schedule
 from bench.learned.mdn import Mdn
@@ -27,6 +27,8 @@ from bench.view import View
 import iksel
 
 SEED = 7
+MANY = 6_000_000
+"""Bytes that all committed weights may have."""
 
 
 @pytest.fixture
@@ -258,6 +260,33 @@ class TestEvaluation:
         q = robot.random_configurations(8, SEED)
         for i, pose in enumerate(robot.fk(q)):
             assert evaluate.best(robot, q, pose) == i
+
+
+class TestCommitted:
+    def test_all_are_there_and_small(self):
+        paths = {
+            plan.weights_path(robot, model)
+            for robot in PAPER_ARMS
+            for model in plan.MODELS
+        }
+        assert set(plan.WEIGHTS.glob("*.npz")) == paths
+        assert sum(path.stat().st_size for path in paths) < MANY
+
+    @pytest.mark.parametrize("model", plan.MODELS)
+    @pytest.mark.parametrize("robot", PAPER_ARMS)
+    def test_are_what_their_names_say(self, robot, model):
+        path = plan.weights_path(robot, model)
+        _, scaling, facts = models.load_weights(path)
+        assert (facts.robot, facts.model) == (robot, model)
+        assert len(scaling.q_mean) == load_arm(robot).chain.dof
+        curve = evaluate.read_curve(path.with_suffix(".csv"))
+        assert curve[-1]["steps"] == facts.steps
+        assert curve[-1]["minutes"] == facts.minutes > 0.5
+
+    def test_are_worth_what_is_said(self):
+        model, scaling, _ = models.load_weights(plan.weights_path("cvr038", "mdn"))
+        solved = evaluate.seeds_solved("cvr038", model, scaling, SEED, 500)
+        assert solved["first"] > 83.0
 
 
 def test_section():

@@ -217,6 +217,15 @@ def artefact(settings: Settings) -> dict[str, Any]:
     return singular_first(solver, arm.chain.fk(q))
 
 
+def learned(settings: Settings) -> dict[str, Any]:
+    """Outputs of a learned model, and they as seeds; bench.learned.evaluate."""
+    try:
+        from bench.learned.evaluate import measured  # noqa: PLC0415 - needs jax
+    except ModuleNotFoundError as missing:
+        return {"unsupported": f"{missing.name} is not installed"}
+    return measured(settings)
+
+
 ON_TARGETS: dict[str, Callable[[Arm, Targets, Settings], dict[str, Any]]] = {
     "no": answered,
     "near_branches": near_branches,
@@ -248,6 +257,7 @@ CELLS: dict[str, Callable[[Settings], dict[str, Any]]] = {
     "rival": rival,
     "batch": batch,
     "artefact": artefact,
+    "learned": learned,
     **{name: functools.partial(_on_targets, name) for name in ON_TARGETS},
     "path": path,
 }

@@ -14,6 +14,7 @@ from bench.rivals import RIVALS
 from bench.rivals.base import UnsupportedError
 from bench.sections import (
     ikgeo,
+    learned,
     no,
     paper,
     requests,
@@ -132,6 +133,7 @@ def render(report: Report, folder: Path) -> None:
             no.text(view),
             paper.text(view),
             ikgeo.text(view),
+            learned.text(view),
             seed_makers.text(view),
             robots.text(view),
             requests.text(view),

@@ -196,15 +196,6 @@ IK_GEO_ERRORS = {
 }
 """The same table, direct search: mean, deviation, least, quartiles 1 and 3, most."""
 
-LEARNED = {
-    "MDN, as seed": (87.80, 59.30, 25.35, 92.90),
-    "IKFlow, first as seed": (88.98, 82.51, 42.61, 90.66),
-    "IKFlow, best of 32 as seed": (96.72, 95.10, 88.46, 98.56),
-    "IKDP, first as seed": (94.22, 90.06, 80.70, 90.81),
-    "IKDP, best of 32 as seed": (95.95, 96.50, 94.62, 97.59),
-}
-"""Table "learning": success of learned seeds; the models are not public."""
-
 CVT_ATTEMPTS = (2, 6, 21)
 CVT = {
     "cvr038": (90.1, 97.7, 98.9),

@@ -21,7 +21,6 @@ def parts(view: View) -> list[str]:
         *_trac_ik(view),
         *_rotation(view),
         *_artefact(view),
-        _learned(),
     ]
 
 
@@ -159,20 +158,3 @@ def _artefact(view: View) -> list[str]:
 
 def _of(part: float | None, whole: int) -> str:
     return NONE if part is None or whole == 0 else percent(part, whole, 1)
-
-
-def _learned() -> str:
-    rows = [
-        [name, *(f"{value:.2f}" for value in values)]
-        for name, values in published.LEARNED.items()
-    ]
-    return "\n\n".join(
-        [
-            "### Not run: learned seeds",
-            (
-                "Published only: the authors trained these models for their robots. "
-                "`Solver.solve(pose, seeds=...)` takes what such a model gives."
-            ),
-            table(["success %", *HEADER], rows),
-        ]
-    )

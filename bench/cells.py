@@ -19,12 +19,14 @@ import iksel
 from bench.arms import load_arm
 from bench.branches import all_branches, near_branches, restarts
 from bench.check import judge, right
+from bench.ikgeo.cells import enumerated, packaged, searched
 from bench.machine import fingerprint
 from bench.no import answered
 from bench.paper.artefact import singular_first
 from bench.requests import near_moves, path
 from bench.rivals import RIVALS
 from bench.rivals.base import UnsupportedError
+from bench.seed_makers import first_attempt
 from bench.targets import cached_targets
 from bench.timing import summary
 
@@ -121,7 +123,8 @@ def evaluate(settings: Settings) -> dict[str, Any]:
     solver = make_solver(settings)
     count, seed = settings["count"], settings["seed"]
     figures = iksel.evaluate(solver, count, seed, settings.get("stages", False))
-    return {**figures.to_dict(), "samples": len(solver.database)}
+    database = solver.database
+    return {**figures.to_dict(), "samples": len(database), "bytes": database.nbytes}
 
 
 def attempts(settings: Settings) -> dict[str, Any]:
@@ -214,44 +217,13 @@ def artefact(settings: Settings) -> dict[str, Any]:
     return singular_first(solver, arm.chain.fk(q))
 
 
-def seeds(settings: Settings) -> dict[str, Any]:
-    """Solutions of another solver as the only seeds of the paper's iteration."""
-    solver: Any = make_solver(settings)
-    if "database_seeds" not in (type(solver).solve.__doc__ or ""):
-        return {"unsupported": "this iksel has no Solver.solve(pose, seeds=...)"}
-    arm = load_arm(settings["robot"])
+def learned(settings: Settings) -> dict[str, Any]:
+    """Outputs of a learned model, and they as seeds; bench.learned.evaluate."""
     try:
-        source = _rival(settings["robot"], settings["rival"])
-    except UnsupportedError as reason:
-        return {"unsupported": str(reason)}
-    goals = targets_of(settings)
-    run = source.run(goals)
-    done = len(run.answers)
-    direct = judge(arm.chain, goals.poses[:done], run.answers)
-    times = np.array(run.times_ns, dtype=float)
-    answers: list[list[Any]] = []
-    for i, found in enumerate(run.answers):
-        if not found:
-            answers.append([])
-            continue
-        given = np.array(found)
-        begin = time.perf_counter_ns()
-        result = solver.solve(goals.poses[i], seeds=given, database_seeds=False)
-        times[i] += time.perf_counter_ns() - begin
-        answers.append([result.q] if result.success else [])
-    tolerance = solver.options.position_tolerance, solver.options.rotation_tolerance
-    solved = [
-        bool(right(arm.chain, goals.poses[i : i + 1], np.array(found), *tolerance)[0])
-        for i, found in enumerate(answers)
-        if found
-    ]
-    return {
-        "count": done,
-        "direct_right": int(direct.right.sum()),
-        "direct_mean_us": float(np.mean(run.times_ns)) / 1e3,
-        "right": sum(solved),
-        "mean_us": float(times.mean()) / 1e3,
-    }
+        from bench.learned.evaluate import measured  # noqa: PLC0415 - needs jax
+    except ModuleNotFoundError as missing:
+        return {"unsupported": f"{missing.name} is not installed"}
+    return measured(settings)
 
 
 ON_TARGETS: dict[str, Callable[[Arm, Targets, Settings], dict[str, Any]]] = {
@@ -260,6 +232,10 @@ ON_TARGETS: dict[str, Callable[[Arm, Targets, Settings], dict[str, Any]]] = {
     "near_moves": near_moves,
     "all_branches": all_branches,
     "restarts": restarts,
+    "ikgeo_search": searched,
+    "ikgeo_package": packaged,
+    "ikgeo_enumeration": enumerated,
+    "first_attempt": first_attempt,
 }
 """Functions of an arm, its targets and settings, by the names under "cell"."""
 
@@ -281,7 +257,7 @@ CELLS: dict[str, Callable[[Settings], dict[str, Any]]] = {
     "rival": rival,
     "batch": batch,
     "artefact": artefact,
-    "seeds": seeds,
+    "learned": learned,
     **{name: functools.partial(_on_targets, name) for name in ON_TARGETS},
     "path": path,
 }

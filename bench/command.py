@@ -15,6 +15,7 @@ from bench.arms import RIVAL_ARMS
 from bench.cells import WORK
 from bench.frozen import compare, record
 from bench.guard import guard
+from bench.learned import command as learned_command
 from bench.machine import fingerprint, stale
 from bench.report import (
     collect,
@@ -26,7 +27,7 @@ from bench.report import (
 )
 from bench.rivals import RIVALS
 from bench.run import run_jobs
-from bench.sections import no
+from bench.sections import learned, no
 from bench.size import FULL, QUICK, SEED
 from bench.store import Store
 from bench.view import View
@@ -68,6 +69,7 @@ def parser() -> argparse.ArgumentParser:
     frozen.add_argument("action", choices=["record", "compare"])
     frozen.add_argument("file", type=Path, help="where, e.g. build/frozen.json")
     _add_no(commands)
+    learned_command.add(commands)
     return top
 
 
@@ -149,6 +151,8 @@ def main(arguments: list[str] | None = None) -> int:
         return action(options.file)
     if options.command == "no":
         return _no(options, given)
+    if options.command == "learned":
+        return _learned(options, given)
     if options.command == "render":
         render(load_report(options.output), options.output)
         return 0
@@ -170,6 +174,24 @@ def _no(options: argparse.Namespace, given: list[str]) -> int:
     for line in bad:
         sys.stdout.write(f"WRONG: {line}\n")
     return 1 if bad or report["failures"] else 0
+
+
+def _learned(options: argparse.Namespace, given: list[str]) -> int:
+    if options.action == "train":
+        return learned_command.train(options)
+    if options.action == "table":
+        sys.stdout.write(learned.text(View(load_report(BENCH))) + "\n")
+        return 0
+    size = QUICK if options.quick else FULL
+    jobs = plan.learned_plan(size, options.robots or None, options.models)
+    if not jobs:
+        sys.stderr.write("bench: no learned models for these robots\n")
+        return 2
+    report = _measured(jobs, size, {}, given, fresh=options.fresh)
+    if report is None:
+        return 130
+    sys.stdout.write(learned.text(View(report)) + "\n")
+    return 1 if report["failures"] else 0
 
 
 def _report(options: argparse.Namespace, given: list[str]) -> int:

@@ -12,7 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 import iksel
 from bench.arms import RIVAL_ARMS
+from bench.learned.plan import learned_jobs
 from bench.paper.plan import paper_jobs
+from bench.paper.seeding import seeding_jobs
 from bench.rivals import RIVALS
 from bench.size import SEED, Job, Size
 
@@ -21,7 +23,7 @@ if TYPE_CHECKING:
 
     from bench.store import Settings
 
-SECTIONS = ("paper", "rivals", "no", "robots", "requests")
+SECTIONS = ("paper", "learned", "seeds", "rivals", "no", "robots", "requests")
 """What --only takes."""
 
 
@@ -41,6 +43,8 @@ def plan(
     """
     jobs = [
         *paper_jobs(size),
+        *learned_jobs(size),
+        *seeding_jobs(size),
         *_rival_jobs(size),
         *no_jobs(size),
         _robots_job(size),
@@ -55,6 +59,18 @@ def no_plan(
     """The jobs of the section "no" alone, on any robots."""
     jobs = no_jobs(size, robots)
     return _ordered([_kept(job, None, None, rivals) for job in jobs])
+
+
+def learned_plan(
+    size: Size, robots: Collection[str] | None, models: Collection[str]
+) -> list[Job]:
+    """The jobs of the section "learned" alone."""
+    jobs = [_kept(job, robots, None, ()) for job in learned_jobs(size)]
+    kept = [
+        replace(job, cells=[cell for cell in job.cells if cell["model"] in models])
+        for job in jobs
+    ]
+    return _ordered(kept)
 
 
 def _ordered(jobs: list[Job]) -> list[Job]:
@@ -87,7 +103,11 @@ SECONDS_PER_TARGET = {
     "targets": 1e-4,
     "batch": 1e-5,
     "artefact": 1e-2,
-    "seeds": 5e-3,
+    "ikgeo_search": 5e-3,
+    "ikgeo_package": 1e-2,
+    "ikgeo_enumeration": 1e-4,
+    "first_attempt": 1e-3,
+    "learned": 5e-3,
     "no": 1e-3,
     "near_branches": 1e-3,
     "near_moves": 1e-3,

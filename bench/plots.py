@@ -12,7 +12,7 @@ from bench.arms import PAPER_ARMS, RIVAL_ARMS
 from bench.paper import plan as paper_plan
 from bench.paper.published import ROBOTS
 from bench.rivals import RIVALS
-from bench.sections.ablations import curve
+from bench.sections.curves import curve
 from bench.timing import QUANTILES
 
 if TYPE_CHECKING:

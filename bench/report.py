@@ -12,7 +12,16 @@ from bench import machine
 from bench.plots import draw_all
 from bench.rivals import RIVALS
 from bench.rivals.base import UnsupportedError
-from bench.sections import no, paper, requests, rivals, robots
+from bench.sections import (
+    ikgeo,
+    learned,
+    no,
+    paper,
+    requests,
+    rivals,
+    robots,
+    seed_makers,
+)
 from bench.store import write_json
 from bench.view import View
 
@@ -123,6 +132,9 @@ def render(report: Report, folder: Path) -> None:
             rivals.text(view),
             no.text(view),
             paper.text(view),
+            ikgeo.text(view),
+            learned.text(view),
+            seed_makers.text(view),
             robots.text(view),
             requests.text(view),
             _tail(report),

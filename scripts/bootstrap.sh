@@ -7,7 +7,8 @@
 #   --dev       also what tests, benchmarks and the extra [dev] need
 #   --lint      also clang-format, clang-tidy and shellcheck
 #   --fuzz      also clang with libFuzzer
-#   --bench     also NLopt for the C++ baselines, and from PyPI the solvers to compare with
+#   --bench     also NLopt for the C++ baselines, and from PyPI the solvers to compare with and
+#               JAX for the learned seeds
 #   --apt-only  only the system's packages, no virtual environment
 #
 # System packages come from apt; those that are there already are left alone. The virtual environment

@@ -19,7 +19,11 @@ if TYPE_CHECKING:
 
 
 def singular_first(solver: iksel.Solver, poses: Array) -> dict[str, Any]:
-    """How many samples are singular, and how often one is ranked first by Eq. (5).
+    """How many samples are singular, how often one ranks first, and what comes of it.
+
+    Of the targets, "singular_first" is the share whose first sample by Eq. (5) is
+    singular, "singular_both" that whose first two are; "solved_by" are those that the
+    first sample solves, singular or regular.
 
     Args:
         solver: A solver with a full key and no TCP.
@@ -31,22 +35,28 @@ def singular_first(solver: iksel.Solver, poses: Array) -> dict[str, Any]:
     database, options = solver.database, solver.options
     ranks = _ranks(solver)
     full = min(6, database.dof)
-    first = 0
+    first = np.zeros(len(poses), dtype=bool)
+    both = 0
     among = 0.0
-    for pose in poses:
+    for i, pose in enumerate(poses):
         near = database.nearest(pose, options.strategy.neighbours)
-        inverses = np.array([database.pseudo_inverse(i) for i in near])
-        differences = _keys(pose) - _keys(np.array([database.pose(i) for i in near]))
+        inverses = np.array([database.pseudo_inverse(k) for k in near])
+        differences = _keys(pose) - _keys(np.array([database.pose(k) for k in near]))
         adjustments = np.einsum("kij,kj->ki", inverses, differences)
-        best = near[int(np.argmin(np.linalg.norm(adjustments, axis=1)))]
+        best = near[np.argsort(np.linalg.norm(adjustments, axis=1))[:2]]
         among += float(np.mean(ranks[near] < full))
-        first += int(ranks[best] < full)
+        first[i] = ranks[best[0]] < full
+        both += int(np.all(ranks[best] < full))
     result = solver.solve_batch(poses)
+    by_first = result.success & (result.attempts == 1)
     return {
         "samples": len(database),
         "singular_samples": float(np.mean(ranks < full)),
         "singular_neighbours": among / len(poses),
-        "singular_first": first / len(poses),
+        "singular_first": int(first.sum()) / len(poses),
+        "singular_both": both / len(poses),
+        "solved_by_singular": int(by_first[first].sum()),
+        "solved_by_regular": int(by_first[~first].sum()),
         "count": len(poses),
         "solved": int(result.solved),
     }

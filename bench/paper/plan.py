@@ -21,7 +21,13 @@ SELECTIONS: dict[str, dict[str, Any]] = {
 }
 """The three methods of the paper's figures, as changes to the paper preset."""
 
-ROTATION_KEYS = ("rotation_vector", "matrix", "euler", "quaternion")
+ROTATION_KEYS = (
+    "rotation_vector",
+    "matrix",
+    "euler",
+    "quaternion",
+    "dual_quaternion",
+)
 
 
 def paper_cell(
@@ -67,27 +73,39 @@ def sampling_of(name: str, scale: str = "medium") -> dict[str, Any]:
     return changes
 
 
-def ablation_2(scheme: str) -> dict[str, Any]:
-    """Overrides of a row of Table II; a note after the name is another reading."""
-    name, _, note = scheme.partition(", ")
-    changes: dict[str, Any] = {} if name == "dls" else {"iteration": name}
-    return {**changes, **ABLATION_2_NOTES.get(note, {})}
-
-
-ABLATION_2_NOTES: dict[str, dict[str, Any]] = {
-    "6 steps": {"max_iterations": 6},
-    "growth stop on": {"growth_stop": "on"},
+ABLATION_2_ROWS: dict[str, dict[str, Any]] = {
+    "dls": {},
+    "dls, damping 1e-4": {"damping": 1e-4},
+    "pinv": {"iteration": "pinv"},
+    "pinv_rr": {"iteration": "pinv_rr", "max_iterations": 7},
+    "pinv_rr, 6 steps": {"iteration": "pinv_rr", "max_iterations": 6},
+    "pinv_rr, 8 steps": {"iteration": "pinv_rr"},
+    "pinv_rr, no growth stop": {
+        "iteration": "pinv_rr",
+        "max_iterations": 7,
+        "growth_stop": "off",
+    },
+    "cwln": {"iteration": "cwln"},
+    "cwpi": {"iteration": "cwpi", "growth_stop": "on"},
+    "cwpi, no growth stop": {"iteration": "cwpi"},
+    "cwpi, neither stop": {"iteration": "cwpi", "min_step": 0.0},
 }
+"""Rows of Table II, as its reference implementation reads; after a comma another
+reading. The text says of cwpi that the growth stop is off."""
 
-ABLATION_2_ROWS = (
-    "dls",
-    "pinv",
-    "pinv_rr",
-    "pinv_rr, 6 steps",
-    "cwln",
-    "cwpi",
-    "cwpi, growth stop on",
-)
+BESIDE_UNSORTED = ABLATION_2_ROWS["cwpi, neither stop"]
+"""The row beside the one that is called TRAC-IK."""
+
+UNSORTED = {
+    "ranking": "nearest",
+    "reselection": "none",
+    "max_attempts": 1,
+    **BESIDE_UNSORTED,
+}
+"""The baseline whose numbers the authors' log has where the paper has TRAC-IK's."""
+
+UNSORTED_STOPPED = {**UNSORTED, "min_step": 1e-6}
+"""The same with the small-step stop."""
 
 ABLATION_3_ROWS: dict[str, dict[str, Any]] = {
     "Eq. (2)": {"ranking": "nearest", "reselection": "next"},
@@ -120,13 +138,6 @@ def artefact_rows(size: Size) -> dict[str, dict[str, Any]]:
     return {**rows, "low_discrepancy, medium": even}
 
 
-def seeds_cell(robot: str, size: Size) -> Settings:
-    """IK-Geo's solutions as seeds of the paper's iteration."""
-    count = min(size.paper, 2_000)
-    cell = paper_cell(robot, size, {}, count)
-    return {**cell, "cell": "seeds", "rival": "IK-Geo", "kind": "uniform"}
-
-
 def paper_jobs(size: Size) -> list[Job]:
     """All jobs of the paper."""
     jobs = []
@@ -137,6 +148,9 @@ def paper_jobs(size: Size) -> list[Job]:
             curves = [cell for cell in cells if cell["cell"] == "attempts"]
             timed = [cell for cell in cells if cell["cell"] != "attempts"]
             name = f"paper, {short}, {sampling}"
+            if sampling == "grid":
+                both = (UNSORTED, UNSORTED_STOPPED)
+                timed += [paper_cell(robot, size, row) for row in both]
             jobs.append(Job(f"{name}, curves", "paper", curves, timed=False))
             jobs.append(Job(name, "paper", timed))
         figure = [
@@ -154,8 +168,6 @@ def paper_jobs(size: Size) -> list[Job]:
     rows = artefact_rows(size).values()
     artefact = [artefact_cell("ur3_wrs", size, row) for row in rows]
     jobs.append(Job("paper, grid artefact", "paper", artefact, timed=False))
-    seeded = [seeds_cell(robot, size) for robot in ("cvr038", "cvrb1213", "ur3_wrs")]
-    jobs.append(Job("paper, IK-Geo as seed", "paper", seeded))
     return jobs
 
 
@@ -166,12 +178,11 @@ def _table_cells(
     cells = [paper_cell(robot, size, sampling_of(sampling, scale)) for scale in scales]
     if "medium" in scales:
         base = sampling_of(sampling)
-        rows = [ablation_2(scheme) for scheme in ABLATION_2_ROWS]
-        rows += ABLATION_3_ROWS.values()
+        rows = [*ABLATION_2_ROWS.values(), *ABLATION_3_ROWS.values()]
         cells += [paper_cell(robot, size, {**base, **row}) for row in rows]
         cells += [curve_cell(robot, size, base, name) for name in SELECTIONS]
         cells.append(ceiling_cell(robot, size, base))
-        cwln = {**base, **ablation_2("cwln")}
+        cwln = {**base, **ABLATION_2_ROWS["cwln"]}
         cells.append(attempts_cell(robot, size, cwln))
     # One option changed from the preset may be none: rows of two tables are one cell.
     return [cell for i, cell in enumerate(cells) if cell not in cells[:i]]

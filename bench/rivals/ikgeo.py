@@ -26,6 +26,10 @@ def family(axes: Axes) -> str:
     return "gen_six_dof"
 
 
+PANIC = None
+"""What IkGeo.call returns where the package panicked."""
+
+
 class IkGeo(PythonRival):
     """All branches by subproblems, in closed form or with a search over one joint."""
 
@@ -35,11 +39,11 @@ class IkGeo(PythonRival):
     keeps_limits = False
     limit_s = 3.0
 
-    def __init__(self, arm: Arm) -> None:
-        """Choose the family."""
+    def __init__(self, arm: Arm, name: str | None = None) -> None:
+        """Take a family by its name in the package; None: choose one."""
         module = importlib.import_module("ik_geo")
         self._axes = axes_of(arm)
-        self.family = family(self._axes)
+        self.family = name or family(self._axes)
         make = getattr(module.Robot, self.family)
         robot = make(self._axes.h.tolist(), self._axes.p.tolist())
         self._get_ik = robot.get_ik
@@ -54,15 +58,17 @@ class IkGeo(PythonRival):
         return (turned, np.ascontiguousarray(pose[:3, 3]))
 
     def call(self, *arguments: Any) -> Any:
-        """Solve; where the package panics, it has no answer."""
+        """Solve; PANIC where the package panics."""
         try:
             return self._get_ik(*arguments)
         except BaseException as error:
             # pyo3's PanicException is no Exception, and its class has no import path.
             if type(error).__name__ != "PanicException":
                 raise
-            return []
+            return PANIC
 
     def answers(self, returned: Any) -> list[Array]:
         """The exact branches (a least-squares one says that there is none)."""
+        if returned is PANIC:
+            return []
         return [np.asarray(q) for q, least_squares in returned if not least_squares]

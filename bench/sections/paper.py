@@ -9,7 +9,7 @@ import numpy as np
 
 from bench.cells import command_line
 from bench.paper import plan as paper_plan
-from bench.sections import ablations, comparisons
+from bench.sections import ablations, claims, comparisons, curves
 
 if TYPE_CHECKING:
     from bench.view import View
@@ -34,6 +34,8 @@ def text(view: View) -> str:
         "## The paper",
         conditions,
         *ablations.parts(view),
+        *curves.parts(view),
+        claims.text(view),
         *comparisons.parts(view),
     ]
     return "\n\n".join(part for part in parts if part)

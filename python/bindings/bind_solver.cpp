@@ -196,9 +196,10 @@ void bind_batch(py::class_<Solver>& cls) {
        R"(Solves many targets with the GIL released; row i belongs to target i.
 
 A row has the same bits whatever the number of threads and whatever else is in the batch. Its
-status is that of solve(), and so are its bits, but for seeds in SIMD lanes (the default preset) where
-there is no closed form: there a target has a lane to itself, and the answer may be another of its
-solutions, within the same tolerances. The request holds for each target by itself.)",
+status is that of solve(), and so are its bits, but for seeds in SIMD lanes (the default preset): there a
+target has a lane to itself. Where all joints are solved in closed form, only `attempts` differs,
+which counts no branches after the first that is an answer; else the answer may be another of the
+target's solutions, within the same tolerances. The request holds for each target by itself.)",
        "poses",
        "T_base_tip, (N, 4, 4) [m], or others as in solve. Doubles in C order are read in place.",
        "BatchResult",

@@ -124,6 +124,10 @@ struct EnumTable<RotationKey> {
       {"quaternion", RotationKey::quaternion, "4 numbers (w, x, y, z), w >= 0"},
       {"matrix", RotationKey::matrix, "9 numbers"},
       {"euler", RotationKey::euler, "3 numbers, roll-pitch-yaw [rad]"},
+      {"dual_quaternion", RotationKey::dual_quaternion,
+       "8 numbers for the whole pose, position included: the real part r (w, x, y, z), w >= 0, "
+       "of a unit dual quaternion, and its dual part, half the product of the position and r "
+       "[m]"},
   };
 };
 
@@ -182,7 +186,9 @@ struct EnumTable<GrowthStop> {
   static constexpr const char* kName = "GrowthStop";
   static constexpr const char* kDoc = "Whether an attempt is given up when both errors have grown.";
   static constexpr EnumValue<GrowthStop> kValues[] = {
-      {"by_scheme", GrowthStop::by_scheme, "as in the paper: yes for dls and pinv, no for others"},
+      {"by_scheme", GrowthStop::by_scheme,
+       "yes for dls, pinv and pinv_rr; no for cwln and cwpi, as the paper's text says (its "
+       "reference implementation gives cwpi up, too), and for lm"},
       {"on", GrowthStop::on, "always"},
       {"off", GrowthStop::off, "never"},
   };

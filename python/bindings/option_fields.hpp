@@ -72,6 +72,10 @@ struct FieldTable<Paper> {
   static std::vector<Field> fields() {
     return {
         field("neighbours", &O::neighbours, "Neighbours asked from the KD-tree (k)."),
+        field("neighbour_radius", &O::neighbour_radius,
+              "Samples whose key is farther than this from the target's are no seeds: the root of "
+              "the threshold of Eq. (3), in metres with rotations weighted by the database's "
+              "rotation_weight. 0: no threshold."),
         field("ranking", &O::ranking, "How the neighbours are put in order."),
         field("rotation_difference", &O::rotation_difference,
               "The rotation part of x_target - x_i in Eq. (4); read where seeds are ranked by "
@@ -97,8 +101,8 @@ struct FieldTable<Paper> {
         field("growth_stop", &O::growth_stop,
               "Whether an attempt is given up when both errors have grown."),
         field("min_step", &O::min_step,
-              "An attempt ends when |sum of the step| is below this (dls, pinv, pinv_rr) "
-              "[rad or m]."),
+              "An attempt ends, or that of pinv_rr restarts, when |sum of the step| is below this "
+              "(dls, pinv, pinv_rr, cwpi) [rad or m]."),
         field("limit_margin", &O::limit_margin,
               "Part of a joint's range, at each end, in which cwln and cwpi hold it back."),
         field("whole_turns", &O::whole_turns,

@@ -562,6 +562,7 @@ class RotationKey(enum.Enum):
     """
     How the KD-tree's key writes the rotation of a pose (paper, footnote 1).
     """
+    dual_quaternion = 4
     euler = 3
     matrix = 2
     quaternion = 1
@@ -826,12 +827,13 @@ class Paper:
     __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
     def __eq__(self, other: object) -> bool:
         ...
-    def __init__(self, *, neighbours: int = 200, ranking: Ranking | str = 'joint_adjustment', rotation_difference: RotationDifference | str = 'rotation_vector', limit_aware: bool = False, candidates: int = 20, reselection: Reselection | str = 'farthest', iteration: Iteration | str = 'dls', damping: float = 0.0, pinv_cutoff: float = 0.0001, position_clamp: float = 0.1, rotation_clamp: float = 0.3141592653589793, growth_stop: GrowthStop | str = 'by_scheme', min_step: float = 1e-06, limit_margin: float = 0.1, whole_turns: bool = False, kinematics: Kinematics | str = 'kernel') -> None:
+    def __init__(self, *, neighbours: int = 200, neighbour_radius: float = 0.0, ranking: Ranking | str = 'joint_adjustment', rotation_difference: RotationDifference | str = 'rotation_vector', limit_aware: bool = False, candidates: int = 20, reselection: Reselection | str = 'farthest', iteration: Iteration | str = 'dls', damping: float = 0.0, pinv_cutoff: float = 0.0001, position_clamp: float = 0.1, rotation_clamp: float = 0.3141592653589793, growth_stop: GrowthStop | str = 'by_scheme', min_step: float = 1e-06, limit_margin: float = 0.1, whole_turns: bool = False, kinematics: Kinematics | str = 'kernel') -> None:
         """
         Fields that are not given keep their default.
 
         Args:
             neighbours: Neighbours asked from the KD-tree (k).
+            neighbour_radius: Samples whose key is farther than this from the target's are no seeds: the root of the threshold of Eq. (3), in metres with rotations weighted by the database's rotation_weight. 0: no threshold.
             ranking: How the neighbours are put in order.
             rotation_difference: The rotation part of x_target - x_i in Eq. (4); read where seeds are ranked by Eq. (5) or limit-aware.
             limit_aware: Rank candidates whose predicted q + J^+ e leaves the limits behind all others.
@@ -843,7 +845,7 @@ class Paper:
             position_clamp: The position error fed to one step is shortened to at most this [m]; by all but lm.
             rotation_clamp: The rotation error fed to one step is shortened to at most this [rad]; by all but lm.
             growth_stop: Whether an attempt is given up when both errors have grown.
-            min_step: An attempt ends when |sum of the step| is below this (dls, pinv, pinv_rr) [rad or m].
+            min_step: An attempt ends, or that of pinv_rr restarts, when |sum of the step| is below this (dls, pinv, pinv_rr, cwpi) [rad or m].
             limit_margin: Part of a joint's range, at each end, in which cwln and cwpi hold it back.
             whole_turns: Bring joints with a range of more than 2 pi inside their limits by whole turns.
             kinematics: What computes FK and Jacobians.
@@ -854,12 +856,13 @@ class Paper:
         """
     def __repr__(self) -> str:
         ...
-    def replace(self, *, neighbours: int = ..., ranking: Ranking | str = ..., rotation_difference: RotationDifference | str = ..., limit_aware: bool = ..., candidates: int = ..., reselection: Reselection | str = ..., iteration: Iteration | str = ..., damping: float = ..., pinv_cutoff: float = ..., position_clamp: float = ..., rotation_clamp: float = ..., growth_stop: GrowthStop | str = ..., min_step: float = ..., limit_margin: float = ..., whole_turns: bool = ..., kinematics: Kinematics | str = ...) -> Paper:
+    def replace(self, *, neighbours: int = ..., neighbour_radius: float = ..., ranking: Ranking | str = ..., rotation_difference: RotationDifference | str = ..., limit_aware: bool = ..., candidates: int = ..., reselection: Reselection | str = ..., iteration: Iteration | str = ..., damping: float = ..., pinv_cutoff: float = ..., position_clamp: float = ..., rotation_clamp: float = ..., growth_stop: GrowthStop | str = ..., min_step: float = ..., limit_margin: float = ..., whole_turns: bool = ..., kinematics: Kinematics | str = ...) -> Paper:
         """
         A copy in which the given fields have another value.
 
         Args:
             neighbours: Neighbours asked from the KD-tree (k).
+            neighbour_radius: Samples whose key is farther than this from the target's are no seeds: the root of the threshold of Eq. (3), in metres with rotations weighted by the database's rotation_weight. 0: no threshold.
             ranking: How the neighbours are put in order.
             rotation_difference: The rotation part of x_target - x_i in Eq. (4); read where seeds are ranked by Eq. (5) or limit-aware.
             limit_aware: Rank candidates whose predicted q + J^+ e leaves the limits behind all others.
@@ -871,7 +874,7 @@ class Paper:
             position_clamp: The position error fed to one step is shortened to at most this [m]; by all but lm.
             rotation_clamp: The rotation error fed to one step is shortened to at most this [rad]; by all but lm.
             growth_stop: Whether an attempt is given up when both errors have grown.
-            min_step: An attempt ends when |sum of the step| is below this (dls, pinv, pinv_rr) [rad or m].
+            min_step: An attempt ends, or that of pinv_rr restarts, when |sum of the step| is below this (dls, pinv, pinv_rr, cwpi) [rad or m].
             limit_margin: Part of a joint's range, at each end, in which cwln and cwpi hold it back.
             whole_turns: Bring joints with a range of more than 2 pi inside their limits by whole turns.
             kinematics: What computes FK and Jacobians.
@@ -926,7 +929,12 @@ class Paper:
     @property
     def min_step(self) -> float:
         """
-        An attempt ends when |sum of the step| is below this (dls, pinv, pinv_rr) [rad or m].
+        An attempt ends, or that of pinv_rr restarts, when |sum of the step| is below this (dls, pinv, pinv_rr, cwpi) [rad or m].
+        """
+    @property
+    def neighbour_radius(self) -> float:
+        """
+        Samples whose key is farther than this from the target's are no seeds: the root of the threshold of Eq. (3), in metres with rotations weighted by the database's rotation_weight. 0: no threshold.
         """
     @property
     def neighbours(self) -> int:
@@ -1708,9 +1716,10 @@ class Solver:
         Solves many targets with the GIL released; row i belongs to target i.
 
         A row has the same bits whatever the number of threads and whatever else is in the batch. Its
-        status is that of solve(), and so are its bits, but for seeds in SIMD lanes (the default preset) where
-        there is no closed form: there a target has a lane to itself, and the answer may be another of its
-        solutions, within the same tolerances. The request holds for each target by itself.
+        status is that of solve(), and so are its bits, but for seeds in SIMD lanes (the default preset): there a
+        target has a lane to itself. Where all joints are solved in closed form, only `attempts` differs,
+        which counts no branches after the first that is an answer; else the answer may be another of the
+        target's solutions, within the same tolerances. The request holds for each target by itself.
 
         Args:
             poses: T_base_tip, (N, 4, 4) [m], or others as in solve. Doubles in C order are read in place.

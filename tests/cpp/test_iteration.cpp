@@ -149,6 +149,96 @@ TEST(Steps, LmNeverLeavesTheLimits) {
   }
 }
 
+/// What a scheme does besides its step, as the paper's reference implementation has it.
+struct Rules {
+  Iteration iteration;
+  bool growth_stop;
+  iksel::GrowthStop option;
+};
+
+/// An attempt as its loop reads, on the same kinematics, to the bit.
+bool reference_attempt(const Robot& robot, const Rules& rules, const iksel::Paper& paper,
+                       iksel::KdlChain& kdl, const Pose& target, int max_steps,
+                       iksel::Random& random, JointVector& q, int& steps) {
+  const iksel::JointSpace& joints = robot.model().joints;
+  const bool restarts = rules.iteration == Iteration::pinv_rr;
+  double last_position = 1e9;
+  double last_rotation = 1e9;
+  for (int n = 0;; ++n) {
+    const JacobianMatrix J = kdl.jacobian(q);
+    Vector6 e = iksel::pose_error(target, kdl.fk(q));
+    const double position = e.head<3>().norm();
+    const double rotation = e.tail<3>().norm();
+    if (position < 1e-4 && rotation < 1e-3 && joints.contains(q.data())) return true;
+    const bool grew = position > last_position && rotation > last_rotation;
+    if ((rules.growth_stop && grew) || n == max_steps) return false;
+    last_position = position;
+    last_rotation = rotation;
+    if (position > 0.1) e.head<3>() *= 0.1 / position;
+    if (rotation > paper.rotation_clamp) e.tail<3>() *= paper.rotation_clamp / rotation;
+    const JointVector step = rules.iteration == Iteration::cwpi
+                                 ? iksel::cwpi_step(robot.model(), q, J, e, paper)
+                                 : iksel::pinv_step(J, e, paper);
+    ++steps;
+    const bool stands_still = std::abs(step.sum()) < paper.min_step;
+    if (stands_still && !restarts) return false;
+    if (!stands_still) q += step;
+    if (restarts && (stands_still || !joints.contains(q.data()))) joints.sample(random, q);
+  }
+}
+
+class Attempts : public testing::TestWithParam<Rules> {};
+
+TEST_P(Attempts, EndAsInTheReferenceImplementation) {
+  const Rules rules = GetParam();
+  const Robot& robot = iksel_test::robot("cvr038");
+  SolverOptions options = SolverOptions::paper();
+  iksel::Paper& paper = iksel_test::paper_of(options);
+  paper.iteration = rules.iteration;
+  paper.growth_stop = rules.option;
+  // Large enough to be met.
+  paper.min_step = 1e-3;
+  const auto kdl = robot.model().make_kdl(Pose::Identity());
+  const iksel::TaskSpace task({}, options.position_tolerance, options.rotation_tolerance);
+  const Robot bare = robot.with_tcp(Pose::Identity());
+  const Eigen::MatrixXd all = robot.random_configurations(400, iksel_test::seed());
+  int solved = 0;
+  int early = 0;
+  for (Eigen::Index i = 0; i + 1 < all.rows(); i += 2) {
+    const Pose target = bare.fk(all.row(i));
+    const iksel::Goal goal(bare.model(), task, target);
+    // Half-way there is near enough for some, far enough for most to fail.
+    const JointVector start = 0.5 * (all.row(i) + all.row(i + 1));
+    const std::uint64_t seed = iksel_test::seed() + static_cast<std::uint64_t>(i);
+    iksel::Random ours(seed);
+    iksel::Random theirs(seed);
+    JointVector q = start;
+    JointVector expected = start;
+    int steps = 0;
+    int expected_steps = 0;
+    const iksel::IterationContext context{bare.model(),      paper,     8,   goal,
+                                          goal.tip_target(), kdl.get(), ours};
+    const bool is_solved = iksel::iterate(context, q, steps) == iksel::Outcome::solved;
+    EXPECT_EQ(is_solved, reference_attempt(bare, rules, paper, *kdl, target, 8, theirs, expected,
+                                           expected_steps))
+        << "target " << i << " seed " << iksel_test::seed();
+    EXPECT_EQ(steps, expected_steps);
+    EXPECT_EQ(q, expected);
+    solved += is_solved;
+    early += !is_solved && steps < 8;
+  }
+  EXPECT_GT(solved, 20);
+  EXPECT_EQ(early > 0, rules.growth_stop || rules.iteration == Iteration::cwpi);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, Attempts,
+    testing::Values(Rules{Iteration::pinv, true, iksel::GrowthStop::by_scheme},
+                    Rules{Iteration::pinv_rr, true, iksel::GrowthStop::by_scheme},
+                    Rules{Iteration::pinv_rr, false, iksel::GrowthStop::off},
+                    Rules{Iteration::cwpi, false, iksel::GrowthStop::by_scheme},
+                    Rules{Iteration::cwpi, true, iksel::GrowthStop::on}));
+
 class Schemes : public testing::TestWithParam<std::tuple<Iteration, iksel::Kinematics>> {};
 
 TEST_P(Schemes, ConvergeFromNearBy) {

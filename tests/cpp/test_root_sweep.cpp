@@ -48,8 +48,7 @@ bool holds(const RootSweep& sweep, const Robot& robot, const JointVector& q, dou
 
 /// Finds all solutions of a pose.
 void find(RootSweep& sweep, const Robot& robot, const Pose& target) {
-  const iksel::TaskSpace task(iksel::Task{}, 1e-6, 1e-6);
-  sweep.find(iksel::Goal(robot.model(), task, target), iksel_test::reduced(robot, target), true);
+  sweep.find(iksel_test::reduced(robot, target), true);
 }
 
 /// How far q is from being singular.

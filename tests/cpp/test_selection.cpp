@@ -131,6 +131,28 @@ TEST(Reselection, NoneTriesOneSeed) {
   EXPECT_EQ(seeds(s, target, 20).size(), 1U);
 }
 
+TEST(NeighbourRadius, LeavesOutWhatIsFarther) {
+  Bench s;
+  s.paper.reselection = Reselection::next;
+  s.paper.candidates = s.paper.neighbours;
+  const Eigen::MatrixXd q = s.robot.random_configurations(30, iksel_test::seed());
+  int some = 0;
+  for (Eigen::Index i = 0; i < q.rows(); ++i) {
+    const iksel::Pose target = s.bare.fk(q.row(i));
+    s.paper.neighbour_radius = 0.5;
+    std::vector<JointVector> expected;
+    for (const std::size_t index : reference_order(s, target)) {
+      const double distance = (pose_vector(target) - pose_vector(s.database.pose(index))).norm();
+      if (distance <= s.paper.neighbour_radius) expected.push_back(s.database.q(index));
+    }
+    EXPECT_EQ(seeds(s, target, s.paper.neighbours), expected) << "target " << i;
+    some += !expected.empty() && expected.size() < 200;
+    s.paper.neighbour_radius = 1e-6;
+    EXPECT_TRUE(seeds(s, target, 1).empty());
+  }
+  EXPECT_GT(some, 5) << "seed " << iksel_test::seed();
+}
+
 TEST(LimitAware, PutsSeedsThatWouldLeaveTheLimitsLast) {
   Bench s;
   s.paper.limit_aware = true;
@@ -185,6 +207,7 @@ TEST_P(RotationKeys, SolveAlike) {
 INSTANTIATE_TEST_SUITE_P(All, RotationKeys,
                          testing::Values(iksel::RotationKey::rotation_vector,
                                          iksel::RotationKey::quaternion, iksel::RotationKey::matrix,
-                                         iksel::RotationKey::euler));
+                                         iksel::RotationKey::euler,
+                                         iksel::RotationKey::dual_quaternion));
 
 }  // namespace

@@ -262,13 +262,16 @@ TEST(Tasks, TheNearestSolutionUsesWhatTheyLeaveOpen) {
         iksel::SolveRequest from;
         from.task = task;
         from.database_seeds = false;
+        // Answers of an isolated solution lie so far apart where the arm is all but singular.
+        const bool is_isolated = robot.dof() <= iksel::TaskSpace(task, 0, 0).fixed_axes();
+        const double slack = is_isolated ? 2e-3 : 1e-4;
         for (int k = 0; k < 20; ++k) {
           JointVector moved = nearest.q;
           for (int j = 0; j < robot.dof(); ++j) moved[j] += random.uniform(-0.02, 0.02);
           from.seeds = {moved};
           const Result other = solver.solve(target, from);
           if (!other.success() || (other.q - nearest.q).norm() > 0.2) continue;
-          EXPECT_GE((other.q - near).norm(), nearest.move - 1e-4)
+          EXPECT_GE((other.q - near).norm(), nearest.move - slack)
               << name << ", " << task_name << ", seed " << iksel_test::seed();
         }
       }

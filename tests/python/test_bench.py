@@ -9,14 +9,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import iksel
+
 pytest.importorskip("bench", reason="the benchmarks are in the repository only")
 
 from bench import branches, check, command, frozen, guard, no, plan, run, targets
 from bench.arms import load_arm
+from bench.paper import claims, published
+from bench.paper import plan as paper_plan
 from bench.report import merged
 from bench.rivals.axes import axes_of
 from bench.rivals.base import Run, UnsupportedError
 from bench.sections import no as no_section
+from bench.sections import paper as paper_section
 from bench.size import FULL, QUICK, Job
 from bench.store import Store
 from bench.view import View
@@ -286,6 +291,90 @@ class TestReport:
         assert (both["machine"], both["parts"]["no"]["machine"]) == ("old", "new")
         view = View({**both, "size": vars(QUICK)})
         assert (view.machine("no"), view.machine("rivals")) == ("new", "old")
+
+
+class TestPaper:
+    """The published numbers, and what is said of them."""
+
+    def test_published_rows_belong_together(self):
+        rows = {**published.ABLATION_1, **published.ABLATION_2, **published.ABLATION_3}
+        assert sum(len(row.success) for row in rows.values()) == 56
+        for row in (*rows.values(), published.TRAC_IK, published.BESIDE_TRAC_IK):
+            assert all(0 < rate < 100 for rate in row.success)
+            assert all(t.least < t.mean < t.most and t.std > 0 for t in row.times)
+        for label in published.ABLATION_2:
+            assert label in paper_plan.ABLATION_2_ROWS
+        for label in published.ABLATION_3:
+            assert label in paper_plan.ABLATION_3_ROWS
+
+    def test_samples_are_as_many_as_published(self):
+        for scale, (of_six, of_seven) in published.DATABASE_SIZES.items():
+            if scale == "large":
+                continue
+            for robot in published.ROBOTS:
+                options = iksel.DatabaseOptions.paper().replace(scale=scale)
+                arm = load_arm(robot)
+                count = len(iksel.Database.build(arm.robot, options))
+                assert count == (of_six if arm.chain.dof == 6 else of_seven)[0]
+
+    def test_claims_by_the_published_numbers(self):
+        """What the paper's own tables say of its text, checked by hand."""
+        margins = {
+            claim.text: [
+                claim.margin(claims.Figures(claims.published_row, i))
+                for i in claim.robots
+            ]
+            for claim in claims.CLAIMS
+        }
+        by_hand = {
+            "I: medium takes longer than small": [
+                100 * (1.56 / 1.74 - 1),
+                100 * (2.01 / 2.22 - 1),
+                100 * (1.99 / 3.39 - 1),
+                100 * (1.56 / 1.68 - 1),
+            ],
+            "II: CWLN solves most": [91.24 - 87.97, 88.95 - 86.75, 6.69, 0.96],
+            "II: PINV_RR solves least": [87.40 - 79.76, 85.75 - 76.69, 1.09, 0.72],
+            "III: Eq. (5) gains at least 10 points on Eq. (2)": [
+                16.30,
+                0.01,
+                11.96,
+                2.52,
+            ],
+            "III: that gain is largest on C0": [26.30 - 21.96],
+        }
+        for text, expected in by_hand.items():
+            np.testing.assert_allclose(margins[text], expected, rtol=0, atol=1e-9)
+
+    @pytest.mark.parametrize("better", [0.0, 5.0])
+    def test_claims_by_measured_rows(self, better):
+        """Rows as published, but CWLN on C1, which is or is not the best by that."""
+        cells = []
+        for label, row in published.ABLATION_2.items():
+            for i, robot in enumerate(published.ROBOTS):
+                rate = row.success[i]
+                if (label, robot) == ("cwln", "cvrb1213"):
+                    rate = 84.0 + better
+                settings = paper_plan.paper_cell(
+                    robot, QUICK, paper_plan.ABLATION_2_ROWS[label]
+                )
+                times = {"mean_us": 1.0, "std_us": 1.0, "min_us": 1.0, "max_us": 1.0}
+                result = {"success_percent": rate, **times}
+                cells.append({"settings": settings, "result": result})
+        report = {"cells": cells, "size": vars(QUICK), "missing": {}}
+        text = paper_section.text(View(report))
+        (line,) = [x for x in text.splitlines() if "II: CWLN solves most" in x]
+        assert ("not on C1" in line) == (better == 0.0)
+        assert f"{84.0 + better - 86.75:+.2f}".replace("-", "\N{MINUS SIGN}") in line
+        # The row "dls" is one of the other tables, too. 84 is farther than 4 points
+        # from the published 88.95.
+        met = 28 if better else 27
+        assert f"{met} of 28 published rates are met" in text
+        assert ("Ablation II, `cwln`, C1 is not" in text) == (better == 0.0)
+
+    def test_section_without_results_is_empty(self):
+        report = {"cells": [], "size": vars(QUICK), "missing": {}}
+        assert paper_section.text(View(report)) == ""
 
 
 class TestGuard:

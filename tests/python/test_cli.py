@@ -193,6 +193,10 @@ def test_solve_from_a_seed(run: Run) -> None:
     np.testing.assert_allclose(answer["q"], [0.1, -1, 1, 0.2, 0.3, -0.4], atol=1e-9)
     found = run(f"solve ur3 --from-q {q} --seed-q {q} --all --json").json()
     assert len(found["q"]) > 1
+    words = f"solve ur3 --from-q {q} --seed-q 1 1 1 1 1 1 --max-iterations 1 --json"
+    assert run(words).json()["success"]
+    alone = run(f"{words} --no-database-seeds").json()
+    assert (alone["success"], alone["attempts"]) == (False, 1)
 
 
 def test_solve_without_solution(run: Run) -> None:

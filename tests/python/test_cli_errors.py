@@ -55,6 +55,7 @@ BAD = [
     ("solve ur3 --from-q 1 2 3", "--from-q: expected 6 numbers.*elbow_joint.*got 3"),
     ("solve ur3 --from-q 1 2 3 4 5 inf", "q"),
     (f"solve ur3 --pose {POSE} --seed-q 1", "--seed-q: expected 6 numbers.*got 1"),
+    (f"solve ur3 --pose {POSE} --no-database-seeds", "nothing to try.*--seed-q"),
     (f"solve ur3 --pose {POSE} --preset fast", "fast.*default.*paper"),
     (f"solve ur3 --pose {POSE} --iteration newton", "newton.*dls.*pinv.*cwln.*lm"),
     (f"solve ur3 --pose {POSE} --sampling sobol", "sobol.*grid.*cvt.*random"),

@@ -119,6 +119,12 @@ def test_tiny_databases_work(made, name: str, samples: int) -> None:
 
 
 def key_of(pose: np.ndarray, kind: str, weight: float) -> np.ndarray:
+    if kind == "dual_quaternion":
+        r = iksel.quaternion_from_pose(pose)
+        p = pose[..., :3, 3]
+        vector = r[..., :1] * p + np.cross(p, r[..., 1:])
+        scalar = -np.sum(p * r[..., 1:], axis=-1, keepdims=True)
+        return np.concatenate([weight * r, 0.5 * scalar, 0.5 * vector], axis=-1)
     rotation = {
         "rotation_vector": iksel.rotation_vector_from_pose,
         "quaternion": iksel.quaternion_from_pose,

@@ -125,6 +125,14 @@ def test_seeds_alone(made) -> None:
         # A seed that is a solution already is the best of them.
         for result in (alone, one_of_all):
             np.testing.assert_allclose(result.q, q[i], rtol=0, atol=1e-9)
+    # From far away an attempt may fail; no other follows it.
+    for given in (solver, made.solver("iiwa14", "paper")):
+        results = [
+            given.solve(target, seeds=q[-1], database_seeds=False)
+            for target in solver.robot.fk(q[:-1])
+        ]
+        assert {result.attempts for result in results} == {1}
+        assert not all(result.success for result in results)
     nothing = solver.solve(target, seeds=np.zeros((0, 7)), database_seeds=False)
     assert (nothing.status.name, nothing.attempts) == ("not_converged", 0)
 

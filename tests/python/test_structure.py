@@ -74,7 +74,8 @@ def test_a_structure_shows_its_kind_and_description(made) -> None:
 def test_a_joint_less_is_another_structure(made) -> None:
     wrist = made.robot("ur3").joint_names[-1]
     locked = iksel.load_robot("ur3", locked_joints={wrist: 0.0})
-    assert locked.structure.kind is not iksel.StructureKind.closed_form
+    assert locked.structure.kind is iksel.StructureKind.closed_form
+    assert "only 5 joints" in locked.structure.description
 
 
 # Proofs

@@ -35,6 +35,9 @@ enum class RotationKey {
   quaternion,       ///< 4 numbers (w, x, y, z), w >= 0
   matrix,           ///< 9 numbers
   euler,            ///< 3 numbers, roll-pitch-yaw [rad]
+  /// 8 numbers for the whole pose, position included: the real part r (w, x, y, z), w >= 0, of a
+  /// unit dual quaternion, and its dual part, half the product of the position and r [m].
+  dual_quaternion,
 };
 
 /// How a database is built.
@@ -97,7 +100,9 @@ enum class Reselection {
 
 /// Whether an attempt is given up when both errors have grown.
 enum class GrowthStop {
-  by_scheme,  ///< as in the paper: yes for dls and pinv, no for the others
+  /// Yes for dls, pinv and pinv_rr; no for cwln and cwpi, as the paper's text says (its reference
+  /// implementation gives cwpi up, too), and for lm.
+  by_scheme,
   on,
   off,
 };
@@ -122,6 +127,10 @@ struct IKSEL_EXPORT Lanes {
 struct IKSEL_EXPORT Paper {
   /// Neighbours asked from the KD-tree (k).
   int neighbours = 200;
+  /// Samples whose key is farther than this from the target's are no seeds: the root of the
+  /// threshold of Eq. (3), in metres with rotations weighted by the database's rotation_weight. 0:
+  /// no threshold.
+  double neighbour_radius = 0;
   Ranking ranking = Ranking::joint_adjustment;
   /// Read where seeds are ranked by Eq. (5) or limit-aware.
   RotationDifference rotation_difference = RotationDifference::rotation_vector;
@@ -142,7 +151,8 @@ struct IKSEL_EXPORT Paper {
   double position_clamp = 0.1;
   double rotation_clamp = 0.3141592653589793;
   GrowthStop growth_stop = GrowthStop::by_scheme;
-  /// An attempt ends when |sum of the step| is below this (dls, pinv, pinv_rr) [rad or m].
+  /// An attempt ends, or that of pinv_rr restarts, when |sum of the step| is below this (dls, pinv,
+  /// pinv_rr, cwpi) [rad or m].
   double min_step = 1e-6;
   /// Part of a joint's range, at each end, in which cwln and cwpi hold it back.
   double limit_margin = 0.1;

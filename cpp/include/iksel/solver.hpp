@@ -103,11 +103,12 @@ class IKSEL_EXPORT Solver {
                                       const PathOptions& options) const;
 
   /// Solves many targets; result i belongs to target i and has the same bits whatever the number
-  /// of threads and whatever else is in the batch. It has the bits that solve() gives, but for
-  /// seeds in lanes where there is no closed form: there a target has a lane to itself, and the
-  /// answer may be another of its solutions, within the same tolerances. `threads` = 0 takes one
-  /// per core. A target that is no pose has Status::invalid_pose; SolveRequest::on_invalid_pose can
-  /// have it thrown instead.
+  /// of threads and whatever else is in the batch. It has the bits that solve() gives, but in
+  /// lanes: there a target has a lane to itself. Where all joints are solved in closed form, only
+  /// `attempts` differs, which counts no branches after the first that is an answer; else the
+  /// answer may be another of the target's solutions, within the same tolerances. `threads` = 0
+  /// takes one per core. A target that is no pose has Status::invalid_pose;
+  /// SolveRequest::on_invalid_pose can have it thrown instead.
   ///
   /// The request holds for each target by itself. `near` is empty, or has one
   /// configuration for each target, which counts instead of the request's. A filter is asked about

@@ -29,7 +29,8 @@ struct Structure {
   std::string description;
 };
 
-/// That of a robot. For a closed form, axes are taken to be parallel, or to meet, up to 1e-9 rad,
+/// That of a robot. Of three to five joints, which reach but some poses, a closed form tells which.
+/// For a closed form, axes are taken to be parallel, or to meet, up to 1e-9 rad,
 /// or 1e-9 of the robot's reach: what is left of a rounded pi. For a sweep, which proves nothing,
 /// up to 2e-5: a pi of four decimals.
 [[nodiscard]] IKSEL_EXPORT Structure find_structure(const Robot& robot);

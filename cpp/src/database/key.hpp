@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The point that stands for a pose in the KD-tree: position [m], then the weighted rotation.
+// The point that stands for a pose in the KD-tree: position [m], then the weighted rotation; or a
+// dual quaternion of both.
 #pragma once
 
 #include "base/rotation.hpp"
@@ -14,6 +15,8 @@ inline int key_dimension(RotationKey key) {
   switch (key) {
     case RotationKey::quaternion:
       return 7;
+    case RotationKey::dual_quaternion:
+      return 8;
     case RotationKey::matrix:
       return 12;
     case RotationKey::rotation_vector:
@@ -28,6 +31,15 @@ inline double rotation_weight(const DatabaseOptions& options, double reach) {
   return options.rotation_weight > 0 ? options.rotation_weight : 0.25 * reach;
 }
 
+/// Dual part of the unit dual quaternion of a pose: half the quaternion product (0, position) r,
+/// for its real part r (w, x, y, z) [m].
+inline Eigen::Vector4d dual_part(const Eigen::Vector3d& position, const Eigen::Vector4d& r) {
+  Eigen::Vector4d dual;
+  dual[0] = -0.5 * position.dot(r.tail<3>());
+  dual.tail<3>() = 0.5 * (r[0] * position + position.cross(r.tail<3>()));
+  return dual;
+}
+
 /// The full key.
 inline void make_key(const DatabaseOptions& options, double weight, const Pose& pose, double* key) {
   const Eigen::Matrix3d R = pose.linear();
@@ -35,6 +47,11 @@ inline void make_key(const DatabaseOptions& options, double weight, const Pose& 
     for (Eigen::Index i = 0; i < values.size(); ++i) at[i] = scale * values.data()[i];
   };
   const Eigen::Vector3d position = pose.translation();
+  if (options.rotation_key == RotationKey::dual_quaternion) {
+    const Eigen::Vector4d real = to_quaternion_wxyz(R);
+    write(key, real, weight);
+    return write(key + 4, dual_part(position, real), 1.0);
+  }
   write(key, position, 1.0);
   switch (options.rotation_key) {
     case RotationKey::rotation_vector:
@@ -45,6 +62,8 @@ inline void make_key(const DatabaseOptions& options, double weight, const Pose& 
       return write(key + 3, R, weight);
     case RotationKey::euler:
       return write(key + 3, to_roll_pitch_yaw(R), weight);
+    case RotationKey::dual_quaternion:
+      break;
   }
 }
 

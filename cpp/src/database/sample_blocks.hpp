@@ -47,15 +47,20 @@ class LeafIndex {
 
   /// Samples of the leaf that a key falls into.
   [[nodiscard]] const float* block(const double* key) const {
-    std::size_t node = 0;
-    for (int level = 0; level < depth_; ++level) {
-      const bool above = key[dimension_[node]] >= value_[node];
-      node = 2 * node + 1 + (above ? 1 : 0);
-    }
-    return &blocks_[(node - dimension_.size()) * block_size_];
+    return &blocks_[descend(key, depth_) * block_size_];
   }
 
   [[nodiscard]] std::size_t leaves() const { return dimension_.size() + 1; }
+  [[nodiscard]] int depth() const { return depth_; }
+  /// Number of the node at a level that a key falls into; those of the last are the leaves.
+  [[nodiscard]] std::size_t descend(const double* key, int levels) const {
+    std::size_t node = 0;
+    for (int level = 0; level < levels; ++level) {
+      const bool above = key[dimension_[node]] >= value_[node];
+      node = 2 * node + 1 + (above ? 1 : 0);
+    }
+    return node + 1 - (std::size_t{1} << static_cast<unsigned>(levels));
+  }
 
  private:
   /// Splits every node's samples at the median of the coordinate that spreads widest. Returns where

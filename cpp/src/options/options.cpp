@@ -40,6 +40,7 @@ void check_read(const char* name, bool is_read, const T& value, const T& standar
 
 void check_ranges(const Paper& paper) {
   check_range("neighbours", paper.neighbours, 1, kMostNeighbours);
+  check_range("neighbour_radius", paper.neighbour_radius, 0.0, 1e6);
   check_enum("ranking", paper.ranking, Ranking::joint_adjustment);
   check_enum("rotation_difference", paper.rotation_difference, RotationDifference::geodesic);
   check_range("candidates", paper.candidates, 1, 1'000'000);
@@ -81,8 +82,9 @@ void Paper::validate() const {
              "by all iterations but 'lm'");
   check_read("rotation_clamp", !is_lm, rotation_clamp, standard.rotation_clamp,
              "by all iterations but 'lm'");
-  check_read("min_step", is_one_of(Iteration::dls, Iteration::pinv, Iteration::pinv_rr), min_step,
-             standard.min_step, "by iteration 'dls', 'pinv' and 'pinv_rr'");
+  check_read("min_step",
+             is_one_of(Iteration::dls, Iteration::pinv, Iteration::pinv_rr, Iteration::cwpi),
+             min_step, standard.min_step, "by iteration 'dls', 'pinv', 'pinv_rr' and 'cwpi'");
   check_read("limit_margin", is_one_of(Iteration::cwln, Iteration::cwpi), limit_margin,
              standard.limit_margin, "by iteration 'cwln' and 'cwpi'");
 }
@@ -116,7 +118,7 @@ void DatabaseOptions::validate() const {
   check_enum("sampling", sampling, Sampling::random);
   check_enum("scale", scale, Scale::large);
   check_enum("key_scheme", key_scheme, KeyScheme::reduced);
-  check_enum("rotation_key", rotation_key, RotationKey::euler);
+  check_enum("rotation_key", rotation_key, RotationKey::dual_quaternion);
   if (key_scheme == KeyScheme::reduced && rotation_key != RotationKey::rotation_vector) {
     throw InvalidArgumentError(
         "option rotation_key: only a full key writes rotations in different ways; set key_scheme "

@@ -20,12 +20,13 @@ void clamp_error(Vector6& e, double position, double rotation, const Paper& sche
 
 bool stops_on_growth(const Paper& scheme) {
   if (scheme.growth_stop != GrowthStop::by_scheme) return scheme.growth_stop == GrowthStop::on;
-  return scheme.iteration == Iteration::dls || scheme.iteration == Iteration::pinv;
+  return scheme.iteration == Iteration::dls || scheme.iteration == Iteration::pinv ||
+         scheme.iteration == Iteration::pinv_rr;
 }
 
 bool stops_on_small_step(Iteration iteration) {
   return iteration == Iteration::dls || iteration == Iteration::pinv ||
-         iteration == Iteration::pinv_rr;
+         iteration == Iteration::pinv_rr || iteration == Iteration::cwpi;
 }
 
 /// `squared_error` is what lm damps by.

@@ -14,6 +14,7 @@
 #include "refine/lane_refiner.hpp"
 #include "refine/scheme_refiner.hpp"
 #include "search/collector.hpp"
+#include "seeds/branch_lanes.hpp"
 #include "seeds/enumeration.hpp"
 #include "seeds/lane_query.hpp"
 #include "seeds/nearest_on_curve.hpp"
@@ -29,9 +30,10 @@ namespace iksel {
 
 /// What one search writes to. Never shared between two at once.
 struct Workspace {
-  /// `nominal` is the chain that the data belongs to; `closed_form` is null, or its own.
+  /// `nominal` is the chain that the data belongs to; `closed_forms` are its own.
   Workspace(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
-            const SolverOptions& options, const ClosedFormChain* closed_form);
+            const SolverOptions& options, const ClosedForms& closed_forms,
+            const BranchTrials* trials);
 
   /// The scheme of one seed at a time, by which given seeds are ranked too.
   Paper scheme;
@@ -41,14 +43,19 @@ struct Workspace {
   /// One of two ways to search: lanes, if the options, the chain and the database allow it.
   struct InLanes {
     InLanes(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
-            const SolverOptions& options, const ClosedFormChain* closed_form,
-            const lanes::LaneKernels& kernels);
+            const SolverOptions& options, const ClosedForms& closed_forms,
+            const BranchTrials* trials, const lanes::LaneKernels& kernels);
 
     LaneRefiner refiner;
     LaneQuery query;
     SeedScreen screen;
+    /// All branches of a goal of that task; null if it cannot be solved in closed form at once.
+    [[nodiscard]] Enumeration* branches_of(const TaskSpace& task);
+
     /// Only of a chain that can be solved in closed form, at once or for each value of a joint.
     std::optional<Enumeration> branches;
+    std::vector<std::pair<Task, Enumeration>> task_branches;
+    std::optional<BranchLanes> branch_lanes;
     std::optional<Sweep> sweep;
     std::optional<RootSweep> roots;
     std::optional<NearestOnCurve> nearest_on_curve;
@@ -79,7 +86,9 @@ class WorkspacePool {
   [[nodiscard]] bool solves_in_lanes() const { return solves_in_lanes_; }
 
   /// Whether the self-motion is known as arcs.
-  [[nodiscard]] bool has_arcs() const { return closed_form_ && closed_form_->form.is_held; }
+  [[nodiscard]] bool has_arcs() const {
+    return closed_forms_.pose && closed_forms_.pose->form.is_held;
+  }
 
   /// A workspace, given back when this goes. Throws DatabaseError if the database was damaged since
   /// it was mapped.
@@ -103,8 +112,9 @@ class WorkspacePool {
   const Robot& nominal_;
   const Database& database_;
   const SolverOptions& options_;
-  std::optional<ClosedFormChain> closed_form_;
+  ClosedForms closed_forms_;
   bool solves_in_lanes_;
+  std::optional<BranchTrials> trials_;
   /// As Storage::damaged of the database.
   const std::atomic<bool>* damaged_;
   /// Those that lie idle; a null is a place to put one back. More solves at once than places make

@@ -35,6 +35,8 @@ constexpr Patience kNearAnswer{8, 64};
 constexpr int kBeforeRoots = 4;
 /// Seeds after all roots of a sweep led nowhere: double ones, or just outside a limit.
 constexpr int kBesideRoots = 96;
+/// Seeds after a sweep that came close to an answer, but did not find one.
+constexpr int kBesideSweep = 128;
 
 /// What one search works with.
 template <typename Answers>
@@ -106,20 +108,24 @@ Proof Search<Answers>::in_lanes() const {
   NearSeed near = near_seed();
   GivenSeeds given = given_seeds(lanes::kBlock, should_continue);
   refiner.begin(goal.task(), kFirst, Width::narrow);
-  if (!goal.is_full_pose()) {
+  const Pose Y = query.reduce(goal.target());
+  if (goal.is_full_pose()) {
+    refiner.set_pose(Y);
+  } else {
     refiner.set_task(goal.target());
+  }
+  Enumeration* branches = workspace.lanes->branches_of(goal.task());
+  if (branches != nullptr && request.database_seeds) {
+    const auto proof = by_branches(*branches, Proof::closed_form, given, Y);
+    if (proof) return *proof;
+  }
+  if (!goal.is_full_pose()) {
     clock.lap(&StageTimes::query);
     Random random(options.seed);
     AllowedSeeds allowed(query, model.joints, goal, random, work, clock);
     run(refiner, near, given, allowed);
     clock.lap(&StageTimes::iterate);
     return Proof::none;
-  }
-  const Pose Y = query.reduce(goal.target());
-  refiner.set_pose(Y);
-  if (workspace.lanes->branches && request.database_seeds) {
-    const auto proof = by_branches(*workspace.lanes->branches, Proof::closed_form, given, Y);
-    if (proof) return *proof;
   }
   query.set_target(Y);
   clock.lap(&StageTimes::query);
@@ -144,6 +150,7 @@ Proof Search<Answers>::in_lanes() const {
       SweptSeeds swept(*workspace.lanes->sweep, Y, work, clock);
       if (search(refiner, swept, answers, work)) return Proof::none;
       if (swept.is_none()) return Proof::sweep;
+      work.leave(kBesideSweep);
     }
     refiner.begin(goal.task(), kScreened, Width::wide);
     ScreenedSeeds screened(query, workspace.lanes->screen, Y, model.joints, options.seed, work,
@@ -159,7 +166,7 @@ template <typename Branches>
 std::optional<Proof> Search<Answers>::by_branches(Branches& branches, Proof kind, GivenSeeds& given,
                                                   const Pose& Y) const {
   LaneRefiner& refiner = workspace.lanes->refiner;
-  EnumeratedSeeds enumerated(branches, goal, Y, answers.wants_more(), work, clock);
+  EnumeratedSeeds enumerated(branches, Y, answers.wants_more(), work, clock);
   SeedSequence seeds(2, given, enumerated);
   refiner.begin(goal.task(), kNearAnswer, Width::narrow);
   answers.look_for_partners(false);
@@ -169,7 +176,8 @@ std::optional<Proof> Search<Answers>::by_branches(Branches& branches, Proof kind
   if (is_satisfied) return Proof::none;
   // Branches of which none could be refined to the tolerances prove nothing.
   if (enumerated.is_certain()) {
-    if (enumerated.is_empty() || answers.has_any()) return kind;
+    if (enumerated.is_empty()) return kind;
+    if (answers.has_any() && !branches.has_families()) return kind;
     if (kind == Proof::sweep) work.leave(kBesideRoots);
   }
   refiner.begin(goal.task(), kFirst, Width::narrow);

@@ -81,7 +81,8 @@ MissingAngle find_missing_angle(const ClosedFormChain& chain, const lanes::Branc
                                 int lane) {
   const lanes::ClosedForm& form = chain.form;
   const auto vector = [&](int i) {
-    return lanes::Vec<double>{pack.target[i], pack.target[i + 1], pack.target[i + 2]};
+    return lanes::Vec<double>{pack.target[i][lane], pack.target[i + 1][lane],
+                              pack.target[i + 2][lane]};
   };
   const lanes::BranchTarget<double> target{vector(0), vector(3), vector(6), vector(9)};
   const double sign[3] = {pack.sign[0][lane], pack.sign[1][lane], pack.sign[2][lane]};

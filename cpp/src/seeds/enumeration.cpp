@@ -8,13 +8,21 @@ namespace {
 
 /// A target is taken to be off by so many tolerances, to be on the safe side.
 constexpr double kMargin = 4;
+/// An angle off by more says nothing [rad].
+constexpr double kVague = 0.3;
 
 }  // namespace
+
+bool is_ruled_out(const lanes::BranchPack& pack, int lane) {
+  if (pack.best[lane] < 0) return true;
+  // Written so that NaN says nothing either.
+  return pack.error[lane] < kVague && pack.beyond[lane] > pack.error[lane];
+}
 
 Enumeration::Enumeration(const ChainModel& model, const ClosedFormChain& chain, bool is_nominal,
                          double position_tolerance, double rotation_tolerance,
                          const lanes::LaneKernels& kernels)
-    : chain_(chain), kernels_(kernels), is_nominal_(is_nominal) {
+    : model_(model), chain_(chain), kernels_(kernels), is_nominal_(is_nominal) {
   chain_.use_limits(model);
   // A rotation moves what the form sees of a target by the tool's length, and seen from the other
   // end by the arm's.
@@ -25,48 +33,68 @@ Enumeration::Enumeration(const ChainModel& model, const ClosedFormChain& chain, 
                           rotation_tolerance, kStructureTolerance});
 }
 
-void Enumeration::find(const Goal& goal, const Pose& Y, bool wants_all) {
+void Enumeration::find(const Pose& Y, bool wants_all) {
   chain_.set_target(Y, pack_);
   kernels_.solve_branches(chain_.form, pack_);
   size_ = 0;
   certain_ = is_nominal_;
-  for (int lane = 0; lane < kMost; ++lane) take(goal, lane, wants_all);
+  for (int lane = 0; lane < kMost; ++lane) take(lane, wants_all);
 }
 
-void Enumeration::take(const Goal& goal, int lane, bool wants_all) {
-  if (pack_.best[lane] < 0) return;
+void Enumeration::place_free_joints(double* q) const {
+  for (int j = 0; j < model_.dof; ++j) {
+    if (!chain_.turns_freely(j) || model_.joints.type(j) == JointType::continuous) continue;
+    q[j] = std::clamp(q[j], model_.joints.lower[j], model_.joints.upper[j]);
+  }
+}
+
+void Enumeration::take(int lane, bool wants_all) {
+  if (is_ruled_out(pack_, lane)) return;
   std::array<double, 6>& q = q_[static_cast<std::size_t>(size_)];
   chain_.copy_joints(pack_, lane, q.data());
+  place_free_joints(q.data());
   const double beyond = pack_.beyond[lane];
-  // An angle off by more says nothing; written so that NaN does not either.
-  constexpr double kVague = 0.3;
   double bound = pack_.error[lane];
-  if (bound < kVague && beyond > bound) return;
   bool is_sure = bound < kVague && pack_.worst[lane] >= 0;
-  if (beyond > 0 || (wants_all && !is_sure)) is_sure = is_regular(goal, q, bound);
+  if (beyond > 0 || (wants_all && !is_sure)) is_sure = is_regular(lane, bound);
   if (is_sure && beyond > bound) return;
   certain_ = certain_ && is_sure && !(beyond > 0);
   ++size_;
 }
 
-bool Enumeration::is_regular(const Goal& goal, const std::array<double, 6>& q,
-                             double& bound) const {
+bool Enumeration::is_regular(int lane, double& bound) const {
+  using Eigen::Vector3d;
   constexpr double kFarthest = 0.01;
-  const JointVector at = Eigen::Map<const Eigen::Matrix<double, 6, 1>>(q.data());
-  double position = 0;
-  double rotation = 0;
-  Jacobian J;
-  goal.measure(at, position, rotation, &J);
-  if (!goal.is_reached(position, rotation)) return false;
-  const TaskSpace& task = goal.task();
+  const lanes::ClosedForm& form = chain_.form;
+  Vector3d axis[6];
+  Vector3d point[6];
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  for (int j = 0; j < 6; ++j) {
+    const Vector3d h(form.h[j]);
+    axis[j] = R * h;
+    point[j].setZero();
+    if (j > 0) point[j] = point[j - 1] + R * Vector3d(form.p[j - 1]);
+    R = R * Eigen::AngleAxisd(pack_.q[j][lane] + form.offset[j], h).toRotationMatrix();
+  }
+  const double close = form.error / kMargin;
+  const auto target = [&](int row) {
+    return Vector3d(pack_.target[row][lane], pack_.target[row + 1][lane],
+                    pack_.target[row + 2][lane]);
+  };
+  if (!((point[5] - target(9)).norm() <= close)) return false;
+  for (int k = 0; k < 3; ++k) {
+    const Vector3d off = R * Vector3d(form.basis[k]) - target(3 * k);
+    if (!(off.norm() <= close)) return false;
+  }
   double columns[6][6];
-  for (int k = 0; k < 6; ++k) {
-    for (int row = 0; row < 6; ++row) {
-      columns[k][row] =
-          J(row, k) / (row < 3 ? task.position_tolerance() : task.rotation_tolerance());
+  for (int j = 0; j < 6; ++j) {
+    const Vector3d moved = axis[j].cross(point[5] - point[j]);
+    for (int row = 0; row < 3; ++row) {
+      columns[j][row] = moved[row];
+      columns[j][row + 3] = axis[j][row];
     }
   }
-  const double moved = kMargin * inverse_norm(columns);
+  const double moved = form.error * inverse_norm(columns);
   if (!(moved < kFarthest)) return false;
   bound = moved;
   return true;

@@ -23,10 +23,10 @@ class Enumeration {
               double position_tolerance, double rotation_tolerance,
               const lanes::LaneKernels& kernels);
 
-  /// Finds the branches of the goal, a full pose, that lie inside the limits, or so near to them
-  /// that it cannot be told. Y as in reduction.hpp. Where not all are wanted, branches inside the
-  /// limits are not looked at any closer: one of them will do.
-  void find(const Goal& goal, const Pose& Y, bool wants_all);
+  /// Finds the branches of a target that lie inside the limits, or so near to them that it cannot
+  /// be told; of the task that the chain was completed for. Y as in reduction.hpp. Where not all
+  /// are wanted, branches inside the limits are not looked at any closer: one of them will do.
+  void find(const Pose& Y, bool wants_all);
   [[nodiscard]] int size() const { return size_; }
   /// Inside the limits [rad].
   [[nodiscard]] const double* q(int i) const { return q_[static_cast<std::size_t>(i)].data(); }
@@ -34,18 +34,23 @@ class Enumeration {
   /// singularity, or a branch so close to a limit, that what the tolerances allow could make a
   /// difference.
   [[nodiscard]] bool is_certain() const { return certain_; }
+  /// Whether each branch stands for many solutions.
+  [[nodiscard]] bool has_families() const { return chain_.has_families(); }
 
   /// What the last find() solved: those outside the limits too, and lanes without a branch.
   [[nodiscard]] const ClosedFormChain& chain() const { return chain_; }
   [[nodiscard]] const lanes::BranchPack& pack() const { return pack_; }
 
  private:
+  /// Brings joints of which the angle does not matter inside their limits.
+  void place_free_joints(double* q) const;
   /// Takes a lane's branch if it may be one.
-  void take(const Goal& goal, int lane, bool wants_all);
-  /// Whether q reaches the goal far enough from singularities to tell by how much the tolerances
-  /// may move it [rad].
-  bool is_regular(const Goal& goal, const std::array<double, 6>& q, double& bound) const;
+  void take(int lane, bool wants_all);
+  /// Whether a lane's branch reaches the target far enough from singularities to tell by how much
+  /// the tolerances may move it [rad].
+  bool is_regular(int lane, double& bound) const;
 
+  const ChainModel& model_;
   ClosedFormChain chain_;
   const lanes::LaneKernels& kernels_;
   bool is_nominal_;
@@ -55,23 +60,21 @@ class Enumeration {
   bool certain_ = false;
 };
 
+/// Whether a lane that solve_branches solved has no branch inside the limits, or none at all, as
+/// far as the form's error lets it be told.
+bool is_ruled_out(const lanes::BranchPack& pack, int lane);
+
 /// These as a source of seeds, or those of a RootSweep.
 template <typename Branches>
 class EnumeratedSeeds {
  public:
-  EnumeratedSeeds(Branches& branches, const Goal& goal, const Pose& Y, bool wants_all, Work& work,
-                  StageClock& clock)
-      : branches_(branches),
-        goal_(goal),
-        Y_(Y),
-        wants_all_(wants_all),
-        work_(work),
-        clock_(clock) {}
+  EnumeratedSeeds(Branches& branches, const Pose& Y, bool wants_all, Work& work, StageClock& clock)
+      : branches_(branches), Y_(Y), wants_all_(wants_all), work_(work), clock_(clock) {}
 
   bool next_stage() {
     if (done_ || !work_.has_left()) return false;
     done_ = true;
-    branches_.find(goal_, Y_, wants_all_);
+    branches_.find(Y_, wants_all_);
     clock_.lap(&StageTimes::query);
     return true;
   }
@@ -92,7 +95,6 @@ class EnumeratedSeeds {
 
  private:
   Branches& branches_;
-  const Goal& goal_;
   const Pose& Y_;
   bool wants_all_;
   Work& work_;

@@ -26,15 +26,6 @@ void LaneQuery::set_target(const Pose& Y) {
   seed_target_ = make_seed_target(Y);
 }
 
-const float* LaneQuery::fetch_leaf(const Pose& Y) const {
-  double key[kMaxKeyDimension];
-  data_.reduction->make_key(Y, key);
-  const float* leaf = data_.leaves.block(key);
-  const int rows = lanes::block_rows(seed_chain_.n);
-  for (int row = 0; row < rows; ++row) __builtin_prefetch(leaf + row * lanes::kBlock);
-  return leaf;
-}
-
 std::size_t LaneQuery::measure_blocks() {
   const SampleBlocks& blocks = data_.blocks;
   blocks.measure(key_, block_distance2_.data());

@@ -40,14 +40,6 @@ class LaneQuery {
   /// The samples of the leaf that the target falls into, as seeds.
   void prepare_leaf(lanes::SeedPack& seeds) const { prepare(data_.leaves.block(key_), seeds); }
 
-  /// The same in two steps: the leaf of Y, of which the samples are on their way into the cache
-  /// then; and its samples as seeds for Y.
-  [[nodiscard]] const float* fetch_leaf(const Pose& Y) const;
-  void prepare_leaf(const Pose& Y, const float* leaf, lanes::SeedPack& seeds) {
-    seed_target_ = make_seed_target(Y);
-    prepare(leaf, seeds);
-  }
-
   /// The blocks of samples, nearest first: to come before prepare_blocks. Returns how many there
   /// are.
   std::size_t measure_blocks();

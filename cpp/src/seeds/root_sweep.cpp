@@ -37,7 +37,7 @@ RootSweep::RootSweep(const ChainModel& model, const ClosedFormChain& chain, bool
   for (int lane = 0; lane < lanes::kWidth; ++lane) pack_.sign[2][lane] = 1;
 }
 
-void RootSweep::find(const Goal& /*goal*/, const Pose& Y, bool /*wants_all*/) {
+void RootSweep::find(const Pose& Y, bool /*wants_all*/) {
   chain_.set_target(Y, pack_);
   roots_.find(make_residual(chain_, pack_));
   size_ = 0;

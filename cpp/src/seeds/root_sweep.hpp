@@ -25,12 +25,13 @@ class RootSweep {
 
   /// Finds the solutions of the goal, a full pose, that lie inside the limits, or so near to them
   /// that it cannot be told. Y as in reduction.hpp.
-  void find(const Goal& goal, const Pose& Y, bool wants_all);
+  void find(const Pose& Y, bool wants_all);
   [[nodiscard]] int size() const { return size_; }
   /// Inside the limits, or nearly [rad].
   [[nodiscard]] const double* q(int i) const { return q_[static_cast<std::size_t>(i)].data(); }
   /// Whether there are no solutions but near to these.
   [[nodiscard]] bool is_certain() const { return certain_; }
+  [[nodiscard]] static bool has_families() { return false; }
 
  private:
   /// The first two of the three signs are read.

@@ -43,6 +43,15 @@ void Selection::query(const Pose& T_base_flange, std::size_t k) {
   double key[kMaxKeyDimension];
   data_.make_key(T_base_flange, key);
   found_ = data_.tree->nearest(key, std::min(k, neighbours_.size()), neighbours_.data());
+  if (scheme_.neighbour_radius > 0) drop_far_neighbours();
+}
+
+void Selection::drop_far_neighbours() {
+  const double most = scheme_.neighbour_radius * scheme_.neighbour_radius;
+  const auto end =
+      std::remove_if(neighbours_.begin(), neighbours_.begin() + static_cast<std::ptrdiff_t>(found_),
+                     [&](const Neighbour& each) { return each.distance > most; });
+  found_ = static_cast<std::size_t>(end - neighbours_.begin());
 }
 
 void Selection::rank() {

@@ -40,6 +40,8 @@ class Selection {
   }
 
  private:
+  /// Keeps those within the threshold of Eq. (3).
+  void drop_far_neighbours();
   void score(Candidate& candidate) const;
   /// Error from sample to target, in the frame that the sample's pseudo-inverse is made for.
   [[nodiscard]] Eigen::Matrix<double, 6, 1> error_of(const Candidate& candidate) const;

@@ -14,7 +14,7 @@ namespace iksel {
 class Sweep {
  public:
   /// Values of the swept joint that are looked at, evenly over its range.
-  static constexpr int kSamples = 96;
+  static constexpr int kSamples = 128;
 
   /// `chain` has a joint that is held; its limits are the model's. `is_nominal`: it is the model's
   /// own. `tolerance` is the larger of the solver's [rad, and m in units of the reach].

@@ -26,7 +26,7 @@ Places SweptBranches::places(int count) const {
 
 void SweptBranches::set_target(const Pose& Y) {
   chain_.set_target(Y, all_);
-  std::copy(std::begin(all_.target), std::end(all_.target), one_.target);
+  chain_.set_target(Y, one_);
 }
 
 void SweptBranches::solve_all(double value) {

@@ -96,9 +96,8 @@ IKSEL_INLINE void store_joints(const ClosedForm& form, const Branch<T, Q>& branc
 template <typename T, typename Q>
 IKSEL_INLINE Branch<T, Q> solve_branch(const ClosedForm& form, int first, Q quality,
                                        BranchPack& pack) {
-  const auto vector = [&](int i) {
-    return Vec<T>{T(pack.target[i]), T(pack.target[i + 1]), T(pack.target[i + 2])};
-  };
+  const auto row = [&](int i) { return Lanes<T>::load(pack.target[i] + first); };
+  const auto vector = [&](int i) { return Vec<T>{row(i), row(i + 1), row(i + 2)}; };
   BranchTarget<T> target{vector(0), vector(3), vector(6), vector(9)};
   const T held = Lanes<T>::load(pack.held + first);
   if (form.is_held) hold(form, held, target);

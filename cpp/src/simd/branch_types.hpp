@@ -52,11 +52,11 @@ struct ClosedForm {
   Turned wrist;         ///< h4 . R(h5) h6; of three_parallel, h2 . R(h5) h6
 };
 
-/// A pose, and branches of it lane by lane. Rows of the target: columns X, Y and Z of R_06 E, where
-/// E has the form's basis as columns, and the way from the point on axis 1 to that on axis 6
+/// Poses, and a branch of each, lane by lane. Rows of the target: columns X, Y and Z of R_06 E,
+/// where E has the form's basis as columns, and the way from the point on axis 1 to that on axis 6
 /// [units]; where a joint is held, as they are at its angle 0.
 struct BranchPack {
-  double target[12];
+  alignas(64) double target[12][kWidth];
   /// Angle of the held joint, or of that of sweep_4 or sweep_6, if the form has one [rad].
   alignas(64) double held[kWidth];
   /// +-1: which of two solutions each of three subproblems takes.

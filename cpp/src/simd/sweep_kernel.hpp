@@ -69,10 +69,11 @@ IKSEL_INLINE void rate_pair(const ClosedForm& form, const BranchTarget<T>& targe
 template <typename T>
 void rate_branches(const ClosedForm& form, const BranchPack& pack, double bound,
                    double (&off)[kWidth][kWidth]) {
-  const auto vector = [&](int i) {
-    return Vec<T>{T(pack.target[i]), T(pack.target[i + 1]), T(pack.target[i + 2])};
-  };
   for (int first = 0; first < kWidth; first += Lanes<T>::kCount) {
+    const auto vector = [&](int i) {
+      const auto row = [&](int r) { return Lanes<T>::load(pack.target[r] + first); };
+      return Vec<T>{row(i), row(i + 1), row(i + 2)};
+    };
     BranchTarget<T> target{vector(0), vector(3), vector(6), vector(9)};
     hold(form, Lanes<T>::load(pack.held + first), target);
     for (int lane = 0; lane < kWidth / 2; ++lane) {

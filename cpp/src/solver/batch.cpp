@@ -11,6 +11,7 @@
 #include "base/pose_check.hpp"
 #include "iksel/error.hpp"
 #include "search/batch_stream.hpp"
+#include "seeds/leaf_lanes.hpp"
 #include "solver/solver_impl.hpp"
 
 namespace iksel {
@@ -135,30 +136,47 @@ class Batch {
   }
 
  private:
-  static constexpr std::size_t kMost = 256;
+  static constexpr std::size_t kMost = TargetList::kMost;
 
   /// For a request that asks for nothing: the answer for a target does not depend on the others.
   template <typename Tell>
   void solve_plain(std::size_t first, std::size_t last, Workspace& workspace,
                    const Tell& tell) const {
+    TargetList left;
+    for (std::size_t i = first; i < last; ++i) left.add(i);
+    if (workspace.lanes) left = solve_in_lanes(left, *workspace.lanes, tell);
     const SolveRequest none;
-    const auto solve_alone = [&](std::size_t i) {
+    for (const std::size_t i : left) {
       tell(i, solver_.find_first(target_(i), solver_.task, none, workspace, nullptr));
-    };
-    // In closed form a target is solved at once.
-    if (workspace.lanes == nullptr || (workspace.lanes->branches && solver_.task.is_full_pose())) {
-      for (std::size_t i = first; i < last; ++i) solve_alone(i);
-      return;
     }
-    LaneRefiner& refiner = workspace.lanes->refiner;
-    LaneQuery& query = workspace.lanes->query;
-    BatchStream<Target, Tell> stream(solver_.model(), solver_.task, solver_.options.max_attempts,
-                                     refiner, query, first, last, target_, tell);
+  }
+
+  /// In closed form where there is one; of six joints nothing is left then but what is in doubt.
+  template <typename Tell>
+  TargetList solve_in_lanes(const TargetList& targets, Workspace::InLanes& lanes,
+                            const Tell& tell) const {
+    const TaskSpace& task = solver_.task;
+    TargetList left = targets;
+    if (lanes.branch_lanes && task.is_full_pose()) {
+      BranchLanes& branches = *lanes.branch_lanes;
+      left = stream(left, lanes.query, branches, branches, tell);
+    }
+    if (lanes.branches_of(task) != nullptr) return left;
+    // Any seed is given up after so many iterations.
+    constexpr int kPatience = 8;
+    lanes.refiner.begin(task, {kPatience, kPatience}, Width::wide);
+    LeafLanes leaves(lanes.query, solver_.options.max_attempts);
+    return stream(left, lanes.query, lanes.refiner, leaves, tell);
+  }
+
+  template <typename Refiner, typename Seeds, typename Tell>
+  TargetList stream(const TargetList& targets, const LaneQuery& query, Refiner& refiner,
+                    Seeds& seeds, const Tell& tell) const {
+    BatchStream<Refiner, Seeds, Target, Tell> stream(solver_.model(), solver_.task, query, refiner,
+                                                     seeds, targets, target_, tell);
     Work work(0);  // each target has its own
     search(refiner, stream, stream, work);
-    for (std::size_t i = first; i < last; ++i) {
-      if (stream.is_left(i)) solve_alone(i);
-    }
+    return stream.left();
   }
 
   Result solve_one(std::size_t i, SolveRequest& request, Workspace& workspace) const {

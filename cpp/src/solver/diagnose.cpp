@@ -87,7 +87,7 @@ class Diagnoser {
   /// Whether all branches are known, of which none is an answer.
   bool explain_by_branches(Workspace& workspace) {
     const auto& lanes = workspace.lanes;
-    if (!lanes || !lanes->branches) return false;
+    if (!lanes || !lanes->branches || lanes->branches->chain().is_completed()) return false;
     auto reasons =
         explain_branches(model_, goal_, lanes->query.reduce(goal_.target()), *lanes->branches);
     if (!reasons) return false;

@@ -100,7 +100,7 @@ std::string describe_elbow(const ChainModel& model, const ClosedFormChain& chain
 
 std::optional<BranchReasons> explain_branches(const ChainModel& model, const Goal& goal,
                                               const Pose& Y, Enumeration& branches) {
-  branches.find(goal, Y, /*wants_all=*/true);
+  branches.find(Y, /*wants_all=*/true);
   BranchReasons reasons;
   Diagnosis& out = reasons.diagnosis;
   out.branch = find_nearest(model, goal, branches);

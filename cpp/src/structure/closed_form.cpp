@@ -5,6 +5,7 @@
 
 #include "base/constants.hpp"
 #include "simd/lane_chain.hpp"
+#include "structure/completed_axes.hpp"
 
 namespace iksel {
 namespace {
@@ -13,6 +14,9 @@ using Eigen::Vector3d;
 using lanes::Closure;
 
 constexpr int kSix = 6;
+/// How far an axis that is locked may be off zero without being outside: what rounding leaves
+/// [rad].
+constexpr double kLocked = 1e-9;
 
 void write(const Vector3d& v, double (&out)[3]) {
   for (int i = 0; i < 3; ++i) out[i] = v[i];
@@ -152,53 +156,35 @@ lanes::ClosedForm make_form(Closure closure, const ScrewAxes& axes, double unit)
   return form;
 }
 
-std::string describe(Closure closure, const int (&joints)[kSix]) {
-  const auto axis = [&](int j) { return std::to_string(joints[j] + 1); };
-  const auto list = [&](int a, int b) {
-    return joints[a] < joints[b] ? axis(a) + " and " + axis(b) : axis(b) + " and " + axis(a);
-  };
-  const auto three = [&](int a) {
-    const int first = std::min(joints[a], joints[a + 2]);
-    return "axes " + std::to_string(first + 1) + ", " + std::to_string(first + 2) + " and " +
-           std::to_string(first + 3);
-  };
-  switch (closure) {
-    case Closure::three_parallel:
-      return three(1) + " are parallel, " + list(4, 5) + " meet";
-    case Closure::parallel_23:
-      return three(3) + " meet, " + list(1, 2) + " are parallel";
-    case Closure::parallel_12:
-      return three(3) + " meet, " + list(0, 1) + " are parallel";
-    case Closure::intersect_12:
-      return three(3) + " meet, " + list(0, 1) + " meet";
-    case Closure::intersect_23:
-      return three(3) + " meet, " + list(1, 2) + " meet";
-    case Closure::sweep_4:
-      return "axes " + list(1, 2) + " are parallel, " + list(4, 5) + " meet";
-    case Closure::sweep_6:
-      return "axes " + list(1, 2) + " are parallel, " + list(3, 4) + " meet";
-  }
-  return {};
-}
-
 }  // namespace
 
-void ClosedFormChain::set_target(const Pose& Y, lanes::BranchPack& pack) const {
+template <typename Write>
+void ClosedFormChain::make_rows(const Pose& Y, const Write& write) const {
   const Pose target = reversed ? Y.inverse() : Y;
   const Eigen::Matrix3d columns = target.linear() * to_basis;
   const Vector3d w = (target.translation() - first - columns * tail) / unit;
-  for (int i = 0; i < 9; ++i) pack.target[i] = columns(i % 3, i / 3);
-  for (int i = 0; i < 3; ++i) pack.target[9 + i] = w[i];
+  for (int i = 0; i < 9; ++i) write(i, columns(i % 3, i / 3));
+  for (int i = 0; i < 3; ++i) write(9 + i, w[i]);
+}
+
+void ClosedFormChain::set_target(const Pose& Y, lanes::BranchPack& pack) const {
+  make_rows(Y, [&](int row, double value) { std::fill_n(pack.target[row], lanes::kWidth, value); });
+}
+
+void ClosedFormChain::set_target(const Pose& Y, int lane, lanes::BranchPack& pack) const {
+  make_rows(Y, [&](int row, double value) { pack.target[row][lane] = value; });
 }
 
 void ClosedFormChain::copy_joints(const lanes::BranchPack& pack, int lane, double* q) const {
-  for (int i = 0; i < kSix; ++i) q[joints[i]] = pack.q[i][lane];
+  for (int i = 0; i < kSix; ++i) {
+    if (joints[i] < dof) q[joints[i]] = pack.q[i][lane];
+  }
 }
 
 lanes::BranchPack all_branches() {
   lanes::BranchPack pack{};
   for (int lane = 0; lane < lanes::kWidth; ++lane) {
-    for (int s = 0; s < 3; ++s) pack.sign[s][lane] = (lane >> s & 1) == 0 ? 1 : -1;
+    for (int s = 0; s < 3; ++s) pack.sign[s][lane] = branch_sign(lane, s);
   }
   return pack;
 }
@@ -206,6 +192,12 @@ lanes::BranchPack all_branches() {
 void ClosedFormChain::use_limits(const ChainModel& model) {
   for (int i = 0; i < kSix; ++i) {
     const int j = joints[i];
+    if (j >= dof || turns_freely(j)) {
+      form.offset[i] = 0;
+      form.middle[i] = 0;
+      form.reach[i] = turns_freely(j) ? kPi : kLocked;
+      continue;
+    }
     const bool ends = model.joints.type(j) != JointType::continuous;
     form.offset[i] = model.kernel.joints[static_cast<std::size_t>(j)].offset;
     form.middle[i] = ends ? 0.5 * (model.joints.lower[j] + model.joints.upper[j]) : 0;
@@ -215,13 +207,14 @@ void ClosedFormChain::use_limits(const ChainModel& model) {
 
 namespace {
 
-/// The last six joints, seen from one end. `sweeps`: those that are closed for an angle of a joint.
-std::optional<ClosedFormChain> look_from(const ChainModel& model, bool reversed, bool sweeps) {
-  const ScrewAxes forward = ScrewAxes::of(model);
-  ScrewAxes axes = reversed ? forward.reversed() : forward;
+/// The last six axes, seen from one end. `sweeps`: those that are closed for an angle of a joint.
+std::optional<ClosedFormChain> look_from(const ChainModel& model, const CompletedAxes& completed,
+                                         bool reversed, bool sweeps) {
+  ScrewAxes axes = reversed ? completed.axes.reversed() : completed.axes;
   ClosedFormChain chain;
-  const int before = model.dof - kSix;
-  const auto joint = [&](int i) { return reversed ? model.dof - 1 - i : i; };
+  const int count = static_cast<int>(axes.h.size());
+  const int before = count - kSix;
+  const auto joint = [&](int i) { return reversed ? count - 1 - i : i; };
   const Vector3d held_axis = axes.h.front();
   const Vector3d held_point = axes.p.front();
   if (before > 0) {
@@ -239,6 +232,8 @@ std::optional<ClosedFormChain> look_from(const ChainModel& model, bool reversed,
     chain.held = chain.joints[is_4 ? 3 : 5];
     chain.deviation = geometry.deviation(is_4 ? 4 : 3);
   }
+  chain.dof = model.dof;
+  chain.free = completed.free;
   chain.reversed = reversed;
   chain.unit = model.reach;
   chain.form = make_form(*closure, geometry.axes(), chain.unit);
@@ -250,25 +245,45 @@ std::optional<ClosedFormChain> look_from(const ChainModel& model, bool reversed,
   write((chain.first - held_point) / chain.unit, chain.form.held_from);
   chain.tail = E.transpose() * (geometry.axes().end.translation() - geometry.axes().p[5]);
   chain.to_basis = geometry.axes().end.linear().transpose() * E;
-  chain.description = describe(*closure, chain.joints);
   return chain;
+}
+
+std::optional<ClosedFormChain> look_at(const ChainModel& model, const CompletedAxes& completed,
+                                       bool sweeps) {
+  for (const bool reversed : {false, true}) {
+    auto chain = look_from(model, completed, reversed, sweeps);
+    if (chain) return chain;
+  }
+  return std::nullopt;
+}
+
+bool all_turn(const ChainModel& model) {
+  const auto& joints = model.kernel.joints;
+  return is_simple(model) && std::none_of(joints.begin(), joints.end(),
+                                          [](const KernelJoint& joint) { return joint.prismatic; });
 }
 
 }  // namespace
 
-std::optional<ClosedFormChain> find_closed_form(const ChainModel& model) {
-  if (model.dof < kSix || model.dof > kSix + 1 || !is_simple(model)) return std::nullopt;
-  for (const KernelJoint& joint : model.kernel.joints) {
-    if (joint.prismatic) return std::nullopt;
+std::optional<ClosedFormChain> find_closed_form(const ChainModel& model, const Task& task) {
+  if (!all_turn(model)) return std::nullopt;
+  for (const CompletedAxes& completed : complete_axes(model, task, kStructureTolerance)) {
+    auto chain = look_at(model, completed, /*sweeps=*/false);
+    if (chain) return chain;
   }
-  for (const bool sweeps : {false, true}) {
-    if (!sweeps && model.dof > kSix) continue;
-    for (const bool reversed : {false, true}) {
-      auto chain = look_from(model, reversed, sweeps);
-      if (chain) return chain;
-    }
+  const bool has_sweep = model.dof == kSix || model.dof == kSix + 1;
+  if (!task.is_full_pose() || !has_sweep) return std::nullopt;
+  return look_at(model, {ScrewAxes::of(model)}, /*sweeps=*/true);
+}
+
+ClosedForms ClosedForms::of(const ChainModel& model) {
+  ClosedForms forms;
+  forms.pose = find_closed_form(model);
+  for (const Task& task : {Task::position_only(), Task::free_spin(Axis::x),
+                           Task::free_spin(Axis::y), Task::free_spin(Axis::z)}) {
+    if (const auto chain = find_closed_form(model, task)) forms.tasks.emplace_back(task, *chain);
   }
-  return std::nullopt;
+  return forms;
 }
 
 }  // namespace iksel

@@ -4,8 +4,10 @@
 
 #include <Eigen/Geometry>
 #include <optional>
-#include <string>
+#include <utility>
+#include <vector>
 
+#include "iksel/task.hpp"
 #include "simd/branch_types.hpp"
 #include "structure/screw_axes.hpp"
 
@@ -18,10 +20,14 @@ inline constexpr double kStructureTolerance = 1e-9;
 inline constexpr double kSweptTolerance = 2e-5;
 
 /// Six consecutive joints of a chain, seen from either end; before them there may be one that is
-/// held.
+/// held. A chain of fewer joints, or one for a task that leaves rotations free, is completed
+/// (completed_axes.hpp).
 struct ClosedFormChain {
-  /// `joints[i]` is the chain's joint that the form counts as its i-th.
+  /// `joints[i]` is the chain's joint that the form counts as its i-th; from `dof` on, what
+  /// completes it.
   int joints[6];
+  int dof;
+  unsigned free = 0;  ///< bit j: joint j turns as it likes
   /// The chain's joint that is held; -1: there are but six.
   int held = -1;
   bool reversed;
@@ -31,14 +37,25 @@ struct ClosedFormChain {
   Eigen::Vector3d first;     ///< the point on axis 1 [m]
   Eigen::Vector3d tail;      ///< from the point on axis 6 to the end, in the basis [m]
   Eigen::Matrix3d to_basis;  ///< R_06 E = R * to_basis
-  std::string description;
 
   /// Sets the form's limits and offsets to those of a model.
   void use_limits(const ChainModel& model);
-  /// Sets a pack's target to Y (reduction.hpp), or its inverse if reversed.
+  /// Sets the target of all lanes of a pack, or of one, to Y (reduction.hpp), or its inverse if
+  /// reversed.
   void set_target(const Pose& Y, lanes::BranchPack& pack) const;
-  /// Writes the six joints of a lane to where they belong in q, the chain's joint values.
+  void set_target(const Pose& Y, int lane, lanes::BranchPack& pack) const;
+  [[nodiscard]] bool turns_freely(int joint) const { return (free >> joint & 1U) != 0; }
+  /// Whether there are axes besides the chain's joints.
+  [[nodiscard]] bool is_completed() const { return dof < 6 || free >> dof != 0; }
+  /// Whether the angles of some joints do not matter, so that each branch is a family of solutions.
+  [[nodiscard]] bool has_families() const { return (free & ((1U << dof) - 1)) != 0; }
+  /// Writes the joints of a lane to where they belong in q, the chain's joint values.
   void copy_joints(const lanes::BranchPack& pack, int lane, double* q) const;
+
+ private:
+  /// The rows of a target, each by write(row, value).
+  template <typename Write>
+  void make_rows(const Pose& Y, const Write& write) const;
 };
 
 /// Whether answers lie so near to branches of a chain that something can be concluded from these:
@@ -48,10 +65,24 @@ inline bool concludes_from_branches(bool is_nominal, double tolerance) {
   return is_nominal && tolerance <= 1e-4;
 }
 
+/// +-1: which solution of its subproblem number `of` a branch takes.
+inline double branch_sign(int branch, int of) { return (branch >> of & 1) == 0 ? 1 : -1; }
+
 /// A pack with another branch in each lane.
 lanes::BranchPack all_branches();
 
-/// What makes the chain solvable, if anything does.
-std::optional<ClosedFormChain> find_closed_form(const ChainModel& model);
+/// What makes the chain solvable, if anything does, for a task that asks for the whole pose, for
+/// all but a spin about one of the tool's axes, or for the position only. Sweeps are for whole
+/// poses.
+std::optional<ClosedFormChain> find_closed_form(const ChainModel& model,
+                                                const Task& task = Task::pose());
+
+/// A chain's closed forms: for whole poses, and for each of the other tasks that have one.
+struct ClosedForms {
+  std::optional<ClosedFormChain> pose;
+  std::vector<std::pair<Task, ClosedFormChain>> tasks;
+
+  static ClosedForms of(const ChainModel& model);
+};
 
 }  // namespace iksel

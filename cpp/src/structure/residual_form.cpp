@@ -48,9 +48,12 @@ lanes::ResidualForm make_residual(const ClosedFormChain& chain, const lanes::Bra
   const lanes::ClosedForm& form = chain.form;
   const auto h = [&](int joint) { return Vector3d(form.h[joint - 1]); };
   const auto p = [&](int joint) { return Vector3d(form.p[joint - 1]); };
+  const auto rows = [&](int first) {
+    return Vector3d(pack.target[first][0], pack.target[first + 1][0], pack.target[first + 2][0]);
+  };
   Matrix3d columns;  // R_06 E
-  for (int k = 0; k < 3; ++k) columns.col(k) = Vector3d(pack.target + 3 * k);
-  const Vector3d w(pack.target + 9);
+  for (int k = 0; k < 3; ++k) columns.col(k) = rows(3 * k);
+  const Vector3d w = rows(9);
   Swept P, d, a, k;
   double along = form.along56;
   if (form.closure == lanes::Closure::sweep_4) {

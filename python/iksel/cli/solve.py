@@ -66,6 +66,11 @@ def add_parser(commands: Any) -> None:
         help="joint values to try as a seed before the database's [rad or m]",
     )
     parser.add_argument(
+        "--no-database-seeds",
+        action="store_true",
+        help="try no seeds but those of --seed-q and --near",
+    )
+    parser.add_argument(
         "--near",
         nargs="+",
         metavar="Q",
@@ -110,6 +115,12 @@ def run(arguments: argparse.Namespace) -> int:
         raise InvalidArgumentError("--objective: cannot be used with --all")
     given = {"near": near, "seeds": seed, "objective": arguments.objective}
     request: dict[str, Any] = {name: value for name, value in given.items() if value}
+    if arguments.no_database_seeds:
+        if not (near or seed):
+            raise InvalidArgumentError(
+                "--no-database-seeds: leaves nothing to try without --seed-q or --near"
+            )
+        request["database_seeds"] = False
     options = solver_options(arguments)
     database = given_database(arguments)
     solver = Solver(robot, options, database)

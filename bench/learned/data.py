@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the models learn from: poses, and one configuration for each.
+
+The paper draws q uniform inside the limits and lets the model see FK(q) and q; its
+first author's code puts the solver's own answer in the place of q. Here too the label
+is an answer of the solver: of all that reach the pose, the one nearest to the middle of
+the limits. So it is a function of the pose, with jumps only where two answers are
+equally near, and has no whole turns in it. Of an arm with seven joints that answer may
+lie on a limit, up to which the self-motion was followed, and a seed beside it then ends
+outside; there the label is the answer that is farthest from all limits.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+import iksel
+from bench.arms import load_arm
+from bench.cells import WORK
+from bench.size import SEED
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    import numpy.typing as npt
+
+    from bench.arms import Arm
+    from bench.chain import Array
+
+    Floats = npt.NDArray[np.float32]
+
+FEATURES = 12
+"""Numbers that a model is given of a pose."""
+TRAIN_SEED = SEED + 1_000
+"""Of the poses learned from; the next one is of the curves' poses, and SEED of the
+report's."""
+
+
+@dataclass(frozen=True)
+class Scaling:
+    """Mean and deviation of features and labels, for inputs and outputs of order 1."""
+
+    x_mean: Floats
+    x_std: Floats
+    q_mean: Floats
+    q_std: Floats
+
+    def inputs(self, poses: Array) -> Floats:
+        """What a model is given of poses, (N, 4, 4) -> (N, FEATURES)."""
+        return ((features(poses) - self.x_mean) / self.x_std).astype(np.float32)
+
+    def joints(self, outputs: Floats) -> Array:
+        """Joint values [rad] of a model's outputs, (..., dof)."""
+        scaled = np.asarray(outputs, dtype=np.float64) * self.q_std
+        return np.asarray(scaled + self.q_mean)
+
+
+def features(poses: Array) -> Floats:
+    """Position [m] and the nine entries of the rotation, (N, 4, 4) -> (N, FEATURES).
+
+    The entries are smooth in the pose; a quaternion, which the paper uses, jumps where
+    its sign is settled.
+    """
+    rotations = poses[:, :3, :3].reshape(len(poses), 9)
+    return np.concatenate([poses[:, :3, 3], rotations], axis=1).astype(np.float32)
+
+
+def scaling_of(x: Floats, q: Floats) -> Scaling:
+    """Mean and deviation of features and labels, each (N, ...)."""
+    x_std, q_std = x.std(axis=0), q.std(axis=0)
+    return Scaling(x.mean(axis=0), np.maximum(x_std, 1e-3), q.mean(axis=0), q_std)
+
+
+def labelled(robot: str, count: int, seed: int) -> tuple[Floats, Floats]:
+    """labelled_now, made once and kept in build/bench."""
+    path: Path = WORK / "learned" / f"{robot}-{count}-{seed}.npz"
+    if not path.exists():
+        x, q = labelled_now(load_arm(robot), count, seed)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        part = path.with_suffix(".part.npz")
+        np.savez(part, x=x, q=q)
+        part.replace(path)
+    with np.load(path) as file:
+        return file["x"], file["q"]
+
+
+def labelled_now(arm: Arm, count: int, seed: int) -> tuple[Floats, Floats]:
+    """Features, (N, FEATURES), and labels [rad], (N, dof), of so many random poses.
+
+    The few poses that the solver has no answer for are left out.
+    """
+    poses = arm.robot.fk(arm.robot.random_configurations(count, seed))
+    q = labels(arm, poses)
+    known = np.isfinite(q).all(axis=1)
+    return features(poses[known]), q[known].astype(np.float32)
+
+
+def labels(arm: Arm, poses: Array) -> Array:
+    """One configuration for each pose, (N, 4, 4) -> (N, dof) [rad].
+
+    NaN where the solver has none. By one thread, as training is.
+    """
+    wanted: dict[str, Any] = {"near": arm.chain.middle()}
+    if arm.chain.dof > 6:
+        wanted = {"objective": "limits"}
+    result = iksel.Solver(arm.robot).solve_batch(poses, threads=1, **wanted)
+    return np.where(result.success[:, None], result.q, np.nan)

@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Which models there are, where their weights lie, and what is measured of them."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from bench.arms import PAPER_ARMS
+from bench.size import SEED, Job, Size
+
+if TYPE_CHECKING:
+    from bench.store import Settings
+
+MODELS = ("mdn", "flow", "diffusion")
+
+WEIGHTS = Path(__file__).resolve().parent / "weights"
+
+TARGETS = 2_000
+"""As many as in the paper's table."""
+
+
+def weights_path(robot: str, model: str) -> Path:
+    """Where a model's committed weights are; its curve is beside them, as .csv."""
+    return WEIGHTS / f"{robot}_{model}.npz"
+
+
+def learned_cell(robot: str, model: str, size: Size) -> Settings:
+    """One model's outputs, as they are and as seeds."""
+    path = weights_path(robot, model)
+    digest = hashlib.sha256(path.read_bytes()).hexdigest() if path.exists() else ""
+    return {
+        "cell": "learned",
+        "robot": robot,
+        "model": model,
+        "weights": digest[:16],
+        "kind": "uniform",
+        "count": min(size.paper, TARGETS),
+        "seed": SEED,
+    }
+
+
+def learned_jobs(size: Size) -> list[Job]:
+    """One job for each model."""
+    return [
+        Job(
+            f"learned, {model}",
+            "learned",
+            [learned_cell(robot, model, size) for robot in PAPER_ARMS],
+        )
+        for model in MODELS
+    ]

@@ -1,0 +1,320 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The laws of the learned models, of their training, and of the committed weights."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+pytest.importorskip("bench", reason="the benchmarks are in the repository only")
+pytest.importorskip("jax", reason="trains and runs the learned seeds")
+pytest.importorskip("equinox", reason="has the layers of the learned seeds")
+pytest.importorskip("optax", reason="trains the learned seeds")
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from bench.arms import PAPER_ARMS, load_arm
+from bench.learned import data, evaluate, flow, models, plan, train
+from bench.learned.diffusion import Diffusion, schedule
+from bench.learned.mdn import Mdn
+from bench.sections import learned as section
+from bench.size import QUICK
+from bench.view import View
+
+import iksel
+
+SEED = 7
+MANY = 6_000_000
+"""Bytes that all committed weights may have."""
+
+
+@pytest.fixture
+def x():
+    return jax.random.normal(jax.random.key(SEED), (5, data.FEATURES))
+
+
+class TestLabels:
+    @pytest.mark.parametrize("robot", ["cvr038", "irb14050"])
+    def test_reach_the_poses_inside_the_limits(self, robot):
+        arm = load_arm(robot)
+        poses = arm.robot.fk(arm.robot.random_configurations(50, SEED))
+        q = data.labels(arm, poses)
+        known = np.isfinite(q).all(axis=1)
+        assert known.sum() >= 49
+        assert np.abs(arm.chain.fk(q[known]) - poses[known]).max() < 1e-5
+        assert arm.chain.within_limits(q[known]).all()
+
+    def test_of_six_joints_are_the_nearest_to_the_middle(self):
+        arm = load_arm("cvr038")
+        solver = iksel.Solver(arm.robot)
+        poses = arm.robot.fk(arm.robot.random_configurations(50, SEED))
+        middle = arm.chain.middle()
+        for pose, q in zip(poses, data.labels(arm, poses), strict=True):
+            every = solver.solve_all(pose).q
+            least = np.linalg.norm(every - middle, axis=1).min()
+            assert np.linalg.norm(q - middle) <= least + 1e-4
+
+    def test_are_kept(self, tmp_path, monkeypatch):
+        monkeypatch.setattr(data, "WORK", tmp_path)
+        made = data.labelled("ur3_wrs", 20, SEED)
+        monkeypatch.setattr(data, "labels", None)
+        read = data.labelled("ur3_wrs", 20, SEED)
+        assert all(np.array_equal(*pair) for pair in zip(made, read, strict=True))
+
+    def test_scaling_goes_there_and_back(self):
+        features, q = data.labelled_now(load_arm("ur3_wrs"), 200, SEED)
+        scaling = data.scaling_of(features, q)
+        scaled = (q - scaling.q_mean) / scaling.q_std
+        assert scaled.std(axis=0) == pytest.approx(1.0, abs=1e-4)
+        assert np.abs(scaling.joints(scaled) - q).max() < 1e-5
+
+
+class TestMdn:
+    def test_density_integrates_to_one(self, x):
+        model = Mdn(1, jax.random.key(SEED))
+        grid = jnp.linspace(-20.0, 20.0, 4_001)[:, None]
+        step = float(grid[1, 0] - grid[0, 0])
+        for row in x[:2]:
+            logs = model.log_density(grid, jnp.broadcast_to(row, (len(grid), 12)))
+            assert step * np.exp(logs).sum() == pytest.approx(1.0, abs=1e-3)
+
+    def test_output_is_the_mean_of_the_likeliest_component(self, x):
+        model = Mdn(6, jax.random.key(SEED))
+        log_weights, means, _ = model.mixture(x)
+        out = model.outputs(x, jax.random.key(0), 2)
+        for i, best in enumerate(np.argmax(log_weights, axis=1)):
+            assert np.array_equal(out[i], np.stack([means[i, best]] * 2))
+
+
+class TestFlow:
+    @pytest.fixture
+    def model(self):
+        return flow.Flow(6, jax.random.key(SEED))
+
+    @pytest.fixture
+    def context(self, model, x):
+        # Ten times what random weights give, so that the layers do something.
+        return 10.0 * model.context(x, jnp.zeros((len(x), 1)))
+
+    @pytest.fixture
+    def v(self, x):
+        return jax.random.normal(jax.random.key(SEED + 1), (len(x), flow.WIDTH))
+
+    def test_inverse(self, model, context, v):
+        z, _ = model.forward(v, context)
+        assert np.abs(z - v[:, flow.ORDERS[0]]).max() > 0.1
+        assert np.abs(model.inverse(z, context) - v).max() < 1e-4
+
+    def test_log_determinant(self, model, context, v):
+        """The oracle is the determinant of the Jacobian by automatic derivatives."""
+        _, log_det = model.forward(v, context)
+        for i in range(len(v)):
+            jacobian = jax.jacfwd(lambda a, c=context[i]: model.forward(a, c)[0])(v[i])
+            _, expected = np.linalg.slogdet(np.asarray(jacobian, dtype=float))
+            assert float(log_det[i]) == pytest.approx(expected, abs=1e-4)
+
+    def test_samples_differ_and_repeat(self, model, x):
+        first = model.outputs(x, jax.random.key(1), 3)
+        assert first.shape == (5, 3, 6)
+        assert np.array_equal(first, model.outputs(x, jax.random.key(1), 3))
+        assert not np.array_equal(first[:, 0], first[:, 1])
+
+
+class TestDiffusion:
+    def test_schedule(self):
+        share, noise = schedule(jnp.linspace(0.0, 1.0, 101))
+        assert np.abs(share**2 + noise**2 - 1.0).max() < 1e-6
+        assert (share[0], noise[0]) == (1.0, 0.0)
+        assert (np.diff(share) < 0.0).all()
+        assert share[-1] == pytest.approx(0.0, abs=1e-6)
+
+    @pytest.mark.parametrize("steps", [1, 5, 10])
+    def test_sampling_with_the_true_velocity(self, x, steps):
+        """Where all labels are one q, the velocity is known, and q comes out."""
+        q = jnp.linspace(-1.0, 1.0, 6)
+
+        class Known(Diffusion):
+            def velocity(self, q_t, x, t):
+                share, noise_share = schedule(t)
+                noise = (q_t - share * q) / noise_share
+                return share * noise - noise_share * q
+
+        model = Known(6, jax.random.key(SEED), steps)
+        out = model.outputs(x, jax.random.key(SEED), 4)
+        assert out.shape == (5, 4, 6)
+        assert np.abs(out - q).max() < 1e-5
+
+    def test_steps_of_the_paper(self):
+        for robot, steps in (("cvr038", 5), ("cvrb1213", 10)):
+            assert models.make_model(robot, "diffusion", 6, SEED).steps == steps
+
+
+class TestWeights:
+    def facts(self, name):
+        return models.Facts("cvr038", name, 1.5, 100, 32, 1000, SEED, 0)
+
+    @pytest.mark.parametrize("name", plan.MODELS)
+    def test_read_as_written(self, tmp_path, x, name):
+        model = models.make_model("cvr038", name, 6, SEED)
+        scaling = data.Scaling(np.zeros(12), np.ones(12), np.arange(6.0), np.ones(6))
+        facts = self.facts(name)
+        models.save_weights(tmp_path / "a.npz", model, scaling, facts)
+        read, scaling_read, facts_read = models.load_weights(tmp_path / "a.npz")
+        assert facts_read == facts
+        assert np.array_equal(scaling_read.q_mean, scaling.q_mean)
+        key = jax.random.key(0)
+        before, after = (m.outputs(x, key, 2) for m in (model, read))
+        assert np.abs(before - after).max() < 0.02
+        models.save_weights(tmp_path / "b.npz", read, scaling, facts)
+        again, *_ = models.load_weights(tmp_path / "b.npz")
+        assert np.array_equal(again.outputs(x, key, 2), after)
+
+    def test_of_another_architecture(self, tmp_path):
+        scaling = data.Scaling(np.zeros(12), np.ones(12), np.zeros(6), np.ones(6))
+        model = models.make_model("cvr038", "mdn", 6, SEED)
+        path = tmp_path / "a.npz"
+        models.save_weights(path, model, scaling, replace(self.facts("flow"), seed=1))
+        with pytest.raises(ValueError, match=r"a\.npz has 241800 weights, not 238184"):
+            models.load_weights(path)
+
+
+class TestTraining:
+    @pytest.fixture(autouse=True)
+    def small(self, tmp_path, monkeypatch):
+        monkeypatch.setattr(data, "WORK", tmp_path)
+        monkeypatch.setattr(train, "WORK", tmp_path)
+        monkeypatch.setattr(train, "BATCH", 32)
+        monkeypatch.setattr(train, "CURVE", 20)
+
+    def training(self, total):
+        training = train.begin_training("cvr038", "mdn", SEED, 1_000)
+        training.total = total
+        return training
+
+    def test_goes_on_to_the_last_bit(self, tmp_path):
+        whole = self.training(300)
+        losses = [whole.advance() for _ in range(3)]
+        assert losses[2] < losses[1] < losses[0]
+        part = self.training(300)
+        part.advance()
+        part.point(1.0)
+        part.save(tmp_path / "part.npz")
+        rest = self.training(0)
+        rest.load(tmp_path / "part.npz")
+        assert (rest.step, rest.total, rest.curve) == (100, 300, part.curve)
+        assert rest.seconds == part.seconds > 0.0
+        assert [rest.advance(), rest.advance()] == losses[1:]
+        for a, b in zip(*map(jax.tree.leaves, (whole.state, rest.state)), strict=True):
+            if eqx.is_array(a):
+                assert np.array_equal(a, b)
+
+    def test_command_writes_weights_and_curve(self, tmp_path, monkeypatch):
+        monkeypatch.setattr(plan, "WEIGHTS", tmp_path)
+        first = train.train("cvr038", "mdn", 1e-3, SEED, samples=1_000)
+        assert first.steps == train.STEPS_A_CALL
+        longer = train.train("cvr038", "mdn", 0.02, SEED, samples=1_000)
+        assert longer.steps > first.steps
+        _, _, facts = models.load_weights(tmp_path / "cvr038_mdn.npz")
+        assert facts == longer
+        curve = evaluate.read_curve(tmp_path / "cvr038_mdn.csv")
+        assert [point["steps"] for point in curve][:: len(curve) - 1] == [
+            first.steps,
+            longer.steps,
+        ]
+
+    def test_rate(self):
+        total = jnp.asarray(10_000)
+        rates = [float(train.rate(jnp.asarray(i), total)) for i in range(0, 10_001, 50)]
+        assert rates[0] < 0.01 * train.PEAK_RATE
+        assert max(rates) == pytest.approx(train.PEAK_RATE, rel=0.02)
+        assert rates[-1] == pytest.approx(0.0, abs=1e-9)
+
+
+class TestEvaluation:
+    def test_one_attempt_from_the_seed_alone(self):
+        arm = load_arm("cvr038")
+        solver = evaluate.paper_solver("cvr038")
+        q = arm.robot.random_configurations(20, SEED)
+        poses = arm.robot.fk(q)
+        for pose, near, far in zip(poses, q, q[::-1], strict=True):
+            good = evaluate.from_seed(solver, pose, near)
+            assert (good.success, good.attempts) == (True, 1)
+            assert good.q == pytest.approx(near, abs=1e-3)
+            assert evaluate.from_seed(solver, pose, far).attempts == 1
+        wrong = evaluate.solved(solver, poses, q[::-1])
+        assert wrong.sum() < 10 < solver.solve_batch(poses).solved
+
+    def test_distance(self):
+        a = np.eye(4)
+        b = iksel.pose_from_quaternion([0.3, 0.0, 0.4], [0.0, 0.0, 1.0, 0.0])
+        quaternions = np.sqrt(2.0)  # between (1, 0, 0, 0) and one at right angles
+        assert evaluate.distances(a, b) == pytest.approx(np.hypot(0.5, quaternions))
+        c = iksel.pose_from_quaternion([0.0, 0.0, 0.0], [-1.0, 0.0, 0.0, 0.0])
+        assert evaluate.distances(a, c) == pytest.approx(0.0, abs=1e-12)
+
+    def test_best(self):
+        robot = load_arm("ur3_wrs").robot
+        q = robot.random_configurations(8, SEED)
+        for i, pose in enumerate(robot.fk(q)):
+            assert evaluate.best(robot, q, pose) == i
+
+
+@pytest.mark.skipif(
+    not plan.WEIGHTS.exists(), reason="weights are in the repository only"
+)
+class TestCommitted:
+    def test_all_are_there_and_small(self):
+        paths = {
+            plan.weights_path(robot, model)
+            for robot in PAPER_ARMS
+            for model in plan.MODELS
+        }
+        assert set(plan.WEIGHTS.glob("*.npz")) == paths
+        assert sum(path.stat().st_size for path in paths) < MANY
+
+    @pytest.mark.parametrize("model", plan.MODELS)
+    @pytest.mark.parametrize("robot", PAPER_ARMS)
+    def test_are_what_their_names_say(self, robot, model):
+        path = plan.weights_path(robot, model)
+        _, scaling, facts = models.load_weights(path)
+        assert (facts.robot, facts.model) == (robot, model)
+        assert len(scaling.q_mean) == load_arm(robot).chain.dof
+        curve = evaluate.read_curve(path.with_suffix(".csv"))
+        assert curve[-1]["steps"] == facts.steps
+        assert curve[-1]["minutes"] == facts.minutes > 0.5
+
+    def test_are_worth_what_is_said(self):
+        model, scaling, _ = models.load_weights(plan.weights_path("cvr038", "mdn"))
+        solved = evaluate.seeds_solved("cvr038", model, scaling, SEED, 500)
+        assert solved["first"] > 83.0
+
+
+def test_section():
+    cells = [cell for job in plan.learned_jobs(QUICK) for cell in job.cells]
+    assert len(cells) == 12
+    figures = {"right": 5, "direct_right": 0, "output_us": 1.0, "solve_us": 2.0}
+    errors = dict.fromkeys(evaluate.STATISTICS, 1.0)
+    result = {
+        "count": 10,
+        "minutes": 1.0,
+        "steps": 100,
+        "parameters": 9,
+        "bytes": 1000,
+        "curve": [{"minutes": 1.0, "steps": 100.0, "first": 50.0, "best": 60.0}],
+        "first": figures,
+        "best": figures,
+        "position_mm": errors,
+        "rotation_deg": errors,
+    }
+    entries = [{"settings": cell, "result": result} for cell in cells[1:]]
+    entries.append({"settings": cells[0], "result": {"unsupported": "no jax"}})
+    nothing = section.text(View({"size": vars(QUICK), "cells": entries[-1:]}))
+    assert "MDN, C0: no jax" in nothing
+    assert "MDN, C1: not measured" in nothing
+    shown = section.text(View({"size": vars(QUICK), "cells": entries}))
+    assert "MDN, C0: no jax" in shown
+    assert "| diffusion (IKDP), IRB | 0.00 | 1.0 (21.9) | 1.0 (7.3) |" in shown
+    assert "50.00 (97.59, \N{MINUS SIGN}47.59)" in shown

@@ -36,7 +36,7 @@ constexpr int kBeforeRoots = 4;
 /// Seeds after all roots of a sweep led nowhere: double ones, or just outside a limit.
 constexpr int kBesideRoots = 96;
 /// Seeds after a sweep that came close to an answer, but did not find one.
-constexpr int kBesideSweep = 128;
+constexpr int kBesideSweep = 384;
 
 /// What one search works with.
 template <typename Answers>

@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A worker process of _local: numbers of chunks come in, a line of JSON goes out."""
+
+from __future__ import annotations
+
+import json
+import signal
+import sys
+
+from iksel.reach._run import compute_chunk
+from iksel.reach._store import Store
+
+
+def main(path: str) -> None:
+    """Compute the chunks that standard input names until it ends."""
+    # Ctrl-C reaches all processes of a terminal; the one that started this one ends it.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    store = Store(path, writable=True)
+    for line in sys.stdin:
+        chunk = int(line)
+        answer: dict[str, object] = {"chunk": chunk}
+        try:
+            compute_chunk(store, chunk)
+        except Exception as error:  # noqa: BLE001 (told to the other process)
+            answer["error"] = f"{type(error).__name__}: {error}"
+            answer["io"] = isinstance(error, OSError)
+        print(json.dumps(answer), flush=True)  # noqa: T201
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])

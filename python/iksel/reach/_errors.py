@@ -8,15 +8,6 @@ from typing import Any
 
 from iksel_cpp import Error
 
-_HOW = {
-    "matplotlib": "pip install 'iksel[reach]'",
-    "distributed": "pip install 'iksel[reach]'",
-    "h5py": "pip install 'iksel[reach]'",
-    "pyarrow": "pip install 'iksel[reach]'",
-    "zarr": "pip install 'iksel[reach]'",
-}
-
-
 class MapError(Error):
     """A map, or a plan of one, that cannot be written, read or used."""
 
@@ -56,6 +47,6 @@ def need(module: str) -> Any:
     except ImportError as error:
         package = module.partition(".")[0]
         raise MissingExtraError(
-            f"reachability maps need {package}, which cannot be imported ({error}): "
-            f"{_HOW[package]}, with Python 3.11 or later"
+            f"iksel.reach needs {package}, which cannot be imported ({error}): "
+            "pip install 'iksel[reach]', with Python 3.11 or later"
         ) from error

@@ -54,7 +54,7 @@ def run(
     whichever chunk comes first, every array ends with the same bytes.
 
     Args:
-        path: What Plan.save() wrote; for Dask a path that all workers see.
+        path: What create() wrote; for Dask a path that all workers see.
         workers: Processes on this machine, of one thread each; None: one per core.
         client: A distributed.Client: chunks are computed by its cluster instead.
         share: (i, n): only every n-th chunk from i = 0 ... n - 1, for one of n jobs

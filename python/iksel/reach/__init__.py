@@ -15,6 +15,7 @@ Needs the extra `pip install iksel[reach]`, and Python 3.11 or later.
 
 from __future__ import annotations
 
+from iksel.reach._cells import QUALITIES, UNKNOWN
 from iksel.reach._compare import Comparison, compare
 from iksel.reach._errors import (
     ChunkDamagedError,
@@ -31,10 +32,12 @@ from iksel.reach._map import Answers, Map, open  # noqa: A004 (as zarr's)
 from iksel.reach._pictures import draw_placements, draw_slice, draw_spheres
 from iksel.reach._place import Placement, place_base
 from iksel.reach._plan import Plan, plan
-from iksel.reach._run import Progress, merge, run, status
-from iksel.reach._store import create
+from iksel.reach._run import Progress, connect, merge, run, status
+from iksel.reach._store import Store, create
 
 __all__ = [
+    "QUALITIES",
+    "UNKNOWN",
     "Answers",
     "ChunkDamagedError",
     "Comparison",
@@ -50,8 +53,10 @@ __all__ = [
     "PlanMismatchError",
     "Positions",
     "Progress",
+    "Store",
     "WorkerError",
     "compare",
+    "connect",
     "create",
     "draw_placements",
     "draw_slice",

@@ -54,9 +54,7 @@ def array_specs(qualities: Sequence[str], dof: int) -> list[ArraySpec]:
             nan,
             ("joint",),
             (dof,),
-            {
-                "long_name": "a solution [rad or m]; the most manipulable, if that is known"
-            },
+            {"long_name": "a solution [rad or m]; the most manipulable, if known"},
         ),
     }
     return [
@@ -160,7 +158,7 @@ def _qualities(
 
 
 def manipulability(solver: Solver, q: FloatArray) -> FloatArray:
-    """sqrt(det(J J^T)) of configurations (n, dof); of J^T J with fewer than 6 joints."""
+    """sqrt(det(J J^T)) of configurations (n, dof); of J^T J below six joints."""
     jacobian = solver.robot.jacobian(q)
     if jacobian.shape[-1] == 6:
         return np.asarray(np.abs(np.linalg.det(jacobian)))

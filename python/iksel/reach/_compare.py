@@ -68,9 +68,7 @@ def compare(first: Map, second: Map) -> Comparison:
     difference = np.zeros(grid.grid.positions.counts)
     for block, arrays in grid.chunks():
         mine = arrays["status"] == Status.solved
-        cells = np.stack(
-            [m.ravel() for m in np.mgrid[block]], axis=-1
-        )
+        cells = np.stack([m.ravel() for m in np.mgrid[block]], axis=-1)
         theirs = other.query(grid.grid.poses(cells)).solvable.reshape(mine.shape)
         weight = volumes[block[:at]] / size
         for i, mask in enumerate((mine & theirs, mine & ~theirs, theirs & ~mine)):

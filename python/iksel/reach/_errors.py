@@ -8,6 +8,7 @@ from typing import Any
 
 from iksel_cpp import Error
 
+
 class MapError(Error):
     """A map, or a plan of one, that cannot be written, read or used."""
 

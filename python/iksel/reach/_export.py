@@ -11,10 +11,10 @@ import numpy as np
 from iksel._arrays import reject
 from iksel.pose import quaternion_from_pose
 from iksel.reach._errors import MapIoError, need
-from iksel.reach._store import StrPath
 
 if TYPE_CHECKING:
     from iksel.reach._map import Map
+    from iksel.reach._store import StrPath
 
 FRACTION = "fraction"
 """Name under which the share of orientations is exported."""

@@ -127,7 +127,7 @@ class Orientations:
     @cached_property
     def _rotation_to_z(self) -> FloatArray:
         """The least rotation that turns the tool's axis into z, (3, 3)."""
-        return least_rotations(np.array([self.axis]))[0].T
+        return np.asarray(least_rotations(np.array([self.axis]))[0].T)
 
     @cached_property
     def rotations(self) -> FloatArray:

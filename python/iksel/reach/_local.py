@@ -7,6 +7,7 @@ answers each by a line of JSON. If this process dies, their input ends and so do
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import queue
@@ -14,13 +15,13 @@ import subprocess
 import sys
 import threading
 from collections import Counter, deque
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from iksel.reach._errors import MapIoError, WorkerError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
+    from pathlib import Path
 
     from iksel.reach._store import Store
 
@@ -36,7 +37,7 @@ class Worker:
         environment = dict(os.environ)
         # As this process finds its modules, so does that one; and one thread each.
         environment["PYTHONPATH"] = os.pathsep.join(filter(None, sys.path))
-        self.process = subprocess.Popen(
+        self.process = subprocess.Popen(  # noqa: S603 (this interpreter)
             [sys.executable, "-m", "iksel.reach._worker", str(path)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
@@ -51,19 +52,16 @@ class Worker:
         """Have it compute a chunk."""
         self.chunk = chunk
         assert self.process.stdin is not None
-        try:
+        # If it has died, its end is on its way through the other pipe.
+        with contextlib.suppress(BrokenPipeError):
             self.process.stdin.write(f"{chunk}\n")
             self.process.stdin.flush()
-        except BrokenPipeError:
-            pass  # its end is on its way through the other pipe
 
     def stop(self) -> None:
         """Let it end after its chunk."""
         assert self.process.stdin is not None
-        try:
+        with contextlib.suppress(BrokenPipeError):
             self.process.stdin.close()
-        except BrokenPipeError:
-            pass
         self.process.wait()
         self._listener.join()
         assert self.process.stdout is not None
@@ -106,7 +104,7 @@ def run_processes(store: Store, chunks: Sequence[int], count: int) -> Iterator[i
                     start()
                 continue
             if "error" in answer:
-                raise _error(store, answer)
+                raise failure(store, answer["chunk"], answer["error"], io=answer["io"])
             worker.chunk = None
             if waiting:
                 worker.send(waiting.popleft())
@@ -129,14 +127,17 @@ def _bury(worker: Worker, deaths: Counter[int]) -> None:
     if deaths[worker.chunk] >= TRIES:
         how = f"signal {-code}" if code < 0 else f"exit status {code}"
         raise WorkerError(
-            f"chunk {worker.chunk}: {TRIES} workers ended over it, the last one by {how}; "
-            "run again to go on"
+            f"chunk {worker.chunk}: {TRIES} workers ended over it, the last one by "
+            f"{how}; run again to go on"
         )
 
 
-def _error(store: Store, answer: dict[str, Any]) -> Exception:
+def failure(
+    store: Store, chunk: int, reason: object, *, io: bool = True
+) -> MapIoError | WorkerError:
+    """The error for a chunk that could not be computed, or not be written."""
     message = (
-        f"chunk {answer['chunk']} of '{store.path}': {answer['error']}; what is done "
-        "stays, run again to go on"
+        f"chunk {chunk} of '{store.path}': {reason}; what is done stays, run again to "
+        "go on"
     )
-    return MapIoError(message) if answer["io"] else WorkerError(message)
+    return MapIoError(message) if io else WorkerError(message)

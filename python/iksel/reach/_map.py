@@ -16,7 +16,6 @@ from iksel._arrays import IntArray, as_floats, reject
 from iksel.reach._cells import UNKNOWN
 from iksel.reach._errors import IncompleteMapError, PlanMismatchError, need
 from iksel.reach._grid import Grid, least_rotations, z_rotations
-from iksel.reach._job import Arrays, ArraySpec
 from iksel.reach._plan import Plan
 from iksel.reach._store import Store, StrPath
 
@@ -24,6 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from iksel._arrays import BoolArray, FloatArray
+    from iksel.reach._job import Arrays, ArraySpec
 
 CACHE_BYTES = 1 << 30
 """How much of a map is kept in memory once it has been read."""
@@ -149,7 +149,11 @@ class Map:
         )
 
     def poses(
-        self, cells: npt.ArrayLike, *, first: npt.ArrayLike = 0.0, last: npt.ArrayLike = 0.0
+        self,
+        cells: npt.ArrayLike,
+        *,
+        first: npt.ArrayLike = 0.0,
+        last: npt.ArrayLike = 0.0,
     ) -> FloatArray:
         """Poses T_base_tcp of cells, (n, 4, 4).
 
@@ -372,7 +376,8 @@ def open(path: StrPath, *, partial: bool = False) -> Map:  # noqa: A001 (as zarr
     missing = int((~store.done()).sum())
     if missing and not partial:
         raise IncompleteMapError(
-            f"'{store.path}': {missing} of {store.job.chunks} chunks are missing; compute "
-            f"them by 'iksel reach run {store.path}', or open it with partial=True"
+            f"'{store.path}': {missing} of {store.job.chunks} chunks are missing; "
+            f"compute them by 'iksel reach run {store.path}', or open it by "
+            "partial=True"
         )
     return found

@@ -94,7 +94,14 @@ def draw_spheres(
     figure = _figure()
     axes = figure.add_subplot(projection="3d")
     points = axes.scatter(
-        x[i], y[j], z[k], c=shares[shown], cmap=COLOURS, vmin=0, vmax=1, s=_area(step, x)
+        x[i],
+        y[j],
+        z[k],
+        c=shares[shown],
+        cmap=COLOURS,
+        vmin=0,
+        vmax=1,
+        s=_area(step, x),
     )
     axes.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]", title=reach_map.robot.name)
     axes.set_aspect("equal")
@@ -127,7 +134,11 @@ def draw_placements(
         if mask.any():
             tips = poses[mask]
             axes.quiver(
-                *tips[:, :2, 3].T, *tips[:, :2, 2].T, color=colour, label=label, width=4e-3
+                *tips[:, :2, 3].T,
+                *tips[:, :2, 2].T,
+                color=colour,
+                label=label,
+                width=4e-3,
             )
     others = np.array([p.T_world_base[:2, 3] for p in placements])
     counts = [p.reached for p in placements]

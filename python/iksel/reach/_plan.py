@@ -245,7 +245,7 @@ def _positions(
         if not (lower < upper).all():
             reject("box", f"the lower corner {lower} is not below {upper}")
     if frame is not None:
-        lower, upper = _ring_bounds(robot, frame, box is None, lower, upper)
+        lower, upper = _ring_bounds(robot, frame, box, lower, upper)
     # A whole number of cells around the middle, and no cell more for a rounding error.
     counts = np.maximum(np.ceil((upper - lower) / spacing - 1e-9), 1).astype(int)
     if counts.max() > LARGEST_SIDE:
@@ -257,11 +257,15 @@ def _positions(
 
 
 def _ring_bounds(
-    robot: Robot, frame: FloatArray, whole: bool, lower: FloatArray, upper: FloatArray
+    robot: Robot,
+    frame: FloatArray,
+    box: npt.ArrayLike | None,
+    lower: FloatArray,
+    upper: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:
     """Radius and height of the rings that cover a box, or what the robot reaches."""
     back = np.linalg.inv(frame)
-    if whole:
+    if box is None:
         centre = back[:3, :3] @ robot.reach_centre + back[:3, 3]
         radius = np.hypot(centre[0], centre[1]) + robot.reach
         heights = centre[2] + robot.reach * np.array([-1.0, 1.0])

@@ -9,8 +9,8 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from iksel._arrays import reject
-from iksel.reach._errors import MapError, WorkerError
-from iksel.reach._local import run_processes
+from iksel.reach._errors import MapError, PlanMismatchError, WorkerError, need
+from iksel.reach._local import failure, run_processes
 from iksel.reach._store import Store, StrPath
 
 if TYPE_CHECKING:
@@ -55,7 +55,8 @@ def run(
 
     Args:
         path: What create() wrote; for Dask a path that all workers see.
-        workers: Processes on this machine, of one thread each; None: one per core.
+        workers: Processes on this machine, of one thread each; None: one per core; for
+            one this process itself.
         client: A distributed.Client: chunks are computed by its cluster instead.
         share: (i, n): only every n-th chunk from i = 0 ... n - 1, for one of n jobs
             that share the work without knowing each other.
@@ -82,7 +83,10 @@ def run(
         reject("workers", f"{workers} is less than 1")
     else:
         count = os.cpu_count() or 1 if workers is None else workers
-        finished = run_processes(store, missing, count)
+        here = count == 1 or len(missing) <= 1
+        finished = (
+            _run_here(store, missing) if here else run_processes(store, missing, count)
+        )
     if progress is not None:
         progress(before, total)
     for n, _ in enumerate(finished, start=before + 1):
@@ -118,7 +122,7 @@ def merge(path: StrPath, parts: Sequence[StrPath]) -> Progress:
     for part_path in parts:
         part = Store(part_path)
         if part.job.id != store.job.id:
-            raise MapError(
+            raise PlanMismatchError(
                 f"'{part.path}' has another plan ({part.job.id}) than '{store.path}' "
                 f"({store.job.id})"
             )
@@ -126,6 +130,19 @@ def merge(path: StrPath, parts: Sequence[StrPath]) -> Progress:
             store.write(index, part.read(index))
             done[index] = True
     return status(path)
+
+
+def connect(address: str) -> Any:
+    """A distributed.Client of the Dask cluster at an address, tcp://host:port.
+
+    Raises:
+        WorkerError: No scheduler answers there.
+    """
+    distributed = need("distributed")
+    try:
+        return distributed.Client(address)
+    except (OSError, ValueError) as error:
+        raise WorkerError(f"no Dask scheduler at {address}: {error}") from error
 
 
 def compute_chunk(store: Store, index: int) -> int:
@@ -169,10 +186,18 @@ def _missing(store: Store, indices: Sequence[int], *, repair: bool) -> list[int]
     return sorted(missing)
 
 
+def _run_here(store: Store, indices: Sequence[int]) -> Iterator[int]:
+    """Compute chunks in this process."""
+    for index in indices:
+        try:
+            yield compute_chunk(store, index)
+        except OSError as error:
+            raise failure(store, index, error) from error
+
+
 def _run_dask(client: Any, store: Store, indices: Sequence[int]) -> Iterator[int]:
     """Compute chunks on a Dask cluster, a few for each of its threads at a time."""
-    from distributed import as_completed  # noqa: PLC0415 (an optional extra)
-
+    as_completed = need("distributed").as_completed
     path, waiting = str(store.path.absolute()), iter(indices)
     threads = max(1, sum(client.nthreads().values()))
 

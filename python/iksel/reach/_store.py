@@ -23,7 +23,7 @@ from iksel.reach._errors import (
     PlanMismatchError,
     need,
 )
-from iksel.reach._job import FORMAT, Arrays, ArraySpec, Block, Job
+from iksel.reach._job import FORMAT, Arrays, ArraySpec, Job
 from iksel.reach._plan import Plan
 
 if TYPE_CHECKING:

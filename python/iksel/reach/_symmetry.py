@@ -52,8 +52,8 @@ def last_axis(robot: Robot) -> FloatArray | None:
     """The axis of the last joint in the tool's frame, if the tool may be spun about it.
 
     Returns:
-        A unit vector, (3,), of the two the one whose largest part is positive; None: the spin is no
-        symmetry, or moves the TCP, which does not lie on the axis.
+        A unit vector, (3,), of the two the one whose largest part is positive; None:
+        the spin is no symmetry, or moves the TCP, which does not lie on the axis.
     """
     if not turns_freely(robot, robot.dof - 1):
         return None

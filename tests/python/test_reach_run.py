@@ -228,8 +228,10 @@ def test_a_chunk_of_another_plan_is_refused_by_name(made, copy, tmp_path):
     for call in (reach.run, reach.open, reach.status):
         with pytest.raises(reach.PlanMismatchError, match="chunk 2 .* belongs to"):
             call(copy)
-    with pytest.raises(reach.PlanMismatchError, match="another plan"):
-        reach.merge(copy, [other])
+    fresh = tmp_path / "fresh.zarr"
+    reach.create(reach.plan(made.robot("ur5e"), **SETTINGS), fresh)
+    with pytest.raises(reach.PlanMismatchError, match="has another plan"):
+        reach.merge(fresh, [other])
 
 
 def test_another_plan_does_not_overwrite_a_map(made, copy):

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 UNKNOWN = 255
 """Status and proof of a cell that has not been computed."""
 QUALITIES = ("branches", "manipulability", "limit_distance", "q")
-BATCH = 1 << 14
+BATCH = 1 << 13
 """Cells that are solved at once; their poses fit into a core's cache."""
 MOST_BRANCHES = 254
 

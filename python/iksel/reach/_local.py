@@ -74,46 +74,54 @@ class Worker:
         self._answers.put((self, None))
 
 
-def run_processes(store: Store, chunks: Sequence[int], count: int) -> Iterator[int]:
-    """Compute chunks by so many processes; gives each number when it is done.
+class Pool:
+    """So many processes, which load what they need as soon as they are made."""
 
-    Raises:
-        MapIoError: A chunk cannot be written.
-        WorkerError: Workers died over the same chunk three times, or cannot start.
-    """
-    waiting, deaths = deque(chunks), Counter[int]()
-    answers: queue.Queue[tuple[Worker, Any]] = queue.Queue()
-    workers: set[Worker] = set()
+    def __init__(self, path: Path, count: int) -> None:
+        self._path = path.absolute()
+        self._answers: queue.Queue[tuple[Worker, Any]] = queue.Queue()
+        self._workers = {Worker(self._path, self._answers) for _ in range(count)}
 
-    def start() -> None:
-        worker = Worker(store.path.absolute(), answers)
-        workers.add(worker)
-        worker.send(waiting.popleft())
+    def compute(self, store: Store, chunks: Sequence[int]) -> Iterator[int]:
+        """Compute chunks; gives the number of each when it is done.
 
-    try:
-        while len(workers) < count and waiting:
-            start()
-        while workers:
-            worker, answer = answers.get()
+        Raises:
+            MapIoError: A chunk cannot be written.
+            WorkerError: Workers died over the same chunk three times, or cannot start.
+        """
+        waiting, deaths = deque(chunks), Counter[int]()
+        for worker in list(self._workers):
+            self._go_on(worker, waiting)
+        while self._workers:
+            worker, answer = self._answers.get()
             if answer is None:
-                workers.remove(worker)
+                self._workers.remove(worker)
                 _bury(worker, deaths)
                 if worker.chunk is not None:
                     waiting.appendleft(worker.chunk)
                 if waiting:
-                    start()
+                    self._workers.add(another := Worker(self._path, self._answers))
+                    self._go_on(another, waiting)
                 continue
             if "error" in answer:
                 raise failure(store, answer["chunk"], answer["error"], io=answer["io"])
-            worker.chunk = None
-            if waiting:
-                worker.send(waiting.popleft())
-            else:
-                workers.remove(worker)
-                worker.stop()
+            self._go_on(worker, waiting)
             yield answer["chunk"]
-    finally:
-        for worker in workers:
+
+    def close(self) -> None:
+        """End the processes at once, whatever they are at."""
+        for worker in self._workers:
+            worker.process.kill()
+            worker.stop()
+        self._workers.clear()
+
+    def _go_on(self, worker: Worker, waiting: deque[int]) -> None:
+        """Give a worker the next chunk, or let it end."""
+        worker.chunk = None
+        if waiting:
+            worker.send(waiting.popleft())
+        else:
+            self._workers.remove(worker)
             worker.stop()
 
 

@@ -3,15 +3,17 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 from dataclasses import dataclass
 from functools import lru_cache
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from iksel._arrays import reject
 from iksel.reach._errors import MapError, PlanMismatchError, WorkerError, need
-from iksel.reach._local import failure, run_processes
-from iksel.reach._store import Store, StrPath
+from iksel.reach._local import Pool, failure
+from iksel.reach._store import Store, StrPath, read_job
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -72,27 +74,36 @@ def run(
         MapIoError: The store cannot be read or written.
         WorkerError: Workers kept dying over the same chunk, or cannot start.
     """
-    store = Store(path, writable=True)
-    store.job.solver()  # in case it cannot be made
-    indices = _share(store.job.chunks, share)
-    missing = _missing(store, indices, repair=repair)
-    total, before = len(indices), len(indices) - len(missing)
-    if client is not None:
-        finished = _run_dask(client, store, missing)
-    elif workers is not None and workers < 1:
-        reject("workers", f"{workers} is less than 1")
-    else:
-        count = os.cpu_count() or 1 if workers is None else workers
-        here = count == 1 or len(missing) <= 1
-        finished = (
-            _run_here(store, missing) if here else run_processes(store, missing, count)
-        )
-    if progress is not None:
-        progress(before, total)
-    for n, _ in enumerate(finished, start=before + 1):
-        if progress is not None:
-            progress(n, total)
+    with contextlib.ExitStack() as stack:
+        pool = None
+        if client is None and (count := _processes(path, workers)) > 1:
+            # They load while this process looks at what is there.
+            pool = Pool(Path(path), count)
+            stack.callback(pool.close)
+        store = Store(path, writable=True)
+        store.job.solver()  # in case it cannot be made
+        indices = _share(store.job.chunks, share)
+        missing = _missing(store, indices, repair=repair)
+        if client is not None:
+            finished = _run_dask(client, store, missing)
+        elif pool is not None:
+            finished = pool.compute(store, missing)
+        else:
+            finished = _run_here(store, missing)
+        report = progress or (lambda _done, _total: None)
+        before = len(indices) - len(missing)
+        report(before, len(indices))
+        for n, _ in enumerate(finished, start=before + 1):
+            report(n, len(indices))
     return status(path)
+
+
+def _processes(path: StrPath, workers: int | None) -> int:
+    """How many processes are of use for a map."""
+    if workers is not None and workers < 1:
+        reject("workers", f"{workers} is less than 1")
+    count = os.cpu_count() or 1 if workers is None else workers
+    return min(count, read_job(path).chunks)
 
 
 def status(path: StrPath) -> Progress:

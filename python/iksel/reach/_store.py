@@ -9,6 +9,7 @@ has no receipt has not been computed, whatever files there are.
 from __future__ import annotations
 
 import hashlib
+import json
 import os
 import shutil
 import uuid
@@ -49,45 +50,20 @@ class Store:
             PlanMismatchError: It is not one of this version's, or its plan was changed.
         """
         self.path = Path(path)
+        self.job = read_job(path)
+        self.specs = self.job.specs()
         zarr = need("zarr")
-        if not (self.path / "zarr.json").is_file():
-            raise MapIoError(f"'{self.path}' is no map: it has no zarr.json")
         try:
-            self.group = zarr.open_group(
-                self.path, mode="r+" if writable else "r", zarr_format=3
-            )
+            mode = "r+" if writable else "r"
+            group = zarr.open_group(self.path, mode=mode, zarr_format=3)
+            names = (*(spec.name for spec in self.specs), RECEIPTS)
+            self._arrays = {name: group[name] for name in names}
         except (OSError, ValueError, KeyError) as error:
             raise MapIoError(f"'{self.path}' cannot be read: {error}") from error
-        self.job = self._read_job()
-        self.specs = self.job.specs()
-        missing = {RECEIPTS, *(s.name for s in self.specs)} - set(self.group.keys())
-        if missing:
-            raise MapIoError(f"'{self.path}' lacks the array {', '.join(missing)}")
-
-    def _read_job(self) -> Job:
-        stored = self.group.attrs.get(ATTRIBUTE)
-        if not isinstance(stored, dict) or "plan" not in stored:
-            raise PlanMismatchError(
-                f"'{self.path}' is a Zarr group, but no map of iksel"
-            )
-        data = dict(stored["plan"])
-        kind, version = data.pop("kind", None), data.get("format")
-        if kind not in KINDS or version != FORMAT:
-            raise PlanMismatchError(
-                f"'{self.path}' has a {kind!r} of format {version!r}; this version of "
-                f"iksel reads {', '.join(KINDS)} of format {FORMAT}"
-            )
-        job = KINDS[kind](data)
-        if job.id != stored.get("id"):
-            raise PlanMismatchError(
-                f"'{self.path}': the plan was changed: its hash is {job.id}, but "
-                f"{stored.get('id')} is stored"
-            )
-        return job
 
     def receipts(self) -> np.ndarray[Any, Any]:
         """Receipts of all chunks, (chunks, 32); zeros where there is none."""
-        return np.asarray(self.group[RECEIPTS][:])
+        return np.asarray(self._arrays[RECEIPTS][:])
 
     def done(self) -> np.ndarray[Any, Any]:
         """Which chunks have been computed, (chunks,).
@@ -115,12 +91,14 @@ class Store:
         """
         block = self.job.block(index)
         try:
-            arrays = {s.name: np.asarray(self.group[s.name][block]) for s in self.specs}
+            arrays = {
+                s.name: np.asarray(self._arrays[s.name][block]) for s in self.specs
+            }
         except Exception as error:  # what the codecs raise is not documented
             raise ChunkDamagedError(
                 f"{self.chunk_name(index)} cannot be read: {error}"
             ) from error
-        receipt = np.asarray(self.group[RECEIPTS][index])
+        receipt = np.asarray(self._arrays[RECEIPTS][index])
         if receipt.tobytes() != self._receipt(index, arrays):
             raise ChunkDamagedError(
                 f"{self.chunk_name(index)} is damaged or belongs to another plan: its "
@@ -137,9 +115,9 @@ class Store:
         self.forget(index)
         block = self.job.block(index)
         for spec in self.specs:
-            self.group[spec.name][block] = arrays[spec.name]
+            self._arrays[spec.name][block] = arrays[spec.name]
         receipt = np.frombuffer(self._receipt(index, arrays), np.uint8)
-        self.group[RECEIPTS][index] = receipt
+        self._arrays[RECEIPTS][index] = receipt
 
     def forget(self, index: int) -> None:
         """Remove what there is of a chunk, its receipt first."""
@@ -173,6 +151,38 @@ class Store:
 
     def _file(self, name: str, places: tuple[int, ...]) -> Path:
         return self.path.joinpath(name, "c", *map(str, places))
+
+
+def read_job(path: StrPath) -> Job:
+    """The job of a store.
+
+    Raises:
+        MapIoError: There is none.
+        PlanMismatchError: It is not one of this version's, or was changed.
+    """
+    try:
+        text = (Path(path) / "zarr.json").read_text(encoding="utf-8")
+        stored = json.loads(text).get("attributes", {}).get(ATTRIBUTE)
+    except FileNotFoundError:
+        raise MapIoError(f"'{path}' is no map: it has no zarr.json") from None
+    except (OSError, ValueError, AttributeError) as error:
+        raise MapIoError(f"'{path}' cannot be read: {error}") from error
+    if not isinstance(stored, dict) or not isinstance(stored.get("plan"), dict):
+        raise PlanMismatchError(f"'{path}' is a Zarr group, but no map of iksel")
+    data = dict(stored["plan"])
+    kind, version = data.pop("kind", None), data.get("format")
+    if kind not in KINDS or version != FORMAT:
+        raise PlanMismatchError(
+            f"'{path}' has a {kind!r} of format {version!r}; this version of iksel "
+            f"reads {', '.join(KINDS)} of format {FORMAT}"
+        )
+    job = KINDS[kind](data)
+    if job.id != stored.get("id"):
+        raise PlanMismatchError(
+            f"'{path}': the plan was changed: its hash is {job.id}, but "
+            f"{stored.get('id')} is stored"
+        )
+    return job
 
 
 def create(job: Job, path: StrPath) -> Store:

@@ -7,6 +7,7 @@ import json
 import signal
 import sys
 
+from iksel.reach._errors import need
 from iksel.reach._run import compute_chunk
 from iksel.reach._store import Store
 
@@ -15,11 +16,13 @@ def main(path: str) -> None:
     """Compute the chunks that standard input names until it ends."""
     # Ctrl-C reaches all processes of a terminal; the one that started this one ends it.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    store = Store(path, writable=True)
+    need("zarr")  # which takes a while, until there is something to do
+    store = None
     for line in sys.stdin:
         chunk = int(line)
         answer: dict[str, object] = {"chunk": chunk}
         try:
+            store = store or Store(path, writable=True)
             compute_chunk(store, chunk)
         except Exception as error:  # noqa: BLE001 (told to the other process)
             answer["error"] = f"{type(error).__name__}: {error}"

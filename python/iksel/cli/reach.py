@@ -146,6 +146,12 @@ def _add_plan(commands: Any) -> None:
 
 def _add_run(commands: Any) -> None:
     parser = _add_map(commands, "run", _run, "compute what is missing of a map")
+    add_engine(parser)
+    add_progress(parser)
+
+
+def add_engine(parser: argparse.ArgumentParser) -> None:
+    """Add what says where chunks are computed."""
     engine = parser.add_mutually_exclusive_group()
     engine.add_argument(
         "--workers", type=count, metavar="N", help="processes (default: one per core)"
@@ -162,7 +168,6 @@ def _add_run(commands: Any) -> None:
     parser.add_argument(
         "--repair", action="store_true", help="compute damaged chunks again"
     )
-    add_progress(parser)
 
 
 def _add_view(commands: Any) -> None:
@@ -251,6 +256,11 @@ def _plan(arguments: argparse.Namespace) -> int:
 
 
 def _run(arguments: argparse.Namespace) -> int:
+    return compute(arguments, arguments.map)
+
+
+def compute(arguments: argparse.Namespace, path: Path) -> int:
+    """Compute what is missing of a store by the engine of add_engine()."""
     with Progress("computing", show=arguments.progress) as progress:
         settings: dict[str, Any] = {
             "share": arguments.chunks,
@@ -258,21 +268,22 @@ def _run(arguments: argparse.Namespace) -> int:
             "progress": progress,
         }
         if arguments.dask is None:
-            result = reach.run(arguments.map, workers=arguments.workers, **settings)
+            result = reach.run(path, workers=arguments.workers, **settings)
         else:
             with reach.connect(arguments.dask) as client:
-                result = reach.run(arguments.map, client=client, **settings)
-    return _print_progress(arguments, result)
+                result = reach.run(path, client=client, **settings)
+    return _print_progress(arguments, path, result)
 
 
 def _status(arguments: argparse.Namespace) -> int:
     result = reach.status(arguments.map)
-    _print_progress(arguments, result)
+    _print_progress(arguments, arguments.map, result)
     return 0 if result.complete else INCOMPLETE
 
 
 def _merge(arguments: argparse.Namespace) -> int:
-    return _print_progress(arguments, reach.merge(arguments.map, arguments.parts))
+    result = reach.merge(arguments.map, arguments.parts)
+    return _print_progress(arguments, arguments.map, result)
 
 
 def _view(arguments: argparse.Namespace) -> int:
@@ -319,14 +330,16 @@ def _compare(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _print_progress(arguments: argparse.Namespace, result: reach.Progress) -> int:
+def _print_progress(
+    arguments: argparse.Namespace, path: Path, result: reach.Progress
+) -> int:
     report = {**dataclasses.asdict(result), "complete": result.complete}
     if arguments.json:
         print_json(report)
         return 0
     print_pairs(
         [
-            ("map", str(arguments.map)),
+            ("store", str(path)),
             ("chunks", f"{result.done:,} of {result.chunks:,} computed"),
             ("cells", f"{result.cells:,}"),
         ]

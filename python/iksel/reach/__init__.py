@@ -26,17 +26,19 @@ from iksel.reach._errors import (
     PlanMismatchError,
     WorkerError,
 )
-from iksel.reach._export import export_npy, export_reuleaux
+from iksel.reach._export import export_npy, export_parquet, export_reuleaux
 from iksel.reach._grid import Grid, Orientations, Positions
 from iksel.reach._map import Answers, Map, open  # noqa: A004 (as zarr's)
 from iksel.reach._pictures import draw_placements, draw_slice, draw_spheres
 from iksel.reach._place import Placement, place_base
 from iksel.reach._plan import Plan, plan
 from iksel.reach._run import Progress, connect, merge, run, status
+from iksel.reach._samples import TARGETS, SamplePlan, plan_samples
 from iksel.reach._store import Store, create
 
 __all__ = [
     "QUALITIES",
+    "TARGETS",
     "UNKNOWN",
     "Answers",
     "ChunkDamagedError",
@@ -53,6 +55,7 @@ __all__ = [
     "PlanMismatchError",
     "Positions",
     "Progress",
+    "SamplePlan",
     "Store",
     "WorkerError",
     "compare",
@@ -62,11 +65,13 @@ __all__ = [
     "draw_slice",
     "draw_spheres",
     "export_npy",
+    "export_parquet",
     "export_reuleaux",
     "merge",
     "open",
     "place_base",
     "plan",
+    "plan_samples",
     "run",
     "status",
 ]

@@ -58,8 +58,8 @@ def array_specs(qualities: Sequence[str], dof: int) -> list[ArraySpec]:
         ),
     }
     return [
-        ArraySpec("status", "uint8", UNKNOWN, attributes=_flags(Status)),
-        ArraySpec("proof", "uint8", UNKNOWN, attributes=_flags(Proof)),
+        ArraySpec("status", "uint8", UNKNOWN, attributes=flags(Status)),
+        ArraySpec("proof", "uint8", UNKNOWN, attributes=flags(Proof)),
         *(every[name] for name in qualities),
     ]
 
@@ -179,7 +179,7 @@ def limit_distance(solver: Solver, q: FloatArray) -> FloatArray:
     return np.asarray(nearest.min(axis=-1, initial=0.5))
 
 
-def _flags(members: Any) -> dict[str, Any]:
+def flags(members: Any) -> dict[str, Any]:
     """What the values mean, by the CF conventions."""
     return {
         "flag_values": [int(member) for member in members],

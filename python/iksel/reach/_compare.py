@@ -47,8 +47,9 @@ def compare(first: Map, second: Map) -> Comparison:
 
     The poses are those of the finer grid's cells: the one that leaves fewer turns out,
     or else the first's. At each the map of that grid is exact, and the other gives the
-    cell that the pose lies in; of maps that were planned with the same box, spacing
-    and orientations that is the same cell, and the comparison exact. Poses outside a map count as not reached.
+    cell that the pose lies in; of maps that were planned with the same box, spacing and
+    orientations that is the same cell, and the comparison exact. Poses outside a map
+    count as not reached.
 
     Raises:
         InvalidArgumentError: One of them leaves any spin free and the other does not,

@@ -4,15 +4,23 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from iksel._arrays import reject
 from iksel.pose import quaternion_from_pose
-from iksel.reach._errors import MapIoError, need
+from iksel.reach._errors import (
+    IncompleteMapError,
+    MapIoError,
+    PlanMismatchError,
+    need,
+)
+from iksel.reach._samples import SamplePlan
+from iksel.reach._store import Store
 
 if TYPE_CHECKING:
+    from iksel.reach._job import Arrays
     from iksel.reach._map import Map
     from iksel.reach._store import StrPath
 
@@ -50,6 +58,52 @@ def export_npy(reach_map: Map, path: StrPath, name: str = FRACTION) -> None:
         whole.flush()
     except OSError as error:
         raise MapIoError(f"'{path}' cannot be written: {error}") from error
+
+
+def export_parquet(path: StrPath, folder: StrPath) -> None:
+    """Write a data set as Parquet files, part-000000.parquet and so on, one a chunk.
+
+    Columns are the data set's arrays; `q` is a list of as many solutions as there are,
+    each a list of joint values. Files that are there already are kept.
+
+    Args:
+        path: A store of plan_samples(), computed.
+        folder: Where the files are written; made if it is not there.
+
+    Raises:
+        PlanMismatchError: The store is no data set.
+        IncompleteMapError: Chunks of it are missing.
+        MapIoError: A file cannot be written.
+    """
+    store = Store(path)
+    if not isinstance(store.job, SamplePlan):
+        raise PlanMismatchError(f"'{path}' is a {store.job.kind}, not a data set")
+    missing = int((~store.done()).sum())
+    if missing:
+        raise IncompleteMapError(
+            f"'{path}': {missing} of {store.job.chunks} chunks are missing"
+        )
+    parquet = need("pyarrow.parquet")
+    try:
+        Path(folder).mkdir(parents=True, exist_ok=True)
+        for index in range(store.job.chunks):
+            target = Path(folder) / f"part-{index:06d}.parquet"
+            if target.exists():
+                continue
+            beside = target.with_suffix(".partial")
+            parquet.write_table(_table(store.read(index), store.job.id), beside)
+            beside.replace(target)
+    except OSError as error:
+        raise MapIoError(f"'{folder}' cannot be written: {error}") from error
+
+
+def _table(arrays: Arrays, job_id: str) -> Any:
+    """A table of a chunk of a data set."""
+    arrow = need("pyarrow")
+    columns = {n: arrow.array(list(a)) for n, a in arrays.items() if n != "q"}
+    kept = zip(arrays["q"], arrays["count"], strict=True)
+    columns["q"] = arrow.array([q[:count].tolist() for q, count in kept])
+    return arrow.table(columns).replace_schema_metadata({"iksel_plan": job_id})
 
 
 def export_reuleaux(

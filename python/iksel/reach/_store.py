@@ -26,6 +26,7 @@ from iksel.reach._errors import (
 )
 from iksel.reach._job import FORMAT, Arrays, ArraySpec, Job
 from iksel.reach._plan import Plan
+from iksel.reach._samples import SamplePlan
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -34,7 +35,7 @@ ATTRIBUTE = "iksel"
 RECEIPTS = "receipt"
 HASH_BYTES = 16
 COMPRESSION_LEVEL = 3
-KINDS: dict[str, type[Job]] = {Plan.kind: Plan}
+KINDS: dict[str, type[Job]] = {job.kind: job for job in (Plan, SamplePlan)}
 
 StrPath = str | os.PathLike[str]
 

@@ -3,6 +3,8 @@
 
 python -m bench.reach PART ... prints figures; the parts:
 
+  cost      what a cell costs, by robot
+  fine      a map of ur5e, 1 cm x 100,000 orientations, reduced by symmetry
   time      a map of ur5e, 5 cm x 1,000 orientations, by one process per core: time,
             memory, and what it takes beside solve_batch alone
   speedup   the same by one process and by two
@@ -47,6 +49,10 @@ ROBOT = "ur5e"
 SEED = 15
 CELLS = 10_000
 KILLS = 3
+COST_ROBOTS = ("ur5e", "irb120", "cvr038", "xarm6", "panda", "iiwa14", "irb14050")
+COST_S = 5.0
+"""When the measurement of a robot's cost ends [s]."""
+ALL_QUALITIES = ("branches", "manipulability", "limit_distance", "q")
 PLAIN_CELLS = 1 << 14
 """Poses that plain solve_batch is given at once, for each thread."""
 
@@ -379,7 +385,46 @@ def show_place(folder: Path, picture: Path | None) -> None:
         reach.draw_placements(placements, poses, picture)
 
 
+def show_cost(_folder: Path) -> None:
+    """The part `cost`: every 23rd chunk of a map, on one core, without the store."""
+    print("robot        status and proof  with all qualities  [us a cell]")
+    for name in COST_ROBOTS:
+        robot = iksel.load_robot(name)
+        figures = []
+        for qualities in ((), ALL_QUALITIES if robot.dof == 6 else ALL_QUALITIES[1:]):
+            plan = large_plan(
+                robot,
+                spacing=0.1,
+                orientations=300,
+                chunk_cells=1 << 11,
+                qualities=qualities,
+            )
+            solver, chosen = plan.solver(), range(7, plan.chunks, 23)
+            start = time.perf_counter()
+            cells = 0
+            for index in chosen:
+                cells += plan.compute(index, solver)["status"].size
+                if time.perf_counter() - start > COST_S:
+                    break
+            figures.append((time.perf_counter() - start) / cells * 1e6)
+        print(f"{name:<12} {figures[0]:16.2f} {figures[1]:19.2f}", flush=True)
+
+
+def show_fine(folder: Path) -> None:
+    """The part `fine`: what stands for 10^12 cells, by symmetry."""
+    robot = iksel.load_robot(ROBOT)
+    settings = {"spacing": 0.01, "orientations": 100_000}
+    plan = large_plan(robot, **settings, symmetry=True)
+    whole = large_plan(robot, **settings)
+    elapsed, memory = timed_run(plan, folder / "fine.zarr", os.cpu_count() or 1)
+    print(
+        f"{plan.size:,} cells for {whole.size:.3e}: {elapsed:.2f} s, {memory:.0f} MiB"
+    )
+
+
 PARTS = {
+    "cost": show_cost,
+    "fine": show_fine,
     "time": show_time,
     "speedup": show_speedup,
     "engines": show_engines,

@@ -24,9 +24,8 @@ def test_samples_are_poses_with_their_solutions(made, tmp_path, targets, monkeyp
     chunks = [store.read(i) for i in range(3)]
     assert [len(c["count"]) for c in chunks] == [200, 200, 100]
     solver, counts = iksel.Solver(robot), []
-    for row in zip(
-        *(np.concatenate([c[s.name] for c in chunks]) for s in plan.specs())
-    ):
+    columns = [np.concatenate([c[s.name] for c in chunks]) for s in plan.specs()]
+    for row in zip(*columns, strict=True):
         position, quaternion, status, proof, count, q = row
         pose = iksel.pose_from_quaternion(position, quaternion)
         found = solver.solve_all(pose, max=6)

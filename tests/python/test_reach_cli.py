@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 
@@ -12,7 +13,7 @@ import reach_maps  # noqa: F401 (skips without the extra)
 from command_line import assert_bad, assert_good
 
 import iksel
-from iksel import reach
+from iksel import cli, reach
 
 PLAN = "reach plan ur5e --spacing 0.3 --orientations 72 -o {}"
 
@@ -45,6 +46,35 @@ def test_a_map_from_its_plan_to_its_pictures(run, planned, tmp_path):
     output = assert_good(run("reach", "compare", planned, planned, "--json")).json()
     assert output["overlap"] == 1
     assert output["both"] > 0
+
+
+def examples() -> list[str]:
+    """Those of the help texts, with less to compute."""
+    lines = [*cli.reach.EXAMPLES.splitlines(), *cli.dataset.EXAMPLES.splitlines()]
+    found = [line.strip() for line in lines if line.startswith("  iksel ")]
+    changes = {
+        r"^iksel ": "",
+        r"--spacing 0.05 --orientations 1000": "--spacing 0.3 --orientations 72",
+        r"\$SLURM_ARRAY_TASK_ID": "0",
+        r"--samples \d+": "--samples 20",
+        r"(dataset .*)-o ur5e.zarr": r"\1-o samples.zarr",
+    }
+    for pattern, text in changes.items():
+        found = [re.sub(pattern, text, line) for line in found]
+    return found
+
+
+def test_examples_work(run, planned, monkeypatch):
+    monkeypatch.chdir(planned.parent)
+    for name in ("part0", "part1"):
+        assert_good(run(PLAN.format(f"{name}.zarr")))
+    plan = "reach plan panda --spacing 0.6 --orientations 12 -o panda.zarr"
+    assert_good(run(plan))
+    assert_good(run("reach run panda.zarr"))
+    tried = [line for line in examples() if "--dask" not in line]
+    assert len(tried) == 12
+    for line in tried:
+        assert_good(run(line))
 
 
 def test_flags_of_a_plan_arrive_in_it(run, tmp_path):

@@ -79,6 +79,14 @@ def test_two_workers_write_the_same_bytes(planned, whole, tmp_path):
     assert digests(path) == digests(whole)
 
 
+def test_workers_that_end_while_others_go_on(made, tmp_path):
+    path = tmp_path / "few.zarr"
+    plan = reach.plan(made.robot("ur5e"), **SETTINGS | {"chunk_cells": 70_000})
+    assert plan.chunks == 4
+    reach.create(plan, path)
+    assert reach.run(path, workers=3).complete
+
+
 def test_shares_write_the_same_bytes(planned, whole, tmp_path):
     path = tmp_path / "shares.zarr"
     reach.create(planned, path)

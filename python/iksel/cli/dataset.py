@@ -34,7 +34,8 @@ def add_parser(commands: Any) -> None:
         usage="iksel dataset ROBOT --samples N -o STORE [options]",
         help="compute random poses with all their solutions",
         description="Random poses with all their solutions, for those who train "
-        "models: a Zarr store, and from it Parquet files. Needs pip install 'iksel[reach]'.",
+        "models: a Zarr store, and from it Parquet files. Needs "
+        "pip install 'iksel[reach]'.",
         epilog=EXAMPLES,
     )
     add_robot(parser)

@@ -94,6 +94,8 @@ class Pool:
             self._go_on(worker, waiting)
         while self._workers:
             worker, answer = self._answers.get()
+            if worker not in self._workers:
+                continue  # it has ended because there was nothing left for it
             if answer is None:
                 self._workers.remove(worker)
                 _bury(worker, deaths)

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 SIZE = (6.4, 5.2)  # [inch]
 COLOURS = "viridis"
 MOST_SPHERES = 20_000
+ARROW = 0.1  # [m]
 
 
 def draw_slice(
@@ -133,12 +134,17 @@ def draw_placements(
     ):
         if mask.any():
             tips = poses[mask]
+            ends = tips[:, :2, 3] + ARROW * tips[:, :2, 2]
+            axes.update_datalim(np.concatenate([tips[:, :2, 3], ends]))
             axes.quiver(
                 *tips[:, :2, 3].T,
                 *tips[:, :2, 2].T,
                 color=colour,
                 label=label,
                 width=4e-3,
+                angles="xy",
+                scale_units="xy",
+                scale=1 / ARROW,
             )
     others = np.array([p.T_world_base[:2, 3] for p in placements])
     counts = [p.reached for p in placements]
@@ -150,7 +156,9 @@ def draw_placements(
         aspect="equal",
         title=f"{best.reached} of {len(poses)} poses reached",
     )
-    axes.legend()
+    axes.margins(0.1)
+    axes.autoscale_view()
+    axes.legend(loc="lower right")
     figure.colorbar(points, label="poses reached")
     _save(figure, path)
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import os
 import signal
 import sys
 
@@ -27,7 +28,11 @@ def main(path: str) -> None:
         except Exception as error:  # noqa: BLE001 (told to the other process)
             answer["error"] = f"{type(error).__name__}: {error}"
             answer["io"] = isinstance(error, OSError)
-        print(json.dumps(answer), flush=True)  # noqa: T201
+        try:
+            print(json.dumps(answer), flush=True)  # noqa: T201
+        except BrokenPipeError:
+            # Nobody listens any more; Python's own end would write there once again.
+            os._exit(1)
 
 
 if __name__ == "__main__":

@@ -158,7 +158,7 @@ def draw_placements(
     )
     axes.margins(0.1)
     axes.autoscale_view()
-    axes.legend(loc="lower right")
+    figure.legend(loc="outside lower center", ncols=4)
     figure.colorbar(points, label="poses reached")
     _save(figure, path)
 

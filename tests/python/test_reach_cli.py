@@ -109,7 +109,7 @@ def test_flags_of_a_plan_arrive_in_it(run, tmp_path):
 def test_shares_and_merging(run, tmp_path):
     paths = [tmp_path / f"{i}.zarr" for i in range(3)]
     for i, path in enumerate(paths):
-        assert_good(run(PLAN.format(path) + " --chunk-cells 100 --no-symmetry"))
+        assert_good(run(PLAN.format(path) + " --chunk-cells 3000 --no-symmetry"))
         if i:
             line = f"reach run {path} --workers 1 --chunks {i - 1}/2"
             assert_good(run(line))

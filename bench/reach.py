@@ -22,6 +22,7 @@ import argparse
 import contextlib
 import hashlib
 import os
+import resource
 import shutil
 import signal
 import subprocess
@@ -84,7 +85,9 @@ def memory_of(pid: int) -> Iterator[list[float]]:
 
     def watch() -> None:
         while not ended.wait(0.1):
-            largest[0] = max(largest[0], sum(map(resident, [pid, *children(pid)])))
+            largest[0] = max(
+                largest[0], sum(map(resident_memory, [pid, *children(pid)]))
+            )
 
     thread = threading.Thread(target=watch)
     thread.start()
@@ -95,13 +98,19 @@ def memory_of(pid: int) -> Iterator[list[float]]:
         thread.join()
 
 
-def resident(pid: int) -> float:
+def resident_memory(pid: int) -> float:
     """Resident memory of a process [byte]; 0 if it has ended."""
     try:
         pages = Path(f"/proc/{pid}/statm").read_text(encoding="ascii").split()[1]
     except OSError:
         return 0.0
     return float(pages) * os.sysconf("SC_PAGE_SIZE")
+
+
+def processor_time(who: int) -> float:
+    """Seconds of processor time, of all cores and in the kernel too."""
+    usage = resource.getrusage(who)
+    return usage.ru_utime + usage.ru_stime
 
 
 def children(pid: int) -> list[int]:
@@ -136,8 +145,12 @@ def show_time(folder: Path) -> None:
     """The part `time`."""
     plan = large_plan(iksel.load_robot(ROBOT))
     cores = os.cpu_count() or 1
+    before = processor_time(resource.RUSAGE_CHILDREN)
     elapsed, memory = timed_run(plan, folder / "time.zarr", cores)
+    busy = processor_time(resource.RUSAGE_CHILDREN) - before
+    before = processor_time(resource.RUSAGE_SELF)
     plain = plain_time(plan, cores)
+    plain_busy = processor_time(resource.RUSAGE_SELF) - before
     stored = sum(f.stat().st_size for f in (folder / "time.zarr").rglob("*"))
     found = reach.open(folder / "time.zarr")
     status, proof = found.array("status"), found.array("proof")
@@ -151,6 +164,10 @@ def show_time(folder: Path) -> None:
     print(f"a cell a core   {elapsed * cores / plan.size * 1e6:8.3f} us")
     print(f"solve_batch     {plain:8.2f} s with {cores} threads")
     print(f"overhead        {100 * (elapsed / plain - 1):8.1f} %")
+    print(
+        f"processor time  {busy:8.2f} s, solve_batch with what makes its poses "
+        f"{plain_busy:.2f} s"
+    )
     print(f"memory          {memory:8.0f} MiB, all processes")
     print(f"store           {stored / 1e6:8.1f} MB")
     print(f"solvable        {100 * (1 - noes.mean()):8.2f} %")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The command line: iksel robots | info | solve | path | build | evaluate.
+"""The command line; `iksel --help` lists the commands.
 
 Exit status: 0 done or solved, 1 no solution, 2 bad input (one line on stderr), 130
 interrupted, 141 the reader of the output went away.
@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from iksel_cpp import AngleUnitWarning, Error
 
 from iksel import __version__
-from iksel.cli import build, evaluate, info, path, robots, solve
+from iksel.cli import build, dataset, evaluate, info, path, reach, robots, solve
 from iksel.cli._parser import EXIT_BAD_INPUT, Parser, error_line
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 EXIT_INTERRUPTED = 130
 EXIT_BROKEN_PIPE = 141
 
-COMMANDS = (robots, info, solve, path, build, evaluate)
+COMMANDS = (robots, info, solve, path, build, evaluate, reach, dataset)
 
 EXAMPLES = """\
 examples:
@@ -35,6 +35,7 @@ examples:
   iksel path ur3 poses.txt --start 0.3 -1.2 1.4 -0.6 1.2 0.2 --dt 0.01
   iksel build panda -o panda.iksel --samples 40000
   iksel evaluate ur3 --preset paper --targets 10000 --seed 1 --json
+  iksel reach plan ur5e -o ur5e.zarr
 """
 
 

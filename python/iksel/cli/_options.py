@@ -61,21 +61,27 @@ def add_preset(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def add_solver_options(parser: argparse.ArgumentParser) -> None:
-    """Add --preset, --database, and a flag for every solver and database field."""
+def add_solver_options(
+    parser: argparse.ArgumentParser, *, database: bool = True
+) -> None:
+    """Add --preset, and a flag for every field of the solver and of a database."""
     add_preset(parser)
-    parser.add_argument(
-        "--database",
-        type=Path,
-        metavar="FILE",
-        help="use a database made by 'iksel build' instead of building one; over one "
-        "with a full key seeds are iterated one by one, not in SIMD lanes",
-    )
-    parser.add_argument(
-        "--mmap",
-        action="store_true",
-        help="map --database FILE instead of reading it: processes share its samples",
-    )
+    if database:
+        parser.add_argument(
+            "--database",
+            type=Path,
+            metavar="FILE",
+            help="use a database made by 'iksel build' instead of building one; over "
+            "one with a full key seeds are iterated one by one, not in SIMD lanes",
+        )
+        parser.add_argument(
+            "--mmap",
+            action="store_true",
+            help="map --database FILE instead of reading it: processes share its "
+            "samples",
+        )
+    else:
+        parser.set_defaults(database=None)
     group = parser.add_argument_group("solver options")
     group.add_argument(
         "--task",
@@ -95,7 +101,8 @@ def add_solver_options(parser: argparse.ArgumentParser) -> None:
         "preset's)",
     )
     _add_fields(group, Paper, _STRATEGY, {})
-    add_database_options(parser)
+    if database:
+        add_database_options(parser)
 
 
 def add_database_options(parser: argparse.ArgumentParser) -> None:

@@ -20,7 +20,17 @@ import iksel
 from iksel import cli
 from iksel.cli._output import Progress
 
-COMMANDS = ["robots", "info", "solve", "path", "build", "evaluate", "reach", "dataset"]
+COMMANDS = [
+    "robots",
+    "info",
+    "solve",
+    "path",
+    "view",
+    "build",
+    "evaluate",
+    "reach",
+    "dataset",
+]
 EVALUATE_FIELDS = """
     robot preset targets seed solved false_success success_percent mean_us std_us
     min_us max_us median_us p99_us kdl_fk_jac_us ratio position_tolerance
@@ -62,14 +72,16 @@ def test_help_has_examples(run: Run, command: str) -> None:
 
 def examples() -> list[str]:
     """The examples of all help texts that need no file of the user's, and no extra."""
-    with_extra = (cli.reach, cli.dataset)  # theirs are tried in test_reach_cli.py
+    # Theirs are tried in test_reach_cli.py and test_view_cli.py.
+    with_extra = (cli.reach, cli.dataset, cli.view)
     commands = [command for command in cli.COMMANDS if command not in with_extra]
     texts = [cli.EXAMPLES, *(command.EXAMPLES for command in commands)]
     lines = [line.strip() for text in texts for line in text.splitlines()]
     return [
         line.removeprefix("iksel ")
         for line in lines
-        if line.startswith("iksel ") and not re.search(r"\.urdf|\.zarr", line)
+        if line.startswith("iksel ")
+        and not re.search(r"\.urdf|\.zarr|iksel view", line)
     ]
 
 

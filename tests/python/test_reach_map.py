@@ -9,7 +9,7 @@ from reach_maps import computed, random_cells
 
 import iksel
 from iksel import reach
-from iksel.reach._cells import limit_distance, manipulability
+from iksel._qualities import limit_distance, manipulability
 
 SEED = 30
 TOOL = iksel.pose_from_euler([0, 0, 0.12], [0, 0, 0.3])
@@ -165,13 +165,13 @@ def test_qualities_are_those_of_all_solutions(made, tmp_path):
             assert np.isnan([dexterity, distance, *q]).all()
             continue
         best = solver.solve_all(pose, order="manipulability").q[0]
-        assert dexterity == pytest.approx(manipulability(solver, best[None])[0], 1e-6)
+        assert dexterity == pytest.approx(manipulability(robot, best[None])[0], 1e-6)
         np.testing.assert_allclose(
-            manipulability(solver, q[None]), manipulability(solver, best[None])
+            manipulability(robot, q[None]), manipulability(robot, best[None])
         )
         np.testing.assert_allclose(robot.fk(q), pose, atol=2e-6)
         far = solver.solve_all(pose, order="limit_distance").q[0]
-        assert distance == pytest.approx(limit_distance(solver, far[None])[0], 1e-6)
+        assert distance == pytest.approx(limit_distance(robot, far[None])[0], 1e-6)
 
 
 def test_manipulability_is_the_product_of_the_singular_values(made):
@@ -181,7 +181,7 @@ def test_manipulability_is_the_product_of_the_singular_values(made):
         expected = np.linalg.svd(solver.robot.jacobian(q), compute_uv=False).prod(
             axis=1
         )
-        np.testing.assert_allclose(manipulability(solver, q), expected, rtol=1e-8)
+        np.testing.assert_allclose(manipulability(solver.robot, q), expected, rtol=1e-8)
 
 
 def test_poses_outside_are_unknown(full):

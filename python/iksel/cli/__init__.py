@@ -15,7 +15,17 @@ from typing import TYPE_CHECKING
 from iksel_cpp import AngleUnitWarning, Error
 
 from iksel import __version__
-from iksel.cli import build, dataset, evaluate, info, path, reach, robots, solve
+from iksel.cli import (
+    build,
+    dataset,
+    evaluate,
+    info,
+    path,
+    reach,
+    robots,
+    solve,
+    view,
+)
 from iksel.cli._parser import EXIT_BAD_INPUT, Parser, error_line
 
 if TYPE_CHECKING:
@@ -24,7 +34,7 @@ if TYPE_CHECKING:
 EXIT_INTERRUPTED = 130
 EXIT_BROKEN_PIPE = 141
 
-COMMANDS = (robots, info, solve, path, build, evaluate, reach, dataset)
+COMMANDS = (robots, info, solve, path, view, build, evaluate, reach, dataset)
 
 EXAMPLES = """\
 examples:
@@ -33,6 +43,7 @@ examples:
   iksel solve ur3 --pose 0.2 0.15 0.3 0 3.1416 0
   iksel solve arm.urdf --base base_link --tip tool0 --from-q 0 -1 1 0 0.5 0
   iksel path ur3 poses.txt --start 0.3 -1.2 1.4 -0.6 1.2 0.2 --dt 0.01
+  iksel view ur5e
   iksel build panda -o panda.iksel --samples 40000
   iksel evaluate ur3 --preset paper --targets 10000 --seed 1 --json
   iksel reach plan ur5e -o ur5e.zarr

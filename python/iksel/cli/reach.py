@@ -14,6 +14,7 @@ from iksel import reach
 from iksel.cli._output import Progress, add_json, add_progress, print_json, print_pairs
 from iksel.cli._parser import count
 from iksel.cli._reach_plan import add_plan
+from iksel.cli.view import add_server, announce, serve
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -28,6 +29,7 @@ examples:
   iksel reach merge ur5e.zarr part0.zarr part1.zarr
   iksel reach view ur5e.zarr -o ur5e.png
   iksel reach view ur5e.zarr -o ur5e.svg --slice z=0.3
+  iksel reach view ur5e.zarr --browser
   iksel reach export ur5e.zarr -o ur5e.h5
   iksel reach compare ur5e.zarr panda.zarr
 """
@@ -102,9 +104,16 @@ def add_engine(parser: argparse.ArgumentParser) -> None:
 
 def _add_view(commands: Any) -> None:
     parser = _add_map(commands, "view", _view, "draw a map as spheres or as a slice")
-    parser.add_argument(
-        "-o", "--output", type=Path, required=True, metavar="FILE", help=".png or .svg"
+    target = parser.add_mutually_exclusive_group(required=True)
+    target.add_argument(
+        "-o", "--output", type=Path, metavar="FILE", help=".png or .svg"
     )
+    target.add_argument(
+        "--browser",
+        action="store_true",
+        help="show it in the browser around its robot, as 'iksel view' does",
+    )
+    add_server(parser)
     parser.add_argument(
         "--slice",
         type=_plane,
@@ -171,6 +180,14 @@ def _merge(arguments: argparse.Namespace) -> int:
 
 def _view(arguments: argparse.Namespace) -> int:
     found = reach.open(arguments.map)
+    if arguments.browser:
+        if arguments.slice is not None or arguments.spacing is not None:
+            raise InvalidArgumentError(
+                "--browser: shows spheres; --slice and --spacing are for --output"
+            )
+        with serve(arguments, found.solver) as viewer:
+            announce(viewer.show_map(found))
+        return 0
     if arguments.slice is None:
         reach.draw_spheres(found, arguments.output, spacing=arguments.spacing)
     else:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from iksel_cpp import Proof, Solver, Status
 
+from iksel._qualities import limit_distance, manipulability
 from iksel.reach._job import Arrays, ArraySpec
 
 if TYPE_CHECKING:
@@ -144,10 +145,10 @@ def _qualities(
     q = np.concatenate(every)
     found: Arrays = {"branches": np.minimum(counts, MOST_BRANCHES).astype(np.uint8)}
     if "limit_distance" in asked:
-        distance = limit_distance(solver, q)
+        distance = limit_distance(solver.robot, q)
         found["limit_distance"] = np.maximum.reduceat(distance, starts)
     if "manipulability" in asked:
-        value = manipulability(solver, q)
+        value = manipulability(solver.robot, q)
         best = np.maximum.reduceat(value, starts)
         found["manipulability"] = best
         # The first of each pose that has the best value.
@@ -155,28 +156,6 @@ def _qualities(
         owner = np.repeat(np.arange(len(counts)), counts)[first]
         found["q"] = q[first[np.unique(owner, return_index=True)[1]]]
     return found
-
-
-def manipulability(solver: Solver, q: FloatArray) -> FloatArray:
-    """sqrt(det(J J^T)) of configurations (n, dof); of J^T J below six joints."""
-    jacobian = solver.robot.jacobian(q)
-    if jacobian.shape[-1] == 6:
-        return np.asarray(np.abs(np.linalg.det(jacobian)))
-    turned = np.swapaxes(jacobian, -1, -2)
-    square = turned @ jacobian if jacobian.shape[-1] < 6 else jacobian @ turned
-    return np.asarray(np.sqrt(np.maximum(np.linalg.det(square), 0.0)))
-
-
-def limit_distance(solver: Solver, q: FloatArray) -> FloatArray:
-    """Distance of configurations (n, dof) from the limits, relative to each range.
-
-    0 at a limit, 0.5 in the middle, (n,); joints without limits have none.
-    """
-    lower, upper = solver.robot.lower, solver.robot.upper
-    limited = np.isfinite(upper - lower) & (upper > lower)
-    lower, upper, q = lower[limited], upper[limited], q[:, limited]
-    nearest = np.minimum(q - lower, upper - q) / (upper - lower)
-    return np.asarray(nearest.min(axis=-1, initial=0.5))
 
 
 def flags(members: Any) -> dict[str, Any]:

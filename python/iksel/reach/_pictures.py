@@ -13,6 +13,7 @@ from iksel.reach._errors import MapIoError, need
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from iksel._arrays import FloatArray
     from iksel.reach._map import Map
     from iksel.reach._place import Placement
     from iksel.reach._store import StrPath
@@ -82,33 +83,50 @@ def draw_spheres(
     Raises:
         MapIoError: The file cannot be written.
     """
-    step = reach_map.grid.positions.spacing if spacing is None else spacing
-    while True:
-        (x, y, z), shares = reach_map.box(step)
-        shown = shares > 0
-        if cut:
-            shown &= (y >= 0)[None, :, None]
-        if spacing is not None or shown.sum() <= MOST_SPHERES:
-            break
-        step *= 1.25
-    i, j, k = np.nonzero(shown)
+    points, shares, step = reached_places(reach_map, spacing, cut=cut)
     figure = _figure()
     axes = figure.add_subplot(projection="3d")
-    points = axes.scatter(
-        x[i],
-        y[j],
-        z[k],
-        c=shares[shown],
+    drawn = axes.scatter(
+        *points.T,
+        c=shares,
         cmap=COLOURS,
         vmin=0,
         vmax=1,
-        s=_area(step, x),
+        s=_area(step, reach_map.axes(step)[0]),
     )
     axes.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]", title=reach_map.robot.name)
     axes.set_aspect("equal")
     axes.view_init(elev=20, azim=-70)
-    figure.colorbar(points, label="share of orientations reached", shrink=0.7)
+    figure.colorbar(drawn, label="share of orientations reached", shrink=0.7)
     _save(figure, path)
+
+
+def reached_places(
+    reach_map: Map, spacing: float | None = None, *, cut: bool
+) -> tuple[FloatArray, FloatArray, float]:
+    """Positions that are reached at all, as draw_spheres() shows them.
+
+    Args:
+        reach_map: The map.
+        spacing: Distance of the positions [m]; None: the map's, or coarser where that
+            would be more than 20,000.
+        cut: Leave out y < 0.
+
+    Returns:
+        Positions in the base frame (n, 3) [m], their shares of orientations (n,), and
+        the distance between neighbours [m].
+    """
+    step = reach_map.grid.positions.spacing if spacing is None else spacing
+    while True:
+        axes, shares = reach_map.box(step)
+        shown = shares > 0
+        if cut:
+            shown &= (axes[1] >= 0)[None, :, None]
+        if spacing is not None or shown.sum() <= MOST_SPHERES:
+            break
+        step *= 1.25
+    places = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
+    return places[shown], shares[shown], step
 
 
 def draw_placements(

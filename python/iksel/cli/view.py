@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""iksel view: a robot in the browser."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from iksel_cpp import Solver
+
+from iksel.cli._angles import Angles
+from iksel.cli._options import add_solver_options, given_database, solver_options
+from iksel.cli._robot import add_robot, load
+
+if TYPE_CHECKING:
+    from iksel.view import Viewer
+
+EXAMPLES = """\
+examples:
+  iksel view ur5e
+  iksel view panda --q 0 -0.5 0 -2 0 1.6 0.8
+  iksel view arm.urdf --base base_link --tip tool0 --tcp 0 0 0.1 0 0 0
+  iksel view ur5e --map ur5e.zarr
+  iksel view xarm5 --task free_spin --port 9000
+
+Drag the target, and the robot follows. Ctrl-C ends.
+"""
+
+PORT = 8080
+
+
+def add_parser(commands: Any) -> None:
+    """Add the command."""
+    parser = commands.add_parser(
+        "view",
+        usage="iksel view ROBOT [options]",
+        help="drag a target in the browser, and see inverse kinematics follow",
+        description="Serve a page with the robot, a target to drag, sliders for the "
+        "joints, all branches, and why there is no answer where there is none. Needs "
+        "pip install 'iksel[view]'.",
+        epilog=EXAMPLES,
+    )
+    add_robot(parser)
+    parser.add_argument(
+        "--q",
+        nargs="+",
+        metavar="Q",
+        help="joint values to begin with [rad or m] (default: away from limits and "
+        "singularities)",
+    )
+    parser.add_argument(
+        "--map",
+        type=Path,
+        metavar="MAP",
+        help="a reachability map of the robot ('iksel reach') to show around it",
+    )
+    add_server(parser)
+    add_solver_options(parser)
+    parser.set_defaults(run=run)
+
+
+def add_server(parser: argparse.ArgumentParser) -> None:
+    """Add where the page is served."""
+    parser.add_argument(
+        "--port",
+        type=_port,
+        default=PORT,
+        metavar="N",
+        help="of the page; the next free one if that is taken (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--host",
+        default="127.0.0.1",
+        metavar="ADDRESS",
+        help="address to listen at (default: %(default)s, this machine alone; 0.0.0.0: "
+        "all)",
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Serve until Ctrl-C."""
+    robot = load(arguments)
+    angles = Angles(arguments)
+    q = arguments.q and angles.read_joints("--q", arguments.q, robot)
+    solver = Solver(robot, solver_options(arguments), given_database(arguments))
+    with serve(arguments, solver) as viewer:
+        if q is not None:
+            viewer.show(q)
+        if arguments.map is not None:
+            from iksel import reach  # noqa: PLC0415 (an extra)
+
+            viewer.show_map(reach.open(arguments.map))
+        announce(viewer)
+    return 0
+
+
+def serve(arguments: argparse.Namespace, solver: Solver) -> Viewer:
+    """A viewer where the flags of add_server() say."""
+    from iksel.view import Viewer  # noqa: PLC0415 (an extra)
+
+    return Viewer(solver, port=arguments.port, host=arguments.host)
+
+
+def announce(viewer: Viewer) -> None:
+    """Say where the page is, and serve it."""
+    print(f"{viewer.url} (Ctrl-C ends)", flush=True)
+    viewer.wait()
+
+
+def _port(text: str) -> int:
+    """An argument that is a port."""
+    value = int(text)
+    if not 1 <= value <= 65535:
+        raise argparse.ArgumentTypeError(f"{text} is not between 1 and 65535")
+    return value

@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Draws a robot, ghosts of its other solutions, a target and a map by viser."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from iksel import _rotations as rotations
+from iksel.view.skeleton import Placed, ball, cylinder
+
+if TYPE_CHECKING:
+    from iksel._arrays import BoolArray, FloatArray, IntArray
+    from iksel.view.skeleton import Skeleton
+
+LINK = (175, 182, 192)
+NO_ANSWER = (222, 150, 90)
+JOINT = (52, 94, 168)
+AT_LIMIT = (205, 45, 45)
+GHOST = (120, 150, 190)
+GHOST_OPACITY = 0.22
+# Shares of orientations from none to all: red, yellow, green, blue.
+RAMP = np.array([[200, 40, 40], [235, 205, 60], [70, 165, 85], [45, 85, 190]], float)
+OVERLAP = 0.42  # radius of a map's ball, by the distance between neighbours
+
+
+class Copies:
+    """Copies of one mesh, whose number may change from one drawing to the next."""
+
+    def __init__(
+        self, scene: Any, name: str, mesh: tuple[FloatArray, IntArray], **look: Any
+    ) -> None:
+        """Take viser's scene, the node's name and how viser is to show the mesh."""
+        self._scene = scene
+        self._name = name
+        self._mesh = mesh
+        self._look = {"lod": "off", **look}
+        self._node: Any = None
+        self.count = 0
+
+    def draw(self, placed: Placed, colours: np.ndarray[Any, Any]) -> None:
+        """Show them at their places, in colours (3,) or (m, 3) from 0 to 255."""
+        count = len(placed.positions)
+        rgb = np.broadcast_to(np.asarray(colours, np.uint8), (count, 3))
+        if self._node is not None and count == self.count:
+            self._node.batched_positions = placed.positions.astype(np.float32)
+            self._node.batched_wxyzs = placed.wxyzs.astype(np.float32)
+            self._node.batched_scales = placed.scales.astype(np.float32)
+            self._node.batched_colors = rgb
+            return
+        self.clear()
+        if count:
+            self._node = self._scene.add_batched_meshes_simple(
+                self._name,
+                *self._mesh,
+                placed.wxyzs,
+                placed.positions,
+                batched_scales=placed.scales.astype(np.float32),
+                batched_colors=rgb,
+                **self._look,
+            )
+        self.count = count
+
+    def clear(self) -> None:
+        """Show none."""
+        if self._node is not None:
+            self._node.remove()
+        self._node = None
+        self.count = 0
+
+
+class Scene:
+    """What is drawn. The base link's frame is the world's."""
+
+    def __init__(self, scene: Any, skeleton: Skeleton) -> None:
+        """Take viser's scene and the links to draw."""
+        self._scene = scene
+        self._skeleton = skeleton
+        reach = skeleton.robot.reach
+        scene.set_up_direction("+z")
+        size = 2 * np.ceil(reach)
+        scene.add_grid("/floor", width=size, height=size, cell_size=0.1)
+        scene.add_frame("/base", axes_length=0.1 * reach, axes_radius=0.004 * reach)
+        ghost = {"opacity": GHOST_OPACITY, "cast_shadow": False}
+        self._bones = Copies(scene, "/robot/links", cylinder(), flat_shading=True)
+        self._balls = Copies(scene, "/robot/frames", ball())
+        self._ghosts = Copies(scene, "/ghosts/links", cylinder(12), **ghost)
+        self._ghost_balls = Copies(scene, "/ghosts/frames", ball(8), **ghost)
+        self._map = Copies(scene, "/map", ball(6), cast_shadow=False, lod="auto")
+        self.target = scene.add_transform_controls("/target", scale=0.25 * reach)
+
+    @property
+    def ghosts(self) -> int:
+        """Number of ghosts that are shown."""
+        return self._ghost_balls.count // (self._skeleton.bars + 1)
+
+    @property
+    def map_balls(self) -> int:
+        """Number of balls that are shown of a map."""
+        return self._map.count
+
+    def draw_robot(self, q: FloatArray, at_limit: BoolArray, *, solved: bool) -> None:
+        """Show the robot at q (dof,), with joints (dof,) that are at a limit in red."""
+        drums = np.where(at_limit[:, None], AT_LIMIT, JOINT)
+        link = LINK if solved else NO_ANSWER
+        bars = np.tile(link, (self._skeleton.bars, 1))
+        self._bones.draw(
+            self._skeleton.cylinders(q[None]), np.concatenate([bars, drums])
+        )
+        self._balls.draw(self._skeleton.balls(q[None]), np.array(link))
+
+    def draw_ghosts(self, q: FloatArray) -> None:
+        """Show transparent robots at configurations (n, dof); of n = 0 none."""
+        if len(q) == 0:
+            self._ghosts.clear()
+            self._ghost_balls.clear()
+            return
+        self._ghosts.draw(self._skeleton.cylinders(q), np.array(GHOST))
+        self._ghost_balls.draw(self._skeleton.balls(q), np.array(GHOST))
+
+    def draw_target(self, pose: FloatArray) -> None:
+        """Put the target at T_base_tcp, (4, 4)."""
+        self.target.position = pose[:3, 3]
+        self.target.wxyz = rotations.quaternion_from_matrix(pose[:3, :3])
+
+    def target_pose(self) -> FloatArray:
+        """Where the target has been dragged to, T_base_tcp, (4, 4)."""
+        wxyz = np.asarray(self.target.wxyz, float)
+        pose = np.eye(4)
+        pose[:3, :3] = rotations.from_quaternion(wxyz / np.linalg.norm(wxyz))
+        pose[:3, 3] = self.target.position
+        return pose
+
+    def draw_map(self, points: FloatArray, shares: FloatArray, spacing: float) -> None:
+        """Show balls at points (n, 3) [m], coloured by shares (n,); of n = 0 none."""
+        count = len(points)
+        placed = Placed(
+            points,
+            np.tile([1.0, 0, 0, 0], (count, 1)),
+            np.full((count, 3), OVERLAP * spacing),
+        )
+        self._map.draw(placed, share_colours(shares))
+
+
+def share_colours(shares: FloatArray) -> np.ndarray[Any, Any]:
+    """Colours (n, 3) from 0 to 255 of shares (n,) from 0 to 1."""
+    at = np.linspace(0, 1, len(RAMP))
+    colours = [np.interp(shares, at, channel) for channel in RAMP.T]
+    return np.stack(colours, axis=-1).astype(np.uint8)

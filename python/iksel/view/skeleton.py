@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Clean links of a robot: balls at its frames, bars between them, drums at its joints.
+
+Made of the chain alone, so every robot has them, with or without mesh files.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from iksel_cpp import JointType, LinkTree
+
+if TYPE_CHECKING:
+    from iksel_cpp import Robot
+
+    from iksel._arrays import FloatArray, IntArray
+
+# Sizes as shares of the robot's reach.
+BAR, BALL = 0.018, 0.024  # radii
+DRUM, DRUM_HEIGHT = 0.034, 0.085
+LEAST = 1e-6  # [m]; a bar between frames that coincide has this length
+
+
+class Placed(NamedTuple):
+    """Copies of one mesh: where they are, and how much they are stretched."""
+
+    positions: FloatArray
+    """In the base frame, (m, 3) [m]."""
+    wxyzs: FloatArray
+    """Rotations, (m, 4)."""
+    scales: FloatArray
+    """Along the mesh's x, y and z, (m, 3)."""
+
+
+class Skeleton:
+    """The links of a robot's chain, from its base link to its TCP."""
+
+    def __init__(self, robot: Robot) -> None:
+        self.robot = robot
+        joints = {j.child_link: j for j in LinkTree.from_urdf(robot.urdf).joints}
+        links = [robot.tip_link]
+        while links[-1] != robot.base_link:
+            links.append(joints[links[-1]].parent_link)
+        self.links = links[::-1]
+        self._index = [robot.link_names.index(name) for name in self.links]
+        moved = {joint.name: link for link, joint in joints.items()}
+        names = [moved[name] for name in robot.joint_names]
+        self._moved = [self.links.index(name) for name in names]
+        self._slides = [kind == JointType.prismatic for kind in robot.joint_types]
+
+    @property
+    def bars(self) -> int:
+        """Number of bars of one robot, each from one frame to the next."""
+        return len(self.links)
+
+    def points(self, q: FloatArray) -> FloatArray:
+        """Origins of the links' frames and the TCP, (n, links + 1, 3), for (n, dof)."""
+        poses = self.robot.link_poses(q)[:, self._index]
+        return np.concatenate([poses[..., :3, 3], self.robot.fk(q)[:, None, :3, 3]], 1)
+
+    def balls(self, q: FloatArray) -> Placed:
+        """Unit balls at the frames of configurations (n, dof)."""
+        points = self.points(q).reshape(-1, 3)
+        count = len(points)
+        size = BALL * self.robot.reach
+        return Placed(points, np.tile([1.0, 0, 0, 0], (count, 1)), _full(count, size))
+
+    def cylinders(self, q: FloatArray) -> Placed:
+        """Unit cylinders (along z): for each configuration the bars, then the drums."""
+        reach = self.robot.reach
+        points = self.points(q)
+        starts, ends = points[:, :-1], points[:, 1:]
+        lengths = np.maximum(np.linalg.norm(ends - starts, axis=-1), LEAST)
+        bars = _full(lengths.shape, BAR * reach)
+        bars[..., 2] = lengths
+        drums = np.tile(
+            [DRUM * reach, DRUM * reach, DRUM_HEIGHT * reach],
+            (len(q), self.robot.dof, 1),
+        )
+        along = np.concatenate([ends - starts, self._axes(q)], axis=1)
+        middles = np.concatenate([(starts + ends) / 2, points[:, self._moved]], axis=1)
+        scales = np.concatenate([bars, drums], axis=1)
+        return Placed(
+            middles.reshape(-1, 3),
+            turns_of_z(along.reshape(-1, 3)),
+            scales.reshape(-1, 3),
+        )
+
+    def _axes(self, q: FloatArray) -> FloatArray:
+        """Directions along which joints turn or slide, (n, dof, 3)."""
+        jacobian = np.swapaxes(self.robot.jacobian(q), -1, -2)
+        slides = np.array(self._slides)[:, None]
+        return np.where(slides, jacobian[..., :3], jacobian[..., 3:])
+
+
+def turns_of_z(directions: FloatArray) -> FloatArray:
+    """The least rotations (w, x, y, z) of z onto directions (n, 3) of any length."""
+    lengths = np.linalg.norm(directions, axis=-1, keepdims=True)
+    x, y, z = (directions / np.where(lengths > 0, lengths, 1.0)).T
+    turns = np.stack([1 + z, -y, x, np.zeros_like(z)], axis=-1)
+    turns[turns[:, 0] < 1e-9] = [0.0, 1.0, 0.0, 0.0]
+    return np.asarray(turns / np.linalg.norm(turns, axis=-1, keepdims=True))
+
+
+def turned(profile: FloatArray, segments: int) -> tuple[FloatArray, IntArray]:
+    """The mesh that a profile (k, 2) of radius and height makes when turned about z.
+
+    Returns:
+        Vertices (k * segments, 3), and faces of three vertices, counterclockwise from
+        outside if the profile goes upwards.
+    """
+    angles = 2 * np.pi * np.arange(segments) / segments
+    radius, height = profile.T
+    vertices = np.stack(
+        [
+            np.outer(radius, np.cos(angles)),
+            np.outer(radius, np.sin(angles)),
+            np.outer(height, np.ones(segments)),
+        ],
+        axis=-1,
+    ).reshape(-1, 3)
+    ring, at = np.meshgrid(
+        np.arange(len(profile) - 1), np.arange(segments), indexing="ij"
+    )
+    a, b = ring * segments + at, ring * segments + (at + 1) % segments
+    c, d = a + segments, b + segments
+    faces = np.concatenate([np.stack([a, b, d], -1), np.stack([a, d, c], -1)])
+    return vertices, faces.reshape(-1, 3)
+
+
+def cylinder(segments: int = 24) -> tuple[FloatArray, IntArray]:
+    """A closed cylinder of radius 1 and height 1 about the origin, along z."""
+    profile = np.array([[0, -0.5], [1, -0.5], [1, 0.5], [0, 0.5]], float)
+    return turned(profile, segments)
+
+
+def ball(segments: int = 16) -> tuple[FloatArray, IntArray]:
+    """A ball of radius 1 about the origin."""
+    angles = np.linspace(-np.pi / 2, np.pi / 2, segments // 2 + 1)
+    profile = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
+    profile[[0, -1], 0] = 0.0
+    return turned(profile, segments)
+
+
+def _full(shape: int | tuple[int, ...], value: float) -> FloatArray:
+    """Scales (*shape, 3), all the same."""
+    lengths = (shape,) if isinstance(shape, int) else shape
+    return np.full((*lengths, 3), value)

@@ -1,0 +1,284 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The viewer: a session, what is drawn of it, and what users do to it."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import socket
+import threading
+import time
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from iksel_cpp import InvalidArgumentError, PathResult
+
+from iksel import _extras
+from iksel._arrays import as_floats, reject
+from iksel.view.controls import Controls
+from iksel.view.scene import Scene
+from iksel.view.session import Session
+from iksel.view.skeleton import Skeleton
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from types import TracebackType
+
+    import numpy.typing as npt
+    from iksel_cpp import Solver
+
+    from iksel.pose import PoseLike
+    from iksel.reach import Map
+
+PORT = 8080
+LIMIT_MARGIN = 1e-3  # [rad or m]; a joint that near to a limit is shown as at it
+
+
+class Viewer:
+    """A robot in the browser, served until close() or the end of the program.
+
+    The robot follows a target that is dragged in the browser or moved by
+    move_target(); sliders turn its joints. Every method may be called from any thread.
+    """
+
+    def __init__(
+        self, solver: Solver, *, port: int = PORT, host: str = "127.0.0.1"
+    ) -> None:
+        """Start to serve.
+
+        Args:
+            solver: What solves; its robot and task are shown.
+            port: Where to serve; the next free one if another program has it.
+            host: Address to listen at: by default only this machine can look;
+                "0.0.0.0" for all.
+
+        Raises:
+            MissingExtraError: viser is not installed.
+            InvalidArgumentError: No address of this machine.
+        """
+        viser = _extras.need(
+            "viser", user="iksel.view", how="pip install 'iksel[view]'"
+        )
+        _check_host(host)
+        self.session = Session(solver)
+        self._lock = threading.RLock()
+        self._drawing = False
+        self._dragged = False
+        self._map: Map | None = None
+        self._closed = threading.Event()
+        with _quietly():
+            self._server = viser.ViserServer(host=host, port=port, verbose=False)
+        self.host = host
+        robot = solver.robot
+        self._server.gui.set_panel_label(f"iksel: {robot.name}")
+        reach = robot.reach
+        self._server.initial_camera.position = np.array([1.1, -1.7, 1.1]) * reach
+        self._server.initial_camera.look_at = robot.reach_centre
+        self.scene = Scene(self._server.scene, Skeleton(robot))
+        self.controls = Controls(self._server.gui, self.session)
+        self.controls.on_change(self._changed)
+        self.scene.target.on_update(lambda _event: self._drag())
+        self._draw()
+
+    def __enter__(self) -> Viewer:  # noqa: PYI034 (Self needs Python 3.11)
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    @property
+    def port(self) -> int:
+        """Where it is served."""
+        return int(self._server.get_port())
+
+    @property
+    def url(self) -> str:
+        """What to open in a browser."""
+        everywhere = self.host in ("0.0.0.0", "127.0.0.1")  # noqa: S104 (only asked)
+        host = "localhost" if everywhere else self.host
+        return f"http://{host}:{self.port}"
+
+    @property
+    def text(self) -> str:
+        """What the panel says, in Markdown."""
+        return str(self.controls.text.content)
+
+    def show(self, q: npt.ArrayLike) -> Viewer:
+        """Put the robot at joint values (dof,) [rad or m], and the target at its TCP.
+
+        Returns:
+            The viewer.
+
+        Raises:
+            InvalidArgumentError: Another shape, or not finite.
+        """
+        with self._lock:
+            self.session.show(q)
+            self._draw()
+        return self
+
+    def move_target(self, pose: PoseLike) -> Viewer:
+        """Move the target to T_base_tcp, (4, 4) [m], as if it were dragged there.
+
+        Returns:
+            The viewer; `session` and `text` say what came of it.
+
+        Raises:
+            InvalidArgumentError: Another shape, not finite or not rigid.
+        """
+        with self._lock:
+            self.session.move_target(pose)
+            self._draw()
+        return self
+
+    def play(self, path: PathResult | npt.ArrayLike, dt: float = 0.04) -> Viewer:
+        """Show configurations one after the other; returns after the last.
+
+        Args:
+            path: What Solver.solve_path() gave, or joint values (n, dof) [rad or m].
+            dt: Time from one to the next [s].
+
+        Returns:
+            The viewer.
+
+        Raises:
+            InvalidArgumentError: Another shape, not finite, or a time that is negative.
+        """
+        values = path.q if isinstance(path, PathResult) else path
+        steps = as_floats("path", values, (self.session.robot.dof,))
+        if steps.ndim != 2:
+            reject("path", f"expected shape (n, dof), got {steps.shape}")
+        if not 0 <= dt < np.inf:
+            reject("dt", f"expected a time [s] from 0, got {dt}")
+        due = time.monotonic()
+        for q in steps:
+            self.show(q)
+            due += dt
+            time.sleep(max(0.0, due - time.monotonic()))
+        return self
+
+    def show_map(self, reach_map: Map) -> Viewer:
+        """Show a reachability map as a layer of coloured balls.
+
+        Red ones are reached with few of the orientations, blue ones with all.
+
+        Returns:
+            The viewer.
+
+        Raises:
+            InvalidArgumentError: The map is of another robot, or of another tool.
+        """
+        mine, its = self.session.robot, reach_map.robot
+        if mine.chain_hash != its.chain_hash:
+            raise InvalidArgumentError(
+                f"map: it is of {its.name}, {its.base_link} -> {its.tip_link}, and the "
+                f"viewer shows {mine.name}, {mine.base_link} -> {mine.tip_link}"
+            )
+        if not np.allclose(mine.tcp, its.tcp, rtol=0, atol=1e-9):
+            raise InvalidArgumentError(
+                "map: its tool is another than the robot's; load the robot with the "
+                f"map's tcp, which is at {its.tcp[:3, 3]} in the tip link's frame"
+            )
+        with self._lock:
+            self._map = reach_map
+            self.controls.map.visible = self.controls.cut.visible = True
+            self._draw_map()
+        return self
+
+    def wait(self) -> None:
+        """Serve until close(), from another thread, or Ctrl-C."""
+        with contextlib.suppress(KeyboardInterrupt):
+            self._closed.wait()
+
+    def close(self) -> None:
+        """Stop to serve."""
+        if not self._closed.is_set():
+            self._closed.set()
+            with _quietly():
+                self._server.stop()
+
+    def _drag(self) -> None:
+        """The target is being dragged: follow to where it is by now.
+
+        Events come faster than answers are drawn, so of those that wait for the lock
+        only the first finds something to do.
+        """
+        self._dragged = True
+        with self._lock:
+            if self._dragged and not self._closed.is_set():
+                self._dragged = False
+                self.session.move_target(self.scene.target_pose())
+                self._draw(self.scene.target)
+
+    def _changed(self, handle: Any) -> None:
+        """A switch or slider has been changed, unless by _draw() itself."""
+        with self._lock:
+            if self._drawing or self._closed.is_set():
+                return
+            controls, session = self.controls, self.session
+            if handle is controls.near:
+                session.stay_near = bool(handle.value)
+            elif handle is controls.task:
+                session.set_task(handle.value)
+            elif handle is controls.motion:
+                session.slide(handle.value)
+            elif handle in controls.joints:
+                session.move_joint(controls.joints.index(handle), handle.value)
+            elif handle is not controls.ghosts:
+                self._draw_map()
+                return
+            self._draw(handle)
+
+    def _draw(self, source: Any = None) -> None:
+        """Draw everything but the map, and the handle that a user is just moving."""
+        session = self.session
+        robot, q = session.robot, session.q
+        near = np.minimum(q - robot.lower, robot.upper - q) < LIMIT_MARGIN
+        with self._lock, self._silently(), self._server.atomic():
+            self.scene.draw_robot(q, near, solved=session.solved)
+            asked = self.controls.ghosts.value
+            ghosts = session.branches() if asked else q[None][:0]
+            self.scene.draw_ghosts(ghosts)
+            if source is not self.scene.target:
+                self.scene.draw_target(session.target)
+            self.controls.draw(source, len(ghosts) if asked else None)
+
+    def _draw_map(self) -> None:
+        """Draw the map, if there is one that is switched on."""
+        if self._map is None:
+            return
+        from iksel.reach._pictures import reached_places  # noqa: PLC0415 (an extra)
+
+        cut = bool(self.controls.cut.value)
+        points, shares, spacing = reached_places(self._map, cut=cut)
+        if not self.controls.map.value:
+            points, shares = points[:0], shares[:0]
+        self.scene.draw_map(points, shares, spacing)
+
+    @contextlib.contextmanager
+    def _silently(self) -> Iterator[None]:
+        """Take no notice of what is changed meanwhile; others wait for the lock."""
+        before, self._drawing = self._drawing, True
+        try:
+            yield
+        finally:
+            self._drawing = before
+
+
+def _check_host(host: str) -> None:
+    """Refuse what cannot be listened at; viser would wait for it without an end."""
+    try:
+        with socket.create_server((host, 0)):
+            pass
+    except OSError as error:
+        reject("host", f"cannot listen at {host!r}: {error}")
+
+
+def _quietly() -> contextlib.AbstractContextManager[Any]:
+    """Keep what viser says of its starts and stops off the standard output."""
+    return contextlib.redirect_stdout(io.StringIO())

@@ -136,7 +136,7 @@ class _Tree:
         self, joint: int, parent: str, child: str, origin: FloatArray
     ) -> None:
         """Add a joint whose frame at its reference is `origin`."""
-        model, kind = self._model, self._model.jnt_type[joint]
+        model, kind = self._model, self._kind(joint)
         axis = _unit(model.jnt_axis[joint])
         back = -float(model.qpos0[model.jnt_qposadr[joint]]) * axis
         limited = bool(model.jnt_limited[joint])
@@ -171,10 +171,13 @@ class _Tree:
         ET.SubElement(element, "origin", xyz=_words(origin[:3, 3]), rpy=rpy)
         return element
 
+    def _kind(self, joint: int) -> Any:
+        return self._kinds(int(self._model.jnt_type[joint]))
+
     def _anchor(self, joint: int) -> FloatArray:
         """The point in the body that a joint turns about; 0 where that is no matter."""
         turns = (self._kinds.mjJNT_HINGE, self._kinds.mjJNT_BALL)
-        if self._model.jnt_type[joint] not in turns:
+        if self._kind(joint) not in turns:
             return np.zeros(3)
         anchor: FloatArray = self._model.jnt_pos[joint]
         return anchor

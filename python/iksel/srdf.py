@@ -199,6 +199,6 @@ def _number(state: ET.Element, joint: str, text: str) -> float:
         return float(text)
     except ValueError:
         raise UrdfError(
-            f"srdf: state {state.get('name')!r}: joint {joint!r} has {text!r}, which is "
-            "no number"
+            f"srdf: state {state.get('name')!r}: joint {joint!r} has {text!r}, which "
+            "is no number"
         ) from None

@@ -69,7 +69,7 @@ def examples() -> list[str]:
     return [
         line.removeprefix("iksel ")
         for line in lines
-        if line.startswith("iksel ") and not re.search(r"\.urdf|\.zarr", line)
+        if line.startswith("iksel ") and not re.search(r"\.urdf|\.xml|rd:|\.zarr", line)
     ]
 
 

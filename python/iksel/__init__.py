@@ -95,7 +95,8 @@ from iksel.pose import (
     quaternion_from_pose,
     rotation_vector_from_pose,
 )
-from iksel.robots import load_robot, robot_info, robot_names
+from iksel.robots import load_robot, load_tree, robot_info, robot_names
+from iksel.srdf import Srdf
 
 __version__: str = _core.__version__
 
@@ -146,6 +147,7 @@ __all__ = [
     "Solutions",
     "Solver",
     "SolverOptions",
+    "Srdf",
     "Status",
     "Structure",
     "StructureKind",
@@ -161,6 +163,7 @@ __all__ = [
     "evaluate",
     "is_rigid",
     "load_robot",
+    "load_tree",
     "orthonormalized",
     "pose_error",
     "pose_from_euler",

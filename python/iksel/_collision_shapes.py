@@ -3,17 +3,18 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from iksel_cpp import InvalidArgumentError, UnknownNameError, UrdfError
+from iksel_cpp import InvalidArgumentError, UrdfError
 
+from iksel._packages import resolve_path
 from iksel._urdf_xml import read_numbers, read_origin
 
 if TYPE_CHECKING:
     import xml.etree.ElementTree as ET
     from collections.abc import Iterator, Mapping, Sequence
+    from pathlib import Path
 
     from iksel._arm_links import ArmLinks
     from iksel._arrays import BoolArray, FloatArray, IntArray
@@ -172,7 +173,7 @@ def _make_shape(
         (radius,) = read_numbers(element, "radius", 1)
         return coal.Cylinder(radius, *read_numbers(element, "length", 1))
     if element.tag == "mesh":
-        path = _mesh_path(element.get("filename", ""), folder, packages)
+        path = resolve_path(element.get("filename", ""), packages, folder)
         scale = np.array(read_numbers(element, "scale", 3, "1 1 1"))
         return _load_mesh(coal, path, scale)
     raise UrdfError(
@@ -205,16 +206,3 @@ def _local_box(shape: Any) -> tuple[FloatArray, FloatArray]:
     shape.computeLocalAABB()
     low, high = shape.aabb_local.min_.copy(), shape.aabb_local.max_.copy()
     return (low + high) / 2, (high - low) / 2
-
-
-def _mesh_path(name: str, folder: Path, packages: Mapping[str, Any]) -> Path:
-    if name.startswith("package://"):
-        package, _, rest = name.removeprefix("package://").partition("/")
-        if package not in packages:
-            listed = ", ".join(packages) or "none"
-            raise UnknownNameError(
-                f"packages: no folder for package {package!r} of mesh {name!r}; given: "
-                f"{listed}"
-            )
-        return Path(packages[package]) / rest
-    return folder / name.removeprefix("file://")

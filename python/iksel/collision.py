@@ -22,9 +22,11 @@ from iksel._arrays import as_floats
 from iksel._collision_pairs import PairSampler, srdf_pairs, srdf_text
 from iksel._collision_shapes import Shapes, import_coal, place, read_shapes
 from iksel._urdf_xml import read_xml
+from iksel.description import read_description
 
 if TYPE_CHECKING:
     import os
+    import xml.etree.ElementTree as ET
     from collections.abc import Iterable, Mapping
 
     import numpy.typing as npt
@@ -72,7 +74,8 @@ class SelfCollision:
         """Read the collision geometry of all links and find the pairs to look at.
 
         Args:
-            urdf: Path of the URDF, or its text. Boxes, cylinders, spheres and meshes.
+            urdf: Path of the URDF or xacro, or URDF text. Boxes, cylinders, spheres
+                and meshes.
             robot: The arm whose joint values are asked about, from the same URDF.
             srdf: Path of an SRDF, or its text, whose disable_collisions are ignored,
                 for example one that `save_srdf` wrote.
@@ -84,7 +87,8 @@ class SelfCollision:
             seed: Of the samples.
             other_joints: Values of joints that are not the arm's [rad or m]; those that
                 the arm holds are known, others are 0 if not given.
-            packages: Folders of package:// names of meshes.
+            packages: Folders of package:// names of meshes; others are looked for
+                around the file, in $ROS_PACKAGE_PATH and $AMENT_PREFIX_PATH.
 
         Raises:
             InvalidArgumentError: coal is missing, margin or samples is negative, or a
@@ -100,7 +104,7 @@ class SelfCollision:
         if samples < 0:
             raise InvalidArgumentError(f"samples: {samples} is not 0 or more")
         coal = import_coal()
-        root, _, folder = read_xml("urdf", urdf)
+        root, folder = _read_urdf(urdf, packages or {})
         shapes = read_shapes(coal, root, folder, packages or {})
         self._dof = robot.dof
         self._name = root.get("name", "")
@@ -242,3 +246,12 @@ class SelfCollision:
         shapes = [part for _, _, part in self._parts]
         self._part_shapes = np.array(shapes, dtype=int).reshape(-1, 2)
         self._part_margins = np.array([margin for _, margin, _ in self._parts])
+
+
+def _read_urdf(
+    source: str | os.PathLike[str], packages: Mapping[str, str | os.PathLike[str]]
+) -> tuple[ET.Element, Path]:
+    """The root of a robot's URDF, and the folder that its file names start from."""
+    read = read_description(source, packages=packages)
+    root, _, folder = read_xml("urdf", read.urdf)
+    return root, folder if read.format == "URDF" else read.folder

@@ -1,20 +1,27 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The built-in robots by name."""
+"""Robots by name, and from files of every format."""
 
 from __future__ import annotations
 
 import difflib
+import os
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from iksel_cpp import Robot, UnknownNameError
+from iksel_cpp import InvalidArgumentError, LinkTree, Robot, UnknownNameError
 
-from iksel._manifest import RobotInfo, manifest, urdf_text
+from iksel._descriptions import PREFIX
+from iksel._manifest import RobotInfo, manifest
+from iksel.description import FILE_SUFFIXES, Description, read_description
 from iksel.pose import pose_from_euler
+from iksel.srdf import Srdf
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     import numpy.typing as npt
+
+    from iksel._packages import Packages
 
 FROM_MANIFEST = "manifest"
 """Value of `tcp` that takes the manifest's tool."""
@@ -43,7 +50,7 @@ def robot_info(name: str) -> RobotInfo:
 
 
 def load_robot(
-    name: str,
+    source: str | os.PathLike[str],
     *,
     tcp: npt.ArrayLike | None = FROM_MANIFEST,
     base_link: str | None = None,
@@ -51,34 +58,55 @@ def load_robot(
     locked_joints: Mapping[str, float] | None = None,
     soft_limits: bool = False,
     default_limits: npt.ArrayLike | None = None,
+    srdf: Srdf | str | os.PathLike[str] | None = None,
+    group: str | None = None,
+    xacro_args: Mapping[str, str] | None = None,
+    packages: Packages | None = None,
 ) -> Robot:
-    """Load a built-in robot.
+    """Load a built-in robot, or one from a file.
 
     Args:
-        name: One of robot_names().
+        source: One of robot_names(); path of a URDF, xacro or MJCF file; a name of
+            robot_descriptions, as `rd:panda_description`; or URDF text.
         tcp: T_tip_tcp, (4, 4), the tool that poses are of; None: the tip link itself.
             By default the tool of the paper's experiments for its robots and none for
             the others; a tip_link of your own also has none.
-        base_link: Link that poses are relative to; None: the manifest's.
-        tip_link: Link that the TCP is fixed to; None: the manifest's.
+        base_link: Link that poses are relative to; None: the group's, the manifest's,
+            or a file's root link.
+        tip_link: Link that the TCP is fixed to; None: the group's, the manifest's, or a
+            file's one link without children.
         locked_joints: Joints held at a value [rad or m]; no degrees of freedom.
         soft_limits: Narrow the limits to the soft limits of the URDF, if it has any.
         default_limits: (lower, upper) [rad or m] of joints that the URDF gives none.
+        srdf: The SRDF whose groups `group` names; None: that of robot_descriptions.
+        group: Group of the SRDF whose chain is meant; may be left out if it has one.
+        xacro_args: Values of a xacro file's arguments.
+        packages: Folders of ROS packages that xacro's $(find ...) names; others are
+            looked for around the file, in $ROS_PACKAGE_PATH and $AMENT_PREFIX_PATH.
 
     Raises:
-        UnknownNameError: No built-in robot, link or joint has that name.
-        UrdfError: The links are not connected, or a joint between them cannot be used.
-        InvalidArgumentError: `tcp` is no rigid 4x4 matrix.
+        UnknownNameError: No such robot, file, link, joint, group or package.
+        UrdfError: The file cannot be read, the package for its format is missing, the
+            links are not connected, or a joint between them cannot be used. Without
+            tip_link, where several links have no children, `available` has them.
+        InvalidArgumentError: `tcp` is no rigid 4x4 matrix, or a group without an SRDF.
     """
-    info = robot_info(name)
-    tip = info.tip_link if tip_link is None else tip_link
+    name = _checked_name(source)
+    info = manifest().get(name)
+    read = read_description(source, xacro_args=xacro_args, packages=packages)
+    base = tip = None
+    if group is not None or (srdf is not None and not info and not tip_link):
+        base, tip = _ends(read, srdf, group)
+    base, tip = base_link or base, tip_link or tip
+    if info is not None:
+        base, tip = base or info.base_link, tip or info.tip_link
     if isinstance(tcp, str) and tcp == FROM_MANIFEST:
         tcp = None
-        if info.tcp_xyz is not None and tip == info.tip_link:
+        if info is not None and info.tcp_xyz is not None and tip == info.tip_link:
             tcp = pose_from_euler(info.tcp_xyz, info.tcp_rpy)
     return Robot.from_urdf(
-        urdf_text(info),
-        base_link=info.base_link if base_link is None else base_link,
+        read.urdf,
+        base_link=base,
         tip_link=tip,
         tcp=tcp,
         locked_joints={} if locked_joints is None else locked_joints,
@@ -87,10 +115,56 @@ def load_robot(
     )
 
 
+def load_tree(
+    source: str | os.PathLike[str],
+    *,
+    xacro_args: Mapping[str, str] | None = None,
+    packages: Packages | None = None,
+) -> LinkTree:
+    """The tree of all links of a robot; arguments and errors are load_robot's."""
+    _checked_name(source)
+    read = read_description(source, xacro_args=xacro_args, packages=packages)
+    return LinkTree.from_urdf(read.urdf)
+
+
+def _checked_name(source: str | os.PathLike[str]) -> str:
+    """The name that a source may be; an error if it is a mistyped one."""
+    if isinstance(source, os.PathLike):
+        return ""
+    text = str(source)
+    known = text in manifest() or text.startswith(PREFIX)
+    if not (known or text.lstrip().startswith("<") or _looks_like_a_file(text)):
+        try:
+            robot_info(source)
+        except UnknownNameError as error:
+            error.args = (f"{error}; or give the path of a URDF file, xacro or MJCF",)
+            raise
+    return source
+
+
+def _looks_like_a_file(name: str) -> bool:
+    """Whether a name is a path rather than a robot's."""
+    path = Path(name)
+    return os.sep in name or path.suffix in FILE_SUFFIXES or path.exists()
+
+
+def _ends(
+    read: Description, srdf: Srdf | str | os.PathLike[str] | None, group: str | None
+) -> tuple[str | None, str | None]:
+    """Base and tip link of a group, or of the only one."""
+    given = read.srdf if srdf is None else srdf
+    if given is None:
+        raise InvalidArgumentError(f"group: {group!r} is of an SRDF; give it by srdf")
+    given = given if isinstance(given, Srdf) else Srdf(given)
+    if group is None:
+        if len(given.groups) != 1:
+            return None, None
+        (group,) = given.groups
+    return given.ends(group, read.urdf)
+
+
 def _suggestion(name: str) -> str:
     names = robot_names()
     close = difflib.get_close_matches(str(name).lower(), names)
     hint = f"did you mean {' or '.join(close)}? " if close else ""
-    if str(name).endswith((".urdf", ".xml", ".xacro")):
-        hint = "Robot.from_urdf reads files. "
     return f"{hint}built-in robots: {', '.join(names)}"

@@ -81,7 +81,7 @@ def examples() -> list[str]:
         line.removeprefix("iksel ")
         for line in lines
         if line.startswith("iksel ")
-        and not re.search(r"\.urdf|\.zarr|iksel view", line)
+        and not re.search(r"\.urdf|\.xml|rd:|\.zarr|iksel view", line)
     ]
 
 

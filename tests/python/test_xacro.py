@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Xacro that was not expanded is told from URDF; a missing file is missing first."""
+"""Xacro is told from URDF and expanded; a missing file is missing first."""
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 from command_line import Run, assert_bad, assert_good
 from urdf_text import arm, link, robot
@@ -25,15 +27,21 @@ UNEXPANDED = [
 @pytest.mark.parametrize("xml", UNEXPANDED)
 @pytest.mark.parametrize("suffix", [".urdf", ".urdf.xacro", ".xml"])
 def test_unexpanded_xacro_is_recognised(
-    run: Run, tmp_path: Path, xml: str, suffix: str
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, xml: str, suffix: str
 ) -> None:
+    monkeypatch.setitem(sys.modules, "xacro", None)  # as if it was not installed
     path = tmp_path / ("arm" + suffix)
     path.write_text(xml, encoding="utf-8")
     for source in (xml, path):
         for settings in ({}, {"tip_link": "tool"}):
             with pytest.raises(iksel.UrdfError, match="xacro FILE > robot.urdf"):
                 iksel.Robot.from_urdf(source, **settings)
-    assert_bad(run("info", path), r"it is xacro \(.*xacro FILE > robot\.urdf")
+    missing = r"is xacro.* xacro FILE > robot\.urdf"
+    if DECLARED in xml:  # else xacro could not read it either
+        missing = "pip install 'iksel\\[xacro\\]'.*" + missing.partition(".*")[2]
+    assert_bad(run("info", path), missing)
+    with pytest.raises(iksel.UrdfError, match=missing):
+        iksel.load_robot(path)
 
 
 def test_expanded_xacro_is_urdf(run: Run, tmp_path: Path) -> None:
@@ -56,3 +64,107 @@ def test_missing_files_are_missing_first(
         assert_bad(run("info", name), f"'{name}': No such file")
         with pytest.raises(iksel.UrdfError, match=f"'{name}': No such file"):
             iksel.Robot.from_urdf(name)
+
+
+MACRO = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="made">
+  <xacro:arg name="prefix" default=""/>
+  <xacro:include filename="$(find parts)/parts.xacro"/>
+  <link name="$(arg prefix)base"/>
+  <xacro:turn parent="base" child="elbow" length="${reach / 2}"/>
+  <xacro:turn parent="elbow" child="hand" length="${reach}"/>
+</robot>"""
+PARTS = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:property name="reach" value="0.6"/>
+  <xacro:macro name="turn" params="parent child length">
+    <link name="$(arg prefix)${child}"/>
+    <joint name="to_${child}" type="revolute">
+      <parent link="$(arg prefix)${parent}"/><child link="$(arg prefix)${child}"/>
+      <origin xyz="${length} 0 0"/><axis xyz="0 0 1"/>
+      <limit lower="-1" upper="${radians(90)}" velocity="1" effort="0"/>
+    </joint>
+  </xacro:macro>
+</robot>"""
+
+
+def write_parts(folder: Path, package_xml: str | None = None) -> None:
+    folder.mkdir(parents=True)
+    (folder / "parts.xacro").write_text(PARTS, encoding="utf-8")
+    if package_xml is not None:
+        (folder / "package.xml").write_text(package_xml, encoding="utf-8")
+
+
+@pytest.fixture
+def macro(tmp_path: Path) -> Path:
+    """A xacro file in a workspace, without the package that it needs."""
+    pytest.importorskip("xacro")
+    path = tmp_path / "workspace/arm/arm.urdf.xacro"
+    path.parent.mkdir(parents=True)
+    path.write_text(MACRO, encoding="utf-8")
+    return path
+
+
+def assert_made(robot: iksel.Robot, prefix: str = "") -> None:
+    assert (robot.name, robot.tip_link) == ("made", prefix + "hand")
+    np.testing.assert_allclose(robot.fk([0, 0])[:3, 3], [0.9, 0, 0], rtol=0, atol=1e-15)
+    np.testing.assert_allclose(robot.upper, np.pi / 2, rtol=0, atol=1e-15)
+
+
+def test_xacro_is_expanded(run: Run, tmp_path: Path, macro: Path) -> None:
+    write_parts(tmp_path / "elsewhere")
+    folder = tmp_path / "elsewhere"
+    robot = iksel.load_robot(
+        macro, packages={"parts": folder}, xacro_args={"prefix": "left_"}
+    )
+    assert_made(robot, "left_")
+    flags = ("--package", f"parts={folder}", "--xacro-arg", "prefix=left_")
+    out = assert_good(run("info", macro, *flags, "--json")).json()
+    assert out["tip_link"] == "left_hand"
+    tree = iksel.load_tree(macro, packages={"parts": folder})
+    assert tree.tips == [("hand", 2)]
+
+
+@pytest.mark.parametrize("beside", ["workspace/arm/parts", "workspace/parts"])
+def test_packages_are_found_around_the_file(
+    tmp_path: Path, macro: Path, beside: str
+) -> None:
+    write_parts(tmp_path / beside)
+    assert_made(iksel.load_robot(macro))
+
+
+def test_packages_are_found_where_ros_looks(
+    tmp_path: Path, macro: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    named = "<package><name>parts</name></package>"
+    write_parts(tmp_path / "one/other_name", named)
+    write_parts(tmp_path / "two/share/parts", named)
+    stranger = "<package><name>stranger</name></package>"
+    write_parts(tmp_path / "workspace/parts", stranger)
+    with pytest.raises(iksel.UrdfError, match="no folder for package 'parts'"):
+        iksel.load_robot(macro)
+    with monkeypatch.context() as patch:
+        patch.setenv("ROS_PACKAGE_PATH", str(tmp_path / "one/other_name"))
+        assert_made(iksel.load_robot(macro))
+    with monkeypatch.context() as patch:
+        patch.setenv("AMENT_PREFIX_PATH", str(tmp_path / "two"))
+        assert_made(iksel.load_robot(macro))
+
+
+def test_what_xacro_refuses_is_named(run: Run, tmp_path: Path, macro: Path) -> None:
+    assert_bad(run("info", macro), "no folder for package 'parts'.*--package|packages")
+    macro.write_text(MACRO.replace("$(arg prefix)", "$(arg other)"), encoding="utf-8")
+    write_parts(tmp_path / "workspace/parts")
+    with pytest.raises(
+        iksel.UrdfError, match="other.*; values are given by xacro_args"
+    ):
+        iksel.load_robot(macro)
+    plain = tmp_path / "plain.urdf"
+    plain.write_text(arm(), encoding="utf-8")
+    assert_bad(run("info", plain, "--xacro-arg", "a=1"), "a, but the file is not xacro")
+    assert_bad(run("info", plain, "--xacro-arg", "a"), "expected NAME=VALUE, got 'a'")
+
+
+def test_expanding_leaves_other_modules_alone(tmp_path: Path, macro: Path) -> None:
+    before = set(sys.modules)
+    write_parts(tmp_path / "workspace/parts")
+    iksel.load_robot(macro)
+    assert "ament_index_python" not in set(sys.modules) - before

@@ -8,11 +8,12 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from iksel_cpp import InvalidArgumentError, JointType
+from iksel_cpp import InvalidArgumentError, JointType, UnknownNameError
 
 from iksel._angles import look_like_degrees
 from iksel.cli._parser import POSE_FORMS, parse_numbers, warning_line
 from iksel.pose import check_pose, pose_from_euler, pose_from_quaternion
+from iksel.srdf import Srdf
 
 if TYPE_CHECKING:
     import argparse
@@ -40,6 +41,7 @@ class Angles:
         """Take the unit from --degrees."""
         self._degrees: bool = arguments.degrees
         self._warned = False
+        self._srdf: str | None = getattr(arguments, "srdf", None)
 
     @property
     def unit(self) -> str:
@@ -84,12 +86,15 @@ class Angles:
         )
 
     def read_joints(self, flag: str, words: Sequence[str], robot: Robot) -> list[float]:
-        """One number per joint [rad or m].
+        """One number per joint [rad or m], or the name of a state of the SRDF.
 
         Raises:
             InvalidArgumentError: Not numbers, or not as many as there are joints.
+            UnknownNameError: No state of that name gives all joints.
         """
         names = robot.joint_names
+        if self._srdf is not None and len(words) == 1 and not _is_number(words[0]):
+            return _state(flag, words[0], Srdf(self._srdf).states(robot))
         values = parse_numbers(flag, words)
         if len(values) != len(names):
             raise InvalidArgumentError(
@@ -109,6 +114,23 @@ class Angles:
     def show_optional(self, robot: Robot, q: Any) -> FloatArray | None:
         """The same; None stays None."""
         return None if q is None else self.show(robot, q)
+
+
+def _state(flag: str, name: str, states: dict[str, FloatArray]) -> list[float]:
+    if name not in states:
+        raise UnknownNameError(
+            f"{flag}: no state {name!r} of the SRDF gives all joints; states that do: "
+            f"{', '.join(states) or 'none'}"
+        )
+    return [float(value) for value in states[name]]
+
+
+def _is_number(word: str) -> bool:
+    try:
+        parse_numbers("", [word])
+    except InvalidArgumentError:
+        return False
+    return True
 
 
 def turning(robot: Robot) -> list[bool]:

@@ -1,34 +1,33 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The ROBOT argument: a built-in name, or a URDF file with its links."""
+"""The ROBOT argument: a built-in name, or a file with its links."""
 
 from __future__ import annotations
 
-import os
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from iksel_cpp import (
     InvalidArgumentError,
-    LinkTree,
-    Robot,
     UnknownNameError,
     UrdfError,
 )
 
-from iksel._manifest import urdf_text
 from iksel.cli._angles import Angles, add_degrees
 from iksel.cli._parser import POSE_METAVAR, parse_numbers
-from iksel.robots import load_robot, robot_info, robot_names
+from iksel.robots import load_robot, robot_names
+from iksel.robots import load_tree as load_tree_of
 
 if TYPE_CHECKING:
     import argparse
 
-URDF_SUFFIXES = (".urdf", ".xml", ".xacro")
+    from iksel_cpp import LinkTree, Robot
 
 # What errors call by the name of the argument in Python.
 _FLAGS = {
     "default_limits": "--default-limits LOWER UPPER",
     "locked_joints": "--lock JOINT=VALUE",
+    "xacro_args": "--xacro-arg NAME=VALUE",
+    "packages: ": "--package NAME=FOLDER: ",
+    "tip_link: ": "--tip: ",
 }
 
 
@@ -37,7 +36,8 @@ def add_robot(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "robot",
         metavar="ROBOT",
-        help="a built-in robot (see 'iksel robots') or the path of a URDF file",
+        help="a built-in robot (see 'iksel robots'), the path of a URDF, xacro or MJCF "
+        "file, or a name of robot_descriptions, as rd:panda_description",
     )
     group = parser.add_argument_group("robot")
     group.add_argument(
@@ -76,7 +76,39 @@ def add_robot(parser: argparse.ArgumentParser) -> None:
         help="limits of joints whose limits the URDF leaves out or has as 0, 0 [rad or "
         "m]; without, such a joint is an error",
     )
+    _add_formats(group)
     add_degrees(group)
+
+
+def _add_formats(group: argparse._ArgumentGroup) -> None:
+    """Add what other files than the robot's own say of it."""
+    group.add_argument(
+        "--srdf",
+        metavar="FILE",
+        help="SRDF with the groups of --group, and with named states, which --near, "
+        "--start and --from-q take in the place of numbers",
+    )
+    group.add_argument(
+        "--group",
+        metavar="NAME",
+        help="group of the SRDF that gives base and tip (default: its only one)",
+    )
+    group.add_argument(
+        "--xacro-arg",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="value of an argument of a xacro file; may be repeated",
+    )
+    group.add_argument(
+        "--package",
+        action="append",
+        default=[],
+        metavar="NAME=FOLDER",
+        help="folder of a ROS package that a xacro file names (default: looked for "
+        "around the file, in $ROS_PACKAGE_PATH and $AMENT_PREFIX_PATH); may be "
+        "repeated",
+    )
 
 
 def load(arguments: argparse.Namespace) -> Robot:
@@ -92,6 +124,9 @@ def load(arguments: argparse.Namespace) -> Robot:
         "base_link": arguments.base,
         "tip_link": arguments.tip,
         "soft_limits": arguments.soft_limits,
+        "srdf": arguments.srdf,
+        "group": arguments.group,
+        **_of_files(arguments),
     }
     if arguments.lock:
         settings["locked_joints"] = _locked_joints(arguments, angles)
@@ -104,19 +139,14 @@ def load(arguments: argparse.Namespace) -> Robot:
         settings["tcp"] = None if none else angles.read_pose("--tcp", arguments.tcp)
     name = arguments.robot
     try:
-        if is_built_in(name):
-            return load_robot(name, **settings)
-        return Robot.from_urdf(_urdf_path(name), **settings)
+        return load_robot(name, **settings)
     except UnknownNameError as error:
-        if str(error).endswith(" more"):
-            message = f"{error} ('iksel info {name} --tree' shows all)"
-            raise UnknownNameError(message) from None
-        raise
+        message = _with_flags(str(error), name)
+        if message.endswith(" more"):
+            message = f"{message} ('iksel info {name} --tree' shows all)"
+        raise UnknownNameError(message) from None
     except UrdfError as error:
-        message = str(error)
-        tree = {"LinkTree": f"'iksel info {name} --tree'"}
-        for argument, flag in (_FLAGS | tree).items():
-            message = message.replace(argument, flag)
+        message = _with_flags(str(error), name)
         if error.available:
             message += "; choose one by --tip"
         raise UrdfError(message) from None
@@ -130,9 +160,10 @@ def load_tree(arguments: argparse.Namespace) -> LinkTree:
         UrdfError: The file cannot be read or used.
     """
     name = arguments.robot
-    if is_built_in(name):
-        return LinkTree.from_urdf(urdf_text(robot_info(name)))
-    return LinkTree.from_urdf(_urdf_path(name))
+    try:
+        return load_tree_of(name, **_of_files(arguments))
+    except (UnknownNameError, UrdfError) as error:
+        raise type(error)(_with_flags(str(error), name)) from None
 
 
 def is_built_in(name: str) -> bool:
@@ -140,16 +171,32 @@ def is_built_in(name: str) -> bool:
     return name in robot_names()
 
 
-def _urdf_path(name: str) -> Path:
-    """The path that a ROBOT argument is, if it does not look like a mistyped name."""
-    path = Path(name)
-    if os.sep in name or path.suffix in URDF_SUFFIXES or path.exists():
-        return path
-    try:
-        robot_info(name)
-    except UnknownNameError as error:
-        raise UnknownNameError(f"{error}; or give the path of a URDF file") from None
-    return path
+def _with_flags(message: str, name: str) -> str:
+    """A message that names flags rather than arguments of Python."""
+    tree = {"LinkTree": f"'iksel info {name} --tree'"}
+    for argument, flag in (_FLAGS | tree).items():
+        message = message.replace(argument, flag)
+    return message
+
+
+def _of_files(arguments: argparse.Namespace) -> dict[str, dict[str, str]]:
+    """What --xacro-arg and --package give."""
+    flags = {
+        "xacro_args": ("--xacro-arg", "NAME=VALUE", arguments.xacro_arg),
+        "packages": ("--package", "NAME=FOLDER", arguments.package),
+    }
+    return {
+        argument: dict(_pair(flag, form, text) for text in texts)
+        for argument, (flag, form, texts) in flags.items()
+    }
+
+
+def _pair(flag: str, form: str, text: str) -> tuple[str, str]:
+    """Name and value of one NAME=VALUE."""
+    name, equals, value = text.partition("=")
+    if not (name and equals):
+        raise InvalidArgumentError(f"{flag}: expected {form}, got {text!r}")
+    return name, value
 
 
 def _locked_joints(arguments: argparse.Namespace, angles: Angles) -> dict[str, float]:

@@ -20,6 +20,7 @@ from iksel.cli._output import (
 from iksel.cli._robot import add_robot, is_built_in, load, load_tree
 from iksel.pose import euler_from_pose
 from iksel.robots import robot_info
+from iksel.srdf import Srdf
 
 if TYPE_CHECKING:
     import argparse
@@ -35,9 +36,13 @@ examples:
   iksel info ur3 --tree
   iksel info arm.urdf
   iksel info arm.urdf --base base_link --tip tool0 --lock wrist=0.5
+  iksel info arm.urdf --srdf arm.srdf --group manipulator
+  iksel info arm.urdf.xacro --xacro-arg prefix=left_
+  iksel info scene.xml --tip hand
+  iksel info rd:panda_description --tip panda_hand
 
-Without --tip, a URDF file that ends in several links is drawn as a tree, with the links
-to choose from.
+Without --tip or --group, a file that ends in several links is drawn as a tree, with
+the links to choose from.
 """
 
 LIMIT_FIELDS = ("lower", "upper", "soft_lower", "soft_upper", "velocity_limit")
@@ -68,7 +73,8 @@ def add_parser(commands: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Show the robot."""
-    if arguments.tree or (arguments.tip is None and not is_built_in(arguments.robot)):
+    chosen = arguments.tip or arguments.srdf or arguments.group
+    if arguments.tree or not (chosen or is_built_in(arguments.robot)):
         tree = load_tree(arguments)
         if arguments.tree or len(tree.tips) > 1:
             show_tree(tree, arguments)
@@ -79,8 +85,10 @@ def run(arguments: argparse.Namespace) -> int:
     if is_built_in(arguments.robot):
         info = robot_info(arguments.robot)
         origin = {field: getattr(info, field) for field in SOURCE_FIELDS}
+    angles = Angles(arguments)
+    srdf = _srdf_facts(robot, arguments.srdf, angles)
     if arguments.json:
-        print_json(as_dict(robot, Angles(arguments)) | origin)
+        print_json(as_dict(robot, angles) | origin | srdf)
         return 0
     print_pairs(
         [
@@ -91,11 +99,22 @@ def run(arguments: argparse.Namespace) -> int:
             ("structure", robot.structure.description),
             ("chain hash", f"{robot.chain_hash:016x}"),
             *((field, text) for field, text in origin.items() if text),
+            *((field, ", ".join(names)) for field, names in srdf.items()),
         ]
     )
     print()
     print_table(HEADER, _rows(robot))
     return 0
+
+
+def _srdf_facts(robot: Robot, path: str | None, angles: Angles) -> dict[str, Any]:
+    """Groups of an SRDF, and its states that give all joints, in the unit."""
+    if path is None:
+        return {}
+    srdf = Srdf(path)
+    states = srdf.states(robot)
+    shown = {name: angles.show(robot, q) for name, q in states.items()}
+    return {"groups": srdf.groups, "states": shown}
 
 
 def show_tree(tree: LinkTree, arguments: argparse.Namespace) -> None:

@@ -54,7 +54,8 @@ def add_parser(commands: Any) -> None:
         "--start",
         nargs="+",
         metavar="Q",
-        help="where the arm is one time step before the first pose [rad or m]",
+        help="where the arm is one time step before the first pose [rad or m], or "
+        "the name of a state of --srdf",
     )
     parser.add_argument(
         "--dt",

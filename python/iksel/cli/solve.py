@@ -74,8 +74,8 @@ def add_parser(commands: Any) -> None:
         "--near",
         nargs="+",
         metavar="Q",
-        help="joint values to stay near [rad or m]: gives the solution with the "
-        "smallest joint move",
+        help="joint values to stay near [rad or m], or the name of a state of --srdf: "
+        "gives the solution with the smallest joint move",
     )
     parser.add_argument(
         "--all",

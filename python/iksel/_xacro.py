@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Expands xacro by the package xacro."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import sys
+import threading
+import types
+from typing import TYPE_CHECKING, Any
+from unittest import mock
+
+from iksel_cpp import UrdfError
+
+from iksel._packages import find_package
+
+if TYPE_CHECKING:
+    import xml.etree.ElementTree as ET
+    from collections.abc import Iterator, Mapping
+    from pathlib import Path
+
+    from iksel._packages import Packages
+
+_NAMESPACE = "ros.org"  # in all that xacro's has been called
+_KINEMATIC = ("link", "joint")
+_lock = threading.Lock()  # xacro keeps what it works on in globals
+
+
+def is_xacro(root: ET.Element) -> bool:
+    """Whether XML has to be expanded before its links and joints are known."""
+    if any(_is_call(element) for element in root.iter()):
+        return True
+    parts = (e for tag in _KINEMATIC for e in root.findall(tag))
+    joints = (e for joint in root.findall("joint") for e in joint.iter())
+    values = (v for part in (*parts, *joints) for v in part.attrib.values())
+    return any("${" in value or "$(" in value for value in values)
+
+
+def expand(path: Path, arguments: Mapping[str, str] | None, packages: Packages) -> str:
+    """The URDF text that a xacro file stands for.
+
+    Args:
+        path: The file.
+        arguments: Values of its <xacro:arg>.
+        packages: Folders that $(find ...) names; others are looked for.
+
+    Raises:
+        UrdfError: The package xacro is missing, or it refuses the file.
+    """
+    xacro = _import_xacro(path)
+    given = {name: str(value) for name, value in (arguments or {}).items()}
+    printed = io.StringIO()  # warnings of other people's files
+    with _lock, _found_packages(packages, path.parent):
+        try:
+            with contextlib.redirect_stderr(printed):
+                document = xacro.process_file(str(path), mappings=given)
+        except Exception as error:  # noqa: BLE001 (it evaluates the file's own Python)
+            reason = " ".join(str(error).split()) or type(error).__name__
+            raise UrdfError(f"'{path}': xacro says: {reason}{_hint(reason)}") from None
+    text: str = document.toxml()
+    return text
+
+
+def _is_call(element: ET.Element) -> bool:
+    """Whether an element is one of xacro's own."""
+    tag = str(element.tag)
+    namespace = tag[1:].partition("}")[0] if tag.startswith("{") else ""
+    return _NAMESPACE in namespace and "xacro" in namespace
+
+
+def _import_xacro(path: Path) -> Any:
+    try:
+        import xacro  # noqa: PLC0415 (an optional extra)
+    except ImportError as error:
+        raise UrdfError(
+            f"'{path}' is xacro, which needs the package xacro ({error}): pip install "
+            "'iksel[xacro]', or expand it yourself: xacro FILE > robot.urdf"
+        ) from None
+    return xacro
+
+
+@contextlib.contextmanager
+def _found_packages(packages: Packages, near: Path) -> Iterator[None]:
+    """Let $(find ...) look where find_package looks.
+
+    xacro asks the module ament_index_python for it, which only ROS 2 brings.
+    """
+
+    def share(name: str) -> str:
+        return str(find_package(name, packages, near))
+
+    stand_in: Any = types.ModuleType("ament_index_python.packages")
+    stand_in.get_package_share_directory = share
+    parent: Any = types.ModuleType("ament_index_python")
+    parent.packages = stand_in
+    modules = {parent.__name__: parent, stand_in.__name__: stand_in}
+    with mock.patch.dict(sys.modules, modules):
+        yield
+
+
+def _hint(reason: str) -> str:
+    if "undefined" in reason.lower() or "arg " in reason.lower():
+        return "; values are given by xacro_args"
+    return ""

@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""One way in for every format: whatever a robot is written in becomes URDF.
+
+from iksel.description import read_description
+
+print(read_description("arm.urdf.xacro", xacro_args={"prefix": "left_"}).urdf)
+"""
+
+from __future__ import annotations
+
+import os
+import xml.etree.ElementTree as ET
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+from iksel_cpp import UrdfError
+
+from iksel import _descriptions, _mjcf, _xacro
+from iksel._files import read_text
+from iksel._manifest import manifest, urdf_text
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from iksel._packages import Packages
+
+Source = str | os.PathLike[str]
+Format = Literal["URDF", "xacro", "MJCF"]
+
+FILE_SUFFIXES = (".urdf", ".xml", ".xacro", ".mjcf")
+"""Endings that make a name without a folder a file's rather than a robot's."""
+
+
+@dataclass(frozen=True)
+class Description:
+    """A robot as URDF, and where that is from."""
+
+    urdf: str | Path
+    """Text of the URDF; of plain URDF files, the path."""
+    format: Format
+    """What it was written in."""
+    folder: Path = Path()
+    """Where its relative file names start."""
+    srdf: Path | None = None
+    """SRDF that belongs to it, if robot_descriptions names one."""
+
+
+def read_description(
+    source: Source,
+    *,
+    xacro_args: Mapping[str, str] | None = None,
+    packages: Packages | None = None,
+) -> Description:
+    """Read a robot in any format.
+
+    Args:
+        source: Name of a built-in robot; path of a URDF, xacro or MJCF file; a name of
+            robot_descriptions, as `rd:panda_description`; or URDF text.
+        xacro_args: Values of a xacro file's arguments.
+        packages: Folders of ROS packages that xacro's $(find ...) names; others are
+            looked for around the file, in $ROS_PACKAGE_PATH and $AMENT_PREFIX_PATH.
+
+    Returns:
+        Its URDF, not checked.
+
+    Raises:
+        UnknownNameError: No robot of robot_descriptions, or no such ROS package.
+        UrdfError: The package that the format needs is missing, or refuses the file.
+    """
+    packages = packages or {}
+    if isinstance(source, str):
+        if source.lstrip().startswith("<"):
+            return Description(_refuse_other_text(source), "URDF")
+        if source in manifest():
+            return Description(urdf_text(manifest()[source]), "URDF")
+        if source.startswith(_descriptions.PREFIX):
+            found = _descriptions.find_described(source)
+            arguments = {**found.arguments, **(xacro_args or {})}
+            read = _read_file(found.path, arguments, _with_names(packages, found))
+            return Description(read.urdf, read.format, read.folder, found.srdf)
+    return _read_file(Path(source), xacro_args, packages)
+
+
+def _read_file(
+    path: Path, xacro_args: Mapping[str, str] | None, packages: Packages
+) -> Description:
+    root = _root(path)
+    if root is not None and _mjcf.is_mjcf(root):
+        return Description(_mjcf.urdf_of_mjcf(path), "MJCF", path.parent)
+    if root is not None and _xacro.is_xacro(root):
+        text = _xacro.expand(path, xacro_args, packages)
+        return Description(text, "xacro", path.parent)
+    if xacro_args and root is not None:
+        names = ", ".join(xacro_args)
+        raise UrdfError(f"'{path}': xacro_args: {names}, but the file is not xacro")
+    return Description(path, "URDF", path.parent)
+
+
+def _root(path: Path) -> ET.Element | None:
+    """The root of an XML file; None if that cannot be read, as UrdfError will say."""
+    try:
+        return ET.fromstring(read_text(path))  # noqa: S314 (the user's own file)
+    except (OSError, ValueError, ET.ParseError):
+        return None
+
+
+def _refuse_other_text(text: str) -> str:
+    """The text, unless it is MJCF, whose files are relative to its own path."""
+    try:
+        root = ET.fromstring(text)  # noqa: S314 (the user's own)
+    except (ValueError, ET.ParseError):
+        return text
+    if _mjcf.is_mjcf(root):
+        raise UrdfError("MJCF text; give the path of its file instead")
+    return text
+
+
+def _with_names(packages: Packages, found: _descriptions.Described) -> Packages:
+    """The user's packages, then those that the folders of a description are."""
+    return {**{folder.name: folder for folder in found.folders}, **packages}

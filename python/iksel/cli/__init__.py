@@ -15,7 +15,18 @@ from typing import TYPE_CHECKING
 from iksel_cpp import AngleUnitWarning, Error
 
 from iksel import __version__
-from iksel.cli import build, dataset, evaluate, info, path, reach, robots, solve
+from iksel.cli import (
+    build,
+    dataset,
+    evaluate,
+    fk,
+    info,
+    jacobian,
+    path,
+    reach,
+    robots,
+    solve,
+)
 from iksel.cli._parser import EXIT_BAD_INPUT, Parser, error_line
 
 if TYPE_CHECKING:
@@ -24,13 +35,16 @@ if TYPE_CHECKING:
 EXIT_INTERRUPTED = 130
 EXIT_BROKEN_PIPE = 141
 
-COMMANDS = (robots, info, solve, path, build, evaluate, reach, dataset)
+COMMANDS = (robots, info, fk, jacobian, solve, path, build, evaluate, reach, dataset)
 
 EXAMPLES = """\
 examples:
   iksel robots
   iksel info ur3
   iksel solve ur3 --pose 0.2 0.15 0.3 0 3.1416 0
+  iksel solve ur3 --poses poses.csv -o answers.csv
+  iksel fk ur3 0 -1.2 1.4 -0.6 1.2 0.2
+  iksel jacobian ur3 --degrees 0 -70 80 -35 70 10
   iksel solve arm.urdf --base base_link --tip tool0 --from-q 0 -1 1 0 0.5 0
   iksel path ur3 poses.txt --start 0.3 -1.2 1.4 -0.6 1.2 0.2 --dt 0.01
   iksel build panda -o panda.iksel --samples 40000

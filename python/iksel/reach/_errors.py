@@ -3,10 +3,11 @@
 
 from __future__ import annotations
 
-import importlib
 from typing import Any
 
 from iksel_cpp import Error
+
+from iksel import _extras as extras
 
 
 class MapError(Error):
@@ -33,21 +34,11 @@ class WorkerError(MapError):
     """A process that computes chunks ended before its work was done."""
 
 
-class MissingExtraError(Error, ImportError):
-    """A package of the extra iksel[reach] is not installed."""
-
-
 def need(module: str) -> Any:
     """A module of the extra iksel[reach].
 
     Raises:
         MissingExtraError: It is not installed.
     """
-    try:
-        return importlib.import_module(module)
-    except ImportError as error:
-        package = module.partition(".")[0]
-        raise MissingExtraError(
-            f"iksel.reach needs {package}, which cannot be imported ({error}): "
-            "pip install 'iksel[reach]', with Python 3.11 or later"
-        ) from error
+    extra = "'iksel[reach]', with Python 3.11 or later"
+    return extras.need(module, "iksel.reach", extra)

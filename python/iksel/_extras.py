@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Packages that are installed by an extra."""
+
+from __future__ import annotations
+
+import importlib
+from typing import Any
+
+from iksel_cpp import Error
+
+
+class MissingExtraError(Error, ImportError):
+    """A package of an extra is not installed."""
+
+
+def need(module: str, user: str, extra: str) -> Any:
+    """A module that `user` needs, from a package that an extra installs.
+
+    Args:
+        module: The module, such as "matplotlib".
+        user: What needs it.
+        extra: What to give pip, and with what.
+
+    Raises:
+        MissingExtraError: It is not installed.
+    """
+    try:
+        return importlib.import_module(module)
+    except ImportError as error:
+        package = module.partition(".")[0]
+        raise MissingExtraError(
+            f"{user} needs {package}, which cannot be imported ({error}): "
+            f"pip install {extra}"
+        ) from error

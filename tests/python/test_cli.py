@@ -20,7 +20,7 @@ import iksel
 from iksel import cli
 from iksel.cli._output import Progress
 
-COMMANDS = ["robots", "info", "fk", "jacobian", "solve", "path"]
+COMMANDS = ["robots", "info", "fk", "jacobian", "solve", "path", "plot"]
 COMMANDS += ["build", "evaluate", "reach", "dataset"]
 EVALUATE_FIELDS = """
     robot preset targets seed solved false_success success_percent mean_us std_us

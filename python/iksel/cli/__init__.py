@@ -23,6 +23,7 @@ from iksel.cli import (
     info,
     jacobian,
     path,
+    plot,
     reach,
     robots,
     solve,
@@ -35,7 +36,19 @@ if TYPE_CHECKING:
 EXIT_INTERRUPTED = 130
 EXIT_BROKEN_PIPE = 141
 
-COMMANDS = (robots, info, fk, jacobian, solve, path, build, evaluate, reach, dataset)
+COMMANDS = (
+    robots,
+    info,
+    fk,
+    jacobian,
+    solve,
+    path,
+    plot,
+    build,
+    evaluate,
+    reach,
+    dataset,
+)
 
 EXAMPLES = """\
 examples:
@@ -47,6 +60,7 @@ examples:
   iksel jacobian ur3 --degrees 0 -70 80 -35 70 10
   iksel solve arm.urdf --base base_link --tip tool0 --from-q 0 -1 1 0 0.5 0
   iksel path ur3 poses.txt --start 0.3 -1.2 1.4 -0.6 1.2 0.2 --dt 0.01
+  iksel plot ur3 -o ur3.png
   iksel build panda -o panda.iksel --samples 40000
   iksel evaluate ur3 --preset paper --targets 10000 --seed 1 --json
   iksel reach plan ur5e -o ur5e.zarr

@@ -137,9 +137,17 @@ class Angles:
         scale = np.degrees(1.0) if self._degrees else 1.0
         return np.asarray(q * np.where(turning(robot), scale, 1.0))
 
+    def units(self, robot: Robot) -> list[str]:
+        """The unit of each joint's values."""
+        return [self.unit if turn else "m" for turn in turning(robot)]
+
     def show_angles(self, radians: FloatArray) -> FloatArray:
         """Angles of any shape [rad] in the unit."""
         return np.degrees(radians) if self._degrees else radians
+
+    def show_joint(self, robot: Robot, joint: int, values: FloatArray) -> FloatArray:
+        """Values of one joint, of any shape [rad or m], in the unit."""
+        return self.show_angles(values) if turning(robot)[joint] else values
 
     def show_optional(self, robot: Robot, q: Any) -> FloatArray | None:
         """The same; None stays None."""

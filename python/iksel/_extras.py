@@ -13,13 +13,13 @@ class MissingExtraError(Error, ImportError):
     """A package of an extra, such as iksel[reach] or iksel[view], is not installed."""
 
 
-def need(module: str, *, user: str, how: str) -> Any:
-    """A module of an extra.
+def need(module: str, *, user: str, extra: str) -> Any:
+    """A module that `user` needs, from a package that an extra installs.
 
     Args:
-        module: Its name.
+        module: The module, such as "matplotlib".
         user: The part of iksel that needs it, for the message.
-        how: What installs it, likewise.
+        extra: What to give pip, and with what, likewise.
 
     Raises:
         MissingExtraError: It cannot be imported.
@@ -29,5 +29,6 @@ def need(module: str, *, user: str, how: str) -> Any:
     except ImportError as error:
         package = module.partition(".")[0]
         raise MissingExtraError(
-            f"{user} needs {package}, which cannot be imported ({error}): {how}"
+            f"{user} needs {package}, which cannot be imported ({error}): "
+            f"pip install {extra}"
         ) from error

@@ -1,11 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files that other people made."""
+"""Files that other people made, and those that are made for them."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import contextlib
+import errno
+import os
+from typing import IO, TYPE_CHECKING
+
+from iksel_cpp import InvalidArgumentError
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
 LARGEST = 1 << 28
@@ -25,3 +31,42 @@ def read_text(path: Path) -> str:
         msg = f"'{path}' is larger than {LARGEST >> 20} MiB"
         raise ValueError(msg)
     return data.decode("utf-8")
+
+
+def write_file(path: Path, content: bytes) -> None:
+    """Write a file as a whole or not at all.
+
+    Raises:
+        InvalidArgumentError: It cannot be written.
+    """
+    with replaced(path) as file:
+        file.write(content)
+
+
+@contextlib.contextmanager
+def replaced(path: Path) -> Iterator[IO[bytes]]:
+    """A file beside `path` to write to, which takes its place when all is written.
+
+    After an exception it is gone, and `path` is what it was.
+
+    Raises:
+        InvalidArgumentError: It cannot be written.
+    """
+    beside = path.parent / f".{path.name}.{os.getpid()}.part"
+    try:
+        if path.is_dir():
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+        if path.exists() and not path.is_file():  # a pipe or a device is written to
+            with path.open("wb") as file:
+                yield file
+            return
+        try:
+            with beside.open("xb") as file:
+                yield file
+            beside.replace(path)
+        finally:
+            beside.unlink(missing_ok=True)
+    except OSError as error:
+        raise InvalidArgumentError(
+            f"'{path}' cannot be written: {error.strerror}"
+        ) from error

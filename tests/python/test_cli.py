@@ -20,17 +20,8 @@ import iksel
 from iksel import cli
 from iksel.cli._output import Progress
 
-COMMANDS = [
-    "robots",
-    "info",
-    "solve",
-    "path",
-    "view",
-    "build",
-    "evaluate",
-    "reach",
-    "dataset",
-]
+COMMANDS = ["robots", "info", "fk", "jacobian", "solve", "path", "plot", "view"]
+COMMANDS += ["build", "evaluate", "reach", "dataset"]
 EVALUATE_FIELDS = """
     robot preset targets seed solved false_success success_percent mean_us std_us
     min_us max_us median_us p99_us kdl_fk_jac_us ratio position_tolerance
@@ -91,7 +82,8 @@ def test_examples_work(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     pose = iksel.load_robot("ur3").fk([0.3, -1.2, 1.4, -0.6, 1.2, 0.2])
-    Path("poses.txt").write_text(" ".join(texts(pose.ravel())), encoding="utf-8")
+    for name in ("poses.txt", "poses.csv", "poses.jsonl"):
+        Path(name).write_text(" ".join(texts(pose.ravel())), encoding="utf-8")
     if example.startswith("evaluate"):
         example = re.sub(r" --targets \d+", "", example) + " --targets 20"
         if "panda" in example:
@@ -368,7 +360,8 @@ def test_path_that_breaks(run: Run, poses: Path) -> None:
 def test_path_from_stdin(
     run: Run, poses: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("sys.stdin", io.StringIO(poses.read_text("utf-8")))
+    stdin = io.TextIOWrapper(io.BytesIO(poses.read_bytes()), "utf-8")
+    monkeypatch.setattr("sys.stdin", stdin)
     assert len(assert_good(run("path ur3 - --json")).json()["q"]) == 20
 
 

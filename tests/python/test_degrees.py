@@ -157,6 +157,40 @@ def test_radians_are_not_suspected(run: Run, given: str) -> None:
     assert run(f"solve ur3 --json --samples 500 {given}").err == ""
 
 
+WINCH = LIMIT.replace("-1", "-100").replace('"2"', '"100"')
+
+
+@pytest.mark.parametrize("kind", ["revolute", "continuous"])
+def test_joints_of_many_turns_are_not_suspected(
+    run: Run, tmp_path: Path, kind: str
+) -> None:
+    """Of an arm whose first joint turns from -1 to 2 rad, and whose second far."""
+    path = tmp_path / "winch.urdf"
+    path.write_text(arm(kind=kind, axis="0 1 0", inside=WINCH), "utf-8")
+    for far in ("7", "90", "-90", "99"):
+        for first in ("0", "1", "-1", "4"):
+            assert run("fk", path, first, far).err == ""
+            command = ["solve", path, "--from-q", "0", "0", "--near"]
+            assert run(*command, first, far).err == ""
+        assert run("info", path, "--lock", f"second={far}").err == ""
+    output = run("fk", path, "90", "0")
+    assert output.err.startswith("iksel: warning: Q: 90 0 look like degrees")
+    assert run("fk", path, "90", "0", "--degrees").err == ""
+    assert "--lock first: 90 look" in run("info", path, "--lock", "first=90").err
+    # What as degrees lies outside the limits is just as strange.
+    assert run("fk", path, "200", "0").err == ""
+
+
+def test_joints_suspected_need_no_whole_numbers(run: Run) -> None:
+    assert "look like degrees" in run("fk ur3 0.5 -90.25 90 0 0 0").err
+
+
+def test_limits_of_many_turns_are_not_suspected(run: Run, tmp_path: Path) -> None:
+    path = tmp_path / "arm.urdf"
+    path.write_text(arm(inside=LIMIT.replace("-1", "0").replace("2", "0")), "utf-8")
+    assert_good(run("info", path, "--default-limits", "-20", "20"))
+
+
 def test_slides_are_not_suspected(run: Run, slide: Path) -> None:
     output = run("solve", slide, "--from-q", "1", "90", "--task", "position_only")
     assert output.err == ""

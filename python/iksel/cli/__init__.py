@@ -19,8 +19,11 @@ from iksel.cli import (
     build,
     dataset,
     evaluate,
+    fk,
     info,
+    jacobian,
     path,
+    plot,
     reach,
     robots,
     solve,
@@ -34,16 +37,33 @@ if TYPE_CHECKING:
 EXIT_INTERRUPTED = 130
 EXIT_BROKEN_PIPE = 141
 
-COMMANDS = (robots, info, solve, path, view, build, evaluate, reach, dataset)
+COMMANDS = (
+    robots,
+    info,
+    fk,
+    jacobian,
+    solve,
+    path,
+    plot,
+    view,
+    build,
+    evaluate,
+    reach,
+    dataset,
+)
 
 EXAMPLES = """\
 examples:
   iksel robots
   iksel info ur3
   iksel solve ur3 --pose 0.2 0.15 0.3 0 3.1416 0
+  iksel solve ur3 --poses poses.csv -o answers.csv
+  iksel fk ur3 0 -1.2 1.4 -0.6 1.2 0.2
+  iksel jacobian ur3 --degrees 0 -70 80 -35 70 10
   iksel solve arm.urdf --base base_link --tip tool0 --from-q 0 -1 1 0 0.5 0
   iksel path ur3 poses.txt --start 0.3 -1.2 1.4 -0.6 1.2 0.2 --dt 0.01
   iksel view ur5e
+  iksel plot ur3 -o ur3.png
   iksel build panda -o panda.iksel --samples 40000
   iksel evaluate ur3 --preset paper --targets 10000 --seed 1 --json
   iksel reach plan ur5e -o ur5e.zarr

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import sys
 from typing import TYPE_CHECKING, Any
@@ -11,7 +12,7 @@ import numpy as np
 from iksel_cpp import InvalidArgumentError, JointType, UnknownNameError
 
 from iksel._angles import look_like_degrees
-from iksel.cli._parser import POSE_FORMS, parse_numbers, warning_line
+from iksel.cli._parser import POSE_COUNTS, POSE_FORMS, parse_numbers, warning_line
 from iksel.pose import check_pose, pose_from_euler, pose_from_quaternion
 from iksel.srdf import Srdf
 
@@ -22,6 +23,11 @@ if TYPE_CHECKING:
     from iksel_cpp import Robot
 
     from iksel._arrays import FloatArray
+
+    Limits = tuple[FloatArray, FloatArray]
+
+SLACK = math.radians(1.0)
+"""By how much joints that are at a limit may be measured outside it [rad]."""
 
 
 def add_degrees(parser: argparse._ActionsContainer) -> None:
@@ -48,11 +54,25 @@ class Angles:
         """The unit's name."""
         return "deg" if self._degrees else "rad"
 
-    def read(self, flag: str, angles: Sequence[float]) -> list[float]:
-        """Angles that were given, in radians."""
+    def read(
+        self, flag: str, angles: Sequence[float], limits: Limits | None = None
+    ) -> list[float]:
+        """Angles that were given, in radians.
+
+        Args:
+            flag: What they were given by, for the warning.
+            angles: The angles of a rotation, or the values of joints that turn.
+            limits: Lower and upper limits of the joints [rad]; None: of a rotation.
+        """
         if self._degrees:
             return [float(x) for x in np.radians(angles)]
-        if not self._warned and look_like_degrees(angles):
+        if self._warned:
+            return list(angles)
+        if limits is None:
+            suspect = look_like_degrees(angles)
+        else:
+            suspect = joints_look_like_degrees(angles, *limits)
+        if suspect:
             self._warned = True
             text = " ".join(f"{x:g}" for x in angles)
             sys.stderr.write(
@@ -70,6 +90,20 @@ class Angles:
             InvalidArgumentError: Not numbers, another count, or not rigid.
         """
         numbers = parse_numbers(flag, words)
+        comma = any(re.fullmatch(r"-?\d+,\d+", word) for word in words)
+        if comma and len(numbers) not in POSE_COUNTS:
+            raise InvalidArgumentError(
+                f"{flag}: expected {POSE_FORMS}; got {len(numbers)}; decimals take a "
+                "point, and commas separate numbers"
+            )
+        return self.as_pose(flag, numbers)
+
+    def as_pose(self, flag: str, numbers: Sequence[float]) -> FloatArray:
+        """The pose that the numbers of one of POSE_FORMS are, as a (4, 4) matrix.
+
+        Raises:
+            InvalidArgumentError: Another count, not finite, or not rigid.
+        """
         try:
             if len(numbers) == 6:
                 return pose_from_euler(numbers[:3], self.read(flag, numbers[3:]))
@@ -79,11 +113,7 @@ class Angles:
                 return check_pose([numbers[i : i + 4] for i in range(0, 16, 4)])
         except InvalidArgumentError as error:
             raise InvalidArgumentError(f"{flag}: {error}") from None
-        comma = any(re.fullmatch(r"-?\d+,\d+", word) for word in words)
-        hint = "; decimals take a point, and commas separate numbers" if comma else ""
-        raise InvalidArgumentError(
-            f"{flag}: expected {POSE_FORMS}; got {len(numbers)}{hint}"
-        )
+        raise InvalidArgumentError(f"{flag}: expected {POSE_FORMS}; got {len(numbers)}")
 
     def read_joints(self, flag: str, words: Sequence[str], robot: Robot) -> list[float]:
         """One number per joint [rad or m], or the name of a state of the SRDF.
@@ -103,13 +133,26 @@ class Angles:
             )
         turns = turning(robot)
         angles = [v for v, turn in zip(values, turns, strict=True) if turn]
-        radians = iter(self.read(flag, angles))
+        limits = robot.lower[turns], robot.upper[turns]
+        radians = iter(self.read(flag, angles, limits))
         return [next(radians) if t else v for v, t in zip(values, turns, strict=True)]
 
     def show(self, robot: Robot, q: FloatArray) -> FloatArray:
         """Joint values (..., dof) [rad or m] in the unit."""
         scale = np.degrees(1.0) if self._degrees else 1.0
         return np.asarray(q * np.where(turning(robot), scale, 1.0))
+
+    def units(self, robot: Robot) -> list[str]:
+        """The unit of each joint's values."""
+        return [self.unit if turn else "m" for turn in turning(robot)]
+
+    def show_angles(self, radians: FloatArray) -> FloatArray:
+        """Angles of any shape [rad] in the unit."""
+        return np.degrees(radians) if self._degrees else radians
+
+    def show_joint(self, robot: Robot, joint: int, values: FloatArray) -> FloatArray:
+        """Values of one joint, of any shape [rad or m], in the unit."""
+        return self.show_angles(values) if turning(robot)[joint] else values
 
     def show_optional(self, robot: Robot, q: Any) -> FloatArray | None:
         """The same; None stays None."""
@@ -131,6 +174,23 @@ def _is_number(word: str) -> bool:
     except InvalidArgumentError:
         return False
     return True
+
+
+def joints_look_like_degrees(
+    values: Sequence[float], lower: FloatArray, upper: FloatArray
+) -> bool:
+    """Whether joint values are no radians, for their limits, but could be degrees.
+
+    As radians one of them lies more than a whole turn outside its limits, and as
+    degrees all lie inside. So a joint without limits, or with limits of many turns, is
+    never suspected for turning far.
+    """
+    q = np.asarray(values, dtype=float)
+    turn = 2 * math.pi
+    beyond = (q < lower - turn) | (q > upper + turn)
+    degrees = np.radians(q)
+    inside = (degrees >= lower - SLACK) & (degrees <= upper + SLACK)
+    return bool(beyond.any() and inside.all())
 
 
 def turning(robot: Robot) -> list[bool]:

@@ -15,18 +15,20 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
+    from iksel._arrays import FloatArray
+
 BAR_WIDTH = 30
 SECONDS_BETWEEN_UPDATES = 0.1
 
 
-def add_json(parser: argparse.ArgumentParser) -> None:
+def add_json(parser: argparse._ActionsContainer) -> None:
     """Add --json."""
     parser.add_argument(
         "--json", action="store_true", help="print one JSON object instead of text"
     )
 
 
-def add_progress(parser: argparse.ArgumentParser) -> None:
+def add_progress(parser: argparse._ActionsContainer) -> None:
     """Add --progress."""
     parser.add_argument(
         "--progress",
@@ -38,7 +40,13 @@ def add_progress(parser: argparse.ArgumentParser) -> None:
 
 def print_json(value: object) -> None:
     """Print plain data and arrays as JSON; numbers that are not finite become null."""
-    print(json.dumps(_plain(value), indent=2, allow_nan=False))
+    print(json.dumps(plain(value), indent=2, allow_nan=False))
+
+
+def print_matrix(matrix: FloatArray) -> None:
+    """Print a matrix (n, m), one row a line, such that no digit is lost."""
+    for row in matrix.tolist():
+        print(" ".join(map(repr, row)))
 
 
 def print_pairs(pairs: Iterable[tuple[str, str]]) -> None:
@@ -117,14 +125,14 @@ def _is_number(text: str) -> bool:
     return True
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
     """Data that JSON has: arrays as lists, null for NaN and infinities."""
     if isinstance(value, np.ndarray):
-        return _plain(value.tolist())
+        return plain(value.tolist())
     if isinstance(value, dict):
-        return {str(key): _plain(item) for key, item in value.items()}
+        return {str(key): plain(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [_plain(item) for item in value]
+        return [plain(item) for item in value]
     if isinstance(value, float):
         return value if math.isfinite(value) else None
     return value

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 EXIT_BAD_INPUT = 2
 
 POSE_METAVAR = "NUMBER"
+POSE_COUNTS = (6, 7, 16)
 POSE_FORMS = (
     "6 numbers x y z roll pitch yaw, 7 numbers x y z qw qx qy qz, or 16 numbers, "
     "a 4x4 matrix row by row [m, rad]"

@@ -5,14 +5,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from iksel_cpp import (
     InvalidArgumentError,
     UnknownNameError,
     UrdfError,
 )
 
+from iksel._urdf_xml import read_xml
 from iksel.cli._angles import Angles, add_degrees
+from iksel.cli._output import add_json
 from iksel.cli._parser import POSE_METAVAR, parse_numbers
+from iksel.description import read_description
 from iksel.robots import load_robot, robot_names
 from iksel.robots import load_tree as load_tree_of
 
@@ -20,6 +24,11 @@ if TYPE_CHECKING:
     import argparse
 
     from iksel_cpp import LinkTree, Robot
+
+    from iksel._arrays import FloatArray
+
+EVERY_TURN = (np.array([-np.inf]), np.array([np.inf]))
+"""Limits of a joint that can have any value."""
 
 # What errors call by the name of the argument in Python.
 _FLAGS = {
@@ -111,6 +120,19 @@ def _add_formats(group: argparse._ArgumentGroup) -> None:
     )
 
 
+def add_joint_values(parser: argparse.ArgumentParser) -> None:
+    """Add ROBOT, Q ..., and the forms in which what is there is shown."""
+    add_robot(parser)
+    parser.add_argument(
+        "q", nargs="+", metavar="Q", help="joint values, one per joint [rad or m]"
+    )
+    form = parser.add_mutually_exclusive_group()
+    add_json(form)
+    form.add_argument(
+        "--matrix", action="store_true", help="print the numbers of the matrix only"
+    )
+
+
 def load(arguments: argparse.Namespace) -> Robot:
     """The robot that the arguments of add_robot describe.
 
@@ -133,7 +155,8 @@ def load(arguments: argparse.Namespace) -> Robot:
     if arguments.default_limits is not None:
         flag = "--default-limits"
         limits = parse_numbers(flag, arguments.default_limits)
-        settings["default_limits"] = angles.read(flag, limits)
+        # No warning: limits may be of any number of turns.
+        settings["default_limits"] = angles.read(flag, limits, EVERY_TURN)
     if arguments.tcp is not None:
         none = arguments.tcp == ["none"]
         settings["tcp"] = None if none else angles.read_pose("--tcp", arguments.tcp)
@@ -205,10 +228,33 @@ def _locked_joints(arguments: argparse.Namespace, angles: Angles) -> dict[str, f
     slides = {
         joint.name for joint in load_tree(arguments).joints if joint.type == "prismatic"
     }
+    limits = _joint_limits(arguments)
     return {
-        name: value if name in slides else angles.read(f"--lock {name}", [value])[0]
+        name: value
+        if name in slides
+        else angles.read(f"--lock {name}", [value], limits.get(name, EVERY_TURN))[0]
         for name, value in locked.items()
     }
+
+
+def _joint_limits(
+    arguments: argparse.Namespace,
+) -> dict[str, tuple[FloatArray, FloatArray]]:
+    """Limits [rad] of the revolute joints of a robot that states them, by joint."""
+    read = read_description(arguments.robot, **_of_files(arguments))
+    limits = {}
+    for joint in read_xml("robot", read.urdf)[0].iter("joint"):
+        limit = joint.find("limit")
+        if joint.get("type") != "revolute" or limit is None:
+            continue
+        try:
+            ends = [float(limit.get(end, "nan")) for end in ("lower", "upper")]
+        except ValueError:
+            continue
+        if ends[0] < ends[1]:
+            lower, upper = np.array(ends)[:, None]
+            limits[joint.get("name", "")] = (lower, upper)
+    return limits
 
 
 def _lock(text: str) -> tuple[str, float]:

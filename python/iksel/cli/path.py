@@ -3,18 +3,15 @@
 
 from __future__ import annotations
 
-import sys
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from iksel_cpp import InvalidArgumentError, Solver
+from iksel_cpp import Solver
 
-from iksel._files import read_text
 from iksel.cli._angles import Angles, turning
 from iksel.cli._options import add_solver_options, given_database, solver_options
 from iksel.cli._output import add_json, print_json, print_pairs
-from iksel.cli._parser import parse_numbers
+from iksel.cli._poses import FILE_FORMS, read_poses
 from iksel.cli._robot import add_robot, load
 from iksel.cli.solve import print_configurations
 
@@ -23,18 +20,14 @@ if TYPE_CHECKING:
 
     from iksel_cpp import PathResult, Robot
 
-    from iksel._arrays import FloatArray
-
 EXIT_SOLVED, EXIT_NO_SOLUTION = 0, 1
 
-EXAMPLES = """\
+EXAMPLES = f"""\
 examples:
   iksel path ur3 poses.txt --start 0.3 -1.2 1.4 -0.6 1.2 0.2 --dt 0.01
   iksel path ur3 poses.txt --json
 
-FILE has one pose a line, in the forms of `iksel solve --pose`, separated by spaces or
-commas; empty lines and those that start with # are left out. - is stdin.
-
+{FILE_FORMS}
 exit status: 0 solved, 1 a waypoint has no continuation, 2 bad input
 """
 
@@ -49,7 +42,7 @@ def add_parser(commands: Any) -> None:
         epilog=EXAMPLES,
     )
     add_robot(parser)
-    parser.add_argument("file", metavar="FILE", help="poses, one a line")
+    parser.add_argument("file", metavar="FILE", help="poses, one a row")
     parser.add_argument(
         "--start",
         nargs="+",
@@ -106,30 +99,6 @@ def largest_step(robot: Robot, path: PathResult, angles: Angles) -> float:
     if path.largest_step_joint is not None:
         steps[path.largest_step_joint] = path.largest_step
     return float(angles.show(robot, steps).max())
-
-
-def read_poses(name: str, angles: Angles) -> FloatArray:
-    """The poses of a file as an (N, 4, 4) array.
-
-    Raises:
-        InvalidArgumentError: It cannot be read, or a line is no pose.
-    """
-    try:
-        text = sys.stdin.read() if name == "-" else read_text(Path(name))
-    except OSError as error:
-        raise InvalidArgumentError(f"{name}: {error.strerror}") from None
-    except ValueError as error:
-        raise InvalidArgumentError(f"{name}: {error}") from None
-    poses = []
-    for index, line in enumerate(text.splitlines(), 1):
-        if not line.strip() or line.lstrip().startswith("#"):
-            continue
-        flag = f"{name}, line {index}"
-        words = [repr(x) for x in parse_numbers(flag, [line])]
-        poses.append(angles.read_pose(flag, words))
-    if not poses:
-        raise InvalidArgumentError(f"{name}: no poses in it")
-    return np.stack(poses)
 
 
 def print_text(robot: Robot, path: PathResult, count: int, angles: Angles) -> None:

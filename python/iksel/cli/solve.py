@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""iksel solve: joint values for one pose."""
+"""iksel solve: joint values for one pose, or for each of a file."""
 
 from __future__ import annotations
 
@@ -11,10 +11,13 @@ from typing import TYPE_CHECKING, Any
 from iksel_cpp import InvalidArgumentError, Solver, Status
 
 from iksel.cli._angles import Angles
+from iksel.cli._answers import FILE_FORMS as ANSWER_FILES
 from iksel.cli._options import add_solver_options, given_database, solver_options
 from iksel.cli._output import add_json, number, print_json, print_pairs, print_table
 from iksel.cli._parser import POSE_FORMS, POSE_METAVAR
+from iksel.cli._poses import FILE_FORMS as POSE_FILES
 from iksel.cli._robot import add_robot, load
+from iksel.cli._solve_file import add_poses, answer_format, check_flags, solve_file
 from iksel.cli.info import pose_text
 
 if TYPE_CHECKING:
@@ -26,7 +29,7 @@ if TYPE_CHECKING:
 
 EXIT_SOLVED, EXIT_NO_SOLUTION = 0, 1
 
-EXAMPLES = """\
+EXAMPLES = f"""\
 examples:
   iksel solve ur3 --pose 0.2 0.15 0.3 0 3.1416 0
   iksel solve ur3 --pose 0.2 0.15 0.3 0 0 1 0 --json
@@ -36,8 +39,14 @@ examples:
   iksel solve ur3 --pose 0.9 0 0.3 0 0 0 --diagnose
   iksel solve panda --from-q 0 -0.5 0 -2 0 1.6 0.8 --preset paper --max-attempts 6
   iksel solve arm.urdf --base base_link --tip tool0 --tcp 0 0 0.1 0 0 0 --from-q 0 0 0 0
+  iksel solve ur3 --poses poses.csv -o answers.csv
+  iksel solve ur3 --poses poses.jsonl -o answers.npy --near 0 -1 1 0 1 0
+  cat poses.csv | iksel solve ur3 --poses - --format jsonl
 
-exit status: 0 solved, 1 no solution, 2 bad input
+--poses {POSE_FILES}
+Answers are in the order of the rows, one a row:
+{ANSWER_FILES}
+exit status: 0 solved, 1 no solution, of --poses for one row or more, 2 bad input
 """
 
 
@@ -45,9 +54,10 @@ def add_parser(commands: Any) -> None:
     """Add the command."""
     parser = commands.add_parser(
         "solve",
-        usage="iksel solve ROBOT (--pose ... | --from-q ...) [options]",
-        help="find joint values for one pose",
-        description="Find joint values that put the TCP (or tip link) at a pose.",
+        usage="iksel solve ROBOT (--pose ... | --from-q ... | --poses FILE) [options]",
+        help="find joint values for one pose, or for each of a file",
+        description="Find joint values that put the TCP (or tip link) at a pose, or at "
+        "each of many poses.",
         epilog=EXAMPLES,
     )
     add_robot(parser)
@@ -58,6 +68,11 @@ def add_parser(commands: Any) -> None:
         nargs="+",
         metavar="Q",
         help="take the pose at these joint values [rad or m] as the target",
+    )
+    target.add_argument(
+        "--poses",
+        metavar="FILE",
+        help="solve every pose of a file by itself, see below; - is stdin",
     )
     parser.add_argument(
         "--seed-q",
@@ -96,35 +111,26 @@ def add_parser(commands: Any) -> None:
         "best effort",
     )
     add_json(parser)
+    add_poses(parser)
     add_solver_options(parser)
     parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Solve and print the answer."""
+    check_flags(arguments)
     robot = load(arguments)
-    joints = robot.joint_names
     angles = Angles(arguments)
+    request = read_request(robot, arguments, angles)
+    if arguments.poses is not None:
+        answer_format(arguments)  # an error comes before the work
+        solver = make_solver(robot, arguments)
+        return solve_file(solver, request, arguments, angles)
     if arguments.pose is not None:
         target = angles.read_pose("--pose", arguments.pose)
     else:
         target = robot.fk(angles.read_joints("--from-q", arguments.from_q, robot))
-    near = arguments.near and angles.read_joints("--near", arguments.near, robot)
-    seed = arguments.seed_q and angles.read_joints("--seed-q", arguments.seed_q, robot)
-    if arguments.objective and arguments.all:
-        raise InvalidArgumentError("--objective: cannot be used with --all")
-    given = {"near": near, "seeds": seed, "objective": arguments.objective}
-    request: dict[str, Any] = {name: value for name, value in given.items() if value}
-    if arguments.no_database_seeds:
-        if not (near or seed):
-            raise InvalidArgumentError(
-                "--no-database-seeds: leaves nothing to try without --seed-q or --near"
-            )
-        request["database_seeds"] = False
-    options = solver_options(arguments)
-    database = given_database(arguments)
-    solver = Solver(robot, options, database)
-
+    solver = make_solver(robot, arguments)
     if arguments.all:
         return run_all(solver, target, request, arguments, angles)
 
@@ -140,7 +146,7 @@ def run(arguments: argparse.Namespace) -> int:
     report = {
         "robot": robot.name,
         "preset": arguments.preset,
-        "joint_names": joints,
+        "joint_names": robot.joint_names,
         "target": target,
         "success": result.success,
         "status": result.status.name,
@@ -167,6 +173,40 @@ def run(arguments: argparse.Namespace) -> int:
             print_diagnosis(robot, diagnosis)
     print_hint(solver, result)
     return EXIT_SOLVED if result.success else EXIT_NO_SOLUTION
+
+
+def read_request(
+    robot: Robot, arguments: argparse.Namespace, angles: Angles
+) -> dict[str, Any]:
+    """What is asked besides the pose, as keywords of Solver.solve().
+
+    Raises:
+        InvalidArgumentError: Bad joint values, or flags that do not go together.
+    """
+    near = arguments.near and angles.read_joints("--near", arguments.near, robot)
+    seed = arguments.seed_q and angles.read_joints("--seed-q", arguments.seed_q, robot)
+    if arguments.objective and arguments.all:
+        raise InvalidArgumentError("--objective: cannot be used with --all")
+    given = {"near": near, "seeds": seed, "objective": arguments.objective}
+    request: dict[str, Any] = {name: value for name, value in given.items() if value}
+    if arguments.no_database_seeds:
+        if not (near or seed):
+            raise InvalidArgumentError(
+                "--no-database-seeds: leaves nothing to try without --seed-q or --near"
+            )
+        request["database_seeds"] = False
+    return request
+
+
+def make_solver(robot: Robot, arguments: argparse.Namespace) -> Solver:
+    """The solver that the flags describe.
+
+    Raises:
+        InvalidArgumentError: A value out of range.
+        DatabaseError: --database FILE cannot be used.
+    """
+    options = solver_options(arguments)
+    return Solver(robot, options, given_database(arguments))
 
 
 def print_hint(solver: Solver, result: Result) -> None:

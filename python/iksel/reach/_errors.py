@@ -40,8 +40,5 @@ def need(module: str) -> Any:
     Raises:
         MissingExtraError: It is not installed.
     """
-    return _extras.need(
-        module,
-        user="iksel.reach",
-        how="pip install 'iksel[reach]', with Python 3.11 or later",
-    )
+    extra = "'iksel[reach]', with Python 3.11 or later"
+    return _extras.need(module, user="iksel.reach", extra=extra)

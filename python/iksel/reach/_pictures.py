@@ -3,11 +3,12 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from iksel_cpp import InvalidArgumentError
 
+from iksel._figures import COLOURS, SIZE, make_figure, save_figure
 from iksel.reach._errors import MapIoError, need
 
 if TYPE_CHECKING:
@@ -18,8 +19,6 @@ if TYPE_CHECKING:
     from iksel.reach._place import Placement
     from iksel.reach._store import StrPath
 
-SIZE = (6.4, 5.2)  # [inch]
-COLOURS = "viridis"
 MOST_SPHERES = 20_000
 ARROW = 0.1  # [m]
 
@@ -183,10 +182,7 @@ def draw_placements(
 
 def _figure() -> Any:
     need("matplotlib")
-    # Without pyplot, which would want a display and keep the figure.
-    from matplotlib.figure import Figure  # noqa: PLC0415 (an optional extra)
-
-    return Figure(figsize=SIZE, layout="constrained")
+    return make_figure()
 
 
 def _area(step: float, x: np.ndarray[Any, Any]) -> float:
@@ -195,12 +191,7 @@ def _area(step: float, x: np.ndarray[Any, Any]) -> float:
 
 
 def _save(figure: Any, path: StrPath) -> None:
-    """Write the picture, the same bytes each time."""
-    from matplotlib import rc_context  # noqa: PLC0415 (an optional extra)
-
-    dates = {"Date": None} if Path(path).suffix == ".svg" else None
     try:
-        with rc_context({"svg.hashsalt": "iksel"}):
-            figure.savefig(path, dpi=150, metadata=dates)
-    except (OSError, ValueError) as error:
-        raise MapIoError(f"'{path}' cannot be written: {error}") from error
+        save_figure(figure, path)
+    except InvalidArgumentError as error:
+        raise MapIoError(str(error)) from error

@@ -56,9 +56,7 @@ class Viewer:
             MissingExtraError: viser is not installed.
             InvalidArgumentError: No address of this machine.
         """
-        viser = _extras.need(
-            "viser", user="iksel.view", how="pip install 'iksel[view]'"
-        )
+        viser = _extras.need("viser", user="iksel.view", extra="'iksel[view]'")
         _check_host(host)
         self.session = Session(solver)
         self._lock = threading.RLock()

@@ -1,0 +1,250 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Files of poses, one a row: lines of numbers or of JSON, or a NumPy array."""
+
+from __future__ import annotations
+
+import io
+import json
+import math
+import sys
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Any
+
+import numpy as np
+from iksel_cpp import InvalidArgumentError
+
+from iksel.cli._parser import POSE_COUNTS, parse_numbers
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from iksel._arrays import FloatArray
+    from iksel.cli._angles import Angles
+
+FILE_FORMS = """\
+FILE has one pose a row; - is stdin. What it is shows in its content:
+  numbers  a line each, in the forms of `iksel solve --pose`, separated by spaces or
+           commas; empty lines and those that start with # are left out. A first line of
+           names, x y z roll pitch yaw or x y z qw qx qy qz in any order, says what the
+           columns are
+  JSON     a line each: a list of these numbers, a 4x4 list, or {"pose": such a list}
+  .npy     an array of shape (N, 4, 4), (N, 6), (N, 7) or (N, 16)
+"""
+
+LONGEST_LINE = 1 << 20
+"""Bytes; a longer line is no pose, but a file of another kind."""
+
+_NPY = b"\x93NUMPY"
+_COLUMNS = (
+    ("x", "y", "z", "roll", "pitch", "yaw"),
+    ("x", "y", "z", "qw", "qx", "qy", "qz"),
+)
+
+
+class PoseFile:
+    """The poses of a file or of stdin, one after the other; a context.
+
+    Lines are read as they are asked for, so that a file may be of any length.
+    """
+
+    def __init__(self, name: str, angles: Angles) -> None:
+        """Take the file's name, or -, and the unit of angles."""
+        self._name = name
+        self._angles = angles
+        self.done = 0
+        """Bytes of lines, or rows of an array, that have been read."""
+        self.total = 0
+        """How many there are; 0: not known."""
+
+    def __enter__(self) -> PoseFile:  # noqa: PYI034 (Self is of Python 3.11)
+        """Open it.
+
+        Raises:
+            InvalidArgumentError: It cannot be opened.
+        """
+        try:
+            if self._name == "-":
+                self._file: IO[bytes] = sys.stdin.buffer
+            else:
+                path = Path(self._name)
+                self._file = path.open("rb")
+                self.total = path.stat().st_size
+        except OSError as error:
+            raise self._error(str(error.strerror)) from None
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        """Close it."""
+        if self._name != "-":
+            self._file.close()
+
+    def __iter__(self) -> Iterator[FloatArray | InvalidArgumentError]:
+        """The rows: poses (4, 4), and for what is no pose the reason.
+
+        Raises:
+            InvalidArgumentError: It cannot be read, or nothing in it is a row.
+        """
+        try:
+            line = self._file.readline(LONGEST_LINE)
+            rows = self._array(line) if line.startswith(_NPY) else self._lines(line)
+            nothing = True
+            for row in rows:
+                nothing = False
+                yield row
+        except OSError as error:
+            raise self._error(str(error.strerror)) from None
+        if nothing:
+            raise self._error("no poses in it")
+
+    def _lines(self, line: bytes) -> Iterator[FloatArray | InvalidArgumentError]:
+        columns: list[int] | None = None
+        first = True
+        index = 0
+        while line:
+            index += 1
+            self.done += len(line)
+            where = f"{self._name}, line {index}"
+            if len(line) == LONGEST_LINE:
+                raise self._error(f"line {index} is longer than {LONGEST_LINE} bytes")
+            try:
+                text = line.decode("utf-8").strip().lstrip("\ufeff")
+            except UnicodeDecodeError as error:
+                raise self._error(f"line {index}: {error}") from None
+            if text and not text.startswith("#"):
+                names = _names(text) if first else []
+                if names:
+                    columns = _columns(where, names)
+                else:
+                    yield self._row(where, text, columns)
+                first = False
+            line = self._file.readline(LONGEST_LINE)
+
+    def _array(self, start: bytes) -> Iterator[FloatArray | InvalidArgumentError]:
+        try:
+            if self._name == "-" or not self._file.seekable():
+                content = io.BytesIO(start + self._file.read())
+                array = np.load(content, allow_pickle=False)
+            else:
+                array = np.load(self._name, mmap_mode="r", allow_pickle=False)
+        except (ValueError, EOFError) as error:
+            raise self._error(f"no array: {error}") from None
+        shape = array.shape
+        rows = len(shape) == 2 and shape[1] in POSE_COUNTS
+        if not (rows or (len(shape) == 3 and shape[1:] == (4, 4))):
+            raise self._error(
+                f"expected an array of shape (N, 4, 4), (N, 6), (N, 7) or (N, 16), "
+                f"got {shape}"
+            )
+        if array.dtype.kind not in "iuf":
+            raise self._error(f"expected numbers, got an array of {array.dtype}")
+        self.total = len(array)
+        for index, row in enumerate(array):
+            self.done = index + 1
+            numbers = [float(x) for x in row.ravel()]
+            yield self._pose(f"{self._name}, row {index}", numbers)
+
+    def _row(
+        self, where: str, text: str, columns: list[int] | None
+    ) -> FloatArray | InvalidArgumentError:
+        try:
+            numbers = _json_numbers(where, text)
+            if numbers is None:
+                numbers = parse_numbers(where, [text])
+        except InvalidArgumentError as error:
+            return error
+        if columns is None:
+            return self._pose(where, numbers)
+        if len(numbers) != len(columns):
+            return InvalidArgumentError(
+                f"{where}: expected {len(columns)} numbers, as many as the first line "
+                f"has names, got {len(numbers)}"
+            )
+        return self._pose(where, [numbers[i] for i in columns])
+
+    def _pose(
+        self, where: str, numbers: list[float]
+    ) -> FloatArray | InvalidArgumentError:
+        try:
+            return self._angles.as_pose(where, numbers)
+        except InvalidArgumentError as error:
+            return error
+
+    def _error(self, problem: str) -> InvalidArgumentError:
+        return InvalidArgumentError(f"{self._name}: {problem}")
+
+
+def read_poses(name: str, angles: Angles) -> FloatArray:
+    """The poses of a file, (N, 4, 4).
+
+    Raises:
+        InvalidArgumentError: It cannot be read, or a row is no pose.
+    """
+    poses = []
+    with PoseFile(name, angles) as rows:
+        for row in rows:
+            if isinstance(row, InvalidArgumentError):
+                raise row
+            poses.append(row)
+    return np.stack(poses)
+
+
+def _names(line: str) -> list[str]:
+    """The names in a line that has nothing but names; else none."""
+    if line[0] in "[{":
+        return []
+    words = [word.strip(" \t\"'").lower() for word in line.split(",")]
+    words = words if len(words) > 1 else line.lower().split()
+    return [] if any(map(_is_number, words)) else words
+
+
+def _is_number(word: str) -> bool:
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return True
+
+
+def _columns(where: str, names: list[str]) -> list[int]:
+    """Where each number of a form of poses stands in a line under these names."""
+    for form in _COLUMNS:
+        if sorted(names) == sorted(form):
+            return [names.index(name) for name in form]
+    forms = " or ".join(" ".join(form) for form in _COLUMNS)
+    raise InvalidArgumentError(
+        f"{where}: the columns {', '.join(names)} are not {forms} in some order"
+    )
+
+
+def _json_numbers(where: str, text: str) -> list[float] | None:
+    """The numbers of a line that is JSON; None if it is none."""
+    if text[0] not in "[{":
+        return None
+    try:
+        value = json.loads(text)
+    except (ValueError, RecursionError):
+        if text[0] == "[":
+            return None  # brackets, but not JSON's: numbers as after --pose
+        raise InvalidArgumentError(f"{where}: no JSON in {text[:60]!r}") from None
+    if isinstance(value, dict):
+        if "pose" not in value:
+            keys = ", ".join(value) or "none"
+            raise InvalidArgumentError(f"{where}: no key 'pose'; its keys are {keys}")
+        value = value["pose"]
+    return list(_flat(where, value))
+
+
+def _flat(where: str, value: Any) -> Iterator[float]:
+    """The numbers of nested lists; null is NaN."""
+    if isinstance(value, list):
+        for item in value:
+            yield from _flat(where, item)
+    elif value is None:
+        yield math.nan
+    elif isinstance(value, (int, float)) and not isinstance(value, bool):
+        try:
+            yield float(value)
+        except OverflowError:
+            yield math.inf
+    else:
+        raise InvalidArgumentError(f"{where}: {value!r} is no number")

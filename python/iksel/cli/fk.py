@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""iksel fk: the pose at joint values."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from iksel.cli._angles import Angles
+from iksel.cli._output import numbers, print_json, print_matrix, print_pairs
+from iksel.cli._robot import add_joint_values, load
+from iksel.pose import euler_from_pose, quaternion_from_pose
+
+if TYPE_CHECKING:
+    import argparse
+
+    from iksel_cpp import Robot
+
+    from iksel._arrays import FloatArray
+
+EXAMPLES = """\
+examples:
+  iksel fk ur3 0 -1.2 1.4 -0.6 1.2 0.2
+  iksel fk ur3 --degrees 0 -70 80 -35 70 10 --json
+  iksel fk panda 0 -0.5 0 -2 0 1.6 0.8 --matrix
+  iksel fk arm.urdf 0 0 0 0 --base base_link --tip tool0
+
+The pose is T_base_tcp, of the tip link without a tool. --matrix prints nothing but its
+four rows, in full precision.
+
+exit status: 0 done, 2 bad input
+"""
+
+
+def add_parser(commands: Any) -> None:
+    """Add the command."""
+    parser = commands.add_parser(
+        "fk",
+        usage="iksel fk ROBOT Q ... [options]",
+        help="show the pose at joint values",
+        description="Forward kinematics: the pose of the TCP (or tip link) in the base "
+        "link's frame.",
+        epilog=EXAMPLES,
+    )
+    add_joint_values(parser)
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Show the pose."""
+    robot = load(arguments)
+    angles = Angles(arguments)
+    q = np.array(angles.read_joints("Q", arguments.q, robot))
+    pose = robot.fk(q)
+    rpy = angles.show_angles(euler_from_pose(pose))
+    quaternion = quaternion_from_pose(pose)
+    if arguments.matrix:
+        print_matrix(pose)
+    elif arguments.json:
+        print_json(
+            {
+                "robot": robot.name,
+                "base_link": robot.base_link,
+                "tip_link": robot.tip_link,
+                "joint_names": robot.joint_names,
+                "angle_unit": angles.unit,
+                "q": angles.show(robot, q),
+                "within_limits": bool(robot.within_limits(q)),
+                "pose": pose,
+                "position": pose[:3, 3],
+                "rpy": rpy,
+                "quaternion_wxyz": quaternion,
+            }
+        )
+    else:
+        print_pairs(
+            [
+                ("robot", f"{robot.name}, {robot.base_link} -> {robot.tip_link}"),
+                ("position", f"{numbers(pose[:3, 3])} m"),
+                ("rpy", f"{numbers(rpy)} {angles.unit}"),
+                ("quaternion", f"{numbers(quaternion)} (w x y z)"),
+                ("matrix", "\n".join(f"{numbers(row)}" for row in pose)),
+                ("limits", limits_text(robot, q)),
+            ]
+        )
+    return 0
+
+
+def limits_text(robot: Robot, q: FloatArray) -> str:
+    """Whether joint values (dof,) lie inside the limits; if not, which do not."""
+    if robot.within_limits(q):
+        return "inside"
+    off = (q < robot.lower) | (q > robot.upper)
+    names = [name for name, out in zip(robot.joint_names, off, strict=True) if out]
+    return f"outside: {', '.join(names)}"

@@ -167,7 +167,7 @@ def test_xacro_is_pinocchios_on_every_chain(folder, report, tmp_path) -> None:
                 assert UrdfFile(expanded).cause(tip, str(error)), file  # noqa: PT017
                 continue
             expanded.write_text(robot.urdf, encoding="utf-8")
-            # Mobile bases slide 1000 km, where 1e-9 m is a few units in the last place.
+            # Mobile bases turn by 1e6 rad, whose last bit is 1e-10, and slide by 1e6 m.
             q = robot.random_configurations(5, seed=SEED).clip(-10, 10)
             poses = UrdfFile(expanded).poses(robot, q)
             where = f"{file.name} to {tip}, seed {SEED}"

@@ -44,7 +44,7 @@ _NEEDLESS = (
 
 def is_mjcf(root: ET.Element) -> bool:
     """Whether XML is MuJoCo's."""
-    return root.tag == "mujoco"
+    return root.tag in {"mujoco", "mujocoinclude"}
 
 
 def urdf_of_mjcf(path: Path) -> str:
@@ -69,6 +69,8 @@ def urdf_of_mjcf(path: Path) -> str:
         return _Tree(mujoco, model).text()
     except (ValueError, TypeError, RuntimeError, mujoco.FatalError) as error:
         reason = " ".join(str(error).split())
+        if "mujocoinclude" in reason:
+            reason += "; it is a part of a model: give the file that includes it"
         raise UrdfError(f"'{path}': mujoco says: {reason}") from None
 
 
@@ -93,6 +95,7 @@ def _compile(mujoco: Any, path: Path) -> Any:
     spec.compiler.boundmass = 1.0
     spec.compiler.boundinertia = 1.0
     spec.compiler.balanceinertia = True
+    spec.compiler.settotalmass = -1.0  # not set; it warns in a file of its own
     spec.compiler.fusestatic = False
     return spec.compile()
 

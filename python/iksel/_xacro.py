@@ -11,7 +11,7 @@ import types
 from typing import TYPE_CHECKING, Any
 from unittest import mock
 
-from iksel_cpp import UrdfError
+from iksel_cpp import UnknownNameError, UrdfError
 
 from iksel._packages import find_package
 
@@ -46,18 +46,28 @@ def expand(path: Path, arguments: Mapping[str, str] | None, packages: Packages) 
         packages: Folders that $(find ...) names; others are looked for.
 
     Raises:
-        UrdfError: The package xacro is missing, or it refuses the file.
+        UrdfError: The package xacro is missing, it refuses the file, or the file has
+            no links.
+        UnknownNameError: A ROS package is nowhere.
     """
     xacro = _import_xacro(path)
     given = {name: str(value) for name, value in (arguments or {}).items()}
     printed = io.StringIO()  # warnings of other people's files
-    with _lock, _found_packages(packages, path.parent):
+    missing: list[UnknownNameError] = []
+    with _lock, _found_packages(packages, path.parent, missing):
         try:
             with contextlib.redirect_stderr(printed):
                 document = xacro.process_file(str(path), mappings=given)
         except Exception as error:  # noqa: BLE001 (it evaluates the file's own Python)
+            if missing:
+                raise UnknownNameError(f"'{path}': {missing[0]}") from None
             reason = " ".join(str(error).split()) or type(error).__name__
             raise UrdfError(f"'{path}': xacro says: {reason}{_hint(reason)}") from None
+    if not document.getElementsByTagName("link"):
+        raise UrdfError(
+            f"'{path}' expands to no link; it may only define macros: give the file "
+            "that includes it"
+        )
     text: str = document.toxml()
     return text
 
@@ -81,14 +91,20 @@ def _import_xacro(path: Path) -> Any:
 
 
 @contextlib.contextmanager
-def _found_packages(packages: Packages, near: Path) -> Iterator[None]:
-    """Let $(find ...) look where find_package looks.
+def _found_packages(
+    packages: Packages, near: Path, missing: list[UnknownNameError]
+) -> Iterator[None]:
+    """Let $(find ...) look where find_package looks; what it misses is added.
 
     xacro asks the module ament_index_python for it, which only ROS 2 brings.
     """
 
     def share(name: str) -> str:
-        return str(find_package(name, packages, near))
+        try:
+            return str(find_package(name, packages, near))
+        except UnknownNameError as error:
+            missing.append(error)
+            raise
 
     stand_in: Any = types.ModuleType("ament_index_python.packages")
     stand_in.get_package_share_directory = share

@@ -70,6 +70,7 @@ class SelfCollision:
         seed: int = 0,
         other_joints: Mapping[str, float] | None = None,
         packages: Mapping[str, str | os.PathLike[str]] | None = None,
+        xacro_args: Mapping[str, str] | None = None,
     ) -> None:
         """Read the collision geometry of all links and find the pairs to look at.
 
@@ -89,6 +90,7 @@ class SelfCollision:
                 the arm holds are known, others are 0 if not given.
             packages: Folders of package:// names of meshes; others are looked for
                 around the file, in $ROS_PACKAGE_PATH and $AMENT_PREFIX_PATH.
+            xacro_args: Values of a xacro file's arguments.
 
         Raises:
             InvalidArgumentError: coal is missing, margin or samples is negative, or a
@@ -104,7 +106,7 @@ class SelfCollision:
         if samples < 0:
             raise InvalidArgumentError(f"samples: {samples} is not 0 or more")
         coal = import_coal()
-        root, folder = _read_urdf(urdf, packages or {})
+        root, folder = _read_urdf(urdf, packages or {}, xacro_args)
         shapes = read_shapes(coal, root, folder, packages or {})
         self._dof = robot.dof
         self._name = root.get("name", "")
@@ -249,9 +251,11 @@ class SelfCollision:
 
 
 def _read_urdf(
-    source: str | os.PathLike[str], packages: Mapping[str, str | os.PathLike[str]]
+    source: str | os.PathLike[str],
+    packages: Mapping[str, str | os.PathLike[str]],
+    xacro_args: Mapping[str, str] | None,
 ) -> tuple[ET.Element, Path]:
     """The root of a robot's URDF, and the folder that its file names start from."""
-    read = read_description(source, packages=packages)
+    read = read_description(source, packages=packages, xacro_args=xacro_args)
     root, _, folder = read_xml("urdf", read.urdf)
     return root, folder if read.format == "URDF" else read.folder

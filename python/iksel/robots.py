@@ -137,7 +137,7 @@ def _checked_name(source: str | os.PathLike[str]) -> str:
         try:
             robot_info(source)
         except UnknownNameError as error:
-            error.args = (f"{error}; or give the path of a URDF file, xacro or MJCF",)
+            error.args = (f"{error}; or give the path of a URDF, xacro or MJCF file",)
             raise
     return source
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import iksel
+from iksel._mjcf import _compile
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -110,19 +111,9 @@ class MjcfFile:
         return pose
 
     def _compile_bare(self) -> bool:
-        """Compile without what names other files, and with masses for all bodies."""
-        mujoco = self._mujoco
+        """Compile bodies and joints alone, as IKSel does: meshes may be missing."""
         try:
-            spec = mujoco.MjSpec.from_file(str(self.path))
-            for kind in ("geoms", "meshes", "hfields", "textures", "materials", "keys"):
-                for element in list(getattr(spec, kind)):
-                    spec.delete(element)
-            for kind in ("tendons", "actuators", "sensors", "equalities", "pairs"):
-                for element in list(getattr(spec, kind)):
-                    spec.delete(element)
-            spec.compiler.boundmass = spec.compiler.boundinertia = 1.0
-            spec.compiler.balanceinertia = True
-            self._model = spec.compile()
-        except (ValueError, RuntimeError, TypeError, mujoco.FatalError):
+            self._model = _compile(self._mujoco, self.path)
+        except (ValueError, RuntimeError, TypeError, self._mujoco.FatalError):
             return False
         return True

@@ -25,7 +25,7 @@ BAD = [
     ("--frobnicate", "COMMAND|frobnicate"),
     ("robots ur3", "unrecognized arguments: ur3"),
     ("info", "ROBOT"),
-    ("info ur33", "no built-in robot 'ur33'; did you mean ur3.*panda.*URDF file"),
+    ("info ur33", "no built-in robot 'ur33'; did you mean ur3.*panda.*MJCF file"),
     ("info absent.urdf", r"absent\.urdf"),
     ("info ./absent", "'absent'"),
     ("info arm.urdf.xacro", r"'arm\.urdf\.xacro': No such file"),

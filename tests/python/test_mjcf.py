@@ -135,6 +135,9 @@ def test_what_mujoco_refuses_is_named(tmp_path: Path) -> None:
     path = write(tmp_path, ARM.replace("slide", "glide"))
     with pytest.raises(iksel.UrdfError, match=r"arm\.xml': mujoco says: .*glide"):
         iksel.load_robot(path)
+    part = write(tmp_path, "<mujocoinclude><worldbody/></mujocoinclude>")
+    with pytest.raises(iksel.UrdfError, match="give the file that includes it"):
+        iksel.load_robot(part)
     with pytest.raises(iksel.UrdfError, match="MJCF text; give the path"):
         iksel.load_robot(ARM)
 

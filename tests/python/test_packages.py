@@ -42,3 +42,34 @@ def test_names_of_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None
     assert resolve_path("file:///a/b.stl", {}, near) == Path("/a/b.stl")
     with pytest.raises(iksel.UnknownNameError, match=r"\(for 'package://leg/b.stl'\)"):
         resolve_path("package://leg/b.stl", {}, near)
+
+
+MESHED = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="meshed">
+  <xacro:arg name="folder" default="nowhere"/>
+  <link name="base"><collision><geometry>
+    <mesh filename="package://arm/$(arg folder)/corner.obj"/>
+  </geometry></collision></link>
+  <link name="hand"><collision><geometry><sphere radius="0.1"/></geometry></collision>
+  </link>
+  <joint name="slide" type="prismatic"><parent link="base"/><child link="hand"/>
+    <axis xyz="1 0 0"/><limit lower="-2" upper="2" velocity="1" effort="0"/></joint>
+</robot>"""
+CORNER = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+
+
+def test_collision_finds_meshes_of_xacro_files(tmp_path: Path) -> None:
+    pytest.importorskip("coal")
+    pytest.importorskip("xacro")
+    from iksel.collision import SelfCollision  # noqa: PLC0415
+
+    package = make(tmp_path / "arm", "arm")
+    (make(package / "meshes") / "corner.obj").write_text(CORNER)
+    path = make(package / "urdf") / "arm.urdf.xacro"
+    path.write_text(MESHED)
+    arguments = {"folder": "meshes"}
+    robot = iksel.load_robot(path, xacro_args=arguments)
+    keep = [("base", "hand")]
+    free = SelfCollision(path, robot, xacro_args=arguments, keep=keep)
+    assert free([[-0.2], [0.5], [1.2]]).tolist() == [True, False, True]
+    with pytest.raises(iksel.UrdfError, match="nowhere/corner.obj"):
+        SelfCollision(path, robot)

@@ -150,7 +150,9 @@ def test_packages_are_found_where_ros_looks(
 
 
 def test_what_xacro_refuses_is_named(run: Run, tmp_path: Path, macro: Path) -> None:
-    assert_bad(run("info", macro), "no folder for package 'parts'.*--package|packages")
+    assert_bad(
+        run("info", macro), "--package NAME=FOLDER: no folder for package 'parts'"
+    )
     macro.write_text(MACRO.replace("$(arg prefix)", "$(arg other)"), encoding="utf-8")
     write_parts(tmp_path / "workspace/parts")
     with pytest.raises(
@@ -161,6 +163,12 @@ def test_what_xacro_refuses_is_named(run: Run, tmp_path: Path, macro: Path) -> N
     plain.write_text(arm(), encoding="utf-8")
     assert_bad(run("info", plain, "--xacro-arg", "a=1"), "a, but the file is not xacro")
     assert_bad(run("info", plain, "--xacro-arg", "a"), "expected NAME=VALUE, got 'a'")
+
+
+def test_files_of_macros_are_no_robots(run: Run, tmp_path: Path, macro: Path) -> None:
+    write_parts(tmp_path / "parts")
+    culprit = r"parts\.xacro' expands to no link; .*give the file that includes it"
+    assert_bad(run("info", tmp_path / "parts/parts.xacro"), culprit)
 
 
 def test_expanding_leaves_other_modules_alone(tmp_path: Path, macro: Path) -> None:

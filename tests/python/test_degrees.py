@@ -198,6 +198,12 @@ def test_joints_suspected_need_no_whole_numbers(run: Run) -> None:
     assert "look like degrees" in run("fk ur3 0.5 -90.25 90 0 0 0").err
 
 
+def test_locks_work_in_files_of_other_encodings(run: Run, tmp_path: Path) -> None:
+    path = tmp_path / "arm.urdf"
+    path.write_bytes(arm().encode().replace(b"<robot", b"<!-- \xe9 --><robot"))
+    assert_good(run("info", path, "--lock", "second=0.3"))
+
+
 def test_limits_of_many_turns_are_not_suspected(run: Run, tmp_path: Path) -> None:
     path = tmp_path / "arm.urdf"
     path.write_text(arm(inside=LIMIT.replace("-1", "0").replace("2", "0")), "utf-8")

@@ -192,8 +192,12 @@ def _locked_joints(arguments: argparse.Namespace, angles: Angles) -> dict[str, f
 def _joint_limits(name: str) -> dict[str, tuple[FloatArray, FloatArray]]:
     """Limits [rad] of the revolute joints of a URDF that states them, by joint."""
     source = urdf_text(robot_info(name)) if is_built_in(name) else _urdf_path(name)
+    try:
+        root = read_xml("robot", source)[0]
+    except UrdfError:  # such as comments in Latin-1, which URDF's own reader takes
+        return {}
     limits = {}
-    for joint in read_xml("robot", source)[0].iter("joint"):
+    for joint in root.iter("joint"):
         limit = joint.find("limit")
         if joint.get("type") != "revolute" or limit is None:
             continue

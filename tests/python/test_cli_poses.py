@@ -16,7 +16,7 @@ import pytest
 from command_line import Output, Run, assert_bad, assert_good
 
 import iksel
-from iksel.cli import _poses, _solve_file
+from iksel.cli import _poses
 
 FEW = ["--samples", "500"]
 COUNT = 40
@@ -140,13 +140,12 @@ def test_answers_are_those_of_solve_batch(
 
 
 def test_chunks_and_threads_change_nothing(
-    run: Run, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    run: Run, folder: Path, tmp_path: Path
 ) -> None:
     whole, parts = tmp_path / "whole.jsonl", tmp_path / "parts.jsonl"
     words = ["solve", "ur3", "--poses", folder / "matrix.csv", *FEW, "-o"]
     assert_good(run(*words, whole, "--threads", "2"))
-    monkeypatch.setattr(_solve_file, "CHUNK", 7)
-    assert_good(run(*words, parts, "--threads", "1"))
+    assert_good(run(*words, parts, "--threads", "1", "--chunk", "7"))
     assert whole.read_bytes() == parts.read_bytes()
 
 
@@ -171,6 +170,23 @@ def test_stdin_and_stdout_are_files(
     done = pipe(folder / source, "--format", form)
     assert (done.returncode, done.stderr) == (0, b"")
     assert done.stdout == path.read_bytes()
+
+
+def test_a_live_stdin_is_answered_row_by_row(folder: Path) -> None:
+    lines = (folder / "lists.jsonl").read_text("utf-8").splitlines()[:5]
+    words = ["--poses", "-", "--format", "jsonl", "--chunk", "1", *FEW]
+    process = subprocess.Popen(
+        [sys.executable, "-m", "iksel", "solve", "ur3", *words],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    for line in lines:
+        process.stdin.write(line + "\n")
+        process.stdin.flush()
+        assert json.loads(process.stdout.readline())["status"] == "solved"
+    assert process.communicate()[0] == ""
+    assert process.returncode == 0
 
 
 MIXED = """\
@@ -273,9 +289,8 @@ def test_lines_are_not_kept(
 
     source, path = tmp_path / "poses", tmp_path / f".answers.csv.{os.getpid()}.part"
     source.write_text("9 0 0 0 0 0\n" * 20, "utf-8")
-    monkeypatch.setattr(_solve_file, "CHUNK", 5)
     monkeypatch.setattr(_poses.PoseFile, "_row", watch)
-    words = ["--poses", source, "-o", tmp_path / "answers.csv", *FEW]
+    words = ["--poses", source, "-o", tmp_path / "answers.csv", *FEW, "--chunk", "5"]
     assert run("solve", "ur3", *words).code == 1
     sizes = held[::5]
     assert sizes == sorted(set(sizes))
@@ -313,12 +328,14 @@ BAD = [
     ("--poses good --diagnose", "--diagnose: is for one pose"),
     ("--poses good --json", "--json: .*-o FILE.*--format jsonl"),
     ("--poses good --threads -1", "threads"),
+    ("--poses good --chunk 0", "--chunk: 0 is less than 1"),
     ("--poses good --near 1", "--near: expected 6 numbers"),
     ("--poses good --pose 1 2 3 4 5 6", "not allowed with"),
     ("--poses mixed --on-invalid raise", "mixed, line 2: .*expected 6.*got 3"),
     ("--poses mixed --on-invalid raise -o a.csv", "mixed, line 2: "),
     ("--pose 1 2 3 4 5 6 -o a.csv", "--output: needs --poses FILE"),
     ("--pose 1 2 3 4 5 6 --threads 2", "--threads: needs --poses FILE"),
+    ("--pose 1 2 3 4 5 6 --chunk 2", "--chunk: needs --poses FILE"),
     ("--pose 1 2 3 4 5 6 --on-invalid raise", "--on-invalid: needs --poses"),
 ]
 

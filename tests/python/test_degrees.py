@@ -45,6 +45,19 @@ def test_info_shows_both_units(run: Run) -> None:
     assert degrees["reach"] == plain["reach"]
 
 
+def test_robots_are_listed_in_both_units(run: Run) -> None:
+    plain = assert_good(run("robots --json")).json()
+    degrees = assert_good(run("robots --json --degrees")).json()
+    assert (plain["angle_unit"], degrees["angle_unit"]) == ("rad", "deg")
+    for one, other in zip(plain["robots"], degrees["robots"], strict=True):
+        kinds = iksel.load_robot(one["name"]).joint_types
+        for kind, a, b in zip(kinds, one["upper"], other["upper"], strict=True):
+            slides = kind == iksel.JointType.prismatic
+            expected = a if a is None or slides else math.degrees(a)
+            assert b == pytest.approx(expected)
+    assert run("robots").out == run("robots --degrees").out
+
+
 def test_solve_in_degrees(run: Run, made) -> None:
     robot = made.robot("ur3")
     pose = robot.fk(Q)
@@ -183,6 +196,12 @@ def test_joints_of_many_turns_are_not_suspected(
 
 def test_joints_suspected_need_no_whole_numbers(run: Run) -> None:
     assert "look like degrees" in run("fk ur3 0.5 -90.25 90 0 0 0").err
+
+
+def test_locks_work_in_files_of_other_encodings(run: Run, tmp_path: Path) -> None:
+    path = tmp_path / "arm.urdf"
+    path.write_bytes(arm().encode().replace(b"<robot", b"<!-- \xe9 --><robot"))
+    assert_good(run("info", path, "--lock", "second=0.3"))
 
 
 def test_limits_of_many_turns_are_not_suspected(run: Run, tmp_path: Path) -> None:

@@ -133,6 +133,14 @@ TABLE: dict[str, tuple[str, ...]] = {
         "$ iksel solve ur3 --pose 0.2 0.15 0.3 0 3.14 0 --database panda.iksel",
         "$ iksel solve ur3 --pose 0.2 0.15 0.3 0 3.14 0 --task position",
         "$ iksel info ur3 --lock elbow=1",
+        "$ iksel fk ur3 0 -90 90",
+        "$ iksel fk ur3 0 -90 90 0 -90 0 --matrix",
+        "$ iksel solve ur3 --poses poses.csv",
+        "$ iksel solve ur3 --poses notes.txt",
+        "$ iksel solve ur3 --poses notes.txt -o answers.txt",
+        "$ iksel solve ur3 --poses notes.txt --json",
+        "$ iksel plot ur3 -o ur3.jpg",
+        "$ iksel plot ur3 branches -o ur3.png",
         "$ iksel path ur3 poses.txt",
         "$ iksel build ur3",
         "$ iksel evaluate ur3 --targets 0",
@@ -169,7 +177,8 @@ def make_files(folder: Path) -> None:
 def answer_of_shell(line: str) -> str:
     """What a command writes to stderr, and its status."""
     err = io.StringIO()
-    with contextlib.redirect_stderr(err), contextlib.redirect_stdout(io.StringIO()):
+    out = io.TextIOWrapper(io.BytesIO(), "utf-8")
+    with contextlib.redirect_stderr(err), contextlib.redirect_stdout(out):
         status = cli.main(shlex.split(line)[1:])
     return f"{err.getvalue().strip()}\n[exit status {status}]"
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from iksel_cpp import InvalidArgumentError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
 EXIT_BAD_INPUT = 2
 
@@ -57,6 +57,19 @@ def count(text: str) -> int:
     if value < 1:
         raise argparse.ArgumentTypeError(f"{text} is less than 1")
     return value
+
+
+def count_up_to(most: int) -> Callable[[str], int]:
+    """The type of an argument that is a whole number from 1 to `most`."""
+
+    def bounded(text: str) -> int:
+        value = count(text)
+        if value > most:
+            raise argparse.ArgumentTypeError(f"{text} is more than {most}")
+        return value
+
+    bounded.__name__ = "count"  # as argparse calls it in its message
+    return bounded
 
 
 def seed(text: str) -> int:

@@ -242,8 +242,12 @@ def _joint_limits(
 ) -> dict[str, tuple[FloatArray, FloatArray]]:
     """Limits [rad] of the revolute joints of a robot that states them, by joint."""
     read = read_description(arguments.robot, **_of_files(arguments))
+    try:
+        root = read_xml("robot", read.urdf)[0]
+    except UrdfError:  # such as comments in Latin-1, which URDF's own reader takes
+        return {}
     limits = {}
-    for joint in read_xml("robot", read.urdf)[0].iter("joint"):
+    for joint in root.iter("joint"):
         limit = joint.find("limit")
         if joint.get("type") != "revolute" or limit is None:
             continue

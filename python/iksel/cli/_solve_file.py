@@ -16,7 +16,7 @@ from iksel_cpp import InvalidArgumentError, Status
 from iksel._files import replaced
 from iksel.cli._answers import FORMATS
 from iksel.cli._output import Progress, add_progress, print_json, print_pairs
-from iksel.cli._parser import warning_line
+from iksel.cli._parser import count_up_to, warning_line
 from iksel.cli._poses import PoseFile
 
 if TYPE_CHECKING:
@@ -28,7 +28,9 @@ if TYPE_CHECKING:
     from iksel.cli._angles import Angles
 
 CHUNK = 4096
-"""Rows that are held at a time."""
+"""Rows that are held at a time, unless --chunk says how many."""
+
+MOST_ROWS = 1_000_000
 
 NO_POSE = np.full((4, 4), np.nan)
 
@@ -60,6 +62,13 @@ def add_poses(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         help="that solve at a time; 0: one per core (default: 0)",
     )
+    group.add_argument(
+        "--chunk",
+        type=count_up_to(MOST_ROWS),
+        metavar="N",
+        help="rows that are read before their answers are written; 1: each is answered "
+        f"as it comes, which a live stdin wants (default: {CHUNK})",
+    )
     add_progress(group)
 
 
@@ -69,7 +78,7 @@ def check_flags(arguments: argparse.Namespace) -> None:
     Raises:
         InvalidArgumentError: One is used.
     """
-    names = ("output", "format", "on_invalid", "threads", "progress")
+    names = ("output", "format", "on_invalid", "threads", "chunk", "progress")
     if arguments.poses is None:
         used = [name for name in names if getattr(arguments, name) is not None]
         for name in used:
@@ -127,7 +136,8 @@ def solve_file(
         Progress("solving", show=show) as progress,
     ):
         answers = FORMATS[form](output, names)
-        for poses in _chunks(file, raising=arguments.on_invalid == "raise"):
+        size = arguments.chunk or CHUNK
+        for poses in _chunks(file, size, raising=arguments.on_invalid == "raise"):
             batch = solver.solve_batch(np.stack(poses), **request)
             counts.update(status.name for status in batch.statuses())
             answers.write(batch, angles.show(solver.robot, batch.q))
@@ -150,15 +160,15 @@ def _output(name: str | None) -> Iterator[IO[bytes]]:
             yield file
 
 
-def _chunks(file: PoseFile, *, raising: bool) -> Iterator[list[Any]]:
-    """Poses (4, 4) of NaN for what is none, CHUNK at a time; says which is the first.
+def _chunks(file: PoseFile, size: int, *, raising: bool) -> Iterator[list[Any]]:
+    """Poses, (4, 4) of NaN for what is none, some at a time; warns of the first such.
 
     Raises:
         InvalidArgumentError: A row is no pose, and `raising`.
     """
     warned = False
     rows = iter(file)
-    while chunk := list(itertools.islice(rows, CHUNK)):
+    while chunk := list(itertools.islice(rows, size)):
         bad = [row for row in chunk if isinstance(row, InvalidArgumentError)]
         if bad and raising:
             raise bad[0]

@@ -13,7 +13,7 @@ from iksel.cli._options import add_solver_options, given_database, solver_option
 from iksel.cli._output import add_json, print_json, print_pairs
 from iksel.cli._poses import FILE_FORMS, read_poses
 from iksel.cli._robot import add_robot, load
-from iksel.cli.solve import print_configurations
+from iksel.cli._solve_text import print_configurations
 
 if TYPE_CHECKING:
     import argparse

@@ -15,7 +15,7 @@ from iksel.cli import _plots as plots
 from iksel.cli._angles import Angles
 from iksel.cli._options import add_solver_options, given_database, solver_options
 from iksel.cli._output import add_json, print_json, print_pairs
-from iksel.cli._parser import count, seed
+from iksel.cli._parser import count_up_to, seed
 from iksel.cli._poses import FILE_FORMS, read_poses
 from iksel.cli._robot import add_robot, load
 
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 PICTURES = ("workspace", "manipulability", "branches")
 CONFIGURATIONS = 200_000
+MOST_CONFIGURATIONS = 10_000_000
 
 EXAMPLES = f"""\
 examples:
@@ -77,7 +78,7 @@ def add_parser(commands: Any) -> None:
     )
     parser.add_argument(
         "--configurations",
-        type=count,
+        type=count_up_to(MOST_CONFIGURATIONS),
         metavar="N",
         help=f"for workspace and manipulability (default: {CONFIGURATIONS})",
     )

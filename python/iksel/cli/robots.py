@@ -7,6 +7,7 @@ import math
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
+from iksel.cli._angles import Angles, add_degrees
 from iksel.cli._output import add_json, print_json, print_table
 from iksel.robots import load_robot, robot_info, robot_names
 
@@ -28,23 +29,30 @@ def add_parser(commands: Any) -> None:
         "robots",
         help="list the built-in robots",
         description="List the built-in robots with their joint limits (deg; m for "
-        "sliding joints).",
+        "sliding joints; --json: rad, or deg with --degrees).",
         epilog=EXAMPLES,
     )
     add_json(parser)
+    add_degrees(parser)
     parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """List the robots."""
+    angles = Angles(arguments)
     robots = [(robot_info(name), load_robot(name)) for name in robot_names()]
     if arguments.json:
         print_json(
             {
+                "angle_unit": angles.unit,
                 "robots": [
-                    {**asdict(info), "lower": robot.lower, "upper": robot.upper}
+                    {
+                        **asdict(info),
+                        "lower": angles.show(robot, robot.lower),
+                        "upper": angles.show(robot, robot.upper),
+                    }
                     for info, robot in robots
-                ]
+                ],
             }
         )
         return 0

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import math
 import sys
 import time
 from typing import TYPE_CHECKING, Any
@@ -13,17 +12,24 @@ from iksel_cpp import InvalidArgumentError, Solver, Status
 from iksel.cli._angles import Angles
 from iksel.cli._answers import FILE_FORMS as ANSWER_FILES
 from iksel.cli._options import add_solver_options, given_database, solver_options
-from iksel.cli._output import add_json, number, print_json, print_pairs, print_table
+from iksel.cli._output import add_json, print_json, print_pairs
 from iksel.cli._parser import POSE_FORMS, POSE_METAVAR
 from iksel.cli._poses import FILE_FORMS as POSE_FILES
 from iksel.cli._robot import add_robot, load
 from iksel.cli._solve_file import add_poses, answer_format, check_flags, solve_file
+from iksel.cli._solve_text import (
+    diagnosis_report,
+    print_configurations,
+    print_diagnosis,
+    print_text,
+    proof_row,
+)
 from iksel.cli.info import pose_text
 
 if TYPE_CHECKING:
     import argparse
 
-    from iksel_cpp import Diagnosis, Result, Robot, Solutions
+    from iksel_cpp import Result, Robot
 
     from iksel._arrays import FloatArray
 
@@ -74,6 +80,15 @@ def add_parser(commands: Any) -> None:
         metavar="FILE",
         help="solve every pose of a file by itself, see below; - is stdin",
     )
+    add_request(parser)
+    add_json(parser)
+    add_poses(parser)
+    add_solver_options(parser)
+    parser.set_defaults(run=run)
+
+
+def add_request(parser: argparse.ArgumentParser) -> None:
+    """Add what may be asked besides the pose."""
     parser.add_argument(
         "--seed-q",
         nargs="+",
@@ -110,10 +125,6 @@ def add_parser(commands: Any) -> None:
         help="if there is no solution, search for the reason, and print it with the "
         "best effort",
     )
-    add_json(parser)
-    add_poses(parser)
-    add_solver_options(parser)
-    parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -215,43 +226,6 @@ def print_hint(solver: Solver, result: Result) -> None:
         print(f"iksel: hint: {solver.task_hint}", file=sys.stderr)
 
 
-def diagnosis_report(
-    robot: Robot, diagnosis: Diagnosis, angles: Angles
-) -> dict[str, Any]:
-    """The fields of a diagnosis; the joint by name."""
-    joint = diagnosis.joint
-    return {
-        "cause": diagnosis.cause.name,
-        "message": diagnosis.message,
-        "proof": diagnosis.proof.name,
-        "beyond_reach": diagnosis.beyond_reach,
-        "rotation_gap": diagnosis.rotation_gap,
-        "joint": robot.joint_names[joint] if joint >= 0 else None,
-        "limit_violation": diagnosis.limit_violation,
-        "branch": angles.show_optional(robot, diagnosis.branch),
-        "least_singular_value": diagnosis.least_singular_value,
-        "best_effort_q": angles.show_optional(robot, diagnosis.q),
-        "best_effort_is_solution": diagnosis.q_is_solution,
-        "best_effort_position_error": diagnosis.position_error,
-        "best_effort_rotation_error": diagnosis.rotation_error,
-    }
-
-
-def print_diagnosis(robot: Robot, diagnosis: Diagnosis) -> None:
-    """Print the reason of a failure for people, and the best effort."""
-    print()
-    print_pairs([("cause", diagnosis.cause.name), ("", diagnosis.message)])
-    if diagnosis.q is None:
-        return
-    note = "an answer" if diagnosis.q_is_solution else "NO SOLUTION"
-    print()
-    print(
-        f"best effort ({note}): off by {diagnosis.position_error:.3g} m, "
-        f"{diagnosis.rotation_error:.3g} rad"
-    )
-    print_joints(robot, diagnosis.q.tolist())
-
-
 def run_all(
     solver: Solver,
     target: FloatArray,
@@ -296,62 +270,3 @@ def run_all(
             print()
             print_configurations(robot, found.q, angles)
     return EXIT_SOLVED if found.success else EXIT_NO_SOLUTION
-
-
-def print_text(robot: Robot, result: Result, report: dict[str, Any]) -> None:
-    """Print the answer for people."""
-    rows = [
-        ("robot", f"{robot.name}, {robot.base_link} -> {robot.tip_link}"),
-        ("target", pose_text(report["target"])),
-        ("status", result.status.name),
-        *proof_row(result),
-        ("attempts", str(result.attempts)),
-        ("iterations", str(result.iterations)),
-        ("time", f"{number(report['time_us'], 1)} us"),
-    ]
-    if result.q is not None:
-        rows += [
-            ("position error", f"{result.position_error:.3g} m"),
-            ("rotation error", f"{result.rotation_error:.3g} rad"),
-        ]
-    if math.isfinite(result.cost):
-        rows.append(("cost", f"{result.cost:.6g}"))
-    if math.isfinite(result.move):
-        rows.append(("joint move", f"{result.move:.4g} rad or m"))
-    print_pairs(rows)
-    if result.q is None:
-        return
-    print()
-    print_joints(robot, result.q.tolist())
-
-
-def proof_row(answer: Result | Solutions) -> list[tuple[str, str]]:
-    """What is certain, in a row; none where nothing is."""
-    if not answer.proven:
-        return []
-    certain = "these are all" if answer.success else "there is no solution"
-    return [("proof", f"{answer.proof.name}: certainly {certain}")]
-
-
-def print_configurations(robot: Robot, q: FloatArray, angles: Angles) -> None:
-    """Print joint values (N, dof) [rad or m] as a table, one configuration a row."""
-    print(f"joint values [{angles.unit} or m]")
-    rows = angles.show(robot, q).tolist()
-    print_table(robot.joint_names, [[number(x, 6) for x in row] for row in rows])
-
-
-def print_joints(robot: Robot, q: list[float]) -> None:
-    """Print joint values as a table."""
-    print_table(
-        ("joint", "rad or m", "deg"),
-        [
-            (
-                name,
-                number(value, 9),
-                "" if kind.name == "prismatic" else number(math.degrees(value), 4),
-            )
-            for name, kind, value in zip(
-                robot.joint_names, robot.joint_types, q, strict=True
-            )
-        ],
-    )

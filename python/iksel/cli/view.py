@@ -5,16 +5,14 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from iksel_cpp import Solver
 
 from iksel.cli._angles import Angles
 from iksel.cli._options import add_solver_options, given_database, solver_options
 from iksel.cli._robot import add_robot, load
-
-if TYPE_CHECKING:
-    from iksel.view import Viewer
+from iksel.view import PORT, Viewer
 
 EXAMPLES = """\
 examples:
@@ -26,8 +24,6 @@ examples:
 
 Drag the target, and the robot follows. Ctrl-C ends.
 """
-
-PORT = 8080
 
 
 def add_parser(commands: Any) -> None:
@@ -97,8 +93,6 @@ def run(arguments: argparse.Namespace) -> int:
 
 def serve(arguments: argparse.Namespace, solver: Solver) -> Viewer:
     """A viewer where the flags of add_server() say."""
-    from iksel.view import Viewer  # noqa: PLC0415 (an extra)
-
     return Viewer(solver, port=arguments.port, host=arguments.host)
 
 

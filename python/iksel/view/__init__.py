@@ -15,6 +15,6 @@ from __future__ import annotations
 
 from iksel._extras import MissingExtraError
 from iksel.view.session import TASKS, Session
-from iksel.view.viewer import Viewer
+from iksel.view.viewer import PORT, Viewer
 
-__all__ = ["TASKS", "MissingExtraError", "Session", "Viewer"]
+__all__ = ["PORT", "TASKS", "MissingExtraError", "Session", "Viewer"]

@@ -25,7 +25,7 @@ class Controls:
         """Take viser's GUI and what is shown."""
         self._session = session
         robot = session.robot
-        gui.configure_theme(dark_mode=False, show_logo=False)
+        gui.configure_theme(dark_mode=False, show_logo=False, show_share_button=False)
         self.text = gui.add_markdown("")
         names = list(session.tasks)
         self.task = gui.add_dropdown("task", names, initial_value=session.task_name)

@@ -20,6 +20,7 @@ JOINT = (52, 94, 168)
 AT_LIMIT = (205, 45, 45)
 GHOST = (120, 150, 190)
 GHOST_OPACITY = 0.22
+TARGET = 0.2  # size of the handles, as a share of the reach
 # Shares of orientations from none to all: red, yellow, green, blue.
 RAMP = np.array([[200, 40, 40], [235, 205, 60], [70, 165, 85], [45, 85, 190]], float)
 OVERLAP = 0.42  # radius of a map's ball, by the distance between neighbours
@@ -88,7 +89,9 @@ class Scene:
         self._ghosts = Copies(scene, "/ghosts/links", cylinder(12), **ghost)
         self._ghost_balls = Copies(scene, "/ghosts/frames", ball(8), **ghost)
         self._map = Copies(scene, "/map", ball(6), cast_shadow=False, lod="auto")
-        self.target = scene.add_transform_controls("/target", scale=0.25 * reach)
+        self.target = scene.add_transform_controls(
+            "/target", scale=TARGET * reach, line_width=4.0, depth_test=False
+        )
 
     @property
     def ghosts(self) -> int:

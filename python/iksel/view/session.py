@@ -207,8 +207,13 @@ class Session:
 
 
 def _open_configuration(solver: Solver) -> FloatArray:
-    """Of some random configurations one that is manipulable, and far from limits."""
+    """Of some random configurations one that is manipulable, and far from limits.
+
+    And with every link above the base's floor, where that is possible.
+    """
     robot = solver.robot
     some = robot.random_configurations(256, seed=0)
+    lowest = robot.link_poses(some)[..., 2, 3].min(axis=1)
+    some = some[lowest >= min(0.0, lowest.max()) - 1e-9]
     quality = manipulability(robot, some) * limit_distance(robot, some)
     return np.asarray(some[np.argmax(quality)])

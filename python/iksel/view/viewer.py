@@ -31,6 +31,8 @@ if TYPE_CHECKING:
     from iksel.reach import Map
 
 PORT = 8080
+"""Where a viewer is served unless another port is given."""
+VIEWPOINT = np.array([0.7, -1.0, 0.6])  # from the first joint, in reaches
 LIMIT_MARGIN = 1e-3  # [rad or m]; a joint that near to a limit is shown as at it
 
 
@@ -70,7 +72,7 @@ class Viewer:
         robot = solver.robot
         self._server.gui.set_panel_label(f"iksel: {robot.name}")
         reach = robot.reach
-        self._server.initial_camera.position = np.array([1.1, -1.7, 1.1]) * reach
+        self._server.initial_camera.position = robot.reach_centre + reach * VIEWPOINT
         self._server.initial_camera.look_at = robot.reach_centre
         self.scene = Scene(self._server.scene, Skeleton(robot))
         self.controls = Controls(self._server.gui, self.session)

@@ -9,7 +9,6 @@ import sys
 import threading
 import types
 from typing import TYPE_CHECKING, Any
-from unittest import mock
 
 from iksel_cpp import UnknownNameError, UrdfError
 
@@ -111,8 +110,16 @@ def _found_packages(
     parent: Any = types.ModuleType("ament_index_python")
     parent.packages = stand_in
     modules = {parent.__name__: parent, stand_in.__name__: stand_in}
-    with mock.patch.dict(sys.modules, modules):
+    before = {name: sys.modules.get(name) for name in modules}
+    sys.modules.update(modules)
+    try:
         yield
+    finally:
+        for name, module in before.items():
+            if module is None:
+                del sys.modules[name]
+            else:
+                sys.modules[name] = module
 
 
 def _hint(reason: str) -> str:

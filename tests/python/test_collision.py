@@ -149,7 +149,7 @@ def test_meshes(arm, tmp_path, form) -> None:
     assert not free(np.zeros(6))
     if form == "package":
         with pytest.raises(
-            iksel.UnknownNameError, match=r"'arm' of mesh .*given: none"
+            iksel.UnknownNameError, match=r"'arm'; given: none.*for 'package://arm"
         ):
             collision.SelfCollision(urdf, arm)
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import sys
+import types
 from pathlib import Path
 
 import numpy as np
@@ -171,8 +172,16 @@ def test_files_of_macros_are_no_robots(run: Run, tmp_path: Path, macro: Path) ->
     assert_bad(run("info", tmp_path / "parts/parts.xacro"), culprit)
 
 
-def test_expanding_leaves_other_modules_alone(tmp_path: Path, macro: Path) -> None:
-    before = set(sys.modules)
+def test_expanding_leaves_other_modules_alone(
+    tmp_path: Path, macro: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     write_parts(tmp_path / "workspace/parts")
+    stranger = types.ModuleType("ament_index_python")
+    with monkeypatch.context() as patch:
+        patch.setitem(sys.modules, stranger.__name__, stranger)
+        before = dict(sys.modules)
+        assert_made(iksel.load_robot(macro))
+        assert before.items() <= sys.modules.items()
+        assert "ament_index_python.packages" not in sys.modules
     iksel.load_robot(macro)
-    assert "ament_index_python" not in set(sys.modules) - before
+    assert "ament_index_python" not in sys.modules

@@ -55,11 +55,12 @@ ROBOTS = (*["arm.urdf"] * 20, "ur3", "so100", "nobody", *FILES)
 
 
 def flags_of_commands() -> dict[str, dict[str, argparse.Action]]:
-    """The flags of each command, as its own parser has them."""
+    """The flags of each command that ends, as its own parser has them."""
     actions = cli.make_parser()._subparsers._group_actions
     return {
         name: dict(sorted(parser._option_string_actions.items()))
         for name, parser in actions[0].choices.items()
+        if name != "view"  # serves until it is interrupted
     }
 
 

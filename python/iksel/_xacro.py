@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import contextlib
+import importlib
 import io
 import sys
 import threading
@@ -80,13 +81,12 @@ def _is_call(element: ET.Element) -> bool:
 
 def _import_xacro(path: Path) -> Any:
     try:
-        import xacro  # noqa: PLC0415 (an optional extra)
+        return importlib.import_module("xacro")
     except ImportError as error:
         raise UrdfError(
             f"'{path}' is xacro, which needs the package xacro ({error}): pip install "
             "'iksel[xacro]', or expand it yourself: xacro FILE > robot.urdf"
         ) from None
-    return xacro
 
 
 @contextlib.contextmanager

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import importlib
 import warnings
 import xml.etree.ElementTree as ET
 from typing import TYPE_CHECKING, Any
@@ -76,7 +77,7 @@ def urdf_of_mjcf(path: Path) -> str:
 
 def _import_mujoco(path: Path) -> Any:
     try:
-        import mujoco  # noqa: PLC0415 (an optional extra)
+        mujoco = importlib.import_module("mujoco")
     except ImportError as error:
         raise UrdfError(
             f"'{path}' is MJCF, which needs the package mujoco ({error}): pip install "

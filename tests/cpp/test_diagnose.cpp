@@ -251,6 +251,49 @@ TEST(Diagnose, ExplainsAProvenNoByItsBranchesWithoutASearch) {
   EXPECT_GT(none, 0);
 }
 
+TEST(Diagnose, ExplainsATasksNoByTheTasksBranches) {
+  // The spin is the last joint's, which no limit of its own can keep from an answer.
+  int outside = 0;
+  int none = 0;
+  for (const char* name : {"ur5e", "irb120"}) {
+    const Robot& robot = iksel_test::robot(name);
+    constexpr int kSpinning = 5;
+    SolverOptions options;
+    options.task = iksel::Task::free_spin();
+    const Solver solver(robot, options);
+    const Solver unlimited(robot.without_limits(), options);
+    const int cases = iksel_test::cases(400, 80);
+    const Eigen::MatrixXd q = robot.random_configurations(2 * cases, iksel_test::seed());
+    for (int i = 0; i < cases; ++i) {
+      Pose target = robot.fk(q.row(2 * i));
+      target.linear() = robot.fk(q.row(2 * i + 1)).linear();
+      if (solver.solve(target).proof != iksel::Proof::closed_form) continue;
+      const Diagnosis diagnosis = solver.diagnose(target);
+      SCOPED_TRACE(std::string(name) + ", case " + std::to_string(i) + ": " + diagnosis.message);
+      EXPECT_TRUE(robot.within_limits(diagnosis.q));
+      EXPECT_NE(diagnosis.joint, kSpinning);
+      double least = 10;
+      for (const auto& branch : unlimited.solve_all(target).all) {
+        JointVector felt = branch.q;
+        felt[kSpinning] = 0.5 * (robot.lower() + robot.upper())[kSpinning];
+        least = std::min(least, violation(robot, felt));
+      }
+      EXPECT_EQ(diagnosis.attempts, 0);
+      if (diagnosis.cause != Cause::joint_limits) {
+        ++none;
+        EXPECT_EQ(diagnosis.cause, Cause::no_branch);
+        EXPECT_EQ(least, 10) << "a branch by search";
+        continue;
+      }
+      ++outside;
+      EXPECT_NEAR(diagnosis.limit_violation, least, 1e-5);
+      EXPECT_DOUBLE_EQ(diagnosis.limit_violation, violation(robot, diagnosis.branch));
+    }
+  }
+  EXPECT_GT(outside, 0);
+  EXPECT_GT(none, 0);
+}
+
 /// From the axis of joint 2 to where a link is, across that axis.
 Eigen::Vector3d across_axis_2(const Robot& robot, const JointVector& q, const std::string& from,
                               const std::string& to) {

@@ -41,7 +41,8 @@ void Enumeration::find(const Pose& Y, bool wants_all) {
   for (int lane = 0; lane < kMost; ++lane) take(lane, wants_all);
 }
 
-void Enumeration::place_free_joints(double* q) const {
+void Enumeration::copy_joints(int lane, double* q) const {
+  chain_.copy_joints(pack_, lane, q);
   for (int j = 0; j < model_.dof; ++j) {
     if (!chain_.turns_freely(j) || model_.joints.type(j) == JointType::continuous) continue;
     q[j] = std::clamp(q[j], model_.joints.lower[j], model_.joints.upper[j]);
@@ -51,8 +52,7 @@ void Enumeration::place_free_joints(double* q) const {
 void Enumeration::take(int lane, bool wants_all) {
   if (is_ruled_out(pack_, lane)) return;
   std::array<double, 6>& q = q_[static_cast<std::size_t>(size_)];
-  chain_.copy_joints(pack_, lane, q.data());
-  place_free_joints(q.data());
+  copy_joints(lane, q.data());
   const double beyond = pack_.beyond[lane];
   double bound = pack_.error[lane];
   bool is_sure = bound < kVague && pack_.worst[lane] >= 0;

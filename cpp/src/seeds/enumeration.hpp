@@ -40,10 +40,11 @@ class Enumeration {
   /// What the last find() solved: those outside the limits too, and lanes without a branch.
   [[nodiscard]] const ClosedFormChain& chain() const { return chain_; }
   [[nodiscard]] const lanes::BranchPack& pack() const { return pack_; }
+  /// Writes a lane's joint values to q, those of which the angle does not matter inside their
+  /// limits.
+  void copy_joints(int lane, double* q) const;
 
  private:
-  /// Brings joints of which the angle does not matter inside their limits.
-  void place_free_joints(double* q) const;
   /// Takes a lane's branch if it may be one.
   void take(int lane, bool wants_all);
   /// Whether a lane's branch reaches the target far enough from singularities to tell by how much

@@ -86,10 +86,12 @@ class Diagnoser {
 
   /// Whether all branches are known, of which none is an answer.
   bool explain_by_branches(Workspace& workspace) {
-    const auto& lanes = workspace.lanes;
-    if (!lanes || !lanes->branches || lanes->branches->chain().is_completed()) return false;
-    auto reasons =
-        explain_branches(model_, goal_, lanes->query.reduce(goal_.target()), *lanes->branches);
+    if (!workspace.lanes) return false;
+    Enumeration* branches = workspace.lanes->branches_of(task_);
+    // Of a completed chain, what is missing may be of a joint that there is not.
+    if (branches == nullptr || branches->chain().is_completed()) return false;
+    const Pose Y = workspace.lanes->query.reduce(goal_.target());
+    auto reasons = explain_branches(model_, goal_, Y, *branches);
     if (!reasons) return false;
     out_ = std::move(reasons->diagnosis);
     BestEffort effort = make_effort(goal_);

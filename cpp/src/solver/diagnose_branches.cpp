@@ -19,8 +19,8 @@ std::string quoted(const ChainModel& model, int joint) {
 }
 
 JointVector joints_of(const Enumeration& branches, int lane) {
-  JointVector q(6);
-  branches.chain().copy_joints(branches.pack(), lane, q.data());
+  JointVector q(branches.chain().dof);
+  branches.copy_joints(lane, q.data());
   return q;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "goal/goal.hpp"
+#include "refine/lane_refiner.hpp"
 #include "search/search.hpp"
 #include "seeds/row_seeds.hpp"
 
@@ -36,5 +37,16 @@ class RowAnswers {
   const RowSeeds& seeds_;
   std::vector<Result> answers_;
 };
+
+/// Refines rows of seeds of a full pose, given by its Y (reduction.hpp).
+inline RowAnswers refine_rows(RowSeeds& seeds, const JointSpace& joints, const Goal& goal,
+                              const Pose& Y, const Patience& patience, LaneRefiner& refiner,
+                              Work& work) {
+  RowAnswers answers(joints, goal, seeds);
+  refiner.begin(goal.task(), patience, Width::wide);
+  refiner.set_pose(Y);
+  search(refiner, seeds, answers, work);
+  return answers;
+}
 
 }  // namespace iksel

@@ -28,8 +28,6 @@ constexpr Patience kFirst{8, kMostIterations};
 constexpr Patience kAll{6, kMostIterations, 2};
 /// Where seeds were iterated before in single precision.
 constexpr Patience kScreened{4, kMostIterations};
-/// Where seeds are answers, or as near to one as a singularity or a limit lets it be told.
-constexpr Patience kNearAnswer{8, 64};
 /// Of the nearest leaf, before the roots of a sweep: more cost more than those. Where seven joints
 /// are swept, all are tried: with 4, two of a million reachable targets of pr2_right_arm were lost.
 constexpr int kBeforeRoots = 4;

@@ -69,7 +69,7 @@ class PathSearch {
     std::vector<double> q = before.q;
     const int first = static_cast<int>(waypoint % kStride);
     if (with_others) lanes.sweep->add_samples(Y, first, kStride, q);
-    refine_rows(goal, Y, q, lanes, [&](std::size_t row, const JointVector& answer) {
+    visit_refined(goal, Y, q, lanes, [&](std::size_t row, const JointVector& answer) {
       if (row < before.size()) {
         layer.add(answer);
       } else {
@@ -94,8 +94,8 @@ class PathSearch {
         q.insert(q.end(), image.data(), image.data() + model_.dof);
       }
     }
-    refine_rows(goal, Y, q, lanes,
-                [&](std::size_t /*row*/, const JointVector& answer) { layer.add(answer); });
+    visit_refined(goal, Y, q, lanes,
+                  [&](std::size_t /*row*/, const JointVector& answer) { layer.add(answer); });
   }
 
   /// The solutions found for the first waypoint of a path without a start, at all images; those
@@ -191,16 +191,14 @@ class PathSearch {
  private:
   /// Refines rows of seeds; calls `found(row, q)` with each that leads to a solution.
   template <typename Found>
-  void refine_rows(const Goal& goal, const Pose& Y, const std::vector<double>& q,
-                   Workspace::InLanes& lanes, const Found& found) const {
+  void visit_refined(const Goal& goal, const Pose& Y, const std::vector<double>& q,
+                     Workspace::InLanes& lanes, const Found& found) const {
     constexpr Patience kNext{8, kStepsToNext};
     const auto dof = static_cast<std::size_t>(model_.dof);
     Work work(0);
     RowSeeds seeds(q.data(), q.size() / dof, dof, /*are_answers=*/false, work);
-    RowAnswers answers(model_.joints, goal, seeds);
-    lanes.refiner.begin(goal.task(), kNext, Width::wide);
-    lanes.refiner.set_pose(Y);
-    search(lanes.refiner, seeds, answers, work);
+    const RowAnswers answers =
+        refine_rows(seeds, model_.joints, goal, Y, kNext, lanes.refiner, work);
     for (std::size_t row = 0; row < seeds.count(); ++row) {
       if (answers.at(row).success()) found(row, answers.at(row).q);
     }

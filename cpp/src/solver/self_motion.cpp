@@ -131,14 +131,11 @@ SelfMotion Solver::Impl::self_motion(const Pose& target, double spacing,
   std::vector<SelfMotionArcs::Joints> points;
   for (const auto& arc : lanes.arcs->arcs())
     points.insert(points.end(), arc.q.begin(), arc.q.end());
-  constexpr Patience kThere{8, 64};
   Work work(options.max_attempts);
   RowSeeds seeds(points.empty() ? nullptr : points[0].data(), points.size(), SweptBranches::kDof,
                  /*are_answers=*/true, work);
-  RowAnswers answers(model().joints, goal, seeds);
-  lanes.refiner.begin(task, kThere, Width::wide);
-  lanes.refiner.set_pose(Y);
-  search(lanes.refiner, seeds, answers, work);
+  const RowAnswers answers =
+      refine_rows(seeds, model().joints, goal, Y, kNearAnswer, lanes.refiner, work);
   const std::optional<Elbow> elbow = Elbow::of(model());
   std::size_t first = 0;
   for (const auto& found : lanes.arcs->arcs()) {

@@ -133,21 +133,42 @@ void bind_path_result(py::module_& m) {
   });
 }
 
+Tracker make_tracker(const Solver& solver, const ArrayLike& start, const ClosestLike& closest) {
+  return Tracker(solver, as_joints(start, solver.robot().dof(), "start"), as_closest(closest));
+}
+
+/// What `closest` was asked for with.
+py::object weights_of(const Tracker& tracker) {
+  const auto& weights = tracker.closest();
+  if (!weights) return py::none();
+  if (!weights->rotation) return py::bool_(true);
+  JointVector six(6);
+  for (int i = 0; i < 3; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    six[i] = weights->position[k];
+    six[3 + i] = (*weights->rotation)[k];
+  }
+  return to_array(six);
+}
+
 void bind_tracker(py::module_& m) {
   py::class_<Tracker> tracker(
       m, "Tracker",
       "Follows a stream of poses: each answer continues from the last, within the velocity limits. "
       "Not to be used from two threads at once.");
-  tracker.def(py::init([](const Loose<Solver>& given, const ArrayLike& start) {
-                const auto solver = from_python<Solver>(given, "solver");
-                return Tracker(solver, as_joints(start, solver.robot().dof(), "start"));
-              }),
-              py::arg("solver"), py::arg("start"),
-              R"(Begins where the arm is.
+  tracker.def(
+      py::init([](const Loose<Solver>& given, const ArrayLike& start, const ClosestLike& closest) {
+        const auto solver = from_python<Solver>(given, "solver");
+        return make_tracker(solver, start, closest);
+      }),
+      py::arg("solver"), py::arg("start"), py::kw_only(), py::arg("closest") = py::none(),
+      R"(Begins where the arm is.
 
 Args:
     solver: what solves.
     start: joint values, (dof,) [rad or m]; those outside the limits are taken to be at them.
+    closest: True, or six weights as in Solver.solve: at poses that cannot be reached from where
+        the arm is, it goes downhill to where it is nearest, with Status.closest.
 
 Raises:
     InvalidArgumentError: wrong shape or dtype, or a number that is not finite.)");
@@ -165,7 +186,8 @@ Args:
 
 Returns:
     A Result. Status `solved`: there. `too_fast`: the arm needs more time, and went as far on the
-    straight way in joint space as it could. Any other: no continuation, and the arm stays.
+    straight way in joint space as it could. `closest`: not there, but as near as it gets from
+    here. Any other: no continuation, and the arm stays.
 
 Raises:
     InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, or dt not above 0.)");
@@ -179,12 +201,13 @@ Raises:
   });
   tracker.def(py::pickle(
       [](const Tracker& self) -> py::object {
-        return py::make_tuple(self.solver(), to_array(self.q()));
+        return py::make_tuple(self.solver(), to_array(self.q()), weights_of(self));
       },
       [](const py::object& state) {
-        PickleState in(state, "Tracker", 2);
+        PickleState in(state, "Tracker", 3);
         const auto solver = in.value<Solver>("solver");
-        return Tracker(solver, as_joints(in.object(), solver.robot().dof(), "pickled Tracker, q"));
+        const JointVector q = as_joints(in.object(), solver.robot().dof(), "pickled Tracker, q");
+        return Tracker(solver, q, as_closest(in.object()));
       }));
 }
 
@@ -204,12 +227,8 @@ void bind_path(py::module_& m, py::class_<Solver>& cls) {
       path_keywords(), {"start", "dt", "weights", "norm", "filter", "candidates"}, &solve_path);
 
   bind_tracker(m);
-  cls.def(
-      "tracker",
-      [](const Solver& self, const ArrayLike& start) {
-        return Tracker(self, as_joints(start, self.robot().dof(), "start"));
-      },
-      py::arg("start"), "Tracker(self, start).");
+  cls.def("tracker", &make_tracker, py::arg("start"), py::kw_only(),
+          py::arg("closest") = py::none(), "Tracker(self, start, closest=closest).");
 }
 
 }  // namespace iksel::python

@@ -223,7 +223,7 @@ Raises:
         finite or out of range.)"},
       request_keywords(),
       {"near", "weights", "norm", "seeds", "database_seeds", "filter", "deadline", "task",
-       "objective"},
+       "objective", "closest"},
       &solve);
   def_method<1>(cls,
                 {"solve_all",

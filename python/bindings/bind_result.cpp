@@ -39,7 +39,7 @@ namespace {
 std::string result_repr(const PyResult& self) {
   const Result& r = self.result;
   std::string text = "Result(" + status_text(r.status, r.proof);
-  if (r.success()) {
+  if (has_joints(r.status)) {
     text += ", q=" + short_numbers(r.q.data(), static_cast<std::size_t>(r.q.size())) +
             ", position_error=" + short_number(r.position_error, 3) +
             ", rotation_error=" + short_number(r.rotation_error, 3);
@@ -51,13 +51,12 @@ std::string result_repr(const PyResult& self) {
 std::string result_html(const PyResult& self) {
   const Result& r = self.result;
   HtmlTable table("Result", {"status", enum_name(r.status)});
-  if (r.success()) {
+  if (has_joints(r.status)) {
     table.add_row({"q", short_numbers(r.q.data(), static_cast<std::size_t>(r.q.size()))});
     table.add_row({"position error [m]", short_number(r.position_error, 3)});
     table.add_row({"rotation error [rad]", short_number(r.rotation_error, 3)});
-  } else {
-    table.add_row({"proof", enum_name(r.proof)});
   }
+  if (!r.success()) table.add_row({"proof", enum_name(r.proof)});
   table.add_row({"attempts", std::to_string(r.attempts)});
   table.add_row({"iterations", std::to_string(r.iterations)});
   return table.text();
@@ -73,13 +72,14 @@ PyResult result_from_state(const py::object& state) {
   PickleState in(state, "Result", 9);
   Result r;
   r.status = in.value<Status>("status");
-  if (r.success()) {
+  const bool has_q = has_joints(r.status);
+  if (has_q) {
     r.q = in.joints("q");
   } else if (!in.object().is_none()) {
     in.refuse("q", "None, as it is not solved", "joint values");
   }
-  r.position_error = in.length("position_error", !r.success());
-  r.rotation_error = in.length("rotation_error", !r.success());
+  r.position_error = in.length("position_error", !has_q);
+  r.rotation_error = in.length("rotation_error", !has_q);
   r.attempts = in.count("attempts");
   r.iterations = in.count("iterations");
   r.move = in.length("move", /*may_be_nan=*/true);
@@ -107,13 +107,15 @@ void bind_single(py::module_& m) {
   add_property(
       cls, "proven", [](const PyResult& self) { return is_proven(self.result.proof); },
       "Whether there is certainly no answer: `proof` is `reach` or `closed_form`.");
-  add_property(cls, "q", &PyResult::joints, "Joint values [rad or m], (dof,); None unless solved.");
+  add_property(
+      cls, "q", &PyResult::joints,
+      "Joint values [rad or m], (dof,); None unless solved, or closest, for those who ask for it.");
   add_property(
       cls, "position_error", [](const PyResult& self) { return self.result.position_error; },
-      "Distance to the target [m]; NaN unless solved.");
+      "Distance to the target [m]; NaN without a q.");
   add_property(
       cls, "rotation_error", [](const PyResult& self) { return self.result.rotation_error; },
-      "Length of the rotation vector to the target [rad]; NaN unless solved.");
+      "Length of the rotation vector to the target [rad]; NaN without a q.");
   add_property(
       cls, "move", [](const PyResult& self) { return self.result.move; },
       "Length of the move from `near`, by its norm and weights; NaN without one.");
@@ -140,11 +142,11 @@ std::string batch_html(const PyBatchResult& self) {
   const std::size_t shown = std::min(rows, HtmlTable::kMostRows);
   for (std::size_t i = 0; i < shown; ++i) {
     const Result r = self.row(RowIndex(py::int_(i))).result;
-    table.add_row(
-        {std::to_string(i), enum_name(r.status), r.success() ? "" : enum_name(r.proof),
-         r.success() ? short_numbers(r.q.data(), static_cast<std::size_t>(r.q.size())) : "",
-         r.success() ? text(r.position_error) : "", r.success() ? text(r.rotation_error) : "",
-         std::to_string(r.attempts), std::to_string(r.iterations)});
+    const bool has_q = has_joints(r.status);
+    table.add_row({std::to_string(i), enum_name(r.status), r.success() ? "" : enum_name(r.proof),
+                   has_q ? short_numbers(r.q.data(), static_cast<std::size_t>(r.q.size())) : "",
+                   has_q ? text(r.position_error) : "", has_q ? text(r.rotation_error) : "",
+                   std::to_string(r.attempts), std::to_string(r.iterations)});
   }
   table.add_rest(rows - shown);
   return table.text();
@@ -167,15 +169,17 @@ void check_rows(const PyBatchResult& batch, const PickleState& in) {
     if (batch.proof.at(i) >= kProofs) {
       in.refuse("proof", "values of Proof", std::to_string(batch.proof.at(i)) + " in " + row);
     }
-    const bool solved = static_cast<Status>(batch.status.at(i)) == Status::solved;
+    const auto status = static_cast<Status>(batch.status.at(i));
+    const bool solved = status == Status::solved;
+    const bool has_q = has_joints(status);
     if (batch.success.at(i) != solved) in.refuse("success", "the same as status says", row);
     if (solved && static_cast<Proof>(batch.proof.at(i)) != Proof::none) {
       in.refuse("proof", "none where solved", row);
     }
-    if (solved && !(batch.position_error.at(i) >= 0 && batch.rotation_error.at(i) >= 0)) {
-      in.refuse("errors", "0 or more where solved", row);
+    if (has_q && !(batch.position_error.at(i) >= 0 && batch.rotation_error.at(i) >= 0)) {
+      in.refuse("errors", "0 or more where there is a q", row);
     }
-    if (solved) check_finite(batch.q.data(i), static_cast<int>(batch.q.shape(1)), "q, " + row);
+    if (has_q) check_finite(batch.q.data(i), static_cast<int>(batch.q.shape(1)), "q, " + row);
     if (batch.attempts.at(i) < 0 || batch.iterations.at(i) < 0) {
       in.refuse("attempts and iterations", "counts", row);
     }

@@ -208,7 +208,7 @@ target's solutions, within the same tolerances. The request holds for each targe
         a bad pose.)"},
       batch_keywords(),
       {"threads", "near", "weights", "norm", "seeds", "database_seeds", "filter", "deadline",
-       "task", "objective", "on_invalid_pose"},
+       "task", "objective", "closest", "on_invalid_pose"},
       &solve_batch);
 }
 

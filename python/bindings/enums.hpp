@@ -215,6 +215,8 @@ struct EnumTable<Status> {
        "answers exist, but joints would have to move faster than their velocity limits"},
       {"invalid_pose", Status::invalid_pose,
        "the target is no pose; in batches only, for a single pose it is an error"},
+      {"closest", Status::closest,
+       "no answer, but q is nearest to one: for those who ask for `closest`"},
   };
 };
 

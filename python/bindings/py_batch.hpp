@@ -65,7 +65,7 @@ struct PyBatchResult {
     PyResult out;
     out.result.status = static_cast<Status>(status.at(i));
     out.result.proof = static_cast<Proof>(proof.at(i));
-    if (out.result.success()) {
+    if (has_joints(out.result.status)) {
       out.result.q = Eigen::Map<const Eigen::VectorXd>(q.data(i), q.shape(1));
     }
     out.result.position_error = position_error.at(i);

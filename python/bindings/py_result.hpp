@@ -22,7 +22,7 @@ struct PyResult {
   py::object q;
 
   OptionalJoints joints() {
-    if (!q) q = result.success() ? py::object(to_array(result.q)) : py::object(py::none());
+    if (!q) q = has_joints(result.status) ? py::object(to_array(result.q)) : py::object(py::none());
     return py::reinterpret_borrow<OptionalJoints>(q);
   }
 };

@@ -27,6 +27,11 @@ class ArrayLike : public py::object {
   PYBIND11_OBJECT_DEFAULT(ArrayLike, object, is_any_object)
 };
 
+/// What `closest` may be: see as_closest.
+class ClosestLike : public py::object {
+  PYBIND11_OBJECT_DEFAULT(ClosestLike, object, is_any_object)
+};
+
 /// A path, or any other text where there is a choice.
 class PathLike : public py::object {
   PYBIND11_OBJECT_DEFAULT(PathLike, object, is_any_object)
@@ -195,6 +200,11 @@ namespace pybind11::detail {
 template <>
 struct handle_type_name<iksel::python::ArrayLike> {
   static constexpr auto name = const_name("numpy.typing.ArrayLike");
+};
+
+template <>
+struct handle_type_name<iksel::python::ClosestLike> {
+  static constexpr auto name = const_name("bool | numpy.typing.ArrayLike | None");
 };
 
 template <>

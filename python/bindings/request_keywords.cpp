@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "request_keywords.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <string>
 
@@ -85,6 +86,14 @@ struct ArgumentOf<std::optional<T>> : ShownAsNone {
   }
 };
 
+template <>
+struct ArgumentOf<std::optional<PoseWeights>> : ShownAsNone {
+  static std::string text() { return "bool | numpy.typing.ArrayLike"; }
+  static std::optional<PoseWeights> read(py::handle given, const char* /*name*/, int /*dof*/) {
+    return as_closest(given);
+  }
+};
+
 /// No Python enum, see EnumTable.
 template <>
 struct ArgumentOf<OnInvalidPose> {
@@ -98,10 +107,32 @@ struct ArgumentOf<OnInvalidPose> {
 constexpr const char* kWeightsDoc =
     "factor on each joint's part of a move, (dof,), >= 0; None: all 1.";
 constexpr const char* kNormDoc = "how a move is measured.";
+constexpr const char* kClosestDoc =
+    "what a target without an answer gets, with Status.closest: the configuration inside the "
+    "limits that is nearest to it, the best of the local minima that a bounded search comes to. "
+    "True: a metre counts 1, a radian as the database weighs rotations, by default a quarter of "
+    "the arm's reach in metres. Or six weights, of position [1/m] and rotation [1/rad] along the "
+    "axes of the task. Of equally near ones the nearest to `near`. Takes some 100 us on top, "
+    "whatever the deadline; a filter is asked about it too.";
 constexpr const char* kFilterDoc =
     "called with candidates (n, dof), each at the pose and inside the limits; returns n truth "
     "values. The search continues within its bounds while all are refused. In a batch it is asked "
     "about the first answers of up to 256 targets at once, along a path about one waypoint's.";
+
+std::optional<PoseWeights> as_closest(py::handle given) {
+  if (given.is_none() || given.ptr() == Py_False) return std::nullopt;
+  PoseWeights weights;
+  if (given.ptr() == Py_True) return weights;
+  const DoubleArray six = as_doubles(given, "closest");
+  if (six.ndim() != 1 || six.shape(0) != 6) {
+    throw_wrong_shape("closest", "True or six weights, of position and rotation", six);
+  }
+  weights.rotation.emplace();
+  std::copy_n(six.data(), 3, weights.position.begin());
+  std::copy_n(six.data() + 3, 3, weights.rotation->begin());
+  weights.validate();
+  return weights;
+}
 
 std::vector<Keyword> request_keywords() {
   using R = SolveRequest;
@@ -134,6 +165,7 @@ std::vector<Keyword> request_keywords() {
               "'manipulability', or a function of joint values (dof,) that returns a cost. Comes "
               "before `near`. Of the answers found, the cheapest; a redundant arm's is moved along "
               "its self-motion to a local minimum."),
+      keyword("closest", &R::closest, kClosestDoc),
       keyword("on_invalid_pose", &R::on_invalid_pose,
               "what a row does that is no pose (see check_pose): \"status\", "
               "Status.invalid_pose for it and NaN for its q; \"raise\", an error that names the "

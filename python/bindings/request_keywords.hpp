@@ -2,6 +2,7 @@
 // The keywords of Solver's methods, as iksel/request.hpp and iksel/path.hpp declare them.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "iksel/request.hpp"
@@ -20,6 +21,9 @@ std::vector<Keyword> path_keywords();
 /// The request that keywords ask for, but for the field `except`; warns of angles that look like
 /// degrees.
 SolveRequest read_request(const Solver& solver, const Given& given, const char* except = "");
+
+/// What `closest` asks for: None, a bool, or six weights.
+std::optional<PoseWeights> as_closest(py::handle given);
 
 /// The task of a request, or else the solver's.
 inline const Task& task_of(const Solver& solver, const SolveRequest& request) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "iksel/export.hpp"
@@ -36,24 +37,30 @@ struct PathResult {
 class IKSEL_EXPORT Tracker {
  public:
   /// `start` is where the arm is; joints outside their limits are taken to be at them. Throws
-  /// InvalidArgumentError if it has not dof finite elements.
-  Tracker(const Solver& solver, const JointVector& start);
+  /// InvalidArgumentError if it has not dof finite elements. `closest`: what is done where a pose
+  /// cannot be reached from where the arm is (track).
+  Tracker(const Solver& solver, const JointVector& start,
+          const std::optional<PoseWeights>& closest = std::nullopt);
 
   /// Moves on towards the pose, by no more than each joint can in `dt` seconds. Status `solved`:
   /// there. `too_fast`: the arm needs more time, and went as far on the straight way in joint space
-  /// as it could. Any other: there is no continuation from here, and the arm stays. `move` is the
-  /// length of the move in joint space. Throws InvalidArgumentError if the pose is not rigid or dt
-  /// is not above 0.
+  /// as it could. `closest`, only if that is asked for: the pose cannot be reached from here, and
+  /// the arm went downhill to where it is nearest, by the weights. Any other: there is no
+  /// continuation from here, and the arm stays. `move` is the length of the move in joint space.
+  /// Throws InvalidArgumentError if the pose is not rigid or dt is not above 0.
   [[nodiscard]] Result track(const Pose& T_base_tip, double dt);
 
   /// Where the arm is now [rad or m]; always inside the limits.
   [[nodiscard]] const JointVector& q() const { return q_; }
   /// What solves.
   [[nodiscard]] const Solver& solver() const { return solver_; }
+  /// What is done at poses that cannot be reached.
+  [[nodiscard]] const std::optional<PoseWeights>& closest() const { return closest_; }
 
  private:
   Solver solver_;
   JointVector q_;
+  std::optional<PoseWeights> closest_;
 };
 
 }  // namespace iksel

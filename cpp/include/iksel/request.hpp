@@ -3,6 +3,7 @@
 // answers to refuse, and by when.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <limits>
@@ -35,6 +36,17 @@ using Filter = std::function<void(const double* q, std::size_t count, bool* keep
 
 /// A filter that is asked about one configuration at a time.
 IKSEL_EXPORT Filter filter_each(int dof, std::function<bool(const JointVector&)> keep);
+
+/// How far a pose is from a target: the root of the sum of the squared parts of the error, along
+/// the axes of the task, each times its weight.
+struct IKSEL_EXPORT PoseWeights {
+  std::array<double, 3> position{1, 1, 1};  ///< [1/m]
+  /// [1/rad]; empty: as the database weighs rotations, by default a quarter of the arm's reach.
+  std::optional<std::array<double, 3>> rotation;
+
+  /// Throws InvalidArgumentError unless all are finite and not below 0, and one is above.
+  void validate() const;
+};
 
 /// What is asked of an answer besides reaching the pose. The defaults ask for nothing.
 ///
@@ -75,6 +87,13 @@ struct IKSEL_EXPORT SolveRequest {
 
   /// What of the pose has to be reached; empty: what the solver's options say.
   std::optional<Task> task;
+
+  /// Of solve and solve_batch: what a target without an answer gets, with Status::closest, is the
+  /// configuration inside the limits that is nearest to it by these weights; of equally near ones
+  /// the nearest to `near`. It is the best of the local minima that a bounded search comes to, some
+  /// 100 us on top of the search for an answer, whatever the deadline. A filter is asked about it
+  /// too; the objective is not. Empty: it gets nothing.
+  std::optional<PoseWeights> closest;
 
   /// Of solve_batch; solve, solve_all and diagnose always throw.
   OnInvalidPose on_invalid_pose = OnInvalidPose::status;

@@ -23,7 +23,13 @@ enum class Status : std::uint8_t {
   out_of_time,   ///< the deadline passed before an answer was found
   too_fast,      ///< answers exist, but joints would have to move faster than their velocity limits
   invalid_pose,  ///< the target is no pose (check_pose); in batches only, solve throws
+  closest,       ///< no answer, but the configuration nearest to one (SolveRequest::closest)
 };
+
+/// Whether there are joint values with it.
+constexpr bool has_joints(Status status) {
+  return status == Status::solved || status == Status::closest;
+}
 
 /// Lower-case name of a status.
 IKSEL_EXPORT const char* to_string(Status status);
@@ -45,14 +51,15 @@ struct Result {
   Status status = Status::not_converged;
   /// Of a failure, how certain it is that there is no answer; `none` of a success.
   Proof proof = Proof::none;
-  /// Joint values [rad or m]; empty unless solved, so that no other q can be taken for an answer.
+  /// Joint values [rad or m]; empty unless solved, so that no other q can be taken for an answer,
+  /// or `closest`, which is given to those only who ask for it.
   JointVector q;
-  /// |p_target - p(q)| [m], or what of it a task does not allow; NaN unless solved.
+  /// |p_target - p(q)| [m], or what of it a task does not allow; NaN unless there is a q.
   double position_error = std::numeric_limits<double>::quiet_NaN();
-  /// |rotvec(R_target R(q)^T)| [rad], or what of it a task does not allow; NaN unless solved.
+  /// |rotvec(R_target R(q)^T)| [rad], or what of it a task does not allow; NaN unless there is a q.
   double rotation_error = std::numeric_limits<double>::quiet_NaN();
-  /// Length of the move from `near` to q, by the request's norm and weights; NaN unless solved with
-  /// a `near`.
+  /// Length of the move from `near` to q, by the request's norm and weights; NaN without a q or a
+  /// `near`.
   double move = std::numeric_limits<double>::quiet_NaN();
   /// Cost of q by the request's objective; NaN unless solved with one.
   double cost = std::numeric_limits<double>::quiet_NaN();

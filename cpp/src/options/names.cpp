@@ -22,7 +22,7 @@ const char* to_string(Proof proof) {
 
 const char* to_string(Status status) {
   return name_of(status, {"solved", "not_converged", "outside_limits", "out_of_reach", "rejected",
-                          "out_of_time", "too_fast", "invalid_pose"});
+                          "out_of_time", "too_fast", "invalid_pose", "closest"});
 }
 
 const char* to_string(Cause cause) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "iksel/request.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -18,9 +19,27 @@ Filter filter_each(int dof, std::function<bool(const JointVector&)> keep) {
   };
 }
 
+void PoseWeights::validate() const {
+  double most = 0;
+  const auto check = [&](const std::array<double, 3>& weights, const char* of) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (!(weights[i] >= 0 && std::isfinite(weights[i]))) {
+        throw InvalidArgumentError("closest: weight " + std::to_string(i) + " of " + of + ", " +
+                                   number_text(weights[i]) + ", is not finite and at least 0");
+      }
+      most = std::max(most, weights[i]);
+    }
+  };
+  check(position, "position");
+  if (rotation) {
+    check(*rotation, "rotation");
+    if (most == 0) throw InvalidArgumentError("closest: all weights are 0");
+  }
+}
+
 bool SolveRequest::has_requirements() const {
   return !seeds.empty() || !database_seeds || near || filter || objective.is_set() || task ||
-         std::isfinite(deadline);
+         std::isfinite(deadline) || closest;
 }
 
 void SolveRequest::validate(int dof) const {
@@ -48,6 +67,7 @@ void SolveRequest::validate(int dof) const {
   }
   objective.validate(dof);
   if (task) task->validate();
+  if (closest) closest->validate();
   if (!(deadline > 0)) {
     throw InvalidArgumentError("deadline: " + number_text(deadline) + " s is not above 0");
   }

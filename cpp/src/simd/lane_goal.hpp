@@ -3,16 +3,11 @@
 #pragma once
 
 #include "base/symmetric.hpp"
+#include "simd/lane_frames.hpp"
 #include "simd/lane_math.hpp"
 #include "simd/lane_types.hpp"
 
 namespace iksel::lanes {
-
-/// Frame of the last joint seen from the first: columns and position.
-template <typename T>
-struct LaneFrame {
-  T x[3], y[3], z[3], p[3];
-};
 
 /// All of a pose. The error is the position's, and 2 sin(angle / 2) * axis of R_target R^T, which
 /// grows up to half a turn.

@@ -87,6 +87,11 @@ using Advance = PackResult (*)(const LaneChain& chain, const LaneOptions& option
 using AdvanceRoughly = void (*)(const LaneChainOf<float>& chain, const LaneOptions& options,
                                 int iterations, RoughPack& pack);
 
+/// Moves all lanes of a pack so often towards where the least is missing of their pose
+/// (closest_kernel.hpp). `position` and `rotation` are weights.
+using Approach = void (*)(const LaneChainOf<float>& chain, float position, float rotation,
+                          int iterations, RoughPack& pack);
+
 /// How a side of the chain is left out of the samples (reduction.hpp).
 enum class Side : int { none, rotation, translation };
 
@@ -167,6 +172,7 @@ struct LaneKernels {
   /// first answer for one pose waits for; `wide` the least for each lane.
   PackKernels narrow, wide;
   AdvanceRoughly advance_roughly;
+  Approach approach;
   PrepareSeeds prepare;
   AddKnown add_known;
   FindLargest find_largest;

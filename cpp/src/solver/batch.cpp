@@ -19,7 +19,7 @@ namespace {
 
 void write_row(const Result& result, std::size_t row, int dof, const BatchView& out) {
   double* q = out.q + row * static_cast<std::size_t>(dof);
-  if (result.success()) {
+  if (has_joints(result.status)) {
     std::copy_n(result.q.data(), dof, q);
   } else {
     std::fill_n(q, dof, std::numeric_limits<double>::quiet_NaN());
@@ -214,7 +214,7 @@ class Batch {
     std::size_t asked = 0;
     for (std::size_t i = first; i < last; ++i) {
       Result& answer = answers[i - first];
-      if (answer.success() && !keep[asked++]) {
+      if (has_joints(answer.status) && !keep[asked++]) {
         Result other = solve_one(i, request, workspace);
         other.attempts += answer.attempts;
         other.iterations += answer.iterations;

@@ -293,6 +293,7 @@ Diagnosis Solver::Impl::diagnose(const Pose& target, const SolveRequest& request
 Diagnosis Solver::diagnose(const Pose& T_base_tip, const SolveRequest& request) const {
   const Pose target = check_pose(T_base_tip);
   impl_->check(request);
+  if (request.closest) throw InvalidArgumentError("closest: diagnose gives it anyway, as q");
   return impl_->diagnose(target, request);
 }
 

@@ -7,6 +7,7 @@
 
 #include "goal/joint_move.hpp"
 #include "goal/objective_cost.hpp"
+#include "iksel/error.hpp"
 #include "iksel/pose.hpp"
 #include "solver/solver_impl.hpp"
 
@@ -198,6 +199,7 @@ Solutions Solver::solve_all(const Pose& T_base_tip, const SolveAllOptions& optio
   const Pose target = check_pose(T_base_tip);
   options.validate();
   impl_->check(request);
+  if (request.closest) throw InvalidArgumentError("closest: solve_all gives answers only");
   const WorkspacePool::Lease lease(impl_->workspaces);
   return impl_->solve_all(target, options, request, lease.get());
 }

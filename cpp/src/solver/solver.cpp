@@ -9,6 +9,7 @@
 #include "goal/objective_cost.hpp"
 #include "iksel/error.hpp"
 #include "search/answer_selector.hpp"
+#include "search/closest.hpp"
 #include "solver/solver_impl.hpp"
 
 namespace iksel {
@@ -77,6 +78,17 @@ Result Solver::Impl::find_first(const Pose& target, const TaskSpace& of_call,
 Result Solver::Impl::solve(const Pose& target, const SolveRequest& request, Workspace& workspace,
                            StageTimes* times) const {
   const TaskSpace of_call = task_of(request);
+  Result result = find_answer(target, of_call, request, workspace, times);
+  if (result.success() || !request.closest) return result;
+  const Goal goal(model(), of_call, target);
+  give_closest(model(), options, goal, request, to_vector(*request.closest, database.data()),
+               workspace, result);
+  return result;
+}
+
+Result Solver::Impl::find_answer(const Pose& target, const TaskSpace& of_call,
+                                 const SolveRequest& request, Workspace& workspace,
+                                 StageTimes* times) const {
   if (!ranks_answers(request) && !request.filter) {
     return find_first(target, of_call, request, workspace, times);
   }

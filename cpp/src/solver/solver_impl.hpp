@@ -25,7 +25,10 @@ struct Solver::Impl {
   /// The first answer that there is: of a request its seeds, `near` and deadline are read.
   Result find_first(const Pose& target, const TaskSpace& of_call, const SolveRequest& request,
                     Workspace& workspace, StageTimes* times) const;
-  /// The best answer to the whole request.
+  /// The best answer to the whole request, but for `closest`.
+  Result find_answer(const Pose& target, const TaskSpace& of_call, const SolveRequest& request,
+                     Workspace& workspace, StageTimes* times) const;
+  /// The same, or what is closest.
   Result solve(const Pose& target, const SolveRequest& request, Workspace& workspace,
                StageTimes* times) const;
   Solutions solve_all(const Pose& target, const SolveAllOptions& all, const SolveRequest& request,

@@ -6,14 +6,19 @@
 #include "base/pose_check.hpp"
 #include "iksel/error.hpp"
 #include "iksel/path.hpp"
+#include "refine/closest_descent.hpp"
 #include "refine/self_motion.hpp"
+#include "search/closest.hpp"
 #include "solver/solver_impl.hpp"
 
 namespace iksel {
 
-Tracker::Tracker(const Solver& solver, const JointVector& start) : solver_(solver), q_(start) {
+Tracker::Tracker(const Solver& solver, const JointVector& start,
+                 const std::optional<PoseWeights>& closest)
+    : solver_(solver), q_(start), closest_(closest) {
   const Robot& robot = solver.robot();
   check_joints(start, robot.dof(), "start");
+  if (closest) closest->validate();
   solver.impl_->angles.check(start, "start");
   q_ = robot.model().joints.clamp(q_);
 }
@@ -29,19 +34,30 @@ Result Tracker::track(const Pose& T_base_tip, double dt) {
   Result result;
   JointVector end = q_;
   result.attempts = 1;
-  if (!converge(model, goal, kStepsToNext, end)) return result;
+  const bool is_reached = converge(model, goal, kStepsToNext, end);
+  if (!is_reached) {
+    if (!closest_) return result;
+    const Vector6 weights = to_vector(*closest_, solver_.database().data());
+    end = q_;
+    descend_to_closest(model, Remainder(model, goal, weights), kStepsToNext, end,
+                       result.iterations);
+  }
   const JointVector move = end - q_;
   const JointVector longest = model.joints.longest_moves(dt);
   double part = 1;
   for (int j = 0; j < model.dof; ++j) {
     if (std::abs(move[j]) > longest[j]) part = std::min(part, longest[j] / std::abs(move[j]));
   }
-  if (part == 1) {
-    if (!goal.check(end, result)) return result;
-    q_ = end;
-  } else {
+  if (part < 1) {
     result.status = Status::too_fast;
     q_ += part * move;
+  } else if (!is_reached) {
+    set_closest(goal, end, result);
+    q_ = end;
+  } else if (goal.check(end, result)) {
+    q_ = end;
+  } else {
+    return result;
   }
   result.move = part * move.norm();
   return result;

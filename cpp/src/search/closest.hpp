@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Of a goal that has no answer, the configuration inside the limits that is nearest to one.
+#pragma once
+
+#include "search/context.hpp"
+
+namespace iksel {
+
+/// The weights of position [1/m] and rotation [1/rad].
+Vector6 to_vector(const PoseWeights& weights, const DatabaseData& data);
+
+/// Makes a failure the nearest configuration that the request's filter takes, if there is one.
+void give_closest(const ChainModel& model, const SolverOptions& options, const Goal& goal,
+                  const SolveRequest& request, const Vector6& weights, Workspace& workspace,
+                  Result& result);
+
+/// Measures q, which is nearest to a goal, into the result.
+void set_closest(const Goal& goal, const JointVector& q, Result& result);
+
+}  // namespace iksel

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where the joints of a chain are, lane by lane.
+#pragma once
+
+#include "simd/lane_math.hpp"
+#include "simd/lane_types.hpp"
+
+namespace iksel::lanes {
+
+/// Frame of the last joint seen from the first: columns and position.
+template <typename T>
+struct LaneFrame {
+  T x[3], y[3], z[3], p[3];
+};
+
+/// (u, v) <- (c u + s v, c v - s u)
+template <typename T, typename C>
+inline void turn(T (&u)[3], T (&v)[3], const C& c, const C& s) {
+  for (int i = 0; i < 3; ++i) {
+    const T a = u[i];
+    u[i] = a * c + v[i] * s;
+    v[i] = v[i] * c - a * s;
+  }
+}
+
+/// Frames of the joints at q: J has each joint's origin and axis, `f` the last one's frame.
+template <typename T>
+IKSEL_INLINE void place_joints(const LaneChainOf<NumberOf<T>>& chain, const T* q, T (*J)[6],
+                               LaneFrame<T>& f) {
+  const int n = chain.n;
+  for (int i = 0; i < 3; ++i) {
+    f.x[i] = T(i == 0 ? 1.0 : 0.0);
+    f.y[i] = T(i == 1 ? 1.0 : 0.0);
+    f.z[i] = T(i == 2 ? 1.0 : 0.0);
+    f.p[i] = T(0.0);
+  }
+  // The joints' sines first: they do not depend on each other, and the frames need the registers.
+  T sine[kMaxJoints];
+  T cosine[kMaxJoints];
+  for (int j = 0; j < n; ++j) sincos(q[j] + T(chain.joint[j].offset), sine[j], cosine[j]);
+#pragma GCC unroll 10
+  for (int j = 0; j < n; ++j) {
+    const auto& joint = chain.joint[j];
+    if (j > 0) {
+      for (int i = 0; i < 3; ++i) {
+        f.p[i] = f.p[i] + f.x[i] * T(joint.p[0]) + f.y[i] * T(joint.p[1]) + f.z[i] * T(joint.p[2]);
+      }
+      turn(f.y, f.z, T(joint.cos_alpha), T(joint.sin_alpha));
+    }
+    for (int i = 0; i < 3; ++i) J[j][3 + i] = f.z[i];
+    if (joint.prismatic) {
+      turn(f.x, f.y, T(joint.cos_turn), T(joint.sin_turn));
+      const T slide = q[j] + T(joint.offset);
+      for (int i = 0; i < 3; ++i) f.p[i] = f.p[i] + f.z[i] * slide;
+    } else if (j == 0) {
+      f.x[0] = cosine[0];
+      f.x[1] = sine[0];
+      f.y[0] = T(0.0) - sine[0];
+      f.y[1] = cosine[0];
+    } else {
+      turn(f.x, f.y, cosine[j], sine[j]);
+    }
+    for (int i = 0; i < 3; ++i) J[j][i] = f.p[i];
+  }
+}
+
+}  // namespace iksel::lanes

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The configuration nearest to a target without an answer, beside brute force.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "iksel/iksel.hpp"
+#include "robots.hpp"
+
+namespace {
+
+using iksel::JointVector;
+using iksel::Pose;
+using iksel::PoseWeights;
+using iksel::Result;
+using iksel::Robot;
+using iksel::Solver;
+using iksel::SolveRequest;
+using iksel::Status;
+
+/// By default a radian counts as a quarter of the reach, which is that of the whole chain stretched
+/// out: told to both sides here.
+PoseWeights weights_of(double rotation) {
+  PoseWeights weights;
+  weights.rotation = {rotation, rotation, rotation};
+  return weights;
+}
+
+double remainder(const Robot& robot, const Pose& target, const JointVector& q, double rotation) {
+  const auto e = iksel::pose_error(target, robot.fk(q));
+  return std::hypot(e.head<3>().norm(), rotation * e.tail<3>().norm());
+}
+
+/// The least of a pattern search from `starts` configurations at random: slow, and knows nothing of
+/// derivatives.
+double search_by_pattern(const Robot& robot, const Pose& target, double rotation, int starts,
+                         std::uint64_t seed) {
+  const Eigen::MatrixXd q = robot.random_configurations(starts, seed);
+  double least = 1e9;
+  for (Eigen::Index i = 0; i < q.rows(); ++i) {
+    JointVector at = q.row(i);
+    double value = remainder(robot, target, at, rotation);
+    for (double step = 0.5; step > 1e-6;) {
+      bool is_better = false;
+      for (int j = 0; j < robot.dof(); ++j) {
+        for (const double sign : {1.0, -1.0}) {
+          JointVector next = at;
+          next[j] = std::clamp(at[j] + sign * step, robot.lower()[j], robot.upper()[j]);
+          const double there = remainder(robot, target, next, rotation);
+          if (there >= value) continue;
+          value = there;
+          at = next;
+          is_better = true;
+        }
+      }
+      if (!is_better) step /= 2;
+    }
+    least = std::min(least, value);
+  }
+  return least;
+}
+
+/// Positions within reach with rotations of others: many have no answer.
+Pose strange_pose(const Robot& robot, const Eigen::MatrixXd& q, int i) {
+  Pose target = robot.fk(q.row(2 * i));
+  target.linear() = robot.fk(q.row(2 * i + 1)).linear();
+  target.translation() *= 1 + 0.3 * std::sin(i);
+  return target;
+}
+
+TEST(Closest, ComesAsNearAsBruteForce) {
+  for (const char* name : {"ur5e", "irb120", "cvr038", "panda", "xarm5"}) {
+    const Robot& robot = iksel_test::robot(name);
+    const Solver& solver = iksel_test::solver(name);
+    constexpr double kRotation = 0.2;
+    SolveRequest request;
+    request.closest = weights_of(kRotation);
+    const int cases = iksel_test::cases(60, 12);
+    const Eigen::MatrixXd q = robot.random_configurations(2 * cases, iksel_test::seed());
+    int compared = 0;
+    int worse = 0;
+    for (int i = 0; i < cases; ++i) {
+      const Pose target = strange_pose(robot, q, i);
+      const Result plain = solver.solve(target);
+      const Result closest = solver.solve(target, request);
+      EXPECT_EQ(plain.success(), closest.success());
+      if (plain.success()) {
+        EXPECT_EQ(plain.q, closest.q);
+        continue;
+      }
+      ++compared;
+      ASSERT_EQ(closest.status, Status::closest) << name << ", case " << i;
+      EXPECT_EQ(closest.proof, plain.proof);
+      EXPECT_TRUE(robot.within_limits(closest.q));
+      const auto e = iksel::pose_error(target, robot.fk(closest.q));
+      EXPECT_NEAR(closest.position_error, e.head<3>().norm(), 1e-9);
+      EXPECT_NEAR(closest.rotation_error, e.tail<3>().norm(), 1e-9);
+      const double brute = search_by_pattern(robot, target, kRotation, 60, iksel_test::seed() + i);
+      worse += remainder(robot, target, closest.q, kRotation) > 1.01 * brute;
+    }
+    EXPECT_GT(compared, 0) << name;
+    EXPECT_LE(worse, cases / 60) << name << ", of " << compared;
+  }
+}
+
+TEST(Closest, WeighsPositionsAgainstRotations) {
+  const Robot& robot = iksel_test::robot("ur5e");
+  const Solver& solver = iksel_test::solver("ur5e");
+  const Eigen::MatrixXd q = robot.random_configurations(200, iksel_test::seed());
+  int compared = 0;
+  for (int i = 0; i < 100; ++i) {
+    const Pose target = strange_pose(robot, q, i);
+    SolveRequest request;
+    request.closest = weights_of(0.01);
+    const Result position = solver.solve(target, request);
+    if (position.status != Status::closest) continue;
+    request.closest = weights_of(10);
+    const Result rotation = solver.solve(target, request);
+    ++compared;
+    EXPECT_LE(position.position_error, rotation.position_error + 1e-3) << "case " << i;
+    EXPECT_GE(position.rotation_error, rotation.rotation_error - 1e-3) << "case " << i;
+  }
+  EXPECT_GT(compared, 10);
+}
+
+TEST(Closest, LiesOnTheSphereThatTheArmReaches) {
+  // Far out along a ray, only the position counting: stretched out, on the way to the target.
+  const Robot& robot = iksel_test::robot("panda");
+  const Solver& solver = iksel_test::solver("panda");
+  SolveRequest request;
+  request.task = iksel::Task::position_only();
+  request.closest = weights_of(0);
+  Pose target = Pose::Identity();
+  target.translation() << 1.5, 1.0, 0.6;
+  const Result closest = solver.solve(target, request);
+  ASSERT_EQ(closest.status, Status::closest);
+  EXPECT_EQ(closest.proof, iksel::Proof::reach);
+  EXPECT_EQ(closest.rotation_error, 0);
+  EXPECT_NEAR(closest.position_error, search_by_pattern(robot, target, 0, 60, 1), 1e-4);
+}
+
+TEST(Closest, FollowsItsFilterAndItsSeeds) {
+  const Robot& robot = iksel_test::robot("ur5e");
+  const Solver& solver = iksel_test::solver("ur5e");
+  Pose target = robot.fk(JointVector::Constant(6, 0.5));
+  target.translation() *= 3;
+  SolveRequest request;
+  request.closest.emplace();
+  const Result first = solver.solve(target, request);
+  ASSERT_EQ(first.status, Status::closest);
+  // Refused, another one that is not as near; and of all refused none.
+  request.filter = iksel::filter_each(
+      6, [&](const JointVector& q) { return (q - first.q).cwiseAbs().maxCoeff() > 1e-3; });
+  const Result second = solver.solve(target, request);
+  if (second.status == Status::closest) {
+    EXPECT_GT((second.q - first.q).cwiseAbs().maxCoeff(), 1e-3);
+  }
+  request.filter = iksel::filter_each(6, [](const JointVector&) { return false; });
+  EXPECT_NE(solver.solve(target, request).status, Status::closest);
+  // In a batch the same rows.
+  const std::vector<Result> rows = solver.solve_batch({target, target}, request);
+  EXPECT_NE(rows[0].status, Status::closest);
+  request.filter = nullptr;
+  request.near = first.q;
+  const Result near = solver.solve(target, request);
+  EXPECT_NEAR(near.move, (near.q - first.q).norm(), 1e-12);
+  EXPECT_LT(near.move, 1e-3);
+}
+
+TEST(Closest, IsRefusedWhereItMakesNoSense) {
+  const Solver& solver = iksel_test::solver("ur5e");
+  SolveRequest request;
+  request.closest.emplace();
+  EXPECT_THROW(static_cast<void>(solver.solve_all(Pose::Identity(), {}, request)),
+               iksel::InvalidArgumentError);
+  request.closest->position = {0, 0, 0};
+  request.closest->rotation = {0, 0, 0};
+  EXPECT_THROW(static_cast<void>(solver.solve(Pose::Identity(), request)),
+               iksel::InvalidArgumentError);
+  request.closest->rotation = {1, -1, 0};
+  EXPECT_THROW(static_cast<void>(solver.solve(Pose::Identity(), request)),
+               iksel::InvalidArgumentError);
+}
+
+TEST(Closest, TrackerGoesToTheBoundaryAndBack) {
+  for (const char* name : {"ur5e", "panda"}) {
+    const Robot& robot = iksel_test::robot(name);
+    const Solver& solver = iksel_test::solver(name);
+    constexpr double kStep = 1e-3;
+    constexpr double kDt = 0.01;
+    const Eigen::MatrixXd q = robot.random_configurations(iksel_test::cases(40, 8), 3);
+    Eigen::Index came_back = 0;
+    for (Eigen::Index i = 0; i < q.rows(); ++i) {
+      const JointVector start = 0.9 * JointVector(q.row(i));
+      iksel::Tracker tracker(solver, robot.within_limits(start) ? start : JointVector(q.row(i)),
+                             PoseWeights());
+      Pose target = robot.fk(tracker.q());
+      const Eigen::Vector3d away = target.translation().normalized();
+      Eigen::Vector3d tip = target.translation();
+      const JointVector longest = robot.velocity_limit() * kDt;
+      int outside = 0;
+      for (int step = 0; step < 2000; ++step) {
+        target.translation() += (step < 1000 ? kStep : -kStep) * away;
+        const JointVector before = tracker.q();
+        const Result result = tracker.track(target, kDt);
+        ASSERT_TRUE(result.success() || result.status == Status::closest ||
+                    result.status == Status::too_fast);
+        outside += result.status == Status::closest;
+        EXPECT_TRUE(robot.within_limits(tracker.q()));
+        EXPECT_LE(((tracker.q() - before).cwiseAbs() - longest).maxCoeff(), 1e-9);
+        tip = robot.fk(tracker.q()).translation();
+      }
+      EXPECT_GT(outside, 0);
+      came_back += (tip - target.translation()).norm() < 1e-6;
+    }
+    // It goes downhill only: some stay behind a limit that they met outside.
+    EXPECT_GT(2 * came_back, q.rows()) << name;
+  }
+}
+
+}  // namespace

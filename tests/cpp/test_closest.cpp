@@ -76,7 +76,7 @@ TEST(Closest, ComesAsNearAsBruteForce) {
     constexpr double kRotation = 0.2;
     SolveRequest request;
     request.closest = weights_of(kRotation);
-    const int cases = iksel_test::cases(60, 12);
+    const int cases = iksel_test::cases(30, 10);
     const Eigen::MatrixXd q = robot.random_configurations(2 * cases, iksel_test::seed());
     int compared = 0;
     int worse = 0;
@@ -100,7 +100,7 @@ TEST(Closest, ComesAsNearAsBruteForce) {
       worse += remainder(robot, target, closest.q, kRotation) > 1.01 * brute;
     }
     EXPECT_GT(compared, 0) << name;
-    EXPECT_LE(worse, cases / 60) << name << ", of " << compared;
+    EXPECT_LE(worse, cases / 30) << name << ", of " << compared;
   }
 }
 
@@ -189,7 +189,7 @@ TEST(Closest, TrackerGoesToTheBoundaryAndBack) {
     const Solver& solver = iksel_test::solver(name);
     constexpr double kStep = 1e-3;
     constexpr double kDt = 0.01;
-    const Eigen::MatrixXd q = robot.random_configurations(iksel_test::cases(40, 8), 3);
+    const Eigen::MatrixXd q = robot.random_configurations(iksel_test::cases(20, 6), 3);
     Eigen::Index came_back = 0;
     for (Eigen::Index i = 0; i < q.rows(); ++i) {
       const JointVector start = 0.9 * JointVector(q.row(i));

@@ -130,11 +130,14 @@ FORMATS: dict[str, type[Answers]] = {
 
 def _rows(batch: BatchResult, q: FloatArray) -> Any:
     """Rows as plain data: names of status and proof, q and errors; None for NaN."""
-    solved = batch.success.tolist()
+    has_joints = np.isfinite(q).all(axis=1).tolist()
     return zip(
         (Status(status).name for status in batch.status),
         (Proof(proof).name for proof in batch.proof),
-        (row if yes else None for row, yes in zip(q.tolist(), solved, strict=True)),
+        (
+            row if yes else None
+            for row, yes in zip(q.tolist(), has_joints, strict=True)
+        ),
         *(plain(getattr(batch, name)) for name in ERRORS),
         strict=True,
     )

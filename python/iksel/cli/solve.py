@@ -43,6 +43,7 @@ examples:
   iksel solve ur3 --pose 0.2 0.15 0.3 0 3.1416 0 --all
   iksel solve ur3 --pose 0.2 0.15 0.3 0 3.1416 0 --task free_spin
   iksel solve ur3 --pose 0.9 0 0.3 0 0 0 --diagnose
+  iksel solve ur3 --pose 0.9 0 0.3 0 0 0 --closest
   iksel solve panda --from-q 0 -0.5 0 -2 0 1.6 0.8 --preset paper --max-attempts 6
   iksel solve arm.urdf --base base_link --tip tool0 --tcp 0 0 0.1 0 0 0 --from-q 0 0 0 0
   iksel solve ur3 --poses poses.csv -o answers.csv
@@ -118,6 +119,12 @@ def add_request(parser: argparse.ArgumentParser) -> None:
         choices=("limits", "manipulability"),
         help="of all answers found, the one farthest from the limits, or the most "
         "manipulable; a redundant arm is moved there along its self-motion",
+    )
+    parser.add_argument(
+        "--closest",
+        action="store_true",
+        help="if there is no solution, give the configuration inside the limits that is "
+        "nearest to one, with status closest; a radian counts a quarter of the reach",
     )
     parser.add_argument(
         "--diagnose",
@@ -198,7 +205,14 @@ def read_request(
     seed = arguments.seed_q and angles.read_joints("--seed-q", arguments.seed_q, robot)
     if arguments.objective and arguments.all:
         raise InvalidArgumentError("--objective: cannot be used with --all")
-    given = {"near": near, "seeds": seed, "objective": arguments.objective}
+    if arguments.closest and arguments.all:
+        raise InvalidArgumentError("--closest: cannot be used with --all")
+    given = {
+        "near": near,
+        "seeds": seed,
+        "objective": arguments.objective,
+        "closest": arguments.closest,
+    }
     request: dict[str, Any] = {name: value for name, value in given.items() if value}
     if arguments.no_database_seeds:
         if not (near or seed):

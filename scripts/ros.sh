@@ -1,0 +1,35 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Builds the ROS 1 node in build/ros with Debian's ROS, and asks it 1,000 times.
+#
+# Usage: scripts/ros.sh
+#
+# It is built against an installed IKSel, as a catkin workspace would. build/ros/devel/setup.bash makes it
+# known to rosrun and roslaunch.
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+case ${1-} in
+  '') ;;
+  -h | --help) usage && exit ;;
+  *) unknown_option "$1" ;;
+esac
+
+scripts/bootstrap.sh --apt-only --ros
+
+# A Python of its own in the path has none of Debian's modules.
+python=/usr/bin/python3
+prefix=$root/build/ros/iksel
+
+# As the tests build it, so that ccache knows it.
+cmake -S . -B build/ros/library -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX="$prefix" \
+  -DIKSEL_WARNINGS_AS_ERRORS="${CI:+ON}" >/dev/null
+quietly "building the library, installed in $prefix" cmake --build build/ros/library --target install
+
+quietly "configuring the node" cmake -S ros/ros1/iksel_ros -B build/ros/node \
+  -DCMAKE_PREFIX_PATH="$prefix" -DCATKIN_DEVEL_PREFIX="$root/build/ros/devel" \
+  -DPYTHON_EXECUTABLE="$python"
+quietly "building the node" cmake --build build/ros/node
+
+step "rostest"
+build/ros/devel/env.sh rostest --text iksel_ros solve_ik.test \
+  urdf:="$prefix/share/iksel/robots/ur5e.urdf" base_link:=base_link tip_link:=tool0

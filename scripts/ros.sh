@@ -16,18 +16,17 @@ esac
 
 scripts/bootstrap.sh --apt-only --ros
 
-# A Python of its own in the path has none of Debian's modules.
-python=/usr/bin/python3
 prefix=$root/build/ros/iksel
 
-# As the tests build it, so that ccache knows it.
-cmake -S . -B build/ros/library -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX="$prefix" \
-  -DIKSEL_WARNINGS_AS_ERRORS="${CI:+ON}" >/dev/null
-quietly "building the library, installed in $prefix" cmake --build build/ros/library --target install
+# As the tests build it, and in a folder as deep as theirs, so that ccache knows it.
+quietly "configuring the library" cmake -S . -B build/ros -DCMAKE_BUILD_TYPE=Release \
+  -DCMAKE_INSTALL_PREFIX="$prefix" -DIKSEL_WARNINGS_AS_ERRORS="${CI:+ON}"
+quietly "building the library" cmake --build build/ros --target install
 
+# Debian's Python has Debian's modules; another may come first in the path.
 quietly "configuring the node" cmake -S ros/ros1/iksel_ros -B build/ros/node \
   -DCMAKE_PREFIX_PATH="$prefix" -DCATKIN_DEVEL_PREFIX="$root/build/ros/devel" \
-  -DPYTHON_EXECUTABLE="$python"
+  -DPYTHON_EXECUTABLE=/usr/bin/python3
 quietly "building the node" cmake --build build/ros/node
 
 step "rostest"

@@ -19,7 +19,7 @@ SIZE = 0.2  # [m]
 
 def controls():
     """An arrow and a ring for each axis."""
-    # Both are about the control's own x axis; quarter turns about these take it to x, y, z.
+    # Both are about the control's own x axis; quarter turns take it to the others.
     for turn in ("x", "z", "y"):
         for mode in (
             InteractiveMarkerControl.MOVE_AXIS,

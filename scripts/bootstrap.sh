@@ -2,13 +2,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Installs what IKSel needs, and IKSel itself into a virtual environment.
 #
-# Usage: scripts/bootstrap.sh [--dev] [--lint] [--fuzz] [--bench] [--apt-only]
+# Usage: scripts/bootstrap.sh [--dev] [--lint] [--fuzz] [--bench] [--ros] [--apt-only]
 #
 #   --dev       also what tests, benchmarks and the extra [dev] need
 #   --lint      also clang-format, clang-tidy and shellcheck
 #   --fuzz      also clang with libFuzzer
 #   --bench     also NLopt for the C++ baselines, and from PyPI the solvers to compare with and
 #               JAX for the learned seeds
+#   --ros       also Debian's ROS 1, for the node in ros/ros1
 #   --apt-only  only the system's packages, no virtual environment
 #
 # System packages come from apt; those that are there already are left alone. The virtual environment
@@ -16,7 +17,7 @@
 # the sources are unchanged.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-apt_only=false bench=false dev=false fuzz=false lint=false
+apt_only=false bench=false dev=false fuzz=false lint=false ros=false
 for option in "$@"; do
   case $option in
     --apt-only) apt_only=true ;;
@@ -24,6 +25,7 @@ for option in "$@"; do
     --dev) dev=true ;;
     --fuzz) fuzz=true ;;
     --lint) lint=true ;;
+    --ros) ros=true ;;
     -h | --help) usage && exit ;;
     *) unknown_option "$option" ;;
   esac
@@ -37,6 +39,14 @@ want_command() { # COMMAND PACKAGE
 
 want_library() { # PKG-CONFIG-NAME PACKAGE
   pkg-config --exists "$1" 2>/dev/null || missing+=("$2")
+}
+
+want_package() { # PACKAGE...
+  local package
+  for package in "$@"; do
+    [[ $(dpkg-query --show --showformat '${db:Status-Status}' "$package" 2>/dev/null) == installed ]] ||
+      missing+=("$package")
+  done
 }
 
 has_libfuzzer() {
@@ -64,6 +74,12 @@ find_missing() {
     want_library gtest libgtest-dev
   fi
   if $bench; then want_library nlopt libnlopt-cxx-dev; fi
+  if $ros; then
+    want_package catkin libgeometry-msgs-dev libroscpp-dev librostest-dev libsensor-msgs-dev \
+      libvisualization-msgs-dev python3-geometry-msgs python3-interactive-markers python3-numpy \
+      python3-rospy python3-rostest python3-sensor-msgs python3-visualization-msgs \
+      ros-geometry-msgs ros-message-generation ros-sensor-msgs ros-std-msgs
+  fi
   if $fuzz && ! has_libfuzzer; then missing+=(clang libclang-rt-14-dev); fi
   if $lint; then
     want_command clang-format clang-format

@@ -21,6 +21,9 @@ PLACES = {
     "CMakeLists.txt": r"project\(iksel VERSION ([0-9.]+)",
     "CHANGELOG.md": r"(?m)^## \[?([0-9][0-9.]*)",
     "CITATION.cff": r"(?m)^version: [\"']?([0-9.]+)",
+    "ros/ros1/iksel_ros/package.xml": r"<version>([0-9.]+)</version>",
+    "ros/ros2/iksel_ros/package.xml": r"<version>([0-9.]+)</version>",
+    "ros/ros2/iksel_moveit/package.xml": r"<version>([0-9.]+)</version>",
 }
 
 
@@ -38,6 +41,14 @@ def test_files_agree(name: str) -> None:
     found = re.search(PLACES[name], path.read_text(encoding="utf-8"))
     assert found, f"{name} says no version"
     assert found[1] == iksel.__version__
+
+
+def test_ros_1_and_2_have_the_same_service() -> None:
+    packages = [ROOT / "ros/ros1/iksel_ros", ROOT / "ros/ros2/iksel_ros"]
+    if not packages[0].is_dir():
+        pytest.skip("no ros beside the tests")
+    one, two = [(package / "srv/SolveIK.srv").read_text() for package in packages]
+    assert one == two
 
 
 def test_all_is_there_sorted_and_complete() -> None:

@@ -2,13 +2,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Installs what IKSel needs, and IKSel itself into a virtual environment.
 #
-# Usage: scripts/bootstrap.sh [--dev] [--lint] [--fuzz] [--bench] [--apt-only]
+# Usage: scripts/bootstrap.sh [--dev] [--lint] [--fuzz] [--bench] [--docs] [--apt-only]
 #
 #   --dev       also what tests, benchmarks and the extra [dev] need
 #   --lint      also clang-format, clang-tidy and shellcheck
 #   --fuzz      also clang with libFuzzer
 #   --bench     also NLopt for the C++ baselines, and from PyPI the solvers to compare with and
 #               JAX for the learned seeds
+#   --docs      also what the documentation is made with
 #   --apt-only  only the system's packages, no virtual environment
 #
 # System packages come from apt; those that are there already are left alone. The virtual environment
@@ -16,12 +17,13 @@
 # the sources are unchanged.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-apt_only=false bench=false dev=false fuzz=false lint=false
+apt_only=false bench=false dev=false docs=false fuzz=false lint=false
 for option in "$@"; do
   case $option in
     --apt-only) apt_only=true ;;
     --bench) bench=true ;;
     --dev) dev=true ;;
+    --docs) docs=true ;;
     --fuzz) fuzz=true ;;
     --lint) lint=true ;;
     -h | --help) usage && exit ;;
@@ -64,6 +66,7 @@ find_missing() {
     want_library gtest libgtest-dev
   fi
   if $bench; then want_library nlopt libnlopt-cxx-dev; fi
+  if $docs; then want_command doxygen doxygen; fi
   if $fuzz && ! has_libfuzzer; then missing+=(clang libclang-rt-14-dev); fi
   if $lint; then
     want_command clang-format clang-format
@@ -160,9 +163,17 @@ install_rivals() {
   quietly "installing ${rivals[*]}" "$python" -m pip install "${rivals[@]}"
 }
 
+# What the extra docs names.
+install_docs() {
+  local packages
+  mapfile -t packages < <(from_pyproject 'project["project"]["optional-dependencies"]["docs"]')
+  quietly "installing ${packages[*]}" "$python" -m pip install "${packages[@]}"
+}
+
 install_missing
 use_ccache
 if ! $apt_only; then
   install_project
   if $bench; then install_rivals; fi
+  if $docs; then install_docs; fi
 fi

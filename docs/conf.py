@@ -28,10 +28,11 @@ html_title = f"IKSel {release}"
 html_static_path = ["_static"]
 html_css_files = ["iksel.css"]
 html_copy_source = False
+html_show_copyright = False
 # What is copied is what is typed.
 copybutton_prompt_text = "$ "
 
-myst_enable_extensions = ["colon_fence", "dollarmath"]
+myst_enable_extensions = ["colon_fence"]
 myst_heading_anchors = 4
 
 # Every page that is a notebook runs, and the first error ends the build.
@@ -64,7 +65,7 @@ nitpick_ignore_regex = [
     (r"cpp:identifier", r"(std|Eigen|iksel::export)(::.*)?|size_t|u?int\d+_t"),
     (r"cpp:identifier", r"ChainModel|DatabaseData|Impl|Names|StoredPose::Identity"),
     (r"py:.*", r"(collections|enum|np|npt|numpy|os|pathlib|types|typing)\..*"),
-    (r"py:class", r"ArrayLike|Any|Callable|Float|Int|Iterator|Literal|Mapping|Sequence"),
+    (r"py:class", r"ArrayLike|Any|Callable|Float|Int|Literal|Mapping|Sequence"),
     (r"py:class", r"iksel(\.\w+)*\._.*|(Bool|Float|Int)Array|Arrays|Origin|Packages"),
     (r"py:class", r"PoseLike|QuaternionOrder|StrPath"),
 ]
@@ -92,7 +93,7 @@ def plain_signature(app, what, name, obj, options, signature, returns):
 
 
 def plain_docstring(app, what, name, obj, options, lines):
-    """Read Google's style; bars mean lengths, and a colon in a property's text no type."""
+    """Read Google's style; bars are no markup, a property's colon is no type."""
     lines[:] = [re.sub(r"\||(?<=\S)\*(?=\S)", r"\\\g<0>", line) for line in lines]
     if what not in {"attribute", "data", "property"}:
         style = Config(napoleon_use_rtype=False)

@@ -53,10 +53,12 @@ def main() -> None:
             file = (path.parent / unquote(urlsplit(target).path)).resolve()
             if not target:
                 file = path
-            missing = not file.is_file() or not file.is_relative_to(root)
-            if missing or (anchor and file in pages and unquote(anchor) not in pages[file].anchors):
+            found = file.is_file() and file.is_relative_to(root)
+            if found and anchor and file in pages:
+                found = unquote(anchor) in pages[file].anchors
+            if not found:
                 broken.append(f"{path.relative_to(root)}: {link}")
-    print(f"{len(pages)} pages, {inside} links between them, {len(outside)} pages elsewhere")
+    print(f"{len(pages)} pages, {inside} links inside, {len(outside)} pages elsewhere")
     if not pages or broken:
         sys.exit("\n".join(["broken links:", *broken]))
 

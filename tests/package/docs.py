@@ -40,7 +40,9 @@ def has(library: str) -> bool:
     """Whether another library's header is there."""
     test = f"#if !__has_include(<{library}/{library}.hpp>)\n#error\n#endif\n"
     command = [*compiler(), "-fsyntax-only", "-x", "c++", "-"]
-    done = subprocess.run(command, input=test, text=True, capture_output=True, check=False)
+    done = subprocess.run(
+        command, input=test.encode(), capture_output=True, check=False
+    )
     return done.returncode == 0
 
 

@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The code blocks of docs/, and how they run.
 
-A page's blocks run in order in one empty folder: Python in one namespace, `sh` by bash,
-notebooks' cells as Python. A `text` block right behind a block is what that prints, with
-"..." for what may differ. Comments above a block say more:
+A page's blocks run in order in one empty folder: Python and the cells of notebooks in
+one namespace, `sh` by bash. A `text` block right behind a block is what that prints,
+with "..." for what may differ. Comments above a block say more:
 
     <!-- file: NAME -->        it is written to that file, and not run
     <!-- needs: MODULE -->     it runs where that module can be imported, see run_page
     <!-- not run: REASON -->   shown only
 
-Blocks of C++ are programs: tests/package/docs.py runs them, against an installed library.
+Blocks of C++ are programs, which tests/package/docs.py runs.
 
-Run as a program, this writes what the blocks print into the pages.
+Run as a program, this writes what the blocks print into the pages that it is given.
 """
 
 from __future__ import annotations
@@ -102,8 +102,8 @@ def blocks(page: Path) -> list[Block]:
 
 def needs(page: Path) -> list[str]:
     """Modules that some of a page's blocks need."""
-    found = [b.marks["needs"] for b in blocks(page) if b.is_python and "needs" in b.marks]
-    return list(dict.fromkeys(found))
+    here = [b for b in blocks(page) if b.language != "cpp" and "needs" in b.marks]
+    return list(dict.fromkeys(b.marks["needs"] for b in here))
 
 
 def run_python(block: Block, namespace: dict[str, object]) -> str:
@@ -146,7 +146,8 @@ def run_page(page: Path, modules: tuple[str, ...] = ()) -> list[tuple[Block, str
     namespace: dict[str, object] = {"__name__": "__main__"}
     ran = []
     for block in blocks(page):
-        if "not run" in block.marks or block.marks.get("needs", "") not in ("", *modules):
+        needed = block.marks.get("needs")
+        if "not run" in block.marks or (needed and needed not in modules):
             continue
         if "file" in block.marks:
             Path(block.marks["file"]).write_text(block.code, encoding="utf-8")
@@ -164,7 +165,6 @@ def put(block: Block, got: str) -> None:
     start = block.output.line - 1
     lines[start : start + block.output.lines] = got.rstrip("\n").splitlines()
     block.page.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    print(f"{block.output.place} written")
 
 
 def main() -> None:

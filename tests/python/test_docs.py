@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 from docs_pages import DOCS, ROOT, agrees, blocks, name, needs, pages, run_page
 
@@ -66,3 +68,40 @@ def test_reference_is_complete():
     )
     public = {p.name for p in (ROOT / "cpp/include/iksel").glob("*.hpp")}
     assert public - {"iksel.hpp"} <= set(headers.split())
+
+
+def anchors(page) -> set[str]:
+    """What a page's headings are called, as GitHub and Sphinx do."""
+    text = re.sub(
+        r"^```.*?^```", "", page.read_text("utf-8"), flags=re.MULTILINE | re.DOTALL
+    )
+    headings = re.findall(r"^#+ (.+)$", text, flags=re.MULTILINE)
+    return {
+        re.sub(r"[^\w\- ]", "", h).strip().lower().replace(" ", "-") for h in headings
+    }
+
+
+@pytest.mark.parametrize("page", pages(), ids=name)
+def test_links(page):
+    """Pages, anchors, pictures and files that a page names are there."""
+    text = re.sub(
+        r"^```\w.*?^```", "", page.read_text("utf-8"), flags=re.MULTILINE | re.DOTALL
+    )
+    for link in re.findall(r"\]\(([^)\s]+)\)", text):
+        path, _, anchor = link.partition("#")
+        if "://" in path:
+            continue
+        target = (page.parent / path).resolve() if path else page
+        assert target.is_file(), f"{page.relative_to(ROOT)}: no {link}"
+        assert not anchor or anchor in anchors(target), f"{page}: no {link}"
+
+
+def test_every_page_has_a_place():
+    """A toctree names each page but the first."""
+    named = {DOCS / "index.md"}
+    for page in pages():
+        for block in blocks(page):
+            if block.language == "{toctree}":
+                lines = [x for x in block.code.split() if not x.startswith(":")]
+                named |= {(page.parent / f"{x}.md").resolve() for x in lines}
+    assert set(pages()) <= named

@@ -71,6 +71,7 @@ nitpick_ignore_regex = [
 ]
 
 
+# What a signature of pybind11 says in other words.
 SHORTER = (
     (r"^\(self: [\w.]+(, )?", "("),
     (r"\biksel_cpp\.", "iksel."),
@@ -81,21 +82,27 @@ SHORTER = (
 )
 
 
+def plain(text):
+    """A signature, or a part of one, as users write it."""
+    for found, written in SHORTER:
+        text = text and re.sub(found, written, text)
+    return text
+
+
 def plain_signature(app, what, name, obj, options, signature, returns):
     """Name classes as users do, and leave out what does not help a reader."""
-
-    def plain(text):
-        for found, written in SHORTER:
-            text = text and re.sub(found, written, text)
-        return text
-
     return plain(signature), plain(returns)
 
 
 def plain_docstring(app, what, name, obj, options, lines):
     """Read Google's style; bars are no markup, a property's colon is no type."""
     lines[:] = [re.sub(r"\||(?<=\S)\*(?=\S)", r"\\\g<0>", line) for line in lines]
-    if what not in {"attribute", "data", "property"}:
+    if isinstance(obj, property):
+        # pybind11 keeps the type with the getter.
+        _, arrow, type_ = (obj.fget.__doc__ or "").rpartition(" -> ")
+        if arrow and lines:
+            lines[0] = f"``{plain(type_.strip())}``: {lines[0]}"
+    elif what not in {"attribute", "data"}:
         style = Config(napoleon_use_rtype=False)
         google = GoogleDocstring(lines, style, app, what, name, obj, options)
         lines[:] = google.lines()

@@ -21,16 +21,13 @@ done
 
 scripts/bootstrap.sh --docs
 
-step "C++ reference"
 mkdir -p build/docs/doxygen
-doxygen docs/Doxyfile
+quietly "reading the C++ headers" doxygen docs/Doxyfile
 
-step "pages"
-sphinx=("$python" -m sphinx -W --keep-going -n -q -j "$CMAKE_BUILD_PARALLEL_LEVEL")
-"${sphinx[@]}" -b html docs build/docs/html
+sphinx=("$python" -m sphinx -W --keep-going -n -j "$CMAKE_BUILD_PARALLEL_LEVEL")
+quietly "running the notebooks, making the pages" "${sphinx[@]}" -b html docs build/docs/html
 
 step "links"
 "$python" scripts/check_links.py build/docs/html
 if $external; then "${sphinx[@]}" -b linkcheck docs build/docs/linkcheck; fi
-
 echo "build/docs/html/index.html"

@@ -70,23 +70,22 @@ def test_reference_is_complete():
     assert public - {"iksel.hpp"} <= set(headers.split())
 
 
+def prose(page) -> str:
+    """A page without its blocks of code."""
+    text = page.read_text("utf-8")
+    return re.sub(r"^```\w.*?^```", "", text, flags=re.MULTILINE | re.DOTALL)
+
+
 def anchors(page) -> set[str]:
     """What a page's headings are called, as GitHub and Sphinx do."""
-    text = re.sub(
-        r"^```.*?^```", "", page.read_text("utf-8"), flags=re.MULTILINE | re.DOTALL
-    )
-    headings = re.findall(r"^#+ (.+)$", text, flags=re.MULTILINE)
-    return {
-        re.sub(r"[^\w\- ]", "", h).strip().lower().replace(" ", "-") for h in headings
-    }
+    headings = re.findall(r"^#+ (.+)$", prose(page).lower(), flags=re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", h).strip().replace(" ", "-") for h in headings}
 
 
 @pytest.mark.parametrize("page", pages(), ids=name)
 def test_links(page):
     """Pages, anchors, pictures and files that a page names are there."""
-    text = re.sub(
-        r"^```\w.*?^```", "", page.read_text("utf-8"), flags=re.MULTILINE | re.DOTALL
-    )
+    text = prose(page)
     for link in re.findall(r"\]\(([^)\s]+)\)", text):
         path, _, anchor = link.partition("#")
         if "://" in path:

@@ -3,6 +3,7 @@
 # Installs what IKSel needs, and IKSel itself into a virtual environment.
 #
 # Usage: scripts/bootstrap.sh [--dev] [--lint] [--fuzz] [--bench] [--ros] [--apt-only]
+# Usage: scripts/bootstrap.sh [--dev] [--lint] [--fuzz] [--bench] [--docs] [--apt-only]
 #
 #   --dev       also what tests, benchmarks and the extra [dev] need
 #   --lint      also clang-format, clang-tidy and shellcheck
@@ -10,6 +11,7 @@
 #   --bench     also NLopt for the C++ baselines, and from PyPI the solvers to compare with and
 #               JAX for the learned seeds
 #   --ros       also Debian's ROS 1, for the node in ros/ros1
+#   --docs      also what the documentation is made with
 #   --apt-only  only the system's packages, no virtual environment
 #
 # System packages come from apt; those that are there already are left alone. The virtual environment
@@ -18,11 +20,13 @@
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 apt_only=false bench=false dev=false fuzz=false lint=false ros=false
+apt_only=false bench=false dev=false docs=false fuzz=false lint=false
 for option in "$@"; do
   case $option in
     --apt-only) apt_only=true ;;
     --bench) bench=true ;;
     --dev) dev=true ;;
+    --docs) docs=true ;;
     --fuzz) fuzz=true ;;
     --lint) lint=true ;;
     --ros) ros=true ;;
@@ -80,6 +84,7 @@ find_missing() {
       python3-rospy python3-rostest python3-sensor-msgs python3-visualization-msgs \
       ros-geometry-msgs ros-message-generation ros-sensor-msgs ros-std-msgs
   fi
+  if $docs; then want_command doxygen doxygen; fi
   if $fuzz && ! has_libfuzzer; then missing+=(clang libclang-rt-14-dev); fi
   if $lint; then
     want_command clang-format clang-format
@@ -176,9 +181,17 @@ install_rivals() {
   quietly "installing ${rivals[*]}" "$python" -m pip install "${rivals[@]}"
 }
 
+# What the extra docs names.
+install_docs() {
+  local packages
+  mapfile -t packages < <(from_pyproject 'project["project"]["optional-dependencies"]["docs"]')
+  quietly "installing ${packages[*]}" "$python" -m pip install "${packages[@]}"
+}
+
 install_missing
 use_ccache
 if ! $apt_only; then
   install_project
   if $bench; then install_rivals; fi
+  if $docs; then install_docs; fi
 fi

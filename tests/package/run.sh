@@ -73,6 +73,7 @@ public_headers "$work/static"
 installed "$work/static" static
 other_programs "$work/static"
 "$root/tests/package/readme.sh" "$work/static"
+"${PYTHON:-python3}" "$root/tests/package/docs.py" "$work/static"
 
 # With Eigen's assertions on; the rest is left out to build faster.
 build_outside package/add_subdirectory subdirectory -DIKSEL_SOURCE_DIR="$root" \

@@ -21,6 +21,8 @@ mkdir -p "$source" dist
 git ls-files --cached --others --exclude-standard -z |
   xargs -0 tar -c --ignore-failed-read | tar -x -C "$source"
 mv "$source/packaging/debian" "$source/debian"
+# Without packages of debugging symbols, 22 MB.
+export DEB_BUILD_OPTIONS="${DEB_BUILD_OPTIONS-} noautodbgsym"
 (cd "$source" && quietly "building the Debian packages" dpkg-buildpackage -us -uc)
 mv "$work"/*.deb "$work"/iksel_*.dsc "$work"/iksel_*.tar.* dist/
 ls -sh dist/*.deb

@@ -15,18 +15,14 @@ work=${IKSEL_INSTALLED:-/var/tmp/iksel-installed}
 python=$work/venv/bin/python
 tag=$(python3 -c 'import sys; print("cp%d%d" % sys.version_info[:2])')
 
-must_not_be_here() { # COMMAND OR LIBRARY...
-  local name
-  for name in "$@"; do
-    if command -v "$name" >/dev/null || ldconfig -p | grep -q "$name"; then
-      echo "$name is here: this is no bare system" >&2
-      exit 1
-    fi
-  done
-}
-
 solve() {
-  must_not_be_here cc g++ liborocos-kdl liburdfdom
+  local found
+  found=$(type -P c++ cc g++ gcc clang++ || true)
+  found+=$(find /usr -name 'liborocos-kdl*' -o -name 'liburdfdom*')
+  if [[ -n $found ]]; then
+    printf 'no bare system, there are:\n%s\n' "$found" >&2
+    exit 1
+  fi
   rm -rf "$work"
   mkdir -p "$work"
   cd "$work"
@@ -75,7 +71,11 @@ cpp() {
 }
 
 case ${1-} in
-  '') solve && python_example && tests ;;
+  '')
+    solve
+    python_example
+    tests
+    ;;
   --cpp) cpp ;;
   *) sed -n '3,${/^#/!q;s/^# \{0,1\}//p}' "$0" && exit 2 ;;
 esac

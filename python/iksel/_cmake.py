@@ -29,7 +29,7 @@ def cmake_dir() -> Path:
     if not (folder / "ikselConfig.cmake").is_file():
         raise NoCMakeFilesError(
             f"{folder} has no ikselConfig.cmake: this iksel was installed without its "
-            "C++ library. Install a wheel ('pip install iksel') or from the source "
+            "C++ library. Install a wheel of it, or from the source "
             "('pip install .' at the top of the repository, not editable), or the "
             "library alone by CMake, and give its prefix to CMAKE_PREFIX_PATH"
         )

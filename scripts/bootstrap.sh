@@ -153,8 +153,8 @@ install_project() {
   if $dev; then target='.[dev]'; fi
   # As the tests build it, so that ccache knows it. In variables: the options that say the same are not
   # known to every pip.
-  export SKBUILD_BUILD_DIR=build/python
-  if $dev || [[ -n ${CI-} ]]; then export SKBUILD_CMAKE_DEFINE=IKSEL_WARNINGS_AS_ERRORS=ON; fi
+  export SKBUILD_BUILD_DIR=build/python SKBUILD_CMAKE_DEFINE=BUILD_SHARED_LIBS=OFF
+  if $dev || [[ -n ${CI-} ]]; then SKBUILD_CMAKE_DEFINE+=";IKSEL_WARNINGS_AS_ERRORS=ON"; fi
   state="$(source_hash) $("$python" -V)"
   # Once the extra is there, it stays there.
   if [[ -f $stamp ]] && { [[ $(<"$stamp") == "$state $target" ]] ||

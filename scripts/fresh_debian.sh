@@ -3,9 +3,11 @@
 # Runs commands on the committed files in a bare Debian 12, made by debootstrap in a folder of its own:
 # by default the two of README.
 #
-# Usage: scripts/fresh_debian.sh [--keep] [COMMAND...]
+# Usage: scripts/fresh_debian.sh [--keep] [--carry FOLDER] [--bring FOLDER] [COMMAND...]
 #
 #   --keep   leaves the system where it is, and says where
+#   --carry  takes this folder of the checkout along, which git need not know
+#   --bring  afterwards copies what is in this folder of the clone to that of the checkout
 #   COMMAND  run by bash, in order, at the top of a clone of HEAD; the first that fails ends it
 #
 # Of this machine it takes the package sources and pip's settings, and what those name (certificates,
@@ -14,14 +16,17 @@
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 readonly suite=bookworm
-keep=false commands=()
-for argument in "$@"; do
-  case $argument in
+keep=false carry='' bring='' commands=()
+while (($# > 0)); do
+  case $1 in
     --keep) keep=true ;;
+    --carry) carry=$2 && shift ;;
+    --bring) bring=$2 && shift ;;
     -h | --help) usage && exit ;;
-    -*) unknown_option "$argument" ;;
-    *) commands+=("$argument") ;;
+    -*) unknown_option "$1" ;;
+    *) commands+=("$1") ;;
   esac
+  shift
 done
 if ((${#commands[@]} == 0)); then commands=("bash scripts/demo.sh" "bash scripts/test.sh"); fi
 
@@ -154,6 +159,7 @@ copy_pip_settings
 mkdir -p "$system$HOME"
 git clone --quiet --no-hardlinks "$root" "$system$home"
 git -C "$system$home" remote remove origin
+if [[ -n $carry ]]; then cp -rT "$carry" "$system$home/$carry"; fi
 
 for command in "${commands[@]}"; do
   step "bare $suite: $command"
@@ -163,3 +169,4 @@ for command in "${commands[@]}"; do
   printf '== %s s, exit status %s: %s\n' "$SECONDS" "$status" "$command"
   ((status == 0)) || exit "$status"
 done
+if [[ -n $bring ]]; then cp -rT "$system$home/$bring" "$bring"; fi

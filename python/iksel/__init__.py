@@ -80,6 +80,7 @@ from iksel_cpp import (
     time_kdl_fk_jacobian,
 )
 
+from iksel._cmake import cmake_dir
 from iksel._manifest import RobotInfo
 from iksel.pose import (
     as_pose,
@@ -159,6 +160,7 @@ __all__ = [
     "__version__",
     "as_pose",
     "check_pose",
+    "cmake_dir",
     "euler_from_pose",
     "evaluate",
     "is_rigid",

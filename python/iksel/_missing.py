@@ -21,7 +21,7 @@ _PACKAGES = {
 def explain(message: str) -> str:
     """What to say in the place of the loader's message."""
     missing = re.search(r"\b(lib[\w+-]+)\.so[.\d]*", message)
-    if missing is None:
+    if missing is None or missing[1] == "libiksel":
         return (
             "iksel needs its compiled extension module iksel_cpp, which could not be "
             f"imported ({message}). Install the package ('pip install .' at the top of "

@@ -43,6 +43,13 @@ def test_an_extension_that_is_not_built_is_named() -> None:
     assert "pip install ." in explain("No module named 'iksel_cpp'")
 
 
+def test_its_own_library_comes_with_the_package() -> None:
+    text = explain(LOADER.format("libiksel.so.0.1"))
+    assert "libiksel.so.0.1" in text
+    assert "pip install ." in text
+    assert "apt" not in text
+
+
 @pytest.mark.parametrize("library", ["liborocos-kdl.so.1.5", "liburdfdom_model.so.3.0"])
 def test_importing_iksel_says_it(tmp_path: Path, library: str) -> None:
     message = LOADER.format(library)

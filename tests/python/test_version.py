@@ -24,6 +24,7 @@ PLACES = {
     "ros/ros1/iksel_ros/package.xml": r"<version>([0-9.]+)</version>",
     "ros/ros2/iksel_ros/package.xml": r"<version>([0-9.]+)</version>",
     "ros/ros2/iksel_moveit/package.xml": r"<version>([0-9.]+)</version>",
+    "packaging/debian/changelog": r"^iksel \(([0-9.]+)\)",
 }
 
 
@@ -49,6 +50,35 @@ def test_ros_1_and_2_have_the_same_service() -> None:
         pytest.skip("no ros beside the tests")
     one, two = [(package / "srv/SolveIK.srv").read_text() for package in packages]
     assert one == two
+def test_the_debian_package_has_the_name_of_its_library() -> None:
+    path = ROOT / "packaging/debian/control"
+    if not path.is_file():
+        pytest.skip("no packaging beside the tests")
+    control = path.read_text(encoding="utf-8")
+    (version,) = re.findall(r"(?m)^Package: libiksel([0-9.]+)$", control)
+    assert version == ".".join(iksel.__version__.split(".")[:2])
+
+
+HOMES = {
+    "pyproject.toml": r'(?m)^Homepage = "(.*)"$',
+    "packaging/debian/control": r"(?m)^Homepage: (.*)$",
+    "packaging/debian/copyright": r"(?m)^Source: (.*)$",
+}
+
+
+def test_the_address_of_the_project_is_one() -> None:
+    if not (ROOT / "packaging").is_dir():
+        pytest.skip("no packaging beside the tests")
+    found = {
+        home
+        for name, pattern in HOMES.items()
+        for home in re.findall(pattern, (ROOT / name).read_text("utf-8"))
+    }
+    (home,) = found
+    project = (ROOT / "pyproject.toml").read_text("utf-8")
+    owner = home.removeprefix("https://github.com/")
+    addresses = re.findall(r"https://(?:raw\.)?github[\w.]*/([\w-]+/[\w-]+)", project)
+    assert set(addresses) == {owner}
 
 
 def test_all_is_there_sorted_and_complete() -> None:

@@ -14,7 +14,6 @@ from iksel_cpp import (
 
 from iksel._urdf_xml import read_xml
 from iksel.cli._angles import Angles, add_degrees
-from iksel.cli._output import add_json
 from iksel.cli._parser import POSE_METAVAR, parse_numbers
 from iksel.description import read_description
 from iksel.robots import load_robot, robot_names
@@ -120,17 +119,9 @@ def _add_formats(group: argparse._ArgumentGroup) -> None:
     )
 
 
-def add_joint_values(parser: argparse.ArgumentParser) -> None:
-    """Add ROBOT, Q ..., and the forms in which what is there is shown."""
-    add_robot(parser)
-    parser.add_argument(
-        "q", nargs="+", metavar="Q", help="joint values, one per joint [rad or m]"
-    )
-    form = parser.add_mutually_exclusive_group()
-    add_json(form)
-    form.add_argument(
-        "--matrix", action="store_true", help="print the numbers of the matrix only"
-    )
+def chain_text(robot: Robot) -> str:
+    """A robot's name, and the links that its chain joins."""
+    return f"{robot.name}, {robot.base_link} -> {robot.tip_link}"
 
 
 def load(arguments: argparse.Namespace) -> Robot:

@@ -2,13 +2,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Installs what IKSel needs, and IKSel itself into a virtual environment.
 #
-# Usage: scripts/bootstrap.sh [--dev] [--lint] [--fuzz] [--bench] [--apt-only]
+# Usage: scripts/bootstrap.sh [--dev] [--lint] [--fuzz] [--bench] [--browser] [--apt-only]
 #
 #   --dev       also what tests, benchmarks and the extra [dev] need
 #   --lint      also clang-format, clang-tidy and shellcheck
 #   --fuzz      also clang with libFuzzer
 #   --bench     also NLopt for the C++ baselines, and from PyPI the solvers to compare with and
 #               JAX for the learned seeds
+#   --browser   also Debian's Chromium and playwright, which drive the view in the tests
 #   --apt-only  only the system's packages, no virtual environment
 #
 # System packages come from apt; those that are there already are left alone. The virtual environment
@@ -16,11 +17,12 @@
 # the sources are unchanged.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-apt_only=false bench=false dev=false fuzz=false lint=false
+apt_only=false bench=false browser=false dev=false fuzz=false lint=false
 for option in "$@"; do
   case $option in
     --apt-only) apt_only=true ;;
     --bench) bench=true ;;
+    --browser) browser=true ;;
     --dev) dev=true ;;
     --fuzz) fuzz=true ;;
     --lint) lint=true ;;
@@ -63,6 +65,7 @@ find_missing() {
     want_library benchmark libbenchmark-dev
     want_library gtest libgtest-dev
   fi
+  if $browser; then want_command chromium chromium; fi
   if $bench; then want_library nlopt libnlopt-cxx-dev; fi
   if $fuzz && ! has_libfuzzer; then missing+=(clang libclang-rt-14-dev); fi
   if $lint; then
@@ -151,18 +154,19 @@ install_project() {
   printf '%s\n' "$state $target" >"$stamp"
 }
 
-# What the extras bench and bench-* of pyproject.toml name; iksel itself is not built again.
-install_rivals() {
-  local rivals
-  mapfile -t rivals < <(from_pyproject \
-    'item for extra, items in project["project"]["optional-dependencies"].items()
-       if extra.startswith("bench") for item in items')
-  quietly "installing ${rivals[*]}" "$python" -m pip install "${rivals[@]}"
+# What the extras of pyproject.toml whose names begin so name; iksel itself is not built again.
+install_extras() { # PREFIX
+  local packages
+  mapfile -t packages < <(from_pyproject \
+    "item for extra, items in project['project']['optional-dependencies'].items()
+       if extra.startswith('$1') for item in items")
+  quietly "installing ${packages[*]}" "$python" -m pip install "${packages[@]}"
 }
 
 install_missing
 use_ccache
 if ! $apt_only; then
   install_project
-  if $bench; then install_rivals; fi
+  if $bench; then install_extras bench; fi
+  if $browser; then install_extras browser; fi
 fi

@@ -80,15 +80,17 @@ class Scene:
         self._skeleton = skeleton
         reach = skeleton.robot.reach
         scene.set_up_direction("+z")
+        # Without a graphics card a frame takes twice as long with shadows.
+        scene.configure_default_lights(cast_shadow=False)
         size = 2 * np.ceil(reach)
         scene.add_grid("/floor", width=size, height=size, cell_size=0.1)
         scene.add_frame("/base", axes_length=0.1 * reach, axes_radius=0.004 * reach)
-        ghost = {"opacity": GHOST_OPACITY, "cast_shadow": False}
         self._bones = Copies(scene, "/robot/links", cylinder(), flat_shading=True)
         self._balls = Copies(scene, "/robot/frames", ball())
+        ghost = {"opacity": GHOST_OPACITY}
         self._ghosts = Copies(scene, "/ghosts/links", cylinder(12), **ghost)
         self._ghost_balls = Copies(scene, "/ghosts/frames", ball(8), **ghost)
-        self._map = Copies(scene, "/map", ball(6), cast_shadow=False, lod="auto")
+        self._map = Copies(scene, "/map", ball(6), lod="auto")
         self.target = scene.add_transform_controls(
             "/target", scale=TARGET * reach, line_width=4.0, depth_test=False
         )

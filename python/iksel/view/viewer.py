@@ -247,6 +247,7 @@ class Viewer:
             if source is not self.scene.target:
                 self.scene.draw_target(session.target)
             self.controls.draw(source, len(ghosts) if asked else None)
+        self._server.flush()  # viser would wait for 1/60 s for more to send
 
     def _draw_map(self) -> None:
         """Draw the map, if there is one that is switched on."""

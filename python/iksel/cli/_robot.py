@@ -139,7 +139,7 @@ def load(arguments: argparse.Namespace) -> Robot:
         "soft_limits": arguments.soft_limits,
         "srdf": arguments.srdf,
         "group": arguments.group,
-        **_of_files(arguments),
+        **of_files(arguments),
     }
     if arguments.lock:
         settings["locked_joints"] = _locked_joints(arguments, angles)
@@ -175,7 +175,7 @@ def load_tree(arguments: argparse.Namespace) -> LinkTree:
     """
     name = arguments.robot
     try:
-        return load_tree_of(name, **_of_files(arguments))
+        return load_tree_of(name, **of_files(arguments))
     except (UnknownNameError, UrdfError) as error:
         raise type(error)(_with_flags(str(error), name)) from None
 
@@ -193,7 +193,7 @@ def _with_flags(message: str, name: str) -> str:
     return message
 
 
-def _of_files(arguments: argparse.Namespace) -> dict[str, dict[str, str]]:
+def of_files(arguments: argparse.Namespace) -> dict[str, dict[str, str]]:
     """What --xacro-arg and --package give."""
     flags = {
         "xacro_args": ("--xacro-arg", "NAME=VALUE", arguments.xacro_arg),
@@ -232,7 +232,7 @@ def _joint_limits(
     arguments: argparse.Namespace,
 ) -> dict[str, tuple[FloatArray, FloatArray]]:
     """Limits [rad] of the revolute joints of a robot that states them, by joint."""
-    read = read_description(arguments.robot, **_of_files(arguments))
+    read = read_description(arguments.robot, **of_files(arguments))
     try:
         root = read_xml("robot", read.urdf)[0]
     except UrdfError:  # such as comments in Latin-1, which URDF's own reader takes

@@ -42,6 +42,13 @@ class Controls:
             self.motion = gui.add_slider(
                 "self-motion", min=0.0, max=1.0, step=STEP, initial_value=0.0
             )
+        self.meshes = gui.add_checkbox(
+            "meshes",
+            initial_value=True,
+            visible=False,
+            hint="show the links as their URDF does",
+        )
+        self.note = ""  # below the text
         self.map = gui.add_checkbox("map", initial_value=True, visible=False)
         self.cut = gui.add_checkbox(
             "map cut open", initial_value=True, visible=False, hint="leave out y < 0"
@@ -71,7 +78,14 @@ class Controls:
 
     def inputs(self) -> list[Any]:
         """Everything that can be set, but the sliders."""
-        return [self.task, self.near, self.ghosts, self.map, self.cut]
+        return [
+            self.task,
+            self.near,
+            self.ghosts,
+            self.meshes,
+            self.map,
+            self.cut,
+        ]
 
     def on_change(self, listen: Callable[[Any], Any]) -> None:
         """Call `listen` with the handle that a user has changed."""
@@ -86,7 +100,7 @@ class Controls:
             source: The handle that a user is just moving, which is left as it is.
             solutions: How many the target has; None: not asked.
         """
-        self.text.content = describe(self._session, solutions)
+        self.text.content = describe(self._session, solutions) + self.note
         for slider, value in zip(self.joints, self._values(), strict=True):
             if slider is not source:
                 slider.value = float(value)

@@ -9,6 +9,7 @@ import numpy as np
 from iksel_cpp import JointType
 
 from iksel._qualities import limit_distance, manipulability
+from iksel.view.session import CHOICES
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -29,10 +30,11 @@ class Controls:
         self.text = gui.add_markdown("")
         names = list(session.tasks)
         self.task = gui.add_dropdown("task", names, initial_value=session.task_name)
-        self.near = gui.add_checkbox(
-            "stay near",
-            session.stay_near,
-            hint="give the solution that is nearest to where the robot is",
+        self.choice = gui.add_dropdown(
+            "solution",
+            CHOICES,
+            initial_value=session.choice,
+            hint="nearest to where the robot is; of the same branch or none; any",
         )
         self.ghosts = gui.add_checkbox(
             "all branches", initial_value=False, hint="show all solutions as ghosts"
@@ -80,7 +82,7 @@ class Controls:
         """Everything that can be set, but the sliders."""
         return [
             self.task,
-            self.near,
+            self.choice,
             self.ghosts,
             self.meshes,
             self.map,

@@ -251,8 +251,8 @@ class Viewer:
             if self._drawing or self._closed.is_set():
                 return
             controls, session = self.controls, self.session
-            if handle is controls.near:
-                session.stay_near = bool(handle.value)
+            if handle is controls.choice:
+                session.set_choice(handle.value)
             elif handle is controls.task:
                 session.set_task(handle.value)
             elif handle is controls.motion:

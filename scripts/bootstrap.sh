@@ -4,6 +4,7 @@
 #
 # Usage: scripts/bootstrap.sh [--dev] [--lint] [--fuzz] [--bench] [--ros] [--apt-only]
 # Usage: scripts/bootstrap.sh [--dev] [--lint] [--fuzz] [--bench] [--docs] [--apt-only]
+# Usage: scripts/bootstrap.sh [--dev] [--lint] [--fuzz] [--bench] [--browser] [--apt-only]
 #
 #   --dev       also what tests, benchmarks and the extra [dev] need
 #   --lint      also clang-format, clang-tidy and shellcheck
@@ -12,6 +13,7 @@
 #               JAX for the learned seeds
 #   --ros       also Debian's ROS 1, for the node in ros/ros1
 #   --docs      also what the documentation is made with
+#   --browser   also Debian's Chromium and playwright, which drive the view in the tests
 #   --apt-only  only the system's packages, no virtual environment
 #
 # System packages come from apt; those that are there already are left alone. The virtual environment
@@ -21,10 +23,12 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 apt_only=false bench=false dev=false fuzz=false lint=false ros=false
 apt_only=false bench=false dev=false docs=false fuzz=false lint=false
+apt_only=false bench=false browser=false dev=false fuzz=false lint=false
 for option in "$@"; do
   case $option in
     --apt-only) apt_only=true ;;
     --bench) bench=true ;;
+    --browser) browser=true ;;
     --dev) dev=true ;;
     --docs) docs=true ;;
     --fuzz) fuzz=true ;;
@@ -77,6 +81,7 @@ find_missing() {
     want_library benchmark libbenchmark-dev
     want_library gtest libgtest-dev
   fi
+  if $browser; then want_command chromium chromium; fi
   if $bench; then want_library nlopt libnlopt-cxx-dev; fi
   if $ros; then
     want_package catkin libgeometry-msgs-dev libroscpp-dev librostest-dev libsensor-msgs-dev \
@@ -172,13 +177,13 @@ install_project() {
   printf '%s\n' "$state $target" >"$stamp"
 }
 
-# What the extras bench and bench-* of pyproject.toml name; iksel itself is not built again.
-install_rivals() {
-  local rivals
-  mapfile -t rivals < <(from_pyproject \
-    'item for extra, items in project["project"]["optional-dependencies"].items()
-       if extra.startswith("bench") for item in items')
-  quietly "installing ${rivals[*]}" "$python" -m pip install "${rivals[@]}"
+# What the extras of pyproject.toml whose names begin so name; iksel itself is not built again.
+install_extras() { # PREFIX
+  local packages
+  mapfile -t packages < <(from_pyproject \
+    "item for extra, items in project['project']['optional-dependencies'].items()
+       if extra.startswith('$1') for item in items")
+  quietly "installing ${packages[*]}" "$python" -m pip install "${packages[@]}"
 }
 
 # What the extra docs names.
@@ -194,4 +199,6 @@ if ! $apt_only; then
   install_project
   if $bench; then install_rivals; fi
   if $docs; then install_docs; fi
+  if $bench; then install_extras bench; fi
+  if $browser; then install_extras browser; fi
 fi

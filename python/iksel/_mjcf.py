@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from iksel_cpp import UrdfError
 
+from iksel._files import read_text
 from iksel.pose import euler_from_pose, pose_from_quaternion, pose_from_rotation_vector
 
 if TYPE_CHECKING:
@@ -70,9 +71,8 @@ def urdf_of_mjcf(path: Path) -> str:
         return _Tree(mujoco, model).text()
     except (ValueError, TypeError, RuntimeError, mujoco.FatalError) as error:
         reason = " ".join(str(error).split())
-        if "mujocoinclude" in reason:
-            reason += "; it is a part of a model: give the file that includes it"
-        raise UrdfError(f"'{path}': mujoco says: {reason}") from None
+        remedy = _remedy(reason, path, mujoco.__version__)
+        raise UrdfError(f"'{path}': mujoco says: {reason}; {remedy}") from None
 
 
 def _import_mujoco(path: Path) -> Any:
@@ -99,6 +99,24 @@ def _compile(mujoco: Any, path: Path) -> Any:
     spec.compiler.settotalmass = -1.0  # not set; it warns in a file of its own
     spec.compiler.fusestatic = False
     return spec.compile()
+
+
+def _remedy(reason: str, path: Path, version: str) -> str:
+    """What to do about a file that MuJoCo refuses for a reason."""
+    root = ET.fromstring(read_text(path))  # noqa: S314 (the user's own file)
+    bodies = {"worldbody", "include", "attach"}
+    if root.tag == "mujocoinclude" or not any(e.tag in bodies for e in root):
+        return "it is a part of a model: give the file that includes it"
+    if "invalid keyword: 'fixed'" in reason:
+        return "leave that joint out: a body without joints is fixed to its parent"
+    if "Error opening file" in reason:
+        return "put that file where the model names it"
+    if "global coordinates" in reason:
+        return "save the converted model, and give that"
+    return (
+        f"mend that element, or take it out; MuJoCo {version} is installed, and files "
+        "of other versions may have what it does not know"
+    )
 
 
 class _Tree:

@@ -14,7 +14,11 @@ if TYPE_CHECKING:
 
 
 def manipulability(robot: Robot, q: FloatArray) -> FloatArray:
-    """sqrt(det(J J^T)) of configurations (n, dof); of J^T J below six joints."""
+    """Yoshikawa's measure (1985) of configurations (n, dof): sqrt(det(J J^T)), (n,).
+
+    Below six joints sqrt(det(J^T J)): with any number of joints it is the product of
+    the singular values, which take several times as long to compute.
+    """
     jacobian = robot.jacobian(q)
     if jacobian.shape[-1] == 6:
         return np.asarray(np.abs(np.linalg.det(jacobian)))

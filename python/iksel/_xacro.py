@@ -62,7 +62,8 @@ def expand(path: Path, arguments: Mapping[str, str] | None, packages: Packages) 
             if missing:
                 raise UnknownNameError(f"'{path}': {missing[0]}") from None
             reason = " ".join(str(error).split()) or type(error).__name__
-            raise UrdfError(f"'{path}': xacro says: {reason}{_hint(reason)}") from None
+            remedy = _remedy(reason)
+            raise UrdfError(f"'{path}': xacro says: {reason}; {remedy}") from None
     if not document.getElementsByTagName("link"):
         raise UrdfError(
             f"'{path}' expands to no link; it may only define macros: give the file "
@@ -122,7 +123,13 @@ def _found_packages(
                 sys.modules[name] = module
 
 
-def _hint(reason: str) -> str:
-    if "undefined" in reason.lower() or "arg " in reason.lower():
-        return "; values are given by xacro_args"
-    return ""
+def _remedy(reason: str) -> str:
+    """What to do about a file that xacro refuses for a reason."""
+    small = reason.lower()
+    if "undefined" in small or "arg " in small:
+        return "values are given by xacro_args"
+    if "no such file" in small and "package://" in small:
+        return "xacro includes files by $(find PACKAGE)/..., not by package://"
+    if "no such file" in small:
+        return "put that file where the xacro file names it"
+    return "mend that in the file"

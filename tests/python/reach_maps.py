@@ -3,15 +3,17 @@
 
 from __future__ import annotations
 
-import hashlib
 from pathlib import Path
 
 import numpy as np
 import pytest
+from bench.reach.engines import digests
 
 from iksel import reach
 
 pytest.importorskip("zarr", minversion="3", reason="pip install iksel[reach]")
+
+__all__ = ["computed", "digests", "random_cells"]
 
 
 def computed(path: Path, robot, **settings) -> Path:
@@ -19,15 +21,6 @@ def computed(path: Path, robot, **settings) -> Path:
     reach.create(reach.plan(robot, **settings), path)
     reach.run(path, workers=1)
     return path
-
-
-def digests(path: Path) -> dict[str, str]:
-    """A hash of every file of a store."""
-    return {
-        str(file.relative_to(path)): hashlib.sha256(file.read_bytes()).hexdigest()
-        for file in sorted(path.rglob("*"))
-        if file.is_file() and not file.name.endswith(".partial")
-    }
 
 
 def random_cells(shape: tuple[int, ...], n: int, seed: int) -> np.ndarray:

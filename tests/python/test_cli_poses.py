@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 import os
 import subprocess
@@ -13,15 +11,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from command_line import Output, Run, assert_bad, assert_good
+from answer_files import FEW, read
+from command_line import Run, assert_good
 
 import iksel
 from iksel.cli import _poses
 
-FEW = ["--samples", "500"]
 COUNT = 40
+
+
 INPUTS = ["matrix.csv", "euler.csv", "quaternion.csv", "numbers.txt"]
-INPUTS += ["lists.jsonl", "objects.jsonl", "matrix.npy", "flat.npy", "quaternion.npy"]
 
 
 @pytest.fixture(scope="module")
@@ -58,31 +57,6 @@ def folder(tmp_path_factory, targets) -> Path:
     np.save(folder / "flat.npy", flat)
     np.save(folder / "quaternion.npy", quaternion)
     return folder
-
-
-def read(path: Path) -> tuple[list[str], list[str], np.ndarray, np.ndarray]:
-    """Statuses, proofs, joint values and errors of a file of answers, NaN for none."""
-
-    def numbers(rows) -> np.ndarray:
-        values = [[np.nan if x in (None, "") else float(x) for x in r] for r in rows]
-        return np.array(values)
-
-    if path.suffix == ".npy":
-        array = np.load(path)
-        statuses = [iksel.Status(x).name for x in array["status"]]
-        proofs = [iksel.Proof(x).name for x in array["proof"]]
-        errors = np.stack([array["position_error"], array["rotation_error"]], axis=1)
-        return statuses, proofs, array["q"], errors
-    text = path.read_text("utf-8")
-    if path.suffix == ".csv":
-        _, *rows = csv.reader(io.StringIO(text))
-        q = numbers(row[2:-2] for row in rows)
-        errors = numbers(row[-2:] for row in rows)
-        return [r[0] for r in rows], [r[1] for r in rows], q, errors
-    objects = [json.loads(line) for line in text.splitlines()]
-    q = numbers(o["q"] or [None] * 6 for o in objects)
-    errors = numbers((o["position_error"], o["rotation_error"]) for o in objects)
-    return [o["status"] for o in objects], [o["proof"] for o in objects], q, errors
 
 
 def assert_same(path: Path, other: Path) -> None:
@@ -189,59 +163,6 @@ def test_a_live_stdin_is_answered_row_by_row(folder: Path) -> None:
     assert process.returncode == 0
 
 
-MIXED = """\
-0.2 0.15 0.3 0 3.1416 0
-9 0 0 0 0 0
-0.2 0.15 nan 0 3.1416 0
-0.2 0.15 0.3 1 1 0 0
-1 2 3
-x 0 0 0 0 0
-[[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0]]
-{"pose": [0.2, 0.15, null, 0, 3.1416, 0]}
-{"matrix": []}
-{"pose": "somewhere"}
-{"pose": [true, 0, 0, 0, 0, 0]}
-{broken
-{"pose": [0.2, 0.15, 0.3, 0, 3.1416, 0]}
-"""
-
-
-@pytest.mark.parametrize("form", ["csv", "jsonl", "npy"])
-def test_rows_that_are_no_poses_have_their_status(
-    run: Run, tmp_path: Path, form: str
-) -> None:
-    source, path = tmp_path / "mixed", tmp_path / f"answers.{form}"
-    source.write_text(MIXED, "utf-8")
-    output = run("solve", "ur3", "--poses", source, "-o", path, "--json", *FEW)
-    assert output.code == 1
-    assert output.err.startswith(f"iksel: warning: {source}, line 3: ")
-    assert output.err.count("\n") == 1
-    assert output.json() == {
-        "file": str(path),
-        "poses": 13,
-        "solved": 2,
-        "statuses": {"solved": 2, "out_of_reach": 1, "invalid_pose": 10},
-    }
-    statuses, proofs, q, errors = read(path)
-    assert statuses == ["solved", "out_of_reach", *["invalid_pose"] * 10, "solved"]
-    assert proofs == ["none", "reach", *["none"] * 11]
-    assert np.isnan(q[1:-1]).all()
-    assert np.isnan(errors[1:-1]).all()
-    np.testing.assert_array_equal(q[0], q[-1])
-
-
-def test_rows_of_an_array_that_are_no_poses(run: Run, tmp_path: Path, targets) -> None:
-    poses = targets.copy()
-    poses[3, 0, 0] = np.nan
-    poses[5] = 0
-    source, path = tmp_path / "poses.npy", tmp_path / "answers.npy"
-    np.save(source, poses)
-    output = run("solve", "ur3", "--poses", source, "-o", path, *FEW)
-    assert output.code == 1
-    assert "poses.npy, row 3: pose: not finite: nan" in output.err
-    assert list(np.flatnonzero(np.load(path)["status"] == 7)) == [3, 5]
-
-
 def test_degrees(run: Run, folder: Path, targets, tmp_path: Path) -> None:
     euler = np.hstack([targets[:, :3, 3], np.degrees(iksel.euler_from_pose(targets))])
     np.save(tmp_path / "degrees.npy", euler)
@@ -304,107 +225,8 @@ def test_progress_is_shown_on_stderr(run: Run, folder: Path, tmp_path: Path) -> 
     assert run(*words, "--no-progress").err == ""
 
 
-BAD = [
-    ("--poses absent", "absent: No such file"),
-    ("--poses .", r"\.: .*directory"),
-    ("--poses /dev/null", "/dev/null: no poses in it"),
-    ("--poses /dev/zero", "/dev/zero: .*line 1.*longer"),
-    (
-        "--poses names",
-        "names, line 1: the columns a, b are not x y z roll.*qw qx",
-    ),
-    ("--poses header", "header: no poses in it"),
-    ("--poses bytes", "bytes: line 2: .*utf-8"),
-    ("--poses shape.npy", r"shape\.npy: expected an array of shape .*got \(3, 5\)"),
-    ("--poses text.npy", r"text\.npy: expected numbers, got an array of <U1"),
-    ("--poses objects.npy", r"objects\.npy: no array: .*objects"),
-    ("--poses cut.npy", r"cut\.npy: no array: "),
-    ("--poses empty.npy", r"empty\.npy: no poses in it"),
-    ("--poses good -o a.txt", r"a\.txt: its end says no format.*\.csv.*\.jsonl.*\.npy"),
-    ("--poses good -o absent/a.csv", "'absent/a.csv' cannot be written: No such file"),
-    ("--poses good -o . --format csv", r"'\.' cannot be written: Is a directory"),
-    ("--poses good --format xml", "--format.*'xml'.*csv.*jsonl.*npy"),
-    ("--poses good --all", "--all: is for one pose"),
-    ("--poses good --diagnose", "--diagnose: is for one pose"),
-    ("--poses good --json", "--json: .*-o FILE.*--format jsonl"),
-    ("--poses good --threads -1", "threads"),
-    ("--poses good --chunk 0", "--chunk: 0 is less than 1"),
-    ("--poses good --near 1", "--near: expected 6 numbers"),
-    ("--poses good --pose 1 2 3 4 5 6", "not allowed with"),
-    ("--poses mixed --on-invalid raise", "mixed, line 2: .*expected 6.*got 3"),
-    ("--poses mixed --on-invalid raise -o a.csv", "mixed, line 2: "),
-    ("--pose 1 2 3 4 5 6 -o a.csv", "--output: needs --poses FILE"),
-    ("--pose 1 2 3 4 5 6 --threads 2", "--threads: needs --poses FILE"),
-    ("--pose 1 2 3 4 5 6 --chunk 2", "--chunk: needs --poses FILE"),
-    ("--pose 1 2 3 4 5 6 --on-invalid raise", "--on-invalid: needs --poses"),
-]
-
-
-@pytest.mark.parametrize(("words", "culprit"), BAD)
-def test_bad_files_are_one_line(
-    run: Run,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    words: str,
-    culprit: str,
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    good = "0.2 0.15 0.3 0 3.1416 0\n"
-    files = {"good": good, "mixed": good + "1 2 3\n", "names": "a,b\n" + good}
-    files |= {"header": "x,y,z,roll,pitch,yaw\n"}
-    for name, text in files.items():
-        Path(name).write_text(text, "utf-8")
-    Path("bytes").write_bytes(good.encode() + b"\xff\n")
-    np.save("shape.npy", np.zeros((3, 5)))
-    np.save("text.npy", np.full((3, 4, 4), "a"))
-    np.save("objects.npy", np.full((3, 4, 4), None), allow_pickle=True)
-    np.save("empty.npy", np.zeros((0, 4, 4)))
-    Path("cut.npy").write_bytes(Path("shape.npy").read_bytes()[:-9])
-    before = sorted(tmp_path.iterdir())
-    assert_bad(run(f"solve ur3 {words} --samples 500"), culprit)
-    assert sorted(tmp_path.iterdir()) == before
-
-
-def test_an_old_file_stays_when_all_fails(run: Run, tmp_path: Path) -> None:
-    source, path = tmp_path / "poses", tmp_path / "answers.csv"
-    source.write_text("0.2 0.15 0.3 0 3.1416 0\n1 2 3\n", "utf-8")
-    path.write_text("old", "utf-8")
-    words = ["--poses", source, "-o", path, *FEW]
-    assert run("solve", "ur3", *words, "--on-invalid", "raise").code == 2
-    assert path.read_text("utf-8") == "old"
-    assert run("solve", "ur3", *words).code == 1
-    assert path.read_text("utf-8").startswith("status,proof,")
-    assert sorted(tmp_path.iterdir()) == [path, source]
-
-
 def test_a_file_may_be_answered_in_its_place(run: Run, tmp_path: Path) -> None:
     path = tmp_path / "poses.csv"
     path.write_text("0.2 0.15 0.3 0 3.1416 0\n", "utf-8")
     assert_good(run("solve", "ur3", "--poses", path, "-o", path, *FEW))
     assert read(path)[0] == ["solved"]
-
-
-def test_a_reader_that_goes_away_is_no_error(folder: Path) -> None:
-    reading, writing = os.pipe()
-    os.close(reading)
-    command = [sys.executable, "-m", "iksel", "solve", "ur3", *FEW]
-    process = subprocess.Popen(
-        [*command, "--poses", str(folder / "matrix.csv")],
-        stdout=writing,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-    os.close(writing)
-    _, err = process.communicate()
-    assert (process.returncode, err) == (141, "")
-
-
-@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full here")
-def test_a_full_disk_is_one_line(folder: Path) -> None:
-    command = [sys.executable, "-m", "iksel", "solve", "ur3", *FEW]
-    words = ["--poses", folder / "matrix.csv", "-o", "/dev/full", "--format", "csv"]
-    done = subprocess.run(
-        [*command, *words], capture_output=True, text=True, check=False
-    )
-    output = Output(done.returncode, done.stdout, done.stderr)
-    assert_bad(output, "'/dev/full' cannot be written: No space")

@@ -149,6 +149,27 @@ def test_bad_locks_are_named(locked: object, match: str) -> None:
     refuse(arm(), match, iksel.InvalidArgumentError, locked_joints=locked)
 
 
+@pytest.mark.parametrize(
+    ("xml", "remedy"),
+    [
+        ("notes", "give the path of a URDF file, or its text"),
+        ("<robot><link name='a'/></robot>", "give the <robot> a name"),
+        ("<robot name='a'/>", "it needs a <link> for each body"),
+        (arm(kind="spherical"), "a joint is revolute, continuous, prismatic, fixed"),
+        (arm(xyz="0 0 0 1"), "give as many numbers as are expected"),
+        (arm(xyz="0, 0 1"), "write numbers as in xyz="),
+        (arm(inside='<limit lower="-1.5." upper="1"/>'), "write the number as in"),
+        (arm(kind="floating"), "choose a base link behind it"),
+    ],
+)
+def test_what_is_broken_comes_with_what_to_do(
+    tmp_path: Path, xml: str, remedy: str
+) -> None:
+    path = tmp_path / "arm.urdf"
+    path.write_text(xml, encoding="utf-8")
+    refuse(path, f"[;:] {remedy}")
+
+
 def test_links_of_two_trees_are_not_connected() -> None:
     xml = robot(link("a", "b", "c", "d"), joint("i", "a", "b"), joint("j", "c", "d"))
     refuse(xml, ".", base_link="a", tip_link="d")

@@ -31,11 +31,12 @@ NEEDED = (".xml", ".xacro", ".yaml")  # of the packages; meshes are left in them
 REASONS = {
     "a ROS package is not there": r"packages: no folder for package '[\w-]+'; given:",
     "a file of macros": "expands to no link.*give the file that includes it",
-    "an argument without a value": "values are given by xacro_args",
-    "xacro without a robot's name": "No name given for the robot",
-    "a part of a model": "mujocoinclude.*give the file that includes it",
-    "MuJoCo refuses it": "mujoco says: ",
-    "xacro refuses it": "xacro says: ",
+    "an argument without a value": "xacro says: .*; values are given by xacro_args",
+    "an include by package://": r"xacro says: .*; xacro includes files by \$\(find ",
+    "a part of a model": "mujoco says: .*; it is a part.*: give the file that incl",
+    "a fixed joint": "mujoco says: .*; leave that joint out: ",
+    "global coordinates": "mujoco says: .*; save the converted model, and give that",
+    "another version's": r"mujoco says: .*; mend that element.*; MuJoCo [\d.]+ is",
 }
 
 WHEELS = sorted(FOLDER.glob("*.whl"))

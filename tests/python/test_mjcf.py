@@ -131,6 +131,29 @@ def test_equal_names_of_bodies_and_links_between(tmp_path: Path) -> None:
     MjcfFile(path).compare(iksel.load_robot(path, tip_link="trunk/i"), SEED)
 
 
+REFUSED = {
+    "leave that joint out": ARM.replace('type="slide"', 'type="fixed"'),
+    "save the converted model": ARM.replace(
+        "<worldbody>", '<compiler coordinate="global"/><worldbody>', 1
+    ),
+    "put that file where the model names it": ARM.replace(
+        "<worldbody>", '<include file="absent.xml"/><worldbody>', 1
+    ),
+    "mend that element, or take it out; MuJoCo .* is installed": ARM.replace(
+        "<worldbody>", '<option collision="predefined"/><worldbody>', 1
+    ),
+    "give the file that includes it": "<mujoco><texture/></mujoco>",
+}
+
+
+@pytest.mark.parametrize("remedy", REFUSED)
+def test_with_what_mujoco_says_is_what_to_do(tmp_path: Path, remedy: str) -> None:
+    assert REFUSED[remedy] != ARM
+    path = write(tmp_path, REFUSED[remedy])
+    with pytest.raises(iksel.UrdfError, match=f"mujoco says: .*; .*{remedy}"):
+        iksel.load_robot(path)
+
+
 def test_what_mujoco_refuses_is_named(tmp_path: Path) -> None:
     path = write(tmp_path, ARM.replace("slide", "glide"))
     with pytest.raises(iksel.UrdfError, match=r"arm\.xml': mujoco says: .*glide"):

@@ -16,6 +16,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from bench.reach.engines import run_on_cluster
+from bench.reach.processes import children
 from reach_maps import computed, digests
 
 import iksel
@@ -56,13 +58,6 @@ def shard(path: Path, name: str = "status", index: int = 0) -> Path:
 
 def command(*words: object) -> list[str]:
     return [sys.executable, "-m", "iksel", "reach", *map(str, words)]
-
-
-def children(pid: int) -> list[int]:
-    text = ""
-    with contextlib.suppress(OSError):
-        text = Path(f"/proc/{pid}/task/{pid}/children").read_text(encoding="ascii")
-    return [int(word) for word in text.split()]
 
 
 def test_the_plan_is_as_planned(planned, whole):
@@ -109,16 +104,10 @@ def test_parts_in_stores_of_their_own_are_merged(planned, whole, tmp_path):
 
 @pytest.mark.slow
 def test_a_dask_cluster_writes_the_same_bytes(planned, whole, tmp_path):
-    distributed = pytest.importorskip("distributed", reason="pip install iksel[reach]")
+    pytest.importorskip("distributed", reason="pip install iksel[reach]")
     path = tmp_path / "dask.zarr"
     reach.create(planned, path)
-    with (
-        distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, dashboard_address=None
-        ) as cluster,
-        distributed.Client(cluster) as client,
-    ):
-        assert reach.run(path, client=client).complete
+    assert run_on_cluster(path).complete
     assert digests(path) == digests(whole)
 
 

@@ -42,6 +42,26 @@ pytestmark = [
 ]
 
 
+# How to go on, which every refusal says.
+REMEDIES = (
+    "choose links with one between them",
+    "give default_limits for such joints, or hold it at a value by locked_joints",
+    "a joint that does not move is held by locked_joints",
+    "choose a base link behind it",
+    "did you mean '",
+    "a joint that turns freely is 'continuous'",
+    "give the <robot> a name",
+    "it needs a <link> for each body",
+    "To fix this problem you can",
+    "give the path of a URDF file, or its text",
+    "a joint is revolute, continuous, prismatic, fixed, planar or floating",
+    "give as many numbers as are expected",
+    'write numbers as in xyz="',
+    "write the number as in -1.57",
+    "in Python iksel.load_robot",
+)
+
+
 class Refusal(NamedTuple):
     """What IKSel does not take, what it says, and what in the file bears it out."""
 
@@ -119,7 +139,9 @@ def test_forward_kinematics_is_pinocchios_on_every_chain(packages, report) -> No
     assert chains > 2500
 
 
-def test_every_refusal_has_a_cause_in_the_file(packages, report) -> None:
+def test_every_refusal_has_a_cause_in_the_file_and_names_a_remedy(
+    packages, report
+) -> None:
     refusals = [
         refusal for package in packages.values() for refusal in package.refusals
     ]
@@ -132,6 +154,8 @@ def test_every_refusal_has_a_cause_in_the_file(packages, report) -> None:
             if (refusal.cause or "NO CAUSE FOUND") == cause
         ]
     assert [refusal for refusal in refusals if refusal.cause is None] == []
+    stuck = [r for r in refusals if not any(word in r.message for word in REMEDIES)]
+    assert stuck == []
     assert len(causes) > 3  # the files hold an example of each
 
 

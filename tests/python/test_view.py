@@ -157,12 +157,38 @@ def test_it_stays_near_unless_told_otherwise(show):
     pose[2, 3] += 0.001
     drag(viewer, pose)
     assert np.abs(viewer.session.q - far).max() < 0.1
-    assert viewer.session.stay_near
-    viewer.controls.near.value = False
-    assert not viewer.session.stay_near
+    assert viewer.session.choice == "nearest"
+    viewer.controls.choice.value = "any"
+    assert viewer.session.choice == "any"
     drag(viewer, pose)
     expected = solver.solve(viewer.session.target).q
     np.testing.assert_array_equal(viewer.session.q, expected)
+
+
+def test_the_branch_is_kept(show, cases):
+    viewer = show("cvr038")
+    session, robot = viewer.session, viewer.session.robot
+    viewer.controls.choice.value = "same branch"
+    rng = np.random.default_rng(SEED)
+    followed = stayed = 0
+    for q in robot.random_configurations(cases, seed=SEED):
+        viewer.show(q)
+        pose = session.target.copy()
+        pose[:3, 3] += rng.normal(size=3) * 0.01
+        drag(viewer, pose)
+        others = session.solver.solve_all(session.target)
+        if session.solved:
+            followed += 1
+            assert np.abs(session.q - q).max() < 1.0
+            continue
+        np.testing.assert_array_equal(session.q, q)
+        ended = "branch does not go on to there" in viewer.text
+        assert ended == bool(len(others))
+        stayed += ended
+    assert followed > cases / 2
+    assert stayed > cases / 40
+    with pytest.raises(iksel.InvalidArgumentError, match=r"'x' is none of nearest, s"):
+        session.set_choice("x")
 
 
 def test_tasks(show):

@@ -35,7 +35,10 @@ def test_unexpanded_xacro_is_recognised(
     path.write_text(xml, encoding="utf-8")
     for source in (xml, path):
         for settings in ({}, {"tip_link": "tool"}):
-            with pytest.raises(iksel.UrdfError, match="xacro FILE > robot.urdf"):
+            with pytest.raises(
+                iksel.UrdfError,
+                match="or in Python iksel.load_robot",
+            ):
                 iksel.Robot.from_urdf(source, **settings)
     missing = r"is xacro.* xacro FILE > robot\.urdf"
     if DECLARED in xml:  # else xacro could not read it either
@@ -164,6 +167,24 @@ def test_what_xacro_refuses_is_named(run: Run, tmp_path: Path, macro: Path) -> N
     plain.write_text(arm(), encoding="utf-8")
     assert_bad(run("info", plain, "--xacro-arg", "a=1"), "a, but the file is not xacro")
     assert_bad(run("info", plain, "--xacro-arg", "a"), "expected NAME=VALUE, got 'a'")
+
+
+@pytest.mark.parametrize(
+    ("name", "remedy"),
+    [
+        ("package://parts/parts.xacro", r"xacro includes files by \$\(find PACKAGE"),
+        ("absent.xacro", "put that file where the xacro file names it"),
+        ("broken.xacro", "mend that in the file"),
+    ],
+)
+def test_with_what_xacro_says_is_what_to_do(
+    macro: Path, name: str, remedy: str
+) -> None:
+    macro.with_name("broken.xacro").write_text("<robot>", encoding="utf-8")
+    text = MACRO.replace("$(find parts)/parts.xacro", name)
+    macro.write_text(text, encoding="utf-8")
+    with pytest.raises(iksel.UrdfError, match=f"xacro says: .*; {remedy}"):
+        iksel.load_robot(macro)
 
 
 def test_files_of_macros_are_no_robots(run: Run, tmp_path: Path, macro: Path) -> None:

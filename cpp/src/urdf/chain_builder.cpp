@@ -98,7 +98,9 @@ class ChainReader {
     for (const ChainVariable& variable : spec_.variables) check_limits(variable);
     const std::string chain =
         "the chain from '" + options_.base_link + "' to '" + options_.tip_link + "' has ";
-    if (spec_.variables.empty()) throw UrdfError(chain + "no movable joint");
+    if (spec_.variables.empty()) {
+      throw UrdfError(chain + "no movable joint; choose links with one between them");
+    }
     if (spec_.variables.size() > static_cast<std::size_t>(kMaxDof)) {
       throw UrdfError(chain + std::to_string(spec_.variables.size()) + " movable joints; at most " +
                       std::to_string(kMaxDof) + " are possible");
@@ -159,8 +161,10 @@ class ChainReader {
         segment.prismatic = true;
         break;
       default:
-        throw UrdfError("joint '" + joint.name + "' is " + joint_type_name(joint.type) +
-                        "; only revolute, continuous, prismatic and fixed joints can be solved");
+        throw UrdfError(
+            "joint '" + joint.name + "' is " + joint_type_name(joint.type) +
+            "; only revolute, continuous, prismatic and fixed joints can be solved: choose "
+            "a base link behind it");
     }
 
     segment.axis = axis_of(joint);

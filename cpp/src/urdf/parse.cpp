@@ -58,6 +58,32 @@ std::string one_line(std::string text) {
   return text;
 }
 
+/// What urdfdom says, which is only what it met, and what to do about it.
+struct Remedy {
+  const char* message;
+  const char* remedy;
+};
+
+constexpr Remedy kRemedies[] = {
+    {"No name given for the robot", "give the <robot> a name"},
+    {"No link elements found", "it needs a <link> for each body"},
+    {"no XML element", "give the path of a URDF file, or its text"},
+    {"has no known type", "a joint is revolute, continuous, prismatic, fixed, planar or floating"},
+    {"Unknown geometry type", "a geometry is a box, cylinder, sphere or mesh"},
+    {"expected while parsing vector", "give as many numbers as are expected"},
+    {"Unable to parse component", "write numbers as in xyz=\"0 0.5 -1e-3\", without commas"},
+    {"is not a valid float", "write the number as in -1.57"},
+};
+
+/// The remedies for messages, or nothing.
+std::string find_remedies(const std::string& messages) {
+  std::string text;
+  for (const Remedy& entry : kRemedies) {
+    if (messages.find(entry.message) != std::string::npos) text += std::string("; ") + entry.remedy;
+  }
+  return text;
+}
+
 /// Length of the UTF-8 sequence that begins at `at`; 0: none does.
 std::size_t utf8_length(const std::string& text, std::size_t at) {
   const auto byte = [&](std::size_t i) {
@@ -129,8 +155,9 @@ urdf::ModelInterfaceSharedPtr parse_urdf(const std::string& xml) {
   if (!model) {
     const std::string reason = explain_broken_xml(xml);
     if (!reason.empty()) messages = reason + " (" + messages + ")";
-    throw UrdfError("URDF does not parse: " +
-                    (messages.empty() ? "no robot in it" : one_line(messages)));
+    throw UrdfError(
+        "URDF does not parse: " + (messages.empty() ? "no robot in it" : one_line(messages)) +
+        find_remedies(messages));
   }
   return model;
 }
@@ -164,8 +191,9 @@ void throw_if_xacro(const std::string& xml, const std::string& reason) {
   const std::string sign = find_xacro(xml);
   if (sign.empty()) return;
   throw UrdfError("it is xacro (" + one_line(sign) +
-                  "), which has to be expanded first: xacro FILE > robot.urdf (as URDF: " + reason +
-                  ")");
+                  "), which has to be expanded first: xacro FILE > robot.urdf, or in Python "
+                  "iksel.load_robot(FILE) (as URDF: " +
+                  reason + ")");
 }
 
 }  // namespace iksel

@@ -10,8 +10,8 @@ import numpy as np
 from iksel_cpp import Status
 
 from iksel._figures import COLOURS, make_figure
+from iksel._qualities import manipulability
 from iksel.cli._angles import turning
-from iksel.cli.jacobian import manipulability
 
 if TYPE_CHECKING:
     from iksel_cpp import PathResult, Robot, Solver
@@ -70,7 +70,7 @@ def workspace_figure(robot: Robot, q: FloatArray) -> Any:
 
 def manipulability_figure(robot: Robot, q: FloatArray) -> Any:
     """The largest manipulability of the configurations (N, dof), by TCP."""
-    values = manipulability(robot.jacobian(q))
+    values = manipulability(robot, q)
 
     def best(across: FloatArray, along: FloatArray, edges: Any) -> FloatArray:
         return largest_in_cells(across, along, values, edges)

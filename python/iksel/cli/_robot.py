@@ -14,7 +14,6 @@ from iksel_cpp import (
 
 from iksel._urdf_xml import read_xml
 from iksel.cli._angles import Angles, add_degrees
-from iksel.cli._output import add_json
 from iksel.cli._parser import POSE_METAVAR, parse_numbers
 from iksel.description import read_description
 from iksel.robots import load_robot, robot_names
@@ -120,17 +119,9 @@ def _add_formats(group: argparse._ArgumentGroup) -> None:
     )
 
 
-def add_joint_values(parser: argparse.ArgumentParser) -> None:
-    """Add ROBOT, Q ..., and the forms in which what is there is shown."""
-    add_robot(parser)
-    parser.add_argument(
-        "q", nargs="+", metavar="Q", help="joint values, one per joint [rad or m]"
-    )
-    form = parser.add_mutually_exclusive_group()
-    add_json(form)
-    form.add_argument(
-        "--matrix", action="store_true", help="print the numbers of the matrix only"
-    )
+def chain_text(robot: Robot) -> str:
+    """A robot's name, and the links that its chain joins."""
+    return f"{robot.name}, {robot.base_link} -> {robot.tip_link}"
 
 
 def load(arguments: argparse.Namespace) -> Robot:
@@ -148,7 +139,7 @@ def load(arguments: argparse.Namespace) -> Robot:
         "soft_limits": arguments.soft_limits,
         "srdf": arguments.srdf,
         "group": arguments.group,
-        **_of_files(arguments),
+        **of_files(arguments),
     }
     if arguments.lock:
         settings["locked_joints"] = _locked_joints(arguments, angles)
@@ -184,7 +175,7 @@ def load_tree(arguments: argparse.Namespace) -> LinkTree:
     """
     name = arguments.robot
     try:
-        return load_tree_of(name, **_of_files(arguments))
+        return load_tree_of(name, **of_files(arguments))
     except (UnknownNameError, UrdfError) as error:
         raise type(error)(_with_flags(str(error), name)) from None
 
@@ -202,7 +193,7 @@ def _with_flags(message: str, name: str) -> str:
     return message
 
 
-def _of_files(arguments: argparse.Namespace) -> dict[str, dict[str, str]]:
+def of_files(arguments: argparse.Namespace) -> dict[str, dict[str, str]]:
     """What --xacro-arg and --package give."""
     flags = {
         "xacro_args": ("--xacro-arg", "NAME=VALUE", arguments.xacro_arg),
@@ -241,7 +232,7 @@ def _joint_limits(
     arguments: argparse.Namespace,
 ) -> dict[str, tuple[FloatArray, FloatArray]]:
     """Limits [rad] of the revolute joints of a robot that states them, by joint."""
-    read = read_description(arguments.robot, **_of_files(arguments))
+    read = read_description(arguments.robot, **of_files(arguments))
     try:
         root = read_xml("robot", read.urdf)[0]
     except UrdfError:  # such as comments in Latin-1, which URDF's own reader takes

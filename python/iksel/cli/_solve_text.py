@@ -7,6 +7,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from iksel.cli._output import number, print_pairs, print_table
+from iksel.cli._robot import chain_text
 from iksel.cli.info import pose_text
 
 if TYPE_CHECKING:
@@ -56,7 +57,7 @@ def print_diagnosis(robot: Robot, diagnosis: Diagnosis) -> None:
 def print_text(robot: Robot, result: Result, report: dict[str, Any]) -> None:
     """Print the answer for people."""
     rows = [
-        ("robot", f"{robot.name}, {robot.base_link} -> {robot.tip_link}"),
+        ("robot", chain_text(robot)),
         ("target", pose_text(report["target"])),
         ("status", result.status.name),
         *proof_row(result),

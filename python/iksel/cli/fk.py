@@ -5,11 +5,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from iksel.cli._angles import Angles
+from iksel.cli._configuration import add_configuration, read_configuration
 from iksel.cli._output import numbers, print_json, print_matrix, print_pairs
-from iksel.cli._robot import add_joint_values, load
+from iksel.cli._robot import chain_text
 from iksel.pose import euler_from_pose, quaternion_from_pose
 
 if TYPE_CHECKING:
@@ -43,15 +41,14 @@ def add_parser(commands: Any) -> None:
         "link's frame.",
         epilog=EXAMPLES,
     )
-    add_joint_values(parser)
+    add_configuration(parser)
     parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Show the pose."""
-    robot = load(arguments)
-    angles = Angles(arguments)
-    q = np.array(angles.read_joints("Q", arguments.q, robot))
+    configuration = read_configuration(arguments)
+    robot, angles, q = configuration
     pose = robot.fk(q)
     rpy = angles.show_angles(euler_from_pose(pose))
     quaternion = quaternion_from_pose(pose)
@@ -60,12 +57,7 @@ def run(arguments: argparse.Namespace) -> int:
     elif arguments.json:
         print_json(
             {
-                "robot": robot.name,
-                "base_link": robot.base_link,
-                "tip_link": robot.tip_link,
-                "joint_names": robot.joint_names,
-                "angle_unit": angles.unit,
-                "q": angles.show(robot, q),
+                **configuration.facts(),
                 "within_limits": bool(robot.within_limits(q)),
                 "pose": pose,
                 "position": pose[:3, 3],
@@ -76,7 +68,7 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         print_pairs(
             [
-                ("robot", f"{robot.name}, {robot.base_link} -> {robot.tip_link}"),
+                ("robot", chain_text(robot)),
                 ("position", f"{numbers(pose[:3, 3])} m"),
                 ("rpy", f"{numbers(rpy)} {angles.unit}"),
                 ("quaternion", f"{numbers(quaternion)} (w x y z)"),

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from iksel.cli._angles import Angles
+from iksel.cli._configuration import add_configuration, read_configuration
 from iksel.cli._output import (
     number,
     numbers,
@@ -16,12 +16,10 @@ from iksel.cli._output import (
     print_pairs,
     print_table,
 )
-from iksel.cli._robot import add_joint_values, load
+from iksel.cli._robot import chain_text
 
 if TYPE_CHECKING:
     import argparse
-
-    from iksel._arrays import FloatArray
 
 EXAMPLES = """\
 examples:
@@ -51,40 +49,34 @@ def add_parser(commands: Any) -> None:
         "the manipulability.",
         epilog=EXAMPLES,
     )
-    add_joint_values(parser)
+    add_configuration(parser)
     parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Show the Jacobian."""
-    robot = load(arguments)
-    angles = Angles(arguments)
-    q = np.array(angles.read_joints("Q", arguments.q, robot))
-    jacobian = robot.jacobian(q)
+    configuration = read_configuration(arguments)
+    robot = configuration.robot
+    jacobian = robot.jacobian(configuration.q)
     values = np.linalg.svd(jacobian, compute_uv=False)
     if arguments.matrix:
         print_matrix(jacobian)
     elif arguments.json:
         print_json(
             {
-                "robot": robot.name,
-                "base_link": robot.base_link,
-                "tip_link": robot.tip_link,
-                "joint_names": robot.joint_names,
-                "angle_unit": angles.unit,
-                "q": angles.show(robot, q),
+                **configuration.facts(),
                 "rows": ROWS,
                 "jacobian": jacobian,
                 "singular_values": values,
-                "manipulability": manipulability(jacobian),
+                "manipulability": values.prod(),
             }
         )
     else:
         print_pairs(
             [
-                ("robot", f"{robot.name}, {robot.base_link} -> {robot.tip_link}"),
+                ("robot", chain_text(robot)),
                 ("singular values", numbers(values)),
-                ("manipulability", f"{manipulability(jacobian):.6g}"),
+                ("manipulability", f"{values.prod():.6g}"),
             ]
         )
         print()
@@ -96,8 +88,3 @@ def run(arguments: argparse.Namespace) -> int:
             ],
         )
     return 0
-
-
-def manipulability(jacobian: FloatArray) -> Any:
-    """Product of the singular values of Jacobians (..., 6, dof)."""
-    return np.linalg.svd(jacobian, compute_uv=False).prod(axis=-1)

@@ -12,7 +12,7 @@ from iksel.cli._angles import Angles, turning
 from iksel.cli._options import add_solver_options, given_database, solver_options
 from iksel.cli._output import add_json, print_json, print_pairs
 from iksel.cli._poses import FILE_FORMS, read_poses
-from iksel.cli._robot import add_robot, load
+from iksel.cli._robot import add_robot, chain_text, load
 from iksel.cli._solve_text import print_configurations
 
 if TYPE_CHECKING:
@@ -104,7 +104,7 @@ def largest_step(robot: Robot, path: PathResult, angles: Angles) -> float:
 def print_text(robot: Robot, path: PathResult, count: int, angles: Angles) -> None:
     """Print the path for people."""
     rows = [
-        ("robot", f"{robot.name}, {robot.base_link} -> {robot.tip_link}"),
+        ("robot", chain_text(robot)),
         ("waypoints", str(count)),
         ("status", path.status.name),
     ]

@@ -15,7 +15,7 @@ from iksel.cli._options import add_solver_options, given_database, solver_option
 from iksel.cli._output import add_json, print_json, print_pairs
 from iksel.cli._parser import POSE_FORMS, POSE_METAVAR
 from iksel.cli._poses import FILE_FORMS as POSE_FILES
-from iksel.cli._robot import add_robot, load
+from iksel.cli._robot import add_robot, chain_text, load
 from iksel.cli._solve_file import add_poses, answer_format, check_flags, solve_file
 from iksel.cli._solve_text import (
     diagnosis_report,
@@ -273,7 +273,7 @@ def run_all(
     else:
         print_pairs(
             [
-                ("robot", f"{robot.name}, {robot.base_link} -> {robot.tip_link}"),
+                ("robot", chain_text(robot)),
                 ("target", pose_text(target)),
                 ("status", found.status.name),
                 ("solutions", str(len(found))),

@@ -11,7 +11,7 @@ from iksel_cpp import Solver
 
 from iksel.cli._angles import Angles
 from iksel.cli._options import add_solver_options, given_database, solver_options
-from iksel.cli._robot import add_robot, load
+from iksel.cli._robot import add_robot, load, of_files
 from iksel.view import PORT, Viewer
 
 EXAMPLES = """\
@@ -80,7 +80,8 @@ def run(arguments: argparse.Namespace) -> int:
     angles = Angles(arguments)
     q = arguments.q and angles.read_joints("--q", arguments.q, robot)
     solver = Solver(robot, solver_options(arguments), given_database(arguments))
-    with serve(arguments, solver) as viewer:
+    looks = {"urdf": arguments.robot, **of_files(arguments)}
+    with serve(arguments, solver, **looks) as viewer:
         if q is not None:
             viewer.show(q)
         if arguments.map is not None:
@@ -91,9 +92,9 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def serve(arguments: argparse.Namespace, solver: Solver) -> Viewer:
-    """A viewer where the flags of add_server() say."""
-    return Viewer(solver, port=arguments.port, host=arguments.host)
+def serve(arguments: argparse.Namespace, solver: Solver, **looks: Any) -> Viewer:
+    """A viewer where the flags of add_server() say; `looks` are Viewer's."""
+    return Viewer(solver, port=arguments.port, host=arguments.host, **looks)
 
 
 def announce(viewer: Viewer) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 from iksel_cpp import JointType
 
 from iksel._qualities import limit_distance, manipulability
+from iksel.view.session import CHOICES
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -29,10 +30,11 @@ class Controls:
         self.text = gui.add_markdown("")
         names = list(session.tasks)
         self.task = gui.add_dropdown("task", names, initial_value=session.task_name)
-        self.near = gui.add_checkbox(
-            "stay near",
-            session.stay_near,
-            hint="give the solution that is nearest to where the robot is",
+        self.choice = gui.add_dropdown(
+            "solution",
+            CHOICES,
+            initial_value=session.choice,
+            hint="nearest to where the robot is; of the same branch or none; any",
         )
         self.ghosts = gui.add_checkbox(
             "all branches", initial_value=False, hint="show all solutions as ghosts"
@@ -42,6 +44,13 @@ class Controls:
             self.motion = gui.add_slider(
                 "self-motion", min=0.0, max=1.0, step=STEP, initial_value=0.0
             )
+        self.meshes = gui.add_checkbox(
+            "meshes",
+            initial_value=True,
+            visible=False,
+            hint="show the links as their URDF does",
+        )
+        self.note = ""  # below the text
         self.map = gui.add_checkbox("map", initial_value=True, visible=False)
         self.cut = gui.add_checkbox(
             "map cut open", initial_value=True, visible=False, hint="leave out y < 0"
@@ -71,7 +80,14 @@ class Controls:
 
     def inputs(self) -> list[Any]:
         """Everything that can be set, but the sliders."""
-        return [self.task, self.near, self.ghosts, self.map, self.cut]
+        return [
+            self.task,
+            self.choice,
+            self.ghosts,
+            self.meshes,
+            self.map,
+            self.cut,
+        ]
 
     def on_change(self, listen: Callable[[Any], Any]) -> None:
         """Call `listen` with the handle that a user has changed."""
@@ -86,7 +102,7 @@ class Controls:
             source: The handle that a user is just moving, which is left as it is.
             solutions: How many the target has; None: not asked.
         """
-        self.text.content = describe(self._session, solutions)
+        self.text.content = describe(self._session, solutions) + self.note
         for slider, value in zip(self.joints, self._values(), strict=True):
             if slider is not source:
                 slider.value = float(value)

@@ -9,12 +9,13 @@ import numpy as np
 
 from iksel import _rotations as rotations
 from iksel.view.skeleton import Placed, ball, cylinder
+from iksel.view.visuals import PLAIN, Visuals
 
 if TYPE_CHECKING:
     from iksel._arrays import BoolArray, FloatArray, IntArray
     from iksel.view.skeleton import Skeleton
+    from iksel.view.visuals import Piece
 
-LINK = (175, 182, 192)
 NO_ANSWER = (222, 150, 90)
 JOINT = (52, 94, 168)
 AT_LIMIT = (205, 45, 45)
@@ -74,21 +75,25 @@ class Copies:
 class Scene:
     """What is drawn. The base link's frame is the world's."""
 
-    def __init__(self, scene: Any, skeleton: Skeleton) -> None:
-        """Take viser's scene and the links to draw."""
+    def __init__(self, scene: Any, skeleton: Skeleton, pieces: list[Piece]) -> None:
+        """Take viser's scene, the links to draw, and what these look like."""
         self._scene = scene
         self._skeleton = skeleton
         reach = skeleton.robot.reach
         scene.set_up_direction("+z")
+        # Without a graphics card a frame takes twice as long with shadows.
+        scene.configure_default_lights(cast_shadow=False)
         size = 2 * np.ceil(reach)
         scene.add_grid("/floor", width=size, height=size, cell_size=0.1)
         scene.add_frame("/base", axes_length=0.1 * reach, axes_radius=0.004 * reach)
-        ghost = {"opacity": GHOST_OPACITY, "cast_shadow": False}
         self._bones = Copies(scene, "/robot/links", cylinder(), flat_shading=True)
         self._balls = Copies(scene, "/robot/frames", ball())
+        self.visuals = Visuals(scene, skeleton.robot, pieces)
+        self._dressed = False
+        ghost = {"opacity": GHOST_OPACITY}
         self._ghosts = Copies(scene, "/ghosts/links", cylinder(12), **ghost)
         self._ghost_balls = Copies(scene, "/ghosts/frames", ball(8), **ghost)
-        self._map = Copies(scene, "/map", ball(6), cast_shadow=False, lod="auto")
+        self._map = Copies(scene, "/map", ball(6), lod="auto")
         self.target = scene.add_transform_controls(
             "/target", scale=TARGET * reach, line_width=4.0, depth_test=False
         )
@@ -103,10 +108,25 @@ class Scene:
         """Number of balls that are shown of a map."""
         return self._map.count
 
+    def dress(self, *, dressed: bool) -> None:
+        """Show the robot as its links look like, if that is known, or as bars."""
+        self._dressed = dressed and len(self.visuals) > 0
+        self.visuals.show(visible=self._dressed)
+        if self._dressed:
+            self._bones.clear()
+            self._balls.clear()
+
     def draw_robot(self, q: FloatArray, at_limit: BoolArray, *, solved: bool) -> None:
         """Show the robot at q (dof,), with joints (dof,) that are at a limit in red."""
+        if self._dressed:
+            links = () if solved else self._skeleton.links
+            colours = dict.fromkeys(links, NO_ANSWER)
+            moved = np.array(self._skeleton.moved)[at_limit]
+            colours |= dict.fromkeys(moved.tolist(), AT_LIMIT)
+            self.visuals.draw(q, colours)
+            return
         drums = np.where(at_limit[:, None], AT_LIMIT, JOINT)
-        link = LINK if solved else NO_ANSWER
+        link = PLAIN if solved else NO_ANSWER
         bars = np.tile(link, (self._skeleton.bars, 1))
         self._bones.draw(
             self._skeleton.cylinders(q[None]), np.concatenate([bars, drums])

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from iksel_cpp import ArcEnd, InvalidArgumentError, SelfMotion, Solver, Status, Task
@@ -27,6 +27,9 @@ TASKS = {
 }
 """What of the target has to be reached, by the name that the viewer shows."""
 OWN_TASK = "the solver's"
+CHOICES = ("nearest", "same branch", "any")
+"""Which of a target's solutions is taken: that nearest to where the robot is, the one
+that an attempt from there leads to and no other, or the first that is found."""
 DIAGNOSIS_DEADLINE = 0.1  # [s], so that dragging goes on where nothing is found
 MOST_BRANCHES = 64
 SPACING = 0.02  # [rad] between the configurations of a self-motion
@@ -61,7 +64,7 @@ class Session:
         if own not in TASKS.values():
             self.tasks[OWN_TASK] = own
         self.task_name = next(name for name, task in self.tasks.items() if task == own)
-        self.stay_near = True
+        self.choice = CHOICES[0]
         self._motion: SelfMotion | None = None
         self.show(_open_configuration(solver) if q is None else q)
 
@@ -116,15 +119,30 @@ class Session:
         self.task_name = name
         self.solve()
 
+    def set_choice(self, name: str) -> None:
+        """Choose which solution is taken, by one of CHOICES.
+
+        Raises:
+            InvalidArgumentError: No such name.
+        """
+        if name not in CHOICES:
+            reject("choice", f"{name!r} is none of {', '.join(CHOICES)}")
+        self.choice = name
+
     def solve(self) -> None:
-        """Solve for the target; near where the robot is, if `stay_near`."""
-        near = self.q if self.stay_near else None
+        """Solve for the target; which solution is taken, `choice` says."""
         started = time.perf_counter()
-        result: Result = self.solver.solve(self.target, near=near, task=self.task)
+        result: Result = self.solver.solve(
+            self.target, task=self.task, **self._wishes()
+        )
         seconds = time.perf_counter() - started
         if result.q is not None:
             self.q = result.q
             self._ended(result.status, "", seconds)
+            return
+        if self.choice == "same branch" and self._has_another_branch():
+            reason = "the robot's branch does not go on to there; others have an answer"
+            self._ended(result.status, reason, seconds)
             return
         diagnosis = self.solver.diagnose(
             self.target, task=self.task, deadline=DIAGNOSIS_DEADLINE
@@ -136,6 +154,18 @@ class Session:
         certain = ", proven" if diagnosis.proven else ""
         reason = f"{diagnosis.cause.name}{certain}: {diagnosis.message}"
         self._ended(result.status, reason, seconds)
+
+    def _wishes(self) -> dict[str, Any]:
+        """What solve() is asked for besides the target and the task."""
+        if self.choice == "nearest":
+            return {"near": self.q}
+        if self.choice == "same branch":
+            return {"seeds": self.q, "database_seeds": False}
+        return {}
+
+    def _has_another_branch(self) -> bool:
+        """Whether the target has a solution, wherever the robot is."""
+        return bool(self.solver.solve(self.target, task=self.task))
 
     def branches(self) -> FloatArray:
         """All solutions of the target, (n, dof) [rad or m], the robot's own first."""

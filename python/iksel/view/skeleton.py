@@ -50,6 +50,11 @@ class Skeleton:
         self._slides = [kind == JointType.prismatic for kind in robot.joint_types]
 
     @property
+    def moved(self) -> list[str]:
+        """The links that the joints move, of each joint the first."""
+        return [self.links[i] for i in self._moved]
+
+    @property
     def bars(self) -> int:
         """Number of bars of one robot, each from one frame to the next."""
         return len(self.links)

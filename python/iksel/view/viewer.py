@@ -19,14 +19,17 @@ from iksel.view.controls import Controls
 from iksel.view.scene import Scene
 from iksel.view.session import Session
 from iksel.view.skeleton import Skeleton
+from iksel.view.visuals import read_pieces
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
     from types import TracebackType
 
     import numpy.typing as npt
     from iksel_cpp import Solver
 
+    from iksel._packages import Packages
+    from iksel.description import Source
     from iksel.pose import PoseLike
     from iksel.reach import Map
 
@@ -44,12 +47,25 @@ class Viewer:
     """
 
     def __init__(
-        self, solver: Solver, *, port: int = PORT, host: str = "127.0.0.1"
+        self,
+        solver: Solver,
+        *,
+        urdf: Source | None = None,
+        packages: Packages | None = None,
+        xacro_args: Mapping[str, str] | None = None,
+        port: int = PORT,
+        host: str = "127.0.0.1",
     ) -> None:
         """Start to serve.
 
         Args:
             solver: What solves; its robot and task are shown.
+            urdf: Where the robot is from, as load_robot() takes it: its links are shown
+                as their visual geometry. Without, or where a URDF has none, they are
+                bars; what cannot be read of it is in `lost`.
+            packages: Folders of package:// names of meshes; others are looked for
+                around the file, in $ROS_PACKAGE_PATH and $AMENT_PREFIX_PATH.
+            xacro_args: Values of a xacro file's arguments.
             port: Where to serve; the next free one if another program has it.
             host: Address to listen at: by default only this machine can look;
                 "0.0.0.0" for all.
@@ -57,10 +73,14 @@ class Viewer:
         Raises:
             MissingExtraError: viser is not installed.
             InvalidArgumentError: No address of this machine.
+            UrdfError, UnknownNameError: `urdf` cannot be read.
         """
         viser = _extras.need("viser", user="iksel.view", extra="'iksel[view]'")
         _check_host(host)
         self.session = Session(solver)
+        pieces, self.lost = (
+            ([], []) if urdf is None else read_pieces(urdf, packages, xacro_args)
+        )
         self._lock = threading.RLock()
         self._drawing = False
         self._dragged = False
@@ -74,8 +94,14 @@ class Viewer:
         reach = robot.reach
         self._server.initial_camera.position = robot.reach_centre + reach * VIEWPOINT
         self._server.initial_camera.look_at = robot.reach_centre
-        self.scene = Scene(self._server.scene, Skeleton(robot))
+        self.scene = Scene(self._server.scene, Skeleton(robot), pieces)
         self.controls = Controls(self._server.gui, self.session)
+        if len(self.scene.visuals):
+            self.controls.meshes.visible = True
+            self.scene.dress(dressed=True)
+        if self.lost:
+            some = f"not shown of the meshes: {len(self.lost)}, such as {self.lost[0]}"
+            self.controls.note = f"\n\n{some}"
         self.controls.on_change(self._changed)
         self.scene.target.on_update(lambda _event: self._drag())
         self._draw()
@@ -102,6 +128,10 @@ class Viewer:
         everywhere = self.host in ("0.0.0.0", "127.0.0.1")  # noqa: S104 (only asked)
         host = "localhost" if everywhere else self.host
         return f"http://{host}:{self.port}"
+
+    def _repr_html_(self) -> str:
+        """The page inside a notebook."""
+        return f'<iframe src="{self.url}" width="100%" height="600"></iframe>'
 
     @property
     def text(self) -> str:
@@ -221,14 +251,16 @@ class Viewer:
             if self._drawing or self._closed.is_set():
                 return
             controls, session = self.controls, self.session
-            if handle is controls.near:
-                session.stay_near = bool(handle.value)
+            if handle is controls.choice:
+                session.set_choice(handle.value)
             elif handle is controls.task:
                 session.set_task(handle.value)
             elif handle is controls.motion:
                 session.slide(handle.value)
             elif handle in controls.joints:
                 session.move_joint(controls.joints.index(handle), handle.value)
+            elif handle is controls.meshes:
+                self.scene.dress(dressed=bool(handle.value))
             elif handle is not controls.ghosts:
                 self._draw_map()
                 return
@@ -247,6 +279,7 @@ class Viewer:
             if source is not self.scene.target:
                 self.scene.draw_target(session.target)
             self.controls.draw(source, len(ghosts) if asked else None)
+        self._server.flush()  # viser would wait for 1/60 s for more to send
 
     def _draw_map(self) -> None:
         """Draw the map, if there is one that is switched on."""

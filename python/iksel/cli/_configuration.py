@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""ROBOT Q ...: one configuration, of which fk and jacobian say what there is."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from iksel.cli._angles import Angles
+from iksel.cli._output import add_json
+from iksel.cli._robot import add_robot, load
+
+if TYPE_CHECKING:
+    import argparse
+
+    from iksel_cpp import Robot
+
+    from iksel._arrays import FloatArray
+
+
+class Configuration(NamedTuple):
+    """A robot and its joint values."""
+
+    robot: Robot
+    angles: Angles
+    q: FloatArray
+    """(dof,) [rad or m]."""
+
+    def facts(self) -> dict[str, Any]:
+        """What is given again in JSON."""
+        robot = self.robot
+        return {
+            "robot": robot.name,
+            "base_link": robot.base_link,
+            "tip_link": robot.tip_link,
+            "joint_names": robot.joint_names,
+            "angle_unit": self.angles.unit,
+            "q": self.angles.show(robot, self.q),
+        }
+
+
+def add_configuration(parser: argparse.ArgumentParser) -> None:
+    """Add ROBOT, Q ..., and the forms in which what is there is shown."""
+    add_robot(parser)
+    parser.add_argument(
+        "q", nargs="+", metavar="Q", help="joint values, one per joint [rad or m]"
+    )
+    form = parser.add_mutually_exclusive_group()
+    add_json(form)
+    form.add_argument(
+        "--matrix", action="store_true", help="print the numbers of the matrix only"
+    )
+
+
+def read_configuration(arguments: argparse.Namespace) -> Configuration:
+    """What the arguments of add_configuration() describe.
+
+    Raises:
+        Error: As of load(); InvalidArgumentError too if there are not dof numbers.
+    """
+    robot = load(arguments)
+    angles = Angles(arguments)
+    q = np.array(angles.read_joints("Q", arguments.q, robot))
+    return Configuration(robot, angles, q)

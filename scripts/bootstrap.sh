@@ -2,9 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Installs what IKSel needs, and IKSel itself into a virtual environment.
 #
-# Usage: scripts/bootstrap.sh [--dev] [--lint] [--fuzz] [--bench] [--ros] [--apt-only]
-# Usage: scripts/bootstrap.sh [--dev] [--lint] [--fuzz] [--bench] [--docs] [--apt-only]
-# Usage: scripts/bootstrap.sh [--dev] [--lint] [--fuzz] [--bench] [--browser] [--apt-only]
+# Usage: scripts/bootstrap.sh [--dev] [--lint] [--fuzz] [--bench] [--ros] [--docs] [--browser] [--apt-only]
 #
 #   --dev       also what tests, benchmarks and the extra [dev] need
 #   --lint      also clang-format, clang-tidy and shellcheck
@@ -21,9 +19,7 @@
 # the sources are unchanged.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-apt_only=false bench=false dev=false fuzz=false lint=false ros=false
-apt_only=false bench=false dev=false docs=false fuzz=false lint=false
-apt_only=false bench=false browser=false dev=false fuzz=false lint=false
+apt_only=false bench=false browser=false dev=false docs=false fuzz=false lint=false ros=false
 for option in "$@"; do
   case $option in
     --apt-only) apt_only=true ;;
@@ -186,19 +182,11 @@ install_extras() { # PREFIX
   quietly "installing ${packages[*]}" "$python" -m pip install "${packages[@]}"
 }
 
-# What the extra docs names.
-install_docs() {
-  local packages
-  mapfile -t packages < <(from_pyproject 'project["project"]["optional-dependencies"]["docs"]')
-  quietly "installing ${packages[*]}" "$python" -m pip install "${packages[@]}"
-}
-
 install_missing
 use_ccache
 if ! $apt_only; then
   install_project
-  if $bench; then install_rivals; fi
-  if $docs; then install_docs; fi
   if $bench; then install_extras bench; fi
   if $browser; then install_extras browser; fi
+  if $docs; then install_extras docs; fi
 fi

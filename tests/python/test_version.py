@@ -50,6 +50,8 @@ def test_ros_1_and_2_have_the_same_service() -> None:
         pytest.skip("no ros beside the tests")
     one, two = [(package / "srv/SolveIK.srv").read_text() for package in packages]
     assert one == two
+
+
 def test_the_debian_package_has_the_name_of_its_library() -> None:
     path = ROOT / "packaging/debian/control"
     if not path.is_file():

@@ -134,10 +134,7 @@ def _rows(batch: BatchResult, q: FloatArray) -> Any:
     return zip(
         (Status(status).name for status in batch.status),
         (Proof(proof).name for proof in batch.proof),
-        (
-            row if yes else None
-            for row, yes in zip(q.tolist(), has_joints, strict=True)
-        ),
+        (row if yes else None for row, yes in zip(q.tolist(), has_joints, strict=True)),
         *(plain(getattr(batch, name)) for name in ERRORS),
         strict=True,
     )

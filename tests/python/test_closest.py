@@ -4,11 +4,11 @@
 import copy
 import pickle
 
-import iksel
 import numpy as np
 import pytest
-
 from tests.python.command_line import assert_bad
+
+import iksel
 
 
 @pytest.fixture(scope="module")

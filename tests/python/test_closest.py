@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""closest=True: what Python adds to it. That it is nearest is shown in test_closest.cpp."""
+"""What Python adds to closest=True; that it is nearest is shown in C++."""
 
 import copy
 import pickle

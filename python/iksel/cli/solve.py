@@ -123,8 +123,8 @@ def add_request(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--closest",
         action="store_true",
-        help="if there is no solution, give the configuration inside the limits that is "
-        "nearest to one, with status closest; a radian counts a quarter of the reach",
+        help="if there is no solution, give the configuration inside the limits that "
+        "is nearest to one, with status closest; a radian counts a quarter of the reach",
     )
     parser.add_argument(
         "--diagnose",

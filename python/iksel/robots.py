@@ -8,7 +8,13 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from iksel_cpp import InvalidArgumentError, LinkTree, Robot, UnknownNameError
+from iksel_cpp import (
+    InvalidArgumentError,
+    LinkTree,
+    Robot,
+    UnknownNameError,
+    UrdfError,
+)
 
 from iksel._descriptions import PREFIX
 from iksel._manifest import RobotInfo, manifest
@@ -95,8 +101,14 @@ def load_robot(
     info = manifest().get(name)
     read = read_description(source, xacro_args=xacro_args, packages=packages)
     base = tip = None
+    groups: list[str] = []
     if group is not None or (srdf is not None and not info and not tip_link):
-        base, tip = _ends(read, srdf, group)
+        given = _given_srdf(read, srdf, group)
+        groups = given.groups
+        if group is None and len(groups) == 1:
+            (group,) = groups
+        if group is not None:
+            base, tip = given.ends(group, read.urdf)
     base, tip = base_link or base, tip_link or tip
     if info is not None:
         base, tip = base or info.base_link, tip or info.tip_link
@@ -104,15 +116,21 @@ def load_robot(
         tcp = None
         if info is not None and info.tcp_xyz is not None and tip == info.tip_link:
             tcp = pose_from_euler(info.tcp_xyz, info.tcp_rpy)
-    return Robot.from_urdf(
-        read.urdf,
-        base_link=base,
-        tip_link=tip,
-        tcp=tcp,
-        locked_joints={} if locked_joints is None else locked_joints,
-        soft_limits=soft_limits,
-        default_limits=default_limits,
-    )
+    try:
+        return Robot.from_urdf(
+            read.urdf,
+            base_link=base,
+            tip_link=tip,
+            tcp=tcp,
+            locked_joints={} if locked_joints is None else locked_joints,
+            soft_limits=soft_limits,
+            default_limits=default_limits,
+        )
+    except UrdfError as error:
+        if error.available and groups:
+            listed = ", ".join(groups)
+            error.args = (f"{error}; or of the SRDF's groups (group): {listed}",)
+        raise
 
 
 def load_tree(
@@ -148,19 +166,14 @@ def _looks_like_a_file(name: str) -> bool:
     return os.sep in name or path.suffix in FILE_SUFFIXES or path.exists()
 
 
-def _ends(
+def _given_srdf(
     read: Description, srdf: Srdf | str | os.PathLike[str] | None, group: str | None
-) -> tuple[str | None, str | None]:
-    """Base and tip link of a group, or of the only one."""
+) -> Srdf:
+    """The SRDF that groups are of."""
     given = read.srdf if srdf is None else srdf
     if given is None:
         raise InvalidArgumentError(f"group: {group!r} is of an SRDF; give it by srdf")
-    given = given if isinstance(given, Srdf) else Srdf(given)
-    if group is None:
-        if len(given.groups) != 1:
-            return None, None
-        (group,) = given.groups
-    return given.ends(group, read.urdf)
+    return given if isinstance(given, Srdf) else Srdf(given)
 
 
 def _suggestion(name: str) -> str:

@@ -88,6 +88,19 @@ def test_an_only_group_need_not_be_named() -> None:
     )
 
 
+def test_where_there_are_several_tips_groups_are_named(
+    run: Run, tmp_path: Path
+) -> None:
+    urdf, srdf = tmp_path / "arm.urdf", tmp_path / "arm.srdf"
+    urdf.write_text(URDF, encoding="utf-8")
+    srdf.write_text(SRDF, encoding="utf-8")
+    groups = r"of the SRDF's groups \((--)?group\): chain, joints, "
+    with pytest.raises(iksel.UrdfError, match=groups) as caught:
+        iksel.load_robot(urdf, srdf=srdf)
+    assert caught.value.available
+    assert_bad(run("info", urdf, "--srdf", srdf), f"{groups}.*; choose one by --tip")
+
+
 def test_states_are_joint_values() -> None:
     srdf = iksel.Srdf(SRDF)
     made = iksel.load_robot(URDF, srdf=srdf, group="joints")

@@ -36,6 +36,7 @@ _FLAGS = {
     "xacro_args": "--xacro-arg NAME=VALUE",
     "packages: ": "--package NAME=FOLDER: ",
     "tip_link: ": "--tip: ",
+    "(group)": "(--group)",
 }
 
 

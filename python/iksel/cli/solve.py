@@ -124,7 +124,7 @@ def add_request(parser: argparse.ArgumentParser) -> None:
         "--closest",
         action="store_true",
         help="if there is no solution, give the configuration inside the limits that "
-        "is nearest to one, with status closest; a radian counts a quarter of the reach",
+        "is nearest to one, with status closest; a radian counts reach / 4",
     )
     parser.add_argument(
         "--diagnose",

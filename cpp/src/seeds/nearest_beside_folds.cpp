@@ -60,8 +60,8 @@ bool NearestOnCurve::short_span_may_be_shorter(int branch, int first, int last) 
 bool NearestOnCurve::fold_may_be_shorter(int branch, int end, int side) const {
   if (!is_none(end + side, branch)) return false;
   // Joints that change as the root of the swept one's distance from the fold change from the last
-  // sample to the fold at most 1 / (sqrt(2) - 1) = 2.4 times as much as from the one before it. With
-  // that alone, 3 of 10,000 answers of panda were lost, with this none.
+  // sample to the fold at most 1 / (sqrt(2) - 1) = 2.4 times as much as from the one before it.
+  // With that alone, 3 of 10,000 answers of panda were lost, with this none.
   constexpr double kSteepest = 4;
   for (int other = 0; other < SweptBranches::kCount; ++other) {
     // That branch merges with one of those that end there too.

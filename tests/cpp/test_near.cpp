@@ -104,4 +104,37 @@ TEST(Near, RedundantArmHasSlidToALocalMinimum) {
   }
 }
 
+/// Between two samples of the swept joint the others turn by more than a radian here: past the
+/// shoulder stretched out, beside where branches end. Bounds by single branches lost these.
+TEST(Near, IsFoundWhereBranchesAreSteep) {
+  const Solver& solver = iksel_test::solver("panda");
+  const Robot& robot = solver.robot();
+  const double cases[][2][7] = {
+      {{2.3227, 0.1113, -0.1360, -0.3857, 2.4612, 0.6642, -1.9214},
+       {2.4857, -0.4647, -0.2320, -0.4808, 2.2010, 0.3411, -2.1018}},
+      {{1.8674, 0.0354, -1.0011, -2.0868, 1.5023, 1.0243, 2.2149},
+       {1.9801, -0.2783, -0.9916, -2.6571, 1.3300, 0.5547, 2.1657}},
+      {{0.0984, -0.0333, -1.7669, -0.6213, -1.2625, 2.5470, 1.3028},
+       {-0.2220, 0.4006, -2.2255, -0.3369, -1.2370, 2.0658, 1.0999}},
+      {{-1.0882, -0.0104, -1.7044, -1.9027, -1.3439, 1.7663, 0.7068},
+       {-0.9913, 0.2445, -1.6638, -1.5704, -1.2622, 1.8505, 0.7200}},
+      {{0.8883, 0.0477, -1.6227, -0.4934, 0.9436, 2.1595, -1.4735},
+       {1.2287, -0.3224, -1.7526, -0.2452, 0.4982, 2.2084, -1.7079}},
+      {{1.6427, -0.0997, 1.6617, -1.1325, 1.3686, 1.0765, 0.6203},
+       {1.7772, 0.1858, 1.7409, -1.2638, 1.6870, 1.3638, 0.2721}},
+  };
+  for (const auto& [from, near] : cases) {
+    SolveRequest request;
+    request.near = Eigen::Map<const Eigen::VectorXd>(near, 7);
+    const Pose target = robot.fk(Eigen::Map<const Eigen::VectorXd>(from, 7));
+    double best = 10;
+    for (const iksel::SelfMotionArc& arc : solver.self_motion(target, 0.01).arcs) {
+      for (const JointVector& q : arc.q) {
+        best = std::min(best, shortest_move(robot, q, *request.near, request.norm));
+      }
+    }
+    EXPECT_LE(solver.solve(target, request).move, best + 1e-6) << best;
+  }
+}
+
 }  // namespace

@@ -37,28 +37,28 @@ class NearestOnCurve {
   static constexpr int kShort = 8;
   /// What is no answer counts more than any move, and the more the farther it is from one.
   static constexpr double kRefused = 1e9;
+  /// The move to where the curve ends may be so much shorter than at the sample before.
+  static constexpr double kSteep = 0.3;
+  /// Rounds of eight values in which a least is looked for, and to which part of a sample's
+  /// distance from the next.
+  static constexpr int kNarrowings = 9;
+  static constexpr double kFinest = 1e-5;
   /// Branches are followed only if they come so near to an answer at a sample [mixed units].
   static constexpr double kNear = 0.3;
 
   /// A branch at a sample of the swept joint.
   struct Sample {
-    bool is_known = false;
-    bool exists = false;
+    bool exists;
     /// The move to it by its joints' nearest images, inside the limits or not.
-    double loose = 0;
-    std::array<double, SweptBranches::kDof> q{};
-
-    [[nodiscard]] bool is_none() const { return is_known && !exists; }
+    double loose;
+    std::array<double, SweptBranches::kDof> q;
   };
 
-  /// A move by images inside the limits only, and by any.
-  struct Move {
-    double loose, inside;
-  };
-  /// To what a lane holds.
-  [[nodiscard]] Move move_to(int lane) const;
   /// The move to what a lane holds, or more than kRefused.
-  [[nodiscard]] double cost(int lane) const;
+  [[nodiscard]] double cost(int lane) const {
+    const lanes::MovePack& moves = branches_.moves();
+    return moves.off[lane] > 0 ? kRefused + moves.off[lane] : moves.inside[lane];
+  }
   /// At least how long the move is to any answer at a value of the swept joint; and how much less
   /// that may be one sample nearer.
   [[nodiscard]] double least_move(double value) const;
@@ -69,13 +69,24 @@ class NearestOnCurve {
   void look_around();
   /// The shortest move there.
   double solve_at(int place);
-  /// By whole turns of the swept joint; not known where that has none.
-  [[nodiscard]] const Sample& sample(int place, int branch) const {
-    static constexpr Sample kNone{};
+  /// Whether a sample was solved; places count by whole turns of the swept joint.
+  [[nodiscard]] bool is_known(int place) const {
     const int at = places_.find(place);
-    return at < 0 ? kNone
-                  : samples_[static_cast<std::size_t>(at)][static_cast<std::size_t>(branch)];
+    return at >= 0 && known_[static_cast<std::size_t>(at)];
   }
+  /// Of one that was.
+  [[nodiscard]] const Sample& sample(int place, int branch) const {
+    const auto at = static_cast<std::size_t>(places_.find(place));
+    return samples_[at][static_cast<std::size_t>(branch)];
+  }
+  [[nodiscard]] bool exists(int place, int branch) const {
+    return is_known(place) && sample(place, branch).exists;
+  }
+  [[nodiscard]] bool is_none(int place, int branch) const {
+    return is_known(place) && !sample(place, branch).exists;
+  }
+  /// How far the joints move between two samples, by nearest images.
+  [[nodiscard]] double distance(int place, int beside, int branch) const;
 
   /// Whether there may be a shorter move than the best so far beside a sample.
   [[nodiscard]] bool may_be_shorter(const LeastPlace& least) const;
@@ -83,6 +94,13 @@ class NearestOnCurve {
   /// Beside folds the other joints turn a lot from one sample to the next: above all where the arm
   /// is stretched, and a branch may exist for few samples only.
   void look_beside_folds(int branch);
+  /// From its first sample to its last.
+  void look_into_span(int branch, int first, int last);
+  /// Whether there may be a shorter move than the best so far on a span of few samples, and where
+  /// it folds at its ends.
+  [[nodiscard]] bool short_span_may_be_shorter(int branch, int first, int last) const;
+  /// The same where branches fold between a sample and the one on that side of it.
+  [[nodiscard]] bool fold_may_be_shorter(int branch, int end, int side) const;
   /// Whether a joint is at one limit at a sample and beyond the other at the one before: between
   /// them it may be outside of both.
   [[nodiscard]] bool jumps(int place, int branch) const;
@@ -101,6 +119,8 @@ class NearestOnCurve {
 
   // Of the last search.
   std::array<double, SweptBranches::kDof> near_{}, weight_{};
+  int below_ = 0, above_ = 0;  ///< between these are the samples that were solved
+  std::array<bool, kSamples> known_{};
   bool takes_largest_ = false;
   double least_off_ = 0;  ///< how far the nearest branch was from being an answer
   std::vector<SweptBranches::Row> rows_;

@@ -31,8 +31,24 @@ void SweptBranches::set_target(const Pose& Y) {
 
 void SweptBranches::solve_all(double value) {
   std::fill_n(all_.held, kCount, value + offset_);
-  kernels_.find_branches(chain_.form, all_);
-  last_ = &all_;
+  find_branches(all_);
+}
+
+void SweptBranches::measure_moves_from(const JointVector& near, const JointMove& move) {
+  measures_moves_ = true;
+  lanes::MoveForm& form = move_form_;
+  // An image at a limit may lie beyond it once it is refined.
+  form.margin = 1e-5;
+  form.takes_largest = move.norm() == MoveNorm::max;
+  for (int i = 0; i < kDof; ++i) {
+    const int j = i == kDof - 1 ? chain_.held : chain_.joints[i];
+    const double offset = i == kDof - 1 ? offset_ : 0;
+    form.from[i] = near[j] + offset;
+    form.weight[i] = move.weights()[j];
+    form.has_images[i] = joints_.is_periodic(j);
+    form.lower[i] = joints_.lower[j] + form.margin + offset;
+    form.upper[i] = joints_.upper[j] - form.margin + offset;
+  }
 }
 
 void SweptBranches::rate(double bound, Row* rows) {
@@ -43,9 +59,12 @@ void SweptBranches::rate(double bound, Row* rows) {
   }
 }
 
-void SweptBranches::solve_one() {
-  kernels_.find_branches(chain_.form, one_);
-  last_ = &one_;
+void SweptBranches::solve_one() { find_branches(one_); }
+
+void SweptBranches::find_branches(lanes::BranchPack& pack) {
+  kernels_.find_branches(chain_.form, pack);
+  if (measures_moves_) kernels_.measure_moves(move_form_, pack, moves_);
+  last_ = &pack;
 }
 
 void SweptBranches::narrow(int branch, int rounds, Fold& fold) {

@@ -10,6 +10,7 @@
 
 #include "base/constants.hpp"
 #include "base/least.hpp"
+#include "goal/joint_move.hpp"
 #include "kinematics/chain_model.hpp"
 #include "simd/kernels.hpp"
 #include "structure/closed_form.hpp"
@@ -26,7 +27,8 @@ struct Places {
   [[nodiscard]] double value(int place) const { return lower + step * place; }
   /// The place's number by whole turns; -1 if it lies outside.
   [[nodiscard]] int find(int place) const {
-    if (turns) return (place % count + count) % count;
+    if (turns && place < 0) return find(place + count);
+    if (turns && place >= count) return find(place - count);
     return place < 0 || place >= count ? -1 : place;
   }
 };
@@ -96,12 +98,17 @@ class SweptBranches {
   /// other: between them it may be outside of both.
   [[nodiscard]] bool jumps(const double* a, const double* b) const;
 
+  /// From now on, the moves from `near` are measured to all that is solved [rad].
+  void measure_moves_from(const JointVector& near, const JointMove& move);
+
   // What the last of these found in a lane.
 
   /// How far it is from being an answer: 0 if it is one [mixed units].
   [[nodiscard]] double off(int lane) const {
     return std::max(last_->beyond[lane], 0.0) + std::sqrt(std::max(-last_->least[lane], 0.0));
   }
+  /// How far all lanes are away, if that is measured.
+  [[nodiscard]] const lanes::MovePack& moves() const { return moves_; }
   /// Whether there is such a branch at all: below 0 if there is none [mixed units].
   [[nodiscard]] double least(int lane) const { return last_->least[lane]; }
   /// The value of the swept joint.
@@ -122,6 +129,7 @@ class SweptBranches {
     double least_inside = 0, least_outside = -1;
   };
   void solve_one();
+  void find_branches(lanes::BranchPack& pack);
   void rate(double bound, Row* rows);
   void narrow(int branch, int rounds, Fold& fold);
 
@@ -133,6 +141,9 @@ class SweptBranches {
   lanes::BranchPack all_ = all_branches();
   lanes::BranchPack one_{};
   const lanes::BranchPack* last_ = &all_;
+  bool measures_moves_ = false;
+  lanes::MoveForm move_form_{};
+  lanes::MovePack moves_{};
 };
 
 /// What a search over branches that found no answer lets conclude.

@@ -79,4 +79,25 @@ struct BranchPack {
   alignas(64) double error[kWidth];
 };
 
+/// Seven joints to move from: six as a form counts them, and the angle of the held one.
+struct MoveForm {
+  double from[7];    ///< [rad]
+  double weight[7];  ///< what a move of each counts
+  /// Whether whole turns may lie inside the limits; and these, narrower by the margin [rad].
+  bool has_images[7];
+  double lower[7], upper[7];
+  double margin;
+  bool takes_largest;  ///< else the root of the squares' sum
+};
+
+/// How far branches are away, lane by lane.
+struct MovePack {
+  /// The move by each joint's nearest image, inside the limits or not.
+  alignas(64) double loose[kWidth];
+  /// By the nearest inside the limits, if the branch is inside of them at all.
+  alignas(64) double inside[kWidth];
+  /// How far a branch is from being an answer: 0 if it is one [mixed units].
+  alignas(64) double off[kWidth];
+};
+
 }  // namespace iksel::lanes

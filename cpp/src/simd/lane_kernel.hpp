@@ -9,6 +9,7 @@
 #include "simd/lane_goal.hpp"
 #include "simd/lane_math.hpp"
 #include "simd/lane_types.hpp"
+#include "simd/move_kernel.hpp"
 #include "simd/residual_kernel.hpp"
 #include "simd/seed_kernel.hpp"
 #include "simd/sweep_kernel.hpp"
@@ -186,6 +187,7 @@ constexpr LaneKernels make_kernels(const char* name) {
           solve_branches<Wide>,
           find_branches<Wide>,
           rate_branches<Wide>,
+          measure_moves<Wide>,
           find_residuals<Wide>,
           count_roots<Wide>};
 }

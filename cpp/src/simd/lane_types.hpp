@@ -150,6 +150,11 @@ using SolveBranches = void (*)(const ClosedForm& form, BranchPack& pack);
 using RateBranches = void (*)(const ClosedForm& form, const BranchPack& pack, double bound,
                               double (&off)[kWidth][kWidth]);
 
+struct MoveForm;
+struct MovePack;
+/// How far all lanes of a pack are away (move_kernel.hpp).
+using MeasureMoves = void (*)(const MoveForm& form, const BranchPack& pack, MovePack& out);
+
 struct ResidualForm;
 /// The residuals of `n` angles, a multiple of kWidth (residual_kernel.hpp). Returns the least of
 /// what they are divided by.
@@ -179,6 +184,7 @@ struct LaneKernels {
   SolveBranches solve_branches;
   SolveBranches find_branches;
   RateBranches rate_branches;
+  MeasureMoves measure_moves;
   FindResiduals find_residuals;
   CountRoots count_roots;
 };

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How far the joints move to branches of a chain of seven, and how far these are from being
+// answers: a branch in each lane.
+#pragma once
+
+#include "simd/branch_types.hpp"
+#include "simd/lane_math.hpp"
+
+namespace iksel::lanes {
+
+/// The least integer that is not below x.
+template <typename T>
+IKSEL_INLINE T round_up(const T& x) {
+  const T n = nearest_integer(x);
+  return select(n < x, n + T(1.0), n);
+}
+
+/// What the lanes from `first` on move by: of one joint, d by its nearest image, and by that
+/// nearest inside the limits.
+template <typename T>
+IKSEL_INLINE void add_move(const MoveForm& form, int j, const T& q, T& loose, T& inside) {
+  const T whole(6.28318530717958647693);
+  const T per_turn(0.15915494309189533577);
+  const T d = q - T(form.from[j]);
+  const T turns = nearest_integer(d * per_turn);
+  const T nearest = d - whole * turns;
+  T image = d;
+  if (form.has_images[j]) {
+    const T least = round_up((T(form.lower[j]) - q) * per_turn);
+    const T most = T(0.0) - round_up((q - T(form.upper[j])) * per_turn);
+    const T moved = d + whole * min(max(T(0.0) - turns, least), most);
+    // What is all but at a limit stays there.
+    const T outside = max(T(form.lower[j]) - q, q - T(form.upper[j]));
+    image = select(max(abs(turns), outside * T(0.25 / form.margin)) > T(0.5), moved, d);
+  }
+  const T a = abs(nearest) * T(form.weight[j]);
+  const T b = abs(image) * T(form.weight[j]);
+  loose = form.takes_largest ? max(loose, a) : loose + a * a;
+  inside = form.takes_largest ? max(inside, b) : inside + b * b;
+}
+
+/// To all lanes of a pack.
+template <typename T>
+void measure_moves(const MoveForm& form, const BranchPack& pack, MovePack& out) {
+  for (int first = 0; first < kWidth; first += Lanes<T>::kCount) {
+    T loose(0.0);
+    T inside(0.0);
+    for (int j = 0; j < 6; ++j) {
+      add_move(form, j, Lanes<T>::load(pack.q[j] + first), loose, inside);
+    }
+    add_move(form, 6, Lanes<T>::load(pack.held + first), loose, inside);
+    if (!form.takes_largest) {
+      loose = sqrt(loose);
+      inside = sqrt(inside);
+    }
+    Lanes<T>::store(loose, out.loose + first);
+    Lanes<T>::store(inside, out.inside + first);
+    const T beyond = max(Lanes<T>::load(pack.beyond + first), T(0.0));
+    const T lacks = max(T(0.0) - Lanes<T>::load(pack.least + first), T(0.0));
+    Lanes<T>::store(beyond + sqrt(lacks), out.off + first);
+  }
+}
+
+}  // namespace iksel::lanes

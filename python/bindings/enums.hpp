@@ -215,6 +215,8 @@ struct EnumTable<Status> {
        "answers exist, but joints would have to move faster than their velocity limits"},
       {"invalid_pose", Status::invalid_pose,
        "the target is no pose; in batches only, for a single pose it is an error"},
+      {"in_collision", Status::in_collision,
+       "attempts reached the target inside the limits, but each collides in the scene"},
   };
 };
 
@@ -306,6 +308,7 @@ struct EnumTable<Cause> {
       {"budget", Cause::budget,
        "more work finds an answer: the bounds on attempts or iterations are too low"},
       {"out_of_time", Cause::out_of_time, "more time finds an answer: the deadline is too short"},
+      {"collision", Cause::collision, "answers exist, but each collides in the scene"},
   };
 };
 

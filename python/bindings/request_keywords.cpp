@@ -68,6 +68,14 @@ struct ArgumentOf<Filter> : ShownAsNone {
 };
 
 template <>
+struct ArgumentOf<Scene> {
+  static std::string text() { return "iksel_cpp.Scene"; }
+  static Scene read(py::handle given, const char* name, int /*dof*/) {
+    return from_python<Scene>(given, name);
+  }
+};
+
+template <>
 struct ArgumentOf<Objective> : ShownAsNone {
   static std::string text() {
     return "iksel_cpp.Objective | str | collections.abc.Callable[[numpy.ndarray], float]";
@@ -99,7 +107,8 @@ constexpr const char* kWeightsDoc =
     "factor on each joint's part of a move, (dof,), >= 0; None: all 1.";
 constexpr const char* kNormDoc = "how a move is measured.";
 constexpr const char* kFilterDoc =
-    "called with candidates (n, dof), each at the pose and inside the limits; returns n truth "
+    "called with candidates (n, dof), each at the pose, inside the limits and free in the scene; "
+    "returns n truth "
     "values. The search continues within its bounds while all are refused. In a batch it is asked "
     "about the first answers of up to 256 targets at once, along a path about one waypoint's.";
 
@@ -123,6 +132,9 @@ std::vector<Keyword> request_keywords() {
       keyword("database_seeds", &R::database_seeds,
               "whether other seeds follow the given ones: the database's, random ones, and those "
               "that a closed form gives."),
+      keyword("scene", &R::scene,
+              "what answers may not collide with; of a robot with the same chain. The search "
+              "continues within its bounds while all collide."),
       keyword("filter", &R::filter, kFilterDoc),
       keyword("deadline", &R::deadline,
               "wall-clock time after which the search for a target ends [s]; checked between its "
@@ -169,6 +181,8 @@ std::vector<Keyword> path_keywords() {
               "velocity limit allows; 0: speeds are not limited."),
       keyword("weights", &O::weights, kWeightsDoc),
       keyword("norm", &O::norm, kNormDoc),
+      keyword("scene", &O::scene,
+              "what waypoints may not collide with; the moves between them are not looked at."),
       keyword("filter", &O::filter, kFilterDoc),
       keyword("candidates", &O::candidates, "candidates kept per waypoint at most."),
   };

@@ -9,6 +9,7 @@ import numpy as np
 from iksel_cpp import InvalidArgumentError, UrdfError
 
 from iksel._packages import resolve_path
+from iksel._sphere_cover import Mesh
 from iksel._urdf_xml import read_numbers, read_origin
 
 if TYPE_CHECKING:
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from iksel._arm_links import ArmLinks
     from iksel._arrays import BoolArray, FloatArray, IntArray
 
+_CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
 _CHUNK = 256  # configurations placed at a time, which bounds the memory
 
 
@@ -199,6 +201,37 @@ def _hull(shape: Any) -> Any:
     except (RuntimeError, ValueError):
         return shape  # flat, which has no hull
     return shape.convex or shape
+
+
+def mesh_of(geometry: Any, max_error: float) -> Mesh:
+    """Triangles around one of coal's shapes, which lies inside: a box, cylinder or mesh."""
+    kind = type(geometry).__name__
+    if kind == "Box":
+        return _prism(geometry.halfSide[:2] * _CORNERS, float(geometry.halfSide[2]))
+    if kind == "Cylinder":
+        # Sides so many that the corners stick out by a part of the error only.
+        ratio = min(max_error / geometry.radius / 20, 0.5)
+        count = max(8, int(np.ceil(np.pi / np.arccos(1 / (1 + ratio)))))
+        angles = 2 * np.pi * np.arange(count) / count
+        corner = geometry.radius / np.cos(np.pi / count)
+        around = corner * np.column_stack([np.cos(angles), np.sin(angles)])
+        return _prism(around, float(geometry.halfLength))
+    triangles = [geometry.tri_indices(i) for i in range(geometry.num_tris)]
+    return Mesh(
+        np.array(geometry.vertices(), dtype=float),
+        np.array([[t[0], t[1], t[2]] for t in triangles], dtype=int),
+    )
+
+
+def _prism(around: FloatArray, half: float) -> Mesh:
+    """A polygon (n, 2) in the plane, convex, from -half to half in z."""
+    n = len(around)
+    ends = [np.column_stack([around, np.full(n, z)]) for z in (-half, half)]
+    i = np.arange(n)
+    j = (i + 1) % n
+    fan = np.column_stack([np.zeros(n - 2, dtype=int), i[1:-1], i[2:]])
+    sides = [np.column_stack([i, j, j + n]), np.column_stack([i, j + n, i + n])]
+    return Mesh(np.concatenate(ends), np.concatenate([fan, fan + n, *sides]))
 
 
 def _local_box(shape: Any) -> tuple[FloatArray, FloatArray]:

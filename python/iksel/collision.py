@@ -106,7 +106,7 @@ class SelfCollision:
         if samples < 0:
             raise InvalidArgumentError(f"samples: {samples} is not 0 or more")
         coal = import_coal()
-        root, folder = _read_urdf(urdf, packages or {}, xacro_args)
+        root, folder = read_urdf(urdf, packages or {}, xacro_args)
         shapes = read_shapes(coal, root, folder, packages or {})
         self._dof = robot.dof
         self._name = root.get("name", "")
@@ -250,7 +250,7 @@ class SelfCollision:
         self._part_margins = np.array([margin for _, margin, _ in self._parts])
 
 
-def _read_urdf(
+def read_urdf(
     source: str | os.PathLike[str],
     packages: Mapping[str, str | os.PathLike[str]],
     xacro_args: Mapping[str, str] | None,

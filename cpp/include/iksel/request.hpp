@@ -11,6 +11,7 @@
 
 #include "iksel/export.hpp"
 #include "iksel/objective.hpp"
+#include "iksel/scene.hpp"
 #include "iksel/task.hpp"
 #include "iksel/types.hpp"
 
@@ -63,7 +64,11 @@ struct IKSEL_EXPORT SolveRequest {
   JointVector weights;
   MoveNorm norm = MoveNorm::two;
 
-  /// Refuses candidates; the search then continues within its bounds. Empty: takes all.
+  /// What answers may not collide with. As it is when the solve begins. Of a robot with the same
+  /// chain.
+  std::optional<Scene> scene;
+  /// Refuses candidates, of those that do not collide; the search then continues within its bounds.
+  /// Empty: takes all.
   Filter filter;
   /// Wall-clock time after which no new stage of the search begins [s], above 0. What was found by
   /// then is judged. The one option under which the same input may give different answers.
@@ -120,6 +125,8 @@ struct IKSEL_EXPORT PathOptions {
   /// The path with the least sum of the moves is taken, each measured so (as in SolveRequest).
   JointVector weights;
   MoveNorm norm = MoveNorm::two;
+  /// What waypoints may not collide with; the moves between them are not looked at.
+  std::optional<Scene> scene;
   /// Refuses candidates, those of one waypoint at a time.
   Filter filter;
   /// Candidates kept per waypoint at most.

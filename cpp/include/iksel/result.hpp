@@ -23,6 +23,7 @@ enum class Status : std::uint8_t {
   out_of_time,   ///< the deadline passed before an answer was found
   too_fast,      ///< answers exist, but joints would have to move faster than their velocity limits
   invalid_pose,  ///< the target is no pose (check_pose); in batches only, solve throws
+  in_collision,  ///< attempts reached the target inside the limits, but each collides in the scene
 };
 
 /// Lower-case name of a status.

@@ -19,8 +19,8 @@ Filter filter_each(int dof, std::function<bool(const JointVector&)> keep) {
 }
 
 bool SolveRequest::has_requirements() const {
-  return !seeds.empty() || !database_seeds || near || filter || objective.is_set() || task ||
-         std::isfinite(deadline);
+  return !seeds.empty() || !database_seeds || near || scene || filter || objective.is_set() ||
+         task || std::isfinite(deadline);
 }
 
 void SolveRequest::validate(int dof) const {

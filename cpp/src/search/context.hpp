@@ -60,6 +60,8 @@ struct Workspace {
     std::optional<RootSweep> roots;
     std::optional<NearestOnCurve> nearest_on_curve;
     std::optional<SelfMotionArcs> arcs;
+    /// Configurations of a self-motion that a scene is to look at.
+    std::vector<double> samples;
   };
   struct OneAtATime {
     OneAtATime(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,

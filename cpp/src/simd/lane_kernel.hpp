@@ -8,6 +8,7 @@
 #include "simd/lane_math.hpp"
 #include "simd/lane_types.hpp"
 #include "simd/residual_kernel.hpp"
+#include "simd/scene_kernel.hpp"
 #include "simd/seed_kernel.hpp"
 #include "simd/sweep_kernel.hpp"
 
@@ -235,7 +236,8 @@ constexpr LaneKernels make_kernels(const char* name) {
           find_branches<Wide>,
           rate_branches<Wide>,
           find_residuals<Wide>,
-          count_roots<Wide>};
+          count_roots<Wide>,
+          find_free<Wide>};
 }
 
 }  // namespace iksel::lanes

@@ -153,6 +153,11 @@ using FindResiduals = double (*)(const ResidualForm& form, const double* angles,
 /// The number of roots between values beside each other: 0, 1, or 2 if that is not certain.
 using CountRoots = void (*)(const double* values, int n, double* counts);
 
+struct SceneView;
+/// Where nothing touches (scene_types.hpp).
+using FindFree = unsigned (*)(const SceneView& scene, const double* q, unsigned wanted,
+                              double* centre);
+
 /// Iterations of packs of one width.
 struct PackKernels {
   int lanes;
@@ -175,6 +180,7 @@ struct LaneKernels {
   RateBranches rate_branches;
   FindResiduals find_residuals;
   CountRoots count_roots;
+  FindFree find_free;
 };
 
 }  // namespace iksel::lanes

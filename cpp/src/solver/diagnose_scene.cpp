@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "solver/diagnose_scene.hpp"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/constants.hpp"
+#include "base/message_text.hpp"
+
+namespace iksel {
+namespace {
+
+std::string body_text(const Scene& scene, const std::string& name) {
+  return (scene.attached().count(name) > 0 ? "object '" : "link '") + name + "'";
+}
+
+/// "box 'table'"
+std::string obstacle_text(const Scene& scene, const std::string& name) {
+  const Obstacle::Shape shape = scene.obstacles().at(name).shape;
+  const bool is_half_space = shape == Obstacle::Shape::half_space;
+  return std::string(is_half_space ? "half-space" : to_string(shape)) + " '" + name + "'";
+}
+
+/// "link 'a' touches box 'b' by 12 mm, link 'c' touches link 'd' by 3 mm"
+std::string contacts_text(const Scene& scene, const std::vector<Contact>& contacts) {
+  constexpr int kDigits = 3;
+  std::string list;
+  for (const Contact& contact : contacts) {
+    if (!list.empty()) list += ", ";
+    list += body_text(scene, contact.link) + " touches ";
+    list +=
+        contact.is_obstacle ? obstacle_text(scene, contact.other) : body_text(scene, contact.other);
+    list += " by " + number_text(1e3 * contact.depth, kDigits) + " mm";
+  }
+  return list;
+}
+
+}  // namespace
+
+JointVector explain_collision(const Scene& scene, const Solutions& refused, Diagnosis& out) {
+  JointVector q;
+  double least = kInfinity;
+  for (const Result& answer : refused.all) {
+    std::vector<Contact> contacts = scene.contacts(answer.q);
+    const double deepest = contacts.empty() ? 0.0 : contacts.front().depth;
+    if (deepest >= least) continue;
+    least = deepest;
+    q = answer.q;
+    out.contacts = std::move(contacts);
+  }
+  out.cause = Cause::collision;
+  out.message = "each of " + std::to_string(out.refused) + " answers collides; in the one where " +
+                "least overlaps, " + contacts_text(scene, out.contacts) +
+                ": move the target or what is in the way";
+  return q;
+}
+
+}  // namespace iksel

@@ -386,7 +386,8 @@ std::vector<std::string> obstacle_names(const Scene& self) {
 py::object scene_state(const Scene& self) {
   py::list obstacles;
   for (const auto& [name, o] : self.obstacles()) {
-    const py::object points = o.points ? py::cast(RowMajorMatrix(*o.points)) : py::none();
+    py::object points = py::none();
+    if (o.points) points = to_array(Matrix(*o.points));
     obstacles.append(py::make_tuple(name, to_string(o.shape), o.radius, o.length,
                                     to_array(JointVector(o.size)), points, to_array(Pose(o.pose)),
                                     o.margin));

@@ -9,7 +9,7 @@ import numpy as np
 from iksel_cpp import InvalidArgumentError, UrdfError
 
 from iksel._packages import resolve_path
-from iksel._sphere_cover import Mesh
+from iksel._sphere_cover import Mesh, Solid
 from iksel._urdf_xml import read_numbers, read_origin
 
 if TYPE_CHECKING:
@@ -203,24 +203,46 @@ def _hull(shape: Any) -> Any:
     return shape.convex or shape
 
 
-def mesh_of(geometry: Any, max_error: float) -> Mesh:
-    """Triangles around one of coal's shapes, which lies inside: a box, cylinder or mesh."""
+def is_sphere(geometry: Any) -> bool:
+    """Whether one of coal's shapes is a ball."""
+    return type(geometry).__name__ == "Sphere"
+
+
+def solid_of(shape: Shape, max_error: float) -> Solid:
+    """A box, cylinder or mesh in the frame of its link, by triangles around it."""
+    geometry = shape.geometry
     kind = type(geometry).__name__
     if kind == "Box":
-        return _prism(geometry.halfSide[:2] * _CORNERS, float(geometry.halfSide[2]))
-    if kind == "Cylinder":
+        half = np.array(geometry.halfSide)
+        mesh = _prism(half[:2] * _CORNERS, float(half[2]))
+    elif kind == "Cylinder":
+        half = np.array([geometry.radius, geometry.halfLength])
         # Sides so many that the corners stick out by a part of the error only.
         ratio = min(max_error / geometry.radius / 20, 0.5)
         count = max(8, int(np.ceil(np.pi / np.arccos(1 / (1 + ratio)))))
         angles = 2 * np.pi * np.arange(count) / count
         corner = geometry.radius / np.cos(np.pi / count)
         around = corner * np.column_stack([np.cos(angles), np.sin(angles)])
-        return _prism(around, float(geometry.halfLength))
-    triangles = [geometry.tri_indices(i) for i in range(geometry.num_tris)]
-    return Mesh(
-        np.array(geometry.vertices(), dtype=float),
-        np.array([[t[0], t[1], t[2]] for t in triangles], dtype=int),
-    )
+        mesh = _prism(around, float(geometry.halfLength))
+    else:
+        half = np.zeros(0)
+        faces = [geometry.tri_indices(i) for i in range(geometry.num_tris)]
+        mesh = Mesh(
+            np.array(geometry.vertices(), dtype=float),
+            np.array([[t[0], t[1], t[2]] for t in faces], dtype=int),
+        )
+    rotation, place = shape.origin[:3, :3], shape.origin[:3, 3]
+
+    def holds(points: FloatArray) -> BoolArray:
+        local = np.abs((points - place) @ rotation)
+        if kind == "Cylinder":
+            local = np.column_stack([np.hypot(local[:, 0], local[:, 1]), local[:, 2]])
+        if not half.size:
+            return np.zeros(len(points), dtype=bool)
+        within: BoolArray = (local < half * (1 - 1e-9)).all(axis=1)
+        return within
+
+    return Solid(Mesh(mesh.vertices @ rotation.T + place, mesh.triangles), holds)
 
 
 def _prism(around: FloatArray, half: float) -> Mesh:

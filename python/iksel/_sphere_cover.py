@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
     from iksel._arrays import BoolArray, FloatArray, IntArray
 
 _MOST_CANDIDATES = 1_500
@@ -26,32 +28,76 @@ class Mesh(NamedTuple):
     triangles: IntArray  # (m, 3)
 
 
-def cover(mesh: Mesh, max_error: float) -> FloatArray:
-    """Spheres that cover a solid, and stick out of it by `max_error` [m] at most.
+class Solid(NamedTuple):
+    """A part of a body."""
 
-    The inside is where a line parallel to z has crossed the surface an odd number of times; of a
-    surface that is not closed, at least the surface is covered.
+    mesh: Mesh
+    holds: Callable[[FloatArray], BoolArray]
+    """Which of some points (n, 3) lie inside; those that are said not to may all the same."""
+
+
+def cover(solids: Sequence[Solid], balls: FloatArray, max_error: float) -> FloatArray:
+    """Spheres that cover a body, and stick out of it by `max_error` [m] at most.
+
+    The inside of a mesh is where a line parallel to z has crossed it an odd number of times; of
+    one that is not closed, at least the surface is covered.
+
+    Args:
+        solids: Parts of the body, which may overlap.
+        balls: Further parts, (n, 4), that are spheres already.
+        max_error: How far spheres may stick out [m].
 
     Returns:
-        (n, 4), rows of centre and radius [m].
+        (n, 4), rows of centre and radius [m]: first the balls.
     """
     gap = max_error / 3
-    surface = _surface_samples(mesh, np.sqrt(3) * gap / 2)
-    inside = _inside_samples(mesh, gap / np.sqrt(3))
-    samples = np.concatenate([surface, inside])
-    centres = np.concatenate(
-        [_some(inside, _MOST_CANDIDATES), _some(surface, _MOST_CANDIDATES // 3)]
+    of_each = [_surface_samples(solid.mesh, np.sqrt(3) * gap / 2) for solid in solids]
+    surface = np.concatenate(of_each)
+    inside = np.concatenate(
+        [_inside_samples(solid.mesh, gap / np.sqrt(3)) for solid in solids]
     )
-    depth = _distances_to_nearest(centres, surface)
-    depth[len(centres) - min(len(surface), _MOST_CANDIDATES // 3) :] = 0.0
+    bare = np.concatenate(
+        [_outside_others(points, i, solids, balls) for i, points in enumerate(of_each)]
+        + [_outside_others(_ball_samples(b, gap / 2), -1, solids, balls) for b in balls]
+    )
+    samples = np.concatenate([surface, inside])
+    for x, y, z, r in balls:
+        samples = samples[np.linalg.norm(samples - [x, y, z], axis=1) > r - gap]
+    centres = _some(inside, _MOST_CANDIDATES)
     # Samples of the surface are gap / 2 apart from any of its points.
-    radius = np.maximum(depth - gap / 2, 0.0) + max_error
+    depth = np.maximum(_distances_to_nearest(centres, bare) - gap / 2, 0.0)
+    at_surface = _some(surface, _MOST_CANDIDATES // 3)
+    centres = np.concatenate([centres, at_surface])
+    radius = np.append(depth, np.zeros(len(at_surface))) + max_error
     chosen, left = _choose(centres, radius - gap, samples)
-    spheres = [np.column_stack([centres[chosen], radius[chosen]])]
+    spheres = [balls, np.column_stack([centres[chosen], radius[chosen]])]
     while len(left):  # which no candidate reaches
         spheres.append(np.append(left[0], max_error)[None])
         left = left[np.linalg.norm(left - left[0], axis=1) > max_error - gap]
     return np.concatenate(spheres)
+
+
+def _outside_others(
+    points: FloatArray, of: int, solids: Sequence[Solid], balls: FloatArray
+) -> FloatArray:
+    """Points of a surface that are the body's surface too."""
+    for i, solid in enumerate(solids):
+        if i != of:
+            points = points[~solid.holds(points)]
+    for x, y, z, r in balls:
+        points = points[np.linalg.norm(points - [x, y, z], axis=1) >= r * (1 - 1e-9)]
+    return points
+
+
+def _ball_samples(ball: FloatArray, spacing: float) -> FloatArray:
+    """Points on a ball, about so far apart (a Fibonacci lattice)."""
+    count = int(np.ceil(4 * np.pi * (ball[3] / spacing) ** 2)) + 8
+    i = np.arange(count) + 0.5
+    z = 1 - 2 * i / count
+    turn = np.pi * (1 + np.sqrt(5)) * i
+    across = np.sqrt(1 - z**2)
+    unit = np.column_stack([across * np.cos(turn), across * np.sin(turn), z])
+    return ball[:3] + ball[3] * unit
 
 
 def _some(points: FloatArray, most: int) -> FloatArray:

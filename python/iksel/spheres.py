@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from iksel_cpp import InvalidArgumentError, RobotSpheres, Scene
 
-from iksel._collision_shapes import import_coal, mesh_of, read_shapes
+from iksel._collision_shapes import import_coal, is_sphere, read_shapes, solid_of
 from iksel._files import read_text
 from iksel._sphere_cover import cover
 from iksel.collision import SelfCollision, read_urdf
@@ -91,10 +91,10 @@ def from_urdf(
         xacro_args=xacro_args,
     ).pairs
     root, folder = read_urdf(urdf, packages or {}, xacro_args)
-    parts: dict[str, list[FloatArray]] = {}
+    shapes: dict[str, list[Shape]] = {}
     for shape in read_shapes(coal, root, folder, packages or {}):
-        parts.setdefault(shape.link, []).append(_cover_shape(shape, max_error))
-    links = {link: np.concatenate(spheres) for link, spheres in parts.items()}
+        shapes.setdefault(shape.link, []).append(shape)
+    links = {link: _cover_link(of_link, max_error) for link, of_link in shapes.items()}
     return RobotSpheres(links, pairs)
 
 
@@ -229,16 +229,13 @@ def load(path: str | os.PathLike[str]) -> RobotSpheres:
         raise InvalidArgumentError(f"path: {str(path)!r}: {error}") from None
 
 
-def _cover_shape(shape: Shape, max_error: float) -> FloatArray:
-    """Spheres around a shape, in the frame of its link, (n, 4)."""
-    radius = getattr(shape.geometry, "radius", None)
-    if type(shape.geometry).__name__ == "Sphere":
-        spheres = np.array([[0.0, 0.0, 0.0, float(radius)]])  # type: ignore[arg-type]
-    else:
-        # What stands round about a cylinder sticks out by a twentieth.
-        spheres = cover(mesh_of(shape.geometry, max_error), 0.95 * max_error)
-    centres = spheres[:, :3] @ shape.origin[:3, :3].T + shape.origin[:3, 3]
-    return np.column_stack([centres, spheres[:, 3]])
+def _cover_link(shapes: list[Shape], max_error: float) -> FloatArray:
+    """Spheres around the shapes of a link, in its frame, (n, 4)."""
+    balls = [shape for shape in shapes if is_sphere(shape.geometry)]
+    rows = np.array([[*s.origin[:3, 3], s.geometry.radius] for s in balls]).reshape(-1, 4)
+    solids = [solid_of(s, max_error) for s in shapes if not is_sphere(s.geometry)]
+    # What stands round about a cylinder sticks out by a twentieth.
+    return cover(solids, rows, 0.95 * max_error) if solids else rows
 
 
 def _read_yaml(path: Path) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -124,9 +125,9 @@ RobotSpheres make_spheres(const SphereTable& links, const std::optional<NamePair
   return spheres;
 }
 
-py::dict links_of(const RobotSpheres& self) {
-  py::dict links;
-  for (const auto& [name, spheres] : self.links) links[py::str(name)] = sphere_rows(spheres);
+std::map<std::string, py::array_t<double>> links_of(const RobotSpheres& self) {
+  std::map<std::string, py::array_t<double>> links;
+  for (const auto& [name, spheres] : self.links) links[name] = sphere_rows(spheres);
   return links;
 }
 
@@ -204,12 +205,12 @@ Pose as_place(const PoseLike& value) {
   return check_pose(as_pose(value, "pose", &position), "pose");
 }
 
-Points as_points(const ArrayLike& value) {
+PointCloud as_points(const ArrayLike& value) {
   const DoubleArray array = as_doubles(value, "points");
   if (array.ndim() != 2 || array.shape(1) != 3) {
     throw_wrong_shape("points", "an (N, 3) array", array);
   }
-  return Eigen::Map<const Points>(array.data(), array.shape(0), 3);
+  return Eigen::Map<const PointCloud>(array.data(), array.shape(0), 3);
 }
 
 Eigen::Vector3d as_size(const ArrayLike& value) {
@@ -377,20 +378,42 @@ FreeOrArray is_free(const Scene& self, const ArrayLike& q) {
   return FreeOrArray(free.ndim() == 0 ? py::object(py::bool_(*free.data())) : py::object(free));
 }
 
-std::vector<std::string> obstacle_names(const Scene& self) {
-  std::vector<std::string> names;
-  for (const auto& [name, obstacle] : self.obstacles()) names.push_back(name);
-  return names;
+py::object points_of(const Obstacle& self) {
+  return self.points ? py::object(to_array(Matrix(*self.points))) : py::none();
+}
+
+void bind_obstacle(py::module_& m) {
+  py::class_<Obstacle> cls(m, "Obstacle", "A shape at a pose, as a Scene holds it.");
+  add_property(
+      cls, "shape", [](const Obstacle& self) { return std::string(to_string(self.shape)); },
+      "'sphere', 'box', 'capsule', 'cylinder', 'half_space' or 'points'.");
+  add_property(cls, "radius", &Obstacle::radius, "sphere, capsule, cylinder, points [m].");
+  add_property(cls, "length", &Obstacle::length, "capsule: of its segment; cylinder [m].");
+  add_property(
+      cls, "size", [](const Obstacle& self) { return to_array(JointVector(self.size)); },
+      "box: edges, (3,) [m].");
+  add_property(cls, "points", &points_of, "In the obstacle's frame, (N, 3) [m]; None of others.");
+  add_property(
+      cls, "pose", [](const Obstacle& self) { return to_array(Pose(self.pose)); },
+      "T_base_obstacle, (4, 4).");
+  add_property(cls, "margin", &Obstacle::margin, "The arm keeps this far away [m].");
+  cls.def("__repr__", [](const Obstacle& self) {
+    return "Obstacle(" + std::string(to_string(self.shape)) + ")";
+  });
+}
+
+std::map<std::string, std::string> carriers_of(const Scene& self) {
+  std::map<std::string, std::string> links;
+  for (const auto& [name, object] : self.attached()) links[name] = object.link;
+  return links;
 }
 
 py::object scene_state(const Scene& self) {
   py::list obstacles;
   for (const auto& [name, o] : self.obstacles()) {
-    py::object points = py::none();
-    if (o.points) points = to_array(Matrix(*o.points));
     obstacles.append(py::make_tuple(name, to_string(o.shape), o.radius, o.length,
-                                    to_array(JointVector(o.size)), points, to_array(Pose(o.pose)),
-                                    o.margin));
+                                    to_array(JointVector(o.size)), points_of(o),
+                                    to_array(Pose(o.pose)), o.margin));
   }
   py::list attached;
   for (const auto& [name, object] : self.attached()) {
@@ -414,7 +437,8 @@ Obstacle obstacle_from_state(PickleState& in) {
   out.length = in.value<double>("length");
   out.size = as_size(ArrayLike(in.object()));
   const py::object points = in.object();
-  if (!points.is_none()) out.points = std::make_shared<const Points>(as_points(ArrayLike(points)));
+  if (!points.is_none())
+    out.points = std::make_shared<const PointCloud>(as_points(ArrayLike(points)));
   out.pose = StoredPose(as_pose(in.object(), "pickled Scene, pose"));
   out.margin = in.value<double>("margin");
   return out;
@@ -456,6 +480,7 @@ Scene scene_from_state(const py::object& state) {
 void bind_scene(py::module_& m) {
   bind_robot_spheres(m);
   bind_contact(m);
+  bind_obstacle(m);
   py::class_<Scene> cls(
       m, "Scene",
       "A robot's body and what it may not touch: obstacles, objects that it carries, itself.\n\n"
@@ -482,15 +507,9 @@ Raises:
     UnknownNameError: the URDF lacks a link of the spheres, or a joint.)");
   add_property(cls, "robot", &Scene::robot, "The robot.");
   add_property(cls, "spheres", &Scene::spheres, "Its body.");
-  add_property(cls, "obstacles", &obstacle_names, "Names of the obstacles.");
-  add_property(
-      cls, "attached",
-      [](const Scene& self) {
-        py::dict links;
-        for (const auto& [name, object] : self.attached()) links[py::str(name)] = object.link;
-        return links;
-      },
-      "Names of the attached objects, and the links that carry them.");
+  add_property(cls, "obstacles", &Scene::obstacles, "The obstacles by name.");
+  add_property(cls, "attached", &carriers_of,
+               "Names of the attached objects, and the links that carry them.");
   bind_rounded(cls);
   bind_flat(cls);
   bind_changes(cls);

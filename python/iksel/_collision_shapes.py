@@ -87,10 +87,16 @@ class Shapes:
         centre = (rotation @ boxes[:, 0, :, None])[..., 0]
         self.centre = centre + self.in_link[:, :3, 3]
         self.half_axes = rotation * boxes[:, 1, None, :]
+        base = links.body[links.base]
+        self.moving = np.array([links.body[shape.link] != base for shape in shapes])
         self._shapes = shapes
         self._tests: dict[tuple[int, int], tuple[Any, Any]] = {}
         self._result = coal.CollisionResult()
         self._requests: dict[float, Any] = {}
+
+    def geometry(self, shape: int) -> Any:
+        """Coal's geometry of a shape."""
+        return self._shapes[shape].geometry
 
     def touch(
         self,
@@ -239,8 +245,7 @@ def solid_of(shape: Shape, max_error: float) -> Solid:
             local = np.column_stack([np.hypot(local[:, 0], local[:, 1]), local[:, 2]])
         if not half.size:
             return np.zeros(len(points), dtype=bool)
-        within: BoolArray = (local < half * (1 - 1e-9)).all(axis=1)
-        return within
+        return np.asarray((local < half * (1 - 1e-9)).all(axis=1))
 
     return Solid(Mesh(mesh.vertices @ rotation.T + place, mesh.triangles), holds)
 

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Spheres that cover a solid, as few as an error bound allows.
 
-The solid is sampled, so densely that each of its points has a sample within `gap`. Spheres that
-reach each sample, their radii then enlarged by `gap`, cover it all. A sphere around a point whose
-distance from the surface is d sticks out by its radius - d at most.
+The solid is sampled, so densely that each of its points has a sample within `gap`.
+Spheres that reach each sample, their radii then enlarged by `gap`, cover it all. A
+sphere around a point whose distance from the surface is d sticks out by its radius - d
+at most.
 """
 
 from __future__ import annotations
@@ -33,14 +34,15 @@ class Solid(NamedTuple):
 
     mesh: Mesh
     holds: Callable[[FloatArray], BoolArray]
-    """Which of some points (n, 3) lie inside; those that are said not to may all the same."""
+    """Which of some points (n, 3) lie inside; those that are said not to may all the
+    same."""
 
 
 def cover(solids: Sequence[Solid], balls: FloatArray, max_error: float) -> FloatArray:
     """Spheres that cover a body, and stick out of it by `max_error` [m] at most.
 
-    The inside of a mesh is where a line parallel to z has crossed it an odd number of times; of
-    one that is not closed, at least the surface is covered.
+    The inside of a mesh is where a line parallel to z has crossed it an odd number of
+    times; of one that is not closed, at least the surface is covered.
 
     Args:
         solids: Parts of the body, which may overlap.
@@ -97,19 +99,23 @@ def _ball_samples(ball: FloatArray, spacing: float) -> FloatArray:
     turn = np.pi * (1 + np.sqrt(5)) * i
     across = np.sqrt(1 - z**2)
     unit = np.column_stack([across * np.cos(turn), across * np.sin(turn), z])
-    return ball[:3] + ball[3] * unit
+    placed: FloatArray = ball[:3] + ball[3] * unit
+    return placed
 
 
 def _some(points: FloatArray, most: int) -> FloatArray:
     """At most so many of the points, evenly."""
     if len(points) <= most:
         return points
-    return points[np.linspace(0, len(points) - 1, most).astype(int)]
+    chosen: FloatArray = points[np.linspace(0, len(points) - 1, most).astype(int)]
+    return chosen
 
 
 def _surface_samples(mesh: Mesh, longest: float) -> FloatArray:
-    """Points of the triangles, cut until no edge is longer [m]: any point of a triangle is within
-    `longest` / sqrt(3) of a corner."""
+    """Corners of the triangles, cut until no edge is longer [m].
+
+    Any point of a triangle is then within `longest` / sqrt(3) of a corner.
+    """
     done = []
     corners = mesh.vertices[mesh.triangles]
     while len(corners):
@@ -168,14 +174,18 @@ def _distances_to_nearest(points: FloatArray, others: FloatArray) -> FloatArray:
         (squares - 2 * part @ others.T).min(axis=1) + (part**2).sum(axis=1)
         for part in np.split(points, range(step, len(points), step))
     ]
-    return np.sqrt(np.maximum(np.concatenate(parts), 0.0))
+    distances: FloatArray = np.sqrt(np.maximum(np.concatenate(parts), 0.0))
+    return distances
 
 
 def _choose(
     centres: FloatArray, radii: FloatArray, samples: FloatArray
 ) -> tuple[IntArray, FloatArray]:
-    """Balls that hold samples, each time the one that holds most of those left; and the samples
-    that are in none."""
+    """Choose balls that hold samples, each time the one that holds most of those left.
+
+    Returns:
+        Indices of the balls, and the samples that are in none, (n, 3).
+    """
     squares = (samples**2).sum(axis=1)
     step = max(1, _CHUNK // len(samples))
     holds = np.concatenate(

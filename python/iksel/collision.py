@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from itertools import combinations
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from iksel_cpp import InvalidArgumentError, UnknownNameError
@@ -27,7 +27,7 @@ from iksel.description import read_description
 if TYPE_CHECKING:
     import os
     import xml.etree.ElementTree as ET
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     import numpy.typing as npt
     from iksel_cpp import Robot
@@ -165,6 +165,19 @@ class SelfCollision:
     def colliding_links(self, q: npt.ArrayLike) -> tuple[str, str] | None:
         """The first pair of links that collide at q, (dof,), or None."""
         return self._first_colliding(as_floats("q", q, (self._dof,)).reshape(1, -1))[0]
+
+    def place(self, q: FloatArray) -> Iterator[Placed]:
+        """Place all shapes at configurations (n, dof), some of them at a time."""
+        return place(self._shapes, self._links, q)
+
+    @property
+    def moves(self) -> BoolArray:
+        """Which shapes the arm moves against its base, (shapes,)."""
+        return self._shapes.moving
+
+    def geometry(self, shape: int) -> Any:
+        """Coal's geometry of a shape."""
+        return self._shapes.geometry(shape)
 
     def _first_colliding(self, q: FloatArray) -> list[Pair | None]:
         found: list[Pair | None] = []

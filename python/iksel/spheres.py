@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The body of a robot as spheres: made from its URDF, read from sphere files, kept in a file.
+"""The body of a robot as spheres.
+
+They are made from a URDF, read from sphere files, and kept in a file.
 
     spheres = iksel.spheres.from_urdf("arm.urdf", robot, srdf="arm.srdf")
     iksel.spheres.save(spheres, "arm.spheres.npz")
@@ -54,9 +56,10 @@ def from_urdf(
 ) -> RobotSpheres:
     """Cover the collision geometry of a URDF's links by spheres.
 
-    Each shape lies inside its spheres, which stick out of it by `max_error` at most: the smaller,
-    the more spheres. Spheres are taken as they are, so that a URDF made of them (as VAMP's are)
-    keeps its own. Links are looked at in the pairs that iksel.collision.SelfCollision looks at.
+    Each shape lies inside its spheres, which stick out of it by `max_error` at most:
+    the smaller, the more spheres. Spheres are taken as they are, so that a URDF made of
+    them (as VAMP's are) keeps its own. Links are looked at in the pairs that
+    iksel.collision.SelfCollision looks at.
 
     Args:
         urdf: Path of the URDF or xacro, or URDF text.
@@ -64,8 +67,8 @@ def from_urdf(
         max_error: How far spheres may stick out [m].
         srdf: Path of an SRDF, or its text, whose disable_collisions are not looked at.
         ignore: Pairs of links that may touch.
-        samples: Configurations in which to look for pairs that always touch and, without an
-            SRDF, for those that never do.
+        samples: Configurations in which to look for pairs that always touch and,
+            without an SRDF, for those that never do.
         seed: Of the samples.
         other_joints: Values of joints that are not the arm's [rad or m].
         packages: Folders of package:// names of meshes.
@@ -101,10 +104,11 @@ def from_urdf(
 def from_curobo(path: str | os.PathLike[str]) -> RobotSpheres:
     """Read the spheres of a robot file of cuRobo, in YAML.
 
-    That is `collision_spheres` of a robot, a mapping or the name of a file beside it (which may
-    lie in a folder `spheres`), or that file itself; radii grow by `collision_sphere_buffer`, and
-    pairs in `self_collision_ignore` are not looked at. Without such pairs, no pair is: see
-    `with_pairs`. `self_collision_buffer` is not read.
+    That is `collision_spheres` of a robot, a mapping or the name of a file beside it
+    (which may lie in a folder `spheres`), or that file itself; radii grow by
+    `collision_sphere_buffer`, and pairs in `self_collision_ignore` are not looked at.
+    Without such pairs, no pair is: see `with_pairs`. `self_collision_buffer` is not
+    read.
 
     Args:
         path: Of the file.
@@ -122,21 +126,23 @@ def from_curobo(path: str | os.PathLike[str]) -> RobotSpheres:
     if not isinstance(spheres, dict):
         raise InvalidArgumentError(f"path: {str(path)!r} has no collision_spheres")
     buffer = data.get("collision_sphere_buffer", 0.0)
-    links = _read_links(path, spheres, "center", buffer if buffer else 0.0)
+    links = _read_links(path, spheres, "center", buffer or 0.0)
     ignored = {
         frozenset((link, other))
         for link, others in (data.get("self_collision_ignore") or {}).items()
         for other in others
     }
     pairs = combinations(links, 2) if ignored else ()
-    return RobotSpheres(links, [pair for pair in pairs if frozenset(pair) not in ignored])
+    return RobotSpheres(
+        links, [pair for pair in pairs if frozenset(pair) not in ignored]
+    )
 
 
 def from_json(path: str | os.PathLike[str]) -> RobotSpheres:
     """Read a JSON file of spheres by link, as tools around VAMP and foam write them.
 
-    For each link a list of spheres, each with `origin` (or `center`) and `radius` [m]. No pair of
-    links is looked at: see `with_pairs`.
+    For each link a list of spheres, each with `origin` (or `center`) and `radius` [m].
+    No pair of links is looked at: see `with_pairs`.
 
     Args:
         path: Of the file.
@@ -164,7 +170,8 @@ def with_pairs(
 ) -> RobotSpheres:
     """Look at all pairs of links but those whose spheres always touch.
 
-    Pairs that touch in all samples, as neighbours do, are left out, and so is what `ignore` names.
+    Pairs that touch in all samples, as neighbours do, are left out, and so is what
+    `ignore` names.
 
     Args:
         spheres: Whose links count, not their pairs.
@@ -232,7 +239,9 @@ def load(path: str | os.PathLike[str]) -> RobotSpheres:
 def _cover_link(shapes: list[Shape], max_error: float) -> FloatArray:
     """Spheres around the shapes of a link, in its frame, (n, 4)."""
     balls = [shape for shape in shapes if is_sphere(shape.geometry)]
-    rows = np.array([[*s.origin[:3, 3], s.geometry.radius] for s in balls]).reshape(-1, 4)
+    rows = np.array([[*s.origin[:3, 3], s.geometry.radius] for s in balls]).reshape(
+        -1, 4
+    )
     solids = [solid_of(s, max_error) for s in shapes if not is_sphere(s.geometry)]
     # What stands round about a cylinder sticks out by a twentieth.
     return cover(solids, rows, 0.95 * max_error) if solids else rows
@@ -243,8 +252,8 @@ def _read_yaml(path: Path) -> dict[str, Any]:
         import yaml  # noqa: PLC0415 (an optional extra)
     except ImportError as error:
         raise InvalidArgumentError(
-            f"path: YAML needs PyYAML, which cannot be imported ({error}); install it by: "
-            "pip install pyyaml"
+            f"path: YAML needs PyYAML, which cannot be imported ({error}); install "
+            "it by: pip install pyyaml"
         ) from None
     try:
         data = yaml.safe_load(read_text(path))
@@ -258,7 +267,7 @@ def _read_yaml(path: Path) -> dict[str, Any]:
 def _read_links(
     path: Path, data: dict[str, Any], centre: str, buffer: float
 ) -> Spheres:
-    """Spheres by link; links without any are left out, and radii not above 0 are none."""
+    """Spheres by link; those whose radius is not above 0 are none."""
     links = {}
     for link, spheres in data.items():
         rows = []

@@ -11,6 +11,8 @@ import pytest
 from tubes import LENGTHS, NAMES, URDF
 
 import iksel
+import iksel.exact
+import iksel.spheres
 
 SEED = 7
 
@@ -36,7 +38,9 @@ def spheres() -> iksel.RobotSpheres:
 def turned(rng: np.random.Generator, reach: float = 0.9) -> np.ndarray:
     """A pose somewhere around the arm."""
     q = rng.normal(size=4)
-    pose = iksel.pose_from_quaternion(rng.uniform(-reach, reach, 3), q / np.linalg.norm(q))
+    pose = iksel.pose_from_quaternion(
+        rng.uniform(-reach, reach, 3), q / np.linalg.norm(q)
+    )
     return np.asarray(pose)
 
 
@@ -47,7 +51,9 @@ class Brute:
         self.distances = {}
 
     def fill(self, scene: iksel.Scene, rng: np.random.Generator) -> None:
-        pose = {k: turned(rng) for k in ("sphere", "box", "capsule", "cylinder", "points")}
+        pose = {
+            k: turned(rng) for k in ("sphere", "box", "capsule", "cylinder", "points")
+        }
         size = rng.uniform(0.05, 0.4, 3)
         margin = {k: float(rng.uniform(0, 0.05)) for k in pose}
         points = rng.uniform(-0.3, 0.3, (40, 3))
@@ -63,12 +69,16 @@ class Brute:
         def out(v: np.ndarray) -> float:
             return float(np.linalg.norm(np.maximum(v, 0)))
 
-        self.local = {k: np.linalg.inv(p) for k, p in pose.items()} | {"floor": np.eye(4)}
+        self.local = {k: np.linalg.inv(p) for k, p in pose.items()} | {
+            "floor": np.eye(4)
+        }
         self.margin = margin | {"floor": 0.02}
         self.distance = {
             "sphere": lambda p: np.linalg.norm(p) - 0.2,
             "box": lambda p: out(np.abs(p) - size / 2),
-            "capsule": lambda p: np.linalg.norm(p - [0, 0, np.clip(p[2], -0.2, 0.2)]) - 0.05,
+            "capsule": lambda p: (
+                np.linalg.norm(p - [0, 0, np.clip(p[2], -0.2, 0.2)]) - 0.05
+            ),
             "cylinder": lambda p: out(
                 np.array([np.hypot(p[0], p[1]) - 0.1, abs(p[2]) - 0.15])
             ),
@@ -228,8 +238,12 @@ def test_a_scene_is_a_value(arm, spheres) -> None:
     scene.attach("cup", "l6", [[0, 0, 0.1, 0.05]], may_touch=["l3"])
     q = arm.random_configurations(200, seed=SEED)
     free = scene.is_free(q)
-    for other in (copy.copy(scene), copy.deepcopy(scene), pickle.loads(pickle.dumps(scene))):
-        assert other.obstacles == scene.obstacles
+    for other in (
+        copy.copy(scene),
+        copy.deepcopy(scene),
+        pickle.loads(pickle.dumps(scene)),
+    ):
+        assert list(other.obstacles) == list(scene.obstacles)
         assert np.array_equal(other.is_free(q), free)
         for name in other.obstacles:
             other.remove(name)
@@ -240,7 +254,9 @@ def test_a_scene_is_a_value(arm, spheres) -> None:
 
 
 def test_errors_name_the_culprit(arm, spheres) -> None:
-    with pytest.raises(iksel.InvalidArgumentError, match=r"there are none.*iksel\.spheres"):
+    with pytest.raises(
+        iksel.InvalidArgumentError, match=r"there are none.*iksel\.spheres"
+    ):
         iksel.Scene(arm, iksel.RobotSpheres({}))
     with pytest.raises(iksel.UnknownNameError, match="no link 'l9'.*l0, l1"):
         iksel.Scene(arm, iksel.RobotSpheres({"l9": [[0, 0, 0, 1]]}))
@@ -259,12 +275,121 @@ def test_errors_name_the_culprit(arm, spheres) -> None:
         scene.add_sphere("ball", 1.0, np.eye(4), margin=-1)
     with pytest.raises(iksel.UnknownNameError, match="no obstacle 'box'"):
         scene.move("box", np.eye(4))
-    with pytest.raises(iksel.UnknownNameError, match="link: the URDF has no link 'hand'"):
+    with pytest.raises(
+        iksel.UnknownNameError, match="link: the URDF has no link 'hand'"
+    ):
         scene.attach("cup", "hand", [[0, 0, 0, 1]])
     with pytest.raises(iksel.UnknownNameError, match="may_touch: .*'hand'"):
         scene.attach("cup", "l6", [[0, 0, 0, 1]], may_touch=["hand"])
     other = iksel.Solver(iksel.load_robot("ur3"))
-    with pytest.raises(iksel.InvalidArgumentError, match="scene: it is of another chain"):
+    with pytest.raises(
+        iksel.InvalidArgumentError, match="scene: it is of another chain"
+    ):
         other.solve(np.eye(4), scene=scene)
     with pytest.raises(TypeError, match="expected a Scene"):
         other.solve(np.eye(4), scene=[])
+
+
+def test_spheres_of_a_urdf_cover_it_and_stick_out_by_no_more(arm) -> None:
+    pytest.importorskip("coal")
+    made = iksel.spheres.from_urdf(URDF, arm, max_error=0.03, samples=100)
+    rng = np.random.default_rng(SEED)
+    for name, length in zip(NAMES, LENGTHS, strict=True):
+        rows = made.links[name]
+        turn = rng.uniform(0, 2 * np.pi, 4_000)
+        across = 0.04 * np.sqrt(rng.uniform(0, 1, turn.size))
+        z = length * rng.uniform(0, 1, turn.size)
+        points = np.stack([across * np.cos(turn), across * np.sin(turn), z], 1)
+        inside = np.linalg.norm(points[:, None] - rows[:, :3], axis=2) <= rows[:, 3]
+        assert inside.any(axis=1).all()
+        depth = np.minimum(
+            0.04 - np.hypot(rows[:, 0], rows[:, 1]),
+            np.minimum(rows[:, 2], length - rows[:, 2]),
+        )
+        assert np.all(rows[:, 3] - depth <= 0.03)
+    fewer = iksel.spheres.from_urdf(URDF, arm, max_error=0.06, samples=100)
+    assert len(fewer.links["l2"]) < len(made.links["l2"])
+
+
+def test_a_mesh_and_a_box_are_covered(arm, tmp_path) -> None:
+    pytest.importorskip("coal")
+    corners = ["0 0 0", "0.2 0 0", "0 0.2 0", "0 0 0.2"]
+    faces = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
+    lines = ["solid t"]
+    for face in faces:
+        lines += ["facet normal 0 0 0", "outer loop"]
+        lines += [f"vertex {corners[i]}" for i in face]
+        lines += ["endloop", "endfacet"]
+    (tmp_path / "t.stl").write_text("\n".join([*lines, "endsolid t"]))
+    text = URDF.replace(
+        '<cylinder radius="0.04" length="0.4"/>', '<mesh filename="t.stl"/>'
+    ).replace('<cylinder radius="0.04" length="0.35"/>', '<box size="0.1 0.2 0.3"/>')
+    path = tmp_path / "arm.urdf"
+    path.write_text(text)
+    made = iksel.spheres.from_urdf(path, arm, max_error=0.03, samples=100)
+    rng = np.random.default_rng(SEED)
+    weights = rng.dirichlet(np.ones(4), 20_000)
+    tetrahedron = weights[:, 1:] * 0.2 + [0, 0, 0.2]  # the origin of the collision
+    box = rng.uniform(-0.5, 0.5, (20_000, 3)) * [0.1, 0.2, 0.3] + [0, 0, 0.175]
+    for name, points in (("l2", tetrahedron), ("l3", box)):
+        rows = made.links[name]
+        inside = np.linalg.norm(points[:, None] - rows[:, :3], axis=2) <= rows[:, 3]
+        assert inside.any(axis=1).all()
+
+
+def test_spheres_that_cover_never_pass_what_coal_calls_a_contact(arm) -> None:
+    pytest.importorskip("coal")
+    made = iksel.spheres.from_urdf(URDF, arm, max_error=0.03, samples=100)
+    rng = np.random.default_rng(SEED)
+    passed = refused = 0
+    for _ in range(6):
+        scene = iksel.Scene(arm, made)
+        Brute().fill(scene, rng)
+        exact = iksel.exact.ExactCollision(scene, URDF)
+        q = arm.random_configurations(150, seed=int(rng.integers(1 << 30)))
+        free, real = scene.is_free(q), exact.geometry_is_free(q)
+        assert not np.any(free & ~real)
+        assert np.array_equal(exact(q), real)
+        passed += free.sum()
+        refused += (~free & real).sum()
+    assert passed > 50
+    assert refused > 5  # where the spheres stick out
+
+
+def test_sphere_files(arm, tmp_path) -> None:
+    pytest.importorskip("yaml")
+    spheres = tmp_path / "spheres"
+    spheres.mkdir()
+    (spheres / "arm.yml").write_text(
+        "collision_spheres:\n"
+        "  l1: [{center: [0, 0, 0.1], radius: 0.05}]\n"
+        "  l4: [{center: [0, 0, 0], radius: 0.04}, {center: [0, 0, 1], radius: -9}]\n"
+        "  l5: [{center: [0, 0, 0], radius: 0.04}]\n"
+    )
+    (tmp_path / "arm.yml").write_text(
+        "robot_cfg:\n  kinematics:\n    collision_spheres: spheres/arm.yml\n"
+        "    collision_sphere_buffer: 0.01\n"
+        "    self_collision_ignore: {l4: [l5]}\n"
+    )
+    read = iksel.spheres.from_curobo(tmp_path / "arm.yml")
+    assert read.links["l4"].tolist() == [[0, 0, 0, pytest.approx(0.05)]]
+    assert read.pairs == [("l1", "l4"), ("l1", "l5")]
+    (tmp_path / "arm.json").write_text(
+        '{"l1": [{"origin": [0, 0, 0.1], "radius": 0.06}],'
+        ' "l4": [{"origin": [0, 0, 0], "radius": 0.05}]}'
+    )
+    bare = iksel.spheres.from_json(tmp_path / "arm.json")
+    assert np.array_equal(bare.links["l4"], read.links["l4"])
+    assert bare.pairs == []
+    assert iksel.spheres.with_pairs(bare, arm, samples=200).pairs == [("l1", "l4")]
+    file = tmp_path / "arm.npz"
+    iksel.spheres.save(read, file)
+    again = iksel.spheres.load(file)
+    assert again.pairs == read.pairs
+    assert all(np.array_equal(again.links[k], rows) for k, rows in read.links.items())
+    for bad in ('{"l1": [{"origin": [0, 0], "radius": 1}]}', "[]", "{"):
+        (tmp_path / "bad.json").write_text(bad)
+        with pytest.raises(iksel.InvalidArgumentError, match="path: "):
+            iksel.spheres.from_json(tmp_path / "bad.json")
+        with pytest.raises(iksel.InvalidArgumentError, match="path: "):
+            iksel.spheres.load(tmp_path / "bad.json")

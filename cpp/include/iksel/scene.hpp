@@ -16,7 +16,7 @@
 namespace iksel {
 
 /// Points in rows, (N, 3) [m].
-using Points = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor | Eigen::DontAlign>;
+using PointCloud = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor | Eigen::DontAlign>;
 
 /// A shape at a pose; made by the functions below.
 struct IKSEL_EXPORT Obstacle {
@@ -32,7 +32,7 @@ struct IKSEL_EXPORT Obstacle {
   double radius = 0;                               ///< sphere, capsule, cylinder, points [m]
   double length = 0;                               ///< capsule: of the segment; cylinder [m]
   Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< box: edges [m]
-  std::shared_ptr<const Points> points;            ///< in the obstacle's frame
+  std::shared_ptr<const PointCloud> points;        ///< in the obstacle's frame
   /// T_base_obstacle.
   StoredPose pose = StoredPose::Identity();
   /// The arm keeps this far away [m].
@@ -45,7 +45,7 @@ struct IKSEL_EXPORT Obstacle {
   static Obstacle cylinder(double radius, double length, const Pose& T_base_obstacle,
                            double margin = 0);
   static Obstacle half_space(const Pose& T_base_obstacle, double margin = 0);
-  static Obstacle point_cloud(Points points, double radius, const Pose& T_base_obstacle,
+  static Obstacle point_cloud(PointCloud points, double radius, const Pose& T_base_obstacle,
                               double margin = 0);
 
   /// Throws InvalidArgumentError naming the first number that is no good.
@@ -119,6 +119,7 @@ class IKSEL_EXPORT Scene {
 
   /// What it holds; for the library's own files.
   struct Data;
+  [[nodiscard]] const Data& data() const { return *data_; }
 
  private:
   /// The data, after it has been copied if others share it.

@@ -97,7 +97,8 @@ std::vector<Contact> Scene::Data::contacts(const double* q) const {
   alignas(64) std::array<double, static_cast<std::size_t>(kMaxDof) * kWidth> packed{};
   for (int j = 0; j < robot.dof(); ++j) packed[static_cast<std::size_t>(j * kWidth)] = q[j];
   std::vector<double> centre(arm.balls().size() * 3 * kWidth);
-  kernels.find_free(view(), packed.data(), 1U, centre.data());
+  alignas(64) std::array<double, kWidth> clearance;
+  kernels.find_clearance(view(), packed.data(), 1, centre.data(), clearance.data());
   std::vector<Contact> found;
   for (int link = 0; link < static_cast<int>(arm.links().size()); ++link) {
     if (arm.links()[static_cast<std::size_t>(link)].body != 0) {

@@ -16,7 +16,7 @@ constexpr int kFarthest = 255;
 
 }  // namespace
 
-PointGrid::PointGrid(const Points& points)
+PointGrid::PointGrid(const PointCloud& points)
     : lower_(points.colwise().minCoeff().transpose()),
       upper_(points.colwise().maxCoeff().transpose()) {
   size_cells(upper_ - lower_);
@@ -49,7 +49,7 @@ PointGrid::Cell PointGrid::cell_of(const Eigen::Vector3d& c) const {
   return cell;
 }
 
-void PointGrid::sort_points(const Points& points) {
+void PointGrid::sort_points(const PointCloud& points) {
   const auto cell = [&](Eigen::Index row) {
     const Cell at = cell_of(points.row(row));
     return index(at[0], at[1], at[2]);

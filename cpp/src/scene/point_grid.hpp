@@ -13,7 +13,7 @@ namespace iksel {
 
 class PointGrid {
  public:
-  explicit PointGrid(const Points& points);
+  explicit PointGrid(const PointCloud& points);
 
   /// Whether a point may lie within `radius` of c: never false where one does.
   [[nodiscard]] bool may_touch(const Eigen::Vector3d& c, double radius) const;
@@ -33,7 +33,7 @@ class PointGrid {
            static_cast<std::size_t>(x);
   }
   void size_cells(const Eigen::Vector3d& extent);
-  void sort_points(const Points& points);
+  void sort_points(const PointCloud& points);
   void measure_distances();
 
   Eigen::Matrix<double, 3, 1, Eigen::DontAlign> lower_, upper_;  ///< corners [m]

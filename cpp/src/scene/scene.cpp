@@ -93,11 +93,11 @@ Obstacle Obstacle::half_space(const Pose& T_base_obstacle, double margin) {
   return make_obstacle(Shape::half_space, T_base_obstacle, margin);
 }
 
-Obstacle Obstacle::point_cloud(Points points, double radius, const Pose& T_base_obstacle,
+Obstacle Obstacle::point_cloud(PointCloud points, double radius, const Pose& T_base_obstacle,
                                double margin) {
   Obstacle obstacle = make_obstacle(Shape::points, T_base_obstacle, margin);
   obstacle.radius = radius;
-  obstacle.points = std::make_shared<const Points>(std::move(points));
+  obstacle.points = std::make_shared<const PointCloud>(std::move(points));
   return obstacle;
 }
 

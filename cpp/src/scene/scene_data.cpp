@@ -93,7 +93,7 @@ lanes::SceneView Scene::Data::view() const {
   return view;
 }
 
-void Scene::Data::find_free_pack(const double* q, int count, bool* free) const {
+void Scene::Data::find_clearance_pack(const double* q, int count, double* clearance) const {
   constexpr int kWidth = lanes::kWidth;
   const int dof = robot.dof();
   alignas(64) std::array<double, static_cast<std::size_t>(kMaxDof) * kWidth> packed;
@@ -105,19 +105,33 @@ void Scene::Data::find_free_pack(const double* q, int count, bool* free) const {
   // Memory of its own for each thread, taken once.
   thread_local std::vector<double> centre;
   centre.resize(std::max(centre.size(), arm.balls().size() * 3 * kWidth));
-  const unsigned wanted = (1U << static_cast<unsigned>(count)) - 1U;
-  const unsigned passed = kernels.find_free(view(), packed.data(), wanted, centre.data());
+  alignas(64) std::array<double, kWidth> found;
+  kernels.find_clearance(view(), packed.data(), count, centre.data(), found.data());
   for (int lane = 0; lane < count; ++lane) {
-    free[lane] = ((passed >> static_cast<unsigned>(lane)) & 1U) != 0 &&
-                 (clouds.empty() || is_free_of_points(centre.data(), lane));
+    const double above = found[static_cast<std::size_t>(lane)];
+    const bool touches_point =
+        above > 0 && !clouds.empty() && !is_free_of_points(centre.data(), lane);
+    clearance[lane] = touches_point ? 0.0 : above;
+  }
+}
+
+void Scene::Data::find_clearance(const double* q, std::size_t count, double* clearance) const {
+  const auto dof = static_cast<std::size_t>(robot.dof());
+  constexpr std::size_t kWidth = lanes::kWidth;
+  for (std::size_t i = 0; i < count; i += kWidth) {
+    const auto in_pack = static_cast<int>(std::min(kWidth, count - i));
+    find_clearance_pack(q + i * dof, in_pack, clearance + i);
   }
 }
 
 void Scene::Data::find_free(const double* q, std::size_t count, bool* free) const {
   const auto dof = static_cast<std::size_t>(robot.dof());
   constexpr std::size_t kWidth = lanes::kWidth;
+  std::array<double, kWidth> clearance{};
   for (std::size_t i = 0; i < count; i += kWidth) {
-    find_free_pack(q + i * dof, static_cast<int>(std::min(kWidth, count - i)), free + i);
+    const std::size_t in_pack = std::min(kWidth, count - i);
+    find_clearance(q + i * dof, in_pack, clearance.data());
+    for (std::size_t k = 0; k < in_pack; ++k) free[i + k] = clearance[k] > 0;
   }
 }
 

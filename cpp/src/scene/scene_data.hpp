@@ -34,7 +34,10 @@ struct Scene::Data {
   void check_name(const std::string& name, bool is_obstacle) const;
 
   [[nodiscard]] lanes::SceneView view() const;
-  /// Whether `count` configurations, one after the other, are free.
+  /// The clearances (scene_types.hpp) of `count` configurations, one after the other; 0 where only
+  /// points touch.
+  void find_clearance(const double* q, std::size_t count, double* clearance) const;
+  /// Whether they are free.
   void find_free(const double* q, std::size_t count, bool* free) const;
   [[nodiscard]] bool is_free(const double* q) const {
     bool free = false;
@@ -62,7 +65,7 @@ struct Scene::Data {
   /// Whether the arm, whose balls are placed in a lane, touches no point.
   [[nodiscard]] bool is_free_of_points(const double* centre, int lane) const;
   /// Up to one configuration per lane.
-  void find_free_pack(const double* q, int count, bool* free) const;
+  void find_clearance_pack(const double* q, int count, double* clearance) const;
   void add_contacts(int link, const double* centre, std::vector<Contact>& found) const;
   void add_pair_contacts(const double* centre, std::vector<Contact>& found) const;
 
@@ -74,7 +77,7 @@ struct Scene::Data {
   std::vector<lanes::ScenePlane> planes;
   std::vector<Cloud> clouds;
   /// By the points that they are made of, which they keep alive.
-  std::map<std::shared_ptr<const Points>, std::shared_ptr<const PointGrid>> grids;
+  std::map<std::shared_ptr<const PointCloud>, std::shared_ptr<const PointGrid>> grids;
 };
 
 }  // namespace iksel

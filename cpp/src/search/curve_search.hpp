@@ -45,7 +45,7 @@ struct CurveSearch {
 template <typename Answers>
 std::optional<Proof> CurveSearch<Answers>::find_free() const {
   LaneRefiner& refiner = lanes.refiner;
-  FreeSamples samples(*lanes.sweep, *lanes.arcs, *goal.scene(), Y, lanes.samples, work, clock);
+  FreeSamples samples(*lanes.sweep, *goal.scene(), Y, lanes.samples, work, clock);
   refiner.begin(goal.task(), kNearAnswer, Width::narrow);
   const bool is_satisfied = search(refiner, samples, answers, work);
   refiner.begin(goal.task(), kFirst, Width::narrow);
@@ -86,7 +86,7 @@ std::optional<Proof> CurveSearch<Answers>::collect_nearest_free() const {
   LaneRefiner& refiner = lanes.refiner;
   SelfMotionArcs& arcs = *lanes.arcs;
   arcs.find(Y, kSpacing);
-  std::vector<double>& q = lanes.samples;
+  std::vector<double>& q = lanes.samples.q;
   const bool has_any = find_nearest_free(arcs, *request.scene, model.joints, *request.near,
                                          JointMove(model.dof, request), kMost, q);
   clock.lap(&StageTimes::query);

@@ -16,23 +16,26 @@ namespace iksel {
 
 class FreeSamples {
  public:
-  /// `memory` is written to. All must outlive this.
-  FreeSamples(Sweep& sweep, SelfMotionArcs& arcs, const Scene& scene, const Pose& Y,
-              std::vector<double>& memory, Work& work, StageClock& clock)
-      : sweep_(sweep), arcs_(arcs), scene_(scene), Y_(Y), q_(memory), work_(work), clock_(clock) {
-    q_.clear();
-  }
+  /// A sample that is not free.
+  struct Overlap {
+    double clearance;  ///< scene_types.hpp
+    int branch;
+    std::array<double, SweptBranches::kDof> q;
+  };
+  /// What it writes to.
+  struct Memory {
+    std::vector<double> q;
+    std::vector<int> branch;
+    std::vector<Overlap> overlaps;
+  };
 
-  /// The samples of the sweep, those far from each other first; where none is free, points close to
-  /// each other all along the arcs.
-  bool next_stage() {
-    while (free_count_ = 0, next_ = 0, at_ < rows() || add_rows()) {
-      screen_pack();
-      if (free_count_ > 0) break;
-    }
-    clock_.lap(&StageTimes::query);
-    return free_count_ > 0;
-  }
+  /// All must outlive this.
+  FreeSamples(Sweep& sweep, const Scene& scene, const Pose& Y, Memory& memory, Work& work,
+              StageClock& clock);
+
+  /// The samples of the sweep, those far from each other first; where none is free, between the
+  /// samples beside those that overlap least.
+  bool next_stage();
 
   template <typename Refiner>
   bool load(Refiner& refiner, int lane) {
@@ -47,58 +50,24 @@ class FreeSamples {
  private:
   static constexpr std::size_t kDof = SweptBranches::kDof;
   static constexpr std::size_t kPack = SweptBranches::kCount;
-  /// The samples of the sweep come in so many parts.
-  static constexpr int kParts = 16;
-  /// Between points on the arcs no joint moves farther [rad].
-  static constexpr double kSpacing = 0.03;
 
-  [[nodiscard]] std::size_t rows() const { return q_.size() / kDof; }
-  [[nodiscard]] const double* row(std::size_t i) const { return &q_[i * kDof]; }
-
-  /// False if there are no more.
-  bool add_rows() {
-    while (at_ == rows()) {
-      if (part_ > kParts || (part_ == kParts && !has_any_)) return false;
-      q_.clear();
-      at_ = 0;
-      if (part_ == kParts) {
-        add_arcs();
-      } else {
-        constexpr int kSpread = 7;
-        sweep_.add_samples(Y_, part_ * kSpread % kParts, kParts, q_);
-      }
-      ++part_;
-      has_any_ = has_any_ || !q_.empty();
-    }
-    return true;
-  }
-
-  void add_arcs() {
-    arcs_.find(Y_, kSpacing);
-    for (const SelfMotionArcs::Arc& arc : arcs_.arcs()) {
-      for (const SelfMotionArcs::Joints& q : arc.q) q_.insert(q_.end(), q.begin(), q.end());
-    }
-  }
-
-  void screen_pack() {
-    const std::size_t count = std::min(kPack, rows() - at_);
-    std::array<bool, kPack> free{};
-    scene_.find_free(row(at_), count, free.data());
-    for (std::size_t i = 0; i < count; ++i) {
-      if (free[i]) free_[free_count_++] = at_ + i;
-    }
-    at_ += count;
-  }
+  [[nodiscard]] std::size_t rows() const { return to_.q.size() / kDof; }
+  [[nodiscard]] const double* row(std::size_t i) const { return &to_.q[i * kDof]; }
+  /// Makes rows of the next part; false if there are no more.
+  bool add_rows();
+  /// The next of those that overlap least; null if there are no more.
+  const Overlap* next_overlap();
+  /// Looks at the next rows, as many as there are lanes.
+  void screen_pack();
 
   Sweep& sweep_;
-  SelfMotionArcs& arcs_;
   const Scene& scene_;
-  const Pose& Y_;
-  std::vector<double>& q_;
+  Memory& to_;
   Work& work_;
   StageClock& clock_;
-  std::size_t at_ = 0;  ///< row to be looked at next
-  int part_ = 0;
+  std::size_t at_ = 0;      ///< row to be looked at next
+  int part_ = 0;            ///< of the samples
+  std::size_t beside_ = 0;  ///< overlaps that were looked beside
   bool has_any_ = false;
   std::array<std::size_t, kPack> free_{};
   std::size_t free_count_ = 0;

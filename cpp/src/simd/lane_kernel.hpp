@@ -237,7 +237,7 @@ constexpr LaneKernels make_kernels(const char* name) {
           rate_branches<Wide>,
           find_residuals<Wide>,
           count_roots<Wide>,
-          find_free<Wide>};
+          find_clearance<Wide>};
 }
 
 }  // namespace iksel::lanes

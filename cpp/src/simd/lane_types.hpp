@@ -154,9 +154,9 @@ using FindResiduals = double (*)(const ResidualForm& form, const double* angles,
 using CountRoots = void (*)(const double* values, int n, double* counts);
 
 struct SceneView;
-/// Where nothing touches (scene_types.hpp).
-using FindFree = unsigned (*)(const SceneView& scene, const double* q, unsigned wanted,
-                              double* centre);
+/// The clearance in each lane (scene_types.hpp).
+using FindClearance = void (*)(const SceneView& scene, const double* q, int wanted, double* centre,
+                               double* clearance);
 
 /// Iterations of packs of one width.
 struct PackKernels {
@@ -180,7 +180,7 @@ struct LaneKernels {
   RateBranches rate_branches;
   FindResiduals find_residuals;
   CountRoots count_roots;
-  FindFree find_free;
+  FindClearance find_clearance;
 };
 
 }  // namespace iksel::lanes

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which configurations of an arm of spheres are free, one in each lane.
 //
-// What tells is a clearance, the least of (distance^2 - radius^2) over all that could touch: below
-// or at 0 something does. A link's spheres are looked at where the one around them all touches in
-// some lane.
+// What tells is the clearance (scene_types.hpp). A link's spheres are looked at where the one
+// around them all touches in some lane.
 #pragma once
 
 #include "simd/lane_math.hpp"
@@ -183,21 +182,12 @@ class PackOfScenes {
 };
 
 template <typename T>
-unsigned find_free(const SceneView& scene, const double* q, unsigned wanted, double* centre) {
-  constexpr int kCount = Lanes<T>::kCount;
-  unsigned free = 0;
-  for (int first = 0; first < kWidth; first += kCount) {
-    const unsigned mask = ((1U << static_cast<unsigned>(kCount)) - 1U)
-                          << static_cast<unsigned>(first);
-    if ((wanted & mask) == 0) continue;
-    double least[kCount];
-    Lanes<T>::store(PackOfScenes<T>(scene, centre + first).find(q + first), least);
-    for (int lane = 0; lane < kCount; ++lane) {
-      // Written so that NaN is not free.
-      if (least[lane] > 0) free |= 1U << static_cast<unsigned>(first + lane);
-    }
+void find_clearance(const SceneView& scene, const double* q, int wanted, double* centre,
+                    double* clearance) {
+  for (int first = 0; first < wanted; first += Lanes<T>::kCount) {
+    const T least = PackOfScenes<T>(scene, centre + first).find(q + first);
+    Lanes<T>::store(least, clearance + first);
   }
-  return free & wanted;
 }
 
 }  // namespace iksel::lanes

@@ -54,9 +54,11 @@ struct ScenePlane {
   double offset;  ///< with its margin [m]
 };
 
-/// find_free takes joint value j of lane l at q[j kWidth + l], and puts coordinate i of the centre
-/// of ball b to centre[(3 b + i) kWidth + l] [m], in the lanes of the mask `wanted`; it returns the
-/// mask of those where nothing touches.
+/// find_clearance takes joint value j of lane l at q[j kWidth + l], and puts coordinate i of the
+/// centre of ball b to centre[(3 b + i) kWidth + l] [m], and to clearance[l] the least of
+/// distance^2 - radius^2 over all that could touch [m^2]: above 0 where nothing does, and 1 at
+/// most. Where something touches it may be more than that, but not above 0. Only the first `wanted`
+/// lanes are looked at; the others must hold joint values too.
 struct SceneView {
   int bodies, balls, links, pairs, blocks, cylinders, planes;
   const SceneBody* body;  ///< the first is the base, which has no joint

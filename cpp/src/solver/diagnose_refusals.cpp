@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "solver/diagnose_scene.hpp"
+#include "solver/diagnose_refusals.hpp"
 
 #include <string>
 #include <utility>
@@ -36,9 +36,8 @@ std::string contacts_text(const Scene& scene, const std::vector<Contact>& contac
   return list;
 }
 
-}  // namespace
-
-JointVector explain_collision(const Scene& scene, const Solutions& refused, Diagnosis& out) {
+/// The answer whose deepest contact is the least deep; its contacts and the message go into `out`.
+JointVector explain_collisions(const Scene& scene, const Solutions& refused, Diagnosis& out) {
   JointVector q;
   double least = kInfinity;
   for (const Result& answer : refused.all) {
@@ -50,10 +49,24 @@ JointVector explain_collision(const Scene& scene, const Solutions& refused, Diag
     out.contacts = std::move(contacts);
   }
   out.cause = Cause::collision;
-  out.message = "each of " + std::to_string(out.refused) + " answers collides; in the one where " +
-                "least overlaps, " + contacts_text(scene, out.contacts) +
+  out.message = "each of " + std::to_string(out.refused) + " answers collides; where they " +
+                "overlap least, " + contacts_text(scene, out.contacts) +
                 ": move the target or what is in the way";
   return q;
+}
+
+}  // namespace
+
+JointVector explain_refusals(const SolveRequest& request, Status status, const Solutions& refused,
+                             Diagnosis& out) {
+  out.refused = static_cast<int>(refused.all.size());
+  if (status == Status::in_collision && !refused.all.empty()) {
+    return explain_collisions(*request.scene, refused, out);
+  }
+  out.cause = Cause::rejected;
+  out.message = "the filter refused each of " + std::to_string(out.refused) +
+                " answers: move the target, or let the filter pass more";
+  return refused.all.empty() ? JointVector() : refused.all.front().q;
 }
 
 }  // namespace iksel

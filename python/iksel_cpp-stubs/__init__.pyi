@@ -1229,7 +1229,7 @@ class RobotSpheres:
     def __repr__(self) -> str:
         ...
     @property
-    def links(self) -> dict:
+    def links(self) -> dict[str, numpy.typing.NDArray[numpy.float64]]:
         """
         For each link its spheres, (N, 4), rows of centre in the link's frame and radius [m].
         """
@@ -1463,12 +1463,12 @@ class Scene:
             UnknownNameError: nothing has that name.
         """
     @property
-    def attached(self) -> dict:
+    def attached(self) -> dict[str, str]:
         """
         Names of the attached objects, and the links that carry them.
         """
     @property
-    def obstacles(self) -> dict:
+    def obstacles(self) -> dict[str, Obstacle]:
         """
         The obstacles by name.
         """

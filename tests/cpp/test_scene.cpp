@@ -26,11 +26,10 @@ RobotSpheres balls_on(const Robot& robot) {
   const auto& names = robot.link_names();
   for (std::size_t i = 0; i + 1 < names.size(); ++i) {
     const Eigen::Vector3d next = poses[i].inverse() * poses[i + 1].translation();
-    spheres.links[names[i]] = {{Eigen::Vector3d::Zero(), 0.06}, {0.5 * next, 0.05}};
+    spheres.links[names[i]] = {{Eigen::Vector3d::Zero(), 0.04}, {0.5 * next, 0.03}};
   }
-  for (std::size_t i = 0; i + 4 < names.size(); ++i) {
-    spheres.pairs.emplace_back(names[i], names[i + 3]);
-  }
+  // Neighbours touch always, and so do links that have no joint between them.
+  spheres.pairs.emplace_back(names.front(), names[names.size() - 2]);
   return spheres;
 }
 

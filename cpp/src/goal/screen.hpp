@@ -2,6 +2,7 @@
 // What refuses answers: a scene, and a filter, which is asked about what the scene lets through.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -37,6 +38,13 @@ class Screen {
   /// Asks the filter about those that are still kept.
   void ask_filter(const double* q, std::size_t count, bool* keep) {
     if (!filter_) return;
+    if (std::all_of(keep, keep + count, [](bool kept) { return kept; })) {
+      // As they lie, without memory for others.
+      filter_(q, count, keep);
+      filter_refused_ =
+          filter_refused_ || !std::all_of(keep, keep + count, [](bool b) { return b; });
+      return;
+    }
     asked_.clear();
     for (std::size_t i = 0; i < count; ++i) {
       if (keep[i]) asked_.insert(asked_.end(), q + i * dof_, q + (i + 1) * dof_);

@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from bench import plan
+from bench import plan, scene
 from bench.arms import RIVAL_ARMS
 from bench.cells import WORK
 from bench.frozen import compare, record
@@ -70,6 +70,7 @@ def parser() -> argparse.ArgumentParser:
     frozen.add_argument("file", type=Path, help="where, e.g. build/frozen.json")
     _add_no(commands)
     learned_command.add(commands)
+    scene.add(commands)
     return top
 
 
@@ -149,10 +150,11 @@ def main(arguments: list[str] | None = None) -> int:
     if options.command == "frozen":
         action = record if options.action == "record" else compare
         return action(options.file)
-    if options.command == "no":
-        return _no(options, given)
-    if options.command == "learned":
-        return _learned(options, given)
+    if options.command == "scene":
+        return scene.run(options)
+    others = {"no": _no, "learned": _learned}
+    if options.command in others:
+        return others[options.command](options, given)
     if options.command == "render":
         render(load_report(options.output), options.output)
         return 0

@@ -18,6 +18,7 @@ LAYERS = [
     "urdf",
     "kinematics",
     "simd",
+    "scene",
     "structure",
     "goal",
     "database",

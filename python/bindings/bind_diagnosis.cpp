@@ -20,11 +20,11 @@ py::object diagnosis_state(const Diagnosis& self) {
                         self.joint, self.limit_violation, self.refused, self.least_singular_value,
                         to_array(self.q), self.position_error, self.rotation_error,
                         self.q_is_solution, enum_name(self.proof), self.attempts,
-                        to_array(self.branch));
+                        to_array(self.branch), self.contacts);
 }
 
 Diagnosis diagnosis_from_state(const py::object& state) {
-  PickleState in(state, "Diagnosis", 15);
+  PickleState in(state, "Diagnosis", 16);
   constexpr bool kMayBeNan = true;
   Diagnosis out;
   out.cause = in.value<Cause>("cause");
@@ -44,6 +44,12 @@ Diagnosis diagnosis_from_state(const py::object& state) {
   out.branch = in.joints("branch");
   if (out.branch.size() != 0 && out.branch.size() != out.q.size()) {
     in.refuse("branch", "as many joints as q, or none", std::to_string(out.branch.size()));
+  }
+  for (const py::handle contact : in.list("contacts")) {
+    if (!py::isinstance<Contact>(contact)) {
+      in.refuse("contacts", "Contacts", py::cast<std::string>(py::repr(contact)));
+    }
+    out.contacts.push_back(py::cast<Contact>(contact));
   }
   if (out.q_is_solution && out.proof != Proof::none) {
     in.refuse("proof", "none, as there is an answer", enum_name(out.proof));
@@ -101,7 +107,11 @@ void bind_diagnosis(py::module_& m) {
       },
       "joint_limits: that answer, which reaches the target outside the limits, (dof,) [rad or m]; "
       "None otherwise.");
-  add_property(cls, "refused", &D::refused, "rejected: how many answers the filter refused.");
+  add_property(cls, "refused", &D::refused,
+               "rejected, collision: how many answers the filter or the scene refused.");
+  add_property(cls, "contacts", &D::contacts,
+               "collision: what touches at q, the answer that collides least, the deepest first; "
+               "empty otherwise.");
   add_property(cls, "least_singular_value", &D::least_singular_value,
                "Least singular value of the Jacobian at q [mixed units]: small where it is "
                "close to a singularity.");
@@ -113,7 +123,7 @@ void bind_diagnosis(py::module_& m) {
   add_property(cls, "rotation_error", &D::rotation_error, "Rotation error of q [rad].");
   add_property(cls, "q_is_solution", &D::q_is_solution,
                "Whether q is an answer: within the tolerances, inside the limits, passed by "
-               "the filter.");
+               "the scene and the filter.");
   cls.def("__bool__", [](const D& self) { return self.q_is_solution; });
   cls.def(py::pickle(&diagnosis_state, &diagnosis_from_state));
   cls.def("__repr__", [](const D& self) {

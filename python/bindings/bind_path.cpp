@@ -174,15 +174,22 @@ Raises:
     InvalidArgumentError: wrong shape or dtype, or a number that is not finite.)");
   tracker.def(
       "track",
-      [](Tracker& self, const PoseLike& pose, const Loose<double>& dt) {
-        return PyResult{self.track(as_pose(pose, "pose"), from_python<double>(dt, "dt")), {}};
+      [](Tracker& self, const PoseLike& pose, const Loose<double>& dt,
+         const std::optional<Loose<Scene>>& scene) {
+        const Pose target = as_pose(pose, "pose");
+        const auto step = from_python<double>(dt, "dt");
+        if (!scene) return PyResult{self.track(target, step), {}};
+        const auto around = from_python<Scene>(*scene, "scene");
+        return PyResult{self.track(target, step, &around), {}};
       },
-      py::arg("pose"), py::arg("dt"),
+      py::arg("pose"), py::arg("dt"), py::arg("scene") = py::none(),
       R"(Moves on towards a pose, by no more than each joint can in the time step.
 
 Args:
     pose: T_base_tip [m], as in Solver.solve.
     dt: time step [s].
+    scene: the arm stays, with status `in_collision`, where it would collide at the end of its move;
+        the way there is not looked at.
 
 Returns:
     A Result. Status `solved`: there. `too_fast`: the arm needs more time, and went as far on the
@@ -190,7 +197,8 @@ Returns:
     here. Any other: no continuation, and the arm stays.
 
 Raises:
-    InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, or dt not above 0.)");
+    InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, dt not above 0, or a
+        scene of another chain.)");
   add_property(
       tracker, "q", [](const Tracker& self) { return to_array(self.q()); },
       "Where the arm is now, (dof,) [rad or m]; always inside the limits.");
@@ -224,7 +232,8 @@ void bind_path(py::module_& m, py::class_<Solver>& cls) {
        "poses", "T_base_tip of each waypoint, (N, 4, 4) [m], or others as in solve.", "PathResult",
        R"(Raises:
     InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, a number out of range.)"},
-      path_keywords(), {"start", "dt", "weights", "norm", "filter", "candidates"}, &solve_path);
+      path_keywords(), {"start", "dt", "weights", "norm", "scene", "filter", "candidates"},
+      &solve_path);
 
   bind_tracker(m);
   cls.def("tracker", &make_tracker, py::arg("start"), py::kw_only(),

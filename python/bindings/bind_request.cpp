@@ -222,7 +222,7 @@ Raises:
     InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, a number that is not
         finite or out of range.)"},
       request_keywords(),
-      {"near", "weights", "norm", "seeds", "database_seeds", "filter", "deadline", "task",
+      {"near", "weights", "norm", "seeds", "database_seeds", "scene", "filter", "deadline", "task",
        "objective", "closest"},
       &solve);
   def_method<1>(cls,
@@ -237,7 +237,7 @@ Raises:
     InvalidArgumentError: as solve.)"},
                 solve_all_keywords(),
                 {"max", "min_distance", "whole_turns", "order", "near", "weights", "norm", "seeds",
-                 "database_seeds", "filter", "deadline", "task"},
+                 "database_seeds", "scene", "filter", "deadline", "task"},
                 &solve_all);
   def_method<0>(
       cls,
@@ -250,7 +250,7 @@ Raises:
 
 Raises:
     InvalidArgumentError: as solve.)"},
-      request_keywords(), {"filter", "deadline", "task"}, &diagnose);
+      request_keywords(), {"scene", "filter", "deadline", "task"}, &diagnose);
 }
 
 }  // namespace iksel::python

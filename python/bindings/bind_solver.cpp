@@ -207,8 +207,8 @@ target's solutions, within the same tolerances. The request holds for each targe
     InvalidArgumentError: wrong shape or dtype, a bad argument, or with on_invalid_pose="raise"
         a bad pose.)"},
       batch_keywords(),
-      {"threads", "near", "weights", "norm", "seeds", "database_seeds", "filter", "deadline",
-       "task", "objective", "closest", "on_invalid_pose"},
+      {"threads", "near", "weights", "norm", "seeds", "database_seeds", "scene", "filter",
+       "deadline", "task", "objective", "closest", "on_invalid_pose"},
       &solve_batch);
 }
 

@@ -23,6 +23,8 @@ void bind_kinematics(pybind11::class_<Robot>& robot);
 void bind_task(pybind11::module_& m);
 void bind_options(pybind11::module_& m);
 void bind_database(pybind11::module_& m);
+/// To come before the diagnosis, which names contacts.
+void bind_scene(pybind11::module_& m);
 void bind_objective(pybind11::module_& m);
 void bind_diagnosis(pybind11::module_& m);
 void bind_result(pybind11::module_& m);

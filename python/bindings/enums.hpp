@@ -217,6 +217,8 @@ struct EnumTable<Status> {
        "the target is no pose; in batches only, for a single pose it is an error"},
       {"closest", Status::closest,
        "no answer, but q is nearest to one: for those who ask for `closest`"},
+      {"in_collision", Status::in_collision,
+       "attempts reached the target inside the limits, but each collides in the scene"},
   };
 };
 
@@ -308,6 +310,7 @@ struct EnumTable<Cause> {
       {"budget", Cause::budget,
        "more work finds an answer: the bounds on attempts or iterations are too low"},
       {"out_of_time", Cause::out_of_time, "more time finds an answer: the deadline is too short"},
+      {"collision", Cause::collision, "answers exist, but each collides in the scene"},
   };
 };
 

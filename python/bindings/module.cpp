@@ -19,6 +19,7 @@ Kinematics Iterations" (Yuan, Wan, Harada, 2025), called the paper below.)";
   iksel::python::bind_task(m);
   iksel::python::bind_options(m);
   iksel::python::bind_database(m);
+  iksel::python::bind_scene(m);
   iksel::python::bind_objective(m);
   iksel::python::bind_result(m);
   iksel::python::bind_diagnosis(m);

@@ -161,6 +161,11 @@ struct IsBoundClass<Database> : std::true_type {
       "a Database, which Database.build(robot) or Database.load(path) makes";
 };
 template <>
+struct IsBoundClass<Scene> : std::true_type {
+  static constexpr const char* kExpected =
+      "a Scene, which Scene(robot, spheres) makes; iksel.spheres makes the spheres";
+};
+template <>
 struct IsBoundClass<Solver> : std::true_type {
   static constexpr const char* kExpected = "a Solver, which Solver(robot) makes";
 };

@@ -69,6 +69,14 @@ struct ArgumentOf<Filter> : ShownAsNone {
 };
 
 template <>
+struct ArgumentOf<Scene> {
+  static std::string text() { return "iksel_cpp.Scene"; }
+  static Scene read(py::handle given, const char* name, int /*dof*/) {
+    return from_python<Scene>(given, name);
+  }
+};
+
+template <>
 struct ArgumentOf<Objective> : ShownAsNone {
   static std::string text() {
     return "iksel_cpp.Objective | str | collections.abc.Callable[[numpy.ndarray], float]";
@@ -113,9 +121,10 @@ constexpr const char* kClosestDoc =
     "True: a metre counts 1, a radian as the database weighs rotations, by default a quarter of "
     "the arm's reach in metres. Or six weights, of position [1/m] and rotation [1/rad] along the "
     "axes of the task. Of equally near ones the nearest to `near`. Takes some 100 us on top, "
-    "whatever the deadline; a filter is asked about it too.";
+    "whatever the deadline; a scene and a filter refuse it too.";
 constexpr const char* kFilterDoc =
-    "called with candidates (n, dof), each at the pose and inside the limits; returns n truth "
+    "called with candidates (n, dof), each at the pose, inside the limits and free in the scene; "
+    "returns n truth "
     "values. The search continues within its bounds while all are refused. In a batch it is asked "
     "about the first answers of up to 256 targets at once, along a path about one waypoint's.";
 
@@ -154,6 +163,9 @@ std::vector<Keyword> request_keywords() {
       keyword("database_seeds", &R::database_seeds,
               "whether other seeds follow the given ones: the database's, random ones, and those "
               "that a closed form gives."),
+      keyword("scene", &R::scene,
+              "what answers may not collide with; of a robot with the same chain. The search "
+              "continues within its bounds while all collide."),
       keyword("filter", &R::filter, kFilterDoc),
       keyword("deadline", &R::deadline,
               "wall-clock time after which the search for a target ends [s]; checked between its "
@@ -201,6 +213,8 @@ std::vector<Keyword> path_keywords() {
               "velocity limit allows; 0: speeds are not limited."),
       keyword("weights", &O::weights, kWeightsDoc),
       keyword("norm", &O::norm, kNormDoc),
+      keyword("scene", &O::scene,
+              "what waypoints may not collide with; the moves between them are not looked at."),
       keyword("filter", &O::filter, kFilterDoc),
       keyword("candidates", &O::candidates, "candidates kept per waypoint at most."),
   };

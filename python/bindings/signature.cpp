@@ -28,7 +28,9 @@ constexpr std::pair<const char*, const char*> kMakers[] = {
     {"SelfMotion", "Solver.self_motion"},
     {"SelfMotionArc", "Solver.self_motion"},
     {"SelfMotionEnd", "Solver.self_motion"},
+    {"Contact", "Scene.contacts"},
     {"Diagnosis", "Solver.diagnose"},
+    {"Obstacle", "Scene.obstacles"},
     {"Evaluation", "evaluate"},
 };
 

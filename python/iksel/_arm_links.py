@@ -25,6 +25,7 @@ class ArmLinks:
         links: Names of all links, parents first.
         index: For each link its place among them.
         body: For each link the first that it never moves against.
+        base: The arm's base link.
     """
 
     def __init__(
@@ -45,6 +46,7 @@ class ArmLinks:
         self._robot = self._find_arm(text, robot, others)
         self._columns = [robot.joint_names.index(n) for n in self._robot.joint_names]
         self.links = self._robot.link_names
+        self.base = robot.base_link
         self.index = {name: i for i, name in enumerate(self.links)}
         self.body = self._find_bodies()
 

@@ -9,6 +9,7 @@ import numpy as np
 from iksel_cpp import InvalidArgumentError, UrdfError
 
 from iksel._packages import resolve_path
+from iksel._sphere_cover import Mesh, Solid
 from iksel._urdf_xml import read_numbers, read_origin
 
 if TYPE_CHECKING:
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from iksel._arm_links import ArmLinks
     from iksel._arrays import BoolArray, FloatArray, IntArray
 
+_CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
 _CHUNK = 256  # configurations placed at a time, which bounds the memory
 
 
@@ -85,10 +87,16 @@ class Shapes:
         centre = (rotation @ boxes[:, 0, :, None])[..., 0]
         self.centre = centre + self.in_link[:, :3, 3]
         self.half_axes = rotation * boxes[:, 1, None, :]
+        base = links.body[links.base]
+        self.moving = np.array([links.body[shape.link] != base for shape in shapes])
         self._shapes = shapes
         self._tests: dict[tuple[int, int], tuple[Any, Any]] = {}
         self._result = coal.CollisionResult()
         self._requests: dict[float, Any] = {}
+
+    def geometry(self, shape: int) -> Any:
+        """Coal's geometry of a shape."""
+        return self._shapes[shape].geometry
 
     def touch(
         self,
@@ -199,6 +207,58 @@ def _hull(shape: Any) -> Any:
     except (RuntimeError, ValueError):
         return shape  # flat, which has no hull
     return shape.convex or shape
+
+
+def is_sphere(geometry: Any) -> bool:
+    """Whether one of coal's shapes is a ball."""
+    return type(geometry).__name__ == "Sphere"
+
+
+def solid_of(shape: Shape, max_error: float) -> Solid:
+    """A box, cylinder or mesh in the frame of its link, by triangles around it."""
+    geometry = shape.geometry
+    kind = type(geometry).__name__
+    if kind == "Box":
+        half = np.array(geometry.halfSide)
+        mesh = _prism(half[:2] * _CORNERS, float(half[2]))
+    elif kind == "Cylinder":
+        half = np.array([geometry.radius, geometry.halfLength])
+        # Sides so many that the corners stick out by a part of the error only.
+        ratio = min(max_error / geometry.radius / 20, 0.5)
+        count = max(8, int(np.ceil(np.pi / np.arccos(1 / (1 + ratio)))))
+        angles = 2 * np.pi * np.arange(count) / count
+        corner = geometry.radius / np.cos(np.pi / count)
+        around = corner * np.column_stack([np.cos(angles), np.sin(angles)])
+        mesh = _prism(around, float(geometry.halfLength))
+    else:
+        half = np.zeros(0)
+        faces = [geometry.tri_indices(i) for i in range(geometry.num_tris)]
+        mesh = Mesh(
+            np.array(geometry.vertices(), dtype=float),
+            np.array([[t[0], t[1], t[2]] for t in faces], dtype=int),
+        )
+    rotation, place = shape.origin[:3, :3], shape.origin[:3, 3]
+
+    def holds(points: FloatArray) -> BoolArray:
+        local = np.abs((points - place) @ rotation)
+        if kind == "Cylinder":
+            local = np.column_stack([np.hypot(local[:, 0], local[:, 1]), local[:, 2]])
+        if not half.size:
+            return np.zeros(len(points), dtype=bool)
+        return np.asarray((local < half * (1 - 1e-9)).all(axis=1))
+
+    return Solid(Mesh(mesh.vertices @ rotation.T + place, mesh.triangles), holds)
+
+
+def _prism(around: FloatArray, half: float) -> Mesh:
+    """A polygon (n, 2) in the plane, convex, from -half to half in z."""
+    n = len(around)
+    ends = [np.column_stack([around, np.full(n, z)]) for z in (-half, half)]
+    i = np.arange(n)
+    j = (i + 1) % n
+    fan = np.column_stack([np.zeros(n - 2, dtype=int), i[1:-1], i[2:]])
+    sides = [np.column_stack([i, j, j + n]), np.column_stack([i, j + n, i + n])]
+    return Mesh(np.concatenate(ends), np.concatenate([fan, fan + n, *sides]))
 
 
 def _local_box(shape: Any) -> tuple[FloatArray, FloatArray]:

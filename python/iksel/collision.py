@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from itertools import combinations
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from iksel_cpp import InvalidArgumentError, UnknownNameError
@@ -27,7 +27,7 @@ from iksel.description import read_description
 if TYPE_CHECKING:
     import os
     import xml.etree.ElementTree as ET
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     import numpy.typing as npt
     from iksel_cpp import Robot
@@ -106,7 +106,7 @@ class SelfCollision:
         if samples < 0:
             raise InvalidArgumentError(f"samples: {samples} is not 0 or more")
         coal = import_coal()
-        root, folder = _read_urdf(urdf, packages or {}, xacro_args)
+        root, folder = read_urdf(urdf, packages or {}, xacro_args)
         shapes = read_shapes(coal, root, folder, packages or {})
         self._dof = robot.dof
         self._name = root.get("name", "")
@@ -165,6 +165,19 @@ class SelfCollision:
     def colliding_links(self, q: npt.ArrayLike) -> tuple[str, str] | None:
         """The first pair of links that collide at q, (dof,), or None."""
         return self._first_colliding(as_floats("q", q, (self._dof,)).reshape(1, -1))[0]
+
+    def place(self, q: FloatArray) -> Iterator[Placed]:
+        """Place all shapes at configurations (n, dof), some of them at a time."""
+        return place(self._shapes, self._links, q)
+
+    @property
+    def moves(self) -> BoolArray:
+        """Which shapes the arm moves against its base, (shapes,)."""
+        return self._shapes.moving
+
+    def geometry(self, shape: int) -> Any:
+        """Coal's geometry of a shape."""
+        return self._shapes.geometry(shape)
 
     def _first_colliding(self, q: FloatArray) -> list[Pair | None]:
         found: list[Pair | None] = []
@@ -250,7 +263,7 @@ class SelfCollision:
         self._part_margins = np.array([margin for _, margin, _ in self._parts])
 
 
-def _read_urdf(
+def read_urdf(
     source: str | os.PathLike[str],
     packages: Mapping[str, str | os.PathLike[str]],
     xacro_args: Mapping[str, str] | None,

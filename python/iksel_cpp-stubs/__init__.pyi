@@ -14,7 +14,7 @@ import numpy
 import numpy.typing
 import os
 import typing
-__all__: list[str] = ['AngleUnitWarning', 'ArcEnd', 'Axis', 'BatchResult', 'Cause', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'Diagnosis', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'KeyScheme', 'Kinematics', 'Lanes', 'LinkTree', 'LinkTreeJoint', 'MoveNorm', 'Objective', 'ObjectiveKind', 'Paper', 'PathResult', 'Proof', 'RIGID_TOLERANCE', 'Ranking', 'Reselection', 'Result', 'Robot', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'SelfMotion', 'SelfMotionArc', 'SelfMotionEnd', 'SignatureError', 'SolutionOrder', 'Solutions', 'Solver', 'SolverOptions', 'Status', 'Structure', 'StructureKind', 'Task', 'TaskFrame', 'Tracker', 'UnknownNameError', 'UrdfError', 'check_pose', 'evaluate', 'grid_counts', 'orthonormalized', 'pose_error', 'pose_matrices', 'rigid_deviation', 'simd_level', 'time_kdl_fk_jacobian']
+__all__: list[str] = ['AngleUnitWarning', 'ArcEnd', 'Axis', 'BatchResult', 'Cause', 'Contact', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'Diagnosis', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'KeyScheme', 'Kinematics', 'Lanes', 'LinkTree', 'LinkTreeJoint', 'MoveNorm', 'Objective', 'ObjectiveKind', 'Obstacle', 'Paper', 'PathResult', 'Proof', 'RIGID_TOLERANCE', 'Ranking', 'Reselection', 'Result', 'Robot', 'RobotSpheres', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'Scene', 'SelfMotion', 'SelfMotionArc', 'SelfMotionEnd', 'SignatureError', 'SolutionOrder', 'Solutions', 'Solver', 'SolverOptions', 'Status', 'Structure', 'StructureKind', 'Task', 'TaskFrame', 'Tracker', 'UnknownNameError', 'UrdfError', 'check_pose', 'evaluate', 'grid_counts', 'orthonormalized', 'pose_error', 'pose_matrices', 'rigid_deviation', 'simd_level', 'time_kdl_fk_jacobian']
 class AngleUnitWarning(UserWarning):
     """
     Angles that look like degrees were given where radians are meant.
@@ -1209,6 +1209,279 @@ class Database:
         """
         Number of samples.
         """
+class RobotSpheres:
+    """
+    Spheres that cover the links of a robot, and which links may not touch each other; made by iksel.spheres.
+    """
+    def __init__(self, links: collections.abc.Mapping[str, numpy.typing.ArrayLike], pairs: collections.abc.Iterable[tuple[str, str]] | None = None) -> None:
+        """
+        Takes spheres as they are.
+
+        Args:
+            links: for each link that has a body its spheres, (N, 4), rows of centre in the link's frame and
+                radius [m].
+            pairs: pairs of links that are looked at for collisions with each other; None: no pair.
+
+        Raises:
+            InvalidArgumentError: a sphere that is not finite or whose radius is not above 0, a link
+                without any, a pair of one link or of a link that is not in `links`.
+        """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def links(self) -> dict[str, numpy.typing.NDArray[numpy.float64]]:
+        """
+        For each link its spheres, (N, 4), rows of centre in the link's frame and radius [m].
+        """
+    @property
+    def pairs(self) -> list[tuple[str, str]]:
+        """
+        Pairs of links that are looked at for collisions with each other.
+        """
+class Contact:
+    """
+    Two things that touch.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def depth(self) -> float:
+        """
+        How far they would have to part, margins included [m]; 0 or more.
+        """
+    @property
+    def is_obstacle(self) -> bool:
+        """
+        Whether `other` is an obstacle.
+        """
+    @property
+    def link(self) -> str:
+        """
+        A link of the robot or an attached object.
+        """
+    @property
+    def other(self) -> str:
+        """
+        What it touches: an obstacle, a link or an attached object.
+        """
+class Obstacle:
+    """
+    A shape at a pose, as a Scene holds it.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def length(self) -> float:
+        """
+        capsule: of its segment; cylinder [m].
+        """
+    @property
+    def margin(self) -> float:
+        """
+        The arm keeps this far away [m].
+        """
+    @property
+    def points(self) -> typing.Any:
+        """
+        In the obstacle's frame, (N, 3) [m]; None of others.
+        """
+    @property
+    def pose(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        T_base_obstacle, (4, 4).
+        """
+    @property
+    def radius(self) -> float:
+        """
+        sphere, capsule, cylinder, points [m].
+        """
+    @property
+    def shape(self) -> str:
+        """
+        'sphere', 'box', 'capsule', 'cylinder', 'half_space' or 'points'.
+        """
+    @property
+    def size(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        box: edges, (3,) [m].
+        """
+class Scene:
+    """
+    A robot's body and what it may not touch: obstacles, objects that it carries, itself.
+
+    A value: a copy does not see what is done to another, and a solve takes it as it is then. Links that no joint of the arm moves are not held against obstacles.
+    """
+    def __copy__(self) -> Scene:
+        ...
+    def __deepcopy__(self, memo: dict[int, object]) -> Scene:
+        ...
+    def __init__(self, robot: Robot, spheres: RobotSpheres, other_joints: collections.abc.Mapping[str, float] | None = None) -> None:
+        """
+        Begins with the robot alone.
+
+        Args:
+            robot: whose joint values are asked about; solvers of the same chain take the scene, whatever
+                their tool.
+            spheres: its body, which iksel.spheres makes from a URDF or reads from a sphere file.
+            other_joints: values of joints that are not the arm's [rad or m], by name, as in
+                Robot.link_poses.
+
+        Raises:
+            InvalidArgumentError: no spheres, or a base link that the arm's joints move.
+            UnknownNameError: the URDF lacks a link of the spheres, or a joint.
+        """
+    def __repr__(self) -> str:
+        ...
+    def add_box(self, name: str, size: numpy.typing.ArrayLike, pose: numpy.typing.ArrayLike | typing.Any, margin: float = 0.0) -> None:
+        """
+        Adds a box centred at the origin of its frame.
+
+        Args:
+            name: its name, under which one that is there is replaced.
+            size: edges along the axes of its frame, (3,) [m].
+            pose: T_base_obstacle [m], as in Solver.solve; or a position (3,), unturned.
+            margin: the arm keeps this far away [m].
+
+        Raises:
+            InvalidArgumentError: a number or shape that is no good, or a name that a link or an attached
+                object has.
+        """
+    def add_capsule(self, name: str, radius: float, length: float, pose: numpy.typing.ArrayLike | typing.Any, margin: float = 0.0) -> None:
+        """
+        Adds all that is near a segment on the z axis of its frame, centred at the origin.
+
+        Args:
+            name: its name, under which one that is there is replaced.
+            radius: how near, above 0 [m].
+            length: of the segment, 0 or more [m].
+            pose: T_base_obstacle [m], as in Solver.solve; or a position (3,), unturned.
+            margin: the arm keeps this far away [m].
+
+        Raises:
+            InvalidArgumentError: a number or shape that is no good, or a name that a link or an attached
+                object has.
+        """
+    def add_cylinder(self, name: str, radius: float, length: float, pose: numpy.typing.ArrayLike | typing.Any, margin: float = 0.0) -> None:
+        """
+        Adds a cylinder around the z axis of its frame, centred at the origin.
+
+        Args:
+            name: its name, under which one that is there is replaced.
+            radius: above 0 [m].
+            length: above 0 [m].
+            pose: T_base_obstacle [m], as in Solver.solve; or a position (3,), unturned.
+            margin: the arm keeps this far away [m].
+
+        Raises:
+            InvalidArgumentError: a number or shape that is no good, or a name that a link or an attached
+                object has.
+        """
+    def add_half_space(self, name: str, pose: numpy.typing.ArrayLike | typing.Any, margin: float = 0.0) -> None:
+        """
+        Adds all that is below the plane z = 0 of its frame.
+
+        Args:
+            name: its name, under which one that is there is replaced.
+            pose: T_base_obstacle [m], as in Solver.solve; or a position (3,), unturned.
+            margin: the arm keeps this far away [m].
+
+        Raises:
+            InvalidArgumentError: a number or shape that is no good, or a name that a link or an attached
+                object has.
+        """
+    def add_points(self, name: str, points: numpy.typing.ArrayLike, radius: float, pose: numpy.typing.ArrayLike | typing.Any | None = None, margin: float = 0.0) -> None:
+        """
+        Adds a ball around each point of a cloud.
+
+        Args:
+            name: its name, under which one that is there is replaced.
+            points: in the cloud's frame, (N, 3) [m].
+            radius: of the balls, 0 or more [m].
+            pose: T_base_obstacle [m], as in Solver.solve; or a position (3,), unturned.
+            margin: the arm keeps this far away [m].
+
+        Raises:
+            InvalidArgumentError: a number or shape that is no good, or a name that a link or an attached
+                object has.
+        """
+    def add_sphere(self, name: str, radius: float, pose: numpy.typing.ArrayLike | typing.Any, margin: float = 0.0) -> None:
+        """
+        Adds a ball around the origin of its frame.
+
+        Args:
+            name: its name, under which one that is there is replaced.
+            radius: above 0 [m].
+            pose: T_base_obstacle [m], as in Solver.solve; or a position (3,), unturned.
+            margin: the arm keeps this far away [m].
+
+        Raises:
+            InvalidArgumentError: a number or shape that is no good, or a name that a link or an attached
+                object has.
+        """
+    def attach(self, name: str, link: str, spheres: numpy.typing.ArrayLike, may_touch: collections.abc.Iterable[str] | None = None) -> None:
+        """
+        Has a link carry an object from now on.
+
+        Args:
+            name: of the object, under which one that is there is replaced.
+            link: that carries it.
+            spheres: that cover it, (N, 4), rows of centre in the link's frame and radius [m].
+            may_touch: links and other objects that it may touch; what does not move against it always may.
+
+        Raises:
+            UnknownNameError: the URDF lacks the link, or nothing has a name of `may_touch`.
+            InvalidArgumentError: a sphere that is no good, or a name that a link or an obstacle has.
+        """
+    def contacts(self, q: numpy.typing.ArrayLike) -> list[Contact]:
+        """
+        What touches at q, (dof,) [rad or m], the deepest first: of each link and each thing that it touches, where they overlap most.
+        """
+    def is_free(self, q: numpy.typing.ArrayLike) -> bool | typing.Any:
+        """
+        Whether nothing touches at q [rad or m], (dof,); of (N, dof) values each, (N,).
+        """
+    def move(self, name: str, pose: numpy.typing.ArrayLike | typing.Any) -> None:
+        """
+        Puts an obstacle elsewhere.
+
+        Args:
+            name: of the obstacle.
+            pose: T_base_obstacle [m], or a position (3,), unturned.
+
+        Raises:
+            UnknownNameError: no obstacle has that name.
+            InvalidArgumentError: a pose that is none.
+        """
+    def remove(self, name: str) -> None:
+        """
+        Removes an obstacle or an attached object.
+
+        Args:
+            name: its name.
+
+        Raises:
+            UnknownNameError: nothing has that name.
+        """
+    @property
+    def attached(self) -> dict[str, str]:
+        """
+        Names of the attached objects, and the links that carry them.
+        """
+    @property
+    def obstacles(self) -> dict[str, Obstacle]:
+        """
+        The obstacles by name.
+        """
+    @property
+    def robot(self) -> Robot:
+        """
+        The robot.
+        """
+    @property
+    def spheres(self) -> RobotSpheres:
+        """
+        Its body.
+        """
 class ObjectiveKind(enum.Enum):
     """
     What an Objective counts.
@@ -1257,6 +1530,7 @@ class Status(enum.IntEnum):
     """
     Why a solve ended.
     """
+    in_collision = 8
     invalid_pose = 7
     not_converged = 1
     out_of_reach = 3
@@ -1443,6 +1717,7 @@ class Cause(enum.Enum):
     Why a solve gave no answer. Certain where Diagnosis.proven is true; else found by search and so likely.
     """
     budget = 7
+    collision = 9
     joint_limits = 3
     no_branch = 4
     none = 0
@@ -1482,6 +1757,11 @@ class Diagnosis:
     def cause(self) -> Cause:
         """
         Why there is no answer; `none` if there is one.
+        """
+    @property
+    def contacts(self) -> list[Contact]:
+        """
+        collision: what touches at q, the answer that collides least, the deepest first; empty otherwise.
         """
     @property
     def joint(self) -> int:
@@ -1526,12 +1806,12 @@ class Diagnosis:
     @property
     def q_is_solution(self) -> bool:
         """
-        Whether q is an answer: within the tolerances, inside the limits, passed by the filter.
+        Whether q is an answer: within the tolerances, inside the limits, passed by the scene and the filter.
         """
     @property
     def refused(self) -> int:
         """
-        rejected: how many answers the filter refused.
+        rejected, collision: how many answers the filter or the scene refused.
         """
     @property
     def rotation_error(self) -> float:
@@ -1592,7 +1872,7 @@ class Solver:
         """
     def __repr__(self) -> str:
         ...
-    def diagnose(self, pose: numpy.typing.ArrayLike | typing.Any, *, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None) -> Diagnosis:
+    def diagnose(self, pose: numpy.typing.ArrayLike | typing.Any, *, scene: Scene | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None) -> Diagnosis:
         """
         Why solve() with the same arguments gives no answer, and the best that can be done.
 
@@ -1600,9 +1880,12 @@ class Solver:
 
         Args:
             pose: T_base_tip [m], as in solve.
-            filter: called with candidates (n, dof), each at the pose and inside the limits; returns n truth
-                values. The search continues within its bounds while all are refused. In a batch it is asked
-                about the first answers of up to 256 targets at once, along a path about one waypoint's.
+            scene: what answers may not collide with; of a robot with the same chain. The search continues
+                within its bounds while all collide.
+            filter: called with candidates (n, dof), each at the pose, inside the limits and free in the
+                scene; returns n truth values. The search continues within its bounds while all are refused.
+                In a batch it is asked about the first answers of up to 256 targets at once, along a path
+                about one waypoint's.
             deadline: wall-clock time after which the search for a target ends [s]; checked between its
                 stages.
             task: what of the pose has to be reached; None: what the solver's options say.
@@ -1633,7 +1916,7 @@ class Solver:
             InvalidArgumentError: a robot of another structure, a task with free axes, another strategy than
                 Lanes, a spacing out of range; else as solve.
         """
-    def solve(self, pose: numpy.typing.ArrayLike | typing.Any, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None) -> Result:
+    def solve(self, pose: numpy.typing.ArrayLike | typing.Any, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, scene: Scene | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None) -> Result:
         """
         Joint values that put the TCP (the tip link's frame, if there is no tool) at a pose.
 
@@ -1655,9 +1938,12 @@ class Solver:
                 many of the database's on top.
             database_seeds: whether other seeds follow the given ones: the database's, random ones, and
                 those that a closed form gives.
-            filter: called with candidates (n, dof), each at the pose and inside the limits; returns n truth
-                values. The search continues within its bounds while all are refused. In a batch it is asked
-                about the first answers of up to 256 targets at once, along a path about one waypoint's.
+            scene: what answers may not collide with; of a robot with the same chain. The search continues
+                within its bounds while all collide.
+            filter: called with candidates (n, dof), each at the pose, inside the limits and free in the
+                scene; returns n truth values. The search continues within its bounds while all are refused.
+                In a batch it is asked about the first answers of up to 256 targets at once, along a path
+                about one waypoint's.
             deadline: wall-clock time after which the search for a target ends [s]; checked between its
                 stages.
             task: what of the pose has to be reached; None: what the solver's options say.
@@ -1674,7 +1960,7 @@ class Solver:
             InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, a number that is not
                 finite or out of range.
         """
-    def solve_all(self, pose: numpy.typing.ArrayLike | typing.Any, max: int = 64, *, min_distance: float = 0.01, whole_turns: bool = False, order: SolutionOrder | str = 'move', near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None) -> Solutions:
+    def solve_all(self, pose: numpy.typing.ArrayLike | typing.Any, max: int = 64, *, min_distance: float = 0.01, whole_turns: bool = False, order: SolutionOrder | str = 'move', near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, scene: Scene | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None) -> Solutions:
         """
         Every distinct solution that is found: all branches (there certainly are no others where `proven` says so), or a spread for a redundant arm.
 
@@ -1698,9 +1984,12 @@ class Solver:
                 many of the database's on top.
             database_seeds: whether other seeds follow the given ones: the database's, random ones, and
                 those that a closed form gives.
-            filter: called with candidates (n, dof), each at the pose and inside the limits; returns n truth
-                values. The search continues within its bounds while all are refused. In a batch it is asked
-                about the first answers of up to 256 targets at once, along a path about one waypoint's.
+            scene: what answers may not collide with; of a robot with the same chain. The search continues
+                within its bounds while all collide.
+            filter: called with candidates (n, dof), each at the pose, inside the limits and free in the
+                scene; returns n truth values. The search continues within its bounds while all are refused.
+                In a batch it is asked about the first answers of up to 256 targets at once, along a path
+                about one waypoint's.
             deadline: wall-clock time after which the search for a target ends [s]; checked between its
                 stages.
             task: what of the pose has to be reached; None: what the solver's options say.
@@ -1711,7 +2000,7 @@ class Solver:
         Raises:
             InvalidArgumentError: as solve.
         """
-    def solve_batch(self, poses: numpy.typing.ArrayLike | typing.Any, threads: int = 0, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None, on_invalid_pose: typing.Literal['status', 'raise'] = 'status') -> BatchResult:
+    def solve_batch(self, poses: numpy.typing.ArrayLike | typing.Any, threads: int = 0, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, scene: Scene | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None, on_invalid_pose: typing.Literal['status', 'raise'] = 'status') -> BatchResult:
         """
         Solves many targets with the GIL released; row i belongs to target i.
 
@@ -1737,9 +2026,12 @@ class Solver:
                 many of the database's on top.
             database_seeds: whether other seeds follow the given ones: the database's, random ones, and
                 those that a closed form gives.
-            filter: called with candidates (n, dof), each at the pose and inside the limits; returns n truth
-                values. The search continues within its bounds while all are refused. In a batch it is asked
-                about the first answers of up to 256 targets at once, along a path about one waypoint's.
+            scene: what answers may not collide with; of a robot with the same chain. The search continues
+                within its bounds while all collide.
+            filter: called with candidates (n, dof), each at the pose, inside the limits and free in the
+                scene; returns n truth values. The search continues within its bounds while all are refused.
+                In a batch it is asked about the first answers of up to 256 targets at once, along a path
+                about one waypoint's.
             deadline: wall-clock time after which the search for a target ends [s]; checked between its
                 stages.
             task: what of the pose has to be reached; None: what the solver's options say.
@@ -1754,7 +2046,7 @@ class Solver:
             InvalidArgumentError: wrong shape or dtype, a bad argument, or with on_invalid_pose="raise"
                 a bad pose.
         """
-    def solve_path(self, poses: numpy.typing.ArrayLike | typing.Any, start: numpy.typing.ArrayLike | None = None, *, dt: float = 0.0, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, candidates: int = 64) -> PathResult:
+    def solve_path(self, poses: numpy.typing.ArrayLike | typing.Any, start: numpy.typing.ArrayLike | None = None, *, dt: float = 0.0, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', scene: Scene | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, candidates: int = 64) -> PathResult:
         """
         Joint values along a path of poses, by a choice among the solutions of all waypoints.
 
@@ -1769,9 +2061,11 @@ class Solver:
                 limit allows; 0: speeds are not limited.
             weights: factor on each joint's part of a move, (dof,), >= 0; None: all 1.
             norm: how a move is measured.
-            filter: called with candidates (n, dof), each at the pose and inside the limits; returns n truth
-                values. The search continues within its bounds while all are refused. In a batch it is asked
-                about the first answers of up to 256 targets at once, along a path about one waypoint's.
+            scene: what waypoints may not collide with; the moves between them are not looked at.
+            filter: called with candidates (n, dof), each at the pose, inside the limits and free in the
+                scene; returns n truth values. The search continues within its bounds while all are refused.
+                In a batch it is asked about the first answers of up to 256 targets at once, along a path
+                about one waypoint's.
             candidates: candidates kept per waypoint at most.
 
         Raises:
@@ -1947,20 +2241,23 @@ class Tracker:
         """
     def __repr__(self) -> str:
         ...
-    def track(self, pose: numpy.typing.ArrayLike | typing.Any, dt: float) -> Result:
+    def track(self, pose: numpy.typing.ArrayLike | typing.Any, dt: float, scene: Scene | None = None) -> Result:
         """
         Moves on towards a pose, by no more than each joint can in the time step.
 
         Args:
             pose: T_base_tip [m], as in Solver.solve.
             dt: time step [s].
+            scene: the arm stays, with status `in_collision`, where it would collide at the end of its move;
+                the way there is not looked at.
 
         Returns:
             A Result. Status `solved`: there. `too_fast`: the arm needs more time, and went as far on the
             straight way in joint space as it could. Any other: no continuation, and the arm stays.
 
         Raises:
-            InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, or dt not above 0.
+            InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, dt not above 0, or a
+                scene of another chain.
         """
     @property
     def q(self) -> numpy.typing.NDArray[numpy.float64]:

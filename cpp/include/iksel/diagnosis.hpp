@@ -5,14 +5,15 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "iksel/export.hpp"
 #include "iksel/result.hpp"
+#include "iksel/scene.hpp"
 #include "iksel/types.hpp"
 
 namespace iksel {
 
-class Robot;
 struct Task;
 
 /// Why a solve gave no answer. Certain where Diagnosis::proof is `reach` or `closed_form`; else
@@ -27,6 +28,7 @@ enum class Cause : std::uint8_t {
   singular,      ///< more work finds an answer, where the arm is close to a singularity
   budget,        ///< more work finds an answer: the bounds on attempts or iterations are too low
   out_of_time,   ///< more time finds an answer: the deadline is too short
+  collision,     ///< answers exist, but each collides in the scene
 };
 
 /// Lower-case name of a cause.
@@ -55,8 +57,10 @@ struct Diagnosis {
   double limit_violation = std::numeric_limits<double>::quiet_NaN();
   /// joint_limits: that answer, which reaches the target outside the limits [rad or m]; else empty.
   JointVector branch;
-  /// rejected: how many answers the filter refused.
+  /// rejected, collision: how many answers the filter or the scene refused.
   int refused = 0;
+  /// collision: what touches at `q`, the answer that collides least, the deepest first.
+  std::vector<Contact> contacts;
   /// Least singular value of the Jacobian at `q` [mixed units]: small where it is close to a
   /// singularity.
   double least_singular_value = std::numeric_limits<double>::quiet_NaN();
@@ -67,7 +71,8 @@ struct Diagnosis {
   /// Errors of q outside of the task's box: position [m] and rotation [rad].
   double position_error = std::numeric_limits<double>::quiet_NaN();
   double rotation_error = std::numeric_limits<double>::quiet_NaN();
-  /// Whether q is an answer: within the tolerances, inside the limits, passed by the filter.
+  /// Whether q is an answer: within the tolerances, inside the limits, passed by the scene
+  /// and the filter.
   bool q_is_solution = false;
 };
 

@@ -8,6 +8,7 @@
 
 #include "iksel/export.hpp"
 #include "iksel/result.hpp"
+#include "iksel/scene.hpp"
 #include "iksel/solver.hpp"
 
 namespace iksel {
@@ -46,9 +47,11 @@ class IKSEL_EXPORT Tracker {
   /// there. `too_fast`: the arm needs more time, and went as far on the straight way in joint space
   /// as it could. `closest`, only if that is asked for: the pose cannot be reached from here, and
   /// the arm went downhill to where it is nearest, by the weights. Any other: there is no
-  /// continuation from here, and the arm stays. `move` is the length of the move in joint space.
-  /// Throws InvalidArgumentError if the pose is not rigid or dt is not above 0.
-  [[nodiscard]] Result track(const Pose& T_base_tip, double dt);
+  /// continuation from here, and the arm stays. `move` is the length of the move in joint space. In
+  /// a scene the arm also stays, with status `in_collision`, where it would collide at the end of
+  /// its move; the way there is not looked at. Throws InvalidArgumentError if the pose is not
+  /// rigid, dt is not above 0, or the scene is of another chain.
+  [[nodiscard]] Result track(const Pose& T_base_tip, double dt, const Scene* scene = nullptr);
 
   /// Where the arm is now [rad or m]; always inside the limits.
   [[nodiscard]] const JointVector& q() const { return q_; }

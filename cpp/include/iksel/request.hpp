@@ -12,6 +12,7 @@
 
 #include "iksel/export.hpp"
 #include "iksel/objective.hpp"
+#include "iksel/scene.hpp"
 #include "iksel/task.hpp"
 #include "iksel/types.hpp"
 
@@ -75,7 +76,11 @@ struct IKSEL_EXPORT SolveRequest {
   JointVector weights;
   MoveNorm norm = MoveNorm::two;
 
-  /// Refuses candidates; the search then continues within its bounds. Empty: takes all.
+  /// What answers may not collide with. As it is when the solve begins. Of a robot with the same
+  /// chain.
+  std::optional<Scene> scene;
+  /// Refuses candidates, of those that do not collide; the search then continues within its bounds.
+  /// Empty: takes all.
   Filter filter;
   /// Wall-clock time after which no new stage of the search begins [s], above 0. What was found by
   /// then is judged. The one option under which the same input may give different answers.
@@ -91,8 +96,8 @@ struct IKSEL_EXPORT SolveRequest {
   /// Of solve and solve_batch: what a target without an answer gets, with Status::closest, is the
   /// configuration inside the limits that is nearest to it by these weights; of equally near ones
   /// the nearest to `near`. It is the best of the local minima that a bounded search comes to, some
-  /// 100 us on top of the search for an answer, whatever the deadline. A filter is asked about it
-  /// too; the objective is not. Empty: it gets nothing.
+  /// 100 us on top of the search for an answer, whatever the deadline. The scene and the
+  /// filter refuse it too; the objective has no say. Empty: it gets nothing.
   std::optional<PoseWeights> closest;
 
   /// Of solve_batch; solve, solve_all and diagnose always throw.
@@ -139,6 +144,8 @@ struct IKSEL_EXPORT PathOptions {
   /// The path with the least sum of the moves is taken, each measured so (as in SolveRequest).
   JointVector weights;
   MoveNorm norm = MoveNorm::two;
+  /// What waypoints may not collide with; the moves between them are not looked at.
+  std::optional<Scene> scene;
   /// Refuses candidates, those of one waypoint at a time.
   Filter filter;
   /// Candidates kept per waypoint at most.

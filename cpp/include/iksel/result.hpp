@@ -24,6 +24,7 @@ enum class Status : std::uint8_t {
   too_fast,      ///< answers exist, but joints would have to move faster than their velocity limits
   invalid_pose,  ///< the target is no pose (check_pose); in batches only, solve throws
   closest,       ///< no answer, but the configuration nearest to one (SolveRequest::closest)
+  in_collision,  ///< attempts reached the target inside the limits, but each collides in the scene
 };
 
 /// Whether there are joint values with it.

@@ -77,6 +77,12 @@ bool Goal::check(const JointVector& q, Result& result) const {
   return true;
 }
 
+bool Goal::is_free(const JointVector& q) const {
+  bool free = true;
+  if (scene_ != nullptr) scene_->find_free(q.data(), 1, &free);
+  return free;
+}
+
 void measure_error(const Pose& target, const Frame& f, double& position_error,
                    double& rotation_error) {
   double square = 0;

@@ -6,6 +6,7 @@
 #include "base/random.hpp"
 #include "goal/task_space.hpp"
 #include "iksel/result.hpp"
+#include "iksel/scene.hpp"
 #include "kinematics/chain_model.hpp"
 
 namespace iksel {
@@ -13,8 +14,9 @@ namespace iksel {
 class Goal {
  public:
   /// All must outlive this.
-  Goal(const ChainModel& model, const TaskSpace& task, const Pose& T_base_tcp)
-      : model_(model), task_(task), target_(T_base_tcp) {}
+  Goal(const ChainModel& model, const TaskSpace& task, const Pose& T_base_tcp,
+       const Scene* scene = nullptr)
+      : model_(model), task_(task), target_(T_base_tcp), scene_(scene) {}
 
   [[nodiscard]] const TaskSpace& task() const { return task_; }
   [[nodiscard]] bool is_full_pose() const { return task_.is_full_pose(); }
@@ -42,6 +44,10 @@ class Goal {
   /// Computes the errors of q anew, whatever a search has found them to be; only if q reaches the
   /// target inside the limits, it becomes the result.
   bool check(const JointVector& q, Result& result) const;
+  /// Whether such a q may be an answer: false if it collides in the scene.
+  [[nodiscard]] bool is_free(const JointVector& q) const;
+  /// What answers may not collide with; null if there is nothing.
+  [[nodiscard]] const Scene* scene() const { return scene_; }
   [[nodiscard]] bool is_solution(const JointVector& q) const {
     Result measured;
     return check(q, measured);
@@ -51,6 +57,7 @@ class Goal {
   const ChainModel& model_;
   const TaskSpace& task_;
   const Pose& target_;
+  const Scene* scene_;
 };
 
 /// Lengths of the position [m] and rotation [rad] error of a pose.

@@ -26,11 +26,17 @@ class LinkPoses {
   /// Poses of all links in the base link's frame.
   void at(const double* q, Pose* T_base_link) const;
 
- private:
+  /// How a link is placed on the one that carries it.
   struct Step {
     LinkJoint joint;  ///< of one that is held, the value is part of its origin
     int variable;     ///< -1: held
   };
+  /// Of all links, in the order of Robot::link_names: parents first.
+  [[nodiscard]] const std::vector<Step>& steps() const { return steps_; }
+  /// The base link.
+  [[nodiscard]] std::size_t base() const { return base_; }
+
+ private:
   std::vector<Step> steps_;
   std::size_t base_;
 };

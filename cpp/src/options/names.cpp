@@ -22,12 +22,12 @@ const char* to_string(Proof proof) {
 
 const char* to_string(Status status) {
   return name_of(status, {"solved", "not_converged", "outside_limits", "out_of_reach", "rejected",
-                          "out_of_time", "too_fast", "invalid_pose", "closest"});
+                          "out_of_time", "too_fast", "invalid_pose", "closest", "in_collision"});
 }
 
 const char* to_string(Cause cause) {
   return name_of(cause, {"none", "out_of_reach", "orientation", "joint_limits", "no_branch",
-                         "rejected", "singular", "budget", "out_of_time"});
+                         "rejected", "singular", "budget", "out_of_time", "collision"});
 }
 
 }  // namespace iksel

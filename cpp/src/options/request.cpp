@@ -38,8 +38,8 @@ void PoseWeights::validate() const {
 }
 
 bool SolveRequest::has_requirements() const {
-  return !seeds.empty() || !database_seeds || near || filter || objective.is_set() || task ||
-         std::isfinite(deadline) || closest;
+  return !seeds.empty() || !database_seeds || near || scene || filter || objective.is_set() ||
+         task || std::isfinite(deadline) || closest;
 }
 
 void SolveRequest::validate(int dof) const {

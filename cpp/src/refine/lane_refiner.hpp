@@ -22,9 +22,6 @@ struct Patience {
   int look = 0;
 };
 
-/// Where seeds are answers, or as near to one as a singularity or a limit lets it be told.
-inline constexpr Patience kNearAnswer{8, 64};
-
 /// Whether as few lanes as give an answer soonest, or as many as do most (lane_types.hpp).
 enum class Width { narrow, wide };
 

@@ -20,16 +20,18 @@ constexpr std::size_t kMostImages = 65536;
 }  // namespace
 
 AnswerSelector::AnswerSelector(const ChainModel& model, const Goal& goal,
-                               const SolveRequest& request, const SolutionSet& found)
+                               const SolveRequest& request, const SolutionSet& found,
+                               Screen& screen)
     : model_(model),
       goal_(goal),
       request_(request),
       ranks_(ranks_answers(request)),
       found_(found),
-      move_(model.dof, request) {}
+      move_(model.dof, request),
+      screen_(screen) {}
 
 bool AnswerSelector::is_satisfied(const Collector& search) {
-  ask_filter();
+  screen_new();
   if (first_kept_ == found_.size()) return false;
   if (!ranks_) return true;
   if (goal_.is_redundant()) return search.work.attempts >= kRedundantSeeds;
@@ -45,7 +47,7 @@ bool AnswerSelector::select(const Collector& search, JointVector& q) {
   std::array<Ranked, SolutionSet::kMost> ranked;
   std::size_t count = 0;
   for (std::size_t i = 0; i < found_.size(); ++i) {
-    if (!is_kept(i)) continue;
+    if (!kept_[i]) continue;
     const double cost = cost_of(found_.at(i));
     if (cost < kInfinity) ranked[count++] = {cost, i};
   }
@@ -68,12 +70,15 @@ double AnswerSelector::cost_of(const JointVector& q) const {
   return move_.length(q - *request_.near);
 }
 
-void AnswerSelector::ask_filter() {
-  if (request_.filter && asked_ < found_.size()) {
-    request_.filter(found_.q(asked_), found_.size() - asked_, &kept_[asked_]);
+void AnswerSelector::screen_new() {
+  if (asked_ < found_.size()) {
+    const std::size_t count = found_.size() - asked_;
+    screen_.find_free(found_.q(asked_), count, &free_[asked_]);
+    std::copy_n(&free_[asked_], count, &kept_[asked_]);
+    screen_.ask_filter(found_.q(asked_), count, &kept_[asked_]);
   }
   asked_ = found_.size();
-  while (first_kept_ < asked_ && !is_kept(first_kept_)) ++first_kept_;
+  while (first_kept_ < asked_ && !kept_[first_kept_]) ++first_kept_;
 }
 
 double AnswerSelector::descend_from(const Ranked* ranked, std::size_t count, JointVector& q) {
@@ -84,7 +89,7 @@ double AnswerSelector::descend_from(const Ranked* ranked, std::size_t count, Joi
     const double cost = cost_of(end);
     if (!(cost < best) || !goal_.is_solution(end)) continue;
     bool keep = true;
-    if (request_.filter) request_.filter(end.data(), 1, &keep);
+    screen_.apply(end.data(), 1, &keep);
     if (!keep) continue;
     best = cost;
     q = end;
@@ -110,8 +115,8 @@ bool AnswerSelector::select_image(double best, JointVector& q) {
   bool any = false;
   const auto flush = [&] {
     std::array<bool, kChunk> keep{};
-    keep.fill(!request_.filter);
-    if (count > 0 && request_.filter) request_.filter(images.data(), count, keep.data());
+    keep.fill(true);
+    screen_.ask_filter(images.data(), count, keep.data());
     for (std::size_t i = 0; i < count; ++i) {
       const JointVector image =
           Eigen::Map<const Eigen::VectorXd>(images.data() + i * dof, model_.dof);
@@ -124,6 +129,8 @@ bool AnswerSelector::select_image(double best, JointVector& q) {
     count = 0;
   };
   for (std::size_t i = 0; i < found_.size(); ++i) {
+    // Whole turns change nothing about a collision.
+    if (!free_[i]) continue;
     JointVector image = found_.at(i);
     model_.joints.first_image(image);
     std::size_t left = kMostImages / found_.size();

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The best of what a search collected, by what a request asks for: nearest, cheapest, or the first
-// that a filter lets through.
+// that the scene and the filter let through.
 #pragma once
 
 #include <array>
 #include <cstddef>
 
 #include "goal/joint_move.hpp"
+#include "goal/screen.hpp"
 #include "search/collector.hpp"
 
 namespace iksel {
@@ -15,9 +16,9 @@ class AnswerSelector {
  public:
   /// All must outlive this.
   AnswerSelector(const ChainModel& model, const Goal& goal, const SolveRequest& request,
-                 const SolutionSet& found);
+                 const SolutionSet& found, Screen& screen);
 
-  /// Puts what was found since the last look before the filter. True if the best of all that passed
+  /// Screens what was found since the last look. True if the best of all that passed
   /// is an answer.
   bool is_satisfied(const Collector& search);
   /// Whether the best is known only when all are.
@@ -38,8 +39,8 @@ class AnswerSelector {
 
   /// Smaller is better; 0 where nothing is.
   [[nodiscard]] double cost_of(const JointVector& q) const;
-  [[nodiscard]] bool is_kept(std::size_t i) const { return !request_.filter || kept_[i]; }
-  void ask_filter();
+  /// Screens what was found since the last time.
+  void screen_new();
   /// Brings the best of what passed to the least cost along their self-motions; q is the best
   /// before, and after. Its cost.
   double descend_from(const Ranked* ranked, std::size_t count, JointVector& q);
@@ -55,6 +56,9 @@ class AnswerSelector {
   bool ranks_;
   const SolutionSet& found_;
   JointMove move_;
+  Screen& screen_;
+  /// What the scene lets through, and what of it the filter keeps.
+  std::array<bool, SolutionSet::kMost> free_{};
   std::array<bool, SolutionSet::kMost> kept_{};
   std::size_t asked_ = 0;
   std::size_t first_kept_ = 0;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "goal/joint_move.hpp"
+#include "goal/screen.hpp"
 #include "refine/closest_descent.hpp"
 #include "seeds/closest_screen.hpp"
 
@@ -133,9 +134,10 @@ void give_closest(const ChainModel& model, const SolverOptions& options, const G
       minima.descend(seed);
     }
   }
+  Screen screen(request.scene, request.filter, model.dof);
   for (const Minimum& minimum : minima.sorted()) {
     bool keep = true;
-    if (request.filter) request.filter(minimum.q.data(), 1, &keep);
+    screen.apply(minimum.q.data(), 1, &keep);
     if (!keep) continue;
     set_closest(goal, minimum.q, result);
     if (request.near) result.move = minimum.move;

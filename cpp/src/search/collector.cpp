@@ -44,7 +44,7 @@ Collector::Collector(const ChainModel& model, const Goal& goal, const SolveReque
       deadline_(request.deadline),
       images_near_(cheapest_images(model.joints, request.objective)),
       // What a filter has been asked about stays as it is.
-      counts_moves_(request.near && !images_near_ && !request.filter),
+      counts_moves_(request.near && !images_near_ && !screens_answers(request)),
       comes_in_pairs_(goal.is_full_pose() && model.dof <= 6),
       signs_cancel_(goal.is_full_pose() && jacobian_signs_cancel(model)),
       basin_radius_(goal.is_full_pose() && model.dof <= 6 ? kBasinRadius : 0.0) {

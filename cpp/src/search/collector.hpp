@@ -9,6 +9,7 @@
 #include "base/work.hpp"
 #include "goal/goal.hpp"
 #include "goal/joint_move.hpp"
+#include "goal/screen.hpp"
 #include "iksel/request.hpp"
 #include "search/search.hpp"
 #include "search/solution_set.hpp"
@@ -63,10 +64,15 @@ class Collector {
   void look_for_partners(bool look) { looks_for_partners_ = look; }
   /// Whether more than the first answer is wanted.
   [[nodiscard]] bool wants_more() const { return aim_.until_complete || ranks_answers(request_); }
-  /// Whether nothing but the nearest is wanted, and no filter may refuse it.
+  /// Whether nothing but the nearest is wanted, and nothing may refuse it.
   [[nodiscard]] bool wants_nearest() const {
     return !aim_.until_complete && request_.near && !request_.objective.is_set() &&
-           !request_.filter;
+           !screens_answers(request_);
+  }
+  /// Whether nothing is wanted but the nearest of those that a scene lets through.
+  [[nodiscard]] bool wants_nearest_free() const {
+    return !aim_.until_complete && request_.near && !request_.objective.is_set() &&
+           request_.scene && !request_.filter;
   }
   /// How many solutions are to be spread over the self-motion, and how near to each other; 0: they
   /// need not be.

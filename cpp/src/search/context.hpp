@@ -16,6 +16,7 @@
 #include "search/collector.hpp"
 #include "seeds/branch_lanes.hpp"
 #include "seeds/enumeration.hpp"
+#include "seeds/free_samples.hpp"
 #include "seeds/lane_query.hpp"
 #include "seeds/nearest_on_curve.hpp"
 #include "seeds/root_sweep.hpp"
@@ -60,6 +61,8 @@ struct Workspace {
     std::optional<RootSweep> roots;
     std::optional<NearestOnCurve> nearest_on_curve;
     std::optional<SelfMotionArcs> arcs;
+    /// Configurations of a self-motion that a scene is to look at.
+    FreeSamples::Memory samples;
   };
   struct OneAtATime {
     OneAtATime(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,

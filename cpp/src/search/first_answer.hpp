@@ -17,7 +17,11 @@ class FirstAnswer {
 
   Verdict offer(int /*lane*/, JointVector& q) {
     if (wraps_) joints_.wrap(q.data());
-    return goal_.check(q, result_) ? Verdict::stop : Verdict::refine;
+    if (!goal_.check(q, result_)) return Verdict::refine;
+    if (goal_.is_free(q)) return Verdict::stop;
+    result_ = {};
+    result_.status = Status::in_collision;
+    return Verdict::next;
   }
   template <typename Q>
   [[nodiscard]] bool knows(const Q& /*q*/) const {
@@ -25,7 +29,12 @@ class FirstAnswer {
   }
   [[nodiscard]] bool wants_more() const { return false; }
   void look_for_partners(bool /*look*/) {}
-  [[nodiscard]] bool has_any() const { return result_.success(); }
+  /// Says that all answers collide.
+  void refuse() { result_.status = Status::in_collision; }
+  /// Whether the target was reached inside the limits, be it in a collision.
+  [[nodiscard]] bool has_any() const {
+    return result_.success() || result_.status == Status::in_collision;
+  }
   [[nodiscard]] bool should_continue() {
     if (!deadline_.has_passed()) return true;
     result_.status = Status::out_of_time;

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "search/run.hpp"
 
-#include <limits>
 #include <optional>
 #include <type_traits>
 
 #include "base/work.hpp"
+#include "search/curve_search.hpp"
 #include "search/first_answer.hpp"
 #include "search/search.hpp"
 #include "seeds/allowed_seeds.hpp"
 #include "seeds/given_seeds.hpp"
 #include "seeds/leaf_seeds.hpp"
-#include "seeds/row_seeds.hpp"
 #include "seeds/screened_seeds.hpp"
 #include "seeds/seed_sequence.hpp"
 #include "seeds/selected_seeds.hpp"
@@ -20,17 +19,11 @@
 namespace iksel {
 namespace {
 
-constexpr int kMostIterations = std::numeric_limits<int>::max();
-/// Where any answer will do.
-constexpr Patience kFirst{8, kMostIterations};
-/// Where a seed more or less does not matter: solutions arrive after 4 iterations in the mean, and
-/// what is far off after 6 costs more than what it finds.
-constexpr Patience kAll{6, kMostIterations, 2};
-/// Where seeds were iterated before in single precision.
-constexpr Patience kScreened{4, kMostIterations};
 /// Of the nearest leaf, before the roots of a sweep: more cost more than those. Where seven joints
 /// are swept, all are tried: with 4, two of a million reachable targets of pr2_right_arm were lost.
 constexpr int kBeforeRoots = 4;
+/// The same in a scene, where each that collides costs more than a pack of samples.
+constexpr int kBeforeSamples = 2;
 /// Seeds after all roots of a sweep led nowhere: double ones, or just outside a limit.
 constexpr int kBesideRoots = 96;
 /// Seeds after a sweep that came close to an answer, but did not find one.
@@ -72,10 +65,9 @@ struct Search {
   template <typename Branches>
   std::optional<Proof> by_branches(Branches& branches, Proof kind, GivenSeeds& given,
                                    const Pose& Y) const;
-  /// The same by the self-motion of a chain that is swept.
-  std::optional<Proof> on_curve(const Pose& Y) const;
-  /// Solutions all over it.
-  std::optional<Proof> over_curve(const Pose& Y) const;
+  [[nodiscard]] CurveSearch<Answers> on_curve(const Pose& Y) const {
+    return {model, goal, request, *workspace.lanes, answers, work, clock, Y};
+  }
 };
 
 template <typename Answers>
@@ -128,8 +120,15 @@ Proof Search<Answers>::in_lanes() const {
   query.set_target(Y);
   clock.lap(&StageTimes::query);
   if constexpr (!std::is_same_v<Answers, Collector>) {
-    LeafSeeds leaf(query, workspace.lanes->roots ? kBeforeRoots : lanes::kBlock, work, clock);
+    const bool is_screened = goal.scene() != nullptr && workspace.lanes->sweep;
+    const int from_leaf = is_screened              ? kBeforeSamples
+                          : workspace.lanes->roots ? kBeforeRoots
+                                                   : lanes::kBlock;
+    LeafSeeds leaf(query, from_leaf, work, clock);
     if (run(refiner, near, given, leaf) || !request.database_seeds) return Proof::none;
+    if (is_screened) {
+      if (const auto proof = on_curve(Y).find_free()) return *proof;
+    }
   }
   if (workspace.lanes->roots && request.database_seeds) {
     const auto proof = by_branches(*workspace.lanes->roots, Proof::sweep, given, Y);
@@ -137,7 +136,7 @@ Proof Search<Answers>::in_lanes() const {
   }
   if constexpr (std::is_same_v<Answers, Collector>) {
     if (workspace.lanes->sweep && request.database_seeds) {
-      if (const auto proof = on_curve(Y)) return *proof;
+      if (const auto proof = on_curve(Y).collect()) return *proof;
     }
     if (run(refiner, near, given) || !request.database_seeds) return Proof::none;
     refiner.begin(goal.task(), kAll, Width::wide);
@@ -180,46 +179,6 @@ std::optional<Proof> Search<Answers>::by_branches(Branches& branches, Proof kind
   }
   refiner.begin(goal.task(), kFirst, Width::narrow);
   return std::nullopt;
-}
-
-template <typename Answers>
-std::optional<Proof> Search<Answers>::over_curve(const Pose& Y) const {
-  // Between points no farther apart, a straight line is near enough to the curve [rad].
-  constexpr double kStraight = 0.3;
-  LaneRefiner& refiner = workspace.lanes->refiner;
-  SelfMotionArcs& arcs = *workspace.lanes->arcs;
-  arcs.find(Y, kStraight);
-  const std::vector<SelfMotionArcs::Joints> points =
-      arcs.spread(answers.spread(), answers.min_distance());
-  clock.lap(&StageTimes::query);
-  RowSeeds seeds(points.empty() ? nullptr : points[0].data(), points.size(), SweptBranches::kDof,
-                 /*are_answers=*/false, work);
-  refiner.begin(goal.task(), kNearAnswer, Width::wide);
-  search(refiner, seeds, answers, work);
-  refiner.begin(goal.task(), kFirst, Width::narrow);
-  clock.lap(&StageTimes::iterate);
-  if (answers.has_any()) return Proof::none;
-  Sweep& sweep = *workspace.lanes->sweep;
-  if (points.empty() && !sweep.find(Y) && sweep.is_none()) return Proof::sweep;
-  return std::nullopt;
-}
-
-template <typename Answers>
-std::optional<Proof> Search<Answers>::on_curve(const Pose& Y) const {
-  if (answers.spread() > 0) return over_curve(Y);
-  if (!answers.wants_nearest()) return std::nullopt;
-  NearestOnCurve& curve = *workspace.lanes->nearest_on_curve;
-  LaneRefiner& refiner = workspace.lanes->refiner;
-  const JointMove move(model.dof, request);
-  NearestOnCurveSeeds nearest(curve, Y, *request.near, move, answers, work, clock);
-  refiner.begin(goal.task(), kNearAnswer, Width::narrow);
-  search(refiner, nearest, answers, work);
-  refiner.begin(goal.task(), kFirst, Width::narrow);
-  clock.lap(&StageTimes::iterate);
-  if (curve.is_none()) return Proof::sweep;
-  if (!answers.has_any()) return std::nullopt;
-  answers.is_settled = curve.is_settled();
-  return Proof::none;
 }
 
 }  // namespace

@@ -47,14 +47,35 @@ bool Sweep::take_answer(int place) {
 }
 
 void Sweep::add_samples(const Pose& Y, int first, int stride, std::vector<double>& q) {
+  std::vector<int> branch;
   branches_.set_target(Y);
+  add_samples(first, stride, q, branch);
+}
+
+void Sweep::add_samples(int first, int stride, std::vector<double>& q, std::vector<int>& branch) {
   for (int place = first; place < kSamples; place += stride) {
     branches_.solve_all(places_.value(place));
     for (int lane = 0; lane < kBranches; ++lane) {
       if (branches_.off(lane) > 0) continue;
       branches_.copy_joints(lane, q_.data());
       q.insert(q.end(), q_.begin(), q_.end());
+      branch.push_back(lane);
     }
+  }
+}
+
+void Sweep::add_beside(const double* from, int branch, std::vector<double>& q) {
+  // Without the middle and the ends, which are samples.
+  constexpr double kHalf = (kBranches + 2) / 2.0;
+  const double middle = from[branches_.joint()];
+  branches_.solve_one(branch, [&](int lane) {
+    const int place = lane < kBranches / 2 ? lane + 1 : lane + 2;
+    return branches_.clamp(middle + places_.step * (place - kHalf) / kHalf);
+  });
+  for (int lane = 0; lane < kBranches; ++lane) {
+    if (branches_.off(lane) > 0) continue;
+    branches_.copy_joints(lane, q_.data());
+    q.insert(q.end(), q_.begin(), q_.end());
   }
 }
 

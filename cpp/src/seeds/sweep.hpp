@@ -27,6 +27,12 @@ class Sweep {
   /// Adds the branches inside the limits at every `stride`-th sample from `first` on, seven joint
   /// values each [rad].
   void add_samples(const Pose& Y, int first, int stride, std::vector<double>& q);
+  /// The same, for the target as it is set; of each, the branch goes to `branch`.
+  void add_samples(int first, int stride, std::vector<double>& q, std::vector<int>& branch);
+  void set_target(const Pose& Y) { branches_.set_target(Y); }
+  /// Adds a branch inside the limits at values of the swept joint beside that of `from`, as far as
+  /// the samples beside.
+  void add_beside(const double* from, int branch, std::vector<double>& q);
   /// The answer [rad].
   [[nodiscard]] const double* q() const { return q_.data(); }
   /// If there was none: where branches came so close to one that it might have been missed.

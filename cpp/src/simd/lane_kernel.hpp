@@ -11,6 +11,7 @@
 #include "simd/lane_types.hpp"
 #include "simd/move_kernel.hpp"
 #include "simd/residual_kernel.hpp"
+#include "simd/scene_kernel.hpp"
 #include "simd/seed_kernel.hpp"
 #include "simd/sweep_kernel.hpp"
 
@@ -189,7 +190,8 @@ constexpr LaneKernels make_kernels(const char* name) {
           rate_branches<Wide>,
           measure_moves<Wide>,
           find_residuals<Wide>,
-          count_roots<Wide>};
+          count_roots<Wide>,
+          find_clearance<Wide>};
 }
 
 }  // namespace iksel::lanes

@@ -163,6 +163,11 @@ using FindResiduals = double (*)(const ResidualForm& form, const double* angles,
 /// The number of roots between values beside each other: 0, 1, or 2 if that is not certain.
 using CountRoots = void (*)(const double* values, int n, double* counts);
 
+struct SceneView;
+/// The clearance in each lane (scene_types.hpp).
+using FindClearance = void (*)(const SceneView& scene, const double* q, int wanted, double* centre,
+                               double* clearance);
+
 /// Iterations of packs of one width.
 struct PackKernels {
   int lanes;
@@ -187,6 +192,7 @@ struct LaneKernels {
   MeasureMoves measure_moves;
   FindResiduals find_residuals;
   CountRoots count_roots;
+  FindClearance find_clearance;
 };
 
 }  // namespace iksel::lanes

@@ -13,6 +13,7 @@
 #include "options/strategy.hpp"
 #include "refine/best_effort.hpp"
 #include "solver/diagnose_branches.hpp"
+#include "solver/diagnose_refusals.hpp"
 #include "solver/solver_impl.hpp"
 
 namespace iksel {
@@ -78,6 +79,7 @@ class Diagnoser {
         request_(request),
         open_(request) {
     open_.filter = nullptr;
+    open_.scene.reset();
     open_.near.reset();
     open_.objective = {};
     open_.deadline = kInfinity;
@@ -107,7 +109,10 @@ class Diagnoser {
     patient_request.database_seeds = true;
     const Result found = patient().solve(goal_.target(), patient_request);
     out_.attempts += found.attempts;
-    if (found.status == Status::rejected) return explain_refusals();
+    if (is_refusal(found.status)) {
+      explain_refusals(found.status);
+      return true;
+    }
     if (!found.success()) return false;
     const bool singular = describe(found.q);
     out_.q_is_solution = true;
@@ -239,17 +244,13 @@ class Diagnoser {
     return {model_, towards, solver_.database.data().weight};
   }
 
-  bool explain_refusals() {
+  void explain_refusals(Status status) {
     SolveAllOptions every;
     every.max = kPatientAttempts;
     const Solutions refused = patient().solve_all(goal_.target(), every, open_);
     out_.attempts += refused.attempts;
-    out_.cause = Cause::rejected;
-    out_.refused = static_cast<int>(refused.all.size());
-    if (!refused.all.empty()) describe(refused.all.front().q);
-    out_.message = "the filter refused each of " + std::to_string(out_.refused) +
-                   " answers: move the target, or let the filter pass more";
-    return true;
+    const JointVector q = iksel::explain_refusals(request_, status, refused, out_);
+    if (q.size() > 0) describe(q);
   }
 
   bool describe(const JointVector& q) { return iksel::describe(model_, goal_, q, out_); }
@@ -281,7 +282,7 @@ Diagnosis Solver::Impl::diagnose(const Pose& target, const SolveRequest& request
     return fine;
   }
   Diagnoser diagnoser(*this, target, request);
-  bool is_explained = plain.proof == Proof::closed_form && plain.status != Status::rejected &&
+  bool is_explained = plain.proof == Proof::closed_form && !is_refusal(plain.status) &&
                       diagnoser.explain_by_branches(lease.get());
   if (!is_explained && plain.status != Status::out_of_reach) {
     is_explained = diagnoser.find_with_more_work(plain.status) || diagnoser.find_outside_limits();

@@ -32,11 +32,11 @@ Status search_layer(const ChainModel& model, const SolverOptions& options, const
   }
   layer.keep_if([&](std::size_t i) { return goal.is_solution(layer.at(i)); });
   const bool any = layer.size() > 0;
-  search.apply_filter(layer);
+  search.screen(layer);
   const bool kept = layer.size() > 0;
   search.connect(before, layer);
   return kept                                 ? Status::too_fast
-         : any                                ? Status::rejected
+         : any                                ? search.refusal()
          : collector.status == Status::solved ? Status::not_converged
                                               : collector.status;
 }
@@ -57,7 +57,7 @@ void improve_start(const ChainModel& model, const TaskSpace& task, const std::ve
     } else {
       search.add_on_curve(goal, layers.back(), w, /*with_others=*/false, lanes, layer);
     }
-    search.apply_filter(layer);
+    search.screen(layer);
     search.connect(w == 0 ? nullptr : &layers.back(), layer);
     if (layer.size() == 0) return;
     layers.push_back(std::move(layer));
@@ -89,7 +89,7 @@ PathResult Solver::Impl::solve_path(const std::vector<Pose>& targets, const Path
     const bool is_swept = goal.is_full_pose() && workspace.lanes && workspace.lanes->sweep;
     if (before != nullptr && is_swept) {
       search.add_on_curve(goal, *before, w, /*with_others=*/true, *workspace.lanes, layer);
-      search.apply_filter(layer);
+      search.screen(layer);
       search.connect(before, layer);
     }
     if (layer.size() == 0) {
@@ -121,6 +121,7 @@ PathResult Solver::solve_path(const std::vector<Pose>& T_base_tip,
     targets[i] = to_rigid(targets[i], nearest, "poses", static_cast<std::ptrdiff_t>(i));
   }
   options.validate(robot().dof());
+  if (options.scene) options.scene->check_fits(robot());
   if (options.start) impl_->angles.check(*options.start, "start");
   const WorkspacePool::Lease lease(impl_->workspaces);
   return impl_->solve_path(targets, options, lease.get());

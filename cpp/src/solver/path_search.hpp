@@ -11,6 +11,7 @@
 
 #include "base/constants.hpp"
 #include "goal/joint_move.hpp"
+#include "goal/screen.hpp"
 #include "iksel/path.hpp"
 #include "refine/self_motion.hpp"
 #include "search/context.hpp"
@@ -28,6 +29,7 @@ class PathSearch {
       : model_(model),
         options_(options),
         request_(make_request(options)),
+        screen_(options.scene, options.filter, model.dof),
         move_(model.dof, request_),
         longest_(model.joints.longest_moves(options.dt)),
         middle_(model.joints.middle()) {
@@ -123,12 +125,15 @@ class PathSearch {
     }
   }
 
-  void apply_filter(Layer& layer) const {
-    if (!options_.filter || layer.size() == 0) return;
+  /// Leaves only what the scene and the filter let through.
+  void screen(Layer& layer) {
+    if (!screen_.is_set() || layer.size() == 0) return;
     const std::unique_ptr<bool[]> keep(new bool[layer.size()]());
-    options_.filter(layer.q.data(), layer.size(), keep.get());
+    screen_.apply(layer.q.data(), layer.size(), keep.get());
     layer.keep_if([&](std::size_t i) { return keep[i]; });
   }
+  /// Why a waypoint has no candidate, where all were refused.
+  [[nodiscard]] Status refusal() const { return screen_.refusal(); }
 
   /// The cheapest way to each candidate; keeps the cheapest, and those only that can be reached.
   void connect(const Layer* before, Layer& layer) {
@@ -256,6 +261,7 @@ class PathSearch {
   const ChainModel& model_;
   const PathOptions& options_;
   SolveRequest request_;
+  Screen screen_;
   JointMove move_;
   JointVector longest_;
   JointVector middle_;

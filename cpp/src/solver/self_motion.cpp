@@ -10,6 +10,7 @@
 #include "iksel/error.hpp"
 #include "iksel/pose.hpp"
 #include "iksel/structure.hpp"
+#include "search/patience.hpp"
 #include "search/row_answers.hpp"
 #include "solver/solver_impl.hpp"
 #include "structure/elbow.hpp"

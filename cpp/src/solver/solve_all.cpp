@@ -7,6 +7,7 @@
 
 #include "goal/joint_move.hpp"
 #include "goal/objective_cost.hpp"
+#include "goal/screen.hpp"
 #include "iksel/error.hpp"
 #include "iksel/pose.hpp"
 #include "solver/solver_impl.hpp"
@@ -76,13 +77,16 @@ void move_apart(const ChainModel& model, std::size_t count, std::vector<Image>& 
   }
 }
 
-/// The solutions found, each at all its images inside the limits or as it is.
+/// The solutions found that are free, each at all its images inside the limits or as it is.
 template <typename Cost>
-std::vector<Image> images_of(const JointSpace& joints, const SolutionSet& found, bool with_images,
-                             const Cost& cost) {
+std::vector<Image> images_of(const JointSpace& joints, const SolutionSet& found,
+                             const Screen& screen, bool with_images, const Cost& cost) {
   std::vector<Image> images;
   images.reserve(found.size());
+  const std::unique_ptr<bool[]> free(new bool[found.size() + 1]());
+  if (found.size() > 0) screen.find_free(found.q(0), found.size(), free.get());
   for (std::size_t i = 0; i < found.size(); ++i) {
+    if (!free[i]) continue;
     JointVector q = found.at(i);
     if (!with_images) {
       images.push_back({q, cost(q), i});
@@ -97,13 +101,14 @@ std::vector<Image> images_of(const JointSpace& joints, const SolutionSet& found,
 }
 
 /// Takes out what the filter refuses.
-void apply_filter(const Filter& filter, int dof, std::vector<Image>& images) {
-  if (!filter || images.empty()) return;
+void apply_filter(Screen& screen, int dof, std::vector<Image>& images) {
+  if (!screen.has_filter() || images.empty()) return;
   std::vector<double> q;
   q.reserve(images.size() * static_cast<std::size_t>(dof));
   for (const Image& image : images) q.insert(q.end(), image.q.data(), image.q.data() + dof);
   const std::unique_ptr<bool[]> keep(new bool[images.size()]());
-  filter(q.data(), images.size(), keep.get());
+  std::fill_n(keep.get(), images.size(), true);
+  screen.ask_filter(q.data(), images.size(), keep.get());
   std::size_t kept = 0;
   for (std::size_t i = 0; i < images.size(); ++i) {
     if (!keep[i]) continue;
@@ -114,10 +119,10 @@ void apply_filter(const Filter& filter, int dof, std::vector<Image>& images) {
 }
 
 /// How many solutions to look for on a self-motion: a few more than asked for, as branches come
-/// near to each other; and what a filter refuses is replaced by others.
-int spread_for(int most, bool is_filtered) {
+/// near to each other; and what is refused is replaced by others.
+int spread_for(int most, bool is_screened) {
   const int spread = std::min(most, kMostSpread);
-  return is_filtered ? static_cast<int>(kChoice) * spread : spread + spread / 4 + 8;
+  return is_screened ? static_cast<int>(kChoice) * spread : spread + spread / 4 + 8;
 }
 
 /// Of the images of each solution, in order, the first.
@@ -143,8 +148,8 @@ Solutions Solver::Impl::solve_all(const Pose& target, const SolveAllOptions& all
   const auto is_satisfied = [&](const Collector&) {
     return goal.is_redundant() && found.size() >= std::max<std::size_t>(kChoice * most, 64);
   };
-  const int spread =
-      goal.is_redundant() ? spread_for(all.max, static_cast<bool>(request.filter)) : 0;
+  Screen screen(request.scene, request.filter, robot.dof());
+  const int spread = goal.is_redundant() ? spread_for(all.max, screen.is_set()) : 0;
   const Collector::Aim aim{all.min_distance, true, spread};
   Collector search(model(), goal, request, aim, is_satisfied, options.max_attempts,
                    workspace.collected);
@@ -163,8 +168,8 @@ Solutions Solver::Impl::solve_all(const Pose& target, const SolveAllOptions& all
   };
   // Without, each solution is at the image nearest to `from` already.
   const bool with_images = all.whole_turns || request.filter;
-  std::vector<Image> images = images_of(model().joints, found, with_images, cost);
-  apply_filter(request.filter, robot.dof(), images);
+  std::vector<Image> images = images_of(model().joints, found, screen, with_images, cost);
+  apply_filter(screen, robot.dof(), images);
   std::sort(images.begin(), images.end(), cheaper);
   if (!all.whole_turns) take_first_of_each(found.size(), images);
   if (images.size() > most) {
@@ -188,7 +193,7 @@ Solutions Solver::Impl::solve_all(const Pose& target, const SolveAllOptions& all
     solutions.all.push_back(result);
   }
   if (solutions.all.empty()) {
-    if (solutions.status == Status::solved) solutions.status = Status::rejected;
+    if (solutions.status == Status::solved) solutions.status = screen.refusal();
     if (search.is_out_of_time) solutions.status = Status::out_of_time;
   }
   return solutions;

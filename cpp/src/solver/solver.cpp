@@ -60,6 +60,7 @@ Solver::Impl::Impl(const Robot& robot_in, const SolverOptions& options_in,
 
 void Solver::Impl::check(const SolveRequest& request) const {
   request.validate(robot.dof());
+  if (request.scene) request.scene->check_fits(robot);
   angles.check(request);
 }
 
@@ -71,7 +72,7 @@ TaskSpace Solver::Impl::task_of(const SolveRequest& request) const {
 Result Solver::Impl::find_first(const Pose& target, const TaskSpace& of_call,
                                 const SolveRequest& request, Workspace& workspace,
                                 StageTimes* times) const {
-  const Goal goal(model(), of_call, target);
+  const Goal goal(model(), of_call, target, request.scene ? &*request.scene : nullptr);
   return iksel::find_first(model(), options, goal, request, workspace, times);
 }
 
@@ -93,10 +94,11 @@ Result Solver::Impl::find_answer(const Pose& target, const TaskSpace& of_call,
     return find_first(target, of_call, request, workspace, times);
   }
   const Goal goal(model(), of_call, target);
-  AnswerSelector selector(model(), goal, request, workspace.collected.found);
+  Screen screen(request.scene, request.filter, robot.dof());
+  AnswerSelector selector(model(), goal, request, workspace.collected.found, screen);
   const auto is_satisfied = [&](const Collector& so_far) { return selector.is_satisfied(so_far); };
-  // With a filter the selector decides: nothing may have passed it yet.
-  const Collector::Aim aim{kSame, selector.wants_all() && !request.filter};
+  // With a screen the selector decides: nothing may have passed it yet.
+  const Collector::Aim aim{kSame, selector.wants_all() && !screen.is_set()};
   Collector search(model(), goal, request, aim, is_satisfied, options.max_attempts,
                    workspace.collected);
   collect(model(), options, search, workspace, times);
@@ -111,7 +113,7 @@ Result Solver::Impl::find_answer(const Pose& target, const TaskSpace& of_call,
     }
     if (request.near) result.move = JointMove(robot.dof(), request).length(q - *request.near);
   } else {
-    result.status = Status::rejected;
+    result.status = screen.refusal();
   }
   if (!result.success()) {
     result.proof = search.proof;

@@ -23,14 +23,15 @@ Tracker::Tracker(const Solver& solver, const JointVector& start,
   q_ = robot.model().joints.clamp(q_);
 }
 
-Result Tracker::track(const Pose& T_base_tip, double dt) {
+Result Tracker::track(const Pose& T_base_tip, double dt, const Scene* scene) {
   Pose nearest;
   const Pose& target = to_rigid(T_base_tip, nearest);
   if (!(dt > 0)) {
     throw InvalidArgumentError("dt: " + number_text(dt) + " s is not above 0");
   }
   const ChainModel& model = solver_.robot().model();
-  const Goal goal(model, solver_.impl_->task, target);
+  if (scene != nullptr) scene->check_fits(solver_.robot());
+  const Goal goal(model, solver_.impl_->task, target, scene);
   Result result;
   JointVector end = q_;
   result.attempts = 1;
@@ -50,15 +51,19 @@ Result Tracker::track(const Pose& T_base_tip, double dt) {
   }
   if (part < 1) {
     result.status = Status::too_fast;
-    q_ += part * move;
+    end = q_ + part * move;
   } else if (!is_reached) {
     set_closest(goal, end, result);
-    q_ = end;
-  } else if (goal.check(end, result)) {
-    q_ = end;
-  } else {
+  } else if (!goal.check(end, result)) {
     return result;
   }
+  if (!goal.is_free(end)) {
+    result = {};
+    result.status = Status::in_collision;
+    result.attempts = 1;
+    return result;
+  }
+  q_ = end;
   result.move = part * move.norm();
   return result;
 }

@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Answers that are free in a scene: what they cost, and whether coal agrees.
+
+A Panda with its hand, whose collision geometry (cylinders and spheres) is that of
+rtb-data, which roboticstoolbox-python brings. Scenes and targets are made from a seed:
+the arm alone; 16 boxes on and above a table; 10,000 points on the surfaces of 20 boxes.
+Targets are poses of random configurations inside the limits, whether those collide or
+not.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+import iksel
+import iksel.exact
+import iksel.spheres
+from bench.timing import time_calls
+
+if TYPE_CHECKING:
+    import argparse
+
+    from bench.chain import Array
+
+LIMIT_S = 60.0
+"""No solve of a row is begun after this time."""
+RESTARTS = "random restarts with coal"
+
+
+class Panda(NamedTuple):
+    """The arm, its file and its body."""
+
+    robot: iksel.Robot
+    path: Path
+    spheres: iksel.RobotSpheres
+
+
+def load_panda(max_error: float) -> Panda:
+    """The arm with the geometry of rtb-data."""
+    found = importlib.util.find_spec("rtbdata")
+    if found is None or found.origin is None:
+        raise SystemExit("bench scene: needs rtb-data: pip install rtb-data xacro")
+    folder = Path(found.origin).parent / "xacro" / "qut_frankie_description" / "robots"
+    path = folder / "panda_arm_hand.urdf.xacro"
+    robot = iksel.load_robot(path, base_link="panda_link0", tip_link="panda_hand")
+    return Panda(robot, path, iksel.spheres.from_urdf(path, robot, max_error=max_error))
+
+
+def place(rng: np.random.Generator) -> Array:
+    """Somewhere around the arm, in front of it or beside [m]."""
+    radius, turn, height = rng.uniform([0.35, -np.pi, 0.0], [0.9, np.pi, 0.9])
+    return np.array([radius * np.cos(turn), radius * np.sin(turn), height])
+
+
+def make_scenes(panda: Panda, seed: int) -> dict[str, iksel.Scene]:
+    """The scenes by name."""
+    rng = np.random.default_rng(seed)
+    alone, boxes, points = (iksel.Scene(panda.robot, panda.spheres) for _ in range(3))
+    for i in range(16):
+        boxes.add_box(f"box {i}", rng.uniform(0.05, 0.25, 3), place(rng))
+    parts = []
+    for _ in range(20):
+        cloud = rng.uniform(-1, 1, (500, 3))
+        side = rng.integers(0, 3, 500)
+        rows = np.arange(500)
+        cloud[rows, side] = np.sign(cloud[rows, side])
+        parts.append(place(rng) + cloud * rng.uniform(0.03, 0.12, 3))
+    points.add_points("cloud", np.concatenate(parts), radius=0.005)
+    return {"arm alone": alone, "16 boxes": boxes, "10,000 points": points}
+
+
+def measure(
+    panda: Panda, scene: iksel.Scene, args: argparse.Namespace
+) -> dict[str, Any]:
+    """A row: solves in one scene beside solves without one."""
+    targets = panda.robot.fk(
+        panda.robot.random_configurations(args.targets, seed=args.seed)
+    )
+    solver = iksel.Solver(panda.robot)
+    plain, _ = time_calls(solver.solve, [(pose,) for pose in targets], LIMIT_S)
+    times, results = time_calls(
+        lambda pose: solver.solve(pose, scene=scene),
+        [(pose,) for pose in targets],
+        LIMIT_S,
+    )
+    solved = np.array([bool(result) for result in results])
+    exact = iksel.exact.ExactCollision(scene, panda.path)
+    q = np.array([result.q for result in results if result])
+    row: dict[str, Any] = {
+        "targets": len(results),
+        "plain_us": float(plain.mean()) / 1e3,
+        "mean_us": float(times.mean()) / 1e3,
+        "p99_us": float(np.percentile(times, 99)) / 1e3,
+        "solved_us": float(times[solved].mean()) / 1e3,
+        "none_us": float(times[~solved].mean()) / 1e3 if not solved.all() else None,
+        "solved": int(solved.sum()),
+        "false": int(np.count_nonzero(~exact.geometry_is_free(q))),
+    }
+    some = targets[: args.filtered]
+    by_coal, _ = time_calls(
+        lambda pose: solver.solve(pose, filter=exact.geometry_is_free),
+        [(pose,) for pose in some],
+        LIMIT_S,
+    )
+    row["coal_filter_us"] = float(by_coal.mean()) / 1e3
+    row["missed"] = missed(solver, exact, targets[: len(results)][~solved], args)
+    return row
+
+
+def missed(
+    solver: iksel.Solver,
+    exact: iksel.exact.ExactCollision,
+    targets: Array,
+    args: argparse.Namespace,
+) -> dict[str, Any]:
+    """What random restarts find for targets that were given up.
+
+    An answer counts as found by spheres too where these let it through: what they
+    refuse and coal does not is the price of spheres, what both let through is the
+    search's.
+    """
+    rng = np.random.default_rng(args.seed)
+    found = free = 0
+    begun = time.perf_counter()
+    some = targets[: args.missed]
+    for pose in some:
+        seeds = solver.robot.random_configurations(
+            args.restarts, seed=int(rng.integers(1 << 31))
+        )
+        results = [solver.solve(pose, seeds=s, database_seeds=False) for s in seeds]
+        q = np.array([result.q for result in results if result])
+        if len(q):
+            found += bool(exact.geometry_is_free(q).any())
+            free += bool(np.any(exact.scene.is_free(q)))
+    spent = time.perf_counter() - begun
+    return {
+        "looked_at": len(some),
+        "restarts": args.restarts,
+        "free_by_coal": found,
+        "free_by_spheres": free,
+        "seconds_each": spent / max(len(some), 1),
+    }
+
+
+def add(commands: Any) -> None:
+    """The command `scene`."""
+    command = commands.add_parser(
+        "scene", help="solves in scenes, judged by coal", description=__doc__
+    )
+    command.add_argument("--targets", type=int, default=10_000, metavar="N")
+    command.add_argument("--seed", type=int, default=0)
+    command.add_argument("--max-error", type=float, default=0.02, metavar="M")
+    command.add_argument(
+        "--filtered",
+        type=int,
+        default=200,
+        metavar="N",
+        help="targets with a coal filter",
+    )
+    command.add_argument(
+        "--missed", type=int, default=50, metavar="N", help=f"targets for {RESTARTS}"
+    )
+    command.add_argument("--restarts", type=int, default=1_000, metavar="N")
+    command.add_argument("--only", metavar="SCENE", help="one scene")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Measure, and print JSON."""
+    panda = load_panda(args.max_error)
+    rows: dict[str, Any] = {
+        "spheres": sum(map(len, panda.spheres.links.values())),
+        "simd": iksel.simd_level(),
+    }
+    for name, scene in make_scenes(panda, args.seed).items():
+        if args.only in {None, name}:
+            rows[name] = measure(panda, scene, args)
+    print(json.dumps(rows, indent=2))
+    return 0

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What refuses answers: a scene, and a filter, which is asked about what the scene lets through.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "iksel/request.hpp"
+#include "iksel/result.hpp"
+
+namespace iksel {
+
+/// Whether answers to the request may be refused.
+inline bool screens_answers(const SolveRequest& request) {
+  return request.scene || static_cast<bool>(request.filter);
+}
+
+class Screen {
+ public:
+  /// Both must outlive this.
+  Screen(const std::optional<Scene>& scene, const Filter& filter, int dof)
+      : scene_(scene), filter_(filter), dof_(static_cast<std::size_t>(dof)) {}
+
+  [[nodiscard]] bool is_set() const { return scene_ || static_cast<bool>(filter_); }
+  [[nodiscard]] bool has_filter() const { return static_cast<bool>(filter_); }
+
+  /// Which of `count` configurations the scene lets through.
+  void find_free(const double* q, std::size_t count, bool* free) const {
+    if (scene_) {
+      scene_->find_free(q, count, free);
+    } else {
+      std::fill_n(free, count, true);
+    }
+  }
+  /// Asks the filter about those that are still kept.
+  void ask_filter(const double* q, std::size_t count, bool* keep) {
+    if (!filter_) return;
+    if (std::all_of(keep, keep + count, [](bool kept) { return kept; })) {
+      // As they lie, without memory for others.
+      filter_(q, count, keep);
+      filter_refused_ =
+          filter_refused_ || !std::all_of(keep, keep + count, [](bool b) { return b; });
+      return;
+    }
+    asked_.clear();
+    for (std::size_t i = 0; i < count; ++i) {
+      if (keep[i]) asked_.insert(asked_.end(), q + i * dof_, q + (i + 1) * dof_);
+    }
+    const std::size_t n = asked_.size() / dof_;
+    if (n == 0) return;
+    const std::unique_ptr<bool[]> passed(new bool[n]());
+    filter_(asked_.data(), n, passed.get());
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!keep[i]) continue;
+      keep[i] = passed[at++];
+      filter_refused_ = filter_refused_ || !keep[i];
+    }
+  }
+  void apply(const double* q, std::size_t count, bool* keep) {
+    find_free(q, count, keep);
+    ask_filter(q, count, keep);
+  }
+  /// Why there is no answer, where all that were found were refused.
+  [[nodiscard]] Status refusal() const {
+    return filter_refused_ || !scene_ ? Status::rejected : Status::in_collision;
+  }
+
+ private:
+  const std::optional<Scene>& scene_;
+  const Filter& filter_;
+  std::size_t dof_;
+  bool filter_refused_ = false;
+  std::vector<double> asked_;
+};
+
+}  // namespace iksel

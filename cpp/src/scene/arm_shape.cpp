@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene/arm_shape.hpp"
+
+#include <algorithm>
+
+#include "base/message_text.hpp"
+#include "iksel/error.hpp"
+#include "kinematics/chain_model.hpp"
+#include "scene/bounding_ball.hpp"
+
+namespace iksel {
+namespace {
+
+/// T_base_root, which must not depend on the arm's joints.
+Pose root_in_base(const Robot& robot, const LinkPoses& links) {
+  Pose T_root_base = Pose::Identity();
+  for (int i = static_cast<int>(links.base()); i > 0;) {
+    const LinkPoses::Step& step = links.steps()[static_cast<std::size_t>(i)];
+    if (step.variable >= 0) {
+      throw InvalidArgumentError("scene: joint '" + step.joint.name +
+                                 "' of the arm moves its base link '" + robot.base_link() +
+                                 "' against the root of the URDF");
+    }
+    T_root_base = step.joint.origin * T_root_base;
+    i = step.joint.parent;
+  }
+  return T_root_base.inverse();
+}
+
+}  // namespace
+
+ArmShape::ArmShape(const Robot& robot, const RobotSpheres& spheres,
+                   const std::map<std::string, double>& other_joints)
+    : link_names_(robot.link_names()) {
+  if (spheres.links.empty()) {
+    throw InvalidArgumentError(
+        "spheres: there are none; make them from a URDF's collision geometry, or read them from a "
+        "sphere file (in Python iksel.spheres)");
+  }
+  spheres.validate();
+  const ChainModel& model = robot.model();
+  model.link_poses->with(model, other_joints,
+                         [&](const LinkPoses& links) { make_bodies(robot, links); });
+  for (const auto& [name, of_link] : spheres.links) {
+    check_link(name, "spheres");
+    const auto at = std::find(link_names_.begin(), link_names_.end(), name);
+    add(name, places_[static_cast<std::size_t>(at - link_names_.begin())], of_link);
+  }
+  for (const auto& [a, b] : spheres.pairs) {
+    const lanes::ScenePair pair{find(a), find(b)};
+    const auto body = [&](int i) { return links_[static_cast<std::size_t>(i)].body; };
+    // What does not move against each other touches always or never.
+    if (body(pair.a) != body(pair.b)) pairs_.push_back(pair);
+  }
+}
+
+void ArmShape::make_bodies(const Robot& robot, const LinkPoses& links) {
+  bodies_.push_back({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}, 0, 0, -1, 0, false});
+  places_.push_back({0, root_in_base(robot, links)});
+  const auto& steps = links.steps();
+  for (std::size_t i = 1; i < steps.size(); ++i) {
+    const Place& parent = places_[static_cast<std::size_t>(steps[i].joint.parent)];
+    const Pose origin = parent.T_body_link * steps[i].joint.origin;
+    if (steps[i].variable < 0) {
+      places_.push_back({parent.body, origin});
+      continue;
+    }
+    // The body's z axis is the joint's.
+    Pose turn = Pose::Identity();
+    turn.linear() =
+        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), steps[i].joint.axis)
+            .toRotationMatrix();
+    const int body = add_body(steps[i], parent.body, origin * turn);
+    places_.push_back({body, turn.inverse()});
+  }
+}
+
+int ArmShape::add_body(const LinkPoses::Step& step, int parent, const Pose& origin) {
+  if (bodies_.size() == lanes::kMaxBodies) {
+    throw InvalidArgumentError("scene: more than " + std::to_string(lanes::kMaxBodies) +
+                               " links of the robot move with the arm");
+  }
+  lanes::SceneBody body{};
+  copy_vector(origin.linear().col(0), body.x);
+  copy_vector(origin.linear().col(1), body.y);
+  copy_vector(origin.linear().col(2), body.z);
+  copy_vector(origin.translation(), body.p);
+  body.multiplier = step.joint.multiplier;
+  body.offset = step.joint.offset;
+  body.parent = parent;
+  body.variable = step.variable;
+  body.prismatic = step.joint.prismatic;
+  bodies_.push_back(body);
+  return static_cast<int>(bodies_.size()) - 1;
+}
+
+void ArmShape::add(const std::string& name, const Place& place,
+                   const std::vector<Sphere>& spheres) {
+  std::vector<Sphere> placed = spheres;
+  for (Sphere& sphere : placed) sphere.centre = place.T_body_link * sphere.centre;
+  const auto add_ball = [&](const Sphere& sphere) {
+    lanes::SceneBall ball{{}, sphere.radius};
+    copy_vector(sphere.centre, ball.centre);
+    balls_.push_back(ball);
+  };
+  add_ball(ball_around(placed));
+  names_.push_back(name);
+  links_.push_back({place.body, static_cast<int>(balls_.size()), static_cast<int>(spheres.size())});
+  for (const Sphere& sphere : placed) add_ball(sphere);
+}
+
+void ArmShape::attach(const std::string& name, const AttachedObject& object) {
+  check_link(object.link, "link");
+  const auto at = std::find(link_names_.begin(), link_names_.end(), object.link);
+  add(name, places_[static_cast<std::size_t>(at - link_names_.begin())], object.spheres);
+  const int added = static_cast<int>(links_.size()) - 1;
+  for (int i = 0; i < added; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const bool may = std::find(object.may_touch.begin(), object.may_touch.end(), names_[k]) !=
+                     object.may_touch.end();
+    if (!may && links_[k].body != links_.back().body) pairs_.push_back({i, added});
+  }
+}
+
+void ArmShape::check_link(const std::string& link, const char* argument) const {
+  if (std::find(link_names_.begin(), link_names_.end(), link) != link_names_.end()) return;
+  throw_unknown_name(std::string(argument) + ": the URDF has no link '" + link + "'", link,
+                     link_names_);
+}
+
+int ArmShape::find(const std::string& name) const {
+  const auto at = std::find(names_.begin(), names_.end(), name);
+  return at == names_.end() ? -1 : static_cast<int>(at - names_.begin());
+}
+
+void ArmShape::show(lanes::SceneView& view) const {
+  view.bodies = static_cast<int>(bodies_.size());
+  view.balls = static_cast<int>(balls_.size());
+  view.links = static_cast<int>(links_.size());
+  view.pairs = static_cast<int>(pairs_.size());
+  view.body = bodies_.data();
+  view.ball = balls_.data();
+  view.link = links_.data();
+  view.pair = pairs_.data();
+}
+
+}  // namespace iksel

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What touches, and how deep: one configuration, in plain numbers.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/constants.hpp"
+#include "scene/scene_data.hpp"
+
+namespace iksel {
+namespace {
+
+/// Distance from the surface of what has that distance along and across its sides, below 0 inside.
+double distance_outside(const Eigen::Vector3d& beyond) {
+  return beyond.cwiseMax(0).norm() + std::min(beyond.maxCoeff(), 0.0);
+}
+
+/// Distance of a point from an obstacle without its margin, below 0 inside [m].
+double signed_distance(const Obstacle& obstacle, const PointGrid* grid,
+                       const Eigen::Vector3d& point) {
+  const Eigen::Vector3d p = Pose(obstacle.pose).inverse() * point;
+  switch (obstacle.shape) {
+    case Obstacle::Shape::sphere:
+      return p.norm() - obstacle.radius;
+    case Obstacle::Shape::box:
+      return distance_outside(p.cwiseAbs() - 0.5 * obstacle.size);
+    case Obstacle::Shape::capsule: {
+      const double half = 0.5 * obstacle.length;
+      const double along = std::min(std::max(p.z(), -half), half);
+      return (p - along * Eigen::Vector3d::UnitZ()).norm() - obstacle.radius;
+    }
+    case Obstacle::Shape::cylinder: {
+      const double across = p.head<2>().norm() - obstacle.radius;
+      return distance_outside({across, std::abs(p.z()) - 0.5 * obstacle.length, -kInfinity});
+    }
+    case Obstacle::Shape::half_space:
+      return p.z();
+    case Obstacle::Shape::points:
+      return grid->nearest(p) - obstacle.radius;
+  }
+  return kInfinity;
+}
+
+/// The balls of a configuration, as the kernel placed them in the first lane.
+struct Balls {
+  const std::vector<lanes::SceneBall>& balls;
+  const double* centre;
+
+  [[nodiscard]] Eigen::Vector3d at(int ball) const {
+    const double* c = centre + 3 * ball * lanes::kWidth;
+    return {c[0], c[lanes::kWidth], c[2 * lanes::kWidth]};
+  }
+  [[nodiscard]] double radius(int ball) const {
+    return balls[static_cast<std::size_t>(ball)].radius;
+  }
+};
+
+}  // namespace
+
+void Scene::Data::add_contacts(int link, const double* centre, std::vector<Contact>& found) const {
+  const Balls balls{arm.balls(), centre};
+  const lanes::SceneLink& of = arm.links()[static_cast<std::size_t>(link)];
+  for (const auto& [name, obstacle] : obstacles) {
+    const auto grid = grids.find(obstacle.points);
+    const PointGrid* points = grid == grids.end() ? nullptr : grid->second.get();
+    double depth = -kInfinity;
+    for (int b = of.first; b < of.first + of.count; ++b) {
+      const double distance = signed_distance(obstacle, points, balls.at(b));
+      depth = std::max(depth, balls.radius(b) + obstacle.margin - distance);
+    }
+    if (depth >= 0) {
+      found.push_back({arm.names()[static_cast<std::size_t>(link)], name, true, depth});
+    }
+  }
+}
+
+void Scene::Data::add_pair_contacts(const double* centre, std::vector<Contact>& found) const {
+  const Balls balls{arm.balls(), centre};
+  for (const lanes::ScenePair& pair : arm.pairs()) {
+    const auto ia = static_cast<std::size_t>(pair.a);
+    const auto ib = static_cast<std::size_t>(pair.b);
+    const lanes::SceneLink& a = arm.links()[ia];
+    const lanes::SceneLink& b = arm.links()[ib];
+    double depth = -kInfinity;
+    for (int i = a.first; i < a.first + a.count; ++i) {
+      for (int j = b.first; j < b.first + b.count; ++j) {
+        const double distance = (balls.at(i) - balls.at(j)).norm();
+        depth = std::max(depth, balls.radius(i) + balls.radius(j) - distance);
+      }
+    }
+    if (depth >= 0) found.push_back({arm.names()[ia], arm.names()[ib], false, depth});
+  }
+}
+
+std::vector<Contact> Scene::Data::contacts(const double* q) const {
+  constexpr int kWidth = lanes::kWidth;
+  alignas(64) std::array<double, static_cast<std::size_t>(kMaxDof) * kWidth> packed{};
+  for (int j = 0; j < robot.dof(); ++j) packed[static_cast<std::size_t>(j * kWidth)] = q[j];
+  std::vector<double> centre(arm.balls().size() * 3 * kWidth);
+  alignas(64) std::array<double, kWidth> clearance;
+  kernels.find_clearance(view(), packed.data(), 1, centre.data(), clearance.data());
+  std::vector<Contact> found;
+  for (int link = 0; link < static_cast<int>(arm.links().size()); ++link) {
+    if (arm.links()[static_cast<std::size_t>(link)].body != 0) {
+      add_contacts(link, centre.data(), found);
+    }
+  }
+  add_pair_contacts(centre.data(), found);
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Contact& a, const Contact& b) { return a.depth > b.depth; });
+  return found;
+}
+
+}  // namespace iksel

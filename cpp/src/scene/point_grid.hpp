@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Points in the cells of a grid, each of which knows how many cells away the nearest point is.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "iksel/scene.hpp"
+
+namespace iksel {
+
+class PointGrid {
+ public:
+  explicit PointGrid(const PointCloud& points);
+
+  /// Whether a point may lie within `radius` of c: never false where one does.
+  [[nodiscard]] bool may_touch(const Eigen::Vector3d& c, double radius) const;
+  /// Whether one does.
+  [[nodiscard]] bool touches(const Eigen::Vector3d& c, double radius) const;
+  /// Distance of the nearest point [m].
+  [[nodiscard]] double nearest(const Eigen::Vector3d& c) const;
+
+ private:
+  using Cell = std::array<int, 3>;
+  /// The cell that holds c, or is nearest to it.
+  [[nodiscard]] Cell cell_of(const Eigen::Vector3d& c) const;
+  [[nodiscard]] std::size_t index(int x, int y, int z) const {
+    return (static_cast<std::size_t>(z) * static_cast<std::size_t>(count_[1]) +
+            static_cast<std::size_t>(y)) *
+               static_cast<std::size_t>(count_[0]) +
+           static_cast<std::size_t>(x);
+  }
+  void size_cells(const Eigen::Vector3d& extent);
+  void sort_points(const PointCloud& points);
+  void measure_distances();
+
+  Eigen::Matrix<double, 3, 1, Eigen::DontAlign> lower_, upper_;  ///< corners [m]
+  double edge_ = 0;                                              ///< of a cell [m]
+  Cell count_{1, 1, 1};
+  /// Those of cell i are points_[first_[i]] to points_[first_[i + 1] - 1].
+  std::vector<std::uint32_t> first_;
+  std::vector<std::array<double, 3>> points_;
+  /// Cells from each to the nearest that holds a point, along the axis where that is most.
+  std::vector<std::uint8_t> away_;
+};
+
+}  // namespace iksel

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a Scene holds, and the check of configurations.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "iksel/scene.hpp"
+#include "scene/arm_shape.hpp"
+#include "scene/point_grid.hpp"
+#include "simd/kernels.hpp"
+#include "simd/scene_types.hpp"
+
+namespace iksel {
+
+struct Scene::Data {
+  /// Throws as Scene.
+  Data(const Robot& robot_in, const RobotSpheres& spheres_in,
+       const std::map<std::string, double>& other_joints_in)
+      : robot(robot_in),
+        spheres(spheres_in),
+        other_joints(other_joints_in),
+        bare(robot, spheres, other_joints),
+        arm(bare),
+        kernels(lanes::choose_kernels()) {}
+
+  /// Lays out the obstacles for the kernel; of a cloud the grid, if there is none yet.
+  void lay_out();
+  /// Puts what is attached on the arm.
+  void attach_all();
+  /// Throws unless nothing of another kind has that name.
+  void check_name(const std::string& name, bool is_obstacle) const;
+
+  [[nodiscard]] lanes::SceneView view() const;
+  /// The clearances (scene_types.hpp) of `count` configurations, one after the other; 0 where only
+  /// points touch.
+  void find_clearance(const double* q, std::size_t count, double* clearance) const;
+  /// Whether they are free.
+  void find_free(const double* q, std::size_t count, bool* free) const;
+  [[nodiscard]] bool is_free(const double* q) const {
+    bool free = false;
+    find_free(q, 1, &free);
+    return free;
+  }
+  [[nodiscard]] std::vector<Contact> contacts(const double* q) const;
+
+  Robot robot;
+  RobotSpheres spheres;
+  std::map<std::string, double> other_joints;
+  std::map<std::string, Obstacle> obstacles;
+  std::map<std::string, AttachedObject> attached;
+
+  /// Points, seen from a cloud's frame.
+  struct Cloud {
+    std::shared_ptr<const PointGrid> grid;
+    StoredPose T_cloud_base;
+    double radius;  ///< with its margin [m]
+  };
+
+ private:
+  void add(const Obstacle& obstacle);
+  [[nodiscard]] const std::shared_ptr<const PointGrid>& grid_of(const Obstacle& cloud);
+  /// Whether the arm, whose balls are placed in a lane, touches no point.
+  [[nodiscard]] bool is_free_of_points(const double* centre, int lane) const;
+  /// Up to one configuration per lane.
+  void find_clearance_pack(const double* q, int count, double* clearance) const;
+  void add_contacts(int link, const double* centre, std::vector<Contact>& found) const;
+  void add_pair_contacts(const double* centre, std::vector<Contact>& found) const;
+
+  ArmShape bare;  ///< without what is attached
+  ArmShape arm;
+  const lanes::LaneKernels& kernels;
+  std::vector<lanes::SceneBlock> blocks;
+  std::vector<lanes::SceneCylinder> cylinders;
+  std::vector<lanes::ScenePlane> planes;
+  std::vector<Cloud> clouds;
+  /// By the points that they are made of, which they keep alive.
+  std::map<std::shared_ptr<const PointCloud>, std::shared_ptr<const PointGrid>> grids;
+};
+
+}  // namespace iksel

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Searches on the self-motion of seven joints of which one can be swept: all solutions lie on it.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "base/work.hpp"
+#include "search/context.hpp"
+#include "search/patience.hpp"
+#include "search/search.hpp"
+#include "seeds/free_samples.hpp"
+#include "seeds/row_seeds.hpp"
+
+namespace iksel {
+
+template <typename Answers>
+struct CurveSearch {
+  const ChainModel& model;
+  const Goal& goal;
+  const SolveRequest& request;
+  Workspace::InLanes& lanes;
+  Answers& answers;
+  Work& work;
+  StageClock& clock;
+  /// The target (reduction.hpp).
+  const Pose& Y;
+
+  // Each returns whether there certainly are no answers but those found; nothing if there may be
+  // some left to search for.
+
+  /// For a first answer: one that is free in the goal's scene.
+  std::optional<Proof> find_free() const;
+  /// For a Collector: what it wants, if that can be had here.
+  std::optional<Proof> collect() const;
+
+  // Parts of it.
+
+  /// The free solutions nearest to `near`.
+  std::optional<Proof> collect_nearest_free() const;
+  /// Solutions all over it.
+  std::optional<Proof> collect_spread() const;
+};
+
+template <typename Answers>
+std::optional<Proof> CurveSearch<Answers>::find_free() const {
+  LaneRefiner& refiner = lanes.refiner;
+  FreeSamples samples(*lanes.sweep, *goal.scene(), Y, lanes.samples, work, clock);
+  refiner.begin(goal.task(), kNearAnswer, Width::narrow);
+  const bool is_satisfied = search(refiner, samples, answers, work);
+  refiner.begin(goal.task(), kFirst, Width::narrow);
+  clock.lap(&StageTimes::iterate);
+  if (is_satisfied) return Proof::none;
+  if (!samples.has_any()) return std::nullopt;
+  answers.refuse();
+  return Proof::sweep;
+}
+
+template <typename Answers>
+std::optional<Proof> CurveSearch<Answers>::collect_spread() const {
+  // Between points no farther apart, a straight line is near enough to the curve [rad].
+  constexpr double kStraight = 0.3;
+  LaneRefiner& refiner = lanes.refiner;
+  SelfMotionArcs& arcs = *lanes.arcs;
+  arcs.find(Y, kStraight);
+  const std::vector<SelfMotionArcs::Joints> points =
+      arcs.spread(answers.spread(), answers.min_distance());
+  clock.lap(&StageTimes::query);
+  RowSeeds seeds(points.empty() ? nullptr : points[0].data(), points.size(), SweptBranches::kDof,
+                 /*are_answers=*/false, work);
+  refiner.begin(goal.task(), kNearAnswer, Width::wide);
+  search(refiner, seeds, answers, work);
+  refiner.begin(goal.task(), kFirst, Width::narrow);
+  clock.lap(&StageTimes::iterate);
+  if (answers.has_any()) return Proof::none;
+  Sweep& sweep = *lanes.sweep;
+  if (points.empty() && !sweep.find(Y) && sweep.is_none()) return Proof::sweep;
+  return std::nullopt;
+}
+
+template <typename Answers>
+std::optional<Proof> CurveSearch<Answers>::collect_nearest_free() const {
+  constexpr double kSpacing = 0.05;
+  /// So many of them are refined.
+  constexpr std::size_t kMost = 16;
+  LaneRefiner& refiner = lanes.refiner;
+  SelfMotionArcs& arcs = *lanes.arcs;
+  arcs.find(Y, kSpacing);
+  std::vector<double>& q = lanes.samples.q;
+  const bool has_any = find_nearest_free(arcs, *request.scene, model.joints, *request.near,
+                                         JointMove(model.dof, request), kMost, q);
+  clock.lap(&StageTimes::query);
+  if (!has_any) return std::nullopt;
+  RowSeeds seeds(q.data(), q.size() / SweptBranches::kDof, SweptBranches::kDof,
+                 /*are_answers=*/false, work);
+  refiner.begin(goal.task(), kNearAnswer, Width::wide);
+  search(refiner, seeds, answers, work);
+  refiner.begin(goal.task(), kFirst, Width::narrow);
+  clock.lap(&StageTimes::iterate);
+  if (answers.has_any()) return Proof::none;
+  answers.status = Status::in_collision;
+  return Proof::sweep;
+}
+
+template <typename Answers>
+std::optional<Proof> CurveSearch<Answers>::collect() const {
+  if (answers.spread() > 0) return collect_spread();
+  if (answers.wants_nearest_free()) return collect_nearest_free();
+  if (!answers.wants_nearest()) return std::nullopt;
+  NearestOnCurve& curve = *lanes.nearest_on_curve;
+  LaneRefiner& refiner = lanes.refiner;
+  const JointMove move(model.dof, request);
+  NearestOnCurveSeeds nearest(curve, Y, *request.near, move, answers, work, clock);
+  refiner.begin(goal.task(), kNearAnswer, Width::narrow);
+  search(refiner, nearest, answers, work);
+  refiner.begin(goal.task(), kFirst, Width::narrow);
+  clock.lap(&StageTimes::iterate);
+  if (curve.is_none()) return Proof::sweep;
+  if (!answers.has_any()) return std::nullopt;
+  answers.is_settled = curve.is_settled();
+  return Proof::none;
+}
+
+}  // namespace iksel

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How long seeds of which kind are iterated.
+#pragma once
+
+#include <limits>
+
+#include "refine/lane_refiner.hpp"
+
+namespace iksel {
+
+inline constexpr int kMostIterations = std::numeric_limits<int>::max();
+/// Where any answer will do.
+inline constexpr Patience kFirst{8, kMostIterations};
+/// Where a seed more or less does not matter: solutions arrive after 4 iterations in the mean, and
+/// what is far off after 6 costs more than what it finds.
+inline constexpr Patience kAll{6, kMostIterations, 2};
+/// Where seeds were iterated before in single precision.
+inline constexpr Patience kScreened{4, kMostIterations};
+/// Where seeds are answers, or as near to one as a singularity or a limit lets it be told.
+inline constexpr Patience kNearAnswer{8, 64};
+
+}  // namespace iksel

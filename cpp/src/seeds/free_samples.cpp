@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "seeds/free_samples.hpp"
+
+#include <utility>
+
+#include "scene/scene_data.hpp"
+
+namespace iksel {
+namespace {
+
+/// The samples of the sweep come in so many parts.
+constexpr int kSampleParts = 16;
+/// Samples that are looked beside, at most: those that overlap least.
+constexpr std::size_t kMostBeside = 24;
+
+}  // namespace
+
+FreeSamples::FreeSamples(Sweep& sweep, const Scene& scene, const Pose& Y, Memory& memory,
+                         Work& work, StageClock& clock)
+    : sweep_(sweep), scene_(scene), to_(memory), work_(work), clock_(clock) {
+  to_.q.clear();
+  to_.branch.clear();
+  to_.overlaps.clear();
+  sweep_.set_target(Y);
+}
+
+bool FreeSamples::next_stage() {
+  free_count_ = 0;
+  next_ = 0;
+  while (free_count_ == 0 && (at_ < rows() || add_rows())) screen_pack();
+  clock_.lap(&StageTimes::query);
+  return free_count_ > 0;
+}
+
+bool FreeSamples::add_rows() {
+  to_.q.clear();
+  to_.branch.clear();
+  at_ = 0;
+  while (to_.q.empty()) {
+    if (part_ < kSampleParts) {
+      // 7 and 16 have no factor in common: each part once.
+      sweep_.add_samples(part_ * 7 % kSampleParts, kSampleParts, to_.q, to_.branch);
+      ++part_;
+    } else if (const Overlap* next = next_overlap()) {
+      sweep_.add_beside(next->q.data(), next->branch, to_.q);
+    } else {
+      return false;
+    }
+  }
+  has_any_ = true;
+  return true;
+}
+
+const FreeSamples::Overlap* FreeSamples::next_overlap() {
+  const std::size_t most = std::min(kMostBeside, to_.overlaps.size());
+  if (beside_ == most) return nullptr;
+  if (beside_ == 0) {
+    std::partial_sort(to_.overlaps.begin(),
+                      to_.overlaps.begin() + static_cast<std::ptrdiff_t>(most), to_.overlaps.end(),
+                      [](const Overlap& a, const Overlap& b) { return a.clearance > b.clearance; });
+  }
+  return &to_.overlaps[beside_++];
+}
+
+void FreeSamples::screen_pack() {
+  const std::size_t count = std::min(kPack, rows() - at_);
+  std::array<double, kPack> clearance{};
+  scene_.data().find_clearance(row(at_), count, clearance.data());
+  for (std::size_t i = at_; i < at_ + count; ++i) {
+    const double above = clearance[i - at_];
+    if (above > 0) {
+      free_[free_count_++] = i;
+    } else if (i < to_.branch.size()) {
+      Overlap& overlap = to_.overlaps.emplace_back();
+      overlap.clearance = above;
+      overlap.branch = to_.branch[i];
+      std::copy_n(row(i), kDof, overlap.q.begin());
+    }
+  }
+  at_ += count;
+}
+
+bool find_nearest_free(const SelfMotionArcs& arcs, const Scene& scene, const JointSpace& joints,
+                       const JointVector& near, const JointMove& move, std::size_t most,
+                       std::vector<double>& q) {
+  constexpr std::size_t kPack = SweptBranches::kCount;
+  constexpr std::size_t kDof = SweptBranches::kDof;
+  // Nearest first, so that the scene looks at few.
+  std::vector<std::pair<double, JointVector>> points;
+  for (const SelfMotionArcs::Arc& arc : arcs.arcs()) {
+    for (const SelfMotionArcs::Joints& on_arc : arc.q) {
+      JointVector point = Eigen::Map<const Eigen::VectorXd>(on_arc.data(), kDof);
+      joints.wrap_nearest(near, 0, point);
+      points.emplace_back(move.length(point - near), std::move(point));
+    }
+  }
+  std::sort(points.begin(), points.end(),
+            [](const auto& a, const auto& b) { return a.first < b.first; });
+  q.clear();
+  for (std::size_t i = 0; i < points.size() && q.size() < most * kDof; i += kPack) {
+    const std::size_t count = std::min(kPack, points.size() - i);
+    std::array<double, kPack * kDof> rows{};
+    for (std::size_t k = 0; k < count; ++k) {
+      std::copy_n(points[i + k].second.data(), kDof, &rows[k * kDof]);
+    }
+    std::array<bool, kPack> free{};
+    scene.find_free(rows.data(), count, free.data());
+    for (std::size_t k = 0; k < count; ++k) {
+      if (!free[k]) continue;
+      const double* row = &rows[k * kDof];
+      q.insert(q.end(), row, row + kDof);
+    }
+  }
+  return !points.empty();
+}
+
+}  // namespace iksel

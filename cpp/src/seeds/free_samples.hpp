@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Configurations of a self-motion that do not collide, found before they are refined: a scene looks
+// at a pack of them at a time.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "goal/joint_move.hpp"
+#include "iksel/scene.hpp"
+#include "seeds/self_motion_arcs.hpp"
+#include "seeds/sweep.hpp"
+
+namespace iksel {
+
+class FreeSamples {
+ public:
+  /// A sample that is not free.
+  struct Overlap {
+    double clearance;  ///< scene_types.hpp
+    int branch;
+    std::array<double, SweptBranches::kDof> q;
+  };
+  /// What it writes to.
+  struct Memory {
+    std::vector<double> q;
+    std::vector<int> branch;
+    std::vector<Overlap> overlaps;
+  };
+
+  /// All must outlive this.
+  FreeSamples(Sweep& sweep, const Scene& scene, const Pose& Y, Memory& memory, Work& work,
+              StageClock& clock);
+
+  /// The samples of the sweep, those far from each other first; where none is free, between the
+  /// samples beside those that overlap least.
+  bool next_stage();
+
+  template <typename Refiner>
+  bool load(Refiner& refiner, int lane) {
+    if (next_ == free_count_) return false;
+    work_.take_on_top();
+    refiner.load_answer(lane, row(free_[next_++]));
+    return true;
+  }
+  /// Whether the arm can reach the target at all inside the limits, as far as was seen.
+  [[nodiscard]] bool has_any() const { return has_any_; }
+
+ private:
+  static constexpr std::size_t kDof = SweptBranches::kDof;
+  static constexpr std::size_t kPack = SweptBranches::kCount;
+
+  [[nodiscard]] std::size_t rows() const { return to_.q.size() / kDof; }
+  [[nodiscard]] const double* row(std::size_t i) const { return &to_.q[i * kDof]; }
+  /// Makes rows of the next part; false if there are no more.
+  bool add_rows();
+  /// The next of those that overlap least; null if there are no more.
+  const Overlap* next_overlap();
+  /// Looks at the next rows, as many as there are lanes.
+  void screen_pack();
+
+  Sweep& sweep_;
+  const Scene& scene_;
+  Memory& to_;
+  Work& work_;
+  StageClock& clock_;
+  std::size_t at_ = 0;      ///< row to be looked at next
+  int part_ = 0;            ///< of the samples
+  std::size_t beside_ = 0;  ///< overlaps that were looked beside
+  bool has_any_ = false;
+  std::array<std::size_t, kPack> free_{};
+  std::size_t free_count_ = 0;
+  std::size_t next_ = 0;
+};
+
+/// Of the points on the arcs that are free the `most` nearest to `near`, row by row. False if there
+/// is no point at all.
+bool find_nearest_free(const SelfMotionArcs& arcs, const Scene& scene, const JointSpace& joints,
+                       const JointVector& near, const JointMove& move, std::size_t most,
+                       std::vector<double>& q);
+
+}  // namespace iksel

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// An arm of spheres and its obstacles, as the kernel of collisions takes them (scene_kernel.hpp).
+#pragma once
+
+#include "simd/lane_types.hpp"
+
+namespace iksel::lanes {
+
+/// Bodies that move against each other, the base among them; chains have at most 64 joints that
+/// move, mimic joints included, and side branches have others.
+inline constexpr int kMaxBodies = 128;
+
+/// A body on its joint, whose axis is z: parent * (x, y, z, p) * motion.
+struct SceneBody {
+  double x[3], y[3], z[3], p[3];
+  double multiplier, offset;  ///< motion = multiplier * q[variable] + offset [rad or m]
+  int parent, variable;
+  bool prismatic;
+};
+
+struct SceneBall {
+  double centre[3];  ///< in the body's frame [m]
+  double radius;     ///< [m]
+};
+
+/// Balls `first` to `first + count - 1` are a link's; the one before is around them all.
+struct SceneLink {
+  int body, first, count;
+};
+
+struct ScenePair {
+  int a, b;  ///< links
+};
+
+/// A box of which each point is the centre of a ball: boxes, and with edges of length 0 spheres and
+/// capsules.
+struct SceneBlock {
+  double centre[3];
+  double axis[3][3];  ///< its x, y and z axis in the base frame
+  double half[3];     ///< half of each edge [m]
+  double radius;      ///< with its margin [m]
+};
+
+struct SceneCylinder {
+  double centre[3];
+  double axis[3];
+  double radius, half;  ///< [m]
+  double margin;        ///< [m]
+};
+
+/// All points x with normal . x <= offset.
+struct ScenePlane {
+  double normal[3];
+  double offset;  ///< with its margin [m]
+};
+
+/// find_clearance takes joint value j of lane l at q[j kWidth + l], and puts coordinate i of the
+/// centre of ball b to centre[(3 b + i) kWidth + l] [m], and to clearance[l] the least of
+/// distance^2 - radius^2 over all that could touch [m^2]: above 0 where nothing does, and 1 at
+/// most. Where something touches it may be more than that, but not above 0. Only the first `wanted`
+/// lanes are looked at; the others must hold joint values too.
+struct SceneView {
+  int bodies, balls, links, pairs, blocks, cylinders, planes;
+  const SceneBody* body;  ///< the first is the base, which has no joint
+  const SceneBall* ball;
+  const SceneLink* link;
+  const ScenePair* pair;
+  const SceneBlock* block;
+  const SceneCylinder* cylinder;
+  const ScenePlane* plane;
+};
+
+}  // namespace iksel::lanes

@@ -1,0 +1,289 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The body of a robot as spheres.
+
+They are made from a URDF, read from sphere files, and kept in a file.
+
+    spheres = iksel.spheres.from_urdf("arm.urdf", robot, srdf="arm.srdf")
+    iksel.spheres.save(spheres, "arm.spheres.npz")
+    scene = iksel.Scene(robot, spheres)
+
+Needs the library coal for `from_urdf`: `pip install iksel[collision]`.
+"""
+
+from __future__ import annotations
+
+import json
+import zipfile
+from itertools import combinations
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from iksel_cpp import InvalidArgumentError, RobotSpheres, Scene
+
+from iksel._collision_shapes import import_coal, is_sphere, read_shapes, solid_of
+from iksel._files import read_text
+from iksel._sphere_cover import cover
+from iksel.collision import SelfCollision, read_urdf
+
+if TYPE_CHECKING:
+    import os
+    from collections.abc import Iterable, Mapping
+
+    from iksel_cpp import Robot
+
+    from iksel._arrays import FloatArray
+    from iksel._collision_shapes import Shape
+
+    Spheres = dict[str, FloatArray]
+    Pairs = list[tuple[str, str]]
+
+_FORMAT = "iksel spheres 1"
+
+
+def from_urdf(
+    urdf: str | os.PathLike[str],
+    robot: Robot,
+    *,
+    max_error: float = 0.02,
+    srdf: str | os.PathLike[str] | None = None,
+    ignore: Iterable[tuple[str, str]] = (),
+    samples: int = 5_000,
+    seed: int = 0,
+    other_joints: Mapping[str, float] | None = None,
+    packages: Mapping[str, str | os.PathLike[str]] | None = None,
+    xacro_args: Mapping[str, str] | None = None,
+) -> RobotSpheres:
+    """Cover the collision geometry of a URDF's links by spheres.
+
+    Each shape lies inside its spheres, which stick out of it by `max_error` at most:
+    the smaller, the more spheres. Spheres are taken as they are, so that a URDF made of
+    them (as VAMP's are) keeps its own. Links are looked at in the pairs that
+    iksel.collision.SelfCollision looks at.
+
+    Args:
+        urdf: Path of the URDF or xacro, or URDF text.
+        robot: The arm, from a URDF with the same links.
+        max_error: How far spheres may stick out [m].
+        srdf: Path of an SRDF, or its text, whose disable_collisions are not looked at.
+        ignore: Pairs of links that may touch.
+        samples: Configurations in which to look for pairs that always touch and,
+            without an SRDF, for those that never do.
+        seed: Of the samples.
+        other_joints: Values of joints that are not the arm's [rad or m].
+        packages: Folders of package:// names of meshes.
+        xacro_args: Values of a xacro file's arguments.
+
+    Raises:
+        InvalidArgumentError: coal is missing, or max_error is not above 0.
+        UrdfError: The URDF, the SRDF or a mesh cannot be read.
+        UnknownNameError: The URDF lacks a joint of the arm, or what an argument names.
+    """
+    if not 0 < max_error < np.inf:
+        raise InvalidArgumentError(f"max_error: {max_error} m is not above 0")
+    coal = import_coal()
+    pairs = SelfCollision(
+        urdf,
+        robot,
+        srdf=srdf,
+        ignore=ignore,
+        samples=samples,
+        seed=seed,
+        other_joints=other_joints,
+        packages=packages,
+        xacro_args=xacro_args,
+    ).pairs
+    root, folder = read_urdf(urdf, packages or {}, xacro_args)
+    shapes: dict[str, list[Shape]] = {}
+    for shape in read_shapes(coal, root, folder, packages or {}):
+        shapes.setdefault(shape.link, []).append(shape)
+    links = {link: _cover_link(of_link, max_error) for link, of_link in shapes.items()}
+    return RobotSpheres(links, pairs)
+
+
+def from_curobo(path: str | os.PathLike[str]) -> RobotSpheres:
+    """Read the spheres of a robot file of cuRobo, in YAML.
+
+    That is `collision_spheres` of a robot, a mapping or the name of a file beside it
+    (which may lie in a folder `spheres`), or that file itself; radii grow by
+    `collision_sphere_buffer`, and pairs in `self_collision_ignore` are not looked at.
+    Without such pairs, no pair is: see `with_pairs`. `self_collision_buffer` is not
+    read.
+
+    Args:
+        path: Of the file.
+
+    Raises:
+        InvalidArgumentError: It cannot be read, or is no such file.
+    """
+    path = Path(path)
+    data = _read_yaml(path)
+    for key in ("robot_cfg", "kinematics"):
+        data = data.get(key, data)
+    spheres = data.get("collision_spheres")
+    if isinstance(spheres, str):
+        spheres = _read_yaml(path.parent / spheres).get("collision_spheres")
+    if not isinstance(spheres, dict):
+        raise InvalidArgumentError(f"path: {str(path)!r} has no collision_spheres")
+    buffer = data.get("collision_sphere_buffer", 0.0)
+    links = _read_links(path, spheres, "center", buffer or 0.0)
+    ignored = {
+        frozenset((link, other))
+        for link, others in (data.get("self_collision_ignore") or {}).items()
+        for other in others
+    }
+    pairs = combinations(links, 2) if ignored else ()
+    return RobotSpheres(
+        links, [pair for pair in pairs if frozenset(pair) not in ignored]
+    )
+
+
+def from_json(path: str | os.PathLike[str]) -> RobotSpheres:
+    """Read a JSON file of spheres by link, as tools around VAMP and foam write them.
+
+    For each link a list of spheres, each with `origin` (or `center`) and `radius` [m].
+    No pair of links is looked at: see `with_pairs`.
+
+    Args:
+        path: Of the file.
+
+    Raises:
+        InvalidArgumentError: It cannot be read, or is no such file.
+    """
+    path = Path(path)
+    try:
+        data = json.loads(read_text(path))
+    except (OSError, ValueError) as error:
+        raise InvalidArgumentError(f"path: {error}") from None
+    if not isinstance(data, dict):
+        raise InvalidArgumentError(f"path: {str(path)!r} is no mapping of links")
+    return RobotSpheres(_read_links(path, data, "origin", 0.0))
+
+
+def with_pairs(
+    spheres: RobotSpheres,
+    robot: Robot,
+    *,
+    samples: int = 5_000,
+    seed: int = 0,
+    ignore: Iterable[tuple[str, str]] = (),
+) -> RobotSpheres:
+    """Look at all pairs of links but those whose spheres always touch.
+
+    Pairs that touch in all samples, as neighbours do, are left out, and so is what
+    `ignore` names.
+
+    Args:
+        spheres: Whose links count, not their pairs.
+        robot: The arm.
+        samples: Configurations that are looked at.
+        seed: Of the samples.
+        ignore: Pairs of links that may touch.
+
+    Raises:
+        UnknownNameError: The robot lacks a link.
+    """
+    ignored = {frozenset(pair) for pair in ignore}
+    links = spheres.links
+    q = robot.random_configurations(samples, seed=seed)
+    pairs = []
+    for pair in combinations(links, 2):
+        if frozenset(pair) in ignored:
+            continue
+        alone = RobotSpheres({link: links[link] for link in pair}, [pair])
+        if np.any(Scene(robot, alone).is_free(q)):
+            pairs.append(pair)
+    return RobotSpheres(links, pairs)
+
+
+def save(spheres: RobotSpheres, path: str | os.PathLike[str]) -> None:
+    """Write spheres to a file, for example beside the robot's database.
+
+    Args:
+        spheres: What is written.
+        path: Of the file; numpy's npz.
+    """
+    links = spheres.links
+    with Path(path).open("wb") as file:
+        np.savez_compressed(
+            file,
+            format=np.array(_FORMAT),
+            links=np.array(list(links), dtype=np.str_),
+            counts=np.array([len(rows) for rows in links.values()]),
+            spheres=np.concatenate(list(links.values())),
+            pairs=np.array(spheres.pairs, dtype=np.str_).reshape(-1, 2),
+        )
+
+
+def load(path: str | os.PathLike[str]) -> RobotSpheres:
+    """Read spheres that `save` wrote.
+
+    Args:
+        path: Of the file.
+
+    Raises:
+        InvalidArgumentError: It cannot be read, or is no such file.
+    """
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            data = {name: file[name] for name in file.files}
+        if data["format"] != _FORMAT:
+            raise InvalidArgumentError(f"path: {str(path)!r} is of another format")
+        rows = np.split(data["spheres"], np.cumsum(data["counts"])[:-1])
+        links = dict(zip(data["links"].tolist(), rows, strict=True))
+        return RobotSpheres(links, [(str(a), str(b)) for a, b in data["pairs"]])
+    except (OSError, ValueError, KeyError, zipfile.BadZipFile) as error:
+        raise InvalidArgumentError(f"path: {str(path)!r}: {error}") from None
+
+
+def _cover_link(shapes: list[Shape], max_error: float) -> FloatArray:
+    """Spheres around the shapes of a link, in its frame, (n, 4)."""
+    balls = [shape for shape in shapes if is_sphere(shape.geometry)]
+    rows = np.array([[*s.origin[:3, 3], s.geometry.radius] for s in balls]).reshape(
+        -1, 4
+    )
+    solids = [solid_of(s, max_error) for s in shapes if not is_sphere(s.geometry)]
+    # What stands round about a cylinder sticks out by a twentieth.
+    return cover(solids, rows, 0.95 * max_error) if solids else rows
+
+
+def _read_yaml(path: Path) -> dict[str, Any]:
+    try:
+        import yaml  # noqa: PLC0415 (an optional extra)
+    except ImportError as error:
+        raise InvalidArgumentError(
+            f"path: YAML needs PyYAML, which cannot be imported ({error}); install "
+            "it by: pip install pyyaml"
+        ) from None
+    try:
+        data = yaml.safe_load(read_text(path))
+    except (OSError, ValueError, yaml.YAMLError) as error:
+        raise InvalidArgumentError(f"path: {error}") from None
+    if not isinstance(data, dict):
+        raise InvalidArgumentError(f"path: {str(path)!r} is no mapping")
+    return data
+
+
+def _read_links(
+    path: Path, data: dict[str, Any], centre: str, buffer: float
+) -> Spheres:
+    """Spheres by link; those whose radius is not above 0 are none."""
+    links = {}
+    for link, spheres in data.items():
+        rows = []
+        for sphere in spheres:
+            try:
+                place = sphere.get(centre, sphere.get("center"))
+                row = np.array([*place, sphere["radius"]], dtype=float)
+            except (AttributeError, KeyError, TypeError, ValueError):
+                row = np.empty(0)
+            if row.shape != (4,):
+                raise InvalidArgumentError(
+                    f"path: {str(path)!r}: link {link!r} has {sphere!r}, expected "
+                    f"{centre} (3 numbers) and radius"
+                )
+            if row[3] > 0:
+                rows.append([*row[:3], row[3] + buffer])
+        if rows:
+            links[str(link)] = np.array(rows)
+    return links

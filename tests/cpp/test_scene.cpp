@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Scenes: the lanes of every instruction set against distances one by one, and points in a grid
+// against all points.
+#include <memory>
+#include <random>
+
+#include "iksel/scene.hpp"
+#include "levels.hpp"
+#include "robots.hpp"
+#include "scene/point_grid.hpp"
+
+namespace {
+
+using iksel::JointVector;
+using iksel::Obstacle;
+using iksel::PointCloud;
+using iksel::Pose;
+using iksel::Robot;
+using iksel::RobotSpheres;
+using iksel::Scene;
+
+/// A ball at each link of the chain, and one between it and the next.
+RobotSpheres balls_on(const Robot& robot) {
+  RobotSpheres spheres;
+  const std::vector<Pose> poses = robot.link_poses(JointVector::Zero(robot.dof()));
+  const auto& names = robot.link_names();
+  for (std::size_t i = 0; i + 1 < names.size(); ++i) {
+    const Eigen::Vector3d next = poses[i].inverse() * poses[i + 1].translation();
+    spheres.links[names[i]] = {{Eigen::Vector3d::Zero(), 0.04}, {0.5 * next, 0.03}};
+  }
+  // Neighbours touch always, and so do links that have no joint between them.
+  spheres.pairs.emplace_back(names.front(), names[names.size() - 2]);
+  return spheres;
+}
+
+Scene furnished(const Robot& robot, unsigned seed) {
+  Scene scene(robot, balls_on(robot));
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-0.7, 0.7);
+  const auto place = [&] {
+    Pose pose = Pose::Identity();
+    pose.translation() << uniform(random), uniform(random), uniform(random);
+    pose.rotate(Eigen::AngleAxisd(uniform(random), Eigen::Vector3d(1, 2, 3).normalized()));
+    return pose;
+  };
+  scene.set("box", Obstacle::box({0.2, 0.1, 0.3}, place(), 0.01));
+  scene.set("ball", Obstacle::sphere(0.1, place()));
+  scene.set("capsule", Obstacle::capsule(0.05, 0.3, place(), 0.02));
+  scene.set("cylinder", Obstacle::cylinder(0.1, 0.3, place()));
+  Pose floor = Pose::Identity();
+  floor.translation().z() = -0.2;
+  scene.set("floor", Obstacle::half_space(floor));
+  scene.set("points", Obstacle::point_cloud(PointCloud::Random(60, 3) * 0.2, 0.01, place()));
+  return scene;
+}
+
+TEST(SceneLanes, AgreeWithTheDepthsOfContactsAtEveryLevel) {
+  for (const char* name : {"ur3", "panda", "valkyrie_waist_right_arm"}) {
+    const Robot& robot = iksel_test::robot(name);
+    const iksel::Matrix q = robot.random_configurations(100, 3);
+    std::vector<double> rows;
+    for (Eigen::Index i = 0; i < q.rows(); ++i) {
+      const JointVector row = q.row(i);
+      rows.insert(rows.end(), row.data(), row.data() + row.size());
+    }
+    int found = 0;
+    for (const std::string& level : iksel_test::levels()) {
+      const iksel_test::ForcedLevel forced(level);
+      for (unsigned seed = 0; seed < 5; ++seed) {
+        const Scene scene = furnished(robot, seed);
+        // Packs that are not full, too.
+        for (const std::size_t count : {std::size_t{100}, std::size_t{13}, std::size_t{1}}) {
+          const std::unique_ptr<bool[]> free(new bool[count]());
+          scene.find_free(rows.data(), count, free.get());
+          for (std::size_t i = 0; i < count; ++i) {
+            const JointVector at = q.row(static_cast<Eigen::Index>(i));
+            const bool touches = !scene.contacts(at).empty();
+            EXPECT_NE(free[i], touches) << name << " at " << level << ", scene " << seed;
+            found += static_cast<int>(free[i]);
+          }
+        }
+      }
+    }
+    EXPECT_GT(found, 20) << name;
+  }
+}
+
+TEST(PointGrid, TouchesWhatAllPointsTouch) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (const double extent : {0.0, 0.01, 0.5, 20.0}) {
+    PointCloud points(200, 3);
+    for (Eigen::Index i = 0; i < points.rows(); ++i) {
+      points.row(i) << extent * uniform(random), extent * uniform(random), 0.3 * extent;
+    }
+    const iksel::PointGrid grid(points);
+    int touched = 0;
+    for (int i = 0; i < 5000; ++i) {
+      const Eigen::Vector3d c(1.2 * extent * uniform(random) + 0.03 * uniform(random),
+                              1.2 * extent * uniform(random), 0.3 * extent + 0.1 * uniform(random));
+      const double radius = (0.02 + 0.2 * extent) * (1 + uniform(random));
+      const double nearest = (points.rowwise() - c.transpose()).rowwise().norm().minCoeff();
+      EXPECT_EQ(grid.touches(c, radius), nearest <= radius) << extent;
+      EXPECT_TRUE(nearest > radius || grid.may_touch(c, radius)) << extent;
+      EXPECT_NEAR(grid.nearest(c), nearest, 1e-12);
+      touched += static_cast<int>(nearest <= radius);
+    }
+    EXPECT_GT(touched, 100) << extent;
+    EXPECT_LT(touched, 4900) << extent;
+  }
+}
+
+TEST(Scene, CopiesDoNotSeeWhatIsDoneToAnother) {
+  const Robot& robot = iksel_test::robot("panda");
+  const Scene scene = furnished(robot, 1);
+  Scene other = scene;
+  other.remove("box");
+  other.attach("cup", {robot.tip_link(), {{Eigen::Vector3d::Zero(), 0.1}}, {}});
+  EXPECT_EQ(scene.obstacles().size(), other.obstacles().size() + 1);
+  EXPECT_TRUE(scene.attached().empty());
+}
+
+TEST(Scene, FirstAnswersAreFree) {
+  for (const char* name : {"ur3", "cvr038", "panda", "irb14050"}) {
+    const Robot& robot = iksel_test::robot(name);
+    const iksel::Solver solver(robot);
+    const iksel::Matrix q = robot.random_configurations(60, 4);
+    int solved = 0;
+    int collided = 0;
+    for (Eigen::Index i = 0; i < q.rows(); ++i) {
+      iksel::SolveRequest request;
+      request.scene = furnished(robot, static_cast<unsigned>(i));
+      const JointVector known = q.row(i);
+      const iksel::Result result = solver.solve(robot.fk(known), request);
+      solved += static_cast<int>(result.success());
+      collided += static_cast<int>(result.status == iksel::Status::in_collision);
+      if (result.success()) EXPECT_TRUE(request.scene->is_free(result.q)) << name << i;
+      // A six-joint arm's own configuration is one of its branches.
+      if (robot.dof() == 6 && request.scene->is_free(known)) {
+        EXPECT_TRUE(result.success()) << name << i;
+      }
+    }
+    EXPECT_GT(solved, 3) << name;
+    EXPECT_EQ(solved + collided, 60) << name;
+  }
+}
+
+}  // namespace

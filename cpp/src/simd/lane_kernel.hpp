@@ -7,6 +7,7 @@
 #include "simd/lane_goal.hpp"
 #include "simd/lane_math.hpp"
 #include "simd/lane_types.hpp"
+#include "simd/loop_kernel.hpp"
 #include "simd/residual_kernel.hpp"
 #include "simd/seed_kernel.hpp"
 #include "simd/sweep_kernel.hpp"
@@ -235,7 +236,10 @@ constexpr LaneKernels make_kernels(const char* name) {
           find_branches<Wide>,
           rate_branches<Wide>,
           find_residuals<Wide>,
-          count_roots<Wide>};
+          count_roots<Wide>,
+          find_determinants<Wide>,
+          evaluate_polynomial<Wide>,
+          close_loops<Wide>};
 }
 
 }  // namespace iksel::lanes

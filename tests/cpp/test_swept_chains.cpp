@@ -252,4 +252,16 @@ TEST(Loops, CloseWhereTheyWereMade) {
   }
 }
 
+/// Of this pose, two solutions share the angle of the joint that is swept.
+TEST(Loops, AreNotConcludedFromWhereTwoShareAnAngle) {
+  constexpr std::uint64_t kSeed = 19;
+  Dice dice(kSeed);
+  const Robot robot =
+      iksel_test::make_robot(AxisMaker(dice).make(Pair::parallel, 1), dice, /*limit=*/3.0);
+  const JointVector q = robot.random_configurations(30, kSeed).row(14);
+  RootSweep sweep = sweep_of(robot);
+  find(sweep, robot, robot.fk(q));
+  EXPECT_TRUE(holds(sweep, robot, q, 0.1) || !sweep.is_certain());
+}
+
 }  // namespace

@@ -91,8 +91,10 @@ void RootSweep::take(bool is_vague, int lane) {
   // square root.
   const double slack = is_vague ? 4 * vague_ : 25 * vague_ * vague_;
   const double most = chain_.loop ? std::max(slack, kOpen) : slack;
+  // Of two solutions that all but share an angle of a loop's first joint, one or both are not
+  // found.
+  if (chain_.loop && is_vague) certain_ = false;
   if (!(std::abs(pack_.residual[lane]) < most && pack_.least[lane] > -slack)) {
-    // Of two solutions that share an angle of the loop's first joint, neither is found.
     if (chain_.loop) certain_ = false;
     return;
   }

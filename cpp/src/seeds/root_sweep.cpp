@@ -67,13 +67,13 @@ void RootSweep::find(const Pose& Y) {
   const bool is_clear = chain_.loop ? find_loop_roots(Y) : find_product_roots(Y);
   certain_ = concludes_ && roots_.is_complete() && is_clear;
   size_ = 0;
-  // The first two of the three signs are read.
-  const std::size_t branches = chain_.loop ? 1 : 4;
-  const std::size_t at_once = lanes::kWidth / branches;
+  // Each root has a lane, or by the first two of the three signs four: two to this power.
+  const unsigned lanes_power = chain_.loop ? 0 : 2;
+  const std::size_t at_once = static_cast<std::size_t>(lanes::kWidth) >> lanes_power;
   for (std::size_t first = 0; first < roots_.size(); first += at_once) {
-    const std::size_t n = std::min(at_once, roots_.size() - first) * branches;
+    const std::size_t n = std::min(at_once, roots_.size() - first) << lanes_power;
     for (std::size_t lane = 0; lane < lanes::kWidth; ++lane) {
-      pack_.held[lane] = roots_[first + std::min(lane, n - 1) / branches].angle;
+      pack_.held[lane] = roots_[first + (std::min(lane, n - 1) >> lanes_power)].angle;
     }
     if (chain_.loop) {
       kernels_.close_loops(chain_.loop->form(), loop_, chain_.form, pack_);
@@ -81,7 +81,7 @@ void RootSweep::find(const Pose& Y) {
       kernels_.find_branches(chain_.form, pack_);
     }
     for (std::size_t lane = 0; lane < n; ++lane) {
-      take(roots_[first + lane / branches].is_vague, static_cast<int>(lane));
+      take(roots_[first + (lane >> lanes_power)].is_vague, static_cast<int>(lane));
     }
   }
 }

@@ -62,7 +62,7 @@ struct EnumTable<StructureKind> {
       {"closed_form", StructureKind::closed_form,
        "all of them in closed form: that there is none is proven"},
       {"swept", StructureKind::swept,
-       "in closed form for each value of one joint, which is swept over its range"},
+       "by equations for each value of one joint, which is swept over its range"},
       {"searched", StructureKind::searched, "by search only"},
   };
 };

@@ -3,6 +3,8 @@
 // configurations at which that is hardest.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iksel/iksel.hpp>
@@ -32,9 +34,24 @@ struct AxisChain {
   }
 };
 
+/// How one axis lies to the next.
+enum class Pair { none, parallel, meeting };
+
 class AxisMaker {
  public:
   explicit AxisMaker(Dice& dice) : dice_(dice) {}
+
+  /// Six axes that lie anyhow, but for that of number `first`, counted from 0, and the next.
+  AxisChain make(Pair pair, std::size_t first) {
+    AxisChain axes;
+    for (std::size_t j = 0; j < 6; ++j) {
+      const bool is_parallel = pair == Pair::parallel && j == first + 1;
+      axes.h.push_back(j == 0 ? direction() : is_parallel ? axes.h[first] : across(axes.h[j - 1]));
+      axes.p.push_back(dice_.vector(0.5));
+    }
+    if (pair == Pair::meeting) meet(axes, first, 2);
+    return axes;
+  }
 
   /// Six axes of that class, seen from the front or, as a spherical shoulder, from the end. The
   /// class's parallel axes may point opposite ways.
@@ -143,6 +160,20 @@ inline iksel::Pose shifted(const iksel::Pose& pose, double position, double rota
       Eigen::AngleAxisd(rotation, maker.direction()).toRotationMatrix() * pose.linear();
   other.translation() += position * maker.direction();
   return other;
+}
+
+/// Of a solver with tolerances of 3 cm and 0.1 rad, for poses that far off the configurations'.
+inline void expect_no_proof_at_large_tolerances(const iksel::Robot& robot,
+                                                const std::vector<iksel::JointVector>& reached,
+                                                Dice& dice) {
+  iksel::SolverOptions options;
+  options.position_tolerance = 0.03;
+  options.rotation_tolerance = 0.1;
+  const iksel::Solver rough(robot, options);
+  for (const iksel::JointVector& q : reached) {
+    const iksel::Pose target = shifted(robot.fk(q), 0.029, 0.099, dice);
+    EXPECT_EQ(rough.solve(target).proof, iksel::Proof::none) << q.transpose();
+  }
 }
 
 /// Moves joint j of q to where the arm is singular, if it comes to such a place inside the limits.

@@ -57,6 +57,44 @@ def test_arms_of_which_a_joint_is_swept(made, name: str, joint: int) -> None:
     assert f"angle of joint {joint}, which is swept" in structure.description
 
 
+def six_axes(seed: int) -> iksel.Robot:
+    """Six joints whose axes lie anyhow."""
+    rng = np.random.default_rng(seed)
+    joints = []
+    for i in range(6):
+        axis = rng.normal(size=3)
+        axis /= np.linalg.norm(axis)
+        numbers = [" ".join(map(repr, v.tolist())) for v in (rng.uniform(0.1, 0.3, 3), axis)]
+        joints.append(
+            f'<link name="link{i + 1}"/><joint name="joint{i + 1}" type="revolute">'
+            f'<parent link="link{i}"/><child link="link{i + 1}"/>'
+            f'<origin xyz="{numbers[0]}"/><axis xyz="{numbers[1]}"/>'
+            '<limit lower="-3" upper="3" effort="1" velocity="1"/></joint>'
+        )
+    text = f'<robot name="any"><link name="link0"/>{"".join(joints)}</robot>'
+    return iksel.load_robot(text)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_axes_that_lie_anyhow_are_swept(seed: int) -> None:
+    robot = six_axes(seed)
+    assert robot.structure.kind is iksel.StructureKind.swept
+    assert "axes that lie anyhow" in robot.structure.description
+    solver = iksel.Solver(robot)
+    reached = robot.random_configurations(COUNT, SEED)
+    concluded = 0
+    for q, pose in zip(reached, robot.fk(reached), strict=True):
+        found = solver.solve_all(pose)
+        concluded += found.proof is iksel.Proof.sweep
+        assert min(np.abs(other.q - q).max() for other in found) < 0.02, f"seed {SEED}"
+    assert concluded >= 0.9 * COUNT, f"seed {SEED}"
+    missed = [result for result in map(solver.solve, turned_at_random(robot)) if not result]
+    swept = [result.proof is iksel.Proof.sweep for result in missed]
+    assert len(swept) > 0
+    assert sum(swept) >= 0.8 * len(swept), f"seed {SEED}"
+    assert not any(result.proven for result in missed if result.proof is iksel.Proof.sweep)
+
+
 @pytest.mark.parametrize("name", ["irb14050", "baxter_right"])
 def test_arms_that_are_searched(made, name: str) -> None:
     structure = made.robot(name).structure

@@ -44,6 +44,7 @@ std::array<int, 3> joints_by_call(Closure closure) {
       return {0, 4, 2};
     case Closure::sweep_4:
     case Closure::sweep_6:
+    case Closure::loop:
       break;
   }
   return {};

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <type_traits>
 
 #include "base/work.hpp"
 #include "goal/goal.hpp"
@@ -75,7 +76,11 @@ class EnumeratedSeeds {
   bool next_stage() {
     if (done_ || !work_.has_left()) return false;
     done_ = true;
-    branches_.find(Y_, wants_all_);
+    if constexpr (std::is_same_v<Branches, Enumeration>) {
+      branches_.find(Y_, wants_all_);
+    } else {
+      branches_.find(Y_);
+    }
     clock_.lap(&StageTimes::query);
     return true;
   }

@@ -26,18 +26,16 @@ RootFinder::RootFinder(double lower, double range, double vague, const lanes::La
   }
 }
 
-void RootFinder::find(const lanes::ResidualForm& form) {
+void RootFinder::find(const Residual& residual) {
   size_ = 0;
   brackets_size_ = 0;
   is_complete_ = true;
   if (turns_) {
-    least_divisor_ =
-        kernels_.find_residuals(form, angles_.data() + kBefore, kCells, values_.data() + kBefore);
+    residual(angles_.data() + kBefore, kCells, values_.data() + kBefore);
     std::copy_n(values_.data() + kCells, kBefore, values_.data());
     std::copy_n(values_.data() + kBefore, kAfter, values_.data() + kBefore + kCells);
   } else {
-    least_divisor_ = kernels_.find_residuals(form, angles_.data(), static_cast<int>(angles_.size()),
-                                             values_.data());
+    residual(angles_.data(), static_cast<int>(angles_.size()), values_.data());
   }
   std::array<double, kCells> counts;
   kernels_.count_roots(values_.data() + kBefore, kCells, counts.data());
@@ -47,14 +45,21 @@ void RootFinder::find(const lanes::ResidualForm& form) {
     if (counts[i] == 1) {
       add_bracket(left, step_, values_.data() + kBefore + i);
     } else {
-      look_closer(form, left, step_, 1);
+      look_closer(residual, left, step_, 1);
     }
   }
-  polish(form);
+  polish(residual);
 }
 
-void RootFinder::look_closer(const lanes::ResidualForm& form, double left, double length,
-                             int depth) {
+double RootFinder::faintest() const {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = kBefore; i < kBefore + kCells; ++i) {
+    least = std::min(least, std::max(std::abs(values_[i]), std::abs(values_[i + 1])));
+  }
+  return least;
+}
+
+void RootFinder::look_closer(const Residual& residual, double left, double length, int depth) {
   constexpr int kDeepest = 3;
   constexpr int kInside = kBlock;
   constexpr int kAngles = kBefore + kInside + kAfter + 1;
@@ -65,7 +70,7 @@ void RootFinder::look_closer(const lanes::ResidualForm& form, double left, doubl
   for (std::size_t i = 0; i < kAngles; ++i) {
     angles[i] = left + step * (static_cast<double>(i) - kBefore);
   }
-  kernels_.find_residuals(form, angles.data(), kAngles, values.data());
+  residual(angles.data(), kAngles, values.data());
   std::array<double, kInside> counts;
   kernels_.count_roots(values.data() + kBefore, kInside, counts.data());
   for (std::size_t i = 0; i < kInside; ++i) {
@@ -75,7 +80,7 @@ void RootFinder::look_closer(const lanes::ResidualForm& form, double left, doubl
     if (counts[i] == 1) {
       add_bracket(here, step, at);
     } else if (depth < kDeepest) {
-      look_closer(form, here, step, depth + 1);
+      look_closer(residual, here, step, depth + 1);
     } else {
       add(here + step / 2, true);
     }
@@ -111,7 +116,7 @@ void RootFinder::add(double angle, bool is_vague) {
   roots_[size_++] = {angle, is_vague};
 }
 
-void RootFinder::polish(const lanes::ResidualForm& form) {
+void RootFinder::polish(const Residual& residual) {
   constexpr int kRounds = 40;
   for (std::size_t first = 0; first < brackets_size_; first += kBlock) {
     const std::size_t n = std::min<std::size_t>(kBlock, brackets_size_ - first);
@@ -120,7 +125,7 @@ void RootFinder::polish(const lanes::ResidualForm& form) {
     bool is_there = false;
     for (int round = 0; round < kRounds && !is_there; ++round) {
       for (std::size_t i = 0; i < n; ++i) angles[i] = brackets_[first + i].next();
-      kernels_.find_residuals(form, angles.data(), kBlock, values.data());
+      residual(angles.data(), kBlock, values.data());
       is_there = true;
       for (std::size_t i = 0; i < n; ++i) {
         brackets_[first + i].narrow(angles[i], values[i]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The roots of a residual (residual_kernel.hpp) over a range of its angle.
+// The roots of a residual (residual_kernel.hpp, loop_kernel.hpp) over a range of its angle.
 #pragma once
 
 #include <array>
@@ -8,17 +8,17 @@
 #include <limits>
 #include <vector>
 
+#include "base/function_ref.hpp"
 #include "simd/kernels.hpp"
-#include "simd/residual_types.hpp"
 
 namespace iksel {
 
 class RootFinder {
  public:
   /// Intervals between angles at which the residual is looked at first. It is a trigonometric
-  /// polynomial, of degree 8 if axes 1 and 2 meet.
+  /// polynomial, of degree 8 if axes 1 and 2 meet, or of a loop.
   static constexpr int kCells = 128;
-  /// Roots that are kept, at most. There are 16 if axes 1 and 2 meet.
+  /// Roots that are kept, at most. There are 16 of degree 8.
   static constexpr std::size_t kMost = 48;
 
   struct Root {
@@ -30,12 +30,13 @@ class RootFinder {
   /// residual turns and its two roots are at most `vague` away, real or not, a root is vague [rad].
   RootFinder(double lower, double range, double vague, const lanes::LaneKernels& kernels);
 
-  void find(const lanes::ResidualForm& form);
+  /// Writes the residuals of `n` angles, a multiple of kWidth.
+  using Residual = FunctionRef<void(const double* angles, int n, double* residuals)>;
+  void find(const Residual& residual);
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] const Root& operator[](std::size_t i) const { return roots_[i]; }
-  /// The least of what the residual was divided by: it is of no use where that is near 0
-  /// [units^2].
-  [[nodiscard]] double least_divisor() const { return least_divisor_; }
+  /// Of the larger of the residuals at both ends of a cell, the least.
+  [[nodiscard]] double faintest() const;
   /// Whether these are all.
   [[nodiscard]] bool is_complete() const { return is_complete_; }
 
@@ -57,11 +58,11 @@ class RootFinder {
   };
   /// Looks into the interval of this length from `left` on, at more angles; `depth` of those
   /// around.
-  void look_closer(const lanes::ResidualForm& form, double left, double length, int depth);
+  void look_closer(const Residual& residual, double left, double length, int depth);
   void add_bracket(double left, double length, const double* value);
   void add(double angle, bool is_vague);
   /// Narrows all brackets.
-  void polish(const lanes::ResidualForm& form);
+  void polish(const Residual& residual);
 
   const lanes::LaneKernels& kernels_;
   bool turns_;
@@ -73,7 +74,6 @@ class RootFinder {
   std::array<Root, kMost> roots_{};
   std::size_t size_ = 0;
   bool is_complete_ = false;
-  double least_divisor_ = 0;
 };
 
 }  // namespace iksel

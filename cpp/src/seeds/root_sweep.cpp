@@ -14,6 +14,12 @@ namespace {
 /// enough: one reachable target of a million of gen3_6dof, whose pi is rounded, had been lost.
 constexpr double kBesideAxis = 1000;
 
+/// Where neighbouring values of a loop's determinant are less than so many times its noise, there
+/// may be roots or none.
+constexpr double kAboveNoise = 30;
+/// By how much a loop may stay open at a root of its determinant, which is known but to its noise.
+constexpr double kOpen = 0.02;
+
 RootFinder make_finder(const ChainModel& model, int joint, double vague,
                        const lanes::LaneKernels& kernels) {
   constexpr double kBeyond = 0.05;
@@ -32,25 +38,50 @@ RootSweep::RootSweep(const ChainModel& model, const ClosedFormChain& chain, bool
       concludes_(concludes_from_branches(is_nominal, tolerance)),
       vague_(2 * std::sqrt(tolerance + chain.deviation)),
       vague_divisor_(std::pow(kBesideAxis * (tolerance + chain.deviation), 2)),
-      roots_(make_finder(model, chain.held, vague_, kernels)) {
+      roots_(make_finder(model, chain.held, vague_, kernels)),
+      polynomial_(kernels) {
   chain_.use_limits(model);
   for (int lane = 0; lane < lanes::kWidth; ++lane) pack_.sign[2][lane] = 1;
 }
 
-void RootSweep::find(const Pose& Y, bool /*wants_all*/) {
+bool RootSweep::find_product_roots(const Pose& Y) {
   chain_.set_target(Y, pack_);
-  roots_.find(make_residual(chain_, pack_));
+  const lanes::ResidualForm form = make_residual(chain_, pack_);
+  double least_divisor = kInfinity;
+  roots_.find([&](const double* angles, int n, double* residuals) {
+    least_divisor = std::min(least_divisor, kernels_.find_residuals(form, angles, n, residuals));
+  });
+  return least_divisor > vague_divisor_;
+}
+
+bool RootSweep::find_loop_roots(const Pose& Y) {
+  chain_.loop->set_target(chain_.reversed ? Y.inverse() : Y, loop_);
+  polynomial_.find(loop_);
+  roots_.find([&](const double* angles, int n, double* values) {
+    kernels_.evaluate_polynomial(polynomial_.get(), angles, n, values);
+  });
+  return roots_.faintest() > kAboveNoise * polynomial_.noise();
+}
+
+void RootSweep::find(const Pose& Y) {
+  const bool is_clear = chain_.loop ? find_loop_roots(Y) : find_product_roots(Y);
+  certain_ = concludes_ && roots_.is_complete() && is_clear;
   size_ = 0;
-  certain_ = concludes_ && roots_.is_complete() && roots_.least_divisor() > vague_divisor_;
-  constexpr std::size_t kAtOnce = lanes::kWidth / kBranches;
-  for (std::size_t first = 0; first < roots_.size(); first += kAtOnce) {
-    const std::size_t n = std::min(kAtOnce, roots_.size() - first) * kBranches;
+  // Each root has a lane, or by the first two of the three signs four: two to this power.
+  const unsigned lanes_power = chain_.loop ? 0 : 2;
+  const std::size_t at_once = static_cast<std::size_t>(lanes::kWidth) >> lanes_power;
+  for (std::size_t first = 0; first < roots_.size(); first += at_once) {
+    const std::size_t n = std::min(at_once, roots_.size() - first) << lanes_power;
     for (std::size_t lane = 0; lane < lanes::kWidth; ++lane) {
-      pack_.held[lane] = roots_[first + std::min(lane, n - 1) / kBranches].angle;
+      pack_.held[lane] = roots_[first + (std::min(lane, n - 1) >> lanes_power)].angle;
     }
-    kernels_.find_branches(chain_.form, pack_);
+    if (chain_.loop) {
+      kernels_.close_loops(chain_.loop->form(), loop_, chain_.form, pack_);
+    } else {
+      kernels_.find_branches(chain_.form, pack_);
+    }
     for (std::size_t lane = 0; lane < n; ++lane) {
-      take(roots_[first + lane / kBranches].is_vague, static_cast<int>(lane));
+      take(roots_[first + (lane >> lanes_power)].is_vague, static_cast<int>(lane));
     }
   }
 }
@@ -59,10 +90,15 @@ void RootSweep::take(bool is_vague, int lane) {
   // Roots are off by what the tolerances allow, many times over; but where there are two, by its
   // square root.
   const double slack = is_vague ? 4 * vague_ : 25 * vague_ * vague_;
-  if (!(std::abs(pack_.residual[lane]) < slack && pack_.least[lane] > -slack &&
-        pack_.beyond[lane] < slack)) {
+  const double most = chain_.loop ? std::max(slack, kOpen) : slack;
+  // Of two solutions that all but share an angle of a loop's first joint, one or both are not
+  // found.
+  if (chain_.loop && is_vague) certain_ = false;
+  if (!(std::abs(pack_.residual[lane]) < most && pack_.least[lane] > -slack)) {
+    if (chain_.loop) certain_ = false;
     return;
   }
+  if (!(pack_.beyond[lane] < slack)) return;
   // At a limit, what the tolerances allow decides.
   if (size_ == kMost || (!is_vague && pack_.beyond[lane] > 0)) certain_ = false;
   if (size_ == kMost) return;

@@ -10,6 +10,7 @@
 #include "seeds/root_finder.hpp"
 #include "simd/branch_types.hpp"
 #include "structure/closed_form.hpp"
+#include "structure/loop_polynomial.hpp"
 
 namespace iksel {
 
@@ -25,7 +26,7 @@ class RootSweep {
 
   /// Finds the solutions of the goal, a full pose, that lie inside the limits, or so near to them
   /// that it cannot be told. Y as in reduction.hpp.
-  void find(const Pose& Y, bool wants_all);
+  void find(const Pose& Y);
   [[nodiscard]] int size() const { return size_; }
   /// Inside the limits, or nearly [rad].
   [[nodiscard]] const double* q(int i) const { return q_[static_cast<std::size_t>(i)].data(); }
@@ -34,9 +35,10 @@ class RootSweep {
   [[nodiscard]] static bool has_families() { return false; }
 
  private:
-  /// The first two of the three signs are read.
-  static constexpr std::size_t kBranches = 4;
-
+  /// Finds the roots by the product over all branches, or by the loop's determinant. Returns
+  /// whether rounding leaves enough of it to conclude from.
+  bool find_product_roots(const Pose& Y);
+  bool find_loop_roots(const Pose& Y);
   void take(bool is_vague, int lane);
 
   ClosedFormChain chain_;
@@ -45,6 +47,8 @@ class RootSweep {
   double vague_;          ///< by how much roots that are nearly double may be off [rad]
   double vague_divisor_;  ///< nothing is concluded from residuals divided by less [units^2]
   RootFinder roots_;
+  LoopPolynomial polynomial_;
+  lanes::LoopTarget loop_{};
   lanes::BranchPack pack_ = all_branches();
   std::array<std::array<double, 6>, kMost> q_{};
   int size_ = 0;

@@ -171,6 +171,7 @@ IKSEL_INLINE void place_wrist(const ClosedForm& form, const Vec<T>& w, const T (
     case Closure::three_parallel:
     case Closure::sweep_4:
     case Closure::sweep_6:
+    case Closure::loop:
       return;
   }
 }

@@ -7,7 +7,8 @@
 namespace iksel::lanes {
 
 /// What makes six turning joints solvable in closed form. The first four end in axes 4, 5 and 6
-/// that meet in one point. The last two are closed for an angle of one joint, but for a residual.
+/// that meet in one point. Three are closed for an angle of one joint, but for a
+/// residual.
 enum class Closure : int {
   parallel_23,     ///< axes 2 and 3 are parallel
   intersect_12,    ///< axes 1 and 2 meet
@@ -16,6 +17,7 @@ enum class Closure : int {
   three_parallel,  ///< axes 2, 3 and 4 are parallel, 5 and 6 meet
   sweep_4,         ///< axes 2 and 3 are parallel, 5 and 6 meet; for an angle of joint 4
   sweep_6,         ///< axes 2 and 3 are parallel, 4 and 5 meet; for an angle of joint 6
+  loop,            ///< anyhow; for an angle of the first in the order of a loop (loop_types.hpp)
 };
 
 /// x . R(k, t) y = a cos(t) + b sin(t) + c, for constant x, k and y.
@@ -57,7 +59,7 @@ struct ClosedForm {
 /// [units]; where a joint is held, as they are at its angle 0.
 struct BranchPack {
   alignas(64) double target[12][kWidth];
-  /// Angle of the held joint, or of that of sweep_4 or sweep_6, if the form has one [rad].
+  /// Angle of the held joint, or of that of sweep_4, sweep_6 or loop, if the form has one [rad].
   alignas(64) double held[kWidth];
   /// +-1: which of two solutions each of three subproblems takes.
   alignas(64) double sign[3][kWidth];
@@ -71,7 +73,7 @@ struct BranchPack {
   /// nothing.
   alignas(64) double least[kWidth];
   /// Of sweep_4 and sweep_6, 0 at solutions: by how much the cosine of the angle between two axes
-  /// is off.
+  /// is off; of loop, by how much it stays open.
   alignas(64) double residual[kWidth];
   alignas(64) double best[kWidth];
   alignas(64) double worst[kWidth];

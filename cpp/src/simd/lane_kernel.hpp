@@ -9,6 +9,7 @@
 #include "simd/lane_goal.hpp"
 #include "simd/lane_math.hpp"
 #include "simd/lane_types.hpp"
+#include "simd/loop_kernel.hpp"
 #include "simd/move_kernel.hpp"
 #include "simd/residual_kernel.hpp"
 #include "simd/scene_kernel.hpp"
@@ -191,7 +192,10 @@ constexpr LaneKernels make_kernels(const char* name) {
           measure_moves<Wide>,
           find_residuals<Wide>,
           count_roots<Wide>,
-          find_clearance<Wide>};
+          find_clearance<Wide>,
+          find_determinants<Wide>,
+          evaluate_polynomial<Wide>,
+          close_loops<Wide>};
 }
 
 }  // namespace iksel::lanes

@@ -160,6 +160,17 @@ struct ResidualForm;
 /// what they are divided by.
 using FindResiduals = double (*)(const ResidualForm& form, const double* angles, int n,
                                  double* residuals);
+struct LoopForm;
+struct LoopTarget;
+struct TrigonometricPolynomial;
+/// The determinants of six equations at `n` angles, a multiple of kWidth (loop_kernel.hpp).
+using FindDeterminants = void (*)(const LoopTarget& target, const double* angles, int n,
+                                  double* values);
+using EvaluatePolynomial = void (*)(const TrigonometricPolynomial& polynomial, const double* angles,
+                                    int n, double* values);
+/// The other joints' angles, at kWidth roots.
+using CloseLoops = void (*)(const LoopForm& form, const LoopTarget& target,
+                            const ClosedForm& limits, BranchPack& pack);
 /// The number of roots between values beside each other: 0, 1, or 2 if that is not certain.
 using CountRoots = void (*)(const double* values, int n, double* counts);
 
@@ -193,6 +204,9 @@ struct LaneKernels {
   FindResiduals find_residuals;
   CountRoots count_roots;
   FindClearance find_clearance;
+  FindDeterminants find_determinants;
+  EvaluatePolynomial evaluate_polynomial;
+  CloseLoops close_loops;
 };
 
 }  // namespace iksel::lanes

@@ -6,6 +6,7 @@
 #include "base/constants.hpp"
 #include "simd/lane_chain.hpp"
 #include "structure/completed_axes.hpp"
+#include "structure/find_loop.hpp"
 
 namespace iksel {
 namespace {
@@ -151,6 +152,7 @@ lanes::ClosedForm make_form(Closure closure, const ScrewAxes& axes, double unit)
       form.rest = h[1].dot(p12 + p23);
       break;
     case Closure::intersect_12:
+    case Closure::loop:
       break;
   }
   return form;
@@ -273,7 +275,8 @@ std::optional<ClosedFormChain> find_closed_form(const ChainModel& model, const T
   }
   const bool has_sweep = model.dof == kSix || model.dof == kSix + 1;
   if (!task.is_full_pose() || !has_sweep) return std::nullopt;
-  return look_at(model, {ScrewAxes::of(model)}, /*sweeps=*/true);
+  auto swept = look_at(model, {ScrewAxes::of(model)}, /*sweeps=*/true);
+  return swept || model.dof != kSix ? swept : find_loop(model);
 }
 
 ClosedForms ClosedForms::of(const ChainModel& model) {

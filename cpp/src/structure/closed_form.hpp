@@ -3,12 +3,14 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "iksel/task.hpp"
 #include "simd/branch_types.hpp"
+#include "structure/loop_equations.hpp"
 #include "structure/screw_axes.hpp"
 
 namespace iksel {
@@ -25,14 +27,16 @@ inline constexpr double kSweptTolerance = 2e-5;
 struct ClosedFormChain {
   /// `joints[i]` is the chain's joint that the form counts as its i-th; from `dof` on, what
   /// completes it.
-  int joints[6];
-  int dof;
+  int joints[6]{};
+  int dof = 0;
   unsigned free = 0;  ///< bit j: joint j turns as it likes
   /// The chain's joint that is held; -1: there are but six.
   int held = -1;
-  bool reversed;
-  lanes::ClosedForm form;
-  double unit;               ///< [m]
+  bool reversed = false;
+  lanes::ClosedForm form{};
+  /// Of the closure `loop`, of which the form has but the limits.
+  std::shared_ptr<const LoopEquations> loop;
+  double unit = 0;           ///< [m]
   double deviation = 0;      ///< of axes from where the form has them [rad, units]
   Eigen::Vector3d first;     ///< the point on axis 1 [m]
   Eigen::Vector3d tail;      ///< from the point on axis 6 to the end, in the basis [m]

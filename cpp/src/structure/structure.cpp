@@ -58,6 +58,8 @@ std::string describe_axes(const ClosedFormChain& chain) {
       return text.add({1, 2}, kParallel).add({4, 5}, kMeet).text();
     case Closure::sweep_6:
       return text.add({1, 2}, kParallel).add({3, 4}, kMeet).text();
+    case Closure::loop:
+      break;
   }
   return {};
 }
@@ -80,6 +82,11 @@ Structure find_structure(const Robot& robot) {
   const auto chain = find_closed_form(robot.model());
   if (!chain) {
     return {StructureKind::searched, "no axes lie so that it would help: solved by search"};
+  }
+  if (chain->loop) {
+    return {StructureKind::swept,
+            "axes that lie anyhow: by six equations for each angle of joint " +
+                std::to_string(chain->held + 1) + ", which is swept"};
   }
   std::string text = describe_axes(*chain);
   if (chain->held >= 0) {

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Six joints whose axes lie anyhow, for an angle of one of them: the determinant that is 0 at
+// solutions (structure/loop_equations.hpp), and the others by its null vector.
+//
+// The six equations are linear in 1, cos, sin of angle d, and of angle e. Multiplied by cos(d / 2)
+// and by sin(d / 2) they are twelve, linear and homogeneous in the twelve products of cos(d / 2),
+// sin(d / 2), cos(3 d / 2) and sin(3 d / 2) with 1, cos(e) and sin(e).
+#pragma once
+
+#include "simd/branch_arm.hpp"
+#include "simd/loop_types.hpp"
+
+namespace iksel::lanes {
+
+inline constexpr int kProducts = 12;
+
+/// By columns: the first index is a product's.
+template <typename T>
+using Products = T[kProducts][kProducts];
+
+template <typename T>
+IKSEL_INLINE void fill_products(const LoopTarget& target, const Angle<T>& angle, Products<T>& m) {
+  const T half = T(0.5);
+  for (int i = 0; i < 6; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      const auto at = [&](int d) __attribute__((always_inline)) {
+        return T(target.equation[0][i][d][j]) + angle.c * T(target.equation[1][i][d][j]) +
+               angle.s * T(target.equation[2][i][d][j]);
+      };
+      const T one = at(0);
+      const T c = half * at(1);
+      const T s = half * at(2);
+      m[j][i] = one + c;
+      m[3 + j][i] = s;
+      m[6 + j][i] = c;
+      m[9 + j][i] = s;
+      m[j][6 + i] = s;
+      m[3 + j][6 + i] = one - c;
+      m[6 + j][6 + i] = T(0.0) - s;
+      m[9 + j][6 + i] = c;
+    }
+  }
+}
+
+/// By Householder's reflections, an odd number of them. Returns the product of the diagonal.
+template <typename T>
+IKSEL_INLINE T make_triangular(Products<T>& m) {
+  T product = T(1.0);
+  for (int k = 0; k + 1 < kProducts; ++k) {
+    T square = T(0.0);
+    for (int i = k; i < kProducts; ++i) square = square + m[k][i] * m[k][i];
+    const T norm = sqrt(square);
+    const T diagonal = select(m[k][k] > T(0.0), T(0.0) - norm, norm);
+    const T inverse = T(1.0) / max(square + norm * abs(m[k][k]), T(1e-200));
+    m[k][k] = m[k][k] - diagonal;
+    for (int j = k + 1; j < kProducts; ++j) {
+      T share = T(0.0);
+      for (int i = k; i < kProducts; ++i) share = share + m[k][i] * m[j][i];
+      share = share * inverse;
+      for (int i = k; i < kProducts; ++i) m[j][i] = m[j][i] - share * m[k][i];
+    }
+    m[k][k] = diagonal;
+    product = product * diagonal;
+  }
+  return product * m[kProducts - 1][kProducts - 1];
+}
+
+/// At `n` angles [rad], a multiple of kWidth.
+template <typename T>
+void find_determinants(const LoopTarget& target, const double* angles, int n, double* values) {
+  for (int first = 0; first < n; first += Lanes<T>::kCount) {
+    Angle<T> angle;
+    sincos(Lanes<T>::load(angles + first), angle.s, angle.c);
+    Products<T> m;
+    fill_products(target, angle, m);
+    Lanes<T>::store(make_triangular<T>(m), values + first);
+  }
+}
+
+/// The same by its Fourier coefficients.
+template <typename T>
+void evaluate_polynomial(const TrigonometricPolynomial& p, const double* angles, int n,
+                         double* values) {
+  for (int first = 0; first < n; first += Lanes<T>::kCount) {
+    Angle<T> z;
+    sincos(Lanes<T>::load(angles + first), z.s, z.c);
+    T re = T(p.a[TrigonometricPolynomial::kDegree]);
+    T im = T(0.0) - T(p.b[TrigonometricPolynomial::kDegree]);
+    for (int k = TrigonometricPolynomial::kDegree; k-- > 0;) {
+      const T next = T(p.a[k]) + (re * z.c - im * z.s);
+      im = re * z.s + im * z.c - T(p.b[k]);
+      re = next;
+    }
+    Lanes<T>::store(re, values + first);
+  }
+}
+
+/// What a triangular matrix takes to nearly 0, by two steps of inverse iteration.
+template <typename T>
+IKSEL_INLINE void find_null_vector(const Products<T>& m, T (&x)[kProducts]) {
+  T inverse[kProducts];
+  for (int k = 0; k < kProducts; ++k) {
+    const T size = max(abs(m[k][k]), T(1e-16) * abs(m[0][0]) + T(1e-200));
+    inverse[k] = select(m[k][k] < T(0.0), T(-1.0), T(1.0)) / size;
+    x[k] = T(1.0);
+  }
+  for (int step = 0; step < 2; ++step) {
+    for (int k = 0; k < kProducts; ++k) {
+      for (int i = 0; i < k; ++i) x[k] = x[k] - m[k][i] * x[i];
+      x[k] = x[k] * inverse[k];
+    }
+    T square = T(0.0);
+    for (int k = kProducts; k-- > 0;) {
+      for (int j = k + 1; j < kProducts; ++j) x[k] = x[k] - m[j][k] * x[j];
+      x[k] = x[k] * inverse[k];
+      square = square + x[k] * x[k];
+    }
+    const T scale = T(1.0) / sqrt(square);
+    for (int k = 0; k < kProducts; ++k) x[k] = x[k] * scale;
+  }
+}
+
+/// Angles d and e of a null vector.
+template <typename T>
+IKSEL_INLINE void read_products(const T (&x)[kProducts], Branch<T, Existence<T>>& out) {
+  T c = T(0.0);
+  T s = T(0.0);
+  for (int k = 0; k < 4; ++k) {
+    c = c + x[3 * k] * x[3 * k + 1];
+    s = s + x[3 * k] * x[3 * k + 2];
+  }
+  out.q[2] = normalized(c, s, out.quality);
+  const auto of_d = [&](int k) __attribute__((always_inline)) {
+    return x[3 * k] + out.q[2].c * x[3 * k + 1] + out.q[2].s * x[3 * k + 2];
+  };
+  const T c1 = of_d(0);
+  const T s1 = of_d(1);
+  const T c3 = of_d(2);
+  const T s3 = of_d(3);
+  out.q[1] = normalized(c3 * c1 + s3 * s1, s3 * c1 - c3 * s1, out.quality);
+}
+
+/// A point, and directions, that move together.
+template <typename T>
+struct Moving {
+  Vec<T> p, along, across;
+
+  IKSEL_INLINE void turn(const double (&h)[3], const double (&at)[3], const Angle<T>& angle) {
+    const Vec<T> axis = constant<T>(h);
+    p = add(turned(axis, angle, add(p, T(-1.0), constant<T>(at))), T(1.0), constant<T>(at));
+    along = turned(axis, angle, along);
+    across = turned(axis, angle, across);
+  }
+  IKSEL_INLINE void move(const LoopTarget& target) {
+    const auto rotated = [&](const Vec<T>& v) __attribute__((always_inline)) {
+      const Vec<T> none{T(0.0), T(0.0), T(0.0)};
+      return add(add(add(none, v.x, constant<T>(target.R[0])), v.y, constant<T>(target.R[1])), v.z,
+                 constant<T>(target.R[2]));
+    };
+    p = add(rotated(p), T(1.0), constant<T>(target.t));
+    along = rotated(along);
+    across = rotated(across);
+  }
+};
+
+/// cos(t) and sin(t) that satisfy x . R(k, t) y = rest for several x, y and rest as well as can be.
+template <typename T>
+struct LeastSquares {
+  Vec<T> k;
+  T cc = T(0.0), cs = T(0.0), ss = T(0.0), c = T(0.0), s = T(0.0);
+
+  IKSEL_INLINE void add_row(const T& by_cosine, const T& by_sine, const T& rest) {
+    cc = cc + by_cosine * by_cosine;
+    cs = cs + by_cosine * by_sine;
+    ss = ss + by_sine * by_sine;
+    c = c + by_cosine * rest;
+    s = s + by_sine * rest;
+  }
+  IKSEL_INLINE T by_cosine(const Vec<T>& x, const Vec<T>& y) const {
+    return dot(x, y) - dot(k, x) * dot(k, y);
+  }
+  IKSEL_INLINE void add_equation(const Vec<T>& x, const Vec<T>& y, const T& rest) {
+    add_row(by_cosine(x, y), dot(x, cross(k, y)), rest - dot(k, x) * dot(k, y));
+  }
+  template <typename Q>
+  IKSEL_INLINE Angle<T> solve(Q& quality) const {
+    return normalized(ss * c - cs * s, cc * s - cs * c, quality);
+  }
+};
+
+/// Joints b and a, which bring what c, d and e have moved back to axis f. About axis a, of a point
+/// and a direction do not change: the distances of the point along the axis and from its own point,
+/// the direction's share along the axis, its product with the way to the point, and its moment.
+template <typename T, typename Q>
+IKSEL_INLINE void turn_back(const LoopForm& form, Moving<T>& from, Branch<T, Q>& out) {
+  const Vec<T> ha = constant<T>(form.h[4]);
+  const Vec<T> pa = constant<T>(form.p[4]);
+  const Vec<T> pb = constant<T>(form.p[5]);
+  const Vec<T> hf = constant<T>(form.h[3]);
+  const Vec<T> goal = add(constant<T>(form.p[3]), T(-1.0), pa);
+  const Vec<T> way = add(pb, T(-1.0), pa);
+  const Vec<T> v = add(from.p, T(-1.0), pb);
+  LeastSquares<T> b{constant<T>(form.h[5])};
+  b.add_equation(ha, from.along, dot(ha, hf));
+  b.add_equation(ha, v, dot(ha, add(goal, T(-1.0), way)));
+  b.add_equation(way, v, T(0.5) * (dot(goal, goal) - dot(way, way) - dot(v, v)));
+  b.add_equation(way, from.along, dot(goal, hf) - dot(v, from.along));
+  // The moment: (ha x way) . R along + ha . R (v x along).
+  const Vec<T> lever = cross(ha, way);
+  const Vec<T> moment = cross(v, from.along);
+  b.add_row(b.by_cosine(lever, from.along) + b.by_cosine(ha, moment),
+            dot(lever, cross(b.k, from.along)) + dot(ha, cross(b.k, moment)),
+            dot(ha, cross(goal, hf)) - dot(b.k, lever) * dot(b.k, from.along) -
+                dot(b.k, ha) * dot(b.k, moment));
+  out.q[5] = b.solve(out.quality);
+  from.turn(form.h[5], form.p[5], out.q[5]);
+  const Vec<T> arm = add(from.p, T(-1.0), pa);
+  LeastSquares<T> a{ha};
+  const T c = a.by_cosine(arm, goal) + a.by_cosine(from.along, hf);
+  const T s = dot(goal, cross(ha, arm)) + dot(hf, cross(ha, from.along));
+  out.q[4] = normalized(c, s, out.quality);
+  from.turn(form.h[4], form.p[4], out.q[4]);
+}
+
+/// All six joints at the angles of c that the pack holds, and by how much the loop stays open
+/// there: `residual`, in radians and units together.
+template <typename T>
+void close_loops(const LoopForm& form, const LoopTarget& target, const ClosedForm& limits,
+                 BranchPack& pack) {
+  for (int first = 0; first < kWidth; first += Lanes<T>::kCount) {
+    Branch<T, Existence<T>> out;
+    sincos(Lanes<T>::load(pack.held + first), out.q[0].s, out.q[0].c);
+    Products<T> m;
+    fill_products(target, out.q[0], m);
+    make_triangular<T>(m);
+    T x[kProducts];
+    find_null_vector<T>(m, x);
+    read_products(x, out);
+    Moving<T> moving{constant<T>(form.p[3]), constant<T>(form.h[3]), constant<T>(form.across)};
+    for (int j = 2; j >= 0; --j) {
+      if (form.before == j + 1) moving.move(target);
+      moving.turn(form.h[j], form.p[j], out.q[j]);
+    }
+    if (form.before == 0) moving.move(target);
+    turn_back(form, moving, out);
+    const Vec<T> hf = constant<T>(form.h[3]);
+    const Vec<T> across = constant<T>(form.across);
+    // What is left is a turn about axis f, of the others.
+    out.q[3] = normalized(dot(moving.across, across),
+                          T(0.0) - dot(moving.across, cross(hf, across)), out.quality);
+    const Vec<T> off = add(moving.p, T(-1.0), constant<T>(form.p[3]));
+    const Vec<T> tilt = add(moving.along, T(-1.0), hf);
+    Lanes<T>::store(sqrt(dot(off, off) + dot(tilt, tilt)), pack.residual + first);
+    store_joints(limits, out, first, pack);
+  }
+}
+
+}  // namespace iksel::lanes

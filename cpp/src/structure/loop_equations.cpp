@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "structure/loop_equations.hpp"
+
+#include <Eigen/SVD>
+#include <cmath>
+
+#include "base/constants.hpp"
+
+namespace iksel {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr int kAngles = 3;
+constexpr int kEquations = 6;
+constexpr int kInvariant = 14;
+
+double node(int i) { return kTwoPi / kAngles * i; }
+
+/// From values at the three angles to what is constant, goes by cosine, and by sine.
+Matrix3d by_harmonics() {
+  Matrix3d F;
+  for (int i = 0; i < kAngles; ++i) {
+    F(0, i) = 1.0 / kAngles;
+    F(1, i) = 2.0 / kAngles * std::cos(node(i));
+    F(2, i) = 2.0 / kAngles * std::sin(node(i));
+  }
+  return F;
+}
+
+int power_of_three(int n) { return n == 0 ? 1 : 3 * power_of_three(n - 1); }
+
+/// What is linear in itself under a motion, and 1.
+Eigen::Matrix<double, kInvariant + 1, 1> features(const Vector3d& p, const Vector3d& l) {
+  Eigen::Matrix<double, kInvariant + 1, 1> x;
+  const double p2 = p.squaredNorm();
+  const double along = p.dot(l);
+  x << p, p2, l, along, p.cross(l), p2 * l - 2 * along * p, 1;
+  return x;
+}
+
+Matrix3d skew(const Vector3d& t) {
+  Matrix3d K;
+  K << 0, -t[2], t[1], t[2], 0, -t[0], -t[1], t[0], 0;
+  return K;
+}
+
+/// Features behind a motion, without the 1, of those before it.
+Eigen::Matrix<double, kInvariant, kInvariant + 1> moved(const Pose& motion) {
+  constexpr int kP = 0, kP2 = 3, kL = 4, kAlong = 7, kMoment = 8, kN = 11, kOne = 14;
+  const Matrix3d R = motion.linear();
+  const Vector3d t = motion.translation();
+  const Eigen::RowVector3d tR = t.transpose() * R;
+  Eigen::Matrix<double, kInvariant, kInvariant + 1> out;
+  out.setZero();
+  out.block<3, 3>(kP, kP) = R;
+  out.block<3, 1>(kP, kOne) = t;
+  out(kP2, kP2) = 1;
+  out.block<1, 3>(kP2, kP) = 2 * tR;
+  out(kP2, kOne) = t.squaredNorm();
+  out.block<3, 3>(kL, kL) = R;
+  out(kAlong, kAlong) = 1;
+  out.block<1, 3>(kAlong, kL) = tR;
+  out.block<3, 3>(kMoment, kMoment) = R;
+  out.block<3, 3>(kMoment, kL) = skew(t) * R;
+  out.block<3, 3>(kN, kN) = R;
+  out.block<3, 3>(kN, kMoment) = -2 * skew(t) * R;
+  out.block<3, 3>(kN, kL) = t.squaredNorm() * R - 2 * t * tR;
+  out.block<3, 1>(kN, kAlong) = -2 * t;
+  return out;
+}
+
+}  // namespace
+
+LoopEquations::LoopEquations(const ScrewAxes& axes, double unit, int swept)
+    : unit_(unit), end_(axes.end) {
+  end_.translation() /= unit;
+  constexpr int kSix = 6;
+  form_.before = (kSix - swept) % kSix;
+  for (int i = 0; i < kSix; ++i) {
+    const auto joint = static_cast<std::size_t>((swept + i) % kSix);
+    const Vector3d p = axes.p[joint] / unit;
+    for (int k = 0; k < 3; ++k) {
+      form_.h[i][k] = axes.h[joint][k];
+      form_.p[i][k] = p[k];
+    }
+  }
+  const Vector3d across = Vector3d(form_.h[3]).unitOrthogonal();
+  for (int k = 0; k < 3; ++k) form_.across[k] = across[k];
+  const int count = power_of_three(3 - form_.before);
+  for (int i = 0; i < count; ++i) {
+    Line line{Vector3d(form_.p[3]), Vector3d(form_.h[3])};
+    for (int j = 2, rest = i; j >= form_.before; --j, rest /= kAngles) {
+      const Pose turn = motion(j, node(rest % kAngles));
+      line = {turn * line.p, turn.linear() * line.l};
+    }
+    points_.push_back(line);
+  }
+  eliminate();
+}
+
+Pose LoopEquations::motion(int joint, double angle) const {
+  const Vector3d p(form_.p[joint]);
+  Pose turn = Pose::Identity();
+  turn.linear() = Eigen::AngleAxisd(angle, Vector3d(form_.h[joint])).toRotationMatrix();
+  turn.translation() = p - turn.linear() * p;
+  return turn;
+}
+
+void LoopEquations::eliminate() {
+  const Matrix3d F = by_harmonics();
+  Eigen::Matrix<double, kInvariant, 9> products;
+  products.setZero();
+  for (int i = 0; i < 9; ++i) {
+    const Pose back = motion(5, -node(i / 3)) * motion(4, -node(i % 3));
+    const auto x = features(back * Vector3d(form_.p[3]), back.linear() * Vector3d(form_.h[3]));
+    for (int k = 0; k < 9; ++k) {
+      products.col(k) += F(k / 3, i / 3) * F(k % 3, i % 3) * x.head<kInvariant>();
+    }
+  }
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(products.rightCols<8>(), Eigen::ComputeFullU);
+  const Eigen::Matrix<double, kEquations, kInvariant> left =
+      svd.matrixU().rightCols<kEquations>().transpose();
+  const int count = power_of_three(form_.before);
+  equations_.setZero(kEquations * count, kFeatures);
+  for (int i = 0; i < count; ++i) {
+    Pose turn = Pose::Identity();
+    for (int j = form_.before - 1, rest = i; j >= 0; --j, rest /= kAngles) {
+      turn = motion(j, node(rest % kAngles)) * turn;
+    }
+    const Eigen::Matrix<double, kEquations, kFeatures> at = left * moved(turn);
+    for (int k = 0; k < count; ++k) {
+      double share = 1;
+      for (int j = 0, a = i, b = k; j < form_.before; ++j, a /= kAngles, b /= kAngles) {
+        share *= F(b % kAngles, a % kAngles);
+      }
+      equations_.middleRows<kEquations>(kEquations * k) += share * at;
+    }
+  }
+  equations_.topRightCorner<kEquations, 1>() -= left * products.col(0);
+}
+
+void LoopEquations::set_target(const Pose& Y, lanes::LoopTarget& target) const {
+  const Matrix3d R = end_.linear() * Y.linear().transpose();
+  const Vector3d t = end_.translation() - R * (Y.translation() / unit_);
+  for (int k = 0; k < 3; ++k) {
+    for (int i = 0; i < 3; ++i) target.R[k][i] = R(i, k);
+    target.t[k] = t[k];
+  }
+  // By the angles of the joints behind the target, one after the other in place of its values.
+  Eigen::Matrix<double, kFeatures, Eigen::Dynamic, 0, kFeatures, kMostPoints> at(
+      kFeatures, static_cast<Eigen::Index>(points_.size()));
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    at.col(static_cast<Eigen::Index>(i)) = features(R * points_[i].p + t, R * points_[i].l);
+  }
+  const Matrix3d F = by_harmonics();
+  const auto n = static_cast<int>(points_.size());
+  for (int stride = 1; stride < n; stride *= kAngles) {
+    for (int i = 0; i < n; ++i) {
+      if (i / stride % kAngles != 0) continue;
+      Eigen::Matrix<double, kFeatures, kAngles> values;
+      for (int k = 0; k < kAngles; ++k) values.col(k) = at.col(i + k * stride);
+      for (int k = 0; k < kAngles; ++k) at.col(i + k * stride) = values * F.row(k).transpose();
+    }
+  }
+  const auto rows = static_cast<int>(equations_.rows());
+  for (int row = 0; row < rows; ++row) {
+    for (int k = 0; k < n; ++k) {
+      // The three angles' harmonics as one number of base 3.
+      const int of = row / kEquations * n + k;
+      target.equation[of / 9][row % kEquations][of / 3 % 3][of % 3] =
+          equations_.row(row).dot(at.col(k));
+    }
+  }
+}
+
+}  // namespace iksel

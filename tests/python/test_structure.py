@@ -64,7 +64,9 @@ def six_axes(seed: int) -> iksel.Robot:
     for i in range(6):
         axis = rng.normal(size=3)
         axis /= np.linalg.norm(axis)
-        numbers = [" ".join(map(repr, v.tolist())) for v in (rng.uniform(0.1, 0.3, 3), axis)]
+        numbers = [
+            " ".join(map(repr, v.tolist())) for v in (rng.uniform(0.1, 0.3, 3), axis)
+        ]
         joints.append(
             f'<link name="link{i + 1}"/><joint name="joint{i + 1}" type="revolute">'
             f'<parent link="link{i}"/><child link="link{i + 1}"/>'
@@ -88,11 +90,15 @@ def test_axes_that_lie_anyhow_are_swept(seed: int) -> None:
         concluded += found.proof is iksel.Proof.sweep
         assert min(np.abs(other.q - q).max() for other in found) < 0.02, f"seed {SEED}"
     assert concluded >= 0.9 * COUNT, f"seed {SEED}"
-    missed = [result for result in map(solver.solve, turned_at_random(robot)) if not result]
+    missed = [
+        result for result in map(solver.solve, turned_at_random(robot)) if not result
+    ]
     swept = [result.proof is iksel.Proof.sweep for result in missed]
     assert len(swept) > 0
     assert sum(swept) >= 0.8 * len(swept), f"seed {SEED}"
-    assert not any(result.proven for result in missed if result.proof is iksel.Proof.sweep)
+    assert not any(
+        result.proven for result in missed if result.proof is iksel.Proof.sweep
+    )
 
 
 @pytest.mark.parametrize("name", ["irb14050", "baxter_right"])

@@ -9,7 +9,7 @@ namespace iksel {
 namespace {
 
 /// At the end of a span rounding may take a branch out of being.
-constexpr double kRounding = 1e-9;
+constexpr double kEndRounding = 1e-9;
 
 /// A function's value at a place.
 struct Point {
@@ -36,7 +36,7 @@ SelfMotionArcs::Node SelfMotionArcs::node(int lane, double part) const {
   Node node;
   node.part = part;
   branches_.copy_joints(lane, node.q.data());
-  node.beyond = branches_.least(lane) >= -kRounding ? beyond_limits(node.q) : kInfinity;
+  node.beyond = branches_.least(lane) >= -kEndRounding ? beyond_limits(node.q) : kInfinity;
   return node;
 }
 

@@ -51,22 +51,22 @@ Eigen::Matrix<double, kInvariant, kInvariant + 1> moved(const Pose& motion) {
   constexpr int kP = 0, kP2 = 3, kL = 4, kAlong = 7, kMoment = 8, kN = 11, kOne = 14;
   const Matrix3d R = motion.linear();
   const Vector3d t = motion.translation();
-  const Eigen::RowVector3d tR = t.transpose() * R;
+  const Eigen::RowVector3d row = t.transpose() * R;
   Eigen::Matrix<double, kInvariant, kInvariant + 1> out;
   out.setZero();
   out.block<3, 3>(kP, kP) = R;
   out.block<3, 1>(kP, kOne) = t;
   out(kP2, kP2) = 1;
-  out.block<1, 3>(kP2, kP) = 2 * tR;
+  out.block<1, 3>(kP2, kP) = 2 * row;
   out(kP2, kOne) = t.squaredNorm();
   out.block<3, 3>(kL, kL) = R;
   out(kAlong, kAlong) = 1;
-  out.block<1, 3>(kAlong, kL) = tR;
+  out.block<1, 3>(kAlong, kL) = row;
   out.block<3, 3>(kMoment, kMoment) = R;
   out.block<3, 3>(kMoment, kL) = skew(t) * R;
   out.block<3, 3>(kN, kN) = R;
   out.block<3, 3>(kN, kMoment) = -2 * skew(t) * R;
-  out.block<3, 3>(kN, kL) = t.squaredNorm() * R - 2 * t * tR;
+  out.block<3, 3>(kN, kL) = t.squaredNorm() * R - 2 * t * row;
   out.block<3, 1>(kN, kAlong) = -2 * t;
   return out;
 }
@@ -76,10 +76,10 @@ Eigen::Matrix<double, kInvariant, kInvariant + 1> moved(const Pose& motion) {
 LoopEquations::LoopEquations(const ScrewAxes& axes, double unit, int swept)
     : unit_(unit), end_(axes.end) {
   end_.translation() /= unit;
-  constexpr int kSix = 6;
-  form_.before = (kSix - swept) % kSix;
-  for (int i = 0; i < kSix; ++i) {
-    const auto joint = static_cast<std::size_t>((swept + i) % kSix);
+  constexpr int kLoopJoints = 6;
+  form_.before = (kLoopJoints - swept) % kLoopJoints;
+  for (int i = 0; i < kLoopJoints; ++i) {
+    const auto joint = static_cast<std::size_t>((swept + i) % kLoopJoints);
     const Vector3d p = axes.p[joint] / unit;
     for (int k = 0; k < 3; ++k) {
       form_.h[i][k] = axes.h[joint][k];

@@ -382,6 +382,34 @@ py::object points_of(const Obstacle& self) {
   return self.points ? py::object(to_array(Matrix(*self.points))) : py::none();
 }
 
+py::object obstacle_state(const Obstacle& self) {
+  return py::make_tuple(to_string(self.shape), self.radius, self.length,
+                        to_array(JointVector(self.size)), points_of(self),
+                        to_array(Pose(self.pose)), self.margin);
+}
+
+Obstacle obstacle_from_state(const py::object& state) {
+  PickleState in(state, "Obstacle", 7);
+  Obstacle out;
+  const auto shape = in.value<std::string>("shape");
+  using Shape = Obstacle::Shape;
+  const auto shapes = {Shape::sphere,   Shape::box,        Shape::capsule,
+                       Shape::cylinder, Shape::half_space, Shape::points};
+  const auto* const at =
+      std::find_if(shapes.begin(), shapes.end(), [&](Shape s) { return shape == to_string(s); });
+  if (at == shapes.end()) in.refuse("shape", "a shape", shape);
+  out.shape = *at;
+  out.radius = in.value<double>("radius");
+  out.length = in.value<double>("length");
+  out.size = as_size(ArrayLike(in.object()));
+  const py::object points = in.object();
+  if (!points.is_none())
+    out.points = std::make_shared<const PointCloud>(as_points(ArrayLike(points)));
+  out.pose = StoredPose(as_pose(in.object(), "pickled Obstacle, pose"));
+  out.margin = in.value<double>("margin");
+  return out;
+}
+
 void bind_obstacle(py::module_& m) {
   py::class_<Obstacle> cls(m, "Obstacle", "A shape at a pose, as a Scene holds it.");
   add_property(
@@ -400,6 +428,7 @@ void bind_obstacle(py::module_& m) {
   cls.def("__repr__", [](const Obstacle& self) {
     return "Obstacle(" + std::string(to_string(self.shape)) + ")";
   });
+  cls.def(py::pickle(&obstacle_state, &obstacle_from_state));
 }
 
 std::map<std::string, std::string> carriers_of(const Scene& self) {
@@ -411,9 +440,7 @@ std::map<std::string, std::string> carriers_of(const Scene& self) {
 py::object scene_state(const Scene& self) {
   py::list obstacles;
   for (const auto& [name, o] : self.obstacles()) {
-    obstacles.append(py::make_tuple(name, to_string(o.shape), o.radius, o.length,
-                                    to_array(JointVector(o.size)), points_of(o),
-                                    to_array(Pose(o.pose)), o.margin));
+    obstacles.append(py::make_tuple(name, obstacle_state(o)));
   }
   py::list attached;
   for (const auto& [name, object] : self.attached()) {
@@ -421,27 +448,6 @@ py::object scene_state(const Scene& self) {
         py::make_tuple(name, object.link, sphere_rows(object.spheres), object.may_touch));
   }
   return py::make_tuple(self.robot(), self.spheres(), self.other_joints(), obstacles, attached);
-}
-
-Obstacle obstacle_from_state(PickleState& in) {
-  Obstacle out;
-  const auto shape = in.value<std::string>("shape");
-  using Shape = Obstacle::Shape;
-  const auto shapes = {Shape::sphere,   Shape::box,        Shape::capsule,
-                       Shape::cylinder, Shape::half_space, Shape::points};
-  const auto* const at =
-      std::find_if(shapes.begin(), shapes.end(), [&](Shape s) { return shape == to_string(s); });
-  if (at == shapes.end()) in.refuse("shape", "a shape", shape);
-  out.shape = *at;
-  out.radius = in.value<double>("radius");
-  out.length = in.value<double>("length");
-  out.size = as_size(ArrayLike(in.object()));
-  const py::object points = in.object();
-  if (!points.is_none())
-    out.points = std::make_shared<const PointCloud>(as_points(ArrayLike(points)));
-  out.pose = StoredPose(as_pose(in.object(), "pickled Scene, pose"));
-  out.margin = in.value<double>("margin");
-  return out;
 }
 
 Scene scene_from_state(const py::object& state) {
@@ -454,9 +460,9 @@ Scene scene_from_state(const py::object& state) {
   const auto others = as_joint_values(JointValues(in.object()), "pickled Scene, other_joints");
   Scene scene(robot, py::cast<RobotSpheres>(spheres), others);
   for (const py::handle item : in.list("obstacles")) {
-    PickleState of(py::reinterpret_borrow<py::object>(item), "Scene, obstacle", 8);
+    PickleState of(py::reinterpret_borrow<py::object>(item), "Scene, obstacle", 2);
     const auto name = of.value<std::string>("name");
-    scene.set(name, obstacle_from_state(of));
+    scene.set(name, obstacle_from_state(of.object()));
   }
   // What objects may touch may be an object that comes later.
   std::vector<std::pair<std::string, AttachedObject>> attached;

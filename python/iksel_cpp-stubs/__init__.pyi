@@ -1530,7 +1530,8 @@ class Status(enum.IntEnum):
     """
     Why a solve ended.
     """
-    in_collision = 8
+    closest = 8
+    in_collision = 9
     invalid_pose = 7
     not_converged = 1
     out_of_reach = 3
@@ -1587,7 +1588,7 @@ class _Result:
     @property
     def position_error(self) -> float:
         """
-        Distance to the target [m]; NaN unless solved.
+        Distance to the target [m]; NaN without a q.
         """
     @property
     def proof(self) -> Proof:
@@ -1602,7 +1603,7 @@ class _Result:
     @property
     def rotation_error(self) -> float:
         """
-        Length of the rotation vector to the target [rad]; NaN unless solved.
+        Length of the rotation vector to the target [rad]; NaN without a q.
         """
     @property
     def status(self) -> Status:
@@ -1614,7 +1615,7 @@ class _Solved(_Result):
     @property
     def q(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Joint values [rad or m], (dof,); None unless solved.
+        Joint values [rad or m], (dof,); None unless solved, or closest, for those who ask for it.
         """
     @property
     def success(self) -> typing.Literal[True]:
@@ -1628,7 +1629,7 @@ class _Unsolved(_Result):
     @property
     def q(self) -> None:
         """
-        Joint values [rad or m], (dof,); None unless solved.
+        Joint values [rad or m], (dof,); None unless solved, or closest, for those who ask for it.
         """
     @property
     def success(self) -> typing.Literal[False]:
@@ -1916,7 +1917,7 @@ class Solver:
             InvalidArgumentError: a robot of another structure, a task with free axes, another strategy than
                 Lanes, a spacing out of range; else as solve.
         """
-    def solve(self, pose: numpy.typing.ArrayLike | typing.Any, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, scene: Scene | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None) -> Result:
+    def solve(self, pose: numpy.typing.ArrayLike | typing.Any, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, scene: Scene | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None, closest: bool | numpy.typing.ArrayLike | None = None) -> Result:
         """
         Joint values that put the TCP (the tip link's frame, if there is no tool) at a pose.
 
@@ -1951,6 +1952,12 @@ class Solver:
                 or a function of joint values (dof,) that returns a cost. Comes before `near`. Of the
                 answers found, the cheapest; a redundant arm's is moved along its self-motion to a local
                 minimum.
+            closest: what a target without an answer gets, with Status.closest: the configuration inside the
+                limits that is nearest to it, the best of the local minima that a bounded search comes to.
+                True: a metre counts 1, a radian as the database weighs rotations, by default a quarter of
+                the arm's reach in metres. Or six weights, of position [1/m] and rotation [1/rad] along the
+                axes of the task. Of equally near ones the nearest to `near`. Takes some 100 us on top,
+                whatever the deadline; a scene and a filter refuse it too.
 
         Returns:
             A Result. A pose that cannot be solved is no error but a status, and `proof` says how certain
@@ -2000,7 +2007,7 @@ class Solver:
         Raises:
             InvalidArgumentError: as solve.
         """
-    def solve_batch(self, poses: numpy.typing.ArrayLike | typing.Any, threads: int = 0, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, scene: Scene | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None, on_invalid_pose: typing.Literal['status', 'raise'] = 'status') -> BatchResult:
+    def solve_batch(self, poses: numpy.typing.ArrayLike | typing.Any, threads: int = 0, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, scene: Scene | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None, closest: bool | numpy.typing.ArrayLike | None = None, on_invalid_pose: typing.Literal['status', 'raise'] = 'status') -> BatchResult:
         """
         Solves many targets with the GIL released; row i belongs to target i.
 
@@ -2039,6 +2046,12 @@ class Solver:
                 or a function of joint values (dof,) that returns a cost. Comes before `near`. Of the
                 answers found, the cheapest; a redundant arm's is moved along its self-motion to a local
                 minimum.
+            closest: what a target without an answer gets, with Status.closest: the configuration inside the
+                limits that is nearest to it, the best of the local minima that a bounded search comes to.
+                True: a metre counts 1, a radian as the database weighs rotations, by default a quarter of
+                the arm's reach in metres. Or six weights, of position [1/m] and rotation [1/rad] along the
+                axes of the task. Of equally near ones the nearest to `near`. Takes some 100 us on top,
+                whatever the deadline; a scene and a filter refuse it too.
             on_invalid_pose: what a row does that is no pose (see check_pose): "status", Status.invalid_pose
                 for it and NaN for its q; "raise", an error that names the first, and none is solved.
 
@@ -2071,9 +2084,9 @@ class Solver:
         Raises:
             InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, a number out of range.
         """
-    def tracker(self, start: numpy.typing.ArrayLike) -> Tracker:
+    def tracker(self, start: numpy.typing.ArrayLike, *, closest: bool | numpy.typing.ArrayLike | None = None) -> Tracker:
         """
-        Tracker(self, start).
+        Tracker(self, start, closest=closest).
         """
     @property
     def calibration_deviation(self) -> tuple[float, float]:
@@ -2228,13 +2241,15 @@ class Tracker:
     """
     Follows a stream of poses: each answer continues from the last, within the velocity limits. Not to be used from two threads at once.
     """
-    def __init__(self, solver: Solver, start: numpy.typing.ArrayLike) -> None:
+    def __init__(self, solver: Solver, start: numpy.typing.ArrayLike, *, closest: bool | numpy.typing.ArrayLike | None = None) -> None:
         """
         Begins where the arm is.
 
         Args:
             solver: what solves.
             start: joint values, (dof,) [rad or m]; those outside the limits are taken to be at them.
+            closest: True, or six weights as in Solver.solve: at poses that cannot be reached from where
+                the arm is, it goes downhill to where it is nearest, with Status.closest.
 
         Raises:
             InvalidArgumentError: wrong shape or dtype, or a number that is not finite.
@@ -2253,7 +2268,8 @@ class Tracker:
 
         Returns:
             A Result. Status `solved`: there. `too_fast`: the arm needs more time, and went as far on the
-            straight way in joint space as it could. Any other: no continuation, and the arm stays.
+            straight way in joint space as it could. `closest`: not there, but as near as it gets from
+            here. Any other: no continuation, and the arm stays.
 
         Raises:
             InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, dt not above 0, or a

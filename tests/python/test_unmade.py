@@ -80,12 +80,25 @@ def examples(solver: iksel.Solver) -> list[object]:
         solver.diagnose(poses[0]),
         solver.diagnose(far),
         *proven_noes(solver),
+        *scene_and_parts(robot),
+        solver.solve(far, closest=True),
         iksel.Objective.near_posture(q[0], weights=np.arange(6.0)),
         iksel.Objective.far_from_limits(),
         iksel.Objective.custom(half_square, np.negative),
         iksel.evaluate(solver, 10, seed=1),
         tracker,
     ]
+
+
+def scene_and_parts(robot: iksel.Robot) -> list[object]:
+    """A scene that touches the arm, and what it is made of."""
+    link = robot.link_names[-1]
+    spheres = iksel.RobotSpheres({link: [[0.0, 0.0, 0.0, 0.05]]}, [])
+    scene = iksel.Scene(robot, spheres)
+    scene.add_box("box", [1.0, 1.0, 1.0], robot.fk(np.zeros(robot.dof)), margin=0.01)
+    scene.add_points("cloud", [[2.0, 0.0, 0.0], [2.0, 0.1, 0.0]], radius=0.01)
+    contacts = scene.contacts(np.zeros(robot.dof))
+    return [scene, spheres, *scene.obstacles.values(), contacts[0]]
 
 
 def proven_noes(solver: iksel.Solver) -> list[iksel.Diagnosis]:
@@ -268,9 +281,9 @@ def test_proofs_that_there_are_not_are_refused(solver) -> None:
 def test_joint_values_of_another_length_are_refused(solver) -> None:
     tracker = solver.tracker(np.zeros(6))
     with pytest.raises(iksel.InvalidArgumentError, match=r"q: expected a \(6,\)"):
-        unpickled(iksel.Tracker, (solver, np.zeros(7)))
+        unpickled(iksel.Tracker, (solver, np.zeros(7), None))
     with pytest.raises(iksel.Error, match="solver"):
-        unpickled(iksel.Tracker, (solver.robot, tracker.q))
+        unpickled(iksel.Tracker, (solver.robot, tracker.q, None))
     result = states(solver.solve(solver.robot.fk(np.zeros(6))))
     for q in (np.zeros(33), np.zeros((2, 3)), np.full(6, math.nan), None):
         with pytest.raises(iksel.InvalidArgumentError, match="q"):

@@ -12,7 +12,7 @@ using SquareMatrix =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::DontAlign, kMaxDof, kMaxDof>;
 
 /// Longest step of a joint [rad or m].
-constexpr double kLongest = 0.5;
+constexpr double kLongestDescent = 0.5;
 
 /// The second derivative by differences of the gradient, which cost less than its formula: that has
 /// the task's swing and twist in it.
@@ -95,7 +95,7 @@ double descend_to_closest(const ChainModel& model, const Remainder& remainder, i
       if (factors.info() != Eigen::Success) continue;
       JointVector step = -factors.solve(gradient);
       longest = step.cwiseAbs().maxCoeff();
-      if (longest > kLongest) step *= kLongest / longest;
+      if (longest > kLongestDescent) step *= kLongestDescent / longest;
       const JointVector next = model.joints.clamp(q + step);
       if (!(remainder.value(next) < value)) continue;
       is_better = true;

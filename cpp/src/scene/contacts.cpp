@@ -58,29 +58,29 @@ struct Balls {
 }  // namespace
 
 void Scene::Data::add_contacts(int link, const double* centre, std::vector<Contact>& found) const {
-  const Balls balls{arm.balls(), centre};
-  const lanes::SceneLink& of = arm.links()[static_cast<std::size_t>(link)];
+  const Balls balls{arm_.balls(), centre};
+  const lanes::SceneLink& of = arm_.links()[static_cast<std::size_t>(link)];
   for (const auto& [name, obstacle] : obstacles) {
-    const auto grid = grids.find(obstacle.points);
-    const PointGrid* points = grid == grids.end() ? nullptr : grid->second.get();
+    const auto grid = grids_.find(obstacle.points);
+    const PointGrid* points = grid == grids_.end() ? nullptr : grid->second.get();
     double depth = -kInfinity;
     for (int b = of.first; b < of.first + of.count; ++b) {
       const double distance = signed_distance(obstacle, points, balls.at(b));
       depth = std::max(depth, balls.radius(b) + obstacle.margin - distance);
     }
     if (depth >= 0) {
-      found.push_back({arm.names()[static_cast<std::size_t>(link)], name, true, depth});
+      found.push_back({arm_.names()[static_cast<std::size_t>(link)], name, true, depth});
     }
   }
 }
 
 void Scene::Data::add_pair_contacts(const double* centre, std::vector<Contact>& found) const {
-  const Balls balls{arm.balls(), centre};
-  for (const lanes::ScenePair& pair : arm.pairs()) {
+  const Balls balls{arm_.balls(), centre};
+  for (const lanes::ScenePair& pair : arm_.pairs()) {
     const auto ia = static_cast<std::size_t>(pair.a);
     const auto ib = static_cast<std::size_t>(pair.b);
-    const lanes::SceneLink& a = arm.links()[ia];
-    const lanes::SceneLink& b = arm.links()[ib];
+    const lanes::SceneLink& a = arm_.links()[ia];
+    const lanes::SceneLink& b = arm_.links()[ib];
     double depth = -kInfinity;
     for (int i = a.first; i < a.first + a.count; ++i) {
       for (int j = b.first; j < b.first + b.count; ++j) {
@@ -88,7 +88,7 @@ void Scene::Data::add_pair_contacts(const double* centre, std::vector<Contact>& 
         depth = std::max(depth, balls.radius(i) + balls.radius(j) - distance);
       }
     }
-    if (depth >= 0) found.push_back({arm.names()[ia], arm.names()[ib], false, depth});
+    if (depth >= 0) found.push_back({arm_.names()[ia], arm_.names()[ib], false, depth});
   }
 }
 
@@ -96,12 +96,12 @@ std::vector<Contact> Scene::Data::contacts(const double* q) const {
   constexpr int kWidth = lanes::kWidth;
   alignas(64) std::array<double, static_cast<std::size_t>(kMaxDof) * kWidth> packed{};
   for (int j = 0; j < robot.dof(); ++j) packed[static_cast<std::size_t>(j * kWidth)] = q[j];
-  std::vector<double> centre(arm.balls().size() * 3 * kWidth);
+  std::vector<double> centre(arm_.balls().size() * 3 * kWidth);
   alignas(64) std::array<double, kWidth> clearance;
-  kernels.find_clearance(view(), packed.data(), 1, centre.data(), clearance.data());
+  kernels_.find_clearance(view(), packed.data(), 1, centre.data(), clearance.data());
   std::vector<Contact> found;
-  for (int link = 0; link < static_cast<int>(arm.links().size()); ++link) {
-    if (arm.links()[static_cast<std::size_t>(link)].body != 0) {
+  for (int link = 0; link < static_cast<int>(arm_.links().size()); ++link) {
+    if (arm_.links()[static_cast<std::size_t>(link)].body != 0) {
       add_contacts(link, centre.data(), found);
     }
   }

@@ -20,7 +20,7 @@ void Scene::Data::check_name(const std::string& name, bool is_obstacle) const {
 }
 
 const std::shared_ptr<const PointGrid>& Scene::Data::grid_of(const Obstacle& cloud) {
-  auto& grid = grids[cloud.points];
+  auto& grid = grids_[cloud.points];
   if (!grid) grid = std::make_shared<const PointGrid>(*cloud.points);
   return grid;
 }
@@ -37,7 +37,7 @@ void Scene::Data::add(const Obstacle& obstacle) {
       for (int i = 0; i < 3; ++i) copy_vector(R.col(i), block.axis[i]);
       copy_vector(0.5 * obstacle.size, block.half);
       block.half[2] += 0.5 * obstacle.length;
-      blocks.push_back(block);
+      blocks_.push_back(block);
       break;
     }
     case Obstacle::Shape::cylinder: {
@@ -45,51 +45,51 @@ void Scene::Data::add(const Obstacle& obstacle) {
           {}, {}, obstacle.radius, 0.5 * obstacle.length, obstacle.margin};
       copy_vector(pose.translation(), cylinder.centre);
       copy_vector(R.col(2), cylinder.axis);
-      cylinders.push_back(cylinder);
+      cylinders_.push_back(cylinder);
       break;
     }
     case Obstacle::Shape::half_space: {
       lanes::ScenePlane plane{{}, R.col(2).dot(pose.translation()) + obstacle.margin};
       copy_vector(R.col(2), plane.normal);
-      planes.push_back(plane);
+      planes_.push_back(plane);
       break;
     }
     case Obstacle::Shape::points:
-      clouds.push_back(
+      clouds_.push_back(
           {grid_of(obstacle), StoredPose(pose.inverse()), obstacle.radius + obstacle.margin});
       break;
   }
 }
 
 void Scene::Data::lay_out() {
-  blocks.clear();
-  cylinders.clear();
-  planes.clear();
-  clouds.clear();
+  blocks_.clear();
+  cylinders_.clear();
+  planes_.clear();
+  clouds_.clear();
   for (const auto& [name, obstacle] : obstacles) add(obstacle);
-  for (auto it = grids.begin(); it != grids.end();) {
+  for (auto it = grids_.begin(); it != grids_.end();) {
     const bool is_used = std::any_of(obstacles.begin(), obstacles.end(), [&](const auto& named) {
       return named.second.points == it->first;
     });
-    it = is_used ? std::next(it) : grids.erase(it);
+    it = is_used ? std::next(it) : grids_.erase(it);
   }
 }
 
 void Scene::Data::attach_all() {
-  ArmShape with_objects = bare;
+  ArmShape with_objects = bare_;
   for (const auto& [name, object] : attached) with_objects.attach(name, object);
-  arm = std::move(with_objects);
+  arm_ = std::move(with_objects);
 }
 
 lanes::SceneView Scene::Data::view() const {
   lanes::SceneView view{};
-  arm.show(view);
-  view.blocks = static_cast<int>(blocks.size());
-  view.cylinders = static_cast<int>(cylinders.size());
-  view.planes = static_cast<int>(planes.size());
-  view.block = blocks.data();
-  view.cylinder = cylinders.data();
-  view.plane = planes.data();
+  arm_.show(view);
+  view.blocks = static_cast<int>(blocks_.size());
+  view.cylinders = static_cast<int>(cylinders_.size());
+  view.planes = static_cast<int>(planes_.size());
+  view.block = blocks_.data();
+  view.cylinder = cylinders_.data();
+  view.plane = planes_.data();
   return view;
 }
 
@@ -104,13 +104,13 @@ void Scene::Data::find_clearance_pack(const double* q, int count, double* cleara
   }
   // Memory of its own for each thread, taken once.
   thread_local std::vector<double> centre;
-  centre.resize(std::max(centre.size(), arm.balls().size() * 3 * kWidth));
+  centre.resize(std::max(centre.size(), arm_.balls().size() * 3 * kWidth));
   alignas(64) std::array<double, kWidth> found;
-  kernels.find_clearance(view(), packed.data(), count, centre.data(), found.data());
+  kernels_.find_clearance(view(), packed.data(), count, centre.data(), found.data());
   for (int lane = 0; lane < count; ++lane) {
     const double above = found[static_cast<std::size_t>(lane)];
     const bool touches_point =
-        above > 0 && !clouds.empty() && !is_free_of_points(centre.data(), lane);
+        above > 0 && !clouds_.empty() && !is_free_of_points(centre.data(), lane);
     clearance[lane] = touches_point ? 0.0 : above;
   }
 }
@@ -140,12 +140,12 @@ bool Scene::Data::is_free_of_points(const double* centre, int lane) const {
     const double* c = centre + 3 * ball * lanes::kWidth + lane;
     return Eigen::Vector3d(c[0], c[lanes::kWidth], c[2 * lanes::kWidth]);
   };
-  for (const Cloud& cloud : clouds) {
+  for (const Cloud& cloud : clouds_) {
     const Pose T_cloud_base(cloud.T_cloud_base);
     const auto reach = [&](int ball) {
-      return arm.balls()[static_cast<std::size_t>(ball)].radius + cloud.radius;
+      return arm_.balls()[static_cast<std::size_t>(ball)].radius + cloud.radius;
     };
-    for (const lanes::SceneLink& link : arm.links()) {
+    for (const lanes::SceneLink& link : arm_.links()) {
       if (link.body == 0) continue;
       const int around = link.first - 1;
       if (!cloud.grid->may_touch(T_cloud_base * at(around), reach(around))) continue;

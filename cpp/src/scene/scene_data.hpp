@@ -22,9 +22,9 @@ struct Scene::Data {
       : robot(robot_in),
         spheres(spheres_in),
         other_joints(other_joints_in),
-        bare(robot, spheres, other_joints),
-        arm(bare),
-        kernels(lanes::choose_kernels()) {}
+        bare_(robot, spheres, other_joints),
+        arm_(bare_),
+        kernels_(lanes::choose_kernels()) {}
 
   /// Lays out the obstacles for the kernel; of a cloud the grid, if there is none yet.
   void lay_out();
@@ -69,15 +69,15 @@ struct Scene::Data {
   void add_contacts(int link, const double* centre, std::vector<Contact>& found) const;
   void add_pair_contacts(const double* centre, std::vector<Contact>& found) const;
 
-  ArmShape bare;  ///< without what is attached
-  ArmShape arm;
-  const lanes::LaneKernels& kernels;
-  std::vector<lanes::SceneBlock> blocks;
-  std::vector<lanes::SceneCylinder> cylinders;
-  std::vector<lanes::ScenePlane> planes;
-  std::vector<Cloud> clouds;
+  ArmShape bare_;  ///< without what is attached
+  ArmShape arm_;
+  const lanes::LaneKernels& kernels_;
+  std::vector<lanes::SceneBlock> blocks_;
+  std::vector<lanes::SceneCylinder> cylinders_;
+  std::vector<lanes::ScenePlane> planes_;
+  std::vector<Cloud> clouds_;
   /// By the points that they are made of, which they keep alive.
-  std::map<std::shared_ptr<const PointCloud>, std::shared_ptr<const PointGrid>> grids;
+  std::map<std::shared_ptr<const PointCloud>, std::shared_ptr<const PointGrid>> grids_;
 };
 
 }  // namespace iksel

@@ -14,11 +14,11 @@ constexpr int kBlocksForClosest = 3;
 constexpr int kRandomPacks = 12;
 constexpr int kFirstIterations = 5;
 /// Packs that go on, and how far.
-struct Round {
+struct ScreenRound {
   int packs;
   int iterations;
 };
-constexpr Round kRounds[] = {{4, 8}, {1, 12}};
+constexpr ScreenRound kScreenRounds[] = {{4, 8}, {1, 12}};
 
 /// The length that 1 rad counts [m].
 double length_of(const Vector6& weights) {
@@ -51,7 +51,7 @@ ClosestScreen::ClosestScreen(const ChainModel& model, const Vector6& weights)
 template <typename Value>
 void ClosestScreen::load(int place, const Value& value) {
   for (int j = 0; j < chain_.n; ++j) {
-    const double q = static_cast<double>(value(j));
+    const auto q = static_cast<double>(value(j));
     pack_.q[j][place] = static_cast<float>(chain_.joint[j].prismatic ? q / length_ : q);
   }
 }
@@ -108,7 +108,7 @@ const std::vector<JointVector>& ClosestScreen::find(const Goal& goal, LaneQuery&
     if (!goal.is_full_pose()) targets_.push_back(query.reduce(goal.random_pose(random)));
     run(targets_.size() - 1, kFirstIterations);
   }
-  for (const Round& round : kRounds) {
+  for (const ScreenRound& round : kScreenRounds) {
     keep(static_cast<std::size_t>(round.packs) * lanes::kBlock);
     go_on(round.iterations);
   }

@@ -21,7 +21,6 @@ NearestOnCurve::NearestOnCurve(const ChainModel& model, const ClosedFormChain& c
                                bool is_nominal, double tolerance, const lanes::LaneKernels& kernels)
     : branches_(model, chain, kernels),
       places_(branches_.places(kSamples)),
-      joints_(model.joints),
       is_nominal_(is_nominal),
       miss_(is_nominal, tolerance),
       rows_(kSamples),

@@ -113,7 +113,6 @@ class NearestOnCurve {
 
   SweptBranches branches_;
   Places places_;
-  const JointSpace& joints_;
   bool is_nominal_;
   NearMiss miss_;
 

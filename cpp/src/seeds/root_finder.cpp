@@ -117,13 +117,13 @@ void RootFinder::add(double angle, bool is_vague) {
 }
 
 void RootFinder::polish(const Residual& residual) {
-  constexpr int kRounds = 40;
+  constexpr int kPolishRounds = 40;
   for (std::size_t first = 0; first < brackets_size_; first += kBlock) {
     const std::size_t n = std::min<std::size_t>(kBlock, brackets_size_ - first);
     std::array<double, kBlock> angles{};
     std::array<double, kBlock> values{};
     bool is_there = false;
-    for (int round = 0; round < kRounds && !is_there; ++round) {
+    for (int round = 0; round < kPolishRounds && !is_there; ++round) {
       for (std::size_t i = 0; i < n; ++i) angles[i] = brackets_[first + i].next();
       residual(angles.data(), kBlock, values.data());
       is_there = true;

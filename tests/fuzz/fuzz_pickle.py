@@ -41,7 +41,15 @@ def make_samples() -> list[Any]:
     motion = iksel.Solver(panda, options).self_motion(
         panda.fk(panda.random_configurations(1, 1)[0])
     )
+    spheres = iksel.RobotSpheres({ARM.link_names[-1]: [[0.0, 0.0, 0.0, 0.05]]}, [])
+    scene = iksel.Scene(ARM, spheres)
+    scene.add_box("box", [1.0, 1.0, 1.0], POSE, margin=0.01)
+    scene.add_points("cloud", [[2.0, 0.0, 0.0]], radius=0.01)
     return [
+        scene,
+        spheres,
+        *scene.obstacles.values(),
+        scene.contacts([0.3, 0.4])[0],
         motion,
         motion[0],
         motion[0].begin,
@@ -62,6 +70,7 @@ def make_samples() -> list[Any]:
         solver.solve_path([POSE]),
         solver.diagnose(POSE),
         iksel.Tracker(solver, [0.1, 0.2]),
+        iksel.Tracker(solver, [0.1, 0.2], closest=[1, 1, 1, 1, 1, 1]),
         iksel_cpp.evaluate(solver, 3, 1),
         iksel.LinkTree.from_urdf(urdf_text.arm()),
         iksel.LinkTree.from_urdf(urdf_text.arm()).joints[0],

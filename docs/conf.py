@@ -63,11 +63,15 @@ suppress_warnings = ["duplicate_declaration.cpp"]
 # Types of other projects have no page here, nor has what is private.
 nitpick_ignore_regex = [
     (r"cpp:identifier", r"(std|Eigen|iksel::export)(::.*)?|size_t|u?int\d+_t"),
-    (r"cpp:identifier", r"ChainModel|DatabaseData|Impl|Names|StoredPose::Identity"),
+    (
+        r"cpp:identifier",
+        r"ChainModel|Data|DatabaseData|Impl|Names|StoredPose::Identity",
+    ),
     (r"py:.*", r"(collections|enum|np|npt|numpy|os|pathlib|types|typing)\..*"),
     (r"py:class", r"ArrayLike|Any|Callable|Float|Int|Literal|Mapping|Sequence"),
     (r"py:class", r"iksel(\.\w+)*\._.*|(Bool|Float|Int)Array|Arrays|Origin|Packages"),
-    (r"py:class", r"PoseLike|QuaternionOrder|StrPath"),
+    (r"py:class", r"Placed|PoseLike|QuaternionOrder|Source|StrPath"),
+    (r"py:exc", r"NoCMakeFilesError"),
 ]
 
 

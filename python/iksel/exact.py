@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A second opinion on a scene: by the robot's own collision geometry, not its spheres.
 
+As a filter, where spheres touch::
+
     exact = iksel.exact.ExactCollision(scene, "arm.urdf")
     result = solver.solve(pose, scene=scene)
     if result.status is iksel.Status.in_collision:

@@ -130,7 +130,7 @@ FORMATS: dict[str, type[Answers]] = {
 
 def _rows(batch: BatchResult, q: FloatArray) -> Any:
     """Rows as plain data: names of status and proof, q and errors; None for NaN."""
-    has_joints = [bool(np.isfinite(row).all()) for row in q]
+    has_joints = np.logical_and.reduce(np.isfinite(q), axis=1).tolist()
     return zip(
         (Status(status).name for status in batch.status),
         (Proof(proof).name for proof in batch.proof),

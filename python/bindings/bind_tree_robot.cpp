@@ -26,7 +26,8 @@ std::vector<std::string> as_links(const py::object& value, const char* name) {
   const bool is_sequence = PySequence_Check(value.ptr()) != 0 && !py::isinstance<py::str>(value);
   if (!is_sequence) throw_wrong_type(name, "a list of link names", value);
   std::vector<std::string> links;
-  for (const py::handle item : py::reinterpret_borrow<py::sequence>(value)) {
+  // Not handles: what is made on the way of an arbitrary sequence has no other owner.
+  for (const py::object item : py::reinterpret_borrow<py::sequence>(value)) {
     const std::string at = std::string(name) + "[" + std::to_string(links.size()) + "]";
     links.push_back(from_python<std::string>(item, at.c_str()));
   }

@@ -73,7 +73,8 @@ std::vector<Task> as_task_list(const TaskList& value) {
   const bool is_sequence = PySequence_Check(value.ptr()) != 0 && !py::isinstance<py::str>(value);
   if (!is_sequence) throw_wrong_type("tasks", "a list of Tasks, one for each tip", value);
   std::vector<Task> tasks;
-  for (const py::handle item : py::reinterpret_borrow<py::sequence>(value)) {
+  // Not handles: what is made on the way of an arbitrary sequence has no other owner.
+  for (const py::object item : py::reinterpret_borrow<py::sequence>(value)) {
     const std::string at = "tasks[" + std::to_string(tasks.size()) + "]";
     tasks.push_back(from_python<Task>(item, at.c_str()));
   }
@@ -108,6 +109,20 @@ std::vector<Pose> as_targets(const DoubleArray& array) {
   return poses;
 }
 
+/// One pose for each tip.
+std::vector<Pose> as_tip_poses(const TreeSolver& self, const PoseLike& poses,
+                               const TreeRequest& request) {
+  if (is_doubles(poses)) {
+    const auto array = py::reinterpret_borrow<DoubleArray>(poses);
+    const int tips = self.robot().tips();
+    if (array.ndim() == 4 || (array.ndim() == 2 && array.shape(1) == 4)) {
+      throw_wrong_shape("poses", "one pose for each tip, (" + std::to_string(tips) + ", 4, 4)",
+                        array, "; solve_batch() takes (N, k, 4, 4)");
+    }
+  }
+  return as_targets(as_poses(poses, "poses", common_task(self, request)));
+}
+
 JointVector as_tree_near(const TreeSolver& self, const ArrayLike& near) {
   return as_joints(near, self.robot().dof(), "near");
 }
@@ -116,8 +131,7 @@ TreeResult solve_tree(const TreeSolver& self, const PoseLike& poses,
                       const std::optional<ArrayLike>& near, const TreeKeywords& given) {
   TreeRequest request = read_tree_request(self, given);
   if (near) request.near = as_tree_near(self, *near);
-  const std::vector<Pose> targets =
-      as_targets(as_poses(poses, "poses", common_task(self, request)));
+  const std::vector<Pose> targets = as_tip_poses(self, poses, request);
   return without_gil([&] { return self.solve(targets, request); });
 }
 
@@ -164,8 +178,7 @@ PyTreeBatch solve_tree_batch(const TreeSolver& self, const PoseLike& poses,
 TreeDiagnosis diagnose_tree(const TreeSolver& self, const PoseLike& poses,
                             const TreeKeywords& given) {
   const TreeRequest request = read_tree_request(self, given);
-  const std::vector<Pose> targets =
-      as_targets(as_poses(poses, "poses", common_task(self, request)));
+  const std::vector<Pose> targets = as_tip_poses(self, poses, request);
   return without_gil([&] { return self.diagnose(targets, request); });
 }
 

@@ -66,6 +66,7 @@ bool ArmSearch::solve_arm(int tip, JointVector& q) {
 
 void ArmSearch::bring_closest(int tip, JointVector& q) {
   const auto i = static_cast<std::size_t>(tip);
+  if (!solvers_[i].arm) return;
   of_arm_[i].closest.emplace();
   const Result result = solvers_[i].arm->solve(target_of_arm(tip, q), of_arm_[i]);
   of_arm_[i].closest.reset();

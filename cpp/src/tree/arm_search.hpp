@@ -30,7 +30,8 @@ class ArmSearch {
   [[nodiscard]] bool has_all_arms() const;
   /// Solves for the joints of that tip's arm, the shared ones as in q; false leaves q as it is.
   bool solve_arm(int tip, JointVector& q);
-  /// Puts them to where the tip is closest to its target, if that is not solved.
+  /// The same, or if there is none the joint values with the tip closest to its target; without an
+  /// arm q stays as it is.
   void bring_closest(int tip, JointVector& q);
   /// Solves for all joints of that tip's chain; from those in q first if `from_here`. What the
   /// chain's own solver says; without success q stays as it is.

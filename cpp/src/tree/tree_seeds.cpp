@@ -9,8 +9,9 @@ namespace {
 
 /// Values of the shared joints that are tried before all joints are iterated.
 constexpr int kSharedValues = 32;
-/// Values at which the nearest is looked for.
-constexpr int kNearValues = 16;
+/// Values at which the nearest is looked for, at most, and after the last that gave a nearer one.
+constexpr int kNearValues = 48;
+constexpr int kNearPatience = 16;
 
 }  // namespace
 
@@ -61,6 +62,7 @@ ArmSeeds::ArmSeeds(const StackedGoal& goal, ArmSearch& arms, const NearBound* bo
       work_(work),
       values_(goal.model(), bound),
       left_(bound != nullptr ? kNearValues : kSharedValues),
+      patience_(kNearPatience),
       q_(goal.model().joints.middle()) {
   if (goal.model().shared.empty()) left_ = 1;
   if (!arms.has_all_arms()) left_ = 0;
@@ -68,8 +70,13 @@ ArmSeeds::ArmSeeds(const StackedGoal& goal, ArmSearch& arms, const NearBound* bo
 
 bool ArmSeeds::next_stage() {
   is_complete_ = false;
-  if (left_ == 0 || !work_.take()) return false;
+  if (bound_ != nullptr && bound_->best < last_best_) {
+    last_best_ = bound_->best;
+    patience_ = kNearPatience;
+  }
+  if (left_ == 0 || patience_ == 0 || !work_.take()) return false;
   --left_;
+  if (last_best_ < kInfinity) --patience_;
   values_.next(q_);
   const int tips = goal_.model().tip_count();
   unsigned solved = 0;
@@ -149,7 +156,7 @@ bool StackedSeeds::make_from_chain(int lead, bool at_random) {
     return false;
   }
   for (int tip = 0; tip < goal_.model().tip_count(); ++tip) {
-    if (tip != lead && arms_.has_arm(tip)) arms_.solve_arm(tip, q_);
+    if (tip != lead) arms_.bring_closest(tip, q_);
   }
   return true;
 }

@@ -83,7 +83,9 @@ class ArmSeeds {
   const NearBound* bound_;
   Work& work_;
   SharedValues values_;
-  int left_;
+  /// Values left, and those left until one has to be nearer than the best so far.
+  int left_, patience_;
+  double last_best_ = kInfinity;
   /// The arm that could not be solved last time is tried first.
   int first_ = 0;
   JointVector q_;

@@ -151,9 +151,9 @@ def main(arguments: list[str] | None = None) -> int:
     if options.command == "frozen":
         action = record if options.action == "record" else compare
         return action(options.file)
-    modules = {"scene": scene, "tips": tips}
-    if options.command in modules:
-        return modules[options.command].run(options)
+    runs = {"scene": scene.run, "tips": tips.run}
+    if options.command in runs:
+        return runs[options.command](options)
     others = {"no": _no, "learned": _learned}
     if options.command in others:
         return others[options.command](options, given)

@@ -21,6 +21,8 @@ from bench.timing import time_calls
 if TYPE_CHECKING:
     import argparse
 
+    import numpy.typing as npt
+
     from bench.chain import Array
 
 ARMS = ("ur5e", "panda", "pr2_right_arm", "valkyrie_right_arm", "xarm5", "so100")
@@ -56,7 +58,9 @@ def changed(robot: iksel.TreeRobot, q: Array, part: float, seed: int) -> Array:
     return q + part * width * rng.uniform(-0.5, 0.5, q.shape)
 
 
-def row_of(times: Array, results: list[iksel.TreeResult]) -> dict[str, Any]:
+def row_of(
+    times: npt.NDArray[np.int64], results: list[iksel.TreeResult]
+) -> dict[str, Any]:
     """What a run comes to."""
     microseconds = times / 1e3
     return {

@@ -14,6 +14,7 @@
 #include "iksel/options.hpp"
 #include "iksel/request.hpp"
 #include "iksel/result.hpp"
+#include "iksel/solver.hpp"
 #include "iksel/tree_robot.hpp"
 
 namespace iksel {

@@ -17,9 +17,7 @@ class FirstTreeAnswer {
   FirstTreeAnswer(const StackedGoal& goal, const TreeRequest& request, TreeResult& result)
       : goal_(goal), request_(request), result_(result), deadline_(request.deadline) {}
 
-  Verdict offer(int /*lane*/, const JointVector& q) {
-    return take(q) ? Verdict::stop : Verdict::next;
-  }
+  Verdict offer(int /*lane*/, JointVector& q) { return take(q) ? Verdict::stop : Verdict::next; }
   template <typename Q>
   [[nodiscard]] bool knows(const Q& /*q*/) const {
     return false;
@@ -62,11 +60,10 @@ class NearestTreeAnswer : public FirstTreeAnswer {
                     double& best, Work& work, TreeResult& result)
       : FirstTreeAnswer(goal, request, result), move_(move), best_(best), work_(work) {}
 
-  Verdict offer(int /*lane*/, const JointVector& q) {
+  Verdict offer(int /*lane*/, JointVector& q) {
     take_nearer(q);
-    JointVector end = q;
-    work_.iterations += descend_to_near(goal_, move_, *request_.near, end);
-    take_nearer(end);
+    work_.iterations += descend_to_near(goal_, move_, *request_.near, q);
+    take_nearer(q);
     // There is nothing nearer than here.
     return best_ < 1e-9 ? Verdict::stop : Verdict::next;
   }

@@ -64,11 +64,11 @@ void TreeModel::check_options() const {
   }
   for (std::size_t i = 0; i < count; ++i) {
     const std::string& link = options.tip_links[i];
-    const std::string at = "tip_links[" + std::to_string(i) + "]: ";
-    if (link.empty()) throw InvalidArgumentError(at + "expected the name of a link, got ''");
-    const auto end = options.tip_links.begin() + static_cast<std::ptrdiff_t>(i);
+    const auto at = static_cast<std::ptrdiff_t>(i);
+    if (link.empty()) throw_invalid("tip_links", at, "expected the name of a link, got ''");
+    const auto end = options.tip_links.begin() + at;
     if (std::find(options.tip_links.begin(), end, link) != end) {
-      throw InvalidArgumentError(at + "'" + link + "' is there already; a link can be a tip once");
+      throw_invalid("tip_links", at, "'" + link + "' is there already; a link can be a tip once");
     }
   }
   if (!options.tcps.empty() && options.tcps.size() != count) {

@@ -136,7 +136,9 @@ void TreeSolver::Impl::find_nearest(const StackedGoal& goal, const TreeRequest& 
   StackedSeeds stacked(goal, arms, behind_shared, options.seed, work, result);
   FirstTreeAnswer first(goal, request, result);
   search(refiner, stacked, first, work);
-  if (result.success()) answers.offer(0, JointVector(result.q));
+  if (!result.success()) return;
+  JointVector q = result.q;
+  answers.offer(0, q);
 }
 
 TreeSolver::TreeSolver(const TreeRobot& robot, const SolverOptions& options) {

@@ -32,6 +32,10 @@ constexpr std::pair<const char*, const char*> kMakers[] = {
     {"Diagnosis", "Solver.diagnose"},
     {"Obstacle", "Scene.obstacles"},
     {"Evaluation", "evaluate"},
+    {"TreeRobot", "TreeRobot.from_urdf"},
+    {"TreeResult", "TreeSolver.solve"},
+    {"TreeBatchResult", "TreeSolver.solve_batch"},
+    {"TreeDiagnosis", "TreeSolver.diagnose"},
 };
 
 int refuse_constructor(PyObject* self, PyObject* /*args*/, PyObject* /*kwargs*/) {

@@ -84,6 +84,7 @@ from iksel_cpp import (
     time_kdl_fk_jacobian,
 )
 
+from iksel._attach import attach
 from iksel._cmake import cmake_dir
 from iksel._manifest import RobotInfo
 from iksel.pose import (
@@ -167,6 +168,7 @@ __all__ = [
     "UrdfError",
     "__version__",
     "as_pose",
+    "attach",
     "check_pose",
     "cmake_dir",
     "euler_from_pose",

@@ -1519,6 +1519,11 @@ class Objective:
         """
         Near joint values (dof,) [rad or m], inside the limits or not: 1/2 sum (w_i (q_i - posture_i))^2, weights (dof,), >= 0; None: all 1.
         """
+    @staticmethod
+    def preferred(robot: Robot, values: collections.abc.Mapping[str, float], weights: collections.abc.Mapping[str, float] | None = None) -> Objective:
+        """
+        Some joints, as a rail or a turntable, at a value where that is possible, else as near to it as may be: near_posture with weights of these joints only. Values by joint name [rad or m], and weights, > 0, of those that are to have another than 1. Between answers that are equally good `near` decides, or else the middle of the limits.
+        """
     def __repr__(self) -> str:
         ...
     @property

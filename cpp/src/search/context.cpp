@@ -86,6 +86,9 @@ WorkspacePool::WorkspacePool(const Robot& robot, const Robot& nominal, const Dat
       closed_forms_(ClosedForms::of(nominal.model())),
       solves_in_lanes_(iksel::solves_in_lanes(robot.model(), database.data(), options)),
       damaged_(database.data().storage.damaged) {
+  if (solves_in_lanes_ && &robot.model() == &nominal.model()) {
+    inner_chains_ = InnerChain::of(robot.model());
+  }
   const auto& chain = closed_forms_.pose;
   if (solves_in_lanes_ && chain && !chain->is_completed()) {
     const bool proves = chain->held < 0 && &robot.model() == &nominal.model();
@@ -103,8 +106,16 @@ WorkspacePool::~WorkspacePool() {
 }
 
 std::unique_ptr<Workspace> WorkspacePool::make() const {
-  return std::make_unique<Workspace>(robot_.model(), nominal_.model(), database_.data(), options_,
-                                     closed_forms_, trials_ ? &*trials_ : nullptr);
+  auto workspace =
+      std::make_unique<Workspace>(robot_.model(), nominal_.model(), database_.data(), options_,
+                                  closed_forms_, trials_ ? &*trials_ : nullptr);
+  for (const InnerChain& inner : inner_chains_) {
+    const double tolerance =
+        std::max(options_.position_tolerance / inner.form.unit, options_.rotation_tolerance);
+    workspace->lanes->inner_arms.emplace_back(robot_.model(), inner, tolerance,
+                                              lanes::choose_kernels());
+  }
+  return workspace;
 }
 
 WorkspacePool::Lease::Lease(const WorkspacePool& pool) : pool_(pool) {

@@ -17,6 +17,7 @@
 #include "seeds/branch_lanes.hpp"
 #include "seeds/enumeration.hpp"
 #include "seeds/free_samples.hpp"
+#include "seeds/inner_arm.hpp"
 #include "seeds/lane_query.hpp"
 #include "seeds/nearest_on_curve.hpp"
 #include "seeds/root_sweep.hpp"
@@ -61,6 +62,8 @@ struct Workspace {
     std::optional<RootSweep> roots;
     std::optional<NearestOnCurve> nearest_on_curve;
     std::optional<SelfMotionArcs> arcs;
+    /// Of longer chains.
+    std::vector<InnerArm> inner_arms;
     /// Configurations of a self-motion that a scene is to look at.
     FreeSamples::Memory samples;
   };
@@ -116,6 +119,7 @@ class WorkspacePool {
   const Database& database_;
   const SolverOptions& options_;
   ClosedForms closed_forms_;
+  std::vector<InnerChain> inner_chains_;
   bool solves_in_lanes_;
   std::optional<BranchTrials> trials_;
   /// As Storage::damaged of the database.

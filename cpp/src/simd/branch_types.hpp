@@ -48,6 +48,7 @@ struct ClosedForm {
                         ///< |p12|^2
   bool is_held;         ///< whether there is a joint before the first, which is held at an angle
   double held_axis[3];  ///< a unit vector along it
+  double held_slide;    ///< units of length that it slides per metre; 0 where it turns
   double held_from[3];  ///< from a point on it to that on axis 1
   Turned elbow;         ///< p23 . R(h3) p34
   Turned shoulder;      ///< of parallel_12, h1 . R(h3) p34
@@ -59,7 +60,8 @@ struct ClosedForm {
 /// [units]; where a joint is held, as they are at its angle 0.
 struct BranchPack {
   alignas(64) double target[12][kWidth];
-  /// Angle of the held joint, or of that of sweep_4, sweep_6 or loop, if the form has one [rad].
+  /// Angle of the held joint, or of that of sweep_4, sweep_6 or loop, if the form has one; of a
+  /// slide the way [rad or m].
   alignas(64) double held[kWidth];
   /// +-1: which of two solutions each of three subproblems takes.
   alignas(64) double sign[3][kWidth];
@@ -81,12 +83,13 @@ struct BranchPack {
   alignas(64) double error[kWidth];
 };
 
-/// Seven joints to move from: six as a form counts them, and the angle of the held one.
+/// Seven joints to move from: six as a form counts them, and the held one.
 struct MoveForm {
   double from[7];    ///< [rad]
   double weight[7];  ///< what a move of each counts
-  /// Whether whole turns may lie inside the limits; and these, narrower by the margin [rad].
-  bool has_images[7];
+  /// Whether a joint turns, and whether its whole turns may lie inside the limits; and these,
+  /// narrower by the margin [rad or m].
+  bool turns[7], has_images[7];
   double lower[7], upper[7];
   double margin;
   bool takes_largest;  ///< else the root of the squares' sum

@@ -22,7 +22,7 @@ IKSEL_INLINE void add_move(const MoveForm& form, int j, const T& q, T& loose, T&
   const T whole(6.28318530717958647693);
   const T per_turn(0.15915494309189533577);
   const T d = q - T(form.from[j]);
-  const T turns = nearest_integer(d * per_turn);
+  const T turns = form.turns[j] ? nearest_integer(d * per_turn) : T(0.0);
   const T nearest = d - whole * turns;
   T image = d;
   if (form.has_images[j]) {

@@ -97,9 +97,11 @@ void Solver::Impl::check_self_motion(double spacing) const {
   const std::string who = "self_motion: robot '" + robot.name() + "'";
   if (!workspaces.has_arcs()) {
     const Structure structure = find_structure(nominal);
-    throw InvalidArgumentError(who + " has no self-motion that could be swept (" +
-                               to_string(structure.kind) + ": " + structure.description +
-                               "); it takes seven joints that turn, three of whose axes meet");
+    throw InvalidArgumentError(
+        who + " has no self-motion that could be swept (" + to_string(structure.kind) + ": " +
+        structure.description +
+        "); it takes seven joints, three of whose axes meet or are parallel, and "
+        "of which but the first or the last may slide");
   }
   if (!task.is_full_pose()) {
     throw InvalidArgumentError(who + " is asked for a task with free axes, " +

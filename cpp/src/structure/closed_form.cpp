@@ -211,9 +211,9 @@ namespace {
 
 /// How far the links reach, slides apart [m]: however long a slide is, an error means as much.
 double reach_of_links(const ChainModel& model) {
-  double reach = Vector3d(model.kernel.flange.p).norm();
+  double reach = 0;
   for (const KernelJoint& joint : model.kernel.joints) reach += Vector3d(joint.p).norm();
-  return reach;
+  return reach + Vector3d(model.kernel.flange.p).norm();
 }
 
 /// The last six axes, seen from one end. `sweeps`: those that are closed for an angle of a joint.

@@ -26,6 +26,7 @@ LAYERS = [
     "seeds",
     "search",
     "solver",
+    "tree",
     "evaluation",
 ]
 # Headers of KDL and urdfdom, and who may include them.

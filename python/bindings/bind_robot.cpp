@@ -6,7 +6,6 @@
 #include <optional>
 #include <random>
 #include <string>
-#include <utility>
 
 #include "array_checks.hpp"
 #include "bindings.hpp"
@@ -20,6 +19,7 @@
 #include "pickle.hpp"
 #include "pose_arguments.hpp"
 #include "property.hpp"
+#include "robot_arguments.hpp"
 #include "urdf_source.hpp"
 
 namespace iksel::python {
@@ -44,14 +44,6 @@ struct handle_type_name<iksel::python::BoolOrArray> {
 namespace iksel::python {
 
 namespace {
-
-std::pair<double, double> as_limits(const ArrayLike& value, const char* name) {
-  const DoubleArray array = as_doubles(value, name);
-  if (array.ndim() != 1 || array.shape(0) != 2) {
-    throw_wrong_shape(name, "two numbers, (lower, upper)", array);
-  }
-  return {array.at(0), array.at(1)};
-}
 
 /// From the system's source of randomness.
 std::uint64_t fresh_seed() {

@@ -53,7 +53,11 @@ inline std::string describe(py::handle value) {
   std::string text = py::cast<std::string>(py::repr(value));
   constexpr std::size_t kLongest = 60;
   if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
-  return text + " (" + Py_TYPE(value.ptr())->tp_name + ")";
+  std::string type = Py_TYPE(value.ptr())->tp_name;
+  // Nobody but us knows that module.
+  const std::string own = "iksel_cpp.";
+  if (type.rfind(own, 0) == 0) type.erase(0, own.size());
+  return text + " (" + type + ")";
 }
 
 [[noreturn]] inline void throw_wrong_type(const char* name, const std::string& expected,

@@ -14,7 +14,7 @@ import numpy
 import numpy.typing
 import os
 import typing
-__all__: list[str] = ['AngleUnitWarning', 'ArcEnd', 'Axis', 'BatchResult', 'Cause', 'Contact', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'Diagnosis', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'KeyScheme', 'Kinematics', 'Lanes', 'LinkTree', 'LinkTreeJoint', 'MoveNorm', 'Objective', 'ObjectiveKind', 'Obstacle', 'Paper', 'PathResult', 'Proof', 'RIGID_TOLERANCE', 'Ranking', 'Reselection', 'Result', 'Robot', 'RobotSpheres', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'Scene', 'SelfMotion', 'SelfMotionArc', 'SelfMotionEnd', 'SignatureError', 'SolutionOrder', 'Solutions', 'Solver', 'SolverOptions', 'Status', 'Structure', 'StructureKind', 'Task', 'TaskFrame', 'Tracker', 'UnknownNameError', 'UrdfError', 'check_pose', 'evaluate', 'grid_counts', 'orthonormalized', 'pose_error', 'pose_matrices', 'rigid_deviation', 'simd_level', 'time_kdl_fk_jacobian']
+__all__: list[str] = ['AngleUnitWarning', 'ArcEnd', 'Axis', 'BatchResult', 'Cause', 'Contact', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'Diagnosis', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'KeyScheme', 'Kinematics', 'Lanes', 'LinkTree', 'LinkTreeJoint', 'MoveNorm', 'Objective', 'ObjectiveKind', 'Obstacle', 'Paper', 'PathResult', 'Proof', 'RIGID_TOLERANCE', 'Ranking', 'Reselection', 'Result', 'Robot', 'RobotSpheres', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'Scene', 'SelfMotion', 'SelfMotionArc', 'SelfMotionEnd', 'SignatureError', 'SolutionOrder', 'Solutions', 'Solver', 'SolverOptions', 'Status', 'Structure', 'StructureKind', 'Task', 'TaskFrame', 'Tracker', 'TreeBatchResult', 'TreeDiagnosis', 'TreeResult', 'TreeRobot', 'TreeSolver', 'UnknownNameError', 'UrdfError', 'check_pose', 'evaluate', 'grid_counts', 'orthonormalized', 'pose_error', 'pose_matrices', 'rigid_deviation', 'simd_level', 'time_kdl_fk_jacobian']
 class AngleUnitWarning(UserWarning):
     """
     Angles that look like degrees were given where radians are meant.
@@ -2385,6 +2385,408 @@ class SelfMotion:
     def success(self) -> bool:
         """
         Whether there is at least one arc.
+        """
+class TreeRobot:
+    """
+    The chains from one link of a URDF to several tips, joined: a joint that lies on several of them is one degree of freedom. Immutable, safe to use from many threads at once.
+    """
+    @staticmethod
+    def from_urdf(path_or_xml: str | os.PathLike[str], tip_links: collections.abc.Sequence[str], base_link: str | None = None, tcps: numpy.typing.ArrayLike | typing.Any | None = None, locked_joints: collections.abc.Mapping[str, float] | None = None, soft_limits: bool = False, default_limits: numpy.typing.ArrayLike | None = None) -> TreeRobot:
+        """
+        Reads the chains from one link of a URDF to several.
+
+        Args:
+            path_or_xml: a path, or the URDF text itself (a str whose first character is '<').
+            tip_links: links whose poses are solved for, 1 to 8.
+            base_link: link that all poses are relative to; None: the root link.
+            tcps: T_tip_tcp of each tip, (k, 4, 4), or None: no tip has a tool.
+            locked_joints: joints held at a value [rad or m]; they are no degrees of freedom.
+            soft_limits: narrow the limits to the URDF's safety_controller where there is one.
+            default_limits: (lower, upper) [rad or m] of revolute and prismatic joints whose limits the
+                URDF leaves out or has as 0, 0; without, such a joint is an error.
+
+        Raises:
+            UrdfError: as Robot.from_urdf, of each chain; more than 32 joints together; joints that follow
+                a shared one leave it no value between its limits.
+            UnknownNameError: no such link or joint.
+            InvalidArgumentError: no tip link, one twice, more than 8, not a tool for each, or a number
+                that is no good.
+        """
+    def __copy__(self) -> TreeRobot:
+        ...
+    def __deepcopy__(self, memo: dict[int, object]) -> TreeRobot:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def chain(self, tip: int) -> Robot:
+        """
+        The chain to one tip by itself, a Robot; tips count from 0.
+
+        Raises:
+            InvalidArgumentError: no such tip.
+        """
+    def fk(self, q: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Forward kinematics: T_base_tip of each tip, of its TCP if there is a tool.
+
+        Args:
+            q: joint values [rad or m], (dof,) or (N, dof).
+
+        Returns:
+            (k, 4, 4), or (N, k, 4, 4) with the GIL released.
+
+        Raises:
+            InvalidArgumentError: wrong shape or dtype, or a number that is not finite.
+        """
+    def jacobian(self, q: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Geometric Jacobians of all tips, one below the other: rows [linear; angular] for each.
+
+        Args:
+            q: joint values [rad or m], (dof,) or (N, dof).
+
+        Returns:
+            (6 k, dof), or (N, 6 k, dof) with the GIL released.
+
+        Raises:
+            InvalidArgumentError: wrong shape or dtype, or a number that is not finite.
+        """
+    def joints_of(self, tip: int) -> list[int]:
+        """
+        Where the joints of that chain stand among all: its joint values are q[joints_of(tip)].
+
+        Raises:
+            InvalidArgumentError: no such tip.
+        """
+    def random_configurations(self, n: int, seed: int) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        n configurations uniform inside the limits (continuous joints in [-pi, pi)), (n, dof). The same seed gives the same numbers everywhere.
+        """
+    def within_limits(self, q: numpy.typing.ArrayLike) -> bool:
+        """
+        Whether q [rad or m], (dof,), lies inside the position limits.
+        """
+    @property
+    def base_link(self) -> str:
+        """
+        Link that all poses are relative to.
+        """
+    @property
+    def default_limits(self) -> tuple[float, float] | None:
+        """
+        Lower and upper limit of joints that the URDF gives none [rad or m], or None.
+        """
+    @property
+    def dof(self) -> int:
+        """
+        Number of joints of all chains together.
+        """
+    @property
+    def joint_names(self) -> list[str]:
+        """
+        Names of the joints: those of the first chain from base to tip, then those that only the second has, and so on.
+        """
+    @property
+    def joint_types(self) -> list[JointType]:
+        """
+        How each joint moves.
+        """
+    @property
+    def locked_joints(self) -> dict[str, float]:
+        """
+        Joints held at a value [rad or m], by name.
+        """
+    @property
+    def lower(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Lower position limits [rad or m], (dof,); -inf: none.
+        """
+    @property
+    def name(self) -> str:
+        """
+        Name in the URDF.
+        """
+    @property
+    def shared_joints(self) -> list[int]:
+        """
+        Indices of the joints that move more than one tip, ascending.
+        """
+    @property
+    def soft_limits(self) -> bool:
+        """
+        Whether the limits are narrowed to the safety controller's.
+        """
+    @property
+    def tcps(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        T_tip_tcp of each tip, (k, 4, 4).
+        """
+    @property
+    def tip_links(self) -> list[str]:
+        """
+        Links whose poses are solved for.
+        """
+    @property
+    def tips(self) -> int:
+        """
+        Number of tips.
+        """
+    @property
+    def upper(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Upper position limits [rad or m], (dof,); inf: none.
+        """
+    @property
+    def urdf(self) -> str:
+        """
+        The URDF text this robot was made of.
+        """
+    @property
+    def velocity_limit(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Velocity limits [rad/s or m/s], (dof,); inf where the URDF has none.
+        """
+class TreeResult:
+    """
+    Answer to one target of each tip, true if it is one. Everything in it is measured on the returned q.
+    """
+    def __bool__(self) -> bool:
+        ...
+    def __repr__(self) -> str:
+        ...
+    @property
+    def attempts(self) -> int:
+        """
+        Values of the shared joints and seeds that were tried.
+        """
+    @property
+    def iterations(self) -> int:
+        """
+        Iteration steps on all tips together.
+        """
+    @property
+    def move(self) -> float:
+        """
+        Length of the move from `near`, by its norm and weights; NaN without one.
+        """
+    @property
+    def position_error(self) -> numpy.typing.NDArray[numpy.float64] | None:
+        """
+        Distance of each tip to its target [m], (k,); None unless solved.
+        """
+    @property
+    def proof(self) -> Proof:
+        """
+        Of a failure, how certain it is that there is no answer; `none` of a success.
+        """
+    @property
+    def proven(self) -> bool:
+        """
+        Whether there is certainly no answer: `proof` is `reach` or `closed_form`.
+        """
+    @property
+    def q(self) -> numpy.typing.NDArray[numpy.float64] | None:
+        """
+        Joint values [rad or m], (dof,); None unless solved.
+        """
+    @property
+    def rotation_error(self) -> numpy.typing.NDArray[numpy.float64] | None:
+        """
+        Length of each tip's rotation vector to its target [rad], (k,); None unless solved.
+        """
+    @property
+    def status(self) -> Status:
+        """
+        Why the solve ended; of a failure, that of the tip that cannot be reached even by itself, if one was found.
+        """
+    @property
+    def success(self) -> bool:
+        """
+        Whether q puts each tip at its target within both tolerances and lies inside the limits.
+        """
+    @property
+    def unreachable_tip(self) -> int | None:
+        """
+        Of a failure, index of a tip whose target its chain cannot reach by itself; None if each can as far as a search can tell, or it was not looked for.
+        """
+class TreeBatchResult:
+    """
+    Answers to many targets as arrays, each made when it is asked for; row i belongs to target i. Indexing gives a TreeResult. It is neither true nor false: ask success.all() or success.any().
+    """
+    def __bool__(self) -> bool:
+        ...
+    def __getitem__(self, i: int) -> TreeResult:
+        ...
+    def __iter__(self) -> collections.abc.Iterator[TreeResult]:
+        ...
+    def __len__(self) -> int:
+        ...
+    def __repr__(self) -> str:
+        ...
+    @property
+    def attempts(self) -> numpy.typing.NDArray[numpy.int32]:
+        """
+        Values of the shared joints and seeds that were tried, (N,).
+        """
+    @property
+    def move(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Lengths of the moves from `near`, (N,); NaN where not solved or without one.
+        """
+    @property
+    def position_error(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Distance of each tip to its target [m], (N, k); NaN where not solved.
+        """
+    @property
+    def q(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Joint values [rad or m], (N, dof); NaN where not solved.
+        """
+    @property
+    def rotation_error(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Length of each tip's rotation vector to its target [rad], (N, k); NaN where not solved.
+        """
+    @property
+    def solved(self) -> int:
+        """
+        Number of targets solved.
+        """
+    @property
+    def status(self) -> numpy.typing.NDArray[numpy.uint8]:
+        """
+        Values of Status, (N,).
+        """
+    @property
+    def success(self) -> numpy.typing.NDArray[numpy.bool_]:
+        """
+        Whether each target is solved, (N,).
+        """
+    @property
+    def unreachable_tip(self) -> numpy.typing.NDArray[numpy.int32]:
+        """
+        As TreeResult.unreachable_tip, (N,); -1: none.
+        """
+class TreeDiagnosis:
+    """
+    What TreeSolver.diagnose found.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def message(self) -> str:
+        """
+        What is wrong, in a sentence.
+        """
+    @property
+    def tips(self) -> list[Diagnosis]:
+        """
+        The Diagnosis of each tip's chain by itself, the others left out.
+        """
+    @property
+    def unreachable_tip(self) -> int | None:
+        """
+        Index of the first tip that cannot be reached by itself; None if each can.
+        """
+class TreeSolver:
+    """
+    Solves inverse kinematics for all tips of a TreeRobot at once. Immutable, safe to use from many threads at once; the same input gives the same bits. The joints that tips share are set to a value, and behind them each arm is solved for by itself; where that leads nowhere, all joints are iterated together.
+    """
+    def __copy__(self) -> TreeSolver:
+        ...
+    def __deepcopy__(self, memo: dict[int, object]) -> TreeSolver:
+        ...
+    def __init__(self, robot: TreeRobot, options: SolverOptions | collections.abc.Mapping[str, typing.Any] | None = None) -> None:
+        """
+        Builds the databases of the chains by `options.database`.
+
+        Args:
+            robot: the robot to solve for.
+            options: SolverOptions() if None; tolerances, task and bounds on work hold for each tip.
+
+        Raises:
+            InvalidArgumentError: an option out of range.
+        """
+    def __repr__(self) -> str:
+        ...
+    def chain_solver(self, tip: int) -> Solver:
+        """
+        The Solver of one tip's chain by itself; tips count from 0.
+
+        Raises:
+            InvalidArgumentError: no such tip.
+        """
+    def diagnose(self, poses: numpy.typing.ArrayLike | typing.Any, *, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, tasks: collections.abc.Sequence[Task | collections.abc.Mapping[str, typing.Any]] | None = None) -> TreeDiagnosis:
+        """
+        Why there is no answer: whether each tip can be reached by itself. Milliseconds.
+
+        Args:
+            poses: as in solve.
+            filter: as in solve.
+            deadline: as in solve.
+            tasks: as in solve.
+
+        Returns:
+            A TreeDiagnosis.
+
+        Raises:
+            InvalidArgumentError: as solve.
+        """
+    def solve(self, poses: numpy.typing.ArrayLike | typing.Any, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, tasks: collections.abc.Sequence[Task | collections.abc.Mapping[str, typing.Any]] | None = None) -> TreeResult:
+        """
+        Joint values that put each tip (its TCP, if it has one) at its pose.
+
+        Args:
+            poses: T_base_tip [m] of each tip, (k, 4, 4), or k others as in Solver.solve.
+            near: configuration to stay near, (dof,) [rad or m]; may lie outside the limits. The answer is
+                the one with the smallest joint move of those that a bounded search finds, each moved to
+                where the move is locally least.
+            weights: factor on each joint's part of a move, (dof,), >= 0; None: all 1.
+            norm: how a move is measured.
+            filter: called with candidates (n, dof), each at the poses and inside the limits; returns n
+                truth values. The search continues within its bounds while all are refused.
+            deadline: wall-clock time after which the search ends [s]; checked between its stages.
+            tasks: what of each tip's pose has to be reached, one for each; None: what the solver's options
+                say, of each.
+
+        Returns:
+            A TreeResult. Poses that cannot be reached are no error but a status.
+
+        Raises:
+            InvalidArgumentError: wrong shape or dtype, not one pose or task for each tip, a pose that is
+                not rigid, a number that is not finite, or a keyword out of range.
+        """
+    def solve_batch(self, poses: numpy.typing.ArrayLike | typing.Any, *, threads: int = 0, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, tasks: collections.abc.Sequence[Task | collections.abc.Mapping[str, typing.Any]] | None = None) -> TreeBatchResult:
+        """
+        Solves many targets with the GIL released; row i has the bits of solve(poses[i]).
+
+        Args:
+            poses: T_base_tip [m] of each tip, (N, k, 4, 4). A row of which one is no pose has
+                Status.invalid_pose.
+            threads: 0: one per core.
+            near: as in solve, or (N, dof): one for each target.
+            weights: as in solve.
+            norm: as in solve.
+            filter: as in solve; called from any thread, one at a time.
+            deadline: of each target by itself [s].
+            tasks: as in solve.
+
+        Returns:
+            A TreeBatchResult.
+
+        Raises:
+            InvalidArgumentError: wrong shape or dtype, or a keyword out of range.
+        """
+    @property
+    def options(self) -> SolverOptions:
+        """
+        A copy of its options.
+        """
+    @property
+    def robot(self) -> TreeRobot:
+        """
+        The robot it solves for.
         """
 class Evaluation:
     """

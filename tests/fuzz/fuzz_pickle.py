@@ -45,7 +45,16 @@ def make_samples() -> list[Any]:
     scene = iksel.Scene(ARM, spheres)
     scene.add_box("box", [1.0, 1.0, 1.0], POSE, margin=0.01)
     scene.add_points("cloud", [[2.0, 0.0, 0.0]], radius=0.01)
+    tree = iksel.TreeSolver(
+        iksel.TreeRobot.from_urdf(urdf_text.arm(), ["elbow", "hand"]), options
+    )
+    both = tree.robot.fk([0.3, 0.4])
     return [
+        tree,
+        tree.robot,
+        tree.solve(both),
+        tree.solve_batch([both, both]),
+        tree.diagnose(both),
         scene,
         spheres,
         *scene.obstacles.values(),

@@ -13,6 +13,7 @@ import textwrap
 import iksel_cpp as core
 import numpy as np
 import pytest
+from trees import two_armed
 
 import iksel
 
@@ -81,6 +82,7 @@ def examples(solver: iksel.Solver) -> list[object]:
         solver.diagnose(far),
         *proven_noes(solver),
         *scene_and_parts(robot),
+        *two_arms(solver),
         solver.solve(far, closest=True),
         iksel.Objective.near_posture(q[0], weights=np.arange(6.0)),
         iksel.Objective.far_from_limits(),
@@ -99,6 +101,21 @@ def scene_and_parts(robot: iksel.Robot) -> list[object]:
     scene.add_points("cloud", [[2.0, 0.0, 0.0], [2.0, 0.1, 0.0]], radius=0.01)
     contacts = scene.contacts(np.zeros(robot.dof))
     return [scene, spheres, *scene.obstacles.values(), contacts[0]]
+
+
+def two_arms(solver: iksel.Solver) -> list[object]:
+    """Several tips, and what is found for them."""
+    tree = iksel.TreeSolver(two_armed(solver.robot), solver.options)
+    poses = tree.robot.fk(tree.robot.random_configurations(3, 3))
+    poses[2, 1, 0, 3] = 9.0
+    return [
+        tree,
+        tree.robot,
+        tree.solve(poses[0]),
+        tree.solve(poses[2]),
+        tree.solve_batch(poses),
+        tree.diagnose(poses[2]),
+    ]
 
 
 def proven_noes(solver: iksel.Solver) -> list[iksel.Diagnosis]:

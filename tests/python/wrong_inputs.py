@@ -102,6 +102,14 @@ TABLE: dict[str, tuple[str, ...]] = {
         "solver.solve_path(pose)",
         "print(solver.solve(far))",
     ),
+    "Several tips": (
+        'iksel.TreeRobot.from_urdf("hands.urdf")',
+        'iksel.TreeRobot.from_urdf("hands.urdf", "left_hand")',
+        'iksel.TreeRobot.from_urdf("hands.urdf", ["left_hand", "right_hnd"])',
+        'iksel.TreeRobot.from_urdf("hands.urdf", ["left_hand", "left_hand"])',
+        'iksel.TreeRobot.from_urdf("hands.urdf", ["left_hand", "camera"])',
+        "iksel.TreeSolver(ur3)",
+    ),
     "Settings and databases": (
         "iksel.SolverOptions(max_atempts=5)",
         "iksel.SolverOptions(tolerance=1e-3)",

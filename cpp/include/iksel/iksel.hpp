@@ -22,5 +22,7 @@
 #include "iksel/solver.hpp"         // IWYU pragma: export
 #include "iksel/structure.hpp"      // IWYU pragma: export
 #include "iksel/task.hpp"           // IWYU pragma: export
+#include "iksel/tree_robot.hpp"     // IWYU pragma: export
+#include "iksel/tree_solver.hpp"    // IWYU pragma: export
 #include "iksel/types.hpp"          // IWYU pragma: export
 #include "iksel/version.hpp"        // IWYU pragma: export

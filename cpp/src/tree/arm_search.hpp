@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The chains of several tips, each solved for by itself: the arms behind given values of the shared
+// joints, and the chains as a whole.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "base/random.hpp"
+#include "iksel/solver.hpp"
+#include "tree/stacked_goal.hpp"
+
+namespace iksel {
+
+/// Solvers of one tip.
+struct TipSolvers {
+  Solver chain;
+  std::optional<Solver> arm;
+};
+
+class ArmSearch {
+ public:
+  /// `near` may be null. All must outlive this.
+  ArmSearch(const StackedGoal& goal, const std::vector<TipSolvers>& solvers,
+            const TreeRequest& request, std::uint64_t seed);
+
+  /// Whether that tip has an arm with as many joints as its task fixes axes.
+  [[nodiscard]] bool has_arm(int tip) const;
+  /// Whether each has.
+  [[nodiscard]] bool has_all_arms() const;
+  /// Solves for the joints of that tip's arm, the shared ones as in q; false leaves q as it is.
+  bool solve_arm(int tip, JointVector& q);
+  /// The same, or if there is none the joint values with the tip closest to its target; without an
+  /// arm q stays as it is.
+  void bring_closest(int tip, JointVector& q);
+  /// Solves for all joints of that tip's chain; from those in q first if `from_here`. What the
+  /// chain's own solver says; without success q stays as it is.
+  Result solve_chain(int tip, bool from_here, JointVector& q);
+
+ private:
+  /// The target as the arm's base sees it.
+  [[nodiscard]] Pose target_of_arm(int tip, const JointVector& q);
+
+  const StackedGoal& goal_;
+  const std::vector<TipSolvers>& solvers_;
+  /// What is asked of each tip's arm.
+  std::vector<SolveRequest> of_arm_;
+  /// Tips whose task lies along axes of the base, which turns under the arm: one pose that the task
+  /// allows is asked for after another.
+  std::vector<bool> draws_pose_;
+  Random random_;
+};
+
+}  // namespace iksel

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The chains of several tips, and how they hang together.
+//
+// A joint that moves more than one tip is shared. Where all joints from the base to a tip's last
+// shared one are shared, the chain splits into a stem, which has the shared joints, and an arm,
+// which has those of its own: with the shared joints at a value, the arm is a chain by itself,
+// whose base stands where the stem ends. (It does not where a joint mimics one across that border,
+// or where a tip lies on another's chain and has no joint of its own.)
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "iksel/tree_robot.hpp"
+#include "kinematics/chain_model.hpp"
+#include "kinematics/joint_space.hpp"
+
+namespace iksel {
+
+/// Joint values of a chain, picked from those of the tree.
+inline JointVector picked(const JointVector& q, const std::vector<int>& joints) {
+  JointVector out(static_cast<Eigen::Index>(joints.size()));
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    out[static_cast<Eigen::Index>(j)] = q[joints[j]];
+  }
+  return out;
+}
+
+/// The way back.
+inline void put(const JointVector& values, const std::vector<int>& joints, JointVector& q) {
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    q[joints[j]] = values[static_cast<Eigen::Index>(j)];
+  }
+}
+
+/// A part of a chain, and where its joints stand among those of the tree.
+struct TreePart {
+  Robot robot;
+  std::vector<int> joints;
+
+  [[nodiscard]] const ChainModel& model() const { return robot.model(); }
+  [[nodiscard]] Pose fk(const JointVector& q) const { return model().fk(picked(q, joints).data()); }
+};
+
+struct TreeTip {
+  TreePart chain;
+  /// Behind the shared joints; without any, the chain itself. None where the chain does not split.
+  std::optional<TreePart> arm;
+  /// From the base to where the arm begins; none if no joint is shared.
+  std::optional<TreePart> stem;
+};
+
+class TreeModel {
+ public:
+  TreeModel(const std::string& urdf, const TreeOptions& options_in);
+
+  [[nodiscard]] int dof() const { return joints.dof(); }
+  [[nodiscard]] int tip_count() const { return static_cast<int>(tips.size()); }
+  [[nodiscard]] const TreeTip& tip(int i) const { return tips[static_cast<std::size_t>(i)]; }
+
+  TreeOptions options;
+  std::vector<TreeTip> tips;
+  JointSpace joints;
+  std::vector<int> shared;
+
+ private:
+  void check_options() const;
+  /// Adds a chain's joints to those of the tree; returns where they stand.
+  std::vector<int> add_joints(const JointSpace& chain);
+  void find_shared();
+  void split(TreeTip& tip, const std::string& urdf) const;
+  [[nodiscard]] bool is_shared(int joint) const;
+  [[nodiscard]] std::vector<int> places_of(const Robot& part) const;
+  [[nodiscard]] RobotOptions options_between(const std::string& base, const std::string& tip) const;
+};
+
+}  // namespace iksel

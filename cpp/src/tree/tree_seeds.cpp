@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tree/tree_seeds.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace iksel {
+namespace {
+
+/// Values of the shared joints that are tried before all joints are iterated.
+constexpr int kSharedValues = 32;
+/// Values at which the nearest is looked for, at most, and after the last that gave a nearer one.
+constexpr int kNearValues = 48;
+constexpr int kNearPatience = 16;
+
+}  // namespace
+
+SharedValues::SharedValues(const TreeModel& model, const NearBound* bound)
+    : model_(model), bound_(bound), index_(bound != nullptr ? -1 : 0) {
+  const std::size_t count = model.shared.size();
+  double phi = 2.0;
+  for (int i = 0; i < 64; ++i) phi = std::pow(1.0 + phi, 1.0 / static_cast<double>(count + 1));
+  for (std::size_t j = 0; j < count; ++j) {
+    step_[j] = std::pow(1.0 / phi, static_cast<double>(j + 1));
+  }
+}
+
+std::pair<double, double> SharedValues::range(int joint) const {
+  const JointSpace& joints = model_.joints;
+  double lower = joints.sample_lower(joint);
+  double upper = joints.sample_upper(joint);
+  if (bound_ == nullptr) return {lower, upper};
+  const double weight = bound_->move.weights()[joint];
+  if (!(weight > 0) || bound_->best == kInfinity) return {lower, upper};
+  const double reach = bound_->best / weight;
+  const double near = bound_->near[joint];
+  if (joints.type(joint) == JointType::continuous && reach < kPi)
+    return {near - reach, near + reach};
+  lower = std::max(lower, std::min(near - reach, upper));
+  return {lower, std::max(lower, std::min(near + reach, upper))};
+}
+
+void SharedValues::next(JointVector& q) {
+  if (index_ < 0) {
+    for (const int joint : model_.shared) q[joint] = bound_->near[joint];
+    q = model_.joints.clamp(q);
+  } else {
+    for (std::size_t j = 0; j < model_.shared.size(); ++j) {
+      const auto [lower, upper] = range(model_.shared[j]);
+      // The first is the middle.
+      const double x = 0.5 + index_ * step_[j];
+      q[model_.shared[j]] = lower + (upper - lower) * (x - std::floor(x));
+    }
+  }
+  ++index_;
+}
+
+ArmSeeds::ArmSeeds(const StackedGoal& goal, ArmSearch& arms, const NearBound* bound, Work& work)
+    : goal_(goal),
+      arms_(arms),
+      bound_(bound),
+      work_(work),
+      values_(goal.model(), bound),
+      left_(bound != nullptr ? kNearValues : kSharedValues),
+      patience_(kNearPatience),
+      q_(goal.model().joints.middle()) {
+  if (goal.model().shared.empty()) left_ = 1;
+  if (!arms.has_all_arms()) left_ = 0;
+}
+
+bool ArmSeeds::next_stage() {
+  is_complete_ = false;
+  if (bound_ != nullptr && bound_->best < last_best_) {
+    last_best_ = bound_->best;
+    patience_ = kNearPatience;
+  }
+  if (left_ == 0 || patience_ == 0 || !work_.take()) return false;
+  --left_;
+  if (last_best_ < kInfinity) --patience_;
+  values_.next(q_);
+  const int tips = goal_.model().tip_count();
+  unsigned solved = 0;
+  int count = 0;
+  int missing = -1;
+  for (int k = 0; k < tips; ++k) {
+    const int tip = (first_ + k) % tips;
+    if (is_too_far(solved)) return true;
+    if (arms_.solve_arm(tip, q_)) {
+      solved |= 1U << static_cast<unsigned>(tip);
+      ++count;
+    } else if (missing < 0) {
+      missing = tip;
+    }
+  }
+  is_complete_ = count == tips;
+  if (!is_complete_) {
+    keep_partial(solved, count);
+    first_ = missing;
+  }
+  return true;
+}
+
+bool ArmSeeds::is_too_far(unsigned solved) const {
+  if (bound_ == nullptr || bound_->best == kInfinity) return false;
+  JointVector moved = bound_->near;
+  for (const int joint : goal_.model().shared) moved[joint] = q_[joint];
+  for (int tip = 0; tip < goal_.model().tip_count(); ++tip) {
+    if ((solved & (1U << static_cast<unsigned>(tip))) == 0) continue;
+    for (const int joint : goal_.model().tip(tip).arm->joints) moved[joint] = q_[joint];
+  }
+  return bound_->move.length(moved - bound_->near) >= bound_->best;
+}
+
+void ArmSeeds::keep_partial(unsigned solved, int count) {
+  int at = std::min(partial_count_, kPartials - 1);
+  if (partial_count_ == kPartials && partial_[kPartials - 1].count >= count) return;
+  partial_count_ = at + 1;
+  for (; at > 0 && partial_[static_cast<std::size_t>(at) - 1].count < count; --at) {
+    partial_[static_cast<std::size_t>(at)] = partial_[static_cast<std::size_t>(at) - 1];
+  }
+  partial_[static_cast<std::size_t>(at)] = {q_, solved, count};
+}
+
+bool StackedSeeds::next_stage() {
+  if (!work_.take()) return false;
+  const int tips = goal_.model().tip_count();
+  const int partials = before_.partial_count();
+  const int i = index_++;
+  if (i < tips) {
+    if (!make_from_chain(i, /*at_random=*/false)) return false;
+  } else if (i - tips < partials) {
+    make_from_partial(i - tips);
+  } else {
+    make_from_chain((i - partials) % tips, /*at_random=*/true);
+  }
+  is_loaded_ = true;
+  return true;
+}
+
+void StackedSeeds::make_from_partial(int i) {
+  q_ = before_.partial(i);
+  for (int tip = 0; tip < goal_.model().tip_count(); ++tip) {
+    const unsigned bit = 1U << static_cast<unsigned>(tip);
+    if ((before_.solved_in_partial(i) & bit) == 0) arms_.bring_closest(tip, q_);
+  }
+}
+
+bool StackedSeeds::make_from_chain(int lead, bool at_random) {
+  q_.resize(goal_.model().dof());
+  goal_.model().joints.sample(random_, q_);
+  const Result of_chain = arms_.solve_chain(lead, at_random, q_);
+  if (!of_chain.success() && !at_random) {
+    result_.status = of_chain.status;
+    result_.proof = of_chain.proof;
+    result_.unreachable_tip = lead;
+    return false;
+  }
+  for (int tip = 0; tip < goal_.model().tip_count(); ++tip) {
+    if (tip != lead) arms_.bring_closest(tip, q_);
+  }
+  return true;
+}
+
+}  // namespace iksel

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Sources of seeds for several tips at once, made of what the solvers of the chains know.
+#pragma once
+
+#include <array>
+#include <utility>
+
+#include "base/constants.hpp"
+#include "base/work.hpp"
+#include "goal/joint_move.hpp"
+#include "tree/arm_search.hpp"
+
+namespace iksel {
+
+/// The configuration to stay near, and the least move from it so far: what is farther away is of no
+/// use.
+struct NearBound {
+  const JointVector& near;
+  const JointMove& move;
+  double best = kInfinity;
+};
+
+/// Values of the shared joints: those of `near` if there is one, those in the middle of the limits,
+/// then spread evenly over the limits, as far as they lie within the bound (R_d: the additive
+/// recurrence by the powers of 1 / phi, phi the real root of x^(d+1) = x + 1; M. Roberts, "The
+/// unreasonable effectiveness of quasirandom sequences", 2018).
+class SharedValues {
+ public:
+  /// `bound` may be null. All must outlive this.
+  SharedValues(const TreeModel& model, const NearBound* bound);
+
+  /// Writes the next ones to q.
+  void next(JointVector& q);
+
+ private:
+  /// What of a joint's range is of use.
+  [[nodiscard]] std::pair<double, double> range(int joint) const;
+
+  const TreeModel& model_;
+  const NearBound* bound_;
+  int index_;
+  std::array<double, kMaxDof> step_{};
+};
+
+/// The arms solved behind one value of the shared joints after another; a stage has one value. Only
+/// where all arms could be solved is there a seed, which is an answer already.
+class ArmSeeds {
+ public:
+  /// `bound` may be null. All must outlive this.
+  ArmSeeds(const StackedGoal& goal, ArmSearch& arms, const NearBound* bound, Work& work);
+
+  bool next_stage();
+  template <typename Refiner>
+  bool load(Refiner& refiner, int lane) {
+    if (!is_complete_) return false;
+    is_complete_ = false;
+    refiner.load_seed(lane, q_.data());
+    return true;
+  }
+
+  /// Of the values where some arm could not be solved: those where most others could, best first.
+  [[nodiscard]] int partial_count() const { return partial_count_; }
+  [[nodiscard]] JointVector partial(int i) const { return partial_[static_cast<std::size_t>(i)].q; }
+  /// Bit t: arm t could be solved there.
+  [[nodiscard]] unsigned solved_in_partial(int i) const {
+    return partial_[static_cast<std::size_t>(i)].solved;
+  }
+
+ private:
+  struct Partial {
+    JointVector q;
+    unsigned solved = 0;
+    int count = 0;
+  };
+  static constexpr int kPartials = 8;
+
+  void keep_partial(unsigned solved, int count);
+  /// Whether the shared joints, and those of the solved arms, alone move too far.
+  [[nodiscard]] bool is_too_far(unsigned solved) const;
+
+  const StackedGoal& goal_;
+  ArmSearch& arms_;
+  const NearBound* bound_;
+  Work& work_;
+  SharedValues values_;
+  /// Values left, and those left until one has to be nearer than the best so far.
+  int left_, patience_;
+  double last_best_ = kInfinity;
+  /// The arm that could not be solved last time is tried first.
+  int first_ = 0;
+  JointVector q_;
+  bool is_complete_ = false;
+  std::array<Partial, kPartials> partial_;
+  int partial_count_ = 0;
+};
+
+/// Seeds for all joints together. First from where most arms could be solved, the others as close
+/// as they come. Then one chain after another is solved as a whole, which sets the shared joints;
+/// the arms of the others behind it where that can be done, else they are at random.
+class StackedSeeds {
+ public:
+  /// All must outlive this.
+  StackedSeeds(const StackedGoal& goal, ArmSearch& arms, const ArmSeeds& before, std::uint64_t seed,
+               Work& work, TreeResult& result)
+      : goal_(goal), arms_(arms), before_(before), random_(seed), work_(work), result_(result) {}
+
+  bool next_stage();
+  template <typename Refiner>
+  bool load(Refiner& refiner, int lane) {
+    if (!is_loaded_) return false;
+    is_loaded_ = false;
+    refiner.load_seed(lane, q_.data());
+    return true;
+  }
+
+ private:
+  void make_from_partial(int i);
+  /// False if the chain of that tip cannot be solved by itself.
+  bool make_from_chain(int lead, bool at_random);
+
+  const StackedGoal& goal_;
+  ArmSearch& arms_;
+  const ArmSeeds& before_;
+  Random random_;
+  Work& work_;
+  TreeResult& result_;
+  int index_ = 0;
+  JointVector q_;
+  bool is_loaded_ = false;
+};
+
+}  // namespace iksel

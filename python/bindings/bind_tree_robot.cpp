@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pybind11/stl.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "array_checks.hpp"
+#include "bindings.hpp"
+#include "enums.hpp"
+#include "iksel/pose.hpp"
+#include "iksel/tree_robot.hpp"
+#include "joint_values.hpp"
+#include "pickle.hpp"
+#include "pose_arguments.hpp"
+#include "property.hpp"
+#include "robot_arguments.hpp"
+#include "urdf_source.hpp"
+
+namespace iksel::python {
+
+namespace {
+
+std::vector<std::string> as_links(const py::object& value, const char* name) {
+  const bool is_sequence = PySequence_Check(value.ptr()) != 0 && !py::isinstance<py::str>(value);
+  if (!is_sequence) throw_wrong_type(name, "a list of link names", value);
+  std::vector<std::string> links;
+  // Not handles: what is made on the way of an arbitrary sequence has no other owner.
+  for (const py::object item : py::reinterpret_borrow<py::sequence>(value)) {
+    const std::string at = std::string(name) + "[" + std::to_string(links.size()) + "]";
+    links.push_back(from_python<std::string>(item, at.c_str()));
+  }
+  return links;
+}
+
+std::vector<StoredPose> as_tools(py::handle value, const char* name) {
+  const DoubleArray array = as_poses(value, name);
+  std::vector<StoredPose> tools;
+  for (py::ssize_t i = 0; i < array.shape(0); ++i) {
+    const std::string at = std::string(name) + "[" + std::to_string(i) + "]";
+    Pose tool;
+    tool.matrix() = Eigen::Map<const RowMajorPose>(array.data(i));
+    tools.emplace_back(check_pose(tool, at.c_str()));
+  }
+  return tools;
+}
+
+TreeRobot tree_from_urdf(const PathLike& path_or_xml, const LinkNames& tip_links,
+                         const std::optional<Loose<std::string>>& base_link,
+                         const std::optional<PoseLike>& tcps,
+                         const std::optional<JointValues>& locked_joints,
+                         const Loose<bool>& soft_limits,
+                         const std::optional<ArrayLike>& default_limits) {
+  TreeOptions options;
+  options.tip_links = as_links(tip_links, "tip_links");
+  if (base_link) options.base_link = from_python<std::string>(*base_link, "base_link");
+  if (tcps) options.tcps = as_tools(*tcps, "tcps");
+  if (locked_joints) options.locked_joints = as_joint_values(*locked_joints, "locked_joints");
+  options.soft_limits = from_python<bool>(soft_limits, "soft_limits");
+  if (default_limits) options.default_limits = as_limits(*default_limits, "default_limits");
+  return read_urdf(
+      path_or_xml,
+      [&](const std::string& xml) { return TreeRobot::from_urdf_string(xml, options); },
+      [&](const std::filesystem::path& path) { return TreeRobot::from_urdf_file(path, options); });
+}
+
+/// (k, 4, 4) of their own.
+template <class Poses>
+py::array_t<double> to_stack(const Poses& poses) {
+  py::array_t<double> array(
+      {static_cast<py::ssize_t>(poses.size()), py::ssize_t{4}, py::ssize_t{4}});
+  double* out = array.mutable_data();
+  for (const auto& pose : poses) {
+    Eigen::Map<RowMajorPose>{out} = pose.matrix();
+    out += 16;
+  }
+  return array;
+}
+
+std::string tree_repr(const TreeRobot& self) {
+  return "TreeRobot(" + py::cast<std::string>(py::repr(py::str(self.name()))) +
+         ", dof=" + std::to_string(self.dof()) + ", base_link='" + self.base_link() +
+         "', tip_links=" + py::cast<std::string>(py::repr(py::cast(self.tip_links()))) + ")";
+}
+
+py::object tree_state(const TreeRobot& self) {
+  const TreeOptions& o = self.options();
+  return py::make_tuple(self.urdf(), o.base_link, o.tip_links, to_stack(o.tcps), o.locked_joints,
+                        o.soft_limits, o.default_limits);
+}
+
+TreeRobot tree_from_state(const py::object& state) {
+  PickleState in(state, "TreeRobot", 7);
+  const std::string urdf = in.value<std::string>("urdf");
+  TreeOptions options;
+  options.base_link = in.value<std::string>("base_link");
+  options.tip_links = as_links(in.object(), "pickled TreeRobot, tip_links");
+  options.tcps = as_tools(in.object(), "pickled TreeRobot, tcps");
+  options.locked_joints =
+      as_joint_values(JointValues(in.object()), "pickled TreeRobot, locked_joints");
+  options.soft_limits = in.value<bool>("soft_limits");
+  const py::object limits = in.object();
+  if (!limits.is_none()) {
+    options.default_limits = as_limits(ArrayLike(limits), "pickled TreeRobot, default_limits");
+  }
+  return TreeRobot::from_urdf_string(urdf, options);
+}
+
+void bind_from_urdf(py::class_<TreeRobot>& cls) {
+  const TreeOptions defaults;
+  cls.def_static("from_urdf", &tree_from_urdf, py::arg("path_or_xml"), py::arg("tip_links"),
+                 py::arg("base_link") = py::none(), py::arg("tcps") = py::none(),
+                 py::arg("locked_joints") = py::none(),
+                 py::arg("soft_limits") = defaults.soft_limits,
+                 py::arg("default_limits") = py::none(),
+                 R"(Reads the chains from one link of a URDF to several.
+
+Args:
+    path_or_xml: a path, or the URDF text itself (a str whose first character is '<').
+    tip_links: links whose poses are solved for, 1 to 8.
+    base_link: link that all poses are relative to; None: the root link.
+    tcps: T_tip_tcp of each tip, (k, 4, 4), or None: no tip has a tool.
+    locked_joints: joints held at a value [rad or m]; they are no degrees of freedom.
+    soft_limits: narrow the limits to the URDF's safety_controller where there is one.
+    default_limits: (lower, upper) [rad or m] of revolute and prismatic joints whose limits the
+        URDF leaves out or has as 0, 0; without, such a joint is an error.
+
+Raises:
+    UrdfError: as Robot.from_urdf, of each chain; more than 32 joints together; joints that follow
+        a shared one leave it no value between its limits.
+    UnknownNameError: no such link or joint.
+    InvalidArgumentError: no tip link, one twice, more than 8, not a tool for each, or a number
+        that is no good.)");
+}
+
+void bind_facts(py::class_<TreeRobot>& cls) {
+  add_property(cls, "name", &TreeRobot::name, "Name in the URDF.");
+  add_property(cls, "base_link", &TreeRobot::base_link, "Link that all poses are relative to.");
+  add_property(cls, "tip_links", &TreeRobot::tip_links, "Links whose poses are solved for.");
+  add_property(cls, "urdf", &TreeRobot::urdf, "The URDF text this robot was made of.");
+  add_property(
+      cls, "tcps", [](const TreeRobot& self) { return to_stack(self.options().tcps); },
+      "T_tip_tcp of each tip, (k, 4, 4).");
+  add_property(
+      cls, "locked_joints", [](const TreeRobot& self) { return self.options().locked_joints; },
+      "Joints held at a value [rad or m], by name.");
+  add_property(
+      cls, "soft_limits", [](const TreeRobot& self) { return self.options().soft_limits; },
+      "Whether the limits are narrowed to the safety controller's.");
+  add_property(
+      cls, "default_limits", [](const TreeRobot& self) { return self.options().default_limits; },
+      "Lower and upper limit of joints that the URDF gives none [rad or m], or None.");
+  add_property(cls, "tips", &TreeRobot::tips, "Number of tips.");
+  add_property(cls, "dof", &TreeRobot::dof, "Number of joints of all chains together.");
+  add_property(cls, "joint_names", &TreeRobot::joint_names,
+               "Names of the joints: those of the first chain from base to tip, then those that "
+               "only the second has, and so on.");
+  add_property(cls, "joint_types", &TreeRobot::joint_types, "How each joint moves.");
+  add_property(cls, "shared_joints", &TreeRobot::shared_joints,
+               "Indices of the joints that move more than one tip, ascending.");
+  const auto vector = [&](const char* name, const JointVector& (TreeRobot::*get)() const,
+                          const char* doc) {
+    add_property(
+        cls, name,
+        [get](const TreeRobot& self) {
+          return read_only_view((self.*get)(), py::cast(self, py::return_value_policy::reference));
+        },
+        doc);
+  };
+  vector("lower", &TreeRobot::lower, "Lower position limits [rad or m], (dof,); -inf: none.");
+  vector("upper", &TreeRobot::upper, "Upper position limits [rad or m], (dof,); inf: none.");
+  vector("velocity_limit", &TreeRobot::velocity_limit,
+         "Velocity limits [rad/s or m/s], (dof,); inf where the URDF has none.");
+}
+
+void bind_tips(py::class_<TreeRobot>& cls) {
+  cls.def(
+      "chain",
+      [](const TreeRobot& self, const Loose<int>& tip) {
+        return self.chain(from_python<int>(tip, "tip"));
+      },
+      py::arg("tip"),
+      "The chain to one tip by itself, a Robot; tips count from 0.\n\nRaises:\n"
+      "    InvalidArgumentError: no such tip.");
+  cls.def(
+      "joints_of",
+      [](const TreeRobot& self, const Loose<int>& tip) {
+        return self.joints_of(from_python<int>(tip, "tip"));
+      },
+      py::arg("tip"),
+      "Where the joints of that chain stand among all: its joint values are q[joints_of(tip)]."
+      "\n\nRaises:\n    InvalidArgumentError: no such tip.");
+}
+
+void bind_configurations(py::class_<TreeRobot>& cls) {
+  cls.def(
+      "fk",
+      [](const TreeRobot& self, const ArrayLike& q) {
+        return map_joints(q, self.dof(), "q", {self.tips(), 4, 4},
+                          [&](const JointVector& joints, double* out) {
+                            for (const Pose& pose : self.fk(joints)) {
+                              Eigen::Map<RowMajorPose>{out} = pose.matrix();
+                              out += 16;
+                            }
+                          });
+      },
+      py::arg("q"),
+      R"(Forward kinematics: T_base_tip of each tip, of its TCP if there is a tool.
+
+Args:
+    q: joint values [rad or m], (dof,) or (N, dof).
+
+Returns:
+    (k, 4, 4), or (N, k, 4, 4) with the GIL released.
+
+Raises:
+    InvalidArgumentError: wrong shape or dtype, or a number that is not finite.)");
+  cls.def(
+      "jacobian",
+      [](const TreeRobot& self, const ArrayLike& q) {
+        const int rows = 6 * self.tips();
+        const int dof = self.dof();
+        return map_joints(q, dof, "q", {rows, dof}, [&](const JointVector& joints, double* out) {
+          Eigen::Map<RowMajorMatrix>(out, rows, dof) = self.jacobian(joints);
+        });
+      },
+      py::arg("q"),
+      R"(Geometric Jacobians of all tips, one below the other: rows [linear; angular] for each.
+
+Args:
+    q: joint values [rad or m], (dof,) or (N, dof).
+
+Returns:
+    (6 k, dof), or (N, 6 k, dof) with the GIL released.
+
+Raises:
+    InvalidArgumentError: wrong shape or dtype, or a number that is not finite.)");
+  cls.def(
+      "within_limits",
+      [](const TreeRobot& self, const ArrayLike& q) {
+        return self.within_limits(as_joints(q, self.dof(), "q"));
+      },
+      py::arg("q"), "Whether q [rad or m], (dof,), lies inside the position limits.");
+  cls.def(
+      "random_configurations",
+      [](const TreeRobot& self, const Loose<std::size_t>& n, const Loose<std::uint64_t>& seed) {
+        return to_array(self.random_configurations(from_python<std::size_t>(n, "n"),
+                                                   from_python<std::uint64_t>(seed, "seed")));
+      },
+      py::arg("n"), py::arg("seed"),
+      "n configurations uniform inside the limits (continuous joints in [-pi, pi)), (n, dof). The "
+      "same seed gives the same numbers everywhere.");
+}
+
+}  // namespace
+
+void bind_tree_robot(py::module_& m) {
+  py::class_<TreeRobot> cls(
+      m, "TreeRobot",
+      "The chains from one link of a URDF to several tips, joined: a joint that lies on several of "
+      "them is one degree of freedom. Immutable, safe to use from many threads at once.");
+  bind_from_urdf(cls);
+  bind_facts(cls);
+  bind_tips(cls);
+  bind_configurations(cls);
+  cls.def("__repr__", &tree_repr);
+  cls.def("__copy__", [](const TreeRobot& self) { return self; });
+  cls.def(
+      "__deepcopy__", [](const TreeRobot& self, const py::dict&) { return self; }, py::arg("memo"));
+  cls.def(py::pickle(&tree_state, &tree_from_state));
+}
+
+}  // namespace iksel::python

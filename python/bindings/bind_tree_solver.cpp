@@ -1,0 +1,332 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pybind11/stl.h>
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "angle_warning.hpp"
+#include "array_checks.hpp"
+#include "bindings.hpp"
+#include "filter.hpp"
+#include "gil.hpp"
+#include "iksel/tree_solver.hpp"
+#include "option_fields.hpp"
+#include "pickle.hpp"
+#include "pose_arguments.hpp"
+#include "progress.hpp"
+#include "property.hpp"
+#include "py_tree.hpp"
+#include "task_fields.hpp"
+
+namespace iksel::python {
+
+template <>
+struct IsBoundClass<TreeRobot> : std::true_type {
+  static constexpr const char* kExpected =
+      "a TreeRobot, which TreeRobot.from_urdf(path_or_xml, tip_links) makes";
+};
+
+/// Called with candidates (n, dof); returns n truth values.
+class TreeFilter : public py::object {
+  PYBIND11_OBJECT_DEFAULT(TreeFilter, object, is_any_object)
+};
+
+/// A Task for each tip.
+class TaskList : public py::object {
+  PYBIND11_OBJECT_DEFAULT(TaskList, object, is_any_object)
+};
+
+}  // namespace iksel::python
+
+// NOLINTBEGIN(readability-identifier-naming): pybind11 looks for `name`.
+namespace pybind11::detail {
+template <>
+struct handle_type_name<iksel::python::TreeFilter> {
+  static constexpr auto name =
+      const_name("collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any]");
+};
+template <>
+struct handle_type_name<iksel::python::TaskList> {
+  static constexpr auto name =
+      const_name("collections.abc.Sequence[Task | collections.abc.Mapping[str, object]]");
+};
+}  // namespace pybind11::detail
+// NOLINTEND(readability-identifier-naming)
+
+namespace iksel::python {
+
+namespace {
+
+/// What solve and its like take besides poses.
+struct TreeKeywords {
+  std::optional<ArrayLike> weights;
+  Loose<MoveNorm> norm;
+  std::optional<TreeFilter> filter;
+  std::optional<Loose<double>> deadline;
+  std::optional<TaskList> tasks;
+};
+
+std::vector<Task> as_task_list(const TaskList& value) {
+  const bool is_sequence = PySequence_Check(value.ptr()) != 0 && !py::isinstance<py::str>(value);
+  if (!is_sequence) throw_wrong_type("tasks", "a list of Tasks, one for each tip", value);
+  std::vector<Task> tasks;
+  // Not handles: what is made on the way of an arbitrary sequence has no other owner.
+  for (const py::object item : py::reinterpret_borrow<py::sequence>(value)) {
+    const std::string at = "tasks[" + std::to_string(tasks.size()) + "]";
+    tasks.push_back(from_python<Task>(item, at.c_str()));
+  }
+  return tasks;
+}
+
+TreeRequest read_tree_request(const TreeSolver& self, const TreeKeywords& given) {
+  const int dof = self.robot().dof();
+  TreeRequest request;
+  if (given.weights) request.weights = as_joints(*given.weights, dof, "weights");
+  request.norm = from_python<MoveNorm>(given.norm, "norm");
+  if (given.filter) request.filter = make_filter(*given.filter, dof);
+  if (given.deadline) request.deadline = from_python<double>(*given.deadline, "deadline");
+  if (given.tasks) request.tasks = as_task_list(*given.tasks);
+  return request;
+}
+
+/// What a position alone stands for, if it is the same task for all tips; else null.
+const Task* common_task(const TreeSolver& self, const TreeRequest& request) {
+  if (request.tasks.empty()) return &self.options().task;
+  for (const Task& task : request.tasks) {
+    if (task != request.tasks.front()) return nullptr;
+  }
+  return &request.tasks.front();
+}
+
+std::vector<Pose> as_targets(const DoubleArray& array) {
+  std::vector<Pose> poses(static_cast<std::size_t>(array.shape(0)));
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    poses[i].matrix() = Eigen::Map<const RowMajorPose>(array.data() + 16 * i);
+  }
+  return poses;
+}
+
+/// One pose for each tip.
+std::vector<Pose> as_tip_poses(const TreeSolver& self, const PoseLike& poses,
+                               const TreeRequest& request) {
+  if (is_doubles(poses)) {
+    const auto array = py::reinterpret_borrow<DoubleArray>(poses);
+    const int tips = self.robot().tips();
+    if (array.ndim() == 4 || (array.ndim() == 2 && array.shape(1) == 4)) {
+      throw_wrong_shape("poses", "one pose for each tip, (" + std::to_string(tips) + ", 4, 4)",
+                        array, "; solve_batch() takes (N, k, 4, 4)");
+    }
+  }
+  return as_targets(as_poses(poses, "poses", common_task(self, request)));
+}
+
+JointVector as_tree_near(const TreeSolver& self, const ArrayLike& near) {
+  return as_joints(near, self.robot().dof(), "near");
+}
+
+TreeResult solve_tree(const TreeSolver& self, const PoseLike& poses,
+                      const std::optional<ArrayLike>& near, const TreeKeywords& given) {
+  TreeRequest request = read_tree_request(self, given);
+  if (near) request.near = as_tree_near(self, *near);
+  const std::vector<Pose> targets = as_tip_poses(self, poses, request);
+  return without_gil([&] { return self.solve(targets, request); });
+}
+
+/// (N, k, 4, 4) as N k poses one after the other.
+DoubleArray flatten(const PoseLike& poses, int tips) {
+  const DoubleArray array = as_doubles(poses, "poses");
+  if (array.ndim() != 4 || array.shape(1) != tips || array.shape(2) != 4 || array.shape(3) != 4) {
+    throw_wrong_shape("poses", "an (N, " + std::to_string(tips) + ", 4, 4) array", array);
+  }
+  const std::vector<py::ssize_t> shape = {array.shape(0) * tips, 4, 4};
+  return py::array(array).reshape(shape);
+}
+
+PyTreeBatch solve_tree_batch(const TreeSolver& self, const PoseLike& poses,
+                             const std::optional<ArrayLike>& near, const Loose<int>& threads,
+                             const TreeKeywords& given) {
+  TreeRequest request = read_tree_request(self, given);
+  const std::vector<Pose> targets = as_targets(flatten(poses, self.robot().tips()));
+  std::vector<JointVector> nears;
+  if (near) {
+    const DoubleArray rows = as_joint_rows(*near, self.robot().dof(), "near");
+    if (rows.ndim() == 1) {
+      request.near = as_tree_near(self, *near);
+    } else {
+      for (py::ssize_t i = 0; i < rows.shape(0); ++i) {
+        check_row(rows.data(i), i, self.robot().dof(), "near");
+        nears.emplace_back(Eigen::Map<const Eigen::VectorXd>(rows.data(i), self.robot().dof()));
+      }
+      const auto count = static_cast<py::ssize_t>(targets.size()) / self.robot().tips();
+      if (rows.shape(0) != count) {
+        throw_wrong_shape("near", "one row for each of " + std::to_string(count) + " targets",
+                          rows);
+      }
+    }
+  }
+  const int workers = from_python<int>(threads, "threads");
+  const std::optional<ProgressCallable> no_callable;
+  const Progress interruptible = make_progress(no_callable);
+  return {without_gil(
+              [&] { return self.solve_batch(targets, request, nears, workers, interruptible); }),
+          self.robot().dof(), self.robot().tips()};
+}
+
+TreeDiagnosis diagnose_tree(const TreeSolver& self, const PoseLike& poses,
+                            const TreeKeywords& given) {
+  const TreeRequest request = read_tree_request(self, given);
+  const std::vector<Pose> targets = as_tip_poses(self, poses, request);
+  return without_gil([&] { return self.diagnose(targets, request); });
+}
+
+void bind_tree_methods(py::class_<TreeSolver>& cls) {
+  const Loose<MoveNorm> two = py::str(enum_name(MoveNorm::two));
+  cls.def(
+      "solve",
+      [](const TreeSolver& self, const PoseLike& poses, const std::optional<ArrayLike>& near,
+         const std::optional<ArrayLike>& weights, const Loose<MoveNorm>& norm,
+         const std::optional<TreeFilter>& filter, const std::optional<Loose<double>>& deadline,
+         const std::optional<TaskList>& tasks) {
+        return solve_tree(self, poses, near, {weights, norm, filter, deadline, tasks});
+      },
+      py::arg("poses"), py::kw_only(), py::arg("near") = py::none(),
+      py::arg("weights") = py::none(), py::arg("norm") = two, py::arg("filter") = py::none(),
+      py::arg("deadline") = py::none(), py::arg("tasks") = py::none(),
+      R"(Joint values that put each tip (its TCP, if it has one) at its pose.
+
+Args:
+    poses: T_base_tip [m] of each tip, (k, 4, 4), or k others as in Solver.solve.
+    near: configuration to stay near, (dof,) [rad or m]; may lie outside the limits. The answer is
+        the one with the smallest joint move of those that a bounded search finds, each moved to
+        where the move is locally least.
+    weights: factor on each joint's part of a move, (dof,), >= 0; None: all 1.
+    norm: how a move is measured.
+    filter: called with candidates (n, dof), each at the poses and inside the limits; returns n
+        truth values. The search continues within its bounds while all are refused.
+    deadline: wall-clock time after which the search ends [s]; checked between its stages.
+    tasks: what of each tip's pose has to be reached, one for each; None: what the solver's options
+        say, of each.
+
+Returns:
+    A TreeResult. Poses that cannot be reached are no error but a status.
+
+Raises:
+    InvalidArgumentError: wrong shape or dtype, not one pose or task for each tip, a pose that is
+        not rigid, a number that is not finite, or a keyword out of range.)");
+  cls.def(
+      "solve_batch",
+      [](const TreeSolver& self, const PoseLike& poses, const Loose<int>& threads,
+         const std::optional<ArrayLike>& near, const std::optional<ArrayLike>& weights,
+         const Loose<MoveNorm>& norm, const std::optional<TreeFilter>& filter,
+         const std::optional<Loose<double>>& deadline, const std::optional<TaskList>& tasks) {
+        return solve_tree_batch(self, poses, near, threads,
+                                {weights, norm, filter, deadline, tasks});
+      },
+      py::arg("poses"), py::kw_only(), py::arg("threads") = 0, py::arg("near") = py::none(),
+      py::arg("weights") = py::none(), py::arg("norm") = two, py::arg("filter") = py::none(),
+      py::arg("deadline") = py::none(), py::arg("tasks") = py::none(),
+      R"(Solves many targets with the GIL released; row i has the bits of solve(poses[i]).
+
+Args:
+    poses: T_base_tip [m] of each tip, (N, k, 4, 4). A row of which one is no pose has
+        Status.invalid_pose.
+    threads: 0: one per core.
+    near: as in solve, or (N, dof): one for each target.
+    weights: as in solve.
+    norm: as in solve.
+    filter: as in solve; called from any thread, one at a time.
+    deadline: of each target by itself [s].
+    tasks: as in solve.
+
+Returns:
+    A TreeBatchResult.
+
+Raises:
+    InvalidArgumentError: wrong shape or dtype, or a keyword out of range.)");
+  cls.def(
+      "diagnose",
+      [](const TreeSolver& self, const PoseLike& poses, const std::optional<TreeFilter>& filter,
+         const std::optional<Loose<double>>& deadline, const std::optional<TaskList>& tasks) {
+        return diagnose_tree(
+            self, poses,
+            {std::nullopt, py::str(enum_name(MoveNorm::two)), filter, deadline, tasks});
+      },
+      py::arg("poses"), py::kw_only(), py::arg("filter") = py::none(),
+      py::arg("deadline") = py::none(), py::arg("tasks") = py::none(),
+      R"(Why there is no answer: whether each tip can be reached by itself. Milliseconds.
+
+Args:
+    poses: as in solve.
+    filter: as in solve.
+    deadline: as in solve.
+    tasks: as in solve.
+
+Returns:
+    A TreeDiagnosis.
+
+Raises:
+    InvalidArgumentError: as solve.)");
+}
+
+TreeSolver make_tree_solver(const Loose<TreeRobot>& given_robot,
+                            const std::optional<Loose<SolverOptions>>& given) {
+  const auto robot = from_python<TreeRobot>(given_robot, "robot");
+  const auto options = given ? from_python<SolverOptions>(*given, "options") : SolverOptions{};
+  options.validate();
+  return without_gil([&] { return TreeSolver(robot, options); });
+}
+
+TreeSolver tree_solver_from_state(const py::object& state) {
+  PickleState in(state, "TreeSolver", 2);
+  const auto robot = in.value<TreeRobot>("robot");
+  return TreeSolver(robot, in.value<SolverOptions>("options"));
+}
+
+}  // namespace
+
+void bind_tree_solver(py::module_& m) {
+  py::class_<TreeSolver> cls(
+      m, "TreeSolver",
+      "Solves inverse kinematics for all tips of a TreeRobot at once. Immutable, safe to use from "
+      "many threads at once; the same input gives the same bits. The joints that tips share are "
+      "set to a value, and behind them each arm is solved for by itself; where that leads nowhere, "
+      "all joints are iterated together.");
+  cls.def(py::init(&make_tree_solver), py::arg("robot"), py::arg("options") = py::none(),
+          R"(Builds the databases of the chains by `options.database`.
+
+Args:
+    robot: the robot to solve for.
+    options: SolverOptions() if None; tolerances, task and bounds on work hold for each tip.
+
+Raises:
+    InvalidArgumentError: an option out of range.)");
+  add_property(cls, "robot", &TreeSolver::robot, "The robot it solves for.");
+  add_property(
+      cls, "options", [](const TreeSolver& self) { return self.options(); },
+      "A copy of its options.");
+  cls.def(
+      "chain_solver",
+      [](const TreeSolver& self, const Loose<int>& tip) {
+        return self.chain_solver(from_python<int>(tip, "tip"));
+      },
+      py::arg("tip"),
+      "The Solver of one tip's chain by itself; tips count from 0.\n\nRaises:\n"
+      "    InvalidArgumentError: no such tip.");
+  bind_tree_methods(cls);
+  cls.def("__repr__", [](const TreeSolver& self) {
+    return "TreeSolver(" + py::cast<std::string>(py::repr(py::cast(self.robot()))) + ", " +
+           to_repr(self.options()) + ")";
+  });
+  cls.def("__copy__", [](const TreeSolver& self) { return self; });
+  cls.def(
+      "__deepcopy__", [](const TreeSolver& self, const py::dict&) { return self; },
+      py::arg("memo"));
+  cls.def(py::pickle(
+      [](const TreeSolver& self) { return py::make_tuple(self.robot(), self.options()); },
+      &tree_solver_from_state));
+}
+
+}  // namespace iksel::python

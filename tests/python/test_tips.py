@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Several tips at once, from Python."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from trees import two_armed, two_arms_on_torso
+
+import iksel
+
+SEED = 5
+
+
+@pytest.fixture(scope="module")
+def solver() -> iksel.TreeSolver:
+    return iksel.TreeSolver(two_armed(iksel.load_robot("ur5e")))
+
+
+@pytest.fixture(scope="module")
+def targets(solver: iksel.TreeSolver) -> np.ndarray:
+    return solver.robot.fk(solver.robot.random_configurations(50, SEED))
+
+
+def test_the_robot_is_the_union_of_its_chains(solver) -> None:
+    robot = solver.robot
+    assert robot.tips == 2
+    assert robot.dof == 14 == len(robot.joint_names) == len(robot.joint_types)
+    assert [robot.joint_names[i] for i in robot.shared_joints] == ["lift", "turn"]
+    q = robot.random_configurations(4, SEED)
+    poses = robot.fk(q)
+    jacobians = robot.jacobian(q)
+    assert poses.shape == (4, 2, 4, 4)
+    assert jacobians.shape == (4, 12, 14)
+    for tip in range(2):
+        chain, columns = robot.chain(tip), robot.joints_of(tip)
+        assert chain.joint_names == [robot.joint_names[j] for j in columns]
+        np.testing.assert_array_equal(chain.fk(q[:, columns]), poses[:, tip])
+        rows = slice(6 * tip, 6 * tip + 6)
+        expected = np.zeros((4, 6, 14))
+        expected[:, :, columns] = chain.jacobian(q[:, columns])
+        np.testing.assert_array_equal(jacobians[:, rows], expected)
+    assert robot.within_limits(q[0])
+    assert not robot.within_limits(robot.upper + 0.1)
+
+
+def test_pinocchio_agrees() -> None:
+    pinocchio = pytest.importorskip("pinocchio")
+    arm = iksel.load_robot("panda")
+    robot = two_armed(arm)
+    model = pinocchio.buildModelFromXML(two_arms_on_torso(arm))
+    data = model.createData()
+    q = robot.random_configurations(20, SEED)
+    for row, poses, jacobian in zip(q, robot.fk(q), robot.jacobian(q), strict=True):
+        values = np.zeros(model.nq)
+        order = []
+        for name, value in zip(robot.joint_names, row, strict=True):
+            joint = model.joints[model.getJointId(name)]
+            values[joint.idx_q] = value
+            order.append(joint.idx_v)
+        pinocchio.computeJointJacobians(model, data, values)
+        pinocchio.updateFramePlacements(model, data)
+        for tip, link in enumerate(robot.tip_links):
+            frame = model.getFrameId(link)
+            there = data.oMf[frame].homogeneous
+            np.testing.assert_allclose(there, poses[tip], atol=1e-12)
+            world = pinocchio.ReferenceFrame.LOCAL_WORLD_ALIGNED
+            other = pinocchio.getFrameJacobian(model, data, frame, world)[:, order]
+            np.testing.assert_allclose(
+                other, jacobian[6 * tip : 6 * tip + 6], atol=1e-12
+            )
+
+
+def test_the_batch_is_the_loop(solver, targets) -> None:
+    batch = solver.solve_batch(targets, threads=2)
+    assert len(batch) == batch.solved == 50, f"seed {SEED}"
+    assert batch.success.all()
+    assert batch.position_error.shape == batch.rotation_error.shape == (50, 2)
+    for i, (row, poses) in enumerate(zip(batch, targets, strict=True)):
+        one = solver.solve(poses)
+        assert one
+        np.testing.assert_array_equal(one.q, batch.q[i])
+        np.testing.assert_array_equal(row.position_error, one.position_error)
+        error = solver.robot.fk(one.q)[:, :3, 3] - poses[:, :3, 3]
+        assert np.linalg.norm(error, axis=1).max() < 1e-6
+        assert solver.robot.within_limits(one.q)
+
+
+def test_near_may_be_one_for_all_or_one_each(solver, targets) -> None:
+    q = solver.robot.random_configurations(50, SEED)
+    each = solver.solve_batch(targets[:5], near=q[:5])
+    np.testing.assert_allclose(each.move, 0, atol=1e-9)
+    same = solver.solve_batch(targets[:5], near=q[0], norm="max")
+    for i in range(5):
+        one = solver.solve(targets[i], near=q[0], norm="max")
+        np.testing.assert_array_equal(one.q, same.q[i])
+        assert one.move == pytest.approx(np.abs(one.q - q[0]).max())
+    # Whoever counts little moves more.
+    weights = np.ones(14)
+    weights[2:] = 10
+    there = solver.solve(targets[1], near=q[0], weights=weights)
+    assert there.move == pytest.approx(np.linalg.norm(weights * (there.q - q[0])))
+
+
+def test_each_tip_has_a_task(solver, targets) -> None:
+    tasks = [iksel.Task.position_only(), iksel.Task.free_spin()]
+    turned = targets[0].copy()
+    turned[0, :3, :3] = turned[0, :3, :3] @ np.diag([1.0, -1, -1])
+    result = solver.solve(turned, tasks=tasks)
+    assert result
+    reached = solver.robot.fk(result.q)
+    np.testing.assert_allclose(reached[:, :3, 3], turned[:, :3, 3], atol=2e-6)
+    np.testing.assert_allclose(reached[1, :3, 2], turned[1, :3, 2], atol=2e-6)
+    positions = solver.solve(targets[0][:, :3, 3], tasks=[tasks[0]] * 2)
+    assert positions
+
+
+def test_what_cannot_be_reached_is_named(solver, targets) -> None:
+    far = targets[0].copy()
+    far[1, 0, 3] += 9
+    result = solver.solve(far)
+    assert not result
+    assert result.q is None
+    assert result.position_error is None
+    assert result.proven
+    assert result.unreachable_tip == 1
+    assert solver.solve(targets[0]).unreachable_tip is None
+    diagnosis = solver.diagnose(far)
+    assert diagnosis.unreachable_tip == 1
+    assert "r_tool0" in diagnosis.message
+    assert [tip.cause.name for tip in diagnosis.tips] == ["none", "out_of_reach"]
+    batch = solver.solve_batch(np.stack([far, targets[0]]))
+    assert batch.unreachable_tip.tolist() == [1, -1]
+    assert np.isnan(batch.q[0]).all()
+    assert batch[0].status == iksel.Status.out_of_reach
+    with pytest.raises(iksel.InvalidArgumentError, match="ambiguous"):
+        bool(batch)
+
+
+def test_a_filter_sees_all_joints(solver, targets) -> None:
+    seen = []
+
+    def left_elbow_up(q: np.ndarray) -> np.ndarray:
+        seen.append(q.shape)
+        return q[:, 4] > 0
+
+    found = [solver.solve(poses, filter=left_elbow_up) for poses in targets[:10]]
+    assert all(shape == (1, 14) for shape in seen)
+    assert any(found)
+    assert all(result.q[4] > 0 for result in found if result)
+    refused = solver.solve(targets[0], filter=lambda q: np.zeros(len(q), bool))
+    assert refused.status == iksel.Status.rejected
+    with pytest.raises(ZeroDivisionError):
+        solver.solve(targets[0], filter=lambda q: 1 / 0)
+
+
+def test_tools_and_locked_joints() -> None:
+    arm = iksel.load_robot("ur5e")
+    tools = np.stack([np.eye(4)] * 2)
+    tools[1, 2, 3] = 0.1
+    robot = iksel.TreeRobot.from_urdf(
+        two_arms_on_torso(arm),
+        ["l_tool0", "r_tool0"],
+        base_link="lifted",
+        tcps=tools,
+        locked_joints={"turn": 0.3},
+    )
+    assert robot.dof == 12
+    assert robot.shared_joints == []
+    np.testing.assert_array_equal(robot.tcps, tools)
+    poses = robot.fk(robot.random_configurations(20, SEED))
+    assert iksel.TreeSolver(robot).solve_batch(poses).solved == 20
+
+
+def test_what_is_wrong_is_named(solver, targets) -> None:
+    urdf = two_arms_on_torso(iksel.load_robot("ur5e"))
+    tree = iksel.TreeRobot.from_urdf
+    wrong = iksel.InvalidArgumentError
+    cases = [
+        (iksel.UnknownNameError, "r_tool0", lambda: tree(urdf, ["l_tool0", "r_tol0"])),
+        (wrong, "tip_links", lambda: tree(urdf, [])),
+        (wrong, "tip_links", lambda: tree(urdf, "l_tool0")),
+        (wrong, r"tip_links\[1\]", lambda: tree(urdf, ["l_tool0", "l_tool0"])),
+        (wrong, "tcps", lambda: tree(urdf, ["l_tool0"], tcps=[np.eye(4)] * 2)),
+        (wrong, "poses", lambda: solver.solve(targets)),
+        (wrong, "poses", lambda: solver.solve(targets[0, 0])),
+        (wrong, "l_tool0, r_tool0", lambda: solver.solve(targets[0, :1])),
+        (wrong, "poses", lambda: solver.solve_batch(targets[0])),
+        (wrong, "near", lambda: solver.solve(targets[0], near=[0.0])),
+        (wrong, "near", lambda: solver.solve_batch(targets, near=np.zeros((3, 14)))),
+        (wrong, "tasks", lambda: solver.solve(targets[0], tasks=[iksel.Task()])),
+        (wrong, r"tasks\[0\]", lambda: solver.solve(targets[0], tasks=[3, 4])),
+        (wrong, "l_tool0, r_tool0", lambda: solver.robot.chain(2)),
+        (
+            iksel.SignatureError,
+            "a TreeRobot",
+            lambda: iksel.TreeSolver(iksel.load_robot("ur5e")),
+        ),
+    ]
+    for error, words, call in cases:
+        with pytest.raises(error, match=words):
+            call()

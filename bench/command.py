@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from bench import plan, scene
+from bench import coupled, plan, scene
 from bench.arms import RIVAL_ARMS
 from bench.cells import WORK
 from bench.frozen import compare, record
@@ -71,6 +71,7 @@ def parser() -> argparse.ArgumentParser:
     _add_no(commands)
     learned_command.add(commands)
     scene.add(commands)
+    coupled.add(commands)
     return top
 
 
@@ -150,8 +151,9 @@ def main(arguments: list[str] | None = None) -> int:
     if options.command == "frozen":
         action = record if options.action == "record" else compare
         return action(options.file)
-    if options.command == "scene":
-        return scene.run(options)
+    printed = {"scene": scene.run, "coupled": coupled.run}
+    if options.command in printed:
+        return printed[options.command](options)
     others = {"no": _no, "learned": _learned}
     if options.command in others:
         return others[options.command](options, given)

@@ -186,6 +186,10 @@ def common_data(robot: Robot, options: SolverOptions) -> dict[str, Any]:
             "locked_joints": dict(robot.locked_joints),
             "soft_limits": robot.soft_limits,
             "default_limits": _plain(robot.default_limits),
+            "coupled_limits": [
+                _plain([limit.coefficients, limit.lower, limit.upper])
+                for limit in robot.coupled_limits
+            ],
             "chain_hash": f"{robot.chain_hash:016x}",
         },
         "options": _plain(options.to_dict()),

@@ -22,6 +22,8 @@ import iksel
 if TYPE_CHECKING:
     import argparse
 
+    import numpy.typing as npt
+
     from bench.chain import Array
 
 URDF = Path(__file__).with_name("fanuc_like.urdf")
@@ -43,9 +45,13 @@ def arms() -> dict[str, tuple[str, list[iksel.CoupledLimit]]]:
     }
 
 
-def is_inside(robot: iksel.Robot, limits: list[iksel.CoupledLimit], q: Array) -> Array:
+def is_inside(
+    robot: iksel.Robot, limits: list[iksel.CoupledLimit], q: Array
+) -> npt.NDArray[np.bool_]:
     """Whether each row of q lies inside all limits."""
-    inside = np.all((q >= robot.lower) & (q <= robot.upper), axis=1)
+    inside: npt.NDArray[np.bool_] = np.all(
+        (q >= robot.lower) & (q <= robot.upper), axis=1
+    )
     for limit in limits:
         c = np.array([limit.coefficients.get(name, 0.0) for name in robot.joint_names])
         inside &= (q @ c >= limit.lower) & (q @ c <= limit.upper)

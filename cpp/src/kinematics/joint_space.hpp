@@ -90,7 +90,10 @@ class JointSpace {
   [[nodiscard]] CoupledNormals coupled_normals(const JointVector& q, JointVector pull,
                                                const JointVector& free) const;
   /// Whether whole turns of a joint change a coupled sum, and may lie inside the limits.
-  [[nodiscard]] bool has_coupled_images(int joint) const;
+  [[nodiscard]] bool has_coupled_images(int joint) const {
+    return !coupled_turning.empty() && std::find(coupled_turning.begin(), coupled_turning.end(),
+                                                 joint) != coupled_turning.end();
+  }
   /// Each joint that turns at the whole turn nearest to the middle of its limits, where it violates
   /// them least.
   [[nodiscard]] JointVector turned_to_middle(JointVector q) const;

@@ -17,10 +17,6 @@ bool JointSpace::holds_coupled(const double* q) const {
   });
 }
 
-bool JointSpace::has_coupled_images(int joint) const {
-  return std::find(coupled_turning.begin(), coupled_turning.end(), joint) != coupled_turning.end();
-}
-
 namespace {
 
 /// How far the rows, and the joints of which images were chosen, lie outside.

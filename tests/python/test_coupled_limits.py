@@ -426,10 +426,8 @@ def test_plans_of_maps_keep_them() -> None:
     assert (
         "coupled_limits" not in reach.plan(iksel.load_robot("ur3")).to_dict()["robot"]
     )
-    wrist = arm("both")
-    free = ARMS["both"]()
-    assert turns_freely(free, 5)
-    assert not turns_freely(wrist, 5)
+    assert turns_freely(ARMS["both"](), 5)
+    assert not turns_freely(arm("both"), 5)
 
 
 def test_what_is_violated_is_listed() -> None:

@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from bench import dual, plan, scene, tips
+from bench import coupled, dual, plan, scene, tips
 from bench.arms import RIVAL_ARMS
 from bench.cells import WORK
 from bench.frozen import compare, record
@@ -70,9 +70,8 @@ def parser() -> argparse.ArgumentParser:
     frozen.add_argument("file", type=Path, help="where, e.g. build/frozen.json")
     _add_no(commands)
     learned_command.add(commands)
-    scene.add(commands)
-    dual.add(commands)
-    tips.add(commands)
+    for part in (scene, coupled, dual, tips):
+        part.add(commands)
     return top
 
 
@@ -152,7 +151,12 @@ def main(arguments: list[str] | None = None) -> int:
     if options.command == "frozen":
         action = record if options.action == "record" else compare
         return action(options.file)
-    alone = {"scene": scene.run, "dual": dual.run, "tips": tips.run}
+    alone = {
+        "scene": scene.run,
+        "coupled": coupled.run,
+        "dual": dual.run,
+        "tips": tips.run,
+    }
     if options.command in alone:
         return alone[options.command](options)
     others = {"no": _no, "learned": _learned}

@@ -36,6 +36,7 @@ SquareMatrix second_derivative(const Remainder& remainder, const JointVector& q,
 /// Leaves out joints that stand at a limit and would go beyond: returns whether any is left.
 bool hold_at_limits(const JointSpace& joints, const JointVector& q, JointVector& gradient,
                     SquareMatrix& H) {
+  JointVector free = JointVector::Ones(q.size());
   for (Eigen::Index j = 0; j < q.size(); ++j) {
     const bool leaves = (q[j] <= joints.lower[j] && gradient[j] > 0) ||
                         (q[j] >= joints.upper[j] && gradient[j] < 0);
@@ -44,6 +45,15 @@ bool hold_at_limits(const JointSpace& joints, const JointVector& q, JointVector&
     H.row(j).setZero();
     H.col(j).setZero();
     H(j, j) = 1;
+    free[j] = 0;
+  }
+  if (!joints.coupled.empty()) {
+    // The same for directions across coupled limits.
+    const CoupledNormals N = joints.coupled_normals(q, -gradient, free);
+    const SquareMatrix across = N * N.transpose();
+    const SquareMatrix along = SquareMatrix::Identity(q.size(), q.size()) - across;
+    gradient = JointVector(along * gradient);
+    H = SquareMatrix(along * H * along + across);
   }
   return !gradient.isZero(0);
 }

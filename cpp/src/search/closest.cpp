@@ -50,7 +50,8 @@ class Minima {
     model_.joints.wrap(principal.data());
     if (remainder_.value(principal) <= remainder * (1 + kSameRemainder)) q = principal;
     if (request_.near) {
-      model_.joints.wrap_nearest(*request_.near, 0, q);
+      model_.joints.wrap_nearest(
+          *request_.near, 0, [&](const JointVector& d) { return move_.length(d); }, q);
       move = move_.length(q - *request_.near);
     }
     found_.push_back({remainder, move, std::move(q)});

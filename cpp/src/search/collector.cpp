@@ -82,12 +82,14 @@ void Collector::wrap_near(const JointVector& near, Result& answer) const {
   // An answer at a limit lies outside by rounding as often as not. Held to the limit it need not be
   // a whole turn away.
   JointVector image = answer.q;
-  const bool held = model_.joints.wrap_nearest(near, goal_.task().rotation_tolerance(), image);
+  const auto length = [&](const JointVector& d) { return move_.length(d); };
+  const double slack = goal_.task().rotation_tolerance();
+  const bool held = model_.joints.wrap_nearest(near, slack, length, image);
   if (image == answer.q) return;
   // Whole turns round, and so measured again.
   if (goal_.check(image, answer) || !held) return;
   image = answer.q;
-  model_.joints.wrap_nearest(near, 0, image);
+  model_.joints.wrap_nearest(near, 0, length, image);
   goal_.check(image, answer);
 }
 

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "options/strategy.hpp"
+#include "structure/coupled_form.hpp"
 
 namespace iksel {
 
@@ -14,6 +15,17 @@ bool solves_in_lanes(const ChainModel& model, const DatabaseData& data,
                      const SolverOptions& options) {
   return std::holds_alternative<Lanes>(options.strategy) && data.reduction != nullptr &&
          is_simple(model);
+}
+
+/// Those of the nominal chain that tell which solutions lie inside the model's limits.
+ClosedForms closed_forms_of(const ChainModel& model, const ChainModel& nominal) {
+  ClosedForms forms = ClosedForms::of(nominal);
+  if (forms.pose && !suits_coupled_limits(model, *forms.pose)) forms.pose.reset();
+  forms.tasks.erase(
+      std::remove_if(forms.tasks.begin(), forms.tasks.end(),
+                     [&](const auto& form) { return !suits_coupled_limits(model, form.second); }),
+      forms.tasks.end());
+  return forms;
 }
 
 }  // namespace
@@ -83,7 +95,7 @@ WorkspacePool::WorkspacePool(const Robot& robot, const Robot& nominal, const Dat
       nominal_(nominal),
       database_(database),
       options_(options),
-      closed_forms_(ClosedForms::of(nominal.model())),
+      closed_forms_(closed_forms_of(robot.model(), nominal.model())),
       solves_in_lanes_(iksel::solves_in_lanes(robot.model(), database.data(), options)),
       damaged_(database.data().storage.damaged) {
   if (solves_in_lanes_ && &robot.model() == &nominal.model()) {

@@ -121,6 +121,7 @@ class SweptBranches {
     if (turns_ && swept > upper_) swept -= kTwoPi;
     q[chain_.held] = swept;
     chain_.copy_joints(*last_, lane, q);
+    if (!joints_.coupled_turning.empty()) joints_.wrap(q);
   }
 
  private:

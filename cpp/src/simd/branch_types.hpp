@@ -53,6 +53,7 @@ struct ClosedForm {
   Turned elbow;         ///< p23 . R(h3) p34
   Turned shoulder;      ///< of parallel_12, h1 . R(h3) p34
   Turned wrist;         ///< h4 . R(h5) h6; of three_parallel, h2 . R(h5) h6
+  const CoupledForm* coupled;  ///< null: no joint values are limited together
 };
 
 /// Poses, and a branch of each, lane by lane. Rows of the target: columns X, Y and Z of R_06 E,
@@ -67,7 +68,7 @@ struct BranchPack {
   alignas(64) double sign[3][kWidth];
   /// Of the six joints [rad], by whole turns inside the limits where they can be.
   alignas(64) double q[6][kWidth];
-  /// How far one of them lies outside of them, 0 or less if none does [rad].
+  /// How far one of them lies outside of them, or of coupled ones, 0 or less if none does [rad].
   alignas(64) double beyond[kWidth];
   /// Subproblems have solutions where a difference of squares is not below 0. The least of these;
   /// and at best and at worst for targets within ClosedForm::error: there is no branch where the
@@ -93,6 +94,9 @@ struct MoveForm {
   double lower[7], upper[7];
   double margin;
   bool takes_largest;  ///< else the root of the squares' sum
+  /// Of ClosedForm, if images change coupled sums; these joints are then in `turns_coupled`.
+  const CoupledForm* coupled;
+  bool turns_coupled[7];
 };
 
 /// How far branches are away, lane by lane.

@@ -9,6 +9,7 @@
 //   C_ij = w_p^2 (L_i . L_j + L_j . (d x z_i)) + 1/2 w_r^2 (z_i . z_j trace M - z_i . M z_j).
 #pragma once
 
+#include "simd/coupled_kernel.hpp"
 #include "simd/lane_frames.hpp"
 #include "simd/lane_math.hpp"
 #include "simd/lane_types.hpp"
@@ -166,6 +167,7 @@ void approach(const LaneChainOf<float>& chain, float position, float rotation, i
         q[j] = select(better, q[j] + step[j], best_q[j]);
         if (joint.limited) q[j] = min(max(q[j], T(joint.lower)), T(joint.upper));
       }
+      if (chain.coupled_rows > 0) hold_coupled(chain, q);
     }
     for (int j = 0; j < n; ++j) Lanes<T>::store(best_q[j], pack.q[j] + first);
     Lanes<T>::store(best + best, pack.error2 + first);

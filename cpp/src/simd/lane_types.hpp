@@ -3,6 +3,8 @@
 // different instruction sets agree on them.
 #pragma once
 
+#include "simd/coupled_types.hpp"
+
 namespace iksel::lanes {
 
 inline constexpr int kMaxJoints = 32;
@@ -26,11 +28,22 @@ struct LaneJointOf {
 };
 using LaneJoint = LaneJointOf<double>;
 
+/// A limit of a sum of joint values: lower <= c . q <= upper.
+template <typename Number>
+struct LaneCoupledOf {
+  Number c[kMaxJoints];
+  Number lower, upper;  ///< what is held to it is held to these
+  Number low, high;     ///< from these on it stands at it
+  Number least_norm2;   ///< far below that of its coefficients
+};
+
 /// The chain between the frames of its first and last joint.
 template <typename Number>
 struct LaneChainOf {
   int n;
   LaneJointOf<Number> joint[kMaxJoints];
+  int coupled_rows;
+  LaneCoupledOf<Number> coupled[kMostCoupled];
 };
 using LaneChain = LaneChainOf<double>;
 

@@ -14,6 +14,7 @@
 #include "refine/best_effort.hpp"
 #include "solver/diagnose_branches.hpp"
 #include "solver/diagnose_refusals.hpp"
+#include "solver/limit_violations.hpp"
 #include "solver/solver_impl.hpp"
 
 namespace iksel {
@@ -148,24 +149,21 @@ class Diagnoser {
     }
     const Solutions answers = unlimited.solve_all(goal_.target(), {}, hinted);
     out_.attempts += answers.attempts;
+    double least = kInfinity;
     for (const Result& answer : answers.all) {
-      const JointVector branch = model_.joints.turned_to_middle(answer.q);
+      JointVector branch = model_.joints.turned_to_middle(answer.q);
+      if (!model_.joints.coupled_turning.empty()) model_.joints.wrap(branch.data());
       effort.from(branch);
-      int joint = 0;
-      const double violation = model_.joints.violations(branch).maxCoeff(&joint);
-      if (out_.joint >= 0 && violation >= out_.limit_violation) continue;
-      out_.joint = joint;
-      out_.limit_violation = violation;
+      const double violation = worst_violation(model_.joints, branch);
+      if (violation >= least) continue;
+      least = violation;
       out_.branch = branch;
     }
-    if (out_.joint < 0) return false;
+    if (least == kInfinity) return false;
+    set_violation(model_.joints, out_.branch, out_);
     describe(effort.q());
-    const auto joint = static_cast<std::size_t>(out_.joint);
-    const bool is_slide = model_.joints.types[joint] == JointType::prismatic;
     out_.cause = Cause::joint_limits;
-    out_.message = "answers exist only outside the limits: joint '" + model_.joints.names[joint] +
-                   "' would have to go beyond by " +
-                   format(is_slide ? "%.4g m" : "%.4g rad", out_.limit_violation) +
+    out_.message = "answers exist only outside the limits: " + describe_violation(model_, out_) +
                    " or more; move the target, or leave an axis free";
     return true;
   }

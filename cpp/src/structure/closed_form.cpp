@@ -6,6 +6,7 @@
 #include "base/constants.hpp"
 #include "simd/lane_chain.hpp"
 #include "structure/completed_axes.hpp"
+#include "structure/coupled_form.hpp"
 #include "structure/find_loop.hpp"
 
 namespace iksel {
@@ -205,6 +206,8 @@ void ClosedFormChain::use_limits(const ChainModel& model) {
     form.middle[i] = ends ? 0.5 * (model.joints.lower[j] + model.joints.upper[j]) : 0;
     form.reach[i] = ends ? 0.5 * (model.joints.upper[j] - model.joints.lower[j]) : kPi;
   }
+  coupled = make_coupled_form(model, *this);
+  form.coupled = coupled.get();
 }
 
 namespace {

@@ -36,6 +36,8 @@ struct ClosedFormChain {
   lanes::ClosedForm form{};
   /// Of the closure `loop`, of which the form has but the limits.
   std::shared_ptr<const LoopEquations> loop;
+  /// What form.coupled points at.
+  std::shared_ptr<const lanes::CoupledForm> coupled;
   double unit = 0;           ///< [m]
   double deviation = 0;      ///< of axes from where the form has them [rad, units]
   Eigen::Vector3d first;     ///< the point on axis 1 [m]

@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from bench import plan, scene
+from bench import closest, plan, scene
 from bench.arms import RIVAL_ARMS
 from bench.cells import WORK
 from bench.frozen import compare, record
@@ -71,6 +71,7 @@ def parser() -> argparse.ArgumentParser:
     _add_no(commands)
     learned_command.add(commands)
     scene.add(commands)
+    closest.add(commands)
     return top
 
 
@@ -152,6 +153,8 @@ def main(arguments: list[str] | None = None) -> int:
         return action(options.file)
     if options.command == "scene":
         return scene.run(options)
+    if options.command == "closest":
+        return closest.run(options)
     others = {"no": _no, "learned": _learned}
     if options.command in others:
         return others[options.command](options, given)

@@ -98,6 +98,25 @@ def test_tracker_stays_at_the_edge(solver, far):
         iksel.Tracker(solver, start, closest=[1, 2])
 
 
+def test_copies_of_a_tracker_come_back_alike(solver):
+    tracker = solver.tracker([0.3, -0.8, 0.6, -0.4, -1.2, 0.2], closest=True)
+    pose = solver.robot.fk(tracker.q)
+    start = tracker.q
+    away = pose.copy()
+    away[:3, 3] *= 1.5
+    for _ in range(500):
+        status = tracker.track(away, 0.01).status
+    assert status == iksel.Status.closest
+    assert np.allclose(tracker.reached, start, atol=1e-6)
+    again = pickle.loads(pickle.dumps(tracker))
+    for _ in range(500):
+        tracker.track(pose, 0.01)
+        again.track(pose, 0.01)
+        assert np.array_equal(tracker.q, again.q)
+    assert np.allclose(solver.robot.fk(tracker.q), pose, atol=1e-5)
+    assert np.array_equal(tracker.reached, tracker.q)
+
+
 def test_command_line(run):
     pose = ["--pose", "2", "0", "0.3", "0", "0", "0"]
     output = run("solve", "ur5e", *pose, "--closest", "--json")

@@ -74,6 +74,8 @@ class Collector {
     return !aim_.until_complete && request_.near && !request_.objective.is_set() &&
            request_.scene && !request_.filter;
   }
+  /// Of what was found, where the nearest is wanted; infinite if nothing was.
+  [[nodiscard]] double least_move() const { return found_.least_cost(); }
   /// How many solutions are to be spread over the self-motion, and how near to each other; 0: they
   /// need not be.
   [[nodiscard]] int spread() const { return aim_.spread; }

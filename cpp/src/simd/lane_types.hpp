@@ -185,7 +185,7 @@ using EvaluatePolynomial = void (*)(const TrigonometricPolynomial& polynomial, c
 using CloseLoops = void (*)(const LoopForm& form, const LoopTarget& target,
                             const ClosedForm& limits, BranchPack& pack);
 /// The number of roots between values beside each other: 0, 1, or 2 if that is not certain.
-using CountRoots = void (*)(const double* values, int n, double* counts);
+using CountRoots = void (*)(const double* values, int n, double apart, double* counts);
 
 struct SceneView;
 /// The clearance in each lane (scene_types.hpp).

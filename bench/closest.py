@@ -81,7 +81,9 @@ def measured(settings: Settings) -> dict[str, Any]:
         for _ in range(PASSES)
     ]
     q = np.array([result.q for result in runs[0][1]])
-    patient = iksel.Solver(arm.robot, max_attempts=max(settings["restarts"], 1))
+    patient = iksel.Solver(
+        arm.robot, iksel.SolverOptions(max_attempts=settings["restarts"])
+    )
     random = np.random.default_rng([settings["seed"], first])
     best = []
     begin = time.perf_counter()

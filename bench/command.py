@@ -151,10 +151,9 @@ def main(arguments: list[str] | None = None) -> int:
     if options.command == "frozen":
         action = record if options.action == "record" else compare
         return action(options.file)
-    if options.command == "scene":
-        return scene.run(options)
-    if options.command == "closest":
-        return closest.run(options)
+    alone = {"scene": scene.run, "closest": closest.run}
+    if options.command in alone:
+        return alone[options.command](options)
     others = {"no": _no, "learned": _learned}
     if options.command in others:
         return others[options.command](options, given)

@@ -124,6 +124,50 @@ TEST(Closest, WeighsPositionsAgainstRotations) {
   EXPECT_GT(compared, 10);
 }
 
+/// 300 descents from configurations at random beside the search, by weights of each axis.
+TEST(Closest, CountsEachAxisByItsWeight) {
+  PoseWeights weights;
+  weights.position = {1, 0.2, 2};
+  weights.rotation = {0.05, 0.3, 0.1};
+  const auto missing = [&](const Robot& robot, const Pose& target, const JointVector& q) {
+    const Pose back = target.inverse() * robot.fk(q);
+    const Eigen::AngleAxisd turn(back.linear());
+    double squares = 0;
+    for (int i = 0; i < 3; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      squares += std::pow(weights.position[k] * back.translation()[i], 2);
+      squares += std::pow((*weights.rotation)[k] * turn.angle() * turn.axis()[i], 2);
+    }
+    return std::sqrt(squares);
+  };
+  for (const char* name : {"ur5e", "panda", "xarm5"}) {
+    const Robot& robot = iksel_test::robot(name);
+    const Solver& solver = iksel_test::solver(name);
+    const int cases = iksel_test::cases(40, 10);
+    const Eigen::MatrixXd q = robot.random_configurations(2 * cases, iksel_test::seed());
+    const Eigen::MatrixXd starts = robot.random_configurations(300, iksel_test::seed() + 1);
+    SolveRequest brute;
+    brute.closest = weights;
+    brute.database_seeds = false;
+    for (Eigen::Index i = 0; i < starts.rows(); ++i) brute.seeds.push_back(starts.row(i));
+    SolveRequest request;
+    request.closest = weights;
+    int worse = 0;
+    int compared = 0;
+    for (int i = 0; i < cases; ++i) {
+      const Pose target = strange_pose(robot, q, i);
+      const Result closest = solver.solve(target, request);
+      if (closest.status != Status::closest) continue;
+      const Result other = solver.solve(target, brute);
+      ASSERT_EQ(other.status, Status::closest);
+      ++compared;
+      worse += missing(robot, target, closest.q) > 1.01 * missing(robot, target, other.q);
+    }
+    EXPECT_GT(compared, 3) << name;
+    EXPECT_LE(20 * worse, compared + 10) << name << ": " << worse << " of " << compared;
+  }
+}
+
 TEST(Closest, LiesOnTheSphereThatTheArmReaches) {
   // Far out along a ray, only the position counting: stretched out, on the way to the target.
   const Robot& robot = iksel_test::robot("panda");

@@ -2304,7 +2304,8 @@ class Tracker:
             solver: what solves.
             start: joint values, (dof,) [rad or m]; those outside the limits are taken to be at them.
             closest: True, or six weights as in Solver.solve: at poses that cannot be reached from where
-                the arm is, it goes downhill to where it is nearest, with Status.closest.
+                the arm is, it goes downhill to where it is nearest, with Status.closest, and comes back
+                with the target on the side that it left from.
 
         Raises:
             InvalidArgumentError: wrong shape or dtype, or a number that is not finite.
@@ -2334,6 +2335,11 @@ class Tracker:
     def q(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         Where the arm is now, (dof,) [rad or m]; always inside the limits.
+        """
+    @property
+    def reached(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Where it was when it last reached its pose, or began, (dof,) [rad or m].
         """
 class ArcEnd(enum.Enum):
     """

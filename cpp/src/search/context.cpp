@@ -36,7 +36,8 @@ Workspace::InLanes::InLanes(const ChainModel& model, const ChainModel& nominal,
                             const lanes::LaneKernels& kernels)
     : refiner(model, options, kernels),
       query(model, nominal, data, neighbours_of(options.strategy), kernels),
-      screen(model, options, kernels) {
+      screen(model, options, kernels),
+      closest(model, options.seed, kernels) {
   const bool is_nominal = &model == &nominal;
   const double position = options.position_tolerance;
   const double rotation = options.rotation_tolerance;
@@ -81,6 +82,7 @@ Workspace::Workspace(const ChainModel& model, const ChainModel& nominal, const D
     : scheme(iksel::one_at_a_time(options.strategy)),
       given(model, scheme, data.options.pinv_cutoff),
       collected(model) {
+  minima.reserve(kRandomDescents + 1);
   if (solves_in_lanes(model, data, options)) {
     lanes = std::make_unique<InLanes>(model, nominal, data, options, closed_forms, trials,
                                       lanes::choose_kernels());

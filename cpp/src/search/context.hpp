@@ -6,15 +6,18 @@
 #include <atomic>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "goal/goal.hpp"
 #include "iksel/database.hpp"
 #include "iksel/options.hpp"
 #include "iksel/robot.hpp"
+#include "refine/closest_descent.hpp"
 #include "refine/lane_refiner.hpp"
 #include "refine/scheme_refiner.hpp"
 #include "search/collector.hpp"
 #include "seeds/branch_lanes.hpp"
+#include "seeds/closest_screen.hpp"
 #include "seeds/enumeration.hpp"
 #include "seeds/free_samples.hpp"
 #include "seeds/inner_arm.hpp"
@@ -41,6 +44,8 @@ struct Workspace {
   Paper scheme;
   SeedRanking given;
   CollectorMemory collected;
+  /// Where descents to what is closest ended.
+  std::vector<LocalMinimum> minima;
 
   /// One of two ways to search: lanes, if the options, the chain and the database allow it.
   struct InLanes {
@@ -51,6 +56,7 @@ struct Workspace {
     LaneRefiner refiner;
     LaneQuery query;
     SeedScreen screen;
+    ClosestScreen closest;
     /// All branches of a goal of that task; null if it cannot be solved in closed form at once.
     [[nodiscard]] Enumeration* branches_of(const TaskSpace& task);
 

@@ -23,6 +23,8 @@ namespace {
 /// Work that a diagnosis may spend where a solve gave up.
 constexpr int kPatientAttempts = 512;
 constexpr int kPatientIterations = 200;
+/// Seeds of a best effort.
+constexpr int kEfforts = 24;
 
 /// Singular values below this part of the largest are close to a singularity.
 constexpr double kNearlySingular = 1e-3;
@@ -50,9 +52,6 @@ Task position_of(Task task) {
   }
   return task;
 }
-
-/// Seeds of a best effort.
-constexpr int kEfforts = 24;
 
 /// Puts q into a diagnosis; true if it is close to a singularity.
 bool describe(const ChainModel& model, const Goal& goal, const JointVector& q, Diagnosis& out) {
@@ -178,8 +177,7 @@ class Diagnoser {
     // From many configurations that have the position towards the rotation, the position weighing
     // more; then all the way back to the position.
     constexpr double kLittle = 0.01;
-    BestEffort effort = make_effort(goal_);
-    effort.weigh_rotation(kLittle);
+    BestEffort effort = make_effort(goal_, kLittle);
     SolveAllOptions spread_out;
     spread_out.max = kEfforts;
     spread_out.min_distance = 0.1;
@@ -238,8 +236,9 @@ class Diagnoser {
     return Solver(arm, generous(solver_.options), solver_.database, solver_.nominal,
                   CalibrationDeviation{kInfinity, kInfinity});
   }
-  [[nodiscard]] BestEffort make_effort(const Goal& towards) const {
-    return {model_, towards, solver_.database.data().weight};
+  /// A rotation counts that part of what it counts otherwise.
+  [[nodiscard]] BestEffort make_effort(const Goal& towards, double part = 1) const {
+    return {model_, towards, part * solver_.database.data().weight};
   }
 
   void explain_refusals(Status status) {

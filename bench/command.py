@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from bench import plan, scene, tips
+from bench import closest, coupled, dual, plan, scene, tips
 from bench.arms import RIVAL_ARMS
 from bench.cells import WORK
 from bench.frozen import compare, record
@@ -70,8 +70,8 @@ def parser() -> argparse.ArgumentParser:
     frozen.add_argument("file", type=Path, help="where, e.g. build/frozen.json")
     _add_no(commands)
     learned_command.add(commands)
-    scene.add(commands)
-    tips.add(commands)
+    for part in (scene, closest, coupled, dual, tips):
+        part.add(commands)
     return top
 
 
@@ -151,9 +151,15 @@ def main(arguments: list[str] | None = None) -> int:
     if options.command == "frozen":
         action = record if options.action == "record" else compare
         return action(options.file)
-    runs = {"scene": scene.run, "tips": tips.run}
-    if options.command in runs:
-        return runs[options.command](options)
+    alone = {
+        "scene": scene.run,
+        "closest": closest.run,
+        "coupled": coupled.run,
+        "dual": dual.run,
+        "tips": tips.run,
+    }
+    if options.command in alone:
+        return alone[options.command](options)
     others = {"no": _no, "learned": _learned}
     if options.command in others:
         return others[options.command](options, given)

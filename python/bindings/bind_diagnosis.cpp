@@ -20,11 +20,11 @@ py::object diagnosis_state(const Diagnosis& self) {
                         self.joint, self.limit_violation, self.refused, self.least_singular_value,
                         to_array(self.q), self.position_error, self.rotation_error,
                         self.q_is_solution, enum_name(self.proof), self.attempts,
-                        to_array(self.branch), self.contacts);
+                        to_array(self.branch), self.contacts, self.coupled_limit);
 }
 
 Diagnosis diagnosis_from_state(const py::object& state) {
-  PickleState in(state, "Diagnosis", 16);
+  PickleState in(state, "Diagnosis", 17);
   constexpr bool kMayBeNan = true;
   Diagnosis out;
   out.cause = in.value<Cause>("cause");
@@ -51,6 +51,7 @@ Diagnosis diagnosis_from_state(const py::object& state) {
     }
     out.contacts.push_back(py::cast<Contact>(contact));
   }
+  out.coupled_limit = in.index<int>("coupled_limit", kMaxCoupledLimits);
   if (out.q_is_solution && out.proof != Proof::none) {
     in.refuse("proof", "none, as there is an answer", enum_name(out.proof));
   }
@@ -98,8 +99,13 @@ void bind_diagnosis(py::module_& m) {
                "joint_limits: index of the joint that lies farthest outside its limits in the "
                "answer that violates them least. no_branch: of the joint of which there is no "
                "angle. -1 otherwise.");
-  add_property(cls, "limit_violation", &D::limit_violation,
-               "joint_limits: by how much that joint lies outside [rad or m].");
+  add_property(cls, "coupled_limit", &D::coupled_limit,
+               "joint_limits: index of the coupled limit that lies farthest outside, if that is "
+               "farther than any joint; `joint` is -1 then. -1 otherwise.");
+  add_property(
+      cls, "limit_violation", &D::limit_violation,
+      "joint_limits: by how much that joint, or the sum of the coupled limit, lies outside "
+      "[rad or m].");
   add_property(
       cls, "branch",
       [](const D& self) {

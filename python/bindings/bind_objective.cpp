@@ -7,6 +7,7 @@
 #include <string>
 
 #include "bindings.hpp"
+#include "joint_values.hpp"
 #include "objective.hpp"
 #include "pickle.hpp"
 #include "property.hpp"
@@ -95,6 +96,20 @@ void bind_objective(py::module_& m) {
       py::arg("posture"), py::arg("weights") = py::none(),
       "Near joint values (dof,) [rad or m], inside the limits or not: 1/2 sum (w_i (q_i - "
       "posture_i))^2, weights (dof,), >= 0; None: all 1.");
+  cls.def_static(
+      "preferred",
+      [](const Robot& robot, const JointValues& values, const std::optional<JointValues>& weights) {
+        return Objective::preferred(
+            robot, as_joint_values(values, "values"),
+            weights ? as_joint_values(*weights, "weights") : std::map<std::string, double>());
+      },
+      py::arg("robot"), py::arg("values"), py::arg("weights") = py::none(),
+      "Some joints, as a rail or a turntable, at a value where that is possible, else as near to "
+      "it "
+      "as may be: near_posture with weights of these joints only. Values by joint name [rad or m], "
+      "and weights, > 0, of those that are to have another than 1. Between answers that are "
+      "equally "
+      "good `near` decides, or else the middle of the limits.");
   cls.def_static("far_from_limits", &Objective::far_from_limits,
                  "Far from the limits: sum 1/4 (1/x_i + 1/(1 - x_i)), x_i in 0 .. 1 the place "
                  "between them (Zghal, Dubey and Euler 1990).");

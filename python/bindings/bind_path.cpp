@@ -168,7 +168,8 @@ Args:
     solver: what solves.
     start: joint values, (dof,) [rad or m]; those outside the limits are taken to be at them.
     closest: True, or six weights as in Solver.solve: at poses that cannot be reached from where
-        the arm is, it goes downhill to where it is nearest, with Status.closest.
+        the arm is, it goes downhill to where it is nearest, with Status.closest, and comes back
+        with the target on the side that it left from.
 
 Raises:
     InvalidArgumentError: wrong shape or dtype, or a number that is not finite.)");
@@ -202,6 +203,9 @@ Raises:
   add_property(
       tracker, "q", [](const Tracker& self) { return to_array(self.q()); },
       "Where the arm is now, (dof,) [rad or m]; always inside the limits.");
+  add_property(
+      tracker, "reached", [](const Tracker& self) { return to_array(self.reached()); },
+      "Where it was when it last reached its pose, or began, (dof,) [rad or m].");
   tracker.def("__repr__", [](const Tracker& self) {
     const JointVector& q = self.q();
     return "Tracker(" + py::cast<std::string>(py::repr(py::cast(self.solver().robot()))) +
@@ -209,13 +213,16 @@ Raises:
   });
   tracker.def(py::pickle(
       [](const Tracker& self) -> py::object {
-        return py::make_tuple(self.solver(), to_array(self.q()), weights_of(self));
+        return py::make_tuple(self.solver(), to_array(self.q()), weights_of(self),
+                              to_array(self.reached()));
       },
       [](const py::object& state) {
-        PickleState in(state, "Tracker", 3);
+        PickleState in(state, "Tracker", 4);
         const auto solver = in.value<Solver>("solver");
-        const JointVector q = as_joints(in.object(), solver.robot().dof(), "pickled Tracker, q");
-        return Tracker(solver, q, as_closest(in.object()));
+        const int dof = solver.robot().dof();
+        const JointVector q = as_joints(in.object(), dof, "pickled Tracker, q");
+        const auto closest = as_closest(in.object());
+        return Tracker(solver, q, closest, as_joints(in.object(), dof, "pickled Tracker, reached"));
       }));
 }
 

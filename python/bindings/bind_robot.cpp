@@ -9,6 +9,7 @@
 
 #include "array_checks.hpp"
 #include "bindings.hpp"
+#include "coupled_limits.hpp"
 #include "enums.hpp"
 #include "gil.hpp"
 #include "html.hpp"
@@ -24,6 +25,11 @@
 
 namespace iksel::python {
 
+/// A sequence of CoupledLimit.
+class CoupledLimits : public py::object {
+  PYBIND11_OBJECT_DEFAULT(CoupledLimits, object, is_any_object)
+};
+
 /// A truth value for one configuration, an array of them for many.
 class BoolOrArray : public py::object {
   PYBIND11_OBJECT_DEFAULT(BoolOrArray, object, is_any_object)
@@ -33,6 +39,10 @@ class BoolOrArray : public py::object {
 
 // NOLINTBEGIN(readability-identifier-naming): pybind11 looks for `name`.
 namespace pybind11::detail {
+template <>
+struct handle_type_name<iksel::python::CoupledLimits> {
+  static constexpr auto name = const_name("collections.abc.Sequence[iksel_cpp.CoupledLimit]");
+};
 template <>
 struct handle_type_name<iksel::python::BoolOrArray> {
   // Which of the two, the types of arrays do not tell.
@@ -54,7 +64,8 @@ std::uint64_t fresh_seed() {
 Robot from_urdf(const PathLike& path_or_xml, const std::optional<Loose<std::string>>& base_link,
                 const std::optional<Loose<std::string>>& tip_link,
                 const std::optional<PoseLike>& tcp, const std::optional<JointValues>& locked_joints,
-                const Loose<bool>& soft_limits, const std::optional<ArrayLike>& default_limits) {
+                const Loose<bool>& soft_limits, const std::optional<ArrayLike>& default_limits,
+                const CoupledLimits& coupled_limits) {
   RobotOptions options;
   if (base_link) options.base_link = from_python<std::string>(*base_link, "base_link");
   if (tip_link) options.tip_link = from_python<std::string>(*tip_link, "tip_link");
@@ -62,6 +73,7 @@ Robot from_urdf(const PathLike& path_or_xml, const std::optional<Loose<std::stri
   if (locked_joints) options.locked_joints = as_joint_values(*locked_joints, "locked_joints");
   options.soft_limits = from_python<bool>(soft_limits, "soft_limits");
   if (default_limits) options.default_limits = as_limits(*default_limits, "default_limits");
+  options.coupled_limits = as_coupled_limits(coupled_limits, "coupled_limits");
   return read_urdf(
       path_or_xml, [&](const std::string& xml) { return Robot::from_urdf_string(xml, options); },
       [&](const std::filesystem::path& path) { return Robot::from_urdf_file(path, options); });
@@ -76,11 +88,12 @@ std::string robot_repr(const Robot& self) {
 py::object robot_state(const Robot& self) {
   const RobotOptions& options = self.options();
   return py::make_tuple(self.urdf(), options.base_link, options.tip_link, to_array(self.tcp()),
-                        options.locked_joints, options.soft_limits, options.default_limits);
+                        options.locked_joints, options.soft_limits, options.default_limits,
+                        options.coupled_limits);
 }
 
 Robot robot_from_state(const py::object& state) {
-  PickleState in(state, "Robot", 7);
+  PickleState in(state, "Robot", 8);
   const std::string urdf = in.value<std::string>("urdf");
   RobotOptions options;
   options.base_link = in.value<std::string>("base_link");
@@ -92,6 +105,7 @@ Robot robot_from_state(const py::object& state) {
   if (!limits.is_none()) {
     options.default_limits = as_limits(ArrayLike(limits), "pickled Robot, default_limits");
   }
+  options.coupled_limits = as_coupled_limits(in.object(), "pickled Robot, coupled_limits");
   return Robot::from_urdf_string(urdf, options);
 }
 
@@ -138,6 +152,9 @@ void bind_chain(py::class_<Robot>& cls) {
       cls, "default_limits", [](const Robot& self) { return self.options().default_limits; },
       "Lower and upper limit of joints that the URDF gives none [rad or m], or None.");
   add_property(
+      cls, "coupled_limits", [](const Robot& self) { return self.options().coupled_limits; },
+      "Limits of sums of joint values, beside those of each joint.");
+  add_property(
       cls, "tcp", [](const Robot& self) { return to_array(self.tcp()); },
       "T_tip_tcp, the tool centre point in the tip link's frame, (4, 4).");
   add_property(cls, "dof", &Robot::dof, "Degrees of freedom.");
@@ -176,7 +193,7 @@ void bind_from_urdf(py::class_<Robot>& cls) {
                  py::arg("tip_link") = py::none(), py::arg("tcp") = py::none(),
                  py::arg("locked_joints") = py::none(),
                  py::arg("soft_limits") = defaults.soft_limits,
-                 py::arg("default_limits") = py::none(),
+                 py::arg("default_limits") = py::none(), py::arg("coupled_limits") = py::tuple(),
                  R"(Reads the chain between two links of a URDF.
 
 Args:
@@ -188,13 +205,15 @@ Args:
     soft_limits: narrow the limits to the URDF's safety_controller where there is one.
     default_limits: (lower, upper) [rad or m] of revolute and prismatic joints whose limits the
         URDF leaves out or has as 0, 0; without, such a joint is an error.
+    coupled_limits: limits of sums of joint values, beside those of each joint; at most 8.
 
 Raises:
     UrdfError: the file, the XML, a joint type or a limit is no good, or a length or joint value
         is beyond 1e8, where double precision ends. Where there was a choice of names, `available`
         has them all.
     UnknownNameError: no such link or joint.
-    InvalidArgumentError: tcp is no rigid transform, or a number in the options is no good.)");
+    InvalidArgumentError: tcp is no rigid transform, or a number in the options is no good, or the
+        coupled limits leave no configuration.)");
 }
 
 void bind_configurations(py::class_<Robot>& cls) {

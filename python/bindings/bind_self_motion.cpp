@@ -21,15 +21,16 @@ namespace iksel::python {
 namespace {
 
 py::object end_state(const SelfMotionEnd& self) {
-  return py::make_tuple(enum_name(self.kind), self.joint, self.at_upper);
+  return py::make_tuple(enum_name(self.kind), self.joint, self.at_upper, self.coupled_limit);
 }
 
 SelfMotionEnd end_from_state(const py::object& state) {
-  PickleState in(state, "SelfMotionEnd", 3);
+  PickleState in(state, "SelfMotionEnd", 4);
   SelfMotionEnd end;
   end.kind = in.value<ArcEnd>("kind");
   end.joint = in.index<int>("joint", kMaxDof);
   end.at_upper = in.value<bool>("at_upper");
+  end.coupled_limit = in.index<int>("coupled_limit", kMaxCoupledLimits);
   return end;
 }
 
@@ -93,7 +94,9 @@ SelfMotion motion_from_state(const py::object& state) {
 
 std::string end_text(const SelfMotionEnd& end) {
   if (end.kind != ArcEnd::limit) return enum_name(end.kind);
-  return "joint " + std::to_string(end.joint + 1) +
+  const bool is_coupled = end.coupled_limit >= 0;
+  return (is_coupled ? "sum " : "joint ") +
+         std::to_string((is_coupled ? end.coupled_limit : end.joint) + 1) +
          (end.at_upper ? " at its upper" : " at its lower") + " limit";
 }
 
@@ -111,6 +114,8 @@ void bind_end(py::module_& m) {
   add_property(cls, "kind", &SelfMotionEnd::kind, "What ends the arc there.");
   add_property(cls, "joint", &SelfMotionEnd::joint,
                "Index of the joint that is at its limit; -1 unless `limit`.");
+  add_property(cls, "coupled_limit", &SelfMotionEnd::coupled_limit,
+               "Index of the coupled limit that is reached, if it is not a joint's own; else -1.");
   add_property(cls, "at_upper", &SelfMotionEnd::at_upper,
                "Whether it is at the upper one of its limits.");
   cls.def("__repr__",

@@ -28,6 +28,7 @@ from iksel_cpp import (
     BatchResult,
     Cause,
     Contact,
+    CoupledLimit,
     Database,
     DatabaseCorruptError,
     DatabaseError,
@@ -89,6 +90,7 @@ from iksel_cpp import (
     time_kdl_fk_jacobian,
 )
 
+from iksel._attach import attach
 from iksel._cmake import cmake_dir
 from iksel._manifest import RobotInfo
 from iksel.pose import (
@@ -117,6 +119,7 @@ __all__ = [
     "BatchResult",
     "Cause",
     "Contact",
+    "CoupledLimit",
     "Database",
     "DatabaseCorruptError",
     "DatabaseError",
@@ -177,6 +180,7 @@ __all__ = [
     "UrdfError",
     "__version__",
     "as_pose",
+    "attach",
     "check_pose",
     "cmake_dir",
     "euler_from_pose",

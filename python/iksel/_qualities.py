@@ -30,7 +30,8 @@ def manipulability(robot: Robot, q: FloatArray) -> FloatArray:
 def limit_distance(robot: Robot, q: FloatArray) -> FloatArray:
     """Distance of configurations (n, dof) from the limits, relative to each range.
 
-    0 at a limit, 0.5 in the middle, (n,); joints without limits have none.
+    0 at a limit, 0.5 in the middle, (n,); joints without limits have none. Coupled
+    limits are not counted.
     """
     lower, upper = robot.lower, robot.upper
     limited = np.isfinite(upper - lower) & (upper > lower)

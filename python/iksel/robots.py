@@ -23,9 +23,10 @@ from iksel.pose import pose_from_euler
 from iksel.srdf import Srdf
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     import numpy.typing as npt
+    from iksel_cpp import CoupledLimit
 
     from iksel._packages import Packages
 
@@ -64,6 +65,7 @@ def load_robot(
     locked_joints: Mapping[str, float] | None = None,
     soft_limits: bool = False,
     default_limits: npt.ArrayLike | None = None,
+    coupled_limits: Sequence[CoupledLimit] = (),
     srdf: Srdf | str | os.PathLike[str] | None = None,
     group: str | None = None,
     xacro_args: Mapping[str, str] | None = None,
@@ -84,6 +86,7 @@ def load_robot(
         locked_joints: Joints held at a value [rad or m]; no degrees of freedom.
         soft_limits: Narrow the limits to the soft limits of the URDF, if it has any.
         default_limits: (lower, upper) [rad or m] of joints that the URDF gives none.
+        coupled_limits: Limits of sums of joint values, beside those of each joint.
         srdf: The SRDF whose groups `group` names; None: that of robot_descriptions.
         group: Group of the SRDF whose chain is meant; may be left out if it has one.
         xacro_args: Values of a xacro file's arguments.
@@ -95,7 +98,8 @@ def load_robot(
         UrdfError: The file cannot be read, the package for its format is missing, the
             links are not connected, or a joint between them cannot be used. Without
             tip_link, where several links have no children, `available` has them.
-        InvalidArgumentError: `tcp` is no rigid 4x4 matrix, or a group without an SRDF.
+        InvalidArgumentError: `tcp` is no rigid 4x4 matrix, a group without an SRDF, or
+            coupled limits that make no sense or leave no configuration.
     """
     name = _checked_name(source)
     info = manifest().get(name)
@@ -125,6 +129,7 @@ def load_robot(
             locked_joints={} if locked_joints is None else locked_joints,
             soft_limits=soft_limits,
             default_limits=default_limits,
+            coupled_limits=coupled_limits,
         )
     except UrdfError as error:
         if error.available and groups:

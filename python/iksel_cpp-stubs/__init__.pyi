@@ -14,7 +14,7 @@ import numpy
 import numpy.typing
 import os
 import typing
-__all__: list[str] = ['AngleUnitWarning', 'ArcEnd', 'Axis', 'BatchResult', 'Cause', 'Contact', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'Diagnosis', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'KeyScheme', 'Kinematics', 'Lanes', 'LinkTree', 'LinkTreeJoint', 'MoveNorm', 'Objective', 'ObjectiveKind', 'Obstacle', 'Paper', 'PathResult', 'Proof', 'RIGID_TOLERANCE', 'Ranking', 'Reselection', 'Result', 'Robot', 'RobotSpheres', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'Scene', 'SelfMotion', 'SelfMotionArc', 'SelfMotionEnd', 'SignatureError', 'SolutionOrder', 'Solutions', 'Solver', 'SolverOptions', 'Status', 'Structure', 'StructureKind', 'Task', 'TaskFrame', 'Tracker', 'TreeBatchResult', 'TreeDiagnosis', 'TreeResult', 'TreeRobot', 'TreeSolver', 'UnknownNameError', 'UrdfError', 'check_pose', 'evaluate', 'grid_counts', 'orthonormalized', 'pose_error', 'pose_matrices', 'rigid_deviation', 'simd_level', 'time_kdl_fk_jacobian']
+__all__: list[str] = ['AngleUnitWarning', 'ArcEnd', 'Axis', 'BatchResult', 'Cause', 'Contact', 'CoupledLimit', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'Diagnosis', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'KeyScheme', 'Kinematics', 'Lanes', 'LinkTree', 'LinkTreeJoint', 'MoveNorm', 'Objective', 'ObjectiveKind', 'Obstacle', 'Paper', 'PathResult', 'Proof', 'RIGID_TOLERANCE', 'Ranking', 'Reselection', 'Result', 'Robot', 'RobotSpheres', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'Scene', 'SelfMotion', 'SelfMotionArc', 'SelfMotionEnd', 'SignatureError', 'SolutionOrder', 'Solutions', 'Solver', 'SolverOptions', 'Status', 'Structure', 'StructureKind', 'Task', 'TaskFrame', 'Tracker', 'TreeBatchResult', 'TreeDiagnosis', 'TreeResult', 'TreeRobot', 'TreeSolver', 'UnknownNameError', 'UrdfError', 'check_pose', 'evaluate', 'grid_counts', 'orthonormalized', 'pose_error', 'pose_matrices', 'rigid_deviation', 'simd_level', 'time_kdl_fk_jacobian']
 class AngleUnitWarning(UserWarning):
     """
     Angles that look like degrees were given where radians are meant.
@@ -149,6 +149,44 @@ class Structure:
         """
         How the solutions of a pose can be found.
         """
+class CoupledLimit:
+    """
+    A limit that joints share, as a parallel linkage or a cable makes it: lower <= sum of coefficient * joint value <= upper.
+    """
+    __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
+    def __eq__(self, other: typing.Any) -> bool:
+        ...
+    def __init__(self, coefficients: collections.abc.Mapping[str, float], lower: float = ..., upper: float = ...) -> None:
+        """
+        Args:
+            coefficients: by joint name; not 0. Joints between base and tip, mimic and locked ones too,
+                but none that turns without limits.
+            lower: least value of the sum [rad or m].
+            upper: largest value of the sum [rad or m].
+
+        Raises:
+            InvalidArgumentError: not names and numbers. What is wrong with the limit of a robot, it says
+                when that is loaded.
+        """
+    def __repr__(self) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
+    @property
+    def coefficients(self) -> dict[str, float]:
+        """
+        Coefficients by joint name.
+        """
+    @property
+    def lower(self) -> float:
+        """
+        Least value of the sum [rad or m].
+        """
+    @property
+    def upper(self) -> float:
+        """
+        Largest value of the sum [rad or m].
+        """
 class JointType(enum.Enum):
     """
     How a degree of freedom moves.
@@ -175,7 +213,7 @@ class Robot:
     An immutable serial chain between two links of a URDF, with its limits. Safe to use from many threads at once.
     """
     @staticmethod
-    def from_urdf(path_or_xml: str | os.PathLike[str], base_link: str | None = None, tip_link: str | None = None, tcp: numpy.typing.ArrayLike | typing.Any | None = None, locked_joints: collections.abc.Mapping[str, float] | None = None, soft_limits: bool = False, default_limits: numpy.typing.ArrayLike | None = None) -> Robot:
+    def from_urdf(path_or_xml: str | os.PathLike[str], base_link: str | None = None, tip_link: str | None = None, tcp: numpy.typing.ArrayLike | typing.Any | None = None, locked_joints: collections.abc.Mapping[str, float] | None = None, soft_limits: bool = False, default_limits: numpy.typing.ArrayLike | None = None, coupled_limits: collections.abc.Sequence[CoupledLimit] = ()) -> Robot:
         """
         Reads the chain between two links of a URDF.
 
@@ -188,13 +226,15 @@ class Robot:
             soft_limits: narrow the limits to the URDF's safety_controller where there is one.
             default_limits: (lower, upper) [rad or m] of revolute and prismatic joints whose limits the
                 URDF leaves out or has as 0, 0; without, such a joint is an error.
+            coupled_limits: limits of sums of joint values, beside those of each joint; at most 8.
 
         Raises:
             UrdfError: the file, the XML, a joint type or a limit is no good, or a length or joint value
                 is beyond 1e8, where double precision ends. Where there was a choice of names, `available`
                 has them all.
             UnknownNameError: no such link or joint.
-            InvalidArgumentError: tcp is no rigid transform, or a number in the options is no good.
+            InvalidArgumentError: tcp is no rigid transform, or a number in the options is no good, or the
+                coupled limits leave no configuration.
         """
     def __copy__(self) -> Robot:
         ...
@@ -291,6 +331,11 @@ class Robot:
     def chain_hash(self) -> int:
         """
         Hash of the chain up to the tip link: equal for chains that may share a database.
+        """
+    @property
+    def coupled_limits(self) -> list[CoupledLimit]:
+        """
+        Limits of sums of joint values, beside those of each joint.
         """
     @property
     def default_limits(self) -> tuple[float, float] | None:
@@ -1519,6 +1564,11 @@ class Objective:
         """
         Near joint values (dof,) [rad or m], inside the limits or not: 1/2 sum (w_i (q_i - posture_i))^2, weights (dof,), >= 0; None: all 1.
         """
+    @staticmethod
+    def preferred(robot: Robot, values: collections.abc.Mapping[str, float], weights: collections.abc.Mapping[str, float] | None = None) -> Objective:
+        """
+        Some joints, as a rail or a turntable, at a value where that is possible, else as near to it as may be: near_posture with weights of these joints only. Values by joint name [rad or m], and weights, > 0, of those that are to have another than 1. Between answers that are equally good `near` decides, or else the middle of the limits.
+        """
     def __repr__(self) -> str:
         ...
     @property
@@ -1765,6 +1815,11 @@ class Diagnosis:
         collision: what touches at q, the answer that collides least, the deepest first; empty otherwise.
         """
     @property
+    def coupled_limit(self) -> int:
+        """
+        joint_limits: index of the coupled limit that lies farthest outside, if that is farther than any joint; `joint` is -1 then. -1 otherwise.
+        """
+    @property
     def joint(self) -> int:
         """
         joint_limits: index of the joint that lies farthest outside its limits in the answer that violates them least. no_branch: of the joint of which there is no angle. -1 otherwise.
@@ -1777,7 +1832,7 @@ class Diagnosis:
     @property
     def limit_violation(self) -> float:
         """
-        joint_limits: by how much that joint lies outside [rad or m].
+        joint_limits: by how much that joint, or the sum of the coupled limit, lies outside [rad or m].
         """
     @property
     def message(self) -> str:
@@ -2249,7 +2304,8 @@ class Tracker:
             solver: what solves.
             start: joint values, (dof,) [rad or m]; those outside the limits are taken to be at them.
             closest: True, or six weights as in Solver.solve: at poses that cannot be reached from where
-                the arm is, it goes downhill to where it is nearest, with Status.closest.
+                the arm is, it goes downhill to where it is nearest, with Status.closest, and comes back
+                with the target on the side that it left from.
 
         Raises:
             InvalidArgumentError: wrong shape or dtype, or a number that is not finite.
@@ -2280,6 +2336,11 @@ class Tracker:
         """
         Where the arm is now, (dof,) [rad or m]; always inside the limits.
         """
+    @property
+    def reached(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Where it was when it last reached its pose, or began, (dof,) [rad or m].
+        """
 class ArcEnd(enum.Enum):
     """
     What ends an arc of a self-motion.
@@ -2301,6 +2362,11 @@ class SelfMotionEnd:
     def at_upper(self) -> bool:
         """
         Whether it is at the upper one of its limits.
+        """
+    @property
+    def coupled_limit(self) -> int:
+        """
+        Index of the coupled limit that is reached, if it is not a joint's own; else -1.
         """
     @property
     def joint(self) -> int:

@@ -124,6 +124,50 @@ TEST(Closest, WeighsPositionsAgainstRotations) {
   EXPECT_GT(compared, 10);
 }
 
+/// 300 descents from configurations at random beside the search, by weights of each axis.
+TEST(Closest, CountsEachAxisByItsWeight) {
+  PoseWeights weights;
+  weights.position = {1, 0.2, 2};
+  weights.rotation = {0.05, 0.3, 0.1};
+  const auto missing = [&](const Robot& robot, const Pose& target, const JointVector& q) {
+    const Pose back = target.inverse() * robot.fk(q);
+    const Eigen::AngleAxisd turn(back.linear());
+    double squares = 0;
+    for (int i = 0; i < 3; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      squares += std::pow(weights.position[k] * back.translation()[i], 2);
+      squares += std::pow((*weights.rotation)[k] * turn.angle() * turn.axis()[i], 2);
+    }
+    return std::sqrt(squares);
+  };
+  for (const char* name : {"ur5e", "panda", "xarm5"}) {
+    const Robot& robot = iksel_test::robot(name);
+    const Solver& solver = iksel_test::solver(name);
+    const int cases = iksel_test::cases(40, 10);
+    const Eigen::MatrixXd q = robot.random_configurations(2 * cases, iksel_test::seed());
+    const Eigen::MatrixXd starts = robot.random_configurations(300, iksel_test::seed() + 1);
+    SolveRequest brute;
+    brute.closest = weights;
+    brute.database_seeds = false;
+    for (Eigen::Index i = 0; i < starts.rows(); ++i) brute.seeds.push_back(starts.row(i));
+    SolveRequest request;
+    request.closest = weights;
+    int worse = 0;
+    int compared = 0;
+    for (int i = 0; i < cases; ++i) {
+      const Pose target = strange_pose(robot, q, i);
+      const Result closest = solver.solve(target, request);
+      if (closest.status != Status::closest) continue;
+      const Result other = solver.solve(target, brute);
+      ASSERT_EQ(other.status, Status::closest);
+      ++compared;
+      worse += missing(robot, target, closest.q) > 1.01 * missing(robot, target, other.q);
+    }
+    EXPECT_GT(compared, 3) << name;
+    EXPECT_LE(20 * worse, compared + 10) << name << ": " << worse << " of " << compared;
+  }
+}
+
 TEST(Closest, LiesOnTheSphereThatTheArmReaches) {
   // Far out along a ray, only the position counting: stretched out, on the way to the target.
   const Robot& robot = iksel_test::robot("panda");
@@ -183,39 +227,69 @@ TEST(Closest, IsRefusedWhereItMakesNoSense) {
                iksel::InvalidArgumentError);
 }
 
+/// A target that leaves a reachable pose by 1 m and comes back, 1 mm a step.
+struct Excursion {
+  static constexpr double kStep = 1e-3;
+  static constexpr double kDt = 0.01;
+  Pose target;
+  Eigen::Vector3d away;
+
+  explicit Excursion(const Pose& pose)
+      : target(pose), away(Eigen::Vector3d(pose.translation()).normalized()) {}
+  void move(int step) { target.translation() += (step < 1000 ? kStep : -kStep) * away; }
+};
+
 TEST(Closest, TrackerGoesToTheBoundaryAndBack) {
-  for (const char* name : {"ur5e", "panda"}) {
+  for (const char* name : {"ur5e", "panda", "iiwa14", "irb120", "xarm5"}) {
     const Robot& robot = iksel_test::robot(name);
     const Solver& solver = iksel_test::solver(name);
-    constexpr double kStep = 1e-3;
-    constexpr double kDt = 0.01;
     const Eigen::MatrixXd q = robot.random_configurations(iksel_test::cases(20, 6), 3);
+    const JointVector longest = robot.velocity_limit() * Excursion::kDt;
     Eigen::Index came_back = 0;
     for (Eigen::Index i = 0; i < q.rows(); ++i) {
       const JointVector start = 0.9 * JointVector(q.row(i));
       iksel::Tracker tracker(solver, robot.within_limits(start) ? start : JointVector(q.row(i)),
                              PoseWeights());
-      Pose target = robot.fk(tracker.q());
-      const Eigen::Vector3d away = target.translation().normalized();
-      Eigen::Vector3d tip = target.translation();
-      const JointVector longest = robot.velocity_limit() * kDt;
+      Excursion excursion(robot.fk(tracker.q()));
       int outside = 0;
-      for (int step = 0; step < 2000; ++step) {
-        target.translation() += (step < 1000 ? kStep : -kStep) * away;
+      // In the end it has time to get there.
+      for (int step = 0; step < 2500; ++step) {
+        if (step < 2000) excursion.move(step);
         const JointVector before = tracker.q();
-        const Result result = tracker.track(target, kDt);
+        const Result result = tracker.track(excursion.target, Excursion::kDt);
         ASSERT_TRUE(result.success() || result.status == Status::closest ||
                     result.status == Status::too_fast);
         outside += result.status == Status::closest;
         EXPECT_TRUE(robot.within_limits(tracker.q()));
         EXPECT_LE(((tracker.q() - before).cwiseAbs() - longest).maxCoeff(), 1e-9);
-        tip = robot.fk(tracker.q()).translation();
+        if (result.success()) EXPECT_EQ(tracker.q(), tracker.reached());
       }
       EXPECT_GT(outside, 0);
-      came_back += (tip - target.translation()).norm() < 1e-6;
+      came_back += remainder(robot, excursion.target, tracker.q(), 0.2) < 1e-5;
     }
-    // It goes downhill only: some stay behind a limit that they met outside.
-    EXPECT_GT(2 * came_back, q.rows()) << name;
+    // Few stay behind a limit that they met outside.
+    EXPECT_GE(10 * came_back, 8 * q.rows()) << name;
+  }
+}
+
+TEST(Closest, TrackerComesBackOnTheSideThatItLeft) {
+  // Stretched out, an elbow may bend to both sides: it does to the one that it had before, whatever
+  // side the arm has in the middle of its limits.
+  const Robot& robot = iksel_test::robot("ur5e");
+  const Solver& solver = iksel_test::solver("ur5e");
+  for (const double elbow : {0.6, -0.6}) {
+    JointVector start(6);
+    start << 0.3, -0.8, elbow, -0.4, -1.2, 0.2;
+    iksel::Tracker tracker(solver, start, PoseWeights());
+    Excursion excursion(robot.fk(start));
+    int edge = 0;
+    for (int step = 0; step < 2100; ++step) {
+      if (step < 2000) excursion.move(step);
+      edge += tracker.track(excursion.target, Excursion::kDt).status == Status::closest;
+    }
+    EXPECT_GT(edge, 500);
+    EXPECT_LT(remainder(robot, excursion.target, tracker.q(), 0.2), 1e-6);
+    EXPECT_GT(tracker.q()[2] * elbow, 0) << elbow;
   }
 }
 

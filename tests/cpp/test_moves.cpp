@@ -17,6 +17,7 @@ using iksel::lanes::kWidth;
 
 /// The least |q + 2 pi k - from|, over those inside the limits or over all.
 double shortest_turn(const iksel::lanes::MoveForm& form, int j, double q, bool inside) {
+  if (!form.turns[j]) return std::abs(q - form.from[j]);
   double least = 100;
   for (int k = -6; k <= 6; ++k) {
     const double image = q + iksel_test::kTwoPi * k;
@@ -36,7 +37,8 @@ TEST(Moves, InLanesAreThoseOfEachJointAlone) {
     form.margin = 1e-5;
     form.takes_largest = round % 2 == 0;
     for (int j = 0; j < 7; ++j) {
-      form.has_images[j] = dice.uniform(0, 1) < 0.7;
+      form.turns[j] = dice.uniform(0, 1) < 0.8;
+      form.has_images[j] = form.turns[j] && dice.uniform(0, 1) < 0.8;
       const double range = form.has_images[j] ? dice.uniform(6.3, 13) : dice.uniform(1, 6);
       form.lower[j] = dice.uniform(-7, 0);
       form.upper[j] = form.lower[j] + range;

@@ -162,12 +162,15 @@ TEST(NoAllocation, PosesWithoutAnAnswer) {
       if (!solver.solve(target).success()) targets.push_back(target);
     }
     ASSERT_GE(targets.size(), 5U) << name;
+    iksel::SolveRequest closest;
+    closest.closest.emplace();
     allocations = 0;
     watching = true;
     int proven = 0;
     for (const iksel::Pose& target : targets) {
       const iksel::Result result = solver.solve(target);
       proven += result.proof != iksel::Proof::none;
+      (void)solver.solve(target, closest);
     }
     watching = false;
     EXPECT_EQ(allocations.load(), 0) << name;

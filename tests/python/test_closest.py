@@ -7,6 +7,7 @@ import pickle
 import numpy as np
 import pytest
 from tests.python.command_line import assert_bad
+from tubes import LENGTHS, NAMES, URDF
 
 import iksel
 
@@ -96,6 +97,64 @@ def test_tracker_stays_at_the_edge(solver, far):
         assert np.array_equal(tracker.q, again.q)
     with pytest.raises(iksel.InvalidArgumentError, match="closest"):
         iksel.Tracker(solver, start, closest=[1, 2])
+
+
+def test_copies_of_a_tracker_come_back_alike(solver):
+    tracker = solver.tracker([0.3, -0.8, 0.6, -0.4, -1.2, 0.2], closest=True)
+    pose = solver.robot.fk(tracker.q)
+    start = tracker.q
+    away = pose.copy()
+    away[:3, 3] *= 1.5
+    for _ in range(500):
+        status = tracker.track(away, 0.01).status
+    assert status == iksel.Status.closest
+    assert np.allclose(tracker.reached, start, atol=1e-6)
+    again = pickle.loads(pickle.dumps(tracker))
+    for _ in range(500):
+        tracker.track(pose, 0.01)
+        again.track(pose, 0.01)
+        assert np.array_equal(tracker.q, again.q)
+    assert np.allclose(solver.robot.fk(tracker.q), pose, atol=1e-5)
+    assert np.array_equal(tracker.reached, tracker.q)
+
+
+def test_in_a_scene_it_is_free():
+    arm = iksel.Robot.from_urdf(URDF, base_link="l0", tip_link="l6")
+    links = {
+        name: np.array([[0, 0, z, 0.045] for z in np.linspace(0, length, 8)])
+        for name, length in zip(NAMES, LENGTHS, strict=True)
+    }
+    solver = iksel.Solver(arm)
+    rng = np.random.default_rng(3)
+    given = none = 0
+    for q in arm.random_configurations(300, seed=3):
+        pose = arm.fk(q)
+        pose[:3, 3] *= 1.3
+        scene = iksel.Scene(arm, iksel.RobotSpheres(links, []))
+        scene.add_box("box", rng.uniform(0.1, 0.3, 3), rng.uniform(-0.6, 0.6, 3))
+        alone = solver.solve(pose, closest=True)
+        result = solver.solve(pose, closest=True, scene=scene)
+        if alone.status != iksel.Status.closest:
+            continue
+        if result.status != iksel.Status.closest:
+            assert result.q is None
+            assert not scene.is_free(alone.q)
+            none += 1
+            continue
+        assert scene.is_free(result.q)
+        given += 1
+        if scene.is_free(alone.q):
+            assert np.array_equal(result.q, alone.q)
+        else:
+            assert missing(solver, pose, result.q) > missing(solver, pose, alone.q)
+    assert given > 20
+    assert 0 < none < given
+
+
+def missing(solver, pose, q):
+    """What is missing by the default weights."""
+    position, rotation = iksel.pose_error(pose, solver.robot.fk(q))
+    return np.hypot(position, rotation * solver.robot.reach / 4)
 
 
 def test_command_line(run):

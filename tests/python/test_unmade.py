@@ -60,6 +60,7 @@ def examples(solver: iksel.Solver) -> list[object]:
         robot.structure,
         tree,
         tree.joints[1],
+        iksel.CoupledLimit({"a": 1.0, "b": -0.5}, lower=-1.0),
         solver,
         solver.options,
         iksel.Lanes(damping=0.5),

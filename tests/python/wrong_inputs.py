@@ -59,6 +59,15 @@ TABLE: dict[str, tuple[str, ...]] = {
         'iksel.load_robot("ur3", locked_joints={"elbow": 1.0})',
         'iksel.load_robot("ur3", locked_joints=["elbow_joint"])',
         'iksel.load_robot("ur3", tcp=[0, 0, 0.1])',
+        'iksel.load_robot("vs060", coupled_limits=[{"joint_2": 1, "joint_3": 1}])',
+        (
+            'iksel.load_robot("vs060", '
+            'coupled_limits=[iksel.CoupledLimit({"elbow": 1}, 0, 1)])'
+        ),
+        (
+            'iksel.load_robot("vs060", '
+            'coupled_limits=[iksel.CoupledLimit({"joint_2": 1}, 5, 6)])'
+        ),
         'ur3.fk("home")',
         "ur3.fk([0.1, 0.2, 0.3])",
         "ur3.fk([0, -90, 90, 0, 0, np.nan])",

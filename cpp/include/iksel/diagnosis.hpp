@@ -51,9 +51,12 @@ struct Diagnosis {
   /// orientation: least rotation error that was reached with the position held [rad].
   double rotation_gap = std::numeric_limits<double>::quiet_NaN();
   /// joint_limits: the joint that lies farthest outside its limits in the answer that violates
-  /// them least, and by how much [rad or m]. no_branch: the joint of which there is no angle. -1
-  /// otherwise.
+  /// them least. no_branch: the joint of which there is no angle. -1 otherwise.
   int joint = -1;
+  /// joint_limits: the coupled limit that lies farthest outside, if that is farther than any joint:
+  /// its index in RobotOptions::coupled_limits; `joint` is -1 then. -1 otherwise.
+  int coupled_limit = -1;
+  /// By how much that joint, or the sum of the coupled limit, lies outside [rad or m].
   double limit_violation = std::numeric_limits<double>::quiet_NaN();
   /// joint_limits: that answer, which reaches the target outside the limits [rad or m]; else empty.
   JointVector branch;

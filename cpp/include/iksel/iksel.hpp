@@ -2,6 +2,7 @@
 // All of the library.
 #pragma once
 
+#include "iksel/coupled_limit.hpp"  // IWYU pragma: export
 #include "iksel/database.hpp"       // IWYU pragma: export
 #include "iksel/diagnosis.hpp"      // IWYU pragma: export
 #include "iksel/error.hpp"          // IWYU pragma: export

@@ -3,11 +3,15 @@
 #pragma once
 
 #include <functional>
+#include <map>
+#include <string>
 
 #include "iksel/export.hpp"
 #include "iksel/types.hpp"
 
 namespace iksel {
+
+class Robot;
 
 /// A cost of joint values, the smaller the better. Among all answers found the cheapest is taken;
 /// where the task leaves the arm free to move (more joints than fixed axes) the best are
@@ -36,6 +40,14 @@ struct IKSEL_EXPORT Objective {
   /// Near a posture.
   [[nodiscard]] static Objective near_posture(const JointVector& posture,
                                               const JointVector& weights = {});
+  /// Some joints, as a rail or a turntable, at a value where that is possible, else as near to it
+  /// as may be: near_posture with weights of these joints only. Values by joint [rad or m], and
+  /// weights, > 0, of those that are to have another than 1. Between answers that are equally good
+  /// the request's `near` decides, or else the middle of the limits. Throws UnknownNameError naming
+  /// a joint that the robot does not have, InvalidArgumentError a number that is no good.
+  [[nodiscard]] static Objective preferred(const Robot& robot,
+                                           const std::map<std::string, double>& values,
+                                           const std::map<std::string, double>& weights = {});
   /// Far from the limits; joints without limits do not count (Zghal, Dubey and Euler 1990).
   [[nodiscard]] static Objective far_from_limits();
   /// Far from singularities.

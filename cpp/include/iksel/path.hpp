@@ -39,14 +39,17 @@ class IKSEL_EXPORT Tracker {
  public:
   /// `start` is where the arm is; joints outside their limits are taken to be at them. Throws
   /// InvalidArgumentError if it has not dof finite elements. `closest`: what is done where a pose
-  /// cannot be reached from where the arm is (track).
+  /// cannot be reached from where the arm is (track). `reached` is where it last reached its pose;
+  /// empty: at `start`.
   Tracker(const Solver& solver, const JointVector& start,
-          const std::optional<PoseWeights>& closest = std::nullopt);
+          const std::optional<PoseWeights>& closest = std::nullopt,
+          const std::optional<JointVector>& reached = std::nullopt);
 
   /// Moves on towards the pose, by no more than each joint can in `dt` seconds. Status `solved`:
   /// there. `too_fast`: the arm needs more time, and went as far on the straight way in joint space
   /// as it could. `closest`, only if that is asked for: the pose cannot be reached from here, and
-  /// the arm went downhill to where it is nearest, by the weights. Any other: there is no
+  /// the arm went downhill to where it is nearest, by the weights; with the target it comes back on
+  /// the side that it left from. Any other: there is no
   /// continuation from here, and the arm stays. `move` is the length of the move in joint space. In
   /// a scene the arm also stays, with status `in_collision`, where it would collide at the end of
   /// its move; the way there is not looked at. Throws InvalidArgumentError if the pose is not
@@ -55,6 +58,9 @@ class IKSEL_EXPORT Tracker {
 
   /// Where the arm is now [rad or m]; always inside the limits.
   [[nodiscard]] const JointVector& q() const { return q_; }
+  /// Where the arm was when it last reached its pose, or began; from the edge of the workspace it
+  /// comes back on that side [rad or m].
+  [[nodiscard]] const JointVector& reached() const { return reached_; }
   /// What solves.
   [[nodiscard]] const Solver& solver() const { return solver_; }
   /// What is done at poses that cannot be reached.
@@ -64,6 +70,8 @@ class IKSEL_EXPORT Tracker {
   Solver solver_;
   JointVector q_;
   std::optional<PoseWeights> closest_;
+  JointVector reached_;
+  bool is_at_edge_ = false;  ///< where it is nearest to a pose that cannot be reached
 };
 
 }  // namespace iksel

@@ -6,7 +6,9 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "iksel/coupled_limit.hpp"
 #include "iksel/export.hpp"
 #include "iksel/types.hpp"
 
@@ -28,6 +30,8 @@ struct RobotOptions {
   /// out or has as 0, 0; none: such a joint is an error. A mimic joint of that kind has no limits
   /// beside those of the joint that it follows.
   std::optional<std::pair<double, double>> default_limits;
+  /// Limits of sums of joint values, beside those of each joint; kMaxCoupledLimits at most.
+  std::vector<CoupledLimit> coupled_limits;
 };
 
 }  // namespace iksel

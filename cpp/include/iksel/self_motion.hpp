@@ -13,7 +13,7 @@ namespace iksel {
 
 /// What ends an arc of a self-motion.
 enum class ArcEnd : std::uint8_t {
-  limit,   ///< a joint is at its limit
+  limit,   ///< a joint is at its limit, or some together at a coupled one
   fold,    ///< branches merge in a singularity, from which no way on was found
   closed,  ///< nothing does: the last configuration leads on to the first
 };
@@ -27,6 +27,9 @@ struct SelfMotionEnd {
   /// The joint that is at its limit, and whether at the upper one; -1 unless `limit`.
   int joint = -1;
   bool at_upper = false;
+  /// The coupled limit that is reached, if it is not a joint's own: its index in
+  /// RobotOptions::coupled_limits; else -1.
+  int coupled_limit = -1;
 };
 
 /// A connected piece of the self-motion inside the limits.

@@ -16,6 +16,24 @@
 #include "database/sampling.hpp"
 
 namespace iksel {
+namespace {
+
+/// A random point inside the limits, scaled; what is coupled is convex, and so means stay inside.
+void draw_point(const SampleSpace& space, const std::vector<double>& scale, Random& random,
+                double* point) {
+  constexpr int kMostDraws = 1000;
+  double q[kMaxDof];
+  for (int draw = 0; draw < kMostDraws; ++draw) {
+    for (std::size_t j = 0; j < space.dof(); ++j) {
+      const double lower = space.lower[j] * scale[j];
+      point[j] = lower + (space.upper[j] - space.lower[j]) * scale[j] * random.uniform();
+      q[j] = point[j] / scale[j];
+    }
+    if (space.holds(q)) return;
+  }
+}
+
+}  // namespace
 
 void refine_by_cvt(const SampleSpace& space, const DatabaseOptions& options,
                    std::vector<double>& samples,
@@ -24,14 +42,8 @@ void refine_by_cvt(const SampleSpace& space, const DatabaseOptions& options,
   const std::size_t count = samples.size() / dof;
 
   // Distances are taken in radians; slides are scaled so that the arm's reach counts as a radian.
-  std::vector<double> lower(dof);
-  std::vector<double> range(dof);
   std::vector<double> scale(dof);
-  for (std::size_t j = 0; j < dof; ++j) {
-    scale[j] = 1.0 / space.unit[j];
-    lower[j] = space.lower[j] * scale[j];
-    range[j] = (space.upper[j] - space.lower[j]) * scale[j];
-  }
+  for (std::size_t j = 0; j < dof; ++j) scale[j] = 1.0 / space.unit[j];
   for (std::size_t i = 0; i < samples.size(); ++i) samples[i] *= scale[i % dof];
 
   // A generator should rarely be drawn twice in a round, and the tree not be built too often.
@@ -47,9 +59,7 @@ void refine_by_cvt(const SampleSpace& space, const DatabaseOptions& options,
     const auto look_up = [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         Random random = Random::stream(options.seed + 1, first + i);
-        for (std::size_t j = 0; j < dof; ++j) {
-          draws[i * dof + j] = lower[j] + range[j] * random.uniform();
-        }
+        draw_point(space, scale, random, &draws[i * dof]);
         tree->nearest(&draws[i * dof], 1, &nearest[i]);
       }
     };

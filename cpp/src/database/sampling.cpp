@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <numeric>
+#include <utility>
 
 #include "base/random.hpp"
 #include "iksel/database.hpp"
@@ -51,11 +52,19 @@ void fill_grid(const SampleSpace& space, const DatabaseOptions& options,
   }
 }
 
+/// Draws are repeated at most so often where they lie outside coupled limits.
+constexpr int kMostRepeats = 1000;
+
 void fill_random(const SampleSpace& space, std::uint64_t seed, std::vector<double>& samples) {
   Random random(seed);
   const std::size_t dof = space.dof();
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    samples[i] = random.uniform(space.lower[i % dof], space.upper[i % dof]);
+  for (std::size_t i = 0; i < samples.size(); i += dof) {
+    for (int draw = 0; draw < kMostRepeats; ++draw) {
+      for (std::size_t j = 0; j < dof; ++j) {
+        samples[i + j] = random.uniform(space.lower[j], space.upper[j]);
+      }
+      if (space.holds(&samples[i])) break;
+    }
   }
 }
 
@@ -68,13 +77,21 @@ void fill_low_discrepancy(const SampleSpace& space, std::uint64_t seed,
   double phi = 2.0;
   for (int i = 0; i < 64; ++i) phi = std::pow(1.0 + phi, 1.0 / static_cast<double>(dof + 1));
   Random random(seed);
+  std::vector<double> alpha(dof);
+  std::vector<double> shift(dof);
   for (std::size_t j = 0; j < dof; ++j) {
-    const double alpha = std::pow(1.0 / phi, static_cast<double>(j + 1));
-    const double shift = random.uniform();
-    double index = 0;
-    for (std::size_t i = j; i < samples.size(); i += dof) {
-      const double x = shift + alpha * ++index;
-      samples[i] = space.lower[j] + (space.upper[j] - space.lower[j]) * (x - std::floor(x));
+    alpha[j] = std::pow(1.0 / phi, static_cast<double>(j + 1));
+    shift[j] = random.uniform();
+  }
+  double index = 0;
+  for (std::size_t i = 0; i < samples.size(); i += dof) {
+    for (int draw = 0; draw < kMostRepeats; ++draw) {
+      ++index;
+      for (std::size_t j = 0; j < dof; ++j) {
+        const double x = shift[j] + alpha[j] * index;
+        samples[i + j] = space.lower[j] + (space.upper[j] - space.lower[j]) * (x - std::floor(x));
+      }
+      if (space.holds(&samples[i])) break;
     }
   }
 }
@@ -105,7 +122,28 @@ SampleSpace sample_space(const ChainModel& model, const Reduction* reduction) {
     const bool slides = model.joints.is_slide(j);
     space.unit.push_back(slides ? std::max(model.reach, 1e-9) : 1.0);
   }
+  for (const CoupledRow& row : model.joints.coupled) {
+    SampleSpace::Coupled coupled{{}, row.lower, row.upper};
+    for (int j = 0; j < model.dof; ++j) {
+      if (reduction == nullptr || !reduction->leaves_out(j)) {
+        coupled.c.push_back(row.c[j]);
+      } else if (row.c[j] != 0) {
+        const double a = row.c[j] * model.joints.lower[j];
+        const double b = row.c[j] * model.joints.upper[j];
+        coupled.lower -= std::max(a, b);
+        coupled.upper -= std::min(a, b);
+      }
+    }
+    space.coupled.push_back(std::move(coupled));
+  }
   return space;
+}
+
+bool SampleSpace::holds(const double* sample) const {
+  return std::all_of(coupled.begin(), coupled.end(), [&](const Coupled& limit) {
+    const double sum = std::inner_product(limit.c.begin(), limit.c.end(), sample, 0.0);
+    return sum >= limit.lower && sum <= limit.upper;
+  });
 }
 
 std::size_t sample_count(const SampleSpace& space, const DatabaseOptions& options) {

@@ -16,14 +16,22 @@ struct SampleSpace {
   std::vector<double> lower, upper;
   /// Length in the joint's own unit that counts as 1 rad between samples.
   std::vector<double> unit;
+  /// Coupled limits over these joints, with what those left out may add; a sum each.
+  struct Coupled {
+    std::vector<double> c;
+    double lower, upper;
+  };
+  std::vector<Coupled> coupled;
 
+  /// Whether no coupled limit is violated.
+  [[nodiscard]] bool holds(const double* sample) const;
   [[nodiscard]] std::size_t dof() const { return lower.size(); }
 };
 
 /// All joints, or those that `reduction` does not leave out.
 SampleSpace sample_space(const ChainModel& model, const Reduction* reduction);
 
-/// Number of samples that the options ask for.
+/// Number of samples that the options ask for; of a grid, those outside coupled limits included.
 std::size_t sample_count(const SampleSpace& space, const DatabaseOptions& options);
 
 /// Joint samples, space.dof() values each, one after another. `on_progress` is called with the

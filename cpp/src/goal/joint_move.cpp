@@ -6,6 +6,30 @@
 
 namespace iksel {
 
+std::optional<NearestTo> find_nearest_to(int dof, const SolveRequest& request) {
+  // Of the largest weight. The joints with weight give way by its square only, which does not
+  // matter: the others move by some radians.
+  constexpr double kDecides = 1e-5;
+  const Objective& objective = request.objective;
+  if (!objective.is_set()) {
+    if (!request.near) return std::nullopt;
+    return NearestTo{*request.near, JointMove(dof, request)};
+  }
+  if (objective.kind != Objective::Kind::posture) return std::nullopt;
+  JointVector from = objective.posture;
+  JointVector weights =
+      objective.weights.size() == 0 ? JointVector(JointVector::Ones(dof)) : objective.weights;
+  const double deciding = kDecides * weights.maxCoeff();
+  for (int j = 0; j < dof; ++j) {
+    if (weights[j] > 0) continue;
+    weights[j] = deciding;
+    if (!request.near) continue;
+    from[j] = (*request.near)[j];
+    if (request.weights.size() > 0) weights[j] *= request.weights[j] / request.weights.maxCoeff();
+  }
+  return NearestTo{std::move(from), JointMove(std::move(weights))};
+}
+
 MoveCost::MoveCost(const JointVector& weights, const JointVector& from, double power)
     : from_(from), power_(power) {
   constexpr double kLeast = 1e-6;

@@ -2,6 +2,9 @@
 // How far joints move between configurations, by the norm and weights of a request.
 #pragma once
 
+#include <optional>
+#include <utility>
+
 #include "iksel/request.hpp"
 
 namespace iksel {
@@ -12,6 +15,7 @@ class JointMove {
       : weights_(request.weights.size() == 0 ? JointVector(JointVector::Ones(dof))
                                              : request.weights),
         norm_(request.norm) {}
+  explicit JointMove(JointVector weights) : weights_(std::move(weights)), norm_(MoveNorm::two) {}
 
   [[nodiscard]] double length(const JointVector& difference) const {
     const auto weighted = weights_.cwiseProduct(difference);
@@ -24,6 +28,23 @@ class JointMove {
   JointVector weights_;
   MoveNorm norm_;
 };
+
+/// A configuration, and how far others are from it.
+struct NearestTo {
+  JointVector from;
+  JointMove move;
+
+  /// Whether a joint does more than decide between what is equally good by the others.
+  [[nodiscard]] bool prefers(int joint) const {
+    constexpr double kDecides = 1e-4;
+    return move.weights()[joint] > kDecides * move.weights().maxCoeff();
+  }
+};
+
+/// What a request wants the answer nearest to, if it is a configuration: that of an objective near
+/// a posture, or else `near`. Joints without weight in the objective decide between answers that
+/// are equally good, as `near` would if there is one.
+std::optional<NearestTo> find_nearest_to(int dof, const SolveRequest& request);
 
 /// Half the squared weighted move from a configuration, or for the max norm a p-norm near to it. A
 /// joint without weight still has a little, so that it does not drift.

@@ -40,10 +40,28 @@ double ObjectiveCost::of_posture(const JointVector& q, JointVector* gradient,
   return MoveCost(weights, objective_.posture)(q, gradient, curvature);
 }
 
+namespace {
+
+/// Of both ends of a range, 1 in its middle.
+struct Repulsion {
+  double cost, slope, curvature;
+
+  Repulsion(double above_lower, double range) {
+    // Nearer than this part of the range a limit repels no more, so that the cost stays finite.
+    constexpr double kNearest = 1e-4;
+    const double x = std::min(std::max(above_lower / range, kNearest), 1 - kNearest);
+    const double below = 1 / x;
+    const double above = 1 / (1 - x);
+    cost = 0.25 * (below + above);
+    slope = 0.25 * (above * above - below * below) / range;
+    curvature = 0.5 * (below * below * below + above * above * above) / (range * range);
+  }
+};
+
+}  // namespace
+
 double ObjectiveCost::of_limits(const JointVector& q, JointVector* gradient,
                                 JointVector* curvature) const {
-  // Nearer than this part of the range a limit repels no more, so that the cost stays finite.
-  constexpr double kNearest = 1e-4;
   // Joints without limits have a little, so that they do not drift.
   if (gradient != nullptr) gradient->setZero(model_.dof);
   if (curvature != nullptr) curvature->setConstant(model_.dof, 1e-6);
@@ -51,15 +69,17 @@ double ObjectiveCost::of_limits(const JointVector& q, JointVector* gradient,
   for (int j = 0; j < model_.dof; ++j) {
     const double range = model_.joints.upper[j] - model_.joints.lower[j];
     if (!(std::isfinite(range) && range > 0)) continue;
-    const double x =
-        std::min(std::max((q[j] - model_.joints.lower[j]) / range, kNearest), 1 - kNearest);
-    const double below = 1 / x;
-    const double above = 1 / (1 - x);
-    sum += 0.25 * (below + above);
-    if (gradient != nullptr) (*gradient)[j] = 0.25 * (above * above - below * below) / range;
-    if (curvature != nullptr) {
-      (*curvature)[j] = 0.5 * (below * below * below + above * above * above) / (range * range);
-    }
+    const Repulsion at(q[j] - model_.joints.lower[j], range);
+    sum += at.cost;
+    if (gradient != nullptr) (*gradient)[j] = at.slope;
+    if (curvature != nullptr) (*curvature)[j] = at.curvature;
+  }
+  for (const CoupledRow& row : model_.joints.coupled) {
+    const Repulsion at(row.sum(q.data()) - row.lower, row.upper - row.lower);
+    sum += at.cost;
+    if (gradient != nullptr) *gradient += at.slope * row.c;
+    // c c^T is no more than its rows' sums of sizes on the diagonal.
+    if (curvature != nullptr) *curvature += at.curvature * row.size * row.c.cwiseAbs();
   }
   return sum;
 }

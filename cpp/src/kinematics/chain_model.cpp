@@ -10,6 +10,7 @@
 #include "base/message_text.hpp"
 #include "iksel/error.hpp"
 #include "iksel/pose.hpp"
+#include "kinematics/coupled_limits.hpp"
 
 namespace iksel {
 namespace {
@@ -103,6 +104,7 @@ ChainModel::ChainModel(std::string urdf_xml, const RobotOptions& options_in)
     soft_lower[i] = variable.soft_lower;
     soft_upper[i] = variable.soft_upper;
   }
+  add_coupled_limits(options.coupled_limits, spec, joints);
   flatten();
   measure_reach();
   hash = compute_hash();
@@ -119,8 +121,12 @@ std::shared_ptr<const ChainModel> ChainModel::with_tcp(const Pose& T_tip_tcp) co
 
 std::shared_ptr<const ChainModel> ChainModel::without_limits() const {
   auto copy = std::make_shared<ChainModel>(*this);
+  JointSpace& wide = copy->joints;
+  copy->options.coupled_limits.clear();
+  wide.coupled.clear();
+  wide.coupled_turning.clear();
+  wide.coupled_images.clear();
   for (int i = 0; i < dof; ++i) {
-    JointSpace& wide = copy->joints;
     if (joints.is_slide(i)) {
       // Angles may be bounded by what the limits are.
       if (turns_a_joint(*this, i)) continue;
@@ -246,6 +252,11 @@ std::uint64_t ChainModel::compute_hash() const {
   for (int i = 0; i < dof; ++i) {
     hasher.add(joints.lower[i]);
     hasher.add(joints.upper[i]);
+  }
+  for (const CoupledRow& row : joints.coupled) {
+    for (int i = 0; i < dof; ++i) hasher.add(row.c[i]);
+    hasher.add(row.lower);
+    hasher.add(row.upper);
   }
   return hasher.value();
 }

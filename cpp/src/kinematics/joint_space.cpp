@@ -15,7 +15,7 @@ bool JointSpace::contains(const double* q) const {
     // Written so that NaN is outside.
     if (!(q[j] >= lower[j] && q[j] <= upper[j])) return false;
   }
-  return true;
+  return coupled.empty() || holds_coupled(q);
 }
 
 bool JointSpace::leaves(const double* q, const double* step) const {
@@ -23,7 +23,10 @@ bool JointSpace::leaves(const double* q, const double* step) const {
     const double end = q[j] + step[j];
     if ((end < lower[j] || end > upper[j]) && !is_periodic(j)) return true;
   }
-  return false;
+  if (coupled.empty()) return false;
+  JointVector end(dof());
+  for (int j = 0; j < dof(); ++j) end[j] = q[j] + step[j];
+  return beyond_coupled(end.data()) > 0;
 }
 
 JointVector JointSpace::middle() const {
@@ -57,12 +60,24 @@ void JointSpace::wrap(double* q) const {
       if (wrapped >= lower[j]) q[j] = wrapped;
     }
   }
+  if (coupled_turning.empty() || holds_coupled(q)) return;
+  JointVector image = Eigen::Map<const Eigen::VectorXd>(q, dof());
+  const JointVector from = image;
+  turn_coupled(
+      0, /*takes_any=*/true, [&](const JointVector& at) { return (at - from).norm(); }, image);
+  for (int j = 0; j < dof(); ++j) q[j] = image[j];
 }
 
 bool JointSpace::wrap_nearest(const JointVector& near, double slack, JointVector& q) const {
+  return wrap_nearest(
+      near, slack, [](const JointVector& d) { return d.norm(); }, q);
+}
+
+bool JointSpace::wrap_nearest(const JointVector& near, double slack, const Length& length,
+                              JointVector& q) const {
   bool held = false;
   for (int j = 0; j < dof(); ++j) {
-    if (!is_periodic(j)) continue;
+    if (!is_periodic(j) || has_coupled_images(j)) continue;
     const double low = lower[j] - slack;
     const double high = upper[j] + slack;
     double value = q[j];
@@ -74,10 +89,34 @@ bool JointSpace::wrap_nearest(const JointVector& near, double slack, JointVector
     q[j] = std::min(std::max(value, lower[j]), upper[j]);
     held = held || q[j] != value;
   }
+  if (coupled_turning.empty()) return held;
+  turn_coupled(
+      slack, /*takes_any=*/false, [&](const JointVector& at) { return length(at - near); }, q);
+  const JointVector inside = contains(q.data()) ? q : clamp(q);
+  held = held || inside != q;
+  q = inside;
   return held;
 }
 
 void JointSpace::first_image(JointVector& q) const {
+  lowest_image(q);
+  // Of the combinations, the first that holds what is coupled.
+  if (!coupled_turning.empty() && !holds_coupled(q.data())) next_image(q);
+}
+
+bool JointSpace::next_image(JointVector& q) const {
+  if (coupled_turning.empty()) return next_combination(q);
+  while (next_combination(q)) {
+    if (holds_coupled(q.data())) return true;
+  }
+  if (!holds_coupled(q.data())) {
+    while (next_combination(q) && !holds_coupled(q.data())) {
+    }
+  }
+  return false;
+}
+
+void JointSpace::lowest_image(JointVector& q) const {
   for (int j = 0; j < dof(); ++j) {
     if (!is_periodic(j)) continue;
     const double low = std::isfinite(lower[j]) ? lower[j] : -kPi;
@@ -87,7 +126,7 @@ void JointSpace::first_image(JointVector& q) const {
   }
 }
 
-bool JointSpace::next_image(JointVector& q) const {
+bool JointSpace::next_combination(JointVector& q) const {
   for (int j = 0; j < dof(); ++j) {
     // A joint without limits has no end of images; one stands for all.
     if (!is_periodic(j) || !std::isfinite(upper[j])) continue;

@@ -6,19 +6,14 @@
 #include <vector>
 
 #include "base/constants.hpp"
-#include "goal/goal.hpp"
-#include "kinematics/chain_model.hpp"
+#include "refine/closest_descent.hpp"
 
 namespace iksel {
 
 class BestEffort {
  public:
   /// `weight` is the length that 1 rad counts [m].
-  BestEffort(const ChainModel& model, const Goal& goal, double weight)
-      : model_(model), goal_(goal), weight_(weight) {}
-
-  /// Makes 1 rad count that part of what it counts otherwise. To come first.
-  void weigh_rotation(double part) { weight_ *= part; }
+  BestEffort(const ChainModel& model, const Goal& goal, double weight);
 
   /// Where it ended.
   JointVector from(const JointVector& seed);
@@ -27,13 +22,9 @@ class BestEffort {
   [[nodiscard]] const JointVector& q() const { return q_; }
 
  private:
-  /// What is left of both errors [m].
-  [[nodiscard]] double error_of(const JointVector& q) const;
-
   const ChainModel& model_;
-  const Goal& goal_;
-  double weight_;
-  double error_ = kInfinity;
+  Remainder remainder_;
+  double least_ = kInfinity;
   JointVector q_;
 };
 

@@ -8,16 +8,12 @@
 namespace iksel {
 namespace {
 
-using SquareMatrix =
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::DontAlign, kMaxDof, kMaxDof>;
-
 /// Longest step of a joint [rad or m].
 constexpr double kLongestDescent = 0.5;
 
-/// The second derivative by differences of the gradient, which cost less than its formula: that has
-/// the task's swing and twist in it.
-SquareMatrix second_derivative(const Remainder& remainder, const JointVector& q,
-                               const JointVector& gradient) {
+/// The second derivative by differences of the gradient.
+SquareMatrix difference_gradients(const Remainder& remainder, const JointVector& q,
+                                  const JointVector& gradient) {
   constexpr double kDifference = 1e-6;
   const auto n = q.size();
   SquareMatrix H(n, n);
@@ -33,9 +29,10 @@ SquareMatrix second_derivative(const Remainder& remainder, const JointVector& q,
   return 0.5 * (H + SquareMatrix(H.transpose()));
 }
 
-/// Leaves out joints that stand at a limit and would go beyond: returns whether any is left.
-bool hold_at_limits(const JointSpace& joints, const JointVector& q, JointVector& gradient,
+/// Leaves out joints that stand at a limit and would go beyond.
+void hold_at_limits(const JointSpace& joints, const JointVector& q, JointVector& gradient,
                     SquareMatrix& H) {
+  JointVector free = JointVector::Ones(q.size());
   for (Eigen::Index j = 0; j < q.size(); ++j) {
     const bool leaves = (q[j] <= joints.lower[j] && gradient[j] > 0) ||
                         (q[j] >= joints.upper[j] && gradient[j] < 0);
@@ -44,8 +41,116 @@ bool hold_at_limits(const JointSpace& joints, const JointVector& q, JointVector&
     H.row(j).setZero();
     H.col(j).setZero();
     H(j, j) = 1;
+    free[j] = 0;
   }
-  return !gradient.isZero(0);
+  if (!joints.coupled.empty()) {
+    // The same for directions across coupled limits.
+    const CoupledNormals N = joints.coupled_normals(q, -gradient, free);
+    const SquareMatrix across = N * N.transpose();
+    const SquareMatrix along = SquareMatrix::Identity(q.size(), q.size()) - across;
+    gradient = JointVector(along * gradient);
+    H = SquareMatrix(along * H * along + across);
+  }
+}
+
+/// The step -H^-1 g inside the limits: joints that it would take beyond go to their limits, and the
+/// others do what is best then. False if H is not positive.
+bool step_inside(const JointSpace& joints, const JointVector& q, const JointVector& gradient,
+                 SquareMatrix H, JointVector& step) {
+  JointVector right = -gradient;
+  bool held[kMaxDof] = {};
+  for (bool changed = true; changed;) {
+    const Eigen::LLT<SquareMatrix> factors(H);
+    if (factors.info() != Eigen::Success) return false;
+    step = factors.solve(right);
+    changed = false;
+    for (Eigen::Index j = 0; j < q.size(); ++j) {
+      const double goal = std::clamp(q[j] + step[j], joints.lower[j], joints.upper[j]);
+      if (held[j] || goal == q[j] + step[j]) continue;
+      held[j] = changed = true;
+      right -= H.col(j) * (goal - q[j]);
+      right[j] = goal - q[j];
+      H.row(j).setZero();
+      H.col(j).setZero();
+      H(j, j) = 1;
+    }
+  }
+  return true;
+}
+
+/// The remainder at a point, where joints that would leave their limits are held.
+struct Slope {
+  double value;
+  const JointVector& gradient;
+  const JointVector& diagonal;  ///< as of Remainder::value
+  const SquareMatrix& H;
+};
+
+/// A step of Newton's method from q that lowers the remainder, damped as it must be: false if there
+/// is none.
+bool step_down(const ChainModel& model, const Remainder& remainder, const Slope& at,
+               double& damping, JointVector& q) {
+  constexpr double kNothing = 1e-14;
+  constexpr double kLeastDamping = 1e-10;
+  constexpr double kMostDamping = 1e6;
+  const JointVector scale = at.diagonal.array() + 1e-6 * at.diagonal.maxCoeff() + 1e-12;
+  // Nothing to be gained, even along directions in which it is nearly flat.
+  const double gain = 0.5 * at.gradient.cwiseAbs2().cwiseQuotient(scale).sum();
+  if (gain <= kNothing * at.value) return false;
+  for (; damping <= kMostDamping; damping *= 10) {
+    SquareMatrix damped = at.H;
+    damped.diagonal() += damping * scale;
+    JointVector step;
+    if (!step_inside(model.joints, q, at.gradient, damped, step)) continue;
+    const double longest = step.cwiseAbs().maxCoeff();
+    if (longest > kLongestDescent) step *= kLongestDescent / longest;
+    const JointVector next = model.joints.clamp(q + step);
+    if (!(remainder.value(next) < at.value)) continue;
+    q = next;
+    damping = std::max(damping * 1e-3, kLeastDamping);
+    return true;
+  }
+  return false;
+}
+
+/// A direction v of length 1 along which H is negative; false if there is none. If the first rows
+/// of H are positive, but not with row k, then it is that which these leave of joint k.
+bool find_falling(const SquareMatrix& H, JointVector& v) {
+  constexpr double kFlat = 1e-6;
+  for (Eigen::Index k = 0; k < H.rows(); ++k) {
+    const SquareMatrix with = H.topLeftCorner(k + 1, k + 1);
+    if (Eigen::LLT<SquareMatrix>(with).info() == Eigen::Success) continue;
+    v.setZero(H.rows());
+    v[k] = 1;
+    if (k > 0) {
+      const SquareMatrix before = H.topLeftCorner(k, k);
+      const JointVector column = H.col(k).head(k);
+      v.head(k) = -Eigen::LLT<SquareMatrix>(before).solve(column);
+    }
+    v.normalize();
+    return v.dot(H * v) < -kFlat * H.diagonal().cwiseAbs().maxCoeff();
+  }
+  return false;
+}
+
+/// Leaves a point where the gradient is nothing, but the remainder falls to both sides: an arm
+/// stretched out towards a target that has come back within reach. Goes to the side of the middle
+/// of the limits, if it falls there. False if there is no such side.
+bool leave_saddle(const ChainModel& model, const Remainder& remainder, const Slope& at,
+                  JointVector& q) {
+  constexpr double kWorthIt = 1e-3;
+  JointVector side;
+  if (!find_falling(at.H, side)) return false;
+  if (side.dot(model.joints.middle() - q) < 0) side = -side;
+  for (const double length : {0.1, 0.01, 0.001}) {
+    for (const double sign : {1.0, -1.0}) {
+      const JointVector next = model.joints.clamp(q + sign * length * side);
+      if (!(remainder.value(next) < at.value * (1 - kWorthIt))) continue;
+      q = next;
+      return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace
@@ -56,58 +161,106 @@ double Remainder::value(const JointVector& q) const {
   return 0.5 * outside.dot(weights2_.cwiseProduct(outside));
 }
 
-double Remainder::value(const JointVector& q, JointVector& gradient, JointVector& diagonal) const {
+Remainder::AtPose Remainder::at(const Pose& pose) const {
+  AtPose out;
+  out.map = Matrix6::Identity();
+  const TaskSpace& task = goal_.task();
+  const Vector6 d = task.deviation(goal_.target(), pose, out.map);
+  const Vector6 outside = task.outside(d);
+  out.active = weights2_;
+  for (int i = 0; i < 6; ++i) {
+    if (outside[i] == 0 && task.lower()[i] < task.upper()[i]) out.active[i] = 0;
+  }
+  const Vector6 weighted = weights2_.cwiseProduct(outside);
+  out.pull = out.map.transpose() * weighted;
+  out.value = 0.5 * outside.dot(weighted);
+  return out;
+}
+
+Matrix6 Remainder::stiffness(const Pose& pose, const AtPose& at) const {
+  Matrix6 K = Matrix6::Zero();
+  const Eigen::Matrix3d moves = at.map.topLeftCorner<3, 3>();
+  K.topLeftCorner<3, 3>() = moves.transpose() * at.active.head<3>().asDiagonal() * moves;
+  // The task's swing and twist make a long formula of the rotation's.
+  constexpr double kDifference = 1e-6;
+  Pose turned = pose;
+  for (int k = 0; k < 3; ++k) {
+    turned.linear() =
+        Eigen::AngleAxisd(kDifference, Eigen::Vector3d::Unit(k)).toRotationMatrix() * pose.linear();
+    K.block<3, 1>(3, 3 + k) = (this->at(turned).pull - at.pull).tail<3>() / kDifference;
+  }
+  return K;
+}
+
+double Remainder::value(const JointVector& q, JointVector& gradient, JointVector& diagonal,
+                        SquareMatrix* second) const {
   Pose pose;
   Jacobian of_pose;
   model_.fk_jacobian(q.data(), pose, of_pose);
-  JacobianMatrix J = of_pose;
-  const Vector6 d = goal_.task().deviation(goal_.target(), pose, J);
-  const Vector6 outside = goal_.task().outside(d);
-  Vector6 active = weights2_;
-  for (int i = 0; i < 6; ++i) {
-    if (outside[i] == 0 && goal_.task().lower()[i] < goal_.task().upper()[i]) active[i] = 0;
+  const JacobianMatrix J = of_pose;
+  const AtPose here = at(pose);
+  gradient = J.transpose() * here.pull;
+  diagonal = (here.map * J).cwiseAbs2().transpose() * here.active;
+  if (second == nullptr) return here.value;
+  if (!is_simple_) {
+    *second = difference_gradients(*this, q, gradient);
+    return here.value;
   }
-  const Vector6 weighted = weights2_.cwiseProduct(outside);
-  gradient = J.transpose() * weighted;
-  diagonal = J.cwiseAbs2().transpose() * active;
-  return 0.5 * outside.dot(weighted);
+  // What joint i does to the twist of a joint j behind it, besides moving the TCP: turns it.
+  const JacobianMatrix stiff = stiffness(pose, here) * J;
+  second->resize(model_.dof, model_.dof);
+  for (int j = 0; j < model_.dof; ++j) {
+    const Eigen::Vector3d L = J.col(j).head<3>();
+    const Eigen::Vector3d z = J.col(j).tail<3>();
+    const Eigen::Vector3d turning = L.cross(Eigen::Vector3d(here.pull.head<3>())) +
+                                    z.cross(Eigen::Vector3d(here.pull.tail<3>()));
+    for (int i = 0; i <= j; ++i) {
+      const double part = J.col(j).dot(stiff.col(i)) + J.col(i).tail<3>().dot(turning);
+      (*second)(i, j) = (*second)(j, i) = part;
+    }
+  }
+  return here.value;
 }
 
 double descend_to_closest(const ChainModel& model, const Remainder& remainder, int most,
                           JointVector& q, int& steps) {
   constexpr double kSettled = 1e-9;
-  constexpr double kLeastDamping = 1e-10;
-  constexpr double kMostDamping = 1e6;
   JointVector gradient(model.dof);
   JointVector diagonal(model.dof);
-  double value = remainder.value(q, gradient, diagonal);
+  SquareMatrix H;
+  double value = remainder.value(q, gradient, diagonal, &H);
+  hold_at_limits(model.joints, q, gradient, H);
   double damping = 1e-4;
   for (int taken = 0; taken < most; ++taken) {
-    SquareMatrix H = second_derivative(remainder, q, gradient);
-    if (!hold_at_limits(model.joints, q, gradient, H)) return value;
-    const JointVector scale = diagonal.array() + 1e-6 * diagonal.maxCoeff() + 1e-12;
-    bool is_better = false;
-    double longest = 0;
-    for (; damping <= kMostDamping && !is_better; damping *= 10) {
-      SquareMatrix damped = H;
-      damped.diagonal() += damping * scale;
-      const Eigen::LLT<SquareMatrix> factors(damped);
-      if (factors.info() != Eigen::Success) continue;
-      JointVector step = -factors.solve(gradient);
-      longest = step.cwiseAbs().maxCoeff();
-      if (longest > kLongestDescent) step *= kLongestDescent / longest;
-      const JointVector next = model.joints.clamp(q + step);
-      if (!(remainder.value(next) < value)) continue;
-      is_better = true;
-      q = next;
-    }
-    if (!is_better) return value;
-    ++steps;
-    damping = std::max(damping * 1e-3, kLeastDamping);
+    const JointVector from = q;
+    const bool is_lower = step_down(model, remainder, {value, gradient, diagonal, H}, damping, q);
+    const auto look = [&] {
+      value = remainder.value(q, gradient, diagonal, &H);
+      hold_at_limits(model.joints, q, gradient, H);
+    };
     const double before = value;
-    value = remainder.value(q, gradient, diagonal);
-    if (longest < kSettled || before - value <= 1e-9 * value) return value;
+    if (is_lower) look();
+    const bool is_settled = !is_lower || before - value <= kSettled * value ||
+                            (q - from).cwiseAbs().maxCoeff() < kSettled;
+    if (is_settled) {
+      if (!leave_saddle(model, remainder, {value, gradient, diagonal, H}, q)) return value;
+      look();
+    }
+    ++steps;
   }
+  return value;
+}
+
+double descend_from_seed(const ChainModel& model, const Remainder& remainder, int most,
+                         JointVector& q, int& steps) {
+  /// Remainders that differ by less, relative to them, are the same.
+  constexpr double kSame = 1e-9;
+  q = model.joints.clamp(q);
+  const double value = descend_to_closest(model, remainder, most, q, steps);
+  // Whole turns matter only to joints that follow the one that took them.
+  JointVector principal = q;
+  model.joints.wrap(principal.data());
+  if (remainder.value(principal) <= value * (1 + kSame) + kSame * kSame) q = principal;
   return value;
 }
 

@@ -4,8 +4,12 @@
 
 #include "goal/goal.hpp"
 #include "kinematics/chain_model.hpp"
+#include "simd/lane_chain.hpp"
 
 namespace iksel {
+
+using SquareMatrix =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::DontAlign, kMaxDof, kMaxDof>;
 
 /// How far a configuration is from a goal: half the squared length of what is missing, each part of
 /// it times its weight.
@@ -14,16 +18,33 @@ class Remainder {
   /// `weights` of position [1/m] and rotation [1/rad] along the axes of the task. All must outlive
   /// this.
   Remainder(const ChainModel& model, const Goal& goal, const Vector6& weights)
-      : model_(model), goal_(goal), weights2_(weights.cwiseAbs2()) {}
+      : model_(model), goal_(goal), weights2_(weights.cwiseAbs2()), is_simple_(is_simple(model)) {}
 
   [[nodiscard]] double value(const JointVector& q) const;
   /// Also its gradient, and the Gauss-Newton approximation's diagonal of the second derivative.
-  double value(const JointVector& q, JointVector& gradient, JointVector& diagonal) const;
+  double value(const JointVector& q, JointVector& gradient, JointVector& diagonal) const {
+    return value(q, gradient, diagonal, nullptr);
+  }
+  /// Also the second derivative, if that is not null.
+  double value(const JointVector& q, JointVector& gradient, JointVector& diagonal,
+               SquareMatrix* second) const;
 
  private:
+  /// What moves of the TCP do to the remainder: its derivative by a twist in base axes, and that of
+  /// this in turn.
+  struct AtPose {
+    double value;
+    Vector6 pull;
+    Vector6 active;      ///< weights of what is not inside the task's bounds
+    JacobianMatrix map;  ///< from twists to deviations
+  };
+  [[nodiscard]] AtPose at(const Pose& pose) const;
+  [[nodiscard]] Matrix6 stiffness(const Pose& pose, const AtPose& at) const;
+
   const ChainModel& model_;
   const Goal& goal_;
   Vector6 weights2_;
+  bool is_simple_;
 };
 
 /// Moves q, inside the limits, to a local minimum in at most `most` steps, by Newton's method with
@@ -32,5 +53,20 @@ class Remainder {
 /// counts those taken.
 double descend_to_closest(const ChainModel& model, const Remainder& remainder, int most,
                           JointVector& q, int& steps);
+
+/// The same from a seed that may lie anywhere, without the turns that joints took on the way.
+double descend_from_seed(const ChainModel& model, const Remainder& remainder, int most,
+                         JointVector& q, int& steps);
+
+/// Descents from seeds at random, where there are no lanes to find better ones.
+inline constexpr int kRandomDescents = 48;
+
+/// Where a descent ended.
+struct LocalMinimum {
+  double remainder;
+  double move;  ///< from where the arm is to stay near, if it is
+  int number;
+  JointVector q;
+};
 
 }  // namespace iksel

@@ -134,50 +134,9 @@ Standing evaluate(const IterationContext& context, const JointVector& q) {
   return at;
 }
 
-/// The least error on the way, and the damping of the next step from there (Marquardt 1963).
-struct Descent {
-  double damping = 1e-3;
-  double error = kInfinity;  ///< [m]
-  JointVector q;
-  Standing at;
-
-  /// Looks at a step's end; q and `at` are those of the least error then. False if the descent has
-  /// come to its end.
-  bool look(double length, JointVector& q_now, Standing& now) {
-    Vector6 e = now.e;
-    e.tail<3>() *= length;
-    const double error_now = e.norm();
-    const bool lower = error_now < error;
-    const bool settled = error - error_now < 1e-9 * error;
-    if (lower) {
-      if (q.size() > 0) damping = std::max(damping / 5, 1e-6);
-      q = q_now;
-      at = now;
-      error = error_now;
-    } else {
-      damping *= 5;
-      q_now = q;
-      now = at;
-    }
-    return lower ? !settled : damping < 1e6;
-  }
-
-  /// The step that lowers the error.
-  [[nodiscard]] JointVector step(const ChainModel& model, double length, JacobianMatrix J,
-                                 Vector6 e) const {
-    J.bottomRows<3>() *= length;
-    e.tail<3>() *= length;
-    return lm_step(model, q, J, e, damping * e.squaredNorm());
-  }
-};
-
 /// The joint adjustment from q, whose error stands clamped in `at`.
-JointVector adjust(const IterationContext& context, const Descent& descent, const JointVector& q,
-                   const Standing& at) {
+JointVector adjust(const IterationContext& context, const JointVector& q, const Standing& at) {
   const auto step_by = [&](const JacobianMatrix& rows, const Vector6& asked, double squared) {
-    if (context.descent_length > 0) {
-      return descent.step(context.model, context.descent_length, rows, asked);
-    }
     return make_step(context, q, rows, asked, squared);
   };
   if (context.goal.is_full_pose()) return step_by(at.J, at.e, at.e.squaredNorm());
@@ -197,7 +156,6 @@ Outcome iterate(const IterationContext& context, JointVector& q, int& steps) {
   Outcome outcome = Outcome::failed;
   double last_position = kInfinity;
   double last_rotation = kInfinity;
-  Descent descent;
 
   for (int step = 0;; ++step) {
     Standing at = evaluate(context, q);
@@ -210,8 +168,6 @@ Outcome iterate(const IterationContext& context, JointVector& q, int& steps) {
       // Only the paper's first schemes go on from here; the others have nothing left to gain.
       if (!stops_on_small_step(scheme.iteration)) return outcome;
     }
-    const bool goes_on = context.descent_length == 0 || descent.look(context.descent_length, q, at);
-    if (!goes_on) return outcome;
     if (growth_stop && at.position > last_position && at.rotation > last_rotation) return outcome;
     last_position = at.position;
     last_rotation = at.rotation;
@@ -219,7 +175,7 @@ Outcome iterate(const IterationContext& context, JointVector& q, int& steps) {
     if (step >= context.patience && at.e.squaredNorm() > kFarOff2) return outcome;
 
     if (scheme.iteration != Iteration::lm) clamp_error(at.e, at.position, at.rotation, scheme);
-    const JointVector adjustment = adjust(context, descent, q, at);
+    const JointVector adjustment = adjust(context, q, at);
     ++steps;
     if (!adjustment.allFinite()) return outcome;
     if (small_step_stop && std::abs(adjustment.sum()) < scheme.min_step) {
@@ -228,7 +184,6 @@ Outcome iterate(const IterationContext& context, JointVector& q, int& steps) {
       continue;
     }
     q += adjustment;
-    if (context.descent_length > 0) q = model.joints.clamp(q);
     after_step(context, q);
   }
 }

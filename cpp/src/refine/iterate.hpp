@@ -42,9 +42,6 @@ struct IterationContext {
   bool steps_at_tcp = false;
   /// An attempt that is still far off after so many steps is given up.
   int patience = std::numeric_limits<int>::max();
-  /// If above 0, lm descends to the least error of a goal that may have no answer: only steps that
-  /// lower it are taken, and the damping adapts. The length that 1 rad counts in that error [m].
-  double descent_length = 0;
 };
 
 /// Iterates q, in place, from the seed it holds. `steps` counts the steps taken. Never throws.

@@ -34,6 +34,7 @@ LaneRefiner::LaneRefiner(const ChainModel& model, const SolverOptions& options,
     : kernels_(kernels),
       packs_(&kernels.narrow),
       max_iterations_(options.max_iterations),
+      joints_(model.joints),
       base_inverse_(to_pose(model.kernel.base).inverse()),
       tip_(to_pose(model.kernel.tip)),
       chain_(make_lane_chain(model)),
@@ -105,6 +106,14 @@ void LaneRefiner::load_seed(int lane, const double* q) {
     const lanes::LaneJoint& joint = chain_.joint[j];
     return joint.limited ? std::min(std::max(q[j], joint.lower), joint.upper) : q[j];
   });
+}
+
+void LaneRefiner::hold_coupled(int lane) {
+  JointVector seed = q(lane);
+  if (joints_.holds_coupled(seed.data())) return;
+  joints_.wrap(seed.data());
+  seed = joints_.clamp(seed);
+  for (int j = 0; j < chain_.n; ++j) pack_.q[j][lane] = seed[j];
 }
 
 int LaneRefiner::advance(unsigned busy) {

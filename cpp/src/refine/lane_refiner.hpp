@@ -44,6 +44,7 @@ class LaneRefiner {
   template <typename Value>
   void load(int lane, const Value& value) {
     for (int j = 0; j < chain_.n; ++j) pack_.q[j][lane] = value(j);
+    if (chain_.coupled_rows > 0) hold_coupled(lane);
     age_[lane] = 0;
     next_look_[lane] = patience_.look > 0 ? patience_.look : kNever;
   }
@@ -90,6 +91,8 @@ class LaneRefiner {
   }
 
  private:
+  /// Holds a lane's seed to the coupled limits, at images that violate them least.
+  void hold_coupled(int lane);
   /// Writes the rows of a task's target, each by write(row, value).
   template <typename Write>
   void make_rows(const Pose& T_base_tcp, const Write& write) const;
@@ -102,6 +105,7 @@ class LaneRefiner {
   const lanes::LaneKernels& kernels_;
   const lanes::PackKernels* packs_;
   int max_iterations_;
+  const JointSpace& joints_;
   Pose base_inverse_, tip_;  ///< of the kernel chain; the tip is the TCP
   lanes::LaneChain chain_;
   lanes::LaneOptions options_, task_options_;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "refine/self_motion.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "options/strategy.hpp"
 #include "refine/iterate.hpp"
@@ -12,21 +14,36 @@ namespace iksel {
 namespace {
 
 /// The step that makes a cost least to second order (gradient g, diagonal second derivative H)
-/// inside the joint limits and the task's box: min 1/2 s^T H s + g^T s under
-/// lower <= [J s; s] <= upper. By the primal active-set method (Nocedal and Wright: "Numerical
-/// Optimization", 2006, section 16.5), whose steps are solved for in the 6 rows of J only.
+/// inside the joint limits, the coupled ones A q and the task's box: min 1/2 s^T H s + g^T s under
+/// lower <= [J s; A s; s] <= upper. By the primal active-set method (Nocedal and Wright: "Numerical
+/// Optimization", 2006, section 16.5), whose steps are solved for in the rows of J and A only.
+/// `kRows`: 6, or dynamic if there is an A.
+template <int kRows>
 class SelfMotionStep {
  public:
   SelfMotionStep(const ChainModel& model, const TaskSpace& task, const JointVector& q,
                  const Vector6& d, const JacobianMatrix& J, const JointVector& gradient,
                  const JointVector& curvature)
-      : J_(J), gradient_(gradient), curvature_(curvature), dof_(model.dof) {
-    row_lower_ = task.aim_lower() - d;
-    row_upper_ = task.aim_upper() - d;
+      : gradient_(gradient), curvature_(curvature), dof_(model.dof) {
+    const std::vector<CoupledRow>& coupled = model.joints.coupled;
+    rows_ = 6 + static_cast<int>(coupled.size());
+    J_.resize(rows_, dof_);
+    row_lower_.resize(rows_);
+    row_upper_.resize(rows_);
+    J_.template topRows<6>() = J;
+    row_lower_.template head<6>() = task.aim_lower() - d;
+    row_upper_.template head<6>() = task.aim_upper() - d;
+    for (int i = 6; i < rows_; ++i) {
+      const CoupledRow& row = coupled[static_cast<std::size_t>(i - 6)];
+      const double sum = row.sum(q.data());
+      J_.row(i) = row.c.transpose();
+      row_lower_[i] = row.lower + row.rounding - sum;
+      row_upper_[i] = row.upper - row.rounding - sum;
+    }
     lower_ = model.joints.lower - q;
     upper_ = model.joints.upper - q;
-    for (int i = 0; i < 6; ++i) {
-      fixed_[i] = task.lower()[i] == task.upper()[i];
+    for (int i = 0; i < rows_; ++i) {
+      fixed_[i] = i < 6 && task.lower()[i] == task.upper()[i];
       row_side_[i] = fixed_[i] ? 1 : 0;
     }
     side_.setZero(dof_);
@@ -34,8 +51,8 @@ class SelfMotionStep {
 
   JointVector solve() {
     JointVector x = JointVector::Zero(dof_);
-    for (int round = 0; round < 4 * (dof_ + 6); ++round) {
-      Vector6 y;
+    for (int round = 0; round < 4 * (dof_ + rows_); ++round) {
+      RowVector y;
       const JointVector slope = curvature_.cwiseProduct(x) + gradient_;
       const JointVector p = step_on_active(slope, y);
       if (advance(p, x)) continue;
@@ -46,18 +63,27 @@ class SelfMotionStep {
   }
 
  private:
+  static constexpr int kMostRows = kRows == 6 ? 6 : 6 + kMaxCoupledLimits;
+  using Rows = Eigen::Matrix<double, kRows, Eigen::Dynamic, Eigen::ColMajor, kMostRows, kMaxDof>;
+  using RowVector = Eigen::Matrix<double, kRows, 1, Eigen::ColMajor, kMostRows, 1>;
+
   /// The step from x to the least cost over the directions that the active bounds leave.
-  JointVector step_on_active(const JointVector& slope, Vector6& y) const {
-    JacobianMatrix rows = J_;
-    for (int i = 0; i < 6; ++i) {
+  JointVector step_on_active(const JointVector& slope, RowVector& y) const {
+    Rows rows = J_;
+    for (int i = 0; i < rows_; ++i) {
       if (row_side_[i] == 0) rows.row(i).setZero();
     }
     const JointVector inverse =
         (side_.array() == 0).select(curvature_.cwiseInverse(), JointVector::Zero(dof_));
-    const JacobianMatrix weighted = rows * inverse.asDiagonal();
-    Matrix6 A = weighted * rows.transpose();
+    const Rows weighted = rows * inverse.asDiagonal();
+    Eigen::Matrix<double, kRows, kRows, Eigen::ColMajor, kMostRows, kMostRows> A =
+        weighted * rows.transpose();
     A.diagonal().array() += 1e-12 * std::max(A.trace(), 1e-12);
-    y = solve_symmetric(A, weighted * slope);
+    if constexpr (kRows == 6) {
+      y = solve_symmetric(A, weighted * slope);
+    } else {
+      y = A.ldlt().solve(weighted * slope);
+    }
     return inverse.cwiseProduct(rows.transpose() * y - slope);
   }
 
@@ -78,9 +104,9 @@ class SelfMotionStep {
     for (int j = 0; j < dof_; ++j) {
       if (side_[j] == 0 && look(x[j], p[j], lower_[j], upper_[j])) joint = j;
     }
-    const Vector6 at = J_ * x;
-    const Vector6 rate = J_ * p;
-    for (int i = 0; i < 6; ++i) {
+    const RowVector at = J_ * x;
+    const RowVector rate = J_ * p;
+    for (int i = 0; i < rows_; ++i) {
       if (row_side_[i] == 0 && look(at[i], rate[i], row_lower_[i], row_upper_[i])) row = i;
     }
     x += part * p;
@@ -94,7 +120,7 @@ class SelfMotionStep {
 
   /// Takes out the active bound whose multiplier says most that it pulls instead of holding; false
   /// if there is none.
-  bool release(const JointVector& slope, const Vector6& y) {
+  bool release(const JointVector& slope, const RowVector& y) {
     double most = 1e-12;
     int joint = -1;
     int row = -1;
@@ -104,7 +130,7 @@ class SelfMotionStep {
       most = -side_[j] * rest[j];
       joint = j;
     }
-    for (int i = 0; i < 6; ++i) {
+    for (int i = 0; i < rows_; ++i) {
       if (fixed_[i] || row_side_[i] == 0 || row_side_[i] * y[i] <= most) continue;
       most = row_side_[i] * y[i];
       row = i;
@@ -117,23 +143,24 @@ class SelfMotionStep {
     return row >= 0 || joint >= 0;
   }
 
-  [[nodiscard]] Vector6 active(const Vector6& y) const {
-    Vector6 out = y;
-    for (int i = 0; i < 6; ++i) {
+  [[nodiscard]] RowVector active(const RowVector& y) const {
+    RowVector out = y;
+    for (int i = 0; i < rows_; ++i) {
       if (row_side_[i] == 0) out[i] = 0;
     }
     return out;
   }
 
-  const JacobianMatrix& J_;
+  Rows J_;
   const JointVector& gradient_;
   const JointVector& curvature_;
   int dof_;
-  Vector6 row_lower_, row_upper_;
+  int rows_;
+  RowVector row_lower_, row_upper_;
   JointVector lower_, upper_;
-  bool fixed_[6];
+  bool fixed_[kMostRows];
   /// Which bound is active: -1 the lower, 1 the upper, 0 none.
-  int row_side_[6];
+  int row_side_[kMostRows];
   JointVector side_;
 };
 
@@ -168,7 +195,10 @@ int descend_self_motion(const ChainModel& model, const Goal& goal, const JointCo
     JacobianMatrix J = of_pose;
     const Vector6 d = goal.task().deviation(goal.target(), pose, J);
     const JointVector step =
-        SelfMotionStep(model, goal.task(), q, d, J, gradient, curvature).solve();
+        model.joints.coupled.empty()
+            ? SelfMotionStep<6>(model, goal.task(), q, d, J, gradient, curvature).solve()
+            : SelfMotionStep<Eigen::Dynamic>(model, goal.task(), q, d, J, gradient, curvature)
+                  .solve();
     const double longest = step.cwiseAbs().maxCoeff();
     if (!(longest > kSettled)) return steps;
     double scale = std::min(1.0, kLongest / longest);

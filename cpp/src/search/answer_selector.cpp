@@ -27,7 +27,7 @@ AnswerSelector::AnswerSelector(const ChainModel& model, const Goal& goal,
       request_(request),
       ranks_(ranks_answers(request)),
       found_(found),
-      move_(model.dof, request),
+      nearest_to_(find_nearest_to(model.dof, request)),
       screen_(screen) {}
 
 bool AnswerSelector::is_satisfied(const Collector& search) {
@@ -66,8 +66,8 @@ bool AnswerSelector::select(const Collector& search, JointVector& q) {
 
 double AnswerSelector::cost_of(const JointVector& q) const {
   if (!ranks_) return 0;
-  if (request_.objective.is_set()) return ObjectiveCost(model_, request_.objective).value(q);
-  return move_.length(q - *request_.near);
+  if (nearest_to_) return nearest_to_->move.length(q - nearest_to_->from);
+  return ObjectiveCost(model_, request_.objective).value(q);
 }
 
 void AnswerSelector::screen_new() {
@@ -98,12 +98,12 @@ double AnswerSelector::descend_from(const Ranked* ranked, std::size_t count, Joi
 }
 
 void AnswerSelector::descend(JointVector& q) {
-  if (request_.objective.is_set()) {
+  if (nearest_to_) {
+    steps_ += descend_to_near(model_, goal_, nearest_to_->move, nearest_to_->from, q);
+  } else {
     constexpr int kObjectiveSteps = 50;
     const ObjectiveCost cost(model_, request_.objective);
     steps_ += descend_self_motion(model_, goal_, JointCost(cost), kObjectiveSteps, q);
-  } else {
-    steps_ += descend_to_near(model_, goal_, move_, *request_.near, q);
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 
 #include "goal/joint_move.hpp"
 #include "goal/screen.hpp"
@@ -55,7 +56,7 @@ class AnswerSelector {
   /// Whether some answers are better than others.
   bool ranks_;
   const SolutionSet& found_;
-  JointMove move_;
+  std::optional<NearestTo> nearest_to_;
   Screen& screen_;
   /// What the scene lets through, and what of it the filter keeps.
   std::array<bool, SolutionSet::kMost> free_{};

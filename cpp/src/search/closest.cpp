@@ -13,60 +13,56 @@
 namespace iksel {
 namespace {
 
-/// Seeds that are followed to the end: of the screen's, and where there is none, at random.
-constexpr int kScreenedDescents = 2;
-constexpr int kRandomDescents = 48;
+/// Seeds that are followed to the end: of the screen's those that have not much more left than the
+/// best; where there is no screen, at random.
+constexpr int kScreenedDescents = 4;
+constexpr float kHopeful = 1.5F;
 constexpr int kDescentSteps = 40;
 /// Seeds of the screen nearer than this in every joint end at the same place [rad or m].
 constexpr double kSameSeed = 0.1;
 /// Remainders that differ by less, relative to them, are the same.
 constexpr double kSameRemainder = 1e-6;
 
-struct Minimum {
-  double remainder;
-  double move;  ///< from `near`, if there is one
-  JointVector q;
-};
-
 /// Local minima of what is missing, from seeds of all kinds.
 class Minima {
  public:
   Minima(const ChainModel& model, const Remainder& remainder, const SolveRequest& request,
-         Result& result)
+         std::vector<LocalMinimum>& found, Result& result)
       : model_(model),
         remainder_(remainder),
         request_(request),
         move_(model.dof, request),
-        result_(result) {}
+        found_(found),
+        result_(result) {
+    found_.clear();
+  }
 
   void descend(const JointVector& seed) {
-    JointVector q = model_.joints.clamp(seed);
-    const double remainder =
-        descend_to_closest(model_, remainder_, kDescentSteps, q, result_.iterations);
+    LocalMinimum end{0, 0, static_cast<int>(found_.size()), seed};
+    end.remainder = descend_from_seed(model_, remainder_, kDescentSteps, end.q, result_.iterations);
     ++result_.attempts;
-    double move = 0;
-    // Steps may have turned a joint many times; whole turns matter only to joints that follow it.
-    JointVector principal = q;
-    model_.joints.wrap(principal.data());
-    if (remainder_.value(principal) <= remainder * (1 + kSameRemainder)) q = principal;
     if (request_.near) {
-      model_.joints.wrap_nearest(*request_.near, 0, q);
-      move = move_.length(q - *request_.near);
+      model_.joints.wrap_nearest(
+          *request_.near, 0, [&](const JointVector& d) { return move_.length(d); }, end.q);
+      end.move = move_.length(end.q - *request_.near);
     }
-    found_.push_back({remainder, move, std::move(q)});
+    found_.push_back(end);
   }
 
   /// The least first, and of the same ones that with the smallest move.
-  const std::vector<Minimum>& sorted() {
-    std::stable_sort(found_.begin(), found_.end(),
-                     [](const Minimum& a, const Minimum& b) { return a.remainder < b.remainder; });
+  const std::vector<LocalMinimum>& sorted() {
+    const auto sort = [&](auto first, auto last, double LocalMinimum::*key) {
+      std::sort(first, last, [&](const LocalMinimum& a, const LocalMinimum& b) {
+        return a.*key < b.*key || (a.*key == b.*key && a.number < b.number);
+      });
+    };
+    sort(found_.begin(), found_.end(), &LocalMinimum::remainder);
     auto first = found_.begin();
     while (first != found_.end()) {
       const double most = first->remainder * (1 + kSameRemainder);
-      const auto last = std::find_if(first, found_.end(),
-                                     [&](const Minimum& each) { return each.remainder > most; });
-      std::stable_sort(first, last,
-                       [](const Minimum& a, const Minimum& b) { return a.move < b.move; });
+      const auto last = std::find_if(
+          first, found_.end(), [&](const LocalMinimum& each) { return each.remainder > most; });
+      sort(first, last, &LocalMinimum::move);
       first = last;
     }
     return found_;
@@ -77,25 +73,27 @@ class Minima {
   const Remainder& remainder_;
   const SolveRequest& request_;
   JointMove move_;
+  std::vector<LocalMinimum>& found_;
   Result& result_;
-  std::vector<Minimum> found_;
 };
 
 /// The seeds of the screen that are worth it.
 void descend_from_screen(const ChainModel& model, const Goal& goal, const Vector6& weights,
-                         LaneQuery& query, Random& random, Minima& minima, Result& result) {
-  ClosestScreen screen(model, weights);
-  std::vector<const JointVector*> tried;
-  for (const JointVector& seed : screen.find(goal, query, random)) {
-    if (tried.size() == kScreenedDescents) break;
-    const bool is_known = std::any_of(tried.begin(), tried.end(), [&](const JointVector* other) {
-      return model.joints.distance(seed, *other, kSameSeed) < kSameSeed;
+                         LaneQuery& query, ClosestScreen& screen, Minima& minima, Result& result) {
+  screen.find(goal, weights, query);
+  JointVector tried[kScreenedDescents];
+  int count = 0;
+  for (int i = 0; i < ClosestScreen::size() && count < kScreenedDescents; ++i) {
+    if (screen.remainder(i) > kHopeful * screen.remainder(0)) break;
+    const JointVector seed = screen.q(i);
+    const bool is_known = std::any_of(tried, tried + count, [&](const JointVector& other) {
+      return model.joints.distance(seed, other, kSameSeed) < kSameSeed;
     });
     if (is_known) continue;
-    tried.push_back(&seed);
+    tried[count++] = seed;
     minima.descend(seed);
   }
-  result.attempts += ClosestScreen::count();
+  result.attempts += ClosestScreen::moved();
 }
 
 }  // namespace
@@ -120,14 +118,15 @@ void give_closest(const ChainModel& model, const SolverOptions& options, const G
                   const SolveRequest& request, const Vector6& weights, Workspace& workspace,
                   Result& result) {
   const Remainder remainder(model, goal, weights);
-  Random random(options.seed);
-  Minima minima(model, remainder, request, result);
+  Minima minima(model, remainder, request, workspace.minima, result);
   if (request.near) minima.descend(*request.near);
   const auto given = std::min(request.seeds.size(), static_cast<std::size_t>(options.max_attempts));
   for (std::size_t i = 0; i < given; ++i) minima.descend(request.seeds[i]);
   if (request.database_seeds && workspace.lanes) {
-    descend_from_screen(model, goal, weights, workspace.lanes->query, random, minima, result);
+    descend_from_screen(model, goal, weights, workspace.lanes->query, workspace.lanes->closest,
+                        minima, result);
   } else if (request.database_seeds) {
+    Random random(options.seed);
     JointVector seed(model.dof);
     for (int i = 0; i < kRandomDescents; ++i) {
       model.joints.sample(random, seed);
@@ -135,7 +134,7 @@ void give_closest(const ChainModel& model, const SolverOptions& options, const G
     }
   }
   Screen screen(request.scene, request.filter, model.dof);
-  for (const Minimum& minimum : minima.sorted()) {
+  for (const LocalMinimum& minimum : minima.sorted()) {
     bool keep = true;
     screen.apply(minimum.q.data(), 1, &keep);
     if (!keep) continue;

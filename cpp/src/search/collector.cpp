@@ -20,10 +20,13 @@ constexpr int kStagnation = 160;
 /// were lost with 14, 7 with 20, and 1 with 28 as with 40.
 constexpr int kStagnationBalanced = 28;
 
-/// Where an objective wants the images of an answer, if it cares.
-std::optional<JointVector> cheapest_images(const JointSpace& joints, const Objective& objective) {
-  if (objective.kind == Objective::Kind::posture) return objective.posture;
-  if (objective.kind == Objective::Kind::limits) return joints.middle();
+/// Where the images of an answer are wanted, if that matters.
+std::optional<JointVector> wanted_images(const JointSpace& joints, const SolveRequest& request,
+                                         const std::optional<NearestTo>& nearest_to) {
+  if (nearest_to) return nearest_to->from;
+  if (request.objective.kind == Objective::Kind::limits) return joints.middle();
+  if (request.near) return request.near;
+  if (!request.objective.is_set()) return joints.middle();
   return std::nullopt;
 }
 
@@ -40,22 +43,16 @@ Collector::Collector(const ChainModel& model, const Goal& goal, const SolveReque
       is_satisfied_(is_satisfied),
       found_(memory.found),
       partners_(memory.partners),
-      move_(model.dof, request),
+      nearest_to_(find_nearest_to(model.dof, request)),
       deadline_(request.deadline),
-      images_near_(cheapest_images(model.joints, request.objective)),
+      images_near_(wanted_images(model.joints, request, nearest_to_)),
       // What a filter has been asked about stays as it is.
-      counts_moves_(request.near && !images_near_ && !screens_answers(request)),
+      counts_moves_(nearest_to_ && !screens_answers(request)),
       comes_in_pairs_(goal.is_full_pose() && model.dof <= 6),
       signs_cancel_(goal.is_full_pose() && jacobian_signs_cancel(model)),
       basin_radius_(goal.is_full_pose() && model.dof <= 6 ? kBasinRadius : 0.0) {
   found_.clear();
   partners_.clear();
-  if (images_near_) return;
-  if (request.near) {
-    images_near_ = request.near;
-  } else if (!request.objective.is_set()) {
-    images_near_ = model.joints.middle();
-  }
 }
 
 Verdict Collector::offer(int /*lane*/, JointVector& q) {
@@ -72,7 +69,7 @@ Verdict Collector::offer(int /*lane*/, JointVector& q) {
   answer.status = Status::solved;
   answer.q = q;
   if (images_near_) wrap_near(*images_near_, answer);
-  const double cost = counts_moves_ ? move_.length(answer.q - *request_.near) : 0.0;
+  const double cost = counts_moves_ ? nearest_to_->move.length(answer.q - nearest_to_->from) : 0.0;
   if (!found_.add(answer, cost, aim_.min_distance)) return Verdict::next;
   status = Status::solved;
   ++solutions_;
@@ -85,12 +82,14 @@ void Collector::wrap_near(const JointVector& near, Result& answer) const {
   // An answer at a limit lies outside by rounding as often as not. Held to the limit it need not be
   // a whole turn away.
   JointVector image = answer.q;
-  const bool held = model_.joints.wrap_nearest(near, goal_.task().rotation_tolerance(), image);
+  const auto length = [&](const JointVector& d) { return move_.length(d); };
+  const double slack = goal_.task().rotation_tolerance();
+  const bool held = model_.joints.wrap_nearest(near, slack, length, image);
   if (image == answer.q) return;
   // Whole turns round, and so measured again.
   if (goal_.check(image, answer) || !held) return;
   image = answer.q;
-  model_.joints.wrap_nearest(near, 0, image);
+  model_.joints.wrap_nearest(near, 0, length, image);
   goal_.check(image, answer);
 }
 

@@ -64,16 +64,16 @@ class Collector {
   void look_for_partners(bool look) { looks_for_partners_ = look; }
   /// Whether more than the first answer is wanted.
   [[nodiscard]] bool wants_more() const { return aim_.until_complete || ranks_answers(request_); }
+  /// Whether of answers the nearest is the best.
+  [[nodiscard]] bool ranks_by_move() const { return !aim_.until_complete && nearest_to_; }
   /// Whether nothing but the nearest is wanted, and nothing may refuse it.
-  [[nodiscard]] bool wants_nearest() const {
-    return !aim_.until_complete && request_.near && !request_.objective.is_set() &&
-           !screens_answers(request_);
-  }
+  [[nodiscard]] bool wants_nearest() const { return ranks_by_move() && !screens_answers(request_); }
   /// Whether nothing is wanted but the nearest of those that a scene lets through.
   [[nodiscard]] bool wants_nearest_free() const {
-    return !aim_.until_complete && request_.near && !request_.objective.is_set() &&
-           request_.scene && !request_.filter;
+    return ranks_by_move() && request_.scene && !request_.filter;
   }
+  /// To what, if it wants that.
+  [[nodiscard]] const NearestTo& nearest_to() const { return *nearest_to_; }
   /// Of what was found, where the nearest is wanted; infinite if nothing was.
   [[nodiscard]] double least_move() const { return found_.least_cost(); }
   /// How many solutions are to be spread over the self-motion, and how near to each other; 0: they
@@ -111,7 +111,7 @@ class Collector {
   FunctionRef<bool(const Collector&)> is_satisfied_;
   SolutionSet& found_;
   std::vector<JointVector>& partners_;
-  JointMove move_;
+  std::optional<NearestTo> nearest_to_;
   Deadline deadline_;
   /// Solutions are brought to their images nearest to this, if the request asks for it.
   std::optional<JointVector> images_near_;

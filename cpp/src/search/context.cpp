@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "options/strategy.hpp"
+#include "structure/coupled_form.hpp"
 
 namespace iksel {
 
@@ -16,6 +17,17 @@ bool solves_in_lanes(const ChainModel& model, const DatabaseData& data,
          is_simple(model);
 }
 
+/// Those of the nominal chain that tell which solutions lie inside the model's limits.
+ClosedForms closed_forms_of(const ChainModel& model, const ChainModel& nominal) {
+  ClosedForms forms = ClosedForms::of(nominal);
+  if (forms.pose && !suits_coupled_limits(model, *forms.pose)) forms.pose.reset();
+  forms.tasks.erase(
+      std::remove_if(forms.tasks.begin(), forms.tasks.end(),
+                     [&](const auto& form) { return !suits_coupled_limits(model, form.second); }),
+      forms.tasks.end());
+  return forms;
+}
+
 }  // namespace
 
 Workspace::InLanes::InLanes(const ChainModel& model, const ChainModel& nominal,
@@ -24,7 +36,8 @@ Workspace::InLanes::InLanes(const ChainModel& model, const ChainModel& nominal,
                             const lanes::LaneKernels& kernels)
     : refiner(model, options, kernels),
       query(model, nominal, data, neighbours_of(options.strategy), kernels),
-      screen(model, options, kernels) {
+      screen(model, options, kernels),
+      closest(model, options.seed, kernels) {
   const bool is_nominal = &model == &nominal;
   const double position = options.position_tolerance;
   const double rotation = options.rotation_tolerance;
@@ -69,6 +82,7 @@ Workspace::Workspace(const ChainModel& model, const ChainModel& nominal, const D
     : scheme(iksel::one_at_a_time(options.strategy)),
       given(model, scheme, data.options.pinv_cutoff),
       collected(model) {
+  minima.reserve(kRandomDescents + 1);
   if (solves_in_lanes(model, data, options)) {
     lanes = std::make_unique<InLanes>(model, nominal, data, options, closed_forms, trials,
                                       lanes::choose_kernels());
@@ -83,9 +97,12 @@ WorkspacePool::WorkspacePool(const Robot& robot, const Robot& nominal, const Dat
       nominal_(nominal),
       database_(database),
       options_(options),
-      closed_forms_(ClosedForms::of(nominal.model())),
+      closed_forms_(closed_forms_of(robot.model(), nominal.model())),
       solves_in_lanes_(iksel::solves_in_lanes(robot.model(), database.data(), options)),
       damaged_(database.data().storage.damaged) {
+  if (solves_in_lanes_ && &robot.model() == &nominal.model()) {
+    inner_chains_ = InnerChain::of(robot.model());
+  }
   const auto& chain = closed_forms_.pose;
   if (solves_in_lanes_ && chain && !chain->is_completed()) {
     const bool proves = chain->held < 0 && &robot.model() == &nominal.model();
@@ -103,8 +120,16 @@ WorkspacePool::~WorkspacePool() {
 }
 
 std::unique_ptr<Workspace> WorkspacePool::make() const {
-  return std::make_unique<Workspace>(robot_.model(), nominal_.model(), database_.data(), options_,
-                                     closed_forms_, trials_ ? &*trials_ : nullptr);
+  auto workspace =
+      std::make_unique<Workspace>(robot_.model(), nominal_.model(), database_.data(), options_,
+                                  closed_forms_, trials_ ? &*trials_ : nullptr);
+  for (const InnerChain& inner : inner_chains_) {
+    const double tolerance =
+        std::max(options_.position_tolerance / inner.form.unit, options_.rotation_tolerance);
+    workspace->lanes->inner_arms.emplace_back(robot_.model(), inner, tolerance,
+                                              lanes::choose_kernels());
+  }
+  return workspace;
 }
 
 WorkspacePool::Lease::Lease(const WorkspacePool& pool) : pool_(pool) {

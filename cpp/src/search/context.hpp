@@ -6,17 +6,21 @@
 #include <atomic>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "goal/goal.hpp"
 #include "iksel/database.hpp"
 #include "iksel/options.hpp"
 #include "iksel/robot.hpp"
+#include "refine/closest_descent.hpp"
 #include "refine/lane_refiner.hpp"
 #include "refine/scheme_refiner.hpp"
 #include "search/collector.hpp"
 #include "seeds/branch_lanes.hpp"
+#include "seeds/closest_screen.hpp"
 #include "seeds/enumeration.hpp"
 #include "seeds/free_samples.hpp"
+#include "seeds/inner_arm.hpp"
 #include "seeds/lane_query.hpp"
 #include "seeds/nearest_on_curve.hpp"
 #include "seeds/root_sweep.hpp"
@@ -40,6 +44,8 @@ struct Workspace {
   Paper scheme;
   SeedRanking given;
   CollectorMemory collected;
+  /// Where descents to what is closest ended.
+  std::vector<LocalMinimum> minima;
 
   /// One of two ways to search: lanes, if the options, the chain and the database allow it.
   struct InLanes {
@@ -50,6 +56,7 @@ struct Workspace {
     LaneRefiner refiner;
     LaneQuery query;
     SeedScreen screen;
+    ClosestScreen closest;
     /// All branches of a goal of that task; null if it cannot be solved in closed form at once.
     [[nodiscard]] Enumeration* branches_of(const TaskSpace& task);
 
@@ -61,6 +68,8 @@ struct Workspace {
     std::optional<RootSweep> roots;
     std::optional<NearestOnCurve> nearest_on_curve;
     std::optional<SelfMotionArcs> arcs;
+    /// Of longer chains.
+    std::vector<InnerArm> inner_arms;
     /// Configurations of a self-motion that a scene is to look at.
     FreeSamples::Memory samples;
   };
@@ -116,6 +125,7 @@ class WorkspacePool {
   const Database& database_;
   const SolverOptions& options_;
   ClosedForms closed_forms_;
+  std::vector<InnerChain> inner_chains_;
   bool solves_in_lanes_;
   std::optional<BranchTrials> trials_;
   /// As Storage::damaged of the database.

@@ -37,9 +37,9 @@ struct CurveSearch {
 
   // Parts of it.
 
-  /// The solution nearest to `near`.
+  /// The solution nearest to `near`, or to the objective's posture.
   std::optional<Proof> collect_nearest() const;
-  /// The free solutions nearest to `near`.
+  /// The free solutions nearest to it.
   std::optional<Proof> collect_nearest_free() const;
   /// Solutions all over it.
   std::optional<Proof> collect_spread() const;
@@ -90,8 +90,8 @@ std::optional<Proof> CurveSearch<Answers>::collect_nearest_free() const {
   SelfMotionArcs& arcs = *lanes.arcs;
   arcs.find(Y, kSpacing);
   std::vector<double>& q = lanes.samples.q;
-  const bool has_any = find_nearest_free(arcs, *request.scene, model.joints, *request.near,
-                                         JointMove(model.dof, request), kMost, q);
+  const auto& [near, move] = answers.nearest_to();
+  const bool has_any = find_nearest_free(arcs, *request.scene, model.joints, near, move, kMost, q);
   clock.lap(&StageTimes::query);
   if (!has_any) return std::nullopt;
   RowSeeds seeds(q.data(), q.size() / SweptBranches::kDof, SweptBranches::kDof,
@@ -118,11 +118,11 @@ std::optional<Proof> CurveSearch<Answers>::collect_nearest() const {
   // Where `near` itself leads bounds the others. Of 1,000 poses of `near` itself, the samples of
   // the curve alone led elsewhere in 5 (panda) to 16 (xarm7).
   LaneRefiner& refiner = lanes.refiner;
-  NearSeed first(&*request.near, work);
-  search(refiner, first, answers, work);
   NearestOnCurve& curve = *lanes.nearest_on_curve;
-  const JointMove move(model.dof, request);
-  NearestOnCurveSeeds nearest(curve, Y, *request.near, move, answers, work, clock);
+  const auto& [near, move] = answers.nearest_to();
+  NearSeed first(curve.prefers_staying(move) ? nullptr : &near, work);
+  search(refiner, first, answers, work);
+  NearestOnCurveSeeds nearest(curve, Y, near, move, answers, work, clock);
   refiner.begin(goal.task(), kNearAnswer, Width::narrow);
   search(refiner, nearest, answers, work);
   refiner.begin(goal.task(), kFirst, Width::narrow);

@@ -11,6 +11,8 @@
 #include "seeds/allowed_seeds.hpp"
 #include "seeds/given_seeds.hpp"
 #include "seeds/leaf_seeds.hpp"
+#include "seeds/nearby_seeds.hpp"
+#include "seeds/row_seeds.hpp"
 #include "seeds/screened_seeds.hpp"
 #include "seeds/seed_sequence.hpp"
 #include "seeds/selected_seeds.hpp"
@@ -19,6 +21,8 @@
 namespace iksel {
 namespace {
 
+/// More than so many have more than one joint to spare, and are not swept.
+constexpr int kSweptJoints = 7;
 /// Of the nearest leaf, before the roots of a sweep: more cost more than those. Where seven joints
 /// are swept, all are tried: with 4, two of a million reachable targets of pr2_right_arm were lost.
 constexpr int kBeforeRoots = 4;
@@ -65,6 +69,8 @@ struct Search {
   template <typename Branches>
   std::optional<Proof> by_branches(Branches& branches, Proof kind, GivenSeeds& given,
                                    const Pose& Y) const;
+  /// Whether there is an answer that leaves all that is preferred where it is; it is then found.
+  bool hold_preferred() const;
   [[nodiscard]] CurveSearch<Answers> on_curve(const Pose& Y) const {
     return {model, goal, request, *workspace.lanes, answers, work, clock, Y};
   }
@@ -138,8 +144,13 @@ Proof Search<Answers>::in_lanes() const {
     if (workspace.lanes->sweep && request.database_seeds) {
       if (const auto proof = on_curve(Y).collect()) return *proof;
     }
+    if (request.database_seeds && answers.wants_nearest() && hold_preferred()) return Proof::none;
     if (run(refiner, near, given) || !request.database_seeds) return Proof::none;
     refiner.begin(goal.task(), kAll, Width::wide);
+    if (model.dof > kSweptJoints && answers.ranks_by_move() && !request.objective.is_set()) {
+      NearbySeeds nearby(model.joints, answers.nearest_to().from, options.seed, work);
+      if (search(refiner, nearby, answers, work)) return Proof::none;
+    }
     SpreadSeeds spread(query, model.joints, options.seed, answers, work);
     search(refiner, spread, answers, work);
   } else {
@@ -156,6 +167,27 @@ Proof Search<Answers>::in_lanes() const {
   }
   clock.lap(&StageTimes::iterate);
   return Proof::none;
+}
+
+template <typename Answers>
+bool Search<Answers>::hold_preferred() const {
+  LaneRefiner& refiner = workspace.lanes->refiner;
+  for (InnerArm& inner : workspace.lanes->inner_arms) {
+    if (!inner.can_hold(answers.nearest_to())) continue;
+    const bool found = inner.find(goal.target(), answers.nearest_to());
+    clock.lap(&StageTimes::query);
+    if (!found) continue;
+    RowSeeds seed(inner.q().data(), 1, static_cast<std::size_t>(model.dof), /*are_answers=*/true,
+                  work);
+    refiner.begin(goal.task(), kNearAnswer, Width::narrow);
+    search(refiner, seed, answers, work);
+    refiner.begin(goal.task(), kFirst, Width::narrow);
+    clock.lap(&StageTimes::iterate);
+    if (!answers.has_any()) continue;
+    answers.is_settled = true;
+    return true;
+  }
+  return false;
 }
 
 template <typename Answers>

@@ -45,7 +45,7 @@ struct BranchTrials::Example {
 BranchTrials::BranchTrials(const ChainModel& model, const ClosedFormChain& chain,
                            const DatabaseData& data, const TaskSpace& task,
                            const lanes::LaneKernels& kernels)
-    : data_(data), held_(chain.held), first_{0} {
+    : data_(data), held_(chain.held), slides_(chain.form.held_slide != 0), first_{0} {
   if (held_ < 0) {
     for (int branch = 0; branch < lanes::kWidth; ++branch) trials_.push_back({branch, 0});
     first_.push_back(trials_.size());
@@ -133,6 +133,7 @@ BranchTrials::Range BranchTrials::of(const Pose& Y) const {
 double BranchTrials::turn(const Pose& Y) const {
   if (held_ < 0) return 0;
   const Eigen::Vector3d c = Y.translation();
+  if (slides_) return held_ == 0 ? c[2] : Y.linear().col(2).dot(c);
   if (held_ == 0) return std::atan2(c[1], c[0]);
   const Eigen::Matrix3d R = Y.linear();
   return -std::atan2(R.col(1).dot(c), R.col(0).dot(c));
@@ -152,6 +153,7 @@ TrialForm::TrialForm(const ChainModel& model, const ClosedFormChain& chain_in,
   lower_ = model.joints.sample_lower(chain.held);
   upper_ = model.joints.sample_upper(chain.held);
   offset_ = model.kernel.joints[static_cast<std::size_t>(chain.held)].offset;
+  slides_ = model.joints.is_slide(chain.held);
 }
 
 void TrialForm::set_trial(const BranchTrial& trial, double turn, int lane,
@@ -159,8 +161,12 @@ void TrialForm::set_trial(const BranchTrial& trial, double turn, int lane,
   for (int s = 0; s < 3; ++s) pack.sign[s][lane] = branch_sign(trial.branch, s);
   if (chain.held < 0) return;
   double value = trial.held + turn;
-  if (value < lower_) value += kTwoPi;
-  if (value > upper_) value -= kTwoPi;
+  if (slides_) {
+    value = std::min(std::max(value, lower_), upper_);
+  } else {
+    if (value < lower_) value += kTwoPi;
+    if (value > upper_) value -= kTwoPi;
+  }
   pack.held[lane] = value + offset_;
 }
 

@@ -5,7 +5,8 @@
 //
 // With Y as in reduction.hpp, the first joint turns the position c of Y about its axis, and the
 // last joint turns c as Y sees it: values of a held joint are kept relative to that angle, so that
-// poses which differ by the outer joints alone have the same trials.
+// poses which differ by the outer joints alone have the same trials. Where it slides, the same with
+// ways along its axis.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +23,7 @@ namespace iksel {
 /// A branch to try.
 struct BranchTrial {
   int branch;   ///< the lane of all_branches() that has its signs
-  double held;  ///< value of the joint that is held less the pose's turn [rad]
+  double held;  ///< value of the joint that is held less the pose's turn [rad or m]
 };
 
 /// A closed form with a pack for trials, in which each lane has its own.
@@ -35,7 +36,7 @@ struct TrialForm {
   void set_trial(const BranchTrial& trial, double turn, int lane, lanes::BranchPack& pack) const;
   /// Whether a lane that was solved has a branch inside the limits.
   [[nodiscard]] bool is_inside(const lanes::BranchPack& pack, int lane) const;
-  /// Value of the held joint [rad].
+  /// Value of the held joint [rad or m].
   [[nodiscard]] double held(const lanes::BranchPack& pack, int lane) const {
     return pack.held[lane] - offset_;
   }
@@ -44,7 +45,8 @@ struct TrialForm {
   const lanes::LaneKernels& kernels;
 
  private:
-  double lower_ = 0, upper_ = 0, offset_ = 0;  ///< of the held joint [rad]
+  double lower_ = 0, upper_ = 0, offset_ = 0;  ///< of the held joint [rad or m]
+  bool slides_ = false;
 };
 
 class BranchTrials {
@@ -62,7 +64,7 @@ class BranchTrials {
     const BranchTrial* end;
   };
   [[nodiscard]] Range of(const Pose& Y) const;
-  /// By how much the pose's outer joint is turned [rad]; of six joints 0.
+  /// By how much the pose's outer joint is turned, or slid [rad or m]; of six joints 0.
   [[nodiscard]] double turn(const Pose& Y) const;
 
  private:
@@ -78,6 +80,7 @@ class BranchTrials {
 
   const DatabaseData& data_;
   int held_;
+  bool slides_;
   /// Levels of the database's tree that tell cells apart.
   int levels_ = 0;
   std::vector<BranchTrial> trials_;

@@ -2,137 +2,203 @@
 #include "seeds/closest_screen.hpp"
 
 #include <algorithm>
-#include <utility>
+#include <cmath>
 
 #include "simd/lane_chain.hpp"
 
 namespace iksel {
 namespace {
 
-/// Packs of seeds: from the database besides the nearest leaf, and at random.
-constexpr int kBlocksForClosest = 3;
-constexpr int kRandomPacks = 12;
+/// How far all seeds go, and then packs of the best that are left.
 constexpr int kFirstIterations = 5;
-/// Packs that go on, and how far.
 struct ScreenRound {
   int packs;
   int iterations;
 };
-constexpr ScreenRound kScreenRounds[] = {{4, 8}, {1, 12}};
+constexpr ScreenRound kScreenRounds[] = {{2, 12}, {1, 16}};
 
-/// The length that 1 rad counts [m].
-double length_of(const Vector6& weights) {
-  constexpr double kLeast = 1e-3;
-  constexpr double kMost = 1e3;
-  const double position = weights.head<3>().maxCoeff();
-  const double rotation = weights.tail<3>().maxCoeff();
-  if (!(position > 0) || !(rotation > 0)) return 1;
-  return std::clamp(rotation / position, kLeast, kMost);
+/// The weights of the axes whose trace has the squares of rotations about them to second order:
+/// 1 - E_xx is half the sum of the other two's.
+Eigen::Vector3d trace_weights(const Eigen::Vector3d& squares) {
+  return Eigen::Vector3d::Constant(squares.sum()) - 2 * squares;
+}
+
+/// What the axes count, squared: nothing where the task leaves them free.
+Vector6 squares(const Goal& goal, const Vector6& weights) {
+  Vector6 out = weights.cwiseAbs2();
+  for (int i = 0; i < 6; ++i) {
+    if (std::isinf(goal.task().lower()[i]) && std::isinf(goal.task().upper()[i])) out[i] = 0;
+  }
+  return out;
 }
 
 }  // namespace
 
-ClosestScreen::ClosestScreen(const ChainModel& model, const Vector6& weights)
+ClosestScreen::ClosestScreen(const ChainModel& model, std::uint64_t seed,
+                             const lanes::LaneKernels& kernels)
     : model_(model),
-      approach_(lanes::choose_kernels().approach),
-      length_(length_of(weights)),
-      position_(weights.head<3>().maxCoeff() > 0 ? 1 : 0),
-      rotation_(weights.tail<3>().maxCoeff() > 0 ? 1 : 0),
-      chain_(make_rough_chain(model)) {
-  const auto shrink = static_cast<float>(1 / length_);
-  for (int j = 0; j < chain_.n; ++j) {
-    auto& joint = chain_.joint[j];
-    for (float& p : joint.p) p *= shrink;
-    if (!joint.prismatic) continue;
-    for (float* slide : {&joint.offset, &joint.lower, &joint.upper}) *slide *= shrink;
-  }
-}
-
-template <typename Value>
-void ClosestScreen::load(int place, const Value& value) {
-  for (int j = 0; j < chain_.n; ++j) {
-    const auto q = static_cast<double>(value(j));
-    pack_.q[j][place] = static_cast<float>(chain_.joint[j].prismatic ? q / length_ : q);
-  }
-}
-
-void ClosestScreen::run(std::size_t target, int iterations) {
-  const Pose& Y = targets_[target];
-  for (int row = 0; row < lanes::kFullPoseRows; ++row) {
-    const double value = Y(row % 3, (row / 3 + 3) % 4);
-    pack_.target[row] = static_cast<float>(row < 3 ? value / length_ : value);
-  }
-  approach_(chain_, position_, rotation_, iterations, pack_);
-  for (int place = 0; place < lanes::kBlock; ++place) {
-    const auto number = static_cast<unsigned>(joints_.size() / static_cast<std::size_t>(chain_.n));
-    seeds_.push_back({pack_.error2[place], number, static_cast<unsigned>(target)});
-    for (int j = 0; j < chain_.n; ++j) joints_.push_back(pack_.q[j][place]);
-  }
-}
-
-void ClosestScreen::keep(std::size_t count) {
-  count = std::min(count, seeds_.size());
-  const auto is_less = [](const Seed& a, const Seed& b) {
-    return a.remainder < b.remainder || (a.remainder == b.remainder && a.number < b.number);
-  };
-  std::partial_sort(seeds_.begin(), seeds_.begin() + static_cast<std::ptrdiff_t>(count),
-                    seeds_.end(), is_less);
-  seeds_.resize(count);
-}
-
-int ClosestScreen::count() { return (1 + kBlocksForClosest + kRandomPacks) * lanes::kBlock; }
-
-const std::vector<JointVector>& ClosestScreen::find(const Goal& goal, LaneQuery& query,
-                                                    Random& random) {
-  targets_.assign(1, query.reduce(goal.nearest_pose()));
-  seeds_.clear();
-  joints_.clear();
-  query.set_target(targets_[0]);
-  const auto run_block = [&](const lanes::SeedPack& block) {
-    for (int place = 0; place < lanes::kBlock; ++place) {
-      load(place, [&](int j) { return static_cast<double>(block.q[j][place]); });
-    }
-    run(0, kFirstIterations);
-  };
-  query.prepare_leaf(query.packs[0]);
-  run_block(query.packs[0]);
-  const int blocks = std::min(kBlocksForClosest, static_cast<int>(query.measure_blocks()));
-  query.prepare_blocks(0, static_cast<std::size_t>(blocks), query.packs);
-  for (int i = 0; i < blocks; ++i) run_block(query.packs[i]);
+      approach_(kernels.approach),
+      base_inverse_(to_pose(model.kernel.base).inverse()),
+      last_to_tcp_(to_pose(model.kernel.flange) * Pose(model.tcp)),
+      metric_chain_(make_rough_chain(model)),
+      chain_(metric_chain_),
+      seed_(seed) {
+  const auto pack = static_cast<std::size_t>(model.dof * lanes::kBlock);
+  random_.resize(kRandomPacks * pack);
+  packs_.resize(kPacks * pack);
+  kept_.resize(kPacks * pack);
+  targets_.reserve(kPacks);
+  kept_targets_.reserve(kPacks);
+  seeds_.reserve(kPacks * lanes::kBlock);
+  Random random(seed);
   double q[kMaxDof];
   for (int i = 0; i < kRandomPacks; ++i) {
     for (int place = 0; place < lanes::kBlock; ++place) {
-      model_.joints.sample(random, q);
-      load(place, [&](int j) { return q[j]; });
+      model.joints.sample(random, q);
+      for (int j = 0; j < model.dof; ++j) row(random_, i, j)[place] = static_cast<float>(q[j]);
     }
-    if (!goal.is_full_pose()) targets_.push_back(query.reduce(goal.random_pose(random)));
-    run(targets_.size() - 1, kFirstIterations);
   }
-  for (const ScreenRound& round : kScreenRounds) {
-    keep(static_cast<std::size_t>(round.packs) * lanes::kBlock);
-    go_on(round.iterations);
-  }
-  keep(seeds_.size());
-  found_.clear();
-  for (const Seed& seed : seeds_) found_.push_back(joints_of(seed));
-  return found_;
 }
 
-void ClosestScreen::go_on(int iterations) {
-  const std::vector<Seed> from = std::exchange(seeds_, {});
-  for (std::size_t begin = 0; begin < from.size(); begin += lanes::kBlock) {
+void ClosestScreen::use_length(const Vector6& squares) {
+  // Beyond, single precision has nothing left of the smaller one.
+  constexpr double kLeast = 1e-3;
+  constexpr double kMost = 1e3;
+  const double position = std::sqrt(squares.head<3>().maxCoeff());
+  const double rotation = std::sqrt(squares.tail<3>().maxCoeff());
+  const bool counts = position > 0 && rotation > 0;
+  const double length = counts ? std::clamp(rotation / position, kLeast, kMost) : 1.0;
+  if (length == length_) return;
+  length_ = length;
+  const auto shrink = static_cast<float>(1 / length_);
+  for (int j = 0; j < chain_.n; ++j) {
+    const auto& from = metric_chain_.joint[j];
+    auto& to = chain_.joint[j];
+    for (int i = 0; i < 3; ++i) to.p[i] = from.p[i] * shrink;
+    if (!from.prismatic) continue;
+    to.offset = from.offset * shrink;
+    to.lower = from.lower * shrink;
+    to.upper = from.upper * shrink;
+  }
+}
+
+void ClosestScreen::add_target(const Pose& allowed, const Goal& goal, const Vector6& squares) {
+  const bool in_tool = goal.task().task().frame == TaskFrame::tool;
+  const Eigen::Matrix3d from_base = base_inverse_.linear();
+  const Eigen::Matrix3d axes =
+      in_tool ? Eigen::Matrix3d(from_base * goal.target().linear()) : from_base;
+  const double rotation2 = squares.tail<3>().maxCoeff();
+  // All that is measured, in units of the rotation's largest weight, or else of the position's.
+  const double unit2 = rotation2 > 0 ? rotation2 : squares.head<3>().maxCoeff();
+  const Eigen::Matrix3d metric = axes * squares.head<3>().asDiagonal() * axes.transpose();
+  Eigen::Matrix3d traced = Eigen::Matrix3d::Identity();
+  if (rotation2 > 0) traced = trace_weights(squares.tail<3>() / rotation2).asDiagonal();
+  const Eigen::Matrix3d back = allowed.linear().transpose();
+  const Eigen::Matrix3d B =
+      last_to_tcp_.linear() * (in_tool ? traced * back : back * traced) * from_base.transpose();
+  const Eigen::Vector3d position = base_inverse_ * Eigen::Vector3d(allowed.translation());
+  lanes::ClosestTarget target{};
+  for (int i = 0; i < 3; ++i) {
+    target.position[i] = static_cast<float>(position[i] / length_);
+    target.tcp[i] = static_cast<float>(last_to_tcp_.translation()[i] / length_);
+    for (int k = 0; k < 3; ++k) {
+      target.metric[i][k] = static_cast<float>(metric(i, k) * length_ * length_ / unit2);
+      target.rotation[i][k] = static_cast<float>(B(i, k));
+    }
+  }
+  target.trace = static_cast<float>(traced.trace());
+  target.rotation2 = rotation2 > 0 ? 1 : 0;
+  targets_.push_back(target);
+}
+
+int ClosestScreen::load_seeds(LaneQuery& query) {
+  int packs = 0;
+  const auto load = [&](const auto& values) {
+    for (int j = 0; j < chain_.n; ++j) {
+      const float scale = chain_.joint[j].prismatic ? static_cast<float>(1 / length_) : 1.0F;
+      const float* from = values(j);
+      float* to = row(packs_, packs, j);
+      for (int place = 0; place < lanes::kBlock; ++place) to[place] = scale * from[place];
+    }
+    ++packs;
+  };
+  lanes::SeedPack& near = query.packs[0];
+  query.prepare_leaf(near);
+  load([&](int j) { return near.q[j]; });
+  if (query.measure_blocks() > 0) {
+    query.prepare_blocks(0, 1, &near);
+    load([&](int j) { return near.q[j]; });
+  }
+  for (int i = 0; i < kRandomPacks; ++i) {
+    load([&](int j) { return row(random_, i, j); });
+  }
+  return packs;
+}
+
+void ClosestScreen::move(int packs, int iterations) {
+  seeds_.clear();
+  for (int pack = 0; pack < packs; ++pack) {
+    float remainder[lanes::kBlock];
+    approach_(chain_, targets_[static_cast<std::size_t>(pack)], iterations, row(packs_, pack, 0),
+              remainder);
     for (int place = 0; place < lanes::kBlock; ++place) {
-      const Seed& seed = from[std::min(begin + static_cast<std::size_t>(place), from.size() - 1)];
-      for (int j = 0; j < chain_.n; ++j) pack_.q[j][place] = values_of(seed)[j];
+      seeds_.push_back({remainder[place], pack * lanes::kBlock + place});
     }
-    run(from[begin].target, iterations);
   }
 }
 
-JointVector ClosestScreen::joints_of(const Seed& seed) const {
+void ClosestScreen::keep(int packs) {
+  const auto is_less = [](const Seed& a, const Seed& b) {
+    return a.remainder < b.remainder || (a.remainder == b.remainder && a.place < b.place);
+  };
+  std::partial_sort(seeds_.begin(), seeds_.begin() + packs * lanes::kBlock, seeds_.end(), is_less);
+  kept_targets_.clear();
+  for (int i = 0; i < packs * lanes::kBlock; ++i) {
+    const int from = seeds_[static_cast<std::size_t>(i)].place;
+    const int pack = from / lanes::kBlock;
+    // A pack is of one target, which is that of its best seed.
+    if (i % lanes::kBlock == 0) {
+      kept_targets_.push_back(targets_[static_cast<std::size_t>(pack)]);
+    }
+    for (int j = 0; j < chain_.n; ++j) {
+      row(kept_, i / lanes::kBlock, j)[i % lanes::kBlock] =
+          row(packs_, pack, j)[from % lanes::kBlock];
+    }
+  }
+  packs_.swap(kept_);
+  targets_.swap(kept_targets_);
+}
+
+void ClosestScreen::find(const Goal& goal, const Vector6& weights, LaneQuery& query) {
+  const Vector6 counts = squares(goal, weights);
+  use_length(counts);
+  query.set_target(query.reduce(goal.nearest_pose()));
+  int packs = load_seeds(query);
+  targets_.clear();
+  add_target(goal.nearest_pose(), goal, counts);
+  Random random(seed_);
+  while (static_cast<int>(targets_.size()) < packs) {
+    if (goal.is_full_pose()) {
+      targets_.push_back(targets_.front());
+    } else {
+      add_target(goal.random_pose(random), goal, counts);
+    }
+  }
+  int iterations = kFirstIterations;
+  for (const ScreenRound& round : kScreenRounds) {
+    move(packs, iterations);
+    keep(round.packs);
+    packs = round.packs;
+    iterations = round.iterations;
+  }
+  move(packs, iterations);
+  keep(packs);
+}
+
+JointVector ClosestScreen::q(int i) const {
   JointVector q(chain_.n);
   for (int j = 0; j < chain_.n; ++j) {
-    const auto value = static_cast<double>(values_of(seed)[j]);
+    const auto value = static_cast<double>(packs_[static_cast<std::size_t>(j * lanes::kBlock + i)]);
     q[j] = chain_.joint[j].prismatic ? value * length_ : value;
   }
   model_.joints.wrap(q.data());

@@ -3,9 +3,9 @@
 // precision and many abreast, and of those that come nearest some go on.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
-#include "base/random.hpp"
 #include "goal/goal.hpp"
 #include "kinematics/chain_model.hpp"
 #include "seeds/lane_query.hpp"
@@ -15,46 +15,59 @@ namespace iksel {
 
 class ClosestScreen {
  public:
-  /// Of weights [1/m, 1/rad] the largest of position and rotation count.
-  ClosestScreen(const ChainModel& model, const Vector6& weights);
+  /// Its random seeds are drawn here, once for all goals.
+  ClosestScreen(const ChainModel& model, std::uint64_t seed, const lanes::LaneKernels& kernels);
 
   /// Where seeds of the goal came to, the nearest first: from samples of the database near the
-  /// target, and at random. Of a task, each pack of seeds heads for another pose that it allows.
-  const std::vector<JointVector>& find(const Goal& goal, LaneQuery& query, Random& random);
+  /// target, and at random. `weights` [1/m, 1/rad] as of PoseWeights. Of a task with widths, packs
+  /// of seeds head for different poses that it allows.
+  void find(const Goal& goal, const Vector6& weights, LaneQuery& query);
+  /// How many there are.
+  [[nodiscard]] static int size() { return lanes::kBlock; }
+  [[nodiscard]] JointVector q(int i) const;
+  /// What is missing there, in units of its own.
+  [[nodiscard]] float remainder(int i) const {
+    return seeds_[static_cast<std::size_t>(i)].remainder;
+  }
   /// Seeds that find() moves.
-  static int count();
+  [[nodiscard]] static int moved() { return kPacks * lanes::kBlock; }
 
  private:
-  /// A seed, `number` its place in `joints_`.
+  /// Packs of seeds: of the nearest leaf and block of the database, and at random. More at random
+  /// gained nothing: with 6, 12 and 32 packs the same 5 of 834 targets of panda were missed.
+  static constexpr int kNearPacks = 2;
+  static constexpr int kRandomPacks = 6;
+  static constexpr int kPacks = kNearPacks + kRandomPacks;
+
   struct Seed {
     float remainder;
-    unsigned number;
-    unsigned target;
+    int place;  ///< in the packs, one after the other
   };
 
-  template <typename Value>
-  void load(int place, const Value& value);
-  /// Moves what was loaded, towards one of the targets.
-  void run(std::size_t target, int iterations);
-  /// Keeps that many seeds, the best first.
-  void keep(std::size_t count);
-  /// Moves those that are left farther.
-  void go_on(int iterations);
-  [[nodiscard]] const float* values_of(const Seed& seed) const {
-    return joints_.data() + seed.number * static_cast<std::size_t>(chain_.n);
+  void use_length(const Vector6& squares);
+  void add_target(const Pose& allowed, const Goal& goal, const Vector6& squares);
+  /// Returns the packs that there are.
+  int load_seeds(LaneQuery& query);
+  /// Moves all seeds of the first packs.
+  void move(int packs, int iterations);
+  /// Packs the best seeds anew, best first.
+  void keep(int packs);
+  /// Values of joint j in a pack.
+  float* row(std::vector<float>& packs, int pack, int j) const {
+    return packs.data() + (pack * chain_.n + j) * lanes::kBlock;
   }
-  [[nodiscard]] JointVector joints_of(const Seed& seed) const;
 
   const ChainModel& model_;
   lanes::Approach approach_;
-  double length_;  ///< that 1 unit of the lanes is [m]
-  float position_, rotation_;
-  lanes::LaneChainOf<float> chain_;
-  lanes::RoughPack pack_{};
-  std::vector<Pose> targets_;  ///< Y (reduction.hpp)
+  Pose base_inverse_, last_to_tcp_;
+  lanes::LaneChainOf<float> metric_chain_;  ///< [m]
+  lanes::LaneChainOf<float> chain_;         ///< [length_]
+  std::uint64_t seed_;
+  double length_ = 1;                                         ///< [m]
+  std::vector<float> random_;                                 ///< packs of joint values [rad or m]
+  std::vector<float> packs_, kept_;                           ///< [rad or length_]
+  std::vector<lanes::ClosestTarget> targets_, kept_targets_;  ///< of each pack
   std::vector<Seed> seeds_;
-  std::vector<float> joints_;  ///< of all seeds so far, as the lanes have them
-  std::vector<JointVector> found_;
 };
 
 }  // namespace iksel

@@ -40,15 +40,42 @@ void NearestOnCurve::find(const Pose& Y, const JointVector& near, const JointMov
   takes_largest_ = move.norm() == MoveNorm::max;
   branches_.measure_moves_from(near, move);
   branches_.set_target(Y);
+  places_ = branches_.places(kSamples);
   known_move_ = known;
-  look_around();
   found_.clear();
+  if (prefers_staying(move)) stay();
+  if (found_.size() > 0) return;
+  look_around();
   least_off_ = kInfinity;
   least_.find(places_, rows_, kRefused + kNear);
   for (const LeastPlace& least : least_) {
     if (may_be_shorter(least)) follow(least);
   }
   for (int branch = 0; branch < SweptBranches::kCount; ++branch) look_beside_folds(branch);
+}
+
+bool NearestOnCurve::prefers_staying(const JointMove& move) const {
+  constexpr double kFar = 1e4;
+  const double own = move.weights()[branches_.joint()];
+  for (int j = 0; j < SweptBranches::kDof; ++j) {
+    if (j != branches_.joint() && kFar * move.weights()[j] > own) return false;
+  }
+  return move.norm() == MoveNorm::two;
+}
+
+void NearestOnCurve::stay() {
+  // What is an answer but for rounding is one when it is refined [mixed units].
+  constexpr double kRounding = 1e-6;
+  double value = near_[static_cast<std::size_t>(branches_.joint())];
+  if (places_.turns) value -= kTwoPi * std::floor((value - places_.lower) / kTwoPi);
+  if (branches_.clamp(value) != value) return;
+  branches_.solve_all(value);
+  for (int lane = 0; lane < SweptBranches::kCount; ++lane) {
+    if (branches_.off(lane) > kRounding) continue;
+    SweptJoints found{branches_.moves().inside[lane], {}};
+    branches_.copy_joints(lane, found.q.data());
+    found_.add(found);
+  }
 }
 
 void NearestOnCurve::look_around() {

@@ -23,6 +23,9 @@ class NearestOnCurve {
   /// its nearest periodic image. Only as far from `near` as an answer may be nearer than those
   /// found, and than one that is known whose move is `known`; none: infinity.
   void find(const Pose& Y, const JointVector& near, const JointMove& move, double known);
+  /// Whether nothing that matters is nearer than what leaves the swept joint where it is: moves of
+  /// the others do but decide between such.
+  [[nodiscard]] bool prefers_staying(const JointMove& move) const;
   [[nodiscard]] std::size_t size() const { return found_.size(); }
   /// The nearest first [rad].
   [[nodiscard]] const double* q(std::size_t i) const { return found_[i].q.data(); }
@@ -70,6 +73,8 @@ class NearestOnCurve {
   [[nodiscard]] double best() const {
     return found_.size() > 0 ? std::min(found_[0].value, known_move_) : known_move_;
   }
+  /// Adds what leaves the swept joint at `near`.
+  void stay();
   /// Solves the samples from the one nearest to `near` on, as far as it may be worth it.
   void look_around();
   /// The shortest move there.

@@ -38,7 +38,7 @@ void RootFinder::find(const Residual& residual) {
     residual(angles_.data(), static_cast<int>(angles_.size()), values_.data());
   }
   std::array<double, kCells> counts;
-  kernels_.count_roots(values_.data() + kBefore, kCells, counts.data());
+  kernels_.count_roots(values_.data() + kBefore, kCells, vague_ / step_, counts.data());
   for (std::size_t i = 0; i < kCells; ++i) {
     if (counts[i] == 0) continue;
     const double left = angles_[kBefore + i];
@@ -72,7 +72,7 @@ void RootFinder::look_closer(const Residual& residual, double left, double lengt
   }
   residual(angles.data(), kAngles, values.data());
   std::array<double, kInside> counts;
-  kernels_.count_roots(values.data() + kBefore, kInside, counts.data());
+  kernels_.count_roots(values.data() + kBefore, kInside, /*apart=*/0, counts.data());
   for (std::size_t i = 0; i < kInside; ++i) {
     if (counts[i] == 0) continue;
     const double* at = values.data() + kBefore + i;

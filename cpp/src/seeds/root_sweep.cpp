@@ -14,6 +14,10 @@ namespace {
 /// enough: one reachable target of a million of gen3_6dof, whose pi is rounded, had been lost.
 constexpr double kBesideAxis = 1000;
 
+/// What the axes lie off moves roots that all but meet another pair so many times farther apart: of
+/// four million reachable targets of gen3_6dof three had been lost.
+constexpr double kFartherApart = 8;
+
 /// Where neighbouring values of a loop's determinant are less than so many times its noise, there
 /// may be roots or none.
 constexpr double kAboveNoise = 30;
@@ -38,7 +42,9 @@ RootSweep::RootSweep(const ChainModel& model, const ClosedFormChain& chain, bool
       concludes_(concludes_from_branches(is_nominal, tolerance)),
       vague_(2 * std::sqrt(tolerance + chain.deviation)),
       vague_divisor_(std::pow(kBesideAxis * (tolerance + chain.deviation), 2)),
-      roots_(make_finder(model, chain.held, vague_, kernels)),
+      roots_(make_finder(model, chain.held,
+                         2 * std::sqrt(tolerance + kFartherApart * kFartherApart * chain.deviation),
+                         kernels)),
       polynomial_(kernels) {
   chain_.use_limits(model);
   for (int lane = 0; lane < lanes::kWidth; ++lane) pack_.sign[2][lane] = 1;

@@ -18,6 +18,7 @@ void SelfMotionArcs::find(const Pose& Y, double spacing) {
   spans_.clear();
   arcs_.clear();
   branches_.set_target(Y);
+  places_ = branches_.places(kSamples);
   sweep();
   for (int branch = 0; branch < kLanes; ++branch) {
     mark(branch);

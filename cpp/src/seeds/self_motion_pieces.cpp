@@ -43,6 +43,7 @@ SelfMotionArcs::Node SelfMotionArcs::node(int lane, double part) const {
 double SelfMotionArcs::beyond_limits(const Joints& q) const {
   // Of joints with a whole turn or more, an image lies inside.
   double beyond = -kPi;
+  if (!joints_.coupled.empty()) beyond = std::max(beyond, joints_.beyond_coupled(q.data()));
   for (int j = 0; j < SweptBranches::kDof; ++j) {
     if (joints_.is_periodic(j) || j == branches_.joint()) continue;
     const double at = q[static_cast<std::size_t>(j)];
@@ -182,8 +183,7 @@ SelfMotionArcs::Node SelfMotionArcs::find_end(const BranchSpan& span, const Node
       const Node next = node(lane, part(lane));
       if (next.beyond > 0 || jumps(last.q, next.q)) {
         outside = next.part;
-        end = next.beyond == kInfinity ? SelfMotionEnd{ArcEnd::fold, -1, false}
-                                       : culprit(last.q, next.q);
+        end = next.beyond == kInfinity ? SelfMotionEnd{ArcEnd::fold} : culprit(last.q, next.q);
         break;
       }
       last = next;
@@ -208,12 +208,20 @@ SelfMotionEnd SelfMotionArcs::culprit(const Joints& inside, const Joints& outsid
     end.joint = j;
     end.at_upper = turned ? inside[i] > outside[i] : above > below;
   }
+  for (const CoupledRow& row : joints_.coupled) {
+    const double sum = row.sum(outside.data());
+    if (row.beyond(sum) <= farthest) continue;
+    farthest = row.beyond(sum);
+    end.joint = -1;
+    end.coupled_limit = row.given;
+    end.at_upper = sum > 0.5 * (row.lower + row.upper);
+  }
   return end;
 }
 
 SelfMotionEnd SelfMotionArcs::end_of_span(const BranchSpan& span, int side) const {
-  if (side == 0 ? span.folds_below : span.folds_above) return {ArcEnd::fold, -1, false};
-  if (places_.turns) return {ArcEnd::closed, -1, false};
+  if (side == 0 ? span.folds_below : span.folds_above) return {ArcEnd::fold};
+  if (places_.turns) return {ArcEnd::closed};
   return {ArcEnd::limit, branches_.joint(), side == 1};
 }
 

@@ -15,7 +15,7 @@ Sweep::Sweep(const ChainModel& model, const ClosedFormChain& chain, bool is_nomi
       rows_(kSamples) {}
 
 bool Sweep::find(const Pose& Y) {
-  branches_.set_target(Y);
+  set_target(Y);
   for (int pack = 0; pack < kPacks; ++pack) {
     // Far from each other first, so that an answer is soon found.
     constexpr int kStride = 5;
@@ -48,7 +48,7 @@ bool Sweep::take_answer(int place) {
 
 void Sweep::add_samples(const Pose& Y, int first, int stride, std::vector<double>& q) {
   std::vector<int> branch;
-  branches_.set_target(Y);
+  set_target(Y);
   add_samples(first, stride, q, branch);
 }
 

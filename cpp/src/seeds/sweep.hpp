@@ -29,7 +29,10 @@ class Sweep {
   void add_samples(const Pose& Y, int first, int stride, std::vector<double>& q);
   /// The same, for the target as it is set; of each, the branch goes to `branch`.
   void add_samples(int first, int stride, std::vector<double>& q, std::vector<int>& branch);
-  void set_target(const Pose& Y) { branches_.set_target(Y); }
+  void set_target(const Pose& Y) {
+    branches_.set_target(Y);
+    places_ = branches_.places(kSamples);
+  }
   /// Adds a branch inside the limits at values of the swept joint beside that of `from`, as far as
   /// the samples beside.
   void add_beside(const double* from, int branch, std::vector<double>& q);

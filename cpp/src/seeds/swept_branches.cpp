@@ -27,6 +27,28 @@ Places SweptBranches::places(int count) const {
 void SweptBranches::set_target(const Pose& Y) {
   chain_.set_target(Y, all_);
   chain_.set_target(Y, one_);
+  if (chain_.form.held_slide != 0) bound_slide();
+}
+
+void SweptBranches::bound_slide() {
+  // The six others bring axis 6 no farther from axis 1 than their links are long.
+  double longest = 0;
+  for (const auto& link : chain_.form.p) longest += Eigen::Vector3d(link).norm();
+  longest *= 1 + 1e-6;
+  const Eigen::Vector3d axis(chain_.form.held_axis);
+  const Eigen::Vector3d w(all_.target[9][0], all_.target[10][0], all_.target[11][0]);
+  const double along = axis.dot(w);
+  const double across2 = w.squaredNorm() - along * along;
+  lower_ = joints_.lower[chain_.held];
+  upper_ = joints_.upper[chain_.held];
+  if (across2 >= longest * longest) return;
+  const double half = std::sqrt(longest * longest - across2);
+  const double lower = (along - half) / chain_.form.held_slide - offset_;
+  const double upper = (along + half) / chain_.form.held_slide - offset_;
+  // Where they overlap by nothing, there is no answer anywhere.
+  if (lower >= upper_ || upper <= lower_) return;
+  lower_ = std::max(lower_, lower);
+  upper_ = std::min(upper_, upper);
 }
 
 void SweptBranches::solve_all(double value) {
@@ -45,10 +67,13 @@ void SweptBranches::measure_moves_from(const JointVector& near, const JointMove&
     const double offset = i == kDof - 1 ? offset_ : 0;
     form.from[i] = near[j] + offset;
     form.weight[i] = move.weights()[j];
+    form.turns[i] = !joints_.is_slide(j);
     form.has_images[i] = joints_.is_periodic(j);
     form.lower[i] = joints_.lower[j] + form.margin + offset;
     form.upper[i] = joints_.upper[j] - form.margin + offset;
+    form.turns_coupled[i] = joints_.has_coupled_images(j);
   }
+  form.coupled = joints_.coupled_turning.empty() ? nullptr : chain_.form.coupled;
 }
 
 void SweptBranches::rate(double bound, Row* rows) {

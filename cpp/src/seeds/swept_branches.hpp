@@ -19,7 +19,7 @@ namespace iksel {
 
 /// Values of a swept joint, evenly over its range.
 struct Places {
-  double lower, step;  ///< [rad]
+  double lower, step;  ///< [rad or m]
   int count;
   /// Whether the last is beside the first.
   bool turns;
@@ -36,7 +36,7 @@ struct Places {
 /// Values of the swept joint for which a branch exists, without others between.
 struct BranchSpan {
   int branch;
-  double lower, upper;  ///< [rad]
+  double lower, upper;  ///< [rad or m]
   /// Whether the branch merges with another there, and the curve turns back.
   bool folds_below, folds_above;
 
@@ -70,7 +70,8 @@ class SweptBranches {
     return turns_ ? value : std::min(std::max(value, lower_), upper_);
   }
 
-  /// Y as in reduction.hpp.
+  /// Y as in reduction.hpp. Of a slide, the range that is swept is that from which the others may
+  /// reach the target: places() depend on it.
   void set_target(const Pose& Y);
   /// Solves every branch at a value of the swept joint, each in its lane [rad].
   void solve_all(double value);
@@ -120,6 +121,7 @@ class SweptBranches {
     if (turns_ && swept > upper_) swept -= kTwoPi;
     q[chain_.held] = swept;
     chain_.copy_joints(*last_, lane, q);
+    if (!joints_.coupled_turning.empty()) joints_.wrap(q);
   }
 
  private:
@@ -128,6 +130,7 @@ class SweptBranches {
     double inside, outside;
     double least_inside = 0, least_outside = -1;
   };
+  void bound_slide();
   void solve_one();
   void find_branches(lanes::BranchPack& pack);
   void rate(double bound, Row* rows);
@@ -136,7 +139,7 @@ class SweptBranches {
   ClosedFormChain chain_;
   const JointSpace& joints_;
   const lanes::LaneKernels& kernels_;
-  double lower_, upper_, offset_;  ///< of the swept joint [rad]
+  double lower_, upper_, offset_;  ///< of the swept joint [rad or m]
   bool turns_;
   lanes::BranchPack all_ = all_branches();
   lanes::BranchPack one_{};

@@ -13,12 +13,16 @@ struct BranchTarget {
   Vec<T> X, Y, Z, w;
 };
 
-/// The target of the joints behind the held one, at an angle of that.
+/// The target of the joints behind the held one, at an angle of that, or a place of a slide.
 template <typename T>
-IKSEL_INLINE void hold(const ClosedForm& form, const T& angle, BranchTarget<T>& target) {
-  Angle<T> t;
-  sincos(angle, t.s, t.c);
+IKSEL_INLINE void hold(const ClosedForm& form, const T& value, BranchTarget<T>& target) {
   const Vec<T> axis = constant<T>(form.held_axis);
+  if (form.held_slide != 0) {
+    target.w = add(target.w, T(-form.held_slide) * value, axis);
+    return;
+  }
+  Angle<T> t;
+  sincos(value, t.s, t.c);
   const Vec<T> from = constant<T>(form.held_from);
   target.X = turned_back(axis, t, target.X);
   target.Y = turned_back(axis, t, target.Y);

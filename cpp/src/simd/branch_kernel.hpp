@@ -8,6 +8,7 @@
 
 #include "simd/branch_arm.hpp"
 #include "simd/branch_swept.hpp"
+#include "simd/coupled_kernel.hpp"
 
 namespace iksel::lanes {
 
@@ -78,6 +79,15 @@ IKSEL_INLINE void solve_three_parallel(const ClosedForm& form, const BranchTarge
   out.q[3] = {all.c * two.c + all.s * two.s, T(form.side4) * (all.s * two.c - all.c * two.s)};
 }
 
+/// How far the joint values that are stored lie outside of coupled limits.
+template <typename T>
+T beyond_coupled(const ClosedForm& form, int first, const BranchPack& pack) {
+  T q[7];
+  for (int j = 0; j < 6; ++j) q[j] = Lanes<T>::load(pack.q[j] + first);
+  q[6] = form.is_held ? Lanes<T>::load(pack.held + first) : T(0.0);
+  return beyond_coupled(*form.coupled, q);
+}
+
 /// The joint values, and how far they are outside of their limits.
 template <typename T, typename Q>
 IKSEL_INLINE void store_joints(const ClosedForm& form, const Branch<T, Q>& branch, int first,
@@ -88,6 +98,7 @@ IKSEL_INLINE void store_joints(const ClosedForm& form, const Branch<T, Q>& branc
     beyond = max(beyond, beyond_limits(form, j, q));
     Lanes<T>::store(q, pack.q[j] + first);
   }
+  if (form.coupled != nullptr) beyond = max(beyond, beyond_coupled<T>(form, first, pack));
   Lanes<T>::store(beyond, pack.beyond + first);
   Lanes<T>::store(branch.quality.least, pack.least + first);
 }

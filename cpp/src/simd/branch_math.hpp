@@ -5,31 +5,9 @@
 
 #include "simd/branch_types.hpp"
 #include "simd/lane_math.hpp"
+#include "simd/lane_vector.hpp"
 
 namespace iksel::lanes {
-
-template <typename T>
-struct Vec {
-  T x, y, z;
-};
-
-template <typename T>
-IKSEL_INLINE Vec<T> constant(const double (&v)[3]) {
-  return {T(v[0]), T(v[1]), T(v[2])};
-}
-template <typename T>
-IKSEL_INLINE T dot(const Vec<T>& a, const Vec<T>& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-template <typename T>
-IKSEL_INLINE Vec<T> cross(const Vec<T>& a, const Vec<T>& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-/// a + s b
-template <typename T>
-IKSEL_INLINE Vec<T> add(const Vec<T>& a, const T& s, const Vec<T>& b) {
-  return {a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
-}
 
 /// An angle by its cosine and sine.
 template <typename T>

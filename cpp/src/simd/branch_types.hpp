@@ -48,10 +48,12 @@ struct ClosedForm {
                         ///< |p12|^2
   bool is_held;         ///< whether there is a joint before the first, which is held at an angle
   double held_axis[3];  ///< a unit vector along it
+  double held_slide;    ///< units of length that it slides per metre; 0 where it turns
   double held_from[3];  ///< from a point on it to that on axis 1
   Turned elbow;         ///< p23 . R(h3) p34
   Turned shoulder;      ///< of parallel_12, h1 . R(h3) p34
   Turned wrist;         ///< h4 . R(h5) h6; of three_parallel, h2 . R(h5) h6
+  const CoupledForm* coupled;  ///< null: no joint values are limited together
 };
 
 /// Poses, and a branch of each, lane by lane. Rows of the target: columns X, Y and Z of R_06 E,
@@ -59,13 +61,14 @@ struct ClosedForm {
 /// [units]; where a joint is held, as they are at its angle 0.
 struct BranchPack {
   alignas(64) double target[12][kWidth];
-  /// Angle of the held joint, or of that of sweep_4, sweep_6 or loop, if the form has one [rad].
+  /// Angle of the held joint, or of that of sweep_4, sweep_6 or loop, if the form has one; of a
+  /// slide the way [rad or m].
   alignas(64) double held[kWidth];
   /// +-1: which of two solutions each of three subproblems takes.
   alignas(64) double sign[3][kWidth];
   /// Of the six joints [rad], by whole turns inside the limits where they can be.
   alignas(64) double q[6][kWidth];
-  /// How far one of them lies outside of them, 0 or less if none does [rad].
+  /// How far one of them lies outside of them, or of coupled ones, 0 or less if none does [rad].
   alignas(64) double beyond[kWidth];
   /// Subproblems have solutions where a difference of squares is not below 0. The least of these;
   /// and at best and at worst for targets within ClosedForm::error: there is no branch where the
@@ -81,15 +84,19 @@ struct BranchPack {
   alignas(64) double error[kWidth];
 };
 
-/// Seven joints to move from: six as a form counts them, and the angle of the held one.
+/// Seven joints to move from: six as a form counts them, and the held one.
 struct MoveForm {
   double from[7];    ///< [rad]
   double weight[7];  ///< what a move of each counts
-  /// Whether whole turns may lie inside the limits; and these, narrower by the margin [rad].
-  bool has_images[7];
+  /// Whether a joint turns, and whether its whole turns may lie inside the limits; and these,
+  /// narrower by the margin [rad or m].
+  bool turns[7], has_images[7];
   double lower[7], upper[7];
   double margin;
   bool takes_largest;  ///< else the root of the squares' sum
+  /// Of ClosedForm, if images change coupled sums; these joints are then in `turns_coupled`.
+  const CoupledForm* coupled;
+  bool turns_coupled[7];
 };
 
 /// How far branches are away, lane by lane.

@@ -1,120 +1,133 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Seeds moved towards where the least is missing of a pose that may have no answer: Newton's method
 // on
-//   C = 1/2 w_p^2 |p - t|^2 + 1/2 w_r^2 (3 - trace M),  M = sum over columns k of r_k t_k^T,
-// where 3 - trace M is the square of 2 sin(angle / 2); damped as Levenberg-Marquardt, with the
-// limits as an active set. For joints i <= j with axes z, velocities L of the point, d = p - t and
-// v = sum of r_k x t_k:
-//   C_j = w_p^2 d . L_j - 1/2 w_r^2 z_j . v
-//   C_ij = w_p^2 (L_i . L_j + L_j . (d x z_i)) + 1/2 w_r^2 (z_i . z_j trace M - z_i . M z_j).
+//   C = 1/2 d . W d + 1/2 w^2 F(s),  d = p - t,  s = trace A - trace M,  M = R B,
+// for the TCP p and the last joint's rotation R; B has the target's rotation and A the weights of
+// its axes, relative to w^2 (ClosestTarget). Of equal weights A is the identity, s the square of
+// 2 sin(angle / 2), and F(s) the angle's. Damped as Levenberg-Marquardt, with the limits as an
+// active set. For joints i <= j with axes z, velocities L of the TCP and v with s_j = -z_j . v:
+//   C_j = L_j . W d + 1/2 w^2 F' s_j
+//   C_ij = L_j . (W L_i + W d x z_i) + 1/2 w^2 (F' s_ij + F'' s_i s_j),
+//   s_ij = z_i . z_j trace M - z_i . M z_j.
 #pragma once
 
+#include "simd/coupled_kernel.hpp"
 #include "simd/lane_frames.hpp"
-#include "simd/lane_math.hpp"
 #include "simd/lane_types.hpp"
+#include "simd/lane_vector.hpp"
 
 namespace iksel::lanes {
-
-template <typename T>
-IKSEL_INLINE T dot3(const T* a, const T* b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-template <typename T>
-IKSEL_INLINE void cross3(const T* a, const T* b, T* out) {
-  out[0] = a[1] * b[2] - a[2] * b[1];
-  out[1] = a[2] * b[0] - a[0] * b[2];
-  out[2] = a[0] * b[1] - a[1] * b[0];
-}
 
 /// What is missing at a frame.
 template <typename T>
 struct Remaining {
-  T d[3];     ///< p - t
-  T v[3];     ///< sum of r_k x t_k
-  T M[3][3];  ///< sum of r_k t_k^T
+  Vec<T> p;     ///< TCP
+  Vec<T> pull;  ///< W d
+  Vec<T> v;
+  Vec<T> M[3];  ///< rows
   T trace;
-  T value;  ///< C
+  T slope, bend;  ///< 1/2 w^2 F' and 1/2 w^2 F''
+  T value;        ///< C
 };
 
+/// The angle's square F of s = 4 sin(angle / 2)^2, and its two derivatives.
 template <typename T>
-IKSEL_INLINE void measure_remaining(const LaneFrame<T>& f, const float* target, float position2,
-                                    float rotation2, Remaining<T>& out) {
-  const T* columns[3] = {f.x, f.y, f.z};
-  for (int i = 0; i < 3; ++i) out.d[i] = f.p[i] - T(target[i]);
-  for (int a = 0; a < 3; ++a) {
-    for (int b = 0; b < 3; ++b) {
-      out.M[a][b] = columns[0][a] * T(target[3 + b]) + columns[1][a] * T(target[6 + b]) +
-                    columns[2][a] * T(target[9 + b]);
+IKSEL_INLINE void square_angle(const T& s, T& F, T& slope, T& bend) {
+  // Short of half a turn, where the second derivative has no end.
+  constexpr float kMost = 3.996F;
+  const T inside = min(max(s, T(0.0F)), T(kMost));
+  const T half = sqrt(T(0.25F) * inside);
+  const T over = asin_over(half);
+  const T rest = T(1.0F) - T(0.25F) * inside;
+  F = inside * over * over;
+  slope = over / sqrt(rest);
+  const T series = T(1.0F / 6.0F) + inside * (T(1.0F / 15.0F) + inside * T(3.0F / 140.0F));
+  const T sine2 = inside * rest;
+  const T cosine = T(1.0F) - T(0.5F) * inside;
+  bend =
+      select(inside < T(0.1F), series, T(0.5F) * (T(1.0F) - slope * cosine) / max(sine2, T(1e-3F)));
+}
+
+template <typename T>
+IKSEL_INLINE void measure_remaining(const LaneFrame<T>& f, const ClosestTarget& target,
+                                    Remaining<T>& out) {
+  T p[3];
+  T v[3];
+  T M[3][3];
+  for (int i = 0; i < 3; ++i) {
+    p[i] =
+        f.p[i] + f.x[i] * T(target.tcp[0]) + f.y[i] * T(target.tcp[1]) + f.z[i] * T(target.tcp[2]);
+    for (int k = 0; k < 3; ++k) {
+      M[i][k] = f.x[i] * T(target.rotation[0][k]) + f.y[i] * T(target.rotation[1][k]) +
+                f.z[i] * T(target.rotation[2][k]);
     }
   }
-  out.trace = out.M[0][0] + out.M[1][1] + out.M[2][2];
   for (int i = 0; i < 3; ++i) {
     const int a = (i + 1) % 3;
     const int b = (i + 2) % 3;
-    out.v[i] = out.M[a][b] - out.M[b][a];
+    v[i] = M[a][b] - M[b][a];
+    out.M[i] = {M[i][0], M[i][1], M[i][2]};
   }
-  out.value =
-      T(0.5F * position2) * dot3(out.d, out.d) + T(0.5F * rotation2) * (T(3.0F) - out.trace);
+  out.p = {p[0], p[1], p[2]};
+  out.v = {v[0], v[1], v[2]};
+  out.trace = M[0][0] + M[1][1] + M[2][2];
+  const Vec<T> d{p[0] - T(target.position[0]), p[1] - T(target.position[1]),
+                 p[2] - T(target.position[2])};
+  out.pull = times(target.metric, d);
+  T F;
+  square_angle(T(target.trace) - out.trace, F, out.slope, out.bend);
+  const T half = T(0.5F * target.rotation2);
+  out.slope = half * out.slope;
+  out.bend = half * out.bend;
+  out.value = T(0.5F) * dot(d, out.pull) + half * F;
 }
 
-/// The step of Newton's method from q, at most `longest` in each joint. `J` has the joints' origins
-/// and axes, and is made into columns.
+/// What a joint does to the remainder.
 template <typename T>
-IKSEL_INLINE void step_to_closest(const LaneChainOf<float>& chain, const LaneFrame<T>& frame,
-                                  const Remaining<T>& at, float position2, float rotation2,
-                                  const T& damping, const T* q, T (*J)[6], T* step) {
-  constexpr float kLongest = 0.5F;
-  const int n = chain.n;
-  T H[kMaxJoints][kMaxJoints];
-  T moved[kMaxJoints][3];   // L_i + d x z_i
-  T turned[kMaxJoints][3];  // trace M z_i - M^T z_i
-  T free[kMaxJoints];
-  T scale[kMaxJoints];
-  for (int j = 0; j < n; ++j) {
-    const auto& joint = chain.joint[j];
-    T* L = J[j];
-    T* z = J[j] + 3;
-    T slope;
-    if (joint.prismatic) {
-      for (int i = 0; i < 3; ++i) {
-        L[i] = z[i];
-        z[i] = T(0.0F);
-      }
-      slope = T(position2) * dot3(at.d, L);
-    } else {
-      const T r[3] = {frame.p[0] - L[0], frame.p[1] - L[1], frame.p[2] - L[2]};
-      cross3(z, r, L);
-      slope = T(position2) * dot3(at.d, L) - T(0.5F * rotation2) * dot3(z, at.v);
-    }
-    scale[j] = T(position2) * dot3(L, L) + T(rotation2) * dot3(z, z);
-    free[j] = T(1.0F);
-    if (joint.limited) {
-      const auto leaves = ((q[j] <= T(joint.lower)) & (slope > T(0.0F))) |
-                          ((q[j] >= T(joint.upper)) & (slope < T(0.0F)));
-      free[j] = select(leaves, T(0.0F), T(1.0F));
-    }
-    step[j] = T(0.0F) - slope * free[j];
-    cross3(at.d, z, moved[j]);
-    for (int a = 0; a < 3; ++a) {
-      moved[j][a] = moved[j][a] + L[a];
-      turned[j][a] = at.trace * z[a] - (at.M[0][a] * z[0] + at.M[1][a] * z[1] + at.M[2][a] * z[2]);
-    }
-    for (int i = 0; i <= j; ++i) {
-      const T second = T(position2) * dot3(L, moved[i]) + T(0.5F * rotation2) * dot3(z, turned[i]);
-      H[j][i] = second * free[i] * free[j];
-    }
-    H[j][j] = H[j][j] + (T(1.0F) - free[j]) + damping * scale[j] + T(1e-9F);
+struct JointEffect {
+  Vec<T> L, z;
+  Vec<T> moved;   ///< W L_i + W d x z_i
+  Vec<T> turned;  ///< so that z_j . turned is the rotation's part of C_ij
+  T slope;
+  T scale;
+};
+
+template <typename T>
+IKSEL_INLINE JointEffect<T> find_effect(bool is_slide, const Remaining<T>& at,
+                                        const ClosestTarget& target, const T (&J)[6]) {
+  JointEffect<T> out;
+  const Vec<T> axis{J[3], J[4], J[5]};
+  if (is_slide) {
+    out.L = axis;
+    out.z = {T(0.0F), T(0.0F), T(0.0F)};
+  } else {
+    out.L = cross(axis, {at.p.x - J[0], at.p.y - J[1], at.p.z - J[2]});
+    out.z = axis;
   }
-  // L D L^T; pivots that are not positive are turned round, so that the step descends.
+  const T along = dot(out.z, at.v);
+  const Vec<T> weighted = times(target.metric, out.L);
+  out.slope = dot(out.L, at.pull) - at.slope * along;
+  out.scale = dot(out.L, weighted) + T(target.rotation2) * dot(out.z, out.z);
+  out.moved = add(weighted, T(1.0F), cross(at.pull, out.z));
+  // M^T z
+  const Vec<T> back = add(add(scaled(out.z.x, at.M[0]), out.z.y, at.M[1]), out.z.z, at.M[2]);
+  out.turned =
+      add(scaled(at.slope, add(scaled(at.trace, out.z), T(-1.0F), back)), at.bend * along, at.v);
+  return out;
+}
+
+/// Solves H y = x into x, the lower half of H as L D L^T. Pivots that are not positive are turned
+/// round, so that the step descends.
+template <typename T>
+IKSEL_INLINE void solve_downhill(int n, const T* scale, T (*H)[kMaxJoints], T* x) {
   T inverse[kMaxJoints];
   for (int j = 0; j < n; ++j) {
     T d = H[j][j];
-    T scaled[kMaxJoints];
+    T before[kMaxJoints];
     for (int k = 0; k < j; ++k) {
-      scaled[k] = H[j][k];
+      before[k] = H[j][k];
       H[j][k] = H[j][k] * inverse[k];
-      d = d - H[j][k] * scaled[k];
+      d = d - H[j][k] * before[k];
     }
     inverse[j] = T(1.0F) / max(abs(d), T(1e-3F) * scale[j] + T(1e-9F));
     for (int i = j + 1; i < n; ++i) {
@@ -122,29 +135,60 @@ IKSEL_INLINE void step_to_closest(const LaneChainOf<float>& chain, const LaneFra
     }
   }
   for (int i = 0; i < n; ++i) {
-    for (int k = 0; k < i; ++k) step[i] = step[i] - H[i][k] * step[k];
+    for (int k = 0; k < i; ++k) x[i] = x[i] - H[i][k] * x[k];
   }
-  T longest = T(kLongest);
   for (int i = n - 1; i >= 0; --i) {
-    step[i] = step[i] * inverse[i];
-    for (int k = i + 1; k < n; ++k) step[i] = step[i] - H[k][i] * step[k];
-    longest = max(longest, abs(step[i]));
+    x[i] = x[i] * inverse[i];
+    for (int k = i + 1; k < n; ++k) x[i] = x[i] - H[k][i] * x[k];
   }
+}
+
+/// The step of Newton's method from q, at most `kLongest` in each joint. `J` has the joints'
+/// origins and axes.
+template <typename T>
+IKSEL_INLINE void step_to_closest(const LaneChainOf<float>& chain, const ClosestTarget& target,
+                                  const Remaining<T>& at, const T& damping, const T* q,
+                                  const T (*J)[6], T* step) {
+  constexpr float kLongest = 0.5F;
+  const int n = chain.n;
+  T H[kMaxJoints][kMaxJoints];
+  T free[kMaxJoints];
+  T scale[kMaxJoints];
+  Vec<T> moved[kMaxJoints];
+  Vec<T> turned[kMaxJoints];
+  for (int j = 0; j < n; ++j) {
+    const auto& joint = chain.joint[j];
+    const JointEffect<T> effect = find_effect(joint.prismatic, at, target, J[j]);
+    moved[j] = effect.moved;
+    turned[j] = effect.turned;
+    scale[j] = effect.scale;
+    free[j] = T(1.0F);
+    if (joint.limited) {
+      const auto leaves = ((q[j] <= T(joint.lower)) & (effect.slope > T(0.0F))) |
+                          ((q[j] >= T(joint.upper)) & (effect.slope < T(0.0F)));
+      free[j] = select(leaves, T(0.0F), T(1.0F));
+    }
+    step[j] = T(0.0F) - effect.slope * free[j];
+    for (int i = 0; i <= j; ++i) {
+      H[j][i] = (dot(effect.L, moved[i]) + dot(effect.z, turned[i])) * free[i] * free[j];
+    }
+    H[j][j] = H[j][j] + (T(1.0F) - free[j]) + damping * scale[j] + T(1e-9F);
+  }
+  solve_downhill(n, scale, H, step);
+  T longest = T(kLongest);
+  for (int j = 0; j < n; ++j) longest = max(longest, abs(step[j]));
   const T part = T(kLongest) / longest;
   for (int j = 0; j < n; ++j) step[j] = step[j] * part;
 }
 
-/// Iterates all lanes of a pack so often. Of the pack, `error2` becomes 2 C, and q where that is.
 template <typename T>
-void approach(const LaneChainOf<float>& chain, float position, float rotation, int iterations,
-              RoughPack& pack) {
+void approach(const LaneChainOf<float>& chain, const ClosestTarget& target, int iterations,
+              float* seeds, float* remainder) {
   const int n = chain.n;
-  const float position2 = position * position;
-  const float rotation2 = rotation * rotation;
   for (int first = 0; first < kBlock; first += Lanes<T>::kCount) {
     T q[kMaxJoints];
     T best_q[kMaxJoints];
-    for (int j = 0; j < n; ++j) best_q[j] = q[j] = Lanes<T>::load(pack.q[j] + first);
+    for (int j = 0; j < n; ++j) best_q[j] = q[j] = Lanes<T>::load(seeds + j * kBlock + first);
     T best = T(1e30F);
     T damping = T(1e-2F);
     for (int iteration = 0;; ++iteration) {
@@ -152,23 +196,24 @@ void approach(const LaneChainOf<float>& chain, float position, float rotation, i
       LaneFrame<T> frame;
       place_joints(chain, q, J, frame);
       Remaining<T> at;
-      measure_remaining(frame, pack.target, position2, rotation2, at);
+      measure_remaining(frame, target, at);
       // A lane that got worse goes back, and tries again from there with a shorter step.
       const auto better = at.value <= best;
       best = select(better, at.value, best);
       for (int j = 0; j < n; ++j) best_q[j] = select(better, q[j], best_q[j]);
       if (iteration == iterations) break;
       T step[kMaxJoints];
-      step_to_closest(chain, frame, at, position2, rotation2, damping, q, J, step);
+      step_to_closest(chain, target, at, damping, q, J, step);
       damping = select(better, max(damping * T(0.2F), T(1e-6F)), min(damping * T(16.0F), T(1e3F)));
       for (int j = 0; j < n; ++j) {
         const auto& joint = chain.joint[j];
         q[j] = select(better, q[j] + step[j], best_q[j]);
         if (joint.limited) q[j] = min(max(q[j], T(joint.lower)), T(joint.upper));
       }
+      if (chain.coupled_rows > 0) hold_coupled(chain, q);
     }
-    for (int j = 0; j < n; ++j) Lanes<T>::store(best_q[j], pack.q[j] + first);
-    Lanes<T>::store(best + best, pack.error2 + first);
+    for (int j = 0; j < n; ++j) Lanes<T>::store(best_q[j], seeds + j * kBlock + first);
+    Lanes<T>::store(best, remainder + first);
   }
 }
 

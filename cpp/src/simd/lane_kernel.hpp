@@ -5,6 +5,7 @@
 
 #include "simd/branch_kernel.hpp"
 #include "simd/closest_kernel.hpp"
+#include "simd/coupled_kernel.hpp"
 #include "simd/lane_frames.hpp"
 #include "simd/lane_goal.hpp"
 #include "simd/lane_math.hpp"
@@ -127,6 +128,10 @@ IKSEL_INLINE PackResult iterate(const LaneChainOf<NumberOf<T>>& chain, const Lan
     const T er2 = e[3] * e[3] + e[4] * e[4] + e[5] * e[5];
     const T e2 = ep2 + er2;
     make_columns(chain, q, goal, frame, e, J);
+    if (chain.coupled_rows > 0) {
+      const T error[6] = {e[0], e[1], e[2], e[3], e[4], e[5]};  // so that e stays in registers
+      project_columns(chain, q, error, J);
+    }
     // dq = J^T (J J^T + lambda I)^-1 e.
     T A[6][6];
     multiply_rows<0, 3>(n, J, A);
@@ -140,6 +145,7 @@ IKSEL_INLINE PackResult iterate(const LaneChainOf<NumberOf<T>>& chain, const Lan
         (ep2 + er2 * T(options.lever2) <= T(options.position2)) & (er2 <= T(options.rotation2));
     for (T& part : step) part = select(there, T(0.0), part);
     const T dq2 = move_joints(chain, J, step, q);
+    if (chain.coupled_rows > 0) hold_coupled(chain, q);
 
     // Steps shrink quadratically: after a short one the error needs no look.
     const unsigned done =

@@ -3,6 +3,8 @@
 // different instruction sets agree on them.
 #pragma once
 
+#include "simd/coupled_types.hpp"
+
 namespace iksel::lanes {
 
 inline constexpr int kMaxJoints = 32;
@@ -26,11 +28,22 @@ struct LaneJointOf {
 };
 using LaneJoint = LaneJointOf<double>;
 
+/// A limit of a sum of joint values: lower <= c . q <= upper.
+template <typename Number>
+struct LaneCoupledOf {
+  Number c[kMaxJoints];
+  Number lower, upper;  ///< what is held to it is held to these
+  Number low, high;     ///< from these on it stands at it
+  Number least_norm2;   ///< far below that of its coefficients
+};
+
 /// The chain between the frames of its first and last joint.
 template <typename Number>
 struct LaneChainOf {
   int n;
   LaneJointOf<Number> joint[kMaxJoints];
+  int coupled_rows;
+  LaneCoupledOf<Number> coupled[kMostCoupled];
 };
 using LaneChain = LaneChainOf<double>;
 
@@ -87,10 +100,23 @@ using Advance = PackResult (*)(const LaneChain& chain, const LaneOptions& option
 using AdvanceRoughly = void (*)(const LaneChainOf<float>& chain, const LaneOptions& options,
                                 int iterations, RoughPack& pack);
 
-/// Moves all lanes of a pack so often towards where the least is missing of their pose
-/// (closest_kernel.hpp). `position` and `rotation` are weights.
-using Approach = void (*)(const LaneChainOf<float>& chain, float position, float rotation,
-                          int iterations, RoughPack& pack);
+/// A pose to come near to, and what is missing of it counts (closest_kernel.hpp). In the first
+/// joint's frame.
+struct ClosestTarget {
+  float position[3];
+  float metric[3][3];  ///< W, of the position's squared weights
+  /// B = K T^-1 in the first joint's frame, with the weights of the axes between these: the last
+  /// joint's rotation times it is the deviation's, or one with the same trace.
+  float rotation[3][3];
+  float trace;      ///< of the weights of the axes
+  float rotation2;  ///< the rotation's squared weight
+  float tcp[3];     ///< seen from the last joint
+};
+
+/// Moves kBlock seeds so often towards where the least is missing. Of each joint kBlock values in q
+/// follow each other; `remainder` becomes what is missing where they then are.
+using Approach = void (*)(const LaneChainOf<float>& chain, const ClosestTarget& target,
+                          int iterations, float* q, float* remainder);
 
 /// How a side of the chain is left out of the samples (reduction.hpp).
 enum class Side : int { none, rotation, translation };
@@ -172,7 +198,7 @@ using EvaluatePolynomial = void (*)(const TrigonometricPolynomial& polynomial, c
 using CloseLoops = void (*)(const LoopForm& form, const LoopTarget& target,
                             const ClosedForm& limits, BranchPack& pack);
 /// The number of roots between values beside each other: 0, 1, or 2 if that is not certain.
-using CountRoots = void (*)(const double* values, int n, double* counts);
+using CountRoots = void (*)(const double* values, int n, double apart, double* counts);
 
 struct SceneView;
 /// The clearance in each lane (scene_types.hpp).

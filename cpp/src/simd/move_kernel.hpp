@@ -4,6 +4,7 @@
 #pragma once
 
 #include "simd/branch_types.hpp"
+#include "simd/coupled_kernel.hpp"
 #include "simd/lane_math.hpp"
 
 namespace iksel::lanes {
@@ -22,7 +23,7 @@ IKSEL_INLINE void add_move(const MoveForm& form, int j, const T& q, T& loose, T&
   const T whole(6.28318530717958647693);
   const T per_turn(0.15915494309189533577);
   const T d = q - T(form.from[j]);
-  const T turns = nearest_integer(d * per_turn);
+  const T turns = form.turns[j] ? nearest_integer(d * per_turn) : T(0.0);
   const T nearest = d - whole * turns;
   T image = d;
   if (form.has_images[j]) {
@@ -36,7 +37,35 @@ IKSEL_INLINE void add_move(const MoveForm& form, int j, const T& q, T& loose, T&
   const T a = abs(nearest) * T(form.weight[j]);
   const T b = abs(image) * T(form.weight[j]);
   loose = form.takes_largest ? max(loose, a) : loose + a * a;
+  if (form.turns_coupled[j]) return;
   inside = form.takes_largest ? max(inside, b) : inside + b * b;
+}
+
+/// Adds to `inside` what the joints whose images change coupled sums move by: of these images,
+/// together, the least move inside of the limits. As far as the margin they are outside.
+template <typename T>
+void add_coupled_move(const MoveForm& form, const BranchPack& pack, int first, T& inside) {
+  const CoupledForm& coupled = *form.coupled;
+  T q[7];
+  for (int j = 0; j < 6; ++j) q[j] = Lanes<T>::load(pack.q[j] + first);
+  q[6] = Lanes<T>::load(pack.held + first);
+  T least = T(1e30);
+  T way = T(0.0);
+  for (int i = 0; i < coupled.images; ++i) {
+    T sum = T(0.0);
+    for (int k = 0; k < coupled.turning; ++k) {
+      const int j = coupled.joint[k];
+      const T value = image_of(coupled, j, i, q);
+      const T d = abs(value - T(form.from[j])) * T(form.weight[j]);
+      sum = form.takes_largest ? max(sum, d) : sum + d * d;
+    }
+    // Outside counts more than any move.
+    const T outside = max(beyond_at_image(coupled, i, q) + T(form.margin), T(0.0));
+    const T cost = sum + select(outside > T(0.0), (outside + T(1.0)) * T(1e9), T(0.0));
+    way = select(cost < least, sum, way);
+    least = min(least, cost);
+  }
+  inside = form.takes_largest ? max(inside, way) : inside + way;
 }
 
 /// To all lanes of a pack.
@@ -49,6 +78,7 @@ void measure_moves(const MoveForm& form, const BranchPack& pack, MovePack& out) 
       add_move(form, j, Lanes<T>::load(pack.q[j] + first), loose, inside);
     }
     add_move(form, 6, Lanes<T>::load(pack.held + first), loose, inside);
+    if (form.coupled != nullptr) add_coupled_move(form, pack, first, inside);
     if (!form.takes_largest) {
       loose = sqrt(loose);
       inside = sqrt(inside);

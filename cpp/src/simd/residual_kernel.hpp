@@ -128,13 +128,25 @@ IKSEL_INLINE T most_sign_changes(const T (&b)[6], const T& margin) {
   return changes;
 }
 
+/// Whether the parabola through three values turns between them and has its roots, real or not, no
+/// farther from there than `apart` steps.
+template <typename T>
+IKSEL_INLINE auto all_but_touches(const T& before, const T& at, const T& after, const T& apart) {
+  const T slope = T(0.5) * (after - before);
+  const T bend = after - T(2.0) * at + before;
+  const T bend2 = bend * bend;
+  return (at * bend > T(0.0)) & (slope * slope <= T(0.25) * bend2) &
+         (abs(at * bend - T(0.5) * slope * slope) <= T(0.5) * apart * apart * bend2);
+}
+
 /// For each of `n` cells between two of the evenly spaced values and the next, how many roots there
 /// are: none, one, or 2 where that is not certain. By Descartes' rule of signs for the polynomial
 /// of fifth degree through the six values around, in Bernstein form; what it may differ from the
-/// function is told by the sixth difference. There are 3 values before the first and 4 after the
-/// last cell's left one, and `n` is a multiple of kWidth.
+/// function is told by the sixth difference. Nor is it certain where the values turn at an end of
+/// the cell and all but reach 0 (all_but_touches). There are 3 values before the first and 4 after
+/// the last cell's left one, and `n` is a multiple of kWidth.
 template <typename T>
-void count_roots(const double* values, int n, double* counts) {
+void count_roots(const double* values, int n, double apart, double* counts) {
   // For the first two inner coefficients; the other two are their mirror images.
   constexpr double kFirst[6] = {1.0 / 100, -1.0 / 10, 14.0 / 15, 1.0 / 5, -1.0 / 20, 1.0 / 150};
   constexpr double kSecond[6] = {19.0 / 1200, -2.0 / 15, 89.0 / 120, 7.0 / 15, -5.0 / 48, 1.0 / 75};
@@ -154,7 +166,10 @@ void count_roots(const double* values, int n, double* counts) {
       b[3] = b[3] + T(kSecond[5 - k]) * v[1 + k];
       b[4] = b[4] + T(kFirst[5 - k]) * v[1 + k];
     }
-    Lanes<T>::store(min(most_sign_changes(b, margin), T(2.0)), counts + i);
+    const auto touches =
+        all_but_touches(v[2], v[3], v[4], T(apart)) | all_but_touches(v[3], v[4], v[5], T(apart));
+    const T count = min(most_sign_changes(b, margin), T(2.0));
+    Lanes<T>::store(select(touches, T(2.0), count), counts + i);
   }
 }
 

@@ -59,6 +59,12 @@ IKSEL_INLINE void rate_pair(const ClosedForm& form, const BranchTarget<T>& targe
       solve_three_parallel(form, target, {side[0], side[1], last}, branch);
     }
     for (int j = has_wrist ? 3 : 0; j < 6; ++j) is_enough(form, j, branch);
+    if (form.coupled != nullptr) {
+      T q[7];
+      for (int j = 0; j < 6; ++j) q[j] = joint_value(form, j, branch.q[j]);
+      q[6] = Lanes<T>::load(pack.held + first);
+      branch.quality.beyond = max(branch.quality.beyond, beyond_coupled(*form.coupled, q));
+    }
     Lanes<T>::store(branch.quality.off(), off[each] + first);
   }
 }

@@ -14,6 +14,7 @@
 #include "refine/best_effort.hpp"
 #include "solver/diagnose_branches.hpp"
 #include "solver/diagnose_refusals.hpp"
+#include "solver/limit_violations.hpp"
 #include "solver/solver_impl.hpp"
 
 namespace iksel {
@@ -22,6 +23,8 @@ namespace {
 /// Work that a diagnosis may spend where a solve gave up.
 constexpr int kPatientAttempts = 512;
 constexpr int kPatientIterations = 200;
+/// Seeds of a best effort.
+constexpr int kEfforts = 24;
 
 /// Singular values below this part of the largest are close to a singularity.
 constexpr double kNearlySingular = 1e-3;
@@ -49,9 +52,6 @@ Task position_of(Task task) {
   }
   return task;
 }
-
-/// Seeds of a best effort.
-constexpr int kEfforts = 24;
 
 /// Puts q into a diagnosis; true if it is close to a singularity.
 bool describe(const ChainModel& model, const Goal& goal, const JointVector& q, Diagnosis& out) {
@@ -148,24 +148,21 @@ class Diagnoser {
     }
     const Solutions answers = unlimited.solve_all(goal_.target(), {}, hinted);
     out_.attempts += answers.attempts;
+    double least = kInfinity;
     for (const Result& answer : answers.all) {
-      const JointVector branch = model_.joints.turned_to_middle(answer.q);
+      JointVector branch = model_.joints.turned_to_middle(answer.q);
+      if (!model_.joints.coupled_turning.empty()) model_.joints.wrap(branch.data());
       effort.from(branch);
-      int joint = 0;
-      const double violation = model_.joints.violations(branch).maxCoeff(&joint);
-      if (out_.joint >= 0 && violation >= out_.limit_violation) continue;
-      out_.joint = joint;
-      out_.limit_violation = violation;
+      const double violation = worst_violation(model_.joints, branch);
+      if (violation >= least) continue;
+      least = violation;
       out_.branch = branch;
     }
-    if (out_.joint < 0) return false;
+    if (least == kInfinity) return false;
+    set_violation(model_.joints, out_.branch, out_);
     describe(effort.q());
-    const auto joint = static_cast<std::size_t>(out_.joint);
-    const bool is_slide = model_.joints.types[joint] == JointType::prismatic;
     out_.cause = Cause::joint_limits;
-    out_.message = "answers exist only outside the limits: joint '" + model_.joints.names[joint] +
-                   "' would have to go beyond by " +
-                   format(is_slide ? "%.4g m" : "%.4g rad", out_.limit_violation) +
+    out_.message = "answers exist only outside the limits: " + describe_violation(model_, out_) +
                    " or more; move the target, or leave an axis free";
     return true;
   }
@@ -180,8 +177,7 @@ class Diagnoser {
     // From many configurations that have the position towards the rotation, the position weighing
     // more; then all the way back to the position.
     constexpr double kLittle = 0.01;
-    BestEffort effort = make_effort(goal_);
-    effort.weigh_rotation(kLittle);
+    BestEffort effort = make_effort(goal_, kLittle);
     SolveAllOptions spread_out;
     spread_out.max = kEfforts;
     spread_out.min_distance = 0.1;
@@ -240,8 +236,9 @@ class Diagnoser {
     return Solver(arm, generous(solver_.options), solver_.database, solver_.nominal,
                   CalibrationDeviation{kInfinity, kInfinity});
   }
-  [[nodiscard]] BestEffort make_effort(const Goal& towards) const {
-    return {model_, towards, solver_.database.data().weight};
+  /// A rotation counts that part of what it counts otherwise.
+  [[nodiscard]] BestEffort make_effort(const Goal& towards, double part = 1) const {
+    return {model_, towards, part * solver_.database.data().weight};
   }
 
   void explain_refusals(Status status) {

@@ -2,11 +2,11 @@
 #include "solver/diagnose_branches.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <string>
 
 #include "base/message_text.hpp"
 #include "seeds/branch_trace.hpp"
+#include "solver/limit_violations.hpp"
 
 namespace iksel {
 namespace {
@@ -35,33 +35,12 @@ JointVector find_nearest(const ChainModel& model, const Goal& goal, const Enumer
     double position = 0;
     double rotation = 0;
     goal.measure(q, position, rotation);
-    const double violation = model.joints.violations(q).maxCoeff();
+    const double violation = worst_violation(model.joints, q);
     if (!goal.is_reached(position, rotation) || violation >= least) continue;
     least = violation;
     nearest = q;
   }
   return nearest;
-}
-
-/// "joint 'a' would have to be at 3.3 rad, 0.2 rad beyond its upper limit, 'b' at ...", the
-/// farthest first.
-std::string list_violations(const ChainModel& model, const JointVector& q) {
-  const JointVector outside = model.joints.violations(q);
-  std::vector<int> order(static_cast<std::size_t>(model.dof));
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](int a, int b) { return outside[a] > outside[b]; });
-  std::string list;
-  for (const int j : order) {
-    if (!(outside[j] > 0)) break;
-    const bool is_first = list.empty();
-    list += (is_first ? "joint " : ", ") + quoted(model, j);
-    if (is_first) list += " would have to be";
-    list += " at " + number_text(q[j], kShownDigits) + " rad, " +
-            number_text(outside[j], kShownDigits) + " rad beyond its " +
-            (q[j] > model.joints.upper[j] ? "upper" : "lower") + " limit";
-  }
-  return list;
 }
 
 /// Of the branches that there are not, the one that gets farthest.
@@ -106,7 +85,7 @@ std::optional<BranchReasons> explain_branches(const ChainModel& model, const Goa
   out.branch = find_nearest(model, goal, branches);
   if (out.branch.size() > 0) {
     out.cause = Cause::joint_limits;
-    out.limit_violation = model.joints.violations(out.branch).maxCoeff(&out.joint);
+    set_violation(model.joints, out.branch, out);
     out.message = kCertainly +
                   std::string(
                       "each branch that reaches the target lies outside the limits; in the "

@@ -31,11 +31,42 @@ const char* to_string(ArcEnd end) {
 
 namespace {
 
+/// Moves q on the goal to where a coupled limit is reached; where that fails, it stays.
+void hold_to_coupled_limit(const ChainModel& model, const Goal& goal, const SelfMotionEnd& end,
+                           JointVector& q) {
+  constexpr int kSteps = 4;
+  const std::vector<CoupledRow>& rows = model.joints.coupled;
+  const auto row = std::find_if(rows.begin(), rows.end(), [&](const CoupledRow& each) {
+    return each.given == end.coupled_limit;
+  });
+  const double bound = end.at_upper ? row->upper - row->rounding : row->lower + row->rounding;
+  JointVector held = q;
+  for (int step = 0; step < kSteps; ++step) {
+    Pose pose;
+    Jacobian of_pose;
+    model.fk_jacobian(held.data(), pose, of_pose);
+    Eigen::Matrix<double, SweptBranches::kDof, SweptBranches::kDof> J;
+    J.topRows<6>() = of_pose;
+    J.row(6) = row->c.transpose();
+    Eigen::Matrix<double, SweptBranches::kDof, 1> missing;
+    missing << pose_error(goal.target(), pose), bound - row->sum(held.data());
+    const JointVector move = J.partialPivLu().solve(missing);
+    if (!move.allFinite()) return;
+    held = model.joints.clamp(held + move);
+  }
+  constexpr double kAtLimit = 1e-9;
+  if (goal.is_solution(held) && std::abs(row->sum(held.data()) - bound) < kAtLimit) q = held;
+}
+
 /// Holds a joint to its limit, and moves the six others to the goal; where that fails, q stays.
 void hold_to_limit(const ChainModel& model, const Goal& goal, const SelfMotionEnd& end,
                    JointVector& q) {
   constexpr int kSteps = 4;
   if (end.kind != ArcEnd::limit) return;
+  if (end.coupled_limit >= 0) {
+    hold_to_coupled_limit(model, goal, end, q);
+    return;
+  }
   JointVector held = q;
   held[end.joint] = end.at_upper ? model.joints.upper[end.joint] : model.joints.lower[end.joint];
   for (int step = 0; step < kSteps && !goal.is_solution(held); ++step) {
@@ -97,9 +128,11 @@ void Solver::Impl::check_self_motion(double spacing) const {
   const std::string who = "self_motion: robot '" + robot.name() + "'";
   if (!workspaces.has_arcs()) {
     const Structure structure = find_structure(nominal);
-    throw InvalidArgumentError(who + " has no self-motion that could be swept (" +
-                               to_string(structure.kind) + ": " + structure.description +
-                               "); it takes seven joints that turn, three of whose axes meet");
+    throw InvalidArgumentError(
+        who + " has no self-motion that could be swept (" + to_string(structure.kind) + ": " +
+        structure.description +
+        "); it takes seven joints, three of whose axes meet or are parallel, and "
+        "of which but the first or the last may slide");
   }
   if (!task.is_full_pose()) {
     throw InvalidArgumentError(who + " is asked for a task with free axes, " +

@@ -35,7 +35,8 @@ bool cheaper(const Image& a, const Image& b) {
                                       b.q.data() + b.q.size());
 }
 
-/// Smallest distance from a limit, relative to the joint's range; joints without limits have none.
+/// Smallest distance from a limit, relative to the range of the joint, or of what is coupled;
+/// joints without limits have none.
 double limit_distance(const ChainModel& model, const JointVector& q) {
   double least = 0.5;
   for (int j = 0; j < model.dof; ++j) {
@@ -43,6 +44,10 @@ double limit_distance(const ChainModel& model, const JointVector& q) {
     if (!std::isfinite(range) || range <= 0) continue;
     least = std::min(least,
                      std::min(q[j] - model.joints.lower[j], model.joints.upper[j] - q[j]) / range);
+  }
+  for (const CoupledRow& row : model.joints.coupled) {
+    const double sum = row.sum(q.data());
+    least = std::min(least, std::min(sum - row.lower, row.upper - sum) / (row.upper - row.lower));
   }
   return least;
 }

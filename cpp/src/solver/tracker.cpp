@@ -13,14 +13,34 @@
 
 namespace iksel {
 
+namespace {
+
+/// From q a little towards `to` [rad or m]: an arm that was stretched out bends to that side.
+JointVector lean(const JointVector& q, const JointVector& to) {
+  constexpr double kLean = 0.02;
+  const JointVector way = to - q;
+  const double longest = way.cwiseAbs().maxCoeff();
+  return longest > kLean ? JointVector(q + kLean / longest * way) : to;
+}
+
+}  // namespace
+
 Tracker::Tracker(const Solver& solver, const JointVector& start,
-                 const std::optional<PoseWeights>& closest)
-    : solver_(solver), q_(start), closest_(closest) {
+                 const std::optional<PoseWeights>& closest,
+                 const std::optional<JointVector>& reached)
+    : solver_(solver),
+      q_(start),
+      closest_(closest),
+      reached_(reached ? *reached : start),
+      is_at_edge_(closest && reached_ != start) {
   const Robot& robot = solver.robot();
-  check_joints(start, robot.dof(), "start");
+  for (JointVector* q : {&q_, &reached_}) {
+    const char* name = q == &q_ ? "start" : "reached";
+    check_joints(*q, robot.dof(), name);
+    solver.impl_->angles.check(*q, name);
+    *q = robot.model().joints.clamp(*q);
+  }
   if (closest) closest->validate();
-  solver.impl_->angles.check(start, "start");
-  q_ = robot.model().joints.clamp(q_);
 }
 
 Result Tracker::track(const Pose& T_base_tip, double dt, const Scene* scene) {
@@ -33,13 +53,14 @@ Result Tracker::track(const Pose& T_base_tip, double dt, const Scene* scene) {
   if (scene != nullptr) scene->check_fits(solver_.robot());
   const Goal goal(model, solver_.impl_->task, target, scene);
   Result result;
-  JointVector end = q_;
+  const JointVector from = is_at_edge_ ? lean(q_, reached_) : q_;
+  JointVector end = from;
   result.attempts = 1;
   const bool is_reached = converge(model, goal, kStepsToNext, end);
   if (!is_reached) {
     if (!closest_) return result;
     const Vector6 weights = to_vector(*closest_, solver_.database().data());
-    end = q_;
+    end = from;
     descend_to_closest(model, Remainder(model, goal, weights), kStepsToNext, end,
                        result.iterations);
   }
@@ -64,6 +85,8 @@ Result Tracker::track(const Pose& T_base_tip, double dt, const Scene* scene) {
     return result;
   }
   q_ = end;
+  is_at_edge_ = result.status == Status::closest;
+  if (result.success()) reached_ = q_;
   result.move = part * move.norm();
   return result;
 }

@@ -6,6 +6,7 @@
 #include "base/constants.hpp"
 #include "simd/lane_chain.hpp"
 #include "structure/completed_axes.hpp"
+#include "structure/coupled_form.hpp"
 #include "structure/find_loop.hpp"
 
 namespace iksel {
@@ -205,9 +206,18 @@ void ClosedFormChain::use_limits(const ChainModel& model) {
     form.middle[i] = ends ? 0.5 * (model.joints.lower[j] + model.joints.upper[j]) : 0;
     form.reach[i] = ends ? 0.5 * (model.joints.upper[j] - model.joints.lower[j]) : kPi;
   }
+  coupled = make_coupled_form(model, *this);
+  form.coupled = coupled.get();
 }
 
 namespace {
+
+/// How far the links reach, slides apart [m]: however long a slide is, an error means as much.
+double reach_of_links(const ChainModel& model) {
+  double reach = 0;
+  for (const KernelJoint& joint : model.kernel.joints) reach += Vector3d(joint.p).norm();
+  return reach + Vector3d(model.kernel.flange.p).norm();
+}
 
 /// The last six axes, seen from one end. `sweeps`: those that are closed for an angle of a joint.
 std::optional<ClosedFormChain> look_from(const ChainModel& model, const CompletedAxes& completed,
@@ -219,6 +229,10 @@ std::optional<ClosedFormChain> look_from(const ChainModel& model, const Complete
   const auto joint = [&](int i) { return reversed ? count - 1 - i : i; };
   const Vector3d held_axis = axes.h.front();
   const Vector3d held_point = axes.p.front();
+  const auto& joints = model.kernel.joints;
+  for (int i = before; i < std::min(count, model.dof); ++i) {
+    if (joints[static_cast<std::size_t>(joint(i))].prismatic) return std::nullopt;
+  }
   if (before > 0) {
     chain.held = joint(0);
     axes.h.erase(axes.h.begin());
@@ -237,13 +251,14 @@ std::optional<ClosedFormChain> look_from(const ChainModel& model, const Complete
   chain.dof = model.dof;
   chain.free = completed.free;
   chain.reversed = reversed;
-  chain.unit = model.reach;
+  chain.unit = reach_of_links(model);
   chain.form = make_form(*closure, geometry.axes(), chain.unit);
   Eigen::Matrix3d E;
   for (int k = 0; k < 3; ++k) E.col(k) = Vector3d(chain.form.basis[k]);
   chain.first = geometry.axes().p[0];
   chain.form.is_held = before > 0;
   write(held_axis, chain.form.held_axis);
+  if (before > 0 && model.joints.is_slide(chain.held)) chain.form.held_slide = 1 / chain.unit;
   write((chain.first - held_point) / chain.unit, chain.form.held_from);
   chain.tail = E.transpose() * (geometry.axes().end.translation() - geometry.axes().p[5]);
   chain.to_basis = geometry.axes().end.linear().transpose() * E;
@@ -259,16 +274,19 @@ std::optional<ClosedFormChain> look_at(const ChainModel& model, const CompletedA
   return std::nullopt;
 }
 
-bool all_turn(const ChainModel& model) {
+/// Whether all joints turn, but for one of seven that may be held.
+bool can_be_closed(const ChainModel& model) {
   const auto& joints = model.kernel.joints;
-  return is_simple(model) && std::none_of(joints.begin(), joints.end(),
-                                          [](const KernelJoint& joint) { return joint.prismatic; });
+  return is_simple(model) &&
+         std::count_if(joints.begin(), joints.end(), [](const KernelJoint& joint) {
+           return joint.prismatic;
+         }) <= (model.dof == kSix + 1 ? 1 : 0);
 }
 
 }  // namespace
 
 std::optional<ClosedFormChain> find_closed_form(const ChainModel& model, const Task& task) {
-  if (!all_turn(model)) return std::nullopt;
+  if (!can_be_closed(model)) return std::nullopt;
   for (const CompletedAxes& completed : complete_axes(model, task, kStructureTolerance)) {
     auto chain = look_at(model, completed, /*sweeps=*/false);
     if (chain) return chain;

@@ -22,8 +22,8 @@ inline constexpr double kStructureTolerance = 1e-9;
 inline constexpr double kSweptTolerance = 2e-5;
 
 /// Six consecutive joints of a chain, seen from either end; before them there may be one that is
-/// held. A chain of fewer joints, or one for a task that leaves rotations free, is completed
-/// (completed_axes.hpp).
+/// held, be it a slide. A chain of fewer joints, or one for a task that leaves rotations free, is
+/// completed (completed_axes.hpp).
 struct ClosedFormChain {
   /// `joints[i]` is the chain's joint that the form counts as its i-th; from `dof` on, what
   /// completes it.
@@ -36,6 +36,8 @@ struct ClosedFormChain {
   lanes::ClosedForm form{};
   /// Of the closure `loop`, of which the form has but the limits.
   std::shared_ptr<const LoopEquations> loop;
+  /// What form.coupled points at.
+  std::shared_ptr<const lanes::CoupledForm> coupled;
   double unit = 0;           ///< [m]
   double deviation = 0;      ///< of axes from where the form has them [rad, units]
   Eigen::Vector3d first;     ///< the point on axis 1 [m]

@@ -18,6 +18,12 @@ ScrewAxes ScrewAxes::of(const ChainModel& model) {
       frame = frame * step;
     }
     first = false;
+    if (joint.prismatic) {
+      Pose turn = Pose::Identity();
+      turn.linear() << joint.cos_turn, -joint.sin_turn, 0, joint.sin_turn, joint.cos_turn, 0, 0, 0,
+          1;
+      frame = frame * turn;
+    }
     axes.h.emplace_back(frame.linear().col(2));
     axes.p.emplace_back(frame.translation());
   }

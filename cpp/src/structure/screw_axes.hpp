@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The axes of a chain whose joints all turn, where all its angles are zero: what is parallel to
-// what, and what meets where.
+// The axes of a chain where all its joints are at zero: what is parallel to what, and what meets
+// where. Of a slide the axis is where it moves to.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -11,13 +11,13 @@
 namespace iksel {
 
 /// Seen from the first joint's frame, or the other way round from the last one's. Angles are the
-/// kernel's, q + offset.
+/// kernel's, q + offset, and so are ways of slides.
 struct ScrewAxes {
   std::vector<Eigen::Vector3d> h;  ///< unit vectors
   std::vector<Eigen::Vector3d> p;  ///< a point on each
   Pose end;                        ///< the last joint's frame
 
-  /// `model` is simple (simd/lane_chain.hpp) and without slides.
+  /// `model` is simple (simd/lane_chain.hpp).
   static ScrewAxes of(const ChainModel& model);
   /// The same chain from its end to its beginning: its pose is the inverse, its angles the same.
   [[nodiscard]] ScrewAxes reversed() const;

@@ -90,7 +90,9 @@ Structure find_structure(const Robot& robot) {
   }
   std::string text = describe_axes(*chain);
   if (chain->held >= 0) {
-    return {StructureKind::swept, text + ": in closed form for each angle of joint " +
+    const bool slides = chain->form.held_slide != 0;
+    return {StructureKind::swept, text + ": in closed form for each " +
+                                      (slides ? "place of slide " : "angle of joint ") +
                                       std::to_string(chain->held + 1) + ", which is swept"};
   }
   if (chain->is_completed()) {

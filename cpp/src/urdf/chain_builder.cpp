@@ -190,6 +190,8 @@ class ChainReader {
   static void lock(ChainJoint& segment, double value) {
     segment.before = moved(segment.before, segment.axis, segment.prismatic, value);
     segment.fixed = true;
+    segment.is_locked = true;
+    segment.locked_at = value;
   }
 
   int variable_of(const urdf::Joint& source) {

@@ -19,6 +19,8 @@ struct ChainJoint {
   Eigen::Isometry3d after = Eigen::Isometry3d::Identity();
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
   bool fixed = false;
+  bool is_locked = false;  ///< fixed, where it would move
+  double locked_at = 0;    ///< then the joint's value [rad or m]
   bool prismatic = false;
   int variable = -1;  ///< -1: fixed
   double multiplier = 1.0;

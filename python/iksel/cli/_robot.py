@@ -14,6 +14,7 @@ from iksel_cpp import (
 
 from iksel._urdf_xml import read_xml
 from iksel.cli._angles import Angles, add_degrees
+from iksel.cli._coupled import FLAG, FORM, parse_coupled_limit
 from iksel.cli._parser import POSE_METAVAR, parse_numbers
 from iksel.description import read_description
 from iksel.robots import load_robot, robot_names
@@ -22,7 +23,7 @@ from iksel.robots import load_tree as load_tree_of
 if TYPE_CHECKING:
     import argparse
 
-    from iksel_cpp import LinkTree, Robot
+    from iksel_cpp import CoupledLimit, LinkTree, Robot
 
     from iksel._arrays import FloatArray
 
@@ -32,6 +33,7 @@ EVERY_TURN = (np.array([-np.inf]), np.array([np.inf]))
 # What errors call by the name of the argument in Python.
 _FLAGS = {
     "default_limits": "--default-limits LOWER UPPER",
+    "coupled_limits": FLAG,
     "locked_joints": "--lock JOINT=VALUE",
     "xacro_args": "--xacro-arg NAME=VALUE",
     "packages: ": "--package NAME=FOLDER: ",
@@ -85,6 +87,14 @@ def add_robot(parser: argparse.ArgumentParser) -> None:
         help="limits of joints whose limits the URDF leaves out or has as 0, 0 [rad or "
         "m]; without, such a joint is an error",
     )
+    group.add_argument(
+        FLAG,
+        action="append",
+        default=[],
+        metavar="LIMIT",
+        help=f"limit of a sum of joint values [rad or m], {FORM}; joints may have "
+        "coefficients, as 0.5 JOINT, and one end may be left out; may be repeated",
+    )
     _add_formats(group)
     add_degrees(group)
 
@@ -131,7 +141,7 @@ def load(arguments: argparse.Namespace) -> Robot:
     Raises:
         UnknownNameError: Neither a built-in robot nor a file, or no such link or joint.
         UrdfError: The file cannot be read or used.
-        InvalidArgumentError: A tool or locked joint that makes no sense.
+        InvalidArgumentError: A tool, locked joint or coupled limit that makes no sense.
     """
     angles = Angles(arguments)
     settings: dict[str, Any] = {
@@ -149,6 +159,8 @@ def load(arguments: argparse.Namespace) -> Robot:
         limits = parse_numbers(flag, arguments.default_limits)
         # No warning: limits may be of any number of turns.
         settings["default_limits"] = angles.read(flag, limits, EVERY_TURN)
+    if arguments.coupled_limit:
+        settings["coupled_limits"] = _coupled_limits(arguments, angles)
     if arguments.tcp is not None:
         none = arguments.tcp == ["none"]
         settings["tcp"] = None if none else angles.read_pose("--tcp", arguments.tcp)
@@ -217,9 +229,7 @@ def _pair(flag: str, form: str, text: str) -> tuple[str, str]:
 def _locked_joints(arguments: argparse.Namespace, angles: Angles) -> dict[str, float]:
     """Names and values of all --lock [rad or m]."""
     locked = dict(map(_lock, arguments.lock))
-    slides = {
-        joint.name for joint in load_tree(arguments).joints if joint.type == "prismatic"
-    }
+    slides = _slides(arguments)
     limits = _joint_limits(arguments)
     return {
         name: value
@@ -227,6 +237,27 @@ def _locked_joints(arguments: argparse.Namespace, angles: Angles) -> dict[str, f
         else angles.read(f"--lock {name}", [value], limits.get(name, EVERY_TURN))[0]
         for name, value in locked.items()
     }
+
+
+def _slides(arguments: argparse.Namespace) -> set[str]:
+    """Names of the prismatic joints."""
+    joints = load_tree(arguments).joints
+    return {joint.name for joint in joints if joint.type == "prismatic"}
+
+
+def _coupled_limits(
+    arguments: argparse.Namespace, angles: Angles
+) -> list[CoupledLimit]:
+    """Those of all --coupled-limit [rad or m]."""
+    slides = _slides(arguments)
+
+    def read_end(joints: list[str], value: float) -> float:
+        if slides.intersection(joints):
+            return value
+        # No warning: a sum may be of any number of turns.
+        return float(angles.read(FLAG, [value], EVERY_TURN)[0])
+
+    return [parse_coupled_limit(text, read_end) for text in arguments.coupled_limit]
 
 
 def _joint_limits(

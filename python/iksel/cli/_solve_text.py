@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 def diagnosis_report(
     robot: Robot, diagnosis: Diagnosis, angles: Angles
 ) -> dict[str, Any]:
-    """The fields of a diagnosis; the joint by name."""
-    joint = diagnosis.joint
+    """The fields of a diagnosis; joints by name."""
+    joint, coupled = diagnosis.joint, diagnosis.coupled_limit
     return {
         "cause": diagnosis.cause.name,
         "message": diagnosis.message,
@@ -29,6 +29,7 @@ def diagnosis_report(
         "beyond_reach": diagnosis.beyond_reach,
         "rotation_gap": diagnosis.rotation_gap,
         "joint": robot.joint_names[joint] if joint >= 0 else None,
+        "coupled_limit": str(robot.coupled_limits[coupled]) if coupled >= 0 else None,
         "limit_violation": diagnosis.limit_violation,
         "branch": angles.show_optional(robot, diagnosis.branch),
         "least_singular_value": diagnosis.least_singular_value,

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from iksel._limits import violated_limits
 from iksel.cli._configuration import add_configuration, read_configuration
 from iksel.cli._output import numbers, print_json, print_matrix, print_pairs
 from iksel.cli._robot import chain_text
@@ -81,8 +82,5 @@ def run(arguments: argparse.Namespace) -> int:
 
 def limits_text(robot: Robot, q: FloatArray) -> str:
     """Whether joint values (dof,) lie inside the limits; if not, which do not."""
-    if robot.within_limits(q):
-        return "inside"
-    off = (q < robot.lower) | (q > robot.upper)
-    names = [name for name, out in zip(robot.joint_names, off, strict=True) if out]
-    return f"outside: {', '.join(names)}"
+    names = violated_limits(robot, q)
+    return f"outside: {', '.join(names)}" if names else "inside"

@@ -25,7 +25,7 @@ from iksel.srdf import Srdf
 if TYPE_CHECKING:
     import argparse
 
-    from iksel_cpp import LinkTree, Robot
+    from iksel_cpp import CoupledLimit, LinkTree, Robot
 
     from iksel._arrays import FloatArray
 
@@ -36,6 +36,7 @@ examples:
   iksel info ur3 --tree
   iksel info arm.urdf
   iksel info arm.urdf --base base_link --tip tool0 --lock wrist=0.5
+  iksel info arm.urdf --coupled-limit "-1.2 <= joint_2 + joint_3 <= 2"
   iksel info arm.urdf --srdf arm.srdf --group manipulator
   iksel info arm.urdf.xacro --xacro-arg prefix=left_
   iksel info scene.xml --tip hand
@@ -97,6 +98,7 @@ def run(arguments: argparse.Namespace) -> int:
             ("tcp", pose_text(robot.tcp)),
             ("reach", reach),
             ("structure", robot.structure.description),
+            *(("coupled limit", str(limit)) for limit in robot.coupled_limits),
             ("chain hash", f"{robot.chain_hash:016x}"),
             *((field, text) for field, text in origin.items() if text),
             *((field, ", ".join(names)) for field, names in srdf.items()),
@@ -162,7 +164,17 @@ def as_dict(robot: Robot, angles: Angles) -> dict[str, Any]:
             "description": structure.description,
         },
         "chain_hash": f"{robot.chain_hash:016x}",
+        "coupled_limits": [_limit_as_dict(limit) for limit in robot.coupled_limits],
         "joints": [dict(zip(names, joint, strict=True)) for joint in columns],
+    }
+
+
+def _limit_as_dict(limit: CoupledLimit) -> dict[str, Any]:
+    """A coupled limit, always [rad or m]; None for no end."""
+    ends = {"lower": limit.lower, "upper": limit.upper}
+    return {
+        "coefficients": limit.coefficients,
+        **{end: x if math.isfinite(x) else None for end, x in ends.items()},
     }
 
 

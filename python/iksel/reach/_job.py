@@ -12,7 +12,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from iksel_cpp import Robot, Solver, SolverOptions
+from iksel_cpp import CoupledLimit, Robot, Solver, SolverOptions
 
 from iksel import __version__
 from iksel.reach._errors import PlanMismatchError
@@ -134,6 +134,9 @@ class Job(ABC):
         urdf, tcp = data.pop("urdf"), data.pop("tcp")
         del data["name"]
         data["tcp"] = np.array(tcp).reshape(4, 4)
+        data["coupled_limits"] = [
+            CoupledLimit(*_from_json(limit)) for limit in data.get("coupled_limits", ())
+        ]
         robot = Robot.from_urdf(urdf, **data)
         if f"{robot.chain_hash:016x}" != expected:
             raise PlanMismatchError(
@@ -186,10 +189,17 @@ def common_data(robot: Robot, options: SolverOptions) -> dict[str, Any]:
             "locked_joints": dict(robot.locked_joints),
             "soft_limits": robot.soft_limits,
             "default_limits": _plain(robot.default_limits),
+            **_coupled_data(robot),
             "chain_hash": f"{robot.chain_hash:016x}",
         },
         "options": _plain(options.to_dict()),
     }
+
+
+def _coupled_data(robot: Robot) -> dict[str, Any]:
+    """The coupled limits, if there are any: plans without are what they were."""
+    limits = [[x.coefficients, x.lower, x.upper] for x in robot.coupled_limits]
+    return {"coupled_limits": _plain(limits)} if limits else {}
 
 
 def _plain(value: Any) -> Any:

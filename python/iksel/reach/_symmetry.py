@@ -26,8 +26,15 @@ TOLERANCE = 1e-9
 
 
 def turns_freely(robot: Robot, joint: int) -> bool:
-    """Whether the joint is revolute with a range of a whole turn or more."""
+    """Whether the joint is revolute with a range of a whole turn or more.
+
+    Not if it may be in a coupled limit: its turns change the sum then, and where that
+    is of a mimic joint, the source has another name.
+    """
     if robot.joint_types[joint] == JointType.prismatic:
+        return False
+    others = set(robot.joint_names) - {robot.joint_names[joint]}
+    if any(set(limit.coefficients) - others for limit in robot.coupled_limits):
         return False
     return not robot.upper[joint] - robot.lower[joint] < 2 * np.pi
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from iksel_cpp import JointType
 
+from iksel._limits import violated_limits
 from iksel._qualities import limit_distance, manipulability
 from iksel.view.session import CHOICES
 
@@ -146,9 +147,7 @@ def nearest_limit(session: Session) -> str:
     """Which joint is nearest to a limit, by the share of its range."""
     robot, q = session.robot, session.q
     if not robot.within_limits(q):
-        outside = (q < robot.lower) | (q > robot.upper)
-        names = [n for n, out in zip(robot.joint_names, outside, strict=True) if out]
-        return f"**outside the limits**: {', '.join(names)}"
+        return f"**outside the limits**: {', '.join(violated_limits(robot, q))}"
     ranges = robot.upper - robot.lower
     limited = np.isfinite(ranges) & (ranges > 0)
     if not limited.any():

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Limits of sums of joint values, in lanes: how far branches lie outside, and steps along them.
+#pragma once
+
+#include "simd/coupled_types.hpp"
+#include "simd/lane_math.hpp"
+#include "simd/lane_types.hpp"
+
+namespace iksel::lanes {
+
+/// The value of a joint whose whole turns count, at an image; `q` as in beyond_coupled.
+template <typename T>
+IKSEL_INLINE T image_of(const CoupledForm& form, int j, int image, const T (&q)[7]) {
+  const T value = j == 6 ? q[6] - T(form.held_offset) : q[j];
+  const T turns = nearest_integer((T(form.middle[j]) - value) * T(0.15915494309189533577));
+  return value + turns * T(6.28318530717958647693) + T(form.turned[image][j]);
+}
+
+/// How far the sum that is farthest lies outside, or a joint whose whole turns count, at an image.
+template <typename T>
+IKSEL_INLINE T beyond_at_image(const CoupledForm& form, int image, const T (&q)[7]) {
+  T at[7];
+  for (int j = 0; j < 7; ++j) at[j] = q[j];
+  at[6] = at[6] - T(form.held_offset);
+  T beyond = T(-1e30);
+  for (int k = 0; k < form.turning; ++k) {
+    const int j = form.joint[k];
+    at[j] = image_of(form, j, image, q);
+    beyond = max(beyond, abs(at[j] - T(form.middle[j])) - T(form.reach[j]));
+  }
+  for (int r = 0; r < form.rows; ++r) {
+    T sum = T(0.0);
+    for (int j = 0; j < 7; ++j) sum = sum + T(form.coefficient[r][j]) * at[j];
+    beyond = max(beyond, max(T(form.lower[r]) - sum, sum - T(form.upper[r])));
+  }
+  return beyond;
+}
+
+/// The same at the image where that is least, 0 or less if no sum lies outside. `q`: six joint
+/// values, and the held angle [rad].
+template <typename T>
+[[gnu::noinline]] T beyond_coupled(const CoupledForm& form, const T (&q)[7]) {
+  T least = beyond_at_image(form, 0, q);
+  for (int i = 1; i < form.images; ++i) least = min(least, beyond_at_image(form, i, q));
+  return least;
+}
+
+/// The sum that a row of a chain bounds.
+template <typename T>
+IKSEL_INLINE T coupled_sum(const LaneChainOf<NumberOf<T>>& chain, int row, const T* q) {
+  T sum = T(0.0);
+  for (int j = 0; j < chain.n; ++j) sum = sum + T(chain.coupled[row].c[j]) * q[j];
+  return sum;
+}
+
+/// Moves the lanes that violate coupled limits along these into them, as far as the joints' own
+/// limits let them.
+template <typename T>
+[[gnu::noinline]] void hold_coupled(const LaneChainOf<NumberOf<T>>& chain, T* q) {
+  // After one the joints that were in the way stand at their limits.
+  constexpr int kRounds = 3;
+  for (int round = 0; round < kRounds; ++round) {
+    for (int r = 0; r < chain.coupled_rows; ++r) {
+      const auto& row = chain.coupled[r];
+      const T sum = coupled_sum(chain, r, q);
+      const T excess = max(sum - T(row.upper), T(0.0)) + min(sum - T(row.lower), T(0.0));
+      if (!any(abs(excess) > T(0.0))) continue;
+      T free[kMaxJoints];
+      T norm2 = T(0.0);
+      for (int j = 0; j < chain.n; ++j) {
+        const auto& joint = chain.joint[j];
+        const T down = excess * T(row.c[j]);
+        const auto stays = ((q[j] <= T(joint.lower)) & (down > T(0.0))) |
+                           ((q[j] >= T(joint.upper)) & (down < T(0.0)));
+        free[j] = select(stays, T(0.0), T(row.c[j]));
+        norm2 = norm2 + free[j] * free[j];
+      }
+      const T part = excess / max(norm2, T(row.least_norm2));
+      for (int j = 0; j < chain.n; ++j) {
+        if (row.c[j] == 0) continue;
+        const auto& joint = chain.joint[j];
+        q[j] = min(max(q[j] - part * free[j], T(joint.lower)), T(joint.upper));
+      }
+    }
+  }
+}
+
+/// Takes out of the columns of J, in lanes at coupled limits which the error e pulls at, what would
+/// leave them: steps J^T y then go along these.
+template <typename T>
+[[gnu::noinline]] void project_columns(const LaneChainOf<NumberOf<T>>& chain, const T* q,
+                                       const T (&e)[6], T (*J)[6]) {
+  T normal[kMostCoupled][kMaxJoints];
+  for (int r = 0; r < chain.coupled_rows; ++r) {
+    const auto& row = chain.coupled[r];
+    const T sum = coupled_sum(chain, r, q);
+    const auto low = sum <= T(row.low);
+    const auto high = sum >= T(row.high);
+    for (int j = 0; j < chain.n; ++j) normal[r][j] = T(0.0);
+    if (!any(low | high)) continue;
+    // Of the joints that may move: none whose column was taken out at its own limit.
+    T slope = T(0.0);
+    T size2 = T(0.0);
+    for (int j = 0; j < chain.n; ++j) {
+      if (row.c[j] == 0) continue;
+      T gradient = T(0.0);
+      T column2 = T(0.0);
+      for (int i = 0; i < 6; ++i) {
+        gradient = gradient + J[j][i] * e[i];
+        column2 = column2 + J[j][i] * J[j][i];
+      }
+      const auto& joint = chain.joint[j];
+      const auto is_held =
+          (column2 <= T(0.0)) & ((q[j] <= T(joint.lower)) | (q[j] >= T(joint.upper)));
+      normal[r][j] = select(is_held, T(0.0), T(row.c[j]));
+      slope = slope + gradient * T(row.c[j]);
+      size2 = size2 + normal[r][j] * normal[r][j];
+    }
+    // Across the rows before.
+    for (int s = 0; s < r; ++s) {
+      T along = T(0.0);
+      for (int j = 0; j < chain.n; ++j) along = along + normal[r][j] * normal[s][j];
+      for (int j = 0; j < chain.n; ++j) normal[r][j] = normal[r][j] - along * normal[s][j];
+    }
+    T norm2 = T(0.0);
+    for (int j = 0; j < chain.n; ++j) norm2 = norm2 + normal[r][j] * normal[r][j];
+    const auto leaves =
+        ((low & (slope < T(0.0))) | (high & (slope > T(0.0)))) & (norm2 > T(1e-6) * size2);
+    const T scale = select(leaves, T(1.0) / sqrt(max(norm2, T(row.least_norm2))), T(0.0));
+    T across[6] = {T(0.0), T(0.0), T(0.0), T(0.0), T(0.0), T(0.0)};
+    for (int j = 0; j < chain.n; ++j) {
+      normal[r][j] = normal[r][j] * scale;
+      for (int i = 0; i < 6; ++i) across[i] = across[i] + J[j][i] * normal[r][j];
+    }
+    for (int j = 0; j < chain.n; ++j) {
+      for (int i = 0; i < 6; ++i) J[j][i] = J[j][i] - across[i] * normal[r][j];
+    }
+  }
+}
+
+}  // namespace iksel::lanes

@@ -60,7 +60,8 @@ std::vector<CoupledLimit> as_coupled_limits(const py::handle& value, const std::
     throw_wrong_type(name.c_str(), expected, value);
   }
   std::vector<CoupledLimit> limits;
-  for (const py::handle item : py::reinterpret_borrow<py::sequence>(value)) {
+  // Not handles: what is made on the way of an arbitrary sequence has no other owner.
+  for (const py::object item : py::reinterpret_borrow<py::sequence>(value)) {
     if (!py::isinstance<CoupledLimit>(item)) {
       const std::string culprit = name + "[" + std::to_string(limits.size()) + "]";
       throw_wrong_type(culprit.c_str(), "a CoupledLimit", item);

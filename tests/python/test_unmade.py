@@ -299,9 +299,9 @@ def test_proofs_that_there_are_not_are_refused(solver) -> None:
 def test_joint_values_of_another_length_are_refused(solver) -> None:
     tracker = solver.tracker(np.zeros(6))
     with pytest.raises(iksel.InvalidArgumentError, match=r"q: expected a \(6,\)"):
-        unpickled(iksel.Tracker, (solver, np.zeros(7), None))
+        unpickled(iksel.Tracker, (solver, np.zeros(7), *states(tracker)[2:]))
     with pytest.raises(iksel.Error, match="solver"):
-        unpickled(iksel.Tracker, (solver.robot, tracker.q, None))
+        unpickled(iksel.Tracker, (solver.robot, *states(tracker)[1:]))
     result = states(solver.solve(solver.robot.fk(np.zeros(6))))
     for q in (np.zeros(33), np.zeros((2, 3)), np.full(6, math.nan), None):
         with pytest.raises(iksel.InvalidArgumentError, match="q"):

@@ -72,7 +72,7 @@ class Collector {
   /// Whether nothing is wanted but the nearest of those that a scene lets through.
   [[nodiscard]] bool wants_nearest_free() const {
     return !aim_.until_complete && request_.near && !request_.objective.is_set() &&
-           request_.scene && !request_.filter;
+           request_.scene && !request_.exact && !request_.filter;
   }
   /// How many solutions are to be spread over the self-motion, and how near to each other; 0: they
   /// need not be.

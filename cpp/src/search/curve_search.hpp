@@ -45,6 +45,11 @@ struct CurveSearch {
 template <typename Answers>
 std::optional<Proof> CurveSearch<Answers>::find_free() const {
   LaneRefiner& refiner = lanes.refiner;
+  if (goal.is_never_free()) {
+    if (!answers.has_any() && !lanes.sweep->find(Y)) return std::nullopt;
+    answers.refuse();
+    return Proof::target;
+  }
   FreeSamples samples(*lanes.sweep, *goal.scene(), Y, lanes.samples, work, clock);
   refiner.begin(goal.task(), kNearAnswer, Width::narrow);
   const bool is_satisfied = search(refiner, samples, answers, work);
@@ -97,7 +102,7 @@ std::optional<Proof> CurveSearch<Answers>::collect_nearest_free() const {
   search(refiner, seeds, answers, work);
   refiner.begin(goal.task(), kFirst, Width::narrow);
   clock.lap(&StageTimes::iterate);
-  if (answers.has_any()) return Proof::none;
+  if (seeds.count() > 0) return Proof::none;
   answers.status = Status::in_collision;
   return Proof::sweep;
 }
@@ -105,8 +110,8 @@ std::optional<Proof> CurveSearch<Answers>::collect_nearest_free() const {
 template <typename Answers>
 std::optional<Proof> CurveSearch<Answers>::collect() const {
   if (answers.spread() > 0) return collect_spread();
-  if (answers.wants_nearest_free()) return collect_nearest_free();
-  if (!answers.wants_nearest()) return std::nullopt;
+  const bool in_scene = answers.wants_nearest_free();
+  if (!in_scene && !answers.wants_nearest()) return std::nullopt;
   NearestOnCurve& curve = *lanes.nearest_on_curve;
   LaneRefiner& refiner = lanes.refiner;
   const JointMove move(model.dof, request);
@@ -116,6 +121,10 @@ std::optional<Proof> CurveSearch<Answers>::collect() const {
   refiner.begin(goal.task(), kFirst, Width::narrow);
   clock.lap(&StageTimes::iterate);
   if (curve.is_none()) return Proof::sweep;
+  // Mostly the nearest of all is free.
+  bool is_free = answers.has_any();
+  if (in_scene && is_free) request.scene->find_free(answers.solution(0), 1, &is_free);
+  if (in_scene && !is_free) return collect_nearest_free();
   if (!answers.has_any()) return std::nullopt;
   answers.is_settled = curve.is_settled();
   return Proof::none;

@@ -3,13 +3,11 @@
 
 #include <utility>
 
-#include "scene/scene_data.hpp"
-
 namespace iksel {
 namespace {
 
 /// The samples of the sweep come in so many parts.
-constexpr int kSampleParts = 16;
+constexpr int kSampleParts = 32;
 /// Samples that are looked beside, at most: those that overlap least.
 constexpr std::size_t kMostBeside = 24;
 
@@ -17,7 +15,8 @@ constexpr std::size_t kMostBeside = 24;
 
 FreeSamples::FreeSamples(Sweep& sweep, const Scene& scene, const Pose& Y, Memory& memory,
                          Work& work, StageClock& clock)
-    : sweep_(sweep), scene_(scene), to_(memory), work_(work), clock_(clock) {
+    : sweep_(sweep), scene_(scene), Y_(Y), to_(memory), work_(work), clock_(clock) {
+  look_.is_target_clear = true;
   to_.q.clear();
   to_.branch.clear();
   to_.overlaps.clear();
@@ -38,16 +37,25 @@ bool FreeSamples::add_rows() {
   at_ = 0;
   while (to_.q.empty()) {
     if (part_ < kSampleParts) {
-      // 7 and 16 have no factor in common: each part once.
+      // 7 and 32 have no factor in common: each part once.
       sweep_.add_samples(part_ * 7 % kSampleParts, kSampleParts, to_.q, to_.branch);
       ++part_;
     } else if (const Overlap* next = next_overlap()) {
       sweep_.add_beside(next->q.data(), next->branch, to_.q);
-    } else {
+    } else if (has_any_ || !add_between()) {
       return false;
     }
   }
   has_any_ = true;
+  return true;
+}
+
+bool FreeSamples::add_between() {
+  if (!sweep_.find(Y_)) return false;
+  std::array<double, kDof> q{};
+  std::copy_n(sweep_.q(), kDof, q.begin());
+  to_.q.assign(q.begin(), q.end());
+  sweep_.add_beside(q.data(), sweep_.branch(), to_.q);
   return true;
 }
 
@@ -65,7 +73,7 @@ const FreeSamples::Overlap* FreeSamples::next_overlap() {
 void FreeSamples::screen_pack() {
   const std::size_t count = std::min(kPack, rows() - at_);
   std::array<double, kPack> clearance{};
-  scene_.data().find_clearance(row(at_), count, clearance.data());
+  scene_.data().find_clearance(row(at_), count, clearance.data(), look_);
   for (std::size_t i = at_; i < at_ + count; ++i) {
     const double above = clearance[i - at_];
     if (above > 0) {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "goal/joint_move.hpp"
-#include "iksel/scene.hpp"
+#include "scene/scene_data.hpp"
 #include "seeds/self_motion_arcs.hpp"
 #include "seeds/sweep.hpp"
 
@@ -29,12 +29,13 @@ class FreeSamples {
     std::vector<Overlap> overlaps;
   };
 
-  /// All must outlive this.
+  /// All must outlive this. Nothing may touch that is where it is in all solutions.
   FreeSamples(Sweep& sweep, const Scene& scene, const Pose& Y, Memory& memory, Work& work,
               StageClock& clock);
 
   /// The samples of the sweep, those far from each other first; where none is free, between the
-  /// samples beside those that overlap least.
+  /// samples beside those that overlap least; where there is none at all, between the samples
+  /// beside where the sweep finds an answer.
   bool next_stage();
 
   template <typename Refiner>
@@ -55,6 +56,8 @@ class FreeSamples {
   [[nodiscard]] const double* row(std::size_t i) const { return &to_.q[i * kDof]; }
   /// Makes rows of the next part; false if there are no more.
   bool add_rows();
+  /// Makes rows beside an answer between the samples; false if there is none.
+  bool add_between();
   /// The next of those that overlap least; null if there are no more.
   const Overlap* next_overlap();
   /// Looks at the next rows, as many as there are lanes.
@@ -62,6 +65,8 @@ class FreeSamples {
 
   Sweep& sweep_;
   const Scene& scene_;
+  const Pose& Y_;
+  SceneLook look_;
   Memory& to_;
   Work& work_;
   StageClock& clock_;

@@ -42,7 +42,8 @@ bool Sweep::take_answer(int place) {
   const auto best = std::min_element(off.begin(), off.end());
   if (*best > 0) return false;
   branches_.solve_all(places_.value(place));
-  branches_.copy_joints(static_cast<int>(best - off.begin()), q_.data());
+  branch_ = static_cast<int>(best - off.begin());
+  branches_.copy_joints(branch_, q_.data());
   return true;
 }
 
@@ -99,6 +100,7 @@ bool Sweep::follow(const LeastPlace& near) {
   if (miss_.is_close(best.value)) close_.add(best);
   if (best.value > 0) return false;
   q_ = best.q;
+  branch_ = near.branch;
   return true;
 }
 

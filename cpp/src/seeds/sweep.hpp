@@ -35,6 +35,7 @@ class Sweep {
   void add_beside(const double* from, int branch, std::vector<double>& q);
   /// The answer [rad].
   [[nodiscard]] const double* q() const { return q_.data(); }
+  [[nodiscard]] int branch() const { return branch_; }
   /// If there was none: where branches came so close to one that it might have been missed.
   [[nodiscard]] std::size_t close_count() const { return close_.size(); }
   [[nodiscard]] const double* close_to_answer(std::size_t i) const { return close_[i].q.data(); }
@@ -64,6 +65,7 @@ class Sweep {
   Least<SweptJoints, kFollowed> close_;
   double least_ = 0;  ///< how far the nearest branch was from being an answer
   std::array<double, SweptBranches::kDof> q_{};
+  int branch_ = 0;
 };
 
 /// These as a source of seeds.

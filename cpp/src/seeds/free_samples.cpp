@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "seeds/free_samples.hpp"
 
+#include <cmath>
 #include <utility>
 
 namespace iksel {
@@ -11,6 +12,15 @@ constexpr int kSampleParts = 32;
 /// Samples that are looked beside, at most: those that overlap least.
 constexpr std::size_t kMostBeside = 24;
 
+/// A number for what alone collided with all lanes of a pack; 0 if that was more than one thing.
+std::uint32_t number_of(const lanes::SceneCulprit& culprit) {
+  if (!culprit.is_sole) return 0;
+  const auto kind = static_cast<std::uint32_t>(culprit.kind);
+  const auto index = static_cast<std::uint32_t>(culprit.index);
+  const auto link = static_cast<std::uint32_t>(culprit.link);
+  return (link * 100'003 + index) * 8 + kind;
+}
+
 }  // namespace
 
 FreeSamples::FreeSamples(Sweep& sweep, const Scene& scene, const Pose& Y, Memory& memory,
@@ -18,8 +28,9 @@ FreeSamples::FreeSamples(Sweep& sweep, const Scene& scene, const Pose& Y, Memory
     : sweep_(sweep), scene_(scene), Y_(Y), to_(memory), work_(work), clock_(clock) {
   look_.is_target_clear = true;
   to_.q.clear();
-  to_.branch.clear();
+  to_.samples.clear();
   to_.overlaps.clear();
+  to_.known.assign(Sweep::kSamples * kPack, Known());
   sweep_.set_target(Y);
 }
 
@@ -33,15 +44,15 @@ bool FreeSamples::next_stage() {
 
 bool FreeSamples::add_rows() {
   to_.q.clear();
-  to_.branch.clear();
+  to_.samples.clear();
   at_ = 0;
   while (to_.q.empty()) {
     if (part_ < kSampleParts) {
       // 7 and 32 have no factor in common: each part once.
-      sweep_.add_samples(part_ * 7 % kSampleParts, kSampleParts, to_.q, to_.branch);
+      sweep_.add_samples(part_ * 7 % kSampleParts, kSampleParts, to_.q, to_.samples);
       ++part_;
     } else if (const Overlap* next = next_overlap()) {
-      sweep_.add_beside(next->q.data(), next->branch, to_.q);
+      sweep_.add_beside(next->q.data(), next->sample.branch, to_.q);
     } else if (has_any_ || !add_between()) {
       return false;
     }
@@ -59,7 +70,30 @@ bool FreeSamples::add_between() {
   return true;
 }
 
+bool FreeSamples::may_be_free_beside(const Overlap& overlap) const {
+  const int branch = overlap.sample.branch;
+  const int below = sweep_.places().find(overlap.sample.place - 1);
+  const int above = sweep_.places().find(overlap.sample.place + 1);
+  if (below < 0 || above < 0) return true;
+  const Known& here = known(overlap.sample.place, branch);
+  const Known& before = known(below, branch);
+  const Known& behind = known(above, branch);
+  const auto by = here.culprit;
+  if (by == 0 || before.culprit != by || behind.culprit != by) return true;
+  // The three collide by the same: it would have to part twice as fast between them as from one to
+  // the next.
+  const float slope = std::max(std::abs(here.clearance - before.clearance),
+                               std::abs(behind.clearance - here.clearance));
+  return std::max({before.clearance, here.clearance, behind.clearance}) + slope >= 0;
+}
+
 const FreeSamples::Overlap* FreeSamples::next_overlap() {
+  if (beside_ == 0) {
+    auto& all = to_.overlaps;
+    all.erase(std::remove_if(all.begin(), all.end(),
+                             [&](const Overlap& each) { return !may_be_free_beside(each); }),
+              all.end());
+  }
   const std::size_t most = std::min(kMostBeside, to_.overlaps.size());
   if (beside_ == most) return nullptr;
   if (beside_ == 0) {
@@ -78,10 +112,13 @@ void FreeSamples::screen_pack() {
     const double above = clearance[i - at_];
     if (above > 0) {
       free_[free_count_++] = i;
-    } else if (i < to_.branch.size()) {
+    } else if (i < to_.samples.size()) {
       Overlap& overlap = to_.overlaps.emplace_back();
       overlap.clearance = above;
-      overlap.branch = to_.branch[i];
+      overlap.sample = to_.samples[i];
+      Known& of_sample = known(overlap.sample.place, overlap.sample.branch);
+      of_sample.clearance = static_cast<float>(above);
+      of_sample.culprit = number_of(look_.culprit);
       std::copy_n(row(i), kDof, overlap.q.begin());
     }
   }

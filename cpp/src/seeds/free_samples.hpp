@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "goal/joint_move.hpp"
@@ -19,13 +21,21 @@ class FreeSamples {
   /// A sample that is not free.
   struct Overlap {
     double clearance;  ///< scene_types.hpp
-    int branch;
+    Sweep::Sample sample;
     std::array<double, SweptBranches::kDof> q;
+  };
+  struct Known {
+    /// Of a sample that collides; infinite: it does not exist, or is free.
+    float clearance = std::numeric_limits<float>::infinity();
+    /// By what it collides; 0: not known, or by more than one thing.
+    std::uint32_t culprit = 0;
   };
   /// What it writes to.
   struct Memory {
     std::vector<double> q;
-    std::vector<int> branch;
+    std::vector<Sweep::Sample> samples;
+    /// Of each sample of each branch, what is known about it.
+    std::vector<Known> known;
     std::vector<Overlap> overlaps;
   };
 
@@ -60,6 +70,11 @@ class FreeSamples {
   bool add_between();
   /// The next of those that overlap least; null if there are no more.
   const Overlap* next_overlap();
+  /// Whether there may be free configurations between an overlap and the samples beside it.
+  [[nodiscard]] bool may_be_free_beside(const Overlap& overlap) const;
+  [[nodiscard]] Known& known(int place, int branch) const {
+    return to_.known[static_cast<std::size_t>(place) * kPack + static_cast<std::size_t>(branch)];
+  }
   /// Looks at the next rows, as many as there are lanes.
   void screen_pack();
 

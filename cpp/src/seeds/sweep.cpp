@@ -48,19 +48,20 @@ bool Sweep::take_answer(int place) {
 }
 
 void Sweep::add_samples(const Pose& Y, int first, int stride, std::vector<double>& q) {
-  std::vector<int> branch;
+  std::vector<Sample> samples;
   branches_.set_target(Y);
-  add_samples(first, stride, q, branch);
+  add_samples(first, stride, q, samples);
 }
 
-void Sweep::add_samples(int first, int stride, std::vector<double>& q, std::vector<int>& branch) {
+void Sweep::add_samples(int first, int stride, std::vector<double>& q,
+                        std::vector<Sample>& samples) {
   for (int place = first; place < kSamples; place += stride) {
     branches_.solve_all(places_.value(place));
     for (int lane = 0; lane < kBranches; ++lane) {
       if (branches_.off(lane) > 0) continue;
       branches_.copy_joints(lane, q_.data());
       q.insert(q.end(), q_.begin(), q_.end());
-      branch.push_back(lane);
+      samples.push_back({place, lane});
     }
   }
 }

@@ -27,8 +27,13 @@ class Sweep {
   /// Adds the branches inside the limits at every `stride`-th sample from `first` on, seven joint
   /// values each [rad].
   void add_samples(const Pose& Y, int first, int stride, std::vector<double>& q);
-  /// The same, for the target as it is set; of each, the branch goes to `branch`.
-  void add_samples(int first, int stride, std::vector<double>& q, std::vector<int>& branch);
+  /// A branch at a sample of the swept joint.
+  struct Sample {
+    int place, branch;
+  };
+  /// The same, for the target as it is set, and which they are.
+  void add_samples(int first, int stride, std::vector<double>& q, std::vector<Sample>& samples);
+  [[nodiscard]] const Places& places() const { return places_; }
   void set_target(const Pose& Y) { branches_.set_target(Y); }
   /// Adds a branch inside the limits at values of the swept joint beside that of `from`, as far as
   /// the samples beside.

@@ -101,9 +101,10 @@ class PackOfScenes {
   /// all its lanes collide.
   T find(SceneCulprit& culprit) {
     ask_again(culprit);
+    culprit.is_sole = !is_open();
     for (int i = 0; i < scene_.pairs && is_open(); ++i) {
       test_pair(i);
-      if (!is_open()) culprit = {Kind::pair, i, 0};
+      if (!is_open()) culprit = {Kind::pair, i, 0, false};
     }
     for (int i = 0; i < scene_.links && is_open(); ++i) {
       const int body = scene_.link[i].body;
@@ -264,7 +265,7 @@ class PackOfScenes {
                              SceneCulprit& culprit) {
     for (int i = 0; i < count && is_open(); ++i) {
       test(link, shape[i]);
-      if (!is_open()) culprit = {kind, i, link};
+      if (!is_open()) culprit = {kind, i, link, false};
     }
   }
   void test_obstacles(int link, SceneCulprit& culprit) {
@@ -285,10 +286,13 @@ class PackOfScenes {
 template <typename T>
 void find_clearance(const SceneView& scene, const double* q, int wanted, SceneRoom& room,
                     double* clearance) {
+  bool is_sole = true;
   for (int first = 0; first < wanted; first += Lanes<T>::kCount) {
     const T least = PackOfScenes<T>(scene, room, q, first).find(room.culprit);
     Lanes<T>::store(least, clearance + first);
+    is_sole = is_sole && room.culprit.is_sole;
   }
+  room.culprit.is_sole = is_sole;
 }
 
 }  // namespace iksel::lanes

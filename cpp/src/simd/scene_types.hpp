@@ -61,6 +61,8 @@ struct SceneCulprit {
   enum class Kind { none, pair, block, cylinder, plane } kind = Kind::none;
   int index = 0;  ///< of the pair or the shape
   int link = 0;
+  /// Whether each lane of the last pack collides by it alone.
+  bool is_sole = false;
 };
 
 /// Room that find_clearance writes to.

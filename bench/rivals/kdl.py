@@ -47,7 +47,8 @@ def build() -> None:
     ):
         done = subprocess.run(command, check=False, capture_output=True, text=True)
         if done.returncode:
-            raise UnsupportedError(f"the C++ baselines do not build: {done.stderr}")
+            error = " ".join(done.stderr.split())
+            raise UnsupportedError(f"the C++ baselines do not build: {error}")
 
 
 def library_version(package: str) -> str:

@@ -52,6 +52,22 @@ TEST_P(NearOfSixJoints, NearestIsNearestOfBruteForce) {
 
 INSTANTIATE_TEST_SUITE_P(Robots, NearOfSixJoints, testing::Values("ur3", "cvr038", "cvrb1213"));
 
+TEST(Near, IsTheAnswerWhereItReachesTheTarget) {
+  for (const char* name : {"ur3", "cvr038", "panda", "iiwa14", "xarm7", "pr2_right_arm"}) {
+    const Solver& solver = iksel_test::solver(name);
+    const Robot& robot = solver.robot();
+    const int n = iksel_test::cases(1000, 100);
+    const Eigen::MatrixXd q = robot.random_configurations(n, iksel_test::seed());
+    for (int i = 0; i < n; ++i) {
+      SolveRequest request;
+      request.near = JointVector(q.row(i).transpose());
+      const Result result = solver.solve(robot.fk(*request.near), request);
+      ASSERT_TRUE(result.success()) << name;
+      EXPECT_LT(result.move, 1e-5) << name << ", row " << i << ", seed " << iksel_test::seed();
+    }
+  }
+}
+
 TEST(Near, MayLieOutsideTheLimits) {
   for (const char* name : {"panda", "ur3", "cvr038"}) {
     const Solver& solver = iksel_test::solver(name);

@@ -72,6 +72,18 @@ def test_examples_are_served_until_interrupted(line, folder):
     assert "<html" in served(line, folder)
 
 
+def test_an_interrupt_ends_it_as_soon_as_the_address_is_known(capsys):
+    class Interrupted:
+        url = "http://127.0.0.1:8080"
+
+        def wait(self):
+            """As if Ctrl-C came before it waits."""
+            raise KeyboardInterrupt
+
+    cli.view.announce(Interrupted())
+    assert capsys.readouterr().out == "http://127.0.0.1:8080 (Ctrl-C ends)\n"
+
+
 def test_what_cannot_be_shown_is_named(run, folder):
     port = f"--port {free_port()}"
     path = folder / "ur5e.zarr"

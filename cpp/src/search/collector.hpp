@@ -74,6 +74,19 @@ class Collector {
     return !aim_.until_complete && request_.near && !request_.objective.is_set() &&
            request_.scene && !request_.exact && !request_.filter;
   }
+  /// Of what was found, where the nearest is wanted; infinite if nothing was.
+  [[nodiscard]] double least_move() const {
+    if (counts_moves_ || !has_any()) return found_.least_cost();
+    return move_to(nearest());
+  }
+  /// Which of those that were found, of one at least, is nearest to `near`.
+  [[nodiscard]] std::size_t nearest() const {
+    std::size_t least = 0;
+    for (std::size_t i = 1; i < found_.size(); ++i) {
+      if (move_to(i) < move_to(least)) least = i;
+    }
+    return least;
+  }
   /// How many solutions are to be spread over the self-motion, and how near to each other; 0: they
   /// need not be.
   [[nodiscard]] int spread() const { return aim_.spread; }
@@ -98,6 +111,9 @@ class Collector {
   bool is_settled = false;  ///< the nearest that was found is the least move already
 
  private:
+  [[nodiscard]] double move_to(std::size_t i) const {
+    return move_.length(found_.at(i) - *request_.near);
+  }
   /// Brings a success to the image nearest to `near`, where it still is one.
   void wrap_near(const JointVector& near, Result& answer) const;
   void look_for_partner(const Jacobian& J, const JointVector& q);

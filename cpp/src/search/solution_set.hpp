@@ -60,6 +60,12 @@ class SolutionSet {
   }
 
   [[nodiscard]] std::size_t size() const { return size_; }
+  /// Infinite if there is none.
+  [[nodiscard]] double least_cost() const {
+    double least = kInfinity;
+    for (std::size_t i = 0; i < size_; ++i) least = std::min(least, cost_[i]);
+    return least;
+  }
   [[nodiscard]] const double* q(std::size_t i) const {
     return &q_[i * static_cast<std::size_t>(model_.dof)];
   }

@@ -20,7 +20,7 @@ void NearestOnCurve::look_beside_folds(int branch) {
         look_into({branch, places_.value(last - 1), places_.value(last), false, false}, 1);
       }
     }
-    if (found_.size() > 0 && least - margin_of_step() > found_[0].value) continue;
+    if (least - margin_of_step() > best()) continue;
     look_into_span(branch, first, last);
   }
 }
@@ -49,10 +49,10 @@ void NearestOnCurve::look_into_span(int branch, int first, int last) {
 
 bool NearestOnCurve::short_span_may_be_shorter(int branch, int first, int last) const {
   // With one sample, nothing tells how steep it is.
-  if (found_.size() == 0 || first == last) return true;
+  if (best() == kInfinity || first == last) return true;
   for (int place = first; place < last; ++place) {
     const double loose = std::min(sample(place, branch).loose, sample(place + 1, branch).loose);
-    if (loose - distance(place, place + 1, branch) < found_[0].value) return true;
+    if (loose - distance(place, place + 1, branch) < best()) return true;
   }
   return fold_may_be_shorter(branch, first, -1) || fold_may_be_shorter(branch, last, 1);
 }
@@ -68,7 +68,7 @@ bool NearestOnCurve::fold_may_be_shorter(int branch, int end, int side) const {
     if (!exists(end, other) || !is_none(end + side, other)) continue;
     const double steep =
         exists(end - side, other) ? kSteepest * distance(end, end - side, other) : kInfinity;
-    if (sample(end, other).loose - steep - kSteep < found_[0].value) return true;
+    if (sample(end, other).loose - steep - kSteep < best()) return true;
   }
   return false;
 }
@@ -80,7 +80,7 @@ bool NearestOnCurve::jumps(int place, int branch) const {
 
 bool NearestOnCurve::may_lead_to_shorter(int place, int beside, int branch) const {
   const double loose = std::min(sample(place, branch).loose, sample(beside, branch).loose);
-  return found_.size() == 0 || loose - kSteep < found_[0].value;
+  return best() == kInfinity || loose - kSteep < best();
 }
 
 void NearestOnCurve::look_into(const BranchSpan& span, int packs) {
@@ -102,7 +102,7 @@ void NearestOnCurve::look_into(const BranchSpan& span, int packs) {
   for (int node = 0; node < nodes; ++node) {
     if (at(node) > at(node - 1) || at(node) > at(node + 1)) continue;
     const double move = loose[static_cast<std::size_t>(node)];
-    if (found_.size() > 0 && std::min(at(node), move) - kSteep > found_[0].value) continue;
+    if (std::min(at(node), move) - kSteep > best()) continue;
     if (at(node) > kRefused + kNear) continue;
     SweptJoints best{kInfinity, {}};
     const auto take = [&](int lane, double) { branches_.copy_joints(lane, best.q.data()); };

@@ -33,12 +33,14 @@ double NearestOnCurve::least_move(double value) const {
   return weight_[i] * std::abs(d);
 }
 
-void NearestOnCurve::find(const Pose& Y, const JointVector& near, const JointMove& move) {
+void NearestOnCurve::find(const Pose& Y, const JointVector& near, const JointMove& move,
+                          double known) {
   std::copy_n(near.data(), SweptBranches::kDof, near_.begin());
   std::copy_n(move.weights().data(), SweptBranches::kDof, weight_.begin());
   takes_largest_ = move.norm() == MoveNorm::max;
   branches_.measure_moves_from(near, move);
   branches_.set_target(Y);
+  known_move_ = known;
   look_around();
   found_.clear();
   least_off_ = kInfinity;
@@ -52,7 +54,7 @@ void NearestOnCurve::find(const Pose& Y, const JointVector& near, const JointMov
 void NearestOnCurve::look_around() {
   for (SweptBranches::Row& row : rows_) row.fill(kInfinity);
   known_.fill(false);
-  double best = kRefused;
+  double best = std::min(known_move_, kRefused);
   const double from = near_[static_cast<std::size_t>(branches_.joint())] - places_.lower;
   const double start = places_.turns ? from - kTwoPi * std::floor(from / kTwoPi) : from;
   const double last = places_.count - (places_.turns ? 0 : 1);
@@ -103,8 +105,8 @@ double NearestOnCurve::solve_at(int place) {
 }
 
 bool NearestOnCurve::may_be_shorter(const LeastPlace& least) const {
-  if (found_.size() == 0) return true;
-  const double best = found_[0].value;
+  const double best = this->best();
+  if (best == kInfinity) return true;
   if (least_move(places_.value(least.place)) - margin_of_step() > best) return false;
   if (least.value >= kRefused) {
     // The joints of what does not exist say little of what may exist beside it.
@@ -168,11 +170,11 @@ bool NearestOnCurve::is_hopeless(double so_far, int round) const {
   constexpr double kLittle[] = {0.2, 0.03};
   // How far what leads to an answer may still be from one after a round, two and three.
   constexpr std::array<double, 3> kFarOff{0.2, 0.1, 0.05};
-  if (round < 1 || found_.size() == 0) return false;
+  if (round < 1 || best() == kInfinity) return false;
   if (so_far >= kRefused) {
     return so_far - kRefused > kFarOff[static_cast<std::size_t>(std::min(round, 3) - 1)];
   }
-  return so_far - kLittle[std::min(round, 2) - 1] > found_[0].value;
+  return so_far - kLittle[std::min(round, 2) - 1] > best();
 }
 
 }  // namespace iksel

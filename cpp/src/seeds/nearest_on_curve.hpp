@@ -3,6 +3,7 @@
 // inside the limits, not only down from where a seed happens to end.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -20,8 +21,8 @@ class NearestOnCurve {
 
   /// Looks for the local minima of the move from `near` to answers to Y (reduction.hpp), each at
   /// its nearest periodic image. Only as far from `near` as an answer may be nearer than those
-  /// found.
-  void find(const Pose& Y, const JointVector& near, const JointMove& move);
+  /// found, and than one that is known whose move is `known`; none: infinity.
+  void find(const Pose& Y, const JointVector& near, const JointMove& move, double known);
   [[nodiscard]] std::size_t size() const { return found_.size(); }
   /// The nearest first [rad].
   [[nodiscard]] const double* q(std::size_t i) const { return found_[i].q.data(); }
@@ -64,6 +65,10 @@ class NearestOnCurve {
   [[nodiscard]] double least_move(double value) const;
   [[nodiscard]] double margin_of_step() const {
     return weight_[static_cast<std::size_t>(branches_.joint())] * places_.step;
+  }
+  /// The shortest move so far; infinite if there is none.
+  [[nodiscard]] double best() const {
+    return found_.size() > 0 ? std::min(found_[0].value, known_move_) : known_move_;
   }
   /// Solves the samples from the one nearest to `near` on, as far as it may be worth it.
   void look_around();
@@ -120,6 +125,7 @@ class NearestOnCurve {
   std::array<double, SweptBranches::kDof> near_{}, weight_{};
   int below_ = 0, above_ = 0;  ///< between these are the samples that were solved
   std::array<bool, kSamples> known_{};
+  double known_move_ = 0;
   bool takes_largest_ = false;
   double least_off_ = 0;  ///< how far the nearest branch was from being an answer
   std::vector<SweptBranches::Row> rows_;
@@ -129,19 +135,26 @@ class NearestOnCurve {
 };
 
 /// These as a source of seeds: the nearest alone first, the others if it cannot be refined.
-/// `Known` tells whether something was found: has_any().
+/// `Known` tells how long the shortest move found is: least_move(), infinite if there is none.
 template <typename Known>
 class NearestOnCurveSeeds {
  public:
   NearestOnCurveSeeds(NearestOnCurve& curve, const Pose& Y, const JointVector& near,
                       const JointMove& move, const Known& known, Work& work, StageClock& clock)
-      : curve_(curve), Y_(Y), near_(near), move_(move), known_(known), work_(work), clock_(clock) {}
+      : curve_(curve),
+        Y_(Y),
+        near_(near),
+        move_(move),
+        known_(known),
+        known_before_(known.least_move()),
+        work_(work),
+        clock_(clock) {}
 
   bool next_stage() {
-    if (known_.has_any() || !work_.has_left()) return false;
+    if (has_led_to_answer() || !work_.has_left()) return false;
     if (!done_) {
       done_ = true;
-      curve_.find(Y_, near_, move_);
+      curve_.find(Y_, near_, move_, known_before_);
       clock_.lap(&StageTimes::query);
       end_ = std::min<std::size_t>(curve_.size(), 1);
     } else {
@@ -157,12 +170,16 @@ class NearestOnCurveSeeds {
     return true;
   }
 
+  /// Whether one of them is nearer than what was known before.
+  [[nodiscard]] bool has_led_to_answer() const { return known_.least_move() < known_before_; }
+
  private:
   NearestOnCurve& curve_;
   const Pose& Y_;
   const JointVector& near_;
   const JointMove& move_;
   const Known& known_;
+  double known_before_;
   Work& work_;
   StageClock& clock_;
   bool done_ = false;

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 from pathlib import Path
 from typing import Any
 
@@ -99,8 +100,10 @@ def serve(arguments: argparse.Namespace, solver: Solver, **looks: Any) -> Viewer
 
 def announce(viewer: Viewer) -> None:
     """Say where the page is, and serve it."""
-    print(f"{viewer.url} (Ctrl-C ends)", flush=True)
-    viewer.wait()
+    # Whoever reads the line may interrupt before wait() is reached.
+    with contextlib.suppress(KeyboardInterrupt):
+        print(f"{viewer.url} (Ctrl-C ends)", flush=True)
+        viewer.wait()
 
 
 def _port(text: str) -> int:

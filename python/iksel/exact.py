@@ -91,7 +91,7 @@ class ExactCollision:
             ET.tostring(root, encoding="unicode"),
             scene.robot,
             ignore=[p for p in combinations(bodies, 2) if frozenset(p) not in pairs],
-            keep=[tuple(pair) for pair in pairs],
+            keep=[(a, b) for a, b in pairs],
             samples=0,
             other_joints=other_joints,
         )

@@ -8,7 +8,7 @@ namespace iksel {
 namespace {
 
 /// Rows and columns of either.
-using SquareMatrix =
+using StackedSquare =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxRows, kMaxRows>;
 
 /// J^T (J J^T + damping I)^-1 e, by the smaller of the two systems that give it.
@@ -16,14 +16,14 @@ JointVector damped_stacked_solve(const StackedJacobian& J, double damping, const
   // The floor keeps the solve regular where the error is zero in double precision.
   constexpr double kFloor = 1e-18;
   const bool by_rows = J.rows() <= J.cols();
-  SquareMatrix A;
+  StackedSquare A;
   if (by_rows) {
     A.noalias() = J * J.transpose();
   } else {
     A.noalias() = J.transpose() * J;
   }
   A.diagonal().array() += damping + kFloor;
-  const Eigen::LDLT<SquareMatrix> factors(A);
+  const Eigen::LDLT<StackedSquare> factors(A);
   if (by_rows) return J.transpose() * factors.solve(e);
   const StackedVector gradient = J.transpose() * e;
   return factors.solve(gradient);
@@ -84,10 +84,10 @@ JointVector stacked_step(const JointSpace& joints, const JointVector& q, const S
 JointVector weighted_solve(const StackedJacobian& J, const JointVector& weights,
                            const StackedVector& missing) {
   const StackedJacobian weighted = J * weights.asDiagonal();
-  SquareMatrix A;
+  StackedSquare A;
   A.noalias() = weighted * J.transpose();
   A.diagonal().array() += 1e-12 * std::max(A.trace(), 1e-12);
-  return weighted.transpose() * Eigen::LDLT<SquareMatrix>(A).solve(missing);
+  return weighted.transpose() * Eigen::LDLT<StackedSquare>(A).solve(missing);
 }
 
 bool StackedRefiner::converge(const StackedGoal& goal, int most, double aim, JointVector& q,

@@ -109,12 +109,13 @@ def measure(
         LIMIT_S,
     )
     row["coal_filter_us"] = float(by_coal.mean()) / 1e3
-    row["missed"] = missed(solver, exact, targets[: len(results)][~solved], args)
+    row["missed"] = missed(solver, scene, exact, targets[: len(results)][~solved], args)
     return row
 
 
 def missed(
     solver: iksel.Solver,
+    scene: iksel.Scene,
     exact: iksel.exact.ExactCollision,
     targets: Array,
     args: argparse.Namespace,
@@ -126,7 +127,7 @@ def missed(
     search's.
     """
     rng = np.random.default_rng(args.seed)
-    found = free = 0
+    found = free = by_exact = 0
     begun = time.perf_counter()
     some = targets[: args.missed]
     for pose in some:
@@ -135,14 +136,16 @@ def missed(
         )
         results = [solver.solve(pose, seeds=s, database_seeds=False) for s in seeds]
         q = np.array([result.q for result in results if result])
-        if len(q):
-            found += bool(exact.geometry_is_free(q).any())
+        if len(q) and exact.geometry_is_free(q).any():
+            found += 1
+            by_exact += bool(solver.solve(pose, scene=scene, exact=exact))
             free += bool(np.any(exact.scene.is_free(q)))
     spent = time.perf_counter() - begun
     return {
         "looked_at": len(some),
         "restarts": args.restarts,
         "free_by_coal": found,
+        "found_by_exact": by_exact,
         "free_by_spheres": free,
         "seconds_each": spent / max(len(some), 1),
     }

@@ -84,7 +84,7 @@ void bind_diagnosis(py::module_& m) {
       "How certain it is that there is no answer, as Result.proof; `none` if there is one.");
   add_property(
       cls, "proven", [](const D& self) { return is_proven(self.proof); },
-      "Whether there is certainly no answer: `proof` is `reach` or `closed_form`.");
+      "Whether there is certainly no answer: `proof` is `reach`, `closed_form` or `target`.");
   add_property(cls, "attempts", &D::attempts,
                "Seeds that were tried to find the cause; 0 where `proof` is `closed_form`: the "
                "branches say it.");

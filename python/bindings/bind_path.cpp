@@ -239,7 +239,7 @@ void bind_path(py::module_& m, py::class_<Solver>& cls) {
        "poses", "T_base_tip of each waypoint, (N, 4, 4) [m], or others as in solve.", "PathResult",
        R"(Raises:
     InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, a number out of range.)"},
-      path_keywords(), {"start", "dt", "weights", "norm", "scene", "filter", "candidates"},
+      path_keywords(), {"start", "dt", "weights", "norm", "scene", "exact", "filter", "candidates"},
       &solve_path);
 
   bind_tracker(m);

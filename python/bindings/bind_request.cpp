@@ -167,7 +167,7 @@ void bind_solutions(py::module_& m) {
       "there are certainly no more; `none` if it is not.");
   add_property(
       cls, "proven", [](const S& self) { return is_proven(self.solutions.proof); },
-      "Whether these are certainly all: `proof` is `reach` or `closed_form`.");
+      "Whether these are certainly all: `proof` is `reach`, `closed_form` or `target`.");
   add_property(cls, "q", &S::q, "Joint values [rad or m], (n, dof).");
   add_property(
       cls, "position_error", [](const S& self) { return self.column(&Result::position_error); },
@@ -222,8 +222,8 @@ Raises:
     InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, a number that is not
         finite or out of range.)"},
       request_keywords(),
-      {"near", "weights", "norm", "seeds", "database_seeds", "scene", "filter", "deadline", "task",
-       "objective", "closest"},
+      {"near", "weights", "norm", "seeds", "database_seeds", "scene", "exact", "filter", "deadline",
+       "task", "objective", "closest"},
       &solve);
   def_method<1>(cls,
                 {"solve_all",
@@ -237,7 +237,7 @@ Raises:
     InvalidArgumentError: as solve.)"},
                 solve_all_keywords(),
                 {"max", "min_distance", "whole_turns", "order", "near", "weights", "norm", "seeds",
-                 "database_seeds", "scene", "filter", "deadline", "task"},
+                 "database_seeds", "scene", "exact", "filter", "deadline", "task"},
                 &solve_all);
   def_method<0>(
       cls,
@@ -250,7 +250,7 @@ Raises:
 
 Raises:
     InvalidArgumentError: as solve.)"},
-      request_keywords(), {"scene", "filter", "deadline", "task"}, &diagnose);
+      request_keywords(), {"scene", "exact", "filter", "deadline", "task"}, &diagnose);
 }
 
 }  // namespace iksel::python

@@ -106,7 +106,7 @@ void bind_single(py::module_& m) {
       "Of a failure, how certain it is that there is no answer; `none` of a success.");
   add_property(
       cls, "proven", [](const PyResult& self) { return is_proven(self.result.proof); },
-      "Whether there is certainly no answer: `proof` is `reach` or `closed_form`.");
+      "Whether there is certainly no answer: `proof` is `reach`, `closed_form` or `target`.");
   add_property(
       cls, "q", &PyResult::joints,
       "Joint values [rad or m], (dof,); None unless solved, or closest, for those who ask for it.");

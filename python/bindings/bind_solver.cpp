@@ -207,7 +207,7 @@ target's solutions, within the same tolerances. The request holds for each targe
     InvalidArgumentError: wrong shape or dtype, a bad argument, or with on_invalid_pose="raise"
         a bad pose.)"},
       batch_keywords(),
-      {"threads", "near", "weights", "norm", "seeds", "database_seeds", "scene", "filter",
+      {"threads", "near", "weights", "norm", "seeds", "database_seeds", "scene", "exact", "filter",
        "deadline", "task", "objective", "closest", "on_invalid_pose"},
       &solve_batch);
 }

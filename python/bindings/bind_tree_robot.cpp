@@ -46,7 +46,7 @@ std::vector<StoredPose> as_tools(py::handle value, const char* name) {
   return tools;
 }
 
-TreeRobot tree_from_urdf(const PathLike& path_or_xml, const LinkNames& tip_links,
+TreeRobot tree_robot_from_urdf(const PathLike& path_or_xml, const LinkNames& tip_links,
                          const std::optional<Loose<std::string>>& base_link,
                          const std::optional<PoseLike>& tcps,
                          const std::optional<JointValues>& locked_joints,
@@ -78,19 +78,19 @@ py::array_t<double> to_stack(const Poses& poses) {
   return array;
 }
 
-std::string tree_repr(const TreeRobot& self) {
+std::string tree_robot_repr(const TreeRobot& self) {
   return "TreeRobot(" + py::cast<std::string>(py::repr(py::str(self.name()))) +
          ", dof=" + std::to_string(self.dof()) + ", base_link='" + self.base_link() +
          "', tip_links=" + py::cast<std::string>(py::repr(py::cast(self.tip_links()))) + ")";
 }
 
-py::object tree_state(const TreeRobot& self) {
+py::object tree_robot_state(const TreeRobot& self) {
   const TreeOptions& o = self.options();
   return py::make_tuple(self.urdf(), o.base_link, o.tip_links, to_stack(o.tcps), o.locked_joints,
                         o.soft_limits, o.default_limits);
 }
 
-TreeRobot tree_from_state(const py::object& state) {
+TreeRobot tree_robot_from_state(const py::object& state) {
   PickleState in(state, "TreeRobot", 7);
   const std::string urdf = in.value<std::string>("urdf");
   TreeOptions options;
@@ -109,7 +109,7 @@ TreeRobot tree_from_state(const py::object& state) {
 
 void bind_from_urdf(py::class_<TreeRobot>& cls) {
   const TreeOptions defaults;
-  cls.def_static("from_urdf", &tree_from_urdf, py::arg("path_or_xml"), py::arg("tip_links"),
+  cls.def_static("from_urdf", &tree_robot_from_urdf, py::arg("path_or_xml"), py::arg("tip_links"),
                  py::arg("base_link") = py::none(), py::arg("tcps") = py::none(),
                  py::arg("locked_joints") = py::none(),
                  py::arg("soft_limits") = defaults.soft_limits,
@@ -264,11 +264,11 @@ void bind_tree_robot(py::module_& m) {
   bind_facts(cls);
   bind_tips(cls);
   bind_configurations(cls);
-  cls.def("__repr__", &tree_repr);
+  cls.def("__repr__", &tree_robot_repr);
   cls.def("__copy__", [](const TreeRobot& self) { return self; });
   cls.def(
       "__deepcopy__", [](const TreeRobot& self, const py::dict&) { return self; }, py::arg("memo"));
-  cls.def(py::pickle(&tree_state, &tree_from_state));
+  cls.def(py::pickle(&tree_robot_state, &tree_robot_from_state));
 }
 
 }  // namespace iksel::python

@@ -86,7 +86,7 @@ TreeRequest read_tree_request(const TreeSolver& self, const TreeKeywords& given)
   TreeRequest request;
   if (given.weights) request.weights = as_joints(*given.weights, dof, "weights");
   request.norm = from_python<MoveNorm>(given.norm, "norm");
-  if (given.filter) request.filter = make_filter(*given.filter, dof);
+  if (given.filter) request.filter = make_filter(*given.filter, "filter", dof);
   if (given.deadline) request.deadline = from_python<double>(*given.deadline, "deadline");
   if (given.tasks) request.tasks = as_task_list(*given.tasks);
   return request;

@@ -235,6 +235,9 @@ struct EnumTable<Proof> {
       {"sweep", Proof::sweep,
        "not proven: a joint was swept over its range (Robot.structure), and no branch came inside "
        "the limits at its values or beside them"},
+      {"target", Proof::target,
+       "what the target itself places touches something in the scene: the tip, with what is fixed "
+       "to it, whatever the arm does"},
   };
 };
 

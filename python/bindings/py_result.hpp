@@ -31,6 +31,7 @@ struct PyResult {
 inline bool is_proven(Proof proof) {
   switch (proof) {
     case Proof::reach:
+    case Proof::target:
     case Proof::closed_form:
       return true;
     case Proof::sweep:

@@ -63,8 +63,8 @@ struct ArgumentOf<Filter> : ShownAsNone {
   static std::string text() {
     return "collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], object]";
   }
-  static Filter read(py::handle given, const char* /*name*/, int dof) {
-    return make_filter(given, dof);
+  static Filter read(py::handle given, const char* name, int dof) {
+    return make_filter(given, name, dof);
   }
 };
 
@@ -122,6 +122,10 @@ constexpr const char* kClosestDoc =
     "the arm's reach in metres. Or six weights, of position [1/m] and rotation [1/rad] along the "
     "axes of the task. Of equally near ones the nearest to `near`. Takes some 100 us on top, "
     "whatever the deadline; a scene and a filter refuse it too.";
+constexpr const char* kExactDoc =
+    "a second opinion on the scene, an iksel.exact.ExactCollision of it: called with candidates "
+    "(n, dof) that collide by the scene's spheres, returns n truth values, which of them are free "
+    "all the same.";
 constexpr const char* kFilterDoc =
     "called with candidates (n, dof), each at the pose, inside the limits and free in the scene; "
     "returns n truth "
@@ -166,6 +170,7 @@ std::vector<Keyword> request_keywords() {
       keyword("scene", &R::scene,
               "what answers may not collide with; of a robot with the same chain. The search "
               "continues within its bounds while all collide."),
+      keyword("exact", &R::exact, kExactDoc),
       keyword("filter", &R::filter, kFilterDoc),
       keyword("deadline", &R::deadline,
               "wall-clock time after which the search for a target ends [s]; checked between its "
@@ -215,6 +220,7 @@ std::vector<Keyword> path_keywords() {
       keyword("norm", &O::norm, kNormDoc),
       keyword("scene", &O::scene,
               "what waypoints may not collide with; the moves between them are not looked at."),
+      keyword("exact", &O::exact, kExactDoc),
       keyword("filter", &O::filter, kFilterDoc),
       keyword("candidates", &O::candidates, "candidates kept per waypoint at most."),
   };

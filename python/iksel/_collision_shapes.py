@@ -214,6 +214,40 @@ def is_sphere(geometry: Any) -> bool:
     return type(geometry).__name__ == "Sphere"
 
 
+def round_rod(shape: Shape, balls: FloatArray, max_error: float) -> FloatArray | None:
+    """Spheres along a cylinder whose ends lie in balls that are as thick.
+
+    So it is a capsule, which spheres on its axis cover closely.
+
+    Args:
+        shape: The cylinder, or any other shape.
+        balls: Those of its link, (n, 4).
+        max_error: How far spheres may stick out [m].
+
+    Returns:
+        (m, 4), rows of centre and radius [m]; None if it is no such cylinder.
+    """
+    geometry = shape.geometry
+    if type(geometry).__name__ != "Cylinder":
+        return None
+    radius, half = geometry.radius, geometry.halfLength
+    middle, axis = shape.origin[:3, 3], shape.origin[:3, 2]
+    slack = 1e-6 * min(radius, max_error)
+    for end in (middle - half * axis, middle + half * axis):
+        off = np.linalg.norm(balls[:, :3] - end, axis=1)
+        if not np.any(off + radius <= balls[:, 3] + slack):
+            return None
+    # A sphere of radius R covers the cylinder where R^2 - radius^2 >= the way along it.
+    reach = np.sqrt((radius + max_error - slack) ** 2 - radius**2)
+    count = int(np.ceil(half / reach))
+    along = (2 * np.arange(count) + 1 - count) * half / count
+    thick = np.hypot(radius, half / count) + slack
+    rows: FloatArray = np.column_stack(
+        [middle + along[:, None] * axis, np.full(count, thick)]
+    )
+    return rows
+
+
 def solid_of(shape: Shape, max_error: float) -> Solid:
     """A box, cylinder or mesh in the frame of its link, by triangles around it."""
     geometry = shape.geometry

@@ -1,12 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A second opinion on a scene: by the robot's own collision geometry, not its spheres.
 
-As a filter, where spheres touch::
-
     exact = iksel.exact.ExactCollision(scene, "arm.urdf")
-    result = solver.solve(pose, scene=scene)
-    if result.status is iksel.Status.in_collision:
-        result = solver.solve(pose, filter=exact)
+    result = solver.solve(pose, scene=scene, exact=exact)
 
 Spheres stick out of the links that they cover, and so refuse some configurations that
 are free. Needs the library coal: `pip install iksel[collision]`.
@@ -15,15 +11,17 @@ are free. Needs the library coal: `pip install iksel[collision]`.
 from __future__ import annotations
 
 import copy
+import xml.etree.ElementTree as ET
 from itertools import combinations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from iksel_cpp import InvalidArgumentError
 
+from iksel._arm_links import ArmLinks
 from iksel._arrays import as_floats
 from iksel._collision_shapes import import_coal
-from iksel.collision import SelfCollision
+from iksel._packages import resolve_path
+from iksel.collision import SelfCollision, read_urdf
 
 if TYPE_CHECKING:
     import os
@@ -53,6 +51,7 @@ class ExactCollision:
     Those that the scene's spheres let through are free; coal is asked about the others
     only, with the links' own geometry. Links that the arm does not move are not held
     against obstacles, and links against each other in the pairs of the scene's spheres.
+    Attached objects are their spheres, which are all there is of them.
     """
 
     def __init__(
@@ -67,36 +66,34 @@ class ExactCollision:
         """Read the collision geometry of the links.
 
         Args:
-            scene: Its obstacles and pairs; objects that are attached count by their
-                spheres, which are all there is of them.
+            scene: Its obstacles, pairs and attached objects.
             urdf: Path of the URDF or xacro, or URDF text.
             other_joints: Values of joints that are not the arm's [rad or m].
             packages: Folders of package:// names of meshes.
             xacro_args: Values of a xacro file's arguments.
 
         Raises:
-            InvalidArgumentError: coal is missing, or objects are attached.
+            InvalidArgumentError: coal is missing.
             UrdfError: The URDF or a mesh cannot be read.
             UnknownNameError: The URDF lacks a link or joint.
         """
-        if scene.attached:
-            raise InvalidArgumentError(
-                f"scene: objects are attached ({', '.join(scene.attached)}), of which "
-                "there is nothing but their spheres"
-            )
         self._coal = import_coal()
         self._scene = copy.copy(scene)
-        pairs = {frozenset(pair) for pair in scene.spheres.pairs}
-        others = combinations(scene.spheres.links, 2)
+        root, folder = read_urdf(urdf, packages or {}, xacro_args)
+        _add_objects(root, scene)
+        for mesh in root.iter("mesh"):
+            name = resolve_path(mesh.get("filename", ""), packages or {}, folder)
+            mesh.set("filename", str(name.absolute()))
+        links = ArmLinks(root, scene.robot, other_joints or {})
+        pairs = _pairs_of(scene, links)
+        bodies = [*scene.spheres.links, *scene.attached]
         self._self = SelfCollision(
-            urdf,
+            ET.tostring(root, encoding="unicode"),
             scene.robot,
-            ignore=[pair for pair in others if frozenset(pair) not in pairs],
-            keep=scene.spheres.pairs,
+            ignore=[p for p in combinations(bodies, 2) if frozenset(p) not in pairs],
+            keep=[(a, b) for a, b in pairs],
             samples=0,
             other_joints=other_joints,
-            packages=packages,
-            xacro_args=xacro_args,
         )
         self._solids = [self._solid(o) for o in scene.obstacles.values()]
 
@@ -188,3 +185,31 @@ class ExactCollision:
 
         lower, upper = centres.min(axis=0) - gap, centres.max(axis=0) + gap
         return _Solid(geometry, places, request, lower, upper)
+
+
+def _add_objects(root: ET.Element, scene: Scene) -> None:
+    """Add a link for each attached object, fixed to the one that carries it."""
+    for name, link in scene.attached.items():
+        added = ET.SubElement(root, "link", name=name)
+        for x, y, z, radius in scene.attached_spheres[name].tolist():
+            collision = ET.SubElement(added, "collision")
+            ET.SubElement(collision, "origin", xyz=f"{x!r} {y!r} {z!r}")
+            geometry = ET.SubElement(collision, "geometry")
+            ET.SubElement(geometry, "sphere", radius=repr(radius))
+        joint = ET.SubElement(root, "joint", name=f"carries {name}", type="fixed")
+        ET.SubElement(joint, "parent", link=link)
+        ET.SubElement(joint, "child", link=name)
+
+
+def _pairs_of(scene: Scene, links: ArmLinks) -> set[frozenset[str]]:
+    """The pairs of links and attached objects that a scene looks at."""
+    pairs = {frozenset(pair) for pair in scene.spheres.pairs}
+    for name in scene.attached:
+        may = {name, *scene.may_touch[name]}
+        may |= {other for other, names in scene.may_touch.items() if name in names}
+        others = {*scene.spheres.links, *scene.attached} - may
+        pairs |= {frozenset((name, other)) for other in others}
+    # What does not move against each other touches always or never.
+    return {
+        pair for pair in pairs if len({links.body[link] for link in pair}) == len(pair)
+    }

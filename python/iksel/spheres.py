@@ -12,18 +12,29 @@ Needs the library coal for `from_urdf`: `pip install iksel[collision]`.
 
 from __future__ import annotations
 
+import contextlib
 import json
 import zipfile
+import zlib
 from itertools import combinations
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from iksel_cpp import InvalidArgumentError, RobotSpheres, Scene
 
-from iksel._collision_shapes import import_coal, is_sphere, read_shapes, solid_of
-from iksel._files import read_text
+from iksel._collision_shapes import (
+    import_coal,
+    is_sphere,
+    read_shapes,
+    round_rod,
+    solid_of,
+)
+from iksel._files import read_text, replaced
+from iksel._sphere_cache import file_name, key_of
 from iksel._sphere_cover import cover
+from iksel._sphere_files import read_links, read_yaml
+from iksel._urdf_xml import read_xml
 from iksel.collision import SelfCollision, read_urdf
 
 if TYPE_CHECKING:
@@ -53,12 +64,14 @@ def from_urdf(
     other_joints: Mapping[str, float] | None = None,
     packages: Mapping[str, str | os.PathLike[str]] | None = None,
     xacro_args: Mapping[str, str] | None = None,
+    cache: str | os.PathLike[str] | None = None,
 ) -> RobotSpheres:
     """Cover the collision geometry of a URDF's links by spheres.
 
     Each shape lies inside its spheres, which stick out of it by `max_error` at most:
     the smaller, the more spheres. Spheres are taken as they are, so that a URDF made of
-    them (as VAMP's are) keeps its own. Links are looked at in the pairs that
+    them (as VAMP's are) keeps its own; cylinders with a ball on both ends are covered
+    to a tenth of `max_error`. Links are looked at in the pairs that
     iksel.collision.SelfCollision looks at.
 
     Args:
@@ -73,14 +86,29 @@ def from_urdf(
         other_joints: Values of joints that are not the arm's [rad or m].
         packages: Folders of package:// names of meshes.
         xacro_args: Values of a xacro file's arguments.
+        cache: Folder, such as the database's, that keeps what is made here, in a file
+            named after the robot and a hash of all that it depends on. None: it is made
+            anew.
 
     Raises:
-        InvalidArgumentError: coal is missing, or max_error is not above 0.
+        InvalidArgumentError: coal is missing, max_error is not above 0, or the cache
+            cannot be written.
         UrdfError: The URDF, the SRDF or a mesh cannot be read.
         UnknownNameError: The URDF lacks a joint of the arm, or what an argument names.
     """
     if not 0 < max_error < np.inf:
         raise InvalidArgumentError(f"max_error: {max_error} m is not above 0")
+    ignore = sorted(ignore)
+    root, folder = read_urdf(urdf, packages or {}, xacro_args)
+    kept = None
+    if cache is not None:
+        listed = read_xml("srdf", srdf)[1] if srdf is not None else None
+        options = (max_error, listed, ignore, samples, seed)
+        others = sorted((other_joints or {}).items())
+        key = key_of(root, folder, packages or {}, (robot.chain_hash, *options, others))
+        kept = Path(cache) / file_name(robot.name, key)
+        with contextlib.suppress(InvalidArgumentError):  # none, or a damaged one
+            return load(kept)
     coal = import_coal()
     pairs = SelfCollision(
         urdf,
@@ -93,12 +121,14 @@ def from_urdf(
         packages=packages,
         xacro_args=xacro_args,
     ).pairs
-    root, folder = read_urdf(urdf, packages or {}, xacro_args)
     shapes: dict[str, list[Shape]] = {}
     for shape in read_shapes(coal, root, folder, packages or {}):
         shapes.setdefault(shape.link, []).append(shape)
     links = {link: _cover_link(of_link, max_error) for link, of_link in shapes.items()}
-    return RobotSpheres(links, pairs)
+    made = RobotSpheres(links, pairs)
+    if kept is not None:
+        save(made, kept)
+    return made
 
 
 def from_curobo(path: str | os.PathLike[str]) -> RobotSpheres:
@@ -117,16 +147,16 @@ def from_curobo(path: str | os.PathLike[str]) -> RobotSpheres:
         InvalidArgumentError: It cannot be read, or is no such file.
     """
     path = Path(path)
-    data = _read_yaml(path)
+    data = read_yaml(path)
     for key in ("robot_cfg", "kinematics"):
         data = data.get(key, data)
     spheres = data.get("collision_spheres")
     if isinstance(spheres, str):
-        spheres = _read_yaml(path.parent / spheres).get("collision_spheres")
+        spheres = read_yaml(path.parent / spheres).get("collision_spheres")
     if not isinstance(spheres, dict):
         raise InvalidArgumentError(f"path: {str(path)!r} has no collision_spheres")
     buffer = data.get("collision_sphere_buffer", 0.0)
-    links = _read_links(path, spheres, "center", buffer or 0.0)
+    links = read_links(path, spheres, "center", buffer or 0.0)
     ignored = {
         frozenset((link, other))
         for link, others in (data.get("self_collision_ignore") or {}).items()
@@ -157,7 +187,7 @@ def from_json(path: str | os.PathLike[str]) -> RobotSpheres:
         raise InvalidArgumentError(f"path: {error}") from None
     if not isinstance(data, dict):
         raise InvalidArgumentError(f"path: {str(path)!r} is no mapping of links")
-    return RobotSpheres(_read_links(path, data, "origin", 0.0))
+    return RobotSpheres(read_links(path, data, "origin", 0.0))
 
 
 def with_pairs(
@@ -201,10 +231,16 @@ def save(spheres: RobotSpheres, path: str | os.PathLike[str]) -> None:
 
     Args:
         spheres: What is written.
-        path: Of the file; numpy's npz.
+        path: Of the file; numpy's npz. Its folder is made if there is none.
+
+    Raises:
+        InvalidArgumentError: It cannot be written.
     """
     links = spheres.links
-    with Path(path).open("wb") as file:
+    path = Path(path)
+    with contextlib.suppress(OSError):  # which writing will tell
+        path.parent.mkdir(parents=True, exist_ok=True)
+    with replaced(path) as file:
         np.savez_compressed(
             file,
             format=np.array(_FORMAT),
@@ -225,14 +261,22 @@ def load(path: str | os.PathLike[str]) -> RobotSpheres:
         InvalidArgumentError: It cannot be read, or is no such file.
     """
     try:
-        with np.load(path, allow_pickle=False) as file:
-            data = {name: file[name] for name in file.files}
+        # Opened here: numpy leaves a damaged file open.
+        with Path(path).open("rb") as file, np.load(file, allow_pickle=False) as held:
+            data = {name: held[name] for name in held.files}
         if data["format"] != _FORMAT:
             raise InvalidArgumentError(f"path: {str(path)!r} is of another format")
         rows = np.split(data["spheres"], np.cumsum(data["counts"])[:-1])
         links = dict(zip(data["links"].tolist(), rows, strict=True))
         return RobotSpheres(links, [(str(a), str(b)) for a, b in data["pairs"]])
-    except (OSError, ValueError, KeyError, zipfile.BadZipFile) as error:
+    except (
+        OSError,
+        EOFError,
+        ValueError,
+        KeyError,
+        zipfile.BadZipFile,
+        zlib.error,
+    ) as error:
         raise InvalidArgumentError(f"path: {str(path)!r}: {error}") from None
 
 
@@ -242,48 +286,15 @@ def _cover_link(shapes: list[Shape], max_error: float) -> FloatArray:
     rows = np.array([[*s.origin[:3, 3], s.geometry.radius] for s in balls]).reshape(
         -1, 4
     )
-    solids = [solid_of(s, max_error) for s in shapes if not is_sphere(s.geometry)]
-    # What stands round about a cylinder sticks out by a twentieth.
-    return cover(solids, rows, 0.95 * max_error) if solids else rows
-
-
-def _read_yaml(path: Path) -> dict[str, Any]:
-    try:
-        import yaml  # noqa: PLC0415 (an optional extra)
-    except ImportError as error:
-        raise InvalidArgumentError(
-            f"path: YAML needs PyYAML, which cannot be imported ({error}); install "
-            "it by: pip install pyyaml"
-        ) from None
-    try:
-        data = yaml.safe_load(read_text(path))
-    except (OSError, ValueError, yaml.YAMLError) as error:
-        raise InvalidArgumentError(f"path: {error}") from None
-    if not isinstance(data, dict):
-        raise InvalidArgumentError(f"path: {str(path)!r} is no mapping")
-    return data
-
-
-def _read_links(
-    path: Path, data: dict[str, Any], centre: str, buffer: float
-) -> Spheres:
-    """Spheres by link; those whose radius is not above 0 are none."""
-    links = {}
-    for link, spheres in data.items():
-        rows = []
-        for sphere in spheres:
-            try:
-                place = sphere.get(centre, sphere.get("center"))
-                row = np.array([*place, sphere["radius"]], dtype=float)
-            except (AttributeError, KeyError, TypeError, ValueError):
-                row = np.empty(0)
-            if row.shape != (4,):
-                raise InvalidArgumentError(
-                    f"path: {str(path)!r}: link {link!r} has {sphere!r}, expected "
-                    f"{centre} (3 numbers) and radius"
-                )
-            if row[3] > 0:
-                rows.append([*row[:3], row[3] + buffer])
-        if rows:
-            links[str(link)] = np.array(rows)
-    return links
+    parts = [rows]
+    solids = []
+    for shape in shapes:
+        # Of rods a tenth of the error takes few spheres.
+        rod = round_rod(shape, rows, 0.1 * max_error)
+        if rod is not None:
+            parts.append(rod)
+        elif not is_sphere(shape.geometry):
+            solids.append(solid_of(shape, max_error))
+    rows = np.concatenate(parts)
+    # What stands round about a cylinder sticks out by a twentieth, and rods by a tenth.
+    return cover(solids, rows, 0.85 * max_error) if solids else rows

@@ -1513,6 +1513,16 @@ class Scene:
         Names of the attached objects, and the links that carry them.
         """
     @property
+    def attached_spheres(self) -> dict[str, numpy.typing.NDArray[numpy.float64]]:
+        """
+        Of each attached object its spheres, (N, 4), rows of centre in the link's frame and radius [m].
+        """
+    @property
+    def may_touch(self) -> dict[str, list[str]]:
+        """
+        Of each attached object the links and other objects that it may touch.
+        """
+    @property
     def obstacles(self) -> dict[str, Obstacle]:
         """
         The obstacles by name.
@@ -1602,6 +1612,7 @@ class Proof(enum.IntEnum):
     none = 0
     reach = 1
     sweep = 3
+    target = 4
     def __format__(self, arg0: str) -> str:
         ...
     def __str__(self) -> str:
@@ -1648,7 +1659,7 @@ class _Result:
     @property
     def proven(self) -> bool:
         """
-        Whether there is certainly no answer: `proof` is `reach` or `closed_form`.
+        Whether there is certainly no answer: `proof` is `reach`, `closed_form` or `target`.
         """
     @property
     def rotation_error(self) -> float:
@@ -1852,7 +1863,7 @@ class Diagnosis:
     @property
     def proven(self) -> bool:
         """
-        Whether there is certainly no answer: `proof` is `reach` or `closed_form`.
+        Whether there is certainly no answer: `proof` is `reach`, `closed_form` or `target`.
         """
     @property
     def q(self) -> numpy.typing.NDArray[numpy.float64] | None:
@@ -1928,7 +1939,7 @@ class Solver:
         """
     def __repr__(self) -> str:
         ...
-    def diagnose(self, pose: numpy.typing.ArrayLike | typing.Any, *, scene: Scene | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None) -> Diagnosis:
+    def diagnose(self, pose: numpy.typing.ArrayLike | typing.Any, *, scene: Scene | None = None, exact: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None) -> Diagnosis:
         """
         Why solve() with the same arguments gives no answer, and the best that can be done.
 
@@ -1938,6 +1949,9 @@ class Solver:
             pose: T_base_tip [m], as in solve.
             scene: what answers may not collide with; of a robot with the same chain. The search continues
                 within its bounds while all collide.
+            exact: a second opinion on the scene, an iksel.exact.ExactCollision of it: called with
+                candidates (n, dof) that collide by the scene's spheres, returns n truth values, which of
+                them are free all the same.
             filter: called with candidates (n, dof), each at the pose, inside the limits and free in the
                 scene; returns n truth values. The search continues within its bounds while all are refused.
                 In a batch it is asked about the first answers of up to 256 targets at once, along a path
@@ -1972,7 +1986,7 @@ class Solver:
             InvalidArgumentError: a robot of another structure, a task with free axes, another strategy than
                 Lanes, a spacing out of range; else as solve.
         """
-    def solve(self, pose: numpy.typing.ArrayLike | typing.Any, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, scene: Scene | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None, closest: bool | numpy.typing.ArrayLike | None = None) -> Result:
+    def solve(self, pose: numpy.typing.ArrayLike | typing.Any, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, scene: Scene | None = None, exact: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None, closest: bool | numpy.typing.ArrayLike | None = None) -> Result:
         """
         Joint values that put the TCP (the tip link's frame, if there is no tool) at a pose.
 
@@ -1996,6 +2010,9 @@ class Solver:
                 those that a closed form gives.
             scene: what answers may not collide with; of a robot with the same chain. The search continues
                 within its bounds while all collide.
+            exact: a second opinion on the scene, an iksel.exact.ExactCollision of it: called with
+                candidates (n, dof) that collide by the scene's spheres, returns n truth values, which of
+                them are free all the same.
             filter: called with candidates (n, dof), each at the pose, inside the limits and free in the
                 scene; returns n truth values. The search continues within its bounds while all are refused.
                 In a batch it is asked about the first answers of up to 256 targets at once, along a path
@@ -2022,7 +2039,7 @@ class Solver:
             InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, a number that is not
                 finite or out of range.
         """
-    def solve_all(self, pose: numpy.typing.ArrayLike | typing.Any, max: int = 64, *, min_distance: float = 0.01, whole_turns: bool = False, order: SolutionOrder | str = 'move', near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, scene: Scene | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None) -> Solutions:
+    def solve_all(self, pose: numpy.typing.ArrayLike | typing.Any, max: int = 64, *, min_distance: float = 0.01, whole_turns: bool = False, order: SolutionOrder | str = 'move', near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, scene: Scene | None = None, exact: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None) -> Solutions:
         """
         Every distinct solution that is found: all branches (there certainly are no others where `proven` says so), or a spread for a redundant arm.
 
@@ -2048,6 +2065,9 @@ class Solver:
                 those that a closed form gives.
             scene: what answers may not collide with; of a robot with the same chain. The search continues
                 within its bounds while all collide.
+            exact: a second opinion on the scene, an iksel.exact.ExactCollision of it: called with
+                candidates (n, dof) that collide by the scene's spheres, returns n truth values, which of
+                them are free all the same.
             filter: called with candidates (n, dof), each at the pose, inside the limits and free in the
                 scene; returns n truth values. The search continues within its bounds while all are refused.
                 In a batch it is asked about the first answers of up to 256 targets at once, along a path
@@ -2062,7 +2082,7 @@ class Solver:
         Raises:
             InvalidArgumentError: as solve.
         """
-    def solve_batch(self, poses: numpy.typing.ArrayLike | typing.Any, threads: int = 0, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, scene: Scene | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None, closest: bool | numpy.typing.ArrayLike | None = None, on_invalid_pose: typing.Literal['status', 'raise'] = 'status') -> BatchResult:
+    def solve_batch(self, poses: numpy.typing.ArrayLike | typing.Any, threads: int = 0, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, scene: Scene | None = None, exact: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None, closest: bool | numpy.typing.ArrayLike | None = None, on_invalid_pose: typing.Literal['status', 'raise'] = 'status') -> BatchResult:
         """
         Solves many targets with the GIL released; row i belongs to target i.
 
@@ -2090,6 +2110,9 @@ class Solver:
                 those that a closed form gives.
             scene: what answers may not collide with; of a robot with the same chain. The search continues
                 within its bounds while all collide.
+            exact: a second opinion on the scene, an iksel.exact.ExactCollision of it: called with
+                candidates (n, dof) that collide by the scene's spheres, returns n truth values, which of
+                them are free all the same.
             filter: called with candidates (n, dof), each at the pose, inside the limits and free in the
                 scene; returns n truth values. The search continues within its bounds while all are refused.
                 In a batch it is asked about the first answers of up to 256 targets at once, along a path
@@ -2114,7 +2137,7 @@ class Solver:
             InvalidArgumentError: wrong shape or dtype, a bad argument, or with on_invalid_pose="raise"
                 a bad pose.
         """
-    def solve_path(self, poses: numpy.typing.ArrayLike | typing.Any, start: numpy.typing.ArrayLike | None = None, *, dt: float = 0.0, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', scene: Scene | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, candidates: int = 64) -> PathResult:
+    def solve_path(self, poses: numpy.typing.ArrayLike | typing.Any, start: numpy.typing.ArrayLike | None = None, *, dt: float = 0.0, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', scene: Scene | None = None, exact: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, candidates: int = 64) -> PathResult:
         """
         Joint values along a path of poses, by a choice among the solutions of all waypoints.
 
@@ -2130,6 +2153,9 @@ class Solver:
             weights: factor on each joint's part of a move, (dof,), >= 0; None: all 1.
             norm: how a move is measured.
             scene: what waypoints may not collide with; the moves between them are not looked at.
+            exact: a second opinion on the scene, an iksel.exact.ExactCollision of it: called with
+                candidates (n, dof) that collide by the scene's spheres, returns n truth values, which of
+                them are free all the same.
             filter: called with candidates (n, dof), each at the pose, inside the limits and free in the
                 scene; returns n truth values. The search continues within its bounds while all are refused.
                 In a batch it is asked about the first answers of up to 256 targets at once, along a path
@@ -2222,7 +2248,7 @@ class Solutions:
     @property
     def proven(self) -> bool:
         """
-        Whether these are certainly all: `proof` is `reach` or `closed_form`.
+        Whether these are certainly all: `proof` is `reach`, `closed_form` or `target`.
         """
     @property
     def q(self) -> numpy.typing.NDArray[numpy.float64]:

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Scenes: the lanes of every instruction set against distances one by one, and points in a grid
 // against all points.
+#include <algorithm>
 #include <memory>
 #include <random>
+#include <vector>
 
+#include "iksel/error.hpp"
 #include "iksel/scene.hpp"
 #include "levels.hpp"
 #include "robots.hpp"
 #include "scene/point_grid.hpp"
+#include "scene/scene_data.hpp"
 
 namespace {
 
@@ -108,6 +112,88 @@ TEST(PointGrid, TouchesWhatAllPointsTouch) {
     EXPECT_GT(touched, 100) << extent;
     EXPECT_LT(touched, 4900) << extent;
   }
+}
+
+TEST(TargetShape, TouchesOnlyWhereNoConfigurationIsFree) {
+  for (const char* name : {"ur3", "panda", "iiwa14"}) {
+    const Robot& robot = iksel_test::robot(name);
+    const iksel::Matrix q = robot.random_configurations(200, 6);
+    int found = 0;
+    int collided = 0;
+    for (unsigned seed = 0; seed < 5; ++seed) {
+      Scene scene = furnished(robot, seed);
+      if (seed % 2 == 1) {
+        scene.attach("cup", {robot.tip_link(), {{Eigen::Vector3d(0, 0.1, 0.2), 0.07}}, {}});
+      }
+      for (Eigen::Index i = 0; i < q.rows(); ++i) {
+        const JointVector at = q.row(i);
+        const bool is_free = scene.is_free(at);
+        const bool touches = scene.data().touches_at(robot.fk(at), 1e-6, 1e-6);
+        EXPECT_FALSE(is_free && touches) << name << ", scene " << seed << ", row " << i;
+        found += static_cast<int>(touches);
+        collided += static_cast<int>(!is_free);
+      }
+    }
+    EXPECT_GT(found, 50) << name;
+    EXPECT_LT(found, collided) << name;
+  }
+}
+
+TEST(TargetShape, AnswersSayThatTheTargetTouches) {
+  const Robot& robot = iksel_test::robot("panda");
+  const iksel::Solver solver(robot);
+  const JointVector q = robot.random_configurations(1, 8).row(0);
+  const Pose target = robot.fk(q);
+  iksel::SolveRequest request;
+  request.scene.emplace(robot, balls_on(robot));
+  request.scene->set("post", Obstacle::sphere(0.05, target));
+  for (const bool has_near : {false, true}) {
+    if (has_near) request.near = q;
+    const iksel::Result result = solver.solve(target, request);
+    EXPECT_EQ(result.status, iksel::Status::in_collision);
+    EXPECT_EQ(result.proof, iksel::Proof::target);
+  }
+  const iksel::Solutions all = solver.solve_all(target, {}, request);
+  EXPECT_EQ(all.status, iksel::Status::in_collision);
+  EXPECT_EQ(all.proof, iksel::Proof::target);
+  // What cannot be reached at all does not collide.
+  Pose beyond = target;
+  beyond.translation() *= 100;
+  request.scene->set("post", Obstacle::sphere(0.05, beyond));
+  EXPECT_EQ(solver.solve(beyond, request).status, iksel::Status::out_of_reach);
+}
+
+TEST(Scene, ASecondOpinionCountsWhereSpheresRefuse) {
+  const Robot& robot = iksel_test::robot("panda");
+  const iksel::Solver solver(robot);
+  const JointVector q = robot.random_configurations(1, 9).row(0);
+  const Pose target = robot.fk(q);
+  iksel::SolveRequest request;
+  request.scene.emplace(robot, balls_on(robot));
+  request.scene->set("post", Obstacle::sphere(0.05, target));
+  int asked = 0;
+  request.exact = [&](const double* rows, std::size_t count, bool* free) {
+    for (std::size_t i = 0; i < count; ++i) {
+      EXPECT_FALSE(request.scene->is_free(Eigen::Map<const Eigen::VectorXd>(rows + 7 * i, 7)));
+      free[i] = rows[7 * i] > 0;
+      ++asked;
+    }
+  };
+  const iksel::Result result = solver.solve(target, request);
+  ASSERT_TRUE(result.success());
+  EXPECT_GT(result.q[0], 0);
+  EXPECT_GT(asked, 0);
+  for (const iksel::Result& answer : solver.solve_all(target, {}, request).all) {
+    EXPECT_GT(answer.q[0], 0);
+  }
+  const std::vector<iksel::Result> batch = solver.solve_batch({target, target}, request);
+  EXPECT_TRUE(batch[0].success() && batch[1].success());
+  request.exact = [](const double*, std::size_t count, bool* free) {
+    std::fill_n(free, count, false);
+  };
+  EXPECT_EQ(solver.solve(target, request).status, iksel::Status::in_collision);
+  request.scene.reset();
+  EXPECT_THROW(solver.solve(target, request), iksel::InvalidArgumentError);
 }
 
 TEST(Scene, CopiesDoNotSeeWhatIsDoneToAnother) {

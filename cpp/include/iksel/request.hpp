@@ -79,6 +79,10 @@ struct IKSEL_EXPORT SolveRequest {
   /// What answers may not collide with. As it is when the solve begins. Of a robot with the same
   /// chain.
   std::optional<Scene> scene;
+  /// A second opinion, which is asked about what collides in the scene by its spheres: what this
+  /// keeps is free. Where nothing is free by spheres, it is asked about what a search finds within
+  /// its bounds. Only with a scene. Empty: the spheres decide.
+  Filter exact;
   /// Refuses candidates, of those that do not collide; the search then continues within its bounds.
   /// Empty: takes all.
   Filter filter;
@@ -146,6 +150,8 @@ struct IKSEL_EXPORT PathOptions {
   MoveNorm norm = MoveNorm::two;
   /// What waypoints may not collide with; the moves between them are not looked at.
   std::optional<Scene> scene;
+  /// As in SolveRequest.
+  Filter exact;
   /// Refuses candidates, those of one waypoint at a time.
   Filter filter;
   /// Candidates kept per waypoint at most.

@@ -40,8 +40,10 @@ enum class Proof : std::uint8_t {
   none,         ///< one was found and others were not looked for, or it was searched only
   reach,        ///< the target lies farther away than the links are long together
   closed_form,  ///< all branches are known (find_structure), and no other lies inside the limits
-  sweep,  ///< not proven: a joint was swept over its range (find_structure), and no other branch
-          ///< came inside the limits at its values or beside them
+  sweep,   ///< not proven: a joint was swept over its range (find_structure), and no other branch
+           ///< came inside the limits at its values or beside them
+  target,  ///< what the target itself places touches something in the scene: the tip, with what is
+           ///< fixed to it, whatever the arm does
 };
 
 /// Lower-case name of a proof.

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/constants.hpp"
+#include "scene/scene_data.hpp"
 
 namespace iksel {
 namespace {
@@ -81,6 +82,12 @@ bool Goal::is_free(const JointVector& q) const {
   bool free = true;
   if (scene_ != nullptr) scene_->find_free(q.data(), 1, &free);
   return free;
+}
+
+bool Goal::is_never_free() const {
+  return scene_ != nullptr && is_full_pose() &&
+         scene_->data().touches_at(tip_target(), task_.position_tolerance(),
+                                   task_.rotation_tolerance());
 }
 
 void measure_error(const Pose& target, const Frame& f, double& position_error,

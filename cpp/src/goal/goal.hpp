@@ -46,6 +46,9 @@ class Goal {
   bool check(const JointVector& q, Result& result) const;
   /// Whether such a q may be an answer: false if it collides in the scene.
   [[nodiscard]] bool is_free(const JointVector& q) const;
+  /// Whether certainly none is, wherever the arm is: what moves with the tip, or is always there,
+  /// touches something at the target itself. Of full poses.
+  [[nodiscard]] bool is_never_free() const;
   /// What answers may not collide with; null if there is nothing.
   [[nodiscard]] const Scene* scene() const { return scene_; }
   [[nodiscard]] bool is_solution(const JointVector& q) const {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What refuses answers: a scene, and a filter, which is asked about what the scene lets through.
+// What refuses answers: a scene, unless a second opinion differs, and a filter, which is asked
+// about what these let through.
 #pragma once
 
 #include <algorithm>
@@ -20,9 +21,9 @@ inline bool screens_answers(const SolveRequest& request) {
 
 class Screen {
  public:
-  /// Both must outlive this.
-  Screen(const std::optional<Scene>& scene, const Filter& filter, int dof)
-      : scene_(scene), filter_(filter), dof_(static_cast<std::size_t>(dof)) {}
+  /// All must outlive this.
+  Screen(const std::optional<Scene>& scene, const Filter& exact, const Filter& filter, int dof)
+      : scene_(scene), exact_(exact), filter_(filter), dof_(static_cast<std::size_t>(dof)) {}
 
   [[nodiscard]] bool is_set() const { return scene_ || static_cast<bool>(filter_); }
   [[nodiscard]] bool has_filter() const { return static_cast<bool>(filter_); }
@@ -31,6 +32,7 @@ class Screen {
   void find_free(const double* q, std::size_t count, bool* free) const {
     if (scene_) {
       scene_->find_free(q, count, free);
+      ask_exact(q, count, free);
     } else {
       std::fill_n(free, count, true);
     }
@@ -45,20 +47,9 @@ class Screen {
           filter_refused_ || !std::all_of(keep, keep + count, [](bool b) { return b; });
       return;
     }
-    asked_.clear();
-    for (std::size_t i = 0; i < count; ++i) {
-      if (keep[i]) asked_.insert(asked_.end(), q + i * dof_, q + (i + 1) * dof_);
-    }
-    const std::size_t n = asked_.size() / dof_;
-    if (n == 0) return;
-    const std::unique_ptr<bool[]> passed(new bool[n]());
-    filter_(asked_.data(), n, passed.get());
-    std::size_t at = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      if (!keep[i]) continue;
-      keep[i] = passed[at++];
-      filter_refused_ = filter_refused_ || !keep[i];
-    }
+    const auto kept = std::count(keep, keep + count, true);
+    ask(filter_, q, count, true, keep);
+    filter_refused_ = filter_refused_ || std::count(keep, keep + count, true) < kept;
   }
   void apply(const double* q, std::size_t count, bool* keep) {
     find_free(q, count, keep);
@@ -70,11 +61,31 @@ class Screen {
   }
 
  private:
+  /// About what is free by the scene's spheres there is no doubt.
+  void ask_exact(const double* q, std::size_t count, bool* free) const {
+    if (exact_) ask(exact_, q, count, false, free);
+  }
+  /// Asks about those whose flag is `of`, and sets it to the answer.
+  void ask(const Filter& whom, const double* q, std::size_t count, bool of, bool* flag) const {
+    std::vector<double> asked;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (flag[i] == of) asked.insert(asked.end(), q + i * dof_, q + (i + 1) * dof_);
+    }
+    const std::size_t n = asked.size() / dof_;
+    if (n == 0) return;
+    const std::unique_ptr<bool[]> answer(new bool[n]());
+    whom(asked.data(), n, answer.get());
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (flag[i] == of) flag[i] = answer[at++];
+    }
+  }
+
   const std::optional<Scene>& scene_;
+  const Filter& exact_;
   const Filter& filter_;
   std::size_t dof_;
   bool filter_refused_ = false;
-  std::vector<double> asked_;
 };
 
 }  // namespace iksel

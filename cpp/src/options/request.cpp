@@ -68,6 +68,9 @@ void SolveRequest::validate(int dof) const {
   objective.validate(dof);
   if (task) task->validate();
   if (closest) closest->validate();
+  if (exact && !scene) {
+    throw InvalidArgumentError("exact: there is no scene of which it could judge");
+  }
   if (!(deadline > 0)) {
     throw InvalidArgumentError("deadline: " + number_text(deadline) + " s is not above 0");
   }
@@ -90,6 +93,8 @@ void PathOptions::validate(int dof) const {
   SolveRequest request;
   request.weights = weights;
   request.norm = norm;
+  request.scene = scene;
+  request.exact = exact;
   if (start) check_joints(*start, dof, "start");
   request.validate(dof);
   if (!(dt >= 0 && dt <= 1e9)) {

@@ -41,10 +41,11 @@ ArmShape::ArmShape(const Robot& robot, const RobotSpheres& spheres,
   const ChainModel& model = robot.model();
   model.link_poses->with(model, other_joints,
                          [&](const LinkPoses& links) { make_bodies(robot, links); });
+  tip_body_ = place_of(robot.tip_link()).body;
+  T_body_tip_ = place_of(robot.tip_link()).T_body_link;
   for (const auto& [name, of_link] : spheres.links) {
     check_link(name, "spheres");
-    const auto at = std::find(link_names_.begin(), link_names_.end(), name);
-    add(name, places_[static_cast<std::size_t>(at - link_names_.begin())], of_link);
+    add(name, place_of(name), of_link);
   }
   for (const auto& [a, b] : spheres.pairs) {
     const lanes::ScenePair pair{find(a), find(b)};
@@ -111,8 +112,7 @@ void ArmShape::add(const std::string& name, const Place& place,
 
 void ArmShape::attach(const std::string& name, const AttachedObject& object) {
   check_link(object.link, "link");
-  const auto at = std::find(link_names_.begin(), link_names_.end(), object.link);
-  add(name, places_[static_cast<std::size_t>(at - link_names_.begin())], object.spheres);
+  add(name, place_of(object.link), object.spheres);
   const int added = static_cast<int>(links_.size()) - 1;
   for (int i = 0; i < added; ++i) {
     const auto k = static_cast<std::size_t>(i);
@@ -128,9 +128,37 @@ void ArmShape::check_link(const std::string& link, const char* argument) const {
                      link_names_);
 }
 
+const ArmShape::Place& ArmShape::place_of(const std::string& link) const {
+  const auto at = std::find(link_names_.begin(), link_names_.end(), link);
+  return places_[static_cast<std::size_t>(at - link_names_.begin())];
+}
+
 int ArmShape::find(const std::string& name) const {
   const auto at = std::find(names_.begin(), names_.end(), name);
   return at == names_.end() ? -1 : static_cast<int>(at - names_.begin());
+}
+
+std::vector<Eigen::Vector3d> ArmShape::centres(const double* q) const {
+  std::vector<Pose> frame{Pose::Identity()};
+  for (std::size_t i = 1; i < bodies_.size(); ++i) {
+    const lanes::SceneBody& body = bodies_[i];
+    const double motion = body.multiplier * q[body.variable] + body.offset;
+    Pose moved = frame_of(body);
+    if (body.prismatic) {
+      moved.translate(motion * Eigen::Vector3d::UnitZ());
+    } else {
+      moved.rotate(Eigen::AngleAxisd(motion, Eigen::Vector3d::UnitZ()));
+    }
+    frame.push_back(frame[static_cast<std::size_t>(body.parent)] * moved);
+  }
+  std::vector<Eigen::Vector3d> centres(balls_.size());
+  for (const lanes::SceneLink& link : links_) {
+    for (int b = link.first - 1; b < link.first + link.count; ++b) {
+      const auto k = static_cast<std::size_t>(b);
+      centres[k] = frame[static_cast<std::size_t>(link.body)] * to_vector(balls_[k].centre);
+    }
+  }
+  return centres;
 }
 
 void ArmShape::show(lanes::SceneView& view) const {

@@ -17,6 +17,16 @@ inline void copy_vector(const Eigen::Vector3d& from, double (&to)[3]) {
   std::copy_n(from.data(), 3, to);
 }
 
+inline Eigen::Vector3d to_vector(const double (&v)[3]) { return {v[0], v[1], v[2]}; }
+
+/// A body's frame in its parent's, where its joint does not move it.
+inline Pose frame_of(const lanes::SceneBody& body) {
+  Pose frame = Pose::Identity();
+  frame.linear() << to_vector(body.x), to_vector(body.y), to_vector(body.z);
+  frame.translation() = to_vector(body.p);
+  return frame;
+}
+
 class ArmShape {
  public:
   /// Throws as Scene.
@@ -32,8 +42,16 @@ class ArmShape {
   /// Sets what of a view belongs to the arm; it holds as long as this is not changed.
   void show(lanes::SceneView& view) const;
 
+  /// Centres of all balls in the base frame [m].
+  [[nodiscard]] std::vector<Eigen::Vector3d> centres(const double* q) const;
+
+  /// The body that the tip link is on, and T_tip_body.
+  [[nodiscard]] int tip_body() const { return tip_body_; }
+  [[nodiscard]] Pose tip_to_body() const { return Pose(T_body_tip_).inverse(); }
+
   /// Of each entry of `links`, the name of the link or object.
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
+  [[nodiscard]] const std::vector<lanes::SceneBody>& bodies() const { return bodies_; }
   [[nodiscard]] const std::vector<lanes::SceneLink>& links() const { return links_; }
   [[nodiscard]] const std::vector<lanes::SceneBall>& balls() const { return balls_; }
   [[nodiscard]] const std::vector<lanes::ScenePair>& pairs() const { return pairs_; }
@@ -48,11 +66,15 @@ class ArmShape {
   /// The body that a joint moves, whose part that does not move is `origin` on another.
   int add_body(const LinkPoses::Step& step, int parent, const Pose& origin);
   void add(const std::string& name, const Place& place, const std::vector<Sphere>& spheres);
+  /// Of a link that there is.
+  [[nodiscard]] const Place& place_of(const std::string& link) const;
   /// Index of a link or object with spheres; -1 if there is none.
   [[nodiscard]] int find(const std::string& name) const;
 
   std::vector<std::string> link_names_;  ///< of the URDF
   std::vector<Place> places_;
+  int tip_body_ = 0;
+  StoredPose T_body_tip_;
   std::vector<lanes::SceneBody> bodies_;
   std::vector<std::string> names_;
   std::vector<lanes::SceneLink> links_;

@@ -41,32 +41,20 @@ double signed_distance(const Obstacle& obstacle, const PointGrid* grid,
   return kInfinity;
 }
 
-/// The balls of a configuration, as the kernel placed them in the first lane.
-struct Balls {
-  const std::vector<lanes::SceneBall>& balls;
-  const double* centre;
-
-  [[nodiscard]] Eigen::Vector3d at(int ball) const {
-    const double* c = centre + 3 * ball * lanes::kWidth;
-    return {c[0], c[lanes::kWidth], c[2 * lanes::kWidth]};
-  }
-  [[nodiscard]] double radius(int ball) const {
-    return balls[static_cast<std::size_t>(ball)].radius;
-  }
-};
-
 }  // namespace
 
-void Scene::Data::add_contacts(int link, const double* centre, std::vector<Contact>& found) const {
-  const Balls balls{arm_.balls(), centre};
+void Scene::Data::add_contacts(int link, const std::vector<Eigen::Vector3d>& centre,
+                               std::vector<Contact>& found) const {
+  const auto radius = [&](int b) { return arm_.balls()[static_cast<std::size_t>(b)].radius; };
+  const auto at = [&](int b) { return centre[static_cast<std::size_t>(b)]; };
   const lanes::SceneLink& of = arm_.links()[static_cast<std::size_t>(link)];
   for (const auto& [name, obstacle] : obstacles) {
     const auto grid = grids_.find(obstacle.points);
     const PointGrid* points = grid == grids_.end() ? nullptr : grid->second.get();
     double depth = -kInfinity;
     for (int b = of.first; b < of.first + of.count; ++b) {
-      const double distance = signed_distance(obstacle, points, balls.at(b));
-      depth = std::max(depth, balls.radius(b) + obstacle.margin - distance);
+      const double distance = signed_distance(obstacle, points, at(b));
+      depth = std::max(depth, radius(b) + obstacle.margin - distance);
     }
     if (depth >= 0) {
       found.push_back({arm_.names()[static_cast<std::size_t>(link)], name, true, depth});
@@ -74,8 +62,10 @@ void Scene::Data::add_contacts(int link, const double* centre, std::vector<Conta
   }
 }
 
-void Scene::Data::add_pair_contacts(const double* centre, std::vector<Contact>& found) const {
-  const Balls balls{arm_.balls(), centre};
+void Scene::Data::add_pair_contacts(const std::vector<Eigen::Vector3d>& centre,
+                                    std::vector<Contact>& found) const {
+  const auto radius = [&](int b) { return arm_.balls()[static_cast<std::size_t>(b)].radius; };
+  const auto at = [&](int b) { return centre[static_cast<std::size_t>(b)]; };
   for (const lanes::ScenePair& pair : arm_.pairs()) {
     const auto ia = static_cast<std::size_t>(pair.a);
     const auto ib = static_cast<std::size_t>(pair.b);
@@ -84,8 +74,8 @@ void Scene::Data::add_pair_contacts(const double* centre, std::vector<Contact>& 
     double depth = -kInfinity;
     for (int i = a.first; i < a.first + a.count; ++i) {
       for (int j = b.first; j < b.first + b.count; ++j) {
-        const double distance = (balls.at(i) - balls.at(j)).norm();
-        depth = std::max(depth, balls.radius(i) + balls.radius(j) - distance);
+        const double distance = (at(i) - at(j)).norm();
+        depth = std::max(depth, radius(i) + radius(j) - distance);
       }
     }
     if (depth >= 0) found.push_back({arm_.names()[ia], arm_.names()[ib], false, depth});
@@ -93,19 +83,14 @@ void Scene::Data::add_pair_contacts(const double* centre, std::vector<Contact>& 
 }
 
 std::vector<Contact> Scene::Data::contacts(const double* q) const {
-  constexpr int kWidth = lanes::kWidth;
-  alignas(64) std::array<double, static_cast<std::size_t>(kMaxDof) * kWidth> packed{};
-  for (int j = 0; j < robot.dof(); ++j) packed[static_cast<std::size_t>(j * kWidth)] = q[j];
-  std::vector<double> centre(arm_.balls().size() * 3 * kWidth);
-  alignas(64) std::array<double, kWidth> clearance;
-  kernels_.find_clearance(view(), packed.data(), 1, centre.data(), clearance.data());
+  const std::vector<Eigen::Vector3d> centre = arm_.centres(q);
   std::vector<Contact> found;
   for (int link = 0; link < static_cast<int>(arm_.links().size()); ++link) {
     if (arm_.links()[static_cast<std::size_t>(link)].body != 0) {
-      add_contacts(link, centre.data(), found);
+      add_contacts(link, centre, found);
     }
   }
-  add_pair_contacts(centre.data(), found);
+  add_pair_contacts(centre, found);
   std::stable_sort(found.begin(), found.end(),
                    [](const Contact& a, const Contact& b) { return a.depth > b.depth; });
   return found;

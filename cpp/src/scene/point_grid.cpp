@@ -11,8 +11,20 @@ namespace {
 /// Of cells smaller than a link's spheres there are many to look at [m].
 constexpr double kLeastEdge = 0.02;
 constexpr double kMostCells = 1 << 20;
-/// Counts beyond are held to it, which says less than they would but nothing wrong.
-constexpr int kFarthest = 255;
+/// Of the largest extent.
+constexpr int kCellsAlong = 255;
+/// Cells farther than this along an axis are not looked at; the square is held to kFar2, which says
+/// less than it would but nothing wrong.
+constexpr int kWindow = 11;
+constexpr int kFar2 = kWindow * kWindow;
+
+/// At least so far apart are points in cells whose numbers differ by k, squared.
+constexpr int gap2(int k) {
+  const int between = k < 0 ? -k - 1 : k - 1;
+  return between > 0 ? between * between : 0;
+}
+// The sums that come up fit into a byte.
+static_assert(kFar2 + gap2(kWindow) < 256, "sums of squares");
 
 }  // namespace
 
@@ -26,7 +38,7 @@ PointGrid::PointGrid(const PointCloud& points)
 
 void PointGrid::size_cells(const Eigen::Vector3d& extent) {
   // Cells as large as the largest extent are few.
-  edge_ = std::max(kLeastEdge, extent.maxCoeff() / kFarthest);
+  edge_ = std::max(kLeastEdge, extent.maxCoeff() / kCellsAlong);
   const auto cells = [&] {
     double product = 1;
     for (const double length : extent) product *= std::floor(length / edge_) + 1;
@@ -66,36 +78,32 @@ void PointGrid::sort_points(const PointCloud& points) {
 }
 
 void PointGrid::measure_distances() {
-  // In two passes, from neighbours that come before and after: exact for this distance (Rosenfeld
-  // and Pfaltz, "Distance functions on digital pictures", 1968).
-  away_.assign(first_.size() - 1, kFarthest);
-  const auto relax = [&](int x, int y, int z, int side) {
-    std::uint8_t& here = away_[index(x, y, z)];
-    for (int dz = -1; dz <= 1; ++dz) {
-      for (int dy = -1; dy <= 1; ++dy) {
-        for (int dx = -1; dx <= 1; ++dx) {
-          const int order = (dz * 3 + dy) * 3 + dx;
-          if (order * side >= 0) continue;
-          const int i = x + dx;
-          const int j = y + dy;
-          const int k = z + dz;
-          if (i < 0 || j < 0 || k < 0 || i >= count_[0] || j >= count_[1] || k >= count_[2]) {
-            continue;
-          }
-          const int through = std::min(away_[index(i, j, k)] + 1, kFarthest);
-          here = static_cast<std::uint8_t>(std::min<int>(here, through));
-        }
-      }
-    }
-  };
-  for (std::size_t i = 0; i < away_.size(); ++i) {
-    if (first_[i + 1] > first_[i]) away_[i] = 0;
+  away2_.resize(first_.size() - 1);
+  for (std::size_t i = 0; i < away2_.size(); ++i) {
+    away2_[i] = first_[i + 1] > first_[i] ? 0 : static_cast<std::uint8_t>(kFar2);
   }
-  for (const int side : {1, -1}) {
-    const auto place = [&](int i, std::size_t axis) { return side > 0 ? i : count_[axis] - 1 - i; };
-    for (int z = 0; z < count_[2]; ++z) {
-      for (int y = 0; y < count_[1]; ++y) {
-        for (int x = 0; x < count_[0]; ++x) relax(place(x, 0), place(y, 1), place(z, 2), side);
+  // One axis after the other: the least of a sum is that of the least sums along each.
+  std::size_t inner = 1;
+  for (const int count : count_) {
+    measure_along(inner, static_cast<std::size_t>(count));
+    inner *= static_cast<std::size_t>(count);
+  }
+}
+
+void PointGrid::measure_along(std::size_t inner, std::size_t count) {
+  const std::vector<std::uint8_t> before = away2_;
+  const std::size_t row = inner * count;
+  for (std::size_t start = 0; start < away2_.size(); start += row) {
+    for (int k = -kWindow; k <= kWindow; ++k) {
+      const auto steps = static_cast<std::size_t>(k < 0 ? -k : k);
+      if (steps >= count) continue;
+      const std::size_t length = (count - steps) * inner;
+      const std::uint8_t* from = &before[start + (k > 0 ? steps * inner : 0)];
+      std::uint8_t* to = &away2_[start + (k < 0 ? steps * inner : 0)];
+      const auto more = static_cast<std::uint8_t>(gap2(k));
+      for (std::size_t i = 0; i < length; ++i) {
+        const auto through = static_cast<std::uint8_t>(from[i] + more);
+        to[i] = through < to[i] ? through : to[i];
       }
     }
   }
@@ -109,7 +117,10 @@ bool PointGrid::may_touch(const Eigen::Vector3d& c, double radius) const {
   }
   if (outside > radius * radius) return false;
   const Cell cell = cell_of(c);
-  return (away_[index(cell[0], cell[1], cell[2])] - 1) * edge_ <= radius;
+  // Cells are where rounding puts their points.
+  constexpr double kRounding = 1 - 1e-9;
+  const double away2 = away2_[index(cell[0], cell[1], cell[2])] * edge_ * edge_;
+  return away2 * kRounding <= radius * radius;
 }
 
 bool PointGrid::touches(const Eigen::Vector3d& c, double radius) const {
@@ -117,15 +128,18 @@ bool PointGrid::touches(const Eigen::Vector3d& c, double radius) const {
   const Eigen::Vector3d reach = Eigen::Vector3d::Constant(radius);
   const Cell from = cell_of(c - reach);
   const Cell to = cell_of(c + reach);
+  const double square = radius * radius;
   for (int z = from[2]; z <= to[2]; ++z) {
+    const double beyond_z = square - gap2_to(c, 2, z);
     for (int y = from[1]; y <= to[1]; ++y) {
+      if (gap2_to(c, 1, y) > beyond_z) continue;
       const std::uint32_t end = first_[index(to[0], y, z) + 1];
       for (std::uint32_t i = first_[index(from[0], y, z)]; i < end; ++i) {
         const auto& p = points_[i];
-        const double x = p[0] - c[0];
+        const double dx = p[0] - c[0];
         const double dy = p[1] - c[1];
         const double dz = p[2] - c[2];
-        if (x * x + dy * dy + dz * dz <= radius * radius) return true;
+        if (dx * dx + dy * dy + dz * dz <= square) return true;
       }
     }
   }

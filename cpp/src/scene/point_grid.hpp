@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Points in the cells of a grid, each of which knows how many cells away the nearest point is.
+// Points in the cells of a grid, each of which knows at least how far away the nearest point is.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -24,6 +25,8 @@ class PointGrid {
 
  private:
   using Cell = std::array<int, 3>;
+  /// Cells are where rounding puts their points [edges].
+  static constexpr double kSlack = 1e-9;
   /// The cell that holds c, or is nearest to it.
   [[nodiscard]] Cell cell_of(const Eigen::Vector3d& c) const;
   [[nodiscard]] std::size_t index(int x, int y, int z) const {
@@ -35,6 +38,14 @@ class PointGrid {
   void size_cells(const Eigen::Vector3d& extent);
   void sort_points(const PointCloud& points);
   void measure_distances();
+  /// The same along one axis: of rows of `count` cells, `inner` apart.
+  void measure_along(std::size_t inner, std::size_t count);
+  /// At least how far c is from the points of cell number `cell` along an axis, squared [m^2].
+  [[nodiscard]] double gap2_to(const Eigen::Vector3d& c, int axis, int cell) const {
+    const double low = lower_[axis] + edge_ * cell - c[axis];
+    const double gap = std::max({low, -low - edge_, 0.0}) - kSlack * edge_;
+    return gap > 0 ? gap * gap : 0;
+  }
 
   Eigen::Matrix<double, 3, 1, Eigen::DontAlign> lower_, upper_;  ///< corners [m]
   double edge_ = 0;                                              ///< of a cell [m]
@@ -42,8 +53,8 @@ class PointGrid {
   /// Those of cell i are points_[first_[i]] to points_[first_[i + 1] - 1].
   std::vector<std::uint32_t> first_;
   std::vector<std::array<double, 3>> points_;
-  /// Cells from each to the nearest that holds a point, along the axis where that is most.
-  std::vector<std::uint8_t> away_;
+  /// At least so far is any place in a cell from the nearest point, squared [edges^2].
+  std::vector<std::uint8_t> away2_;
 };
 
 }  // namespace iksel

@@ -32,11 +32,14 @@ void Scene::Data::add(const Obstacle& obstacle) {
     case Obstacle::Shape::sphere:
     case Obstacle::Shape::box:
     case Obstacle::Shape::capsule: {
-      lanes::SceneBlock block{{}, {}, {}, obstacle.radius + obstacle.margin};
+      lanes::SceneBlock block{{}, {}, {}, obstacle.radius + obstacle.margin, 0};
       copy_vector(pose.translation(), block.centre);
       for (int i = 0; i < 3; ++i) copy_vector(R.col(i), block.axis[i]);
       copy_vector(0.5 * obstacle.size, block.half);
       block.half[2] += 0.5 * obstacle.length;
+      // Rounding included.
+      block.around =
+          (Eigen::Map<const Eigen::Vector3d>(block.half).norm() + block.radius) * (1 + 1e-12);
       blocks_.push_back(block);
       break;
     }
@@ -77,84 +80,27 @@ void Scene::Data::lay_out() {
 
 void Scene::Data::attach_all() {
   ArmShape with_objects = bare_;
-  for (const auto& [name, object] : attached) with_objects.attach(name, object);
+  for (const auto& [name, object] : attached) {
+    // What may touch the one may be touched by the other.
+    AttachedObject both_ways = object;
+    for (const auto& [other, of_other] : attached) {
+      const auto& may = of_other.may_touch;
+      if (std::find(may.begin(), may.end(), name) != may.end())
+        both_ways.may_touch.push_back(other);
+    }
+    with_objects.attach(name, both_ways);
+  }
   arm_ = std::move(with_objects);
+  target_shape_ = TargetShape(arm_);
 }
 
-lanes::SceneView Scene::Data::view() const {
-  lanes::SceneView view{};
-  arm_.show(view);
+void Scene::Data::show_obstacles(lanes::SceneView& view) const {
   view.blocks = static_cast<int>(blocks_.size());
   view.cylinders = static_cast<int>(cylinders_.size());
   view.planes = static_cast<int>(planes_.size());
   view.block = blocks_.data();
   view.cylinder = cylinders_.data();
   view.plane = planes_.data();
-  return view;
-}
-
-void Scene::Data::find_clearance_pack(const double* q, int count, double* clearance) const {
-  constexpr int kWidth = lanes::kWidth;
-  const int dof = robot.dof();
-  alignas(64) std::array<double, static_cast<std::size_t>(kMaxDof) * kWidth> packed;
-  for (int lane = 0; lane < kWidth; ++lane) {
-    // Lanes that nobody asks for do as the first does.
-    const double* from = q + (lane < count ? lane : 0) * dof;
-    for (int j = 0; j < dof; ++j) packed[static_cast<std::size_t>(j * kWidth + lane)] = from[j];
-  }
-  // Memory of its own for each thread, taken once.
-  thread_local std::vector<double> centre;
-  centre.resize(std::max(centre.size(), arm_.balls().size() * 3 * kWidth));
-  alignas(64) std::array<double, kWidth> found;
-  kernels_.find_clearance(view(), packed.data(), count, centre.data(), found.data());
-  for (int lane = 0; lane < count; ++lane) {
-    const double above = found[static_cast<std::size_t>(lane)];
-    const bool touches_point =
-        above > 0 && !clouds_.empty() && !is_free_of_points(centre.data(), lane);
-    clearance[lane] = touches_point ? 0.0 : above;
-  }
-}
-
-void Scene::Data::find_clearance(const double* q, std::size_t count, double* clearance) const {
-  const auto dof = static_cast<std::size_t>(robot.dof());
-  constexpr std::size_t kWidth = lanes::kWidth;
-  for (std::size_t i = 0; i < count; i += kWidth) {
-    const auto in_pack = static_cast<int>(std::min(kWidth, count - i));
-    find_clearance_pack(q + i * dof, in_pack, clearance + i);
-  }
-}
-
-void Scene::Data::find_free(const double* q, std::size_t count, bool* free) const {
-  const auto dof = static_cast<std::size_t>(robot.dof());
-  constexpr std::size_t kWidth = lanes::kWidth;
-  std::array<double, kWidth> clearance{};
-  for (std::size_t i = 0; i < count; i += kWidth) {
-    const std::size_t in_pack = std::min(kWidth, count - i);
-    find_clearance(q + i * dof, in_pack, clearance.data());
-    for (std::size_t k = 0; k < in_pack; ++k) free[i + k] = clearance[k] > 0;
-  }
-}
-
-bool Scene::Data::is_free_of_points(const double* centre, int lane) const {
-  const auto at = [&](int ball) {
-    const double* c = centre + 3 * ball * lanes::kWidth + lane;
-    return Eigen::Vector3d(c[0], c[lanes::kWidth], c[2 * lanes::kWidth]);
-  };
-  for (const Cloud& cloud : clouds_) {
-    const Pose T_cloud_base(cloud.T_cloud_base);
-    const auto reach = [&](int ball) {
-      return arm_.balls()[static_cast<std::size_t>(ball)].radius + cloud.radius;
-    };
-    for (const lanes::SceneLink& link : arm_.links()) {
-      if (link.body == 0) continue;
-      const int around = link.first - 1;
-      if (!cloud.grid->may_touch(T_cloud_base * at(around), reach(around))) continue;
-      for (int b = link.first; b < link.first + link.count; ++b) {
-        if (cloud.grid->touches(T_cloud_base * at(b), reach(b))) return false;
-      }
-    }
-  }
-  return true;
 }
 
 }  // namespace iksel

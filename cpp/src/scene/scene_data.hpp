@@ -10,10 +10,22 @@
 #include "iksel/scene.hpp"
 #include "scene/arm_shape.hpp"
 #include "scene/point_grid.hpp"
+#include "scene/target_shape.hpp"
 #include "simd/kernels.hpp"
 #include "simd/scene_types.hpp"
 
 namespace iksel {
+
+/// What is known while configurations are looked at one after the other, which mostly fail by the
+/// same.
+struct SceneLook {
+  /// Whether nothing touches that is where it is in all solutions (TargetShape).
+  bool is_target_clear = false;
+  lanes::SceneCulprit culprit;
+  /// Of the points: the ball that touched some, and of which link; 0: none did.
+  std::size_t cloud = 0;
+  int link = 0, ball = 0;
+};
 
 struct Scene::Data {
   /// Throws as Scene.
@@ -24,6 +36,7 @@ struct Scene::Data {
         other_joints(other_joints_in),
         bare_(robot, spheres, other_joints),
         arm_(bare_),
+        target_shape_(arm_),
         kernels_(lanes::choose_kernels()) {}
 
   /// Lays out the obstacles for the kernel; of a cloud the grid, if there is none yet.
@@ -33,10 +46,12 @@ struct Scene::Data {
   /// Throws unless nothing of another kind has that name.
   void check_name(const std::string& name, bool is_obstacle) const;
 
-  [[nodiscard]] lanes::SceneView view() const;
   /// The clearances (scene_types.hpp) of `count` configurations, one after the other; 0 where only
   /// points touch.
-  void find_clearance(const double* q, std::size_t count, double* clearance) const;
+  void find_clearance(const double* q, std::size_t count, double* clearance, SceneLook& look) const;
+  /// Whether something certainly touches in all solutions that bring the tip link to a pose, within
+  /// those tolerances [m, rad].
+  [[nodiscard]] bool touches_at(const Pose& T_base_tip, double position, double rotation) const;
   /// Whether they are free.
   void find_free(const double* q, std::size_t count, bool* free) const;
   [[nodiscard]] bool is_free(const double* q) const {
@@ -61,16 +76,21 @@ struct Scene::Data {
 
  private:
   void add(const Obstacle& obstacle);
+  void show_obstacles(lanes::SceneView& view) const;
   [[nodiscard]] const std::shared_ptr<const PointGrid>& grid_of(const Obstacle& cloud);
-  /// Whether the arm, whose balls are placed in a lane, touches no point.
-  [[nodiscard]] bool is_free_of_points(const double* centre, int lane) const;
+  /// Whether what a view shows touches a point; bodies are placed in a lane of `frame`.
+  bool touches_points(const lanes::SceneView& view, const double* frame, int lane,
+                      SceneLook& look) const;
   /// Up to one configuration per lane.
-  void find_clearance_pack(const double* q, int count, double* clearance) const;
-  void add_contacts(int link, const double* centre, std::vector<Contact>& found) const;
-  void add_pair_contacts(const double* centre, std::vector<Contact>& found) const;
+  void find_clearance_pack(const double* q, int count, double* clearance, SceneLook& look) const;
+  void add_contacts(int link, const std::vector<Eigen::Vector3d>& centre,
+                    std::vector<Contact>& found) const;
+  void add_pair_contacts(const std::vector<Eigen::Vector3d>& centre,
+                         std::vector<Contact>& found) const;
 
   ArmShape bare_;  ///< without what is attached
   ArmShape arm_;
+  TargetShape target_shape_;
   const lanes::LaneKernels& kernels_;
   std::vector<lanes::SceneBlock> blocks_;
   std::vector<lanes::SceneCylinder> cylinders_;

@@ -133,7 +133,7 @@ void give_closest(const ChainModel& model, const SolverOptions& options, const G
       minima.descend(seed);
     }
   }
-  Screen screen(request.scene, request.filter, model.dof);
+  Screen screen(request.scene, request.exact, request.filter, model.dof);
   for (const LocalMinimum& minimum : minima.sorted()) {
     bool keep = true;
     screen.apply(minimum.q.data(), 1, &keep);

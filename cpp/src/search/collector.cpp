@@ -82,8 +82,9 @@ void Collector::wrap_near(const JointVector& near, Result& answer) const {
   // An answer at a limit lies outside by rounding as often as not. Held to the limit it need not be
   // a whole turn away.
   JointVector image = answer.q;
-  const JointMove move = nearest_to_ ? nearest_to_->move : JointMove(model_.dof, request_);
-  const auto length = [&](const JointVector& d) { return move.length(d); };
+  const auto length = [&](const JointVector& d) {
+    return nearest_to_ ? nearest_to_->move.length(d) : JointMove(model_.dof, request_).length(d);
+  };
   const double slack = goal_.task().rotation_tolerance();
   const bool held = model_.joints.wrap_nearest(near, slack, length, image);
   if (image == answer.q) return;

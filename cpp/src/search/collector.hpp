@@ -70,12 +70,23 @@ class Collector {
   [[nodiscard]] bool wants_nearest() const { return ranks_by_move() && !screens_answers(request_); }
   /// Whether nothing is wanted but the nearest of those that a scene lets through.
   [[nodiscard]] bool wants_nearest_free() const {
-    return ranks_by_move() && request_.scene && !request_.filter;
+    return ranks_by_move() && request_.scene && !request_.exact && !request_.filter;
   }
   /// To what, if it wants that.
   [[nodiscard]] const NearestTo& nearest_to() const { return *nearest_to_; }
   /// Of what was found, where the nearest is wanted; infinite if nothing was.
-  [[nodiscard]] double least_move() const { return found_.least_cost(); }
+  [[nodiscard]] double least_move() const {
+    if (counts_moves_ || !has_any() || !nearest_to_) return found_.least_cost();
+    return move_to(nearest());
+  }
+  /// Which of those that were found, of one at least, is nearest to what the nearest is wanted to.
+  [[nodiscard]] std::size_t nearest() const {
+    std::size_t least = 0;
+    for (std::size_t i = 1; i < found_.size(); ++i) {
+      if (move_to(i) < move_to(least)) least = i;
+    }
+    return least;
+  }
   /// How many solutions are to be spread over the self-motion, and how near to each other; 0: they
   /// need not be.
   [[nodiscard]] int spread() const { return aim_.spread; }
@@ -100,6 +111,9 @@ class Collector {
   bool is_settled = false;  ///< the nearest that was found is the least move already
 
  private:
+  [[nodiscard]] double move_to(std::size_t i) const {
+    return nearest_to_->move.length(found_.at(i) - nearest_to_->from);
+  }
   /// Brings a success to the image nearest to `near`, where it still is one.
   void wrap_near(const JointVector& near, Result& answer) const;
   void look_for_partner(const Jacobian& J, const JointVector& q);

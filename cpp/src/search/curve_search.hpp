@@ -48,6 +48,11 @@ struct CurveSearch {
 template <typename Answers>
 std::optional<Proof> CurveSearch<Answers>::find_free() const {
   LaneRefiner& refiner = lanes.refiner;
+  if (goal.is_never_free()) {
+    if (!answers.has_any() && !lanes.sweep->find(Y)) return std::nullopt;
+    answers.refuse();
+    return Proof::target;
+  }
   FreeSamples samples(*lanes.sweep, *goal.scene(), Y, lanes.samples, work, clock);
   refiner.begin(goal.task(), kNearAnswer, Width::narrow);
   const bool is_satisfied = search(refiner, samples, answers, work);
@@ -100,7 +105,7 @@ std::optional<Proof> CurveSearch<Answers>::collect_nearest_free() const {
   search(refiner, seeds, answers, work);
   refiner.begin(goal.task(), kFirst, Width::narrow);
   clock.lap(&StageTimes::iterate);
-  if (answers.has_any()) return Proof::none;
+  if (seeds.count() > 0) return Proof::none;
   answers.status = Status::in_collision;
   return Proof::sweep;
 }
@@ -108,7 +113,17 @@ std::optional<Proof> CurveSearch<Answers>::collect_nearest_free() const {
 template <typename Answers>
 std::optional<Proof> CurveSearch<Answers>::collect() const {
   if (answers.spread() > 0) return collect_spread();
-  if (answers.wants_nearest_free()) return collect_nearest_free();
+  if (answers.wants_nearest_free()) {
+    // Mostly the nearest of all is free.
+    const std::optional<Proof> proof = collect_nearest();
+    bool is_free = false;
+    if (answers.has_any()) {
+      request.scene->find_free(answers.solution(answers.nearest()), 1, &is_free);
+    }
+    if (is_free || proof == Proof::sweep) return proof;
+    answers.is_settled = false;
+    return collect_nearest_free();
+  }
   if (answers.wants_nearest()) return collect_nearest();
   return std::nullopt;
 }

@@ -132,6 +132,7 @@ Proof Search<Answers>::in_lanes() const {
                                                    : lanes::kBlock;
     LeafSeeds leaf(query, from_leaf, work, clock);
     if (run(refiner, near, given, leaf) || !request.database_seeds) return Proof::none;
+    if (answers.has_any() && goal.is_never_free()) return Proof::target;
     if (is_screened) {
       if (const auto proof = on_curve(Y).find_free()) return *proof;
     }

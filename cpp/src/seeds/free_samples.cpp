@@ -1,26 +1,36 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "seeds/free_samples.hpp"
 
+#include <cmath>
 #include <utility>
-
-#include "scene/scene_data.hpp"
 
 namespace iksel {
 namespace {
 
 /// The samples of the sweep come in so many parts.
-constexpr int kSampleParts = 16;
+constexpr int kSampleParts = 32;
 /// Samples that are looked beside, at most: those that overlap least.
 constexpr std::size_t kMostBeside = 24;
+
+/// A number for what alone collided with all lanes of a pack; 0 if that was more than one thing.
+std::uint32_t number_of(const lanes::SceneCulprit& culprit) {
+  if (!culprit.is_sole) return 0;
+  const auto kind = static_cast<std::uint32_t>(culprit.kind);
+  const auto index = static_cast<std::uint32_t>(culprit.index);
+  const auto link = static_cast<std::uint32_t>(culprit.link);
+  return (link * 100'003 + index) * 8 + kind;
+}
 
 }  // namespace
 
 FreeSamples::FreeSamples(Sweep& sweep, const Scene& scene, const Pose& Y, Memory& memory,
                          Work& work, StageClock& clock)
-    : sweep_(sweep), scene_(scene), to_(memory), work_(work), clock_(clock) {
+    : sweep_(sweep), scene_(scene), Y_(Y), to_(memory), work_(work), clock_(clock) {
+  look_.is_target_clear = true;
   to_.q.clear();
-  to_.branch.clear();
+  to_.samples.clear();
   to_.overlaps.clear();
+  to_.known.assign(Sweep::kSamples * kPack, Known());
   sweep_.set_target(Y);
 }
 
@@ -34,16 +44,16 @@ bool FreeSamples::next_stage() {
 
 bool FreeSamples::add_rows() {
   to_.q.clear();
-  to_.branch.clear();
+  to_.samples.clear();
   at_ = 0;
   while (to_.q.empty()) {
     if (part_ < kSampleParts) {
-      // 7 and 16 have no factor in common: each part once.
-      sweep_.add_samples(part_ * 7 % kSampleParts, kSampleParts, to_.q, to_.branch);
+      // 7 and 32 have no factor in common: each part once.
+      sweep_.add_samples(part_ * 7 % kSampleParts, kSampleParts, to_.q, to_.samples);
       ++part_;
     } else if (const Overlap* next = next_overlap()) {
-      sweep_.add_beside(next->q.data(), next->branch, to_.q);
-    } else {
+      sweep_.add_beside(next->q.data(), next->sample.branch, to_.q);
+    } else if (has_any_ || !add_between()) {
       return false;
     }
   }
@@ -51,7 +61,39 @@ bool FreeSamples::add_rows() {
   return true;
 }
 
+bool FreeSamples::add_between() {
+  if (!sweep_.find(Y_)) return false;
+  std::array<double, kDof> q{};
+  std::copy_n(sweep_.q(), kDof, q.begin());
+  to_.q.assign(q.begin(), q.end());
+  sweep_.add_beside(q.data(), sweep_.branch(), to_.q);
+  return true;
+}
+
+bool FreeSamples::may_be_free_beside(const Overlap& overlap) const {
+  const int branch = overlap.sample.branch;
+  const int below = sweep_.places().find(overlap.sample.place - 1);
+  const int above = sweep_.places().find(overlap.sample.place + 1);
+  if (below < 0 || above < 0) return true;
+  const Known& here = known(overlap.sample.place, branch);
+  const Known& before = known(below, branch);
+  const Known& behind = known(above, branch);
+  const auto by = here.culprit;
+  if (by == 0 || before.culprit != by || behind.culprit != by) return true;
+  // The three collide by the same: it would have to part twice as fast between them as from one to
+  // the next.
+  const float slope = std::max(std::abs(here.clearance - before.clearance),
+                               std::abs(behind.clearance - here.clearance));
+  return std::max({before.clearance, here.clearance, behind.clearance}) + slope >= 0;
+}
+
 const FreeSamples::Overlap* FreeSamples::next_overlap() {
+  if (beside_ == 0) {
+    auto& all = to_.overlaps;
+    all.erase(std::remove_if(all.begin(), all.end(),
+                             [&](const Overlap& each) { return !may_be_free_beside(each); }),
+              all.end());
+  }
   const std::size_t most = std::min(kMostBeside, to_.overlaps.size());
   if (beside_ == most) return nullptr;
   if (beside_ == 0) {
@@ -65,15 +107,18 @@ const FreeSamples::Overlap* FreeSamples::next_overlap() {
 void FreeSamples::screen_pack() {
   const std::size_t count = std::min(kPack, rows() - at_);
   std::array<double, kPack> clearance{};
-  scene_.data().find_clearance(row(at_), count, clearance.data());
+  scene_.data().find_clearance(row(at_), count, clearance.data(), look_);
   for (std::size_t i = at_; i < at_ + count; ++i) {
     const double above = clearance[i - at_];
     if (above > 0) {
       free_[free_count_++] = i;
-    } else if (i < to_.branch.size()) {
+    } else if (i < to_.samples.size()) {
       Overlap& overlap = to_.overlaps.emplace_back();
       overlap.clearance = above;
-      overlap.branch = to_.branch[i];
+      overlap.sample = to_.samples[i];
+      Known& of_sample = known(overlap.sample.place, overlap.sample.branch);
+      of_sample.clearance = static_cast<float>(above);
+      of_sample.culprit = number_of(look_.culprit);
       std::copy_n(row(i), kDof, overlap.q.begin());
     }
   }

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "goal/joint_move.hpp"
-#include "iksel/scene.hpp"
+#include "scene/scene_data.hpp"
 #include "seeds/self_motion_arcs.hpp"
 #include "seeds/sweep.hpp"
 
@@ -19,22 +21,31 @@ class FreeSamples {
   /// A sample that is not free.
   struct Overlap {
     double clearance;  ///< scene_types.hpp
-    int branch;
+    Sweep::Sample sample;
     std::array<double, SweptBranches::kDof> q;
+  };
+  struct Known {
+    /// Of a sample that collides; infinite: it does not exist, or is free.
+    float clearance = std::numeric_limits<float>::infinity();
+    /// By what it collides; 0: not known, or by more than one thing.
+    std::uint32_t culprit = 0;
   };
   /// What it writes to.
   struct Memory {
     std::vector<double> q;
-    std::vector<int> branch;
+    std::vector<Sweep::Sample> samples;
+    /// Of each sample of each branch, what is known about it.
+    std::vector<Known> known;
     std::vector<Overlap> overlaps;
   };
 
-  /// All must outlive this.
+  /// All must outlive this. Nothing may touch that is where it is in all solutions.
   FreeSamples(Sweep& sweep, const Scene& scene, const Pose& Y, Memory& memory, Work& work,
               StageClock& clock);
 
   /// The samples of the sweep, those far from each other first; where none is free, between the
-  /// samples beside those that overlap least.
+  /// samples beside those that overlap least; where there is none at all, between the samples
+  /// beside where the sweep finds an answer.
   bool next_stage();
 
   template <typename Refiner>
@@ -55,13 +66,22 @@ class FreeSamples {
   [[nodiscard]] const double* row(std::size_t i) const { return &to_.q[i * kDof]; }
   /// Makes rows of the next part; false if there are no more.
   bool add_rows();
+  /// Makes rows beside an answer between the samples; false if there is none.
+  bool add_between();
   /// The next of those that overlap least; null if there are no more.
   const Overlap* next_overlap();
+  /// Whether there may be free configurations between an overlap and the samples beside it.
+  [[nodiscard]] bool may_be_free_beside(const Overlap& overlap) const;
+  [[nodiscard]] Known& known(int place, int branch) const {
+    return to_.known[static_cast<std::size_t>(place) * kPack + static_cast<std::size_t>(branch)];
+  }
   /// Looks at the next rows, as many as there are lanes.
   void screen_pack();
 
   Sweep& sweep_;
   const Scene& scene_;
+  const Pose& Y_;
+  SceneLook look_;
   Memory& to_;
   Work& work_;
   StageClock& clock_;

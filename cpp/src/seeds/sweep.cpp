@@ -42,24 +42,26 @@ bool Sweep::take_answer(int place) {
   const auto best = std::min_element(off.begin(), off.end());
   if (*best > 0) return false;
   branches_.solve_all(places_.value(place));
-  branches_.copy_joints(static_cast<int>(best - off.begin()), q_.data());
+  branch_ = static_cast<int>(best - off.begin());
+  branches_.copy_joints(branch_, q_.data());
   return true;
 }
 
 void Sweep::add_samples(const Pose& Y, int first, int stride, std::vector<double>& q) {
-  std::vector<int> branch;
+  std::vector<Sample> samples;
   set_target(Y);
-  add_samples(first, stride, q, branch);
+  add_samples(first, stride, q, samples);
 }
 
-void Sweep::add_samples(int first, int stride, std::vector<double>& q, std::vector<int>& branch) {
+void Sweep::add_samples(int first, int stride, std::vector<double>& q,
+                        std::vector<Sample>& samples) {
   for (int place = first; place < kSamples; place += stride) {
     branches_.solve_all(places_.value(place));
     for (int lane = 0; lane < kBranches; ++lane) {
       if (branches_.off(lane) > 0) continue;
       branches_.copy_joints(lane, q_.data());
       q.insert(q.end(), q_.begin(), q_.end());
-      branch.push_back(lane);
+      samples.push_back({place, lane});
     }
   }
 }
@@ -99,6 +101,7 @@ bool Sweep::follow(const LeastPlace& near) {
   if (miss_.is_close(best.value)) close_.add(best);
   if (best.value > 0) return false;
   q_ = best.q;
+  branch_ = near.branch;
   return true;
 }
 

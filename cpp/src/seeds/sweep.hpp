@@ -27,8 +27,13 @@ class Sweep {
   /// Adds the branches inside the limits at every `stride`-th sample from `first` on, seven joint
   /// values each [rad].
   void add_samples(const Pose& Y, int first, int stride, std::vector<double>& q);
-  /// The same, for the target as it is set; of each, the branch goes to `branch`.
-  void add_samples(int first, int stride, std::vector<double>& q, std::vector<int>& branch);
+  /// A branch at a sample of the swept joint.
+  struct Sample {
+    int place, branch;
+  };
+  /// The same, for the target as it is set, and which they are.
+  void add_samples(int first, int stride, std::vector<double>& q, std::vector<Sample>& samples);
+  [[nodiscard]] const Places& places() const { return places_; }
   void set_target(const Pose& Y) {
     branches_.set_target(Y);
     places_ = branches_.places(kSamples);
@@ -38,6 +43,7 @@ class Sweep {
   void add_beside(const double* from, int branch, std::vector<double>& q);
   /// The answer [rad].
   [[nodiscard]] const double* q() const { return q_.data(); }
+  [[nodiscard]] int branch() const { return branch_; }
   /// If there was none: where branches came so close to one that it might have been missed.
   [[nodiscard]] std::size_t close_count() const { return close_.size(); }
   [[nodiscard]] const double* close_to_answer(std::size_t i) const { return close_[i].q.data(); }
@@ -67,6 +73,7 @@ class Sweep {
   Least<SweptJoints, kFollowed> close_;
   double least_ = 0;  ///< how far the nearest branch was from being an answer
   std::array<double, SweptBranches::kDof> q_{};
+  int branch_ = 0;
 };
 
 /// These as a source of seeds.

@@ -201,8 +201,9 @@ using CloseLoops = void (*)(const LoopForm& form, const LoopTarget& target,
 using CountRoots = void (*)(const double* values, int n, double apart, double* counts);
 
 struct SceneView;
+struct SceneRoom;
 /// The clearance in each lane (scene_types.hpp).
-using FindClearance = void (*)(const SceneView& scene, const double* q, int wanted, double* centre,
+using FindClearance = void (*)(const SceneView& scene, const double* q, int wanted, SceneRoom& room,
                                double* clearance);
 
 /// Iterations of packs of one width.

@@ -2,7 +2,7 @@
 // Which configurations of an arm of spheres are free, one in each lane.
 //
 // What tells is the clearance (scene_types.hpp). A link's spheres are looked at where the one
-// around them all touches in some lane.
+// around them all touches in some lane, and nothing any more once each lane collides.
 #pragma once
 
 #include "simd/lane_math.hpp"
@@ -40,92 +40,182 @@ IKSEL_INLINE T square_between(const Placed<T>& a, const Placed<T>& b) {
   return x * x + y * y + z * z;
 }
 
-/// Frames of all bodies in the base frame.
+/// The frame of body i, of which the parent's is there.
 template <typename T>
-IKSEL_INLINE void place_bodies(const SceneView& scene, const double* q, BodyFrame<T>* frame) {
-  frame[0] = {{T(1.0), T(0.0), T(0.0)},
-              {T(0.0), T(1.0), T(0.0)},
-              {T(0.0), T(0.0), T(1.0)},
-              {T(0.0), T(0.0), T(0.0)}};
-  for (int i = 1; i < scene.bodies; ++i) {
-    const SceneBody& body = scene.body[i];
-    const BodyFrame<T>& parent = frame[body.parent];
-    BodyFrame<T>& f = frame[i];
-    const T value = Lanes<T>::load(q + body.variable * kWidth);
-    const T motion = value * T(body.multiplier) + T(body.offset);
-    const Placed<T> x = in_base(parent, body.x);
-    const Placed<T> y = in_base(parent, body.y);
-    f.z = in_base(parent, body.z);
-    f.p = parent.p + in_base(parent, body.p);
-    if (body.prismatic) {
-      f.x = x;
-      f.y = y;
-      f.p = f.p + Placed<T>{f.z.x * motion, f.z.y * motion, f.z.z * motion};
-      continue;
-    }
-    T s;
-    T c;
-    sincos(motion, s, c);
-    f.x = {x.x * c + y.x * s, x.y * c + y.y * s, x.z * c + y.z * s};
-    f.y = {y.x * c - x.x * s, y.y * c - x.y * s, y.z * c - x.z * s};
+IKSEL_INLINE BodyFrame<T> place_body(const SceneBody& body, const BodyFrame<T>& parent,
+                                     const double* q) {
+  BodyFrame<T> f;
+  const T value = Lanes<T>::load(q + body.variable * kWidth);
+  const T motion = value * T(body.multiplier) + T(body.offset);
+  const Placed<T> x = in_base(parent, body.x);
+  const Placed<T> y = in_base(parent, body.y);
+  f.z = in_base(parent, body.z);
+  f.p = parent.p + in_base(parent, body.p);
+  if (body.prismatic) {
+    f.x = x;
+    f.y = y;
+    f.p = f.p + Placed<T>{f.z.x * motion, f.z.y * motion, f.z.z * motion};
+    return f;
   }
+  T s;
+  T c;
+  sincos(motion, s, c);
+  f.x = {x.x * c + y.x * s, x.y * c + y.y * s, x.z * c + y.z * s};
+  f.y = {y.x * c - x.x * s, y.y * c - x.y * s, y.z * c - x.z * s};
+  return f;
 }
 
-/// The lanes of one pack, and what touches in them.
+template <typename T>
+IKSEL_INLINE Placed<T> load_placed(const double* in) {
+  return {Lanes<T>::load(in), Lanes<T>::load(in + kWidth), Lanes<T>::load(in + 2 * kWidth)};
+}
+template <typename T>
+IKSEL_INLINE void store_placed(const Placed<T>& v, double* out) {
+  Lanes<T>::store(v.x, out);
+  Lanes<T>::store(v.y, out + kWidth);
+  Lanes<T>::store(v.z, out + 2 * kWidth);
+}
+
+/// The lanes of one pack, and what touches in them. Nothing is placed before it is looked at.
 template <typename T>
 class PackOfScenes {
  public:
-  PackOfScenes(const SceneView& scene, double* centre) : scene_(scene), centre_(centre) {}
+  using Kind = SceneCulprit::Kind;
 
-  /// Returns the least clearance.
-  T find(const double* q) {
-    place(q);
-    test_pairs();
-    for (int i = 0; i < scene_.links && any(least_ > T(0.0)); ++i) {
-      if (scene_.link[i].body != 0) test_obstacles(scene_.link[i]);
+  /// Of the lanes from `first` on.
+  PackOfScenes(const SceneView& scene, const SceneRoom& room, const double* q, int first)
+      : scene_(scene),
+        q_(q + first),
+        frame_(room.frame + first),
+        centre_(room.centre + first),
+        placed_(room.placed) {
+    for (int i = 0; i < scene.links; ++i) placed_[i] = 0;
+    store({{T(1.0), T(0.0), T(0.0)},
+           {T(0.0), T(1.0), T(0.0)},
+           {T(0.0), T(0.0), T(1.0)},
+           {T(0.0), T(0.0), T(0.0)}},
+          0);
+  }
+
+  /// Returns the least clearance. Begins with the culprit, which is that of this pack afterwards if
+  /// all its lanes collide.
+  T find(SceneCulprit& culprit) {
+    ask_again(culprit);
+    culprit.is_sole = !is_open();
+    for (int i = 0; i < scene_.pairs && is_open(); ++i) {
+      test_pair(i);
+      if (!is_open()) culprit = {Kind::pair, i, 0, false};
     }
+    for (int i = 0; i < scene_.links && is_open(); ++i) {
+      const int body = scene_.link[i].body;
+      if (body != 0 && body != scene_.cleared) test_obstacles(i, culprit);
+    }
+    if (is_open()) place_bodies(scene_.bodies - 1);
     return least_;
   }
 
  private:
-  void place(const double* q) {
-    BodyFrame<T> frame[kMaxBodies];
-    place_bodies(scene_, q, frame);
-    for (int i = 0; i < scene_.links; ++i) {
-      const SceneLink& link = scene_.link[i];
-      for (int b = link.first - 1; b < link.first + link.count; ++b) {
-        const BodyFrame<T>& f = frame[link.body];
-        const Placed<T> c = f.p + in_base(f, scene_.ball[b].centre);
-        double* out = centre_ + 3 * b * kWidth;
-        Lanes<T>::store(c.x, out);
-        Lanes<T>::store(c.y, out + kWidth);
-        Lanes<T>::store(c.z, out + 2 * kWidth);
+  /// Whether a lane may still be free.
+  [[nodiscard]] bool is_open() const { return any(least_ > T(0.0)); }
+
+  void ask_again(const SceneCulprit& culprit) {
+    switch (culprit.kind) {
+      case Kind::none:
+        return;
+      case Kind::pair:
+        return test_pair(culprit.index);
+      case Kind::block:
+        return test(culprit.link, scene_.block[culprit.index]);
+      case Kind::cylinder:
+        return test(culprit.link, scene_.cylinder[culprit.index]);
+      case Kind::plane:
+        return test(culprit.link, scene_.plane[culprit.index]);
+    }
+  }
+
+  void store(const BodyFrame<T>& f, int body) {
+    double* out = frame_ + 12 * body * kWidth;
+    store_placed(f.x, out);
+    store_placed(f.y, out + 3 * kWidth);
+    store_placed(f.z, out + 6 * kWidth);
+    store_placed(f.p, out + 9 * kWidth);
+  }
+  [[nodiscard]] IKSEL_INLINE BodyFrame<T> frame(int body) const {
+    const double* in = frame_ + 12 * body * kWidth;
+    return {load_placed<T>(in), load_placed<T>(in + 3 * kWidth), load_placed<T>(in + 6 * kWidth),
+            load_placed<T>(in + 9 * kWidth)};
+  }
+  /// All up to this one; parents come before what they carry.
+  void place_bodies(int last) {
+    for (; bodies_ <= last; ++bodies_) {
+      const SceneBody& body = scene_.body[bodies_];
+      store(place_body(body, frame(body.parent), q_), bodies_);
+    }
+  }
+  void place_balls(int body, int first, int last) {
+    const BodyFrame<T> f = frame(body);
+    for (int b = first; b < last; ++b) {
+      store_placed(f.p + in_base(f, scene_.ball[b].centre), centre_ + 3 * b * kWidth);
+    }
+  }
+  /// The ball around a link.
+  IKSEL_INLINE Placed<T> around(int i) {
+    const SceneLink& link = scene_.link[i];
+    if (placed_[i] == 0) {
+      place_bodies(link.body);
+      place_balls(link.body, link.first - 1, link.first);
+      placed_[i] = 1;
+    }
+    return at(link.first - 1);
+  }
+  void place_link(int i) {
+    const SceneLink& link = scene_.link[i];
+    if (placed_[i] == 2) return;
+    place_balls(link.body, link.first, link.first + link.count);
+    placed_[i] = 2;
+  }
+
+  IKSEL_INLINE Placed<T> at(int ball) const { return load_placed<T>(centre_ + 3 * ball * kWidth); }
+
+  IKSEL_INLINE T clearance(const Placed<T>& a, const Placed<T>& b, double reach) const {
+    return square_between(a, b) - T(reach * reach);
+  }
+  IKSEL_INLINE double radius(int ball) const { return scene_.ball[ball].radius; }
+
+  void test_pair(int pair) {
+    const int ia = scene_.pair[pair].a;
+    const int ib = scene_.pair[pair].b;
+    const SceneLink& a = scene_.link[ia];
+    const SceneLink& b = scene_.link[ib];
+    const Placed<T> around_a = around(ia);
+    const Placed<T> around_b = around(ib);
+    const double of_b = radius(b.first - 1);
+    if (!any(clearance(around_a, around_b, radius(a.first - 1) + of_b) <= T(0.0))) return;
+    place_link(ia);
+    place_link(ib);
+    for (int k = a.first; k < a.first + a.count; ++k) {
+      const Placed<T> c = at(k);
+      const double r = radius(k);
+      if (!any(clearance(c, around_b, r + of_b) <= T(0.0))) continue;
+      for (int m = b.first; m < b.first + b.count; ++m) {
+        least_ = min(least_, clearance(c, at(m), r + radius(m)));
       }
     }
   }
 
-  IKSEL_INLINE Placed<T> at(int ball) const {
-    const double* in = centre_ + 3 * ball * kWidth;
-    return {Lanes<T>::load(in), Lanes<T>::load(in + kWidth), Lanes<T>::load(in + 2 * kWidth)};
+  /// Whether a ball is so far from a shape that it need not be looked at closer.
+  IKSEL_INLINE static bool is_far(const SceneBlock& block, const Placed<T>& c, double radius) {
+    const T x = c.x - T(block.centre[0]);
+    const T y = c.y - T(block.centre[1]);
+    const T z = c.z - T(block.centre[2]);
+    const double reach = radius + block.around;
+    return !any(x * x + y * y + z * z <= T(reach * reach));
   }
-
-  IKSEL_INLINE T clearance(int a, int b) const {
-    const double reach = scene_.ball[a].radius + scene_.ball[b].radius;
-    return square_between(at(a), at(b)) - T(reach * reach);
+  template <typename Shape>
+  IKSEL_INLINE static bool is_far(const Shape& /*shape*/, const Placed<T>& /*c*/,
+                                  double /*radius*/) {
+    return false;
   }
-
-  void test_pairs() {
-    for (int i = 0; i < scene_.pairs && any(least_ > T(0.0)); ++i) {
-      const SceneLink& a = scene_.link[scene_.pair[i].a];
-      const SceneLink& b = scene_.link[scene_.pair[i].b];
-      if (!any(clearance(a.first - 1, b.first - 1) <= T(0.0))) continue;
-      for (int k = a.first; k < a.first + a.count; ++k) {
-        if (!any(clearance(k, b.first - 1) <= T(0.0))) continue;
-        for (int m = b.first; m < b.first + b.count; ++m) least_ = min(least_, clearance(k, m));
-      }
-    }
-  }
-
   IKSEL_INLINE static T clearance(const SceneBlock& block, const Placed<T>& c, double radius) {
     const T x = c.x - T(block.centre[0]);
     const T y = c.y - T(block.centre[1]);
@@ -158,36 +248,51 @@ class PackOfScenes {
     return c.x * T(n[0]) + c.y * T(n[1]) + c.z * T(n[2]) - T(plane.offset + radius);
   }
 
+  /// A link that may touch a shape.
   template <typename Shape>
-  void test(const SceneLink& link, const Placed<T>& around, const Shape* shape, int count) {
-    for (int i = 0; i < count; ++i) {
-      const double radius = scene_.ball[link.first - 1].radius;
-      if (!any(clearance(shape[i], around, radius) <= T(0.0))) continue;
-      for (int b = link.first; b < link.first + link.count; ++b) {
-        least_ = min(least_, clearance(shape[i], at(b), scene_.ball[b].radius));
-      }
+  IKSEL_INLINE void test(int i, const Shape& shape) {
+    const SceneLink& link = scene_.link[i];
+    const Placed<T> c = around(i);
+    const double r = radius(link.first - 1);
+    if (is_far(shape, c, r) || !any(clearance(shape, c, r) <= T(0.0))) return;
+    place_link(i);
+    for (int b = link.first; b < link.first + link.count; ++b) {
+      least_ = min(least_, clearance(shape, at(b), radius(b)));
     }
   }
-
-  void test_obstacles(const SceneLink& link) {
-    const Placed<T> around = at(link.first - 1);
-    test(link, around, scene_.block, scene_.blocks);
-    test(link, around, scene_.cylinder, scene_.cylinders);
-    test(link, around, scene_.plane, scene_.planes);
+  template <typename Shape>
+  IKSEL_INLINE void test_all(int link, const Shape* shape, int count, Kind kind,
+                             SceneCulprit& culprit) {
+    for (int i = 0; i < count && is_open(); ++i) {
+      test(link, shape[i]);
+      if (!is_open()) culprit = {kind, i, link, false};
+    }
+  }
+  void test_obstacles(int link, SceneCulprit& culprit) {
+    test_all(link, scene_.block, scene_.blocks, Kind::block, culprit);
+    test_all(link, scene_.cylinder, scene_.cylinders, Kind::cylinder, culprit);
+    test_all(link, scene_.plane, scene_.planes, Kind::plane, culprit);
   }
 
   const SceneView& scene_;
+  const double* q_;
+  double* frame_;
   double* centre_;
+  unsigned char* placed_;
+  int bodies_ = 1;  ///< so many are placed
   T least_ = T(1.0);
 };
 
 template <typename T>
-void find_clearance(const SceneView& scene, const double* q, int wanted, double* centre,
+void find_clearance(const SceneView& scene, const double* q, int wanted, SceneRoom& room,
                     double* clearance) {
+  bool is_sole = true;
   for (int first = 0; first < wanted; first += Lanes<T>::kCount) {
-    const T least = PackOfScenes<T>(scene, centre + first).find(q + first);
+    const T least = PackOfScenes<T>(scene, room, q, first).find(room.culprit);
     Lanes<T>::store(least, clearance + first);
+    is_sole = is_sole && room.culprit.is_sole;
   }
+  room.culprit.is_sole = is_sole;
 }
 
 }  // namespace iksel::lanes

@@ -39,6 +39,7 @@ struct SceneBlock {
   double axis[3][3];  ///< its x, y and z axis in the base frame
   double half[3];     ///< half of each edge [m]
   double radius;      ///< with its margin [m]
+  double around;      ///< radius of a ball around it all [m]
 };
 
 struct SceneCylinder {
@@ -54,13 +55,33 @@ struct ScenePlane {
   double offset;  ///< with its margin [m]
 };
 
-/// find_clearance takes joint value j of lane l at q[j kWidth + l], and puts coordinate i of the
-/// centre of ball b to centre[(3 b + i) kWidth + l] [m], and to clearance[l] the least of
-/// distance^2 - radius^2 over all that could touch [m^2]: above 0 where nothing does, and 1 at
-/// most. Where something touches it may be more than that, but not above 0. Only the first `wanted`
-/// lanes are looked at; the others must hold joint values too.
+/// What refused all lanes of the last pack: configurations that are looked at one after the other
+/// mostly fail by the same. Either a pair, or a link and one of the shapes of a kind.
+struct SceneCulprit {
+  enum class Kind { none, pair, block, cylinder, plane } kind = Kind::none;
+  int index = 0;  ///< of the pair or the shape
+  int link = 0;
+  /// Whether each lane of the last pack collides by it alone.
+  bool is_sole = false;
+};
+
+/// Room that find_clearance writes to.
+struct SceneRoom {
+  double* frame;          ///< 12 kWidth for each body
+  double* centre;         ///< 3 kWidth for each ball
+  unsigned char* placed;  ///< for each link: whether its balls are placed
+  SceneCulprit culprit;
+};
+
+/// find_clearance takes joint value j of lane l at q[j kWidth + l], and gives at clearance[l] the
+/// least of distance^2 - radius^2 over all that could touch [m^2]: above 0 where nothing does, and
+/// 1 at most. Where something touches it is the least of what was looked at: not all, if each lane
+/// collides. Number i of the frame of body b, columns x, y, z and p, is then at
+/// frame[(12 b + i) kWidth + l], unless each lane collides. Only the first `wanted` lanes are
+/// looked at; the others must hold joint values too.
 struct SceneView {
   int bodies, balls, links, pairs, blocks, cylinders, planes;
+  int cleared;            ///< a body that touches no obstacle, as is known; 0 if none is
   const SceneBody* body;  ///< the first is the base, which has no joint
   const SceneBall* ball;
   const SceneLink* link;

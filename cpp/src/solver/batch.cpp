@@ -9,6 +9,7 @@
 #include "base/message_text.hpp"
 #include "base/parallel.hpp"
 #include "base/pose_check.hpp"
+#include "goal/screen.hpp"
 #include "iksel/error.hpp"
 #include "search/batch_stream.hpp"
 #include "seeds/leaf_lanes.hpp"
@@ -110,22 +111,25 @@ class Batch {
     const bool plain = !request_.has_requirements() && (count_ == 0 || near_(0) == nullptr);
     // Few at a time keep all threads busy; many are for the lanes and the filter.
     constexpr std::size_t kFew = 8;
-    const std::size_t chunk = plain || request_.filter ? kMost : kFew;
+    const bool is_screened = screens_answers(request_) && !std::isfinite(request_.deadline);
+    const std::size_t chunk = plain || is_screened ? kMost : kFew;
     std::mutex one_at_a_time;
     SolveRequest locked = request_;
-    if (request_.filter) {
-      locked.filter = [&](const double* q, std::size_t n, bool* keep) {
-        const std::lock_guard<std::mutex> lock(one_at_a_time);
-        request_.filter(q, n, keep);
+    const auto lock = [&](const Filter& filter) {
+      return [&](const double* q, std::size_t n, bool* keep) {
+        const std::lock_guard<std::mutex> held(one_at_a_time);
+        filter(q, n, keep);
       };
-    }
+    };
+    if (request_.filter) locked.filter = lock(request_.filter);
+    if (request_.exact) locked.exact = lock(request_.exact);
     const auto make_worker = [&] {
       return [&, own = locked, lease = std::make_shared<WorkspacePool::Lease>(solver_.workspaces)](
                  std::size_t begin, std::size_t end) mutable {
         if (plain) {
           solve_plain(begin, end, lease->get(), on_result_);
-        } else if (own.filter && !std::isfinite(own.deadline)) {
-          solve_filtered(begin, end, own, lease->get());
+        } else if (is_screened) {
+          solve_screened(begin, end, own, lease->get());
         } else {
           // With a deadline every target has one search only.
           for (std::size_t i = begin; i < end; ++i) on_result_(i, solve_one(i, own, lease->get()));
@@ -186,30 +190,31 @@ class Batch {
     return solver_.solve(target_(i), request, workspace, nullptr);
   }
 
-  /// What is found without the filter is put before it in one go; where it refuses, the search for
-  /// that target continues.
-  void solve_filtered(std::size_t first, std::size_t last, SolveRequest& request,
+  /// What is found without the scene and the filter is put before them in one go; where they
+  /// refuse, the search for that target continues.
+  void solve_screened(std::size_t first, std::size_t last, SolveRequest& request,
                       Workspace& workspace) const {
     std::vector<Result> answers(last - first);
-    Filter filter;
-    filter.swap(request.filter);
-    if (near_(first) == nullptr && !request.has_requirements()) {
+    SolveRequest bare = request;
+    bare.scene.reset();
+    bare.exact = nullptr;
+    bare.filter = nullptr;
+    if (near_(first) == nullptr && !bare.has_requirements()) {
       const auto keep = [&](std::size_t i, const Result& result) { answers[i - first] = result; };
       solve_plain(first, last, workspace, keep);
     } else {
       for (std::size_t i = first; i < last; ++i) {
-        answers[i - first] = solve_one(i, request, workspace);
+        answers[i - first] = solve_one(i, bare, workspace);
       }
     }
-    filter.swap(request.filter);
-
     std::vector<double> candidates;
     for (const Result& answer : answers) {
       candidates.insert(candidates.end(), answer.q.data(), answer.q.data() + answer.q.size());
     }
     std::array<bool, kMost> keep{};
     const std::size_t count = candidates.size() / static_cast<std::size_t>(solver_.robot.dof());
-    if (count > 0) request.filter(candidates.data(), count, keep.data());
+    Screen screen(request.scene, request.exact, request.filter, solver_.robot.dof());
+    if (count > 0) screen.apply(candidates.data(), count, keep.data());
 
     std::size_t asked = 0;
     for (std::size_t i = first; i < last; ++i) {

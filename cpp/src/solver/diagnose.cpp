@@ -80,6 +80,7 @@ class Diagnoser {
         open_(request) {
     open_.filter = nullptr;
     open_.scene.reset();
+    open_.exact = nullptr;
     open_.near.reset();
     open_.objective = {};
     open_.deadline = kInfinity;

@@ -29,7 +29,7 @@ class PathSearch {
       : model_(model),
         options_(options),
         request_(make_request(options)),
-        screen_(options.scene, options.filter, model.dof),
+        screen_(options.scene, options.exact, options.filter, model.dof),
         move_(model.dof, request_),
         longest_(model.joints.longest_moves(options.dt)),
         middle_(model.joints.middle()) {

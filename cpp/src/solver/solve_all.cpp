@@ -147,13 +147,22 @@ void take_first_of_each(std::size_t solutions, std::vector<Image>& images) {
 Solutions Solver::Impl::solve_all(const Pose& target, const SolveAllOptions& all,
                                   const SolveRequest& request, Workspace& workspace) const {
   const TaskSpace of_call = task_of(request);
-  const Goal goal(model(), of_call, target);
+  const Goal goal(model(), of_call, target, request.scene ? &*request.scene : nullptr);
+  if (!request.exact && goal.is_never_free()) {
+    const Result none = find_first(target, of_call, request, workspace, nullptr);
+    Solutions solutions;
+    solutions.status = none.status;
+    solutions.proof = none.proof;
+    solutions.attempts = none.attempts;
+    solutions.iterations = none.iterations;
+    return solutions;
+  }
   const auto most = static_cast<std::size_t>(all.max);
   const SolutionSet& found = workspace.collected.found;
   const auto is_satisfied = [&](const Collector&) {
     return goal.is_redundant() && found.size() >= std::max<std::size_t>(kChoice * most, 64);
   };
-  Screen screen(request.scene, request.filter, robot.dof());
+  Screen screen(request.scene, request.exact, request.filter, robot.dof());
   const int spread = goal.is_redundant() ? spread_for(all.max, screen.is_set()) : 0;
   const Collector::Aim aim{all.min_distance, true, spread};
   Collector search(model(), goal, request, aim, is_satisfied, options.max_attempts,

@@ -91,10 +91,13 @@ Result Solver::Impl::find_answer(const Pose& target, const TaskSpace& of_call,
                                  const SolveRequest& request, Workspace& workspace,
                                  StageTimes* times) const {
   if (!ranks_answers(request) && !request.filter) {
-    return find_first(target, of_call, request, workspace, times);
+    Result first = find_first(target, of_call, request, workspace, times);
+    if (!request.exact || first.status != Status::in_collision) return first;
   }
-  const Goal goal(model(), of_call, target);
-  Screen screen(request.scene, request.filter, robot.dof());
+  const Goal goal(model(), of_call, target, request.scene ? &*request.scene : nullptr);
+  if (!request.exact && goal.is_never_free())
+    return find_first(target, of_call, request, workspace, times);
+  Screen screen(request.scene, request.exact, request.filter, robot.dof());
   AnswerSelector selector(model(), goal, request, workspace.collected.found, screen);
   const auto is_satisfied = [&](const Collector& so_far) { return selector.is_satisfied(so_far); };
   // With a screen the selector decides: nothing may have passed it yet.

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which configurations are free, in lanes, and at which targets none is.
+#include <algorithm>
+#include <array>
+
+#include "scene/scene_data.hpp"
+
+namespace iksel {
+namespace {
+
+constexpr int kLanes = lanes::kWidth;
+
+/// Room for the kernel, of each thread its own, taken once.
+struct ThreadRoom {
+  std::vector<double> frame, centre;
+  std::vector<unsigned char> placed;
+
+  lanes::SceneRoom show(const lanes::SceneView& view) {
+    const auto grow = [](auto& room, int count) {
+      if (room.size() < static_cast<std::size_t>(count))
+        room.resize(static_cast<std::size_t>(count));
+    };
+    grow(frame, 12 * kLanes * view.bodies);
+    grow(centre, 3 * kLanes * view.balls);
+    grow(placed, view.links);
+    return {frame.data(), centre.data(), placed.data(), {}};
+  }
+};
+
+ThreadRoom& thread_room() {
+  thread_local ThreadRoom room;
+  return room;
+}
+
+/// Frame of a body in the base frame.
+Pose frame_in_lane(const double* frame, int body, int lane) {
+  const double* in = frame + 12 * body * kLanes + lane;
+  Pose pose = Pose::Identity();
+  for (int i = 0; i < 12; ++i) pose(i % 3, i / 3) = in[i * kLanes];
+  return pose;
+}
+
+}  // namespace
+
+void Scene::Data::find_clearance_pack(const double* q, int count, double* clearance,
+                                      SceneLook& look) const {
+  const int dof = robot.dof();
+  alignas(64) std::array<double, static_cast<std::size_t>(kMaxDof) * kLanes> packed;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    // Lanes that nobody asks for do as the first does.
+    const double* from = q + (lane < count ? lane : 0) * dof;
+    for (int j = 0; j < dof; ++j) packed[static_cast<std::size_t>(j * kLanes + lane)] = from[j];
+  }
+  lanes::SceneView view{};
+  arm_.show(view);
+  show_obstacles(view);
+  view.cleared = look.is_target_clear ? arm_.tip_body() : 0;
+  lanes::SceneRoom room = thread_room().show(view);
+  room.culprit = look.culprit;
+  alignas(64) std::array<double, kLanes> found;
+  kernels_.find_clearance(view, packed.data(), count, room, found.data());
+  look.culprit = room.culprit;
+  for (int lane = 0; lane < count; ++lane) {
+    const double above = found[static_cast<std::size_t>(lane)];
+    const bool touches = above > 0 && touches_points(view, room.frame, lane, look);
+    clearance[lane] = touches ? 0.0 : above;
+  }
+}
+
+void Scene::Data::find_clearance(const double* q, std::size_t count, double* clearance,
+                                 SceneLook& look) const {
+  const auto dof = static_cast<std::size_t>(robot.dof());
+  constexpr std::size_t kWidth = lanes::kWidth;
+  for (std::size_t i = 0; i < count; i += kWidth) {
+    const auto in_pack = static_cast<int>(std::min(kWidth, count - i));
+    find_clearance_pack(q + i * dof, in_pack, clearance + i, look);
+  }
+}
+
+void Scene::Data::find_free(const double* q, std::size_t count, bool* free) const {
+  const auto dof = static_cast<std::size_t>(robot.dof());
+  constexpr std::size_t kWidth = lanes::kWidth;
+  std::array<double, kWidth> clearance{};
+  SceneLook look;
+  for (std::size_t i = 0; i < count; i += kWidth) {
+    const std::size_t in_pack = std::min(kWidth, count - i);
+    find_clearance(q + i * dof, in_pack, clearance.data(), look);
+    for (std::size_t k = 0; k < in_pack; ++k) free[i + k] = clearance[k] > 0;
+  }
+}
+
+bool Scene::Data::touches_points(const lanes::SceneView& view, const double* frame, int lane,
+                                 SceneLook& look) const {
+  const auto touches = [&](const Cloud& cloud, const Pose& T_cloud_body, int ball) {
+    const lanes::SceneBall& of = view.ball[ball];
+    return cloud.grid->touches(T_cloud_body * Eigen::Map<const Eigen::Vector3d>(of.centre),
+                               of.radius + cloud.radius);
+  };
+  const auto place = [&](const Cloud& cloud, int link) {
+    return Pose(cloud.T_cloud_base) * frame_in_lane(frame, view.link[link].body, lane);
+  };
+  if (look.ball > 0 && look.cloud < clouds_.size()) {
+    const Cloud& cloud = clouds_[look.cloud];
+    if (touches(cloud, place(cloud, look.link), look.ball)) return true;
+  }
+  for (std::size_t c = 0; c < clouds_.size(); ++c) {
+    const Cloud& cloud = clouds_[c];
+    for (int i = 0; i < view.links; ++i) {
+      const lanes::SceneLink& link = view.link[i];
+      if (link.body == 0 || link.body == view.cleared) continue;
+      const Pose T_cloud_body = place(cloud, i);
+      const lanes::SceneBall& around = view.ball[link.first - 1];
+      if (!cloud.grid->may_touch(T_cloud_body * Eigen::Map<const Eigen::Vector3d>(around.centre),
+                                 around.radius + cloud.radius)) {
+        continue;
+      }
+      for (int b = link.first; b < link.first + link.count; ++b) {
+        if (!touches(cloud, T_cloud_body, b)) continue;
+        look.cloud = c;
+        look.link = i;
+        look.ball = b;
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+bool Scene::Data::touches_at(const Pose& T_base_tip, double position, double rotation) const {
+  thread_local TargetShape::Placed placed;
+  lanes::SceneView view{};
+  if (!target_shape_.show(T_base_tip, position, rotation, placed, view)) return false;
+  show_obstacles(view);
+  lanes::SceneRoom room = thread_room().show(view);
+  // The bodies stand still.
+  alignas(64) const std::array<double, kLanes> q{};
+  alignas(64) std::array<double, kLanes> found;
+  kernels_.find_clearance(view, q.data(), 1, room, found.data());
+  SceneLook look;
+  return !(found[0] > 0) || touches_points(view, room.frame, 0, look);
+}
+
+}  // namespace iksel

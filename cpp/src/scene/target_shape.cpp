@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene/target_shape.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/bounding_ball.hpp"
+
+namespace iksel {
+namespace {
+
+/// The ball on the z axis, about which a joint turns, that a ball holds.
+void move_to_axis(Sphere& sphere) {
+  sphere.radius -= sphere.centre.head<2>().norm();
+  sphere.centre.head<2>().setZero();
+}
+
+std::vector<Sphere> spheres_of(const ArmShape& arm, const lanes::SceneLink& link) {
+  std::vector<Sphere> spheres;
+  for (int b = link.first; b < link.first + link.count; ++b) {
+    const lanes::SceneBall& ball = arm.balls()[static_cast<std::size_t>(b)];
+    spheres.push_back({to_vector(ball.centre), ball.radius});
+  }
+  return spheres;
+}
+
+void remove_empty(std::vector<Sphere>& spheres) {
+  spheres.erase(std::remove_if(spheres.begin(), spheres.end(),
+                               [](const Sphere& sphere) { return !(sphere.radius > 0); }),
+                spheres.end());
+}
+
+}  // namespace
+
+TargetShape::TargetShape(const ArmShape& arm) : T_tip_body_(arm.tip_to_body()) {
+  const auto& bodies = arm.bodies();
+  for (int b = arm.tip_body(); b > 0; b = bodies[static_cast<std::size_t>(b)].parent) {
+    to_tip_.push_back(b);
+  }
+  const std::size_t count = arm.links().size();
+  std::vector<int> from_base(count, -1);
+  std::vector<int> from_tip(count, -1);
+  for (std::size_t i = 0; i < count; ++i) {
+    const lanes::SceneLink& link = arm.links()[i];
+    from_base[i] = add(seen_from_base(arm, link));
+    from_tip[i] = add(seen_from_tip(arm, link));
+  }
+  for (const lanes::ScenePair& pair : arm.pairs()) {
+    const auto a = static_cast<std::size_t>(pair.a);
+    const auto b = static_cast<std::size_t>(pair.b);
+    if (from_base[a] >= 0 && from_tip[b] >= 0) pairs_.push_back({from_base[a], from_tip[b]});
+    if (from_base[b] >= 0 && from_tip[a] >= 0) pairs_.push_back({from_base[b], from_tip[a]});
+  }
+}
+
+TargetShape::Part TargetShape::seen_from_base(const ArmShape& arm,
+                                              const lanes::SceneLink& link) const {
+  Part part{0, spheres_of(arm, link)};
+  for (int b = link.body; b > 0; b = arm.bodies()[static_cast<std::size_t>(b)].parent) {
+    const lanes::SceneBody& body = arm.bodies()[static_cast<std::size_t>(b)];
+    if (body.prismatic) return {};
+    const Pose frame = frame_of(body);
+    for (Sphere& sphere : part.spheres) {
+      move_to_axis(sphere);
+      sphere.centre = frame * sphere.centre;
+    }
+    remove_empty(part.spheres);
+  }
+  return part;
+}
+
+TargetShape::Part TargetShape::seen_from_tip(const ArmShape& arm,
+                                             const lanes::SceneLink& link) const {
+  const auto at = std::find(to_tip_.begin(), to_tip_.end(), link.body);
+  if (at == to_tip_.end()) return {};
+  Part part{1, spheres_of(arm, link)};
+  for (auto next = at; next != to_tip_.begin();) {
+    const lanes::SceneBody& body = arm.bodies()[static_cast<std::size_t>(*--next)];
+    if (body.prismatic) return {};
+    const Pose frame = frame_of(body).inverse();
+    for (Sphere& sphere : part.spheres) {
+      sphere.centre = frame * sphere.centre;
+      move_to_axis(sphere);
+    }
+    remove_empty(part.spheres);
+  }
+  return part;
+}
+
+int TargetShape::add(const Part& part) {
+  if (part.spheres.empty()) return -1;
+  const auto add_ball = [&](const Sphere& sphere) {
+    lanes::SceneBall ball{{}, sphere.radius};
+    copy_vector(sphere.centre, ball.centre);
+    balls_.push_back(ball);
+    if (part.body == 1) reach_ = std::max(reach_, (T_tip_body_ * sphere.centre).norm());
+  };
+  add_ball(ball_around(part.spheres));
+  links_.push_back(
+      {part.body, static_cast<int>(balls_.size()), static_cast<int>(part.spheres.size())});
+  for (const Sphere& sphere : part.spheres) add_ball(sphere);
+  return static_cast<int>(links_.size()) - 1;
+}
+
+bool TargetShape::show(const Pose& T_base_tip, double position, double rotation, Placed& placed,
+                       lanes::SceneView& view) const {
+  const double off = position + rotation * reach_;
+  placed.balls = balls_;
+  for (lanes::SceneBall& ball : placed.balls) {
+    if (!(ball.radius > off)) return false;
+    ball.radius -= off;
+  }
+  const Pose frame = T_base_tip * Pose(T_tip_body_);
+  placed.bodies.assign(2, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}, 0, 0, -1, 0, false});
+  lanes::SceneBody& tip = placed.bodies[1];
+  copy_vector(frame.linear().col(0), tip.x);
+  copy_vector(frame.linear().col(1), tip.y);
+  copy_vector(frame.linear().col(2), tip.z);
+  copy_vector(frame.translation(), tip.p);
+  tip.parent = 0;
+  view.bodies = 2;
+  view.balls = static_cast<int>(balls_.size());
+  view.links = static_cast<int>(links_.size());
+  view.pairs = static_cast<int>(pairs_.size());
+  view.body = placed.bodies.data();
+  view.ball = placed.balls.data();
+  view.link = links_.data();
+  view.pair = pairs_.data();
+  return true;
+}
+
+}  // namespace iksel

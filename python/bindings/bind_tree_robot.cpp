@@ -47,11 +47,11 @@ std::vector<StoredPose> as_tools(py::handle value, const char* name) {
 }
 
 TreeRobot tree_robot_from_urdf(const PathLike& path_or_xml, const LinkNames& tip_links,
-                         const std::optional<Loose<std::string>>& base_link,
-                         const std::optional<PoseLike>& tcps,
-                         const std::optional<JointValues>& locked_joints,
-                         const Loose<bool>& soft_limits,
-                         const std::optional<ArrayLike>& default_limits) {
+                               const std::optional<Loose<std::string>>& base_link,
+                               const std::optional<PoseLike>& tcps,
+                               const std::optional<JointValues>& locked_joints,
+                               const Loose<bool>& soft_limits,
+                               const std::optional<ArrayLike>& default_limits) {
   TreeOptions options;
   options.tip_links = as_links(tip_links, "tip_links");
   if (base_link) options.base_link = from_python<std::string>(*base_link, "base_link");

@@ -369,6 +369,7 @@ def test_databases_are_of_one_set_of_limits() -> None:
     [
         ([{"joint_2": 1}], r"coupled_limits\[0\]"),
         (ELBOW, "coupled_limits: expected a sequence"),
+        (np.eye(3), r"coupled_limits\[0\]: expected a CoupledLimit"),
         ([iksel.CoupledLimit({}, 0, 1)], "names no joint"),
         ([iksel.CoupledLimit({"joint_2": 0}, 0, 1)], "'joint_2' is 0"),
         ([iksel.CoupledLimit({"joint_2": math.nan}, 0, 1)], "'joint_2'"),

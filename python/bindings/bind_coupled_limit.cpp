@@ -4,8 +4,8 @@
 #include <string>
 
 #include "bindings.hpp"
-#include "coupled_limits.hpp"
 #include "html.hpp"
+#include "iksel/coupled_limit.hpp"
 #include "joint_values.hpp"
 #include "pickle.hpp"
 #include "property.hpp"
@@ -53,23 +53,6 @@ CoupledLimit limit_from_state(const py::object& state) {
 }
 
 }  // namespace
-
-std::vector<CoupledLimit> as_coupled_limits(const py::handle& value, const std::string& name) {
-  const std::string expected = "a sequence of CoupledLimit";
-  if (!py::isinstance<py::sequence>(value) || py::isinstance<py::str>(value)) {
-    throw_wrong_type(name.c_str(), expected, value);
-  }
-  std::vector<CoupledLimit> limits;
-  // Not handles: what is made on the way of an arbitrary sequence has no other owner.
-  for (const py::object item : py::reinterpret_borrow<py::sequence>(value)) {
-    if (!py::isinstance<CoupledLimit>(item)) {
-      const std::string culprit = name + "[" + std::to_string(limits.size()) + "]";
-      throw_wrong_type(culprit.c_str(), "a CoupledLimit", item);
-    }
-    limits.push_back(py::cast<CoupledLimit>(item));
-  }
-  return limits;
-}
 
 void bind_coupled_limit(py::module_& m) {
   const CoupledLimit defaults;

@@ -9,7 +9,6 @@
 
 #include "array_checks.hpp"
 #include "bindings.hpp"
-#include "coupled_limits.hpp"
 #include "enums.hpp"
 #include "gil.hpp"
 #include "html.hpp"
@@ -21,6 +20,7 @@
 #include "pose_arguments.hpp"
 #include "property.hpp"
 #include "robot_arguments.hpp"
+#include "sequence_of.hpp"
 #include "urdf_source.hpp"
 
 namespace iksel::python {
@@ -28,6 +28,11 @@ namespace iksel::python {
 /// A sequence of CoupledLimit.
 class CoupledLimits : public py::object {
   PYBIND11_OBJECT_DEFAULT(CoupledLimits, object, is_any_object)
+};
+
+/// A sequence of MimicCurve.
+class MimicCurves : public py::object {
+  PYBIND11_OBJECT_DEFAULT(MimicCurves, object, is_any_object)
 };
 
 /// A truth value for one configuration, an array of them for many.
@@ -42,6 +47,10 @@ namespace pybind11::detail {
 template <>
 struct handle_type_name<iksel::python::CoupledLimits> {
   static constexpr auto name = const_name("collections.abc.Sequence[iksel_cpp.CoupledLimit]");
+};
+template <>
+struct handle_type_name<iksel::python::MimicCurves> {
+  static constexpr auto name = const_name("collections.abc.Sequence[iksel_cpp.MimicCurve]");
 };
 template <>
 struct handle_type_name<iksel::python::BoolOrArray> {
@@ -65,7 +74,7 @@ Robot from_urdf(const PathLike& path_or_xml, const std::optional<Loose<std::stri
                 const std::optional<Loose<std::string>>& tip_link,
                 const std::optional<PoseLike>& tcp, const std::optional<JointValues>& locked_joints,
                 const Loose<bool>& soft_limits, const std::optional<ArrayLike>& default_limits,
-                const CoupledLimits& coupled_limits) {
+                const CoupledLimits& coupled_limits, const MimicCurves& mimic_curves) {
   RobotOptions options;
   if (base_link) options.base_link = from_python<std::string>(*base_link, "base_link");
   if (tip_link) options.tip_link = from_python<std::string>(*tip_link, "tip_link");
@@ -73,7 +82,9 @@ Robot from_urdf(const PathLike& path_or_xml, const std::optional<Loose<std::stri
   if (locked_joints) options.locked_joints = as_joint_values(*locked_joints, "locked_joints");
   options.soft_limits = from_python<bool>(soft_limits, "soft_limits");
   if (default_limits) options.default_limits = as_limits(*default_limits, "default_limits");
-  options.coupled_limits = as_coupled_limits(coupled_limits, "coupled_limits");
+  options.coupled_limits =
+      as_sequence_of<CoupledLimit>(coupled_limits, "coupled_limits", "CoupledLimit");
+  options.mimic_curves = as_sequence_of<MimicCurve>(mimic_curves, "mimic_curves", "MimicCurve");
   return read_urdf(
       path_or_xml, [&](const std::string& xml) { return Robot::from_urdf_string(xml, options); },
       [&](const std::filesystem::path& path) { return Robot::from_urdf_file(path, options); });
@@ -89,11 +100,11 @@ py::object robot_state(const Robot& self) {
   const RobotOptions& options = self.options();
   return py::make_tuple(self.urdf(), options.base_link, options.tip_link, to_array(self.tcp()),
                         options.locked_joints, options.soft_limits, options.default_limits,
-                        options.coupled_limits);
+                        options.coupled_limits, options.mimic_curves);
 }
 
 Robot robot_from_state(const py::object& state) {
-  PickleState in(state, "Robot", 8);
+  PickleState in(state, "Robot", 9);
   const std::string urdf = in.value<std::string>("urdf");
   RobotOptions options;
   options.base_link = in.value<std::string>("base_link");
@@ -105,7 +116,10 @@ Robot robot_from_state(const py::object& state) {
   if (!limits.is_none()) {
     options.default_limits = as_limits(ArrayLike(limits), "pickled Robot, default_limits");
   }
-  options.coupled_limits = as_coupled_limits(in.object(), "pickled Robot, coupled_limits");
+  options.coupled_limits =
+      as_sequence_of<CoupledLimit>(in.object(), "pickled Robot, coupled_limits", "CoupledLimit");
+  options.mimic_curves =
+      as_sequence_of<MimicCurve>(in.object(), "pickled Robot, mimic_curves", "MimicCurve");
   return Robot::from_urdf_string(urdf, options);
 }
 
@@ -155,6 +169,9 @@ void bind_chain(py::class_<Robot>& cls) {
       cls, "coupled_limits", [](const Robot& self) { return self.options().coupled_limits; },
       "Limits of sums of joint values, beside those of each joint.");
   add_property(
+      cls, "mimic_curves", [](const Robot& self) { return self.options().mimic_curves; },
+      "How joints follow others where that is no straight line.");
+  add_property(
       cls, "tcp", [](const Robot& self) { return to_array(self.tcp()); },
       "T_tip_tcp, the tool centre point in the tip link's frame, (4, 4).");
   add_property(cls, "dof", &Robot::dof, "Degrees of freedom.");
@@ -194,6 +211,7 @@ void bind_from_urdf(py::class_<Robot>& cls) {
                  py::arg("locked_joints") = py::none(),
                  py::arg("soft_limits") = defaults.soft_limits,
                  py::arg("default_limits") = py::none(), py::arg("coupled_limits") = py::tuple(),
+                 py::arg("mimic_curves") = py::tuple(),
                  R"(Reads the chain between two links of a URDF.
 
 Args:
@@ -206,6 +224,8 @@ Args:
     default_limits: (lower, upper) [rad or m] of revolute and prismatic joints whose limits the
         URDF leaves out or has as 0, 0; without, such a joint is an error.
     coupled_limits: limits of sums of joint values, beside those of each joint; at most 8.
+    mimic_curves: how joints follow others where that is no straight line, one MimicCurve for each
+        that does; in the place of their mimic tags.
 
 Raises:
     UrdfError: the file, the XML, a joint type or a limit is no good, or a length or joint value
@@ -213,7 +233,7 @@ Raises:
         has them all.
     UnknownNameError: no such link or joint.
     InvalidArgumentError: tcp is no rigid transform, or a number in the options is no good, or the
-        coupled limits leave no configuration.)");
+        coupled limits leave no configuration, or a curve is no good.)");
 }
 
 void bind_configurations(py::class_<Robot>& cls) {

@@ -17,6 +17,7 @@ void bind_pose(pybind11::module_& m);
 /// To come before the robot, one of whose properties it is.
 void bind_structure(pybind11::module_& m);
 void bind_coupled_limit(pybind11::module_& m);
+void bind_mimic_curve(pybind11::module_& m);
 void bind_robot(pybind11::module_& m);
 /// The methods of Robot that compute poses and Jacobians.
 void bind_kinematics(pybind11::class_<Robot>& robot);

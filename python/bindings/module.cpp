@@ -15,6 +15,7 @@ Kinematics Iterations" (Yuan, Wan, Harada, 2025), called the paper below.)";
   iksel::python::bind_link_tree(m);
   iksel::python::bind_structure(m);
   iksel::python::bind_coupled_limit(m);
+  iksel::python::bind_mimic_curve(m);
   iksel::python::bind_robot(m);
   iksel::python::bind_pose(m);
   iksel::python::bind_task(m);

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     import numpy.typing as npt
-    from iksel_cpp import CoupledLimit
+    from iksel_cpp import CoupledLimit, MimicCurve
 
     from iksel._packages import Packages
 
@@ -66,6 +66,7 @@ def load_robot(
     soft_limits: bool = False,
     default_limits: npt.ArrayLike | None = None,
     coupled_limits: Sequence[CoupledLimit] = (),
+    mimic_curves: Sequence[MimicCurve] = (),
     srdf: Srdf | str | os.PathLike[str] | None = None,
     group: str | None = None,
     xacro_args: Mapping[str, str] | None = None,
@@ -87,6 +88,8 @@ def load_robot(
         soft_limits: Narrow the limits to the soft limits of the URDF, if it has any.
         default_limits: (lower, upper) [rad or m] of joints that the URDF gives none.
         coupled_limits: Limits of sums of joint values, beside those of each joint.
+        mimic_curves: How joints follow others where that is no straight line, in the
+            place of their mimic tags.
         srdf: The SRDF whose groups `group` names; None: that of robot_descriptions.
         group: Group of the SRDF whose chain is meant; may be left out if it has one.
         xacro_args: Values of a xacro file's arguments.
@@ -99,7 +102,7 @@ def load_robot(
             links are not connected, or a joint between them cannot be used. Without
             tip_link, where several links have no children, `available` has them.
         InvalidArgumentError: `tcp` is no rigid 4x4 matrix, a group without an SRDF, or
-            coupled limits that make no sense or leave no configuration.
+            coupled limits or curves that make no sense or leave no configuration.
     """
     name = _checked_name(source)
     info = manifest().get(name)
@@ -130,6 +133,7 @@ def load_robot(
             soft_limits=soft_limits,
             default_limits=default_limits,
             coupled_limits=coupled_limits,
+            mimic_curves=mimic_curves,
         )
     except UrdfError as error:
         if error.available and groups:

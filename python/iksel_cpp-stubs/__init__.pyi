@@ -14,7 +14,7 @@ import numpy
 import numpy.typing
 import os
 import typing
-__all__: list[str] = ['AngleUnitWarning', 'ArcEnd', 'Axis', 'BatchResult', 'Cause', 'Contact', 'CoupledLimit', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'Diagnosis', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'KeyScheme', 'Kinematics', 'Lanes', 'LinkTree', 'LinkTreeJoint', 'MoveNorm', 'Objective', 'ObjectiveKind', 'Obstacle', 'Paper', 'PathResult', 'Proof', 'RIGID_TOLERANCE', 'Ranking', 'Reselection', 'Result', 'Robot', 'RobotSpheres', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'Scene', 'SelfMotion', 'SelfMotionArc', 'SelfMotionEnd', 'SignatureError', 'SolutionOrder', 'Solutions', 'Solver', 'SolverOptions', 'Status', 'Structure', 'StructureKind', 'Task', 'TaskFrame', 'Tracker', 'TreeBatchResult', 'TreeDiagnosis', 'TreeResult', 'TreeRobot', 'TreeSolver', 'UnknownNameError', 'UrdfError', 'check_pose', 'evaluate', 'grid_counts', 'orthonormalized', 'pose_error', 'pose_matrices', 'rigid_deviation', 'simd_level', 'time_kdl_fk_jacobian']
+__all__: list[str] = ['AngleUnitWarning', 'ArcEnd', 'Axis', 'BatchResult', 'Cause', 'Contact', 'CoupledLimit', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'Diagnosis', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'KeyScheme', 'Kinematics', 'Lanes', 'LinkTree', 'LinkTreeJoint', 'MimicCurve', 'MoveNorm', 'Objective', 'ObjectiveKind', 'Obstacle', 'Paper', 'PathResult', 'Proof', 'RIGID_TOLERANCE', 'Ranking', 'Reselection', 'Result', 'Robot', 'RobotSpheres', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'Scene', 'SelfMotion', 'SelfMotionArc', 'SelfMotionEnd', 'SignatureError', 'SolutionOrder', 'Solutions', 'Solver', 'SolverOptions', 'Status', 'Structure', 'StructureKind', 'Task', 'TaskFrame', 'Tracker', 'TreeBatchResult', 'TreeDiagnosis', 'TreeResult', 'TreeRobot', 'TreeSolver', 'UnknownNameError', 'UrdfError', 'check_pose', 'evaluate', 'grid_counts', 'orthonormalized', 'pose_error', 'pose_matrices', 'rigid_deviation', 'simd_level', 'time_kdl_fk_jacobian']
 class AngleUnitWarning(UserWarning):
     """
     Angles that look like degrees were given where radians are meant.
@@ -187,6 +187,71 @@ class CoupledLimit:
         """
         Largest value of the sum [rad or m].
         """
+class MimicCurve:
+    """
+    A joint that follows another by a smooth curve, as a four-bar linkage or a cylinder beside a hinge makes it. It takes the place of the joint's mimic tag, which knows straight lines only. Between the points lies a cubic in each gap (Hermite's); the joint that is followed stays between the first point and the last.
+    """
+    __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
+    @staticmethod
+    def sampled(joint: str, follows: str, lower: float, upper: float, function: collections.abc.Callable[[float], typing.SupportsFloat | typing.SupportsIndex], slope: collections.abc.Callable[[float], typing.SupportsFloat | typing.SupportsIndex]) -> MimicCurve:
+        """
+        The curve of a function, with so many points that it lies within 1e-10 of it.
+
+        Args:
+            joint: name of the joint that follows.
+            follows: name of the joint that is followed; it follows none itself.
+            lower: where the curve begins [rad or m].
+            upper: where it ends [rad or m].
+            function: value of `joint` at a value of the joint that is followed [rad or m].
+            slope: the function's derivative.
+
+        Raises:
+            InvalidArgumentError: 8,192 gaps are not enough, as where slope is not function's derivative;
+                or a function gives no finite number.
+        """
+    def __eq__(self, other: typing.Any) -> bool:
+        ...
+    def __init__(self, joint: str, follows: str, q: numpy.typing.ArrayLike, values: numpy.typing.ArrayLike, slopes: numpy.typing.ArrayLike | None = None) -> None:
+        """
+        Args:
+            joint: name of the joint that follows.
+            follows: name of the joint that is followed; it follows none itself.
+            q: values of the joint that is followed [rad or m], (N,), each above the one before.
+            values: value of `joint` at each [rad or m], (N,).
+            slopes: derivative of `values` by q at each, (N,); None: those of the cubic spline through the
+                points, whose second derivative has no steps.
+
+        Raises:
+            InvalidArgumentError: not names and arrays. What is wrong with the points, it says when a robot
+                is loaded.
+        """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def follows(self) -> str:
+        """
+        Name of the joint that is followed.
+        """
+    @property
+    def joint(self) -> str:
+        """
+        Name of the joint that follows.
+        """
+    @property
+    def q(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Values of the joint that is followed [rad or m], (N,).
+        """
+    @property
+    def slopes(self) -> typing.Any:
+        """
+        Derivative of `values` by q at each, (N,); None: those of a cubic spline.
+        """
+    @property
+    def values(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Value of `joint` at each [rad or m], (N,).
+        """
 class JointType(enum.Enum):
     """
     How a degree of freedom moves.
@@ -213,7 +278,7 @@ class Robot:
     An immutable serial chain between two links of a URDF, with its limits. Safe to use from many threads at once.
     """
     @staticmethod
-    def from_urdf(path_or_xml: str | os.PathLike[str], base_link: str | None = None, tip_link: str | None = None, tcp: numpy.typing.ArrayLike | typing.Any | None = None, locked_joints: collections.abc.Mapping[str, float] | None = None, soft_limits: bool = False, default_limits: numpy.typing.ArrayLike | None = None, coupled_limits: collections.abc.Sequence[CoupledLimit] = ()) -> Robot:
+    def from_urdf(path_or_xml: str | os.PathLike[str], base_link: str | None = None, tip_link: str | None = None, tcp: numpy.typing.ArrayLike | typing.Any | None = None, locked_joints: collections.abc.Mapping[str, float] | None = None, soft_limits: bool = False, default_limits: numpy.typing.ArrayLike | None = None, coupled_limits: collections.abc.Sequence[CoupledLimit] = (), mimic_curves: collections.abc.Sequence[MimicCurve] = ()) -> Robot:
         """
         Reads the chain between two links of a URDF.
 
@@ -227,6 +292,8 @@ class Robot:
             default_limits: (lower, upper) [rad or m] of revolute and prismatic joints whose limits the
                 URDF leaves out or has as 0, 0; without, such a joint is an error.
             coupled_limits: limits of sums of joint values, beside those of each joint; at most 8.
+            mimic_curves: how joints follow others where that is no straight line, one MimicCurve for each
+                that does; in the place of their mimic tags.
 
         Raises:
             UrdfError: the file, the XML, a joint type or a limit is no good, or a length or joint value
@@ -234,7 +301,7 @@ class Robot:
                 has them all.
             UnknownNameError: no such link or joint.
             InvalidArgumentError: tcp is no rigid transform, or a number in the options is no good, or the
-                coupled limits leave no configuration.
+                coupled limits leave no configuration, or a curve is no good.
         """
     def __copy__(self) -> Robot:
         ...
@@ -371,6 +438,11 @@ class Robot:
     def lower(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         Lower position limits [rad or m], (dof,); -inf for continuous joints.
+        """
+    @property
+    def mimic_curves(self) -> list[MimicCurve]:
+        """
+        How joints follow others where that is no straight line.
         """
     @property
     def name(self) -> str:

@@ -82,6 +82,7 @@ def make_samples() -> list[Any]:
         iksel.Tracker(solver, [0.1, 0.2], closest=[1, 1, 1, 1, 1, 1]),
         iksel_cpp.evaluate(solver, 3, 1),
         iksel.CoupledLimit({"first": 1, "second": -0.5}, lower=-1, upper=2),
+        iksel.MimicCurve("first", "second", [0, 1, 2], [0, 1, 0], [1, 0, -1]),
         iksel.LinkTree.from_urdf(urdf_text.arm()),
         iksel.LinkTree.from_urdf(urdf_text.arm()).joints[0],
     ]

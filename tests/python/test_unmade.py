@@ -61,6 +61,7 @@ def examples(solver: iksel.Solver) -> list[object]:
         tree,
         tree.joints[1],
         iksel.CoupledLimit({"a": 1.0, "b": -0.5}, lower=-1.0),
+        iksel.MimicCurve("a", "b", [0.0, 1.0], [0.0, 2.0]),
         solver,
         solver.options,
         iksel.Lanes(damping=0.5),

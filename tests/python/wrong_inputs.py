@@ -68,6 +68,14 @@ TABLE: dict[str, tuple[str, ...]] = {
             'iksel.load_robot("vs060", '
             'coupled_limits=[iksel.CoupledLimit({"joint_2": 1}, 5, 6)])'
         ),
+        (
+            'iksel.load_robot("vs060", mimic_curves=['
+            'iksel.MimicCurve("joint_3", "joint_2", [0, 1, 1], [0, 1, 2])])'
+        ),
+        (
+            'iksel.load_robot("vs060", mimic_curves=['
+            'iksel.MimicCurve("joint_3", "crank", [0, 1], [0, 1])])'
+        ),
         'ur3.fk("home")',
         "ur3.fk([0.1, 0.2, 0.3])",
         "ur3.fk([0, -90, 90, 0, 0, np.nan])",

@@ -8,6 +8,7 @@
 #include "iksel/error.hpp"          // IWYU pragma: export
 #include "iksel/evaluation.hpp"     // IWYU pragma: export
 #include "iksel/link_tree.hpp"      // IWYU pragma: export
+#include "iksel/mimic_curve.hpp"    // IWYU pragma: export
 #include "iksel/objective.hpp"      // IWYU pragma: export
 #include "iksel/options.hpp"        // IWYU pragma: export
 #include "iksel/path.hpp"           // IWYU pragma: export

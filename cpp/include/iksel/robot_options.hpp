@@ -10,6 +10,7 @@
 
 #include "iksel/coupled_limit.hpp"
 #include "iksel/export.hpp"
+#include "iksel/mimic_curve.hpp"
 #include "iksel/types.hpp"
 
 namespace iksel {
@@ -32,6 +33,9 @@ struct RobotOptions {
   std::optional<std::pair<double, double>> default_limits;
   /// Limits of sums of joint values, beside those of each joint; kMaxCoupledLimits at most.
   std::vector<CoupledLimit> coupled_limits;
+  /// How joints follow others where that is no straight line, one for each that does; in the place
+  /// of their mimic tags.
+  std::vector<MimicCurve> mimic_curves;
 };
 
 }  // namespace iksel

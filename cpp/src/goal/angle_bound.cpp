@@ -20,7 +20,8 @@ double find_largest(const ChainModel& model, const SolverOptions& options) {
   constexpr double kLeast = 100;
   double angles = 0;
   for (const KernelJoint& joint : model.kernel.joints) {
-    if (!joint.prismatic) angles += std::abs(joint.multiplier);
+    const double steepest = joint.curve ? joint.curve->steepest() : 1;
+    if (!joint.prismatic) angles += std::abs(joint.multiplier) * steepest;
   }
   const double rotation =
       std::min(options.rotation_tolerance,

@@ -127,6 +127,8 @@ std::shared_ptr<const ChainModel> ChainModel::without_limits() const {
   wide.coupled_turning.clear();
   wide.coupled_images.clear();
   for (int i = 0; i < dof; ++i) {
+    // A curve is known between its ends only.
+    if (moves_by_a_curve(*this, i)) continue;
     if (joints.is_slide(i)) {
       // Angles may be bounded by what the limits are.
       if (turns_a_joint(*this, i)) continue;
@@ -147,6 +149,13 @@ bool turns_a_joint(const ChainModel& model, int variable) {
   return std::any_of(model.kernel.joints.begin(), model.kernel.joints.end(),
                      [variable](const KernelJoint& joint) {
                        return joint.variable == variable && !joint.prismatic;
+                     });
+}
+
+bool moves_by_a_curve(const ChainModel& model, int variable) {
+  return std::any_of(model.kernel.joints.begin(), model.kernel.joints.end(),
+                     [variable](const KernelJoint& joint) {
+                       return joint.variable == variable && joint.curve != nullptr;
                      });
 }
 
@@ -174,6 +183,7 @@ void ChainModel::flatten() {
     k.variable = joint.variable;
     k.multiplier = joint.multiplier;
     k.offset = joint.offset;
+    k.curve = joint.curve;
     k.prismatic = joint.prismatic;
     k.cos_turn = 1;
     if (kernel.joints.empty()) {
@@ -221,9 +231,8 @@ void ChainModel::measure_reach() {
   for (const KernelJoint& k : kernel.joints) {
     reach += Eigen::Vector3d::Map(k.p).norm();
     if (k.prismatic) {
-      const double low = k.multiplier * joints.lower[k.variable];
-      const double high = k.multiplier * joints.upper[k.variable];
-      reach += std::max(std::abs(low + k.offset), std::abs(high + k.offset));
+      const auto of = motion_between(k, joints.lower[k.variable], joints.upper[k.variable]);
+      reach += std::max(std::abs(of.lower), std::abs(of.upper));
     }
   }
   reach += Eigen::Vector3d::Map(kernel.flange.p).norm();
@@ -248,6 +257,11 @@ std::uint64_t ChainModel::compute_hash() const {
     hasher.add(static_cast<std::uint64_t>(joint.variable + 1));
     hasher.add(joint.multiplier);
     hasher.add(joint.offset);
+    if (!joint.curve) continue;
+    for (const auto* numbers :
+         {&joint.curve->q(), &joint.curve->values(), &joint.curve->slopes()}) {
+      for (const double number : *numbers) hasher.add(number);
+    }
   }
   for (int i = 0; i < dof; ++i) {
     hasher.add(joints.lower[i]);

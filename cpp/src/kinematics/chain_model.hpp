@@ -23,7 +23,8 @@ class ChainModel {
   /// The same chain with another tool.
   [[nodiscard]] std::shared_ptr<const ChainModel> with_tcp(const Pose& T_tip_tcp) const;
 
-  /// The same chain with joints that turn freely and slides that reach farther.
+  /// The same chain with joints that turn freely and slides that reach farther, but for what curves
+  /// are of.
   [[nodiscard]] std::shared_ptr<const ChainModel> without_limits() const;
 
   /// KDL's chain to the TCP, or to another frame behind the tip link.
@@ -64,6 +65,9 @@ class ChainModel {
 
 /// Whether the variable, be it a slide, turns a joint: its own, or one that follows it.
 bool turns_a_joint(const ChainModel& model, int variable);
+
+/// Whether a joint follows the variable by a curve.
+bool moves_by_a_curve(const ChainModel& model, int variable);
 
 /// Frame of the kernel as a pose.
 Pose to_pose(const Frame& frame);

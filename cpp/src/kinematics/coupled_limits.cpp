@@ -69,6 +69,11 @@ double add_joint(const CoupledLimit& limit, std::size_t index, const std::string
                  "' turns without limits, so that whole turns would take its sum "
                  "anywhere: make it revolute, with limits");
     }
+    if (joint->curve) {
+      refuse(limit, index,
+             "joint '" + name + "' follows '" + joints.name(joint->variable) +
+                 "' by a curve, so that there is no sum: name the joint that it follows");
+    }
     row.c[joint->variable] += coefficient * joint->multiplier;
     return coefficient * joint->offset;
   }

@@ -56,7 +56,7 @@ struct KdlChain::Impl {
   void set(const JointVector& values) {
     for (std::size_t k = 0; k < motions.size(); ++k) {
       const ChainJoint& m = motions[k];
-      q(static_cast<unsigned>(k)) = m.multiplier * values[m.variable] + m.offset;
+      q(static_cast<unsigned>(k)) = motion_of(m, values[m.variable]);
     }
   }
 
@@ -92,7 +92,8 @@ Jacobian KdlChain::jacobian(const JointVector& q) {
   Jacobian J = Jacobian::Zero(6, impl_->dof);
   for (std::size_t k = 0; k < impl_->motions.size(); ++k) {
     const ChainJoint& m = impl_->motions[k];
-    J.col(m.variable) += m.multiplier * impl_->jacobian.data.col(static_cast<Eigen::Index>(k));
+    J.col(m.variable) +=
+        motion_slope(m, q[m.variable]) * impl_->jacobian.data.col(static_cast<Eigen::Index>(k));
   }
   return J;
 }

@@ -11,8 +11,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <vector>
 
+#include "base/motion_curve.hpp"
 #include "base/sincos.hpp"
 
 namespace iksel {
@@ -20,8 +22,9 @@ namespace iksel {
 struct KernelJoint {
   double p[3];  ///< from the previous joint's frame [m]
   double cos_alpha, sin_alpha;
-  double multiplier, offset;  ///< motion = multiplier * q[variable] + offset [rad or m]
-  double cos_turn, sin_turn;  ///< constant angle_k of a prismatic joint
+  double multiplier, offset;                 ///< motion = motion_of(joint, q[variable]) [rad or m]
+  std::shared_ptr<const MotionCurve> curve;  ///< null: a straight line
+  double cos_turn, sin_turn;                 ///< constant angle_k of a prismatic joint
   int variable;
   bool prismatic;
 };
@@ -86,7 +89,7 @@ inline Frame forward_to_last_joint(const KernelChain& chain, const double* q, Jo
   double motion[kMaxMovingJoints];
   int k = 0;
   for (const KernelJoint& joint : chain.joints) {
-    motion[k] = q[joint.variable] * joint.multiplier + joint.offset;
+    motion[k] = motion_of(joint, q[joint.variable]);
     safe_sincos(motion[k], sine[k], cosine[k]);
     ++k;
   }
@@ -130,7 +133,7 @@ inline Frame forward_jacobian(const KernelChain& chain, const Frame& end, int do
   for (const KernelJoint& joint : chain.joints) {
     double* column = jacobian + 6 * joint.variable;
     const double* z = axes.axis[k];
-    const double m = joint.multiplier;
+    const double m = motion_slope(joint, q[joint.variable]);
     if (joint.prismatic) {
       for (int i = 0; i < 3; ++i) column[i] += z[i] * m;
     } else {

@@ -49,7 +49,7 @@ double held_value(const LinkJoint& joint, const Values& held) {
   const auto own = held.find(joint.name);
   if (own != held.end()) return own->second;
   const auto source = held.find(joint.source);
-  return joint.multiplier * (source == held.end() ? 0.0 : source->second) + joint.offset;
+  return motion_of(joint, source == held.end() ? 0.0 : source->second);
 }
 
 }  // namespace
@@ -78,7 +78,7 @@ void LinkPoses::at(const double* q, Pose* T_base_link) const {
     if (variable < 0) {
       T_base_link[i] = above * joint.origin;
     } else {
-      const double value = joint.multiplier * q[variable] + joint.offset;
+      const double value = motion_of(joint, q[variable]);
       T_base_link[i] = above * moved(joint.origin, joint.axis, joint.prismatic, value);
     }
   }
@@ -91,7 +91,7 @@ void LinkPoses::at(const double* q, Pose* T_base_link) const {
 
 void LinkPoseCache::read(const ChainModel& model) {
   std::call_once(once_, [&] {
-    joints_ = read_link_joints(model.urdf);
+    joints_ = read_link_joints(model.urdf, model.options.mimic_curves);
     plain_ = std::make_unique<const LinkPoses>(model, joints_, Values{});
   });
 }

@@ -56,7 +56,7 @@ ArmShape::ArmShape(const Robot& robot, const RobotSpheres& spheres,
 }
 
 void ArmShape::make_bodies(const Robot& robot, const LinkPoses& links) {
-  bodies_.push_back({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}, 0, 0, -1, 0, false});
+  bodies_.push_back({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}, 0, 0, -1, 0, false, nullptr});
   places_.push_back({0, root_in_base(robot, links)});
   const auto& steps = links.steps();
   for (std::size_t i = 1; i < steps.size(); ++i) {
@@ -91,6 +91,8 @@ int ArmShape::add_body(const LinkPoses::Step& step, int parent, const Pose& orig
   body.parent = parent;
   body.variable = step.variable;
   body.prismatic = step.joint.prismatic;
+  body.curve = step.joint.curve.get();
+  if (step.joint.curve) curves_.push_back(step.joint.curve);
   bodies_.push_back(body);
   return static_cast<int>(bodies_.size()) - 1;
 }
@@ -142,7 +144,7 @@ std::vector<Eigen::Vector3d> ArmShape::centres(const double* q) const {
   std::vector<Pose> frame{Pose::Identity()};
   for (std::size_t i = 1; i < bodies_.size(); ++i) {
     const lanes::SceneBody& body = bodies_[i];
-    const double motion = body.multiplier * q[body.variable] + body.offset;
+    const double motion = motion_of(body, q[body.variable]);
     Pose moved = frame_of(body);
     if (body.prismatic) {
       moved.translate(motion * Eigen::Vector3d::UnitZ());

@@ -76,6 +76,7 @@ class ArmShape {
   int tip_body_ = 0;
   StoredPose T_body_tip_;
   std::vector<lanes::SceneBody> bodies_;
+  std::vector<std::shared_ptr<const MotionCurve>> curves_;  ///< of the bodies
   std::vector<std::string> names_;
   std::vector<lanes::SceneLink> links_;
   std::vector<lanes::SceneBall> balls_;

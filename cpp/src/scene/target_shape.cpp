@@ -111,7 +111,8 @@ bool TargetShape::show(const Pose& T_base_tip, double position, double rotation,
     ball.radius -= off;
   }
   const Pose frame = T_base_tip * Pose(T_tip_body_);
-  placed.bodies.assign(2, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}, 0, 0, -1, 0, false});
+  placed.bodies.assign(2,
+                       {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}, 0, 0, -1, 0, false, nullptr});
   lanes::SceneBody& tip = placed.bodies[1];
   copy_vector(frame.linear().col(0), tip.x);
   copy_vector(frame.linear().col(1), tip.y);

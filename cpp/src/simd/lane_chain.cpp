@@ -11,7 +11,7 @@ bool is_simple(const ChainModel& model) {
   if (model.kernel.joints.size() != static_cast<std::size_t>(model.dof)) return false;
   for (int j = 0; j < model.dof; ++j) {
     const KernelJoint& joint = model.kernel.joints[static_cast<std::size_t>(j)];
-    if (joint.variable != j || joint.multiplier != 1.0) return false;
+    if (joint.variable != j || joint.multiplier != 1.0 || joint.curve) return false;
   }
   return true;
 }

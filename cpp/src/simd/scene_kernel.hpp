@@ -45,7 +45,13 @@ template <typename T>
 IKSEL_INLINE BodyFrame<T> place_body(const SceneBody& body, const BodyFrame<T>& parent,
                                      const double* q) {
   BodyFrame<T> f;
-  const T value = Lanes<T>::load(q + body.variable * kWidth);
+  const double* values = q + body.variable * kWidth;
+  double on_curve[kWidth];
+  if (body.curve != nullptr) {
+    for (int i = 0; i < kWidth; ++i) on_curve[i] = body.curve->at(values[i]).value;
+    values = on_curve;
+  }
+  const T value = Lanes<T>::load(values);
   const T motion = value * T(body.multiplier) + T(body.offset);
   const Placed<T> x = in_base(parent, body.x);
   const Placed<T> y = in_base(parent, body.y);

@@ -2,6 +2,7 @@
 // An arm of spheres and its obstacles, as the kernel of collisions takes them (scene_kernel.hpp).
 #pragma once
 
+#include "base/motion_curve.hpp"
 #include "simd/lane_types.hpp"
 
 namespace iksel::lanes {
@@ -13,9 +14,10 @@ inline constexpr int kMaxBodies = 128;
 /// A body on its joint, whose axis is z: parent * (x, y, z, p) * motion.
 struct SceneBody {
   double x[3], y[3], z[3], p[3];
-  double multiplier, offset;  ///< motion = multiplier * q[variable] + offset [rad or m]
+  double multiplier, offset;  ///< motion = motion_of(body, q[variable]) [rad or m]
   int parent, variable;
   bool prismatic;
+  const MotionCurve* curve;  ///< null: a straight line
 };
 
 struct SceneBall {

@@ -229,9 +229,10 @@ std::optional<ClosedFormChain> look_from(const ChainModel& model, const Complete
   const auto joint = [&](int i) { return reversed ? count - 1 - i : i; };
   const Vector3d held_axis = axes.h.front();
   const Vector3d held_point = axes.p.front();
-  const auto& joints = model.kernel.joints;
-  for (int i = before; i < std::min(count, model.dof); ++i) {
-    if (joints[static_cast<std::size_t>(joint(i))].prismatic) return std::nullopt;
+  for (int i = before; i < count; ++i) {
+    // Those from dof on complete the six, and turn.
+    if (joint(i) >= model.dof) continue;
+    if (model.kernel.joints[static_cast<std::size_t>(joint(i))].prismatic) return std::nullopt;
   }
   if (before > 0) {
     chain.held = joint(0);

@@ -23,9 +23,8 @@ void check_size(const std::string& joint, const std::string& what, double value,
 /// Largest value that the motion of a joint takes.
 double largest_motion(const ChainJoint& joint, const ChainVariable& variable) {
   const bool free = variable.type == JointType::continuous;
-  const double low = joint.multiplier * (free ? -kPi : variable.lower) + joint.offset;
-  const double high = joint.multiplier * (free ? kPi : variable.upper) + joint.offset;
-  return std::max(std::abs(low), std::abs(high));
+  const auto of = motion_between(joint, free ? -kPi : variable.lower, free ? kPi : variable.upper);
+  return std::max(std::abs(of.lower), std::abs(of.upper));
 }
 
 /// Throws UrdfError, naming the joint, where a length or joint value of the chain, or the chain as
@@ -58,7 +57,9 @@ void check_sizes(const ChainSpec& spec) {
 class ChainReader {
  public:
   ChainReader(const urdf::ModelInterface& model, RobotOptions& options)
-      : model_(model), options_(options) {}
+      : model_(model),
+        options_(options),
+        curves_(check_mimic_curves(model, options.mimic_curves)) {}
 
   ChainSpec read() {
     check_default_limits(options_);
@@ -170,20 +171,34 @@ class ChainReader {
     segment.axis = axis_of(joint);
     if (upwards) segment.axis = -segment.axis;
 
-    const Motion motion = resolve_mimic(model_, joint);
+    const Motion motion = resolve_mimic(model_, curves_, joint);
     segment.multiplier = motion.multiplier;
     segment.offset = motion.offset;
+    segment.curve = motion.curve;
     const auto locked = options_.locked_joints.find(motion.source->name);
     const auto own_lock = options_.locked_joints.find(joint.name);
     if (own_lock != options_.locked_joints.end()) {
       lock(segment, own_lock->second);
     } else if (locked != options_.locked_joints.end()) {
-      lock(segment, motion.multiplier * locked->second + motion.offset);
+      check_lock(joint, motion, locked->second);
+      lock(segment, motion_of(motion, locked->second));
     } else {
       segment.variable = variable_of(*motion.source);
       narrow_by_follower(joint, motion, options_, spec_.variables[segment.variable]);
     }
     spec_.joints.push_back(segment);
+  }
+
+  /// A curve is known between its ends only.
+  static void check_lock(const urdf::Joint& joint, const Motion& motion, double value) {
+    if (!motion.curve) return;
+    const double lower = motion.curve->lower();
+    const double upper = motion.curve->upper();
+    if (value >= lower && value <= upper) return;
+    throw InvalidArgumentError("locked joint '" + motion.source->name + "': " + number_text(value) +
+                               " is beyond the curve by which '" + joint.name +
+                               "' follows it, from " + number_text(lower) + " to " +
+                               number_text(upper));
   }
 
   /// A locked joint is a fixed one: its motion by `value` becomes part of the constant transform.
@@ -204,6 +219,7 @@ class ChainReader {
 
   const urdf::ModelInterface& model_;
   RobotOptions& options_;
+  CheckedCurves curves_;
   ChainSpec spec_;
 };
 

@@ -3,16 +3,18 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "base/motion_curve.hpp"
 #include "iksel/robot_options.hpp"
 
 namespace iksel {
 
 /// One joint on the way from base to tip: first the constant transform `before`, then the motion by
-/// `multiplier * q[variable] + offset` about or along `axis`, then `after`. A fixed or locked joint
-/// has the constant transforms only.
+/// motion_of(joint, q[variable]) (base/motion_curve.hpp) about or along `axis`, then `after`. A
+/// fixed or locked joint has the constant transforms only.
 struct ChainJoint {
   std::string name;
   Eigen::Isometry3d before = Eigen::Isometry3d::Identity();
@@ -25,6 +27,7 @@ struct ChainJoint {
   int variable = -1;  ///< -1: fixed
   double multiplier = 1.0;
   double offset = 0.0;
+  std::shared_ptr<const MotionCurve> curve;  ///< null: a straight line
 };
 
 /// T, and then a motion by `value` along or about `axis`.

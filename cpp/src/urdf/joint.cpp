@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "base/constants.hpp"
 #include "base/message_text.hpp"
@@ -31,6 +32,18 @@ void set_limits(ChainVariable& variable, double lower, double upper) {
   variable.upper = variable.soft_upper = upper;
 }
 
+void narrow_to_ends(const MotionCurve& curve, ChainVariable& variable) {
+  for (double* lower : {&variable.lower, &variable.soft_lower}) {
+    *lower = std::max(*lower, curve.lower());
+  }
+  for (double* upper : {&variable.upper, &variable.soft_upper}) {
+    *upper = std::min(*upper, curve.upper());
+  }
+  if (variable.type == JointType::continuous) variable.type = JointType::revolute;
+  // Else there is nothing to narrow.
+  check_limits(variable);
+}
+
 }  // namespace
 
 Eigen::Isometry3d origin_of(const urdf::Joint& joint) {
@@ -54,9 +67,17 @@ Eigen::Vector3d axis_of(const urdf::Joint& joint) {
   return axis.normalized();
 }
 
-Motion resolve_mimic(const urdf::ModelInterface& model, const urdf::Joint& joint) {
-  Motion motion{&joint, 1.0, 0.0};
-  for (std::size_t steps = 0; motion.source->mimic; ++steps) {
+Motion resolve_mimic(const urdf::ModelInterface& model, const CheckedCurves& curves,
+                     const urdf::Joint& joint) {
+  Motion motion{&joint, 1.0, 0.0, nullptr};
+  for (std::size_t steps = 0;; ++steps) {
+    const auto curve = curves.find(motion.source->name);
+    if (curve != curves.end()) {
+      motion.source = curve->second.source;
+      motion.curve = curve->second.curve;
+      break;
+    }
+    if (!motion.source->mimic) break;
     const urdf::JointMimic& mimic = *motion.source->mimic;
     const auto it = model.joints_.find(mimic.joint_name);
     if (it == model.joints_.end()) {
@@ -68,7 +89,7 @@ Motion resolve_mimic(const urdf::ModelInterface& model, const urdf::Joint& joint
       throw UrdfError("joint '" + joint.name + "' mimics itself through a circle of joints");
     }
     motion = {it->second.get(), motion.multiplier * mimic.multiplier,
-              motion.offset + motion.multiplier * mimic.offset};
+              motion.offset + motion.multiplier * mimic.offset, nullptr};
   }
   for (const double number : {motion.multiplier, motion.offset}) {
     if (std::abs(number) <= kMaxCoordinate) continue;
@@ -119,17 +140,29 @@ ChainVariable make_variable(const urdf::Joint& joint, const RobotOptions& option
 void narrow_by_follower(const urdf::Joint& follower, const Motion& motion,
                         const RobotOptions& options, ChainVariable& variable) {
   if (motion.source == &follower || motion.multiplier == 0.0) return;
-  if (options.default_limits && lacks_limits(follower)) return;
+  if (motion.curve) narrow_to_ends(*motion.curve, variable);
+  // A curve has ends of its own.
+  if ((options.default_limits || motion.curve) && lacks_limits(follower)) return;
   const ChainVariable own = make_variable(follower, options);
   const auto narrow = [&](double low, double high, double& lower, double& upper) {
     low = (low - motion.offset) / motion.multiplier;
     high = (high - motion.offset) / motion.multiplier;
-    lower = std::max(lower, std::min(low, high));
-    upper = std::min(upper, std::max(low, high));
+    if (low > high) std::swap(low, high);
+    if (!motion.curve) {
+      lower = std::max(lower, low);
+      upper = std::min(upper, high);
+    } else if (!narrow_to_values(*motion.curve, low, high, lower, upper)) {
+      throw UrdfError("joint '" + follower.name + "': its limits, lower " + number_text(own.lower) +
+                      ", upper " + number_text(own.upper) +
+                      ", leave no part of its curve, or several; '" + variable.name +
+                      "', which it follows, goes from " + number_text(lower) + " to " +
+                      number_text(upper));
+    }
   };
   narrow(own.lower, own.upper, variable.lower, variable.upper);
   narrow(own.soft_lower, own.soft_upper, variable.soft_lower, variable.soft_upper);
-  variable.velocity = std::min(variable.velocity, own.velocity / std::abs(motion.multiplier));
+  const double slope = std::abs(motion.multiplier) * (motion.curve ? motion.curve->steepest() : 1);
+  variable.velocity = std::min(variable.velocity, own.velocity / slope);
   if (variable.type == JointType::continuous && std::isfinite(variable.lower)) {
     variable.type = JointType::revolute;
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a joint of the URDF is to a chain: where it is, how it moves, which joint really moves one
-// that mimics another, and the limits of a degree of freedom: its joint's own, and those of the
-// joints that mimic it.
+// that mimics another or follows it by a curve, and the limits of a degree of freedom: its joint's
+// own, and those of the joints that mimic it.
 #pragma once
 
 #include <urdf_model/joint.h>
@@ -11,6 +11,7 @@
 
 #include "iksel/robot_options.hpp"
 #include "urdf/chain_spec.hpp"
+#include "urdf/mimic_curves.hpp"
 
 namespace iksel {
 
@@ -20,22 +21,26 @@ Eigen::Isometry3d origin_of(const urdf::Joint& joint);
 /// Unit vector about or along which the joint moves. Throws UrdfError if it has no direction.
 Eigen::Vector3d axis_of(const urdf::Joint& joint);
 
-/// What moves a joint: `source`'s value q, as multiplier * q + offset.
+/// What moves a joint: `source`'s value q, as motion_of says (base/motion_curve.hpp).
 struct Motion {
   const urdf::Joint* source;
   double multiplier;
   double offset;
+  std::shared_ptr<const MotionCurve> curve;
 };
 
-/// Through any number of mimic tags. Throws UnknownNameError if one names no joint, and UrdfError
-/// if they go in a circle, end at a joint that has no value, or a number is too large.
-Motion resolve_mimic(const urdf::ModelInterface& model, const urdf::Joint& joint);
+/// Through any number of mimic tags, and a curve in the place of the last. Throws UnknownNameError
+/// if one names no joint, and UrdfError if they go in a circle, end at a joint that has no value,
+/// or a number is too large.
+Motion resolve_mimic(const urdf::ModelInterface& model, const CheckedCurves& curves,
+                     const urdf::Joint& joint);
 
 /// The degree of freedom that a joint is. Throws UrdfError if it has no limits and the options no
 /// default ones.
 ChainVariable make_variable(const urdf::Joint& joint, const RobotOptions& options);
 
-/// Narrows the limits of `variable` to those of a joint that follows it.
+/// Narrows the limits of `variable` to those of a joint that follows it, and to the ends of the
+/// curve by which it does. Throws UrdfError where a curve leaves nothing, or several pieces.
 void narrow_by_follower(const urdf::Joint& follower, const Motion& motion,
                         const RobotOptions& options, ChainVariable& variable);
 

@@ -9,7 +9,8 @@
 namespace iksel {
 namespace {
 
-LinkJoint make_link_joint(const urdf::ModelInterface& model, const urdf::Joint& joint) {
+LinkJoint make_link_joint(const urdf::ModelInterface& model, const CheckedCurves& curves,
+                          const urdf::Joint& joint) {
   LinkJoint out;
   out.name = out.source = joint.name;
   out.origin = origin_of(joint);
@@ -18,24 +19,27 @@ LinkJoint make_link_joint(const urdf::ModelInterface& model, const urdf::Joint& 
       out.prismatic || joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::CONTINUOUS;
   if (!out.moves) return out;
   out.axis = axis_of(joint);
-  const Motion motion = resolve_mimic(model, joint);
+  const Motion motion = resolve_mimic(model, curves, joint);
   out.source = motion.source->name;
   out.multiplier = motion.multiplier;
   out.offset = motion.offset;
+  out.curve = motion.curve;
   return out;
 }
 
 }  // namespace
 
-std::vector<LinkJoint> read_link_joints(const std::string& urdf_xml) {
+std::vector<LinkJoint> read_link_joints(const std::string& urdf_xml,
+                                        const std::vector<MimicCurve>& mimic_curves) {
   const auto model = parse_urdf(urdf_xml);
+  const CheckedCurves curves = check_mimic_curves(*model, mimic_curves);
   std::map<std::string, int> index;
   std::vector<LinkJoint> joints;
   for (const std::string& name : make_link_tree(*model).links) {
     const urdf::Link& link = *model->links_.at(name);
     LinkJoint joint;
     if (!joints.empty()) {
-      joint = make_link_joint(*model, *link.parent_joint);
+      joint = make_link_joint(*model, curves, *link.parent_joint);
       joint.parent = index.at(link.parent_joint->parent_link_name);
     }
     index[name] = static_cast<int>(joints.size());

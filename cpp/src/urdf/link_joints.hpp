@@ -3,13 +3,17 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <memory>
 #include <string>
 #include <vector>
+
+#include "base/motion_curve.hpp"
+#include "iksel/mimic_curve.hpp"
 
 namespace iksel {
 
 /// The joint that carries a link. Its pose in the parent link is `origin`, then the motion about or
-/// along `axis` by its value v; v = multiplier * (value of `source`) + offset.
+/// along `axis` by its value, which is motion_of (base/motion_curve.hpp) that of `source`.
 struct LinkJoint {
   std::string name;  ///< empty: the root link, which nothing carries
   int parent = -1;   ///< index of the link that it is on
@@ -20,10 +24,12 @@ struct LinkJoint {
   std::string source;  ///< the joint that it follows in the end, or itself
   double multiplier = 1.0;
   double offset = 0.0;
+  std::shared_ptr<const MotionCurve> curve;  ///< null: a straight line
 };
 
 /// One for each link, in the order of LinkTree::links, where parents come first. Throws UrdfError
 /// or UnknownNameError.
-std::vector<LinkJoint> read_link_joints(const std::string& urdf_xml);
+std::vector<LinkJoint> read_link_joints(const std::string& urdf_xml,
+                                        const std::vector<MimicCurve>& mimic_curves);
 
 }  // namespace iksel

@@ -13,6 +13,7 @@ from iksel_cpp import (
 )
 
 from iksel._urdf_xml import read_xml
+from iksel.cli import _curves
 from iksel.cli._angles import Angles, add_degrees
 from iksel.cli._coupled import FLAG, FORM, parse_coupled_limit
 from iksel.cli._parser import POSE_METAVAR, parse_numbers
@@ -34,6 +35,7 @@ EVERY_TURN = (np.array([-np.inf]), np.array([np.inf]))
 _FLAGS = {
     "default_limits": "--default-limits LOWER UPPER",
     "coupled_limits": FLAG,
+    "mimic_curves": _curves.FLAG,
     "locked_joints": "--lock JOINT=VALUE",
     "xacro_args": "--xacro-arg NAME=VALUE",
     "packages: ": "--package NAME=FOLDER: ",
@@ -95,6 +97,15 @@ def add_robot(parser: argparse.ArgumentParser) -> None:
         help=f"limit of a sum of joint values [rad or m], {FORM}; joints may have "
         "coefficients, as 0.5 JOINT, and one end may be left out; may be repeated",
     )
+    group.add_argument(
+        _curves.FLAG,
+        action="append",
+        default=[],
+        metavar=_curves.FORM,
+        help="JOINT follows SOURCE by the curve through the file's points, in lines of "
+        "SOURCE's value, JOINT's [rad or m] and, if known, the slope, separated by "
+        "commas; in the place of the URDF's mimic tag; may be repeated",
+    )
     _add_formats(group)
     add_degrees(group)
 
@@ -141,7 +152,8 @@ def load(arguments: argparse.Namespace) -> Robot:
     Raises:
         UnknownNameError: Neither a built-in robot nor a file, or no such link or joint.
         UrdfError: The file cannot be read or used.
-        InvalidArgumentError: A tool, locked joint or coupled limit that makes no sense.
+        InvalidArgumentError: A tool, locked joint, coupled limit or curve that makes
+            no sense.
     """
     angles = Angles(arguments)
     settings: dict[str, Any] = {
@@ -161,6 +173,9 @@ def load(arguments: argparse.Namespace) -> Robot:
         settings["default_limits"] = angles.read(flag, limits, EVERY_TURN)
     if arguments.coupled_limit:
         settings["coupled_limits"] = _coupled_limits(arguments, angles)
+    settings["mimic_curves"] = [
+        _curves.read_mimic_curve(text) for text in arguments.mimic_curve
+    ]
     if arguments.tcp is not None:
         none = arguments.tcp == ["none"]
         settings["tcp"] = None if none else angles.read_pose("--tcp", arguments.tcp)
@@ -177,6 +192,8 @@ def load(arguments: argparse.Namespace) -> Robot:
         if error.available:
             message += "; choose one by --tip"
         raise UrdfError(message) from None
+    except InvalidArgumentError as error:
+        raise InvalidArgumentError(_with_flags(str(error), name)) from None
 
 
 def load_tree(arguments: argparse.Namespace) -> LinkTree:

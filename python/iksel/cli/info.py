@@ -25,7 +25,7 @@ from iksel.srdf import Srdf
 if TYPE_CHECKING:
     import argparse
 
-    from iksel_cpp import CoupledLimit, LinkTree, Robot
+    from iksel_cpp import CoupledLimit, LinkTree, MimicCurve, Robot
 
     from iksel._arrays import FloatArray
 
@@ -99,6 +99,7 @@ def run(arguments: argparse.Namespace) -> int:
             ("reach", reach),
             ("structure", robot.structure.description),
             *(("coupled limit", str(limit)) for limit in robot.coupled_limits),
+            *(("curve", _curve_text(curve)) for curve in robot.mimic_curves),
             ("chain hash", f"{robot.chain_hash:016x}"),
             *((field, text) for field, text in origin.items() if text),
             *((field, ", ".join(names)) for field, names in srdf.items()),
@@ -165,6 +166,7 @@ def as_dict(robot: Robot, angles: Angles) -> dict[str, Any]:
         },
         "chain_hash": f"{robot.chain_hash:016x}",
         "coupled_limits": [_limit_as_dict(limit) for limit in robot.coupled_limits],
+        "mimic_curves": [_curve_as_dict(curve) for curve in robot.mimic_curves],
         "joints": [dict(zip(names, joint, strict=True)) for joint in columns],
     }
 
@@ -176,6 +178,19 @@ def _limit_as_dict(limit: CoupledLimit) -> dict[str, Any]:
         "coefficients": limit.coefficients,
         **{end: x if math.isfinite(x) else None for end, x in ends.items()},
     }
+
+
+def _curve_text(curve: MimicCurve) -> str:
+    return (
+        f"{curve.joint} follows {curve.follows} ({len(curve.q)} points, "
+        f"{curve.q[0]:.4g} to {curve.q[-1]:.4g})"
+    )
+
+
+def _curve_as_dict(curve: MimicCurve) -> dict[str, Any]:
+    """A curve, always [rad or m]; slopes are None where a spline has them."""
+    names = ("joint", "follows", "q", "values", "slopes")
+    return {name: getattr(curve, name) for name in names}
 
 
 def pose_text(pose: FloatArray) -> str:

@@ -12,7 +12,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from iksel_cpp import CoupledLimit, Robot, Solver, SolverOptions
+from iksel_cpp import CoupledLimit, MimicCurve, Robot, Solver, SolverOptions
 
 from iksel import __version__
 from iksel.reach._errors import PlanMismatchError
@@ -137,6 +137,9 @@ class Job(ABC):
         data["coupled_limits"] = [
             CoupledLimit(*_from_json(limit)) for limit in data.get("coupled_limits", ())
         ]
+        data["mimic_curves"] = [
+            MimicCurve(*curve) for curve in data.get("mimic_curves", ())
+        ]
         robot = Robot.from_urdf(urdf, **data)
         if f"{robot.chain_hash:016x}" != expected:
             raise PlanMismatchError(
@@ -190,6 +193,7 @@ def common_data(robot: Robot, options: SolverOptions) -> dict[str, Any]:
             "soft_limits": robot.soft_limits,
             "default_limits": _plain(robot.default_limits),
             **_coupled_data(robot),
+            **_curve_data(robot),
             "chain_hash": f"{robot.chain_hash:016x}",
         },
         "options": _plain(options.to_dict()),
@@ -200,6 +204,16 @@ def _coupled_data(robot: Robot) -> dict[str, Any]:
     """The coupled limits, if there are any: plans without are what they were."""
     limits = [[x.coefficients, x.lower, x.upper] for x in robot.coupled_limits]
     return {"coupled_limits": _plain(limits)} if limits else {}
+
+
+def _curve_data(robot: Robot) -> dict[str, Any]:
+    """How joints follow others, if any do by a curve."""
+    curves = [
+        [x.joint, x.follows, x.q.tolist(), x.values.tolist()]
+        + ([] if x.slopes is None else [x.slopes.tolist()])
+        for x in robot.mimic_curves
+    ]
+    return {"mimic_curves": curves} if curves else {}
 
 
 def _plain(value: Any) -> Any:

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "urdf/mimic_curves.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "base/constants.hpp"
+#include "base/message_text.hpp"
+#include "iksel/error.hpp"
+#include "urdf/parse.hpp"
+
+namespace iksel {
+namespace {
+
+constexpr std::size_t kMostPoints = 100'000;
+/// Farthest that a sampled curve may lie from its function [rad or m], and its slope.
+constexpr double kSampledValue = 1e-10;
+constexpr double kSampledSlope = 1e-6;
+
+std::string text_of(const MimicCurve& curve) {
+  return "(joint '" + curve.joint + "' follows '" + curve.follows + "')";
+}
+
+/// Written so that NaN is refused.
+void check_points(const std::vector<double>& numbers, const char* name, const std::string& culprit,
+                  std::size_t expected) {
+  if (numbers.size() != expected) {
+    throw InvalidArgumentError(culprit + ": " + name + ": expected " + std::to_string(expected) +
+                               " numbers, as there are of q, got " +
+                               std::to_string(numbers.size()));
+  }
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (std::abs(numbers[i]) <= kMaxCoordinate) continue;
+    throw InvalidArgumentError(culprit + ": " + name + "[" + std::to_string(i) + "] is " +
+                               too_large_text(numbers[i]));
+  }
+}
+
+void check_numbers_of(const MimicCurve& curve, const std::string& culprit) {
+  if (curve.q.size() < 2 || curve.q.size() > kMostPoints) {
+    throw InvalidArgumentError(culprit + ": q: expected 2 to " + std::to_string(kMostPoints) +
+                               " values, got " + std::to_string(curve.q.size()));
+  }
+  check_points(curve.q, "q", culprit, curve.q.size());
+  check_points(curve.values, "values", culprit, curve.q.size());
+  if (!curve.slopes.empty()) check_points(curve.slopes, "slopes", culprit, curve.q.size());
+  for (std::size_t i = 1; i < curve.q.size(); ++i) {
+    // Closer ones, and their slope is rounding.
+    if (curve.q[i] - curve.q[i - 1] >= 1e-9 * std::max(1.0, std::abs(curve.q[i]))) continue;
+    throw InvalidArgumentError(culprit + ": q[" + std::to_string(i) + "] is " +
+                               number_text(curve.q[i]) + " after " + number_text(curve.q[i - 1]) +
+                               ": each has to be above the one before");
+  }
+}
+
+const urdf::Joint& find_joint(const urdf::ModelInterface& model, const std::string& name,
+                              const std::string& culprit) {
+  const auto it = model.joints_.find(name);
+  if (it != model.joints_.end()) return *it->second;
+  throw_unknown_name(culprit + ": '" + name + "' is not in the URDF", name, joint_names_of(model));
+}
+
+double slack_of(double value) { return 1e-9 * std::max(1.0, std::abs(value)); }
+
+}  // namespace
+
+CheckedCurves check_mimic_curves(const urdf::ModelInterface& model,
+                                 const std::vector<MimicCurve>& curves) {
+  CheckedCurves checked;
+  const auto culprit = [&](std::size_t i) {
+    return "mimic_curves[" + std::to_string(i) + "] " + text_of(curves[i]);
+  };
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    const MimicCurve& curve = curves[i];
+    const urdf::Joint& joint = find_joint(model, curve.joint, culprit(i));
+    const urdf::Joint& source = find_joint(model, curve.follows, culprit(i));
+    if (joint.type != urdf::Joint::REVOLUTE && joint.type != urdf::Joint::CONTINUOUS &&
+        joint.type != urdf::Joint::PRISMATIC) {
+      throw InvalidArgumentError(culprit(i) + ": joint '" + curve.joint + "' is " +
+                                 joint_type_name(joint.type));
+    }
+    check_numbers_of(curve, culprit(i));
+    auto motion = std::make_shared<const MotionCurve>(curve.q, curve.values, curve.slopes);
+    if (!checked.emplace(curve.joint, CheckedCurve{&source, std::move(motion)}).second) {
+      throw InvalidArgumentError(culprit(i) + ": the joint has another curve before it");
+    }
+  }
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    const CheckedCurve& curve = checked.at(curves[i].joint);
+    if (!curve.source->mimic && checked.count(curve.source->name) == 0) continue;
+    throw InvalidArgumentError(
+        culprit(i) + ": '" + curves[i].follows +
+        "' follows a joint itself: name the one that is followed in the end");
+  }
+  return checked;
+}
+
+bool narrow_to_values(const MotionCurve& curve, double least, double most, double& lower,
+                      double& upper) {
+  const auto is_inside = [&](double q) {
+    const double value = curve.at(q).value;
+    return value >= least - slack_of(least) && value <= most + slack_of(most);
+  };
+  // Where the curve enters or leaves, by halves.
+  const auto border = [&](double inside, double outside) {
+    for (int i = 0; i < 100 && std::abs(outside - inside) > 1e-15 * std::abs(inside); ++i) {
+      const double middle = 0.5 * (inside + outside);
+      (is_inside(middle) ? inside : outside) = middle;
+    }
+    return inside;
+  };
+  // Points, and so many between them that a cubic's turns are seen.
+  std::vector<double> at = {lower, upper};
+  for (std::size_t i = 0; i + 1 < curve.q().size(); ++i) {
+    for (int k = 0; k < 8; ++k) {
+      const double q = curve.q()[i] + k * (curve.q()[i + 1] - curve.q()[i]) / 8;
+      if (q > lower && q < upper) at.push_back(q);
+    }
+  }
+  std::sort(at.begin(), at.end());
+  int pieces = 0;
+  double first = 0;
+  double last = 0;
+  bool was_inside = false;
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    const bool inside = is_inside(at[i]);
+    if (inside && !was_inside) {
+      ++pieces;
+      if (pieces == 1) first = i == 0 ? at[i] : border(at[i], at[i - 1]);
+    }
+    if (inside) last = at[i];
+    if (!inside && was_inside && pieces == 1) last = border(at[i - 1], at[i]);
+    was_inside = inside;
+  }
+  if (pieces != 1) return false;
+  lower = first;
+  upper = last;
+  return true;
+}
+
+MimicCurve MimicCurve::sampled(const std::string& joint, const std::string& follows, double lower,
+                               double upper, const Function& function) {
+  constexpr std::size_t kMostGaps = 8192;
+  MimicCurve curve;
+  curve.joint = joint;
+  curve.follows = follows;
+  const std::string culprit = "MimicCurve " + text_of(curve);
+  if (!(std::abs(lower) <= kMaxCoordinate && std::abs(upper) <= kMaxCoordinate && lower < upper)) {
+    throw InvalidArgumentError(culprit + ": lower " + number_text(lower) + ", upper " +
+                               number_text(upper) + " are not finite numbers with lower < upper");
+  }
+  const auto call = [&](double q) {
+    const auto point = function(q);
+    if (std::isfinite(point.first) && std::isfinite(point.second)) return point;
+    throw InvalidArgumentError(culprit + ": the function gives the value " +
+                               number_text(point.first) + " and the slope " +
+                               number_text(point.second) + " at " + number_text(q));
+  };
+  double off = 0;
+  double off_slope = 0;
+  for (std::size_t gaps = 16; gaps <= kMostGaps; gaps *= 2) {
+    const double step = (upper - lower) / static_cast<double>(gaps);
+    curve.q.clear();
+    curve.values.clear();
+    curve.slopes.clear();
+    for (std::size_t i = 0; i <= gaps; ++i) {
+      const double q = i == gaps ? upper : lower + static_cast<double>(i) * step;
+      const auto [value, slope] = call(q);
+      curve.q.push_back(q);
+      curve.values.push_back(value);
+      curve.slopes.push_back(slope);
+    }
+    check_numbers_of(curve, culprit);
+    const MotionCurve motion(curve.q, curve.values, curve.slopes);
+    off = off_slope = 0;
+    for (std::size_t i = 0; i < gaps; ++i) {
+      const double q = lower + (static_cast<double>(i) + 0.5) * step;
+      const auto [value, slope] = call(q);
+      const MotionCurve::Point point = motion.at(q);
+      off = std::max(off, std::abs(point.value - value));
+      off_slope = std::max(off_slope, std::abs(point.slope - slope));
+    }
+    if (off <= kSampledValue && off_slope <= kSampledSlope) return curve;
+  }
+  throw InvalidArgumentError(culprit + ": with " + std::to_string(kMostGaps) +
+                             " gaps the curve is still " + number_text(off) +
+                             " off the function, and " + number_text(off_slope) +
+                             " off its slope: the function is not smooth, or its slope is not its "
+                             "derivative");
+}
+
+}  // namespace iksel

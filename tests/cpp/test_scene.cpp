@@ -23,17 +23,27 @@ using iksel::Robot;
 using iksel::RobotSpheres;
 using iksel::Scene;
 
-/// A ball at each link of the chain, and one between it and the next.
+/// Balls along each link of the chain to the next, of which some have many.
 RobotSpheres balls_on(const Robot& robot) {
   RobotSpheres spheres;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> uniform(0, 1);
   const std::vector<Pose> poses = robot.link_poses(JointVector::Zero(robot.dof()));
   const auto& names = robot.link_names();
-  for (std::size_t i = 0; i + 1 < names.size(); ++i) {
+  const std::size_t last = names.size() - 1;
+  for (std::size_t i = 0; i < last; ++i) {
     const Eigen::Vector3d next = poses[i].inverse() * poses[i + 1].translation();
-    spheres.links[names[i]] = {{Eigen::Vector3d::Zero(), 0.04}, {0.5 * next, 0.03}};
+    auto& of_link = spheres.links[names[i]];
+    of_link = {{Eigen::Vector3d::Zero(), 0.04}, {0.5 * next, 0.03}};
+    const int more = i % 3 == 0 ? 60 : (i % 3 == 1 ? 9 : 0);
+    for (int k = 0; k < more; ++k) {
+      const Eigen::Vector3d aside = 0.03 * Eigen::Vector3d(uniform(random), uniform(random), 0);
+      of_link.push_back({uniform(random) * next + aside, 0.02 * uniform(random) + 0.001});
+    }
   }
   // Neighbours touch always, and so do links that have no joint between them.
-  spheres.pairs.emplace_back(names.front(), names[names.size() - 2]);
+  for (std::size_t i = 0; i + 4 < last; i += 2)
+    spheres.pairs.emplace_back(names[i], names[last - 1]);
   return spheres;
 }
 

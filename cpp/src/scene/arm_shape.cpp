@@ -2,11 +2,11 @@
 #include "scene/arm_shape.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/message_text.hpp"
 #include "iksel/error.hpp"
 #include "kinematics/chain_model.hpp"
-#include "scene/bounding_ball.hpp"
 
 namespace iksel {
 namespace {
@@ -49,7 +49,7 @@ ArmShape::ArmShape(const Robot& robot, const RobotSpheres& spheres,
   }
   for (const auto& [a, b] : spheres.pairs) {
     const lanes::ScenePair pair{find(a), find(b)};
-    const auto body = [&](int i) { return links_[static_cast<std::size_t>(i)].body; };
+    const auto body = [&](int i) { return links()[static_cast<std::size_t>(i)].body; };
     // What does not move against each other touches always or never.
     if (body(pair.a) != body(pair.b)) pairs_.push_back(pair);
   }
@@ -101,26 +101,19 @@ void ArmShape::add(const std::string& name, const Place& place,
                    const std::vector<Sphere>& spheres) {
   std::vector<Sphere> placed = spheres;
   for (Sphere& sphere : placed) sphere.centre = place.T_body_link * sphere.centre;
-  const auto add_ball = [&](const Sphere& sphere) {
-    lanes::SceneBall ball{{}, sphere.radius};
-    copy_vector(sphere.centre, ball.centre);
-    balls_.push_back(ball);
-  };
-  add_ball(ball_around(placed));
   names_.push_back(name);
-  links_.push_back({place.body, static_cast<int>(balls_.size()), static_cast<int>(spheres.size())});
-  for (const Sphere& sphere : placed) add_ball(sphere);
+  table_.add(place.body, std::move(placed));
 }
 
 void ArmShape::attach(const std::string& name, const AttachedObject& object) {
   check_link(object.link, "link");
   add(name, place_of(object.link), object.spheres);
-  const int added = static_cast<int>(links_.size()) - 1;
+  const int added = static_cast<int>(links().size()) - 1;
   for (int i = 0; i < added; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const bool may = std::find(object.may_touch.begin(), object.may_touch.end(), names_[k]) !=
                      object.may_touch.end();
-    if (!may && links_[k].body != links_.back().body) pairs_.push_back({i, added});
+    if (!may && links()[k].body != links().back().body) pairs_.push_back({i, added});
   }
 }
 
@@ -153,24 +146,21 @@ std::vector<Eigen::Vector3d> ArmShape::centres(const double* q) const {
     }
     frame.push_back(frame[static_cast<std::size_t>(body.parent)] * moved);
   }
-  std::vector<Eigen::Vector3d> centres(balls_.size());
-  for (const lanes::SceneLink& link : links_) {
-    for (int b = link.first - 1; b < link.first + link.count; ++b) {
+  std::vector<Eigen::Vector3d> centres(balls().size());
+  for (const lanes::SceneLink& link : links()) {
+    for (int b = link.first; b < link.first + link.count; ++b) {
       const auto k = static_cast<std::size_t>(b);
-      centres[k] = frame[static_cast<std::size_t>(link.body)] * to_vector(balls_[k].centre);
+      centres[k] = frame[static_cast<std::size_t>(link.body)] * to_vector(balls()[k].centre);
     }
   }
   return centres;
 }
 
 void ArmShape::show(lanes::SceneView& view) const {
+  table_.show(view);
   view.bodies = static_cast<int>(bodies_.size());
-  view.balls = static_cast<int>(balls_.size());
-  view.links = static_cast<int>(links_.size());
   view.pairs = static_cast<int>(pairs_.size());
   view.body = bodies_.data();
-  view.ball = balls_.data();
-  view.link = links_.data();
   view.pair = pairs_.data();
 }
 

@@ -9,6 +9,7 @@
 
 #include "iksel/scene.hpp"
 #include "kinematics/link_poses.hpp"
+#include "scene/ball_table.hpp"
 #include "simd/scene_types.hpp"
 
 namespace iksel {
@@ -42,18 +43,19 @@ class ArmShape {
   /// Sets what of a view belongs to the arm; it holds as long as this is not changed.
   void show(lanes::SceneView& view) const;
 
-  /// Centres of all balls in the base frame [m].
+  /// Centres of the links' balls in the base frame [m]; of those around others nothing.
   [[nodiscard]] std::vector<Eigen::Vector3d> centres(const double* q) const;
 
   /// The body that the tip link is on, and T_tip_body.
   [[nodiscard]] int tip_body() const { return tip_body_; }
   [[nodiscard]] Pose tip_to_body() const { return Pose(T_body_tip_).inverse(); }
 
-  /// Of each entry of `links`, the name of the link or object.
+  /// Of each of the table's links, the name of the link or object.
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
   [[nodiscard]] const std::vector<lanes::SceneBody>& bodies() const { return bodies_; }
-  [[nodiscard]] const std::vector<lanes::SceneLink>& links() const { return links_; }
-  [[nodiscard]] const std::vector<lanes::SceneBall>& balls() const { return balls_; }
+  [[nodiscard]] const BallTable& table() const { return table_; }
+  [[nodiscard]] const std::vector<lanes::SceneLink>& links() const { return table_.links(); }
+  [[nodiscard]] const std::vector<lanes::SceneBall>& balls() const { return table_.balls(); }
   [[nodiscard]] const std::vector<lanes::ScenePair>& pairs() const { return pairs_; }
 
  private:
@@ -78,8 +80,7 @@ class ArmShape {
   std::vector<lanes::SceneBody> bodies_;
   std::vector<std::shared_ptr<const MotionCurve>> curves_;  ///< of the bodies
   std::vector<std::string> names_;
-  std::vector<lanes::SceneLink> links_;
-  std::vector<lanes::SceneBall> balls_;
+  BallTable table_;
   std::vector<lanes::ScenePair> pairs_;
 };
 

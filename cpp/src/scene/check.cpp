@@ -22,7 +22,7 @@ struct ThreadRoom {
     };
     grow(frame, 12 * kLanes * view.bodies);
     grow(centre, 3 * kLanes * view.balls);
-    grow(placed, view.links);
+    grow(placed, view.nodes);
     return {frame.data(), centre.data(), placed.data(), {}};
   }
 };
@@ -38,6 +38,18 @@ Pose frame_in_lane(const double* frame, int body, int lane) {
   Pose pose = Pose::Identity();
   for (int i = 0; i < 12; ++i) pose(i % 3, i / 3) = in[i * kLanes];
   return pose;
+}
+
+/// A ball below a node that touches; -1 if there is none. `may` tells it of balls around others.
+template <class May, class Touches>
+int find_touching(const lanes::SceneView& view, int node, const May& may, const Touches& touches) {
+  const lanes::SceneNode& at = view.node[node];
+  if (!may(at.ball)) return -1;
+  for (int i = at.first; i < at.first + at.count; ++i) {
+    const int found = at.is_leaf ? (touches(i) ? i : -1) : find_touching(view, i, may, touches);
+    if (found >= 0) return found;
+  }
+  return -1;
 }
 
 }  // namespace
@@ -94,7 +106,12 @@ bool Scene::Data::touches_points(const lanes::SceneView& view, const double* fra
   const auto touches = [&](const Cloud& cloud, const Pose& T_cloud_body, int ball) {
     const lanes::SceneBall& of = view.ball[ball];
     return cloud.grid->touches(T_cloud_body * Eigen::Map<const Eigen::Vector3d>(of.centre),
-                               of.radius + cloud.radius);
+                               of.radius - view.smaller + cloud.radius);
+  };
+  const auto may_touch = [&](const Cloud& cloud, const Pose& T_cloud_body, int ball) {
+    const lanes::SceneBall& of = view.ball[ball];
+    return cloud.grid->may_touch(T_cloud_body * Eigen::Map<const Eigen::Vector3d>(of.centre),
+                                 of.radius - view.smaller + cloud.radius);
   };
   const auto place = [&](const Cloud& cloud, int link) {
     return Pose(cloud.T_cloud_base) * frame_in_lane(frame, view.link[link].body, lane);
@@ -109,27 +126,23 @@ bool Scene::Data::touches_points(const lanes::SceneView& view, const double* fra
       const lanes::SceneLink& link = view.link[i];
       if (link.body == 0 || link.body == view.cleared) continue;
       const Pose T_cloud_body = place(cloud, i);
-      const lanes::SceneBall& around = view.ball[link.first - 1];
-      if (!cloud.grid->may_touch(T_cloud_body * Eigen::Map<const Eigen::Vector3d>(around.centre),
-                                 around.radius + cloud.radius)) {
-        continue;
-      }
-      for (int b = link.first; b < link.first + link.count; ++b) {
-        if (!touches(cloud, T_cloud_body, b)) continue;
-        look.cloud = c;
-        look.link = i;
-        look.ball = b;
-        return true;
-      }
+      const int ball = find_touching(
+          view, link.root, [&](int b) { return may_touch(cloud, T_cloud_body, b); },
+          [&](int b) { return touches(cloud, T_cloud_body, b); });
+      if (ball < 0) continue;
+      look.cloud = c;
+      look.link = i;
+      look.ball = ball;
+      return true;
     }
   }
   return false;
 }
 
 bool Scene::Data::touches_at(const Pose& T_base_tip, double position, double rotation) const {
-  thread_local TargetShape::Placed placed;
+  TargetShape::Bodies bodies;
   lanes::SceneView view{};
-  if (!target_shape_.show(T_base_tip, position, rotation, placed, view)) return false;
+  if (!target_shape_.show(T_base_tip, position, rotation, bodies, view)) return false;
   show_obstacles(view);
   lanes::SceneRoom room = thread_room().show(view);
   // The bodies stand still.

@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
-#include "scene/bounding_ball.hpp"
+#include "base/constants.hpp"
 
 namespace iksel {
 namespace {
@@ -15,15 +16,6 @@ void move_to_axis(Sphere& sphere) {
   sphere.centre.head<2>().setZero();
 }
 
-std::vector<Sphere> spheres_of(const ArmShape& arm, const lanes::SceneLink& link) {
-  std::vector<Sphere> spheres;
-  for (int b = link.first; b < link.first + link.count; ++b) {
-    const lanes::SceneBall& ball = arm.balls()[static_cast<std::size_t>(b)];
-    spheres.push_back({to_vector(ball.centre), ball.radius});
-  }
-  return spheres;
-}
-
 void remove_empty(std::vector<Sphere>& spheres) {
   spheres.erase(std::remove_if(spheres.begin(), spheres.end(),
                                [](const Sphere& sphere) { return !(sphere.radius > 0); }),
@@ -32,7 +24,8 @@ void remove_empty(std::vector<Sphere>& spheres) {
 
 }  // namespace
 
-TargetShape::TargetShape(const ArmShape& arm) : T_tip_body_(arm.tip_to_body()) {
+TargetShape::TargetShape(const ArmShape& arm)
+    : T_tip_body_(arm.tip_to_body()), smallest_(kInfinity) {
   const auto& bodies = arm.bodies();
   for (int b = arm.tip_body(); b > 0; b = bodies[static_cast<std::size_t>(b)].parent) {
     to_tip_.push_back(b);
@@ -55,7 +48,7 @@ TargetShape::TargetShape(const ArmShape& arm) : T_tip_body_(arm.tip_to_body()) {
 
 TargetShape::Part TargetShape::seen_from_base(const ArmShape& arm,
                                               const lanes::SceneLink& link) const {
-  Part part{0, spheres_of(arm, link)};
+  Part part{0, arm.table().spheres_of(link)};
   for (int b = link.body; b > 0; b = arm.bodies()[static_cast<std::size_t>(b)].parent) {
     const lanes::SceneBody& body = arm.bodies()[static_cast<std::size_t>(b)];
     if (body.prismatic) return {};
@@ -73,7 +66,7 @@ TargetShape::Part TargetShape::seen_from_tip(const ArmShape& arm,
                                              const lanes::SceneLink& link) const {
   const auto at = std::find(to_tip_.begin(), to_tip_.end(), link.body);
   if (at == to_tip_.end()) return {};
-  Part part{1, spheres_of(arm, link)};
+  Part part{1, arm.table().spheres_of(link)};
   for (auto next = at; next != to_tip_.begin();) {
     const lanes::SceneBody& body = arm.bodies()[static_cast<std::size_t>(*--next)];
     if (body.prismatic) return {};
@@ -87,45 +80,31 @@ TargetShape::Part TargetShape::seen_from_tip(const ArmShape& arm,
   return part;
 }
 
-int TargetShape::add(const Part& part) {
+int TargetShape::add(Part part) {
   if (part.spheres.empty()) return -1;
-  const auto add_ball = [&](const Sphere& sphere) {
-    lanes::SceneBall ball{{}, sphere.radius};
-    copy_vector(sphere.centre, ball.centre);
-    balls_.push_back(ball);
+  for (const Sphere& sphere : part.spheres) {
+    smallest_ = std::min(smallest_, sphere.radius);
     if (part.body == 1) reach_ = std::max(reach_, (T_tip_body_ * sphere.centre).norm());
-  };
-  add_ball(ball_around(part.spheres));
-  links_.push_back(
-      {part.body, static_cast<int>(balls_.size()), static_cast<int>(part.spheres.size())});
-  for (const Sphere& sphere : part.spheres) add_ball(sphere);
-  return static_cast<int>(links_.size()) - 1;
+  }
+  return table_.add(part.body, std::move(part.spheres));
 }
 
-bool TargetShape::show(const Pose& T_base_tip, double position, double rotation, Placed& placed,
+bool TargetShape::show(const Pose& T_base_tip, double position, double rotation, Bodies& bodies,
                        lanes::SceneView& view) const {
-  const double off = position + rotation * reach_;
-  placed.balls = balls_;
-  for (lanes::SceneBall& ball : placed.balls) {
-    if (!(ball.radius > off)) return false;
-    ball.radius -= off;
-  }
+  table_.show(view);
+  view.smaller = position + rotation * reach_;
+  if (!(smallest_ > view.smaller)) return false;
   const Pose frame = T_base_tip * Pose(T_tip_body_);
-  placed.bodies.assign(2,
-                       {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}, 0, 0, -1, 0, false, nullptr});
-  lanes::SceneBody& tip = placed.bodies[1];
+  bodies.fill({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}, 0, 0, -1, 0, false, nullptr});
+  lanes::SceneBody& tip = bodies[1];
   copy_vector(frame.linear().col(0), tip.x);
   copy_vector(frame.linear().col(1), tip.y);
   copy_vector(frame.linear().col(2), tip.z);
   copy_vector(frame.translation(), tip.p);
   tip.parent = 0;
-  view.bodies = 2;
-  view.balls = static_cast<int>(balls_.size());
-  view.links = static_cast<int>(links_.size());
+  view.bodies = static_cast<int>(bodies.size());
   view.pairs = static_cast<int>(pairs_.size());
-  view.body = placed.bodies.data();
-  view.ball = placed.balls.data();
-  view.link = links_.data();
+  view.body = bodies.data();
   view.pair = pairs_.data();
   return true;
 }

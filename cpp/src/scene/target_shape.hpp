@@ -3,6 +3,7 @@
 // to it, and what turns on the spot. If that touches something, no solution is free.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "iksel/types.hpp"
@@ -19,12 +20,9 @@ class TargetShape {
 
   /// Sets what of a view belongs to it, with the tip where a target puts it. Balls are smaller by
   /// what the tip may be off the target by [m, rad]. False if that is more than they are large.
-  /// It holds as long as this and `placed` are not changed.
-  struct Placed {
-    std::vector<lanes::SceneBody> bodies;
-    std::vector<lanes::SceneBall> balls;
-  };
-  bool show(const Pose& T_base_tip, double position, double rotation, Placed& placed,
+  /// It holds as long as this and `bodies` are not changed.
+  using Bodies = std::array<lanes::SceneBody, 2>;
+  bool show(const Pose& T_base_tip, double position, double rotation, Bodies& bodies,
             lanes::SceneView& view) const;
 
  private:
@@ -36,13 +34,13 @@ class TargetShape {
   [[nodiscard]] Part seen_from_base(const ArmShape& arm, const lanes::SceneLink& link) const;
   [[nodiscard]] Part seen_from_tip(const ArmShape& arm, const lanes::SceneLink& link) const;
   /// Index of the new link; -1 if it has no balls.
-  int add(const Part& part);
+  int add(Part part);
 
   StoredPose T_tip_body_;
   std::vector<int> to_tip_;  ///< bodies between the base and the tip, the latter first
   double reach_ = 0;         ///< of the tip's balls from its origin [m]
-  std::vector<lanes::SceneLink> links_;
-  std::vector<lanes::SceneBall> balls_;
+  double smallest_;          ///< radius of the balls [m]
+  BallTable table_;
   std::vector<lanes::ScenePair> pairs_;
 };
 

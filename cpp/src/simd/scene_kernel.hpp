@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which configurations of an arm of spheres are free, one in each lane.
 //
-// What tells is the clearance (scene_types.hpp). A link's spheres are looked at where the one
-// around them all touches in some lane, and nothing any more once each lane collides.
+// What tells is the clearance (scene_types.hpp). What is below a node of a link's tree is looked at
+// where the ball around it touches in some lane, and nothing any more once each lane collides.
 #pragma once
 
 #include "simd/lane_math.hpp"
@@ -95,7 +95,7 @@ class PackOfScenes {
         frame_(room.frame + first),
         centre_(room.centre + first),
         placed_(room.placed) {
-    for (int i = 0; i < scene.links; ++i) placed_[i] = 0;
+    for (int i = 0; i < scene.nodes; ++i) placed_[i] = 0;
     store({{T(1.0), T(0.0), T(0.0)},
            {T(0.0), T(1.0), T(0.0)},
            {T(0.0), T(0.0), T(1.0)},
@@ -164,24 +164,32 @@ class PackOfScenes {
       store_placed(f.p + in_base(f, scene_.ball[b].centre), centre_ + 3 * b * kWidth);
     }
   }
-  /// The ball around a link.
-  IKSEL_INLINE Placed<T> around(int i) {
-    const SceneLink& link = scene_.link[i];
-    if (placed_[i] == 0) {
-      place_bodies(link.body);
-      place_balls(link.body, link.first - 1, link.first);
-      placed_[i] = 1;
+  /// A ball of a body; of one that moves it has to be placed.
+  IKSEL_INLINE Placed<T> at(int body, int ball) const {
+    if (body == 0) {
+      const double(&c)[3] = scene_.ball[ball].centre;
+      return {T(c[0]), T(c[1]), T(c[2])};
     }
-    return at(link.first - 1);
+    return load_placed<T>(centre_ + 3 * ball * kWidth);
   }
-  void place_link(int i) {
-    const SceneLink& link = scene_.link[i];
-    if (placed_[i] == 2) return;
-    place_balls(link.body, link.first, link.first + link.count);
-    placed_[i] = 2;
+  /// The ball around a node.
+  IKSEL_INLINE Placed<T> around(int body, int node) {
+    const int ball = scene_.node[node].ball;
+    if (body != 0 && placed_[node] == 0) {
+      place_bodies(body);
+      place_balls(body, ball, ball + 1);
+      placed_[node] = 1;
+    }
+    return at(body, ball);
   }
-
-  IKSEL_INLINE Placed<T> at(int ball) const { return load_placed<T>(centre_ + 3 * ball * kWidth); }
+  IKSEL_INLINE double radius_around(int node) const { return radius(scene_.node[node].ball); }
+  /// The balls of a leaf, of which the one around is placed.
+  void place_leaf(int body, int node) {
+    if (body == 0 || placed_[node] == 2) return;
+    const SceneNode& leaf = scene_.node[node];
+    place_balls(body, leaf.first, leaf.first + leaf.count);
+    placed_[node] = 2;
+  }
 
   IKSEL_INLINE T clearance(const Placed<T>& a, const Placed<T>& b, double reach) const {
     return square_between(a, b) - T(reach * reach);
@@ -189,22 +197,42 @@ class PackOfScenes {
   IKSEL_INLINE double radius(int ball) const { return scene_.ball[ball].radius; }
 
   void test_pair(int pair) {
-    const int ia = scene_.pair[pair].a;
-    const int ib = scene_.pair[pair].b;
-    const SceneLink& a = scene_.link[ia];
-    const SceneLink& b = scene_.link[ib];
-    const Placed<T> around_a = around(ia);
-    const Placed<T> around_b = around(ib);
-    const double of_b = radius(b.first - 1);
-    if (!any(clearance(around_a, around_b, radius(a.first - 1) + of_b) <= T(0.0))) return;
-    place_link(ia);
-    place_link(ib);
-    for (int k = a.first; k < a.first + a.count; ++k) {
-      const Placed<T> c = at(k);
-      const double r = radius(k);
-      if (!any(clearance(c, around_b, r + of_b) <= T(0.0))) continue;
-      for (int m = b.first; m < b.first + b.count; ++m) {
-        least_ = min(least_, clearance(c, at(m), r + radius(m)));
+    const SceneLink& a = scene_.link[scene_.pair[pair].a];
+    const SceneLink& b = scene_.link[scene_.pair[pair].b];
+    test_nodes(a.body, a.root, b.body, b.root);
+  }
+  void test_nodes(int body_a, int a, int body_b, int b) {
+    const double ra = radius_around(a);
+    const double rb = radius_around(b);
+    // Of both balls of a pair.
+    const double less = 2 * scene_.smaller;
+    if (!any(clearance(around(body_a, a), around(body_b, b), ra + rb - less) <= T(0.0))) return;
+    const SceneNode& of_a = scene_.node[a];
+    const SceneNode& of_b = scene_.node[b];
+    if (of_a.is_leaf && of_b.is_leaf) return test_leaves(body_a, a, body_b, b, less);
+    // What is larger holds more that is far away.
+    if (of_b.is_leaf || (!of_a.is_leaf && ra > rb)) {
+      for (int i = of_a.first; i < of_a.first + of_a.count && is_open(); ++i) {
+        test_nodes(body_a, i, body_b, b);
+      }
+    } else {
+      for (int i = of_b.first; i < of_b.first + of_b.count && is_open(); ++i) {
+        test_nodes(body_a, a, body_b, i);
+      }
+    }
+  }
+  void test_leaves(int body_a, int a, int body_b, int b, double less) {
+    place_leaf(body_a, a);
+    place_leaf(body_b, b);
+    const SceneNode& of_a = scene_.node[a];
+    const SceneNode& of_b = scene_.node[b];
+    const Placed<T> around_b = at(body_b, of_b.ball);
+    for (int k = of_a.first; k < of_a.first + of_a.count; ++k) {
+      const Placed<T> c = at(body_a, k);
+      const double r = radius(k) - less;
+      if (!any(clearance(c, around_b, r + radius(of_b.ball)) <= T(0.0))) continue;
+      for (int m = of_b.first; m < of_b.first + of_b.count; ++m) {
+        least_ = min(least_, clearance(c, at(body_b, m), r + radius(m)));
       }
     }
   }
@@ -254,17 +282,27 @@ class PackOfScenes {
     return c.x * T(n[0]) + c.y * T(n[1]) + c.z * T(n[2]) - T(plane.offset + radius);
   }
 
+  template <typename Shape>
+  IKSEL_INLINE static bool is_clear(const Shape& shape, const Placed<T>& c, double radius) {
+    return is_far(shape, c, radius) || !any(clearance(shape, c, radius) <= T(0.0));
+  }
+  template <typename Shape>
+  void test(int body, int node, const Shape& shape) {
+    if (is_clear(shape, around(body, node), radius_around(node) - scene_.smaller)) return;
+    const SceneNode& of = scene_.node[node];
+    if (!of.is_leaf) {
+      for (int i = of.first; i < of.first + of.count && is_open(); ++i) test(body, i, shape);
+      return;
+    }
+    place_leaf(body, node);
+    for (int b = of.first; b < of.first + of.count; ++b) {
+      least_ = min(least_, clearance(shape, at(body, b), radius(b) - scene_.smaller));
+    }
+  }
   /// A link that may touch a shape.
   template <typename Shape>
-  IKSEL_INLINE void test(int i, const Shape& shape) {
-    const SceneLink& link = scene_.link[i];
-    const Placed<T> c = around(i);
-    const double r = radius(link.first - 1);
-    if (is_far(shape, c, r) || !any(clearance(shape, c, r) <= T(0.0))) return;
-    place_link(i);
-    for (int b = link.first; b < link.first + link.count; ++b) {
-      least_ = min(least_, clearance(shape, at(b), radius(b)));
-    }
+  IKSEL_INLINE void test(int link, const Shape& shape) {
+    test(scene_.link[link].body, scene_.link[link].root, shape);
   }
   template <typename Shape>
   IKSEL_INLINE void test_all(int link, const Shape* shape, int count, Kind kind,

@@ -25,9 +25,16 @@ struct SceneBall {
   double radius;     ///< [m]
 };
 
-/// Balls `first` to `first + count - 1` are a link's; the one before is around them all.
+/// A node of a tree of balls: `ball` is around the `count` balls, of a leaf, or nodes that begin at
+/// `first`.
+struct SceneNode {
+  int ball, first, count;
+  bool is_leaf;
+};
+
+/// Balls `first` to `first + count - 1` are a link's, in the tree that hangs from node `root`.
 struct SceneLink {
-  int body, first, count;
+  int body, first, count, root;
 };
 
 struct ScenePair {
@@ -71,7 +78,7 @@ struct SceneCulprit {
 struct SceneRoom {
   double* frame;          ///< 12 kWidth for each body
   double* centre;         ///< 3 kWidth for each ball
-  unsigned char* placed;  ///< for each link: whether its balls are placed
+  unsigned char* placed;  ///< for each node: whether its ball is placed, 1, and a leaf's too, 2
   SceneCulprit culprit;
 };
 
@@ -82,11 +89,13 @@ struct SceneRoom {
 /// frame[(12 b + i) kWidth + l], unless each lane collides. Only the first `wanted` lanes are
 /// looked at; the others must hold joint values too.
 struct SceneView {
-  int bodies, balls, links, pairs, blocks, cylinders, planes;
+  int bodies, balls, links, nodes, pairs, blocks, cylinders, planes;
+  double smaller;         ///< by so much is each ball than it says [m]
   int cleared;            ///< a body that touches no obstacle, as is known; 0 if none is
   const SceneBody* body;  ///< the first is the base, which has no joint
   const SceneBall* ball;
   const SceneLink* link;
+  const SceneNode* node;
   const ScenePair* pair;
   const SceneBlock* block;
   const SceneCylinder* cylinder;

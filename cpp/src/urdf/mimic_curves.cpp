@@ -150,12 +150,12 @@ MimicCurve MimicCurve::sampled(const std::string& joint, const std::string& foll
     throw InvalidArgumentError(culprit + ": lower " + number_text(lower) + ", upper " +
                                number_text(upper) + " are not finite numbers with lower < upper");
   }
-  const auto call = [&](double q) {
-    const auto point = function(q);
+  const auto call = [&](double at) {
+    const auto point = function(at);
     if (std::isfinite(point.first) && std::isfinite(point.second)) return point;
     throw InvalidArgumentError(culprit + ": the function gives the value " +
                                number_text(point.first) + " and the slope " +
-                               number_text(point.second) + " at " + number_text(q));
+                               number_text(point.second) + " at " + number_text(at));
   };
   double off = 0;
   double off_slope = 0;
@@ -165,9 +165,9 @@ MimicCurve MimicCurve::sampled(const std::string& joint, const std::string& foll
     curve.values.clear();
     curve.slopes.clear();
     for (std::size_t i = 0; i <= gaps; ++i) {
-      const double q = i == gaps ? upper : lower + static_cast<double>(i) * step;
-      const auto [value, slope] = call(q);
-      curve.q.push_back(q);
+      const double at = i == gaps ? upper : lower + static_cast<double>(i) * step;
+      const auto [value, slope] = call(at);
+      curve.q.push_back(at);
       curve.values.push_back(value);
       curve.slopes.push_back(slope);
     }
@@ -175,9 +175,9 @@ MimicCurve MimicCurve::sampled(const std::string& joint, const std::string& foll
     const MotionCurve motion(curve.q, curve.values, curve.slopes);
     off = off_slope = 0;
     for (std::size_t i = 0; i < gaps; ++i) {
-      const double q = lower + (static_cast<double>(i) + 0.5) * step;
-      const auto [value, slope] = call(q);
-      const MotionCurve::Point point = motion.at(q);
+      const double at = lower + (static_cast<double>(i) + 0.5) * step;
+      const auto [value, slope] = call(at);
+      const MotionCurve::Point point = motion.at(at);
       off = std::max(off, std::abs(point.value - value));
       off_slope = std::max(off_slope, std::abs(point.slope - slope));
     }

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The balls of links in trees, as the kernel of collisions takes them.
+#pragma once
+
+#include <vector>
+
+#include "iksel/robot_spheres.hpp"
+#include "simd/scene_types.hpp"
+
+namespace iksel {
+
+class BallTable {
+ public:
+  /// Adds a link of a body, of one sphere at least, and returns its index.
+  int add(int body, std::vector<Sphere> spheres);
+
+  /// Sets what of a view belongs to the links; it holds as long as none is added.
+  void show(lanes::SceneView& view) const;
+
+  [[nodiscard]] const std::vector<lanes::SceneLink>& links() const { return links_; }
+  [[nodiscard]] const std::vector<lanes::SceneBall>& balls() const { return balls_; }
+  /// The spheres of a link.
+  [[nodiscard]] std::vector<Sphere> spheres_of(const lanes::SceneLink& link) const;
+
+ private:
+  /// Fills a node, and adds those below it, for spheres `first` to `last - 1` of a link, which it
+  /// puts in order; leaves count its spheres from 0.
+  void fill(int node, std::vector<Sphere>& spheres, int first, int last);
+  void add_ball(const Sphere& sphere);
+
+  std::vector<lanes::SceneLink> links_;
+  std::vector<lanes::SceneNode> nodes_;
+  std::vector<Sphere> around_;  ///< of each node
+  std::vector<lanes::SceneBall> balls_;
+};
+
+}  // namespace iksel

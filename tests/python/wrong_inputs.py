@@ -68,13 +68,10 @@ TABLE: dict[str, tuple[str, ...]] = {
             'iksel.load_robot("vs060", '
             'coupled_limits=[iksel.CoupledLimit({"joint_2": 1}, 5, 6)])'
         ),
+        'iksel.load_robot("vs060", mimic_curves=[{"joint_3": "joint_2"}])',
         (
-            'iksel.load_robot("vs060", mimic_curves=['
-            'iksel.MimicCurve("joint_3", "joint_2", [0, 1, 1], [0, 1, 2])])'
-        ),
-        (
-            'iksel.load_robot("vs060", mimic_curves=['
-            'iksel.MimicCurve("joint_3", "crank", [0, 1], [0, 1])])'
+            'iksel.load_robot("vs060", '
+            'mimic_curves=[iksel.MimicCurve("joint_3", "crank", [], [])])'
         ),
         'ur3.fk("home")',
         "ur3.fk([0.1, 0.2, 0.3])",

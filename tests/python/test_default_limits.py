@@ -108,7 +108,9 @@ def test_default_limits_on_the_command_line(run: Run, tmp_path: Path) -> None:
     assert info.json()["joints"][1]["upper"] == 0.75
     words = ["info", path, "--default-limits=-1"]
     assert_bad(run(*words), "--default-limits")
-    assert_bad(run("info", path, "--default-limits", "1", "-1"), "--default-limits LOWER")
+    assert_bad(
+        run("info", path, "--default-limits", "1", "-1"), "--default-limits LOWER"
+    )
     assert run("info", path, "--lock", "second=0.5", "--json").json()["dof"] == 1
     for command in ("solve", "path", "build", "evaluate"):
         assert "--default-limits" in run(command, "--help").out

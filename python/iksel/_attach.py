@@ -32,6 +32,8 @@ def attach(
 ) -> str:
     """Fix a robot to a link of another: two arms on a stand, an arm on a rail.
 
+    Two arms, to be solved from tool to tool::
+
         urdf = attach("panda", "panda", pose=T_left_right, prefixes=("left_", "right_"))
         robot = Robot.from_urdf(urdf, base_link="left_panda_link8", ...)
 

@@ -15,7 +15,6 @@
 #include "iksel/pose.hpp"
 #include "iksel/robot.hpp"
 #include "iksel/structure.hpp"
-#include "joint_values.hpp"
 #include "pickle.hpp"
 #include "pose_arguments.hpp"
 #include "property.hpp"
@@ -76,12 +75,9 @@ Robot from_urdf(const PathLike& path_or_xml, const std::optional<Loose<std::stri
                 const Loose<bool>& soft_limits, const std::optional<ArrayLike>& default_limits,
                 const CoupledLimits& coupled_limits, const MimicCurves& mimic_curves) {
   RobotOptions options;
-  if (base_link) options.base_link = from_python<std::string>(*base_link, "base_link");
+  set_common_options(base_link, locked_joints, soft_limits, default_limits, options);
   if (tip_link) options.tip_link = from_python<std::string>(*tip_link, "tip_link");
   if (tcp) options.tcp = check_pose(as_pose(*tcp, "tcp"), "tcp");
-  if (locked_joints) options.locked_joints = as_joint_values(*locked_joints, "locked_joints");
-  options.soft_limits = from_python<bool>(soft_limits, "soft_limits");
-  if (default_limits) options.default_limits = as_limits(*default_limits, "default_limits");
   options.coupled_limits =
       as_sequence_of<CoupledLimit>(coupled_limits, "coupled_limits", "CoupledLimit");
   options.mimic_curves = as_sequence_of<MimicCurve>(mimic_curves, "mimic_curves", "MimicCurve");
@@ -98,28 +94,21 @@ std::string robot_repr(const Robot& self) {
 
 py::object robot_state(const Robot& self) {
   const RobotOptions& options = self.options();
-  return py::make_tuple(self.urdf(), options.base_link, options.tip_link, to_array(self.tcp()),
-                        options.locked_joints, options.soft_limits, options.default_limits,
-                        options.coupled_limits, options.mimic_curves);
+  return py::make_tuple(self.urdf(), options.tip_link, to_array(self.tcp())) +
+         common_state(options) + py::make_tuple(options.coupled_limits, options.mimic_curves);
 }
 
 Robot robot_from_state(const py::object& state) {
   PickleState in(state, "Robot", 9);
   const std::string urdf = in.value<std::string>("urdf");
   RobotOptions options;
-  options.base_link = in.value<std::string>("base_link");
   options.tip_link = in.value<std::string>("tip_link");
-  options.tcp = check_pose(as_pose(in.object(), "pickled Robot, tcp"), "pickled Robot, tcp");
-  options.locked_joints = as_joint_values(JointValues(in.object()), "pickled Robot, locked_joints");
-  options.soft_limits = in.value<bool>("soft_limits");
-  const py::object limits = in.object();
-  if (!limits.is_none()) {
-    options.default_limits = as_limits(ArrayLike(limits), "pickled Robot, default_limits");
-  }
+  options.tcp = check_pose(as_pose(in.object(), in.name("tcp").c_str()), in.name("tcp").c_str());
+  set_common_options(in, options);
   options.coupled_limits =
-      as_sequence_of<CoupledLimit>(in.object(), "pickled Robot, coupled_limits", "CoupledLimit");
+      as_sequence_of<CoupledLimit>(in.object(), in.name("coupled_limits"), "CoupledLimit");
   options.mimic_curves =
-      as_sequence_of<MimicCurve>(in.object(), "pickled Robot, mimic_curves", "MimicCurve");
+      as_sequence_of<MimicCurve>(in.object(), in.name("mimic_curves"), "MimicCurve");
   return Robot::from_urdf_string(urdf, options);
 }
 
@@ -156,15 +145,7 @@ void bind_chain(py::class_<Robot>& cls) {
                "Names of all links of the URDF, the chain's and others, depth first "
                "from the root.");
   add_property(cls, "urdf", &Robot::urdf, "The URDF text this robot was made of.");
-  add_property(
-      cls, "locked_joints", [](const Robot& self) { return self.options().locked_joints; },
-      "Joints held at a value [rad or m], by name.");
-  add_property(
-      cls, "soft_limits", [](const Robot& self) { return self.options().soft_limits; },
-      "Whether the limits are narrowed to the safety controller's.");
-  add_property(
-      cls, "default_limits", [](const Robot& self) { return self.options().default_limits; },
-      "Lower and upper limit of joints that the URDF gives none [rad or m], or None.");
+  bind_common_options(cls);
   add_property(
       cls, "coupled_limits", [](const Robot& self) { return self.options().coupled_limits; },
       "Limits of sums of joint values, beside those of each joint.");

@@ -11,34 +11,26 @@
 #include "enums.hpp"
 #include "iksel/pose.hpp"
 #include "iksel/tree_robot.hpp"
-#include "joint_values.hpp"
 #include "pickle.hpp"
 #include "pose_arguments.hpp"
 #include "property.hpp"
 #include "robot_arguments.hpp"
+#include "sequence_of.hpp"
 #include "urdf_source.hpp"
 
 namespace iksel::python {
 
 namespace {
 
-std::vector<std::string> as_links(const py::object& value, const char* name) {
-  const bool is_sequence = PySequence_Check(value.ptr()) != 0 && !py::isinstance<py::str>(value);
-  if (!is_sequence) throw_wrong_type(name, "a list of link names", value);
-  std::vector<std::string> links;
-  // Not handles: what is made on the way of an arbitrary sequence has no other owner.
-  for (const py::object item : py::reinterpret_borrow<py::sequence>(value)) {
-    const std::string at = std::string(name) + "[" + std::to_string(links.size()) + "]";
-    links.push_back(from_python<std::string>(item, at.c_str()));
-  }
-  return links;
+std::vector<std::string> as_links(const py::object& value, const std::string& name) {
+  return read_sequence(value, name, "a list of link names", from_python<std::string>);
 }
 
-std::vector<StoredPose> as_tools(py::handle value, const char* name) {
-  const DoubleArray array = as_poses(value, name);
+std::vector<StoredPose> as_tools(py::handle value, const std::string& name) {
+  const DoubleArray array = as_poses(value, name.c_str());
   std::vector<StoredPose> tools;
   for (py::ssize_t i = 0; i < array.shape(0); ++i) {
-    const std::string at = std::string(name) + "[" + std::to_string(i) + "]";
+    const std::string at = name + "[" + std::to_string(i) + "]";
     Pose tool;
     tool.matrix() = Eigen::Map<const RowMajorPose>(array.data(i));
     tools.emplace_back(check_pose(tool, at.c_str()));
@@ -54,11 +46,8 @@ TreeRobot tree_robot_from_urdf(const PathLike& path_or_xml, const LinkNames& tip
                                const std::optional<ArrayLike>& default_limits) {
   TreeOptions options;
   options.tip_links = as_links(tip_links, "tip_links");
-  if (base_link) options.base_link = from_python<std::string>(*base_link, "base_link");
+  set_common_options(base_link, locked_joints, soft_limits, default_limits, options);
   if (tcps) options.tcps = as_tools(*tcps, "tcps");
-  if (locked_joints) options.locked_joints = as_joint_values(*locked_joints, "locked_joints");
-  options.soft_limits = from_python<bool>(soft_limits, "soft_limits");
-  if (default_limits) options.default_limits = as_limits(*default_limits, "default_limits");
   return read_urdf(
       path_or_xml,
       [&](const std::string& xml) { return TreeRobot::from_urdf_string(xml, options); },
@@ -86,24 +75,16 @@ std::string tree_robot_repr(const TreeRobot& self) {
 
 py::object tree_robot_state(const TreeRobot& self) {
   const TreeOptions& o = self.options();
-  return py::make_tuple(self.urdf(), o.base_link, o.tip_links, to_stack(o.tcps), o.locked_joints,
-                        o.soft_limits, o.default_limits);
+  return py::make_tuple(self.urdf(), o.tip_links, to_stack(o.tcps)) + common_state(o);
 }
 
 TreeRobot tree_robot_from_state(const py::object& state) {
   PickleState in(state, "TreeRobot", 7);
   const std::string urdf = in.value<std::string>("urdf");
   TreeOptions options;
-  options.base_link = in.value<std::string>("base_link");
-  options.tip_links = as_links(in.object(), "pickled TreeRobot, tip_links");
-  options.tcps = as_tools(in.object(), "pickled TreeRobot, tcps");
-  options.locked_joints =
-      as_joint_values(JointValues(in.object()), "pickled TreeRobot, locked_joints");
-  options.soft_limits = in.value<bool>("soft_limits");
-  const py::object limits = in.object();
-  if (!limits.is_none()) {
-    options.default_limits = as_limits(ArrayLike(limits), "pickled TreeRobot, default_limits");
-  }
+  options.tip_links = as_links(in.object(), in.name("tip_links"));
+  options.tcps = as_tools(in.object(), in.name("tcps"));
+  set_common_options(in, options);
   return TreeRobot::from_urdf_string(urdf, options);
 }
 
@@ -142,15 +123,7 @@ void bind_facts(py::class_<TreeRobot>& cls) {
   add_property(
       cls, "tcps", [](const TreeRobot& self) { return to_stack(self.options().tcps); },
       "T_tip_tcp of each tip, (k, 4, 4).");
-  add_property(
-      cls, "locked_joints", [](const TreeRobot& self) { return self.options().locked_joints; },
-      "Joints held at a value [rad or m], by name.");
-  add_property(
-      cls, "soft_limits", [](const TreeRobot& self) { return self.options().soft_limits; },
-      "Whether the limits are narrowed to the safety controller's.");
-  add_property(
-      cls, "default_limits", [](const TreeRobot& self) { return self.options().default_limits; },
-      "Lower and upper limit of joints that the URDF gives none [rad or m], or None.");
+  bind_common_options(cls);
   add_property(cls, "tips", &TreeRobot::tips, "Number of tips.");
   add_property(cls, "dof", &TreeRobot::dof, "Number of joints of all chains together.");
   add_property(cls, "joint_names", &TreeRobot::joint_names,

@@ -10,7 +10,6 @@
 #include "angle_warning.hpp"
 #include "array_checks.hpp"
 #include "bindings.hpp"
-#include "filter.hpp"
 #include "gil.hpp"
 #include "iksel/tree_solver.hpp"
 #include "option_fields.hpp"
@@ -19,7 +18,7 @@
 #include "progress.hpp"
 #include "property.hpp"
 #include "py_tree.hpp"
-#include "task_fields.hpp"
+#include "tree_keywords.hpp"
 
 namespace iksel::python {
 
@@ -29,68 +28,7 @@ struct IsBoundClass<TreeRobot> : std::true_type {
       "a TreeRobot, which TreeRobot.from_urdf(path_or_xml, tip_links) makes";
 };
 
-/// Called with candidates (n, dof); returns n truth values.
-class TreeFilter : public py::object {
-  PYBIND11_OBJECT_DEFAULT(TreeFilter, object, is_any_object)
-};
-
-/// A Task for each tip.
-class TaskList : public py::object {
-  PYBIND11_OBJECT_DEFAULT(TaskList, object, is_any_object)
-};
-
-}  // namespace iksel::python
-
-// NOLINTBEGIN(readability-identifier-naming): pybind11 looks for `name`.
-namespace pybind11::detail {
-template <>
-struct handle_type_name<iksel::python::TreeFilter> {
-  static constexpr auto name =
-      const_name("collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any]");
-};
-template <>
-struct handle_type_name<iksel::python::TaskList> {
-  static constexpr auto name =
-      const_name("collections.abc.Sequence[Task | collections.abc.Mapping[str, object]]");
-};
-}  // namespace pybind11::detail
-// NOLINTEND(readability-identifier-naming)
-
-namespace iksel::python {
-
 namespace {
-
-/// What solve and its like take besides poses.
-struct TreeKeywords {
-  std::optional<ArrayLike> weights;
-  Loose<MoveNorm> norm;
-  std::optional<TreeFilter> filter;
-  std::optional<Loose<double>> deadline;
-  std::optional<TaskList> tasks;
-};
-
-std::vector<Task> as_task_list(const TaskList& value) {
-  const bool is_sequence = PySequence_Check(value.ptr()) != 0 && !py::isinstance<py::str>(value);
-  if (!is_sequence) throw_wrong_type("tasks", "a list of Tasks, one for each tip", value);
-  std::vector<Task> tasks;
-  // Not handles: what is made on the way of an arbitrary sequence has no other owner.
-  for (const py::object item : py::reinterpret_borrow<py::sequence>(value)) {
-    const std::string at = "tasks[" + std::to_string(tasks.size()) + "]";
-    tasks.push_back(from_python<Task>(item, at.c_str()));
-  }
-  return tasks;
-}
-
-TreeRequest read_tree_request(const TreeSolver& self, const TreeKeywords& given) {
-  const int dof = self.robot().dof();
-  TreeRequest request;
-  if (given.weights) request.weights = as_joints(*given.weights, dof, "weights");
-  request.norm = from_python<MoveNorm>(given.norm, "norm");
-  if (given.filter) request.filter = make_filter(*given.filter, "filter", dof);
-  if (given.deadline) request.deadline = from_python<double>(*given.deadline, "deadline");
-  if (given.tasks) request.tasks = as_task_list(*given.tasks);
-  return request;
-}
 
 /// What a position alone stands for, if it is the same task for all tips; else null.
 const Task* common_task(const TreeSolver& self, const TreeRequest& request) {

@@ -29,6 +29,11 @@ class PickleState {
     if (state_.size() != size) refuse("state", expected, "one of " + std::to_string(state_.size()));
   }
 
+  /// What messages call an item.
+  [[nodiscard]] std::string name(const char* item) const {
+    return "pickled " + std::string(class_name_) + ", " + item;
+  }
+
   py::object object() { return state_[next_++]; }
 
   template <class T>
@@ -101,10 +106,6 @@ class PickleState {
   }
 
  private:
-  [[nodiscard]] std::string name(const char* item) const {
-    return "pickled " + std::string(class_name_) + ", " + item;
-  }
-
   /// In C order, but not converted from another type.
   template <class T>
   py::array_t<T> exact_array(const char* item, const std::string& expected) {

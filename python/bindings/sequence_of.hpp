@@ -1,32 +1,42 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sequences of bound classes as arguments.
+// Sequences as arguments.
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "python_types.hpp"
 
 namespace iksel::python {
 
+/// What `read(item, "name[i]")` makes of each item. Throws InvalidArgumentError about what is no
+/// sequence, or a str.
+template <class Read>
+auto read_sequence(const py::handle& value, const std::string& name, const std::string& expected,
+                   const Read& read) {
+  if (PySequence_Check(value.ptr()) == 0 || py::isinstance<py::str>(value)) {
+    throw_wrong_type(name.c_str(), expected, value);
+  }
+  std::vector<decltype(read(std::declval<const py::object&>(), ""))> items;
+  // Not handles: what is made on the way of an arbitrary sequence has no other owner.
+  for (const py::object item : py::reinterpret_borrow<py::sequence>(value)) {
+    const std::string at = name + "[" + std::to_string(items.size()) + "]";
+    items.push_back(read(item, at.c_str()));
+  }
+  return items;
+}
+
 /// A sequence of `T`, whose name in Python is `type`. Throws InvalidArgumentError that names the
 /// culprit.
 template <class T>
 std::vector<T> as_sequence_of(const py::handle& value, const std::string& name,
                               const std::string& type) {
-  if (!py::isinstance<py::sequence>(value) || py::isinstance<py::str>(value)) {
-    throw_wrong_type(name.c_str(), "a sequence of " + type, value);
-  }
-  std::vector<T> items;
-  // Not handles: what is made on the way of an arbitrary sequence has no other owner.
-  for (const py::object item : py::reinterpret_borrow<py::sequence>(value)) {
-    if (!py::isinstance<T>(item)) {
-      const std::string culprit = name + "[" + std::to_string(items.size()) + "]";
-      throw_wrong_type(culprit.c_str(), "a " + type, item);
-    }
-    items.push_back(py::cast<T>(item));
-  }
-  return items;
+  return read_sequence(value, name, "a sequence of " + type,
+                       [&](const py::object& item, const char* at) {
+                         if (!py::isinstance<T>(item)) throw_wrong_type(at, "a " + type, item);
+                         return py::cast<T>(item);
+                       });
 }
 
 }  // namespace iksel::python

@@ -7,13 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from bench.reach.engines import digests
 
 from iksel import reach
 
 pytest.importorskip("zarr", minversion="3", reason="pip install iksel[reach]")
-
-__all__ = ["computed", "digests", "random_cells"]
 
 
 def computed(path: Path, robot, **settings) -> Path:

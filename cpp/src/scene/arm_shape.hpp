@@ -2,7 +2,6 @@
 // An arm as spheres on the bodies that its joints move.
 #pragma once
 
-#include <algorithm>
 #include <map>
 #include <string>
 #include <vector>
@@ -13,12 +12,6 @@
 #include "simd/scene_types.hpp"
 
 namespace iksel {
-
-inline void copy_vector(const Eigen::Vector3d& from, double (&to)[3]) {
-  std::copy_n(from.data(), 3, to);
-}
-
-inline Eigen::Vector3d to_vector(const double (&v)[3]) { return {v[0], v[1], v[2]}; }
 
 /// A body's frame in its parent's, where its joint does not move it.
 inline Pose frame_of(const lanes::SceneBody& body) {

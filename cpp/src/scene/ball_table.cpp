@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "scene/arm_shape.hpp"
 #include "scene/bounding_ball.hpp"
 
 namespace iksel {

@@ -8,11 +8,11 @@
 
 #include "base/message_text.hpp"
 #include "base/parallel.hpp"
-#include "base/pose_check.hpp"
 #include "goal/screen.hpp"
 #include "iksel/error.hpp"
 #include "search/batch_stream.hpp"
 #include "seeds/leaf_lanes.hpp"
+#include "solver/batch_targets.hpp"
 #include "solver/solver_impl.hpp"
 
 namespace iksel {
@@ -40,56 +40,6 @@ Result no_pose() {
   result.status = Status::invalid_pose;
   return result;
 }
-
-/// The targets of a batch that are poses, numbered without gaps. As long as all are rigid to
-/// rounding, nothing is copied.
-template <typename PoseAt>
-class Targets {
- public:
-  /// `pose_at(row)` for rows 0 to count - 1. Throws about the first that is no pose, if asked to.
-  Targets(std::size_t count, const PoseAt& pose_at, OnInvalidPose on_invalid)
-      : pose_at_(pose_at), size_(count) {
-    std::size_t row = 0;
-    while (row < count && rigidity_of(pose_at(row)) == Rigidity::exact) ++row;
-    if (row == count) return;
-    copied_ = true;
-    own_.reserve(count);
-    rows_.reserve(count);
-    for (std::size_t i = 0; i < count; ++i) take(i, on_invalid);
-    size_ = own_.size();
-  }
-
-  [[nodiscard]] std::size_t size() const { return size_; }
-  /// Rows that have no pose.
-  [[nodiscard]] const std::vector<std::size_t>& invalid_rows() const { return invalid_; }
-  [[nodiscard]] std::size_t row_of(std::size_t i) const { return copied_ ? rows_[i] : i; }
-  [[nodiscard]] decltype(auto) operator()(std::size_t i) const {
-    return copied_ ? own_[i] : pose_at_(i);
-  }
-
- private:
-  void take(std::size_t row, OnInvalidPose on_invalid) {
-    const Pose& pose = pose_at_(row);
-    const Rigidity rigidity = rigidity_of(pose);
-    if (rigidity == Rigidity::none) {
-      if (on_invalid == OnInvalidPose::raise) {
-        throw_not_rigid(pose, "poses", static_cast<std::ptrdiff_t>(row));
-      }
-      invalid_.push_back(row);
-      return;
-    }
-    own_.push_back(pose);
-    rows_.push_back(row);
-    if (rigidity == Rigidity::close) make_rigid(own_.back());
-  }
-
-  const PoseAt& pose_at_;
-  std::size_t size_;
-  bool copied_ = false;
-  std::vector<Pose> own_;
-  std::vector<std::size_t> rows_;
-  std::vector<std::size_t> invalid_;
-};
 
 /// A request for many targets, each with its own `near` perhaps.
 template <typename Target, typename Near, typename OnResult>
@@ -243,7 +193,7 @@ template <typename PoseAt, typename Near, typename OnRow>
 void Solver::Impl::solve_rows(std::size_t count, const PoseAt& pose_at, const SolveRequest& request,
                               const Near& near_of, int threads, const OnRow& on_row,
                               const Progress& progress) const {
-  const Targets<PoseAt> targets(count, pose_at, request.on_invalid_pose);
+  const BatchTargets<PoseAt> targets(count, pose_at, request.on_invalid_pose);
   for (const std::size_t row : targets.invalid_rows()) on_row(row, no_pose());
   const auto on_result = [&](std::size_t i, const Result& result) {
     on_row(targets.row_of(i), result);

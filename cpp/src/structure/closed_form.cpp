@@ -5,6 +5,7 @@
 
 #include "base/constants.hpp"
 #include "simd/lane_chain.hpp"
+#include "structure/axis_pattern.hpp"
 #include "structure/completed_axes.hpp"
 #include "structure/coupled_form.hpp"
 #include "structure/find_loop.hpp"
@@ -32,81 +33,6 @@ lanes::Turned turned(const Vector3d& x, const Vector3d& k, const Vector3d& y) {
   const double r2 = a * a + b * b;
   return {a, b, c, r2, 1 / std::max(r2, 1e-30)};
 }
-
-/// Tells how the axes of six joints lie, and moves their points to where they meet.
-class Geometry {
- public:
-  Geometry(ScrewAxes axes, double reach, double tolerance)
-      : axes_(std::move(axes)), reach_(reach), tolerance_(tolerance) {}
-
-  [[nodiscard]] bool are_parallel(std::size_t i, std::size_t j) const {
-    return axes_.angle(i, j) <= tolerance_;
-  }
-  /// Of axes 2 and 3 from being parallel [rad], and of i and i + 1 from meeting [in units of the
-  /// reach].
-  [[nodiscard]] double deviation(std::size_t i) const {
-    return axes_.angle(1, 2) + axes_.distance(i + 1, axes_.p[i]) / reach_;
-  }
-  [[nodiscard]] bool meet(std::size_t i, std::size_t j) const {
-    return axes_.angle(i, j) > kClearlyNot && is_on(axes_.middle(i, j), j);
-  }
-  [[nodiscard]] bool three_meet(std::size_t i) const {
-    return meet(i, i + 1) && meet(i + 1, i + 2) && is_on(axes_.middle(i, i + 1), i + 2);
-  }
-  [[nodiscard]] bool is_on(const Vector3d& point, std::size_t i) const {
-    return axes_.distance(i, point) <= tolerance_ * reach_;
-  }
-  /// Where axes i and i + 1 meet becomes the point on both, and on `more` others.
-  void join(std::size_t i, std::size_t more = 0) {
-    const Vector3d middle = axes_.middle(i, i + 1);
-    for (std::size_t k = i; k <= i + 1 + more; ++k) axes_.p[k] = middle;
-  }
-
-  /// What closes the form, with the points where they are to be.
-  std::optional<Closure> find_closure() {
-    if (are_parallel(1, 2) && are_parallel(2, 3) && meet(4, 5) && !are_parallel(0, 1)) {
-      join(4);
-      return Closure::three_parallel;
-    }
-    if (!three_meet(3)) return std::nullopt;
-    join(3, 1);
-    if (are_parallel(1, 2) && !are_parallel(0, 1)) return Closure::parallel_23;
-    if (meet(0, 1)) {
-      join(0);
-      return Closure::intersect_12;
-    }
-    if (meet(1, 2)) {
-      join(1);
-      return Closure::intersect_23;
-    }
-    if (are_parallel(0, 1) && !are_parallel(1, 2)) return Closure::parallel_12;
-    return std::nullopt;
-  }
-
-  /// What closes it for an angle of one joint.
-  std::optional<Closure> find_sweep() {
-    if (!are_parallel(1, 2) || are_parallel(0, 1) || are_parallel(4, 5)) return std::nullopt;
-    if (meet(4, 5)) {
-      join(4);
-      return Closure::sweep_4;
-    }
-    if (meet(3, 4)) {
-      join(3);
-      return Closure::sweep_6;
-    }
-    return std::nullopt;
-  }
-
-  [[nodiscard]] const ScrewAxes& axes() const { return axes_; }
-
- private:
-  /// Axes at a smaller angle are neither parallel nor can it be said where they meet [rad].
-  static constexpr double kClearlyNot = 1e-3;
-
-  ScrewAxes axes_;
-  double reach_;
-  double tolerance_;
-};
 
 lanes::ClosedForm make_form(Closure closure, const ScrewAxes& axes, double unit) {
   const auto& h = axes.h;
@@ -239,30 +165,30 @@ std::optional<ClosedFormChain> look_from(const ChainModel& model, const Complete
     axes.h.erase(axes.h.begin());
     axes.p.erase(axes.p.begin());
   }
-  Geometry geometry(std::move(axes), model.reach, sweeps ? kSweptTolerance : kStructureTolerance);
+  AxisPattern pattern(std::move(axes), model.reach, sweeps ? kSweptTolerance : kStructureTolerance);
   const bool has_residual = sweeps && before == 0;
-  const auto closure = has_residual ? geometry.find_sweep() : geometry.find_closure();
+  const auto closure = has_residual ? pattern.find_sweep() : pattern.find_closure();
   if (!closure) return std::nullopt;
   for (int i = 0; i < kSix; ++i) chain.joints[i] = joint(before + i);
   if (has_residual) {
     const bool is_4 = *closure == Closure::sweep_4;
     chain.held = chain.joints[is_4 ? 3 : 5];
-    chain.deviation = geometry.deviation(is_4 ? 4 : 3);
+    chain.deviation = pattern.deviation(is_4 ? 4 : 3);
   }
   chain.dof = model.dof;
   chain.free = completed.free;
   chain.reversed = reversed;
   chain.unit = reach_of_links(model);
-  chain.form = make_form(*closure, geometry.axes(), chain.unit);
+  chain.form = make_form(*closure, pattern.axes(), chain.unit);
   Eigen::Matrix3d E;
   for (int k = 0; k < 3; ++k) E.col(k) = Vector3d(chain.form.basis[k]);
-  chain.first = geometry.axes().p[0];
+  chain.first = pattern.axes().p[0];
   chain.form.is_held = before > 0;
   write(held_axis, chain.form.held_axis);
   if (before > 0 && model.joints.is_slide(chain.held)) chain.form.held_slide = 1 / chain.unit;
   write((chain.first - held_point) / chain.unit, chain.form.held_from);
-  chain.tail = E.transpose() * (geometry.axes().end.translation() - geometry.axes().p[5]);
-  chain.to_basis = geometry.axes().end.linear().transpose() * E;
+  chain.tail = E.transpose() * (pattern.axes().end.translation() - pattern.axes().p[5]);
+  chain.to_basis = pattern.axes().end.linear().transpose() * E;
   return chain;
 }
 

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which of six axes are parallel and which meet, and what closes the form of such an arm.
+#pragma once
+
+#include <optional>
+
+#include "simd/branch_types.hpp"
+#include "structure/screw_axes.hpp"
+
+namespace iksel {
+
+/// Tells how the axes of six joints lie, and moves their points to where they meet.
+class AxisPattern {
+ public:
+  /// `tolerance`: of angles [rad], and of lengths in units of the reach [m].
+  AxisPattern(ScrewAxes axes, double reach, double tolerance);
+
+  /// What closes the form, with the points where they are to be.
+  std::optional<lanes::Closure> find_closure();
+  /// What closes it for an angle of one joint.
+  std::optional<lanes::Closure> find_sweep();
+
+  [[nodiscard]] const ScrewAxes& axes() const { return axes_; }
+  /// Of axes 2 and 3 from being parallel [rad], and of i and i + 1 from meeting [in units of the
+  /// reach].
+  [[nodiscard]] double deviation(std::size_t i) const;
+
+ private:
+  [[nodiscard]] bool are_parallel(std::size_t i, std::size_t j) const;
+  [[nodiscard]] bool meet(std::size_t i, std::size_t j) const;
+  [[nodiscard]] bool three_meet(std::size_t i) const;
+  [[nodiscard]] bool is_on(const Eigen::Vector3d& point, std::size_t i) const;
+  /// Where axes i and i + 1 meet becomes the point on both, and on `more` others.
+  void join(std::size_t i, std::size_t more = 0);
+
+  ScrewAxes axes_;
+  double reach_;
+  double tolerance_;
+};
+
+}  // namespace iksel

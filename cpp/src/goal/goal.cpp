@@ -67,10 +67,11 @@ void Goal::measure(const JointVector& q, double& position, double& rotation,
 }
 
 bool Goal::check(const JointVector& q, Result& result) const {
+  if (!model_.joints.contains(q.data())) return false;
   double position = std::numeric_limits<double>::quiet_NaN();
   double rotation = position;
   measure(q, position, rotation);
-  if (!is_reached(position, rotation) || !model_.joints.contains(q.data())) return false;
+  if (!is_reached(position, rotation)) return false;
   result.status = Status::solved;
   result.q = q;
   result.position_error = position;

@@ -31,7 +31,7 @@ constexpr int kBeforeSamples = 2;
 /// Seeds after all roots of a sweep led nowhere: double ones, or just outside a limit.
 constexpr int kBesideRoots = 96;
 /// Seeds after a sweep that came close to an answer, but did not find one.
-constexpr int kBesideSweep = 384;
+constexpr int kBesideSweep = 192;
 
 /// What one search works with.
 template <typename Answers>
@@ -130,6 +130,7 @@ Proof Search<Answers>::in_lanes() const {
     const int from_leaf = is_screened              ? kBeforeSamples
                           : workspace.lanes->roots ? kBeforeRoots
                                                    : lanes::kBlock;
+    if (workspace.lanes->sweep) refiner.begin(goal.task(), kBeforeSweep, Width::narrow);
     LeafSeeds leaf(query, from_leaf, work, clock);
     if (run(refiner, near, given, leaf) || !request.database_seeds) return Proof::none;
     if (answers.has_any() && goal.is_never_free()) return Proof::target;

@@ -93,7 +93,7 @@ MissingAngle find_missing_angle(const ClosedFormChain& chain, const lanes::Branc
     lanes::solve_three_parallel(form, target, sign, branch);
   } else {
     lanes::place_wrist(form, target.w, sign, branch);
-    lanes::turn_wrist(form, target, sign[2], branch);
+    lanes::turn_wrist(form, lanes::behind_arm(form, target, branch), sign[2], branch);
   }
   const Trace& trace = branch.quality;
   if (trace.failed < 0) return {};

@@ -39,11 +39,21 @@ bool Sweep::find(const Pose& Y) {
 
 bool Sweep::take_answer(int place) {
   const SweptBranches::Row& off = rows_[static_cast<std::size_t>(place)];
-  const auto best = std::min_element(off.begin(), off.end());
-  if (*best > 0) return false;
+  if (*std::min_element(off.begin(), off.end()) > 0) return false;
   branches_.solve_all(places_.value(place));
-  branch_ = static_cast<int>(best - off.begin());
-  branches_.copy_joints(branch_, q_.data());
+  for (int branch = 0; branch < kBranches; ++branch) {
+    if (off[static_cast<std::size_t>(branch)] <= 0 && take(branch, branch)) return true;
+  }
+  return false;
+}
+
+bool Sweep::take(int lane, int branch) {
+  // What is rated as an answer is one but for rounding; or it is outside of limits where any angle
+  // would do.
+  constexpr double kRounding = 1e-9;
+  if (branches_.off(lane) > kRounding) return false;
+  branches_.copy_inside(lane, q_.data());
+  branch_ = branch;
   return true;
 }
 
@@ -81,28 +91,48 @@ void Sweep::add_beside(const double* from, int branch, std::vector<double>& q) {
   }
 }
 
+namespace {
+
+/// Branches of which all that is asked is how far they are from being an answer.
+struct RatedBranches {
+  SweptBranches& branches;
+  double bound;  ///< what is more is not known
+  double off[SweptBranches::kCount];
+
+  template <typename Value>
+  void solve_one(int branch, const Value& value) {
+    branches.rate_one(branch, value, bound, off);
+  }
+};
+
+}  // namespace
+
 bool Sweep::follow(const LeastPlace& near) {
   constexpr int kRounds = 8;
   // Of 4,491 answers found so, of five arms, none was farther off after one round, two and three
   // than 0.09, 0.03 and 0.015.
   constexpr std::array<double, 3> kHopeless{0.2, 0.1, 0.05};
   const auto value = [&](double place) { return branches_.clamp(place); };
-  const auto off = [&](int lane) { return branches_.off(lane); };
-  SweptJoints best{kInfinity, {}};
-  const auto take = [&](int lane, double) { branches_.copy_joints(lane, best.q.data()); };
+  RatedBranches rated{branches_, kHopeless.front(), {}};
+  const auto off = [&](int lane) { return rated.off[lane]; };
+  double best_at = places_.value(near.place);
+  const auto go_there = [&](int /*lane*/, double place) { best_at = place; };
   const auto is_enough = [&](double least, int round) {
     if (least <= 0) return true;
     const std::size_t looked = std::min(static_cast<std::size_t>(round), kHopeless.size());
     return looked > 0 && least > kHopeless[looked - 1];
   };
-  const Bracket bracket{near.branch, places_.value(near.place), places_.step, kRounds};
-  best.value = minimize(branches_, bracket, value, off, kInfinity, take, is_enough);
-  least_ = std::min(least_, best.value);
-  if (miss_.is_close(best.value)) close_.add(best);
-  if (best.value > 0) return false;
-  q_ = best.q;
-  branch_ = near.branch;
-  return true;
+  const Bracket bracket{near.branch, places_.value(near.place), places_.step, kRounds, 0, false,
+                        near.value};
+  const double least = minimize(rated, bracket, value, off, kInfinity, go_there, is_enough);
+  least_ = std::min(least_, least);
+  if (!miss_.is_close(least)) return false;
+  branches_.solve_one(near.branch, [&](int /*lane*/) { return value(best_at); });
+  if (least <= 0 && take(0, near.branch)) return true;
+  SweptJoints best{least, {}};
+  branches_.copy_joints(0, best.q.data());
+  close_.add(best);
+  return false;
 }
 
 }  // namespace iksel

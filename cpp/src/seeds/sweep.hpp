@@ -60,6 +60,8 @@ class Sweep {
 
   /// Whether one of a sample's branches is an answer; it becomes the last one.
   bool take_answer(int place);
+  /// Whether what was solved last is an answer in a lane; it becomes the last one.
+  bool take(int lane, int branch);
   /// Looks between the samples beside; true if there is an answer.
   bool follow(const LeastPlace& near);
 

@@ -84,8 +84,6 @@ void SweptBranches::rate(double bound, Row* rows) {
   }
 }
 
-void SweptBranches::solve_one() { find_branches(one_); }
-
 void SweptBranches::find_branches(lanes::BranchPack& pack) {
   kernels_.find_branches(chain_.form, pack);
   if (measures_moves_) kernels_.measure_moves(move_form_, pack, moves_);

@@ -85,9 +85,14 @@ class SweptBranches {
   /// Solves one branch at value(lane) in each lane [rad].
   template <typename Value>
   void solve_one(int branch, const Value& value) {
-    for (int s = 0; s < 3; ++s) std::fill_n(one_.sign[s], kCount, all_.sign[s][branch]);
-    for (int lane = 0; lane < kCount; ++lane) one_.held[lane] = value(lane) + offset_;
-    solve_one();
+    hold_one(branch, value);
+    find_branches(one_);
+  }
+  /// How far one branch is from being an answer at value(lane), in off[lane], as rate().
+  template <typename Value>
+  void rate_one(int branch, const Value& value, double bound, double (&off)[kCount]) {
+    hold_one(branch, value);
+    kernels_.rate_branch(chain_.form, one_, bound, off);
   }
 
   /// Where a branch ends between `inside`, where it exists, and `outside`, where it does not: to
@@ -124,6 +129,14 @@ class SweptBranches {
     if (!joints_.coupled_turning.empty()) joints_.wrap(q);
   }
 
+  /// Those of an answer: inside the limits, where rounding may have left them outside.
+  void copy_inside(int lane, double* q) const {
+    copy_joints(lane, q);
+    for (int j = 0; j < kDof; ++j) {
+      q[j] = std::min(std::max(q[j], joints_.lower[j]), joints_.upper[j]);
+    }
+  }
+
  private:
   /// Values of the swept joint on both sides of a branch's end, and how far it exists there.
   struct Fold {
@@ -131,7 +144,11 @@ class SweptBranches {
     double least_inside = 0, least_outside = -1;
   };
   void bound_slide();
-  void solve_one();
+  template <typename Value>
+  void hold_one(int branch, const Value& value) {
+    for (int s = 0; s < 3; ++s) std::fill_n(one_.sign[s], kCount, all_.sign[s][branch]);
+    for (int lane = 0; lane < kCount; ++lane) one_.held[lane] = value(lane) + offset_;
+  }
   void find_branches(lanes::BranchPack& pack);
   void rate(double bound, Row* rows);
   void narrow(int branch, int rounds, Fold& fold);
@@ -219,17 +236,19 @@ struct Bracket {
   /// Whether the cost is smooth but for where the branch ends: a parabola then tells where it is
   /// least.
   bool is_smooth = false;
+  /// The cost in the middle, where it is known.
+  double in_middle = kInfinity;
 };
 
 /// Looks for the least of `cost(lane)` of a branch, each round around the least so far, where
-/// `value(place)` is the swept joint's. Calls `found(lane, place)` with each that is the least so
-/// far; returns the least cost. The search ends early where `is_enough(cost)`; a cost from
-/// `no_cost` on is none.
-template <typename Value, typename Cost, typename Found, typename IsEnough>
-double minimize(SweptBranches& branches, const Bracket& bracket, const Value& value,
-                const Cost& cost, double no_cost, const Found& found, const IsEnough& is_enough) {
+/// `value(place)` is the swept joint's, after `branches.solve_one` of eight such. Calls
+/// `found(lane, place)` with each that is the least so far; returns the least cost. The search ends
+/// early where `is_enough(cost)`; a cost from `no_cost` on is none.
+template <typename Branches, typename Value, typename Cost, typename Found, typename IsEnough>
+double minimize(Branches& branches, const Bracket& bracket, const Value& value, const Cost& cost,
+                double no_cost, const Found& found, const IsEnough& is_enough) {
   constexpr int kCount = SweptBranches::kCount;
-  double least = kInfinity;
+  double least = bracket.in_middle;
   double middle = bracket.middle;
   double width = bracket.width;
   // A guess is looked at closely; where it fails, the bracket is that of before.

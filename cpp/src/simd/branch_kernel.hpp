@@ -12,20 +12,33 @@
 
 namespace iksel::lanes {
 
-/// Joints 4 to 6, whose axes meet, after joints 1 to 3.
+/// What of a target is left to the wrist, whose axes meet: R_4 R_5 R_6 takes h6 to `axis`, and the
+/// first of the basis to `side`.
+template <typename T>
+struct WristTarget {
+  Vec<T> axis, side;
+};
+
 template <typename T, typename Q>
-IKSEL_INLINE void turn_wrist(const ClosedForm& form, const BranchTarget<T>& target, const T& sign,
+IKSEL_INLINE WristTarget<T> behind_arm(const ClosedForm& form, const BranchTarget<T>& target,
+                                       const Branch<T, Q>& arm) {
+  return {before_wrist(form, arm, target.Z), before_wrist(form, arm, target.X)};
+}
+
+/// Joints 4 to 6, after joints 1 to 3.
+template <typename T, typename Q>
+IKSEL_INLINE void turn_wrist(const ClosedForm& form, const WristTarget<T>& target, const T& sign,
                              Branch<T, Q>& out) {
   const Vec<T> h4 = constant<T>(form.h[3]);
   const Vec<T> h5 = constant<T>(form.h[4]);
   const Vec<T> h6 = constant<T>(form.h[5]);
-  // R_4 R_5 R_6 takes h6 to `axis`, and the first of the basis to `side`.
-  const Vec<T> axis = before_wrist(form, out, target.Z);
-  const Vec<T> side = before_wrist(form, out, target.X);
-  out.q[4] = solve_angle(form.wrist, dot(h4, axis), sign, out.quality);
-  out.q[3] = angle_between(h4, turned(h5, out.q[4], h6), axis, out.quality);
-  const Vec<T> rest = turned_back(h5, out.q[4], turned_back(h4, out.q[3], side));
+  out.q[4] = solve_angle(form.wrist, dot(h4, target.axis), sign, out.quality);
+  if (is_enough(form, 4, out)) return;
+  out.q[3] = angle_between(h4, turned(h5, out.q[4], h6), target.axis, out.quality);
+  if (is_enough(form, 3, out)) return;
+  const Vec<T> rest = turned_back(h5, out.q[4], turned_back(h4, out.q[3], target.side));
   out.q[5] = {dot(constant<T>(form.basis[0]), rest), dot(constant<T>(form.basis[1]), rest)};
+  is_enough(form, 5, out);
 }
 /// All six joints of three parallel axes.
 template <typename T, typename Q>
@@ -122,7 +135,7 @@ IKSEL_INLINE Branch<T, Q> solve_branch(const ClosedForm& form, int first, Q qual
     solve_sweep(form, target, held, sign, branch, pack.residual + first);
   } else {
     place_wrist(form, target.w, sign, branch);
-    turn_wrist(form, target, sign[2], branch);
+    turn_wrist(form, behind_arm(form, target, branch), sign[2], branch);
   }
   store_joints(form, branch, first, pack);
   return branch;

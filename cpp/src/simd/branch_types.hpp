@@ -26,6 +26,13 @@ struct Turned {
   double r2, inverse;  ///< a^2 + b^2, and 1 / r2
 };
 
+/// The limits of a joint as an arc of angles: cosines and sines of its middle and of half of it.
+struct LimitArc {
+  bool ends;  ///< whether there is an angle outside
+  double middle_c, middle_s;
+  double reach_c, reach_s;
+};
+
 /// Six joints where their angles are zero, in product-of-exponentials form. Lengths are in units of
 /// the chain's reach.
 struct ClosedForm {
@@ -34,6 +41,7 @@ struct ClosedForm {
   double offset[6];  ///< what angles are more than joint values [rad]
   /// Middle of each joint's limits, and half their range; of a joint that has none, 0 and pi [rad].
   double middle[6], reach[6];
+  LimitArc arc[6];     ///< the same limits, of angles
   double h[6][3];      ///< unit vectors along the axes
   double p[5][3];      ///< from a point on axis j to one on axis j + 1; where axes meet, one point
   double basis[3][3];  ///< right-handed, h6 last

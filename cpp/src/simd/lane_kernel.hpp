@@ -195,6 +195,7 @@ constexpr LaneKernels make_kernels(const char* name) {
           solve_branches<Wide>,
           find_branches<Wide>,
           rate_branches<Wide>,
+          rate_branch<Wide>,
           measure_moves<Wide>,
           find_residuals<Wide>,
           count_roots<Wide>,

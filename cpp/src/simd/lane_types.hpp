@@ -175,6 +175,8 @@ using SolveBranches = void (*)(const ClosedForm& form, BranchPack& pack);
 /// How far branches are from being answers, at kWidth angles of the held joint (sweep_kernel.hpp).
 using RateBranches = void (*)(const ClosedForm& form, const BranchPack& pack, double bound,
                               double (&off)[kWidth][kWidth]);
+using RateBranch = void (*)(const ClosedForm& form, const BranchPack& pack, double bound,
+                            double (&off)[kWidth]);
 
 struct MoveForm;
 struct MovePack;
@@ -227,6 +229,7 @@ struct LaneKernels {
   SolveBranches solve_branches;
   SolveBranches find_branches;
   RateBranches rate_branches;
+  RateBranch rate_branch;
   MeasureMoves measure_moves;
   FindResiduals find_residuals;
   CountRoots count_roots;

@@ -11,80 +11,137 @@ namespace iksel::lanes {
 /// Whether a branch may be near to an answer, by the angles found so far.
 template <typename T>
 struct Prospect {
-  T bound;
+  double bound;
   T least = T(1.0);
   T beyond = T(0.0);
+  /// What angles so far follow from quotients by: where it is all but nothing, as where a straight
+  /// arm turns, they may be any, and limits say nothing about what follows.
+  T divisor = T(1.0);
   /// No lane's branch is.
   bool is_over = false;
 
-  IKSEL_INLINE void divide_by_product(const T& /*product*/) {}
+  IKSEL_INLINE void divide_by_product(const T& product) { divisor = min(divisor, product); }
   IKSEL_INLINE void take_root(const T& square, const T& /*near*/, const T& /*root*/) {
     least = min(least, square);
   }
   /// How far it is from being an answer, at least.
   [[nodiscard]] IKSEL_INLINE T off() const { return beyond + sqrt(max(T(0.0) - least, T(0.0))); }
+  /// Whether off() may be within the bound in some lane, without its root.
+  [[nodiscard]] IKSEL_INLINE bool is_open() const {
+    return any(min(T(bound) - beyond, least + T(bound * bound)) >= T(0.0));
+  }
 };
+
+/// How far an angle lies outside of limits, 0 or less if it does not: by the sine of that, and from
+/// a right angle on by 1. It takes no arc, only the cosine and the sine of the difference between
+/// the angle's distance to the middle and what is within reach.
+template <typename T>
+IKSEL_INLINE T sine_beyond(const LimitArc& arc, const Angle<T>& t) {
+  const T c = t.c * T(arc.middle_c) + t.s * T(arc.middle_s);
+  const T s = abs(t.s * T(arc.middle_c) - t.c * T(arc.middle_s));
+  const T sine = s * T(arc.reach_c) - c * T(arc.reach_s);
+  const T cosine = c * T(arc.reach_c) + s * T(arc.reach_s);
+  return select(cosine < T(0.0), select(sine > T(0.0), T(1.0), sine), sine);
+}
 
 template <typename T>
 IKSEL_INLINE bool is_enough(const ClosedForm& form, int j, Branch<T, Prospect<T>>& branch) {
   Prospect<T>& prospect = branch.quality;
-  const T q = joint_value(form, j, branch.q[j]);
-  prospect.beyond = max(prospect.beyond, beyond_limits(form, j, q));
-  prospect.is_over = !any(prospect.off() <= prospect.bound);
+  const LimitArc& arc = form.arc[j];
+  constexpr double kAnyAngle = 1e-6;
+  if (arc.ends) {
+    const T sine = sine_beyond(arc, branch.q[j]);
+    const T known = select(prospect.divisor < T(kAnyAngle), T(0.0), sine);
+    prospect.beyond = max(prospect.beyond, known);
+  }
+  prospect.is_over = !prospect.is_open();
   return prospect.is_over;
 }
 
-/// The branches that differ in the last sign only, from one that has the others.
 template <typename T>
-IKSEL_INLINE void rate_pair(const ClosedForm& form, const BranchTarget<T>& target,
-                            const BranchPack& pack, int first, int lane, double bound,
-                            double (&off)[kWidth][kWidth]) {
-  const int other = lane + kWidth / 2;
+using RatedBranch = Branch<T, Prospect<T>>;
+
+/// Adds to how far a branch is off what its joints together are beyond their coupled limits.
+template <typename T>
+IKSEL_INLINE void add_coupled(const ClosedForm& form, const T& held, RatedBranch<T>& branch) {
+  if (form.coupled == nullptr || branch.quality.is_over) return;
+  T q[7];
+  for (int j = 0; j < 6; ++j) q[j] = joint_value(form, j, branch.q[j]);
+  q[6] = held;
+  branch.quality.beyond = max(branch.quality.beyond, beyond_coupled(*form.coupled, q));
+}
+
+/// The target at the held joint's values in the lanes from `first` on.
+template <typename T>
+IKSEL_INLINE BranchTarget<T> held_target(const ClosedForm& form, const BranchPack& pack, int first,
+                                         const T& held) {
+  const auto vector = [&](int i) {
+    const auto row = [&](int r) { return Lanes<T>::load(pack.target[r] + first); };
+    return Vec<T>{row(i), row(i + 1), row(i + 2)};
+  };
+  BranchTarget<T> target{vector(0), vector(3), vector(6), vector(9)};
+  hold(form, held, target);
+  return target;
+}
+
+/// How far the two branches are off that differ in the last sign only: the two of `last`, or one.
+template <typename T, int kCount>
+IKSEL_INLINE void rate_signs(const ClosedForm& form, const BranchTarget<T>& target, const T& held,
+                             const double (&sign)[2], const double (&last)[kCount], double bound,
+                             double* const (&off)[kCount]) {
+  RatedBranch<T> arm;
+  arm.quality.bound = bound;
+  const T side[2] = {T(sign[0]), T(sign[1])};
   const bool has_wrist = form.closure != Closure::three_parallel;
-  Branch<T, Prospect<T>> arm;
-  arm.quality.bound = T(bound);
-  const T side[2] = {T(pack.sign[0][lane]), T(pack.sign[1][lane])};
-  if (has_wrist) place_wrist(form, target.w, {side[0], side[1], T(1.0)}, arm);
-  if (arm.quality.is_over) {
-    Lanes<T>::store(arm.quality.off(), off[lane] + first);
-    Lanes<T>::store(arm.quality.off(), off[other] + first);
-    return;
+  WristTarget<T> wrist;
+  if (has_wrist) {
+    place_wrist(form, target.w, {side[0], side[1], T(1.0)}, arm);
+    if (arm.quality.is_over) {
+      for (double* each : off) Lanes<T>::store(arm.quality.off(), each);
+      return;
+    }
+    wrist = behind_arm(form, target, arm);
   }
-  for (const int each : {lane, other}) {
-    Branch<T, Prospect<T>> branch = arm;
-    const T last = T(pack.sign[2][each]);
+  for (int i = 0; i < kCount; ++i) {
+    RatedBranch<T> branch = arm;
     if (has_wrist) {
-      turn_wrist(form, target, last, branch);
+      turn_wrist(form, wrist, T(last[i]), branch);
     } else {
-      solve_three_parallel(form, target, {side[0], side[1], last}, branch);
+      solve_three_parallel(form, target, {side[0], side[1], T(last[i])}, branch);
+      for (int j = 0; j < 6; ++j) is_enough(form, j, branch);
     }
-    for (int j = has_wrist ? 3 : 0; j < 6; ++j) is_enough(form, j, branch);
-    if (form.coupled != nullptr) {
-      T q[7];
-      for (int j = 0; j < 6; ++j) q[j] = joint_value(form, j, branch.q[j]);
-      q[6] = Lanes<T>::load(pack.held + first);
-      branch.quality.beyond = max(branch.quality.beyond, beyond_coupled(*form.coupled, q));
-    }
-    Lanes<T>::store(branch.quality.off(), off[each] + first);
+    add_coupled(form, held, branch);
+    Lanes<T>::store(branch.quality.off(), off[i]);
   }
 }
 
 /// At kWidth angles of the held joint: off[branch][angle] is how far a branch, of the signs in the
-/// pack's lanes, is from being an answer, as SweptBranches::off; where that is more than `bound`,
-/// some number above it.
+/// pack's lanes, is from being an answer, as SweptBranches::off but for the sine of sine_beyond();
+/// where that is more than `bound`, some number above it.
 template <typename T>
 void rate_branches(const ClosedForm& form, const BranchPack& pack, double bound,
                    double (&off)[kWidth][kWidth]) {
   for (int first = 0; first < kWidth; first += Lanes<T>::kCount) {
-    const auto vector = [&](int i) {
-      const auto row = [&](int r) { return Lanes<T>::load(pack.target[r] + first); };
-      return Vec<T>{row(i), row(i + 1), row(i + 2)};
-    };
-    BranchTarget<T> target{vector(0), vector(3), vector(6), vector(9)};
-    hold(form, Lanes<T>::load(pack.held + first), target);
+    const T held = Lanes<T>::load(pack.held + first);
+    const BranchTarget<T> target = held_target(form, pack, first, held);
     for (int lane = 0; lane < kWidth / 2; ++lane) {
-      rate_pair(form, target, pack, first, lane, bound, off);
+      const int other = lane + kWidth / 2;
+      rate_signs<T, 2>(form, target, held, {pack.sign[0][lane], pack.sign[1][lane]},
+                       {pack.sign[2][lane], pack.sign[2][other]}, bound,
+                       {off[lane] + first, off[other] + first});
     }
+  }
+}
+
+/// The same of one branch, whose signs are in the pack's first lane.
+template <typename T>
+void rate_branch(const ClosedForm& form, const BranchPack& pack, double bound,
+                 double (&off)[kWidth]) {
+  for (int first = 0; first < kWidth; first += Lanes<T>::kCount) {
+    const T held = Lanes<T>::load(pack.held + first);
+    const BranchTarget<T> target = held_target(form, pack, first, held);
+    rate_signs<T, 1>(form, target, held, {pack.sign[0][0], pack.sign[1][0]}, {pack.sign[2][0]},
+                     bound, {off + first});
   }
 }
 

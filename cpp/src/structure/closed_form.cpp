@@ -2,6 +2,7 @@
 #include "structure/closed_form.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/constants.hpp"
 #include "simd/lane_chain.hpp"
@@ -32,6 +33,10 @@ lanes::Turned turned(const Vector3d& x, const Vector3d& k, const Vector3d& y) {
   const double b = x.dot(k.cross(y));
   const double r2 = a * a + b * b;
   return {a, b, c, r2, 1 / std::max(r2, 1e-30)};
+}
+
+lanes::LimitArc limit_arc(double middle, double reach) {
+  return {reach < kPi, std::cos(middle), std::sin(middle), std::cos(reach), std::sin(reach)};
 }
 
 lanes::ClosedForm make_form(Closure closure, const ScrewAxes& axes, double unit) {
@@ -125,12 +130,13 @@ void ClosedFormChain::use_limits(const ChainModel& model) {
       form.offset[i] = 0;
       form.middle[i] = 0;
       form.reach[i] = turns_freely(j) ? kPi : kLocked;
-      continue;
+    } else {
+      const bool ends = model.joints.type(j) != JointType::continuous;
+      form.offset[i] = model.kernel.joints[static_cast<std::size_t>(j)].offset;
+      form.middle[i] = ends ? 0.5 * (model.joints.lower[j] + model.joints.upper[j]) : 0;
+      form.reach[i] = ends ? 0.5 * (model.joints.upper[j] - model.joints.lower[j]) : kPi;
     }
-    const bool ends = model.joints.type(j) != JointType::continuous;
-    form.offset[i] = model.kernel.joints[static_cast<std::size_t>(j)].offset;
-    form.middle[i] = ends ? 0.5 * (model.joints.lower[j] + model.joints.upper[j]) : 0;
-    form.reach[i] = ends ? 0.5 * (model.joints.upper[j] - model.joints.lower[j]) : kPi;
+    form.arc[i] = limit_arc(form.middle[i] + form.offset[i], form.reach[i]);
   }
   coupled = make_coupled_form(model, *this);
   form.coupled = coupled.get();

@@ -2,16 +2,21 @@
 // Closed forms of six joints: their branches by themselves, on random chains of every class.
 #include <gtest/gtest.h>
 
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <iksel/iksel.hpp>
+#include <limits>
 
+#include "base/pseudo_inverse.hpp"
 #include "branches.hpp"
 #include "closed_chains.hpp"
 #include "levels.hpp"
 #include "robots.hpp"
 #include "simd/branch_kernel.hpp"
 #include "simd/kernels.hpp"
+#include "simd/regular_kernel.hpp"
 
 namespace {
 
@@ -27,6 +32,26 @@ using iksel_test::branch_of;
 using iksel_test::Closure;
 using iksel_test::Dice;
 using iksel_test::kTwoPi;
+
+/// Of random matrices whose singular values are spread by up to 1e6, against Eigen's decomposition.
+TEST(ClosedFormKernel, TheInverseNormIsThatOfTheSingularValues) {
+  std::srand(static_cast<unsigned>(iksel_test::seed()));
+  for (int i = 0; i < iksel_test::cases(300); ++i) {
+    iksel::Matrix6 A = iksel::Matrix6::Random();
+    A.col(i % 6) =
+        A.col((i + 1) % 6) + std::pow(10.0, -(i % 7)) * iksel::Vector6(iksel::Vector6::Random());
+    double columns[6][6];
+    for (int k = 0; k < 6; ++k) {
+      Eigen::Map<iksel::Vector6> column(columns[k]);
+      column = A.col(k);
+    }
+    const double expected =
+        Eigen::JacobiSVD<iksel::Matrix6>(A).singularValues().cwiseInverse().norm();
+    EXPECT_NEAR(lanes::inverse_norm(columns), expected, 1e-8 * expected) << A;
+  }
+  double singular[6][6] = {};
+  EXPECT_FALSE(lanes::inverse_norm(singular) < std::numeric_limits<double>::max());
+}
 
 TEST(ClosedFormKernel, AnglesAreThoseOfTheStandardLibrary) {
   iksel::Random random(iksel_test::seed());

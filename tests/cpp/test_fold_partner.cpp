@@ -3,9 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <iksel/iksel.hpp>
-#include <limits>
 
 #include "base/pseudo_inverse.hpp"
 #include "kinematics/chain_model.hpp"
@@ -56,24 +54,6 @@ TEST_P(FoldPartners, JacobianSignIsThatOfTheDeterminant) {
   }
   EXPECT_GT(positive, q.rows() / 10);
   EXPECT_LT(positive, q.rows() * 9 / 10);
-}
-
-/// Of random matrices whose singular values are spread by up to 1e6, against Eigen's decomposition.
-TEST(InverseNorm, IsThatOfTheSingularValues) {
-  std::srand(static_cast<unsigned>(iksel_test::seed()));
-  for (int i = 0; i < iksel_test::cases(300); ++i) {
-    Matrix6 A = Matrix6::Random();
-    A.col(i % 6) = A.col((i + 1) % 6) + std::pow(10.0, -(i % 7)) * Vector6(Vector6::Random());
-    double columns[6][6];
-    for (int k = 0; k < 6; ++k) {
-      Eigen::Map<Vector6> column(columns[k]);
-      column = A.col(k);
-    }
-    const double expected = Eigen::JacobiSVD<Matrix6>(A).singularValues().cwiseInverse().norm();
-    EXPECT_NEAR(iksel::inverse_norm(columns), expected, 1e-8 * expected) << A;
-  }
-  double singular[6][6] = {};
-  EXPECT_FALSE(iksel::inverse_norm(singular) < std::numeric_limits<double>::max());
 }
 
 /// The joint direction that moves the tip least, or of those across `other` the one that does; by

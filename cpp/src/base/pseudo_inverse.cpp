@@ -5,7 +5,6 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace iksel {
@@ -127,38 +126,6 @@ double determinant(double (&rows)[6][6]) {
     }
   }
   return product;
-}
-
-double inverse_norm(double (&columns)[6][6]) {
-  // Of the triangle that is left by Gram-Schmidt: the columns of its inverse, from the last row up.
-  double R[6][6];
-  double inverse[6];  // of the diagonal
-  for (int j = 0; j < 6; ++j) {
-    double square = 0;
-    for (const double x : columns[j]) square += x * x;
-    inverse[j] = 1 / std::sqrt(square);
-    for (double& x : columns[j]) x *= inverse[j];
-    for (int k = j + 1; k < 6; ++k) {
-      double along = 0;
-      for (int i = 0; i < 6; ++i) along += columns[j][i] * columns[k][i];
-      for (int i = 0; i < 6; ++i) columns[k][i] -= along * columns[j][i];
-      R[j][k] = along;
-    }
-  }
-  double sum = 0;
-  for (int k = 0; k < 6; ++k) {
-    double x[6];
-    x[k] = inverse[k];
-    sum += x[k] * x[k];
-    for (int j = k - 1; j >= 0; --j) {
-      double rest = 0;
-      for (int i = j + 1; i <= k; ++i) rest -= R[j][i] * x[i];
-      x[j] = rest * inverse[j];
-      sum += x[j] * x[j];
-    }
-  }
-  return sum < std::numeric_limits<double>::infinity() ? std::sqrt(sum)
-                                                       : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace iksel

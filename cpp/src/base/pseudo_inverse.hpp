@@ -51,8 +51,4 @@ JointVector damped_solve(const JacobianMatrix& J, double lambda, const Vector6& 
 /// a column first. Everything is unrolled.
 double determinant(double (&rows)[6][6]);
 
-/// The Frobenius norm of the inverse of a matrix of `columns`, which become orthonormal; infinity
-/// if it has none.
-double inverse_norm(double (&columns)[6][6]);
-
 }  // namespace iksel

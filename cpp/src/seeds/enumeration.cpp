@@ -37,6 +37,7 @@ void Enumeration::find(const Pose& Y, bool wants_all) {
   chain_.set_target(Y, pack_);
   kernels_.solve_branches(chain_.form, pack_);
   size_ = 0;
+  is_measured_ = false;
   certain_ = is_nominal_;
   for (int lane = 0; lane < kMost; ++lane) take(lane, wants_all);
 }
@@ -63,39 +64,13 @@ void Enumeration::take(int lane, bool wants_all) {
   ++size_;
 }
 
-bool Enumeration::is_regular(int lane, double& bound) const {
-  using Eigen::Vector3d;
+bool Enumeration::is_regular(int lane, double& bound) {
   constexpr double kFarthest = 0.01;
   const lanes::ClosedForm& form = chain_.form;
-  Vector3d axis[6];
-  Vector3d point[6];
-  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
-  for (int j = 0; j < 6; ++j) {
-    const Vector3d h(form.h[j]);
-    axis[j] = R * h;
-    point[j].setZero();
-    if (j > 0) point[j] = point[j - 1] + R * Vector3d(form.p[j - 1]);
-    R = R * Eigen::AngleAxisd(pack_.q[j][lane] + form.offset[j], h).toRotationMatrix();
-  }
-  const double close = form.error / kMargin;
-  const auto target = [&](int row) {
-    return Vector3d(pack_.target[row][lane], pack_.target[row + 1][lane],
-                    pack_.target[row + 2][lane]);
-  };
-  if (!((point[5] - target(9)).norm() <= close)) return false;
-  for (int k = 0; k < 3; ++k) {
-    const Vector3d off = R * Vector3d(form.basis[k]) - target(3 * k);
-    if (!(off.norm() <= close)) return false;
-  }
-  double columns[6][6];
-  for (int j = 0; j < 6; ++j) {
-    const Vector3d moved = axis[j].cross(point[5] - point[j]);
-    for (int row = 0; row < 3; ++row) {
-      columns[j][row] = moved[row];
-      columns[j][row + 3] = axis[j][row];
-    }
-  }
-  const double moved = form.error * inverse_norm(columns);
+  if (!is_measured_) kernels_.measure_regularity(form, pack_, regularity_);
+  is_measured_ = true;
+  if (!(regularity_.off[lane] <= form.error / kMargin)) return false;
+  const double moved = form.error * regularity_.inverse_norm[lane];
   if (!(moved < kFarthest)) return false;
   bound = moved;
   return true;

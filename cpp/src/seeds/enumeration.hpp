@@ -50,7 +50,7 @@ class Enumeration {
   void take(int lane, bool wants_all);
   /// Whether a lane's branch reaches the target far enough from singularities to tell by how much
   /// the tolerances may move it [rad].
-  bool is_regular(int lane, double& bound) const;
+  bool is_regular(int lane, double& bound);
 
   const ChainModel& model_;
   ClosedFormChain chain_;
@@ -58,6 +58,8 @@ class Enumeration {
   bool is_nominal_;
   lanes::BranchPack pack_ = all_branches();
   std::array<std::array<double, 6>, kMost> q_{};
+  lanes::Regularity regularity_{};
+  bool is_measured_ = false;  ///< these, of the last find()
   int size_ = 0;
   bool certain_ = false;
 };

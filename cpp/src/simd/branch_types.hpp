@@ -92,6 +92,15 @@ struct BranchPack {
   alignas(64) double error[kWidth];
 };
 
+/// How well the branches of a pack are determined, lane by lane; NaN says nothing.
+struct Regularity {
+  /// How far a branch's angles leave it from the target: what is largest of the way and the basis
+  /// [units].
+  alignas(64) double off[kWidth];
+  /// The Frobenius norm of its Jacobian's inverse [rad per unit].
+  alignas(64) double inverse_norm[kWidth];
+};
+
 /// Seven joints to move from: six as a form counts them, and the held one.
 struct MoveForm {
   double from[7];    ///< [rad]

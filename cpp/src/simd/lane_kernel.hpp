@@ -12,6 +12,7 @@
 #include "simd/lane_types.hpp"
 #include "simd/loop_kernel.hpp"
 #include "simd/move_kernel.hpp"
+#include "simd/regular_kernel.hpp"
 #include "simd/residual_kernel.hpp"
 #include "simd/scene_kernel.hpp"
 #include "simd/seed_kernel.hpp"
@@ -194,6 +195,7 @@ constexpr LaneKernels make_kernels(const char* name) {
           find_largest<Single>,
           solve_branches<Wide>,
           find_branches<Wide>,
+          measure_regularity<Wide>,
           rate_branches<Wide>,
           rate_branch<Wide>,
           measure_moves<Wide>,

@@ -172,6 +172,8 @@ struct BranchPack;
 /// The angles of all lanes of a pack (branch_types.hpp); find_branches does not say how certain
 /// they are.
 using SolveBranches = void (*)(const ClosedForm& form, BranchPack& pack);
+struct Regularity;
+using MeasureRegularity = void (*)(const ClosedForm& form, const BranchPack& pack, Regularity& out);
 /// How far branches are from being answers, at kWidth angles of the held joint (sweep_kernel.hpp).
 using RateBranches = void (*)(const ClosedForm& form, const BranchPack& pack, double bound,
                               double (&off)[kWidth][kWidth]);
@@ -228,6 +230,7 @@ struct LaneKernels {
   FindLargest find_largest;
   SolveBranches solve_branches;
   SolveBranches find_branches;
+  MeasureRegularity measure_regularity;
   RateBranches rate_branches;
   RateBranch rate_branch;
   MeasureMoves measure_moves;

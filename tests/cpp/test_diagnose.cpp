@@ -286,7 +286,8 @@ TEST(Diagnose, ExplainsATasksNoByTheTasksBranches) {
         continue;
       }
       ++outside;
-      EXPECT_NEAR(diagnosis.limit_violation, least, 1e-5);
+      // Beside a singularity, the other's branches are only as good as the tolerances' root.
+      EXPECT_NEAR(diagnosis.limit_violation, least, 1e-4);
       EXPECT_DOUBLE_EQ(diagnosis.limit_violation, violation(robot, diagnosis.branch));
     }
   }

@@ -286,8 +286,7 @@ TEST(Diagnose, ExplainsATasksNoByTheTasksBranches) {
         continue;
       }
       ++outside;
-      // Beside a singularity, the other's branches are only as good as the tolerances' root.
-      EXPECT_NEAR(diagnosis.limit_violation, least, 1e-4);
+      EXPECT_NEAR(diagnosis.limit_violation, least, 1e-5);
       EXPECT_DOUBLE_EQ(diagnosis.limit_violation, violation(robot, diagnosis.branch));
     }
   }

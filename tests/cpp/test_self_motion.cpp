@@ -174,8 +174,7 @@ TEST_P(SelfMotions, SolveAllSpreadsOverTheArcs) {
       judge.expect_solution(target, one.q);
       EXPECT_LE(distance_from(robot(), motion, one.q), kSpacing);
     }
-    // Each 0.01 apart in some joint: 64 of them are 0.64 times the root of seven long at most.
-    if (length > 2) {
+    if (length > 1) {
       EXPECT_EQ(all.all.size(), 64U) << length;
     }
     // None of the curve is far from a solution.

@@ -2,19 +2,13 @@
 // The balls of links in trees, as the kernel of collisions takes them.
 #pragma once
 
-#include <algorithm>
 #include <vector>
 
+#include "base/plain_vector.hpp"
 #include "iksel/robot_spheres.hpp"
 #include "simd/scene_types.hpp"
 
 namespace iksel {
-
-inline void copy_vector(const Eigen::Vector3d& from, double (&to)[3]) {
-  std::copy_n(from.data(), 3, to);
-}
-
-inline Eigen::Vector3d to_vector(const double (&v)[3]) { return {v[0], v[1], v[2]}; }
 
 class BallTable {
  public:

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "seeds/least_cost.hpp"
 #include "seeds/nearest_on_curve.hpp"
 
 namespace iksel {

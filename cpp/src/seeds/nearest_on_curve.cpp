@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "seeds/least_cost.hpp"
+
 namespace iksel {
 namespace {
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "seeds/least_cost.hpp"
 #include "seeds/self_motion_arcs.hpp"
 
 namespace iksel {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "seeds/least_cost.hpp"
+
 namespace iksel {
 
 Sweep::Sweep(const ChainModel& model, const ClosedFormChain& chain, bool is_nominal,

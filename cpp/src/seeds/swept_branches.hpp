@@ -132,9 +132,8 @@ class SweptBranches {
   /// Those of an answer: inside the limits, where rounding may have left them outside.
   void copy_inside(int lane, double* q) const {
     copy_joints(lane, q);
-    for (int j = 0; j < kDof; ++j) {
-      q[j] = std::min(std::max(q[j], joints_.lower[j]), joints_.upper[j]);
-    }
+    const JointVector inside = joints_.clamp(Eigen::Map<const Eigen::VectorXd>(q, kDof));
+    std::copy_n(inside.data(), kDof, q);
   }
 
  private:
@@ -226,80 +225,5 @@ class LeastPlaces : public Least<LeastPlace, kMost> {
     }
   }
 };
-
-/// Where to look for the least of a branch's costs.
-struct Bracket {
-  int branch;
-  double middle, width;  ///< up to so far to both sides
-  int rounds;            ///< of eight places each, at most
-  double finest = 0;     ///< less far than this it need not be looked
-  /// Whether the cost is smooth but for where the branch ends: a parabola then tells where it is
-  /// least.
-  bool is_smooth = false;
-  /// The cost in the middle, where it is known.
-  double in_middle = kInfinity;
-};
-
-/// Looks for the least of `cost(lane)` of a branch, each round around the least so far, where
-/// `value(place)` is the swept joint's, after `branches.solve_one` of eight such. Calls
-/// `found(lane, place)` with each that is the least so far; returns the least cost. The search ends
-/// early where `is_enough(cost)`; a cost from `no_cost` on is none.
-template <typename Branches, typename Value, typename Cost, typename Found, typename IsEnough>
-double minimize(Branches& branches, const Bracket& bracket, const Value& value, const Cost& cost,
-                double no_cost, const Found& found, const IsEnough& is_enough) {
-  constexpr int kCount = SweptBranches::kCount;
-  double least = bracket.in_middle;
-  double middle = bracket.middle;
-  double width = bracket.width;
-  // A guess is looked at closely; where it fails, the bracket is that of before.
-  bool guessed = false;
-  bool at_end = false;
-  double at = middle;
-  double behind = width;
-  for (int round = 0; round < bracket.rounds && width > bracket.finest; ++round) {
-    if (is_enough(least, round)) break;
-    const double spacing = 2 * width / (kCount + 1);
-    const auto place = [&](int lane) { return middle - width + spacing * (lane + 1); };
-    branches.solve_one(bracket.branch, [&](int lane) { return value(place(lane)); });
-    SweptBranches::Row costs;
-    for (int lane = 0; lane < kCount; ++lane) costs[static_cast<std::size_t>(lane)] = cost(lane);
-    const auto best =
-        static_cast<int>(std::min_element(costs.begin(), costs.end()) - costs.begin());
-    const double here = costs[static_cast<std::size_t>(best)];
-    const bool is_inside = best > 0 && best < kCount - 1;
-    if (here < least) {
-      least = here;
-      found(best, place(best));
-      middle = at = place(best);
-    }
-    if (guessed && !(here == least && (is_inside || at_end))) {
-      // The guess was wrong.
-      middle = at;
-      width = behind;
-      guessed = false;
-      continue;
-    }
-    width = behind = spacing;
-    guessed = false;
-    if (!is_inside) continue;
-    const double left = costs[static_cast<std::size_t>(best - 1)];
-    const double right = costs[static_cast<std::size_t>(best + 1)];
-    if ((left < no_cost) != (right < no_cost) && here < no_cost) {
-      // Where the branch ends, most often: between the best and what is none.
-      width = 0.5 * spacing;
-      middle += left < no_cost ? width : -width;
-      guessed = at_end = true;
-      continue;
-    }
-    if (!bracket.is_smooth) continue;
-    const double curvature = left - 2 * here + right;
-    if (!(left < no_cost && right < no_cost && curvature > 0)) continue;
-    middle += 0.5 * (left - right) / curvature * spacing;
-    width = 0.2 * spacing;
-    guessed = true;
-    at_end = false;
-  }
-  return least;
-}
 
 }  // namespace iksel

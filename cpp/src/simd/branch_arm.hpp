@@ -13,6 +13,14 @@ struct BranchTarget {
   Vec<T> X, Y, Z, w;
 };
 
+/// The targets in the lanes from `first` on.
+template <typename T>
+IKSEL_INLINE BranchTarget<T> load_target(const BranchPack& pack, int first) {
+  const auto row = [&](int i) { return Lanes<T>::load(pack.target[i] + first); };
+  const auto vector = [&](int i) { return Vec<T>{row(i), row(i + 1), row(i + 2)}; };
+  return {vector(0), vector(3), vector(6), vector(9)};
+}
+
 /// The target of the joints behind the held one, at an angle of that, or a place of a slide.
 template <typename T>
 IKSEL_INLINE void hold(const ClosedForm& form, const T& value, BranchTarget<T>& target) {

@@ -120,9 +120,7 @@ IKSEL_INLINE void store_joints(const ClosedForm& form, const Branch<T, Q>& branc
 template <typename T, typename Q>
 IKSEL_INLINE Branch<T, Q> solve_branch(const ClosedForm& form, int first, Q quality,
                                        BranchPack& pack) {
-  const auto row = [&](int i) { return Lanes<T>::load(pack.target[i] + first); };
-  const auto vector = [&](int i) { return Vec<T>{row(i), row(i + 1), row(i + 2)}; };
-  BranchTarget<T> target{vector(0), vector(3), vector(6), vector(9)};
+  BranchTarget<T> target = load_target<T>(pack, first);
   const T held = Lanes<T>::load(pack.held + first);
   if (form.is_held) hold(form, held, target);
   const T sign[3] = {Lanes<T>::load(pack.sign[0] + first), Lanes<T>::load(pack.sign[1] + first),

@@ -75,13 +75,15 @@ template <typename T>
 void measure_regularity(const ClosedForm& form, const BranchPack& pack, Regularity& out) {
   for (int first = 0; first < kWidth; first += Lanes<T>::kCount) {
     const PlacedAxes<T> arm = place_axes<T>(form, pack, first);
-    const auto off2 = [&](const Vec<T>& v, int i) {
-      const auto row = [&](int r) { return Lanes<T>::load(pack.target[r] + first); };
-      const Vec<T> d = add(v, T(-1.0), Vec<T>{row(i), row(i + 1), row(i + 2)});
+    const BranchTarget<T> target = load_target<T>(pack, first);
+    const auto off2 = [](const Vec<T>& v, const Vec<T>& from) {
+      const Vec<T> d = add(v, T(-1.0), from);
       return dot(d, d);
     };
-    T most = off2(arm.point[5], 9);
-    for (int k = 0; k < 3; ++k) most = max(most, off2(arm.basis[k], 3 * k));
+    T most = off2(arm.point[5], target.w);
+    most = max(most, off2(arm.basis[0], target.X));
+    most = max(most, off2(arm.basis[1], target.Y));
+    most = max(most, off2(arm.basis[2], target.Z));
     T columns[6][6];
     for (int j = 0; j < 6; ++j) {
       const Vec<T>& axis = arm.axis[j];

@@ -24,6 +24,7 @@ IKSEL_INLINE Placed<T> in_base(const BodyFrame<T>& f, const double (&v)[3]) {
   return {f.x.x * a + f.y.x * b + f.z.x * c, f.x.y * a + f.y.y * b + f.z.y * c,
           f.x.z * a + f.y.z * b + f.z.z * c};
 }
+
 /// The frame of body i, of which the parent's is there.
 template <typename T>
 IKSEL_INLINE BodyFrame<T> place_body(const SceneBody& body, const BodyFrame<T>& parent,

@@ -75,11 +75,7 @@ IKSEL_INLINE void add_coupled(const ClosedForm& form, const T& held, RatedBranch
 template <typename T>
 IKSEL_INLINE BranchTarget<T> held_target(const ClosedForm& form, const BranchPack& pack, int first,
                                          const T& held) {
-  const auto vector = [&](int i) {
-    const auto row = [&](int r) { return Lanes<T>::load(pack.target[r] + first); };
-    return Vec<T>{row(i), row(i + 1), row(i + 2)};
-  };
-  BranchTarget<T> target{vector(0), vector(3), vector(6), vector(9)};
+  BranchTarget<T> target = load_target<T>(pack, first);
   hold(form, held, target);
   return target;
 }

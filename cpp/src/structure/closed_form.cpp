@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/constants.hpp"
+#include "base/plain_vector.hpp"
 #include "simd/lane_chain.hpp"
 #include "structure/axis_pattern.hpp"
 #include "structure/completed_axes.hpp"
@@ -21,10 +22,6 @@ constexpr int kSix = 6;
 /// How far an axis that is locked may be off zero without being outside: what rounding leaves
 /// [rad].
 constexpr double kLocked = 1e-9;
-
-void write(const Vector3d& v, double (&out)[3]) {
-  for (int i = 0; i < 3; ++i) out[i] = v[i];
-}
 
 /// x . R(k, t) y.
 lanes::Turned turned(const Vector3d& x, const Vector3d& k, const Vector3d& y) {
@@ -49,13 +46,13 @@ lanes::ClosedForm make_form(Closure closure, const ScrewAxes& axes, double unit)
   const auto side_of = [&](std::size_t j) { return h[j].dot(h[1]) < 0 ? -1.0 : 1.0; };
   lanes::ClosedForm form{};
   form.closure = closure;
-  for (std::size_t j = 0; j < kSix; ++j) write(h[j], form.h[j]);
-  for (std::size_t j = 0; j < 5; ++j) write(way(j), form.p[j]);
+  for (std::size_t j = 0; j < kSix; ++j) copy_vector(h[j], form.h[j]);
+  for (std::size_t j = 0; j < 5; ++j) copy_vector(way(j), form.p[j]);
   const Vector3d e1 = h[5].unitOrthogonal();
-  write(e1, form.basis[0]);
-  write(h[5].cross(e1), form.basis[1]);
-  write(h[5], form.basis[2]);
-  write(h[1].unitOrthogonal(), form.across);
+  copy_vector(e1, form.basis[0]);
+  copy_vector(h[5].cross(e1), form.basis[1]);
+  copy_vector(h[5], form.basis[2]);
+  copy_vector(h[1].unitOrthogonal(), form.across);
   form.cross12 = h[0].dot(h[1]);
   form.cross23 = h[1].dot(h[2]);
   form.along45 = h[3].dot(h[4]);
@@ -190,9 +187,9 @@ std::optional<ClosedFormChain> look_from(const ChainModel& model, const Complete
   for (int k = 0; k < 3; ++k) E.col(k) = Vector3d(chain.form.basis[k]);
   chain.first = pattern.axes().p[0];
   chain.form.is_held = before > 0;
-  write(held_axis, chain.form.held_axis);
+  copy_vector(held_axis, chain.form.held_axis);
   if (before > 0 && model.joints.is_slide(chain.held)) chain.form.held_slide = 1 / chain.unit;
-  write((chain.first - held_point) / chain.unit, chain.form.held_from);
+  copy_vector((chain.first - held_point) / chain.unit, chain.form.held_from);
   chain.tail = E.transpose() * (pattern.axes().end.translation() - pattern.axes().p[5]);
   chain.to_basis = pattern.axes().end.linear().transpose() * E;
   return chain;

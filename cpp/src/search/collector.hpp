@@ -62,6 +62,8 @@ class Collector {
   [[nodiscard]] bool has_any() const { return solutions_ > 0; }
   /// Whether partners of solutions are to be looked for: not where all are known.
   void look_for_partners(bool look) { looks_for_partners_ = look; }
+  /// Says that all branches in closed form were tried: what is left lies around those in doubt.
+  void set_all_branches_tried() { has_all_branches_ = true; }
   /// Whether more than the first answer is wanted.
   [[nodiscard]] bool wants_more() const { return aim_.until_complete || ranks_answers(request_); }
   /// Whether of answers the nearest is the best.
@@ -133,6 +135,7 @@ class Collector {
   bool comes_in_pairs_;
   bool looks_for_partners_ = true;
   bool signs_cancel_;
+  bool has_all_branches_ = false;
   double basin_radius_;
   int solutions_ = 0;       ///< those that the set had no room for included
   int last_new_ = 0;        ///< seeds tried until the last new solution

@@ -211,6 +211,7 @@ std::optional<Proof> Search<Answers>::by_branches(Branches& branches, Proof kind
     if (answers.has_any() && !branches.has_families()) return kind;
     if (kind == Proof::sweep) work.leave(kBesideRoots);
   }
+  if (enumerated.has_all()) answers.set_all_branches_tried();
   refiner.begin(goal.task(), kFirst, Width::narrow);
   return std::nullopt;
 }

@@ -35,6 +35,8 @@ class Enumeration {
   /// singularity, or a branch so close to a limit, that what the tolerances allow could make a
   /// difference.
   [[nodiscard]] bool is_certain() const { return certain_; }
+  /// Whether each solution is near to one of these, if they are not certain either.
+  [[nodiscard]] bool has_all() const { return is_nominal_ && !has_families(); }
   /// Whether each branch stands for many solutions.
   [[nodiscard]] bool has_families() const { return chain_.has_families(); }
 
@@ -95,13 +97,15 @@ class EnumeratedSeeds {
   }
 
   /// Whether there are certainly no solutions but these, and each was tried.
-  [[nodiscard]] bool is_certain() const {
-    return done_ && branches_.is_certain() && next_ == branches_.size();
-  }
+  [[nodiscard]] bool is_certain() const { return branches_.is_certain() && was_tried(); }
+  /// Whether each solution is near to one of these, and each was tried.
+  [[nodiscard]] bool has_all() const { return branches_.has_all() && was_tried(); }
   /// Whether there are none.
   [[nodiscard]] bool is_empty() const { return branches_.size() == 0; }
 
  private:
+  [[nodiscard]] bool was_tried() const { return done_ && next_ == branches_.size(); }
+
   Branches& branches_;
   const Pose& Y_;
   bool wants_all_;

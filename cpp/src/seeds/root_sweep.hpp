@@ -32,6 +32,8 @@ class RootSweep {
   [[nodiscard]] const double* q(int i) const { return q_[static_cast<std::size_t>(i)].data(); }
   /// Whether there are no solutions but near to these.
   [[nodiscard]] bool is_certain() const { return certain_; }
+  /// Double roots may be missed.
+  [[nodiscard]] static bool has_all() { return false; }
   [[nodiscard]] static bool has_families() { return false; }
 
  private:

@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from bench import closest, coupled, dual, plan, scene, tips
+from bench import body, closest, coupled, dual, plan, scene, tips
 from bench.arms import RIVAL_ARMS
 from bench.cells import WORK
 from bench.frozen import compare, record
@@ -70,7 +70,7 @@ def parser() -> argparse.ArgumentParser:
     frozen.add_argument("file", type=Path, help="where, e.g. build/frozen.json")
     _add_no(commands)
     learned_command.add(commands)
-    for part in (scene, closest, coupled, dual, tips):
+    for part in (scene, body, closest, coupled, dual, tips):
         part.add(commands)
     return top
 
@@ -153,6 +153,7 @@ def main(arguments: list[str] | None = None) -> int:
         return action(options.file)
     alone = {
         "scene": scene.run,
+        "body": body.run,
         "closest": closest.run,
         "coupled": coupled.run,
         "dual": dual.run,

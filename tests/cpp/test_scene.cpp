@@ -35,7 +35,7 @@ RobotSpheres balls_on(const Robot& robot) {
     const Eigen::Vector3d next = poses[i].inverse() * poses[i + 1].translation();
     auto& of_link = spheres.links[names[i]];
     of_link = {{Eigen::Vector3d::Zero(), 0.04}, {0.5 * next, 0.03}};
-    const int more = i % 3 == 0 ? 60 : (i % 3 == 1 ? 9 : 0);
+    const int more = i % 6 == 3 ? 600 : i % 3 == 0 ? 60 : (i % 3 == 1 ? 9 : 0);
     for (int k = 0; k < more; ++k) {
       const Eigen::Vector3d aside = 0.03 * Eigen::Vector3d(uniform(random), uniform(random), 0);
       of_link.push_back({uniform(random) * next + aside, 0.02 * uniform(random) + 0.001});

@@ -36,7 +36,7 @@ class ArmShape {
   /// Sets what of a view belongs to the arm; it holds as long as this is not changed.
   void show(lanes::SceneView& view) const;
 
-  /// Centres of the links' balls in the base frame [m]; of those around others nothing.
+  /// Centres of the balls in the base frame [m].
   [[nodiscard]] std::vector<Eigen::Vector3d> centres(const double* q) const;
 
   /// The body that the tip link is on, and T_tip_body.

@@ -12,7 +12,13 @@ namespace {
 using Spheres = std::vector<Sphere>;
 
 /// Balls of a leaf, at most, and about as many nodes below a node.
-constexpr int kFan = 8;
+constexpr int kFan = lanes::kWidth;
+
+lanes::SceneBall to_ball(const Sphere& sphere) {
+  lanes::SceneBall ball{{}, sphere.radius};
+  copy_vector(sphere.centre, ball.centre);
+  return ball;
+}
 
 /// Orders spheres `first` to `last - 1` into parts that lie close together, by halves across the
 /// longest extent; `ends` gets where each part ends.
@@ -41,43 +47,40 @@ void part(Spheres& spheres, int first, int last, int parts, std::vector<int>& en
 }  // namespace
 
 void BallTable::fill(int node, Spheres& spheres, int first, int last) {
-  const auto k = static_cast<std::size_t>(node);
-  around_[k] = ball_around(Spheres(spheres.begin() + first, spheres.begin() + last));
-  nodes_[k].is_leaf = last - first <= kFan;
-  nodes_[k].first = first;
-  nodes_[k].count = last - first;
-  if (nodes_[k].is_leaf) return;
   std::vector<int> ends;
-  part(spheres, first, last, kFan, ends);
-  const int below = static_cast<int>(nodes_.size());
-  nodes_[k].first = below;
-  nodes_[k].count = static_cast<int>(ends.size());
-  nodes_.resize(nodes_.size() + ends.size());
-  around_.resize(nodes_.size());
-  for (std::size_t i = 0; i < ends.size(); ++i) {
-    fill(below + static_cast<int>(i), spheres, i == 0 ? first : ends[i - 1], ends[i]);
+  const bool is_leaf = last - first <= kFan;
+  if (is_leaf) {
+    for (int i = first; i < last; ++i) ends.push_back(i + 1);
+  } else {
+    part(spheres, first, last, kFan, ends);
   }
-}
-
-void BallTable::add_ball(const Sphere& sphere) {
-  lanes::SceneBall ball{{}, sphere.radius};
-  copy_vector(sphere.centre, ball.centre);
-  balls_.push_back(ball);
+  const auto count = static_cast<int>(ends.size());
+  const int below = is_leaf ? first : static_cast<int>(nodes_.size());
+  nodes_[static_cast<std::size_t>(node)].first = below;
+  nodes_[static_cast<std::size_t>(node)].count = count;
+  nodes_[static_cast<std::size_t>(node)].is_leaf = is_leaf;
+  if (!is_leaf) nodes_.resize(nodes_.size() + ends.size());
+  for (int k = 0, begin = first; k < count; begin = ends[static_cast<std::size_t>(k++)]) {
+    const int end = ends[static_cast<std::size_t>(k)];
+    const Sphere around = ball_around(Spheres(spheres.begin() + begin, spheres.begin() + end));
+    lanes::SceneNode& at = nodes_[static_cast<std::size_t>(node)];
+    at.x[k] = around.centre.x();
+    at.y[k] = around.centre.y();
+    at.z[k] = around.centre.z();
+    at.radius[k] = around.radius;
+    if (!is_leaf) fill(below + k, spheres, begin, end);
+  }
 }
 
 int BallTable::add(int body, Spheres spheres) {
   const std::size_t root = nodes_.size();
   nodes_.emplace_back();
-  around_.emplace_back();
-  fill(static_cast<int>(root), spheres, 0, static_cast<int>(spheres.size()));
+  const auto count = static_cast<int>(spheres.size());
+  const lanes::SceneBall around = to_ball(ball_around(spheres));
+  fill(static_cast<int>(root), spheres, 0, count);
   const int first = static_cast<int>(balls_.size());
-  for (const Sphere& sphere : spheres) add_ball(sphere);
-  for (std::size_t k = root; k < nodes_.size(); ++k) {
-    if (nodes_[k].is_leaf) nodes_[k].first += first;
-    nodes_[k].ball = static_cast<int>(balls_.size());
-    add_ball(around_[k]);
-  }
-  links_.push_back({body, first, static_cast<int>(spheres.size()), static_cast<int>(root)});
+  for (const Sphere& sphere : spheres) balls_.push_back(to_ball(sphere));
+  links_.push_back({body, first, count, static_cast<int>(root), around});
   return static_cast<int>(links_.size()) - 1;
 }
 
@@ -91,10 +94,7 @@ Spheres BallTable::spheres_of(const lanes::SceneLink& link) const {
 }
 
 void BallTable::show(lanes::SceneView& view) const {
-  view.balls = static_cast<int>(balls_.size());
   view.links = static_cast<int>(links_.size());
-  view.nodes = static_cast<int>(nodes_.size());
-  view.ball = balls_.data();
   view.link = links_.data();
   view.node = nodes_.data();
 }

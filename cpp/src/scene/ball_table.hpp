@@ -19,19 +19,18 @@ class BallTable {
   void show(lanes::SceneView& view) const;
 
   [[nodiscard]] const std::vector<lanes::SceneLink>& links() const { return links_; }
+  /// Those of the links, not those around others.
   [[nodiscard]] const std::vector<lanes::SceneBall>& balls() const { return balls_; }
   /// The spheres of a link.
   [[nodiscard]] std::vector<Sphere> spheres_of(const lanes::SceneLink& link) const;
 
  private:
   /// Fills a node, and adds those below it, for spheres `first` to `last - 1` of a link, which it
-  /// puts in order; leaves count its spheres from 0.
+  /// puts in order.
   void fill(int node, std::vector<Sphere>& spheres, int first, int last);
-  void add_ball(const Sphere& sphere);
 
   std::vector<lanes::SceneLink> links_;
   std::vector<lanes::SceneNode> nodes_;
-  std::vector<Sphere> around_;  ///< of each node
   std::vector<lanes::SceneBall> balls_;
 };
 

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,9 +23,10 @@ struct SceneLook {
   /// Whether nothing touches that is where it is in all solutions (TargetShape).
   bool is_target_clear = false;
   lanes::SceneCulprit culprit;
-  /// Of the points: the ball that touched some, and of which link; 0: none did.
+  /// Of the points: the ball that touched some, if one did, and of which link.
   std::size_t cloud = 0;
-  int link = 0, ball = 0;
+  int link = 0;
+  std::optional<lanes::SceneBall> ball;
 };
 
 struct Scene::Data {
@@ -46,13 +48,12 @@ struct Scene::Data {
   /// Throws unless nothing of another kind has that name.
   void check_name(const std::string& name, bool is_obstacle) const;
 
-  /// The clearances (scene_types.hpp) of `count` configurations, one after the other; 0 where only
-  /// points touch.
-  void find_clearance(const double* q, std::size_t count, double* clearance, SceneLook& look) const;
+  /// The clearance (scene_types.hpp) of a configuration; 0 where only points touch.
+  double find_clearance(const double* q, SceneLook& look) const;
   /// Whether something certainly touches in all solutions that bring the tip link to a pose, within
   /// those tolerances [m, rad].
   [[nodiscard]] bool touches_at(const Pose& T_base_tip, double position, double rotation) const;
-  /// Whether they are free.
+  /// Which of `count` configurations, one after the other, are free.
   void find_free(const double* q, std::size_t count, bool* free) const;
   [[nodiscard]] bool is_free(const double* q) const {
     bool free = false;
@@ -78,11 +79,9 @@ struct Scene::Data {
   void add(const Obstacle& obstacle);
   void show_obstacles(lanes::SceneView& view) const;
   [[nodiscard]] const std::shared_ptr<const PointGrid>& grid_of(const Obstacle& cloud);
-  /// Whether what a view shows touches a point; bodies are placed in a lane of `frame`.
-  bool touches_points(const lanes::SceneView& view, const double* frame, int lane,
+  /// Whether what a view shows touches a point, with the bodies where they are in `room`.
+  bool touches_points(const lanes::SceneView& view, const lanes::SceneRoom& room,
                       SceneLook& look) const;
-  /// Up to one configuration per lane.
-  void find_clearance_pack(const double* q, int count, double* clearance, SceneLook& look) const;
   void add_contacts(int link, const std::vector<Eigen::Vector3d>& centre,
                     std::vector<Contact>& found) const;
   void add_pair_contacts(const std::vector<Eigen::Vector3d>& centre,

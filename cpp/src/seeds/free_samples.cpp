@@ -12,9 +12,8 @@ constexpr int kSampleParts = 32;
 /// Samples that are looked beside, at most: those that overlap least.
 constexpr std::size_t kMostBeside = 24;
 
-/// A number for what alone collided with all lanes of a pack; 0 if that was more than one thing.
+/// A number for what a configuration collided with.
 std::uint32_t number_of(const lanes::SceneCulprit& culprit) {
-  if (!culprit.is_sole) return 0;
   const auto kind = static_cast<std::uint32_t>(culprit.kind);
   const auto index = static_cast<std::uint32_t>(culprit.index);
   const auto link = static_cast<std::uint32_t>(culprit.link);
@@ -106,10 +105,8 @@ const FreeSamples::Overlap* FreeSamples::next_overlap() {
 
 void FreeSamples::screen_pack() {
   const std::size_t count = std::min(kPack, rows() - at_);
-  std::array<double, kPack> clearance{};
-  scene_.data().find_clearance(row(at_), count, clearance.data(), look_);
   for (std::size_t i = at_; i < at_ + count; ++i) {
-    const double above = clearance[i - at_];
+    const double above = scene_.data().find_clearance(row(i), look_);
     if (above > 0) {
       free_[free_count_++] = i;
     } else if (i < to_.samples.size()) {
@@ -118,7 +115,8 @@ void FreeSamples::screen_pack() {
       overlap.sample = to_.samples[i];
       Known& of_sample = known(overlap.sample.place, overlap.sample.branch);
       of_sample.clearance = static_cast<float>(above);
-      of_sample.culprit = number_of(look_.culprit);
+      // Points are no culprit.
+      of_sample.culprit = above < 0 ? number_of(look_.culprit) : 0;
       std::copy_n(row(i), kDof, overlap.q.begin());
     }
   }

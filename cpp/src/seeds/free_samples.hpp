@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Configurations of a self-motion that do not collide, found before they are refined: a scene looks
-// at a pack of them at a time.
+// Configurations of a self-motion that do not collide, found before they are refined.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +26,7 @@ class FreeSamples {
   struct Known {
     /// Of a sample that collides; infinite: it does not exist, or is free.
     float clearance = std::numeric_limits<float>::infinity();
-    /// By what it collides; 0: not known, or by more than one thing.
+    /// By what it collides; 0: not known.
     std::uint32_t culprit = 0;
   };
   /// What it writes to.

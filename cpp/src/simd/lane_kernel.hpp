@@ -96,20 +96,6 @@ IKSEL_INLINE T move_joints(const LaneChainOf<NumberOf<T>>& chain, const T (*J)[6
   return dq2;
 }
 
-/// The lanes where a condition holds, as bits.
-template <typename T, typename Mask>
-IKSEL_INLINE unsigned to_bits(const Mask& condition) {
-  unsigned bits = 0;
-  if (any(condition)) {
-    NumberOf<T> hit[Lanes<T>::kCount];
-    Lanes<T>::store(select(condition, T(1.0), T(0.0)), hit);
-    for (int lane = 0; lane < Lanes<T>::kCount; ++lane) {
-      if (hit[lane] != 0.0) bits |= 1U << static_cast<unsigned>(lane);
-    }
-  }
-  return bits;
-}
-
 /// Iterates the lanes of a pack from `first` on.
 template <typename T, typename Goal, typename Pack>
 IKSEL_INLINE PackResult iterate(const LaneChainOf<NumberOf<T>>& chain, const LaneOptions& options,
@@ -201,7 +187,7 @@ constexpr LaneKernels make_kernels(const char* name) {
           measure_moves<Wide>,
           find_residuals<Wide>,
           count_roots<Wide>,
-          find_clearance<Wide>,
+          find_clearance<Narrow>,
           find_determinants<Wide>,
           evaluate_polynomial<Wide>,
           close_loops<Wide>};

@@ -49,6 +49,25 @@ inline float abs(float x) { return __builtin_fabsf(x); }
 
 inline double abs(double x) { return __builtin_fabs(x); }
 
+/// The lanes where a condition holds, as bits.
+template <typename T, typename Mask>
+IKSEL_INLINE unsigned to_bits(const Mask& condition) {
+#ifdef __AVX__
+  if constexpr (sizeof(Mask) == sizeof(__m256d) && sizeof(NumberOf<T>) == sizeof(double)) {
+    return static_cast<unsigned>(_mm256_movemask_pd(condition));
+  }
+#endif
+  unsigned bits = 0;
+  if (any(condition)) {
+    NumberOf<T> hit[Lanes<T>::kCount];
+    Lanes<T>::store(select(condition, T(1.0), T(0.0)), hit);
+    for (int lane = 0; lane < Lanes<T>::kCount; ++lane) {
+      if (hit[lane] != 0.0) bits |= 1U << static_cast<unsigned>(lane);
+    }
+  }
+  return bits;
+}
+
 /// asin(s) / s for 0 <= s <= 1, to 1e-15 (the rational function of Sun's fdlibm, e_asin.c).
 template <typename T>
 inline T asin_over(const T& s) {

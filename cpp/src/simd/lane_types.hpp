@@ -206,9 +206,8 @@ using CountRoots = void (*)(const double* values, int n, double apart, double* c
 
 struct SceneView;
 struct SceneRoom;
-/// The clearance in each lane (scene_types.hpp).
-using FindClearance = void (*)(const SceneView& scene, const double* q, int wanted, SceneRoom& room,
-                               double* clearance);
+/// The clearance of a configuration (scene_types.hpp).
+using FindClearance = double (*)(const SceneView& scene, const double* q, SceneRoom& room);
 
 /// Iterations of packs of one width.
 struct PackKernels {

@@ -1,275 +1,344 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which configurations of an arm of spheres are free, one in each lane.
+// Whether a configuration of an arm of balls is free: one configuration at a time, with the balls
+// of a node in lanes.
 //
-// What tells is the clearance (scene_types.hpp). What is below a node of a link's tree is looked at
-// where the ball around it touches in some lane, and nothing any more once each lane collides.
+// What tells is the clearance (scene_types.hpp). Of links that may touch, the trees are descended
+// together: those of two links in the frame of the second's body, where its balls stand still.
 #pragma once
 
 #include "simd/lane_math.hpp"
+#include "simd/lane_vector.hpp"
 #include "simd/scene_shapes.hpp"
 #include "simd/scene_types.hpp"
 
 namespace iksel::lanes {
 
-template <typename T>
+/// A body's frame in another.
 struct BodyFrame {
-  Placed<T> x, y, z, p;
+  Vec<double> x, y, z, p;
 };
 
+/// v, in axes of the frame, in those that the frame is seen from.
 template <typename T>
-IKSEL_INLINE Placed<T> in_base(const BodyFrame<T>& f, const double (&v)[3]) {
-  const T a(v[0]);
-  const T b(v[1]);
-  const T c(v[2]);
-  return {f.x.x * a + f.y.x * b + f.z.x * c, f.x.y * a + f.y.y * b + f.z.y * c,
-          f.x.z * a + f.y.z * b + f.z.z * c};
+IKSEL_INLINE Vec<T> turned(const BodyFrame& f, const Vec<T>& v) {
+  return {T(f.x.x) * v.x + T(f.y.x) * v.y + T(f.z.x) * v.z,
+          T(f.x.y) * v.x + T(f.y.y) * v.y + T(f.z.y) * v.z,
+          T(f.x.z) * v.x + T(f.y.z) * v.y + T(f.z.z) * v.z};
+}
+template <typename T>
+IKSEL_INLINE Vec<T> placed(const BodyFrame& f, const Vec<T>& v) {
+  const Vec<T> on = turned(f, v);
+  return {T(f.p.x) + on.x, T(f.p.y) + on.y, T(f.p.z) + on.z};
+}
+/// v in axes of the frame.
+IKSEL_INLINE Vec<double> turned_back(const BodyFrame& f, const Vec<double>& v) {
+  return {dot(f.x, v), dot(f.y, v), dot(f.z, v)};
+}
+/// a seen from b, both in the base frame.
+IKSEL_INLINE BodyFrame seen_from(const BodyFrame& b, const BodyFrame& a) {
+  return {turned_back(b, a.x), turned_back(b, a.y), turned_back(b, a.z),
+          turned_back(b, add(a.p, -1.0, b.p))};
 }
 
-/// The frame of body i, of which the parent's is there.
+/// One configuration, and what touches in it.
 template <typename T>
-IKSEL_INLINE BodyFrame<T> place_body(const SceneBody& body, const BodyFrame<T>& parent,
-                                     const double* q) {
-  BodyFrame<T> f;
-  const double* values = q + body.variable * kWidth;
-  double on_curve[kWidth];
-  if (body.curve != nullptr) {
-    for (int i = 0; i < kWidth; ++i) on_curve[i] = body.curve->at(values[i]).value;
-    values = on_curve;
-  }
-  const T value = Lanes<T>::load(values);
-  const T motion = value * T(body.multiplier) + T(body.offset);
-  const Placed<T> x = in_base(parent, body.x);
-  const Placed<T> y = in_base(parent, body.y);
-  f.z = in_base(parent, body.z);
-  f.p = parent.p + in_base(parent, body.p);
-  if (body.prismatic) {
-    f.x = x;
-    f.y = y;
-    f.p = f.p + Placed<T>{f.z.x * motion, f.z.y * motion, f.z.z * motion};
-    return f;
-  }
-  T s;
-  T c;
-  sincos(motion, s, c);
-  f.x = {x.x * c + y.x * s, x.y * c + y.y * s, x.z * c + y.z * s};
-  f.y = {y.x * c - x.x * s, y.y * c - x.y * s, y.z * c - x.z * s};
-  return f;
-}
-
-template <typename T>
-IKSEL_INLINE Placed<T> load_placed(const double* in) {
-  return {Lanes<T>::load(in), Lanes<T>::load(in + kWidth), Lanes<T>::load(in + 2 * kWidth)};
-}
-template <typename T>
-IKSEL_INLINE void store_placed(const Placed<T>& v, double* out) {
-  Lanes<T>::store(v.x, out);
-  Lanes<T>::store(v.y, out + kWidth);
-  Lanes<T>::store(v.z, out + 2 * kWidth);
-}
-
-/// The lanes of one pack, and what touches in them. Nothing is placed before it is looked at.
-template <typename T>
-class PackOfScenes {
+class SceneCheck {
  public:
   using Kind = SceneCulprit::Kind;
 
-  /// Of the lanes from `first` on.
-  PackOfScenes(const SceneView& scene, const SceneRoom& room, const double* q, int first)
-      : scene_(scene),
-        q_(q + first),
-        frame_(room.frame + first),
-        centre_(room.centre + first),
-        placed_(room.placed) {
-    for (int i = 0; i < scene.nodes; ++i) placed_[i] = 0;
-    store({{T(1.0), T(0.0), T(0.0)},
-           {T(0.0), T(1.0), T(0.0)},
-           {T(0.0), T(0.0), T(1.0)},
-           {T(0.0), T(0.0), T(0.0)}},
-          0);
+  SceneCheck(const SceneView& scene, const SceneRoom& room, const double* q)
+      : scene_(scene), room_(room) {
+    place_bodies(q);
   }
 
-  /// Returns the least clearance. Begins with the culprit, which is that of this pack afterwards if
-  /// all its lanes collide.
-  T find(SceneCulprit& culprit) {
-    ask_again(culprit);
-    culprit.is_sole = !is_open();
-    for (int i = 0; i < scene_.pairs && is_open(); ++i) {
-      test_pair(i);
-      if (!is_open()) culprit = {Kind::pair, i, 0, false};
+  /// Returns the clearance. Begins with the culprit, which is that of this configuration afterwards
+  /// if it collides.
+  double find(SceneCulprit& culprit) {
+    if (!touches_again(culprit)) {
+      place_links();
+      // Each ends the rest if something touches.
+      [[maybe_unused]] const bool touches =
+          test_pairs(culprit) || test_all(scene_.block, scene_.blocks, Kind::block, culprit) ||
+          test_all(scene_.cylinder, scene_.cylinders, Kind::cylinder, culprit) ||
+          test_all(scene_.plane, scene_.planes, Kind::plane, culprit);
     }
-    for (int i = 0; i < scene_.links && is_open(); ++i) {
-      const int body = scene_.link[i].body;
-      if (body != 0 && body != scene_.cleared) test_obstacles(i, culprit);
-    }
-    if (is_open()) place_bodies(scene_.bodies - 1);
-    return least_;
+    return clearance_;
   }
 
  private:
-  /// Whether a lane may still be free.
-  [[nodiscard]] bool is_open() const { return any(least_ > T(0.0)); }
+  /// A ball, and the node that it is around.
+  struct Around {
+    Vec<double> centre;
+    double radius;
+    int node;
+  };
 
-  void ask_again(const SceneCulprit& culprit) {
+  void place_bodies(const double* q) {
+    double motion[kMaxBodies];
+    double s[kMaxBodies];
+    double c[kMaxBodies];
+    // The base has none, nor have lanes without a body.
+    motion[0] = 0;
+    for (int i = 1; i < scene_.bodies; ++i) {
+      motion[i] = motion_of(scene_.body[i], q[scene_.body[i].variable]);
+    }
+    for (int i = scene_.bodies; i % Lanes<T>::kCount != 0; ++i) motion[i] = 0;
+    for (int i = 0; i < scene_.bodies; i += Lanes<T>::kCount) {
+      T sine;
+      T cosine;
+      sincos(Lanes<T>::load(motion + i), sine, cosine);
+      Lanes<T>::store(sine, s + i);
+      Lanes<T>::store(cosine, c + i);
+    }
+    store({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}}, 0);
+    for (int i = 1; i < scene_.bodies; ++i) {
+      const SceneBody& body = scene_.body[i];
+      const BodyFrame parent = frame(body.parent);
+      const Vec<double> x = turned(parent, constant<double>(body.x));
+      const Vec<double> y = turned(parent, constant<double>(body.y));
+      BodyFrame f{x, y, turned(parent, constant<double>(body.z)),
+                  placed(parent, constant<double>(body.p))};
+      if (body.prismatic) {
+        f.p = add(f.p, motion[i], f.z);
+      } else {
+        f.x = add(scaled(c[i], x), s[i], y);
+        f.y = add(scaled(c[i], y), -s[i], x);
+      }
+      store(f, i);
+    }
+  }
+  void store(const BodyFrame& f, int body) {
+    double* out = room_.frame + 12 * body;
+    for (const Vec<double>* v : {&f.x, &f.y, &f.z, &f.p}) {
+      *out++ = v->x;
+      *out++ = v->y;
+      *out++ = v->z;
+    }
+  }
+  [[nodiscard]] IKSEL_INLINE BodyFrame frame(int body) const {
+    const double* in = room_.frame + 12 * body;
+    return {{in[0], in[1], in[2]},
+            {in[3], in[4], in[5]},
+            {in[6], in[7], in[8]},
+            {in[9], in[10], in[11]}};
+  }
+  [[nodiscard]] IKSEL_INLINE Around around(const SceneLink& link) const {
+    return {constant<double>(link.around.centre), link.around.radius, link.root};
+  }
+  /// The balls around links, in the base frame.
+  void place_links() {
+    const int stride = room_.link_stride;
+    double* x = room_.centre;
+    for (int i = 0; i < scene_.links; ++i) {
+      const SceneLink& link = scene_.link[i];
+      Vec<double> centre = constant<double>(link.around.centre);
+      if (link.body != 0) centre = placed(frame(link.body), centre);
+      x[i] = centre.x;
+      x[stride + i] = centre.y;
+      x[2 * stride + i] = centre.z;
+      x[3 * stride + i] = link.around.radius - scene_.smaller;
+    }
+  }
+  /// Whether the balls around two links touch.
+  [[nodiscard]] IKSEL_INLINE bool is_near(int a, int b) const {
+    const int stride = room_.link_stride;
+    const double* x = room_.centre;
+    const Vec<double> d{x[a] - x[b], x[stride + a] - x[stride + b],
+                        x[2 * stride + a] - x[2 * stride + b]};
+    const double reach = x[3 * stride + a] + x[3 * stride + b];
+    return dot(d, d) <= reach * reach;
+  }
+
+  /// Keeps the least clearance of the lanes of a mask, which is not empty.
+  IKSEL_INLINE bool touch(const T& found, unsigned mask) {
+    double of_lane[Lanes<T>::kCount];
+    Lanes<T>::store(found, of_lane);
+    for (int lane = 0; lane < Lanes<T>::kCount; ++lane) {
+      if ((mask >> static_cast<unsigned>(lane) & 1U) != 0)
+        clearance_ = min(clearance_, of_lane[lane]);
+    }
+    return true;
+  }
+  /// Takes the lane of a mask that has the least clearance: it most likely touches.
+  static IKSEL_INLINE int take_least(const double* found, unsigned& mask) {
+    int least = -1;
+    for (int lane = 0; lane < Lanes<T>::kCount; ++lane) {
+      if ((mask >> static_cast<unsigned>(lane) & 1U) == 0) continue;
+      if (least < 0 || found[lane] < found[least]) least = lane;
+    }
+    mask &= ~(1U << static_cast<unsigned>(least));
+    return least;
+  }
+  /// Lanes from `first` on that there are.
+  static IKSEL_INLINE unsigned lanes_up_to(int count, int first) {
+    return (1U << static_cast<unsigned>(min_of(count - first, Lanes<T>::kCount))) - 1U;
+  }
+  static IKSEL_INLINE int min_of(int a, int b) { return a < b ? a : b; }
+
+  bool touches_again(const SceneCulprit& culprit) {
     switch (culprit.kind) {
       case Kind::none:
-        return;
+        return false;
       case Kind::pair:
-        return test_pair(culprit.index);
+        return test_pair(scene_.pair[culprit.index]);
       case Kind::block:
-        return test(culprit.link, scene_.block[culprit.index]);
+        return test_link(culprit.link, scene_.block[culprit.index]);
       case Kind::cylinder:
-        return test(culprit.link, scene_.cylinder[culprit.index]);
+        return test_link(culprit.link, scene_.cylinder[culprit.index]);
       case Kind::plane:
-        return test(culprit.link, scene_.plane[culprit.index]);
+        return test_link(culprit.link, scene_.plane[culprit.index]);
     }
+    return false;
   }
 
-  void store(const BodyFrame<T>& f, int body) {
-    double* out = frame_ + 12 * body * kWidth;
-    store_placed(f.x, out);
-    store_placed(f.y, out + 3 * kWidth);
-    store_placed(f.z, out + 6 * kWidth);
-    store_placed(f.p, out + 9 * kWidth);
-  }
-  [[nodiscard]] IKSEL_INLINE BodyFrame<T> frame(int body) const {
-    const double* in = frame_ + 12 * body * kWidth;
-    return {load_placed<T>(in), load_placed<T>(in + 3 * kWidth), load_placed<T>(in + 6 * kWidth),
-            load_placed<T>(in + 9 * kWidth)};
-  }
-  /// All up to this one; parents come before what they carry.
-  void place_bodies(int last) {
-    for (; bodies_ <= last; ++bodies_) {
-      const SceneBody& body = scene_.body[bodies_];
-      store(place_body(body, frame(body.parent), q_), bodies_);
+  bool test_pairs(SceneCulprit& culprit) {
+    for (int i = 0; i < scene_.pairs; ++i) {
+      const ScenePair& pair = scene_.pair[i];
+      if (!is_near(pair.a, pair.b) || !test_pair(pair)) continue;
+      culprit = {Kind::pair, i, 0};
+      return true;
     }
+    return false;
   }
-  void place_balls(int body, int first, int last) {
-    const BodyFrame<T> f = frame(body);
-    for (int b = first; b < last; ++b) {
-      store_placed(f.p + in_base(f, scene_.ball[b].centre), centre_ + 3 * b * kWidth);
-    }
+  bool test_pair(const ScenePair& pair) {
+    const SceneLink& a = scene_.link[pair.a];
+    const SceneLink& b = scene_.link[pair.b];
+    const BodyFrame from_b = seen_from(frame(b.body), frame(a.body));
+    Around of_a = around(a);
+    of_a.centre = placed(from_b, of_a.centre);
+    return test_nodes(from_b, of_a, around(b));
   }
-  /// A ball of a body; of one that moves it has to be placed.
-  IKSEL_INLINE Placed<T> at(int body, int ball) const {
-    if (body == 0) {
-      const double(&c)[3] = scene_.ball[ball].centre;
-      return {T(c[0]), T(c[1]), T(c[2])};
-    }
-    return load_placed<T>(centre_ + 3 * ball * kWidth);
+  /// The clearances of a node's balls, which stand in lanes, from one.
+  static IKSEL_INLINE T clearance_from(const SceneNode& node, int first, const Vec<T>& centres,
+                                       const Around& one, double less) {
+    return clearance(centres, {T(one.centre.x), T(one.centre.y), T(one.centre.z)},
+                     Lanes<T>::load(node.radius + first) + T(one.radius - less));
   }
-  /// The ball around a node.
-  IKSEL_INLINE Placed<T> around(int body, int node) {
-    const int ball = scene_.node[node].ball;
-    if (body != 0 && placed_[node] == 0) {
-      place_bodies(body);
-      place_balls(body, ball, ball + 1);
-      placed_[node] = 1;
-    }
-    return at(body, ball);
+  static IKSEL_INLINE Vec<T> centres(const SceneNode& node, int first) {
+    return {Lanes<T>::load(node.x + first), Lanes<T>::load(node.y + first),
+            Lanes<T>::load(node.z + first)};
   }
-  IKSEL_INLINE double radius_around(int node) const { return radius(scene_.node[node].ball); }
-  /// The balls of a leaf, of which the one around is placed.
-  void place_leaf(int body, int node) {
-    if (body == 0 || placed_[node] == 2) return;
-    const SceneNode& leaf = scene_.node[node];
-    place_balls(body, leaf.first, leaf.first + leaf.count);
-    placed_[node] = 2;
+  /// Ball `k` of a node in the frame that it is seen from.
+  static IKSEL_INLINE Around child(const SceneNode& node, int k, const Vec<double>& centre) {
+    return {centre, node.radius[k], node.first + k};
   }
 
-  IKSEL_INLINE double radius(int ball) const { return scene_.ball[ball].radius; }
-
-  void test_pair(int pair) {
-    const SceneLink& a = scene_.link[scene_.pair[pair].a];
-    const SceneLink& b = scene_.link[scene_.pair[pair].b];
-    test_nodes(a.body, a.root, b.body, b.root);
-  }
-  void test_nodes(int body_a, int a, int body_b, int b) {
-    const double ra = radius_around(a);
-    const double rb = radius_around(b);
+  /// Whether balls of two links touch; a's frame is seen from b's, as its balls are. Nothing is
+  /// said of a ball whose node is a leaf's.
+  bool test_nodes(const BodyFrame& from_b, const Around& a, const Around& b) {
+    const SceneNode& of_a = scene_.node[a.node];
+    const SceneNode& of_b = scene_.node[b.node];
     // Of both balls of a pair.
     const double less = 2 * scene_.smaller;
-    if (!any(clearance(around(body_a, a), around(body_b, b), ra + rb - less) <= T(0.0))) return;
-    const SceneNode& of_a = scene_.node[a];
-    const SceneNode& of_b = scene_.node[b];
-    if (of_a.is_leaf && of_b.is_leaf) return test_leaves(body_a, a, body_b, b, less);
     // What is larger holds more that is far away.
-    if (of_b.is_leaf || (!of_a.is_leaf && ra > rb)) {
-      for (int i = of_a.first; i < of_a.first + of_a.count && is_open(); ++i) {
-        test_nodes(body_a, i, body_b, b);
+    if (!of_b.is_leaf && (of_a.is_leaf || a.radius <= b.radius)) {
+      for (int first = 0; first < of_b.count; first += Lanes<T>::kCount) {
+        const T found = clearance_from(of_b, first, centres(of_b, first), a, less);
+        unsigned mask = to_bits<T>(found <= T(0.0)) & lanes_up_to(of_b.count, first);
+        if (mask == 0) continue;
+        double of_lane[Lanes<T>::kCount];
+        Lanes<T>::store(found, of_lane);
+        while (mask != 0) {
+          const int k = first + take_least(of_lane, mask);
+          const Around below = child(of_b, k, {of_b.x[k], of_b.y[k], of_b.z[k]});
+          if (test_nodes(from_b, a, below)) return true;
+        }
       }
-    } else {
-      for (int i = of_b.first; i < of_b.first + of_b.count && is_open(); ++i) {
-        test_nodes(body_a, a, body_b, i);
+      return false;
+    }
+    const bool both_leaves = of_a.is_leaf && of_b.is_leaf;
+    for (int first = 0; first < of_a.count; first += Lanes<T>::kCount) {
+      const Vec<T> moved = placed(from_b, centres(of_a, first));
+      const T found = clearance_from(of_a, first, moved, b, less);
+      unsigned mask = to_bits<T>(found <= T(0.0)) & lanes_up_to(of_a.count, first);
+      if (mask == 0) continue;
+      double x[Lanes<T>::kCount];
+      double y[Lanes<T>::kCount];
+      double z[Lanes<T>::kCount];
+      double of_lane[Lanes<T>::kCount];
+      Lanes<T>::store(found, of_lane);
+      Lanes<T>::store(moved.x, x);
+      Lanes<T>::store(moved.y, y);
+      Lanes<T>::store(moved.z, z);
+      while (mask != 0) {
+        const int k = take_least(of_lane, mask);
+        const Around below = child(of_a, first + k, {x[k], y[k], z[k]});
+        if (both_leaves ? test_leaf(of_b, below, less) : test_nodes(from_b, below, b)) return true;
       }
     }
+    return false;
   }
-  void test_leaves(int body_a, int a, int body_b, int b, double less) {
-    place_leaf(body_a, a);
-    place_leaf(body_b, b);
-    const SceneNode& of_a = scene_.node[a];
-    const SceneNode& of_b = scene_.node[b];
-    const Placed<T> around_b = at(body_b, of_b.ball);
-    for (int k = of_a.first; k < of_a.first + of_a.count; ++k) {
-      const Placed<T> c = at(body_a, k);
-      const double r = radius(k) - less;
-      if (!any(clearance(c, around_b, r + radius(of_b.ball)) <= T(0.0))) continue;
-      for (int m = of_b.first; m < of_b.first + of_b.count; ++m) {
-        least_ = min(least_, clearance(c, at(body_b, m), r + radius(m)));
-      }
+  bool test_leaf(const SceneNode& leaf, const Around& ball, double less) {
+    for (int first = 0; first < leaf.count; first += Lanes<T>::kCount) {
+      const T found = clearance_from(leaf, first, centres(leaf, first), ball, less);
+      const unsigned mask = to_bits<T>(found <= T(0.0)) & lanes_up_to(leaf.count, first);
+      if (mask != 0) return touch(found, mask);
     }
+    return false;
   }
 
+  /// Whether balls below a node touch a shape.
   template <typename Shape>
-  void test(int body, int node, const Shape& shape) {
-    if (is_clear(shape, around(body, node), radius_around(node) - scene_.smaller)) return;
-    const SceneNode& of = scene_.node[node];
-    if (!of.is_leaf) {
-      for (int i = of.first; i < of.first + of.count && is_open(); ++i) test(body, i, shape);
-      return;
+  bool test_node(const BodyFrame& body, int at, const Shape& shape) {
+    const SceneNode& node = scene_.node[at];
+    for (int first = 0; first < node.count; first += Lanes<T>::kCount) {
+      const Vec<T> centre = placed(body, centres(node, first));
+      const T radius = Lanes<T>::load(node.radius + first) - T(scene_.smaller);
+      if (is_far(shape, centre, radius)) continue;
+      const T found = clearance(shape, centre, radius);
+      unsigned mask = to_bits<T>(found <= T(0.0)) & lanes_up_to(node.count, first);
+      if (mask != 0 && node.is_leaf) return touch(found, mask);
+      for (int k = first; mask != 0; ++k, mask >>= 1U) {
+        if ((mask & 1U) != 0 && test_node(body, node.first + k, shape)) return true;
+      }
     }
-    place_leaf(body, node);
-    for (int b = of.first; b < of.first + of.count; ++b) {
-      least_ = min(least_, clearance(shape, at(body, b), radius(b) - scene_.smaller));
-    }
-  }
-  /// A link that may touch a shape.
-  template <typename Shape>
-  IKSEL_INLINE void test(int link, const Shape& shape) {
-    test(scene_.link[link].body, scene_.link[link].root, shape);
+    return false;
   }
   template <typename Shape>
-  IKSEL_INLINE void test_all(int link, const Shape* shape, int count, Kind kind,
-                             SceneCulprit& culprit) {
-    for (int i = 0; i < count && is_open(); ++i) {
-      test(link, shape[i]);
-      if (!is_open()) culprit = {kind, i, link, false};
-    }
+  bool test_link(int link, const Shape& shape) {
+    const SceneLink& of = scene_.link[link];
+    return test_node(frame(of.body), of.root, shape);
   }
-  void test_obstacles(int link, SceneCulprit& culprit) {
-    test_all(link, scene_.block, scene_.blocks, Kind::block, culprit);
-    test_all(link, scene_.cylinder, scene_.cylinders, Kind::cylinder, culprit);
-    test_all(link, scene_.plane, scene_.planes, Kind::plane, culprit);
+  template <typename Shape>
+  bool test_all(const Shape* shape, int count, Kind kind, SceneCulprit& culprit) {
+    const int stride = room_.link_stride;
+    const double* x = room_.centre;
+    for (int first = 0; first < scene_.links; first += Lanes<T>::kCount) {
+      const unsigned may = lanes_that_may(first);
+      if (may == 0) continue;
+      const Vec<T> centre{Lanes<T>::load(x + first), Lanes<T>::load(x + stride + first),
+                          Lanes<T>::load(x + 2 * stride + first)};
+      const T radius = Lanes<T>::load(x + 3 * stride + first);
+      for (int i = 0; i < count; ++i) {
+        if (is_far(shape[i], centre, radius)) continue;
+        unsigned mask = may & to_bits<T>(clearance(shape[i], centre, radius) <= T(0.0));
+        for (int link = first; mask != 0; ++link, mask >>= 1U) {
+          if ((mask & 1U) == 0 || !test_link(link, shape[i])) continue;
+          culprit = {kind, i, link};
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+  /// Links from `first` on that may touch obstacles.
+  [[nodiscard]] unsigned lanes_that_may(int first) const {
+    unsigned mask = 0;
+    for (int lane = 0; lane < min_of(Lanes<T>::kCount, scene_.links - first); ++lane) {
+      const int body = scene_.link[first + lane].body;
+      if (body != 0 && body != scene_.cleared) mask |= 1U << static_cast<unsigned>(lane);
+    }
+    return mask;
   }
 
   const SceneView& scene_;
-  const double* q_;
-  double* frame_;
-  double* centre_;
-  unsigned char* placed_;
-  int bodies_ = 1;  ///< so many are placed
-  T least_ = T(1.0);
+  const SceneRoom& room_;
+  double clearance_ = 1;
 };
 
 template <typename T>
-void find_clearance(const SceneView& scene, const double* q, int wanted, SceneRoom& room,
-                    double* clearance) {
-  bool is_sole = true;
-  for (int first = 0; first < wanted; first += Lanes<T>::kCount) {
-    const T least = PackOfScenes<T>(scene, room, q, first).find(room.culprit);
-    Lanes<T>::store(least, clearance + first);
-    is_sole = is_sole && room.culprit.is_sole;
-  }
-  room.culprit.is_sole = is_sole;
+double find_clearance(const SceneView& scene, const double* q, SceneRoom& room) {
+  return SceneCheck<T>(scene, room, q).find(room.culprit);
 }
 
 }  // namespace iksel::lanes

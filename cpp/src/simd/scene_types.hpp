@@ -25,16 +25,19 @@ struct SceneBall {
   double radius;     ///< [m]
 };
 
-/// A node of a tree of balls: `ball` is around the `count` balls, of a leaf, or nodes that begin at
-/// `first`.
+/// A node of a tree of balls. Its `count` balls stand in lanes: those of a leaf are a link's own,
+/// of another node ball k is around all that is below node `first + k`.
 struct SceneNode {
-  int ball, first, count;
+  alignas(64) double x[kWidth], y[kWidth], z[kWidth];  ///< centres in the body's frame [m]
+  double radius[kWidth];                               ///< [m]
+  int first, count;
   bool is_leaf;
 };
 
 /// Balls `first` to `first + count - 1` are a link's, in the tree that hangs from node `root`.
 struct SceneLink {
   int body, first, count, root;
+  SceneBall around;  ///< around them all
 };
 
 struct ScenePair {
@@ -64,36 +67,31 @@ struct ScenePlane {
   double offset;  ///< with its margin [m]
 };
 
-/// What refused all lanes of the last pack: configurations that are looked at one after the other
-/// mostly fail by the same. Either a pair, or a link and one of the shapes of a kind.
+/// What refused the last configuration that was refused: those that are looked at one after the
+/// other mostly fail by the same. Either a pair, or a link and one of the shapes of a kind.
 struct SceneCulprit {
   enum class Kind { none, pair, block, cylinder, plane } kind = Kind::none;
   int index = 0;  ///< of the pair or the shape
   int link = 0;
-  /// Whether each lane of the last pack collides by it alone.
-  bool is_sole = false;
 };
 
-/// Room that find_clearance writes to.
+/// Room that find_clearance writes to. Number i of the frame of body b in the base frame, columns
+/// x, y, z and p, is at frame[12 b + i].
 struct SceneRoom {
-  double* frame;          ///< 12 kWidth for each body
-  double* centre;         ///< 3 kWidth for each ball
-  unsigned char* placed;  ///< for each node: whether its ball is placed, 1, and a leaf's too, 2
+  double* frame;    ///< 12 for each body
+  double* centre;   ///< of the balls around links: x of each, then y, z and the radius
+  int link_stride;  ///< from x to y, a multiple of kWidth
   SceneCulprit culprit;
 };
 
-/// find_clearance takes joint value j of lane l at q[j kWidth + l], and gives at clearance[l] the
-/// least of distance^2 - radius^2 over all that could touch [m^2]: above 0 where nothing does, and
-/// 1 at most. Where something touches it is the least of what was looked at: not all, if each lane
-/// collides. Number i of the frame of body b, columns x, y, z and p, is then at
-/// frame[(12 b + i) kWidth + l], unless each lane collides. Only the first `wanted` lanes are
-/// looked at; the others must hold joint values too.
+/// find_clearance takes the joint values of one configuration, and returns its clearance:
+/// distance^2 - radius^2 [m^2], the least of the balls that were found to touch, or 1 if none does.
+/// One that touches ends it.
 struct SceneView {
-  int bodies, balls, links, nodes, pairs, blocks, cylinders, planes;
+  int bodies, links, pairs, blocks, cylinders, planes;
   double smaller;         ///< by so much is each ball than it says [m]
   int cleared;            ///< a body that touches no obstacle, as is known; 0 if none is
   const SceneBody* body;  ///< the first is the base, which has no joint
-  const SceneBall* ball;
   const SceneLink* link;
   const SceneNode* node;
   const ScenePair* pair;

@@ -77,9 +77,7 @@ def data_folder() -> Path:
 
 
 def home_of(robot: iksel.Robot, srdf: Path | None) -> tuple[str, Array]:
-    """The first state that the SRDF has for the arm; else all joints at 0, or as near
-    as limits allow.
-    """
+    """The SRDF's first state of the arm; else all joints at 0, or as near as allowed."""
     states = iksel.srdf.Srdf(srdf).states(robot) if srdf else {}
     if states:
         name = next(iter(states))
@@ -153,7 +151,9 @@ def run(args: argparse.Namespace) -> int:
     """Measure, and print JSON."""
     unknown = sorted(set(args.robots) - set(ROBOTS))
     if unknown:
-        raise SystemExit(f"bench body: no {', '.join(unknown)}; has {', '.join(ROBOTS)}")
+        raise SystemExit(
+            f"bench body: no {', '.join(unknown)}; has {', '.join(ROBOTS)}"
+        )
     rows: dict[str, Any] = {"simd": iksel.simd_level()}
     rows |= {name: measured(name, args) for name in args.robots}
     print(json.dumps(rows, indent=2))

@@ -77,7 +77,7 @@ def data_folder() -> Path:
 
 
 def home_of(robot: iksel.Robot, srdf: Path | None) -> tuple[str, Array]:
-    """The SRDF's first state of the arm; else all joints at 0, or as near as allowed."""
+    """The SRDF's first state of the arm; else all joints at 0, or nearly."""
     states = iksel.srdf.Srdf(srdf).states(robot) if srdf else {}
     if states:
         name = next(iter(states))

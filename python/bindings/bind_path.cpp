@@ -169,7 +169,9 @@ Args:
     start: joint values, (dof,) [rad or m]; those outside the limits are taken to be at them.
     closest: True, or six weights as in Solver.solve: at poses that cannot be reached from where
         the arm is, it goes downhill to where it is nearest, with Status.closest, and comes back
-        with the target on the side that it left from.
+        with the target on the side that it left from. The tool is at most three times as fast
+        as the target, both measured by the weights; a target at rest counts as fast as it last
+        was.
 
 Raises:
     InvalidArgumentError: wrong shape or dtype, or a number that is not finite.)");
@@ -194,7 +196,7 @@ Args:
 
 Returns:
     A Result. Status `solved`: there. `too_fast`: the arm needs more time, and went as far on the
-    straight way in joint space as it could. `closest`: not there, but as near as it gets from
+    straight way in joint space as it, or its tool, could. `closest`: not there, but as near as it gets from
     here. Any other: no continuation, and the arm stays.
 
 Raises:
@@ -213,16 +215,23 @@ Raises:
   });
   tracker.def(py::pickle(
       [](const Tracker& self) -> py::object {
-        return py::make_tuple(self.solver(), to_array(self.q()), weights_of(self),
-                              to_array(self.reached()));
+        const auto& [last, speed] = self.stream();
+        return py::make_tuple(
+            self.solver(), to_array(self.q()), weights_of(self), to_array(self.reached()),
+            last ? py::object(to_array(Pose(*last))) : py::object(py::none()), speed);
       },
       [](const py::object& state) {
-        PickleState in(state, "Tracker", 4);
+        PickleState in(state, "Tracker", 6);
         const auto solver = in.value<Solver>("solver");
         const int dof = solver.robot().dof();
         const JointVector q = as_joints(in.object(), dof, "pickled Tracker, q");
         const auto closest = as_closest(in.object());
-        return Tracker(solver, q, closest, as_joints(in.object(), dof, "pickled Tracker, reached"));
+        const JointVector reached = as_joints(in.object(), dof, "pickled Tracker, reached");
+        TargetStream stream;
+        const py::object last = in.object();
+        if (!last.is_none()) stream.last = as_pose(last, "pickled Tracker, target");
+        stream.speed = in.value<double>("speed");
+        return Tracker(solver, q, closest, reached, stream);
       }));
 }
 

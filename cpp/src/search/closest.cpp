@@ -17,6 +17,12 @@ namespace {
 /// best; where there is no screen, at random.
 constexpr int kScreenedDescents = 4;
 constexpr float kHopeful = 1.5F;
+/// Where less is left, the arm almost reaches the target: more are followed, of single precision's
+/// rounding as many as it leaves open, and what the sweep of a joint found nearest [rad^2].
+constexpr float kAlmost = 3e-4F;
+constexpr float kRounding = 2e-6F;
+constexpr int kAlmostDescents = 8;
+constexpr std::size_t kSweptDescents = 2;
 constexpr int kDescentSteps = 40;
 /// Seeds of the screen nearer than this in every joint end at the same place [rad or m].
 constexpr double kSameSeed = 0.1;
@@ -79,12 +85,15 @@ class Minima {
 
 /// The seeds of the screen that are worth it.
 void descend_from_screen(const ChainModel& model, const Goal& goal, const Vector6& weights,
-                         LaneQuery& query, ClosestScreen& screen, Minima& minima, Result& result) {
-  screen.find(goal, weights, query);
-  JointVector tried[kScreenedDescents];
+                         Workspace::InLanes& lanes, Minima& minima, Result& result) {
+  ClosestScreen& screen = lanes.closest;
+  screen.find(goal, weights, lanes.query);
+  const bool is_almost_reached = screen.remainder(0) < kAlmost;
+  const int most = is_almost_reached ? kAlmostDescents : kScreenedDescents;
+  JointVector tried[kAlmostDescents];
   int count = 0;
-  for (int i = 0; i < ClosestScreen::size() && count < kScreenedDescents; ++i) {
-    if (screen.remainder(i) > kHopeful * screen.remainder(0)) break;
+  for (int i = 0; i < ClosestScreen::size() && count < most; ++i) {
+    if (screen.remainder(i) > kHopeful * screen.remainder(0) + kRounding) break;
     const JointVector seed = screen.q(i);
     const bool is_known = std::any_of(tried, tried + count, [&](const JointVector& other) {
       return model.joints.distance(seed, other, kSameSeed) < kSameSeed;
@@ -94,6 +103,12 @@ void descend_from_screen(const ChainModel& model, const Goal& goal, const Vector
     minima.descend(seed);
   }
   result.attempts += ClosestScreen::moved();
+  if (!is_almost_reached || !goal.is_full_pose() || !lanes.sweep) return;
+  std::vector<JointVector> swept;
+  if (!lanes.sweep->find(lanes.query.reduce(goal.target()))) {
+    lanes.sweep->add_nearest(kSweptDescents, swept);
+  }
+  for (const JointVector& seed : swept) minima.descend(seed);
 }
 
 }  // namespace
@@ -123,8 +138,7 @@ void give_closest(const ChainModel& model, const SolverOptions& options, const G
   const auto given = std::min(request.seeds.size(), static_cast<std::size_t>(options.max_attempts));
   for (std::size_t i = 0; i < given; ++i) minima.descend(request.seeds[i]);
   if (request.database_seeds && workspace.lanes) {
-    descend_from_screen(model, goal, weights, workspace.lanes->query, workspace.lanes->closest,
-                        minima, result);
+    descend_from_screen(model, goal, weights, *workspace.lanes, minima, result);
   } else if (request.database_seeds) {
     Random random(options.seed);
     JointVector seed(model.dof);

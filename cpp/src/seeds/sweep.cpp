@@ -39,6 +39,15 @@ bool Sweep::find(const Pose& Y) {
   return false;
 }
 
+void Sweep::add_nearest(std::size_t most, std::vector<JointVector>& q) {
+  for (const LeastPlace& near : nearest_) {
+    if (most-- == 0) return;
+    branches_.solve_all(places_.value(near.place));
+    JointVector& at = q.emplace_back(SweptBranches::kDof);
+    branches_.copy_joints(near.branch, at.data());
+  }
+}
+
 bool Sweep::take_answer(int place) {
   const SweptBranches::Row& off = rows_[static_cast<std::size_t>(place)];
   if (*std::min_element(off.begin(), off.end()) > 0) return false;

@@ -27,6 +27,9 @@ class Sweep {
   /// Adds the branches inside the limits at every `stride`-th sample from `first` on, seven joint
   /// values each [rad].
   void add_samples(const Pose& Y, int first, int stride, std::vector<double>& q);
+  /// Where find() found none: adds the joint values of the branches that came nearest to an answer
+  /// at the samples, inside the limits or not.
+  void add_nearest(std::size_t most, std::vector<JointVector>& q);
   /// A branch at a sample of the swept joint.
   struct Sample {
     int place, branch;

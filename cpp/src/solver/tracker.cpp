@@ -23,15 +23,24 @@ JointVector lean(const JointVector& q, const JointVector& to) {
   return longest > kLean ? JointVector(q + kLean / longest * way) : to;
 }
 
+/// How far a pose is from another, by the largest of the weights of position and of rotation.
+double distance(const Pose& a, const Pose& b, const Vector6& weights) {
+  const double position = (a.translation() - b.translation()).norm();
+  const double rotation = Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle();
+  return std::hypot(weights.head<3>().maxCoeff() * position,
+                    weights.tail<3>().maxCoeff() * rotation);
+}
+
 }  // namespace
 
 Tracker::Tracker(const Solver& solver, const JointVector& start,
                  const std::optional<PoseWeights>& closest,
-                 const std::optional<JointVector>& reached)
+                 const std::optional<JointVector>& reached, const TargetStream& stream)
     : solver_(solver),
       q_(start),
       closest_(closest),
       reached_(reached ? *reached : start),
+      stream_(stream),
       is_at_edge_(closest && reached_ != start) {
   const Robot& robot = solver.robot();
   for (JointVector* q : {&q_, &reached_}) {
@@ -41,6 +50,25 @@ Tracker::Tracker(const Solver& solver, const JointVector& start,
     *q = robot.model().joints.clamp(*q);
   }
   if (closest) closest->validate();
+  if (stream.last) check_pose(Pose(*stream.last));
+  if (!(stream.speed >= 0) || !std::isfinite(stream.speed)) {
+    throw InvalidArgumentError("speed: " + number_text(stream.speed) + " is not 0 or more");
+  }
+}
+
+double Tracker::part_for_tool(const JointVector& move, double part, double dt) const {
+  constexpr double kShorter = 0.9;
+  const ChainModel& model = solver_.robot().model();
+  const Vector6 weights = to_vector(*closest_, solver_.database().data());
+  const double most = kFastestTool * stream_.speed * dt;
+  const Pose here = model.fk(q_.data());
+  while (part > 0) {
+    const JointVector q = q_ + part * move;
+    const double way = distance(here, model.fk(q.data()), weights);
+    if (way <= most) break;
+    part *= std::max(kShorter * most / way, 1e-3);
+  }
+  return part;
 }
 
 Result Tracker::track(const Pose& T_base_tip, double dt, const Scene* scene) {
@@ -52,6 +80,12 @@ Result Tracker::track(const Pose& T_base_tip, double dt, const Scene* scene) {
   const ChainModel& model = solver_.robot().model();
   if (scene != nullptr) scene->check_fits(solver_.robot());
   const Goal goal(model, solver_.impl_->task, target, scene);
+  if (closest_) {
+    const Pose last = stream_.last ? Pose(*stream_.last) : model.fk(q_.data());
+    const double way = distance(last, target, to_vector(*closest_, solver_.database().data()));
+    if (way > 0) stream_.speed = way / dt;
+    stream_.last = target;
+  }
   Result result;
   const JointVector from = is_at_edge_ ? lean(q_, reached_) : q_;
   JointVector end = from;
@@ -70,6 +104,7 @@ Result Tracker::track(const Pose& T_base_tip, double dt, const Scene* scene) {
   for (int j = 0; j < model.dof; ++j) {
     if (std::abs(move[j]) > longest[j]) part = std::min(part, longest[j] / std::abs(move[j]));
   }
+  if (closest_ && stream_.speed > 0) part = part_for_tool(move, part, dt);
   if (part < 1) {
     result.status = Status::too_fast;
     end = q_ + part * move;

@@ -80,7 +80,10 @@ class SceneCheck {
     // The base has none, nor have lanes without a body.
     motion[0] = 0;
     for (int i = 1; i < scene_.bodies; ++i) {
-      motion[i] = motion_of(scene_.body[i], q[scene_.body[i].variable]);
+      const SceneBody& body = scene_.body[i];
+      const double value = q[body.variable];
+      const double followed = body.curve == nullptr ? value : body.curve->at(value).value;
+      motion[i] = followed * body.multiplier + body.offset;
     }
     for (int i = scene_.bodies; i % Lanes<T>::kCount != 0; ++i) motion[i] = 0;
     for (int i = 0; i < scene_.bodies; i += Lanes<T>::kCount) {
@@ -109,7 +112,8 @@ class SceneCheck {
   }
   void store(const BodyFrame& f, int body) {
     double* out = room_.frame + 12 * body;
-    for (const Vec<double>* v : {&f.x, &f.y, &f.z, &f.p}) {
+    const Vec<double>* const columns[] = {&f.x, &f.y, &f.z, &f.p};
+    for (const Vec<double>* v : columns) {
       *out++ = v->x;
       *out++ = v->y;
       *out++ = v->z;

@@ -2403,7 +2403,9 @@ class Tracker:
             start: joint values, (dof,) [rad or m]; those outside the limits are taken to be at them.
             closest: True, or six weights as in Solver.solve: at poses that cannot be reached from where
                 the arm is, it goes downhill to where it is nearest, with Status.closest, and comes back
-                with the target on the side that it left from.
+                with the target on the side that it left from. The tool is at most three times as fast
+                as the target, both measured by the weights; a target at rest counts as fast as it last
+                was.
 
         Raises:
             InvalidArgumentError: wrong shape or dtype, or a number that is not finite.
@@ -2422,7 +2424,7 @@ class Tracker:
 
         Returns:
             A Result. Status `solved`: there. `too_fast`: the arm needs more time, and went as far on the
-            straight way in joint space as it could. `closest`: not there, but as near as it gets from
+            straight way in joint space as it, or its tool, could. `closest`: not there, but as near as it gets from
             here. Any other: no continuation, and the arm stays.
 
         Raises:

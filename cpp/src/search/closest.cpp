@@ -104,11 +104,10 @@ void descend_from_screen(const ChainModel& model, const Goal& goal, const Vector
   }
   result.attempts += ClosestScreen::moved();
   if (!is_almost_reached || !goal.is_full_pose() || !lanes.sweep) return;
-  std::vector<JointVector> swept;
   if (!lanes.sweep->find(lanes.query.reduce(goal.target()))) {
-    lanes.sweep->add_nearest(kSweptDescents, swept);
+    lanes.sweep->visit_nearest(kSweptDescents,
+                               [&](const JointVector& seed) { minima.descend(seed); });
   }
-  for (const JointVector& seed : swept) minima.descend(seed);
 }
 
 }  // namespace

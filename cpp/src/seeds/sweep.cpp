@@ -39,12 +39,13 @@ bool Sweep::find(const Pose& Y) {
   return false;
 }
 
-void Sweep::add_nearest(std::size_t most, std::vector<JointVector>& q) {
+void Sweep::visit_nearest(std::size_t most, FunctionRef<void(const JointVector&)> visit) {
+  JointVector q(SweptBranches::kDof);
   for (const LeastPlace& near : nearest_) {
     if (most-- == 0) return;
     branches_.solve_all(places_.value(near.place));
-    JointVector& at = q.emplace_back(SweptBranches::kDof);
-    branches_.copy_joints(near.branch, at.data());
+    branches_.copy_joints(near.branch, q.data());
+    visit(q);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <vector>
 
+#include "base/function_ref.hpp"
 #include "base/work.hpp"
 #include "seeds/swept_branches.hpp"
 
@@ -27,9 +28,9 @@ class Sweep {
   /// Adds the branches inside the limits at every `stride`-th sample from `first` on, seven joint
   /// values each [rad].
   void add_samples(const Pose& Y, int first, int stride, std::vector<double>& q);
-  /// Where find() found none: adds the joint values of the branches that came nearest to an answer
-  /// at the samples, inside the limits or not.
-  void add_nearest(std::size_t most, std::vector<JointVector>& q);
+  /// Where find() found none: visits the joint values of the branches that came nearest to an
+  /// answer at the samples, inside the limits or not.
+  void visit_nearest(std::size_t most, FunctionRef<void(const JointVector&)> visit);
   /// A branch at a sample of the swept joint.
   struct Sample {
     int place, branch;

@@ -162,7 +162,10 @@ std::string explain(const py::detail::function_record& record, PyObject* const* 
   }
   const std::size_t own = record.is_method ? 1 : 0;
   MisfitCall call{function, {}, count < own ? 0 : count - own, keywords};
-  for (const auto* r = &record; r != nullptr; r = r->next) call.forms.emplace_back(*r);
+  for (const auto* r = &record; r != nullptr; r = r->next) {
+    // One that takes any keyword stands before one that lists them (keywords.hpp).
+    if (!r->has_kwargs || r->next == nullptr) call.forms.emplace_back(*r);
+  }
   const std::string sentence = call.sentence();
   if (!sentence.empty()) return sentence;
   return function + "() does not take (" + type_names(args, count + keywords.size()) + "); it is " +

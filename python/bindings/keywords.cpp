@@ -47,6 +47,20 @@ void Given::read_into(void* out, const std::type_info& type, int dof, const char
   }
 }
 
+void find_given(const py::kwargs& given, const std::vector<MethodKeyword>& keywords,
+                py::handle* values) {
+  for (const auto& [name, value] : given) {
+    std::size_t i = 0;
+    while (i < keywords.size() && name.ptr() != keywords[i].name) ++i;
+    if (i == keywords.size()) {  // not interned, or unknown
+      i = 0;
+      while (i < keywords.size() && PyUnicode_Compare(name.ptr(), keywords[i].name) != 0) ++i;
+    }
+    if (i == keywords.size()) throw py::reference_cast_error();
+    values[i] = value;
+  }
+}
+
 std::vector<MethodKeyword> choose_keywords(const std::vector<Keyword>& known,
                                            const char* const* names, std::size_t count,
                                            std::vector<py::arg_v>& arguments) {
@@ -55,7 +69,8 @@ std::vector<MethodKeyword> choose_keywords(const std::vector<Keyword>& known,
     for (const Keyword& keyword : known) {
       if (std::strcmp(keyword.name, names[i]) != 0) continue;
       const py::object value = keyword.type->shown(default_of(keyword));
-      chosen.push_back({keyword, value.ptr()});
+      PyObject* interned = PyUnicode_InternFromString(keyword.name);  // lives as long as Python
+      chosen.push_back({keyword, interned, value.ptr()});
       arguments.emplace_back(keyword.name, value);
     }
   }

@@ -74,6 +74,7 @@ Keyword keyword(const char* name, T Struct::*member, const char* doc) {
 /// A keyword of a method, and the object that stands for it where it is not given.
 struct MethodKeyword {
   Keyword keyword;
+  PyObject* name;        ///< interned, as most callers' are
   PyObject* by_default;  ///< kept alive by the method
 };
 
@@ -120,6 +121,11 @@ std::string method_signature(const MethodText& text, const std::vector<MethodKey
                              std::size_t positional);
 std::string method_doc(const MethodText& text, const std::vector<MethodKeyword>& keywords);
 
+/// Writes what is given into `values`, which hold the defaults; throws what makes pybind11 try the
+/// next overload where a name is none of the keywords'.
+void find_given(const py::kwargs& given, const std::vector<MethodKeyword>& keywords,
+                py::handle* values);
+
 using MethodBody = py::object (*)(const Solver& self, py::handle pose, const Given& given);
 
 namespace detail {
@@ -135,12 +141,30 @@ void def_method(py::class_<Solver>& cls, const MethodText& text, const std::vect
   constexpr std::size_t kCount = kPositional + sizeof...(K);
   std::vector<py::arg_v> arguments;
   const auto keywords = choose_keywords(known, names, kCount, arguments);
+  const auto call = [keywords, body](const Solver& self, py::handle pose,
+                                     const std::array<py::handle, kCount>& values) {
+    return body(self, pose, Given(keywords.data(), values.data(), kCount));
+  };
+  {
+    // pybind11 makes a string of each argument's name at each call, which takes as long as a solve
+    // does. So this overload takes what fits; the other says what the arguments are, also where
+    // they do not fit.
+    py::options options;
+    options.disable_function_signatures();
+    cls.def(
+        text.name,
+        [keywords, call](const Solver& self, py::handle pose, const py::kwargs& given) {
+          std::array<py::handle, kCount> values;
+          for (std::size_t i = 0; i < kCount; ++i) values[i] = keywords[i].by_default;
+          find_given(given, keywords, values.data());
+          return call(self, pose, values);
+        },
+        py::arg(text.pose));
+  }
   def(
       cls, text.name, method_signature(text, keywords, kPositional), method_doc(text, keywords),
-      [keywords, body](const Solver& self, py::handle pose, Value<P>... positional,
-                       Value<K>... others) {
-        const std::array<py::handle, kCount> values{positional..., others...};
-        return body(self, pose, Given(keywords.data(), values.data(), kCount));
+      [call](const Solver& self, py::handle pose, Value<P>... positional, Value<K>... others) {
+        return call(self, pose, {positional..., others...});
       },
       py::arg(text.pose), arguments[P]..., py::kw_only(), arguments[kPositional + K]...);
 }

@@ -26,6 +26,8 @@ class ArmLinks:
         index: For each link its place among them.
         body: For each link the first that it never moves against.
         base: The arm's base link.
+        parent_of: For each joint the link that it is on.
+        child_of: For each joint the link that it carries.
     """
 
     def __init__(
@@ -49,6 +51,8 @@ class ArmLinks:
         self.base = robot.base_link
         self.index = {name: i for i, name in enumerate(self.links)}
         self.body = self._find_bodies()
+        self.parent_of = {joint.name: joint.parent_link for joint in self._joints}
+        self.child_of = {joint.name: joint.child_link for joint in self._joints}
 
     def poses(self, q: FloatArray) -> FloatArray:
         """Poses of the links in the frame of one of them, (n, links, 4, 4).
@@ -84,6 +88,28 @@ class ArmLinks:
             if upper is not None:
                 found |= {frozenset((a, b)) for a in lower for b in members[upper]}
         return found
+
+    def joints_between(self, a: str, b: str) -> list[str] | None:
+        """The joints that move two links against each other, from one to the other.
+
+        None where others than the arm's do, such as mimic joints.
+        """
+        to_a, to_b = self._joints_to(a), self._joints_to(b)
+        shared = sum(x == y for x, y in zip(to_a, to_b))  # noqa: B905 (the shorter ends)
+        found = to_a[: shared - 1 : -1] if shared else to_a[::-1]
+        found += to_b[shared:]
+        return found if set(found) <= set(self._robot.joint_names) else None
+
+    def _joints_to(self, link: str) -> list[str]:
+        """The joints between the root and a link that ever move it."""
+        above = {joint.child_link: joint for joint in self._joints}
+        found = []
+        while link in above:
+            joint = above[link]
+            if self.body[link] == link:
+                found.append(joint.name)
+            link = joint.parent_link
+        return found[::-1]
 
     def _find_arm(self, text: str, robot: Robot, others: Mapping[str, float]) -> Robot:
         """The same arm among the links of this URDF, all other joints held."""

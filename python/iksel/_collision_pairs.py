@@ -87,7 +87,7 @@ class PairSampler:
 
     def _always(self, pair: Pair, margin: float) -> bool:
         """Whether the links are within margin in all samples."""
-        parts = self._parts(pair)
+        parts = self._shapes.parts(pair)
         return all(
             any(
                 self._shapes.touch(placed, n, parts[k], margin)
@@ -99,16 +99,12 @@ class PairSampler:
 
     def _ever(self, pair: Pair, margin: float) -> bool:
         """Whether the links' hulls are within margin in any sample."""
-        parts = self._parts(pair)
+        parts = self._shapes.parts(pair)
         return any(
             self._shapes.touch(placed, n, parts[k], margin, hulls=True)
             for placed in self._chunks
             for n, k in np.argwhere(placed.near(np.array(parts), margin))
         )
-
-    def _parts(self, pair: Pair) -> list[tuple[int, int]]:
-        a, b = (self._shapes.of_link[link] for link in pair)
-        return [(i, j) for i in a for j in b]
 
 
 def _ends(element: ET.Element) -> frozenset[str]:

@@ -98,6 +98,11 @@ class Shapes:
         """Coal's geometry of a shape."""
         return self._shapes[shape].geometry
 
+    def parts(self, pair: tuple[str, str]) -> list[tuple[int, int]]:
+        """The pairs of shapes of two links."""
+        a, b = (self.of_link[link] for link in pair)
+        return [(i, j) for i in a for j in b]
+
     def touch(
         self,
         placed: Placed,

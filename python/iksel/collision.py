@@ -20,6 +20,7 @@ from iksel_cpp import InvalidArgumentError, UnknownNameError
 from iksel._arm_links import ArmLinks
 from iksel._arrays import as_floats
 from iksel._collision_pairs import PairSampler, srdf_pairs, srdf_text
+from iksel._collision_proof import PairProver
 from iksel._collision_shapes import Shapes, import_coal, place, read_shapes
 from iksel._urdf_xml import read_xml
 from iksel.description import read_description
@@ -48,6 +49,8 @@ class SelfCollision:
     - "adjacent": one joint connects them; links without geometry between them belong to
       the joint.
     - "srdf: ...": the SRDF disables the pair, with its reason.
+    - "apart": one or two joints move them against each other, and wherever these are,
+      the links stay clear of each other; that is certain.
     - "always": they touch in all samples.
     - "never": they stay clear of each other in all samples. Samples can miss a
       collision that is rare; an SRDF or `samples=0` ignores none for that reason.
@@ -115,6 +118,7 @@ class SelfCollision:
         self._kept = self._read_pairs("keep", keep)
         self._ignored: dict[Pair, str] = {}
         self._ignore_listed(srdf, self._read_pairs("ignore", ignore))
+        self._ignore_apart(robot, margin)
         self._margins = dict.fromkeys(self._left(), margin)
         if samples:
             q = robot.random_configurations(samples, seed=seed)
@@ -232,6 +236,13 @@ class SelfCollision:
                 self._ignored[a, b] = "adjacent"
             elif pair in disabled:
                 self._ignored[a, b] = f"{_FROM_SRDF}{disabled[pair]}"
+
+    def _ignore_apart(self, robot: Robot, margin: float) -> None:
+        """Ignore pairs that are proven to stay farther apart than the margin."""
+        prover = PairProver(self._shapes, self._links, robot)
+        for pair in self._left():
+            if frozenset(pair) not in self._kept and prover.are_apart(pair, margin):
+                self._ignored[pair] = "apart"
 
     def _ignore_sampled(self, q: FloatArray, margin: float, *, never: bool) -> None:
         """Ignore pairs that always touch or never do; hold close ones to 0 m."""

@@ -102,7 +102,7 @@ def test_errors_of_an_srdf_say_what_is_wrong(arm) -> None:
 
 def test_the_pairs_found_are_saved_as_an_srdf(arm, tmp_path) -> None:
     found = collision.SelfCollision(BUMPED, arm, samples=300)
-    assert set(found.ignored.values()) == {"fixed", "adjacent", "always", "never"}
+    assert set(found.ignored.values()) == {"fixed", "adjacent", "always", "apart"}
     found.save_srdf(tmp_path / "found.srdf")
     again = collision.SelfCollision(BUMPED, arm, srdf=tmp_path / "found.srdf")
     assert again.pairs == found.pairs
@@ -126,7 +126,7 @@ def test_pairs_that_always_or_never_touch_are_found(arm) -> None:
     assert not collision.SelfCollision(BUMPED, arm, samples=0)(q).any()
     free = collision.SelfCollision(BUMPED, arm, samples=500)
     assert free.ignored["l0", "l2"] == "always"
-    assert free.ignored["l3", "bead"] == "never"
+    assert free.ignored["l3", "bead"] == "apart"
     assert ("l1", "l6") in free.pairs
     assert 20 < free(q).sum() < 200
     again = collision.SelfCollision(BUMPED, arm, samples=500, seed=0)
@@ -139,7 +139,7 @@ def test_pairs_that_always_or_never_touch_are_found(arm) -> None:
     kept = collision.SelfCollision(BUMPED, arm, samples=500, keep=[("l0", "l2")])
     assert not kept(q).any()
     # What never touches does not in the samples of others either.
-    never = [pair for pair, why in free.ignored.items() if why == "never"]
+    never = [pair for pair, why in free.ignored.items() if why in {"apart", "never"}]
     only = collision.SelfCollision(
         BUMPED, arm, samples=0, ignore=free.pairs, keep=never
     )
@@ -152,28 +152,107 @@ def test_pairs_that_always_or_never_touch_are_found(arm) -> None:
         collision.SelfCollision(URDF, arm, keep=[("l0", "elbow")])
 
 
-def orbit(distance: float) -> str:
-    """Two balls of 0.1 m, one around the other on two axes, and a bead between."""
+def orbit(distance: float, axes: int) -> str:
+    """Two balls of 0.1 m, one around the other on some axes, and a bead between."""
+    names = ["sun", *(f"dust{i}" for i in range(1, axes)), "moon"]
     balls = "".join(
         f'<link name="{name}"><collision><origin xyz="{x} 0 0"/>'
         f'<geometry><sphere radius="{r}"/></geometry></collision></link>'
-        for name, x, r in (("sun", 0, 0.1), ("dust", 9, 0.01), ("moon", distance, 0.1))
+        for name, x, r in (("sun", 0, 0.1), ("dust1", 9, 0.01), ("moon", distance, 0.1))
     )
-    axes = joint("a", "sun", "dust", 0, "0 0 1") + joint(
-        "b", "dust", "moon", 0, "0 1 0"
+    balls += "".join(f'<link name="{name}"/>' for name in names[2:-1])
+    joints = "".join(
+        joint(f"j{i}", names[i], names[i + 1], 0, ("0 0 1", "0 1 0")[i % 2])
+        for i in range(axes)
     )
-    return f'<robot name="orbit">{balls}{axes}</robot>'
+    return f'<robot name="orbit">{balls}{joints}</robot>'
 
 
 @pytest.mark.parametrize(
-    ("gap", "why"), [(-1e-3, "always"), (0.01, None), (0.03, "never")]
+    ("gap", "axes", "why"),
+    [
+        (-1e-3, 2, "always"),
+        (1e-3, 2, None),
+        (0.03, 2, "apart"),
+        (-1e-3, 3, "always"),
+        (0.01, 3, None),
+        (0.03, 3, "never"),
+    ],
 )
-def test_a_pair_that_comes_near_is_looked_at(gap, why) -> None:
+def test_a_pair_that_comes_near_is_looked_at(gap, axes, why) -> None:
     """Samples that are free do not prove that those between them are."""
-    text = orbit(0.2 + gap)
+    text = orbit(0.2 + gap, axes)
     robot = iksel.Robot.from_urdf(text, base_link="sun", tip_link="moon")
     free = collision.SelfCollision(text, robot, samples=300)
     assert free.ignored.get(("sun", "moon")) == why
+
+
+def wrist(rng: np.random.Generator) -> str:
+    """Two boxes that two skew axes move against each other, and a link between."""
+
+    def place() -> str:
+        xyz, rpy = rng.uniform(-0.2, 0.2, 3), rng.uniform(-3, 3, 3)
+        return f'<origin xyz="{vector(xyz)}" rpy="{vector(rpy)}"/>'
+
+    def box(name: str) -> str:
+        shape = f'<box size="{vector(rng.uniform(0.02, 0.3, 3))}"/>'
+        return f"""<link name="{name}"><collision>{place()}
+        <geometry>{shape}</geometry></collision></link>"""
+
+    def axis(name: str, parent: str, child: str) -> str:
+        kind = rng.choice(["revolute", "continuous", "prismatic"], p=[0.6, 0.2, 0.2])
+        low = rng.uniform(-1.5, 0.5)
+        return f"""<joint name="{name}" type="{kind}"><parent link="{parent}"/>
+        <child link="{child}"/>{place()}<axis xyz="{vector(rng.normal(size=3))}"/>
+        <limit lower="{low}" upper="{low + rng.uniform(0.1, 1.5)}" effort="1"
+        velocity="1"/></joint>"""
+
+    boxes = box("upper") + f'<link name="cross">{BEAD}</link>' + box("lower")
+    joints = axis("x", "upper", "cross") + axis("y", "cross", "lower")
+    return f'<robot name="wrist">{boxes}{joints}</robot>'
+
+
+def vector(values: np.ndarray) -> str:
+    return " ".join(f"{x:.6f}" for x in values)
+
+
+# Solid, or the two links would be neighbours; far from both.
+BEAD = (
+    '<collision><origin xyz="50 0 0"/><geometry><sphere radius="0.01"/></geometry>'
+    "</collision>"
+)
+
+
+@pytest.mark.parametrize("margin", [0.0, 0.02])
+def test_pairs_that_are_proven_apart_are(margin) -> None:
+    """Dense samples find no collision of them, and a proof for most that have none."""
+    rng = np.random.default_rng(1)
+    pair = ("upper", "lower")
+    proven = clear = 0
+    for _ in range(60):
+        text = wrist(rng)
+        robot = iksel.Robot.from_urdf(text, base_link="upper", tip_link="lower")
+        found = collision.SelfCollision(text, robot, margin=margin, samples=0)
+        all_pairs = collision.SelfCollision(
+            text, robot, margin=margin, samples=0, keep=[pair]
+        )
+        grid = np.meshgrid(
+            *(np.linspace(*ends, 41) for ends in ends_of(robot)), indexing="ij"
+        )
+        q = np.stack(grid, axis=-1).reshape(-1, 2)
+        touches = [all_pairs.colliding_links(one) == pair for one in q]
+        is_proven = found.ignored.get(pair) == "apart"
+        assert not (is_proven and any(touches))
+        proven += is_proven
+        clear += not any(touches)
+    assert clear >= 15
+    assert proven >= 0.9 * clear
+
+
+def ends_of(robot: iksel.Robot) -> np.ndarray:
+    return np.column_stack(
+        [np.maximum(robot.lower, -np.pi), np.minimum(robot.upper, np.pi)]
+    )
 
 
 def test_a_pair_that_cannot_keep_the_margin_is_held_to_none(arm) -> None:

@@ -8,6 +8,7 @@ namespace {
 /// Room for the kernel, of each thread its own, taken once.
 struct ThreadRoom {
   std::vector<double> frame, centre;
+  std::vector<int> near;
 
   lanes::SceneRoom show(const lanes::SceneView& view) {
     const auto grow = [](auto& room, int count) {
@@ -17,7 +18,8 @@ struct ThreadRoom {
     const int stride = (view.links + lanes::kWidth - 1) / lanes::kWidth * lanes::kWidth;
     grow(frame, 12 * view.bodies);
     grow(centre, 4 * stride);
-    return {frame.data(), centre.data(), stride, {}};
+    grow(near, view.pairs);
+    return {frame.data(), centre.data(), stride, near.data(), {}};
   }
 };
 

@@ -54,13 +54,18 @@ class SceneCheck {
   /// Returns the clearance. Begins with the culprit, which is that of this configuration afterwards
   /// if it collides.
   double find(SceneCulprit& culprit) {
-    if (!touches_again(culprit)) {
+    bool touches = touches_again(culprit);
+    if (!touches) {
       place_links();
-      // Each ends the rest if something touches.
-      [[maybe_unused]] const bool touches =
-          test_pairs(culprit) || test_all(scene_.block, scene_.blocks, Kind::block, culprit) ||
-          test_all(scene_.cylinder, scene_.cylinders, Kind::cylinder, culprit) ||
-          test_all(scene_.plane, scene_.planes, Kind::plane, culprit);
+      touches = test_pairs(culprit) ||
+                test_all(scene_.block, scene_.blocks, Kind::block, culprit) ||
+                test_all(scene_.cylinder, scene_.cylinders, Kind::cylinder, culprit) ||
+                test_all(scene_.plane, scene_.planes, Kind::plane, culprit);
+    }
+    if (touches) {
+      culprit.leaf = leaf_;
+      culprit.ball = ball_;
+      culprit.other = other_;
     }
     return clearance_;
   }
@@ -143,16 +148,6 @@ class SceneCheck {
       x[3 * stride + i] = link.around.radius - scene_.smaller;
     }
   }
-  /// Whether the balls around two links touch.
-  [[nodiscard]] IKSEL_INLINE bool is_near(int a, int b) const {
-    const int stride = room_.link_stride;
-    const double* x = room_.centre;
-    const Vec<double> d{x[a] - x[b], x[stride + a] - x[stride + b],
-                        x[2 * stride + a] - x[2 * stride + b]};
-    const double reach = x[3 * stride + a] + x[3 * stride + b];
-    return dot(d, d) <= reach * reach;
-  }
-
   /// Keeps the least clearance of the lanes of a mask, which is not empty.
   IKSEL_INLINE bool touch(const T& found, unsigned mask) {
     double of_lane[Lanes<T>::kCount];
@@ -184,33 +179,79 @@ class SceneCheck {
       case Kind::none:
         return false;
       case Kind::pair:
-        return test_pair(scene_.pair[culprit.index]);
+        return touches_again(culprit, scene_.pair[culprit.index]);
       case Kind::block:
-        return test_link(culprit.link, scene_.block[culprit.index]);
+        return touches_again(culprit, scene_.block[culprit.index]);
       case Kind::cylinder:
-        return test_link(culprit.link, scene_.cylinder[culprit.index]);
+        return touches_again(culprit, scene_.cylinder[culprit.index]);
       case Kind::plane:
-        return test_link(culprit.link, scene_.plane[culprit.index]);
+        return touches_again(culprit, scene_.plane[culprit.index]);
     }
     return false;
+  }
+  template <typename Shape>
+  bool touches_again(const SceneCulprit& culprit, const Shape& shape) {
+    const BodyFrame body = frame(scene_.link[culprit.link].body);
+    return test_node(body, culprit.leaf, shape) || test_link(culprit.link, shape);
+  }
+  bool touches_again(const SceneCulprit& culprit, const ScenePair& pair) {
+    const BodyFrame from_b = a_from_b(pair);
+    const SceneNode& leaf = scene_.node[culprit.leaf];
+    const int k = culprit.ball;
+    const Vec<double> centre{leaf.x[k], leaf.y[k], leaf.z[k]};
+    const Around ball{placed(from_b, centre), leaf.radius[k], 0};
+    if (test_leaf(culprit.other, ball)) {
+      leaf_ = culprit.leaf;
+      ball_ = k;
+      return true;
+    }
+    return test_pair(pair, from_b);
   }
 
   bool test_pairs(SceneCulprit& culprit) {
-    for (int i = 0; i < scene_.pairs; ++i) {
-      const ScenePair& pair = scene_.pair[i];
-      if (!is_near(pair.a, pair.b) || !test_pair(pair)) continue;
-      culprit = {Kind::pair, i, 0};
-      return true;
+    const int count = find_near_pairs();
+    for (int i = 0; i < count; ++i) {
+      if (take_pair(room_.near[i], culprit)) return true;
     }
     return false;
   }
-  bool test_pair(const ScenePair& pair) {
-    const SceneLink& a = scene_.link[pair.a];
-    const SceneLink& b = scene_.link[pair.b];
-    const BodyFrame from_b = seen_from(frame(b.body), frame(a.body));
-    Around of_a = around(a);
+  /// Those of which the balls around the links touch, returns how many. First the one where they do
+  /// so most: if any pair touches, it most likely does.
+  int find_near_pairs() {
+    const int stride = room_.link_stride;
+    int count = 0;
+    double least = 1;
+    for (int i = 0; i < scene_.pairs; ++i) {
+      const double* a = room_.centre + scene_.pair[i].a;
+      const double* b = room_.centre + scene_.pair[i].b;
+      const Vec<double> d{a[0] - b[0], a[stride] - b[stride], a[2 * stride] - b[2 * stride]};
+      const double reach = a[3 * stride] + b[3 * stride];
+      if (dot(d, d) > reach * reach) continue;
+      const double part = dot(d, d) / (reach * reach);
+      room_.near[count] = i;
+      if (part < least) {
+        least = part;
+        room_.near[count] = room_.near[0];
+        room_.near[0] = i;
+      }
+      ++count;
+    }
+    return count;
+  }
+  bool take_pair(int i, SceneCulprit& culprit) {
+    const ScenePair& pair = scene_.pair[i];
+    if (!test_pair(pair, a_from_b(pair))) return false;
+    culprit = {Kind::pair, i, 0, 0, 0, 0};
+    return true;
+  }
+  /// The frame of a pair's first link, seen from its second's.
+  [[nodiscard]] BodyFrame a_from_b(const ScenePair& pair) const {
+    return seen_from(frame(scene_.link[pair.b].body), frame(scene_.link[pair.a].body));
+  }
+  bool test_pair(const ScenePair& pair, const BodyFrame& from_b) {
+    Around of_a = around(scene_.link[pair.a]);
     of_a.centre = placed(from_b, of_a.centre);
-    return test_nodes(from_b, of_a, around(b));
+    return test_nodes(from_b, of_a, around(scene_.link[pair.b]));
   }
   /// The clearances of a node's balls, which stand in lanes, from one.
   static IKSEL_INLINE T clearance_from(const SceneNode& node, int first, const Vec<T>& centres,
@@ -267,16 +308,25 @@ class SceneCheck {
       while (mask != 0) {
         const int k = take_least(of_lane, mask);
         const Around below = child(of_a, first + k, {x[k], y[k], z[k]});
-        if (both_leaves ? test_leaf(of_b, below, less) : test_nodes(from_b, below, b)) return true;
+        if (!both_leaves && test_nodes(from_b, below, b)) return true;
+        if (both_leaves && test_leaf(b.node, below)) {
+          leaf_ = a.node;
+          ball_ = first + k;
+          return true;
+        }
       }
     }
     return false;
   }
-  bool test_leaf(const SceneNode& leaf, const Around& ball, double less) {
+  bool test_leaf(int at, const Around& ball) {
+    const SceneNode& leaf = scene_.node[at];
+    const double less = 2 * scene_.smaller;
     for (int first = 0; first < leaf.count; first += Lanes<T>::kCount) {
       const T found = clearance_from(leaf, first, centres(leaf, first), ball, less);
       const unsigned mask = to_bits<T>(found <= T(0.0)) & lanes_up_to(leaf.count, first);
-      if (mask != 0) return touch(found, mask);
+      if (mask == 0) continue;
+      other_ = at;
+      return touch(found, mask);
     }
     return false;
   }
@@ -291,7 +341,10 @@ class SceneCheck {
       if (is_far(shape, centre, radius)) continue;
       const T found = clearance(shape, centre, radius);
       unsigned mask = to_bits<T>(found <= T(0.0)) & lanes_up_to(node.count, first);
-      if (mask != 0 && node.is_leaf) return touch(found, mask);
+      if (mask != 0 && node.is_leaf) {
+        leaf_ = at;
+        return touch(found, mask);
+      }
       for (int k = first; mask != 0; ++k, mask >>= 1U) {
         if ((mask & 1U) != 0 && test_node(body, node.first + k, shape)) return true;
       }
@@ -318,7 +371,7 @@ class SceneCheck {
         unsigned mask = may & to_bits<T>(clearance(shape[i], centre, radius) <= T(0.0));
         for (int link = first; mask != 0; ++link, mask >>= 1U) {
           if ((mask & 1U) == 0 || !test_link(link, shape[i])) continue;
-          culprit = {kind, i, link};
+          culprit = {kind, i, link, 0, 0, 0};
           return true;
         }
       }
@@ -338,6 +391,8 @@ class SceneCheck {
   const SceneView& scene_;
   const SceneRoom& room_;
   double clearance_ = 1;
+  /// What was found to touch (SceneCulprit).
+  int leaf_ = 0, ball_ = 0, other_ = 0;
 };
 
 template <typename T>

@@ -73,14 +73,18 @@ struct SceneCulprit {
   enum class Kind { none, pair, block, cylinder, plane } kind = Kind::none;
   int index = 0;  ///< of the pair or the shape
   int link = 0;
+  int leaf = 0;   ///< node whose balls were found to touch; of a pair of links the first's,
+  int ball = 0;   ///< with the ball of it
+  int other = 0;  ///< and the second's leaf
 };
 
 /// Room that find_clearance writes to. Number i of the frame of body b in the base frame, columns
 /// x, y, z and p, is at frame[12 b + i].
 struct SceneRoom {
-  double* frame;    ///< 12 for each body
-  double* centre;   ///< of the balls around links: x of each, then y, z and the radius
-  int link_stride;  ///< from x to y, a multiple of kWidth
+  double* frame;     ///< 12 for each body
+  double* centre;    ///< of the balls around links: x of each, then y, z and the radius
+  int link_stride;   ///< from x to y, a multiple of kWidth
+  int* near;        ///< pairs whose links are near each other
   SceneCulprit culprit;
 };
 

@@ -81,9 +81,9 @@ struct SceneCulprit {
 /// Room that find_clearance writes to. Number i of the frame of body b in the base frame, columns
 /// x, y, z and p, is at frame[12 b + i].
 struct SceneRoom {
-  double* frame;     ///< 12 for each body
-  double* centre;    ///< of the balls around links: x of each, then y, z and the radius
-  int link_stride;   ///< from x to y, a multiple of kWidth
+  double* frame;    ///< 12 for each body
+  double* centre;   ///< of the balls around links: x of each, then y, z and the radius
+  int link_stride;  ///< from x to y, a multiple of kWidth
   int* near;        ///< pairs whose links are near each other
   SceneCulprit culprit;
 };

@@ -51,7 +51,7 @@ ArmShape::ArmShape(const Robot& robot, const RobotSpheres& spheres,
     const lanes::ScenePair pair{find(a), find(b)};
     const auto body = [&](int i) { return links()[static_cast<std::size_t>(i)].body; };
     // What does not move against each other touches always or never.
-    if (body(pair.a) != body(pair.b)) pairs_.push_back(pair);
+    if (body(pair.a) != body(pair.b)) pairs_.add(pair);
   }
 }
 
@@ -113,7 +113,7 @@ void ArmShape::attach(const std::string& name, const AttachedObject& object) {
     const auto k = static_cast<std::size_t>(i);
     const bool may = std::find(object.may_touch.begin(), object.may_touch.end(), names_[k]) !=
                      object.may_touch.end();
-    if (!may && links()[k].body != links().back().body) pairs_.push_back({i, added});
+    if (!may && links()[k].body != links().back().body) pairs_.add({i, added});
   }
 }
 
@@ -158,10 +158,9 @@ std::vector<Eigen::Vector3d> ArmShape::centres(const double* q) const {
 
 void ArmShape::show(lanes::SceneView& view) const {
   table_.show(view);
+  pairs_.show(view);
   view.bodies = static_cast<int>(bodies_.size());
-  view.pairs = static_cast<int>(pairs_.size());
   view.body = bodies_.data();
-  view.pair = pairs_.data();
 }
 
 }  // namespace iksel

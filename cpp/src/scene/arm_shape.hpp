@@ -9,6 +9,7 @@
 #include "iksel/scene.hpp"
 #include "kinematics/link_poses.hpp"
 #include "scene/ball_table.hpp"
+#include "scene/pair_table.hpp"
 #include "simd/scene_types.hpp"
 
 namespace iksel {
@@ -49,7 +50,7 @@ class ArmShape {
   [[nodiscard]] const BallTable& table() const { return table_; }
   [[nodiscard]] const std::vector<lanes::SceneLink>& links() const { return table_.links(); }
   [[nodiscard]] const std::vector<lanes::SceneBall>& balls() const { return table_.balls(); }
-  [[nodiscard]] const std::vector<lanes::ScenePair>& pairs() const { return pairs_; }
+  [[nodiscard]] const std::vector<lanes::ScenePair>& pairs() const { return pairs_.pairs(); }
 
  private:
   /// Where a link of the URDF is on its body.
@@ -74,7 +75,7 @@ class ArmShape {
   std::vector<std::shared_ptr<const MotionCurve>> curves_;  ///< of the bodies
   std::vector<std::string> names_;
   BallTable table_;
-  std::vector<lanes::ScenePair> pairs_;
+  PairTable pairs_;
 };
 
 }  // namespace iksel

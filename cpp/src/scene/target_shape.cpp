@@ -41,8 +41,8 @@ TargetShape::TargetShape(const ArmShape& arm)
   for (const lanes::ScenePair& pair : arm.pairs()) {
     const auto a = static_cast<std::size_t>(pair.a);
     const auto b = static_cast<std::size_t>(pair.b);
-    if (from_base[a] >= 0 && from_tip[b] >= 0) pairs_.push_back({from_base[a], from_tip[b]});
-    if (from_base[b] >= 0 && from_tip[a] >= 0) pairs_.push_back({from_base[b], from_tip[a]});
+    if (from_base[a] >= 0 && from_tip[b] >= 0) pairs_.add({from_base[a], from_tip[b]});
+    if (from_base[b] >= 0 && from_tip[a] >= 0) pairs_.add({from_base[b], from_tip[a]});
   }
 }
 
@@ -92,6 +92,7 @@ int TargetShape::add(Part part) {
 bool TargetShape::show(const Pose& T_base_tip, double position, double rotation, Bodies& bodies,
                        lanes::SceneView& view) const {
   table_.show(view);
+  pairs_.show(view);
   view.smaller = position + rotation * reach_;
   if (!(smallest_ > view.smaller)) return false;
   const Pose frame = T_base_tip * Pose(T_tip_body_);
@@ -103,9 +104,7 @@ bool TargetShape::show(const Pose& T_base_tip, double position, double rotation,
   copy_vector(frame.translation(), tip.p);
   tip.parent = 0;
   view.bodies = static_cast<int>(bodies.size());
-  view.pairs = static_cast<int>(pairs_.size());
   view.body = bodies.data();
-  view.pair = pairs_.data();
   return true;
 }
 

@@ -41,7 +41,7 @@ class TargetShape {
   double reach_ = 0;         ///< of the tip's balls from its origin [m]
   double smallest_;          ///< radius of the balls [m]
   BallTable table_;
-  std::vector<lanes::ScenePair> pairs_;
+  PairTable pairs_;
 };
 
 }  // namespace iksel

@@ -48,10 +48,10 @@ struct CurveSearch {
 template <typename Answers>
 std::optional<Proof> CurveSearch<Answers>::find_free() const {
   LaneRefiner& refiner = lanes.refiner;
-  if (goal.is_never_free()) {
+  if (answers.is_never_free()) {
     if (!answers.has_any() && !lanes.sweep->find(Y)) return std::nullopt;
     answers.refuse();
-    return Proof::target;
+    return Proof::none;
   }
   FreeSamples samples(*lanes.sweep, *goal.scene(), Y, lanes.samples, work, clock);
   refiner.begin(goal.task(), kNearAnswer, Width::narrow);

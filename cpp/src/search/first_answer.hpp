@@ -2,6 +2,8 @@
 // The answers of a search that ends with the first.
 #pragma once
 
+#include <optional>
+
 #include "base/work.hpp"
 #include "goal/goal.hpp"
 #include "search/search.hpp"
@@ -21,7 +23,12 @@ class FirstAnswer {
     if (goal_.is_free(q)) return Verdict::stop;
     result_ = {};
     result_.status = Status::in_collision;
-    return Verdict::next;
+    return is_never_free() ? Verdict::stop : Verdict::next;
+  }
+  /// Whether no answer is free, whatever is found (Goal).
+  [[nodiscard]] bool is_never_free() {
+    if (!never_free_) never_free_ = goal_.is_never_free();
+    return *never_free_;
   }
   template <typename Q>
   [[nodiscard]] bool knows(const Q& /*q*/) const {
@@ -48,6 +55,7 @@ class FirstAnswer {
   const Goal& goal_;
   Deadline deadline_;
   Result& result_;
+  std::optional<bool> never_free_;  ///< once it was asked
 };
 
 }  // namespace iksel

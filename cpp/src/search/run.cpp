@@ -133,7 +133,6 @@ Proof Search<Answers>::in_lanes() const {
     if (workspace.lanes->sweep) refiner.begin(goal.task(), kBeforeSweep, Width::narrow);
     LeafSeeds leaf(query, from_leaf, work, clock);
     if (run(refiner, near, given, leaf) || !request.database_seeds) return Proof::none;
-    if (answers.has_any() && goal.is_never_free()) return Proof::target;
     if (is_screened) {
       if (const auto proof = on_curve(Y).find_free()) return *proof;
     }
@@ -232,10 +231,14 @@ Result find_first(const ChainModel& model, const SolverOptions& options, const G
   FirstAnswer answers(model.joints, wraps, goal, request.deadline, result);
   const Search<FirstAnswer> search{model, options, goal, request, workspace, answers, work, clock};
   if (workspace.lanes) {
-    const Proof proof = search.in_lanes();
-    if (!result.success()) result.proof = proof;
+    result.proof = search.in_lanes();
   } else if (search.by_scheme() && result.status == Status::not_converged) {
     result.status = Status::outside_limits;
+  }
+  if (result.success()) {
+    result.proof = Proof::none;
+  } else if (result.status == Status::in_collision && answers.is_never_free()) {
+    result.proof = Proof::target;
   }
   result.attempts = work.attempts;
   result.iterations = work.iterations;

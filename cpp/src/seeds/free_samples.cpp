@@ -8,7 +8,7 @@ namespace iksel {
 namespace {
 
 /// The samples of the sweep come in so many parts.
-constexpr int kSampleParts = 32;
+constexpr int kSampleParts = 16;
 /// Samples that are looked beside, at most: those that overlap least.
 constexpr std::size_t kMostBeside = 24;
 
@@ -47,7 +47,7 @@ bool FreeSamples::add_rows() {
   at_ = 0;
   while (to_.q.empty()) {
     if (part_ < kSampleParts) {
-      // 7 and 32 have no factor in common: each part once.
+      // 7 and 16 have no factor in common: each part once.
       sweep_.add_samples(part_ * 7 % kSampleParts, kSampleParts, to_.q, to_.samples);
       ++part_;
     } else if (const Overlap* next = next_overlap()) {

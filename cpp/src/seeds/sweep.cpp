@@ -77,7 +77,18 @@ void Sweep::add_samples(const Pose& Y, int first, int stride, std::vector<double
 
 void Sweep::add_samples(int first, int stride, std::vector<double>& q,
                         std::vector<Sample>& samples) {
-  for (int place = first; place < kSamples; place += stride) {
+  // Eight places are rated in the time in which two or three are solved.
+  const int count = (kSamples - first + stride - 1) / stride;
+  SweptBranches::Row rows[kBranches];
+  for (int i = 0; i < count; ++i) {
+    const int lane_of_row = i % kBranches;
+    const auto place_of = [&](int k) { return first + stride * std::min(k, count - 1); };
+    if (lane_of_row == 0) {
+      branches_.rate([&](int k) { return places_.value(place_of(i + k)); }, 0.0, rows);
+    }
+    const SweptBranches::Row& off = rows[lane_of_row];
+    if (*std::min_element(off.begin(), off.end()) > 0) continue;
+    const int place = place_of(i);
     branches_.solve_all(places_.value(place));
     for (int lane = 0; lane < kBranches; ++lane) {
       if (branches_.off(lane) > 0) continue;

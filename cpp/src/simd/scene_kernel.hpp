@@ -218,25 +218,52 @@ class SceneCheck {
   /// Those of which the balls around the links touch, returns how many. First the one where they do
   /// so most: if any pair touches, it most likely does.
   int find_near_pairs() {
-    const int stride = room_.link_stride;
     int count = 0;
-    double least = 1;
-    for (int i = 0; i < scene_.pairs; ++i) {
-      const double* a = room_.centre + scene_.pair[i].a;
-      const double* b = room_.centre + scene_.pair[i].b;
-      const Vec<double> d{a[0] - b[0], a[stride] - b[stride], a[2 * stride] - b[2 * stride]};
-      const double reach = a[3 * stride] + b[3 * stride];
-      if (dot(d, d) > reach * reach) continue;
-      const double part = dot(d, d) / (reach * reach);
-      room_.near[count] = i;
-      if (part < least) {
-        least = part;
-        room_.near[count] = room_.near[0];
-        room_.near[0] = i;
+    for (int i = 0; i < scene_.pair_blocks; ++i) {
+      const ScenePairBlock& block = scene_.pair_block[i];
+      unsigned mask = find_near(block) & block.mask;
+      for (int k = 0; mask != 0; ++k, mask >>= 1U) {
+        if ((mask & 1U) != 0) room_.near[count++] = block.pair[k];
       }
-      ++count;
+    }
+    double least = 1;
+    for (int i = 0; i < count; ++i) {
+      const int pair = room_.near[i];
+      const double part = nearness(scene_.pair[pair]);
+      if (!(part < least)) continue;
+      least = part;
+      room_.near[i] = room_.near[0];
+      room_.near[0] = pair;
     }
     return count;
+  }
+  /// Lanes of a block in which the balls around the links touch, whether they may or not.
+  [[nodiscard]] IKSEL_INLINE unsigned find_near(const ScenePairBlock& block) const {
+    const int stride = room_.link_stride;
+    const double* one = room_.centre + block.one;
+    const Vec<T> centre{T(one[0]), T(one[stride]), T(one[2 * stride])};
+    unsigned mask = 0;
+    for (int lane = 0; lane < kWidth; lane += Lanes<T>::kCount) {
+      const double* others = room_.centre + block.first + lane;
+      const Vec<T> d = add(load_links(others), T(-1.0), centre);
+      const T reach = Lanes<T>::load(others + 3 * stride) + T(one[3 * stride]);
+      mask |= to_bits<T>(dot(d, d) <= reach * reach) << static_cast<unsigned>(lane);
+    }
+    return mask;
+  }
+  /// Distance^2 of the centres of the balls around two links, by that where they touch.
+  [[nodiscard]] double nearness(const ScenePair& pair) const {
+    const int stride = room_.link_stride;
+    const double* a = room_.centre + pair.a;
+    const double* b = room_.centre + pair.b;
+    const Vec<double> d{a[0] - b[0], a[stride] - b[stride], a[2 * stride] - b[2 * stride]};
+    const double reach = a[3 * stride] + b[3 * stride];
+    return dot(d, d) / (reach * reach);
+  }
+  /// The centres of the balls around links beside each other, of which the first one's x is at `x`.
+  [[nodiscard]] IKSEL_INLINE Vec<T> load_links(const double* x) const {
+    const int stride = room_.link_stride;
+    return {Lanes<T>::load(x), Lanes<T>::load(x + stride), Lanes<T>::load(x + 2 * stride)};
   }
   bool take_pair(int i, SceneCulprit& culprit) {
     const ScenePair& pair = scene_.pair[i];
@@ -363,8 +390,7 @@ class SceneCheck {
     for (int first = 0; first < scene_.links; first += Lanes<T>::kCount) {
       const unsigned may = lanes_that_may(first);
       if (may == 0) continue;
-      const Vec<T> centre{Lanes<T>::load(x + first), Lanes<T>::load(x + stride + first),
-                          Lanes<T>::load(x + 2 * stride + first)};
+      const Vec<T> centre = load_links(x + first);
       const T radius = Lanes<T>::load(x + 3 * stride + first);
       for (int i = 0; i < count; ++i) {
         if (is_far(shape[i], centre, radius)) continue;

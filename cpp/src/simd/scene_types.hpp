@@ -44,6 +44,14 @@ struct ScenePair {
   int a, b;  ///< links
 };
 
+/// Pairs of one link with others that stand beside each other: those of lane k, where bit k of the
+/// mask is set, with link `first + k`.
+struct ScenePairBlock {
+  int one, first;  ///< `first` is a multiple of kWidth
+  unsigned mask;
+  int pair[kWidth];  ///< which pair it is
+};
+
 /// A box of which each point is the centre of a ball: boxes, and with edges of length 0 spheres and
 /// capsules.
 struct SceneBlock {
@@ -92,13 +100,14 @@ struct SceneRoom {
 /// distance^2 - radius^2 [m^2], the least of the balls that were found to touch, or 1 if none does.
 /// One that touches ends it.
 struct SceneView {
-  int bodies, links, pairs, blocks, cylinders, planes;
+  int bodies, links, pairs, pair_blocks, blocks, cylinders, planes;
   double smaller;         ///< by so much is each ball than it says [m]
   int cleared;            ///< a body that touches no obstacle, as is known; 0 if none is
   const SceneBody* body;  ///< the first is the base, which has no joint
   const SceneLink* link;
   const SceneNode* node;
   const ScenePair* pair;
+  const ScenePairBlock* pair_block;
   const SceneBlock* block;
   const SceneCylinder* cylinder;
   const ScenePlane* plane;

@@ -9,7 +9,8 @@ import numpy as np
 from iksel_cpp import InvalidArgumentError, UrdfError
 
 from iksel._packages import resolve_path
-from iksel._sphere_cover import Mesh, Solid
+from iksel._primitive_cover import cover_box, cover_cylinder
+from iksel._sphere_cover import Mesh
 from iksel._urdf_xml import read_numbers, read_origin
 
 if TYPE_CHECKING:
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
     from iksel._arm_links import ArmLinks
     from iksel._arrays import BoolArray, FloatArray, IntArray
 
-_CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
 _CHUNK = 256  # configurations placed at a time, which bounds the memory
 
 
@@ -219,85 +219,55 @@ def is_sphere(geometry: Any) -> bool:
     return type(geometry).__name__ == "Sphere"
 
 
-def round_rod(shape: Shape, balls: FloatArray, max_error: float) -> FloatArray | None:
-    """Spheres along a cylinder whose ends lie in balls that are as thick.
+def mesh_of(shape: Shape) -> Mesh:
+    """A mesh in the frame of its link."""
+    geometry = shape.geometry
+    faces = [geometry.tri_indices(i) for i in range(geometry.num_tris)]
+    vertices = np.array(geometry.vertices(), dtype=float)
+    return Mesh(
+        _placed(vertices, shape.origin),
+        np.array([[t[0], t[1], t[2]] for t in faces], dtype=int),
+    )
 
-    So it is a capsule, which spheres on its axis cover closely.
+
+def spheres_around(
+    shape: Shape, balls: FloatArray, *, of_box: float, of_cylinder: float
+) -> FloatArray | None:
+    """Spheres that cover a box or a cylinder, in the frame of its link.
 
     Args:
-        shape: The cylinder, or any other shape.
-        balls: Those of its link, (n, 4).
-        max_error: How far spheres may stick out [m].
+        shape: Any shape.
+        balls: The spheres of its link, (n, 4).
+        of_box: How far spheres may stick out of a box [m].
+        of_cylinder: The same of a cylinder [m].
 
     Returns:
-        (m, 4), rows of centre and radius [m]; None if it is no such cylinder.
+        (m, 4), rows of centre and radius [m]; None if it is neither.
     """
-    geometry = shape.geometry
-    if type(geometry).__name__ != "Cylinder":
-        return None
-    radius, half = geometry.radius, geometry.halfLength
-    middle, axis = shape.origin[:3, 3], shape.origin[:3, 2]
-    slack = 1e-6 * min(radius, max_error)
-    for end in (middle - half * axis, middle + half * axis):
-        off = np.linalg.norm(balls[:, :3] - end, axis=1)
-        if not np.any(off + radius <= balls[:, 3] + slack):
-            return None
-    # A sphere of radius R covers the cylinder where R^2 - radius^2 >= the way along it.
-    reach = np.sqrt((radius + max_error - slack) ** 2 - radius**2)
-    count = int(np.ceil(half / reach))
-    along = (2 * np.arange(count) + 1 - count) * half / count
-    thick = np.hypot(radius, half / count) + slack
-    rows: FloatArray = np.column_stack(
-        [middle + along[:, None] * axis, np.full(count, thick)]
-    )
-    return rows
-
-
-def solid_of(shape: Shape, max_error: float) -> Solid:
-    """A box, cylinder or mesh in the frame of its link, by triangles around it."""
     geometry = shape.geometry
     kind = type(geometry).__name__
     if kind == "Box":
-        half = np.array(geometry.halfSide)
-        mesh = _prism(half[:2] * _CORNERS, float(half[2]))
+        rows = cover_box(np.array(geometry.halfSide), of_box)
     elif kind == "Cylinder":
-        half = np.array([geometry.radius, geometry.halfLength])
-        # Sides so many that the corners stick out by a part of the error only.
-        ratio = min(max_error / geometry.radius / 20, 0.5)
-        count = max(8, int(np.ceil(np.pi / np.arccos(1 / (1 + ratio)))))
-        angles = 2 * np.pi * np.arange(count) / count
-        corner = geometry.radius / np.cos(np.pi / count)
-        around = corner * np.column_stack([np.cos(angles), np.sin(angles)])
-        mesh = _prism(around, float(geometry.halfLength))
+        half = geometry.halfLength
+        bare = (_is_bare(shape, -half, balls), _is_bare(shape, half, balls))
+        rows = cover_cylinder(geometry.radius, half, of_cylinder, bare=bare)
     else:
-        half = np.zeros(0)
-        faces = [geometry.tri_indices(i) for i in range(geometry.num_tris)]
-        mesh = Mesh(
-            np.array(geometry.vertices(), dtype=float),
-            np.array([[t[0], t[1], t[2]] for t in faces], dtype=int),
-        )
-    rotation, place = shape.origin[:3, :3], shape.origin[:3, 3]
-
-    def holds(points: FloatArray) -> BoolArray:
-        local = np.abs((points - place) @ rotation)
-        if kind == "Cylinder":
-            local = np.column_stack([np.hypot(local[:, 0], local[:, 1]), local[:, 2]])
-        if not half.size:
-            return np.zeros(len(points), dtype=bool)
-        return np.asarray((local < half * (1 - 1e-9)).all(axis=1))
-
-    return Solid(Mesh(mesh.vertices @ rotation.T + place, mesh.triangles), holds)
+        return None
+    return np.column_stack([_placed(rows[:, :3], shape.origin), rows[:, 3]])
 
 
-def _prism(around: FloatArray, half: float) -> Mesh:
-    """A polygon (n, 2) in the plane, convex, from -half to half in z."""
-    n = len(around)
-    ends = [np.column_stack([around, np.full(n, z)]) for z in (-half, half)]
-    i = np.arange(n)
-    j = (i + 1) % n
-    fan = np.column_stack([np.zeros(n - 2, dtype=int), i[1:-1], i[2:]])
-    sides = [np.column_stack([i, j, j + n]), np.column_stack([i, j + n, i + n])]
-    return Mesh(np.concatenate(ends), np.concatenate([fan, fan + n, *sides]))
+def _is_bare(cylinder: Shape, height: float, balls: FloatArray) -> bool:
+    """Whether no ball that is as thick stands around an end."""
+    radius = cylinder.geometry.radius
+    end = cylinder.origin[:3, 3] + height * cylinder.origin[:3, 2]
+    off = np.linalg.norm(balls[:, :3] - end, axis=1)
+    return not np.any(off + radius <= balls[:, 3] * (1 + 1e-6))
+
+
+def _placed(points: FloatArray, pose: FloatArray) -> FloatArray:
+    placed: FloatArray = points @ pose[:3, :3].T + pose[:3, 3]
+    return placed
 
 
 def _local_box(shape: Any) -> tuple[FloatArray, FloatArray]:

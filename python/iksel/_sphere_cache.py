@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-_METHOD = "cover 3"  # to be changed with how spheres are made
+_METHOD = "cover 4"  # to be changed with how spheres are made
 
 
 def key_of(

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from iksel._arrays import BoolArray, FloatArray, IntArray
 
@@ -29,23 +29,14 @@ class Mesh(NamedTuple):
     triangles: IntArray  # (m, 3)
 
 
-class Solid(NamedTuple):
-    """A part of a body."""
-
-    mesh: Mesh
-    holds: Callable[[FloatArray], BoolArray]
-    """Which of some points (n, 3) lie inside; those that are said not to may all the
-    same."""
-
-
-def cover(solids: Sequence[Solid], balls: FloatArray, max_error: float) -> FloatArray:
+def cover(meshes: Sequence[Mesh], balls: FloatArray, max_error: float) -> FloatArray:
     """Spheres that cover a body, and stick out of it by `max_error` [m] at most.
 
     The inside of a mesh is where a line parallel to z has crossed it an odd number of
     times; of one that is not closed, at least the surface is covered.
 
     Args:
-        solids: Parts of the body, which may overlap.
+        meshes: Parts of the body, which may overlap.
         balls: Further parts, (n, 4), that are spheres already.
         max_error: How far spheres may stick out [m].
 
@@ -53,14 +44,14 @@ def cover(solids: Sequence[Solid], balls: FloatArray, max_error: float) -> Float
         (n, 4), rows of centre and radius [m]: first the balls.
     """
     gap = max_error / 3
-    of_each = [_surface_samples(solid.mesh, np.sqrt(3) * gap / 2) for solid in solids]
-    surface = np.concatenate(of_each)
-    inside = np.concatenate(
-        [_inside_samples(solid.mesh, gap / np.sqrt(3)) for solid in solids]
+    surface = np.concatenate(
+        [_surface_samples(mesh, np.sqrt(3) * gap / 2) for mesh in meshes]
     )
-    bare = np.concatenate(
-        [_outside_others(points, i, solids, balls) for i, points in enumerate(of_each)]
-        + [_outside_others(_ball_samples(b, gap / 2), -1, solids, balls) for b in balls]
+    inside = np.concatenate(
+        [_inside_samples(mesh, gap / np.sqrt(3)) for mesh in meshes]
+    )
+    bare = _outside(
+        np.concatenate([surface] + [_ball_samples(b, gap / 2) for b in balls]), balls
     )
     samples = np.concatenate([surface, inside])
     for x, y, z, r in balls:
@@ -79,13 +70,8 @@ def cover(solids: Sequence[Solid], balls: FloatArray, max_error: float) -> Float
     return np.concatenate(spheres)
 
 
-def _outside_others(
-    points: FloatArray, of: int, solids: Sequence[Solid], balls: FloatArray
-) -> FloatArray:
+def _outside(points: FloatArray, balls: FloatArray) -> FloatArray:
     """Points of a surface that are the body's surface too."""
-    for i, solid in enumerate(solids):
-        if i != of:
-            points = points[~solid.holds(points)]
     for x, y, z, r in balls:
         points = points[np.linalg.norm(points - [x, y, z], axis=1) >= r * (1 - 1e-9)]
     return points

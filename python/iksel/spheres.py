@@ -26,9 +26,9 @@ from iksel_cpp import InvalidArgumentError, RobotSpheres, Scene
 from iksel._collision_shapes import (
     import_coal,
     is_sphere,
+    mesh_of,
     read_shapes,
-    round_rod,
-    solid_of,
+    spheres_around,
 )
 from iksel._files import read_text, replaced
 from iksel._sphere_cache import file_name, key_of
@@ -50,6 +50,10 @@ if TYPE_CHECKING:
     Pairs = list[tuple[str, str]]
 
 _FORMAT = "iksel spheres 1"
+PART_OF_BOX = 1 / 10
+"""Of max_error, which spheres may stick out of a box: it takes few."""
+PART_OF_CYLINDER = 1 / 40
+"""The same of a cylinder."""
 
 
 def from_urdf(
@@ -68,16 +72,16 @@ def from_urdf(
 ) -> RobotSpheres:
     """Cover the collision geometry of a URDF's links by spheres.
 
-    Each shape lies inside its spheres, which stick out of it by `max_error` at most:
-    the smaller, the more spheres. Spheres are taken as they are, so that a URDF made of
-    them (as VAMP's are) keeps its own; cylinders with a ball on both ends are covered
-    to a tenth of `max_error`. Links are looked at in the pairs that
+    Each shape lies inside its spheres, which stick out of it by `max_error` at most, of
+    a box by a tenth and of a cylinder by a fortieth of that: the smaller, the more
+    spheres. Spheres are taken as they are, so that a URDF made of them (as VAMP's are)
+    keeps its own. Links are looked at in the pairs that
     iksel.collision.SelfCollision looks at.
 
     Args:
         urdf: Path of the URDF or xacro, or URDF text.
         robot: The arm, from a URDF with the same links.
-        max_error: How far spheres may stick out [m].
+        max_error: How far spheres may stick out of a mesh [m].
         srdf: Path of an SRDF, or its text, whose disable_collisions are not looked at.
         ignore: Pairs of links that may touch.
         samples: Configurations in which to look for pairs that always touch and,
@@ -282,19 +286,24 @@ def load(path: str | os.PathLike[str]) -> RobotSpheres:
 
 def _cover_link(shapes: list[Shape], max_error: float) -> FloatArray:
     """Spheres around the shapes of a link, in its frame, (n, 4)."""
-    balls = [shape for shape in shapes if is_sphere(shape.geometry)]
-    rows = np.array([[*s.origin[:3, 3], s.geometry.radius] for s in balls]).reshape(
-        -1, 4
-    )
-    parts = [rows]
-    solids = []
+    balls = np.array(
+        [[*s.origin[:3, 3], s.geometry.radius] for s in shapes if is_sphere(s.geometry)]
+    ).reshape(-1, 4)
+    parts = [balls]
+    meshes = []
     for shape in shapes:
-        # Of rods a tenth of the error takes few spheres.
-        rod = round_rod(shape, rows, 0.1 * max_error)
-        if rod is not None:
-            parts.append(rod)
-        elif not is_sphere(shape.geometry):
-            solids.append(solid_of(shape, max_error))
-    rows = np.concatenate(parts)
-    # What stands round about a cylinder sticks out by a twentieth, and rods by a tenth.
-    return cover(solids, rows, 0.85 * max_error) if solids else rows
+        if is_sphere(shape.geometry):
+            continue
+        rows = spheres_around(
+            shape,
+            balls,
+            of_box=PART_OF_BOX * max_error,
+            of_cylinder=PART_OF_CYLINDER * max_error,
+        )
+        if rows is None:
+            meshes.append(mesh_of(shape))
+        else:
+            parts.append(rows)
+    if meshes:
+        parts.append(cover(meshes, balls, max_error)[len(balls) :])
+    return np.concatenate(parts)

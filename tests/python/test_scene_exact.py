@@ -10,6 +10,7 @@ from tubes import LENGTHS, NAMES, URDF
 import iksel
 import iksel.exact
 import iksel.spheres
+from iksel.spheres import PART_OF_CYLINDER
 
 pytest.importorskip("coal")
 
@@ -24,7 +25,9 @@ def arm() -> iksel.Robot:
 
 @pytest.fixture(scope="module")
 def spheres(arm: iksel.Robot) -> iksel.RobotSpheres:
-    return iksel.spheres.from_urdf(URDF, arm, max_error=0.04, samples=500)
+    # So much that the spheres of cylinders stick out by 4 cm.
+    error = 0.04 / PART_OF_CYLINDER
+    return iksel.spheres.from_urdf(URDF, arm, max_error=error, samples=500)
 
 
 def rods() -> str:
@@ -47,12 +50,12 @@ def test_rods_are_covered_closely(arm) -> None:
         rows = made.links[name]
         along = np.clip(rows[:, 2], 0, length)
         off = np.linalg.norm(rows[:, :3] - np.c_[0 * along, 0 * along, along], axis=1)
-        assert np.all(off + rows[:, 3] <= RADIUS + 0.002)
+        assert np.all(off + rows[:, 3] <= RADIUS + 0.02 * PART_OF_CYLINDER)
         turn, z = rng.uniform(0, 2 * np.pi, 4_000), rng.uniform(0, length, 4_000)
         points = np.c_[RADIUS * np.cos(turn), RADIUS * np.sin(turn), z]
         inside = np.linalg.norm(points[:, None] - rows[:, :3], axis=2) <= rows[:, 3]
         assert inside.any(axis=1).all()
-    assert len(made.links["l2"]) < 30
+    assert len(made.links["l2"]) < 40
 
 
 def test_a_second_opinion_finds_what_spheres_refuse(arm, spheres) -> None:
@@ -125,11 +128,11 @@ def test_spheres_are_kept_in_a_cache(arm, tmp_path, monkeypatch) -> None:
     (file,) = folder.iterdir()
     assert file.name.startswith("tubes-")
 
-    def forbidden(*_: object) -> None:
+    def forbidden(*_: object, **__: object) -> None:
         raise AssertionError
 
     with monkeypatch.context() as patch:
-        patch.setattr(iksel.spheres, "cover", forbidden)
+        patch.setattr(iksel.spheres, "spheres_around", forbidden)
         again = iksel.spheres.from_urdf(URDF, arm, **options)
         for name, rows in made.links.items():
             assert np.array_equal(again.links[name], rows)

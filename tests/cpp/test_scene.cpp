@@ -114,7 +114,12 @@ TEST(PointGrid, TouchesWhatAllPointsTouch) {
                               1.2 * extent * uniform(random), 0.3 * extent + 0.1 * uniform(random));
       const double radius = (0.02 + 0.2 * extent) * (1 + uniform(random));
       const double nearest = (points.rowwise() - c.transpose()).rowwise().norm().minCoeff();
-      EXPECT_EQ(grid.touches(c, radius), nearest <= radius) << extent;
+      double clearance = 1;
+      EXPECT_EQ(grid.touches(c, radius, clearance), nearest <= radius) << extent;
+      if (nearest <= radius) {
+        EXPECT_LE(clearance, 0) << extent;
+        EXPECT_GE(clearance, nearest * nearest - radius * radius - 1e-12) << extent;
+      }
       EXPECT_TRUE(nearest > radius || grid.may_touch(c, radius)) << extent;
       EXPECT_NEAR(grid.nearest(c), nearest, 1e-12);
       touched += static_cast<int>(nearest <= radius);

@@ -223,8 +223,10 @@ double Remainder::value(const JointVector& q, JointVector& gradient, JointVector
 }
 
 double descend_to_closest(const ChainModel& model, const Remainder& remainder, int most,
-                          JointVector& q, int& steps) {
+                          JointVector& q, int& steps, double best) {
   constexpr double kSettled = 1e-9;
+  /// So many more steps that are worth as much as the last must be enough to come below `best`.
+  constexpr double kHopeful = 10;
   JointVector gradient(model.dof);
   JointVector diagonal(model.dof);
   SquareMatrix H;
@@ -247,16 +249,17 @@ double descend_to_closest(const ChainModel& model, const Remainder& remainder, i
       look();
     }
     ++steps;
+    if (taken > 0 && value - kHopeful * (before - value) > best) return value;
   }
   return value;
 }
 
 double descend_from_seed(const ChainModel& model, const Remainder& remainder, int most,
-                         JointVector& q, int& steps) {
+                         JointVector& q, int& steps, double best) {
   /// Remainders that differ by less, relative to them, are the same.
   constexpr double kSame = 1e-9;
   q = model.joints.clamp(q);
-  const double value = descend_to_closest(model, remainder, most, q, steps);
+  const double value = descend_to_closest(model, remainder, most, q, steps, best);
   // Whole turns matter only to joints that follow the one that took them.
   JointVector principal = q;
   model.joints.wrap(principal.data());

@@ -2,6 +2,7 @@
 // The configuration inside the limits from which the least is missing of a goal, near a seed.
 #pragma once
 
+#include "base/constants.hpp"
 #include "goal/goal.hpp"
 #include "kinematics/chain_model.hpp"
 #include "simd/lane_chain.hpp"
@@ -49,14 +50,14 @@ class Remainder {
 
 /// Moves q, inside the limits, to a local minimum in at most `most` steps, by Newton's method with
 /// the limits as an active set (Bertsekas: "Projected Newton methods", SIAM J. Control and
-/// Optimization 20, 1982) and damped as Levenberg-Marquardt. Returns the remainder there; `steps`
-/// counts those taken.
+/// Optimization 20, 1982) and damped as Levenberg-Marquardt. Given up where it will most likely not
+/// come below `best`. Returns the remainder there; `steps` counts those taken.
 double descend_to_closest(const ChainModel& model, const Remainder& remainder, int most,
-                          JointVector& q, int& steps);
+                          JointVector& q, int& steps, double best = kInfinity);
 
 /// The same from a seed that may lie anywhere, without the turns that joints took on the way.
 double descend_from_seed(const ChainModel& model, const Remainder& remainder, int most,
-                         JointVector& q, int& steps);
+                         JointVector& q, int& steps, double best = kInfinity);
 
 /// Descents from seeds at random, where there are no lanes to find better ones.
 inline constexpr int kRandomDescents = 48;

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which configurations are free, and at which targets none is.
+#include <algorithm>
+
+#include "base/constants.hpp"
 #include "scene/scene_data.hpp"
 
 namespace iksel {
@@ -67,7 +70,8 @@ double Scene::Data::find_clearance(const double* q, SceneLook& look) const {
   room.culprit = look.culprit;
   const double clearance = kernels_.find_clearance(view, q, room);
   look.culprit = room.culprit;
-  return clearance > 0 && touches_points(view, room, look) ? 0.0 : clearance;
+  if (!(clearance > 0) || clouds_.empty()) return clearance;
+  return std::min(clearance, clearance_of_points(view, room, look));
 }
 
 void Scene::Data::find_free(const double* q, std::size_t count, bool* free) const {
@@ -76,8 +80,9 @@ void Scene::Data::find_free(const double* q, std::size_t count, bool* free) cons
   for (std::size_t i = 0; i < count; ++i) free[i] = find_clearance(q + i * dof, look) > 0;
 }
 
-bool Scene::Data::touches_points(const lanes::SceneView& view, const lanes::SceneRoom& room,
-                                 SceneLook& look) const {
+double Scene::Data::clearance_of_points(const lanes::SceneView& view, const lanes::SceneRoom& room,
+                                        SceneLook& look) const {
+  double clearance = kInfinity;
   const auto centre = [](const Pose& T_cloud_body, const lanes::SceneBall& ball) {
     return Eigen::Vector3d(T_cloud_body * to_vector(ball.centre));
   };
@@ -86,7 +91,7 @@ bool Scene::Data::touches_points(const lanes::SceneView& view, const lanes::Scen
   };
   const auto touches = [&](const Cloud& cloud, const Pose& T_cloud_body,
                            const lanes::SceneBall& ball) {
-    return cloud.grid->touches(centre(T_cloud_body, ball), reach(cloud, ball));
+    return cloud.grid->touches(centre(T_cloud_body, ball), reach(cloud, ball), clearance);
   };
   const auto may_touch = [&](const Cloud& cloud, const Pose& T_cloud_body,
                              const lanes::SceneBall& ball) {
@@ -97,7 +102,7 @@ bool Scene::Data::touches_points(const lanes::SceneView& view, const lanes::Scen
   };
   if (look.ball && look.cloud < clouds_.size()) {
     const Cloud& cloud = clouds_[look.cloud];
-    if (touches(cloud, place(cloud, look.link), *look.ball)) return true;
+    if (touches(cloud, place(cloud, look.link), *look.ball)) return clearance;
   }
   for (std::size_t c = 0; c < clouds_.size(); ++c) {
     const Cloud& cloud = clouds_[c];
@@ -119,10 +124,10 @@ bool Scene::Data::touches_points(const lanes::SceneView& view, const lanes::Scen
       look.cloud = c;
       look.link = i;
       look.ball = found;
-      return true;
+      return clearance;
     }
   }
-  return false;
+  return clearance;
 }
 
 bool Scene::Data::touches_at(const Pose& T_base_tip, double position, double rotation) const {
@@ -134,7 +139,8 @@ bool Scene::Data::touches_at(const Pose& T_base_tip, double position, double rot
   // The bodies stand still.
   const double q = 0;
   SceneLook look;
-  return !(kernels_.find_clearance(view, &q, room) > 0) || touches_points(view, room, look);
+  return !(kernels_.find_clearance(view, &q, room) > 0) ||
+         !(clearance_of_points(view, room, look) > 0);
 }
 
 }  // namespace iksel

@@ -123,7 +123,7 @@ bool PointGrid::may_touch(const Eigen::Vector3d& c, double radius) const {
   return away2 * kShortened <= radius * radius;
 }
 
-bool PointGrid::touches(const Eigen::Vector3d& c, double radius) const {
+bool PointGrid::touches(const Eigen::Vector3d& c, double radius, double& clearance) const {
   if (!may_touch(c, radius)) return false;
   const Eigen::Vector3d reach = Eigen::Vector3d::Constant(radius);
   const Cell from = cell_of(c - reach);
@@ -134,13 +134,17 @@ bool PointGrid::touches(const Eigen::Vector3d& c, double radius) const {
     for (int y = from[1]; y <= to[1]; ++y) {
       if (gap2_to(c, 1, y) > beyond_z) continue;
       const std::uint32_t end = first_[index(to[0], y, z) + 1];
+      double least = std::numeric_limits<double>::infinity();
       for (std::uint32_t i = first_[index(from[0], y, z)]; i < end; ++i) {
         const auto& p = points_[i];
         const double dx = p[0] - c[0];
         const double dy = p[1] - c[1];
         const double dz = p[2] - c[2];
-        if (dx * dx + dy * dy + dz * dz <= square) return true;
+        least = std::min(least, dx * dx + dy * dy + dz * dz);
       }
+      if (!(least <= square)) continue;
+      clearance = least - square;
+      return true;
     }
   }
   return false;

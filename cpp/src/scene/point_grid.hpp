@@ -18,8 +18,9 @@ class PointGrid {
 
   /// Whether a point may lie within `radius` of c: never false where one does.
   [[nodiscard]] bool may_touch(const Eigen::Vector3d& c, double radius) const;
-  /// Whether one does.
-  [[nodiscard]] bool touches(const Eigen::Vector3d& c, double radius) const;
+  /// Whether one does; then `clearance` is distance^2 - radius^2 of one that is about the nearest
+  /// [m^2].
+  [[nodiscard]] bool touches(const Eigen::Vector3d& c, double radius, double& clearance) const;
   /// Distance of the nearest point [m].
   [[nodiscard]] double nearest(const Eigen::Vector3d& c) const;
 

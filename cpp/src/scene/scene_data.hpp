@@ -48,7 +48,7 @@ struct Scene::Data {
   /// Throws unless nothing of another kind has that name.
   void check_name(const std::string& name, bool is_obstacle) const;
 
-  /// The clearance (scene_types.hpp) of a configuration; 0 where only points touch.
+  /// The clearance (scene_types.hpp) of a configuration.
   double find_clearance(const double* q, SceneLook& look) const;
   /// Whether something certainly touches in all solutions that bring the tip link to a pose, within
   /// those tolerances [m, rad].
@@ -79,9 +79,10 @@ struct Scene::Data {
   void add(const Obstacle& obstacle);
   void show_obstacles(lanes::SceneView& view) const;
   [[nodiscard]] const std::shared_ptr<const PointGrid>& grid_of(const Obstacle& cloud);
-  /// Whether what a view shows touches a point, with the bodies where they are in `room`.
-  bool touches_points(const lanes::SceneView& view, const lanes::SceneRoom& room,
-                      SceneLook& look) const;
+  /// The clearance of what a view shows from the points, with the bodies where they are in `room`;
+  /// infinite where nothing touches one.
+  double clearance_of_points(const lanes::SceneView& view, const lanes::SceneRoom& room,
+                             SceneLook& look) const;
   void add_contacts(int link, const std::vector<Eigen::Vector3d>& centre,
                     std::vector<Contact>& found) const;
   void add_pair_contacts(const std::vector<Eigen::Vector3d>& centre,

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/constants.hpp"
 #include "goal/joint_move.hpp"
 #include "goal/screen.hpp"
 #include "refine/closest_descent.hpp"
@@ -38,6 +39,7 @@ class Minima {
         remainder_(remainder),
         request_(request),
         move_(model.dof, request),
+        only_best_counts_(!request.near && !screens_answers(request)),
         found_(found),
         result_(result) {
     found_.clear();
@@ -45,7 +47,9 @@ class Minima {
 
   void descend(const JointVector& seed) {
     LocalMinimum end{0, 0, static_cast<int>(found_.size()), seed};
-    end.remainder = descend_from_seed(model_, remainder_, kDescentSteps, end.q, result_.iterations);
+    end.remainder =
+        descend_from_seed(model_, remainder_, kDescentSteps, end.q, result_.iterations, best_);
+    if (only_best_counts_) best_ = std::min(best_, end.remainder);
     ++result_.attempts;
     if (request_.near) {
       model_.joints.wrap_nearest(
@@ -79,6 +83,9 @@ class Minima {
   const Remainder& remainder_;
   const SolveRequest& request_;
   JointMove move_;
+  /// Else the others are needed as well: those as good, and where the best are refused.
+  bool only_best_counts_;
+  double best_ = kInfinity;
   std::vector<LocalMinimum>& found_;
   Result& result_;
 };

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "seeds/free_samples.hpp"
 
-#include <cmath>
 #include <utility>
 
 namespace iksel {
@@ -9,27 +8,23 @@ namespace {
 
 /// The samples of the sweep come in so many parts.
 constexpr int kSampleParts = 16;
-/// Samples that are looked beside, at most: those that overlap least.
-constexpr std::size_t kMostBeside = 24;
-
-/// A number for what a configuration collided with.
-std::uint32_t number_of(const lanes::SceneCulprit& culprit) {
-  const auto kind = static_cast<std::uint32_t>(culprit.kind);
-  const auto index = static_cast<std::uint32_t>(culprit.index);
-  const auto link = static_cast<std::uint32_t>(culprit.link);
-  return (link * 100'003 + index) * 8 + kind;
-}
+/// Peaks that are looked beside, at most: those that overlap least.
+constexpr std::size_t kMostPeaks = 24;
+/// A peak is looked beside more closely where that much of its overlap is left there.
+constexpr double kMuchLess = 0.6;
 
 }  // namespace
 
 FreeSamples::FreeSamples(Sweep& sweep, const Scene& scene, const Pose& Y, Memory& memory,
                          Work& work, StageClock& clock)
-    : sweep_(sweep), scene_(scene), Y_(Y), to_(memory), work_(work), clock_(clock) {
+    : sweep_(sweep), scene_(scene), to_(memory), work_(work), clock_(clock) {
   look_.is_target_clear = true;
   to_.q.clear();
   to_.samples.clear();
   to_.overlaps.clear();
-  to_.known.assign(Sweep::kSamples * kPack, Known());
+  to_.ends.clear();
+  to_.between.clear();
+  to_.clearance.assign(Sweep::kSamples * kPack, kInfinity);
   sweep_.set_target(Y);
 }
 
@@ -50,9 +45,7 @@ bool FreeSamples::add_rows() {
       // 7 and 16 have no factor in common: each part once.
       sweep_.add_samples(part_ * 7 % kSampleParts, kSampleParts, to_.q, to_.samples);
       ++part_;
-    } else if (const Overlap* next = next_overlap()) {
-      sweep_.add_beside(next->q.data(), next->sample.branch, to_.q);
-    } else if (has_any_ || !add_between()) {
+    } else if (!add_rows_between()) {
       return false;
     }
   }
@@ -60,47 +53,83 @@ bool FreeSamples::add_rows() {
   return true;
 }
 
-bool FreeSamples::add_between() {
-  if (!sweep_.find(Y_)) return false;
-  std::array<double, kDof> q{};
-  std::copy_n(sweep_.q(), kDof, q.begin());
-  to_.q.assign(q.begin(), q.end());
-  sweep_.add_beside(q.data(), sweep_.branch(), to_.q);
+bool FreeSamples::add_rows_between() {
+  if (is_promising()) {
+    const Overlap least = *beside_;
+    beside_.reset();
+    sweep_.add_beside(least.q.data(), least.sample.branch, Sweep::kSpacingBeside, to_.q);
+    return true;
+  }
+  beside_.reset();
+  if (const Overlap* peak = next_peak()) {
+    beside_ = *peak;
+    at_peak_ = peak->clearance;
+    sweep_.add_beside(peak->q.data(), peak->sample.branch, 1.0, to_.q);
+  } else if (const End* end = next_end()) {
+    sweep_.add_end(end->inside, end->up, to_.q);
+  } else if (const Between* short_arc = next_between()) {
+    to_.q.assign(short_arc->q.begin(), short_arc->q.end());
+    sweep_.add_beside(short_arc->q.data(), short_arc->branch, 1.0, to_.q);
+  } else {
+    return false;
+  }
   return true;
 }
 
-bool FreeSamples::may_be_free_beside(const Overlap& overlap) const {
-  const int branch = overlap.sample.branch;
-  const int below = sweep_.places().find(overlap.sample.place - 1);
-  const int above = sweep_.places().find(overlap.sample.place + 1);
-  if (below < 0 || above < 0) return true;
-  const Known& here = known(overlap.sample.place, branch);
-  const Known& before = known(below, branch);
-  const Known& behind = known(above, branch);
-  const auto by = here.culprit;
-  if (by == 0 || before.culprit != by || behind.culprit != by) return true;
-  // The three collide by the same: it would have to part twice as fast between them as from one to
-  // the next.
-  const float slope = std::max(std::abs(here.clearance - before.clearance),
-                               std::abs(behind.clearance - here.clearance));
-  return std::max({before.clearance, here.clearance, behind.clearance}) + slope >= 0;
+bool FreeSamples::is_promising() const {
+  return beside_ && beside_->clearance > kMuchLess * at_peak_;
 }
 
-const FreeSamples::Overlap* FreeSamples::next_overlap() {
-  if (beside_ == 0) {
-    auto& all = to_.overlaps;
-    all.erase(std::remove_if(all.begin(), all.end(),
-                             [&](const Overlap& each) { return !may_be_free_beside(each); }),
-              all.end());
+const FreeSamples::Between* FreeSamples::next_between() {
+  if (!has_between_) {
+    has_between_ = true;
+    sweep_.visit_between([&](const double* q, int branch) {
+      Between& between = to_.between.emplace_back();
+      std::copy_n(q, kDof, between.q.begin());
+      between.branch = branch;
+    });
   }
-  const std::size_t most = std::min(kMostBeside, to_.overlaps.size());
-  if (beside_ == most) return nullptr;
-  if (beside_ == 0) {
-    std::partial_sort(to_.overlaps.begin(),
-                      to_.overlaps.begin() + static_cast<std::ptrdiff_t>(most), to_.overlaps.end(),
-                      [](const Overlap& a, const Overlap& b) { return a.clearance > b.clearance; });
+  return between_ < to_.between.size() ? &to_.between[between_++] : nullptr;
+}
+
+bool FreeSamples::is_peak(const Overlap& overlap) const {
+  const auto [place, branch] = overlap.sample;
+  for (const int beside : {place - 1, place + 1}) {
+    const int at = sweep_.places().find(beside);
+    if (at >= 0 && exists(at, branch) && clearance(at, branch) > overlap.clearance) {
+      return false;
+    }
   }
-  return &to_.overlaps[beside_++];
+  return true;
+}
+
+const FreeSamples::Overlap* FreeSamples::next_peak() {
+  auto& all = to_.overlaps;
+  if (!has_peaks_) {
+    has_peaks_ = true;
+    find_ends();
+    all.erase(
+        std::remove_if(all.begin(), all.end(), [&](const Overlap& each) { return !is_peak(each); }),
+        all.end());
+    std::sort(all.begin(), all.end(), [](const Overlap& a, const Overlap& b) {
+      return a.clearance > b.clearance || (a.clearance == b.clearance && a.number < b.number);
+    });
+  }
+  return peak_ < std::min(kMostPeaks, all.size()) ? &all[peak_++] : nullptr;
+}
+
+void FreeSamples::find_ends() {
+  for (const Overlap& each : to_.overlaps) {
+    const auto [place, branch] = each.sample;
+    for (const bool up : {false, true}) {
+      const int at = sweep_.places().find(up ? place + 1 : place - 1);
+      if (at >= 0 && !exists(at, branch)) to_.ends.push_back({each.sample, up});
+    }
+  }
+}
+
+const FreeSamples::End* FreeSamples::next_end() {
+  return end_ < to_.ends.size() ? &to_.ends[end_++] : nullptr;
 }
 
 void FreeSamples::screen_pack() {
@@ -113,11 +142,12 @@ void FreeSamples::screen_pack() {
       Overlap& overlap = to_.overlaps.emplace_back();
       overlap.clearance = above;
       overlap.sample = to_.samples[i];
-      Known& of_sample = known(overlap.sample.place, overlap.sample.branch);
-      of_sample.clearance = static_cast<float>(above);
-      // Points are no culprit.
-      of_sample.culprit = above < 0 ? number_of(look_.culprit) : 0;
+      overlap.number = static_cast<int>(to_.overlaps.size());
+      clearance(overlap.sample.place, overlap.sample.branch) = above;
       std::copy_n(row(i), kDof, overlap.q.begin());
+    } else if (beside_ && above > beside_->clearance) {
+      beside_->clearance = above;
+      std::copy_n(row(i), kDof, beside_->q.begin());
     }
   }
   at_ += count;

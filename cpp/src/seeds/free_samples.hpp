@@ -4,8 +4,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
-#include <limits>
+#include <optional>
 #include <vector>
 
 #include "goal/joint_move.hpp"
@@ -20,22 +19,29 @@ class FreeSamples {
   /// A sample that is not free.
   struct Overlap {
     double clearance;  ///< scene_types.hpp
+    int number;        ///< in the order in which they were found
     Sweep::Sample sample;
     std::array<double, SweptBranches::kDof> q;
   };
-  struct Known {
-    /// Of a sample that collides; infinite: it does not exist, or is free.
-    float clearance = std::numeric_limits<float>::infinity();
-    /// By what it collides; 0: not known.
-    std::uint32_t culprit = 0;
+  /// Where a branch is inside the limits between two samples, but at neither.
+  struct Between {
+    std::array<double, SweptBranches::kDof> q;
+    int branch;
+  };
+  /// A sample beside which a branch leaves the limits, or ends.
+  struct End {
+    Sweep::Sample inside;
+    bool up;
   };
   /// What it writes to.
   struct Memory {
     std::vector<double> q;
     std::vector<Sweep::Sample> samples;
-    /// Of each sample of each branch, what is known about it.
-    std::vector<Known> known;
+    /// Of each sample of each branch; infinite: there is none, or it is free.
+    std::vector<double> clearance;
     std::vector<Overlap> overlaps;
+    std::vector<End> ends;
+    std::vector<Between> between;
   };
 
   /// All must outlive this. Nothing may touch that is where it is in all solutions.
@@ -43,8 +49,8 @@ class FreeSamples {
               StageClock& clock);
 
   /// The samples of the sweep, those far from each other first; where none is free, between the
-  /// samples beside those that overlap least; where there is none at all, between the samples
-  /// beside where the sweep finds an answer.
+  /// samples beside those that overlap least; towards where branches leave the limits; and where
+  /// they are inside these only between samples.
   bool next_stage();
 
   template <typename Refiner>
@@ -65,28 +71,45 @@ class FreeSamples {
   [[nodiscard]] const double* row(std::size_t i) const { return &to_.q[i * kDof]; }
   /// Makes rows of the next part; false if there are no more.
   bool add_rows();
-  /// Makes rows beside an answer between the samples; false if there is none.
-  bool add_between();
-  /// The next of those that overlap least; null if there are no more.
-  const Overlap* next_overlap();
-  /// Whether there may be free configurations between an overlap and the samples beside it.
-  [[nodiscard]] bool may_be_free_beside(const Overlap& overlap) const;
-  [[nodiscard]] Known& known(int place, int branch) const {
-    return to_.known[static_cast<std::size_t>(place) * kPack + static_cast<std::size_t>(branch)];
+  /// The same where no sample is free.
+  bool add_rows_between();
+  /// The next branch between samples; null if there are no more.
+  const Between* next_between();
+  /// The next of the samples that overlap less than those beside them, those that do least first;
+  /// null if there are no more.
+  const Overlap* next_peak();
+  [[nodiscard]] bool is_peak(const Overlap& overlap) const;
+  /// Whether an overlap is much less beside the last peak.
+  [[nodiscard]] bool is_promising() const;
+  void find_ends();
+  /// The next end of a branch; null if there are no more.
+  const End* next_end();
+  [[nodiscard]] double& clearance(int place, int branch) const {
+    return to_
+        .clearance[static_cast<std::size_t>(place) * kPack + static_cast<std::size_t>(branch)];
+  }
+  [[nodiscard]] bool exists(int place, int branch) const {
+    return clearance(place, branch) < kInfinity;
   }
   /// Looks at the next rows, as many as there are lanes.
   void screen_pack();
 
   Sweep& sweep_;
   const Scene& scene_;
-  const Pose& Y_;
   SceneLook look_;
   Memory& to_;
   Work& work_;
   StageClock& clock_;
   std::size_t at_ = 0;      ///< row to be looked at next
   int part_ = 0;            ///< of the samples
-  std::size_t beside_ = 0;  ///< overlaps that were looked beside
+  bool has_peaks_ = false;  ///< whether the overlaps are only these
+  std::size_t peak_ = 0;    ///< of these, those that were looked beside
+  /// What overlaps least of the last peak and what is beside it.
+  std::optional<Overlap> beside_;
+  double at_peak_ = 0;
+  std::size_t end_ = 0;
+  bool has_between_ = false;
+  std::size_t between_ = 0;  ///< of these, those that were looked at
   bool has_any_ = false;
   std::array<std::size_t, kPack> free_{};
   std::size_t free_count_ = 0;

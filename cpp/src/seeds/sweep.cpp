@@ -84,11 +84,12 @@ void Sweep::add_samples(int first, int stride, std::vector<double>& q,
     const int lane_of_row = i % kBranches;
     const auto place_of = [&](int k) { return first + stride * std::min(k, count - 1); };
     if (lane_of_row == 0) {
-      branches_.rate([&](int k) { return places_.value(place_of(i + k)); }, 0.0, rows);
+      branches_.rate([&](int k) { return places_.value(place_of(i + k)); }, kNear, rows);
     }
     const SweptBranches::Row& off = rows[lane_of_row];
-    if (*std::min_element(off.begin(), off.end()) > 0) continue;
     const int place = place_of(i);
+    rows_[static_cast<std::size_t>(place)] = off;
+    if (*std::min_element(off.begin(), off.end()) > 0) continue;
     branches_.solve_all(places_.value(place));
     for (int lane = 0; lane < kBranches; ++lane) {
       if (branches_.off(lane) > 0) continue;
@@ -99,13 +100,42 @@ void Sweep::add_samples(int first, int stride, std::vector<double>& q,
   }
 }
 
-void Sweep::add_beside(const double* from, int branch, std::vector<double>& q) {
+void Sweep::add_end(const Sample& inside, bool up, std::vector<double>& q) {
+  constexpr int kRounds = 4;
+  double from = places_.value(inside.place);
+  double to = from + (up ? places_.step : -places_.step);
+  for (int round = 0; round < kRounds; ++round) {
+    const double step = (to - from) / (kBranches + 1);
+    const auto value = [&](int lane) { return branches_.clamp(from + step * (lane + 1)); };
+    branches_.solve_one(inside.branch, value);
+    int count = 0;
+    while (count < kBranches && branches_.off(count) <= 0) ++count;
+    if (count > 0) {
+      branches_.copy_joints(count - 1, q_.data());
+      q.insert(q.end(), q_.begin(), q_.end());
+    }
+    from += step * count;
+    to = from + step;
+  }
+}
+
+void Sweep::visit_between(FunctionRef<void(const double* q, int branch)> visit) {
+  nearest_.find(places_, rows_, kNear);
+  least_ = kInfinity;
+  close_.clear();
+  for (const LeastPlace& near : nearest_) {
+    if (near.value > 0 && follow(near)) visit(q_.data(), branch_);
+  }
+}
+
+void Sweep::add_beside(const double* from, int branch, double part, std::vector<double>& q) {
   // Without the middle and the ends, which are samples.
   constexpr double kHalf = (kBranches + 2) / 2.0;
   const double middle = from[branches_.joint()];
+  const double spacing = part * kSpacingBeside * places_.step;
   branches_.solve_one(branch, [&](int lane) {
     const int place = lane < kBranches / 2 ? lane + 1 : lane + 2;
-    return branches_.clamp(middle + places_.step * (place - kHalf) / kHalf);
+    return branches_.clamp(middle + spacing * (place - kHalf));
   });
   for (int lane = 0; lane < kBranches; ++lane) {
     if (branches_.off(lane) > 0) continue;

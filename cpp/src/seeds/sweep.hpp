@@ -37,17 +37,24 @@ class Sweep {
   };
   /// The same, for the target as it is set, and which they are.
   void add_samples(int first, int stride, std::vector<double>& q, std::vector<Sample>& samples);
+  /// Adds places of a branch towards where it leaves the limits, or ends, between a sample where it
+  /// is inside and the one beside it, up or down, where it is not: the last ones are very near.
+  void add_end(const Sample& inside, bool up, std::vector<double>& q);
+  /// Once all samples were added: visits branches that are inside the limits between two samples,
+  /// but at neither.
+  void visit_between(FunctionRef<void(const double* q, int branch)> visit);
   [[nodiscard]] const Places& places() const { return places_; }
   void set_target(const Pose& Y) {
     branches_.set_target(Y);
     places_ = branches_.places(kSamples);
   }
   /// Adds a branch inside the limits at values of the swept joint beside that of `from`, as far as
-  /// the samples beside.
-  void add_beside(const double* from, int branch, std::vector<double>& q);
+  /// a part of the way to the samples beside.
+  void add_beside(const double* from, int branch, double part, std::vector<double>& q);
+  /// How far from each other they are, as a part of that way.
+  static constexpr double kSpacingBeside = 2.0 / (SweptBranches::kCount + 2);
   /// The answer [rad].
   [[nodiscard]] const double* q() const { return q_.data(); }
-  [[nodiscard]] int branch() const { return branch_; }
   /// If there was none: where branches came so close to one that it might have been missed.
   [[nodiscard]] std::size_t close_count() const { return close_.size(); }
   [[nodiscard]] const double* close_to_answer(std::size_t i) const { return close_[i].q.data(); }

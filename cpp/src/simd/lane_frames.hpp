@@ -23,11 +23,11 @@ inline void turn(T (&u)[3], T (&v)[3], const C& c, const C& s) {
   }
 }
 
-/// Frames of the joints at q: J has each joint's origin and axis, `f` the last one's frame.
+/// Frames of the chain's n joints at q: J has each joint's origin and axis, `f` the last one's
+/// frame.
 template <typename T>
 IKSEL_INLINE void place_joints(const LaneChainOf<NumberOf<T>>& chain, const T* q, T (*J)[6],
-                               LaneFrame<T>& f) {
-  const int n = chain.n;
+                               LaneFrame<T>& f, int n) {
   for (int i = 0; i < 3; ++i) {
     f.x[i] = T(i == 0 ? 1.0 : 0.0);
     f.y[i] = T(i == 1 ? 1.0 : 0.0);

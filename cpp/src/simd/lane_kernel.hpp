@@ -108,7 +108,7 @@ IKSEL_INLINE PackResult iterate(const LaneChainOf<NumberOf<T>>& chain, const Lan
   for (int iteration = 1;; ++iteration) {
     T J[kMaxJoints][6];
     LaneFrame<T> frame;
-    place_joints(chain, q, J, frame);
+    place_joints(chain, q, J, frame, chain.n);
     T e[6];
     goal.measure(frame, e);
     const T ep2 = e[0] * e[0] + e[1] * e[1] + e[2] * e[2];

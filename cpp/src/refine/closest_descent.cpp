@@ -226,7 +226,7 @@ double descend_to_closest(const ChainModel& model, const Remainder& remainder, i
                           JointVector& q, int& steps, double best) {
   constexpr double kSettled = 1e-9;
   /// So many more steps that are worth as much as the last must be enough to come below `best`.
-  constexpr double kHopeful = 10;
+  constexpr double kHopeful = 30;
   JointVector gradient(model.dof);
   JointVector diagonal(model.dof);
   SquareMatrix H;

@@ -15,7 +15,7 @@ struct ScreenRound {
   int packs;
   int iterations;
 };
-constexpr ScreenRound kScreenRounds[] = {{3, 8}, {1, 12}};
+constexpr ScreenRound kScreenRounds[] = {{3, 12}, {1, 16}};
 
 /// The weights of the axes whose trace has the squares of rotations about them to second order:
 /// 1 - E_xx is half the sum of the other two's.

@@ -10,8 +10,6 @@ namespace {
 constexpr int kSampleParts = 16;
 /// Peaks that are looked beside, at most: those that overlap least.
 constexpr std::size_t kMostPeaks = 24;
-/// A peak is looked beside more closely where that much of its overlap is left there.
-constexpr double kMuchLess = 0.6;
 
 }  // namespace
 
@@ -54,16 +52,15 @@ bool FreeSamples::add_rows() {
 }
 
 bool FreeSamples::add_rows_between() {
-  if (is_promising()) {
+  if (beside_) {
+    // Once more, more closely.
     const Overlap least = *beside_;
     beside_.reset();
     sweep_.add_beside(least.q.data(), least.sample.branch, Sweep::kSpacingBeside, to_.q);
     return true;
   }
-  beside_.reset();
   if (const Overlap* peak = next_peak()) {
     beside_ = *peak;
-    at_peak_ = peak->clearance;
     sweep_.add_beside(peak->q.data(), peak->sample.branch, 1.0, to_.q);
   } else if (const End* end = next_end()) {
     sweep_.add_end(end->inside, end->up, to_.q);
@@ -74,10 +71,6 @@ bool FreeSamples::add_rows_between() {
     return false;
   }
   return true;
-}
-
-bool FreeSamples::is_promising() const {
-  return beside_ && beside_->clearance > kMuchLess * at_peak_;
 }
 
 const FreeSamples::Between* FreeSamples::next_between() {
@@ -93,14 +86,21 @@ const FreeSamples::Between* FreeSamples::next_between() {
 }
 
 bool FreeSamples::is_peak(const Overlap& overlap) const {
+  /// So many times as fast as from one sample to the next what overlaps may part between them.
+  constexpr double kFaster = 3;
   const auto [place, branch] = overlap.sample;
+  double slope = 0;
   for (const int beside : {place - 1, place + 1}) {
     const int at = sweep_.places().find(beside);
-    if (at >= 0 && exists(at, branch) && clearance(at, branch) > overlap.clearance) {
+    if (at < 0 || !exists(at, branch)) {
+      slope = kInfinity;
+    } else if (clearance(at, branch) > overlap.clearance) {
       return false;
+    } else {
+      slope = std::max(slope, overlap.clearance - clearance(at, branch));
     }
   }
-  return true;
+  return overlap.clearance + kFaster * slope >= 0;
 }
 
 const FreeSamples::Overlap* FreeSamples::next_peak() {

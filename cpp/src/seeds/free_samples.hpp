@@ -79,8 +79,6 @@ class FreeSamples {
   /// null if there are no more.
   const Overlap* next_peak();
   [[nodiscard]] bool is_peak(const Overlap& overlap) const;
-  /// Whether an overlap is much less beside the last peak.
-  [[nodiscard]] bool is_promising() const;
   void find_ends();
   /// The next end of a branch; null if there are no more.
   const End* next_end();
@@ -106,7 +104,6 @@ class FreeSamples {
   std::size_t peak_ = 0;    ///< of these, those that were looked beside
   /// What overlaps least of the last peak and what is beside it.
   std::optional<Overlap> beside_;
-  double at_peak_ = 0;
   std::size_t end_ = 0;
   bool has_between_ = false;
   std::size_t between_ = 0;  ///< of these, those that were looked at

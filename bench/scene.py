@@ -66,13 +66,11 @@ def place(rng: np.random.Generator) -> Array:
 
 
 def make_scenes(
-    panda: Panda, seed: int, spheres: iksel.RobotSpheres | None = None
+    robot: iksel.Robot, spheres: iksel.RobotSpheres, seed: int
 ) -> dict[str, iksel.Scene]:
-    """The scenes by name, with the arm's spheres or others."""
+    """The scenes by name."""
     rng = np.random.default_rng(seed)
-    alone, boxes, points = (
-        iksel.Scene(panda.robot, spheres or panda.spheres) for _ in range(3)
-    )
+    alone, boxes, points = (iksel.Scene(robot, spheres) for _ in range(3))
     for i in range(16):
         boxes.add_box(f"box {i}", rng.uniform(0.05, 0.25, 3), place(rng))
     parts = []
@@ -106,10 +104,10 @@ class Judge(NamedTuple):
         return free
 
 
-def measure(panda: Panda, name: str, args: argparse.Namespace) -> dict[str, Any]:
+def measure(
+    panda: Panda, scene: iksel.Scene, inner: iksel.Scene, args: argparse.Namespace
+) -> dict[str, Any]:
     """A row: solves in one scene beside solves without one."""
-    scene = make_scenes(panda, args.seed)[name]
-    inner = make_scenes(panda, args.seed, panda.inner)[name]
     targets = panda.robot.fk(
         panda.robot.random_configurations(args.targets, seed=args.seed)
     )
@@ -213,8 +211,9 @@ def run(args: argparse.Namespace) -> int:
         "spheres": sum(map(len, panda.spheres.links.values())),
         "simd": iksel.simd_level(),
     }
-    for name in make_scenes(panda, args.seed):
+    inner = make_scenes(panda.robot, panda.inner, args.seed)
+    for name, scene in make_scenes(panda.robot, panda.spheres, args.seed).items():
         if args.only in {None, name}:
-            rows[name] = measure(panda, name, args)
+            rows[name] = measure(panda, scene, inner[name], args)
     print(json.dumps(rows, indent=2))
     return 0

@@ -179,12 +179,12 @@ def _make_shape(
     coal: Any, element: ET.Element, folder: Path, packages: Mapping[str, Any]
 ) -> Any:
     if element.tag == "box":
-        return coal.Box(*read_numbers(element, "size", 3))
+        return coal.Box(*_read_lengths(element, "size", 3))
     if element.tag == "sphere":
-        return coal.Sphere(*read_numbers(element, "radius", 1))
+        return coal.Sphere(*_read_lengths(element, "radius", 1))
     if element.tag == "cylinder":
-        (radius,) = read_numbers(element, "radius", 1)
-        return coal.Cylinder(radius, *read_numbers(element, "length", 1))
+        (radius,) = _read_lengths(element, "radius", 1)
+        return coal.Cylinder(radius, *_read_lengths(element, "length", 1))
     if element.tag == "mesh":
         path = resolve_path(element.get("filename", ""), packages, folder)
         scale = np.array(read_numbers(element, "scale", 3, "1 1 1"))
@@ -192,6 +192,14 @@ def _make_shape(
     raise UrdfError(
         f"no geometry {element.tag!r}; possible: box, cylinder, sphere, mesh"
     )
+
+
+def _read_lengths(element: ET.Element, attribute: str, count: int) -> list[float]:
+    lengths = read_numbers(element, attribute, count)
+    if min(lengths) < 0:
+        text = element.get(attribute)
+        raise UrdfError(f"{element.tag} with {attribute}={text!r}, which is below 0")
+    return lengths
 
 
 def _load_mesh(coal: Any, path: Path, scale: FloatArray) -> Any:

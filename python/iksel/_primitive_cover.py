@@ -106,7 +106,7 @@ def cover_cylinder(
             rows.append(rim * [1, 1, side, 1] + [0, 0, side * half, 0])
     lower = -half + bare[0] * deepest
     upper = half - bare[1] * deepest
-    if lower < upper:
+    if lower < upper or radius == 0:
         rows.append(_on_axis(radius, lower, upper, max_error))
     return np.concatenate(rows)
 
@@ -114,7 +114,7 @@ def cover_cylinder(
 def _on_axis(radius: float, lower: float, upper: float, max_error: float) -> FloatArray:
     """Spheres on the axis that hold a cylinder between two heights [m]."""
     longest = np.sqrt(_reach2(np.array(radius), max_error))
-    count = int(np.ceil((upper - lower) / (2 * longest)))
+    count = max(1, int(np.ceil((upper - lower) / (2 * longest))))
     reach = (upper - lower) / (2 * count)
     z = lower + reach * (2 * np.arange(count) + 1)
     rows = np.zeros((count, 4))
@@ -129,7 +129,7 @@ def _rim_rings(radius: float, deepest: float, max_error: float) -> FloatArray:
     They hold all that is nearer to this end than to the side, and `deepest` below it at
     most; and of what is nearer to the side all above -deepest.
     """
-    rows = []
+    rows = [np.zeros((0, 4))]
     from_side = 0.0
     e = max_error * (1 - _ROUNDING)
     while from_side < radius:

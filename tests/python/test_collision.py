@@ -98,6 +98,10 @@ def test_errors_name_the_culprit(arm) -> None:
         collision.SelfCollision(URDF.replace(TUBE, ""), arm)
     with pytest.raises(iksel.UrdfError, match="'l2'.*cylinder with radius='wide'"):
         collision.SelfCollision(URDF.replace(TUBE, TUBE.replace("0.04", "wide")), arm)
+    with pytest.raises(iksel.UrdfError, match="'l2'.*radius='-0.04', which is below 0"):
+        collision.SelfCollision(URDF.replace(TUBE, TUBE.replace("0.04", "-0.04")), arm)
+    with pytest.raises(iksel.UrdfError, match="'l2'.*size='1 1 -1', which is below 0"):
+        collision.SelfCollision(URDF.replace(TUBE, '<box size="1 1 -1"/>'), arm)
     with pytest.raises(iksel.UrdfError, match="'l2'.*'capsule'.*box, cylinder"):
         collision.SelfCollision(URDF.replace(TUBE, "<capsule/>"), arm)
     with pytest.raises(iksel.UrdfError, match=r"absent\.urdf"):

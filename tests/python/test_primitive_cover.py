@@ -86,6 +86,20 @@ def test_cylinders(bare) -> None:
         assert outside.max() <= error * (1 + ROUNDING), where
 
 
+def test_what_is_flat_or_thin_is_covered() -> None:
+    """Plates, discs, rods and points: a side or a radius may be 0."""
+    error = 0.01
+    for half in product((0.0, 0.05), repeat=3):
+        corners = np.array(list(product((-1.0, 1.0), repeat=3))) * half
+        assert are_covered(corners, cover_box(np.array(half), error)), half
+    for radius, half, bare in product((0.0, 0.05), (0.0, 0.1), (False, True)):
+        rows = cover_cylinder(radius, half, error, bare=(bare, True))
+        turn = np.linspace(0, 2 * np.pi, 100)
+        side = [radius * np.cos(turn), radius * np.sin(turn)]
+        rims = [np.column_stack([*side, np.full(100, z)]) for z in (-half, half)]
+        assert are_covered(np.concatenate(rims), rows), (radius, half, bare)
+
+
 def test_few_are_enough() -> None:
     """A tenth of the error takes some ten times as many, not a thousand times."""
     coarse = len(cover_box(np.array([0.1, 0.1, 0.1]), 0.01))

@@ -51,7 +51,7 @@ std::optional<Proof> CurveSearch<Answers>::find_free() const {
   if (answers.is_never_free()) {
     if (!answers.has_any() && !lanes.sweep->find(Y)) return std::nullopt;
     answers.refuse();
-    return Proof::none;
+    return Proof::target;
   }
   FreeSamples samples(*lanes.sweep, *goal.scene(), Y, lanes.samples, work, clock);
   refiner.begin(goal.task(), kNearAnswer, Width::narrow);

@@ -10,6 +10,7 @@
 #include "branches.hpp"
 #include "closed_chains.hpp"
 #include "robots.hpp"
+#include "seeds/beyond_limits.hpp"
 
 namespace {
 
@@ -94,6 +95,44 @@ TEST_P(RootSweeps, NoOneElseSolvesWhatHasNone) {
     EXPECT_TRUE(iksel_test::brute_force(solver(), target, 200).empty()) << i;
   }
   EXPECT_GE(none, 1);
+}
+
+/// A joint past its limit by far more than the tolerances, or by what they allow.
+TEST_P(RootSweeps, WhatLiesJustOutsideTheLimitsIsTold) {
+  constexpr double kTolerance = 1e-6;
+  Dice dice(iksel_test::seed());
+  const int n = iksel_test::cases(200, 50);
+  const Eigen::MatrixXd random = robot().random_configurations(n, iksel_test::seed() + 4);
+  int outside = 0;
+  int told = 0;
+  for (int i = 0; i < n; ++i) {
+    JointVector q = random.row(i);
+    const int j = dice.pick(6);
+    const bool is_upper = dice.chance(0.5);
+    const double limit = (is_upper ? robot().upper() : robot().lower())[j];
+    if (!std::isfinite(limit) || robot().model().joints.is_periodic(j)) continue;
+    const double outwards = is_upper ? 1 : -1;
+    const auto is_beyond = [&](double by) {
+      q[j] = limit + by * outwards;
+      JointVector seed = q;
+      for (int k = 0; k < 6; ++k) seed[k] += dice.uniform(-1e-5, 1e-5);
+      return iksel::is_beyond_limits(robot().model(), robot().fk(q), seed, kTolerance, kTolerance);
+    };
+    // The TCP is moved by at most twice the reach times that: the limit itself is an answer.
+    EXPECT_FALSE(is_beyond(0.3 * kTolerance / std::max(1.0, robot().reach())))
+        << q.transpose() << ", seed " << iksel_test::seed();
+    EXPECT_FALSE(is_beyond(-1e-4));
+    const bool is_told = is_beyond(5e-4);
+    if (is_told) {
+      // Its own branch gives no answer: all that there are differ.
+      for (const Result& result : solver().solve_all(robot().fk(q)).all) {
+        EXPECT_GT(iksel_test::distance(robot(), result.q, q), 1e-4);
+      }
+    }
+    ++outside;
+    told += is_told;
+  }
+  EXPECT_GE(told, outside * 8 / 10) << "seed " << iksel_test::seed();
 }
 
 TEST_P(RootSweeps, LargeTolerancesAreAllowedFor) {

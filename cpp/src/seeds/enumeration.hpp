@@ -31,6 +31,8 @@ class Enumeration {
   [[nodiscard]] int size() const { return size_; }
   /// Inside the limits [rad].
   [[nodiscard]] const double* q(int i) const { return q_[static_cast<std::size_t>(i)].data(); }
+  /// Whether they reach the goal without being refined, as a rule.
+  [[nodiscard]] bool are_answers() const { return is_nominal_; }
   /// Whether these are the solutions, no more and no less. Not where the arm is so close to a
   /// singularity, or a branch so close to a limit, that what the tolerances allow could make a
   /// difference.
@@ -92,7 +94,12 @@ class EnumeratedSeeds {
   template <typename Refiner>
   bool load(Refiner& refiner, int lane) {
     if (next_ == branches_.size() || !work_.take()) return false;
-    refiner.load_answer(lane, branches_.q(next_++));
+    const double* q = branches_.q(next_++);
+    if (branches_.are_answers()) {
+      refiner.load_answer(lane, q);
+    } else {
+      refiner.load_seed(lane, q);
+    }
     return true;
   }
 

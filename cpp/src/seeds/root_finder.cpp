@@ -14,10 +14,12 @@ constexpr int round_up(int n) { return (n + kBlock - 1) / kBlock * kBlock; }
 
 }  // namespace
 
-RootFinder::RootFinder(double lower, double range, double vague, const lanes::LaneKernels& kernels)
+RootFinder::RootFinder(double lower, double range, double vague, double precision,
+                       const lanes::LaneKernels& kernels)
     : kernels_(kernels),
       turns_(range >= kTwoPi),
       vague_(vague),
+      precision_(precision),
       step_(std::min(range, kTwoPi) / kCells),
       angles_(static_cast<std::size_t>(round_up(kBefore + kCells + kAfter))),
       values_(angles_.size()) {
@@ -124,19 +126,19 @@ void RootFinder::polish(const Residual& residual) {
     std::array<double, kBlock> values{};
     bool is_there = false;
     for (int round = 0; round < kPolishRounds && !is_there; ++round) {
-      for (std::size_t i = 0; i < n; ++i) angles[i] = brackets_[first + i].next();
+      for (std::size_t i = 0; i < n; ++i) angles[i] = brackets_[first + i].next(precision_);
       residual(angles.data(), kBlock, values.data());
       is_there = true;
       for (std::size_t i = 0; i < n; ++i) {
         brackets_[first + i].narrow(angles[i], values[i]);
-        is_there = is_there && brackets_[first + i].is_narrow();
+        is_there = is_there && brackets_[first + i].is_narrow(precision_);
       }
     }
     for (std::size_t i = 0; i < n; ++i) add(brackets_[first + i].best(), false);
   }
 }
 
-double RootFinder::Bracket::next() const {
+double RootFinder::Bracket::next(double precision) const {
   // The share of the way from x1 to x2: by a straight line at first, then by the inverse parabola
   // through three points where that is sure to lie between, else by halves.
   double t = 0.5;
@@ -150,7 +152,7 @@ double RootFinder::Bracket::next() const {
           (x3 - x1) / (x2 - x1) * (f1 / (f3 - f1)) * (f2 / (f3 - f2));
     }
   }
-  const double least = std::min(0.5, kThere / std::abs(x2 - x1));
+  const double least = std::min(0.5, precision / std::abs(x2 - x1));
   return x1 + std::min(std::max(t, least), 1 - least) * (x2 - x1);
 }
 

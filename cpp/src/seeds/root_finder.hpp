@@ -28,7 +28,9 @@ class RootFinder {
 
   /// From `lower` on, over `range`, which is all if it is a whole turn or more [rad]. Where the
   /// residual turns and its two roots are at most `vague` away, real or not, a root is vague [rad].
-  RootFinder(double lower, double range, double vague, const lanes::LaneKernels& kernels);
+  /// Others are found to within `precision` [rad].
+  RootFinder(double lower, double range, double vague, double precision,
+             const lanes::LaneKernels& kernels);
 
   /// Writes the residuals of `n` angles, a multiple of kWidth.
   using Residual = FunctionRef<void(const double* angles, int n, double* residuals)>;
@@ -47,13 +49,14 @@ class RootFinder {
 
   /// Two angles between which there is a root, narrowed by Chandrupatla's method (1997).
   struct Bracket {
-    static constexpr double kThere = 5e-10;  ///< [rad]
-    double x1, x2, f1, f2;                   ///< the latest, and that beyond the root
+    double x1, x2, f1, f2;  ///< the latest, and that beyond the root
     double x3 = std::numeric_limits<double>::quiet_NaN(), f3 = 0;  ///< the one before
 
-    [[nodiscard]] double next() const;
+    [[nodiscard]] double next(double precision) const;
     void narrow(double x, double f);
-    [[nodiscard]] bool is_narrow() const { return f1 == 0 || std::abs(x2 - x1) <= 2 * kThere; }
+    [[nodiscard]] bool is_narrow(double precision) const {
+      return f1 == 0 || std::abs(x2 - x1) <= 2 * precision;
+    }
     [[nodiscard]] double best() const { return std::abs(f1) < std::abs(f2) ? x1 : x2; }
   };
   /// Looks into the interval of this length from `left` on, at more angles; `depth` of those
@@ -67,6 +70,7 @@ class RootFinder {
   const lanes::LaneKernels& kernels_;
   bool turns_;
   double vague_;
+  double precision_;
   double step_;
   std::vector<double> angles_, values_;  ///< with those before and after
   std::array<Bracket, kMost> brackets_{};

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/constants.hpp"
+#include "seeds/beyond_limits.hpp"
 #include "structure/residual_form.hpp"
 
 namespace iksel {
@@ -24,27 +25,35 @@ constexpr double kAboveNoise = 30;
 /// By how much a loop may stay open at a root of its determinant, which is known but to its noise.
 constexpr double kOpen = 0.02;
 
-RootFinder make_finder(const ChainModel& model, int joint, double vague,
+/// Roots are found to within this [rad], or to within this share of what the axes lie off; so many
+/// times the tolerances, what they lie off counts as nothing.
+constexpr double kPrecision = 5e-10;
+constexpr double kShare = 0.1;
+
+RootFinder make_finder(const ChainModel& model, int joint, double vague, double precision,
                        const lanes::LaneKernels& kernels) {
   constexpr double kBeyond = 0.05;
   const double offset = model.kernel.joints[static_cast<std::size_t>(joint)].offset;
   const double lower = model.joints.sample_lower(joint) - kBeyond;
   const double upper = model.joints.sample_upper(joint) + kBeyond;
-  return {lower + offset, upper - lower, vague, kernels};
+  return {lower + offset, upper - lower, vague, precision, kernels};
 }
 
 }  // namespace
 
 RootSweep::RootSweep(const ChainModel& model, const ClosedFormChain& chain, bool is_nominal,
                      double tolerance, const lanes::LaneKernels& kernels)
-    : chain_(chain),
+    : model_(model),
+      chain_(chain),
       kernels_(kernels),
+      tolerance_(tolerance),
+      are_answers_(is_nominal && chain.deviation <= kShare * tolerance),
       concludes_(concludes_from_branches(is_nominal, tolerance)),
       vague_(2 * std::sqrt(tolerance + chain.deviation)),
       vague_divisor_(std::pow(kBesideAxis * (tolerance + chain.deviation), 2)),
       roots_(make_finder(model, chain.held,
                          2 * std::sqrt(tolerance + kFartherApart * kFartherApart * chain.deviation),
-                         kernels)),
+                         std::max(kPrecision, kShare * chain.deviation), kernels)),
       polynomial_(kernels) {
   chain_.use_limits(model);
   for (int lane = 0; lane < lanes::kWidth; ++lane) pack_.sign[2][lane] = 1;
@@ -87,12 +96,12 @@ void RootSweep::find(const Pose& Y) {
       kernels_.find_branches(chain_.form, pack_);
     }
     for (std::size_t lane = 0; lane < n; ++lane) {
-      take(roots_[first + (lane >> lanes_power)].is_vague, static_cast<int>(lane));
+      take(Y, roots_[first + (lane >> lanes_power)].is_vague, static_cast<int>(lane));
     }
   }
 }
 
-void RootSweep::take(bool is_vague, int lane) {
+void RootSweep::take(const Pose& Y, bool is_vague, int lane) {
   // Roots are off by what the tolerances allow, many times over; but where there are two, by its
   // square root.
   const double slack = is_vague ? 4 * vague_ : 25 * vague_ * vague_;
@@ -105,10 +114,22 @@ void RootSweep::take(bool is_vague, int lane) {
     return;
   }
   if (!(pack_.beyond[lane] < slack)) return;
-  // At a limit, what the tolerances allow decides.
-  if (size_ == kMost || (!is_vague && pack_.beyond[lane] > 0)) certain_ = false;
-  if (size_ == kMost) return;
-  chain_.copy_joints(pack_, lane, q_[static_cast<std::size_t>(size_++)].data());
+  if (size_ == kMost) {
+    certain_ = false;
+    return;
+  }
+  double* q = q_[static_cast<std::size_t>(size_)].data();
+  chain_.copy_joints(pack_, lane, q);
+  if (!is_vague && certain_ && pack_.beyond[lane] > 0) {
+    const Pose T_base_tcp = to_pose(model_.kernel.base) * Y * to_pose(model_.kernel.tip);
+    if (is_beyond_limits(model_, T_base_tcp, Eigen::Map<const Eigen::VectorXd>(q, model_.dof),
+                         tolerance_ * chain_.unit, tolerance_)) {
+      return;
+    }
+    // At a limit, what the tolerances allow decides.
+    certain_ = false;
+  }
+  ++size_;
 }
 
 }  // namespace iksel

@@ -30,6 +30,8 @@ class RootSweep {
   [[nodiscard]] int size() const { return size_; }
   /// Inside the limits, or nearly [rad].
   [[nodiscard]] const double* q(int i) const { return q_[static_cast<std::size_t>(i)].data(); }
+  /// Whether they reach the goal without being refined, as a rule.
+  [[nodiscard]] bool are_answers() const { return are_answers_; }
   /// Whether there are no solutions but near to these.
   [[nodiscard]] bool is_certain() const { return certain_; }
   /// Double roots may be missed.
@@ -41,11 +43,13 @@ class RootSweep {
   /// whether rounding leaves enough of it to conclude from.
   bool find_product_roots(const Pose& Y);
   bool find_loop_roots(const Pose& Y);
-  void take(bool is_vague, int lane);
+  void take(const Pose& Y, bool is_vague, int lane);
 
+  const ChainModel& model_;
   ClosedFormChain chain_;
   const lanes::LaneKernels& kernels_;
-  bool concludes_;
+  double tolerance_;
+  bool are_answers_, concludes_;
   double vague_;          ///< by how much roots that are nearly double may be off [rad]
   double vague_divisor_;  ///< nothing is concluded from residuals divided by less [units^2]
   RootFinder roots_;

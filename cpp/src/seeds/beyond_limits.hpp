@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whether a solution lies outside the limits, told from the arm itself.
+#pragma once
+
+#include "kinematics/chain_model.hpp"
+
+namespace iksel {
+
+/// Whether the solution next to q, of six joints, certainly lies outside the joints' own limits,
+/// and with it whatever the tolerances [m, rad] allow around it. False where the arm is so close to
+/// a singularity that it cannot be told.
+bool is_beyond_limits(const ChainModel& model, const Pose& T_base_tcp, JointVector q,
+                      double position_tolerance, double rotation_tolerance);
+
+}  // namespace iksel

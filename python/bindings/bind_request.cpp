@@ -198,10 +198,11 @@ void bind_requests(py::module_& m, py::class_<Solver>& cls) {
   bind_solutions(m);
   {
     // The same method where no keyword is given, so that plain solving pays nothing for them. Of
-    // the two, only the other has a docstring.
+    // the two, only the other has a docstring, and a name for the pose: pybind11 would make a
+    // string of it at each call that has keywords.
     py::options options;
     options.disable_function_signatures();
-    cls.def("solve", &solve_plainly, py::arg("pose"));
+    cls.def("solve", &solve_plainly);
   }
   def_method<0>(
       cls,

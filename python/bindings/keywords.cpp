@@ -47,18 +47,31 @@ void Given::read_into(void* out, const std::type_info& type, int dof, const char
   }
 }
 
-void find_given(const py::kwargs& given, const std::vector<MethodKeyword>& keywords,
-                py::handle* values) {
+PyObject* intern(const char* name) { return PyUnicode_InternFromString(name); }
+
+py::handle find_given(const py::args& poses, PyObject* pose_name, const py::kwargs& given,
+                      const std::vector<MethodKeyword>& keywords, py::handle* values) {
+  if (poses.size() > 1) throw py::reference_cast_error();
+  py::handle pose = poses.empty() ? py::handle() : PyTuple_GET_ITEM(poses.ptr(), 0);
+  const auto is = [](py::handle name, PyObject* other) {
+    return name.ptr() == other || PyUnicode_Compare(name.ptr(), other) == 0;
+  };
   for (const auto& [name, value] : given) {
     std::size_t i = 0;
     while (i < keywords.size() && name.ptr() != keywords[i].name) ++i;
-    if (i == keywords.size()) {  // not interned, or unknown
+    if (i == keywords.size()) {  // the pose, not interned, or unknown
+      if (!pose && is(name, pose_name)) {
+        pose = value;
+        continue;
+      }
       i = 0;
-      while (i < keywords.size() && PyUnicode_Compare(name.ptr(), keywords[i].name) != 0) ++i;
+      while (i < keywords.size() && !is(name, keywords[i].name)) ++i;
     }
     if (i == keywords.size()) throw py::reference_cast_error();
     values[i] = value;
   }
+  if (!pose) throw py::reference_cast_error();
+  return pose;
 }
 
 std::vector<MethodKeyword> choose_keywords(const std::vector<Keyword>& known,
@@ -69,8 +82,7 @@ std::vector<MethodKeyword> choose_keywords(const std::vector<Keyword>& known,
     for (const Keyword& keyword : known) {
       if (std::strcmp(keyword.name, names[i]) != 0) continue;
       const py::object value = keyword.type->shown(default_of(keyword));
-      PyObject* interned = PyUnicode_InternFromString(keyword.name);  // lives as long as Python
-      chosen.push_back({keyword, interned, value.ptr()});
+      chosen.push_back({keyword, intern(keyword.name), value.ptr()});
       arguments.emplace_back(keyword.name, value);
     }
   }

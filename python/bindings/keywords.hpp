@@ -121,10 +121,14 @@ std::string method_signature(const MethodText& text, const std::vector<MethodKey
                              std::size_t positional);
 std::string method_doc(const MethodText& text, const std::vector<MethodKeyword>& keywords);
 
-/// Writes what is given into `values`, which hold the defaults; throws what makes pybind11 try the
-/// next overload where a name is none of the keywords'.
-void find_given(const py::kwargs& given, const std::vector<MethodKeyword>& keywords,
-                py::handle* values);
+/// A name as Python has it in the calls of most callers; it lives as long as Python.
+PyObject* intern(const char* name);
+
+/// Returns the pose, which is `poses`' only item or has its name among the given, and writes what
+/// else is given into `values`, which hold the defaults. Throws what makes pybind11 try the next
+/// overload where this does not fit, or a name is none of the keywords'.
+py::handle find_given(const py::args& poses, PyObject* pose_name, const py::kwargs& given,
+                      const std::vector<MethodKeyword>& keywords, py::handle* values);
 
 using MethodBody = py::object (*)(const Solver& self, py::handle pose, const Given& given);
 
@@ -151,15 +155,13 @@ void def_method(py::class_<Solver>& cls, const MethodText& text, const std::vect
     // they do not fit.
     py::options options;
     options.disable_function_signatures();
-    cls.def(
-        text.name,
-        [keywords, call](const Solver& self, py::handle pose, const py::kwargs& given) {
-          std::array<py::handle, kCount> values;
-          for (std::size_t i = 0; i < kCount; ++i) values[i] = keywords[i].by_default;
-          find_given(given, keywords, values.data());
-          return call(self, pose, values);
-        },
-        py::arg(text.pose));
+    cls.def(text.name, [keywords, call, name = intern(text.pose)](
+                           const Solver& self, const py::args& poses, const py::kwargs& given) {
+      std::array<py::handle, kCount> values;
+      for (std::size_t i = 0; i < kCount; ++i) values[i] = keywords[i].by_default;
+      const py::handle pose = find_given(poses, name, given, keywords, values.data());
+      return call(self, pose, values);
+    });
   }
   def(
       cls, text.name, method_signature(text, keywords, kPositional), method_doc(text, keywords),

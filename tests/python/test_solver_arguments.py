@@ -28,6 +28,26 @@ def test_array_layouts_give_the_same_bits(made) -> None:
         np.testing.assert_array_equal(solver.solve_batch(same).q, plain.q)
 
 
+def test_the_pose_may_be_named(made) -> None:
+    robot, solver = made.robot("ur3"), made.solver("ur3")
+    pose = robot.fk([0.1, -0.5, 0.4, -1.2, 0.6, 0.3])
+    # By a name that is not interned, as of keywords that are read from a file.
+    spelled = {"".join(["po", "se"]): pose, "".join(["sce", "ne"]): None}
+    q = solver.solve(pose).q
+    for result in (
+        solver.solve(pose=pose),
+        solver.solve(**spelled),
+        solver.solve(scene=None, pose=pose),
+        solver.solve(pose, scene=None),
+    ):
+        np.testing.assert_array_equal(result.q, q)
+    assert len(solver.solve_all(pose=pose, max=1)) == 1
+    with pytest.raises(TypeError, match="'pose' twice"):
+        solver.solve(pose, pose=pose, scene=None)
+    with pytest.raises(TypeError, match="pose"):
+        solver.solve(scene=None)
+
+
 def test_no_targets_have_no_answers(made) -> None:
     solver = made.solver("ur3")
     batch = solver.solve_batch(np.empty((0, 4, 4)))

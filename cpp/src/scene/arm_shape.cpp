@@ -43,9 +43,13 @@ ArmShape::ArmShape(const Robot& robot, const RobotSpheres& spheres,
                          [&](const LinkPoses& links) { make_bodies(robot, links); });
   tip_body_ = place_of(robot.tip_link()).body;
   T_body_tip_ = place_of(robot.tip_link()).T_body_link;
-  for (const auto& [name, of_link] : spheres.links) {
-    check_link(name, "spheres");
-    add(name, place_of(name), of_link);
+  for (const auto& [name, of_link] : spheres.links) check_link(name, "spheres");
+  // What is on one body stands together: the kernel places it in lanes.
+  for (int body = 0; body < static_cast<int>(bodies_.size()); ++body) {
+    for (const auto& [name, of_link] : spheres.links) {
+      const Place& place = place_of(name);
+      if (place.body == body) add(name, place, of_link);
+    }
   }
   for (const auto& [a, b] : spheres.pairs) {
     const lanes::ScenePair pair{find(a), find(b)};

@@ -81,7 +81,15 @@ int BallTable::add(int body, Spheres spheres) {
   const int first = static_cast<int>(balls_.size());
   for (const Sphere& sphere : spheres) balls_.push_back(to_ball(sphere));
   links_.push_back({body, first, count, static_cast<int>(root), around});
-  return static_cast<int>(links_.size()) - 1;
+  const std::size_t link = links_.size() - 1;
+  if (runs_.empty() || runs_.back().body != body)
+    runs_.push_back({body, static_cast<int>(link), 0});
+  ++runs_.back().count;
+  for (std::size_t i = 0; i < around_.size(); ++i) {
+    around_[i].resize(links_.size() + lanes::kWidth);
+    around_[i][link] = i < 3 ? around.centre[i] : around.radius;
+  }
+  return static_cast<int>(link);
 }
 
 Spheres BallTable::spheres_of(const lanes::SceneLink& link) const {
@@ -96,6 +104,9 @@ Spheres BallTable::spheres_of(const lanes::SceneLink& link) const {
 void BallTable::show(lanes::SceneView& view) const {
   view.links = static_cast<int>(links_.size());
   view.link = links_.data();
+  view.link_runs = static_cast<int>(runs_.size());
+  view.link_run = runs_.data();
+  for (std::size_t i = 0; i < around_.size(); ++i) view.around[i] = around_[i].data();
   view.node = nodes_.data();
 }
 

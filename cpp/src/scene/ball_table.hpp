@@ -2,6 +2,7 @@
 // The balls of links in trees, as the kernel of collisions takes them.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "base/plain_vector.hpp"
@@ -30,6 +31,8 @@ class BallTable {
   void fill(int node, std::vector<Sphere>& spheres, int first, int last);
 
   std::vector<lanes::SceneLink> links_;
+  std::vector<lanes::SceneLinkRun> runs_;
+  std::array<std::vector<double>, 4> around_;  ///< as SceneView has it
   std::vector<lanes::SceneNode> nodes_;
   std::vector<lanes::SceneBall> balls_;
 };

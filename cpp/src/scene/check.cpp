@@ -18,7 +18,7 @@ struct ThreadRoom {
       if (room.size() < static_cast<std::size_t>(count))
         room.resize(static_cast<std::size_t>(count));
     };
-    const int stride = (view.links + lanes::kWidth - 1) / lanes::kWidth * lanes::kWidth;
+    const int stride = (view.links / lanes::kWidth + 2) * lanes::kWidth;
     grow(frame, 12 * view.bodies);
     grow(centre, 4 * stride);
     grow(near, view.pairs);

@@ -6,39 +6,10 @@
 // together: those of two links in the frame of the second's body, where its balls stand still.
 #pragma once
 
-#include "simd/lane_math.hpp"
-#include "simd/lane_vector.hpp"
+#include "simd/scene_bodies.hpp"
 #include "simd/scene_shapes.hpp"
-#include "simd/scene_types.hpp"
 
 namespace iksel::lanes {
-
-/// A body's frame in another.
-struct BodyFrame {
-  Vec<double> x, y, z, p;
-};
-
-/// v, in axes of the frame, in those that the frame is seen from.
-template <typename T>
-IKSEL_INLINE Vec<T> turned(const BodyFrame& f, const Vec<T>& v) {
-  return {T(f.x.x) * v.x + T(f.y.x) * v.y + T(f.z.x) * v.z,
-          T(f.x.y) * v.x + T(f.y.y) * v.y + T(f.z.y) * v.z,
-          T(f.x.z) * v.x + T(f.y.z) * v.y + T(f.z.z) * v.z};
-}
-template <typename T>
-IKSEL_INLINE Vec<T> placed(const BodyFrame& f, const Vec<T>& v) {
-  const Vec<T> on = turned(f, v);
-  return {T(f.p.x) + on.x, T(f.p.y) + on.y, T(f.p.z) + on.z};
-}
-/// v in axes of the frame.
-IKSEL_INLINE Vec<double> turned_back(const BodyFrame& f, const Vec<double>& v) {
-  return {dot(f.x, v), dot(f.y, v), dot(f.z, v)};
-}
-/// a seen from b, both in the base frame.
-IKSEL_INLINE BodyFrame seen_from(const BodyFrame& b, const BodyFrame& a) {
-  return {turned_back(b, a.x), turned_back(b, a.y), turned_back(b, a.z),
-          turned_back(b, add(a.p, -1.0, b.p))};
-}
 
 /// One configuration, and what touches in it.
 template <typename T>
@@ -47,8 +18,8 @@ class SceneCheck {
   using Kind = SceneCulprit::Kind;
 
   SceneCheck(const SceneView& scene, const SceneRoom& room, const double* q)
-      : scene_(scene), room_(room) {
-    place_bodies(q);
+      : scene_(scene), room_(room), bodies_(scene, room) {
+    bodies_.place_bodies(q);
   }
 
   /// Returns the clearance. Begins with the culprit, which is that of this configuration afterwards
@@ -56,7 +27,7 @@ class SceneCheck {
   double find(SceneCulprit& culprit) {
     bool touches = touches_again(culprit);
     if (!touches) {
-      place_links();
+      bodies_.place_links();
       touches = test_pairs(culprit) ||
                 test_all(scene_.block, scene_.blocks, Kind::block, culprit) ||
                 test_all(scene_.cylinder, scene_.cylinders, Kind::cylinder, culprit) ||
@@ -78,75 +49,8 @@ class SceneCheck {
     int node;
   };
 
-  void place_bodies(const double* q) {
-    double motion[kMaxBodies];
-    double s[kMaxBodies];
-    double c[kMaxBodies];
-    // The base has none, nor have lanes without a body.
-    motion[0] = 0;
-    for (int i = 1; i < scene_.bodies; ++i) {
-      const SceneBody& body = scene_.body[i];
-      const double value = q[body.variable];
-      const double followed = body.curve == nullptr ? value : body.curve->at(value).value;
-      motion[i] = followed * body.multiplier + body.offset;
-    }
-    for (int i = scene_.bodies; i % Lanes<T>::kCount != 0; ++i) motion[i] = 0;
-    for (int i = 0; i < scene_.bodies; i += Lanes<T>::kCount) {
-      T sine;
-      T cosine;
-      sincos(Lanes<T>::load(motion + i), sine, cosine);
-      Lanes<T>::store(sine, s + i);
-      Lanes<T>::store(cosine, c + i);
-    }
-    store({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}}, 0);
-    for (int i = 1; i < scene_.bodies; ++i) {
-      const SceneBody& body = scene_.body[i];
-      const BodyFrame parent = frame(body.parent);
-      const Vec<double> x = turned(parent, constant<double>(body.x));
-      const Vec<double> y = turned(parent, constant<double>(body.y));
-      BodyFrame f{x, y, turned(parent, constant<double>(body.z)),
-                  placed(parent, constant<double>(body.p))};
-      if (body.prismatic) {
-        f.p = add(f.p, motion[i], f.z);
-      } else {
-        f.x = add(scaled(c[i], x), s[i], y);
-        f.y = add(scaled(c[i], y), -s[i], x);
-      }
-      store(f, i);
-    }
-  }
-  void store(const BodyFrame& f, int body) {
-    double* out = room_.frame + 12 * body;
-    const Vec<double>* const columns[] = {&f.x, &f.y, &f.z, &f.p};
-    for (const Vec<double>* v : columns) {
-      *out++ = v->x;
-      *out++ = v->y;
-      *out++ = v->z;
-    }
-  }
-  [[nodiscard]] IKSEL_INLINE BodyFrame frame(int body) const {
-    const double* in = room_.frame + 12 * body;
-    return {{in[0], in[1], in[2]},
-            {in[3], in[4], in[5]},
-            {in[6], in[7], in[8]},
-            {in[9], in[10], in[11]}};
-  }
   [[nodiscard]] IKSEL_INLINE Around around(const SceneLink& link) const {
     return {constant<double>(link.around.centre), link.around.radius, link.root};
-  }
-  /// The balls around links, in the base frame.
-  void place_links() {
-    const int stride = room_.link_stride;
-    double* x = room_.centre;
-    for (int i = 0; i < scene_.links; ++i) {
-      const SceneLink& link = scene_.link[i];
-      Vec<double> centre = constant<double>(link.around.centre);
-      if (link.body != 0) centre = placed(frame(link.body), centre);
-      x[i] = centre.x;
-      x[stride + i] = centre.y;
-      x[2 * stride + i] = centre.z;
-      x[3 * stride + i] = link.around.radius - scene_.smaller;
-    }
   }
   /// Keeps the least clearance of the lanes of a mask, which is not empty.
   IKSEL_INLINE bool touch(const T& found, unsigned mask) {
@@ -191,7 +95,7 @@ class SceneCheck {
   }
   template <typename Shape>
   bool touches_again(const SceneCulprit& culprit, const Shape& shape) {
-    const BodyFrame body = frame(scene_.link[culprit.link].body);
+    const BodyFrame body = bodies_.frame(scene_.link[culprit.link].body);
     return test_node(body, culprit.leaf, shape) || test_link(culprit.link, shape);
   }
   bool touches_again(const SceneCulprit& culprit, const ScenePair& pair) {
@@ -245,7 +149,7 @@ class SceneCheck {
     unsigned mask = 0;
     for (int lane = 0; lane < kWidth; lane += Lanes<T>::kCount) {
       const double* others = room_.centre + block.first + lane;
-      const Vec<T> d = add(load_links(others), T(-1.0), centre);
+      const Vec<T> d = add(bodies_.load_links(others), T(-1.0), centre);
       const T reach = Lanes<T>::load(others + 3 * stride) + T(one[3 * stride]);
       mask |= to_bits<T>(dot(d, d) <= reach * reach) << static_cast<unsigned>(lane);
     }
@@ -260,11 +164,6 @@ class SceneCheck {
     const double reach = a[3 * stride] + b[3 * stride];
     return dot(d, d) / (reach * reach);
   }
-  /// The centres of the balls around links beside each other, of which the first one's x is at `x`.
-  [[nodiscard]] IKSEL_INLINE Vec<T> load_links(const double* x) const {
-    const int stride = room_.link_stride;
-    return {Lanes<T>::load(x), Lanes<T>::load(x + stride), Lanes<T>::load(x + 2 * stride)};
-  }
   bool take_pair(int i, SceneCulprit& culprit) {
     const ScenePair& pair = scene_.pair[i];
     if (!test_pair(pair, a_from_b(pair))) return false;
@@ -273,7 +172,8 @@ class SceneCheck {
   }
   /// The frame of a pair's first link, seen from its second's.
   [[nodiscard]] BodyFrame a_from_b(const ScenePair& pair) const {
-    return seen_from(frame(scene_.link[pair.b].body), frame(scene_.link[pair.a].body));
+    return seen_from(bodies_.frame(scene_.link[pair.b].body),
+                     bodies_.frame(scene_.link[pair.a].body));
   }
   bool test_pair(const ScenePair& pair, const BodyFrame& from_b) {
     Around of_a = around(scene_.link[pair.a]);
@@ -381,7 +281,7 @@ class SceneCheck {
   template <typename Shape>
   bool test_link(int link, const Shape& shape) {
     const SceneLink& of = scene_.link[link];
-    return test_node(frame(of.body), of.root, shape);
+    return test_node(bodies_.frame(of.body), of.root, shape);
   }
   template <typename Shape>
   bool test_all(const Shape* shape, int count, Kind kind, SceneCulprit& culprit) {
@@ -390,7 +290,7 @@ class SceneCheck {
     for (int first = 0; first < scene_.links; first += Lanes<T>::kCount) {
       const unsigned may = lanes_that_may(first);
       if (may == 0) continue;
-      const Vec<T> centre = load_links(x + first);
+      const Vec<T> centre = bodies_.load_links(x + first);
       const T radius = Lanes<T>::load(x + 3 * stride + first);
       for (int i = 0; i < count; ++i) {
         if (is_far(shape[i], centre, radius)) continue;
@@ -416,6 +316,7 @@ class SceneCheck {
 
   const SceneView& scene_;
   const SceneRoom& room_;
+  SceneBodies<T> bodies_;
   double clearance_ = 1;
   /// What was found to touch (SceneCulprit).
   int leaf_ = 0, ball_ = 0, other_ = 0;

@@ -40,6 +40,11 @@ struct SceneLink {
   SceneBall around;  ///< around them all
 };
 
+/// Links beside each other that are on the same body.
+struct SceneLinkRun {
+  int body, first, count;
+};
+
 struct ScenePair {
   int a, b;  ///< links
 };
@@ -91,7 +96,7 @@ struct SceneCulprit {
 struct SceneRoom {
   double* frame;    ///< 12 for each body
   double* centre;   ///< of the balls around links: x of each, then y, z and the radius
-  int link_stride;  ///< from x to y, a multiple of kWidth
+  int link_stride;  ///< from x to y; kWidth more than there are links, at least
   int* near;        ///< pairs whose links are near each other
   SceneCulprit culprit;
 };
@@ -100,11 +105,13 @@ struct SceneRoom {
 /// distance^2 - radius^2 [m^2], the least of the balls that were found to touch, or 1 if none does.
 /// One that touches ends it.
 struct SceneView {
-  int bodies, links, pairs, pair_blocks, blocks, cylinders, planes;
+  int bodies, links, link_runs, pairs, pair_blocks, blocks, cylinders, planes;
   double smaller;         ///< by so much is each ball than it says [m]
   int cleared;            ///< a body that touches no obstacle, as is known; 0 if none is
   const SceneBody* body;  ///< the first is the base, which has no joint
   const SceneLink* link;
+  const SceneLinkRun* link_run;  ///< one after the other, of all links
+  const double* around[4];       ///< the links' balls: x, y, z, radius; kWidth more than there are
   const SceneNode* node;
   const ScenePair* pair;
   const ScenePairBlock* pair_block;

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The bodies of an arm of balls in one configuration, and the balls around its links.
+#pragma once
+
+#include "simd/lane_math.hpp"
+#include "simd/lane_vector.hpp"
+#include "simd/scene_types.hpp"
+
+namespace iksel::lanes {
+
+/// A body's frame in another.
+struct BodyFrame {
+  Vec<double> x, y, z, p;
+};
+
+/// v, in axes of the frame, in those that the frame is seen from.
+template <typename T>
+IKSEL_INLINE Vec<T> turned(const BodyFrame& f, const Vec<T>& v) {
+  return {T(f.x.x) * v.x + T(f.y.x) * v.y + T(f.z.x) * v.z,
+          T(f.x.y) * v.x + T(f.y.y) * v.y + T(f.z.y) * v.z,
+          T(f.x.z) * v.x + T(f.y.z) * v.y + T(f.z.z) * v.z};
+}
+template <typename T>
+IKSEL_INLINE Vec<T> placed(const BodyFrame& f, const Vec<T>& v) {
+  const Vec<T> on = turned(f, v);
+  return {T(f.p.x) + on.x, T(f.p.y) + on.y, T(f.p.z) + on.z};
+}
+/// v in axes of the frame.
+IKSEL_INLINE Vec<double> turned_back(const BodyFrame& f, const Vec<double>& v) {
+  return {dot(f.x, v), dot(f.y, v), dot(f.z, v)};
+}
+/// a seen from b, both in the base frame.
+IKSEL_INLINE BodyFrame seen_from(const BodyFrame& b, const BodyFrame& a) {
+  return {turned_back(b, a.x), turned_back(b, a.y), turned_back(b, a.z),
+          turned_back(b, add(a.p, -1.0, b.p))};
+}
+
+/// The frames of a scene's bodies in the base frame, and the balls around its links, kept in a
+/// room.
+template <typename T>
+class SceneBodies {
+ public:
+  SceneBodies(const SceneView& scene, const SceneRoom& room) : scene_(scene), room_(room) {}
+
+  /// Places the bodies as they are at q.
+  void place_bodies(const double* q) {
+    double motion[kMaxBodies];
+    double s[kMaxBodies];
+    double c[kMaxBodies];
+    // The base has none, nor have lanes without a body.
+    motion[0] = 0;
+    for (int i = 1; i < scene_.bodies; ++i) {
+      const SceneBody& body = scene_.body[i];
+      const double value = q[body.variable];
+      const double followed = body.curve == nullptr ? value : body.curve->at(value).value;
+      motion[i] = followed * body.multiplier + body.offset;
+    }
+    for (int i = scene_.bodies; i % Lanes<T>::kCount != 0; ++i) motion[i] = 0;
+    for (int i = 0; i < scene_.bodies; i += Lanes<T>::kCount) {
+      T sine;
+      T cosine;
+      sincos(Lanes<T>::load(motion + i), sine, cosine);
+      Lanes<T>::store(sine, s + i);
+      Lanes<T>::store(cosine, c + i);
+    }
+    store({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}}, 0);
+    for (int i = 1; i < scene_.bodies; ++i) {
+      const SceneBody& body = scene_.body[i];
+      const BodyFrame parent = frame(body.parent);
+      const Vec<double> x = turned(parent, constant<double>(body.x));
+      const Vec<double> y = turned(parent, constant<double>(body.y));
+      BodyFrame f{x, y, turned(parent, constant<double>(body.z)),
+                  placed(parent, constant<double>(body.p))};
+      if (body.prismatic) {
+        f.p = add(f.p, motion[i], f.z);
+      } else {
+        f.x = add(scaled(c[i], x), s[i], y);
+        f.y = add(scaled(c[i], y), -s[i], x);
+      }
+      store(f, i);
+    }
+  }
+  [[nodiscard]] IKSEL_INLINE BodyFrame frame(int body) const {
+    const double* in = room_.frame + 12 * body;
+    return {{in[0], in[1], in[2]},
+            {in[3], in[4], in[5]},
+            {in[6], in[7], in[8]},
+            {in[9], in[10], in[11]}};
+  }
+  /// Places the balls around links, of placed bodies.
+  void place_links() {
+    const int stride = room_.link_stride;
+    for (int run = 0; run < scene_.link_runs; ++run) {
+      const SceneLinkRun& links = scene_.link_run[run];
+      const BodyFrame body = frame(links.body);
+      // What lies beyond the last link is written again by the next run.
+      for (int i = links.first; i < links.first + links.count; i += Lanes<T>::kCount) {
+        const Vec<T> centre = placed(
+            body, Vec<T>{Lanes<T>::load(scene_.around[0] + i), Lanes<T>::load(scene_.around[1] + i),
+                         Lanes<T>::load(scene_.around[2] + i)});
+        double* to = room_.centre + i;
+        Lanes<T>::store(centre.x, to);
+        Lanes<T>::store(centre.y, to + stride);
+        Lanes<T>::store(centre.z, to + 2 * stride);
+        Lanes<T>::store(Lanes<T>::load(scene_.around[3] + i) - T(scene_.smaller), to + 3 * stride);
+      }
+    }
+  }
+  /// The centres of the balls around links beside each other, of which the first one's x is at `x`.
+  [[nodiscard]] IKSEL_INLINE Vec<T> load_links(const double* x) const {
+    const int stride = room_.link_stride;
+    return {Lanes<T>::load(x), Lanes<T>::load(x + stride), Lanes<T>::load(x + 2 * stride)};
+  }
+
+ private:
+  void store(const BodyFrame& f, int body) {
+    double* out = room_.frame + 12 * body;
+    const Vec<double>* const columns[] = {&f.x, &f.y, &f.z, &f.p};
+    for (const Vec<double>* v : columns) {
+      *out++ = v->x;
+      *out++ = v->y;
+      *out++ = v->z;
+    }
+  }
+
+  const SceneView& scene_;
+  const SceneRoom& room_;
+};
+
+}  // namespace iksel::lanes

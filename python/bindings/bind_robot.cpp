@@ -24,11 +24,6 @@
 
 namespace iksel::python {
 
-/// A sequence of CoupledLimit.
-class CoupledLimits : public py::object {
-  PYBIND11_OBJECT_DEFAULT(CoupledLimits, object, is_any_object)
-};
-
 /// A sequence of MimicCurve.
 class MimicCurves : public py::object {
   PYBIND11_OBJECT_DEFAULT(MimicCurves, object, is_any_object)
@@ -43,10 +38,6 @@ class BoolOrArray : public py::object {
 
 // NOLINTBEGIN(readability-identifier-naming): pybind11 looks for `name`.
 namespace pybind11::detail {
-template <>
-struct handle_type_name<iksel::python::CoupledLimits> {
-  static constexpr auto name = const_name("collections.abc.Sequence[iksel_cpp.CoupledLimit]");
-};
 template <>
 struct handle_type_name<iksel::python::MimicCurves> {
   static constexpr auto name = const_name("collections.abc.Sequence[iksel_cpp.MimicCurve]");
@@ -75,11 +66,10 @@ Robot from_urdf(const PathLike& path_or_xml, const std::optional<Loose<std::stri
                 const Loose<bool>& soft_limits, const std::optional<ArrayLike>& default_limits,
                 const CoupledLimits& coupled_limits, const MimicCurves& mimic_curves) {
   RobotOptions options;
-  set_common_options(base_link, locked_joints, soft_limits, default_limits, options);
+  set_common_options(base_link, locked_joints, soft_limits, default_limits, coupled_limits,
+                     options);
   if (tip_link) options.tip_link = from_python<std::string>(*tip_link, "tip_link");
   if (tcp) options.tcp = check_pose(as_pose(*tcp, "tcp"), "tcp");
-  options.coupled_limits =
-      as_sequence_of<CoupledLimit>(coupled_limits, "coupled_limits", "CoupledLimit");
   options.mimic_curves = as_sequence_of<MimicCurve>(mimic_curves, "mimic_curves", "MimicCurve");
   return read_urdf(
       path_or_xml, [&](const std::string& xml) { return Robot::from_urdf_string(xml, options); },
@@ -95,7 +85,7 @@ std::string robot_repr(const Robot& self) {
 py::object robot_state(const Robot& self) {
   const RobotOptions& options = self.options();
   return py::make_tuple(self.urdf(), options.tip_link, to_array(self.tcp())) +
-         common_state(options) + py::make_tuple(options.coupled_limits, options.mimic_curves);
+         common_state(options) + py::make_tuple(options.mimic_curves);
 }
 
 Robot robot_from_state(const py::object& state) {
@@ -105,8 +95,6 @@ Robot robot_from_state(const py::object& state) {
   options.tip_link = in.value<std::string>("tip_link");
   options.tcp = check_pose(as_pose(in.object(), in.name("tcp").c_str()), in.name("tcp").c_str());
   set_common_options(in, options);
-  options.coupled_limits =
-      as_sequence_of<CoupledLimit>(in.object(), in.name("coupled_limits"), "CoupledLimit");
   options.mimic_curves =
       as_sequence_of<MimicCurve>(in.object(), in.name("mimic_curves"), "MimicCurve");
   return Robot::from_urdf_string(urdf, options);
@@ -146,9 +134,6 @@ void bind_chain(py::class_<Robot>& cls) {
                "from the root.");
   add_property(cls, "urdf", &Robot::urdf, "The URDF text this robot was made of.");
   bind_common_options(cls);
-  add_property(
-      cls, "coupled_limits", [](const Robot& self) { return self.options().coupled_limits; },
-      "Limits of sums of joint values, beside those of each joint.");
   add_property(
       cls, "mimic_curves", [](const Robot& self) { return self.options().mimic_curves; },
       "How joints follow others where that is no straight line.");

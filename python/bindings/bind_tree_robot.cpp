@@ -43,10 +43,12 @@ TreeRobot tree_robot_from_urdf(const PathLike& path_or_xml, const LinkNames& tip
                                const std::optional<PoseLike>& tcps,
                                const std::optional<JointValues>& locked_joints,
                                const Loose<bool>& soft_limits,
-                               const std::optional<ArrayLike>& default_limits) {
+                               const std::optional<ArrayLike>& default_limits,
+                               const CoupledLimits& coupled_limits) {
   TreeOptions options;
   options.tip_links = as_links(tip_links, "tip_links");
-  set_common_options(base_link, locked_joints, soft_limits, default_limits, options);
+  set_common_options(base_link, locked_joints, soft_limits, default_limits, coupled_limits,
+                     options);
   if (tcps) options.tcps = as_tools(*tcps, "tcps");
   return read_urdf(
       path_or_xml,
@@ -79,7 +81,7 @@ py::object tree_robot_state(const TreeRobot& self) {
 }
 
 TreeRobot tree_robot_from_state(const py::object& state) {
-  PickleState in(state, "TreeRobot", 7);
+  PickleState in(state, "TreeRobot", 8);
   const std::string urdf = in.value<std::string>("urdf");
   TreeOptions options;
   options.tip_links = as_links(in.object(), in.name("tip_links"));
@@ -94,7 +96,7 @@ void bind_from_urdf(py::class_<TreeRobot>& cls) {
                  py::arg("base_link") = py::none(), py::arg("tcps") = py::none(),
                  py::arg("locked_joints") = py::none(),
                  py::arg("soft_limits") = defaults.soft_limits,
-                 py::arg("default_limits") = py::none(),
+                 py::arg("default_limits") = py::none(), py::arg("coupled_limits") = py::tuple(),
                  R"(Reads the chains from one link of a URDF to several.
 
 Args:
@@ -106,6 +108,8 @@ Args:
     soft_limits: narrow the limits to the URDF's safety_controller where there is one.
     default_limits: (lower, upper) [rad or m] of revolute and prismatic joints whose limits the
         URDF leaves out or has as 0, 0; without, such a joint is an error.
+    coupled_limits: limits of sums of joint values, beside those of each joint, of one chain or of
+        several; at most 8.
 
 Raises:
     UrdfError: as Robot.from_urdf, of each chain; more than 32 joints together; joints that follow

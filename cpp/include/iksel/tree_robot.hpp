@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "iksel/coupled_limit.hpp"
 #include "iksel/export.hpp"
 #include "iksel/robot.hpp"
 #include "iksel/types.hpp"
@@ -35,6 +36,8 @@ struct TreeOptions {
   std::map<std::string, double> locked_joints;
   bool soft_limits = false;
   std::optional<std::pair<double, double>> default_limits;
+  /// As in RobotOptions; of joints of one chain or of several.
+  std::vector<CoupledLimit> coupled_limits;
 };
 
 class TreeModel;
@@ -65,7 +68,8 @@ class IKSEL_EXPORT TreeRobot {
   [[nodiscard]] int dof() const;
   [[nodiscard]] const std::vector<std::string>& joint_names() const;
   [[nodiscard]] const std::vector<JointType>& joint_types() const;
-  /// Position limits [rad or m], those that all chains allow; infinite for continuous joints.
+  /// Position limits [rad or m], those that all chains allow; infinite for continuous joints. Those
+  /// of the options' coupled_limits come on top.
   [[nodiscard]] const JointVector& lower() const;
   [[nodiscard]] const JointVector& upper() const;
   /// Velocity limits [rad/s or m/s]; infinite where the URDF has none.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tree/stacked_goal.hpp"
 
+#include <cmath>
+
 #include "iksel/pose.hpp"
 
 namespace iksel {
@@ -26,6 +28,11 @@ void StackedGoal::linearize(const JointVector& q, StackedVector& deviation,
       J.block<6, 1>(6 * i, chain.joints[j]) = of_pose.col(static_cast<Eigen::Index>(j));
     }
   }
+  for (int i = 0; i < coupled_count(); ++i) {
+    const int row = 6 * model_.tip_count() + i;
+    deviation[row] = coupled(i).sum(q.data());
+    J.row(row) = coupled(i).c.transpose();
+  }
 }
 
 bool StackedGoal::is_reached(const StackedVector& missing, double part) const {
@@ -34,6 +41,9 @@ bool StackedGoal::is_reached(const StackedVector& missing, double part) const {
         missing.segment<3>(6 * i + 3).norm() > part * task(i).rotation_tolerance()) {
       return false;
     }
+  }
+  for (int i = 0; i < coupled_count(); ++i) {
+    if (!(std::abs(missing[6 * model_.tip_count() + i]) < beside(i))) return false;
   }
   return true;
 }

@@ -7,6 +7,7 @@
 #include "base/message_text.hpp"
 #include "iksel/error.hpp"
 #include "iksel/link_tree.hpp"
+#include "kinematics/coupled_limits.hpp"
 
 namespace iksel {
 namespace {
@@ -51,8 +52,45 @@ TreeModel::TreeModel(const std::string& urdf, const TreeOptions& options_in) : o
     options.base_link = chain.base_link();
     tips.push_back({{chain, add_joints(chain.model().joints)}, std::nullopt, std::nullopt});
   }
+  if (!options.coupled_limits.empty()) couple_joints(urdf);
   find_shared();
   for (TreeTip& tip : tips) split(tip, urdf);
+}
+
+void TreeModel::couple_joints(const std::string& urdf) {
+  ChainSpec all;
+  for (const TreeTip& tip : tips) {
+    for (ChainJoint joint : tip.chain.model().spec.joints) {
+      const bool known = std::any_of(all.joints.begin(), all.joints.end(),
+                                     [&](const auto& other) { return other.name == joint.name; });
+      if (known) continue;
+      if (!joint.fixed) {
+        joint.variable = tip.chain.joints[static_cast<std::size_t>(joint.variable)];
+      }
+      all.joints.push_back(std::move(joint));
+    }
+  }
+  add_coupled_limits(options.coupled_limits, all, joints);
+  for (TreeTip& tip : tips) tip.chain.robot = coupled(tip.chain.robot, urdf);
+}
+
+Robot TreeModel::coupled(const Robot& part, const std::string& urdf) const {
+  const ChainModel& model = part.model();
+  const auto has = [&](const std::string& name) {
+    const auto& names = model.joints.names;
+    return std::find(names.begin(), names.end(), name) != names.end() ||
+           std::any_of(model.spec.joints.begin(), model.spec.joints.end(), [&](const auto& joint) {
+             return joint.name == name && (!joint.fixed || joint.is_locked);
+           });
+  };
+  RobotOptions of_part = model.options;
+  for (const CoupledLimit& limit : options.coupled_limits) {
+    const auto& all = limit.coefficients;
+    const bool has_all =
+        std::all_of(all.begin(), all.end(), [&](const auto& each) { return has(each.first); });
+    if (has_all) of_part.coupled_limits.push_back(limit);
+  }
+  return of_part.coupled_limits.empty() ? part : Robot::from_urdf_string(urdf, of_part);
 }
 
 void TreeModel::check_options() const {
@@ -158,8 +196,8 @@ void TreeModel::split(TreeTip& tip, const std::string& urdf) const {
   RobotOptions of_arm = options_between(link, tip.chain.robot.tip_link());
   of_arm.tcp = tip.chain.robot.tcp();
   const Robot arm = Robot::from_urdf_string(urdf, of_arm);
-  tip.stem = TreePart{stem, places_of(stem)};
-  tip.arm = TreePart{arm, places_of(arm)};
+  tip.stem = TreePart{coupled(stem, urdf), places_of(stem)};
+  tip.arm = TreePart{coupled(arm, urdf), places_of(arm)};
 }
 
 }  // namespace iksel

@@ -73,6 +73,10 @@ class TreeModel {
   [[nodiscard]] bool is_shared(int joint) const;
   [[nodiscard]] std::vector<int> places_of(const Robot& part) const;
   [[nodiscard]] RobotOptions options_between(const std::string& base, const std::string& tip) const;
+  /// Adds the options' coupled limits to those of all joints, and to the chains that have them.
+  void couple_joints(const std::string& urdf);
+  /// A robot under those coupled limits of which it has all joints.
+  [[nodiscard]] Robot coupled(const Robot& part, const std::string& urdf) const;
 };
 
 }  // namespace iksel

@@ -40,6 +40,16 @@ std::pair<double, double> SharedValues::range(int joint) const {
   return {lower, std::max(lower, std::min(near + reach, upper))};
 }
 
+void SharedValues::hold_coupled(JointVector& q) const {
+  if (model_.joints.coupled.empty()) return;
+  for (const TreeTip& tip : model_.tips) {
+    if (!tip.stem) continue;
+    const auto& [stem, joints] = *tip.stem;
+    if (stem.options().coupled_limits.empty()) continue;
+    put(stem.model().joints.clamp(picked(q, joints)), joints, q);
+  }
+}
+
 void SharedValues::next(JointVector& q) {
   if (index_ < 0) {
     for (const int joint : model_.shared) q[joint] = bound_->near[joint];
@@ -51,6 +61,7 @@ void SharedValues::next(JointVector& q) {
       const double x = 0.5 + index_ * step_[j];
       q[model_.shared[j]] = lower + (upper - lower) * (x - std::floor(x));
     }
+    hold_coupled(q);
   }
   ++index_;
 }
@@ -85,7 +96,7 @@ bool ArmSeeds::next_stage() {
   for (int k = 0; k < tips; ++k) {
     const int tip = (first_ + k) % tips;
     if (is_too_far(solved)) return true;
-    if (arms_.solve_arm(tip, q_)) {
+    if (arms_.solve_arm(tip, solved, q_)) {
       solved |= 1U << static_cast<unsigned>(tip);
       ++count;
     } else if (missing < 0) {

@@ -33,6 +33,8 @@ class SharedValues {
   void next(JointVector& q);
 
  private:
+  /// Moves the shared joints inside the coupled limits that are of these alone.
+  void hold_coupled(JointVector& q) const;
   /// What of a joint's range is of use.
   [[nodiscard]] std::pair<double, double> range(int joint) const;
 

@@ -2552,7 +2552,7 @@ class TreeRobot:
     The chains from one link of a URDF to several tips, joined: a joint that lies on several of them is one degree of freedom. Immutable, safe to use from many threads at once.
     """
     @staticmethod
-    def from_urdf(path_or_xml: str | os.PathLike[str], tip_links: collections.abc.Sequence[str], base_link: str | None = None, tcps: numpy.typing.ArrayLike | typing.Any | None = None, locked_joints: collections.abc.Mapping[str, float] | None = None, soft_limits: bool = False, default_limits: numpy.typing.ArrayLike | None = None) -> TreeRobot:
+    def from_urdf(path_or_xml: str | os.PathLike[str], tip_links: collections.abc.Sequence[str], base_link: str | None = None, tcps: numpy.typing.ArrayLike | typing.Any | None = None, locked_joints: collections.abc.Mapping[str, float] | None = None, soft_limits: bool = False, default_limits: numpy.typing.ArrayLike | None = None, coupled_limits: collections.abc.Sequence[CoupledLimit] = ()) -> TreeRobot:
         """
         Reads the chains from one link of a URDF to several.
 
@@ -2565,6 +2565,8 @@ class TreeRobot:
             soft_limits: narrow the limits to the URDF's safety_controller where there is one.
             default_limits: (lower, upper) [rad or m] of revolute and prismatic joints whose limits the
                 URDF leaves out or has as 0, 0; without, such a joint is an error.
+            coupled_limits: limits of sums of joint values, beside those of each joint, of one chain or of
+                several; at most 8.
 
         Raises:
             UrdfError: as Robot.from_urdf, of each chain; more than 32 joints together; joints that follow
@@ -2631,6 +2633,11 @@ class TreeRobot:
     def base_link(self) -> str:
         """
         Link that all poses are relative to.
+        """
+    @property
+    def coupled_limits(self) -> list[CoupledLimit]:
+        """
+        Limits of sums of joint values, beside those of each joint.
         """
     @property
     def default_limits(self) -> tuple[float, float] | None:

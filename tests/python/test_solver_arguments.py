@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 
 import numpy as np
@@ -31,8 +32,8 @@ def test_array_layouts_give_the_same_bits(made) -> None:
 def test_the_pose_may_be_named(made) -> None:
     robot, solver = made.robot("ur3"), made.solver("ur3")
     pose = robot.fk([0.1, -0.5, 0.4, -1.2, 0.6, 0.3])
-    # By a name that is not interned, as of keywords that are read from a file.
-    spelled = {"".join(["po", "se"]): pose, "".join(["sce", "ne"]): None}
+    # By names that are not interned, as of keywords that are read from a file.
+    spelled = dict(zip(json.loads('["pose", "scene"]'), (pose, None)))
     q = solver.solve(pose).q
     for result in (
         solver.solve(pose=pose),

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import pickle
+
 import numpy as np
 import pytest
 from trees import two_armed, two_arms_on_torso
@@ -170,6 +172,30 @@ def test_tools_and_locked_joints() -> None:
     np.testing.assert_array_equal(robot.tcps, tools)
     poses = robot.fk(robot.random_configurations(20, SEED))
     assert iksel.TreeSolver(robot).solve_batch(poses).solved == 20
+
+
+def test_coupled_limits_are_kept_and_pickled() -> None:
+    arm = iksel.load_robot("ur5e")
+    names = ["l_shoulder_lift_joint", "r_shoulder_lift_joint"]
+    limit = iksel.CoupledLimit({names[0]: 1, names[1]: -1}, -0.3, 0.3)
+    tips = ["l_" + arm.tip_link, "r_" + arm.tip_link]
+    robot = iksel.TreeRobot.from_urdf(
+        two_arms_on_torso(arm), tips, coupled_limits=[limit]
+    )
+    again = pickle.loads(pickle.dumps(robot))
+    assert again.coupled_limits == robot.coupled_limits == [limit]
+    columns = [robot.joint_names.index(name) for name in names]
+    q = robot.random_configurations(50, SEED)
+    for values in (q, iksel.TreeSolver(again).solve_batch(robot.fk(q)).q):
+        assert np.abs(np.diff(values[:, columns])).max() <= 0.3
+    q[0, columns] = 0.4, 0.0
+    assert not robot.within_limits(q[0])
+    with pytest.raises(iksel.UnknownNameError, match="r_shoulder_lift_joint"):
+        iksel.TreeRobot.from_urdf(
+            two_arms_on_torso(arm),
+            tips,
+            coupled_limits=[iksel.CoupledLimit({"r_shoulder_lift": 1}, -1, 1)],
+        )
 
 
 def test_what_is_wrong_is_named(solver, targets) -> None:

@@ -33,7 +33,7 @@ def test_the_pose_may_be_named(made) -> None:
     robot, solver = made.robot("ur3"), made.solver("ur3")
     pose = robot.fk([0.1, -0.5, 0.4, -1.2, 0.6, 0.3])
     # By names that are not interned, as of keywords that are read from a file.
-    spelled = dict(zip(json.loads('["pose", "scene"]'), (pose, None)))
+    spelled = dict(zip(json.loads('["pose", "scene"]'), (pose, None), strict=True))
     q = solver.solve(pose).q
     for result in (
         solver.solve(pose=pose),

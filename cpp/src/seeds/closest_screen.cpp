@@ -151,7 +151,10 @@ void ClosestScreen::keep(int packs) {
   const auto is_less = [](const Seed& a, const Seed& b) {
     return a.remainder < b.remainder || (a.remainder == b.remainder && a.place < b.place);
   };
-  std::partial_sort(seeds_.begin(), seeds_.begin() + packs * lanes::kBlock, seeds_.end(), is_less);
+  // Less work than a partial sort, as most are kept or few are.
+  const auto kept = seeds_.begin() + packs * lanes::kBlock;
+  std::nth_element(seeds_.begin(), kept, seeds_.end(), is_less);
+  std::sort(seeds_.begin(), kept, is_less);
   kept_targets_.clear();
   for (int i = 0; i < packs * lanes::kBlock; ++i) {
     const int from = seeds_[static_cast<std::size_t>(i)].place;

@@ -189,7 +189,7 @@ def add(commands: Any) -> None:
     )
     command.add_argument("--targets", type=int, default=10_000, metavar="N")
     command.add_argument("--seed", type=int, default=0)
-    command.add_argument("--max-error", type=float, default=0.005, metavar="M")
+    command.add_argument("--max-error", type=float, default=0.002, metavar="M")
     command.add_argument(
         "--filtered",
         type=int,

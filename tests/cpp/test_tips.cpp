@@ -346,6 +346,41 @@ TEST(TreeSolver, FilterAndDeadlineAreKept) {
   EXPECT_EQ(solver.solve(robot.fk(q), request).status, Status::out_of_time);
 }
 
+/// Whenever time is over, what was found until then is the answer.
+TEST(TreeSolver, WhatWasFoundInTimeIsKept) {
+  const TreeSolver solver(two_armed(iksel_test::robot("panda")));
+  const TreeRobot& robot = solver.robot();
+  const iksel::Matrix q = robot.random_configurations(20, iksel_test::seed());
+  for (int i = 0; i < q.rows(); ++i) {
+    TreeRequest request;
+    request.near = row_of(q, (i + 1) % static_cast<int>(q.rows()));
+    request.deadline = std::pow(10.0, -6 + 0.2 * i);
+    const std::vector<Pose> targets = robot.fk(row_of(q, i));
+    const TreeResult result = solver.solve(targets, request);
+    EXPECT_EQ(result.success(), result.q.size() > 0) << request.deadline;
+    if (result.success()) expect_answer(robot, targets, result.q);
+  }
+}
+
+TEST(TreeSolver, NearIsLookedForWhereArmsAreShort) {
+  const TreeSolver solver(two_armed(iksel_test::robot("xarm5")));
+  const int n = iksel_test::cases(60, 20);
+  const auto count = static_cast<std::size_t>(n);
+  const iksel::Matrix q = solver.robot().random_configurations(count, iksel_test::seed());
+  const iksel::Matrix from = solver.robot().random_configurations(count, iksel_test::seed() + 1);
+  int farther = 0;
+  for (int i = 0; i < n; ++i) {
+    TreeRequest request;
+    request.near = row_of(from, i);
+    const std::vector<Pose> targets = solver.robot().fk(row_of(q, i));
+    const TreeResult result = solver.solve(targets, request);
+    ASSERT_TRUE(result.success());
+    expect_answer(solver.robot(), targets, result.q);
+    farther += result.move > (q.row(i) - from.row(i)).norm() + 1e-6;
+  }
+  EXPECT_LE(farther, n / 20) << "of " << n << ", seed " << iksel_test::seed();
+}
+
 template <typename Error>
 std::string message_of(const std::function<void()>& call) {
   try {

@@ -24,7 +24,7 @@ class FirstTreeAnswer {
   }
   [[nodiscard]] bool should_continue() {
     if (!deadline_.has_passed()) return true;
-    result_.status = Status::out_of_time;
+    if (!result_.success()) result_.status = Status::out_of_time;
     return false;
   }
 

@@ -21,6 +21,10 @@ namespace {
 /// Seeds that one arm has behind each value of the shared joints, of which there are others.
 constexpr int kArmAttempts = 64;
 
+/// Seeds for all joints together from which the nearest is looked for, where arms are too short to
+/// be solved behind the shared joints.
+constexpr int kNearStacked = 32;
+
 /// The move is of all joints of the tree.
 SolveRequest move_of(const TreeRequest& request) {
   SolveRequest move;
@@ -132,8 +136,15 @@ void TreeSolver::Impl::find_nearest(const StackedGoal& goal, const TreeRequest& 
   NearSeed from_near(&bound.near, work);
   ArmSeeds behind_shared(goal, arms, &bound, work);
   SeedSequence near_seeds(2, from_near, behind_shared);
-  if (search(refiner, near_seeds, answers, work) || result.success()) return;
+  if (search(refiner, near_seeds, answers, work)) return;
   StackedSeeds stacked(goal, arms, behind_shared, options.seed, work, result);
+  if (result.success()) {
+    if (arms.has_all_arms()) return;
+    // Arms that are too short for values of the shared joints: other answers are nearer at times.
+    work.leave(kNearStacked);
+    search(refiner, stacked, answers, work);
+    return;
+  }
   FirstTreeAnswer first(goal, request, result);
   search(refiner, stacked, first, work);
   if (!result.success()) return;

@@ -161,7 +161,6 @@ bool StackedSeeds::make_from_chain(int lead, bool at_random) {
   goal_.model().joints.sample(random_, q_);
   const Result of_chain = arms_.solve_chain(lead, at_random, q_);
   if (!of_chain.success() && !at_random) {
-    if (result_.success()) return false;
     result_.status = of_chain.status;
     result_.proof = of_chain.proof;
     result_.unreachable_tip = lead;

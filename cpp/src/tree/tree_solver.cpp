@@ -9,6 +9,7 @@
 #include "iksel/error.hpp"
 #include "search/search.hpp"
 #include "seeds/given_seeds.hpp"
+#include "seeds/nearby_seeds.hpp"
 #include "seeds/seed_sequence.hpp"
 #include "tree/stacked_refiner.hpp"
 #include "tree/tree_answers.hpp"
@@ -20,10 +21,6 @@ namespace {
 
 /// Seeds that one arm has behind each value of the shared joints, of which there are others.
 constexpr int kArmAttempts = 64;
-
-/// Seeds for all joints together from which the nearest is looked for, where arms are too short to
-/// be solved behind the shared joints.
-constexpr int kNearStacked = 32;
 
 /// The move is of all joints of the tree.
 SolveRequest move_of(const TreeRequest& request) {
@@ -137,19 +134,18 @@ void TreeSolver::Impl::find_nearest(const StackedGoal& goal, const TreeRequest& 
   ArmSeeds behind_shared(goal, arms, &bound, work);
   SeedSequence near_seeds(2, from_near, behind_shared);
   if (search(refiner, near_seeds, answers, work)) return;
-  StackedSeeds stacked(goal, arms, behind_shared, options.seed, work, result);
-  if (result.success()) {
-    if (arms.has_all_arms()) return;
-    // Arms that are too short for values of the shared joints: other answers are nearer at times.
-    work.leave(kNearStacked);
-    search(refiner, stacked, answers, work);
-    return;
+  if (!result.success()) {
+    StackedSeeds stacked(goal, arms, behind_shared, options.seed, work, result);
+    FirstTreeAnswer first(goal, request, result);
+    search(refiner, stacked, first, work);
+    if (!result.success()) return;
+    JointVector q = result.q;
+    answers.offer(0, q);
   }
-  FirstTreeAnswer first(goal, request, result);
-  search(refiner, stacked, first, work);
-  if (!result.success()) return;
-  JointVector q = result.q;
-  answers.offer(0, q);
+  if (arms.has_all_arms()) return;
+  // No values of the shared joints were tried: other answers are nearer at times.
+  NearbySeeds nearby(model().joints, bound.near, options.seed, work);
+  search(refiner, nearby, answers, work);
 }
 
 TreeSolver::TreeSolver(const TreeRobot& robot, const SolverOptions& options) {

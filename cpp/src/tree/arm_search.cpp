@@ -79,8 +79,7 @@ Filter ArmSearch::filter_of_limits(int tip, unsigned solved, const JointVector& 
     // At the whole turns at which the answer will be given.
     model.joints.wrap(all.data());
     return std::all_of(rows.begin(), rows.end(), [&](const CoupledRow* row) {
-      const double sum = row->sum(all.data());
-      return sum >= row->lower && sum <= row->upper;
+      return row->beyond(row->sum(all.data())) <= 0;
     });
   });
 }

@@ -41,7 +41,6 @@ std::pair<double, double> SharedValues::range(int joint) const {
 }
 
 void SharedValues::hold_coupled(JointVector& q) const {
-  if (model_.joints.coupled.empty()) return;
   for (const TreeTip& tip : model_.tips) {
     if (!tip.stem) continue;
     const auto& [stem, joints] = *tip.stem;

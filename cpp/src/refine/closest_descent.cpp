@@ -117,6 +117,7 @@ bool step_down(const ChainModel& model, const Remainder& remainder, const Slope&
 /// of H are positive, but not with row k, then it is that which these leave of joint k.
 bool find_falling(const SquareMatrix& H, JointVector& v) {
   constexpr double kFlat = 1e-6;
+  if (Eigen::LLT<SquareMatrix>(H).info() == Eigen::Success) return false;
   for (Eigen::Index k = 0; k < H.rows(); ++k) {
     const SquareMatrix with = H.topLeftCorner(k + 1, k + 1);
     if (Eigen::LLT<SquareMatrix>(with).info() == Eigen::Success) continue;
@@ -181,6 +182,14 @@ Matrix6 Remainder::stiffness(const Pose& pose, const AtPose& at) const {
   Matrix6 K = Matrix6::Zero();
   const Eigen::Matrix3d moves = at.map.topLeftCorner<3, 3>();
   K.topLeftCorner<3, 3>() = moves.transpose() * at.active.head<3>().asDiagonal() * moves;
+  if (goal_.is_full_pose() && turns_alike_) {
+    // The pull is along the rotation's own axis, which the map leaves as it is.
+    const bool in_tool = goal_.task().task().frame == TaskFrame::tool;
+    const Eigen::Matrix3d axes =
+        in_tool ? Eigen::Matrix3d(goal_.target().linear()) : Eigen::Matrix3d::Identity();
+    K.bottomRightCorner<3, 3>() = weights2_[3] * axes * at.map.bottomRightCorner<3, 3>();
+    return K;
+  }
   // The task's swing and twist make a long formula of the rotation's.
   constexpr double kDifference = 1e-6;
   Pose turned = pose;
@@ -263,6 +272,7 @@ double descend_from_seed(const ChainModel& model, const Remainder& remainder, in
   // Whole turns matter only to joints that follow the one that took them.
   JointVector principal = q;
   model.joints.wrap(principal.data());
+  if (principal == q) return value;
   if (remainder.value(principal) <= value * (1 + kSame) + kSame * kSame) q = principal;
   return value;
 }

@@ -19,7 +19,11 @@ class Remainder {
   /// `weights` of position [1/m] and rotation [1/rad] along the axes of the task. All must outlive
   /// this.
   Remainder(const ChainModel& model, const Goal& goal, const Vector6& weights)
-      : model_(model), goal_(goal), weights2_(weights.cwiseAbs2()), is_simple_(is_simple(model)) {}
+      : model_(model),
+        goal_(goal),
+        weights2_(weights.cwiseAbs2()),
+        is_simple_(is_simple(model)),
+        turns_alike_((weights2_.tail<3>().array() == weights2_[3]).all()) {}
 
   [[nodiscard]] double value(const JointVector& q) const;
   /// Also its gradient, and the Gauss-Newton approximation's diagonal of the second derivative.
@@ -46,6 +50,7 @@ class Remainder {
   const Goal& goal_;
   Vector6 weights2_;
   bool is_simple_;
+  bool turns_alike_;  ///< rotations about all axes weigh the same
 };
 
 /// Moves q, inside the limits, to a local minimum in at most `most` steps, by Newton's method with

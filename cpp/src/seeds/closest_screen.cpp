@@ -3,19 +3,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "simd/lane_chain.hpp"
 
 namespace iksel {
 namespace {
 
-/// How far all seeds go, and then packs of the best that are left.
+/// How far all seeds go, and then packs of the best that are left: these once more at the end, which
+/// shows whether they have come to rest.
 constexpr int kFirstIterations = 5;
 struct ScreenRound {
   int packs;
   int iterations;
 };
-constexpr ScreenRound kScreenRounds[] = {{3, 12}, {1, 16}};
+constexpr ScreenRound kScreenRounds[] = {{3, 12}, {1, 12}, {1, 4}};
 
 /// The weights of the axes whose trace has the squares of rotations about them to second order:
 /// 1 - E_xx is half the sum of the other two's.
@@ -136,13 +138,15 @@ int ClosestScreen::load_seeds(LaneQuery& query) {
 }
 
 void ClosestScreen::move(int packs, int iterations) {
-  seeds_.clear();
+  seeds_.resize(static_cast<std::size_t>(packs * lanes::kBlock));
   for (int pack = 0; pack < packs; ++pack) {
     float remainder[lanes::kBlock];
     approach_(chain_, targets_[static_cast<std::size_t>(pack)], iterations, row(packs_, pack, 0),
               remainder);
     for (int place = 0; place < lanes::kBlock; ++place) {
-      seeds_.push_back({remainder[place], pack * lanes::kBlock + place});
+      const int i = pack * lanes::kBlock + place;
+      Seed& seed = seeds_[static_cast<std::size_t>(i)];
+      seed = {remainder[place], seed.remainder - remainder[place], i};
     }
   }
 }
@@ -187,6 +191,8 @@ void ClosestScreen::find(const Goal& goal, const Vector6& weights, LaneQuery& qu
       add_target(goal.random_pose(random), goal, counts);
     }
   }
+  constexpr float kNone = std::numeric_limits<float>::infinity();
+  seeds_.assign(static_cast<std::size_t>(packs * lanes::kBlock), {kNone, 0, 0});
   int iterations = kFirstIterations;
   for (const ScreenRound& round : kScreenRounds) {
     move(packs, iterations);

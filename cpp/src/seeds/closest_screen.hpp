@@ -29,6 +29,8 @@ class ClosestScreen {
   [[nodiscard]] float remainder(int i) const {
     return seeds_[static_cast<std::size_t>(i)].remainder;
   }
+  /// What the last few iterations took away of it: nothing where the seed has come to rest.
+  [[nodiscard]] float gained(int i) const { return seeds_[static_cast<std::size_t>(i)].gained; }
   /// Seeds that find() moves.
   [[nodiscard]] static int moved() { return kPacks * lanes::kBlock; }
 
@@ -41,14 +43,15 @@ class ClosestScreen {
 
   struct Seed {
     float remainder;
-    int place;  ///< in the packs, one after the other
+    float gained;  ///< by the last move
+    int place;     ///< in the packs, one after the other
   };
 
   void use_length(const Vector6& squares);
   void add_target(const Pose& allowed, const Goal& goal, const Vector6& squares);
   /// Returns the packs that there are.
   int load_seeds(LaneQuery& query);
-  /// Moves all seeds of the first packs.
+  /// Moves all seeds of the first packs, which are those of seeds_.
   void move(int packs, int iterations);
   /// Packs the best seeds anew, best first.
   void keep(int packs);

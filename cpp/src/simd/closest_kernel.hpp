@@ -139,16 +139,18 @@ IKSEL_INLINE void solve_downhill(int n, const T* scale, T (*H)[kMaxJoints], T* x
       for (int k = 0; k < j; ++k) H[i][j] = H[i][j] - H[i][k] * H[j][k];
     }
   }
+  // By columns: the entries of x then wait for one product each, not for a row's.
 #pragma GCC unroll 8
-  for (int i = 0; i < n; ++i) {
+  for (int k = 0; k < n; ++k) {
 #pragma GCC unroll 8
-    for (int k = 0; k < i; ++k) x[i] = x[i] - H[i][k] * x[k];
+    for (int i = k + 1; i < n; ++i) x[i] = x[i] - H[i][k] * x[k];
   }
 #pragma GCC unroll 8
-  for (int i = n - 1; i >= 0; --i) {
-    x[i] = x[i] * inverse[i];
+  for (int i = 0; i < n; ++i) x[i] = x[i] * inverse[i];
 #pragma GCC unroll 8
-    for (int k = i + 1; k < n; ++k) x[i] = x[i] - H[k][i] * x[k];
+  for (int k = n - 1; k >= 0; --k) {
+#pragma GCC unroll 8
+    for (int i = 0; i < k; ++i) x[i] = x[i] - H[k][i] * x[k];
   }
 }
 

@@ -10,8 +10,8 @@
 namespace iksel {
 namespace {
 
-/// How far all seeds go, and then packs of the best that are left: these once more at the end, which
-/// shows whether they have come to rest.
+/// How far all seeds go, and then packs of the best that are left: these once more at the end,
+/// which shows whether they have come to rest.
 constexpr int kFirstIterations = 5;
 struct ScreenRound {
   int packs;

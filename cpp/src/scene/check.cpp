@@ -19,7 +19,7 @@ struct ThreadRoom {
         room.resize(static_cast<std::size_t>(count));
     };
     const int stride = (view.links / lanes::kWidth + 2) * lanes::kWidth;
-    grow(frame, 12 * view.bodies);
+    grow(frame, lanes::kFrameNumbers * view.bodies);
     grow(centre, 4 * stride);
     grow(near, view.pairs);
     return {frame.data(), centre.data(), stride, near.data(), {}};
@@ -33,9 +33,7 @@ ThreadRoom& thread_room() {
 
 /// Frame of a body in the base frame.
 Pose frame_of(const lanes::SceneRoom& room, int body) {
-  Pose pose = Pose::Identity();
-  for (int i = 0; i < 12; ++i) pose(i % 3, i / 3) = room.frame[12 * body + i];
-  return pose;
+  return Pose(Eigen::Map<const Eigen::Matrix4d>(room.frame + lanes::kFrameNumbers * body));
 }
 
 lanes::SceneBall ball_of(const lanes::SceneNode& node, int k) {

@@ -63,29 +63,16 @@ class SceneBodies {
       Lanes<T>::store(sine, s + i);
       Lanes<T>::store(cosine, c + i);
     }
-    store({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}}, 0);
-    for (int i = 1; i < scene_.bodies; ++i) {
-      const SceneBody& body = scene_.body[i];
-      const BodyFrame parent = frame(body.parent);
-      const Vec<double> x = turned(parent, constant<double>(body.x));
-      const Vec<double> y = turned(parent, constant<double>(body.y));
-      BodyFrame f{x, y, turned(parent, constant<double>(body.z)),
-                  placed(parent, constant<double>(body.p))};
-      if (body.prismatic) {
-        f.p = add(f.p, motion[i], f.z);
-      } else {
-        f.x = add(scaled(c[i], x), s[i], y);
-        f.y = add(scaled(c[i], y), -s[i], x);
-      }
-      store(f, i);
-    }
+    for (int k = 0; k < kFrameNumbers; ++k) room_.frame[k] = k % (kFrameRows + 1) == 0 ? 1.0 : 0.0;
+    for (int i = 1; i < scene_.bodies; ++i) place_body(i, motion[i], s[i], c[i]);
   }
   [[nodiscard]] IKSEL_INLINE BodyFrame frame(int body) const {
-    const double* in = room_.frame + 12 * body;
-    return {{in[0], in[1], in[2]},
-            {in[3], in[4], in[5]},
-            {in[6], in[7], in[8]},
-            {in[9], in[10], in[11]}};
+    const double* in = room_.frame + kFrameNumbers * body;
+    const auto column = [in](int k) {
+      const double* c = in + k * kFrameRows;
+      return Vec<double>{c[0], c[1], c[2]};
+    };
+    return {column(0), column(1), column(2), column(3)};
   }
   /// Places the balls around links, of placed bodies.
   void place_links() {
@@ -113,13 +100,34 @@ class SceneBodies {
   }
 
  private:
-  void store(const BodyFrame& f, int body) {
-    double* out = room_.frame + 12 * body;
-    const Vec<double>* const columns[] = {&f.x, &f.y, &f.z, &f.p};
-    for (const Vec<double>* v : columns) {
-      *out++ = v->x;
-      *out++ = v->y;
-      *out++ = v->z;
+  /// Places a body on its parent, the rows of a column in lanes; `motion` [rad or m] has such a
+  /// sine and cosine.
+  IKSEL_INLINE void place_body(int i, double motion, double sine, double cosine) {
+    const SceneBody& body = scene_.body[i];
+    const double* parent = room_.frame + kFrameNumbers * body.parent;
+    double* to = room_.frame + kFrameNumbers * i;
+    for (int row = 0; row < kFrameRows; row += Lanes<T>::kCount) {
+      const T x = Lanes<T>::load(parent + row);
+      const T y = Lanes<T>::load(parent + row + kFrameRows);
+      const T z = Lanes<T>::load(parent + row + 2 * kFrameRows);
+      const auto turned = [&](const double(&v)[3]) {
+        return x * T(v[0]) + y * T(v[1]) + z * T(v[2]);
+      };
+      T of_x = turned(body.x);
+      T of_y = turned(body.y);
+      const T of_z = turned(body.z);
+      T of_p = Lanes<T>::load(parent + row + 3 * kFrameRows) + turned(body.p);
+      if (body.prismatic) {
+        of_p = of_p + of_z * T(motion);
+      } else {
+        const T before = of_x;
+        of_x = before * T(cosine) + of_y * T(sine);
+        of_y = of_y * T(cosine) - before * T(sine);
+      }
+      Lanes<T>::store(of_x, to + row);
+      Lanes<T>::store(of_y, to + row + kFrameRows);
+      Lanes<T>::store(of_z, to + row + 2 * kFrameRows);
+      Lanes<T>::store(of_p, to + row + 3 * kFrameRows);
     }
   }
 

@@ -10,6 +10,9 @@ namespace iksel::lanes {
 /// Bodies that move against each other, the base among them; chains have at most 64 joints that
 /// move, mimic joints included, and side branches have others.
 inline constexpr int kMaxBodies = 128;
+/// A frame is its homogeneous matrix, column after column.
+inline constexpr int kFrameRows = 4;
+inline constexpr int kFrameNumbers = 16;
 
 /// A body on its joint, whose axis is z: parent * (x, y, z, p) * motion.
 struct SceneBody {
@@ -91,10 +94,9 @@ struct SceneCulprit {
   int other = 0;  ///< and the second's leaf
 };
 
-/// Room that find_clearance writes to. Number i of the frame of body b in the base frame, columns
-/// x, y, z and p, is at frame[12 b + i].
+/// Room that find_clearance writes to.
 struct SceneRoom {
-  double* frame;    ///< 12 for each body
+  double* frame;    ///< of each body in the base frame, one after the other
   double* centre;   ///< of the balls around links: x of each, then y, z and the radius
   int link_stride;  ///< from x to y; kWidth more than there are links, at least
   int* near;        ///< pairs whose links are near each other

@@ -40,7 +40,13 @@ IKSEL_INLINE BodyFrame seen_from(const BodyFrame& b, const BodyFrame& a) {
 template <typename T>
 class SceneBodies {
  public:
-  SceneBodies(const SceneView& scene, const SceneRoom& room) : scene_(scene), room_(room) {}
+  SceneBodies(const SceneView& scene, const SceneRoom& room)
+      : scene_(scene),
+        room_(room),
+        x_(room.centre),
+        y_(x_ + room.link_stride),
+        z_(y_ + room.link_stride),
+        radius_(z_ + room.link_stride) {}
 
   /// Places the bodies as they are at q.
   void place_bodies(const double* q) {
@@ -76,7 +82,6 @@ class SceneBodies {
   }
   /// Places the balls around links, of placed bodies.
   void place_links() {
-    const int stride = room_.link_stride;
     for (int run = 0; run < scene_.link_runs; ++run) {
       const SceneLinkRun& links = scene_.link_run[run];
       const BodyFrame body = frame(links.body);
@@ -85,21 +90,67 @@ class SceneBodies {
         const Vec<T> centre = placed(
             body, Vec<T>{Lanes<T>::load(scene_.around[0] + i), Lanes<T>::load(scene_.around[1] + i),
                          Lanes<T>::load(scene_.around[2] + i)});
-        double* to = room_.centre + i;
-        Lanes<T>::store(centre.x, to);
-        Lanes<T>::store(centre.y, to + stride);
-        Lanes<T>::store(centre.z, to + 2 * stride);
-        Lanes<T>::store(Lanes<T>::load(scene_.around[3] + i) - T(scene_.smaller), to + 3 * stride);
+        Lanes<T>::store(centre.x, x_ + i);
+        Lanes<T>::store(centre.y, y_ + i);
+        Lanes<T>::store(centre.z, z_ + i);
+        Lanes<T>::store(Lanes<T>::load(scene_.around[3] + i) - T(scene_.smaller), radius_ + i);
       }
     }
   }
-  /// The centres of the balls around links beside each other, of which the first one's x is at `x`.
-  [[nodiscard]] IKSEL_INLINE Vec<T> load_links(const double* x) const {
-    const int stride = room_.link_stride;
-    return {Lanes<T>::load(x), Lanes<T>::load(x + stride), Lanes<T>::load(x + 2 * stride)};
+  /// The centres and radii of the balls around links from `first` on.
+  [[nodiscard]] IKSEL_INLINE Vec<T> link_centres(int first) const {
+    return {Lanes<T>::load(x_ + first), Lanes<T>::load(y_ + first), Lanes<T>::load(z_ + first)};
+  }
+  [[nodiscard]] IKSEL_INLINE T link_radii(int first) const {
+    return Lanes<T>::load(radius_ + first);
+  }
+
+  /// Pairs of which the balls around the links touch, into the room; returns how many. First the
+  /// one where they do so most: if any pair touches, it most likely does.
+  int find_near_pairs() {
+    int count = 0;
+    int* const near = room_.near;
+    const ScenePairBlock* const end = scene_.pair_block + scene_.pair_blocks;
+    for (const ScenePairBlock* block = scene_.pair_block; block != end; ++block) {
+      unsigned mask = find_near(*block) & block->mask;
+      for (const int* pair = block->pair; mask != 0; ++pair, mask >>= 1U) {
+        if ((mask & 1U) != 0) near[count++] = *pair;
+      }
+    }
+    double least = 1;
+    for (int i = 0; i < count; ++i) {
+      const int pair = near[i];
+      const double part = nearness(scene_.pair[pair]);
+      if (!(part < least)) continue;
+      least = part;
+      near[i] = near[0];
+      near[0] = pair;
+    }
+    return count;
   }
 
  private:
+  /// Lanes of a block in which the balls around the links touch, whether they may or not.
+  [[nodiscard]] IKSEL_INLINE unsigned find_near(const ScenePairBlock& block) const {
+    const int one = block.one;
+    const Vec<T> centre{T(x_[one]), T(y_[one]), T(z_[one])};
+    unsigned mask = 0;
+    for (int lane = 0; lane < kWidth; lane += Lanes<T>::kCount) {
+      const int others = block.first + lane;
+      const Vec<T> d = add(link_centres(others), T(-1.0), centre);
+      const T reach = link_radii(others) + T(radius_[one]);
+      mask |= to_bits<T>(dot(d, d) <= reach * reach) << static_cast<unsigned>(lane);
+    }
+    return mask;
+  }
+  /// Distance^2 of the centres of the balls around two links, by that where they touch.
+  [[nodiscard]] double nearness(const ScenePair& pair) const {
+    const int a = pair.a;
+    const int b = pair.b;
+    const Vec<double> d{x_[a] - x_[b], y_[a] - y_[b], z_[a] - z_[b]};
+    const double reach = radius_[a] + radius_[b];
+    return dot(d, d) / (reach * reach);
+  }
   /// Places a body on its parent, the rows of a column in lanes; `motion` [rad or m] has such a
   /// sine and cosine.
   IKSEL_INLINE void place_body(int i, double motion, double sine, double cosine) {
@@ -133,6 +184,7 @@ class SceneBodies {
 
   const SceneView& scene_;
   const SceneRoom& room_;
+  double *x_, *y_, *z_, *radius_;  ///< of the balls around links, in the room
 };
 
 }  // namespace iksel::lanes

@@ -113,56 +113,11 @@ class SceneCheck {
   }
 
   bool test_pairs(SceneCulprit& culprit) {
-    const int count = find_near_pairs();
+    const int count = bodies_.find_near_pairs();
     for (int i = 0; i < count; ++i) {
       if (take_pair(room_.near[i], culprit)) return true;
     }
     return false;
-  }
-  /// Those of which the balls around the links touch, returns how many. First the one where they do
-  /// so most: if any pair touches, it most likely does.
-  int find_near_pairs() {
-    int count = 0;
-    for (int i = 0; i < scene_.pair_blocks; ++i) {
-      const ScenePairBlock& block = scene_.pair_block[i];
-      unsigned mask = find_near(block) & block.mask;
-      for (int k = 0; mask != 0; ++k, mask >>= 1U) {
-        if ((mask & 1U) != 0) room_.near[count++] = block.pair[k];
-      }
-    }
-    double least = 1;
-    for (int i = 0; i < count; ++i) {
-      const int pair = room_.near[i];
-      const double part = nearness(scene_.pair[pair]);
-      if (!(part < least)) continue;
-      least = part;
-      room_.near[i] = room_.near[0];
-      room_.near[0] = pair;
-    }
-    return count;
-  }
-  /// Lanes of a block in which the balls around the links touch, whether they may or not.
-  [[nodiscard]] IKSEL_INLINE unsigned find_near(const ScenePairBlock& block) const {
-    const int stride = room_.link_stride;
-    const double* one = room_.centre + block.one;
-    const Vec<T> centre{T(one[0]), T(one[stride]), T(one[2 * stride])};
-    unsigned mask = 0;
-    for (int lane = 0; lane < kWidth; lane += Lanes<T>::kCount) {
-      const double* others = room_.centre + block.first + lane;
-      const Vec<T> d = add(bodies_.load_links(others), T(-1.0), centre);
-      const T reach = Lanes<T>::load(others + 3 * stride) + T(one[3 * stride]);
-      mask |= to_bits<T>(dot(d, d) <= reach * reach) << static_cast<unsigned>(lane);
-    }
-    return mask;
-  }
-  /// Distance^2 of the centres of the balls around two links, by that where they touch.
-  [[nodiscard]] double nearness(const ScenePair& pair) const {
-    const int stride = room_.link_stride;
-    const double* a = room_.centre + pair.a;
-    const double* b = room_.centre + pair.b;
-    const Vec<double> d{a[0] - b[0], a[stride] - b[stride], a[2 * stride] - b[2 * stride]};
-    const double reach = a[3 * stride] + b[3 * stride];
-    return dot(d, d) / (reach * reach);
   }
   bool take_pair(int i, SceneCulprit& culprit) {
     const ScenePair& pair = scene_.pair[i];
@@ -285,13 +240,11 @@ class SceneCheck {
   }
   template <typename Shape>
   bool test_all(const Shape* shape, int count, Kind kind, SceneCulprit& culprit) {
-    const int stride = room_.link_stride;
-    const double* x = room_.centre;
     for (int first = 0; first < scene_.links; first += Lanes<T>::kCount) {
       const unsigned may = lanes_that_may(first);
       if (may == 0) continue;
-      const Vec<T> centre = bodies_.load_links(x + first);
-      const T radius = Lanes<T>::load(x + 3 * stride + first);
+      const Vec<T> centre = bodies_.link_centres(first);
+      const T radius = bodies_.link_radii(first);
       for (int i = 0; i < count; ++i) {
         if (is_far(shape[i], centre, radius)) continue;
         unsigned mask = may & to_bits<T>(clearance(shape[i], centre, radius) <= T(0.0));

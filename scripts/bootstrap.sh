@@ -7,8 +7,8 @@
 #   --dev       also what tests, benchmarks and the extra [dev] need
 #   --lint      also clang-format, clang-tidy and shellcheck
 #   --fuzz      also clang with libFuzzer
-#   --bench     also NLopt for the C++ baselines, and from PyPI the solvers to compare with and
-#               JAX for the learned seeds
+#   --bench     also NLopt for the C++ baselines, and from PyPI the solvers to compare with, robots
+#               with bodies for scenes and JAX for the learned seeds
 #   --ros       also Debian's ROS 1, for the node in ros/ros1
 #   --docs      also what the documentation is made with
 #   --browser   also Debian's Chromium and playwright, which drive the view in the tests

@@ -49,7 +49,7 @@ void check_numbers(const CoupledLimit& limit, std::size_t index) {
 std::vector<std::string> names_in(const ChainSpec& spec) {
   std::vector<std::string> names;
   for (const ChainJoint& joint : spec.joints) {
-    if (!joint.fixed || joint.is_locked) names.push_back(joint.name);
+    if (joint.has_value()) names.push_back(joint.name);
   }
   return names;
 }
@@ -58,9 +58,9 @@ std::vector<std::string> names_in(const ChainSpec& spec) {
 double add_joint(const CoupledLimit& limit, std::size_t index, const std::string& name,
                  double coefficient, const ChainSpec& spec, const JointSpace& joints,
                  CoupledRow& row) {
-  const auto joint = std::find_if(
-      spec.joints.begin(), spec.joints.end(),
-      [&](const ChainJoint& each) { return each.name == name && (!each.fixed || each.is_locked); });
+  const auto joint =
+      std::find_if(spec.joints.begin(), spec.joints.end(),
+                   [&](const ChainJoint& each) { return each.name == name && each.has_value(); });
   if (joint != spec.joints.end()) {
     if (joint->is_locked) return coefficient * joint->locked_at;
     if (joints.type(joint->variable) == JointType::continuous) {

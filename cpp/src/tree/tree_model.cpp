@@ -79,9 +79,8 @@ Robot TreeModel::coupled(const Robot& part, const std::string& urdf) const {
   const auto has = [&](const std::string& name) {
     const auto& names = model.joints.names;
     return std::find(names.begin(), names.end(), name) != names.end() ||
-           std::any_of(model.spec.joints.begin(), model.spec.joints.end(), [&](const auto& joint) {
-             return joint.name == name && (!joint.fixed || joint.is_locked);
-           });
+           std::any_of(model.spec.joints.begin(), model.spec.joints.end(),
+                       [&](const auto& joint) { return joint.name == name && joint.has_value(); });
   };
   RobotOptions of_part = model.options;
   for (const CoupledLimit& limit : options.coupled_limits) {

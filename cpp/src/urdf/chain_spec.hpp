@@ -28,6 +28,9 @@ struct ChainJoint {
   double multiplier = 1.0;
   double offset = 0.0;
   std::shared_ptr<const MotionCurve> curve;  ///< null: a straight line
+
+  /// Whether limits may name it: one that moves, or would.
+  [[nodiscard]] bool has_value() const { return !fixed || is_locked; }
 };
 
 /// T, and then a motion by `value` along or about `axis`.

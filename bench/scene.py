@@ -48,7 +48,9 @@ def load_panda(max_error: float) -> Panda:
     """The arm with the geometry of rtb-data."""
     found = importlib.util.find_spec("rtbdata")
     if found is None or found.origin is None:
-        raise SystemExit("bench scene: needs rtb-data: pip install iksel[collision,xacro] rtb-data")
+        raise SystemExit(
+            "bench scene: needs rtb-data: pip install iksel[collision,xacro] rtb-data"
+        )
     folder = Path(found.origin).parent / "xacro" / "qut_frankie_description" / "robots"
     path = folder / "panda_arm_hand.urdf.xacro"
     robot = iksel.load_robot(path, base_link="panda_link0", tip_link="panda_hand")

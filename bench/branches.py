@@ -83,9 +83,10 @@ def gap(a: Array, b: Array) -> Array:
 def distinct(q: Array) -> Array:
     """One of each group of rows that lie nearer than APART, (n, dof) -> (m, dof)."""
     kept: list[Array] = []
-    for row in q:
-        if not kept or gap(row[None], np.array(kept)).min() >= APART:
-            kept.append(row)
+    rest = q
+    while len(rest):
+        kept.append(rest[0])
+        rest = rest[gap(rest[:1], rest)[0] >= APART]
     return np.array(kept).reshape(-1, q.shape[1])
 
 
@@ -239,6 +240,18 @@ def _excess(chain: Chain, result: iksel.Result, near: Array, branches: Array) ->
     return float(np.linalg.norm(result.q - near) - moves.min())
 
 
+def branches_by_restarts(
+    solver: iksel.Solver, pose: Array, count: int, seed: int
+) -> Array:
+    """Those that the iteration alone finds from so many random seeds, (n, dof)."""
+    answers = (
+        solver.solve(pose, seeds=q[None], database_seeds=False)
+        for q in solver.robot.random_configurations(count, seed)
+    )
+    q = np.array([answer.q for answer in answers if answer.success])
+    return distinct(q.reshape(-1, solver.robot.dof))
+
+
 def restarts(arm: Arm, goals: Targets, settings: Settings) -> dict[str, Any]:
     """Branches by solve_all, and by many random restarts of the iteration alone."""
     solver = iksel.Solver(arm.robot)
@@ -246,12 +259,8 @@ def restarts(arm: Arm, goals: Targets, settings: Settings) -> dict[str, Any]:
     counts = {"agrees": 0, "more": 0, "fewer": 0}
     missed = []
     for i, (pose, ours) in enumerate(zip(goals.poses, found, strict=True)):
-        starts = arm.robot.random_configurations(RESTARTS, settings["seed"] + 1 + i)
-        single = (
-            solver.solve(pose, seeds=q[None], database_seeds=False) for q in starts
-        )
-        q = np.array([answer.q for answer in single if answer.success])
-        truth = len(distinct(q.reshape(-1, arm.chain.dof)))
+        seed = settings["seed"] + 1 + i
+        truth = len(branches_by_restarts(solver, pose, RESTARTS, seed))
         verdict = (
             "agrees" if len(ours) == truth else "more" if len(ours) > truth else "fewer"
         )

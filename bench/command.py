@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from bench import body, closest, coupled, dual, plan, scene, tips
+from bench import body, closest, coupled, dual, lost, plan, scene, tips
 from bench.arms import RIVAL_ARMS
 from bench.cells import WORK
 from bench.frozen import compare, record
@@ -70,7 +70,7 @@ def parser() -> argparse.ArgumentParser:
     frozen.add_argument("file", type=Path, help="where, e.g. build/frozen.json")
     _add_no(commands)
     learned_command.add(commands)
-    for part in (scene, body, closest, coupled, dual, tips):
+    for part in (scene, body, closest, coupled, dual, lost, tips):
         part.add(commands)
     return top
 
@@ -157,6 +157,7 @@ def main(arguments: list[str] | None = None) -> int:
         "closest": closest.run,
         "coupled": coupled.run,
         "dual": dual.run,
+        "lost": lost.run,
         "tips": tips.run,
     }
     if options.command in alone:

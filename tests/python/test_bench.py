@@ -13,7 +13,18 @@ import iksel
 
 pytest.importorskip("bench", reason="the benchmarks are in the repository only")
 
-from bench import branches, check, command, frozen, guard, no, plan, run, targets
+from bench import (
+    branches,
+    check,
+    command,
+    frozen,
+    guard,
+    lost,
+    no,
+    plan,
+    run,
+    targets,
+)
 from bench.arms import load_arm
 from bench.paper import claims, published
 from bench.paper import plan as paper_plan
@@ -500,6 +511,29 @@ class TestBranches:
             assert near["smallest"] == near["solvable"] == near["solved"]
             assert near["wrong"] == every["wrong"] == 0
             assert every["branches"] >= near["solvable"]
+
+
+def test_lost_counts_what_is_not_found_and_what_is_false(monkeypatch) -> None:
+    arm = load_arm("cvr038")
+    row = lost.reached(arm, "uniform", 100, SEED)
+    assert row.pop("targets") == 100
+    assert not any(row.values())
+    # The answers of another arm.
+    other = iksel.Solver(load_arm("cvrb1213").robot)
+    monkeypatch.setattr(lost.iksel, "Solver", lambda _robot: other)
+    row = lost.reached(arm, "uniform", 100, SEED)
+    assert row["lost"] + row["false"] == row["lost_by_batch"] + row["false_by_batch"]
+    assert row["lost"] + row["false"] == 100
+    assert row["lost"] > 0
+    assert row["false"] > 0
+
+
+def test_lost_finds_the_branches_of_restarts() -> None:
+    row = lost.beside_restarts(load_arm("cvr038"), 5, 300, SEED)
+    assert row["poses"] == 5
+    assert row["branches"] >= 5
+    assert row["branches_by_restarts"] >= 5
+    assert row["fewer"] == row["wrong"] == 0
 
 
 def test_frozen_names_the_calls_that_differ(

@@ -58,7 +58,7 @@ def draw_all(view: View, folder: Path) -> list[str]:
     """Draw what there are results for.
 
     Returns:
-        The files, as RESULTS.md names them; none if matplotlib is not installed.
+        The files, as RESULTS.md names them; none without matplotlib.
     """
     try:
         import matplotlib as mpl  # noqa: PLC0415 - optional

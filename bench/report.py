@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import contextlib
+import importlib.util
 import json
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
@@ -147,7 +148,7 @@ def render(report: Report, folder: Path) -> None:
         for line in text.splitlines()
         if not line.startswith("![") or any(f"({plot})" in line for plot in drawn)
     )
-    if not drawn:
+    if not drawn and importlib.util.find_spec("matplotlib") is None:
         text += "\n\nNo plots: matplotlib is not installed.\n"
     (folder / "RESULTS.md").write_text(text.rstrip() + "\n", encoding="utf-8")
 

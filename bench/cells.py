@@ -7,10 +7,7 @@ Cells run in worker processes (bench.worker). Settings and results are plain dat
 from __future__ import annotations
 
 import functools
-import hashlib
-import json
 import time
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,14 +17,13 @@ from bench.arms import load_arm
 from bench.branches import all_branches, near_branches, restarts
 from bench.check import judge, right
 from bench.ikgeo.cells import enumerated, packaged, searched
-from bench.machine import fingerprint
 from bench.no import answered
 from bench.paper.artefact import singular_first
 from bench.requests import near_moves, path
 from bench.rivals import RIVALS
 from bench.rivals.base import UnsupportedError
 from bench.seed_makers import first_attempt
-from bench.targets import cached_targets
+from bench.setup import make_solver, targets_of
 from bench.timing import summary
 
 if TYPE_CHECKING:
@@ -38,79 +34,8 @@ if TYPE_CHECKING:
     from bench.store import Settings
     from bench.targets import Targets
 
-WORK = Path(__file__).resolve().parents[1] / "build" / "bench"
-"""Where targets, databases and results are kept."""
-
 CEILING_ATTEMPTS = 100
 """Attempts of the paper's near-optimal line."""
-
-DATABASE = "database."
-"""Prefix of the overrides that are of DatabaseOptions."""
-
-
-def solver_options(preset: str, overrides: dict[str, Any]) -> iksel.SolverOptions:
-    """A preset with fields changed; database fields are written database.FIELD."""
-    options = (
-        iksel.SolverOptions.paper() if preset == "paper" else iksel.SolverOptions()
-    )
-    database = {
-        name.removeprefix(DATABASE): value
-        for name, value in overrides.items()
-        if name.startswith(DATABASE)
-    }
-    rest = {
-        name: value
-        for name, value in overrides.items()
-        if not name.startswith(DATABASE)
-    }
-    strategy = {name: rest.pop(name) for name in [*rest] if hasattr(iksel.Paper, name)}
-    return options.replace(
-        database=options.database.replace(**database),
-        strategy=options.strategy.replace(**strategy),
-        **rest,
-    )
-
-
-def command_line(settings: Settings) -> str:
-    """The command that shows an `evaluate` cell to a reader."""
-    words = ["iksel evaluate", settings["robot"], "--preset", settings["preset"]]
-    for name, value in settings["overrides"].items():
-        flag = name.removeprefix(DATABASE).replace("_", "-")
-        if name in ("database.pinv_cutoff", "database.seed", "database.threads"):
-            flag = "database-" + flag
-        words += ["--" + flag, str(value)]
-    words += ["--targets", str(settings["count"]), "--seed", str(settings["seed"])]
-    return " ".join(words)
-
-
-@functools.lru_cache(maxsize=2)
-def _database(robot: str, fields: str) -> iksel.Database:
-    """A database by its options as JSON; those that take long are kept in files."""
-    options = iksel.DatabaseOptions(**json.loads(fields))
-    arm = load_arm(robot)
-    if options.sampling != iksel.Sampling.cvt:
-        return iksel.Database.build(arm.robot, options)
-    name = hashlib.sha256(f"{fingerprint()} {fields}".encode()).hexdigest()[:20]
-    path = WORK / "databases" / f"{robot}-{name}.iksel"
-    if not path.exists():
-        path.parent.mkdir(parents=True, exist_ok=True)
-        iksel.Database.build(arm.robot, options).save(path)
-    return iksel.Database.load(path)
-
-
-def make_solver(settings: Settings) -> iksel.Solver:
-    """The solver of a cell with robot, preset and overrides."""
-    options = solver_options(settings["preset"], settings["overrides"])
-    fields = json.dumps(options.database.to_dict(), sort_keys=True)
-    database = _database(settings["robot"], fields)
-    return iksel.Solver(load_arm(settings["robot"]).robot, options, database)
-
-
-def targets_of(settings: Settings) -> Targets:
-    """The targets of a cell with robot, kind, count and seed."""
-    arm = load_arm(settings["robot"])
-    kind, count, seed = settings["kind"], settings["count"], settings["seed"]
-    return cached_targets(WORK / "targets", arm, kind, count, seed)
 
 
 def targets(settings: Settings) -> dict[str, Any]:

@@ -19,8 +19,8 @@ import numpy as np
 
 import iksel
 from bench.arms import load_arm
-from bench.cells import WORK
 from bench.machine import fingerprint
+from bench.setup import WORK
 from bench.store import Store
 from bench.targets import make_targets
 from bench.timing import least_times, time_calls

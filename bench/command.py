@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 
 from bench import body, closest, coupled, dual, lost, plan, scene, tips
 from bench.arms import RIVAL_ARMS
-from bench.cells import WORK
 from bench.frozen import compare, record
 from bench.guard import guard
 from bench.learned import command as learned_command
@@ -28,6 +27,7 @@ from bench.report import (
 from bench.rivals import RIVALS
 from bench.run import run_jobs
 from bench.sections import learned, no
+from bench.setup import WORK
 from bench.size import FULL, QUICK, SEED
 from bench.store import Store
 from bench.view import View

@@ -20,10 +20,10 @@ import numpy as np
 import iksel
 from bench.arms import load_arm
 from bench.branches import LIMIT_S, near_of
-from bench.cells import solver_options
 from bench.check import right
 from bench.machine import facts
 from bench.markdown import table
+from bench.setup import solver_options
 from bench.store import write_json
 from bench.targets import make_targets
 from bench.timing import time_calls

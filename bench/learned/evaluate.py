@@ -17,11 +17,11 @@ import numpy as np
 
 import iksel
 from bench.arms import load_arm
-from bench.cells import make_solver, targets_of
 from bench.check import errors, right
 from bench.learned.models import load_weights
 from bench.learned.plan import weights_path
 from bench.rivals.base import UnsupportedError
+from bench.setup import make_solver, targets_of
 from bench.timing import time_calls
 
 if TYPE_CHECKING:

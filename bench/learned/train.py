@@ -22,11 +22,11 @@ import jax.numpy as jnp
 import numpy as np
 import optax
 
-from bench.cells import WORK
 from bench.learned.data import TRAIN_SEED, Scaling, labelled, scaling_of
 from bench.learned.evaluate import seeds_solved
 from bench.learned.models import Facts, make_model, parameters, save_weights
 from bench.learned.plan import weights_path
+from bench.setup import WORK
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -144,6 +144,27 @@ TEST_P(RootSweeps, LargeTolerancesAreAllowedFor) {
   iksel_test::expect_no_proof_at_large_tolerances(robot(), reached, dice);
 }
 
+/// Of 100,000 reachable targets near singularities two that were called a no: the nominal arm's
+/// roots are four that all but meet, and none of them is real.
+TEST(RootSweep, WhereFourRootsAllButMeetSomeAreLookedFor) {
+  const Robot& robot = iksel_test::robot("gen3_6dof");
+  const Solver& solver = iksel_test::solver("gen3_6dof");
+  iksel_test::Judge judge(robot);
+  JointVector one(6);
+  one << -3.1031627827683446, 0.30214768907649203, -0.0010271418180800573, -1.1688457655930569,
+      0.009419768124786287, -1.2844756415146932;
+  JointVector other(6);
+  other << -2.2398586310939304, -0.5237192918331071, 0.0017364701003068639, 1.32078972278331,
+      -0.007848187627975456, 2.1816112614960224;
+  for (const JointVector& q : {one, other}) {
+    const Pose target = robot.fk(q);
+    const Result result = solver.solve(target);
+    ASSERT_TRUE(result.success()) << q.transpose();
+    judge.expect_solution(target, result.q);
+    EXPECT_TRUE(solver.solve_all(target).success());
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Robots, RootSweeps,
                          testing::Values("cvr038", "cvrb1213", "gen3_6dof", "xarm6"),
                          [](const auto& info) { return std::string(info.param); });

@@ -137,7 +137,7 @@ std::optional<Proof> CurveSearch<Answers>::collect_nearest() const {
   const auto& [near, move] = answers.nearest_to();
   NearSeed first(curve.prefers_staying(move) ? nullptr : &near, work);
   search(refiner, first, answers, work);
-  NearestOnCurveSeeds nearest(curve, Y, near, move, answers, work, clock);
+  NearestOnCurveSeeds nearest(curve, Y, near, move, answers, *lanes.sweep, work, clock);
   refiner.begin(goal.task(), kNearAnswer, Width::narrow);
   search(refiner, nearest, answers, work);
   refiner.begin(goal.task(), kFirst, Width::narrow);

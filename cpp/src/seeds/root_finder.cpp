@@ -96,7 +96,7 @@ void RootFinder::look_closer(const Residual& residual, double left, double lengt
       const double least = values[i] - 0.5 * slope * slope / bend;
       const double apart = vague_ / step;
       if (std::abs(least) <= 0.5 * std::abs(bend) * apart * apart) {
-        add(angles[i] - step * slope / bend, true);
+        add(angles[i] - step * slope / bend, true, step * std::sqrt(2 * std::abs(least / bend)));
       }
     }
   }
@@ -110,12 +110,12 @@ void RootFinder::add_bracket(double left, double length, const double* value) {
   brackets_[brackets_size_++] = {left, left + length, value[0], value[1]};
 }
 
-void RootFinder::add(double angle, bool is_vague) {
+void RootFinder::add(double angle, bool is_vague, double apart) {
   if (size_ == kMost) {
     is_complete_ = false;
     return;
   }
-  roots_[size_++] = {angle, is_vague};
+  roots_[size_++] = {angle, is_vague, apart};
 }
 
 void RootFinder::polish(const Residual& residual) {

@@ -24,6 +24,7 @@ class RootFinder {
   struct Root {
     double angle;   ///< [rad]
     bool is_vague;  ///< there may be two near to here, or just none
+    double apart;   ///< so far away are these, real or not, if that is known [rad]
   };
 
   /// From `lower` on, over `range`, which is all if it is a whole turn or more [rad]. Where the
@@ -63,7 +64,7 @@ class RootFinder {
   /// around.
   void look_closer(const Residual& residual, double left, double length, int depth);
   void add_bracket(double left, double length, const double* value);
-  void add(double angle, bool is_vague);
+  void add(double angle, bool is_vague, double apart = 0);
   /// Narrows all brackets.
   void polish(const Residual& residual);
 

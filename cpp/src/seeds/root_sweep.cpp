@@ -16,9 +16,11 @@ namespace {
 constexpr double kBesideAxis = 1000;
 
 /// What the axes lie off moves roots that all but meet another pair so many times farther apart: of
-/// four million reachable targets of gen3_6dof three had been lost, and with 8 times, of 100,000
-/// near singularities two.
-constexpr double kFartherApart = 32;
+/// four million reachable targets of gen3_6dof three had been lost.
+constexpr double kFartherApart = 8;
+/// And so many times, but only what is then as near to an answer as a single root: of 100,000
+/// targets near singularities two had been lost, where four roots all but meet.
+constexpr double kFarthestApart = 32;
 
 /// Where neighbouring values of a loop's determinant are less than so many times its noise, there
 /// may be roots or none.
@@ -51,10 +53,12 @@ RootSweep::RootSweep(const ChainModel& model, const ClosedFormChain& chain, bool
       are_answers_(is_nominal && chain.deviation <= kShare * tolerance),
       concludes_(concludes_from_branches(is_nominal, tolerance)),
       vague_(2 * std::sqrt(tolerance + chain.deviation)),
+      farther_(2 * std::sqrt(tolerance + kFartherApart * kFartherApart * chain.deviation)),
       vague_divisor_(std::pow(kBesideAxis * (tolerance + chain.deviation), 2)),
-      roots_(make_finder(model, chain.held,
-                         2 * std::sqrt(tolerance + kFartherApart * kFartherApart * chain.deviation),
-                         std::max(kPrecision, kShare * chain.deviation), kernels)),
+      roots_(
+          make_finder(model, chain.held,
+                      2 * std::sqrt(tolerance + kFarthestApart * kFarthestApart * chain.deviation),
+                      std::max(kPrecision, kShare * chain.deviation), kernels)),
       polynomial_(kernels) {
   chain_.use_limits(model);
   for (int lane = 0; lane < lanes::kWidth; ++lane) pack_.sign[2][lane] = 1;
@@ -97,15 +101,17 @@ void RootSweep::find(const Pose& Y) {
       kernels_.find_branches(chain_.form, pack_);
     }
     for (std::size_t lane = 0; lane < n; ++lane) {
-      take(Y, roots_[first + (lane >> lanes_power)].is_vague, static_cast<int>(lane));
+      take(Y, roots_[first + (lane >> lanes_power)], static_cast<int>(lane));
     }
   }
 }
 
-void RootSweep::take(const Pose& Y, bool is_vague, int lane) {
+void RootSweep::take(const Pose& Y, const RootFinder::Root& root, int lane) {
+  const bool is_vague = root.is_vague;
   // Roots are off by what the tolerances allow, many times over; but where there are two, by its
   // square root.
-  const double slack = is_vague ? 4 * vague_ : 25 * vague_ * vague_;
+  const bool is_loose = is_vague && root.apart <= farther_;
+  const double slack = is_loose ? 4 * vague_ : 25 * vague_ * vague_;
   const double most = chain_.loop ? std::max(slack, kOpen) : slack;
   // Of two solutions that all but share an angle of a loop's first joint, one or both are not
   // found.

@@ -43,7 +43,7 @@ class RootSweep {
   /// whether rounding leaves enough of it to conclude from.
   bool find_product_roots(const Pose& Y);
   bool find_loop_roots(const Pose& Y);
-  void take(const Pose& Y, bool is_vague, int lane);
+  void take(const Pose& Y, const RootFinder::Root& root, int lane);
 
   const ChainModel& model_;
   ClosedFormChain chain_;
@@ -51,6 +51,7 @@ class RootSweep {
   double tolerance_;
   bool are_answers_, concludes_;
   double vague_;          ///< by how much roots that are nearly double may be off [rad]
+  double farther_;        ///< vague roots that are farther apart must be nearer to an answer [rad]
   double vague_divisor_;  ///< nothing is concluded from residuals divided by less [units^2]
   RootFinder roots_;
   LoopPolynomial polynomial_;

@@ -117,6 +117,7 @@ bool step_down(const ChainModel& model, const Remainder& remainder, const Slope&
 /// of H are positive, but not with row k, then it is that which these leave of joint k.
 bool find_falling(const SquareMatrix& H, JointVector& v) {
   constexpr double kFlat = 1e-6;
+  // Mostly H is positive, which one factorisation tells.
   if (Eigen::LLT<SquareMatrix>(H).info() == Eigen::Success) return false;
   for (Eigen::Index k = 0; k < H.rows(); ++k) {
     const SquareMatrix with = H.topLeftCorner(k + 1, k + 1);

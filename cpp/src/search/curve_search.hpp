@@ -137,12 +137,18 @@ std::optional<Proof> CurveSearch<Answers>::collect_nearest() const {
   const auto& [near, move] = answers.nearest_to();
   NearSeed first(curve.prefers_staying(move) ? nullptr : &near, work);
   search(refiner, first, answers, work);
-  NearestOnCurveSeeds nearest(curve, Y, near, move, answers, *lanes.sweep, work, clock);
+  // What looks for any answer is sooner through where there is none.
+  const bool may_be_none = !answers.has_any() && !curve.prefers_staying(move);
+  if (may_be_none && !lanes.sweep->find(Y) && lanes.sweep->is_none()) {
+    clock.lap(&StageTimes::query);
+    return Proof::sweep;
+  }
+  NearestOnCurveSeeds nearest(curve, Y, near, move, answers, work, clock);
   refiner.begin(goal.task(), kNearAnswer, Width::narrow);
   search(refiner, nearest, answers, work);
   refiner.begin(goal.task(), kFirst, Width::narrow);
   clock.lap(&StageTimes::iterate);
-  if (!answers.has_any()) return curve.is_none() ? std::optional(Proof::sweep) : std::nullopt;
+  if (!answers.has_any()) return nearest.is_none() ? std::optional(Proof::sweep) : std::nullopt;
   answers.is_settled = curve.is_settled() && nearest.has_led_to_answer();
   return Proof::none;
 }

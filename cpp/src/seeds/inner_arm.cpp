@@ -34,7 +34,7 @@ bool InnerArm::find(const Pose& T_base_tcp, const NearestTo& to) {
   // Of the usual size, however little these joints count beside the others.
   JointVector weights = to.move.weights().segment(inner_.first, InnerChain::kJoints);
   if (weights.maxCoeff() > 0) weights /= weights.maxCoeff();
-  curve_.find(Y, near, JointMove(std::move(weights)), kInfinity, nullptr);
+  curve_.find(Y, near, JointMove(std::move(weights)), kInfinity);
   if (curve_.size() == 0) return false;
   for (int j = 0; j < InnerChain::kJoints; ++j) q_[inner_.first + j] = curve_.q(0)[j];
   // Where it is preferred itself, the swept joint may have had to move.

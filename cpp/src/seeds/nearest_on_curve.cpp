@@ -36,7 +36,7 @@ double NearestOnCurve::least_move(double value) const {
 }
 
 void NearestOnCurve::find(const Pose& Y, const JointVector& near, const JointMove& move,
-                          double known, Sweep* sweep) {
+                          double known) {
   std::copy_n(near.data(), SweptBranches::kDof, near_.begin());
   std::copy_n(move.weights().data(), SweptBranches::kDof, weight_.begin());
   takes_largest_ = move.norm() == MoveNorm::max;
@@ -45,14 +45,8 @@ void NearestOnCurve::find(const Pose& Y, const JointVector& near, const JointMov
   places_ = branches_.places(kSamples);
   known_move_ = known;
   found_.clear();
-  is_ruled_out_ = false;
   if (prefers_staying(move)) stay();
   if (found_.size() > 0) return;
-  // What looks for any answer is sooner through.
-  if (known == kInfinity && sweep != nullptr) {
-    is_ruled_out_ = !sweep->find(Y) && sweep->is_none();
-    if (is_ruled_out_) return;
-  }
   look_around();
   least_off_ = kInfinity;
   least_.find(places_, rows_, kRefused + kNear);

@@ -9,7 +9,6 @@
 
 #include "base/work.hpp"
 #include "goal/joint_move.hpp"
-#include "seeds/sweep.hpp"
 #include "seeds/swept_branches.hpp"
 
 namespace iksel {
@@ -22,10 +21,8 @@ class NearestOnCurve {
 
   /// Looks for the local minima of the move from `near` to answers to Y (reduction.hpp), each at
   /// its nearest periodic image. Only as far from `near` as an answer may be nearer than those
-  /// found, and than one that is known whose move is `known`; none: infinity. Where none is known,
-  /// `sweep` first says whether there is any; it may be null.
-  void find(const Pose& Y, const JointVector& near, const JointMove& move, double known,
-            Sweep* sweep);
+  /// found, and than one that is known whose move is `known`; none: infinity.
+  void find(const Pose& Y, const JointVector& near, const JointMove& move, double known);
   /// Whether nothing that matters is nearer than what leaves the swept joint where it is: moves of
   /// the others do but decide between such.
   [[nodiscard]] bool prefers_staying(const JointMove& move) const;
@@ -33,9 +30,7 @@ class NearestOnCurve {
   /// The nearest first [rad].
   [[nodiscard]] const double* q(std::size_t i) const { return found_[i].q.data(); }
   /// If there is none: whether none came so close to one that it might have been missed.
-  [[nodiscard]] bool is_none() const {
-    return size() == 0 && (is_ruled_out_ || miss_.rules_out_answers(least_off_));
-  }
+  [[nodiscard]] bool is_none() const { return size() == 0 && miss_.rules_out_answers(least_off_); }
   /// Whether these are local minima but for rounding: those of the chain itself.
   [[nodiscard]] bool is_settled() const { return is_nominal_; }
 
@@ -137,8 +132,7 @@ class NearestOnCurve {
   std::array<bool, kSamples> known_{};
   double known_move_ = 0;
   bool takes_largest_ = false;
-  bool is_ruled_out_ = false;  ///< by a sweep
-  double least_off_ = 0;       ///< how far the nearest branch was from being an answer
+  double least_off_ = 0;  ///< how far the nearest branch was from being an answer
   std::vector<SweptBranches::Row> rows_;
   std::vector<std::array<Sample, SweptBranches::kCount>> samples_;
   LeastPlaces<2 * kMost> least_;
@@ -151,14 +145,12 @@ template <typename Known>
 class NearestOnCurveSeeds {
  public:
   NearestOnCurveSeeds(NearestOnCurve& curve, const Pose& Y, const JointVector& near,
-                      const JointMove& move, const Known& known, Sweep& sweep, Work& work,
-                      StageClock& clock)
+                      const JointMove& move, const Known& known, Work& work, StageClock& clock)
       : curve_(curve),
         Y_(Y),
         near_(near),
         move_(move),
         known_(known),
-        sweep_(sweep),
         known_before_(known.least_move()),
         work_(work),
         clock_(clock) {}
@@ -167,7 +159,7 @@ class NearestOnCurveSeeds {
     if (has_led_to_answer() || !work_.has_left()) return false;
     if (!done_) {
       done_ = true;
-      curve_.find(Y_, near_, move_, known_before_, &sweep_);
+      curve_.find(Y_, near_, move_, known_before_);
       clock_.lap(&StageTimes::query);
       end_ = std::min<std::size_t>(curve_.size(), 1);
     } else {
@@ -183,6 +175,8 @@ class NearestOnCurveSeeds {
     return true;
   }
 
+  /// Whether there is no answer.
+  [[nodiscard]] bool is_none() const { return done_ && curve_.is_none(); }
   /// Whether one of them is nearer than what was known before.
   [[nodiscard]] bool has_led_to_answer() const { return known_.least_move() < known_before_; }
 
@@ -192,7 +186,6 @@ class NearestOnCurveSeeds {
   const JointVector& near_;
   const JointMove& move_;
   const Known& known_;
-  Sweep& sweep_;
   double known_before_;
   Work& work_;
   StageClock& clock_;

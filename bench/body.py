@@ -22,7 +22,7 @@ import iksel
 import iksel.exact
 import iksel.spheres
 import iksel.srdf
-from bench.setup import WORK
+from bench.settings import WORK
 from bench.timing import least_times, time_calls
 
 if TYPE_CHECKING:

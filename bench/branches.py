@@ -167,12 +167,12 @@ def all_branches(arm: Arm, goals: Targets, settings: Settings) -> dict[str, Any]
     rival_times = least_times([run.times_ns for run in theirs])
     return {
         **result,
-        **_compared(found.right, given.right),
+        **compared(found.right, given.right),
         "rival_mean_us": float(rival_times.mean()) / 1e3,
     }
 
 
-def _compared(ours: Sequence[Array], theirs: Sequence[Array]) -> dict[str, Any]:
+def compared(ours: Sequence[Array], theirs: Sequence[Array]) -> dict[str, Any]:
     """Poses whose sets are the same, and those where either has one more."""
     sets = list(zip(ours, theirs, strict=True))
     fewer = [i for i, (us, them) in enumerate(sets) if len(without(them, us))]

@@ -23,7 +23,7 @@ from bench.requests import near_moves, path
 from bench.rivals import RIVALS
 from bench.rivals.base import UnsupportedError
 from bench.seed_makers import first_attempt
-from bench.setup import make_solver, targets_of
+from bench.settings import make_solver, targets_of
 from bench.timing import summary
 
 if TYPE_CHECKING:

@@ -18,9 +18,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import iksel
+from bench.arguments import add_robots
 from bench.arms import load_arm
 from bench.machine import fingerprint
-from bench.setup import WORK
+from bench.settings import WORK
 from bench.store import Store
 from bench.targets import make_targets
 from bench.timing import least_times, time_calls
@@ -135,13 +136,7 @@ def add(commands: Any) -> None:
         help="what is closest to poses without an answer, beside brute force",
         description=__doc__,
     )
-    command.add_argument(
-        "robots",
-        nargs="*",
-        metavar="ROBOT",
-        default=ROBOTS,
-        help=f"default: {' '.join(ROBOTS)}",
-    )
+    add_robots(command, ROBOTS)
     command.add_argument("--targets", type=int, default=2_000, metavar="N")
     command.add_argument("--restarts", type=int, default=10_000, metavar="N")
     command.add_argument("--seed", type=int, default=0)

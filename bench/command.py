@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from bench import body, closest, coupled, dual, lost, plan, scene, tips
+from bench.arguments import add_robots
 from bench.arms import RIVAL_ARMS
 from bench.frozen import compare, record
 from bench.guard import guard
@@ -27,7 +28,7 @@ from bench.report import (
 from bench.rivals import RIVALS
 from bench.run import run_jobs
 from bench.sections import learned, no
-from bench.setup import WORK
+from bench.settings import WORK
 from bench.size import FULL, QUICK, SEED
 from bench.store import Store
 from bench.view import View
@@ -37,6 +38,17 @@ if TYPE_CHECKING:
     from bench.view import Report
 
 BENCH = Path(__file__).resolve().parent
+
+ALONE = {
+    "scene": scene,
+    "body": body,
+    "closest": closest,
+    "coupled": coupled,
+    "dual": dual,
+    "lost": lost,
+    "tips": tips,
+}
+"""Commands that measure by themselves and print."""
 
 EPILOG = f"""\
 robots: {", ".join(RIVAL_ARMS)} (and, with --only robots, every built-in one)
@@ -70,7 +82,7 @@ def parser() -> argparse.ArgumentParser:
     frozen.add_argument("file", type=Path, help="where, e.g. build/frozen.json")
     _add_no(commands)
     learned_command.add(commands)
-    for part in (scene, body, closest, coupled, dual, lost, tips):
+    for part in ALONE.values():
         part.add(commands)
     return top
 
@@ -120,13 +132,7 @@ def _add_no(commands: Any) -> None:
         description="Measures what a yes and a no cost each solver, how many are "
         "right, and all answers and the nearest. Results are kept as the report's are.",
     )
-    noes.add_argument(
-        "robots",
-        nargs="*",
-        metavar="ROBOT",
-        default=plan.NO_ARMS,
-        help=f"default: {' '.join(plan.NO_ARMS)}",
-    )
+    add_robots(noes, plan.NO_ARMS)
     noes.add_argument("--quick", action="store_true", help="fewer targets")
     noes.add_argument(
         "--solvers",
@@ -151,17 +157,8 @@ def main(arguments: list[str] | None = None) -> int:
     if options.command == "frozen":
         action = record if options.action == "record" else compare
         return action(options.file)
-    alone = {
-        "scene": scene.run,
-        "body": body.run,
-        "closest": closest.run,
-        "coupled": coupled.run,
-        "dual": dual.run,
-        "lost": lost.run,
-        "tips": tips.run,
-    }
-    if options.command in alone:
-        return alone[options.command](options)
+    if options.command in ALONE:
+        return int(ALONE[options.command].run(options))
     others = {"no": _no, "learned": _learned}
     if options.command in others:
         return others[options.command](options, given)

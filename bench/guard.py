@@ -23,7 +23,7 @@ from bench.branches import LIMIT_S, near_of
 from bench.check import right
 from bench.machine import facts
 from bench.markdown import table
-from bench.setup import solver_options
+from bench.settings import solver_options
 from bench.store import write_json
 from bench.targets import make_targets
 from bench.timing import time_calls

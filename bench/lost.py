@@ -17,13 +17,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import iksel
+from bench.arguments import add_robots
 from bench.arms import load_arm
 from bench.branches import (
     ROUNDING,
     TOLERANCE,
     branches_by_restarts,
+    compared,
     judged,
-    without,
 )
 from bench.check import right
 from bench.targets import make_targets
@@ -52,8 +53,6 @@ ROBOTS = (
 KINDS = ("near_limits", "near_singular")
 CHUNK = 100_000
 """Targets at a time."""
-SHOWN = 20
-"""Poses with fewer branches that are named."""
 
 
 def chunks(arm: Arm, kind: str, count: int, seed: int) -> Iterator[Targets]:
@@ -101,24 +100,20 @@ def beside_restarts(arm: Arm, count: int, restarts: int, seed: int) -> dict[str,
     poses = make_targets(arm, "uniform", count, seed).poses
     ours = judged(arm.chain, poses, [list(solver.solve_all(pose).q) for pose in poses])
     begin = time.perf_counter()
-    fewer, more, all_of_them = [], 0, 0
-    for i, (pose, known) in enumerate(zip(poses, ours.right, strict=True)):
-        q = branches_by_restarts(solver, pose, restarts, seed + 1 + i)
-        theirs = judged(arm.chain, pose[None], [list(q)]).right[0]
-        all_of_them += len(theirs)
-        if len(without(theirs, known)):
-            fewer.append(i)
-        more += bool(len(without(known, theirs)))
+    theirs = [
+        branches_by_restarts(solver, pose, restarts, seed + 1 + i)
+        for i, pose in enumerate(poses)
+    ]
+    restarts_s = time.perf_counter() - begin
+    given = judged(arm.chain, poses, [list(q) for q in theirs])
     return {
         "poses": count,
         "restarts": restarts,
         "branches": sum(map(len, ours.right)),
-        "branches_by_restarts": all_of_them,
+        "branches_by_restarts": sum(map(len, given.right)),
         "wrong": ours.wrong,
-        "fewer": len(fewer),
-        "more": more,
-        "poses_with_fewer": fewer[:SHOWN],
-        "restarts_s": time.perf_counter() - begin,
+        **compared(ours.right, given.right),
+        "restarts_s": restarts_s,
     }
 
 
@@ -129,13 +124,7 @@ def add(commands: Any) -> None:
         help="reachable targets and branches that are not found",
         description=__doc__,
     )
-    command.add_argument(
-        "robots",
-        nargs="*",
-        metavar="ROBOT",
-        default=ROBOTS,
-        help=f"default: {' '.join(ROBOTS)}",
-    )
+    add_robots(command, ROBOTS)
     command.add_argument(
         "--targets", type=int, default=1_000_000, metavar="N", help="uniform ones"
     )
@@ -159,8 +148,11 @@ def add(commands: Any) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Measure, and print JSON; the exit status is 1 if anything is lost or false."""
-    rows: dict[str, Any] = {"simd": iksel.simd_level(), "seed": args.seed}
+    """Measure, and print a line of JSON for each robot.
+
+    The exit status is 1 if anything is lost or false.
+    """
+    conditions = {"simd": iksel.simd_level(), "seed": args.seed}
     bad = 0
     for name in args.robots:
         arm = load_arm(name)
@@ -173,6 +165,5 @@ def run(args: argparse.Namespace) -> int:
         if args.poses > 0 and arm.robot.dof <= 6:
             row["restarts"] = beside_restarts(arm, args.poses, args.restarts, args.seed)
             bad += row["restarts"]["fewer"] + row["restarts"]["wrong"]
-        rows[name] = row
-        print(json.dumps({name: row}), flush=True)
+        print(json.dumps({**conditions, name: row}), flush=True)
     return 1 if bad else 0

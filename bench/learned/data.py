@@ -19,7 +19,7 @@ import numpy as np
 
 import iksel
 from bench.arms import load_arm
-from bench.setup import WORK
+from bench.settings import WORK
 from bench.size import SEED
 
 if TYPE_CHECKING:

@@ -21,7 +21,7 @@ from bench.check import errors, right
 from bench.learned.models import load_weights
 from bench.learned.plan import weights_path
 from bench.rivals.base import UnsupportedError
-from bench.setup import make_solver, targets_of
+from bench.settings import make_solver, targets_of
 from bench.timing import time_calls
 
 if TYPE_CHECKING:

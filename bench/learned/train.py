@@ -26,7 +26,7 @@ from bench.learned.data import TRAIN_SEED, Scaling, labelled, scaling_of
 from bench.learned.evaluate import seeds_solved
 from bench.learned.models import Facts, make_model, parameters, save_weights
 from bench.learned.plan import weights_path
-from bench.setup import WORK
+from bench.settings import WORK
 
 if TYPE_CHECKING:
     from pathlib import Path

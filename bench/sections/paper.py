@@ -9,7 +9,7 @@ import numpy as np
 
 from bench.paper import plan as paper_plan
 from bench.sections import ablations, claims, comparisons, curves
-from bench.setup import command_line
+from bench.settings import command_line
 
 if TYPE_CHECKING:
     from bench.view import View

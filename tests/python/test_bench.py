@@ -496,7 +496,7 @@ class TestBranches:
         found = branches.judged(arm.chain, poses, [[q[0], q[1]], []])
         assert [len(right) for right in found.right] == [1, 0]
         assert found.wrong == 1
-        sets = branches._compared([q[:1], q[:1], q], [q, q[:1], q[1:]])
+        sets = branches.compared([q[:1], q[:1], q], [q, q[:1], q[1:]])
         counts = [sets[what] for what in ("same", "fewer", "more")]
         assert counts == [1, 1, 1]
         assert (sets["missed"], sets["added"]) == ([0], [2])

@@ -3,7 +3,8 @@
 
 Targets that can be reached, as poses of configurations inside the limits
 (bench.targets): uniform ones, ones at limits and ones near singularities. Each is
-solved one at a time and in a batch, and every answer is judged by numpy. For arms whose
+solved one at a time, in a batch, and as near as can be to a random configuration, and
+every answer is judged by numpy. For arms whose
 solutions are isolated, the branches of solve_all beside those that random restarts of
 the iteration find.
 """
@@ -64,31 +65,30 @@ def chunks(arm: Arm, kind: str, count: int, seed: int) -> Iterator[Targets]:
 def reached(arm: Arm, kind: str, count: int, seed: int) -> dict[str, Any]:
     """How many of the targets are solved, and how many answers are false."""
     solver = iksel.Solver(arm.robot)
-    row = {
-        "targets": 0,
-        "lost": 0,
-        "lost_by_batch": 0,
-        "called_a_proven_no": 0,
-        "false": 0,
-        "false_by_batch": 0,
-    }
+    ways = ("", "_by_batch", "_near")
+    row = {"targets": 0, "called_a_proven_no": 0}
+    row.update({what + way: 0 for way in ways for what in ("lost", "false")})
     tolerance = TOLERANCE + ROUNDING
     for targets in chunks(arm, kind, count, seed):
         poses = targets.poses
-        results = [solver.solve(pose) for pose in poses]
+        single = [solver.solve(pose) for pose in poses]
+        near = [
+            solver.solve(pose, near=start)
+            for pose, start in zip(poses, targets.starts, strict=True)
+        ]
         batch = solver.solve_batch(poses)
-        found = np.array([result.success for result in results])
-        q = np.array([result.q for result in results if result.success], dtype=float)
-        q = q.reshape(-1, arm.chain.dof)
         row["targets"] += len(poses)
         row["called_a_proven_no"] += sum(
-            not result.success and result.proven for result in results
+            not result.success and result.proven for result in [*single, *near]
         )
-        for way, solved, answers in (
-            ("", found, q),
-            ("_by_batch", batch.success, batch.q[batch.success]),
-        ):
-            good = right(arm.chain, poses[solved], answers, tolerance, tolerance)
+        found = {"_by_batch": batch.success}
+        answers = {"_by_batch": batch.q[batch.success]}
+        for way, results in (("", single), ("_near", near)):
+            found[way] = np.array([result.success for result in results])
+            q = [result.q for result in results if result.success]
+            answers[way] = np.array(q, dtype=float).reshape(-1, arm.chain.dof)
+        for way, solved in found.items():
+            good = right(arm.chain, poses[solved], answers[way], tolerance, tolerance)
             row["lost" + way] += int(np.count_nonzero(~solved))
             row["false" + way] += int(np.count_nonzero(~good))
     return row

@@ -160,11 +160,8 @@ def _near_limits(arm: Arm, count: int, seed: int) -> tuple[Array, Array]:
     near = random.random((count, chain.dof)) < 0.25
     near[np.arange(count), random.choice(limited, count)] = True
     near[:, ~np.isfinite(chain.lower)] = False
-    depth = (
-        random.random((count, chain.dof))
-        * NEAR_LIMIT_PART
-        * (chain.upper - chain.lower)
-    )
+    ranges = np.where(np.isfinite(chain.lower), chain.upper - chain.lower, 0.0)
+    depth = random.random((count, chain.dof)) * NEAR_LIMIT_PART * ranges
     at_lower = random.random((count, chain.dof)) < 0.5
     pushed = np.where(at_lower, chain.lower + depth, chain.upper - depth)
     q = np.where(near, pushed, q)

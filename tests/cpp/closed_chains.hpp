@@ -148,7 +148,7 @@ inline iksel::Pose reduced(const iksel::Robot& robot, const iksel::Pose& T_base_
 inline iksel::JointVector branch_of(const iksel::ClosedFormChain& chain,
                                     const iksel::lanes::BranchPack& pack, int lane) {
   iksel::JointVector q(6);
-  chain.copy_joints(pack, lane, q.data());
+  chain.copy_joints(pack.q, lane, q.data());
   return q;
 }
 

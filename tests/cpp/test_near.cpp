@@ -153,4 +153,66 @@ TEST(Near, IsFoundWhereBranchesAreSteep) {
   }
 }
 
+/// Whatever `near` is, and wherever the target lies.
+TEST(Near, WhatCanBeReachedIsFound) {
+  for (const char* name : {"panda", "iiwa14", "xarm7", "pr2_right_arm"}) {
+    const Solver& solver = iksel_test::solver(name);
+    const Robot& robot = solver.robot();
+    iksel_test::Judge judge(robot);
+    const int n = iksel_test::cases(2000, 200);
+    Eigen::MatrixXd q = robot.random_configurations(n, iksel_test::seed());
+    const Eigen::MatrixXd near = robot.random_configurations(n, iksel_test::seed() + 1);
+    constexpr int kElbow = 3;
+    for (int i = 0; i < n; ++i) {
+      // Half of the arms have their elbow all but at a limit, where some are all but straight.
+      if (i % 2 == 0) {
+        const bool at_upper = i % 4 == 0;
+        q(i, kElbow) = at_upper ? robot.upper()[kElbow] - 1e-4 * (i % 300)
+                                : robot.lower()[kElbow] + 1e-4 * (i % 300);
+      }
+      SolveRequest request;
+      request.near = JointVector(near.row(i).transpose());
+      const Pose target = robot.fk(q.row(i));
+      const Result result = solver.solve(target, request);
+      ASSERT_TRUE(result.success()) << name << ", row " << i << ", seed " << iksel_test::seed();
+      judge.expect_solution(target, result.q);
+    }
+  }
+}
+
+/// With the arm all but straight a joint of its shoulder may be anywhere at the samples of the
+/// swept joint where there is no branch: limits say nothing there. These were called unreachable.
+TEST(Near, LimitsSayNothingOfAStraightArmsShoulder) {
+  const Solver& solver = iksel_test::solver("pr2_right_arm");
+  const Robot& robot = solver.robot();
+  const double cases[][2][7] = {
+      {{-2.1079, 0.2514, -2.7175, -0.0149, 1.1138, -1.3789, 2.2881},
+       {-0.4510, -0.4875, -0.2632, -0.7493, -2.9297, -0.6738, 1.0512}},
+      {{-1.4462, -0.4315, -0.1944, -0.0147, 2.7896, -0.7510, 1.0451},
+       {0.0920, -0.4468, -0.2420, -0.6754, -0.5476, -0.4585, 2.4002}},
+      {{-0.5261, -0.2548, 0.6602, -0.0108, -1.2607, -1.6369, 0.7608},
+       {-0.6633, 1.2571, -1.2147, -1.1334, 1.3258, -1.4439, 0.4858}},
+      {{0.5618, -0.1449, -0.2288, -0.0122, -2.8312, -0.5458, 2.6631},
+       {-0.7397, -0.5107, -2.4598, -0.5609, 0.2939, -0.3937, 1.6051}},
+  };
+  for (const auto& [from, near] : cases) {
+    SolveRequest request;
+    request.near = Eigen::Map<const Eigen::VectorXd>(near, 7);
+    const Pose target = robot.fk(Eigen::Map<const Eigen::VectorXd>(from, 7));
+    EXPECT_TRUE(solver.solve(target, request).success());
+  }
+}
+
+/// Branches that have merged come as near to an answer as each other, and took the place of others:
+/// a sweep that followed sixteen called this unreachable.
+TEST(Near, IsFoundBesideManyBranchesThatComeAsNear) {
+  const Solver& solver = iksel_test::solver("panda");
+  JointVector from(7), near(7);
+  from << 0.9507, 1.7413, -0.6108, -0.4093, -1.5708, 0.0366, 0.6255;
+  near << 1.0353, -1.6276, 2.2915, -2.3258, 0.7238, 3.7169, -1.9519;
+  SolveRequest request;
+  request.near = near;
+  EXPECT_TRUE(solver.solve(solver.robot().fk(from), request).success());
+}
+
 }  // namespace

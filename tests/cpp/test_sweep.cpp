@@ -82,7 +82,7 @@ TEST_P(Sweeps, TheBranchesAtAnAngleHoldTheOneThatWasPutIn) {
     for (int lane = 0; lane < iksel::lanes::kWidth; ++lane) {
       if (pack.least[lane] < 0) continue;
       JointVector q = random.row(i);
-      chain.copy_joints(pack, lane, q.data());
+      chain.copy_joints(pack.q, lane, q.data());
       nearest = std::min(nearest, iksel_test::distance(robot(), q, random.row(i)));
       // Axes that meet but for a rounded pi leave the branch that far from the target.
       EXPECT_LE(iksel::pose_error(target, robot().fk(q)).norm(), 1e-3) << i << " lane " << lane;
@@ -194,6 +194,57 @@ TEST_P(Sweeps, BranchesAreRatedAsTheyAreSolved) {
     }
   }
   EXPECT_GE(near, 100);
+}
+
+/// What is measured of all branches at once leaves out only what lies far away.
+TEST_P(Sweeps, BranchesAreMeasuredAsTheyAreSolved) {
+  constexpr double kBound = 0.3;
+  constexpr int kCount = iksel::SweptBranches::kCount;
+  iksel::SweptBranches branches(robot().model(), *iksel::find_closed_form(robot().model()),
+                                iksel::lanes::choose_kernels());
+  const auto targets = iksel_test::random_targets(robot(), iksel_test::cases(100));
+  const Eigen::MatrixXd near =
+      robot().random_configurations(static_cast<int>(targets.size()), iksel_test::seed() + 1);
+  int close = 0;
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    branches.set_target(iksel_test::reduced(robot(), targets[i]));
+    iksel::SolveRequest request;
+    if (i % 2 == 1) request.norm = iksel::MoveNorm::max;
+    branches.measure_moves_from(near.row(static_cast<Eigen::Index>(i)),
+                                iksel::JointMove(7, request));
+    const iksel::Places places = branches.places(kCount);
+    const double most = request.norm == iksel::MoveNorm::two ? 4 : 2;
+    iksel::lanes::BranchRow rows[kCount];
+    branches.measure([&](int lane) { return places.value(lane); }, kBound, most, rows);
+    for (int place = 0; place < places.count; ++place) {
+      branches.solve_all(places.value(place));
+      const iksel::lanes::MovePack& moves = branches.moves();
+      for (int branch = 0; branch < kCount; ++branch) {
+        // Beside where it ends, rounding decides.
+        if (std::abs(branches.least(branch)) < 1e-6) continue;
+        const iksel::lanes::BranchRow& row = rows[branch];
+        if (row.least[place] < 0 || branches.least(branch) < 0) {
+          EXPECT_LT(branches.least(branch), 0);
+          continue;
+        }
+        if (row.moves.off[place] >= iksel::lanes::kFarOff) {
+          EXPECT_TRUE(moves.off[branch] > kBound || moves.loose[branch] > most);
+          continue;
+        }
+        EXPECT_NEAR(row.least[place], branches.least(branch), 1e-9);
+        EXPECT_NEAR(row.moves.off[place], moves.off[branch], 1e-9);
+        EXPECT_NEAR(row.moves.loose[place], moves.loose[branch], 1e-9);
+        if (moves.off[branch] > 0) continue;
+        EXPECT_NEAR(row.moves.inside[place], moves.inside[branch], 1e-9);
+        JointVector one(7), other(7);
+        branches.copy_joints(branch, one.data());
+        branches.copy_joints(places.value(place), row.q, place, other.data());
+        EXPECT_LT((one - other).cwiseAbs().maxCoeff(), 1e-9) << place << ", branch " << branch;
+        ++close;
+      }
+    }
+  }
+  EXPECT_GE(close, 100);
 }
 
 TEST_P(Sweeps, NoOneElseSolvesWhatHasNone) {

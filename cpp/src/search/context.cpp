@@ -53,7 +53,7 @@ Workspace::InLanes::InLanes(const ChainModel& model, const ChainModel& nominal,
     if (trials != nullptr) branch_lanes.emplace(model, branches->chain(), *trials, kernels);
   } else if (closed_form->form.is_held) {
     sweep.emplace(model, *closed_form, is_nominal, tolerance, kernels);
-    nearest_on_curve.emplace(model, *closed_form, is_nominal, tolerance, kernels);
+    nearest_on_curve.emplace(model, *closed_form, is_nominal, kernels);
     arcs.emplace(model, *closed_form, kernels);
     if (trials != nullptr) branch_lanes.emplace(model, *closed_form, *trials, kernels);
   } else {
@@ -124,10 +124,7 @@ std::unique_ptr<Workspace> WorkspacePool::make() const {
       std::make_unique<Workspace>(robot_.model(), nominal_.model(), database_.data(), options_,
                                   closed_forms_, trials_ ? &*trials_ : nullptr);
   for (const InnerChain& inner : inner_chains_) {
-    const double tolerance =
-        std::max(options_.position_tolerance / inner.form.unit, options_.rotation_tolerance);
-    workspace->lanes->inner_arms.emplace_back(robot_.model(), inner, tolerance,
-                                              lanes::choose_kernels());
+    workspace->lanes->inner_arms.emplace_back(robot_.model(), inner, lanes::choose_kernels());
   }
   return workspace;
 }

@@ -37,6 +37,8 @@ struct CurveSearch {
 
   // Parts of it.
 
+  /// Any solution, as soon as can be; true if there certainly is none.
+  [[nodiscard]] bool collect_any_or_none() const;
   /// The solution nearest to `near`, or to the objective's posture.
   std::optional<Proof> collect_nearest() const;
   /// The free solutions nearest to it.
@@ -129,28 +131,41 @@ std::optional<Proof> CurveSearch<Answers>::collect() const {
 }
 
 template <typename Answers>
+bool CurveSearch<Answers>::collect_any_or_none() const {
+  LaneRefiner& refiner = lanes.refiner;
+  Sweep& sweep = *lanes.sweep;
+  const bool is_found = sweep.find(Y);
+  clock.lap(&StageTimes::query);
+  if (!is_found) return sweep.is_none();
+  RowSeeds answer(sweep.q(), 1, SweptBranches::kDof, /*are_answers=*/true, work);
+  refiner.begin(goal.task(), kNearAnswer, Width::narrow);
+  search(refiner, answer, answers, work);
+  refiner.begin(goal.task(), kFirst, Width::narrow);
+  clock.lap(&StageTimes::iterate);
+  return false;
+}
+
+template <typename Answers>
 std::optional<Proof> CurveSearch<Answers>::collect_nearest() const {
   // Where `near` itself leads bounds the others. Of 1,000 poses of `near` itself, the samples of
   // the curve alone led elsewhere in 5 (panda) to 16 (xarm7).
   LaneRefiner& refiner = lanes.refiner;
   NearestOnCurve& curve = *lanes.nearest_on_curve;
   const auto& [near, move] = answers.nearest_to();
-  NearSeed first(curve.prefers_staying(move) ? nullptr : &near, work);
+  const bool stays = curve.prefers_staying(move);
+  NearSeed first(stays ? nullptr : &near, work);
   search(refiner, first, answers, work);
-  // What looks for any answer is sooner through where there is none.
-  const bool may_be_none = !answers.has_any() && !curve.prefers_staying(move);
-  if (may_be_none && !lanes.sweep->find(Y) && lanes.sweep->is_none()) {
-    clock.lap(&StageTimes::query);
-    return Proof::sweep;
-  }
+  // Any answer bounds the others as well, and where there is none, what looks for any is sooner
+  // through.
+  if (!stays && !answers.has_any() && collect_any_or_none()) return Proof::sweep;
   NearestOnCurveSeeds nearest(curve, Y, near, move, answers, work, clock);
   refiner.begin(goal.task(), kNearAnswer, Width::narrow);
   search(refiner, nearest, answers, work);
   refiner.begin(goal.task(), kFirst, Width::narrow);
   clock.lap(&StageTimes::iterate);
-  if (!answers.has_any()) return nearest.is_none() ? std::optional(Proof::sweep) : std::nullopt;
   answers.is_settled = curve.is_settled() && nearest.has_led_to_answer();
-  return Proof::none;
+  if (stays && !answers.has_any() && collect_any_or_none()) return Proof::sweep;
+  return answers.has_any() ? std::optional(Proof::none) : std::nullopt;
 }
 
 }  // namespace iksel

@@ -45,7 +45,7 @@ int BranchLanes::advance(unsigned /*busy*/) {
 JointVector BranchLanes::q(int lane) const {
   JointVector q(joints_.dof());
   if (!is_complete()) q[form_.chain.held] = form_.held(pack_, lane);
-  form_.chain.copy_joints(pack_, lane, q.data());
+  form_.chain.copy_joints(pack_.q, lane, q.data());
   for (int j = 0; j < joints_.dof(); ++j) {
     if (!joints_.is_periodic(j))
       q[j] = std::min(std::max(q[j], joints_.lower[j]), joints_.upper[j]);

@@ -43,7 +43,7 @@ void Enumeration::find(const Pose& Y, bool wants_all) {
 }
 
 void Enumeration::copy_joints(int lane, double* q) const {
-  chain_.copy_joints(pack_, lane, q);
+  chain_.copy_joints(pack_.q, lane, q);
   for (int j = 0; j < model_.dof; ++j) {
     if (!chain_.turns_freely(j) || model_.joints.type(j) == JointType::continuous) continue;
     q[j] = std::clamp(q[j], model_.joints.lower[j], model_.joints.upper[j]);

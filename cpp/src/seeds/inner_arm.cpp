@@ -6,12 +6,12 @@
 
 namespace iksel {
 
-InnerArm::InnerArm(const ChainModel& whole, const InnerChain& inner, double tolerance,
+InnerArm::InnerArm(const ChainModel& whole, const InnerChain& inner,
                    const lanes::LaneKernels& kernels)
     : whole_(whole),
       inner_(inner),
       swept_(inner.first + inner.form.held),
-      curve_(*inner.model, inner.form, /*is_nominal=*/true, tolerance, kernels) {}
+      curve_(*inner.model, inner.form, /*is_nominal=*/true, kernels) {}
 
 bool InnerArm::can_hold(const NearestTo& to) const {
   bool any = false;

@@ -11,9 +11,8 @@ namespace iksel {
 
 class InnerArm {
  public:
-  /// `inner` is of `whole`; both have to outlive this. `tolerance` as of Sweep.
-  InnerArm(const ChainModel& whole, const InnerChain& inner, double tolerance,
-           const lanes::LaneKernels& kernels);
+  /// `inner` is of `whole`; both have to outlive this.
+  InnerArm(const ChainModel& whole, const InnerChain& inner, const lanes::LaneKernels& kernels);
 
   /// Whether all that is preferred can stay, so that what find() gives is as good as can be.
   [[nodiscard]] bool can_hold(const NearestTo& to) const;

@@ -75,6 +75,9 @@ double minimize(Branches& branches, const Bracket& bracket, const Value& value, 
     if (!bracket.is_smooth) continue;
     const double curvature = left - 2 * here + right;
     if (!(left < no_cost && right < no_cost && curvature > 0)) continue;
+    // What is left to be gained is not worth another round.
+    constexpr double kGain = 1e-8;
+    if ((left - right) * (left - right) <= 8 * kGain * curvature * here) break;
     middle += 0.5 * (left - right) / curvature * spacing;
     width = 0.2 * spacing;
     guessed = true;

@@ -20,13 +20,12 @@ double without_turns(double d) {
 }  // namespace
 
 NearestOnCurve::NearestOnCurve(const ChainModel& model, const ClosedFormChain& chain,
-                               bool is_nominal, double tolerance, const lanes::LaneKernels& kernels)
+                               bool is_nominal, const lanes::LaneKernels& kernels)
     : branches_(model, chain, kernels),
       places_(branches_.places(kSamples)),
       is_nominal_(is_nominal),
-      miss_(is_nominal, tolerance),
       rows_(kSamples),
-      samples_(kSamples) {}
+      packs_(kPacks) {}
 
 double NearestOnCurve::least_move(double value) const {
   const auto i = static_cast<std::size_t>(branches_.joint());
@@ -48,7 +47,6 @@ void NearestOnCurve::find(const Pose& Y, const JointVector& near, const JointMov
   if (prefers_staying(move)) stay();
   if (found_.size() > 0) return;
   look_around();
-  least_off_ = kInfinity;
   least_.find(places_, rows_, kRefused + kNear);
   for (const LeastPlace& least : least_) {
     if (may_be_shorter(least)) follow(least);
@@ -82,53 +80,66 @@ void NearestOnCurve::stay() {
 
 void NearestOnCurve::look_around() {
   for (SweptBranches::Row& row : rows_) row.fill(kInfinity);
-  known_.fill(false);
+  for (SamplePack& pack : packs_) pack.is_solved = false;
+  exist_.fill(0);
   double best = std::min(known_move_, kRefused);
   const double from = near_[static_cast<std::size_t>(branches_.joint())] - places_.lower;
   const double start = places_.turns ? from - kTwoPi * std::floor(from / kTwoPi) : from;
-  const double last = places_.count - (places_.turns ? 0 : 1);
-  below_ = static_cast<int>(std::min(std::max(start / places_.step, 0.0), last));
-  above_ = below_ + 1;
-  for (int count = 0; count < places_.count; ++count) {
-    const int low = places_.find(below_);
-    const int high = places_.find(above_);
+  const double last = places_.count - 1;
+  const int nearest = static_cast<int>(std::min(std::max(start / places_.step, 0.0), last));
+  best = std::min(best, solve_pack(nearest / kCount, best));
+  // Between these are the samples that are solved.
+  int below = nearest / kCount * kCount - 1;
+  int above = below + kCount + 1;
+  while (above - below <= kSamples) {
+    const int low = places_.find(below);
+    const int high = places_.find(above);
     const double to_low = low < 0 ? kInfinity : least_move(places_.value(low));
     const double to_high = high < 0 ? kInfinity : least_move(places_.value(high));
     // Beside a sample that is farther away than the best move is long, there is nothing shorter.
     if (std::min(to_low, to_high) - margin_of_step() > best) return;
-    best = std::min(best, solve_at(to_low <= to_high ? low : high));
+    best = std::min(best, solve_pack((to_low <= to_high ? low : high) / kCount, best));
     if (to_low <= to_high) {
-      --below_;
+      below -= kCount;
     } else {
-      ++above_;
+      above += kCount;
     }
   }
 }
 
-double NearestOnCurve::distance(int place, int beside, int branch) const {
-  const Sample& a = sample(place, branch);
-  const Sample& b = sample(beside, branch);
+NearestOnCurve::Way NearestOnCurve::way_between(const Joints& a, const Joints& b) const {
+  Way way{0, 0};
   double sum = 0;
-  for (std::size_t i = 0; i < a.q.size(); ++i) {
-    const double d = weight_[i] * without_turns(a.q[i] - b.q[i]);
-    sum = takes_largest_ ? std::max(sum, std::abs(d)) : sum + d * d;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double turn = std::abs(without_turns(a[i] - b[i]));
+    const double d = weight_[i] * turn;
+    way.largest = std::max(way.largest, turn);
+    way.move = std::max(way.move, d);
+    sum += d * d;
   }
-  return takes_largest_ ? sum : std::sqrt(sum);
+  if (!takes_largest_) way.move = std::sqrt(sum);
+  return way;
 }
 
-double NearestOnCurve::solve_at(int place) {
-  branches_.solve_all(places_.value(place));
-  const auto at = static_cast<std::size_t>(place);
-  known_[at] = true;
-  double best = kInfinity;
-  for (std::size_t i = 0; i < SweptBranches::kCount; ++i) {
-    const int lane = static_cast<int>(i);
-    Sample& sample = samples_[at][i];
-    sample.exists = branches_.least(lane) >= 0;
-    sample.loose = branches_.moves().loose[lane];
-    branches_.copy_joints(lane, sample.q.data());
-    rows_[at][i] = cost(lane);
-    best = std::min(best, rows_[at][i]);
+double NearestOnCurve::distance(int place, int beside, int branch) const {
+  return way_between(joints(sample(place, branch)), joints(sample(beside, branch))).move;
+}
+
+double NearestOnCurve::solve_pack(int pack, double best) {
+  SamplePack& samples = packs_[static_cast<std::size_t>(pack)];
+  samples.is_solved = true;
+  const int first = pack * kCount;
+  branches_.measure([&](int i) { return places_.value(first + i); }, kNear, best + kFarther,
+                    samples.branch);
+  for (std::size_t branch = 0; branch < kCount; ++branch) {
+    const lanes::BranchRow& row = samples.branch[branch];
+    for (int i = 0; i < kCount; ++i) {
+      const double move = cost(row.moves, i);
+      rows_[static_cast<std::size_t>(first + i)][branch] = move;
+      best = std::min(best, move);
+      const std::uint64_t exists = Sample{row, i, 0}.exists() ? 1 : 0;
+      exist_[branch] |= exists << (first + i);
+    }
   }
   return best;
 }
@@ -139,11 +150,11 @@ bool NearestOnCurve::may_be_shorter(const LeastPlace& least) const {
   if (least_move(places_.value(least.place)) - margin_of_step() > best) return false;
   if (least.value >= kRefused) {
     // The joints of what does not exist say little of what may exist beside it.
-    if (!sample(least.place, least.branch).exists) return true;
+    if (!exists(least.place, least.branch)) return true;
     double loose = kInfinity;
     for (const int side : {-1, 0, 1}) {
       if (!is_known(least.place + side)) continue;
-      loose = std::min(loose, sample(least.place + side, least.branch).loose);
+      loose = std::min(loose, sample(least.place + side, least.branch).loose());
     }
     return loose - kSteep < best;
   }
@@ -175,12 +186,8 @@ void NearestOnCurve::follow(const LeastPlace& least) {
       branches_, bracket, value, [&](int lane) { return cost(lane); }, kRefused, take,
       [&](double so_far, int round) { return is_hopeless(so_far, round); });
   // The sample itself may be all there is.
-  if (least.value < best.value) best = {least.value, sample(least.place, least.branch).q};
-  if (best.value < kRefused) {
-    found_.add(best);
-  } else {
-    least_off_ = std::min(least_off_, best.value - kRefused);
-  }
+  if (least.value < best.value) best = {least.value, joints(sample(least.place, least.branch))};
+  if (best.value < kRefused) found_.add(best);
   if (exists_at == kInfinity) return;
   for (const int side : {-1, 0, 1}) {
     if (exists(least.place + side, least.branch)) return;
@@ -189,9 +196,9 @@ void NearestOnCurve::follow(const LeastPlace& least) {
   const double middle = places_.value(least.place);
   BranchSpan span{least.branch, branches_.clamp(middle - places_.step),
                   branches_.clamp(middle + places_.step), true, true};
-  span.lower = branches_.find_fold(least.branch, exists_at, span.lower, kFoldRounds);
-  span.upper = branches_.find_fold(least.branch, exists_at, span.upper, kFoldRounds);
-  look_into(span, 3);
+  span.lower = branches_.find_fold(least.branch, {exists_at, span.lower}, kFoldRounds);
+  span.upper = branches_.find_fold(least.branch, {exists_at, span.upper}, kFoldRounds);
+  look_into(span, 2);
 }
 
 bool NearestOnCurve::is_hopeless(double so_far, int round) const {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "base/work.hpp"
@@ -17,7 +18,7 @@ class NearestOnCurve {
  public:
   /// As Sweep.
   NearestOnCurve(const ChainModel& model, const ClosedFormChain& chain, bool is_nominal,
-                 double tolerance, const lanes::LaneKernels& kernels);
+                 const lanes::LaneKernels& kernels);
 
   /// Looks for the local minima of the move from `near` to answers to Y (reduction.hpp), each at
   /// its nearest periodic image. Only as far from `near` as an answer may be nearer than those
@@ -29,13 +30,15 @@ class NearestOnCurve {
   [[nodiscard]] std::size_t size() const { return found_.size(); }
   /// The nearest first [rad].
   [[nodiscard]] const double* q(std::size_t i) const { return found_[i].q.data(); }
-  /// If there is none: whether none came so close to one that it might have been missed.
-  [[nodiscard]] bool is_none() const { return size() == 0 && miss_.rules_out_answers(least_off_); }
+  /// The move to it.
+  [[nodiscard]] double move(std::size_t i) const { return found_[i].value; }
   /// Whether these are local minima but for rounding: those of the chain itself.
   [[nodiscard]] bool is_settled() const { return is_nominal_; }
 
  private:
   static constexpr int kSamples = 64;
+  static_assert(kSamples == 64, "as many as bits of a word");
+  static constexpr int kPacks = kSamples / lanes::kWidth;
   static constexpr std::size_t kMost = 8;
   /// Samples of a short span.
   static constexpr int kShort = 8;
@@ -49,20 +52,52 @@ class NearestOnCurve {
   static constexpr double kFinest = 1e-5;
   /// Branches are followed only if they come so near to an answer at a sample [mixed units].
   static constexpr double kNear = 0.3;
+  /// Nor is there anything beside samples that are so much farther away than what is known [rad].
+  static constexpr double kFarther = 0.6;
+
+  static constexpr int kCount = SweptBranches::kCount;
+  using Joints = std::array<double, SweptBranches::kDof>;
+
+  /// Every branch at kCount samples of the swept joint beside each other.
+  struct SamplePack {
+    bool is_solved = false;
+    lanes::BranchRow branch[kCount];
+  };
 
   /// A branch at a sample of the swept joint.
   struct Sample {
-    bool exists;
+    const lanes::BranchRow& row;
+    int lane;
+    double value;  ///< of the swept joint
+
+    /// Whether it is known to be, or not to be. Of what lies far away it may be neither.
+    [[nodiscard]] bool exists() const { return row.least[lane] >= 0 && !is_far(); }
+    [[nodiscard]] bool is_none() const { return row.least[lane] < 0; }
+    /// Whether its joints are not known, as they are far from an answer, or that far from `near`.
+    [[nodiscard]] bool is_far() const { return row.moves.off[lane] >= lanes::kFarOff; }
     /// The move to it by its joints' nearest images, inside the limits or not.
-    double loose;
-    std::array<double, SweptBranches::kDof> q;
+    [[nodiscard]] double loose() const { return is_far() ? kInfinity : row.moves.loose[lane]; }
+  };
+
+  /// A branch at a part of a span.
+  struct Node {
+    double part;
+    double cost;  ///< the move to it, or more than kRefused
+    double loose, off;
+    Joints q;
+  };
+
+  /// How far the joints are from one configuration to another, by nearest images: as a move, and
+  /// the one that turns most [rad].
+  struct Way {
+    double move, largest;
   };
 
   /// The move to what a lane holds, or more than kRefused.
-  [[nodiscard]] double cost(int lane) const {
-    const lanes::MovePack& moves = branches_.moves();
+  [[nodiscard]] static double cost(const lanes::MovePack& moves, int lane) {
     return moves.off[lane] > 0 ? kRefused + moves.off[lane] : moves.inside[lane];
   }
+  [[nodiscard]] double cost(int lane) const { return cost(branches_.moves(), lane); }
   /// At least how long the move is to any answer at a value of the swept joint; and how much less
   /// that may be one sample nearer.
   [[nodiscard]] double least_move(double value) const;
@@ -77,26 +112,40 @@ class NearestOnCurve {
   void stay();
   /// Solves the samples from the one nearest to `near` on, as far as it may be worth it.
   void look_around();
-  /// The shortest move there.
-  double solve_at(int place);
+  /// Solves a pack of samples, as far as their moves may be worth it beside one that is known; the
+  /// shortest move there.
+  double solve_pack(int pack, double best);
   /// Whether a sample was solved; places count by whole turns of the swept joint.
   [[nodiscard]] bool is_known(int place) const {
     const int at = places_.find(place);
-    return at >= 0 && known_[static_cast<std::size_t>(at)];
+    return at >= 0 && packs_[static_cast<std::size_t>(at / kCount)].is_solved;
   }
   /// Of one that was.
-  [[nodiscard]] const Sample& sample(int place, int branch) const {
-    const auto at = static_cast<std::size_t>(places_.find(place));
-    return samples_[at][static_cast<std::size_t>(branch)];
+  [[nodiscard]] Sample sample(int place, int branch) const {
+    const int at = places_.find(place);
+    const SamplePack& pack = packs_[static_cast<std::size_t>(at / kCount)];
+    return {pack.branch[branch], at % kCount, places_.value(at)};
+  }
+  [[nodiscard]] Joints joints(const Sample& sample) const {
+    Joints q;
+    branches_.copy_joints(sample.value, sample.row.q, sample.lane, q.data());
+    return q;
   }
   [[nodiscard]] bool exists(int place, int branch) const {
-    return is_known(place) && sample(place, branch).exists;
+    const int at = places_.find(place);
+    return at >= 0 && (exist_[static_cast<std::size_t>(branch)] >> at & 1U) != 0;
+  }
+  /// Below 0 if it is not.
+  [[nodiscard]] double least(int place, int branch) const {
+    const Sample at = sample(place, branch);
+    return at.row.least[at.lane];
   }
   [[nodiscard]] bool is_none(int place, int branch) const {
-    return is_known(place) && !sample(place, branch).exists;
+    return is_known(place) && sample(place, branch).is_none();
   }
   /// How far the joints move between two samples, by nearest images.
   [[nodiscard]] double distance(int place, int beside, int branch) const;
+  [[nodiscard]] Way way_between(const Joints& a, const Joints& b) const;
 
   /// Whether there may be a shorter move than the best so far beside a sample.
   [[nodiscard]] bool may_be_shorter(const LeastPlace& least) const;
@@ -106,6 +155,8 @@ class NearestOnCurve {
   void look_beside_folds(int branch);
   /// From its first sample to its last.
   void look_into_span(int branch, int first, int last);
+  /// About where a branch ends between a sample and the one on that side of it.
+  double find_fold(int branch, int end, int side, int rounds);
   /// Whether there may be a shorter move than the best so far on a span of few samples, and where
   /// it folds at its ends.
   [[nodiscard]] bool short_span_may_be_shorter(int branch, int first, int last) const;
@@ -118,28 +169,35 @@ class NearestOnCurve {
   [[nodiscard]] bool may_lead_to_shorter(int place, int beside, int branch) const;
   /// Whether a search that came so far after some rounds need not go on.
   [[nodiscard]] bool is_hopeless(double so_far, int round) const;
-  /// Looks for the least moves in a span, over so many packs of values.
+  /// Solves kCount nodes of a span, from a part of it on.
+  void solve_nodes(const BranchSpan& span, double from, double spacing, Node* nodes);
+  /// Whether there may be a shorter move than the best so far between two nodes, or beside one,
+  /// where the joints go such a way.
+  [[nodiscard]] bool may_be_shorter(const Node& a, const Node& b, const Way& way) const;
+  /// Narrows a part of a span to where there may be.
+  bool narrow_to_shorter(const BranchSpan& span, double& from, double& to);
+  /// Looks for the least moves in a span, over one pack of nodes, or over two where that may be
+  /// worth it.
   void look_into(const BranchSpan& span, int packs);
+  void follow(const BranchSpan& span, double part, double width);
 
   SweptBranches branches_;
   Places places_;
   bool is_nominal_;
-  NearMiss miss_;
 
   // Of the last search.
   std::array<double, SweptBranches::kDof> near_{}, weight_{};
-  int below_ = 0, above_ = 0;  ///< between these are the samples that were solved
-  std::array<bool, kSamples> known_{};
+  /// The samples at which a branch is known to be, as bits.
+  std::array<std::uint64_t, kCount> exist_{};
   double known_move_ = 0;
   bool takes_largest_ = false;
-  double least_off_ = 0;  ///< how far the nearest branch was from being an answer
   std::vector<SweptBranches::Row> rows_;
-  std::vector<std::array<Sample, SweptBranches::kCount>> samples_;
+  std::vector<SamplePack> packs_;
   LeastPlaces<2 * kMost> least_;
   Least<SweptJoints, kMost> found_;
 };
 
-/// These as a source of seeds: the nearest alone first, the others if it cannot be refined.
+/// These as a source of seeds: the nearest alone first, the others if it leads to no such answer.
 /// `Known` tells how long the shortest move found is: least_move(), infinite if there is none.
 template <typename Known>
 class NearestOnCurveSeeds {
@@ -175,10 +233,13 @@ class NearestOnCurveSeeds {
     return true;
   }
 
-  /// Whether there is no answer.
-  [[nodiscard]] bool is_none() const { return done_ && curve_.is_none(); }
-  /// Whether one of them is nearer than what was known before.
-  [[nodiscard]] bool has_led_to_answer() const { return known_.least_move() < known_before_; }
+  /// Whether one of them is nearer than what was known before, and as near as it promised to be:
+  /// one beside a limit may be beyond it once it is refined, and a whole turn away.
+  [[nodiscard]] bool has_led_to_answer() const {
+    constexpr double kLost = 0.01;
+    const double move = known_.least_move();
+    return move < known_before_ && (curve_.size() == 0 || move < curve_.move(0) + kLost);
+  }
 
  private:
   NearestOnCurve& curve_;

@@ -126,7 +126,7 @@ void RootSweep::take(const Pose& Y, const RootFinder::Root& root, int lane) {
     return;
   }
   double* q = q_[static_cast<std::size_t>(size_)].data();
-  chain_.copy_joints(pack_, lane, q);
+  chain_.copy_joints(pack_.q, lane, q);
   if (!is_vague && certain_ && pack_.beyond[lane] > 0) {
     const Pose T_base_tcp = to_pose(model_.kernel.base) * Y * to_pose(model_.kernel.tip);
     if (is_beyond_limits(model_, T_base_tcp, Eigen::Map<const Eigen::VectorXd>(q, model_.dof),

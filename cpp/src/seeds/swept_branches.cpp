@@ -95,30 +95,69 @@ void SweptBranches::narrow(int branch, int rounds, Fold& fold) {
     const double step = (fold.outside - fold.inside) / (kCount + 1);
     const double from = fold.inside;
     const auto value = [&](int lane) { return from + step * (lane + 1); };
-    solve_one(branch, value);
+    hold_one(branch, value);
+    kernels_.find_branches(chain_.form, one_);
+    last_ = &one_;
     for (int lane = 0; lane < kCount; ++lane) {
       if (least(lane) < 0) {
         fold.outside = value(lane);
         fold.least_outside = least(lane);
         break;
       }
+      // What was before may not be known.
+      const bool is_known = fold.least_inside > 0;
+      fold.before = is_known ? fold.inside : value(lane);
+      fold.least_before = fold.least_inside;
       fold.inside = value(lane);
       fold.least_inside = least(lane);
     }
   }
 }
 
-double SweptBranches::find_fold(int branch, double inside, double outside, int rounds) {
-  Fold fold{inside, outside};
+double SweptBranches::Fold::end() const {
+  // Where the parabola through the three values is 0; from where the line through the last two is.
+  const double range = outside - inside;
+  const double slope = (least_outside - least_inside) / range;
+  double way = -least_inside / slope;
+  if (before == inside) return inside + way;
+  const double slope_before = (least_inside - least_before) / (inside - before);
+  const double bend = (slope - slope_before) / (outside - before);
+  for (int step = 0; step < 2; ++step) {
+    const double value = least_inside + way * (slope + bend * (way - range));
+    const double steep = slope + bend * (2 * way - range);
+    // A parabola that does not fall all the way says nothing.
+    if (!(steep * range < 0)) return inside - least_inside / slope;
+    way = std::min(std::max((way - value / steep) / range, 0.0), 1.0) * range;
+  }
+  return inside + way;
+}
+
+double SweptBranches::find_fold(int branch, const Fold& from, int rounds) {
+  Fold fold = from;
   narrow(branch, rounds, fold);
-  return fold.inside + (fold.outside - fold.inside) * fold.least_inside /
-                           (fold.least_inside - fold.least_outside);
+  return fold.end();
 }
 
 double SweptBranches::last_existing(int branch, double inside, double outside, int rounds) {
   Fold fold{inside, outside};
   narrow(branch, rounds, fold);
   return fold.inside;
+}
+
+bool SweptBranches::jumps(const lanes::BranchRow& a, int lane_a, const lanes::BranchRow& b,
+                          int lane_b) const {
+  if (!joints_.coupled_turning.empty()) {
+    std::array<double, kDof> from, to;
+    copy_joints(0, a.q, lane_a, from.data());
+    copy_joints(0, b.q, lane_b, to.data());
+    return jumps(from.data(), to.data());
+  }
+  for (int i = 0; i < kDof - 1; ++i) {
+    if (std::abs(a.q[i][lane_a] - b.q[i][lane_b]) > kPi && !joints_.is_periodic(chain_.joints[i])) {
+      return true;
+    }
+  }
+  return false;
 }
 
 bool SweptBranches::jumps(const double* a, const double* b) const {

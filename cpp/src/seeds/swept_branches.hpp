@@ -10,6 +10,7 @@
 
 #include "base/constants.hpp"
 #include "base/least.hpp"
+#include "base/sincos.hpp"
 #include "goal/joint_move.hpp"
 #include "kinematics/chain_model.hpp"
 #include "simd/kernels.hpp"
@@ -44,10 +45,11 @@ struct BranchSpan {
   /// they change as the root of the swept one.
   [[nodiscard]] double value(double part) const {
     const double range = upper - lower;
-    if (folds_below && folds_above) return lower + range * 0.5 * (1 - std::cos(kPi * part));
-    if (folds_below) return lower + range * (1 - std::cos(0.5 * kPi * part));
-    if (folds_above) return lower + range * std::sin(0.5 * kPi * part);
-    return lower + range * part;
+    if (!folds_below && !folds_above) return lower + range * part;
+    double sine, cosine;
+    sincos((folds_below && folds_above ? kPi : 0.5 * kPi) * part, sine, cosine);
+    if (!folds_below) return lower + range * sine;
+    return lower + range * (folds_above ? 0.5 : 1.0) * (1 - cosine);
   }
 };
 
@@ -82,6 +84,13 @@ class SweptBranches {
     for (int i = 0; i < kCount; ++i) all_.held[i] = values(i) + offset_;
     rate(bound, rows);
   }
+  /// Every branch at values(i) of the swept joint, and the moves to it, in rows[branch]; unless
+  /// that is more than `most`, or it is more than `bound` from being an answer [rad, mixed units].
+  template <typename Values>
+  void measure(const Values& values, double bound, double most, lanes::BranchRow (&rows)[kCount]) {
+    for (int i = 0; i < kCount; ++i) all_.held[i] = values(i) + offset_;
+    kernels_.measure_branches(chain_.form, move_form_, all_, bound, most, rows);
+  }
   /// Solves one branch at value(lane) in each lane [rad].
   template <typename Value>
   void solve_one(int branch, const Value& value) {
@@ -95,14 +104,27 @@ class SweptBranches {
     kernels_.rate_branch(chain_.form, one_, bound, off);
   }
 
+  /// Values of the swept joint on both sides of a branch's end, and how far it exists there; of the
+  /// value inside that was the one before, too, if that is another.
+  struct Fold {
+    double inside, outside;
+    double least_inside = 0, least_outside = -1;
+    double before = inside, least_before = 0;
+
+    /// About where it ends.
+    [[nodiscard]] double end() const;
+  };
   /// Where a branch ends between `inside`, where it exists, and `outside`, where it does not: to
-  /// about the square of 1 / 9^rounds of the way.
-  double find_fold(int branch, double inside, double outside, int rounds);
+  /// about the cube of 1 / 9^rounds of the way.
+  double find_fold(int branch, const Fold& from, int rounds);
   /// The last value on that way where it was seen to exist.
   double last_existing(int branch, double inside, double outside, int rounds);
   /// Whether a joint turns so far from a to b that it was at one limit before and is beyond the
   /// other: between them it may be outside of both.
   [[nodiscard]] bool jumps(const double* a, const double* b) const;
+  /// The same of a branch's joints in two lanes.
+  [[nodiscard]] bool jumps(const lanes::BranchRow& a, int lane_a, const lanes::BranchRow& b,
+                           int lane_b) const;
 
   /// From now on, the moves from `near` are measured to all that is solved [rad].
   void measure_moves_from(const JointVector& near, const JointMove& move);
@@ -120,12 +142,13 @@ class SweptBranches {
   /// The value of the swept joint.
   [[nodiscard]] double value(int lane) const { return last_->held[lane] - offset_; }
   /// All seven joint values, by whole turns inside the limits where they can be [rad].
-  void copy_joints(int lane, double* q) const {
-    double swept = value(lane);
+  void copy_joints(int lane, double* q) const { copy_joints(value(lane), last_->q, lane, q); }
+  /// The same of a value of the swept joint, and a lane of six others.
+  void copy_joints(double swept, const double (&others)[6][kCount], int lane, double* q) const {
     if (turns_ && swept < lower_) swept += kTwoPi;
     if (turns_ && swept > upper_) swept -= kTwoPi;
     q[chain_.held] = swept;
-    chain_.copy_joints(*last_, lane, q);
+    chain_.copy_joints(others, lane, q);
     if (!joints_.coupled_turning.empty()) joints_.wrap(q);
   }
 
@@ -137,11 +160,6 @@ class SweptBranches {
   }
 
  private:
-  /// Values of the swept joint on both sides of a branch's end, and how far it exists there.
-  struct Fold {
-    double inside, outside;
-    double least_inside = 0, least_outside = -1;
-  };
   void bound_slide();
   template <typename Value>
   void hold_one(int branch, const Value& value) {
@@ -219,8 +237,8 @@ class LeastPlaces : public Least<LeastPlace, kMost> {
       const SweptBranches::Row& before = row(place - 1);
       const SweptBranches::Row& behind = row(place + 1);
       for (std::size_t i = 0; i < here.size(); ++i) {
-        if (here[i] > bound || here[i] > before[i] || here[i] > behind[i]) continue;
-        this->add({here[i], place, static_cast<int>(i)});
+        const bool is_least = (here[i] <= bound) & (here[i] <= before[i]) & (here[i] <= behind[i]);
+        if (is_least) this->add({here[i], place, static_cast<int>(i)});
       }
     }
   }

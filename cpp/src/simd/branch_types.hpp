@@ -126,4 +126,13 @@ struct MovePack {
   alignas(64) double off[kWidth];
 };
 
+/// A branch at kWidth values of the held joint. Where it is known to lie too far away before all is
+/// known of it, `off` is kFarOff, and only `least` means anything, of what was known by then.
+inline constexpr double kFarOff = 1e30;
+struct BranchRow {
+  alignas(64) double q[6][kWidth];
+  alignas(64) double least[kWidth];
+  MovePack moves;
+};
+
 }  // namespace iksel::lanes

@@ -12,6 +12,7 @@
 #include "simd/lane_types.hpp"
 #include "simd/loop_kernel.hpp"
 #include "simd/move_kernel.hpp"
+#include "simd/nearest_kernel.hpp"
 #include "simd/regular_kernel.hpp"
 #include "simd/residual_kernel.hpp"
 #include "simd/scene_kernel.hpp"
@@ -185,6 +186,7 @@ constexpr LaneKernels make_kernels(const char* name) {
           rate_branches<Wide>,
           rate_branch<Wide>,
           measure_moves<Wide>,
+          measure_branches<Wide>,
           find_residuals<Wide>,
           count_roots<Wide>,
           find_clearance<Narrow>,

@@ -182,8 +182,14 @@ using RateBranch = void (*)(const ClosedForm& form, const BranchPack& pack, doub
 
 struct MoveForm;
 struct MovePack;
+struct BranchRow;
 /// How far all lanes of a pack are away (move_kernel.hpp).
 using MeasureMoves = void (*)(const MoveForm& form, const BranchPack& pack, MovePack& out);
+/// All branches at kWidth values of the held joint, and how far they are away; unless that is more
+/// than `most`, or they are more than `bound` from being answers (nearest_kernel.hpp).
+using MeasureBranches = void (*)(const ClosedForm& form, const MoveForm& move,
+                                 const BranchPack& pack, double bound, double most,
+                                 BranchRow (&rows)[kWidth]);
 
 struct ResidualForm;
 /// The residuals of `n` angles, a multiple of kWidth (residual_kernel.hpp). Returns the least of
@@ -233,6 +239,7 @@ struct LaneKernels {
   RateBranches rate_branches;
   RateBranch rate_branch;
   MeasureMoves measure_moves;
+  MeasureBranches measure_branches;
   FindResiduals find_residuals;
   CountRoots count_roots;
   FindClearance find_clearance;

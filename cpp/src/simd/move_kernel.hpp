@@ -16,15 +16,28 @@ IKSEL_INLINE T round_up(const T& x) {
   return select(n < x, n + T(1.0), n);
 }
 
-/// What the lanes from `first` on move by: of one joint, d by its nearest image, and by that
-/// nearest inside the limits.
+/// Adds to the moves, or to their squares' sum, that of one joint by d.
 template <typename T>
-IKSEL_INLINE void add_move(const MoveForm& form, int j, const T& q, T& loose, T& inside) {
+IKSEL_INLINE void add_way(const MoveForm& form, int j, const T& d, T& sum) {
+  const T way = abs(d) * T(form.weight[j]);
+  sum = form.takes_largest ? max(sum, way) : sum + way * way;
+}
+
+/// What the lanes of a joint move by to its nearest image, inside the limits or not.
+template <typename T>
+IKSEL_INLINE void add_loose_move(const MoveForm& form, int j, const T& q, T& loose) {
+  const T d = q - T(form.from[j]);
+  const T turns = form.turns[j] ? nearest_integer(d * T(0.15915494309189533577)) : T(0.0);
+  add_way(form, j, d - T(6.28318530717958647693) * turns, loose);
+}
+
+/// And to that nearest inside the limits.
+template <typename T>
+IKSEL_INLINE void add_inside_move(const MoveForm& form, int j, const T& q, T& inside) {
   const T whole(6.28318530717958647693);
   const T per_turn(0.15915494309189533577);
   const T d = q - T(form.from[j]);
   const T turns = form.turns[j] ? nearest_integer(d * per_turn) : T(0.0);
-  const T nearest = d - whole * turns;
   T image = d;
   if (form.has_images[j]) {
     const T least = round_up((T(form.lower[j]) - q) * per_turn);
@@ -34,21 +47,14 @@ IKSEL_INLINE void add_move(const MoveForm& form, int j, const T& q, T& loose, T&
     const T outside = max(T(form.lower[j]) - q, q - T(form.upper[j]));
     image = select(max(abs(turns), outside * T(0.25 / form.margin)) > T(0.5), moved, d);
   }
-  const T a = abs(nearest) * T(form.weight[j]);
-  const T b = abs(image) * T(form.weight[j]);
-  loose = form.takes_largest ? max(loose, a) : loose + a * a;
-  if (form.turns_coupled[j]) return;
-  inside = form.takes_largest ? max(inside, b) : inside + b * b;
+  if (!form.turns_coupled[j]) add_way(form, j, image, inside);
 }
 
 /// Adds to `inside` what the joints whose images change coupled sums move by: of these images,
 /// together, the least move inside of the limits. As far as the margin they are outside.
 template <typename T>
-void add_coupled_move(const MoveForm& form, const BranchPack& pack, int first, T& inside) {
+[[gnu::noinline]] void add_coupled_move(const MoveForm& form, const T (&q)[7], T& inside) {
   const CoupledForm& coupled = *form.coupled;
-  T q[7];
-  for (int j = 0; j < 6; ++j) q[j] = Lanes<T>::load(pack.q[j] + first);
-  q[6] = Lanes<T>::load(pack.held + first);
   T least = T(1e30);
   T way = T(0.0);
   for (int i = 0; i < coupled.images; ++i) {
@@ -68,26 +74,35 @@ void add_coupled_move(const MoveForm& form, const BranchPack& pack, int first, T
   inside = form.takes_largest ? max(inside, way) : inside + way;
 }
 
+/// What six joints and the held one move by, inside the limits.
+template <typename T>
+IKSEL_INLINE T inside_move(const MoveForm& form, const T (&q)[7]) {
+  T inside(0.0);
+  for (int j = 0; j < 7; ++j) add_inside_move(form, j, q[j], inside);
+  if (form.coupled != nullptr) add_coupled_move(form, q, inside);
+  return inside;
+}
+
+/// Stores moves, or their squares' sums, and how far from an answer these lanes are.
+template <typename T>
+IKSEL_INLINE void store_moves(const MoveForm& form, const T& loose, const T& inside,
+                              const T& beyond, const T& least, int first, MovePack& out) {
+  Lanes<T>::store(form.takes_largest ? loose : sqrt(loose), out.loose + first);
+  Lanes<T>::store(form.takes_largest ? inside : sqrt(inside), out.inside + first);
+  Lanes<T>::store(max(beyond, T(0.0)) + sqrt(max(T(0.0) - least, T(0.0))), out.off + first);
+}
+
 /// To all lanes of a pack.
 template <typename T>
 void measure_moves(const MoveForm& form, const BranchPack& pack, MovePack& out) {
   for (int first = 0; first < kWidth; first += Lanes<T>::kCount) {
+    T q[7];
+    for (int j = 0; j < 6; ++j) q[j] = Lanes<T>::load(pack.q[j] + first);
+    q[6] = Lanes<T>::load(pack.held + first);
     T loose(0.0);
-    T inside(0.0);
-    for (int j = 0; j < 6; ++j) {
-      add_move(form, j, Lanes<T>::load(pack.q[j] + first), loose, inside);
-    }
-    add_move(form, 6, Lanes<T>::load(pack.held + first), loose, inside);
-    if (form.coupled != nullptr) add_coupled_move(form, pack, first, inside);
-    if (!form.takes_largest) {
-      loose = sqrt(loose);
-      inside = sqrt(inside);
-    }
-    Lanes<T>::store(loose, out.loose + first);
-    Lanes<T>::store(inside, out.inside + first);
-    const T beyond = max(Lanes<T>::load(pack.beyond + first), T(0.0));
-    const T lacks = max(T(0.0) - Lanes<T>::load(pack.least + first), T(0.0));
-    Lanes<T>::store(beyond + sqrt(lacks), out.off + first);
+    for (int j = 0; j < 7; ++j) add_loose_move(form, j, q[j], loose);
+    store_moves(form, loose, inside_move(form, q), Lanes<T>::load(pack.beyond + first),
+                Lanes<T>::load(pack.least + first), first, out);
   }
 }
 

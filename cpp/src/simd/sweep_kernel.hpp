@@ -8,6 +8,9 @@
 
 namespace iksel::lanes {
 
+/// Angles that follow from a quotient by less may be any.
+inline constexpr double kAnyAngle = 1e-6;
+
 /// Whether a branch may be near to an answer, by the angles found so far.
 template <typename T>
 struct Prospect {
@@ -48,7 +51,6 @@ template <typename T>
 IKSEL_INLINE bool is_enough(const ClosedForm& form, int j, Branch<T, Prospect<T>>& branch) {
   Prospect<T>& prospect = branch.quality;
   const LimitArc& arc = form.arc[j];
-  constexpr double kAnyAngle = 1e-6;
   if (arc.ends) {
     const T sine = sine_beyond(arc, branch.q[j]);
     const T known = select(prospect.divisor < T(kAnyAngle), T(0.0), sine);
@@ -80,35 +82,50 @@ IKSEL_INLINE BranchTarget<T> held_target(const ClosedForm& form, const BranchPac
   return target;
 }
 
-/// How far the two branches are off that differ in the last sign only: the two of `last`, or one.
-template <typename T, int kCount>
-IKSEL_INLINE void rate_signs(const ClosedForm& form, const BranchTarget<T>& target, const T& held,
-                             const double (&sign)[2], const double (&last)[kCount], double bound,
-                             double* const (&off)[kCount]) {
-  RatedBranch<T> arm;
-  arm.quality.bound = bound;
+/// Solves the two branches that differ in the last sign only, the two of `last`, or one, until
+/// their quality, which begins as `quality`, is enough: take(i, branch).
+template <typename T, typename Q, int kCount, typename Take>
+IKSEL_INLINE void solve_signs(const ClosedForm& form, const BranchTarget<T>& target,
+                              const double (&sign)[2], const double (&last)[kCount],
+                              const Q& quality, const Take& take) {
+  Branch<T, Q> arm;
+  arm.quality = quality;
   const T side[2] = {T(sign[0]), T(sign[1])};
   const bool has_wrist = form.closure != Closure::three_parallel;
   WristTarget<T> wrist;
   if (has_wrist) {
     place_wrist(form, target.w, {side[0], side[1], T(1.0)}, arm);
     if (arm.quality.is_over) {
-      for (double* each : off) Lanes<T>::store(arm.quality.off(), each);
+      for (int i = 0; i < kCount; ++i) take(i, arm);
       return;
     }
     wrist = behind_arm(form, target, arm);
   }
   for (int i = 0; i < kCount; ++i) {
-    RatedBranch<T> branch = arm;
+    Branch<T, Q> branch = arm;
     if (has_wrist) {
       turn_wrist(form, wrist, T(last[i]), branch);
     } else {
       solve_three_parallel(form, target, {side[0], side[1], T(last[i])}, branch);
       for (int j = 0; j < 6; ++j) is_enough(form, j, branch);
     }
-    add_coupled(form, held, branch);
-    Lanes<T>::store(branch.quality.off(), off[i]);
+    take(i, branch);
   }
+}
+
+/// How far such branches are off.
+template <typename T, int kCount>
+IKSEL_INLINE void rate_signs(const ClosedForm& form, const BranchTarget<T>& target, const T& held,
+                             const double (&sign)[2], const double (&last)[kCount], double bound,
+                             double* const (&off)[kCount]) {
+  Prospect<T> prospect;
+  prospect.bound = bound;
+  solve_signs(
+      form, target, sign, last,
+      prospect, [&](int i, RatedBranch<T>& branch) __attribute__((always_inline)) {
+        add_coupled(form, held, branch);
+        Lanes<T>::store(branch.quality.off(), off[i]);
+      });
 }
 
 /// At kWidth angles of the held joint: off[branch][angle] is how far a branch, of the signs in the

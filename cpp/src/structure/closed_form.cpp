@@ -106,9 +106,10 @@ void ClosedFormChain::set_target(const Pose& Y, int lane, lanes::BranchPack& pac
   make_rows(Y, [&](int row, double value) { pack.target[row][lane] = value; });
 }
 
-void ClosedFormChain::copy_joints(const lanes::BranchPack& pack, int lane, double* q) const {
+void ClosedFormChain::copy_joints(const double (&of_six)[6][lanes::kWidth], int lane,
+                                  double* q) const {
   for (int i = 0; i < kSix; ++i) {
-    if (joints[i] < dof) q[joints[i]] = pack.q[i][lane];
+    if (joints[i] < dof) q[joints[i]] = of_six[i][lane];
   }
 }
 

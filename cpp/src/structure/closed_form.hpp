@@ -56,7 +56,7 @@ struct ClosedFormChain {
   /// Whether the angles of some joints do not matter, so that each branch is a family of solutions.
   [[nodiscard]] bool has_families() const { return (free & ((1U << dof) - 1)) != 0; }
   /// Writes the joints of a lane to where they belong in q, the chain's joint values.
-  void copy_joints(const lanes::BranchPack& pack, int lane, double* q) const;
+  void copy_joints(const double (&of_six)[6][lanes::kWidth], int lane, double* q) const;
 
  private:
   /// The rows of a target, each by write(row, value).

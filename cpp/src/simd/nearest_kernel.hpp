@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How far the joints of a chain of seven move to its branches, at many values of its held joint at
+// once: a value in each lane, one branch after the other. Branches are left as soon as all lanes
+// are known to be too far away.
+#pragma once
+
+#include "simd/move_kernel.hpp"
+#include "simd/sweep_kernel.hpp"
+
+namespace iksel::lanes {
+
+/// Whether a branch may be near to an answer that is not far away, by the joints found so far.
+template <typename T>
+struct NearProspect {
+  const MoveForm* move;
+  double bound;
+  /// Of the moves, or of their squares' sum.
+  double most;
+  T least = T(1.0);
+  T beyond = T(0.0);
+  /// By what the joints move, or the sum of the squares of that.
+  T loose;
+  /// As Prospect: where it is all but nothing, joints from then on mean nothing.
+  T divisor = T(1.0);
+  T q[6] = {};
+  /// No lane's branch may be.
+  bool is_over = false;
+
+  IKSEL_INLINE void divide_by_product(const T& product) { divisor = min(divisor, product); }
+  IKSEL_INLINE void take_root(const T& square, const T& /*near*/, const T& /*root*/) {
+    least = min(least, square);
+  }
+  [[nodiscard]] IKSEL_INLINE bool is_open() const {
+    const T room = min(T(bound) - beyond, least + T(bound * bound));
+    return any(min(room, T(most) - loose) >= T(0.0));
+  }
+};
+
+template <typename T>
+IKSEL_INLINE bool is_enough(const ClosedForm& form, int j, Branch<T, NearProspect<T>>& branch) {
+  NearProspect<T>& prospect = branch.quality;
+  const T q = joint_value(form, j, branch.q[j]);
+  prospect.q[j] = q;
+  const auto is_any = prospect.divisor < T(kAnyAngle);
+  T loose = prospect.loose;
+  add_loose_move(*prospect.move, j, q, loose);
+  prospect.loose = select(is_any, prospect.loose, loose);
+  prospect.beyond =
+      select(is_any, prospect.beyond, max(prospect.beyond, beyond_limits(form, j, q)));
+  prospect.is_over = !prospect.is_open();
+  return prospect.is_over;
+}
+
+/// At kWidth values of the held joint, in the pack, of the branches with the signs in its lanes.
+template <typename T>
+void measure_branches(const ClosedForm& form, const MoveForm& move, const BranchPack& pack,
+                      double bound, double most, BranchRow (&rows)[kWidth]) {
+  for (int first = 0; first < kWidth; first += Lanes<T>::kCount) {
+    const T held = Lanes<T>::load(pack.held + first);
+    const BranchTarget<T> target = held_target(form, pack, first, held);
+    NearProspect<T> prospect;
+    prospect.move = &move;
+    prospect.bound = bound;
+    prospect.most = move.takes_largest ? most : most * most;
+    prospect.loose = T(0.0);
+    add_loose_move(move, 6, held, prospect.loose);
+    for (int lane = 0; lane < kWidth / 2; ++lane) {
+      const int other = lane + kWidth / 2;
+      const auto take = [&](int i, const Branch<T, NearProspect<T>>& branch)
+          __attribute__((always_inline)) {
+        const NearProspect<T>& found = branch.quality;
+        BranchRow& row = rows[i == 0 ? lane : other];
+        Lanes<T>::store(found.least, row.least + first);
+        if (found.is_over) {
+          Lanes<T>::store(T(kFarOff), row.moves.off + first);
+          return;
+        }
+        T q[7];
+        for (int j = 0; j < 6; ++j) {
+          q[j] = found.q[j];
+          Lanes<T>::store(q[j], row.q[j] + first);
+        }
+        q[6] = held;
+        T beyond = found.beyond;
+        if (form.coupled != nullptr) beyond = max(beyond, beyond_coupled(*form.coupled, q));
+        store_moves(move, found.loose, inside_move(move, q), beyond, found.least, first, row.moves);
+      };
+      solve_signs(form, target, {pack.sign[0][lane], pack.sign[1][lane]},
+                  {pack.sign[2][lane], pack.sign[2][other]}, prospect, take);
+    }
+  }
+}
+
+}  // namespace iksel::lanes

@@ -237,8 +237,9 @@ class LeastPlaces : public Least<LeastPlace, kMost> {
       const SweptBranches::Row& before = row(place - 1);
       const SweptBranches::Row& behind = row(place + 1);
       for (std::size_t i = 0; i < here.size(); ++i) {
-        const bool is_least = (here[i] <= bound) & (here[i] <= before[i]) & (here[i] <= behind[i]);
-        if (is_least) this->add({here[i], place, static_cast<int>(i)});
+        // Of conditions one by one few could be foreseen.
+        const double least = std::min(bound, std::min(before[i], behind[i]));
+        if (here[i] <= least) this->add({here[i], place, static_cast<int>(i)});
       }
     }
   }

@@ -46,7 +46,8 @@ struct BranchSpan {
   [[nodiscard]] double value(double part) const {
     const double range = upper - lower;
     if (!folds_below && !folds_above) return lower + range * part;
-    double sine, cosine;
+    double sine = 0;
+    double cosine = 0;
     sincos((folds_below && folds_above ? kPi : 0.5 * kPi) * part, sine, cosine);
     if (!folds_below) return lower + range * sine;
     return lower + range * (folds_above ? 0.5 : 1.0) * (1 - cosine);

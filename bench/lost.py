@@ -4,9 +4,8 @@
 Targets that can be reached, as poses of configurations inside the limits
 (bench.targets): uniform ones, ones at limits and ones near singularities. Each is
 solved one at a time, in a batch, and as near as can be to a random configuration, and
-every answer is judged by numpy. For arms whose
-solutions are isolated, the branches of solve_all beside those that random restarts of
-the iteration find.
+every answer is judged by numpy. For arms whose solutions are isolated, the branches of
+solve_all beside those that random restarts of the iteration find.
 """
 
 from __future__ import annotations

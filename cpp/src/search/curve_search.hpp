@@ -37,6 +37,9 @@ struct CurveSearch {
 
   // Parts of it.
 
+  /// Searches by seeds that all but are answers. Returns whether the answers want no more.
+  template <typename Seeds>
+  bool refine(Seeds& seeds, Width width) const;
   /// Any solution, as soon as can be; true if there certainly is none.
   [[nodiscard]] bool collect_any_or_none() const;
   /// The solution nearest to `near`, or to the objective's posture.
@@ -48,19 +51,25 @@ struct CurveSearch {
 };
 
 template <typename Answers>
-std::optional<Proof> CurveSearch<Answers>::find_free() const {
+template <typename Seeds>
+bool CurveSearch<Answers>::refine(Seeds& seeds, Width width) const {
   LaneRefiner& refiner = lanes.refiner;
+  refiner.begin(goal.task(), kNearAnswer, width);
+  const bool is_satisfied = search(refiner, seeds, answers, work);
+  refiner.begin(goal.task(), kFirst, Width::narrow);
+  clock.lap(&StageTimes::iterate);
+  return is_satisfied;
+}
+
+template <typename Answers>
+std::optional<Proof> CurveSearch<Answers>::find_free() const {
   if (answers.is_never_free()) {
     if (!answers.has_any() && !lanes.sweep->find(Y)) return std::nullopt;
     answers.refuse();
     return Proof::target;
   }
   FreeSamples samples(*lanes.sweep, *goal.scene(), Y, lanes.samples, work, clock);
-  refiner.begin(goal.task(), kNearAnswer, Width::narrow);
-  const bool is_satisfied = search(refiner, samples, answers, work);
-  refiner.begin(goal.task(), kFirst, Width::narrow);
-  clock.lap(&StageTimes::iterate);
-  if (is_satisfied) return Proof::none;
+  if (refine(samples, Width::narrow)) return Proof::none;
   if (!samples.has_any()) return std::nullopt;
   answers.refuse();
   return Proof::sweep;
@@ -70,7 +79,6 @@ template <typename Answers>
 std::optional<Proof> CurveSearch<Answers>::collect_spread() const {
   // Between points no farther apart, a straight line is near enough to the curve [rad].
   constexpr double kStraight = 0.3;
-  LaneRefiner& refiner = lanes.refiner;
   SelfMotionArcs& arcs = *lanes.arcs;
   arcs.find(Y, kStraight);
   const std::vector<SelfMotionArcs::Joints> points =
@@ -78,10 +86,7 @@ std::optional<Proof> CurveSearch<Answers>::collect_spread() const {
   clock.lap(&StageTimes::query);
   RowSeeds seeds(points.empty() ? nullptr : points[0].data(), points.size(), SweptBranches::kDof,
                  /*are_answers=*/false, work);
-  refiner.begin(goal.task(), kNearAnswer, Width::wide);
-  search(refiner, seeds, answers, work);
-  refiner.begin(goal.task(), kFirst, Width::narrow);
-  clock.lap(&StageTimes::iterate);
+  refine(seeds, Width::wide);
   if (answers.has_any()) return Proof::none;
   Sweep& sweep = *lanes.sweep;
   if (points.empty() && !sweep.find(Y) && sweep.is_none()) return Proof::sweep;
@@ -93,7 +98,6 @@ std::optional<Proof> CurveSearch<Answers>::collect_nearest_free() const {
   constexpr double kSpacing = 0.05;
   /// So many of them are refined.
   constexpr std::size_t kMost = 16;
-  LaneRefiner& refiner = lanes.refiner;
   SelfMotionArcs& arcs = *lanes.arcs;
   arcs.find(Y, kSpacing);
   std::vector<double>& q = lanes.samples.q;
@@ -103,10 +107,7 @@ std::optional<Proof> CurveSearch<Answers>::collect_nearest_free() const {
   if (!has_any) return std::nullopt;
   RowSeeds seeds(q.data(), q.size() / SweptBranches::kDof, SweptBranches::kDof,
                  /*are_answers=*/false, work);
-  refiner.begin(goal.task(), kNearAnswer, Width::wide);
-  search(refiner, seeds, answers, work);
-  refiner.begin(goal.task(), kFirst, Width::narrow);
-  clock.lap(&StageTimes::iterate);
+  refine(seeds, Width::wide);
   if (seeds.count() > 0) return Proof::none;
   answers.status = Status::in_collision;
   return Proof::sweep;
@@ -132,16 +133,12 @@ std::optional<Proof> CurveSearch<Answers>::collect() const {
 
 template <typename Answers>
 bool CurveSearch<Answers>::collect_any_or_none() const {
-  LaneRefiner& refiner = lanes.refiner;
   Sweep& sweep = *lanes.sweep;
   const bool is_found = sweep.find(Y);
   clock.lap(&StageTimes::query);
   if (!is_found) return sweep.is_none();
   RowSeeds answer(sweep.q(), 1, SweptBranches::kDof, /*are_answers=*/true, work);
-  refiner.begin(goal.task(), kNearAnswer, Width::narrow);
-  search(refiner, answer, answers, work);
-  refiner.begin(goal.task(), kFirst, Width::narrow);
-  clock.lap(&StageTimes::iterate);
+  refine(answer, Width::narrow);
   return false;
 }
 
@@ -159,10 +156,7 @@ std::optional<Proof> CurveSearch<Answers>::collect_nearest() const {
   // through.
   if (!stays && !answers.has_any() && collect_any_or_none()) return Proof::sweep;
   NearestOnCurveSeeds nearest(curve, Y, near, move, answers, work, clock);
-  refiner.begin(goal.task(), kNearAnswer, Width::narrow);
-  search(refiner, nearest, answers, work);
-  refiner.begin(goal.task(), kFirst, Width::narrow);
-  clock.lap(&StageTimes::iterate);
+  refine(nearest, Width::narrow);
   answers.is_settled = curve.is_settled() && nearest.has_led_to_answer();
   if (stays && !answers.has_any() && collect_any_or_none()) return Proof::sweep;
   return answers.has_any() ? std::optional(Proof::none) : std::nullopt;

@@ -30,8 +30,6 @@ void NearestOnCurve::look_beside_folds(int branch) {
 }
 
 void NearestOnCurve::look_into_span(int branch, int first, int last) {
-  // As a part of a step, what is looked at more closely.
-  constexpr double kNarrow = 1.0;
   const bool is_short = last - first < kShort;
   BranchSpan span{branch, places_.value(first), places_.value(last), is_none(first - 1, branch),
                   is_none(last + 1, branch)};
@@ -42,12 +40,16 @@ void NearestOnCurve::look_into_span(int branch, int first, int last) {
   const bool above = span.folds_above && (is_short || may_lead_to_shorter(last, last + 1, branch));
   const double low = span.lower;
   const double high = span.upper;
-  if (below) span.lower = find_fold(branch, first, -1, 1);
-  if (above) span.upper = find_fold(branch, last, 1, 1);
-  if (is_short && span.upper - span.lower < kNarrow * places_.step) {
-    if (below) span.lower = find_fold(branch, first, -1, 2);
-    if (above) span.upper = find_fold(branch, last, 1, 2);
-  }
+  SweptBranches::Fold fold_below = fold_beside(branch, first, -1);
+  SweptBranches::Fold fold_above = fold_beside(branch, last, 1);
+  const auto narrow = [&] {
+    if (below) branches_.narrow(branch, 1, fold_below);
+    if (below) span.lower = fold_below.end();
+    if (above) branches_.narrow(branch, 1, fold_above);
+    if (above) span.upper = fold_above.end();
+  };
+  narrow();
+  if (is_short && span.upper - span.lower < places_.step) narrow();
   if (is_short && (below || above)) {
     look_into(span, 2);
     return;
@@ -56,14 +58,15 @@ void NearestOnCurve::look_into_span(int branch, int first, int last) {
   if (above) look_into({branch, high, span.upper, false, true}, 1);
 }
 
-double NearestOnCurve::find_fold(int branch, int end, int side, int rounds) {
+SweptBranches::Fold NearestOnCurve::fold_beside(int branch, int end, int side) const {
+  if (!is_none(end + side, branch)) return {};
   SweptBranches::Fold fold{places_.value(end), places_.value(end) + side * places_.step,
                            least(end, branch), least(end + side, branch)};
   if (exists(end - side, branch)) {
     fold.before = places_.value(end - side);
     fold.least_before = least(end - side, branch);
   }
-  return branches_.find_fold(branch, fold, rounds);
+  return fold;
 }
 
 bool NearestOnCurve::short_span_may_be_shorter(int branch, int first, int last) const {

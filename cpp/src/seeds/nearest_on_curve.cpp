@@ -196,8 +196,11 @@ void NearestOnCurve::follow(const LeastPlace& least) {
   const double middle = places_.value(least.place);
   BranchSpan span{least.branch, branches_.clamp(middle - places_.step),
                   branches_.clamp(middle + places_.step), true, true};
-  span.lower = branches_.find_fold(least.branch, {exists_at, span.lower}, kFoldRounds);
-  span.upper = branches_.find_fold(least.branch, {exists_at, span.upper}, kFoldRounds);
+  for (double* end : {&span.lower, &span.upper}) {
+    SweptBranches::Fold fold{exists_at, *end};
+    branches_.narrow(least.branch, kFoldRounds, fold);
+    *end = fold.end();
+  }
   look_into(span, 2);
 }
 

@@ -155,8 +155,8 @@ class NearestOnCurve {
   void look_beside_folds(int branch);
   /// From its first sample to its last.
   void look_into_span(int branch, int first, int last);
-  /// About where a branch ends between a sample and the one on that side of it.
-  double find_fold(int branch, int end, int side, int rounds);
+  /// Where a branch ends between a sample and the one on that side of it.
+  [[nodiscard]] SweptBranches::Fold fold_beside(int branch, int end, int side) const;
   /// Whether there may be a shorter move than the best so far on a span of few samples, and where
   /// it folds at its ends.
   [[nodiscard]] bool short_span_may_be_shorter(int branch, int first, int last) const;

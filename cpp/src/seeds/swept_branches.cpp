@@ -54,6 +54,7 @@ void SweptBranches::bound_slide() {
 void SweptBranches::solve_all(double value) {
   std::fill_n(all_.held, kCount, value + offset_);
   find_branches(all_);
+  measure_moves();
 }
 
 void SweptBranches::measure_moves_from(const JointVector& near, const JointMove& move) {
@@ -86,8 +87,11 @@ void SweptBranches::rate(double bound, Row* rows) {
 
 void SweptBranches::find_branches(lanes::BranchPack& pack) {
   kernels_.find_branches(chain_.form, pack);
-  if (measures_moves_) kernels_.measure_moves(move_form_, pack, moves_);
   last_ = &pack;
+}
+
+void SweptBranches::measure_moves() {
+  if (measures_moves_) kernels_.measure_moves(move_form_, *last_, moves_);
 }
 
 void SweptBranches::narrow(int branch, int rounds, Fold& fold) {
@@ -96,8 +100,7 @@ void SweptBranches::narrow(int branch, int rounds, Fold& fold) {
     const double from = fold.inside;
     const auto value = [&](int lane) { return from + step * (lane + 1); };
     hold_one(branch, value);
-    kernels_.find_branches(chain_.form, one_);
-    last_ = &one_;
+    find_branches(one_);
     for (int lane = 0; lane < kCount; ++lane) {
       if (least(lane) < 0) {
         fold.outside = value(lane);
@@ -118,24 +121,19 @@ double SweptBranches::Fold::end() const {
   // Where the parabola through the three values is 0; from where the line through the last two is.
   const double range = outside - inside;
   const double slope = (least_outside - least_inside) / range;
-  double way = -least_inside / slope;
-  if (before == inside) return inside + way;
+  const double straight = -least_inside / slope;
+  if (before == inside) return inside + straight;
   const double slope_before = (least_inside - least_before) / (inside - before);
   const double bend = (slope - slope_before) / (outside - before);
+  double way = straight;
   for (int step = 0; step < 2; ++step) {
     const double value = least_inside + way * (slope + bend * (way - range));
     const double steep = slope + bend * (2 * way - range);
     // A parabola that does not fall all the way says nothing.
-    if (!(steep * range < 0)) return inside - least_inside / slope;
+    if (!(steep * range < 0)) return inside + straight;
     way = std::min(std::max((way - value / steep) / range, 0.0), 1.0) * range;
   }
   return inside + way;
-}
-
-double SweptBranches::find_fold(int branch, const Fold& from, int rounds) {
-  Fold fold = from;
-  narrow(branch, rounds, fold);
-  return fold.end();
 }
 
 double SweptBranches::last_existing(int branch, double inside, double outside, int rounds) {

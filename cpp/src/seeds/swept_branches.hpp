@@ -97,6 +97,7 @@ class SweptBranches {
   void solve_one(int branch, const Value& value) {
     hold_one(branch, value);
     find_branches(one_);
+    measure_moves();
   }
   /// How far one branch is from being an answer at value(lane), in off[lane], as rate().
   template <typename Value>
@@ -112,12 +113,12 @@ class SweptBranches {
     double least_inside = 0, least_outside = -1;
     double before = inside, least_before = 0;
 
-    /// About where it ends.
+    /// About where it ends: off by the cube of the way between inside and outside.
     [[nodiscard]] double end() const;
   };
-  /// Where a branch ends between `inside`, where it exists, and `outside`, where it does not: to
-  /// about the cube of 1 / 9^rounds of the way.
-  double find_fold(int branch, const Fold& from, int rounds);
+  /// Narrows the way between `inside`, where a branch exists, and `outside`, where it does not, to
+  /// a ninth in each round.
+  void narrow(int branch, int rounds, Fold& fold);
   /// The last value on that way where it was seen to exist.
   double last_existing(int branch, double inside, double outside, int rounds);
   /// Whether a joint turns so far from a to b that it was at one limit before and is beyond the
@@ -167,9 +168,10 @@ class SweptBranches {
     for (int s = 0; s < 3; ++s) std::fill_n(one_.sign[s], kCount, all_.sign[s][branch]);
     for (int lane = 0; lane < kCount; ++lane) one_.held[lane] = value(lane) + offset_;
   }
+  /// Of which moves are then measured, if they are.
   void find_branches(lanes::BranchPack& pack);
+  void measure_moves();
   void rate(double bound, Row* rows);
-  void narrow(int branch, int rounds, Fold& fold);
 
   ClosedFormChain chain_;
   const JointSpace& joints_;

@@ -11,28 +11,16 @@ namespace iksel::lanes {
 
 /// Whether a branch may be near to an answer that is not far away, by the joints found so far.
 template <typename T>
-struct NearProspect {
+struct NearProspect : Prospect<T> {
   const MoveForm* move;
-  double bound;
   /// Of the moves, or of their squares' sum.
   double most;
-  T least = T(1.0);
-  T beyond = T(0.0);
   /// By what the joints move, or the sum of the squares of that.
   T loose;
-  /// As Prospect: where it is all but nothing, joints from then on mean nothing.
-  T divisor = T(1.0);
   T q[6] = {};
-  /// No lane's branch may be.
-  bool is_over = false;
 
-  IKSEL_INLINE void divide_by_product(const T& product) { divisor = min(divisor, product); }
-  IKSEL_INLINE void take_root(const T& square, const T& /*near*/, const T& /*root*/) {
-    least = min(least, square);
-  }
   [[nodiscard]] IKSEL_INLINE bool is_open() const {
-    const T room = min(T(bound) - beyond, least + T(bound * bound));
-    return any(min(room, T(most) - loose) >= T(0.0));
+    return any(min(this->room(), T(most) - loose) >= T(0.0));
   }
 };
 

@@ -29,10 +29,12 @@ struct Prospect {
   }
   /// How far it is from being an answer, at least.
   [[nodiscard]] IKSEL_INLINE T off() const { return beyond + sqrt(max(T(0.0) - least, T(0.0))); }
-  /// Whether off() may be within the bound in some lane, without its root.
-  [[nodiscard]] IKSEL_INLINE bool is_open() const {
-    return any(min(T(bound) - beyond, least + T(bound * bound)) >= T(0.0));
+  /// Not below 0 where off() may be within the bound, without its root.
+  [[nodiscard]] IKSEL_INLINE T room() const {
+    return min(T(bound) - beyond, least + T(bound * bound));
   }
+  /// Whether it may be in some lane.
+  [[nodiscard]] IKSEL_INLINE bool is_open() const { return any(room() >= T(0.0)); }
 };
 
 /// How far an angle lies outside of limits, 0 or less if it does not: by the sine of that, and from

@@ -215,4 +215,38 @@ TEST(Near, IsFoundBesideManyBranchesThatComeAsNear) {
   EXPECT_TRUE(solver.solve(solver.robot().fk(from), request).success());
 }
 
+/// The nearest lies between samples that are up to 1.5 rad farther away than another answer: all
+/// that is within 2.5 rad is looked at.
+TEST(Near, IsFoundBetweenSamplesThatLieFartherAway) {
+  struct Case {
+    const char* name;
+    double answer[7], near[7];
+  };
+  const Case cases[] = {
+      {"panda",
+       {-2.4014, 0.0135, -0.6478, -0.5766, 2.4376, 1.6078, -0.3849},
+       {-2.5928, -0.0945, -0.8427, -0.2109, 2.1891, 1.3821, -0.4415}},
+      {"panda",
+       {-1.4633, 0.0022, -2.7617, -0.3003, -1.8518, 0.8644, 2.1353},
+       {-1.6009, -0.0828, -2.8973, -0.5002, -2.1427, 1.1943, 2.2048}},
+      {"iiwa14",
+       {-1.9956, -1.1928, -0.1368, 0.0779, 1.9744, -0.0022, -0.2146},
+       {-2.3301, -1.2981, -0.1590, -0.0122, 2.3776, 0.2929, 0.1319}},
+      {"iiwa14",
+       {-0.7433, 1.7787, 2.2760, -0.2068, 2.5952, 0.0244, 1.3351},
+       {-0.4289, 1.2504, 2.1684, 0.2792, 2.4824, -0.2630, 1.2224}},
+      {"iiwa14",
+       {-0.6545, 0.8457, -2.8842, 0.0689, -2.6095, -1.9505, 0.8067},
+       {-0.6976, 1.1045, -2.9671, 0.1360, -2.6949, -2.0944, 1.0487}},
+  };
+  for (const auto& [name, answer, near] : cases) {
+    const Solver& solver = iksel_test::solver(name);
+    const JointVector known = Eigen::Map<const Eigen::VectorXd>(answer, 7);
+    SolveRequest request;
+    request.near = Eigen::Map<const Eigen::VectorXd>(near, 7);
+    const Result result = solver.solve(solver.robot().fk(known), request);
+    EXPECT_LE(result.move, (known - *request.near).norm() + 1e-6) << name;
+  }
+}
+
 }  // namespace

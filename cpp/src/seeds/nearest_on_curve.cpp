@@ -129,8 +129,8 @@ double NearestOnCurve::solve_pack(int pack, double best) {
   SamplePack& samples = packs_[static_cast<std::size_t>(pack)];
   samples.is_solved = true;
   const int first = pack * kCount;
-  branches_.measure([&](int i) { return places_.value(first + i); }, kNear, best + kFarther,
-                    samples.branch);
+  const double most = std::max(best + kFarther, kAlwaysWithin);
+  branches_.measure([&](int i) { return places_.value(first + i); }, kNear, most, samples.branch);
   for (std::size_t branch = 0; branch < kCount; ++branch) {
     const lanes::BranchRow& row = samples.branch[branch];
     for (int i = 0; i < kCount; ++i) {
@@ -167,7 +167,9 @@ bool NearestOnCurve::may_be_shorter(const LeastPlace& least) const {
     if (beside < 0) continue;
     const double there =
         rows_[static_cast<std::size_t>(beside)][static_cast<std::size_t>(least.branch)];
-    change = std::max(change, there < kRefused ? there - least.value : kAtEnd);
+    const bool is_far = is_known(beside) && sample(beside, least.branch).is_far();
+    const double before = is_far ? best + kFarther : there;
+    change = std::max(change, before < kRefused ? before - least.value : kAtEnd);
   }
   return least.value - change < best;
 }

@@ -54,6 +54,9 @@ class NearestOnCurve {
   static constexpr double kNear = 0.3;
   /// Nor is there anything beside samples that are so much farther away than what is known [rad].
   static constexpr double kFarther = 0.6;
+  /// But up to here they are looked at: of 10,000 answers of iiwa14 around 0.3 rad away, 5 are
+  /// longer and 7 shorter than when none was left out, without this 25 and 8 [rad].
+  static constexpr double kAlwaysWithin = 2.5;
 
   static constexpr int kCount = SweptBranches::kCount;
   using Joints = std::array<double, SweptBranches::kDof>;

@@ -21,6 +21,7 @@ bool solves_in_lanes(const ChainModel& model, const DatabaseData& data,
 ClosedForms closed_forms_of(const ChainModel& model, const ChainModel& nominal) {
   ClosedForms forms = ClosedForms::of(nominal);
   if (forms.pose && !suits_coupled_limits(model, *forms.pose)) forms.pose.reset();
+  if (forms.residual && !suits_coupled_limits(model, *forms.residual)) forms.residual.reset();
   forms.tasks.erase(
       std::remove_if(forms.tasks.begin(), forms.tasks.end(),
                      [&](const auto& form) { return !suits_coupled_limits(model, form.second); }),
@@ -45,19 +46,23 @@ Workspace::InLanes::InLanes(const ChainModel& model, const ChainModel& nominal,
     task_branches.emplace_back(task,
                                Enumeration(model, chain, is_nominal, position, rotation, kernels));
   }
+  const auto tolerance_of = [&](const ClosedFormChain& chain) {
+    return std::max(position / chain.unit, rotation);
+  };
+  if (closed_forms.residual) {
+    roots.emplace(model, *closed_forms.residual, is_nominal, tolerance_of(*closed_forms.residual),
+                  kernels);
+  }
   const auto& closed_form = closed_forms.pose;
   if (!closed_form) return;
-  const double tolerance = std::max(position / closed_form->unit, rotation);
   if (closed_form->held < 0) {
     branches.emplace(model, *closed_form, is_nominal, position, rotation, kernels);
     if (trials != nullptr) branch_lanes.emplace(model, branches->chain(), *trials, kernels);
-  } else if (closed_form->form.is_held) {
-    sweep.emplace(model, *closed_form, is_nominal, tolerance, kernels);
+  } else {
+    sweep.emplace(model, *closed_form, is_nominal, tolerance_of(*closed_form), kernels);
     nearest_on_curve.emplace(model, *closed_form, is_nominal, kernels);
     arcs.emplace(model, *closed_form, kernels);
     if (trials != nullptr) branch_lanes.emplace(model, *closed_form, *trials, kernels);
-  } else {
-    roots.emplace(model, *closed_form, is_nominal, tolerance, kernels);
   }
 }
 
@@ -105,7 +110,8 @@ WorkspacePool::WorkspacePool(const Robot& robot, const Robot& nominal, const Dat
   }
   const auto& chain = closed_forms_.pose;
   if (solves_in_lanes_ && chain && !chain->is_completed()) {
-    const bool proves = chain->held < 0 && &robot.model() == &nominal.model();
+    const bool proves =
+        chain->held < 0 && &robot.model() == &nominal.model() && !chain->is_almost();
     const TaskSpace task(Task(), options.position_tolerance, options.rotation_tolerance);
     if (proves || chain->form.is_held) {
       trials_.emplace(robot.model(), *chain, database.data(), task, lanes::choose_kernels());

@@ -99,7 +99,7 @@ class WorkspacePool {
 
   /// Whether the self-motion is known as arcs.
   [[nodiscard]] bool has_arcs() const {
-    return closed_forms_.pose && closed_forms_.pose->form.is_held;
+    return closed_forms_.pose && closed_forms_.pose->held >= 0;
   }
 
   /// A workspace, given back when this goes. Throws DatabaseError if the database was damaged since

@@ -64,11 +64,11 @@ struct Search {
   bool by_scheme() const;
   /// Returns whether there certainly are no answers but those found.
   Proof in_lanes() const;
-  /// The same by given seeds and all branches of Y; nothing if there may be answers left to search
-  /// for. `kind`: the proof that branches give.
+  /// The same by near, given seeds and all branches of Y; nothing if there may be answers left to
+  /// search for. `kind`: the proof that branches give.
   template <typename Branches>
-  std::optional<Proof> by_branches(Branches& branches, Proof kind, GivenSeeds& given,
-                                   const Pose& Y) const;
+  std::optional<Proof> by_branches(Branches& branches, Proof kind, NearSeed& near,
+                                   GivenSeeds& given, const Pose& Y) const;
   /// Whether there is an answer that leaves all that is preferred where it is; it is then found.
   bool hold_preferred() const;
   [[nodiscard]] CurveSearch<Answers> on_curve(const Pose& Y) const {
@@ -112,7 +112,8 @@ Proof Search<Answers>::in_lanes() const {
   }
   Enumeration* branches = workspace.lanes->branches_of(goal.task());
   if (branches != nullptr && request.database_seeds) {
-    const auto proof = by_branches(*branches, Proof::closed_form, given, Y);
+    NearSeed none(nullptr, work);
+    const auto proof = by_branches(*branches, Proof::closed_form, none, given, Y);
     if (proof) return *proof;
   }
   if (!goal.is_full_pose()) {
@@ -138,7 +139,7 @@ Proof Search<Answers>::in_lanes() const {
     }
   }
   if (workspace.lanes->roots && request.database_seeds) {
-    const auto proof = by_branches(*workspace.lanes->roots, Proof::sweep, given, Y);
+    const auto proof = by_branches(*workspace.lanes->roots, Proof::sweep, near, given, Y);
     if (proof) return *proof;
   }
   if constexpr (std::is_same_v<Answers, Collector>) {
@@ -193,11 +194,11 @@ bool Search<Answers>::hold_preferred() const {
 
 template <typename Answers>
 template <typename Branches>
-std::optional<Proof> Search<Answers>::by_branches(Branches& branches, Proof kind, GivenSeeds& given,
-                                                  const Pose& Y) const {
+std::optional<Proof> Search<Answers>::by_branches(Branches& branches, Proof kind, NearSeed& near,
+                                                  GivenSeeds& given, const Pose& Y) const {
   LaneRefiner& refiner = workspace.lanes->refiner;
   EnumeratedSeeds enumerated(branches, Y, answers.wants_more(), work, clock);
-  SeedSequence seeds(2, given, enumerated);
+  SeedSequence seeds(3, near, given, enumerated);
   refiner.begin(goal.task(), kNearAnswer, Width::narrow);
   answers.look_for_partners(false);
   const bool is_satisfied = search(refiner, seeds, answers, work);
@@ -209,6 +210,8 @@ std::optional<Proof> Search<Answers>::by_branches(Branches& branches, Proof kind
     if (enumerated.is_empty()) return kind;
     if (answers.has_any() && !branches.has_families()) return kind;
     if (kind == Proof::sweep) work.leave(kBesideRoots);
+  } else if (enumerated.is_certain_but_for_limits() && !branches.has_families()) {
+    return Proof::none;
   }
   if (enumerated.has_all()) answers.set_all_branches_tried();
   refiner.begin(goal.task(), kFirst, Width::narrow);

@@ -7,6 +7,7 @@
 
 #include "base/constants.hpp"
 #include "base/random.hpp"
+#include "database/key.hpp"
 #include "seeds/swept_branches.hpp"
 
 namespace iksel {

@@ -28,9 +28,11 @@ Enumeration::Enumeration(const ChainModel& model, const ClosedFormChain& chain, 
   // end by the arm's.
   const double lever = chain.tail.norm() + to_pose(model.kernel.tip).translation().norm() +
                        (chain.reversed ? model.reach_of_tcp() : 0.0);
-  chain_.form.error =
-      kMargin * std::max({(position_tolerance + lever * rotation_tolerance) / chain.unit,
-                          rotation_tolerance, kStructureTolerance});
+  const double tolerance =
+      std::max({(position_tolerance + lever * rotation_tolerance) / chain.unit, rotation_tolerance,
+                kStructureTolerance});
+  chain_.form.error = kMargin * (tolerance + chain.deviation);
+  are_answers_ = is_nominal && !chain.is_almost();
 }
 
 void Enumeration::find(const Pose& Y, bool wants_all) {
@@ -39,6 +41,7 @@ void Enumeration::find(const Pose& Y, bool wants_all) {
   size_ = 0;
   is_measured_ = false;
   certain_ = is_nominal_;
+  certain_but_for_limits_ = is_nominal_;
   for (int lane = 0; lane < kMost; ++lane) take(lane, wants_all);
 }
 
@@ -61,6 +64,7 @@ void Enumeration::take(int lane, bool wants_all) {
   if (beyond > 0 || (wants_all && !is_sure)) is_sure = is_regular(lane, bound);
   if (is_sure && beyond > bound) return;
   certain_ = certain_ && is_sure && !(beyond > 0);
+  certain_but_for_limits_ = certain_but_for_limits_ && is_sure;
   ++size_;
 }
 

@@ -32,11 +32,14 @@ class Enumeration {
   /// Inside the limits [rad].
   [[nodiscard]] const double* q(int i) const { return q_[static_cast<std::size_t>(i)].data(); }
   /// Whether they reach the goal without being refined, as a rule.
-  [[nodiscard]] bool are_answers() const { return is_nominal_; }
+  [[nodiscard]] bool are_answers() const { return are_answers_; }
   /// Whether these are the solutions, no more and no less. Not where the arm is so close to a
   /// singularity, or a branch so close to a limit, that what the tolerances allow could make a
   /// difference.
   [[nodiscard]] bool is_certain() const { return certain_; }
+  /// Whether these are the solutions but for branches so close to a limit, and away from
+  /// singularities: such a branch is one, or there is none beside it.
+  [[nodiscard]] bool is_certain_but_for_limits() const { return certain_but_for_limits_; }
   /// Whether each solution is near to one of these, if they are not certain either.
   [[nodiscard]] bool has_all() const { return is_nominal_ && !has_families(); }
   /// Whether each branch stands for many solutions.
@@ -60,12 +63,14 @@ class Enumeration {
   ClosedFormChain chain_;
   const lanes::LaneKernels& kernels_;
   bool is_nominal_;
+  bool are_answers_;
   lanes::BranchPack pack_ = all_branches();
   std::array<std::array<double, 6>, kMost> q_{};
   lanes::Regularity regularity_{};
   bool is_measured_ = false;  ///< these, of the last find()
   int size_ = 0;
   bool certain_ = false;
+  bool certain_but_for_limits_ = false;
 };
 
 /// Whether a lane that solve_branches solved has no branch inside the limits, or none at all, as
@@ -105,6 +110,10 @@ class EnumeratedSeeds {
 
   /// Whether there are certainly no solutions but these, and each was tried.
   [[nodiscard]] bool is_certain() const { return branches_.is_certain() && was_tried(); }
+  /// As of the branches, and each was tried.
+  [[nodiscard]] bool is_certain_but_for_limits() const {
+    return branches_.is_certain_but_for_limits() && was_tried();
+  }
   /// Whether each solution is near to one of these, and each was tried.
   [[nodiscard]] bool has_all() const { return branches_.has_all() && was_tried(); }
   /// Whether there are none.

@@ -34,6 +34,7 @@ class RootSweep {
   [[nodiscard]] bool are_answers() const { return are_answers_; }
   /// Whether there are no solutions but near to these.
   [[nodiscard]] bool is_certain() const { return certain_; }
+  [[nodiscard]] bool is_certain_but_for_limits() const { return false; }
   /// Double roots may be missed.
   [[nodiscard]] static bool has_all() { return false; }
   [[nodiscard]] static bool has_families() { return false; }

@@ -46,6 +46,19 @@ const Database& check_fits(const Robot& robot, const Database& database) {
 /// of one branch may lie at the default tolerances where the arm is singular.
 constexpr double kSame = 2e-3;
 
+/// Whether the arm stands at the goal already, where no move is the smallest, and nothing can
+/// refuse that; `near` is then the result.
+bool stays(const Goal& goal, const SolveRequest& request, Result& result) {
+  if (!request.near || request.objective.is_set() || request.exact || request.filter) return false;
+  if (!goal.check(*request.near, result)) return false;
+  if (!goal.is_free(*request.near)) {
+    result = {};
+    return false;
+  }
+  result.move = 0;
+  return true;
+}
+
 }  // namespace
 
 Solver::Impl::Impl(const Robot& robot_in, const SolverOptions& options_in,
@@ -95,6 +108,8 @@ Result Solver::Impl::find_answer(const Pose& target, const TaskSpace& of_call,
     if (!request.exact || first.status != Status::in_collision) return first;
   }
   const Goal goal(model(), of_call, target, request.scene ? &*request.scene : nullptr);
+  Result result;
+  if (stays(goal, request, result)) return result;
   if (!request.exact && goal.is_never_free())
     return find_first(target, of_call, request, workspace, times);
   Screen screen(request.scene, request.exact, request.filter, robot.dof());
@@ -106,7 +121,6 @@ Result Solver::Impl::find_answer(const Pose& target, const TaskSpace& of_call,
                    workspace.collected);
   collect(model(), options, search, workspace, times);
 
-  Result result;
   JointVector q;
   if (search.status != Status::solved) {
     result.status = search.status;

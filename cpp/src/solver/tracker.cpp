@@ -6,6 +6,7 @@
 #include "base/pose_check.hpp"
 #include "iksel/error.hpp"
 #include "iksel/path.hpp"
+#include "iksel/pose.hpp"
 #include "refine/closest_descent.hpp"
 #include "refine/self_motion.hpp"
 #include "search/closest.hpp"

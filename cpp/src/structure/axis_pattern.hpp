@@ -21,6 +21,10 @@ class AxisPattern {
   std::optional<lanes::Closure> find_sweep();
 
   [[nodiscard]] const ScrewAxes& axes() const { return axes_; }
+  /// By how much the pose of an arm with the axes as they were moved may differ from that of the
+  /// arm as it is [rad, and m in units of the reach]: an axis that is turned by an angle, or shifted
+  /// by a distance, moves what is behind it by no more than twice that.
+  [[nodiscard]] double deviation() const;
   /// Of axes 2 and 3 from being parallel [rad], and of i and i + 1 from meeting [in units of the
   /// reach].
   [[nodiscard]] double deviation(std::size_t i) const;
@@ -32,7 +36,10 @@ class AxisPattern {
   [[nodiscard]] bool is_on(const Eigen::Vector3d& point, std::size_t i) const;
   /// Where axes i and i + 1 meet becomes the point on both, and on `more` others.
   void join(std::size_t i, std::size_t more = 0);
+  /// Axis j takes the direction of i, or the opposite one.
+  void align(std::size_t i, std::size_t j);
 
+  ScrewAxes given_;
   ScrewAxes axes_;
   double reach_;
   double tolerance_;

@@ -149,9 +149,13 @@ double reach_of_links(const ChainModel& model) {
   return reach + Vector3d(model.kernel.flange.p).norm();
 }
 
-/// The last six axes, seen from one end. `sweeps`: those that are closed for an angle of a joint.
+/// What is looked for: that closes the form at once, or with a joint held before the six; or for an
+/// angle of one of the six, but for a residual.
+enum class Sought { closure, residual };
+
+/// The last six axes, seen from one end.
 std::optional<ClosedFormChain> look_from(const ChainModel& model, const CompletedAxes& completed,
-                                         bool reversed, bool sweeps) {
+                                         bool reversed, Sought sought, double tolerance) {
   ScrewAxes axes = reversed ? completed.axes.reversed() : completed.axes;
   ClosedFormChain chain;
   const int count = static_cast<int>(axes.h.size());
@@ -169,8 +173,8 @@ std::optional<ClosedFormChain> look_from(const ChainModel& model, const Complete
     axes.h.erase(axes.h.begin());
     axes.p.erase(axes.p.begin());
   }
-  AxisPattern pattern(std::move(axes), model.reach, sweeps ? kSweptTolerance : kStructureTolerance);
-  const bool has_residual = sweeps && before == 0;
+  AxisPattern pattern(std::move(axes), model.reach, tolerance);
+  const bool has_residual = sought == Sought::residual;
   const auto closure = has_residual ? pattern.find_sweep() : pattern.find_closure();
   if (!closure) return std::nullopt;
   for (int i = 0; i < kSix; ++i) chain.joints[i] = joint(before + i);
@@ -178,6 +182,8 @@ std::optional<ClosedFormChain> look_from(const ChainModel& model, const Complete
     const bool is_4 = *closure == Closure::sweep_4;
     chain.held = chain.joints[is_4 ? 3 : 5];
     chain.deviation = pattern.deviation(is_4 ? 4 : 3);
+  } else {
+    chain.deviation = pattern.deviation();
   }
   chain.dof = model.dof;
   chain.free = completed.free;
@@ -197,9 +203,9 @@ std::optional<ClosedFormChain> look_from(const ChainModel& model, const Complete
 }
 
 std::optional<ClosedFormChain> look_at(const ChainModel& model, const CompletedAxes& completed,
-                                       bool sweeps) {
+                                       Sought sought, double tolerance) {
   for (const bool reversed : {false, true}) {
-    auto chain = look_from(model, completed, reversed, sweeps);
+    auto chain = look_from(model, completed, reversed, sought, tolerance);
     if (chain) return chain;
   }
   return std::nullopt;
@@ -219,18 +225,24 @@ bool can_be_closed(const ChainModel& model) {
 std::optional<ClosedFormChain> find_closed_form(const ChainModel& model, const Task& task) {
   if (!can_be_closed(model)) return std::nullopt;
   for (const CompletedAxes& completed : complete_axes(model, task, kStructureTolerance)) {
-    auto chain = look_at(model, completed, /*sweeps=*/false);
+    auto chain = look_at(model, completed, Sought::closure, kStructureTolerance);
     if (chain) return chain;
   }
-  const bool has_sweep = model.dof == kSix || model.dof == kSix + 1;
-  if (!task.is_full_pose() || !has_sweep) return std::nullopt;
-  auto swept = look_at(model, {ScrewAxes::of(model)}, /*sweeps=*/true);
-  return swept || model.dof != kSix ? swept : find_loop(model);
+  if (!task.is_full_pose() || (model.dof != kSix && model.dof != kSix + 1)) return std::nullopt;
+  return look_at(model, {ScrewAxes::of(model)}, Sought::closure,
+                 model.dof == kSix ? kAlmostTolerance : kSweptTolerance);
+}
+
+std::optional<ClosedFormChain> find_residual(const ChainModel& model) {
+  if (model.dof != kSix || !can_be_closed(model)) return std::nullopt;
+  auto chain = look_at(model, {ScrewAxes::of(model)}, Sought::residual, kSweptTolerance);
+  return chain ? chain : find_loop(model);
 }
 
 ClosedForms ClosedForms::of(const ChainModel& model) {
   ClosedForms forms;
   forms.pose = find_closed_form(model);
+  if (!forms.pose || forms.pose->is_almost()) forms.residual = find_residual(model);
   for (const Task& task : {Task::position_only(), Task::free_spin(Axis::x),
                            Task::free_spin(Axis::y), Task::free_spin(Axis::z)}) {
     if (const auto chain = find_closed_form(model, task)) forms.tasks.emplace_back(task, *chain);

@@ -20,6 +20,9 @@ namespace iksel {
 inline constexpr double kStructureTolerance = 1e-9;
 /// The same where what is found is refined anyway, and nothing is proven: a pi of four decimals.
 inline constexpr double kSweptTolerance = 2e-5;
+/// The same of arms that are solved in closed form as if they were regular, and what is found
+/// refined: of calibrated ones as well. By how much they are not is an error of the target.
+inline constexpr double kAlmostTolerance = 1e-3;
 
 /// Six consecutive joints of a chain, seen from either end; before them there may be one that is
 /// held, be it a slide. A chain of fewer joints, or one for a task that leaves rotations free, is
@@ -51,6 +54,8 @@ struct ClosedFormChain {
   void set_target(const Pose& Y, lanes::BranchPack& pack) const;
   void set_target(const Pose& Y, int lane, lanes::BranchPack& pack) const;
   [[nodiscard]] bool turns_freely(int joint) const { return (free >> joint & 1U) != 0; }
+  /// Whether the axes lie only nearly as the form has them.
+  [[nodiscard]] bool is_almost() const { return deviation > 12 * kStructureTolerance; }
   /// Whether there are axes besides the chain's joints.
   [[nodiscard]] bool is_completed() const { return dof < 6 || free >> dof != 0; }
   /// Whether the angles of some joints do not matter, so that each branch is a family of solutions.
@@ -78,14 +83,19 @@ inline double branch_sign(int branch, int of) { return (branch >> of & 1) == 0 ?
 lanes::BranchPack all_branches();
 
 /// What makes the chain solvable, if anything does, for a task that asks for the whole pose, for
-/// all but a spin about one of the tool's axes, or for the position only. Sweeps are for whole
-/// poses.
+/// all but a spin about one of the tool's axes, or for the position only: at once, or of seven
+/// joints for each value of one, for whole poses.
 std::optional<ClosedFormChain> find_closed_form(const ChainModel& model,
                                                 const Task& task = Task::pose());
+
+/// What gives a residual for each angle of one of six joints, whose roots are the solutions.
+std::optional<ClosedFormChain> find_residual(const ChainModel& model);
 
 /// A chain's closed forms: for whole poses, and for each of the other tasks that have one.
 struct ClosedForms {
   std::optional<ClosedFormChain> pose;
+  /// Where `pose` is but nearly the chain, or there is none.
+  std::optional<ClosedFormChain> residual;
   std::vector<std::pair<Task, ClosedFormChain>> tasks;
 
   static ClosedForms of(const ChainModel& model);

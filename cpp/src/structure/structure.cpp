@@ -79,7 +79,8 @@ const char* to_string(StructureKind kind) {
 }
 
 Structure find_structure(const Robot& robot) {
-  const auto chain = find_closed_form(robot.model());
+  auto chain = find_closed_form(robot.model());
+  if (!chain) chain = find_residual(robot.model());
   if (!chain) {
     return {StructureKind::searched, "no axes lie so that it would help: solved by search"};
   }
@@ -98,6 +99,10 @@ Structure find_structure(const Robot& robot) {
   if (chain->is_completed()) {
     if (!text.empty()) text += ", ";
     text += "only " + std::to_string(chain->dof) + " joints";
+  }
+  if (chain->is_almost()) {
+    return {StructureKind::closed_form,
+            text + " nearly: solved in closed form as if they did, and refined"};
   }
   return {StructureKind::closed_form, text + ": solved in closed form"};
 }

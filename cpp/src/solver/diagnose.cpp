@@ -9,6 +9,7 @@
 #include "base/constants.hpp"
 #include "base/message_text.hpp"
 #include "base/pseudo_inverse.hpp"
+#include "iksel/error.hpp"
 #include "iksel/pose.hpp"
 #include "options/strategy.hpp"
 #include "refine/best_effort.hpp"

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "structure/known_solutions.hpp"
+
+#include <Eigen/LU>
+#include <cmath>
+
+#include "base/constants.hpp"
+#include "base/random.hpp"
+#include "simd/kernels.hpp"
+
+namespace iksel {
+namespace {
+
+constexpr int kConfigurations = 24;
+constexpr int kEnough = kConfigurations * 3 / 4;
+constexpr std::uint64_t kSeed = 8;
+/// How far a branch may be from the configuration that it is [rad]: near singularities rounding
+/// counts more.
+constexpr double kSame = 1e-4;
+/// What the axes lie off may count so many times.
+constexpr double kMagnified = 30;
+/// Of a self-motion's direction, the least that a swept joint has of it: where it has less, the
+/// others turn so fast beside it that samples see little of them (python -m bench laws).
+constexpr double kLeastPart = 0.02;
+
+/// Whether a lane's branch is q; joints that may have any angle, and whole turns, do not count.
+bool is_same(const ClosedFormChain& chain, const lanes::BranchPack& pack, int lane,
+             const JointVector& q, double most) {
+  for (int i = 0; i < 6; ++i) {
+    const int joint = chain.joints[i];
+    if (joint >= chain.dof || chain.turns_freely(joint)) continue;
+    // Written so that NaN is not the same.
+    if (!(std::abs(std::remainder(pack.q[i][lane] - q[joint], kTwoPi)) <= most)) return false;
+  }
+  return true;
+}
+
+/// How much of the direction in which all seven joints move without the tip is a joint's: by
+/// Cramer's rule it is the determinant of the other six columns.
+double part_of_self_motion(const Jacobian& J, int joint) {
+  double sum = 0;
+  double own = 0;
+  for (int left_out = 0; left_out < J.cols(); ++left_out) {
+    Eigen::Matrix<double, 6, 6> others;
+    for (int j = 0, column = 0; j < J.cols(); ++j) {
+      if (j != left_out) others.col(column++) = J.col(j);
+    }
+    const double determinant = others.determinant();
+    sum += determinant * determinant;
+    if (left_out == joint) own = std::abs(determinant);
+  }
+  return sum > 0 ? own / std::sqrt(sum) : 0;
+}
+
+}  // namespace
+
+bool finds_known_solutions(const ChainModel& model, ClosedFormChain chain) {
+  chain.use_limits(model);
+  const lanes::LaneKernels& kernels = lanes::choose_kernels();
+  const Pose base_inverse = to_pose(model.kernel.base).inverse();
+  const Pose tip_inverse = to_pose(model.kernel.tip).inverse();
+  const double most = kSame + kMagnified * chain.deviation;
+  lanes::BranchPack pack = all_branches();
+  Random random(kSeed);
+  JointVector q(model.dof);
+  int found = 0;
+  for (int i = 0; i < kConfigurations; ++i) {
+    model.joints.sample(random, q);
+    Pose pose;
+    Jacobian J;
+    model.fk_jacobian(q.data(), pose, J);
+    chain.set_target(base_inverse * pose * tip_inverse, pack);
+    if (chain.held >= 0) {
+      const double offset = model.kernel.joints[static_cast<std::size_t>(chain.held)].offset;
+      for (double& held : pack.held) held = q[chain.held] + offset;
+    }
+    kernels.find_branches(chain.form, pack);
+    int lane = 0;
+    while (lane < lanes::kWidth && !is_same(chain, pack, lane, q, most)) ++lane;
+    if (lane == lanes::kWidth) continue;
+    const bool moves =
+        model.dof <= 6 || part_of_self_motion(J, chain.held) > kLeastPart;
+    if (moves) ++found;
+  }
+  return found >= kEnough;
+}
+
+}  // namespace iksel

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whether a closed form finds solutions that are known.
+#pragma once
+
+#include "structure/closed_form.hpp"
+
+namespace iksel {
+
+/// Whether the branches of poses of random configurations have these among them: not where the axes
+/// lie so that solutions come in families, of which the form has some, or that it divides by 0. Of
+/// a chain with a joint that is held, at its own value; and that joint has to move along the
+/// self-motion. For full poses.
+bool finds_known_solutions(const ChainModel& model, ClosedFormChain chain);
+
+}  // namespace iksel

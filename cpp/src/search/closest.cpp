@@ -137,6 +137,8 @@ Vector6 to_vector(const PoseWeights& weights, const DatabaseData& data) {
 }
 
 void set_closest(const Goal& goal, const JointVector& q, Result& result) {
+  // What searches have missed.
+  if (goal.check(q, result)) return;
   result.status = Status::closest;
   result.q = q;
   goal.measure(q, result.position_error, result.rotation_error);

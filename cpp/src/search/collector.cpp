@@ -81,6 +81,13 @@ Verdict Collector::offer(int /*lane*/, JointVector& q) {
   return Verdict::next;
 }
 
+void Collector::offer_near() {
+  Result stays;
+  if (!request_.near || !goal_.check(*request_.near, stays)) return;
+  JointVector q = *request_.near;
+  offer(0, q);
+}
+
 void Collector::wrap_near(const JointVector& near, Result& answer) const {
   // An answer at a limit lies outside by rounding as often as not. Held to the limit it need not be
   // a whole turn away.

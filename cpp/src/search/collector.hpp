@@ -50,6 +50,8 @@ class Collector {
             CollectorMemory& memory);
 
   Verdict offer(int lane, JointVector& q);
+  /// Where the arm stands, if it stands at the goal.
+  void offer_near();
   /// Whether q is on its way to a solution that is known.
   template <typename Q>
   [[nodiscard]] bool knows(const Q& q) const {

@@ -109,6 +109,7 @@ WorkspacePool::WorkspacePool(const Robot& robot, const Robot& nominal, const Dat
     inner_chains_ = InnerChain::of(robot.model());
   }
   const auto& chain = closed_forms_.pose;
+  if (solves_in_lanes_ && has_arcs()) locked_arms_ = LockedArms::of(robot.model());
   if (solves_in_lanes_ && chain && !chain->is_completed()) {
     const bool proves =
         chain->held < 0 && &robot.model() == &nominal.model() && !chain->is_almost();
@@ -131,6 +132,10 @@ std::unique_ptr<Workspace> WorkspacePool::make() const {
                                   closed_forms_, trials_ ? &*trials_ : nullptr);
   for (const InnerChain& inner : inner_chains_) {
     workspace->lanes->inner_arms.emplace_back(robot_.model(), inner, lanes::choose_kernels());
+  }
+  if (!locked_arms_.arms.empty()) {
+    workspace->lanes->ends.emplace(locked_arms_, options_.position_tolerance,
+                                   options_.rotation_tolerance, lanes::choose_kernels());
   }
   return workspace;
 }

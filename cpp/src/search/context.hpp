@@ -16,6 +16,7 @@
 #include "refine/lane_refiner.hpp"
 #include "refine/scheme_refiner.hpp"
 #include "search/collector.hpp"
+#include "seeds/arc_ends.hpp"
 #include "seeds/branch_lanes.hpp"
 #include "seeds/closest_screen.hpp"
 #include "seeds/enumeration.hpp"
@@ -68,6 +69,7 @@ struct Workspace {
     std::optional<RootSweep> roots;
     std::optional<NearestOnCurve> nearest_on_curve;
     std::optional<SelfMotionArcs> arcs;
+    std::optional<ArcEnds> ends;
     /// Of longer chains.
     std::vector<InnerArm> inner_arms;
     /// Configurations of a self-motion that a scene is to look at.
@@ -126,6 +128,7 @@ class WorkspacePool {
   const SolverOptions& options_;
   ClosedForms closed_forms_;
   std::vector<InnerChain> inner_chains_;
+  LockedArms locked_arms_;
   bool solves_in_lanes_;
   std::optional<BranchTrials> trials_;
   /// As Storage::damaged of the database.

@@ -28,10 +28,14 @@ constexpr int kSweptJoints = 7;
 constexpr int kBeforeRoots = 4;
 /// The same in a scene, where each that collides costs more than a pack of samples.
 constexpr int kBeforeSamples = 2;
-/// Seeds after all roots of a sweep led nowhere: double ones, or just outside a limit.
+/// Seeds after all branches, or all roots of a sweep, led nowhere: double ones, or just outside a
+/// limit, or beside a singularity (python -m bench lost --targets 0 --hard 1000000).
+constexpr int kBesideBranches = 48;
 constexpr int kBesideRoots = 96;
-/// Seeds after a sweep that came close to an answer, but did not find one.
+/// Seeds after a sweep that came close to an answer, but did not find one; and after the ends of
+/// arcs did not either.
 constexpr int kBesideSweep = 192;
+constexpr int kBesideEnds = 64;
 
 /// What one search works with.
 template <typename Answers>
@@ -69,6 +73,11 @@ struct Search {
   template <typename Branches>
   std::optional<Proof> by_branches(Branches& branches, Proof kind, NearSeed& near,
                                    GivenSeeds& given, const Pose& Y) const;
+  /// For a first answer of seven joints: by the sweep of one, and where that leaves a doubt by the
+  /// ends of the self-motion's arcs. Nothing if there may be answers left to search for.
+  std::optional<Proof> by_sweep(const Pose& Y) const;
+  /// By the ends of the self-motion's arcs alone.
+  std::optional<Proof> by_ends() const;
   /// Whether there is an answer that leaves all that is preferred where it is; it is then found.
   bool hold_preferred() const;
   [[nodiscard]] CurveSearch<Answers> on_curve(const Pose& Y) const {
@@ -144,7 +153,12 @@ Proof Search<Answers>::in_lanes() const {
   }
   if constexpr (std::is_same_v<Answers, Collector>) {
     if (workspace.lanes->sweep && request.database_seeds) {
-      if (const auto proof = on_curve(Y).collect()) return *proof;
+      auto proof = on_curve(Y).collect();
+      if (workspace.lanes->ends && answers.status == Status::not_converged &&
+          (!proof || workspace.lanes->ends->are_closed())) {
+        if (const auto by_ends = this->by_ends()) proof = by_ends;
+      }
+      if (proof) return *proof;
     }
     if (request.database_seeds && answers.wants_nearest() && hold_preferred()) return Proof::none;
     if (run(refiner, near, given) || !request.database_seeds) return Proof::none;
@@ -157,10 +171,8 @@ Proof Search<Answers>::in_lanes() const {
     search(refiner, spread, answers, work);
   } else {
     if (workspace.lanes->sweep) {
-      SweptSeeds swept(*workspace.lanes->sweep, Y, work, clock);
-      if (search(refiner, swept, answers, work)) return Proof::none;
-      if (swept.is_none()) return Proof::sweep;
-      work.leave(kBesideSweep);
+      if (const auto proof = by_sweep(Y)) return *proof;
+      work.leave(workspace.lanes->ends ? kBesideEnds : kBesideSweep);
     }
     refiner.begin(goal.task(), kScreened, Width::wide);
     ScreenedSeeds screened(query, workspace.lanes->screen, Y, model.joints, options.seed, work,
@@ -169,6 +181,31 @@ Proof Search<Answers>::in_lanes() const {
   }
   clock.lap(&StageTimes::iterate);
   return Proof::none;
+}
+
+template <typename Answers>
+std::optional<Proof> Search<Answers>::by_ends() const {
+  LaneRefiner& refiner = workspace.lanes->refiner;
+  EndSeeds ends(*workspace.lanes->ends, goal.target(), work, clock);
+  refiner.begin(goal.task(), kNearAnswer, Width::narrow);
+  const bool is_satisfied = search(refiner, ends, answers, work);
+  refiner.begin(goal.task(), kFirst, Width::narrow);
+  clock.lap(&StageTimes::iterate);
+  if (is_satisfied || answers.has_any()) return Proof::none;
+  return ends.is_certain() ? std::optional(Proof::sweep) : std::nullopt;
+}
+
+template <typename Answers>
+std::optional<Proof> Search<Answers>::by_sweep(const Pose& Y) const {
+  Workspace::InLanes& lanes = *workspace.lanes;
+  SweptSeeds swept(*lanes.sweep, Y, work, clock);
+  if (search(lanes.refiner, swept, answers, work)) return Proof::none;
+  if (lanes.ends && (!swept.is_none() || lanes.ends->are_closed())) {
+    if (const auto proof = by_ends()) return *proof;
+  }
+  swept.give_close();
+  if (search(lanes.refiner, swept, answers, work)) return Proof::none;
+  return swept.is_none() ? std::optional(Proof::sweep) : std::nullopt;
 }
 
 template <typename Answers>
@@ -209,9 +246,13 @@ std::optional<Proof> Search<Answers>::by_branches(Branches& branches, Proof kind
   if (enumerated.is_certain()) {
     if (enumerated.is_empty()) return kind;
     if (answers.has_any() && !branches.has_families()) return kind;
-    if (kind == Proof::sweep) work.leave(kBesideRoots);
   } else if (enumerated.is_certain_but_for_limits() && !branches.has_families()) {
     return Proof::none;
+  }
+  if (kind == Proof::sweep) {
+    work.leave(kBesideRoots);
+  } else if (enumerated.has_all() && !answers.wants_more()) {
+    work.leave(kBesideBranches);
   }
   if (enumerated.has_all()) answers.set_all_branches_tried();
   refiner.begin(goal.task(), kFirst, Width::narrow);
@@ -257,6 +298,7 @@ void collect(const ChainModel& model, const SolverOptions& options, Collector& c
     return;
   }
   StageClock clock(times);
+  collector.offer_near();
   const Search<Collector> search{model,     options,   goal,           collector.request(),
                                  workspace, collector, collector.work, clock};
   if (workspace.lanes) {

@@ -8,8 +8,10 @@ namespace iksel {
 
 /// Whether the solution next to q, of six joints, certainly lies outside the joints' own limits,
 /// and with it whatever the tolerances [m, rad] allow around it. False where the arm is so close to
-/// a singularity that it cannot be told.
+/// a singularity that it cannot be told. With `and_partner`, whether the solution with which it
+/// meets where the arm is singular (fold_partner.hpp) does so too, if there is one.
 bool is_beyond_limits(const ChainModel& model, const Pose& T_base_tcp, JointVector q,
-                      double position_tolerance, double rotation_tolerance);
+                      double position_tolerance, double rotation_tolerance,
+                      bool and_partner = false);
 
 }  // namespace iksel

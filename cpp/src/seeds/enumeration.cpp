@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "seeds/beyond_limits.hpp"
+
 namespace iksel {
 namespace {
 
@@ -22,7 +24,12 @@ bool is_ruled_out(const lanes::BranchPack& pack, int lane) {
 Enumeration::Enumeration(const ChainModel& model, const ClosedFormChain& chain, bool is_nominal,
                          double position_tolerance, double rotation_tolerance,
                          const lanes::LaneKernels& kernels)
-    : model_(model), chain_(chain), kernels_(kernels), is_nominal_(is_nominal) {
+    : model_(model),
+      chain_(chain),
+      kernels_(kernels),
+      is_nominal_(is_nominal),
+      position_tolerance_(position_tolerance),
+      rotation_tolerance_(rotation_tolerance) {
   chain_.use_limits(model);
   // A rotation moves what the form sees of a target by the tool's length, and seen from the other
   // end by the arm's.
@@ -42,7 +49,7 @@ void Enumeration::find(const Pose& Y, bool wants_all) {
   is_measured_ = false;
   certain_ = is_nominal_;
   certain_but_for_limits_ = is_nominal_;
-  for (int lane = 0; lane < kMost; ++lane) take(lane, wants_all);
+  for (int lane = 0; lane < kMost; ++lane) take(Y, lane, wants_all);
 }
 
 void Enumeration::copy_joints(int lane, double* q) const {
@@ -54,7 +61,7 @@ void Enumeration::copy_joints(int lane, double* q) const {
   if (!model_.joints.coupled_turning.empty()) model_.joints.wrap(q);
 }
 
-void Enumeration::take(int lane, bool wants_all) {
+void Enumeration::take(const Pose& Y, int lane, bool wants_all) {
   if (is_ruled_out(pack_, lane)) return;
   std::array<double, 6>& q = q_[static_cast<std::size_t>(size_)];
   copy_joints(lane, q.data());
@@ -63,6 +70,13 @@ void Enumeration::take(int lane, bool wants_all) {
   bool is_sure = bound < kVague && pack_.worst[lane] >= 0;
   if (beyond > 0 || (wants_all && !is_sure)) is_sure = is_regular(lane, bound);
   if (is_sure && beyond > bound) return;
+  if (is_sure && beyond > 0 && is_nominal_ && !chain_.is_completed()) {
+    const Pose T_base_tcp = to_pose(model_.kernel.base) * Y * to_pose(model_.kernel.tip);
+    if (is_beyond_limits(model_, T_base_tcp, Eigen::Map<const Eigen::VectorXd>(q.data(), 6),
+                         position_tolerance_, rotation_tolerance_)) {
+      return;
+    }
+  }
   certain_ = certain_ && is_sure && !(beyond > 0);
   certain_but_for_limits_ = certain_but_for_limits_ && is_sure;
   ++size_;

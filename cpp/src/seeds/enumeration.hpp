@@ -54,7 +54,7 @@ class Enumeration {
 
  private:
   /// Takes a lane's branch if it may be one.
-  void take(int lane, bool wants_all);
+  void take(const Pose& Y, int lane, bool wants_all);
   /// Whether a lane's branch reaches the target far enough from singularities to tell by how much
   /// the tolerances may move it [rad].
   bool is_regular(int lane, double& bound);
@@ -64,6 +64,7 @@ class Enumeration {
   const lanes::LaneKernels& kernels_;
   bool is_nominal_;
   bool are_answers_;
+  double position_tolerance_, rotation_tolerance_;  ///< [m, rad]
   lanes::BranchPack pack_ = all_branches();
   std::array<std::array<double, 6>, kMost> q_{};
   lanes::Regularity regularity_{};

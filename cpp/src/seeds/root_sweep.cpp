@@ -86,6 +86,7 @@ bool RootSweep::find_loop_roots(const Pose& Y) {
 void RootSweep::find(const Pose& Y) {
   const bool is_clear = chain_.loop ? find_loop_roots(Y) : find_product_roots(Y);
   certain_ = concludes_ && roots_.is_complete() && is_clear;
+  is_at_limit_ = false;
   size_ = 0;
   // Each root has a lane, or by the first two of the three signs four: two to this power.
   const unsigned lanes_power = chain_.loop ? 0 : 2;
@@ -104,6 +105,9 @@ void RootSweep::find(const Pose& Y) {
       take(Y, roots_[first + (lane >> lanes_power)], static_cast<int>(lane));
     }
   }
+  certain_but_for_limits_ = certain_;
+  // At a limit, what the tolerances allow decides.
+  certain_ = certain_ && !is_at_limit_;
 }
 
 void RootSweep::take(const Pose& Y, const RootFinder::Root& root, int lane) {
@@ -127,14 +131,13 @@ void RootSweep::take(const Pose& Y, const RootFinder::Root& root, int lane) {
   }
   double* q = q_[static_cast<std::size_t>(size_)].data();
   chain_.copy_joints(pack_.q, lane, q);
-  if (!is_vague && certain_ && pack_.beyond[lane] > 0) {
+  if (certain_ && pack_.beyond[lane] > 0) {
     const Pose T_base_tcp = to_pose(model_.kernel.base) * Y * to_pose(model_.kernel.tip);
     if (is_beyond_limits(model_, T_base_tcp, Eigen::Map<const Eigen::VectorXd>(q, model_.dof),
-                         tolerance_ * chain_.unit, tolerance_)) {
+                         tolerance_ * chain_.unit, tolerance_, is_vague)) {
       return;
     }
-    // At a limit, what the tolerances allow decides.
-    certain_ = false;
+    is_at_limit_ = true;
   }
   ++size_;
 }

@@ -34,7 +34,9 @@ class RootSweep {
   [[nodiscard]] bool are_answers() const { return are_answers_; }
   /// Whether there are no solutions but near to these.
   [[nodiscard]] bool is_certain() const { return certain_; }
-  [[nodiscard]] bool is_certain_but_for_limits() const { return false; }
+  /// The same but for those so close to a limit, and away from singularities: such a one is a
+  /// solution, or there is none beside it.
+  [[nodiscard]] bool is_certain_but_for_limits() const { return certain_but_for_limits_; }
   /// Double roots may be missed.
   [[nodiscard]] static bool has_all() { return false; }
   [[nodiscard]] static bool has_families() { return false; }
@@ -61,6 +63,8 @@ class RootSweep {
   std::array<std::array<double, 6>, kMost> q_{};
   int size_ = 0;
   bool certain_ = false;
+  bool is_at_limit_ = false;
+  bool certain_but_for_limits_ = false;
 };
 
 }  // namespace iksel

@@ -90,24 +90,25 @@ class Sweep {
   int branch_ = 0;
 };
 
-/// These as a source of seeds.
+/// These as a source of seeds: the answer in a first stage; where there is none, and it is asked
+/// for, what comes close to one in a second.
 class SweptSeeds {
  public:
   SweptSeeds(Sweep& sweep, const Pose& Y, Work& work, StageClock& clock)
       : sweep_(sweep), Y_(Y), work_(work), clock_(clock) {}
 
   bool next_stage() {
-    if (done_ || !work_.has_left()) return false;
-    done_ = true;
+    if (!work_.has_left() || stage_ == (with_close_ ? 2 : 1)) return false;
+    if (stage_++ > 0) return !found_;
     found_ = sweep_.find(Y_);
     clock_.lap(&StageTimes::query);
     return true;
   }
 
-  /// The answer; if there is none, what comes close to one.
   template <typename Refiner>
   bool load(Refiner& refiner, int lane) {
-    if (next_ == (found_ ? 1 : sweep_.close_count()) || !work_.take()) return false;
+    const std::size_t count = stage_ > 1 ? sweep_.close_count() : found_ ? 1 : 0;
+    if (next_ == count || !work_.take()) return false;
     if (found_) {
       refiner.load_answer(lane, sweep_.q());
     } else {
@@ -116,15 +117,18 @@ class SweptSeeds {
     ++next_;
     return true;
   }
+  /// From now on, what comes close to an answer is given too.
+  void give_close() { with_close_ = true; }
   /// Whether there is no answer.
-  [[nodiscard]] bool is_none() const { return done_ && !found_ && sweep_.is_none(); }
+  [[nodiscard]] bool is_none() const { return stage_ > 0 && !found_ && sweep_.is_none(); }
 
  private:
   Sweep& sweep_;
   const Pose& Y_;
   Work& work_;
   StageClock& clock_;
-  bool done_ = false;
+  int stage_ = 0;
+  bool with_close_ = false;
   bool found_ = false;
   std::size_t next_ = 0;
 };

@@ -94,6 +94,8 @@ class Diagnoser {
     Enumeration* branches = workspace.lanes->branches_of(task_);
     // Of a completed chain, what is missing may be of a joint that there is not.
     if (branches == nullptr || branches->chain().is_completed()) return false;
+    // Nor are those of an arm that is but nearly regular its own.
+    if (!branches->are_answers()) return false;
     const Pose Y = workspace.lanes->query.reduce(goal_.target());
     auto reasons = explain_branches(model_, goal_, Y, *branches);
     if (!reasons) return false;
@@ -155,12 +157,14 @@ class Diagnoser {
       JointVector branch = model_.joints.turned_to_middle(answer.q);
       if (!model_.joints.coupled_turning.empty()) model_.joints.wrap(branch.data());
       effort.from(branch);
+      if (is_answer(model_.joints.clamp(branch))) return true;
       const double violation = worst_violation(model_.joints, branch);
       if (violation >= least) continue;
       least = violation;
       out_.branch = branch;
     }
     if (least == kInfinity) return false;
+    if (is_answer(effort.q())) return true;
     set_violation(model_.joints, out_.branch, out_);
     describe(effort.q());
     out_.cause = Cause::joint_limits;
@@ -253,6 +257,18 @@ class Diagnoser {
   }
 
   bool describe(const JointVector& q) { return iksel::describe(model_, goal_, q, out_); }
+
+  /// Whether q is an answer that the search has missed; it is then what is said.
+  bool is_answer(const JointVector& q) {
+    Result ignored;
+    if (!goal_.check(q, ignored)) return false;
+    describe(q);
+    out_.branch = JointVector();
+    out_.q_is_solution = true;
+    out_.cause = Cause::budget;
+    out_.message = "an answer exists that the search has missed: give it as a seed, or as `near`";
+    return true;
+  }
 
   const Solver::Impl& solver_;
   const ChainModel& model_;

@@ -238,8 +238,10 @@ std::optional<ClosedFormChain> find_closed_form(const ChainModel& model, const T
 
 std::optional<ClosedFormChain> find_residual(const ChainModel& model) {
   if (model.dof != kSix || !can_be_closed(model)) return std::nullopt;
-  auto chain = look_at(model, {ScrewAxes::of(model)}, Sought::residual, kSweptTolerance);
-  return chain ? chain : find_loop(model);
+  const CompletedAxes axes{ScrewAxes::of(model)};
+  auto chain = look_at(model, axes, Sought::residual, kStructureTolerance);
+  if (!chain) chain = find_loop(model);
+  return chain ? chain : look_at(model, axes, Sought::residual, kSweptTolerance);
 }
 
 ClosedForms ClosedForms::of(const ChainModel& model) {

@@ -22,7 +22,7 @@ inline constexpr double kStructureTolerance = 1e-9;
 inline constexpr double kSweptTolerance = 2e-5;
 /// The same of arms that are solved in closed form as if they were regular, and what is found
 /// refined: of calibrated ones as well. By how much they are not is an error of the target.
-inline constexpr double kAlmostTolerance = 1e-3;
+inline constexpr double kAlmostTolerance = 2e-4;
 
 /// Six consecutive joints of a chain, seen from either end; before them there may be one that is
 /// held, be it a slide. A chain of fewer joints, or one for a task that leaves rotations free, is

@@ -52,7 +52,30 @@ double part_of_self_motion(const Jacobian& J, int joint) {
   return sum > 0 ? own / std::sqrt(sum) : 0;
 }
 
+/// Visits random configurations inside the limits, always the same ones.
+template <typename Visit>
+void visit_configurations(const ChainModel& model, const Visit& visit) {
+  Random random(kSeed);
+  JointVector q(model.dof);
+  Pose pose;
+  Jacobian J;
+  for (int i = 0; i < kConfigurations; ++i) {
+    model.joints.sample(random, q);
+    model.fk_jacobian(q.data(), pose, J);
+    visit(q, pose, J);
+  }
+}
+
 }  // namespace
+
+bool takes_part_in_self_motion(const ChainModel& model, int joint) {
+  constexpr double kRounding = 1e-6;
+  bool takes_part = false;
+  visit_configurations(model, [&](const JointVector&, const Pose&, const Jacobian& J) {
+    takes_part = takes_part || part_of_self_motion(J, joint) > kRounding;
+  });
+  return takes_part;
+}
 
 bool finds_known_solutions(const ChainModel& model, ClosedFormChain chain) {
   chain.use_limits(model);
@@ -61,14 +84,8 @@ bool finds_known_solutions(const ChainModel& model, ClosedFormChain chain) {
   const Pose tip_inverse = to_pose(model.kernel.tip).inverse();
   const double most = kSame + kMagnified * chain.deviation;
   lanes::BranchPack pack = all_branches();
-  Random random(kSeed);
-  JointVector q(model.dof);
   int found = 0;
-  for (int i = 0; i < kConfigurations; ++i) {
-    model.joints.sample(random, q);
-    Pose pose;
-    Jacobian J;
-    model.fk_jacobian(q.data(), pose, J);
+  visit_configurations(model, [&](const JointVector& q, const Pose& pose, const Jacobian& J) {
     chain.set_target(base_inverse * pose * tip_inverse, pack);
     if (chain.held >= 0) {
       const double offset = model.kernel.joints[static_cast<std::size_t>(chain.held)].offset;
@@ -77,11 +94,9 @@ bool finds_known_solutions(const ChainModel& model, ClosedFormChain chain) {
     kernels.find_branches(chain.form, pack);
     int lane = 0;
     while (lane < lanes::kWidth && !is_same(chain, pack, lane, q, most)) ++lane;
-    if (lane == lanes::kWidth) continue;
-    const bool moves =
-        model.dof <= 6 || part_of_self_motion(J, chain.held) > kLeastPart;
-    if (moves) ++found;
-  }
+    const bool moves = model.dof <= 6 || part_of_self_motion(J, chain.held) > kLeastPart;
+    if (lane < lanes::kWidth && moves) ++found;
+  });
   return found >= kEnough;
 }
 

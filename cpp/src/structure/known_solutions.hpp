@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether a closed form finds solutions that are known.
+// Whether a closed form finds solutions that are known, and which joints a self-motion moves.
 #pragma once
 
 #include "structure/closed_form.hpp"
@@ -11,5 +11,9 @@ namespace iksel {
 /// a chain with a joint that is held, at its own value; and that joint has to move along the
 /// self-motion. For full poses.
 bool finds_known_solutions(const ChainModel& model, ClosedFormChain chain);
+
+/// Whether a joint of seven moves along the self-motion anywhere: where it does not, its value is
+/// fixed by the pose, and the six others are singular wherever it is held.
+bool takes_part_in_self_motion(const ChainModel& model, int joint);
 
 }  // namespace iksel

@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from bench import body, closest, coupled, dual, lost, plan, scene, tips
+from bench import body, closest, coupled, dual, laws, lost, plan, scene, tips
 from bench.arguments import add_robots
 from bench.arms import RIVAL_ARMS
 from bench.frozen import compare, record
@@ -45,6 +45,7 @@ ALONE = {
     "closest": closest,
     "coupled": coupled,
     "dual": dual,
+    "laws": laws,
     "lost": lost,
     "tips": tips,
 }

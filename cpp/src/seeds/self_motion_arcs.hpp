@@ -128,6 +128,7 @@ class SelfMotionArcs {
   std::vector<BranchSpan> spans_;
   std::vector<Piece> pieces_;
   std::vector<Arc> arcs_;
+  int splits_left_ = 0;  ///< of pieces between two nodes
 };
 
 }  // namespace iksel

@@ -91,6 +91,10 @@ bool SelfMotionArcs::add_partner(int branch, const BranchSpan& span, double part
 }
 
 void SelfMotionArcs::chain(double spacing) {
+  // Several times as many as arcs of this length need. Where the arm is singular all along a span,
+  // its joints are rounding's, and no split brings them nearer to each other.
+  constexpr double kLongest = 20 * kTwoPi;
+  splits_left_ = static_cast<int>(std::min(kLongest / spacing, 1e9)) + 64;
   const auto count = static_cast<int>(pieces_.size());
   // First those that end somewhere, then what is left: rings.
   for (int side = 0; side < 2; ++side) {
@@ -146,7 +150,8 @@ void SelfMotionArcs::append(const Piece& piece, bool backwards, double spacing, 
 void SelfMotionArcs::append_between(const BranchSpan& span, const Node& a, const Node& b,
                                     double spacing, int depth, Arc& arc) {
   constexpr int kDeepest = 6;
-  if (depth == kDeepest || distance(a.q, b.q) <= spacing) return;
+  if (depth == kDeepest || splits_left_ <= 0 || distance(a.q, b.q) <= spacing) return;
+  --splits_left_;
   const std::array<Node, kLanes> between = nodes_between(span, a, b);
   const Node* before = &a;
   for (const Node& next : between) {

@@ -110,7 +110,7 @@ void AnswerSelector::descend(JointVector& q) {
 bool AnswerSelector::select_image(double best, JointVector& q) {
   constexpr std::size_t kChunk = 64;
   const auto dof = static_cast<std::size_t>(model_.dof);
-  std::array<double, kChunk* static_cast<std::size_t>(kMaxDof)> images;
+  std::array<double, kChunk* static_cast<std::size_t>(kMaxDof)> images{};
   std::size_t count = 0;
   bool any = false;
   const auto flush = [&] {

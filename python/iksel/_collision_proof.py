@@ -11,11 +11,13 @@ import numpy as np
 from iksel._collision_shapes import place
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
     from iksel_cpp import Robot
 
     from iksel._arm_links import ArmLinks
     from iksel._arrays import FloatArray
-    from iksel._collision_shapes import Shapes
+    from iksel._collision_shapes import Placed, Shapes
 
     Pair = tuple[str, str]
 
@@ -23,6 +25,8 @@ _MOST_JOINTS = 2
 """That move two links against each other; with more, cells would be too many."""
 _MOST_CELLS = 20_000
 """Looked at for a pair: what is not proven by then is not worth the time."""
+_MOST_TESTS = 100_000
+"""Of two hulls, for all pairs together: some seconds, however many links there are."""
 
 
 class PairProver:
@@ -32,6 +36,9 @@ class PairProver:
     farther apart than any point of them moves inside it, or the cell is divided. With
     two joints, seen from what is between these, each joint moves one of the links, and
     each point of it at most by the angle times its distance from the axis.
+
+    Convex hulls stand for meshes, as what encloses them: how far these are apart is
+    known a thousand times as fast.
     """
 
     def __init__(self, shapes: Shapes, links: ArmLinks, robot: Robot) -> None:
@@ -42,12 +49,36 @@ class PairProver:
         lower = np.where(np.isfinite(robot.lower), robot.lower, -np.pi)
         upper = np.where(np.isfinite(robot.upper), robot.upper, np.pi)
         self._middle, self._half = (lower + upper) / 2, (upper - lower) / 2
+        self._tests = 0  # that may still be made
 
-    def are_apart(self, pair: Pair, margin: float) -> bool:
-        """Whether the links certainly are farther apart than margin [m] everywhere."""
-        joints = self._links.joints_between(*pair)
-        if joints is None or not 0 < len(joints) <= _MOST_JOINTS:
-            return False
+    def look(self, pairs: Sequence[Pair], margin: float) -> Iterator[tuple[Pair, bool]]:
+        """Say of pairs of links whether they certainly stay farther apart than margin.
+
+        Each may use an equal part of the tests that are left.
+
+        Args:
+            pairs: Of links.
+            margin: Their least distance [m].
+        """
+        waiting = sum(bool(self._joints_between(pair)) for pair in pairs)
+        left = _MOST_TESTS
+        for pair in pairs:
+            if not self._joints_between(pair):
+                yield pair, False
+                continue
+            own = self._tests = left // waiting
+            yield pair, self._are_apart(pair, margin)
+            left -= own - self._tests
+            waiting -= 1
+
+    def _joints_between(self, pair: Pair) -> list[str]:
+        """The joints that move two links; none: too many, or not the arm's."""
+        joints = self._links.joints_between(*pair) or []
+        return joints if len(joints) <= _MOST_JOINTS else []
+
+    def _are_apart(self, pair: Pair, margin: float) -> bool:
+        """Whether two links are, as far as the tests that are left can tell."""
+        joints = self._joints_between(pair)
         columns = [self._names.index(name) for name in joints]
         half = self._half[columns]
         # The joint nearest to a link moves this one; a joint alone moves the second.
@@ -73,20 +104,26 @@ class PairProver:
     def _near(
         self, pair: Pair, columns: list[int], cells: FloatArray, margin: float
     ) -> FloatArray:
-        """The cells in whose middles the links are within margin."""
+        """The cells in whose middles the hulls are within margin, or may be."""
         q = np.repeat(self._middle[None], len(cells), axis=0)
         q[:, columns] = cells
         parts = self._shapes.parts(pair)
         found = [
-            any(
-                self._shapes.touch(placed, n, parts[k], margin)
-                for k in np.flatnonzero(row)
-            )
+            any(self._touch(placed, n, parts[k], margin) for k in np.flatnonzero(row))
             for placed in place(self._shapes, self._links, q)
             for n, row in enumerate(placed.near(np.array(parts), margin))
         ]
         near: FloatArray = cells[np.array(found, dtype=bool)]
         return near
+
+    def _touch(
+        self, placed: Placed, n: int, part: tuple[int, int], margin: float
+    ) -> bool:
+        """Whether two hulls are within margin; taken for so once no test is left."""
+        if self._tests == 0:
+            return True
+        self._tests -= 1
+        return self._shapes.touch(placed, n, part, margin, hulls=True)
 
     def _speed(self, column: int, joint: str, link: str) -> float:
         """How far a joint moves any point of a link that it is next to [m per unit]."""

@@ -19,8 +19,9 @@ from iksel_cpp import InvalidArgumentError, UnknownNameError
 
 from iksel._arm_links import ArmLinks
 from iksel._arrays import as_floats
-from iksel._collision_pairs import PairSampler, srdf_pairs, srdf_text
-from iksel._collision_proof import PairProver
+from iksel._cache_files import file_name, key_of
+from iksel._collision_pairs import srdf_pairs, srdf_text
+from iksel._collision_search import METHOD, PairSearch, load_verdicts, save_verdicts
 from iksel._collision_shapes import Shapes, import_coal, place, read_shapes
 from iksel._urdf_xml import read_xml
 from iksel.description import read_description
@@ -28,7 +29,7 @@ from iksel.description import read_description
 if TYPE_CHECKING:
     import os
     import xml.etree.ElementTree as ET
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping
 
     import numpy.typing as npt
     from iksel_cpp import Robot
@@ -74,6 +75,8 @@ class SelfCollision:
         other_joints: Mapping[str, float] | None = None,
         packages: Mapping[str, str | os.PathLike[str]] | None = None,
         xacro_args: Mapping[str, str] | None = None,
+        cache: str | os.PathLike[str] | None = None,
+        progress: Callable[[int, int], Any] | None = None,
     ) -> None:
         """Read the collision geometry of all links and find the pairs to look at.
 
@@ -94,10 +97,15 @@ class SelfCollision:
             packages: Folders of package:// names of meshes; others are looked for
                 around the file, in $ROS_PACKAGE_PATH and $AMENT_PREFIX_PATH.
             xacro_args: Values of a xacro file's arguments.
+            cache: Folder, such as the database's, that keeps what was found of the
+                pairs, in a file named after the robot and a hash of all that it depends
+                on. None: they are looked at anew.
+            progress: Called with the number of looks at pairs done and in all: each is
+                looked at for a proof, and in samples.
 
         Raises:
-            InvalidArgumentError: coal is missing, margin or samples is negative, or a
-                pair is both in `ignore` and in `keep`.
+            InvalidArgumentError: coal is missing, margin or samples is negative, a pair
+                is both in `ignore` and in `keep`, or the cache cannot be written.
             UrdfError: The URDF, the SRDF or a mesh cannot be read, there is no
                 collision geometry, or joints mimic each other in a circle.
             UnknownNameError: The URDF lacks a joint of the arm or of a mimic tag, or
@@ -118,11 +126,24 @@ class SelfCollision:
         self._kept = self._read_pairs("keep", keep)
         self._ignored: dict[Pair, str] = {}
         self._ignore_listed(srdf, self._read_pairs("ignore", ignore))
-        self._ignore_apart(robot, margin)
-        self._margins = dict.fromkeys(self._left(), margin)
-        if samples:
-            q = robot.random_configurations(samples, seed=seed)
-            self._ignore_sampled(q, margin, never=srdf is None)
+        pairs = [pair for pair in self._left() if frozenset(pair) not in self._kept]
+        search = PairSearch(margin, samples, seed, never=srdf is None)
+        file = None
+        if cache is not None:
+            joints = (robot.chain_hash, robot.lower.tolist(), robot.upper.tolist())
+            others = sorted((other_joints or {}).items())
+            made_of = (joints, others, pairs, search)
+            key = key_of(METHOD, root, folder, packages or {}, made_of)
+            file = Path(cache) / file_name(robot.name, key, "pairs.json")
+        found = load_verdicts(file, pairs) if file is not None else None
+        if found is None:
+            found = search.run(self._shapes, self._links, robot, pairs, progress)
+            if file is not None:
+                save_verdicts(file, found)
+        close = {pair for pair, verdict in found.items() if verdict == "close"}
+        self._ignored |= {p: why for p, why in found.items() if p not in close}
+        # Close ones cannot keep the margin.
+        self._margins = {p: 0.0 if p in close else margin for p in self._left()}
         self._list_parts()
 
     @property
@@ -236,24 +257,6 @@ class SelfCollision:
                 self._ignored[a, b] = "adjacent"
             elif pair in disabled:
                 self._ignored[a, b] = f"{_FROM_SRDF}{disabled[pair]}"
-
-    def _ignore_apart(self, robot: Robot, margin: float) -> None:
-        """Ignore pairs that are proven to stay farther apart than the margin."""
-        prover = PairProver(self._shapes, self._links, robot)
-        for pair in self._left():
-            if frozenset(pair) not in self._kept and prover.are_apart(pair, margin):
-                self._ignored[pair] = "apart"
-
-    def _ignore_sampled(self, q: FloatArray, margin: float, *, never: bool) -> None:
-        """Ignore pairs that always touch or never do; hold close ones to 0 m."""
-        pairs = [pair for pair in self._left() if frozenset(pair) not in self._kept]
-        sampler = PairSampler(self._shapes, self._links, q)
-        found = sampler.look(pairs, margin, never=never)
-        self._ignored.update(dict.fromkeys(found.always, "always"))
-        self._ignored.update(dict.fromkeys(found.never, "never"))
-        self._margins = {
-            pair: 0.0 if pair in found.close else margin for pair in self._left()
-        }
 
     def _left(self) -> list[Pair]:
         """The pairs that are not ignored so far."""

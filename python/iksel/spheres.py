@@ -18,11 +18,12 @@ import zipfile
 import zlib
 from itertools import combinations
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from iksel_cpp import InvalidArgumentError, RobotSpheres, Scene
 
+from iksel._cache_files import file_name, key_of
 from iksel._collision_shapes import (
     import_coal,
     is_sphere,
@@ -31,7 +32,6 @@ from iksel._collision_shapes import (
     spheres_around,
 )
 from iksel._files import read_text, replaced
-from iksel._sphere_cache import file_name, key_of
 from iksel._sphere_cover import cover
 from iksel._sphere_files import read_links, read_yaml
 from iksel._urdf_xml import read_xml
@@ -39,7 +39,7 @@ from iksel.collision import SelfCollision, read_urdf
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Callable, Iterable, Mapping
 
     from iksel_cpp import Robot
 
@@ -50,6 +50,8 @@ if TYPE_CHECKING:
     Pairs = list[tuple[str, str]]
 
 _FORMAT = "iksel spheres 1"
+_METHOD = "cover 5"
+"""To be changed with how spheres are made."""
 PART_OF_BOX = 1 / 10
 """Of max_error, which spheres may stick out of a box: it takes few."""
 PART_OF_CYLINDER = 1 / 40
@@ -69,6 +71,7 @@ def from_urdf(
     packages: Mapping[str, str | os.PathLike[str]] | None = None,
     xacro_args: Mapping[str, str] | None = None,
     cache: str | os.PathLike[str] | None = None,
+    progress: Callable[[int, int], Any] | None = None,
 ) -> RobotSpheres:
     """Cover the collision geometry of a URDF's links by spheres.
 
@@ -93,6 +96,7 @@ def from_urdf(
         cache: Folder, such as the database's, that keeps what is made here, in a file
             named after the robot and a hash of all that it depends on. None: it is made
             anew.
+        progress: As SelfCollision's, while pairs of links are looked at.
 
     Raises:
         InvalidArgumentError: coal is missing, max_error is not above 0, or the cache
@@ -109,8 +113,9 @@ def from_urdf(
         listed = read_xml("srdf", srdf)[1] if srdf is not None else None
         options = (max_error, listed, ignore, samples, seed)
         others = sorted((other_joints or {}).items())
-        key = key_of(root, folder, packages or {}, (robot.chain_hash, *options, others))
-        kept = Path(cache) / file_name(robot.name, key)
+        made_of = (robot.chain_hash, *options, others)
+        key = key_of(_METHOD, root, folder, packages or {}, made_of)
+        kept = Path(cache) / file_name(robot.name, key, "spheres.npz")
         with contextlib.suppress(InvalidArgumentError):  # none, or a damaged one
             return load(kept)
     coal = import_coal()
@@ -124,6 +129,8 @@ def from_urdf(
         other_joints=other_joints,
         packages=packages,
         xacro_args=xacro_args,
+        cache=cache,
+        progress=progress,
     ).pairs
     shapes: dict[str, list[Shape]] = {}
     for shape in read_shapes(coal, root, folder, packages or {}):

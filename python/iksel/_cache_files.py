@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Names of files that keep the spheres of a robot."""
+"""Names of files that keep what is made of the geometry of a robot."""
 
 from __future__ import annotations
 
@@ -14,15 +14,18 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-_METHOD = "cover 4"  # to be changed with how spheres are made
-
 
 def key_of(
-    root: ET.Element, folder: Path, packages: Mapping[str, Any], options: object
+    method: str,
+    root: ET.Element,
+    folder: Path,
+    packages: Mapping[str, Any],
+    options: object,
 ) -> str:
-    """A hash of all that spheres depend on.
+    """A hash of all that spheres, or pairs of links, depend on.
 
     Args:
+        method: How they are made: another name with each change of that.
         root: The URDF.
         folder: Where its relative file names start.
         packages: Folders of packages.
@@ -31,7 +34,7 @@ def key_of(
     Raises:
         UnknownNameError: A package is nowhere.
     """
-    key = hashlib.sha256(f"{_METHOD} {options!r}".encode())
+    key = hashlib.sha256(f"{method} {options!r}".encode())
     key.update(ET.tostring(root))
     for mesh in root.iterfind(".//collision/geometry/mesh"):
         path = resolve_path(mesh.get("filename", ""), packages, folder)
@@ -40,6 +43,6 @@ def key_of(
     return key.hexdigest()
 
 
-def file_name(robot: str, key: str) -> str:
+def file_name(robot: str, key: str, suffix: str) -> str:
     """The name of a file for a robot of that name."""
-    return f"{re.sub(r'[^A-Za-z0-9_.-]', '_', robot)}-{key[:16]}.spheres.npz"
+    return f"{re.sub(r'[^A-Za-z0-9_.-]', '_', robot)}-{key[:16]}.{suffix}"

@@ -358,6 +358,29 @@ def test_path_that_breaks(run: Run, poses: Path) -> None:
     assert "waypoint 20 (from 0)" in text
 
 
+def test_path_that_is_too_fast(run: Run, made, poses: Path) -> None:
+    """It says which joint, how fast it would have to be, and a time step that does."""
+    robot = made.robot("ur3")
+    far = [0.5, *map(float, Q[1:])]
+    words = ["path", "ur3", poses, "--start", *map(repr, far)]
+    output = assert_good(run(*words, "--dt", "0.01", "--json"), code=1)
+    answer = output.json()
+    assert (answer["status"], answer["first_unreachable"]) == ("too_fast", 0)
+    why = answer["too_fast"]
+    joint = robot.joint_names.index(why["joint"])
+    assert (why["joint"], why["waypoint"]) == ("shoulder_pan_joint", 0)
+    turn = abs(float(Q[0]) - 0.5)
+    assert why["speed"] == pytest.approx(turn / 0.01, rel=0.05)
+    assert why["velocity_limit"] == robot.velocity_limit[joint]
+    step = repr(why["dt"])
+    assert_good(run(*words, "--dt", step))
+    assert_good(run(*words, "--dt", repr(0.97 * why["dt"])), code=1)
+    text = assert_good(run(*words, "--dt", "0.01"), code=1).out
+    assert f"in time with       --dt {why['dt']:g}" in text
+    assert re.search(r"too fast +shoulder_pan_joint would .* rad/s to waypoint 0", text)
+    assert "joint values" not in text
+
+
 def test_path_from_stdin(
     run: Run, poses: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

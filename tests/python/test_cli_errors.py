@@ -21,7 +21,10 @@ FEW = ["--samples", "500"]
 
 BAD = [
     ("", "COMMAND"),
-    ("sovle ur3", "sovle.*robots.*info.*solve.*build.*evaluate"),
+    ("sovle ur3", "sovle.*robots.*info.*solve.*build.*; did you mean solve?"),
+    ("jacobi ur3", "'jacobi'.*; did you mean jacobian?"),
+    ("solve ur3 --objective limit", "'limit'.*; did you mean limits?"),
+    ("solve ur3 --order xyz", "'xyz'.*; did you mean xyzw?"),
     ("--frobnicate", "COMMAND|frobnicate"),
     ("robots ur3", "unrecognized arguments: ur3"),
     ("info", "ROBOT"),

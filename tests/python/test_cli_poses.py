@@ -50,6 +50,13 @@ def folder(tmp_path_factory, targets) -> Path:
     names = np.array(["x", "y", "z", "qw", "qx", "qy", "qz"])[order]
     write("quaternion.csv", [",".join(names), *rows(quaternion[:, order])])
     write("numbers.txt", ["# a comment", "", *rows(flat, "  ")])
+    ros = quaternion[:, [0, 1, 2, 4, 5, 6, 3]]
+    write("ros.txt", rows(ros, " "))
+    np.save(folder / "ros.npy", ros)
+    times = [f"{0.01 * i}" for i in range(COUNT)]
+    names = "time,x,y,z,qx,qy,qz,qw,name"
+    cells = zip(times, rows(ros), strict=True)
+    write("times.csv", [names, *(f"{t},{row},pick {t}" for t, row in cells)])
     write("lists.jsonl", [json.dumps(pose) for pose in targets.tolist()])
     poses = ({"pose": pose, "name": "x"} for pose in targets.tolist())
     write("objects.jsonl", [json.dumps(pose) for pose in poses])
@@ -98,6 +105,32 @@ def test_all_formats_hold_the_same(run: Run, folder: Path, tmp_path: Path) -> No
     assert answer("flat.npy", "csv").read_bytes() == first.read_bytes()
     quaternions = answer("quaternion.csv", "csv").read_bytes()
     assert answer("quaternion.npy", "csv").read_bytes() == quaternions
+
+
+def test_quaternions_with_the_scalar_last(
+    run: Run, folder: Path, tmp_path: Path, targets
+) -> None:
+    """As ROS prints them, with --order xyzw; columns of that name need no flag."""
+    words = ["solve", "ur3", *FEW, "--poses"]
+
+    def answers(name: str, *more: str) -> np.ndarray:
+        path = tmp_path / f"{name}-{len(more)}.csv"
+        assert_good(run(*words, folder / name, "-o", path, *more))
+        return read(path)[2]
+
+    first = answers("quaternion.csv")
+    order = ("--order", "xyzw")
+    for name in ("ros.txt", "ros.npy", "times.csv", "quaternion.csv"):
+        np.testing.assert_allclose(answers(name, *order), first, atol=1e-9)
+    np.testing.assert_allclose(answers("times.csv"), first, atol=1e-9)
+    position, (w, *xyz) = targets[0, :3, 3], iksel.quaternion_from_pose(targets[0])
+    pose = [repr(float(x)) for x in (*position, *xyz, w)]
+    told = run("solve", "ur3", *FEW, "--json", *order, "--pose", *pose).json()
+    np.testing.assert_allclose(told["target"], targets[0], atol=1e-12)
+    tool = run("fk", "ur3", *"000000", "--json", *order, "--tcp", *"0001000").json()
+    turned = iksel.pose_from_quaternion([0, 0, 0], [1, 0, 0, 0], "xyzw")
+    plain = iksel.load_robot("ur3").fk(np.zeros(6))
+    np.testing.assert_allclose(tool["pose"], plain @ turned, atol=1e-12)
 
 
 def test_answers_are_those_of_solve_batch(

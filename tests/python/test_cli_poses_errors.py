@@ -87,7 +87,14 @@ BAD = [
     ("--poses /dev/zero", "/dev/zero: .*line 1.*longer"),
     (
         "--poses names",
-        "names, line 1: the columns a, b are not x y z roll.*qw qx",
+        "names, line 1: x y z roll .* or .* qw qx .* are not among the columns a, b",
+    ),
+    ("--poses two", "two, line 1: the columns .* hold more than one pose"),
+    ("--poses twice", "twice, line 1: the columns .* hold more than one pose"),
+    ("--poses short --on-invalid raise", "short, line 2: expected 7 columns.*got 6"),
+    (
+        "--poses wide --on-invalid raise",
+        "wide, line 1: .*got 8; .*a first line of names",
     ),
     ("--poses header", "header: no poses in it"),
     ("--poses bytes", "bytes: line 2: .*utf-8"),
@@ -128,6 +135,10 @@ def test_bad_files_are_one_line(
     good = "0.2 0.15 0.3 0 3.1416 0\n"
     files = {"good": good, "mixed": good + "1 2 3\n", "names": "a,b\n" + good}
     files |= {"header": "x,y,z,roll,pitch,yaw\n"}
+    files |= {"two": "x,y,z,roll,pitch,yaw,qw,qx,qy,qz\n"}
+    files |= {"twice": "x,y,z,roll,pitch,yaw,x\n"}
+    files |= {"short": "time x y z roll pitch yaw\n" + good}
+    files |= {"wide": "0.01 0.2 0.15 0.3 0 0 1 0\n"}
     for name, text in files.items():
         Path(name).write_text(text, "utf-8")
     Path("bytes").write_bytes(good.encode() + b"\xff\n")

@@ -133,6 +133,11 @@ def test_path_in_degrees(run: Run, made, tmp_path: Path) -> None:
     assert answer["largest_step"] == pytest.approx(
         math.degrees(plain["largest_step"]), abs=1e-4
     )
+    far = [Q[0] + 0.5, *Q[1:]]
+    hasty = [*command[:-6], *words(np.degrees(far)), "--dt", "0.01"]
+    why = assert_good(run(*hasty), code=1).json()["too_fast"]
+    assert why["speed"] == pytest.approx(math.degrees(0.5) / 0.01, rel=0.01)
+    assert why["velocity_limit"] == pytest.approx(math.degrees(robot.velocity_limit[0]))
     command.remove("--json")
     text = assert_good(run(*command)).out
     assert "[deg or m]" in text

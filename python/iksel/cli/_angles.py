@@ -23,11 +23,24 @@ if TYPE_CHECKING:
     from iksel_cpp import Robot
 
     from iksel._arrays import FloatArray
+    from iksel.pose import QuaternionOrder
 
     Limits = tuple[FloatArray, FloatArray]
 
 SLACK = math.radians(1.0)
 """By how much joints that are at a limit may be measured outside it [rad]."""
+
+
+def add_order(parser: argparse._ActionsContainer) -> None:
+    """Add --order."""
+    parser.add_argument(
+        "--order",
+        choices=("wxyz", "xyzw"),
+        default="wxyz",
+        help="of the quaternion in a pose of 7 numbers: the scalar qw first, or last, "
+        "as ROS and SciPy print it; names of columns in a file say it themselves "
+        "(default: wxyz)",
+    )
 
 
 def add_degrees(parser: argparse._ActionsContainer) -> None:
@@ -44,8 +57,9 @@ class Angles:
     """Reads and shows angles in degrees or radians; warns of radians that are none."""
 
     def __init__(self, arguments: argparse.Namespace) -> None:
-        """Take the unit from --degrees."""
+        """Take the unit from --degrees, and the order of quaternions from --order."""
         self._degrees: bool = arguments.degrees
+        self._order: QuaternionOrder = getattr(arguments, "order", "wxyz")
         self._warned = False
         self._srdf: str | None = getattr(arguments, "srdf", None)
 
@@ -98,8 +112,15 @@ class Angles:
             )
         return self.as_pose(flag, numbers)
 
-    def as_pose(self, flag: str, numbers: Sequence[float]) -> FloatArray:
+    def as_pose(
+        self, flag: str, numbers: Sequence[float], order: QuaternionOrder | None = None
+    ) -> FloatArray:
         """The pose that the numbers of one of POSE_FORMS are, as a (4, 4) matrix.
+
+        Args:
+            flag: What they were given by, for messages.
+            numbers: Of the pose.
+            order: Of the quaternion, if they are one; None: that of --order.
 
         Raises:
             InvalidArgumentError: Another count, not finite, or not rigid.
@@ -108,7 +129,8 @@ class Angles:
             if len(numbers) == 6:
                 return pose_from_euler(numbers[:3], self.read(flag, numbers[3:]))
             if len(numbers) == 7:
-                return pose_from_quaternion(numbers[:3], numbers[3:])
+                order = order or self._order
+                return pose_from_quaternion(numbers[:3], numbers[3:], order)
             if len(numbers) == 16:
                 return check_pose([numbers[i : i + 4] for i in range(0, 16, 4)])
         except InvalidArgumentError as error:

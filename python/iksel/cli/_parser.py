@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import difflib
 import re
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -17,8 +18,9 @@ EXIT_BAD_INPUT = 2
 POSE_METAVAR = "NUMBER"
 POSE_COUNTS = (6, 7, 16)
 POSE_FORMS = (
-    "6 numbers x y z roll pitch yaw, 7 numbers x y z qw qx qy qz, or 16 numbers, "
-    "a 4x4 matrix row by row [m, rad]"
+    "6 numbers x y z roll pitch yaw, 7 numbers x y z qw qx qy qz (with --order xyzw, "
+    "as ROS prints it, x y z qx qy qz qw), or 16 numbers, a 4x4 matrix row by row "
+    "[m, rad]"
 )
 
 # argparse knows -1 and -1.5 as numbers, but not -1e-3, nor a list such as -1,2,3.
@@ -45,6 +47,17 @@ class Parser(argparse.ArgumentParser):
         settings.setdefault("formatter_class", argparse.RawDescriptionHelpFormatter)
         super().__init__(**settings)
         self._negative_number_matcher = _STARTS_AS_NUMBER
+
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        """Say which of the choices is like what was given; argparse asks this."""
+        try:
+            super()._check_value(action, value)
+        except argparse.ArgumentError as error:
+            choices = [str(choice) for choice in action.choices or ()]
+            close = difflib.get_close_matches(str(value), choices)
+            if close:
+                error.message += f"; did you mean {' or '.join(close)}?"
+            raise
 
     def error(self, message: str) -> NoReturn:
         """Print one line instead of the usage and exit."""
@@ -80,6 +93,11 @@ def seed(text: str) -> int:
     return value
 
 
+def split_numbers(text: str) -> list[str]:
+    """The words of a text in which numbers are separated by spaces, commas and such."""
+    return [word for word in _SEPARATORS.split(text) if word]
+
+
 def parse_numbers(flag: str, words: Sequence[str]) -> list[float]:
     """Numbers that are given as separate arguments, as one in quotes, or with commas.
 
@@ -88,6 +106,6 @@ def parse_numbers(flag: str, words: Sequence[str]) -> list[float]:
     """
     text = " ".join(words)
     try:
-        return [float(word) for word in _SEPARATORS.split(text) if word]
+        return [float(word) for word in split_numbers(text)]
     except ValueError:
         raise InvalidArgumentError(f"{flag}: not all numbers in {text!r}") from None

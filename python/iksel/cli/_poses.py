@@ -8,12 +8,12 @@ import json
 import math
 import sys
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from iksel_cpp import InvalidArgumentError
 
-from iksel.cli._parser import POSE_COUNTS, parse_numbers
+from iksel.cli._parser import POSE_COUNTS, parse_numbers, split_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -25,8 +25,8 @@ FILE_FORMS = """\
 FILE has one pose a row; - is stdin. What it is shows in its content:
   numbers  a line each, in the forms of `iksel solve --pose`, separated by spaces or
            commas; empty lines and those that start with # are left out. A first line of
-           names, x y z roll pitch yaw or x y z qw qx qy qz in any order, says what the
-           columns are
+           names, with x y z roll pitch yaw or x y z qw qx qy qz among them in any
+           order, says what the columns are; others, such as times, are not read
   JSON     a line each: a list of these numbers, a 4x4 list, or {"pose": such a list}
   .npy     an array of shape (N, 4, 4), (N, 6), (N, 7) or (N, 16)
 """
@@ -35,10 +35,38 @@ LONGEST_LINE = 1 << 20
 """Bytes; a longer line is no pose, but a file of another kind."""
 
 _NPY = b"\x93NUMPY"
-_COLUMNS = (
+_FORMS = (
     ("x", "y", "z", "roll", "pitch", "yaw"),
     ("x", "y", "z", "qw", "qx", "qy", "qz"),
 )
+_FORM_NAMES = " or ".join(" ".join(form) for form in _FORMS)
+
+
+class Columns(NamedTuple):
+    """Where the numbers of a pose stand in a line."""
+
+    total: int
+    """Number of all columns."""
+    chosen: list[int]
+    """Which hold a pose, in the order of one of _FORMS."""
+    separator: str | None
+    """Between columns; None: white space."""
+
+    def pick(self, where: str, line: str) -> list[float]:
+        """The numbers of a pose in a line.
+
+        Raises:
+            InvalidArgumentError: Another number of columns, or one is no number.
+        """
+        cells = line.split(self.separator)
+        if len(cells) != self.total:
+            cells = split_numbers(line)
+        if len(cells) != self.total:
+            raise InvalidArgumentError(
+                f"{where}: expected {self.total} columns, as many as the first line "
+                f"has names, got {len(cells)}"
+            )
+        return parse_numbers(where, [cells[i] for i in self.chosen])
 
 
 class PoseFile:
@@ -97,7 +125,7 @@ class PoseFile:
             raise self._error("no poses in it")
 
     def _lines(self, line: bytes) -> Iterator[FloatArray | InvalidArgumentError]:
-        columns: list[int] | None = None
+        columns: Columns | None = None
         first = True
         index = 0
         while line:
@@ -111,9 +139,9 @@ class PoseFile:
             except UnicodeDecodeError as error:
                 raise self._error(f"line {index}: {error}") from None
             if text and not text.startswith("#"):
-                names = _names(text) if first else []
-                if names:
-                    columns = _columns(where, names)
+                named = _named_columns(where, text) if first else None
+                if named is not None:
+                    columns = named
                 else:
                     yield self._row(where, text, columns)
                 first = False
@@ -144,22 +172,17 @@ class PoseFile:
             yield self._pose(f"{self._name}, row {index}", numbers)
 
     def _row(
-        self, where: str, text: str, columns: list[int] | None
+        self, where: str, text: str, columns: Columns | None
     ) -> FloatArray | InvalidArgumentError:
         try:
-            numbers = _json_numbers(where, text)
-            if numbers is None:
-                numbers = parse_numbers(where, [text])
+            if columns is not None:
+                numbers = columns.pick(where, text)
+                return self._angles.as_pose(where, numbers, order="wxyz")
+            found = _json_numbers(where, text)
+            numbers = parse_numbers(where, [text]) if found is None else found
         except InvalidArgumentError as error:
             return error
-        if columns is None:
-            return self._pose(where, numbers)
-        if len(numbers) != len(columns):
-            return InvalidArgumentError(
-                f"{where}: expected {len(columns)} numbers, as many as the first line "
-                f"has names, got {len(numbers)}"
-            )
-        return self._pose(where, [numbers[i] for i in columns])
+        return self._pose(where, numbers)
 
     def _pose(
         self, where: str, numbers: list[float]
@@ -167,7 +190,12 @@ class PoseFile:
         try:
             return self._angles.as_pose(where, numbers)
         except InvalidArgumentError as error:
-            return error
+            if len(numbers) == 16 or len(numbers) <= max(map(len, _FORMS)):
+                return error
+            return InvalidArgumentError(
+                f"{error}; where there are further columns, a first line of names, "
+                f"{_FORM_NAMES}, says which are the pose"
+            )
 
     def _error(self, problem: str) -> InvalidArgumentError:
         return InvalidArgumentError(f"{self._name}: {problem}")
@@ -188,13 +216,29 @@ def read_poses(name: str, angles: Angles) -> FloatArray:
     return np.stack(poses)
 
 
-def _names(line: str) -> list[str]:
-    """The names in a line that has nothing but names; else none."""
+def _named_columns(where: str, line: str) -> Columns | None:
+    """The columns that a line of names gives; None if it is a line of a pose.
+
+    Raises:
+        InvalidArgumentError: They are names, but not those of a pose, or of two.
+    """
     if line[0] in "[{":
-        return []
-    words = [word.strip(" \t\"'").lower() for word in line.split(",")]
-    words = words if len(words) > 1 else line.lower().split()
-    return [] if any(map(_is_number, words)) else words
+        return None
+    separator = next((mark for mark in ",;" if mark in line), None)
+    names = [word.strip(" \t\"'").lower() for word in line.split(separator)]
+    if any(map(_is_number, names)):
+        return None
+    forms = [form for form in _FORMS if set(form) <= set(names)]
+    if not forms:
+        raise InvalidArgumentError(
+            f"{where}: {_FORM_NAMES} are not among the columns {', '.join(names)}"
+        )
+    if len(forms) > 1 or any(names.count(name) > 1 for name in forms[0]):
+        raise InvalidArgumentError(
+            f"{where}: the columns {', '.join(names)} hold more than one pose"
+        )
+    chosen = [names.index(name) for name in forms[0]]
+    return Columns(len(names), chosen, separator)
 
 
 def _is_number(word: str) -> bool:
@@ -203,17 +247,6 @@ def _is_number(word: str) -> bool:
     except ValueError:
         return False
     return True
-
-
-def _columns(where: str, names: list[str]) -> list[int]:
-    """Where each number of a form of poses stands in a line under these names."""
-    for form in _COLUMNS:
-        if sorted(names) == sorted(form):
-            return [names.index(name) for name in form]
-    forms = " or ".join(" ".join(form) for form in _COLUMNS)
-    raise InvalidArgumentError(
-        f"{where}: the columns {', '.join(names)} are not {forms} in some order"
-    )
 
 
 def _json_numbers(where: str, text: str) -> list[float] | None:

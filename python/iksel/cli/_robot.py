@@ -14,7 +14,7 @@ from iksel_cpp import (
 
 from iksel._urdf_xml import read_xml
 from iksel.cli import _curves
-from iksel.cli._angles import Angles, add_degrees
+from iksel.cli._angles import Angles, add_degrees, add_order
 from iksel.cli._coupled import FLAG, FORM, parse_coupled_limit
 from iksel.cli._parser import POSE_METAVAR, parse_numbers
 from iksel.description import read_description
@@ -108,6 +108,7 @@ def add_robot(parser: argparse.ArgumentParser) -> None:
     )
     _add_formats(group)
     add_degrees(group)
+    add_order(group)
 
 
 def _add_formats(group: argparse._ArgumentGroup) -> None:

@@ -15,6 +15,7 @@ from iksel_cpp import InvalidArgumentError, Status
 
 from iksel._files import replaced
 from iksel.cli._answers import FORMATS
+from iksel.cli._lengths import warn_of_millimetres
 from iksel.cli._output import Progress, add_progress, print_json, print_pairs
 from iksel.cli._parser import count_up_to, warning_line
 from iksel.cli._poses import PoseFile
@@ -126,6 +127,7 @@ def solve_file(
     names = solver.robot.joint_names
     on_stdout = arguments.output in (None, "-")
     counts: Counter[str] = Counter()
+    warned = False
     show = arguments.progress
     if on_stdout and show is None and sys.stdout.isatty():
         show = False  # the answers are there to be seen
@@ -138,7 +140,11 @@ def solve_file(
         answers = FORMATS[form](output, names)
         size = arguments.chunk or CHUNK
         for poses in _chunks(file, size, raising=arguments.on_invalid == "raise"):
-            batch = solver.solve_batch(np.stack(poses), **request)
+            targets = np.stack(poses)
+            warned = warned or warn_of_millimetres(
+                solver.robot, arguments.poses, targets
+            )
+            batch = solver.solve_batch(targets, **request)
             counts.update(status.name for status in batch.statuses())
             answers.write(batch, angles.show(solver.robot, batch.q))
             output.flush()

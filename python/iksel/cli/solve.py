@@ -11,6 +11,7 @@ from iksel_cpp import InvalidArgumentError, Solver, Status
 
 from iksel.cli._angles import Angles
 from iksel.cli._answers import FILE_FORMS as ANSWER_FILES
+from iksel.cli._lengths import warn_of_millimetres
 from iksel.cli._options import add_solver_options, given_database, solver_options
 from iksel.cli._output import add_json, print_json, print_pairs
 from iksel.cli._parser import POSE_FORMS, POSE_METAVAR
@@ -146,6 +147,7 @@ def run(arguments: argparse.Namespace) -> int:
         return solve_file(solver, request, arguments, angles)
     if arguments.pose is not None:
         target = angles.read_pose("--pose", arguments.pose)
+        warn_of_millimetres(robot, "--pose", target)
     else:
         target = robot.fk(angles.read_joints("--from-q", arguments.from_q, robot))
     solver = make_solver(robot, arguments)

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Positions that were meant as millimetres."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from iksel.cli._parser import warning_line
+
+if TYPE_CHECKING:
+    from iksel_cpp import Robot
+
+    from iksel._arrays import FloatArray
+
+FARTHEST = 100.0
+"""How many times the robot's reach a position in metres may be away unsuspected."""
+
+
+def warn_of_millimetres(robot: Robot, flag: str, poses: FloatArray) -> bool:
+    """Warn if the positions of some poses look like millimetres.
+
+    As metres they are far out of reach, and as millimetres within it.
+
+    Args:
+        robot: Whose reach counts.
+        flag: What the poses were given by, for the warning.
+        poses: T_base_tcp, (..., 4, 4); of NaN where there is none.
+
+    Returns:
+        Whether there was a warning.
+    """
+    positions = poses[..., :3, 3].reshape(-1, 3)
+    centre, reach = robot.reach_centre, robot.reach
+    far = np.linalg.norm(positions - centre, axis=1) > FARTHEST * reach
+    near = np.linalg.norm(positions / 1000.0 - centre, axis=1) <= reach
+    suspects = positions[far & near]
+    if len(suspects) == 0:
+        return False
+    text = " ".join(f"{x:g}" for x in suspects[0])
+    sys.stderr.write(
+        warning_line(
+            f"{flag}: the position {text} looks like millimetres, and is taken as "
+            f"metres; the robot reaches {reach:.3g} m"
+        )
+    )
+    return True

@@ -181,18 +181,28 @@ inline py::array_t<double> to_array(const JointVector& values) {
   return py::array_t<double>(values.size(), values.data());
 }
 
-/// A C-ordered array of its own.
+/// A C-ordered array of its own. Ctrl-C ends the copying of many rows.
 inline py::array_t<double> to_array(const Matrix& matrix) {
+  constexpr Eigen::Index kBlock = 1 << 16;
   py::array_t<double> array({matrix.rows(), matrix.cols()});
-  Eigen::Map<RowMajorMatrix>(array.mutable_data(), matrix.rows(), matrix.cols()) = matrix;
+  Eigen::Map<RowMajorMatrix> rows(array.mutable_data(), matrix.rows(), matrix.cols());
+  for (Eigen::Index first = 0; first < matrix.rows(); first += kBlock) {
+    if (first > 0 && PyErr_CheckSignals() != 0) throw py::error_already_set();
+    const Eigen::Index count = std::min(kBlock, matrix.rows() - first);
+    rows.middleRows(first, count) = matrix.middleRows(first, count);
+  }
+  return array;
+}
+
+/// The array, which from now on nobody may write to.
+inline py::array_t<double> read_only(py::array_t<double> array) {
+  py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
   return array;
 }
 
 /// A read-only array over values that live as long as `owner`.
 inline py::array_t<double> read_only_view(const JointVector& values, py::handle owner) {
-  py::array_t<double> array(values.size(), values.data(), owner);
-  py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
-  return array;
+  return read_only(py::array_t<double>(values.size(), values.data(), owner));
 }
 
 }  // namespace iksel::python

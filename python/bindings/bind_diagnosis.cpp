@@ -52,8 +52,8 @@ Diagnosis diagnosis_from_state(const py::object& state) {
     out.contacts.push_back(py::cast<Contact>(contact));
   }
   out.coupled_limit = in.index<int>("coupled_limit", kMaxCoupledLimits);
-  if (out.q_is_solution && out.proof != Proof::none) {
-    in.refuse("proof", "none, as there is an answer", enum_name(out.proof));
+  if (out.q_is_solution != (out.proof == Proof::answer)) {
+    in.refuse("proof", "answer where there is one, and only there", enum_name(out.proof));
   }
   if (out.joint >= out.q.size()) in.refuse("joint", "one of q's", std::to_string(out.joint));
   if (out.q_is_solution && (out.q.size() == 0 || !(out.position_error >= 0))) {
@@ -81,7 +81,7 @@ void bind_diagnosis(py::module_& m) {
                "What is wrong and what to do about it, in a sentence.");
   add_property(
       cls, "proof", &D::proof,
-      "How certain it is that there is no answer, as Result.proof; `none` if there is one.");
+      "How certain it is that there is no answer, as Result.proof; `answer` if there is one.");
   add_property(
       cls, "proven", [](const D& self) { return is_proven(self.proof); },
       "Whether there is certainly no answer: `proof` is `reach`, `closed_form` or `target`.");

@@ -12,6 +12,7 @@
 #include "gil.hpp"
 #include "html.hpp"
 #include "iksel/path.hpp"
+#include "iksel/tracker.hpp"
 #include "pickle.hpp"
 #include "pose_arguments.hpp"
 #include "progress.hpp"
@@ -166,7 +167,8 @@ void bind_tracker(py::module_& m) {
 
 Args:
     solver: what solves.
-    start: joint values, (dof,) [rad or m]; those outside the limits are taken to be at them.
+    start: joint values, (dof,) [rad or m], as measured; outside the limits, the way back inside is
+        part of the first moves.
     closest: True, or six weights as in Solver.solve: at poses that cannot be reached from where
         the arm is, it goes downhill to where it is nearest, with Status.closest, and comes back
         with the target on the side that it left from. The tool is at most three times as fast
@@ -204,7 +206,7 @@ Raises:
         scene of another chain.)");
   add_property(
       tracker, "q", [](const Tracker& self) { return to_array(self.q()); },
-      "Where the arm is now, (dof,) [rad or m]; always inside the limits.");
+      "Where the arm is now, (dof,) [rad or m]; once inside the limits, always inside.");
   add_property(
       tracker, "reached", [](const Tracker& self) { return to_array(self.reached()); },
       "Where it was when it last reached its pose, or began, (dof,) [rad or m].");

@@ -100,6 +100,9 @@ PySolutions solutions_from_state(const py::object& state) {
   out.attempts = in.count("attempts");
   out.iterations = in.count("iterations");
   out.proof = in.value<Proof>("proof");
+  if (out.proof == (n > 0 ? Proof::none : Proof::answer)) {
+    in.refuse("proof", "answer or more where solved, and only there", enum_name(out.proof));
+  }
   for (py::ssize_t i = 0; i < n; ++i) {
     check_finite(q.data(i), dof, "pickled Solutions, q[" + std::to_string(i) + "]");
     if (!(position_error.at(i) >= 0 && rotation_error.at(i) >= 0)) {
@@ -107,6 +110,7 @@ PySolutions solutions_from_state(const py::object& state) {
     }
     Result& r = out.all.emplace_back();
     r.status = Status::solved;
+    r.proof = Proof::answer;
     r.q = Eigen::Map<const Eigen::VectorXd>(q.data(i), dof);
     r.position_error = position_error.at(i);
     r.rotation_error = rotation_error.at(i);
@@ -164,7 +168,7 @@ void bind_solutions(py::module_& m) {
   add_property(
       cls, "proof", [](const S& self) { return self.solutions.proof; },
       "How it is known that there is certainly no solution or, of a set that is not empty, that "
-      "there are certainly no more; `none` if it is not.");
+      "there are certainly no more; if it is not, `none` or `answer`.");
   add_property(
       cls, "proven", [](const S& self) { return is_proven(self.solutions.proof); },
       "Whether these are certainly all: `proof` is `reach`, `closed_form` or `target`.");
@@ -178,6 +182,9 @@ void bind_solutions(py::module_& m) {
   add_property(
       cls, "move", [](const S& self) { return self.column(&Result::move); },
       "Lengths of the moves from `near`, (n,); NaN without one.");
+  add_property(
+      cls, "cost", [](const S& self) { return self.column(&Result::cost); },
+      "Costs by the objective, (n,); NaN without one.");
   add_property(
       cls, "attempts", [](const S& self) { return self.solutions.attempts; }, "Seeds tried.");
   add_property(
@@ -238,7 +245,7 @@ Raises:
     InvalidArgumentError: as solve.)"},
                 solve_all_keywords(),
                 {"max", "min_distance", "whole_turns", "order", "near", "weights", "norm", "seeds",
-                 "database_seeds", "scene", "exact", "filter", "deadline", "task"},
+                 "database_seeds", "scene", "exact", "filter", "deadline", "task", "objective"},
                 &solve_all);
   def_method<0>(
       cls,

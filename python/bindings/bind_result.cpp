@@ -85,8 +85,8 @@ PyResult result_from_state(const py::object& state) {
   r.move = in.length("move", /*may_be_nan=*/true);
   r.cost = in.value<double>("cost");
   r.proof = in.value<Proof>("proof");
-  if (r.success() && r.proof != Proof::none) {
-    in.refuse("proof", "none, as it is solved", enum_name(r.proof));
+  if (r.success() != (r.proof == Proof::answer)) {
+    in.refuse("proof", "answer where solved, and only there", enum_name(r.proof));
   }
   return {r, {}};
 }
@@ -103,13 +103,14 @@ void bind_single(py::module_& m) {
       "Why the solve ended.");
   add_property(
       cls, "proof", [](const PyResult& self) { return self.result.proof; },
-      "Of a failure, how certain it is that there is no answer; `none` of a success.");
+      "`answer` of a success; of a failure, how certain it is that there is no answer.");
   add_property(
       cls, "proven", [](const PyResult& self) { return is_proven(self.result.proof); },
       "Whether there is certainly no answer: `proof` is `reach`, `closed_form` or `target`.");
   add_property(
       cls, "q", &PyResult::joints,
-      "Joint values [rad or m], (dof,); None unless solved, or closest, for those who ask for it.");
+      "Joint values [rad or m], (dof,), read-only; None unless solved, or closest, for those who "
+      "ask for it.");
   add_property(
       cls, "position_error", [](const PyResult& self) { return self.result.position_error; },
       "Distance to the target [m]; NaN without a q.");
@@ -173,8 +174,8 @@ void check_rows(const PyBatchResult& batch, const PickleState& in) {
     const bool solved = status == Status::solved;
     const bool has_q = has_joints(status);
     if (batch.success.at(i) != solved) in.refuse("success", "the same as status says", row);
-    if (solved && static_cast<Proof>(batch.proof.at(i)) != Proof::none) {
-      in.refuse("proof", "none where solved", row);
+    if (solved != (static_cast<Proof>(batch.proof.at(i)) == Proof::answer)) {
+      in.refuse("proof", "answer where solved, and only there", row);
     }
     if (has_q && !(batch.position_error.at(i) >= 0 && batch.rotation_error.at(i) >= 0)) {
       in.refuse("errors", "0 or more where there is a q", row);
@@ -221,7 +222,7 @@ void bind_batch(py::module_& m) {
   add_property(cls, "q", &B::q, "Joint values [rad or m], (N, dof); NaN where not solved.");
   add_property(cls, "success", &B::success, "Whether each target is solved, (N,).");
   add_property(cls, "status", &B::status, "Values of Status, (N,).");
-  add_property(cls, "proof", &B::proof, "Values of Proof, (N,); 0, which is `none`, where solved.");
+  add_property(cls, "proof", &B::proof, "Values of Proof, (N,); that of `answer` where solved.");
   add_property(cls, "position_error", &B::position_error,
                "Distances to the targets [m], (N,); NaN where not solved.");
   add_property(cls, "rotation_error", &B::rotation_error,

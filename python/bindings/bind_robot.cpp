@@ -17,6 +17,7 @@
 #include "iksel/structure.hpp"
 #include "pickle.hpp"
 #include "pose_arguments.hpp"
+#include "progress.hpp"
 #include "property.hpp"
 #include "robot_arguments.hpp"
 #include "sequence_of.hpp"
@@ -220,8 +221,11 @@ void bind_configurations(py::class_<Robot>& cls) {
       [](const Robot& self, const Loose<std::size_t>& n,
          const std::optional<Loose<std::uint64_t>>& seed) {
         const auto count = from_python<std::size_t>(n, "n");
-        return to_array(self.random_configurations(
-            count, seed ? from_python<std::uint64_t>(*seed, "seed") : fresh_seed()));
+        const auto number = seed ? from_python<std::uint64_t>(*seed, "seed") : fresh_seed();
+        const std::optional<ProgressCallable> no_callable;
+        const Progress interruptible = make_progress(no_callable);
+        return to_array(
+            without_gil([&] { return self.random_configurations(count, number, interruptible); }));
       },
       py::arg("n"), py::arg("seed") = py::none(),
       "n configurations uniform inside the limits (continuous joints in [-pi, pi)), (n, dof). The "

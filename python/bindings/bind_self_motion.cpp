@@ -86,7 +86,8 @@ SelfMotion motion_from_state(const py::object& state) {
   for (const py::handle arc : in.list("arcs")) {
     motion.arcs.push_back(arc_from_state(py::reinterpret_borrow<py::object>(arc)));
   }
-  if (motion.success() == motion.arcs.empty()) {
+  if (motion.success() == motion.arcs.empty() ||
+      motion.success() != (motion.proof == Proof::answer)) {
     in.refuse("arcs", "arcs where solved, and only there", "others");
   }
   return motion;
@@ -163,7 +164,8 @@ void bind_self_motion(py::module_& m, py::class_<Solver>& solver) {
       cls, "success", [](const M& self) { return self.success(); },
       "Whether there is at least one arc.");
   add_property(cls, "status", &M::status, "`solved`, or why there is none.");
-  add_property(cls, "proof", &M::proof, "How certain it is that there is none.");
+  add_property(cls, "proof", &M::proof,
+               "`answer` if there is an arc; else how certain it is that there is none.");
   cls.def("__len__", [](const M& self) { return self.arcs.size(); });
   cls.def(
       "__getitem__",

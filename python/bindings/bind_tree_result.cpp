@@ -67,8 +67,9 @@ TreeResult tree_result_from_state(const py::object& state) {
       out.position_error.size() != out.rotation_error.size()) {
     in.refuse("q", "joint values and errors where solved, and only there", "others");
   }
-  if (out.success() && (out.proof != Proof::none || out.unreachable_tip >= 0)) {
-    in.refuse("proof", "none, as it is solved", enum_name(out.proof));
+  if (out.success() != (out.proof == Proof::answer) ||
+      (out.success() && out.unreachable_tip >= 0)) {
+    in.refuse("proof", "answer where solved, and only there", enum_name(out.proof));
   }
   return out;
 }
@@ -85,7 +86,7 @@ void bind_tree_single(py::module_& m) {
                "Why the solve ended; of a failure, that of the tip that cannot be reached even by "
                "itself, if one was found.");
   add_property(cls, "proof", &R::proof,
-               "Of a failure, how certain it is that there is no answer; `none` of a success.");
+               "`answer` of a success; of a failure, how certain it is that there is no answer.");
   add_property(
       cls, "proven", [](const R& self) { return is_proven(self.proof); },
       "Whether there is certainly no answer: `proof` is `reach` or `closed_form`.");

@@ -9,10 +9,12 @@
 #include "array_checks.hpp"
 #include "bindings.hpp"
 #include "enums.hpp"
+#include "gil.hpp"
 #include "iksel/pose.hpp"
 #include "iksel/tree_robot.hpp"
 #include "pickle.hpp"
 #include "pose_arguments.hpp"
+#include "progress.hpp"
 #include "property.hpp"
 #include "robot_arguments.hpp"
 #include "sequence_of.hpp"
@@ -222,8 +224,12 @@ Raises:
   cls.def(
       "random_configurations",
       [](const TreeRobot& self, const Loose<std::size_t>& n, const Loose<std::uint64_t>& seed) {
-        return to_array(self.random_configurations(from_python<std::size_t>(n, "n"),
-                                                   from_python<std::uint64_t>(seed, "seed")));
+        const auto count = from_python<std::size_t>(n, "n");
+        const auto number = from_python<std::uint64_t>(seed, "seed");
+        const std::optional<ProgressCallable> no_callable;
+        const Progress interruptible = make_progress(no_callable);
+        return to_array(
+            without_gil([&] { return self.random_configurations(count, number, interruptible); }));
       },
       py::arg("n"), py::arg("seed"),
       "n configurations uniform inside the limits (continuous joints in [-pi, pi)), (n, dof). The "

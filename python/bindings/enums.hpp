@@ -225,10 +225,11 @@ struct EnumTable<Status> {
 template <>
 struct EnumTable<Proof> {
   static constexpr const char* kName = "Proof";
-  static constexpr const char* kDoc = "How certain it is that there is no other answer.";
+  static constexpr const char* kDoc =
+      "What makes sure of what a result says: of one without an answer that there is none, of a "
+      "set of solutions that there are no others.";
   static constexpr EnumValue<Proof> kValues[] = {
-      {"none", Proof::none,
-       "one was found and others were not looked for, or it was searched only"},
+      {"none", Proof::none, "nothing does: no answer was found by a search"},
       {"reach", Proof::reach, "the target lies farther away than the links are long together"},
       {"closed_form", Proof::closed_form,
        "all branches are known (Robot.structure), and no other lies inside the limits"},
@@ -238,6 +239,9 @@ struct EnumTable<Proof> {
       {"target", Proof::target,
        "what the target itself places touches something in the scene: the tip, with what is fixed "
        "to it, whatever the arm does"},
+      {"answer", Proof::answer,
+       "of what was found: it is measured on the joint values themselves. Of a set nothing is said "
+       "about others"},
   };
 };
 

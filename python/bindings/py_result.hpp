@@ -16,18 +16,20 @@ namespace iksel::python {
 
 using OptionalJoints = py::typing::Optional<py::array_t<double>>;
 
-/// A Result whose q becomes an array when it is first asked for.
+/// A Result whose q becomes an array, which nobody may write to, when it is first asked for.
 struct PyResult {
   Result result;
   py::object q;
 
   OptionalJoints joints() {
-    if (!q) q = has_joints(result.status) ? py::object(to_array(result.q)) : py::object(py::none());
+    if (!q) {
+      q = has_joints(result.status) ? py::object(read_only(to_array(result.q))) : py::none();
+    }
     return py::reinterpret_borrow<OptionalJoints>(q);
   }
 };
 
-/// Whether it leaves no doubt.
+/// Whether it leaves no doubt that there is no answer, or no other.
 inline bool is_proven(Proof proof) {
   switch (proof) {
     case Proof::reach:
@@ -36,6 +38,7 @@ inline bool is_proven(Proof proof) {
       return true;
     case Proof::sweep:
     case Proof::none:
+    case Proof::answer:
       return false;
   }
   return false;

@@ -200,7 +200,8 @@ std::vector<Keyword> solve_all_keywords() {
               "whether periodic images inside the limits count as solutions of their own; "
               "otherwise each comes once, at the image nearest to `near` or to the middle of the "
               "limits."),
-      keyword("order", &O::order, "what comes first."),
+      keyword("order", &O::order,
+              "what comes first; left alone where there is an objective, which decides it then."),
   };
   for (const Keyword& each : request_keywords()) all.push_back(each);
   return all;

@@ -1678,8 +1678,9 @@ class Status(enum.IntEnum):
         ...
 class Proof(enum.IntEnum):
     """
-    How certain it is that there is no other answer.
+    What makes sure of what a result says: of one without an answer that there is none, of a set of solutions that there are no others.
     """
+    answer = 5
     closed_form = 2
     none = 0
     reach = 1
@@ -1726,7 +1727,7 @@ class _Result:
     @property
     def proof(self) -> Proof:
         """
-        Of a failure, how certain it is that there is no answer; `none` of a success.
+        `answer` of a success; of a failure, how certain it is that there is no answer.
         """
     @property
     def proven(self) -> bool:
@@ -1748,7 +1749,7 @@ class _Solved(_Result):
     @property
     def q(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Joint values [rad or m], (dof,); None unless solved, or closest, for those who ask for it.
+        Joint values [rad or m], (dof,), read-only; None unless solved, or closest, for those who ask for it.
         """
     @property
     def success(self) -> typing.Literal[True]:
@@ -1762,7 +1763,7 @@ class _Unsolved(_Result):
     @property
     def q(self) -> None:
         """
-        Joint values [rad or m], (dof,); None unless solved, or closest, for those who ask for it.
+        Joint values [rad or m], (dof,), read-only; None unless solved, or closest, for those who ask for it.
         """
     @property
     def success(self) -> typing.Literal[False]:
@@ -1819,7 +1820,7 @@ class BatchResult:
     @property
     def proof(self) -> numpy.typing.NDArray[numpy.uint8]:
         """
-        Values of Proof, (N,); 0, which is `none`, where solved.
+        Values of Proof, (N,); that of `answer` where solved.
         """
     @property
     def q(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -1930,7 +1931,7 @@ class Diagnosis:
     @property
     def proof(self) -> Proof:
         """
-        How certain it is that there is no answer, as Result.proof; `none` if there is one.
+        How certain it is that there is no answer, as Result.proof; `answer` if there is one.
         """
     @property
     def proven(self) -> bool:
@@ -2111,7 +2112,7 @@ class Solver:
             InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, a number that is not
                 finite or out of range.
         """
-    def solve_all(self, pose: numpy.typing.ArrayLike | typing.Any, max: int = 64, *, min_distance: float = 0.01, whole_turns: bool = False, order: SolutionOrder | str = 'move', near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, scene: Scene | None = None, exact: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None) -> Solutions:
+    def solve_all(self, pose: numpy.typing.ArrayLike | typing.Any, max: int = 64, *, min_distance: float = 0.01, whole_turns: bool = False, order: SolutionOrder | str = 'move', near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, scene: Scene | None = None, exact: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None) -> Solutions:
         """
         Every distinct solution that is found: all branches (there certainly are no others where `proven` says so), or a spread for a redundant arm.
 
@@ -2121,7 +2122,7 @@ class Solver:
             min_distance: solutions that differ by less in every joint are one [rad or m].
             whole_turns: whether periodic images inside the limits count as solutions of their own;
                 otherwise each comes once, at the image nearest to `near` or to the middle of the limits.
-            order: what comes first.
+            order: what comes first; left alone where there is an objective, which decides it then.
             near: configuration to stay near, (dof,) [rad or m], for a batch also (N, dof), one for each
                 target; may lie outside the limits. The answer is the one with the smallest joint move of
                 all that are found, whole turns considered; a redundant arm's is moved along its self-motion
@@ -2147,6 +2148,10 @@ class Solver:
             deadline: wall-clock time after which the search for a target ends [s]; checked between its
                 stages.
             task: what of the pose has to be reached; None: what the solver's options say.
+            objective: what the answer is to be good at besides: an Objective, 'limits', 'manipulability',
+                or a function of joint values (dof,) that returns a cost. Comes before `near`. Of the
+                answers found, the cheapest; a redundant arm's is moved along its self-motion to a local
+                minimum.
 
         Returns:
             Solutions; empty, with a status that says why, if there is none.
@@ -2298,6 +2303,11 @@ class Solutions:
         Seeds tried.
         """
     @property
+    def cost(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Costs by the objective, (n,); NaN without one.
+        """
+    @property
     def iterations(self) -> int:
         """
         Iteration steps over all attempts.
@@ -2315,7 +2325,7 @@ class Solutions:
     @property
     def proof(self) -> Proof:
         """
-        How it is known that there is certainly no solution or, of a set that is not empty, that there are certainly no more; `none` if it is not.
+        How it is known that there is certainly no solution or, of a set that is not empty, that there are certainly no more; if it is not, `none` or `answer`.
         """
     @property
     def proven(self) -> bool:
@@ -2400,7 +2410,8 @@ class Tracker:
 
         Args:
             solver: what solves.
-            start: joint values, (dof,) [rad or m]; those outside the limits are taken to be at them.
+            start: joint values, (dof,) [rad or m], as measured; outside the limits, the way back inside is
+                part of the first moves.
             closest: True, or six weights as in Solver.solve: at poses that cannot be reached from where
                 the arm is, it goes downhill to where it is nearest, with Status.closest, and comes back
                 with the target on the side that it left from. The tool is at most three times as fast
@@ -2434,7 +2445,7 @@ class Tracker:
     @property
     def q(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Where the arm is now, (dof,) [rad or m]; always inside the limits.
+        Where the arm is now, (dof,) [rad or m]; once inside the limits, always inside.
         """
     @property
     def reached(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -2535,7 +2546,7 @@ class SelfMotion:
     @property
     def proof(self) -> Proof:
         """
-        How certain it is that there is none.
+        `answer` if there is an arc; else how certain it is that there is none.
         """
     @property
     def status(self) -> Status:
@@ -2745,7 +2756,7 @@ class TreeResult:
     @property
     def proof(self) -> Proof:
         """
-        Of a failure, how certain it is that there is no answer; `none` of a success.
+        `answer` of a success; of a failure, how certain it is that there is no answer.
         """
     @property
     def proven(self) -> bool:

@@ -6,6 +6,7 @@
 #include <iksel/iksel.hpp>
 #include <stdexcept>
 
+#include "base/random.hpp"
 #include "robots.hpp"
 
 namespace {
@@ -239,6 +240,57 @@ TEST(Track, NeverFasterThanTheLimits) {
     }
     EXPECT_GT(arrived, 0);
     EXPECT_GT(late, 0);
+  }
+}
+
+TEST(Track, TheWayBackInsideIsAMoveThatKeepsToTheSpeed) {
+  const double dt = 0.02;
+  iksel::Random random(iksel_test::seed());
+  for (const char* name : {"ur3", "panda", "cvr038"}) {
+    const Solver& solver = iksel_test::solver(name);
+    const auto& robot = solver.robot();
+    const JointVector longest = robot.velocity_limit() * dt;
+    const Eigen::MatrixXd q = robot.random_configurations(20, iksel_test::seed());
+    for (int i = 0; i < q.rows(); ++i) {
+      const JointVector inside = q.row(i).transpose();
+      JointVector start = inside;
+      const int j = static_cast<int>(random.uniform(0, robot.dof()));
+      start[j] = random.uniform(0, 1) < 0.5 ? robot.lower()[j] - random.uniform(0.1, 1)
+                                            : robot.upper()[j] + random.uniform(0.1, 1);
+      iksel::Tracker tracker(solver, start);
+      EXPECT_EQ(tracker.q(), start);
+      const Pose target = robot.fk(start.cwiseMax(robot.lower()).cwiseMin(robot.upper()));
+      Result result;
+      for (int step = 0; step < 500 && !result.success(); ++step) {
+        const JointVector before = tracker.q();
+        result = tracker.track(target, dt);
+        const JointVector move = tracker.q() - before;
+        EXPECT_NEAR(result.move, move.norm(), 1e-12) << name << ", seed " << iksel_test::seed();
+        EXPECT_TRUE((move.array().abs() <= longest.array() * (1 + 1e-8)).all())
+            << name << ": " << start.transpose() << ", seed " << iksel_test::seed();
+        EXPECT_EQ(result.status, result.success() ? Status::solved : Status::too_fast);
+      }
+      EXPECT_TRUE(result.success()) << name << ": " << start.transpose();
+      EXPECT_TRUE(robot.within_limits(tracker.q()));
+    }
+  }
+}
+
+TEST(Track, CountsItsIterations) {
+  const Solver& solver = iksel_test::solver("ur3");
+  const auto& robot = solver.robot();
+  const Eigen::MatrixXd q = robot.random_configurations(20, iksel_test::seed());
+  for (int i = 0; i < q.rows(); ++i) {
+    const JointVector start = q.row(i).transpose();
+    iksel::Tracker tracker(solver, start);
+    EXPECT_EQ(tracker.track(robot.fk(start), 1).iterations, 0);
+    JointVector next = start;
+    next[1] += start[1] > 0 ? -0.01 : 0.01;
+    const Result moved = tracker.track(robot.fk(next), 1);
+    EXPECT_GT(moved.iterations, 0) << to_string(moved.status) << ": " << start.transpose();
+    Pose far = robot.fk(start);
+    far.translation().x() += 5;
+    EXPECT_GT(tracker.track(far, 1).iterations, 0);
   }
 }
 

@@ -73,7 +73,8 @@ TEST_P(RootSweeps, WhatIsReachableIsNotSaidToHaveNoSolution) {
     if (dice.chance(0.5)) iksel_test::make_singular(robot(), 1 + dice.pick(4), q);
     const Result result = solver().solve(robot().fk(q));
     unsolved += !result.success();
-    EXPECT_EQ(result.proof, Proof::none) << q.transpose() << ", seed " << iksel_test::seed();
+    EXPECT_TRUE(result.success() || result.proof == Proof::none)
+        << q.transpose() << ", seed " << iksel_test::seed();
   }
   EXPECT_LE(unsolved, n / 100);
 }

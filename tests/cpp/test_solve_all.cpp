@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <iksel/iksel.hpp>
+#include <limits>
 #include <string>
+#include <vector>
 
 #include "branches.hpp"
 #include "robots.hpp"
@@ -13,6 +15,7 @@
 namespace {
 
 using iksel::JointVector;
+using iksel::Objective;
 using iksel::Pose;
 using iksel::Result;
 using iksel::Robot;
@@ -103,6 +106,72 @@ TEST(SolveAll, MaxMinDistanceAndOrderHold) {
       }
     }
   }
+}
+
+/// Objectives of every kind, and what they cost where that is easily said.
+std::vector<Objective> objectives(const Robot& robot, const JointVector& posture) {
+  const auto cost = [](const JointVector& q) { return (q[0] - 1) * (q[0] - 1) + q[2]; };
+  return {Objective::near_posture(posture), Objective::far_from_limits(),
+          Objective::most_manipulable(), Objective::custom(cost),
+          Objective::preferred(robot, {{robot.joint_names()[1], posture[1]}})};
+}
+
+TEST(SolveAll, TheBestByAnObjectiveComesFirst) {
+  for (const char* name : {"ur3", "cvr038", "panda"}) {
+    const Solver& solver = iksel_test::solver(name);
+    const Robot& robot = solver.robot();
+    iksel_test::Judge judge(robot);
+    const Eigen::MatrixXd q = robot.random_configurations(20, iksel_test::seed());
+    for (int i = 0; i < q.rows(); ++i) {
+      const Pose target = robot.fk(q.row(i));
+      const JointVector posture = q.row((i + 1) % q.rows()).transpose();
+      const auto plain = solver.solve_all(target);
+      for (const Objective& objective : objectives(robot, posture)) {
+        SolveRequest request;
+        request.objective = objective;
+        const auto all = solver.solve_all(target, {}, request);
+        ASSERT_TRUE(all.success()) << name << ": " << q.row(i) << ", seed " << iksel_test::seed();
+        // In as many digits as the joints without weight decide in.
+        for (std::size_t a = 1; a < all.all.size(); ++a) {
+          EXPECT_LE(all.all[a - 1].cost, all.all[a].cost + 1e-6 * std::abs(all.all[a].cost) + 1e-6)
+              << name << ", kind " << static_cast<int>(objective.kind);
+        }
+        for (const Result& one : all.all) {
+          judge.expect_solution(target, one.q);
+          if (objective.kind == Objective::Kind::posture && objective.weights.size() == 0) {
+            EXPECT_NEAR(one.cost, (one.q - posture).squaredNorm() / 2, 1e-12);
+          } else if (objective.kind == Objective::Kind::custom) {
+            EXPECT_DOUBLE_EQ(one.cost, objective.cost(one.q));
+          }
+        }
+        if (robot.dof() > 6) continue;
+        EXPECT_EQ(all.all.size(), plain.all.size());
+        const double best = solver.solve(target, request).cost;
+        EXPECT_LE(all.all.front().cost, best + 1e-6 * std::abs(best) + 1e-6)
+            << name << ", kind " << static_cast<int>(objective.kind) << ": " << q.row(i);
+      }
+    }
+  }
+}
+
+TEST(SolveAll, WhatCostsInfinitelyMuchIsRefused) {
+  const Solver& solver = iksel_test::solver("ur3");
+  const Pose target = solver.robot().fk(JointVector::Constant(6, 0.7));
+  SolveRequest request;
+  request.objective = Objective::custom([](const JointVector& q) {
+    return q[0] > 0 ? q[1] : std::numeric_limits<double>::infinity();
+  });
+  const auto some = solver.solve_all(target, {}, request);
+  ASSERT_TRUE(some.success());
+  for (const Result& one : some.all) EXPECT_GT(one.q[0], 0);
+  request.objective =
+      Objective::custom([](const JointVector&) { return std::numeric_limits<double>::infinity(); });
+  const auto none = solver.solve_all(target, {}, request);
+  EXPECT_TRUE(none.all.empty());
+  EXPECT_EQ(none.status, iksel::Status::rejected);
+  iksel::SolveAllOptions options;
+  options.order = iksel::SolutionOrder::manipulability;
+  EXPECT_THROW((void)solver.solve_all(target, options, request), iksel::InvalidArgumentError);
 }
 
 TEST(SolveAll, BadOptionsAreNamed) {

@@ -128,7 +128,7 @@ TEST_P(Sweeps, WhatHasAnAnswerBetweenSamplesIsNotSaidToHaveNone) {
       const Pose target = robot().fk(q);
       const Result result = solver().solve(target);
       solved += result.success();
-      missed += result.proof != Proof::none;
+      missed += !result.success() && result.proof != Proof::none;
       missed_by_sweep += !sweep.find(iksel_test::reduced(robot(), target)) && sweep.is_none();
     }
     // It is no proof: some of what there is at limits beside a straight elbow is missed.
@@ -295,7 +295,8 @@ TEST_P(Sweeps, ACalibratedRobotIsNotSweptByItsNominalChainAlone) {
   for (const int joints : {0, 2, 3}) {
     for (const JointVector& q : at_limits(iksel_test::cases(1000), joints, dice)) {
       const Result result = by_nominal.solve(calibrated.fk(q));
-      EXPECT_EQ(result.proof, Proof::none) << joints << ": " << q.transpose();
+      EXPECT_TRUE(result.success() || result.proof == Proof::none)
+          << joints << ": " << q.transpose();
     }
   }
 }

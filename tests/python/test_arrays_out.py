@@ -106,6 +106,44 @@ def test_batch_rows_are_found_from_both_ends(solver, poses):
             batch[row]
 
 
+def test_what_a_result_says_cannot_be_written_to(solver, poses):
+    single = solver.solve(poses[0])
+    closest = solver.solve(poses[0] + 5 * np.eye(4, k=3), closest=True)
+    batch = solver.solve_batch(poses[:2])
+    for result in (single, closest, batch[0], *solver.solve_all(poses[0])):
+        before = result.q.copy()
+        with pytest.raises(ValueError, match="read-only"):
+            result.q[0] = 9.0
+        np.testing.assert_array_equal(pickle.loads(pickle.dumps(result)).q, before)
+        result.q.copy()[0] = 9.0
+        np.testing.assert_array_equal(result.q, before)
+
+
+def test_proof_of_a_success_is_the_answer(made, solver, poses):
+    answer = core.Proof.answer
+    batch = solver.solve_batch(poses)
+    assert (batch.proof == answer).tolist() == batch.success.tolist()
+    far = poses[0] + 5 * np.eye(4, k=3)
+    for pose in (*poses[:5], far):
+        for any_solver in (solver, made.solver("ur3", "paper")):
+            for found in (
+                any_solver.solve(pose),
+                any_solver.solve(pose, near=np.zeros(6)),
+                any_solver.solve(pose, objective="limits"),
+            ):
+                assert (found.proof is answer) is found.success
+                assert not (found.success and found.proven)
+                assert found.status is not core.Status.closest
+        found = solver.solve_all(pose)
+        assert all(one.proof is answer for one in found)
+        assert not (found.success and found.proof is core.Proof.none)
+        why = solver.diagnose(pose)
+        assert (why.proof is answer) is why.q_is_solution
+    tracker = solver.tracker(np.zeros(6))
+    assert tracker.track(solver.robot.fk(np.zeros(6)), 0.1).proof is answer
+    assert tracker.track(far, 0.1).proof is core.Proof.none
+
+
 def test_result_is_explicit_about_success(solver, poses):
     result = solver.solve(poses[0])
     assert result.success is True

@@ -181,7 +181,7 @@ def test_solve_reports_everything(run: Run) -> None:
     answer = run("solve ur3 --from-q 0.1 -1 1 0.2 0.3 -4e-1 --json").json()
     assert answer["success"] is True
     assert answer["status"] == "solved"
-    assert answer["proof"] == "none"
+    assert answer["proof"] == "answer"
     assert answer["joint_names"] == iksel.load_robot("ur3").joint_names
     assert len(answer["q"]) == 6
     assert answer["attempts"] >= 1
@@ -277,6 +277,16 @@ def test_solve_near(run: Run, made) -> None:
     assert run("solve", "ur3", "--from-q", *Q, "--json").json()["move"] is None
 
 
+def test_solve_all_by_an_objective(run: Run) -> None:
+    words = ["solve", "ur3", "--from-q", *Q, "--all", "--json"]
+    plain = assert_good(run(*words)).json()
+    assert plain["cost"] == [None] * 8
+    for objective in ("limits", "manipulability"):
+        found = assert_good(run(*words, "--objective", objective)).json()
+        assert len(found["q"]) == 8
+        assert found["cost"] == sorted(found["cost"])
+
+
 def test_solve_all(run: Run, made) -> None:
     words = ["solve", "ur3", "--from-q", *Q, "--all"]
     answer = assert_good(run(*words, "--json")).json()
@@ -290,7 +300,7 @@ def test_solve_all(run: Run, made) -> None:
     assert near["move"] == sorted(near["move"])
     text = assert_good(run(*words)).out
     assert "solutions  8" in text
-    assert answer["proof"] in {"none", "closed_form"}
+    assert answer["proof"] in {"answer", "closed_form"}
     assert "wrist_3_joint" in text
     nothing = assert_good(run("solve", "ur3", *FAR, "--all", "--json"), code=1).json()
     assert (nothing["q"], nothing["status"]) == ([], "out_of_reach")

@@ -62,7 +62,7 @@ def test_rows_that_are_no_poses_have_their_status(
     }
     statuses, proofs, q, errors = read(path)
     assert statuses == ["solved", "out_of_reach", *["invalid_pose"] * 10, "solved"]
-    assert proofs == ["none", "reach", *["none"] * 11]
+    assert proofs == ["answer", "reach", *["none"] * 10, "answer"]
     assert np.isnan(q[1:-1]).all()
     assert np.isnan(errors[1:-1]).all()
     np.testing.assert_array_equal(q[0], q[-1])

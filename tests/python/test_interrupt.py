@@ -10,6 +10,7 @@ import time
 
 import numpy as np
 import pytest
+from trees import two_armed
 
 import iksel
 
@@ -69,6 +70,20 @@ def test_evaluation(made, preset: str, *, stages: bool) -> None:
     solver = made.solver("ur3", preset)
     work = lambda: iksel.evaluate(solver, 200_000, 1, stages=stages)  # noqa: E731
     assert min(time_to_interrupt(work) for _ in range(2)) < 0.2
+
+
+@pytest.mark.parametrize("preset", ["default", "paper"])
+def test_evaluation_of_very_many_targets(made, preset: str) -> None:
+    solver = made.solver("ur3", preset)
+    work = lambda: iksel.evaluate(solver, 20_000_000, 1)  # noqa: E731
+    assert min(time_to_interrupt(work) for _ in range(2)) < 0.2
+
+
+def test_random_configurations(made) -> None:
+    arm = made.robot("ur3")
+    for robot in (arm, two_armed(arm)):
+        work = lambda robot=robot: robot.random_configurations(20_000_000, 1)  # noqa: E731
+        assert min(time_to_interrupt(work) for _ in range(2)) < 0.2
 
 
 def test_progress_of_an_evaluation_is_told_now_and_then(made) -> None:

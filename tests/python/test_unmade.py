@@ -270,7 +270,7 @@ def test_arrays_that_do_not_fit_each_other_are_refused(solver) -> None:
     with pytest.raises(iksel.InvalidArgumentError, match="success"):
         unpickled(iksel.BatchResult, (q, success, *state[2:]))
     proof = state[-1].copy()
-    for value in (1, 200):
+    for value in (0, 1, 200):
         proof[2] = value
         with pytest.raises(iksel.InvalidArgumentError, match="proof.*row 2"):
             unpickled(iksel.BatchResult, (*state[:-1], proof))
@@ -284,7 +284,7 @@ def test_proofs_that_there_are_not_are_refused(solver) -> None:
     far[0, 3] = 9.0
     here = solver.robot.fk(np.zeros(6))
     failed, solved = states(solver.solve(far)), states(solver.solve(here))
-    assert (failed[-1], solved[-1]) == ("reach", "none")
+    assert (failed[-1], solved[-1]) == ("reach", "answer")
     for wrong in ("perhaps", 1, None):
         with pytest.raises(iksel.InvalidArgumentError, match="pickled Result, proof"):
             unpickled(iksel.Result, (*failed[:-1], wrong))
@@ -293,8 +293,16 @@ def test_proofs_that_there_are_not_are_refused(solver) -> None:
             unpickled(iksel.Solutions, (*found[:-1], wrong))
         with pytest.raises(iksel.InvalidArgumentError, match="Structure, kind"):
             unpickled(iksel.Structure, (wrong, "text"))
-    with pytest.raises(iksel.InvalidArgumentError, match="as it is solved"):
-        unpickled(iksel.Result, (*solved[:-1], "reach"))
+    found = states(solver.solve_all(here))
+    for type_, state, wrong in (
+        (iksel.Result, solved, "reach"),
+        (iksel.Result, solved, "none"),
+        (iksel.Result, failed, "answer"),
+        (iksel.Solutions, found, "none"),
+        (iksel.Solutions, states(solver.solve_all(far)), "answer"),
+    ):
+        with pytest.raises(iksel.InvalidArgumentError, match="answer.*where solved"):
+            unpickled(type_, (*state[:-1], wrong))
 
 
 def test_joint_values_of_another_length_are_refused(solver) -> None:

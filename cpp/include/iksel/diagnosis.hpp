@@ -9,12 +9,12 @@
 
 #include "iksel/export.hpp"
 #include "iksel/result.hpp"
+#include "iksel/robot.hpp"
 #include "iksel/scene.hpp"
+#include "iksel/task.hpp"
 #include "iksel/types.hpp"
 
 namespace iksel {
-
-struct Task;
 
 /// Why a solve gave no answer. Certain where Diagnosis::proof is `reach` or `closed_form`; else
 /// found by search and so likely.
@@ -39,7 +39,7 @@ struct Diagnosis {
   Cause cause = Cause::none;
   /// What is wrong and what to do about it, in a sentence.
   std::string message;
-  /// That there is no answer, as Result::proof of a solve; `none` if there is one.
+  /// As Result::proof of a solve: `answer` if there is one, else that there is none.
   Proof proof = Proof::none;
   /// Seeds that were tried to find the cause; 0 where `proof` is `closed_form`: the branches say
   /// it.

@@ -24,6 +24,7 @@
 #include "iksel/solver.hpp"         // IWYU pragma: export
 #include "iksel/structure.hpp"      // IWYU pragma: export
 #include "iksel/task.hpp"           // IWYU pragma: export
+#include "iksel/tracker.hpp"        // IWYU pragma: export
 #include "iksel/tree_robot.hpp"     // IWYU pragma: export
 #include "iksel/tree_solver.hpp"    // IWYU pragma: export
 #include "iksel/types.hpp"          // IWYU pragma: export

@@ -7,11 +7,10 @@
 #include <string>
 
 #include "iksel/export.hpp"
+#include "iksel/robot.hpp"
 #include "iksel/types.hpp"
 
 namespace iksel {
-
-class Robot;
 
 /// A cost of joint values, the smaller the better. Among all answers found the cheapest is taken;
 /// where the task leaves the arm free to move (more joints than fixed axes) the best are

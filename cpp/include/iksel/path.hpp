@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Paths of poses, known beforehand or streamed one by one.
+// Joint values along a path of poses (Solver::solve_path).
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <vector>
 
-#include "iksel/export.hpp"
 #include "iksel/result.hpp"
-#include "iksel/scene.hpp"
-#include "iksel/solver.hpp"
+#include "iksel/types.hpp"
 
 namespace iksel {
 
@@ -31,64 +28,6 @@ struct PathResult {
   double move = 0;
 
   [[nodiscard]] bool success() const { return status == Status::solved; }
-};
-
-/// What a Tracker remembers of its targets.
-struct TargetStream {
-  std::optional<StoredPose> last;  ///< T_base_tip; empty: where the tool is
-  double speed = 0;                ///< when it last moved, by the weights [1/s]; 0: it never did
-};
-
-/// Follows a stream of poses: each answer continues from the last, within the velocity limits. Not
-/// to be used from two threads at once; allocates nothing after construction.
-class IKSEL_EXPORT Tracker {
- public:
-  /// The tool is at most so many times as fast as the target, where `closest` is asked for: both
-  /// are measured by its weights, and a target at rest counts as fast as it last was.
-  static constexpr double kFastestTool = 3;
-
-  /// `start` is where the arm is; joints outside their limits are taken to be at them. Throws
-  /// InvalidArgumentError if it has not dof finite elements. `closest`: what is done where a pose
-  /// cannot be reached from where the arm is (track). `reached` is where it last reached its pose;
-  /// empty: at `start`. `stream`: of a tracker that goes on.
-  Tracker(const Solver& solver, const JointVector& start,
-          const std::optional<PoseWeights>& closest = std::nullopt,
-          const std::optional<JointVector>& reached = std::nullopt,
-          const TargetStream& stream = {});
-
-  /// Moves on towards the pose, by no more than each joint can in `dt` seconds. Status `solved`:
-  /// there. `too_fast`: the arm needs more time, and went as far on the straight way in joint space
-  /// as it could, or as its tool may (kFastestTool). `closest`, only if that is asked for: the pose
-  /// cannot be reached from here, and the arm went downhill to where it is nearest, by the weights;
-  /// with the target it comes back on the side that it left from. Any other: there is no
-  /// continuation from here, and the arm stays. `move` is the length of the move in joint space. In
-  /// a scene the arm also stays, with status `in_collision`, where it would collide at the end of
-  /// its move; the way there is not looked at. Throws InvalidArgumentError if the pose is not
-  /// rigid, dt is not above 0, or the scene is of another chain.
-  [[nodiscard]] Result track(const Pose& T_base_tip, double dt, const Scene* scene = nullptr);
-
-  /// Where the arm is now [rad or m]; always inside the limits.
-  [[nodiscard]] const JointVector& q() const { return q_; }
-  /// Where the arm was when it last reached its pose, or began; from the edge of the workspace it
-  /// comes back on that side [rad or m].
-  [[nodiscard]] const JointVector& reached() const { return reached_; }
-  /// What solves.
-  [[nodiscard]] const Solver& solver() const { return solver_; }
-  /// What it remembers of the targets.
-  [[nodiscard]] const TargetStream& stream() const { return stream_; }
-  /// What is done at poses that cannot be reached.
-  [[nodiscard]] const std::optional<PoseWeights>& closest() const { return closest_; }
-
- private:
-  /// How much of a move brings the tool no farther than it may go in `dt`, part at most.
-  [[nodiscard]] double part_for_tool(const JointVector& move, double part, double dt) const;
-
-  Solver solver_;
-  JointVector q_;
-  std::optional<PoseWeights> closest_;
-  JointVector reached_;
-  TargetStream stream_;
-  bool is_at_edge_ = false;  ///< where it is nearest to a pose that cannot be reached
 };
 
 }  // namespace iksel

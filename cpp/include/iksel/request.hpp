@@ -113,7 +113,7 @@ struct IKSEL_EXPORT SolveRequest {
   void validate(int dof) const;
 };
 
-/// In which order solve_all gives its solutions.
+/// In which order solve_all gives its solutions where the request has no objective.
 enum class SolutionOrder {
   move,            ///< the smallest move first: from `near`, or else from the middle of the limits
   limit_distance,  ///< the largest distance from the limits first, relative to each joint's range
@@ -130,6 +130,7 @@ struct IKSEL_EXPORT SolveAllOptions {
   /// Whether periodic images inside the limits count as solutions of their own. Otherwise each is
   /// given once: at the image nearest to `near`, or else to the middle of the limits.
   bool whole_turns = false;
+  /// Left at `move` where the request has an objective: solutions then come in the order of that.
   SolutionOrder order = SolutionOrder::move;
 
   /// Throws InvalidArgumentError naming the first option out of range.

@@ -35,15 +35,18 @@ constexpr bool has_joints(Status status) {
 /// Lower-case name of a status.
 IKSEL_EXPORT const char* to_string(Status status);
 
-/// How certain it is that there is no other answer.
+/// What makes sure of what a result says: of one without an answer that there is none, of a set of
+/// solutions that there are no others.
 enum class Proof : std::uint8_t {
-  none,         ///< one was found and others were not looked for, or it was searched only
+  none,         ///< nothing does: no answer was found by a search
   reach,        ///< the target lies farther away than the links are long together
   closed_form,  ///< all branches are known (find_structure), and no other lies inside the limits
   sweep,   ///< not proven: a joint was swept over its range (find_structure), and no other branch
            ///< came inside the limits at its values or beside them
   target,  ///< what the target itself places touches something in the scene: the tip, with what is
            ///< fixed to it, whatever the arm does
+  answer,  ///< of what was found: it is measured on the joint values themselves. Of a set nothing
+           ///< is said about others
 };
 
 /// Lower-case name of a proof.
@@ -52,7 +55,7 @@ IKSEL_EXPORT const char* to_string(Proof proof);
 /// Answer to one target. Everything in it is measured on the returned q, not predicted.
 struct Result {
   Status status = Status::not_converged;
-  /// Of a failure, how certain it is that there is no answer; `none` of a success.
+  /// `answer` of a success; of a failure, how certain it is that there is no answer.
   Proof proof = Proof::none;
   /// Joint values [rad or m]; empty unless solved, so that no other q can be taken for an answer,
   /// or `closest`, which is given to those only who ask for it.
@@ -79,7 +82,7 @@ struct Solutions {
   /// `solved` if there is at least one; else why there is none.
   Status status = Status::not_converged;
   /// Of an empty set, whether there is certainly no solution; of another, whether there are
-  /// certainly no more (all of them were found in closed form).
+  /// certainly no more (all of them were found in closed form), or `answer` if that is not known.
   Proof proof = Proof::none;
   /// Each is a success by itself; `attempts` and `iterations` are those of the whole search.
   std::vector<Result> all;

@@ -90,7 +90,8 @@ class IKSEL_EXPORT Robot {
 
   /// n configurations uniform inside the limits (continuous joints in [-pi, pi)), one per row. The
   /// same seed gives the same numbers everywhere.
-  [[nodiscard]] Matrix random_configurations(std::size_t n, std::uint64_t seed) const;
+  [[nodiscard]] Matrix random_configurations(std::size_t n, std::uint64_t seed,
+                                             const Progress& progress = {}) const;
 
   /// No pose whose origin lies farther than this from `reach_centre` can be reached [m].
   [[nodiscard]] double reach() const;

@@ -54,7 +54,7 @@ struct SelfMotionArc {
 struct SelfMotion {
   /// `solved` if there is an arc; else why there is none.
   Status status = Status::not_converged;
-  /// Of an empty one, how certain it is that there is no solution.
+  /// `answer` if there is an arc; else how certain it is that there is no solution.
   Proof proof = Proof::none;
   /// The longest first. Joints with a range of a whole turn or more end none of them: whole turns
   /// count nothing, and each configuration is given at one of its images.

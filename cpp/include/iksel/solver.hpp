@@ -10,9 +10,11 @@
 #include "iksel/diagnosis.hpp"
 #include "iksel/export.hpp"
 #include "iksel/options.hpp"
+#include "iksel/path.hpp"
 #include "iksel/request.hpp"
 #include "iksel/result.hpp"
 #include "iksel/robot.hpp"
+#include "iksel/self_motion.hpp"
 
 namespace iksel {
 
@@ -28,9 +30,6 @@ struct CalibrationDeviation {
 IKSEL_EXPORT CalibrationDeviation measure_calibration_deviation(const Robot& robot,
                                                                 const Robot& nominal,
                                                                 std::size_t samples = 2'000);
-
-struct PathResult;
-struct SelfMotion;
 
 /// Solves inverse kinematics for one robot. Immutable; copies share the data. Safe to use from many
 /// threads at once, and the same input gives the same bits from any of them. Solving allocates
@@ -77,8 +76,8 @@ class IKSEL_EXPORT Solver {
 
   /// Every distinct solution inside the limits that is found within the bounds on work: all
   /// branches of an arm with as many joints as the pose has directions (Solutions::proof says
-  /// whether there certainly are no others), a spread over the families of a redundant one. Throws
-  /// as solve.
+  /// whether there certainly are no others), a spread over the families of a redundant one. With an
+  /// objective the best by that first, where they are found. Throws as solve.
   [[nodiscard]] Solutions solve_all(const Pose& T_base_tip, const SolveAllOptions& options = {},
                                     const SolveRequest& request = {}) const;
 

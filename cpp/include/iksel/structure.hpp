@@ -6,10 +6,9 @@
 #include <string>
 
 #include "iksel/export.hpp"
+#include "iksel/robot.hpp"
 
 namespace iksel {
-
-class Robot;
 
 /// How the solutions of a pose can be found.
 enum class StructureKind : std::uint8_t {

@@ -90,7 +90,8 @@ class IKSEL_EXPORT TreeRobot {
   /// columns. Throws as fk.
   [[nodiscard]] Matrix jacobian(const JointVector& q) const;
   /// n configurations uniform inside the limits, as Robot::random_configurations.
-  [[nodiscard]] Matrix random_configurations(std::size_t n, std::uint64_t seed) const;
+  [[nodiscard]] Matrix random_configurations(std::size_t n, std::uint64_t seed,
+                                             const Progress& progress = {}) const;
 
   /// For the library itself.
   [[nodiscard]] const TreeModel& model() const { return *model_; }

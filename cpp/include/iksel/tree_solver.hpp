@@ -40,7 +40,7 @@ struct IKSEL_EXPORT TreeRequest {
 struct TreeResult {
   /// Of a failure: that of the tip that cannot be reached even by itself, if one is found.
   Status status = Status::not_converged;
-  /// Of a failure, how certain it is; that of the same tip.
+  /// `answer` of a success; of a failure, how certain it is: that of the same tip.
   Proof proof = Proof::none;
   /// Joint values [rad or m]; empty unless solved.
   JointVector q;

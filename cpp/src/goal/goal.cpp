@@ -73,6 +73,7 @@ bool Goal::check(const JointVector& q, Result& result) const {
   measure(q, position, rotation);
   if (!is_reached(position, rotation)) return false;
   result.status = Status::solved;
+  result.proof = Proof::answer;
   result.q = q;
   result.position_error = position;
   result.rotation_error = rotation;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kinematics/joint_space.hpp"
 
+#include "base/pace.hpp"
+
 namespace iksel {
 
 JointSpace::JointSpace(int dof)
@@ -145,6 +147,18 @@ JointVector JointSpace::longest_moves(double dt) const {
   // A little more, so that a joint may run at its limit in spite of rounding.
   constexpr double kSlack = 1e-9;
   return velocity * (dt * (1 + kSlack));
+}
+
+Matrix JointSpace::samples(std::size_t n, std::uint64_t seed, const Progress& progress) const {
+  constexpr std::size_t kRowsBetweenTellings = 1024;
+  Matrix q(static_cast<Eigen::Index>(n), dof());
+  Random random(seed);
+  Pace pace(progress, n);
+  for (std::size_t row = 0; row < n; ++row) {
+    if (row % kRowsBetweenTellings == 0) pace(row);
+    sample(random, q.row(static_cast<Eigen::Index>(row)));
+  }
+  return q;
 }
 
 }  // namespace iksel

@@ -160,6 +160,9 @@ class JointSpace {
     for (int j = 0; j < dof(); ++j) q[j] = drawn[j];
   }
 
+  /// n of them, one per row.
+  [[nodiscard]] Matrix samples(std::size_t n, std::uint64_t seed, const Progress& progress) const;
+
   std::vector<std::string> names;
   std::vector<JointType> types;
   JointVector lower, upper;  ///< [rad or m]; infinite for continuous joints

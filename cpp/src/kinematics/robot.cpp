@@ -8,7 +8,6 @@
 
 #include "base/message_text.hpp"
 #include "base/pseudo_inverse.hpp"
-#include "base/random.hpp"
 #include "base/rotation.hpp"
 #include "iksel/error.hpp"
 #include "kinematics/chain_model.hpp"
@@ -101,13 +100,9 @@ Matrix Robot::inverse_jacobian(const JointVector& q, double damping) const {
   return damped_inverse(J, damping * damping);
 }
 
-Matrix Robot::random_configurations(std::size_t n, std::uint64_t seed) const {
-  Matrix q(static_cast<Eigen::Index>(n), dof());
-  Random random(seed);
-  for (Eigen::Index row = 0; row < q.rows(); ++row) {
-    model_->joints.sample(random, q.row(row));
-  }
-  return q;
+Matrix Robot::random_configurations(std::size_t n, std::uint64_t seed,
+                                    const Progress& progress) const {
+  return model_->joints.samples(n, seed, progress);
 }
 
 double Robot::reach() const { return model_->reach_of_tcp(); }

@@ -166,7 +166,7 @@ class SelfMotionStep {
 
 }  // namespace
 
-bool converge(const ChainModel& model, const Goal& goal, int most, JointVector& q) {
+bool converge(const ChainModel& model, const Goal& goal, int most, JointVector& q, int& steps) {
   // The default scheme, whatever that of the solver is.
   Paper scheme = one_at_a_time(Lanes{});
   scheme.whole_turns = false;
@@ -174,7 +174,6 @@ bool converge(const ChainModel& model, const Goal& goal, int most, JointVector& 
   IterationContext context{model, scheme, most, goal, goal.target(), nullptr, unused};
   context.aim = 0.01;
   context.steps_at_tcp = true;
-  int steps = 0;
   return iterate(context, q, steps) == Outcome::solved;
 }
 

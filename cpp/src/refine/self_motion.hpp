@@ -29,8 +29,12 @@ int descend_to_near(const ChainModel& model, const Goal& goal, const JointMove& 
 inline constexpr int kStepsToNext = 20;
 
 /// Brings q to the goal by Levenberg-Marquardt with the limits inside the step, to a hundredth of
-/// the tolerances, in at most `most` steps. False if it does not get within the tolerances and the
-/// limits.
-bool converge(const ChainModel& model, const Goal& goal, int most, JointVector& q);
+/// the tolerances, in at most `most` steps; `steps` counts those taken. False if it does not get
+/// within the tolerances and the limits.
+bool converge(const ChainModel& model, const Goal& goal, int most, JointVector& q, int& steps);
+inline bool converge(const ChainModel& model, const Goal& goal, int most, JointVector& q) {
+  int steps = 0;
+  return converge(model, goal, most, q, steps);
+}
 
 }  // namespace iksel

@@ -23,14 +23,12 @@ constexpr int kStagnationBalanced = 28;
 /// their own, but points of a curve that is one to within the tolerances (bench/README.md).
 constexpr int kStagnationEnumerated = 8;
 
-/// Where the images of an answer are wanted, if that matters.
-std::optional<JointVector> wanted_images(const JointSpace& joints, const SolveRequest& request,
-                                         const std::optional<NearestTo>& nearest_to) {
+/// Where the images of an answer are wanted.
+JointVector wanted_images(const JointSpace& joints, const SolveRequest& request,
+                          const std::optional<NearestTo>& nearest_to) {
   if (nearest_to) return nearest_to->from;
-  if (request.objective.kind == Objective::Kind::limits) return joints.middle();
-  if (request.near) return request.near;
-  if (!request.objective.is_set()) return joints.middle();
-  return std::nullopt;
+  if (request.near && request.objective.kind != Objective::Kind::limits) return *request.near;
+  return joints.middle();
 }
 
 }  // namespace
@@ -71,7 +69,7 @@ Verdict Collector::offer(int /*lane*/, JointVector& q) {
   }
   answer.status = Status::solved;
   answer.q = q;
-  if (images_near_) wrap_near(*images_near_, answer);
+  wrap_near(images_near_, answer);
   const double cost = counts_moves_ ? nearest_to_->move.length(answer.q - nearest_to_->from) : 0.0;
   if (!found_.add(answer, cost, aim_.min_distance)) return Verdict::next;
   status = Status::solved;

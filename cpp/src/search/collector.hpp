@@ -131,8 +131,8 @@ class Collector {
   std::vector<JointVector>& partners_;
   std::optional<NearestTo> nearest_to_;
   Deadline deadline_;
-  /// Solutions are brought to their images nearest to this, if the request asks for it.
-  std::optional<JointVector> images_near_;
+  /// Solutions are brought to their images nearest to this.
+  JointVector images_near_;
   bool counts_moves_;
   bool comes_in_pairs_;
   bool looks_for_partners_ = true;

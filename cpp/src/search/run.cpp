@@ -275,13 +275,12 @@ Result find_first(const ChainModel& model, const SolverOptions& options, const G
   FirstAnswer answers(model.joints, wraps, goal, request.deadline, result);
   const Search<FirstAnswer> search{model, options, goal, request, workspace, answers, work, clock};
   if (workspace.lanes) {
-    result.proof = search.in_lanes();
+    const Proof proof = search.in_lanes();
+    if (!result.success()) result.proof = proof;
   } else if (search.by_scheme() && result.status == Status::not_converged) {
     result.status = Status::outside_limits;
   }
-  if (result.success()) {
-    result.proof = Proof::none;
-  } else if (result.status == Status::in_collision && answers.is_never_free()) {
+  if (result.status == Status::in_collision && answers.is_never_free()) {
     result.proof = Proof::target;
   }
   result.attempts = work.attempts;

@@ -76,6 +76,7 @@ class SolutionSet {
   [[nodiscard]] Result result(std::size_t i) const {
     Result result;
     result.status = Status::solved;
+    result.proof = Proof::answer;
     result.q = at(i);
     result.position_error = position_error_[i];
     result.rotation_error = rotation_error_[i];

@@ -228,7 +228,7 @@ class Diagnoser {
 
   /// With what the plain solve has proven.
   [[nodiscard]] const Diagnosis& diagnosis(Proof proof) {
-    out_.proof = out_.q_is_solution ? Proof::none : proof;
+    out_.proof = out_.q_is_solution ? Proof::answer : proof;
     return out_;
   }
 
@@ -293,6 +293,7 @@ Diagnosis Solver::Impl::diagnose(const Pose& target, const SolveRequest& request
     Diagnosis fine;
     describe(model(), Goal(model(), of_call, target), plain.q, fine);
     fine.q_is_solution = true;
+    fine.proof = plain.proof;
     fine.message = "solved";
     return fine;
   }

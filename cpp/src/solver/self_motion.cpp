@@ -182,6 +182,7 @@ SelfMotion Solver::Impl::self_motion(const Pose& target, double spacing,
       [](const SelfMotionArc& a, const SelfMotionArc& b) { return a.length > b.length; });
   if (!motion.arcs.empty()) {
     motion.status = Status::solved;
+    motion.proof = Proof::answer;
   } else if (!lanes.sweep->find(Y) && lanes.sweep->is_none()) {
     motion.proof = Proof::sweep;
   }

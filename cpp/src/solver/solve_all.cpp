@@ -52,7 +52,7 @@ double limit_distance(const ChainModel& model, const JointVector& q) {
   return least;
 }
 
-/// The cost that puts solutions in order, smaller first.
+/// The cost that puts solutions in order where there is no objective, smaller first.
 double cost_of(const ChainModel& model, SolutionOrder order, const JointMove& move,
                const JointVector& from, const JointVector& q) {
   switch (order) {
@@ -177,13 +177,21 @@ Solutions Solver::Impl::solve_all(const Pose& target, const SolveAllOptions& all
 
   const JointMove move(robot.dof(), request);
   const JointVector from = request.near ? *request.near : model().joints.middle();
+  const Objective& objective = request.objective;
+  const std::optional<NearestTo> nearest_to = find_nearest_to(robot.dof(), request);
   const auto cost = [&](const JointVector& q) {
-    return cost_of(model(), all.order, move, from, q);
+    if (!objective.is_set()) return cost_of(model(), all.order, move, from, q);
+    if (nearest_to) return nearest_to->move.length(q - nearest_to->from);
+    return ObjectiveCost(model(), objective).value(q);
   };
-  // Without, each solution is at the image nearest to `from` already.
-  const bool with_images = all.whole_turns || request.filter;
+  // Without, each solution is at its best image already.
+  const bool with_images =
+      all.whole_turns || request.filter || objective.kind == Objective::Kind::custom;
   std::vector<Image> images = images_of(model().joints, found, screen, with_images, cost);
   apply_filter(screen, robot.dof(), images);
+  images.erase(std::remove_if(images.begin(), images.end(),
+                              [](const Image& image) { return std::isinf(image.cost); }),
+               images.end());
   std::sort(images.begin(), images.end(), cheaper);
   if (!all.whole_turns) take_first_of_each(found.size(), images);
   if (images.size() > most) {
@@ -202,6 +210,7 @@ Solutions Solver::Impl::solve_all(const Pose& target, const SolveAllOptions& all
       continue;
     }
     if (request.near) result.move = move.length(image.q - from);
+    if (objective.is_set()) result.cost = ObjectiveCost(model(), objective).value(image.q);
     result.attempts = solutions.attempts;
     result.iterations = solutions.iterations;
     solutions.all.push_back(result);
@@ -209,6 +218,8 @@ Solutions Solver::Impl::solve_all(const Pose& target, const SolveAllOptions& all
   if (solutions.all.empty()) {
     if (solutions.status == Status::solved) solutions.status = screen.refusal();
     if (search.is_out_of_time) solutions.status = Status::out_of_time;
+  } else if (solutions.proof == Proof::none) {
+    solutions.proof = Proof::answer;
   }
   return solutions;
 }
@@ -219,6 +230,9 @@ Solutions Solver::solve_all(const Pose& T_base_tip, const SolveAllOptions& optio
   options.validate();
   impl_->check(request);
   if (request.closest) throw InvalidArgumentError("closest: solve_all gives answers only");
+  if (request.objective.is_set() && options.order != SolutionOrder::move) {
+    throw InvalidArgumentError("order: with an objective that decides the order; leave out one");
+  }
   const WorkspacePool::Lease lease(impl_->workspaces);
   return impl_->solve_all(target, options, request, lease.get());
 }

@@ -3,8 +3,6 @@
 #pragma once
 
 #include "goal/angle_bound.hpp"
-#include "iksel/path.hpp"
-#include "iksel/self_motion.hpp"
 #include "iksel/solver.hpp"
 #include "search/context.hpp"
 #include "search/run.hpp"

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "iksel/tracker.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include "base/message_text.hpp"
 #include "base/pose_check.hpp"
 #include "iksel/error.hpp"
-#include "iksel/path.hpp"
 #include "iksel/pose.hpp"
 #include "refine/closest_descent.hpp"
 #include "refine/self_motion.hpp"
@@ -48,7 +49,6 @@ Tracker::Tracker(const Solver& solver, const JointVector& start,
     const char* name = q == &q_ ? "start" : "reached";
     check_joints(*q, robot.dof(), name);
     solver.impl_->angles.check(*q, name);
-    *q = robot.model().joints.clamp(*q);
   }
   if (closest) closest->validate();
   if (stream.last) check_pose(Pose(*stream.last));
@@ -88,10 +88,10 @@ Result Tracker::track(const Pose& T_base_tip, double dt, const Scene* scene) {
     stream_.last = target;
   }
   Result result;
-  const JointVector from = is_at_edge_ ? lean(q_, reached_) : q_;
+  const JointVector from = model.joints.clamp(is_at_edge_ ? lean(q_, reached_) : q_);
   JointVector end = from;
   result.attempts = 1;
-  const bool is_reached = converge(model, goal, kStepsToNext, end);
+  const bool is_reached = converge(model, goal, kStepsToNext, end, result.iterations);
   if (!is_reached) {
     if (!closest_) return result;
     const Vector6 weights = to_vector(*closest_, solver_.database().data());
@@ -115,10 +115,11 @@ Result Tracker::track(const Pose& T_base_tip, double dt, const Scene* scene) {
     return result;
   }
   if (!goal.is_free(end)) {
-    result = {};
-    result.status = Status::in_collision;
-    result.attempts = 1;
-    return result;
+    Result refused;
+    refused.status = Status::in_collision;
+    refused.attempts = 1;
+    refused.iterations = result.iterations;
+    return refused;
   }
   q_ = end;
   is_at_edge_ = result.status == Status::closest;

@@ -58,6 +58,7 @@ bool StackedGoal::check(const JointVector& q, TreeResult& result) const {
     if (!goal.is_reached(position[i], rotation[i])) return false;
   }
   result.status = Status::solved;
+  result.proof = Proof::answer;
   result.q = q;
   result.position_error = position;
   result.rotation_error = rotation;

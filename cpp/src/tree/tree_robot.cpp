@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "base/message_text.hpp"
-#include "base/random.hpp"
 #include "iksel/error.hpp"
 #include "tree/tree_model.hpp"
 #include "urdf/parse.hpp"
@@ -80,11 +79,9 @@ Matrix TreeRobot::jacobian(const JointVector& q) const {
   return all;
 }
 
-Matrix TreeRobot::random_configurations(std::size_t n, std::uint64_t seed) const {
-  Matrix q(static_cast<Eigen::Index>(n), dof());
-  Random random(seed);
-  for (Eigen::Index row = 0; row < q.rows(); ++row) model_->joints.sample(random, q.row(row));
-  return q;
+Matrix TreeRobot::random_configurations(std::size_t n, std::uint64_t seed,
+                                        const Progress& progress) const {
+  return model_->joints.samples(n, seed, progress);
 }
 
 }  // namespace iksel

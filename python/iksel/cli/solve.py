@@ -113,7 +113,7 @@ def add_request(parser: argparse.ArgumentParser) -> None:
         "--all",
         action="store_true",
         help="give every distinct solution, nearest first (with --near: to that, else "
-        "to the middle of the limits)",
+        "to the middle of the limits), or with --objective the best by that",
     )
     parser.add_argument(
         "--objective",
@@ -205,8 +205,6 @@ def read_request(
     """
     near = arguments.near and angles.read_joints("--near", arguments.near, robot)
     seed = arguments.seed_q and angles.read_joints("--seed-q", arguments.seed_q, robot)
-    if arguments.objective and arguments.all:
-        raise InvalidArgumentError("--objective: cannot be used with --all")
     if arguments.closest and arguments.all:
         raise InvalidArgumentError("--closest: cannot be used with --all")
     given = {
@@ -266,6 +264,7 @@ def run_all(
         "position_error": found.position_error,
         "rotation_error": found.rotation_error,
         "move": found.move,
+        "cost": found.cost,
         "attempts": found.attempts,
         "iterations": found.iterations,
         "time_us": (time.perf_counter() - start) * 1e6,

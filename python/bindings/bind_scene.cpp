@@ -215,6 +215,8 @@ Raises:
     UnknownNameError: the URDF lacks a link of the spheres, or a joint.)");
   add_property(cls, "robot", &Scene::robot, "The robot.");
   add_property(cls, "spheres", &Scene::spheres, "Its body.");
+  add_property(cls, "other_joints", &Scene::other_joints,
+               "Values of joints that are not the arm's [rad or m], by name.");
   add_property(cls, "obstacles", &Scene::obstacles, "The obstacles by name.");
   add_property(cls, "attached", &carriers_of,
                "Names of the attached objects, and the links that carry them.");

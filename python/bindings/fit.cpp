@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "option_fields.hpp"
 #include "signature.hpp"
 
 namespace iksel::python {
@@ -52,9 +53,34 @@ struct Form {
   }
 };
 
-/// What other libraries, and this one once, call the configuration that a search begins from.
-const Names kNamesOfSeeds = {"seed",  "q_init", "q0",     "x0",      "q_start",    "initial_guess",
-                             "guess", "init",   "q_seed", "ik_seed", "seed_state", "initial_q"};
+/// What other libraries, and this one once, call something.
+struct OtherNames {
+  const char* argument;  ///< what it is called here
+  Names names;
+  const char* hint;
+};
+const std::vector<OtherNames> kOtherNames = {
+    {"seeds",
+     {"seed", "q_init", "q0", "x0", "q_start", "initial_guess", "guess", "init", "q_seed",
+      "ik_seed", "seed_state", "initial_q"},
+     "; write seeds=[q] for where the search begins, or near=q for what the answer is to be close "
+     "to"},
+    {"deadline",
+     {"timeout", "time_out", "timeout_s", "time_limit", "max_time"},
+     "; write deadline=... for after how many seconds the search ends"},
+};
+
+/// Where a keyword belongs that is a field of the solver's options; or nothing.
+std::string of_options(const std::string& keyword) {
+  Names names;
+  for (const Field& field : struct_type<SolverOptions>().fields) names.emplace_back(field.name);
+  std::string fields =
+      contains(names, keyword) ? "'" + keyword + "'" : did_you_mean(keyword, names);
+  const std::size_t quote = fields.find('\'');
+  if (quote == std::string::npos) return "";
+  fields = fields.substr(quote, fields.rfind('\'') + 1 - quote);
+  return "; the solver's options have " + fields + ": Solver(robot, SolverOptions(...))";
+}
 
 struct MisfitCall {
   std::string function;
@@ -95,12 +121,13 @@ struct MisfitCall {
 
  private:
   [[nodiscard]] std::string unknown_keyword(const std::string& keyword, const Names& known) const {
-    std::string hint = did_you_mean(keyword, known);
-    if (contains(kNamesOfSeeds, keyword) && contains(known, "seeds")) {
-      hint =
-          "; write seeds=[q] for where the search begins, or near=q for what the answer is to be "
-          "close to";
+    std::string hint;
+    for (const OtherNames& other : kOtherNames) {
+      if (contains(other.names, keyword) && contains(known, other.argument)) hint = other.hint;
     }
+    if (hint.empty()) hint = did_you_mean(keyword, known);
+    // Of what solves, which is what takes seeds.
+    if (hint.empty() && contains(known, "seeds")) hint = of_options(keyword);
     const std::string possible = known.empty() ? "none" : join(known);
     return function + "() has no argument '" + keyword + "'" + hint + " (possible: " + possible +
            ")";

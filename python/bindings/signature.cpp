@@ -101,10 +101,21 @@ void guard_function(py::handle thing) {
 
 }  // namespace
 
+using Names = std::vector<std::string>;
+
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& known) {
-  const py::list close =
-      py::module_::import("difflib").attr("get_close_matches")(name, py::cast(known), 1);
-  return close.empty() ? "" : "; did you mean '" + py::cast<std::string>(close[0]) + "'?";
+  Names close;
+  // Of tip_link the word tip; two letters are too few to tell.
+  for (const std::string& one : name.size() > 2 ? known : Names()) {
+    if (("_" + one).find("_" + name) != std::string::npos) close.push_back(one);
+  }
+  if (close.empty()) {
+    close = py::cast<Names>(
+        py::module_::import("difflib").attr("get_close_matches")(name, py::cast(known), 1));
+  }
+  std::string text;
+  for (const std::string& one : close) text += (text.empty() ? "'" : " or '") + one + "'";
+  return text.empty() ? "" : "; did you mean " + text + "?";
 }
 
 void guard_module(py::module_& m) {

@@ -20,7 +20,7 @@ class SignatureError : public InvalidArgumentError {
   using InvalidArgumentError::InvalidArgumentError;
 };
 
-/// "; did you mean 'seed'?", or nothing if none of the names is close.
+/// "; did you mean 'seed'?", or nothing if none of the names is close, or has that word.
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& known);
 
 /// To come last: guards all that the module has by then, functions and classes.

@@ -17,6 +17,7 @@ from iksel_cpp import (
 )
 
 from iksel._descriptions import PREFIX
+from iksel._keywords import with_hints
 from iksel._manifest import RobotInfo, manifest
 from iksel.description import FILE_SUFFIXES, Description, read_description
 from iksel.pose import pose_from_euler
@@ -56,6 +57,7 @@ def robot_info(name: str) -> RobotInfo:
     return robots[name]
 
 
+@with_hints
 def load_robot(
     source: str | os.PathLike[str],
     *,
@@ -142,6 +144,7 @@ def load_robot(
         raise
 
 
+@with_hints
 def load_tree(
     source: str | os.PathLike[str],
     *,

@@ -1600,6 +1600,11 @@ class Scene:
         The obstacles by name.
         """
     @property
+    def other_joints(self) -> dict[str, float]:
+        """
+        Values of joints that are not the arm's [rad or m], by name.
+        """
+    @property
     def robot(self) -> Robot:
         """
         The robot.
@@ -3085,6 +3090,10 @@ class Evaluation:
         """
         Targets tried.
         """
+def _did_you_mean(name: str, known: collections.abc.Sequence[str]) -> str:
+    """
+    The hint at a mistyped name for functions that are Python's.
+    """
 def check_pose(pose: numpy.typing.ArrayLike | typing.Any, name: str = 'pose') -> numpy.typing.NDArray[numpy.float64]:
     """
     The rigid transforms that poses stand for.

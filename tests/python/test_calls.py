@@ -91,6 +91,49 @@ def test_misspelled_keywords(solver, wrong: str, right: str) -> None:
     refuse(lambda: solver.solve(np.eye(4), **{wrong: 1}), f"did you mean '{right}'?")
 
 
+@pytest.mark.parametrize("keyword", ["timeout", "time_limit", "max_time"])
+def test_other_names_of_the_deadline(solver, keyword: str) -> None:
+    refuse(
+        lambda: solver.solve(np.eye(4), **{keyword: 0.1}),
+        f"Solver.solve() has no argument '{keyword}'",
+        "write deadline=",
+    )
+
+
+def test_keywords_that_are_of_the_options(solver) -> None:
+    both = "'position_tolerance' or 'rotation_tolerance'"
+    for call in (solver.solve, solver.solve_all, solver.solve_batch):
+        refuse(
+            lambda call=call: call(np.eye(4), tol=1e-4),
+            f"options have {both}: Solver(robot, SolverOptions(...))",
+        )
+        refuse(
+            lambda call=call: call(np.eye(4), max_attempts=3),
+            "options have 'max_attempts': Solver(",
+        )
+    refuse(lambda: iksel.SolverOptions(tol=1e-4), f"did you mean {both}?")
+    refuse(lambda: iksel.SolverOptions(deadline=1), "no field 'deadline'", "possible:")
+
+
+@pytest.mark.parametrize(
+    ("wrong", "right"), [("base", "base_link"), ("tip", "tip_link"), ("tpc", "tcp")]
+)
+def test_mistyped_keywords_of_robots(wrong: str, right: str) -> None:
+    urdf = iksel.load_robot("ur3").urdf
+    for call, name in (
+        (iksel.load_robot, "load_robot"),
+        (iksel.Robot.from_urdf, "Robot.from_urdf"),
+    ):
+        refuse(
+            lambda call=call: call(urdf, **{wrong: "base_link"}),
+            f"{name}() has no argument '{wrong}'; did you mean '{right}'?",
+        )
+    refuse(
+        lambda: iksel.load_tree("ur3", package={}),
+        "load_tree() has no argument 'package'; did you mean 'packages'?",
+    )
+
+
 def test_misspelled_fields_of_options() -> None:
     for call in (
         lambda: iksel.SolverOptions(max_atempts=3),

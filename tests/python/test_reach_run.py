@@ -90,7 +90,9 @@ def test_shares_write_the_same_bytes(planned, whole, tmp_path):
     reach.create(planned, path)
     for i in range(7):
         progress = reach.run(path, workers=1, share=(i, 7))
-        assert progress.done == sum(n % 7 <= i for n in range(CHUNKS))
+        assert progress.done == progress.chunks == len(range(i, CHUNKS, 7))
+        done = sum(n % 7 <= i for n in range(CHUNKS))
+        assert reach.status(path) == reach.Progress(done, CHUNKS, planned.size)
     assert digests(path) == digests(whole)
 
 

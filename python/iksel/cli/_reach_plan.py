@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from iksel import reach
@@ -29,7 +28,11 @@ def add_plan(commands: Any) -> None:
     add_robot(parser)
     add_json(parser)
     parser.add_argument(
-        "-o", "--output", type=Path, required=True, metavar="MAP", help="store to make"
+        "-o",
+        "--output",
+        required=True,
+        metavar="MAP",
+        help="store to make: a path, or a URL of fsspec such as s3://bucket/map.zarr",
     )
     group = parser.add_argument_group("grid")
     group.add_argument(
@@ -103,7 +106,7 @@ def _plan(arguments: argparse.Namespace) -> int:
     reach.create(plan, arguments.output)
     left_out = {"first joint": plan.first_turn, "last joint": plan.last_turn}
     report = {
-        "map": str(arguments.output),
+        "map": arguments.output,
         "id": plan.id,
         "robot": plan.robot_data["name"],
         "dims": plan.dims,

@@ -43,7 +43,11 @@ def add_parser(commands: Any) -> None:
         "--samples", type=count, required=True, metavar="N", help="number of poses"
     )
     parser.add_argument(
-        "-o", "--output", type=Path, required=True, metavar="STORE", help="Zarr store"
+        "-o",
+        "--output",
+        required=True,
+        metavar="STORE",
+        help="Zarr store: a path, or a URL of fsspec",
     )
     parser.add_argument(
         "--parquet",

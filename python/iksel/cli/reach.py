@@ -56,11 +56,11 @@ def add_parser(commands: Any) -> None:
     merge = _add_map(
         own, "merge", _merge, "collect chunks from stores of the same plan"
     )
-    merge.add_argument("parts", nargs="+", type=Path, metavar="PART", help="a store")
+    merge.add_argument("parts", nargs="+", metavar="PART", help="a store")
     _add_view(own)
     _add_export(own)
     compare = _add_map(own, "compare", _compare, "compare what two maps reach")
-    compare.add_argument("other", type=Path, metavar="OTHER", help="another map")
+    compare.add_argument("other", metavar="OTHER", help="another map")
 
 
 def _add_map(
@@ -70,7 +70,9 @@ def _add_map(
     parser: argparse.ArgumentParser = commands.add_parser(
         name, help=text, description=text[0].upper() + text[1:] + "."
     )
-    parser.add_argument("map", type=Path, metavar="MAP", help="what 'plan' wrote")
+    parser.add_argument(
+        "map", metavar="MAP", help="what 'plan' wrote: a path, or a URL of fsspec"
+    )
     add_json(parser)
     parser.set_defaults(run=run)
     return parser
@@ -151,7 +153,7 @@ def _run(arguments: argparse.Namespace) -> int:
     return compute(arguments, arguments.map)
 
 
-def compute(arguments: argparse.Namespace, path: Path) -> int:
+def compute(arguments: argparse.Namespace, path: str) -> int:
     """Compute what is missing of a store by the engine of add_engine()."""
     with Progress("computing", show=arguments.progress) as progress:
         settings: dict[str, Any] = {
@@ -231,7 +233,7 @@ def _compare(arguments: argparse.Namespace) -> int:
 
 
 def _print_progress(
-    arguments: argparse.Namespace, path: Path, result: reach.Progress
+    arguments: argparse.Namespace, path: str, result: reach.Progress
 ) -> int:
     report = {**dataclasses.asdict(result), "complete": result.complete}
     if arguments.json:
@@ -239,7 +241,7 @@ def _print_progress(
         return 0
     print_pairs(
         [
-            ("store", str(path)),
+            ("store", path),
             ("chunks", f"{result.done:,} of {result.chunks:,} computed"),
             ("cells", f"{result.cells:,}"),
         ]

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,7 +13,7 @@ from iksel._qualities import limit_distance, manipulability
 from iksel.reach._job import Arrays, ArraySpec
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from iksel._arrays import FloatArray
 
@@ -70,6 +71,7 @@ def solve_cells(
     points: FloatArray,
     rotations: FloatArray,
     qualities: Sequence[str] = (),
+    request: Mapping[str, Any] = MappingProxyType({}),
 ) -> Arrays:
     """Solve for all rotations at all points, on one thread.
 
@@ -78,6 +80,7 @@ def solve_cells(
         points: Positions in the base frame, (p, 3) [m].
         rotations: Rotations of the tool in the base frame, (r, 3, 3).
         qualities: Some of QUALITIES.
+        request: Keywords of all solves: a scene, a filter.
 
     Returns:
         For each array_specs() an array (p * r, ...), with all rotations of the first
@@ -103,7 +106,9 @@ def solve_cells(
                 np.arange(row, row + len(some)) * len(rotations),
                 np.arange(first, first + len(part)),
             ).ravel()
-            _solve_batch(solver, batch, places, qualities, cells)
+            _solve_batch(
+                solver, batch, places, cells, qualities=qualities, request=request
+            )
     return cells
 
 
@@ -111,11 +116,13 @@ def _solve_batch(
     solver: Solver,
     poses: FloatArray,
     places: np.ndarray[Any, Any],
-    qualities: Sequence[str],
     cells: Arrays,
+    *,
+    qualities: Sequence[str],
+    request: Mapping[str, Any],
 ) -> None:
     """Solve poses, and put what is asked into the places of the cells."""
-    result = solver.solve_batch(poses, threads=1)
+    result = solver.solve_batch(poses, threads=1, **request)
     cells["status"][places] = result.status
     cells["proof"][places] = result.proof
     if "q" in qualities:
@@ -127,17 +134,21 @@ def _solve_batch(
         cells["branches"][places] = 0
     solved = np.flatnonzero(result.success)
     if len(solved):
-        values = _qualities(solver, poses[solved], result.q[solved], asked)
+        values = _qualities(solver, poses[solved], result.q[solved], asked, request)
         for name, array in values.items():
             if name in cells:
                 cells[name][places[solved]] = array
 
 
 def _qualities(
-    solver: Solver, poses: FloatArray, fallback: FloatArray, asked: Sequence[str]
+    solver: Solver,
+    poses: FloatArray,
+    fallback: FloatArray,
+    asked: Sequence[str],
+    request: Mapping[str, Any],
 ) -> Arrays:
     """Qualities of poses that have a solution, and the best one by manipulability."""
-    every = [solver.solve_all(pose).q for pose in poses]
+    every = [solver.solve_all(pose, **request).q for pose in poses]
     # solve_all finds what solve found; where it should not, that is the one solution.
     every = [q if len(q) else fallback[i : i + 1] for i, q in enumerate(every)]
     counts = np.array([len(q) for q in every])

@@ -21,8 +21,8 @@ from iksel.reach._store import Store
 
 if TYPE_CHECKING:
     from iksel.reach._job import Arrays
+    from iksel.reach._location import StrPath
     from iksel.reach._map import Map
-    from iksel.reach._store import StrPath
 
 FRACTION = "fraction"
 """Name under which the share of orientations is exported."""

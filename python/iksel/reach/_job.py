@@ -7,12 +7,20 @@ import hashlib
 import json
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from iksel_cpp import CoupledLimit, MimicCurve, Robot, Solver, SolverOptions
+from iksel_cpp import (
+    CoupledLimit,
+    MimicCurve,
+    Robot,
+    Solver,
+    SolverOptions,
+    simd_level,
+)
 
 from iksel import __version__
 from iksel.reach._errors import PlanMismatchError
@@ -22,6 +30,9 @@ if TYPE_CHECKING:
 
 FORMAT = 1
 """Of the stored plan and arrays."""
+
+Filter = Callable[[Any], Any]
+"""Says which of n configurations (n, dof) may be answers, as in Solver.solve."""
 
 Arrays = dict[str, np.ndarray[Any, Any]]
 Block = tuple[slice, ...]
@@ -70,8 +81,33 @@ class Job(ABC):
         """Names, axes and values of what the axes mean."""
 
     @abstractmethod
-    def compute(self, index: int, solver: Solver) -> Arrays:
-        """The chunk of that number, an array for each spec."""
+    def compute(
+        self, index: int, solver: Solver, request: Mapping[str, Any] | None = None
+    ) -> Arrays:
+        """The chunk of that number, an array for each spec.
+
+        Args:
+            index: Of the chunk.
+            solver: As solver() makes it.
+            request: What request() gives.
+        """
+
+    def request(self, filter: Filter | None = None) -> dict[str, Any]:  # noqa: A002
+        """Keywords of all solves: the plan's scene and filter, if it has any.
+
+        Args:
+            filter: The one that the plan names; a plan is data and holds no code.
+
+        Raises:
+            PlanMismatchError: The plan names another, or none.
+        """
+        planned, given = self._data.get("filter"), filter and filter_name(filter)
+        if given != planned:
+            raise PlanMismatchError(
+                f"the plan's filter is {planned or 'none'}, got {given or 'none'}; it "
+                "is given to run() and open() as filter="
+            )
+        return {} if filter is None else {"filter": filter}
 
     @property
     def size(self) -> int:
@@ -148,6 +184,21 @@ class Job(ABC):
             )
         return robot
 
+    def check_machine(self) -> None:
+        """Make sure that this process computes the bytes that others do.
+
+        Raises:
+            PlanMismatchError: It has another instruction set than the plan says.
+        """
+        planned, here = self._data.get("simd", simd_level()), simd_level()
+        if here != planned:
+            raise PlanMismatchError(
+                f"the plan is for {planned}, and this process computes with {here}, "
+                "whose last digits may differ: set the environment variable "
+                f"IKSEL_SIMD={planned} if the machine has that, or plan again with "
+                "IKSEL_SIMD set to what all machines have"
+            )
+
     def solver(self) -> Solver:
         """A solver for the robot.
 
@@ -178,11 +229,18 @@ class Job(ABC):
         )
 
 
+def filter_name(filter: Filter) -> str:  # noqa: A002 (as in solve)
+    """What a plan calls a filter: the name of its function or class."""
+    named = filter if hasattr(filter, "__qualname__") else type(filter)
+    return f"{named.__module__}.{named.__qualname__}"
+
+
 def common_data(robot: Robot, options: SolverOptions) -> dict[str, Any]:
     """What every plan holds about its origin."""
     return {
         "format": FORMAT,
         "version": __version__,
+        "simd": simd_level(),
         "robot": {
             "name": robot.name,
             "urdf": robot.urdf,

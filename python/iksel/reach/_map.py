@@ -17,13 +17,14 @@ from iksel.reach._errors import IncompleteMapError, PlanMismatchError, need
 from iksel.reach._grid import Grid, least_rotations, z_rotations
 from iksel.reach._plan import Plan
 from iksel.reach._space import Space
-from iksel.reach._store import Store, StrPath
+from iksel.reach._store import Store
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from iksel._arrays import BoolArray, FloatArray
-    from iksel.reach._job import Arrays, ArraySpec
+    from iksel.reach._job import Arrays, ArraySpec, Filter
+    from iksel.reach._location import StrPath
 
 CACHE_BYTES = 1 << 30
 """How much of a map is kept in memory once it has been read."""
@@ -58,8 +59,14 @@ class Map(Space):
     Every chunk is checked against its receipt when it is first read.
     """
 
-    def __init__(self, store: Store, plan: Plan) -> None:
+    def __init__(
+        self,
+        store: Store,
+        plan: Plan,
+        filter: Filter | None = None,  # noqa: A002 (as in solve)
+    ) -> None:
         self._store = store
+        self._filter = filter
         self._chunks: OrderedDict[int, Arrays] = OrderedDict()
         self._done = store.done()
         self.plan = plan
@@ -87,6 +94,20 @@ class Map(Space):
     def names(self) -> tuple[str, ...]:
         """Names of the arrays."""
         return tuple(spec.name for spec in self._store.specs)
+
+    @property
+    def request(self) -> dict[str, Any]:
+        """Keywords of the solves that it was computed by: a scene, a filter.
+
+        Raises:
+            PlanMismatchError: The plan names a filter that open() was not given.
+        """
+        return self.plan.request(self._filter)
+
+    @property
+    def missing(self) -> int:
+        """Number of chunks that have not been computed."""
+        return int((~self._done).sum())
 
     def chunks(self) -> Iterator[tuple[tuple[slice, ...], Arrays]]:
         """The chunks one by one: where each lies, and its arrays."""
@@ -130,6 +151,7 @@ class Map(Space):
 
         Raises:
             InvalidArgumentError: Another shape, or not finite.
+            PlanMismatchError: Exact, of a map with a filter that open() was not given.
         """
         given = as_floats("poses", poses, (4, 4)).reshape(-1, 4, 4)
         parts = [
@@ -140,7 +162,7 @@ class Map(Space):
             name: np.concatenate([part.values[name] for part in parts])
             for name in self.names
         }
-        result = self.solver.solve_batch(given) if exact else None
+        result = self.solver.solve_batch(given, **self.request) if exact else None
         return Answers(
             np.concatenate([part.cells for part in parts]),
             np.concatenate([part.inside for part in parts]),
@@ -229,12 +251,18 @@ class Map(Space):
         return reject("name", f"{name!r} is none of {', '.join(self.names)}")
 
 
-def open(path: StrPath, *, partial: bool = False) -> Map:  # noqa: A001 (as zarr's)
+def open(  # noqa: A001 (as zarr's)
+    path: StrPath,
+    *,
+    partial: bool = False,
+    filter: Filter | None = None,  # noqa: A002 (as in solve)
+) -> Map:
     """Open a map.
 
     Args:
-        path: What create() wrote and run() computed.
+        path: What create() wrote and run() computed: a path, or a URL of fsspec.
         partial: Open it though chunks are missing; their cells are unknown.
+        filter: The one that the plan names, for exact queries.
 
     Raises:
         MapIoError: There is none, or it cannot be read.
@@ -244,8 +272,8 @@ def open(path: StrPath, *, partial: bool = False) -> Map:  # noqa: A001 (as zarr
     store = Store(path)
     if not isinstance(store.job, Plan):
         raise PlanMismatchError(f"'{store.path}' is a {store.job.kind}, not a map")
-    found = Map(store, store.job)
-    missing = int((~store.done()).sum())
+    found = Map(store, store.job, filter)
+    missing = found.missing
     if missing and not partial:
         raise IncompleteMapError(
             f"'{store.path}': {missing} of {store.job.chunks} chunks are missing; "

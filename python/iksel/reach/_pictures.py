@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from iksel._arrays import FloatArray
+    from iksel.reach._location import StrPath
     from iksel.reach._map import Map
     from iksel.reach._place import Placement
-    from iksel.reach._store import StrPath
 
 MOST_SPHERES = 20_000
 ARROW = 0.1  # [m]

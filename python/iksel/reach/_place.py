@@ -11,9 +11,13 @@ import numpy.typing as npt
 
 from iksel._arrays import FloatArray, IntArray, as_floats, reject
 from iksel.reach._grid import z_rotations
+from iksel.reach._scene_data import at_base
 
 if TYPE_CHECKING:
+    from iksel_cpp import Scene
+
     from iksel._arrays import BoolArray
+    from iksel.reach._job import Filter
     from iksel.reach._map import Map
 
 AT_ONCE = 1 << 18
@@ -50,6 +54,8 @@ def place_base(
     yaws: int = 24,
     height: float = 0.0,
     checked: int = 10,
+    scene: Scene | None = None,
+    filter: Filter | None = None,  # noqa: A002 (as in solve)
 ) -> list[Placement]:
     """Rank poses of the base by how many poses of the tool it reaches from there.
 
@@ -68,12 +74,20 @@ def place_base(
             z axis.
         height: z of the base link's frame in that grid [m].
         checked: How many of the best are solved exactly and returned.
+        scene: What the arm may not collide with where the best are solved: obstacles in
+            the world's frame, where they stay; the robot's body and what it carries go
+            with the base. What no joint moves, as the base link, is not held against
+            them. None: the scene of the map's plan, which goes with the base.
+        filter: Which configurations may be answers there, as in Solver.solve; None:
+            the one that the map was opened with.
 
     Returns:
         Placements, the best first: by `reached`, then `by_map`, then `fraction`.
 
     Raises:
-        InvalidArgumentError: Wrong shapes, or a number out of range.
+        InvalidArgumentError: Wrong shapes, a number out of range, or a scene of another
+            robot.
+        PlanMismatchError: The map's plan names a filter, and there is none.
     """
     wanted = as_floats("poses", poses, (4, 4)).reshape(-1, 4, 4)
     if len(wanted) == 0:
@@ -86,9 +100,16 @@ def place_base(
         candidates = as_floats("bases", bases, (4, 4)).reshape(-1, 4, 4)
     counts, shares = _scores(reach_map, candidates, wanted)
     order = np.lexsort((-shares, -counts))[:checked]
+    if filter is None:
+        request = reach_map.request
+    else:
+        request = {"scene": reach_map.plan.scene, "filter": filter}
     placements = []
     for i in order:
-        result = reach_map.solver.solve_batch(np.linalg.inv(candidates[i]) @ wanted)
+        if scene is not None:
+            request["scene"] = at_base(scene, candidates[i])
+        local = np.linalg.inv(candidates[i]) @ wanted
+        result = reach_map.solver.solve_batch(local, **request)
         placements.append(
             Placement(
                 candidates[i],

@@ -3,17 +3,26 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
-from iksel_cpp import Axis, Robot, Solver, SolverOptions, Task, TaskFrame
+from iksel_cpp import Axis, Robot, Scene, Solver, SolverOptions, Task, TaskFrame
 
 from iksel._arrays import reject
 from iksel.reach._cells import QUALITIES, array_specs, solve_cells
 from iksel.reach._grid import Grid, Orientations
-from iksel.reach._job import Arrays, ArraySpec, Job, common_data
+from iksel.reach._job import (
+    Arrays,
+    ArraySpec,
+    Filter,
+    Job,
+    common_data,
+    filter_name,
+)
 from iksel.reach._layout import chunking, cover, resolution
+from iksel.reach._scene_data import scene_data, scene_of_data
 from iksel.reach._symmetry import first_axis, last_axis
 
 if TYPE_CHECKING:
@@ -85,8 +94,34 @@ class Plan(Job):
             found["spin"] = (("spin",), turns.spin_angles)
         return found
 
-    def compute(self, index: int, solver: Solver) -> Arrays:
-        """The chunk of that number, an array for each spec."""
+    @cached_property
+    def scene(self) -> Scene | None:
+        """What the arm may not collide with, in the base frame."""
+        data = self._data.get("scene")
+        return None if data is None else scene_of_data(self.robot(), data)
+
+    def request(self, filter: Filter | None = None) -> dict[str, Any]:  # noqa: A002
+        """Keywords of all solves: the plan's scene and filter, if it has any.
+
+        Args:
+            filter: The one that the plan names.
+
+        Raises:
+            PlanMismatchError: The plan names another, or none.
+        """
+        request = super().request(filter)
+        return request if self.scene is None else {**request, "scene": self.scene}
+
+    def compute(
+        self, index: int, solver: Solver, request: Mapping[str, Any] | None = None
+    ) -> Arrays:
+        """The chunk of that number, an array for each spec.
+
+        Args:
+            index: Of the chunk.
+            solver: As solver() makes it.
+            request: What request() gives; None: that of a plan without a filter.
+        """
         block = self.block(index)
         at = len(self.grid.positions.counts)
         points = self.grid.positions.points(block[:at])
@@ -98,6 +133,7 @@ class Plan(Job):
             points @ frame[:3, :3].T + frame[:3, 3],
             frame[:3, :3] @ turns.rotations[places],
             self.qualities,
+            self.request() if request is None else request,
         )
         shape = tuple(part.stop - part.start for part in block)
         return {
@@ -118,6 +154,8 @@ def plan(
     qualities: Iterable[str] = (),
     symmetry: bool = True,
     options: SolverOptions | None = None,
+    scene: Scene | None = None,
+    filter: Filter | None = None,  # noqa: A002 (as in solve)
     chunk_cells: int | None = None,
 ) -> Plan:
     """Plan a map of what a robot reaches.
@@ -138,12 +176,17 @@ def plan(
             where that changes nothing: a cell then stands for all poses that differ
             from it by these. Of the poses in between it says nothing less.
         options: Options of the solver; None: the default.
+        scene: What the arm may not collide with, of a robot of the same chain; the plan
+            holds a copy. Turns then change what is reached, and none is left out.
+        filter: Which configurations may be answers, as in Solver.solve; no turn is left
+            out either. The plan holds its name alone: give it to run() and open() too.
         chunk_cells: Cells of a chunk, about; None: a 256th, 65,536 to 16,777,216.
 
     Raises:
         InvalidArgumentError: An argument out of range, or qualities that the robot has
-            not.
+            not; or a scene of another robot.
     """
+    symmetry = symmetry and scene is None and filter is None
     options = SolverOptions() if options is None else options
     wanted = _checked_qualities(robot, tuple(qualities), options, free_spin=free_spin)
     kept_axis = _axis(axis)
@@ -172,9 +215,28 @@ def plan(
         "free_spin": free_spin,
         "first_turn": first is not None,
         "last_turn": last is not None,
+        **_refusing(robot, scene, filter),
         **chunking(grid, chunk_cells),
     }
     return Plan(data)
+
+
+def _refusing(
+    robot: Robot,
+    scene: Scene | None,
+    filter: Filter | None,  # noqa: A002 (as in solve)
+) -> dict[str, Any]:
+    """What refuses configurations; nothing where nothing does."""
+    data: dict[str, Any] = {}
+    if scene is not None:
+        # Raises if the chains differ.
+        Solver(robot).solve(
+            robot.fk(robot.random_configurations(1, seed=0)[0]), scene=scene
+        )
+        data["scene"] = scene_data(scene)
+    if filter is not None:
+        data["filter"] = filter_name(filter)
+    return data
 
 
 def _first(

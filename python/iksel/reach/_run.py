@@ -4,21 +4,24 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import os
 from dataclasses import dataclass
 from functools import lru_cache
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from iksel._arrays import reject
 from iksel.reach._errors import MapError, PlanMismatchError, WorkerError, need
 from iksel.reach._local import Pool, failure
-from iksel.reach._store import Store, StrPath, read_job
+from iksel.reach._location import StrPath, locate
+from iksel.reach._store import Store, read_job
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
     from iksel_cpp import Solver
+
+    from iksel.reach._job import Filter, Job
 
 IN_FLIGHT = 4
 """Chunks that each thread of a Dask cluster has waiting."""
@@ -26,7 +29,7 @@ IN_FLIGHT = 4
 
 @dataclass(frozen=True)
 class Progress:
-    """How much of a map has been computed."""
+    """How much of a map, or of a share of it, has been computed."""
 
     done: int
     """Chunks computed."""
@@ -49,6 +52,7 @@ def run(
     share: tuple[int, int] | None = None,
     repair: bool = False,
     progress: Callable[[int, int], Any] | None = None,
+    filter: Filter | None = None,  # noqa: A002 (as in solve)
 ) -> Progress:
     """Compute what is missing of a map or a data set.
 
@@ -56,21 +60,27 @@ def run(
     whichever chunk comes first, every array ends with the same bytes.
 
     Args:
-        path: What create() wrote; for Dask a path that all workers see.
+        path: What create() wrote; for Dask a path or URL that all workers see.
         workers: Processes on this machine, of one thread each; None: one per core; for
             one this process itself.
         client: A distributed.Client: chunks are computed by its cluster instead.
         share: (i, n): only every n-th chunk from i = 0 ... n - 1, for one of n jobs
-            that share the work without knowing each other.
+            that share the work without knowing each other. Of other chunks nothing is
+            read.
         repair: Compute damaged chunks again, in the place of refusing the map.
         progress: Called with the numbers of chunks done and in all of the share.
+        filter: The one that the plan names, of whose result the plan's promise of the
+            same bytes holds if it says the same to the same configurations. Other
+            processes get it by pickle.
 
     Returns:
-        How much of the map has been computed.
+        How much of the map, or of the share, has been computed.
 
     Raises:
         ChunkDamagedError: A chunk is damaged or of another plan.
-        PlanMismatchError: The map was planned by another version of iksel.
+        PlanMismatchError: The map was planned by another version of iksel, for another
+            instruction set, or with another filter.
+        InvalidArgumentError: A filter for other processes that pickle does not take.
         MapIoError: The store cannot be read or written.
         WorkerError: Workers kept dying over the same chunk, or cannot start.
     """
@@ -78,24 +88,34 @@ def run(
         pool = None
         if client is None and (count := _processes(path, workers)) > 1:
             # They load while this process looks at what is there.
-            pool = Pool(Path(path), count)
+            pool = Pool(locate(path).address, count, filter)
             stack.callback(pool.close)
         store = Store(path, writable=True)
         store.job.solver()  # in case it cannot be made
+        store.job.check_machine()
+        store.job.request(filter)
         indices = _share(store.job.chunks, share)
         missing = _missing(store, indices, repair=repair)
         if client is not None:
-            finished = _run_dask(client, store, missing)
+            finished = _run_dask(client, store, missing, filter)
         elif pool is not None:
             finished = pool.compute(store, missing)
         else:
-            finished = _run_here(store, missing)
+            finished = _run_here(store, missing, filter)
         report = progress or (lambda _done, _total: None)
         before = len(indices) - len(missing)
         report(before, len(indices))
         for n, _ in enumerate(finished, start=before + 1):
             report(n, len(indices))
-    return status(path)
+    return Progress(len(indices), len(indices), _cells(store.job, indices))
+
+
+def _cells(job: Job, indices: Sequence[int]) -> int:
+    """Cells of chunks."""
+    if len(indices) == job.chunks:
+        return job.size
+    blocks = map(job.block, indices)
+    return sum(math.prod(part.stop - part.start for part in b) for b in blocks)
 
 
 def _processes(path: StrPath, workers: int | None) -> int:
@@ -156,19 +176,26 @@ def connect(address: str) -> Any:
         raise WorkerError(f"no Dask scheduler at {address}: {error}") from error
 
 
-def compute_chunk(store: Store, index: int) -> int:
+def compute_chunk(
+    store: Store,
+    index: int,
+    filter: Filter | None = None,  # noqa: A002 (as in solve)
+) -> int:
     """Compute and write a chunk; returns its number."""
-    store.write(index, store.job.compute(index, _solver(store)))
+    request = store.job.request(filter)
+    store.write(index, store.job.compute(index, _solver(store), request))
     return index
 
 
 def _solver(store: Store) -> Solver:
-    return _solvers(store.path, store.job.id)
+    return _solvers(store.place.address, store.job.id)
 
 
 @lru_cache(maxsize=4)
-def _solvers(path: Any, _id: str) -> Solver:
-    return Store(path).job.solver()
+def _solvers(path: str, _id: str) -> Solver:
+    job = Store(path).job
+    job.check_machine()
+    return job.solver()
 
 
 @lru_cache(maxsize=4)
@@ -187,9 +214,10 @@ def _share(chunks: int, share: tuple[int, int] | None) -> range:
 
 def _missing(store: Store, indices: Sequence[int], *, repair: bool) -> list[int]:
     """The chunks that have to be computed, after a check of the others."""
-    done = store.done()
-    missing = [i for i in indices if not done[i]]
-    for index, error in store.damaged([i for i in indices if done[i]]):
+    done = store.done(indices)
+    missing = [i for i, known in zip(indices, done, strict=True) if not known]
+    there = [i for i, known in zip(indices, done, strict=True) if known]
+    for index, error in store.damaged(there):
         if not repair:
             raise error
         store.forget(index)
@@ -197,23 +225,32 @@ def _missing(store: Store, indices: Sequence[int], *, repair: bool) -> list[int]
     return sorted(missing)
 
 
-def _run_here(store: Store, indices: Sequence[int]) -> Iterator[int]:
+def _run_here(
+    store: Store,
+    indices: Sequence[int],
+    filter: Filter | None,  # noqa: A002 (as in solve)
+) -> Iterator[int]:
     """Compute chunks in this process."""
     for index in indices:
         try:
-            yield compute_chunk(store, index)
+            yield compute_chunk(store, index, filter)
         except OSError as error:
             raise failure(store, index, error) from error
 
 
-def _run_dask(client: Any, store: Store, indices: Sequence[int]) -> Iterator[int]:
+def _run_dask(
+    client: Any,
+    store: Store,
+    indices: Sequence[int],
+    filter: Filter | None,  # noqa: A002 (as in solve)
+) -> Iterator[int]:
     """Compute chunks on a Dask cluster, a few for each of its threads at a time."""
     as_completed = need("distributed").as_completed
-    path, waiting = str(store.path.absolute()), iter(indices)
+    path, waiting = store.place.address, iter(indices)
     threads = max(1, sum(client.nthreads().values()))
 
     def submit(index: int) -> Any:
-        return client.submit(_on_worker, path, store.job.id, index, pure=False)
+        return client.submit(_on_worker, path, store.job.id, index, filter, pure=False)
 
     first = [
         submit(i) for _, i in zip(range(IN_FLIGHT * threads), waiting, strict=False)
@@ -235,6 +272,11 @@ def _run_dask(client: Any, store: Store, indices: Sequence[int]) -> Iterator[int
         yield index
 
 
-def _on_worker(path: str, job_id: str, index: int) -> int:
+def _on_worker(
+    path: str,
+    job_id: str,
+    index: int,
+    filter: Filter | None,  # noqa: A002 (as in solve)
+) -> int:
     """What a Dask worker does for a chunk."""
-    return compute_chunk(_stores(path, job_id), index)
+    return compute_chunk(_stores(path, job_id), index, filter)

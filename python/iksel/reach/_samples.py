@@ -14,6 +14,8 @@ from iksel.reach._cells import UNKNOWN, flags
 from iksel.reach._job import Arrays, ArraySpec, Job, common_data
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from iksel._arrays import FloatArray
 
 TARGETS = ("configurations", "poses")
@@ -72,8 +74,17 @@ class SamplePlan(Job):
         """None: samples have only numbers."""
         return {}
 
-    def compute(self, index: int, solver: Solver) -> Arrays:
-        """The chunk of that number, an array for each spec."""
+    def compute(
+        self, index: int, solver: Solver, request: Mapping[str, Any] | None = None
+    ) -> Arrays:
+        """The chunk of that number, an array for each spec.
+
+        Args:
+            index: Of the chunk.
+            solver: As solver() makes it.
+            request: What request() gives.
+        """
+        request = request or {}
         (block,) = self.block(index)
         poses = self._poses(solver.robot, index, block.stop - block.start)
         arrays: Arrays = {
@@ -84,7 +95,7 @@ class SamplePlan(Job):
         arrays["quaternion"][:] = quaternion_from_pose(poses)
         most = arrays["q"].shape[1]
         for i, pose in enumerate(poses):
-            found = solver.solve_all(pose, max=most)
+            found = solver.solve_all(pose, max=most, **request)
             arrays["status"][i] = found.status
             arrays["proof"][i] = found.proof
             arrays["count"][i] = len(found.q)

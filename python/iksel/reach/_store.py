@@ -1,19 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A job and its results in a Zarr store, version 3, on a file system.
+"""A job and its results in a Zarr store, version 3, in a folder or at a URL of fsspec.
 
-Each chunk of work is one shard of every array: a file that is written beside its place
-and renamed. Its receipt is written last: the job's id and a digest of the chunk. What
-has no receipt has not been computed, whatever files there are.
+Each chunk of work is one shard of every array: a file that is written as a whole. Its
+receipt is written last: the job's id and a digest of the chunk. What has no receipt has
+not been computed, whatever files there are.
 """
 
 from __future__ import annotations
 
 import hashlib
 import json
-import os
-import shutil
-import uuid
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -25,19 +21,19 @@ from iksel.reach._errors import (
     need,
 )
 from iksel.reach._job import FORMAT, Arrays, ArraySpec, Job
+from iksel.reach._location import StrPath, locate
 from iksel.reach._plan import Plan
 from iksel.reach._samples import SamplePlan
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
+    from pathlib import Path
 
 ATTRIBUTE = "iksel"
 RECEIPTS = "receipt"
 HASH_BYTES = 16
 COMPRESSION_LEVEL = 3
 KINDS: dict[str, type[Job]] = {job.kind: job for job in (Plan, SamplePlan)}
-
-StrPath = str | os.PathLike[str]
 
 
 class Store:
@@ -50,7 +46,8 @@ class Store:
             MapIoError: There is none.
             PlanMismatchError: It is not one of this version's, or its plan was changed.
         """
-        self.path = Path(path)
+        self.place = locate(path)
+        self.path = self.place.path
         self.job = read_job(path)
         self.specs = self.job.specs()
         zarr = need("zarr")
@@ -62,24 +59,28 @@ class Store:
         except (OSError, ValueError, KeyError) as error:
             raise MapIoError(f"'{self.path}' cannot be read: {error}") from error
 
-    def receipts(self) -> np.ndarray[Any, Any]:
-        """Receipts of all chunks, (chunks, 32); zeros where there is none."""
-        return np.asarray(self._arrays[RECEIPTS][:])
+    def receipts(self, indices: Sequence[int]) -> np.ndarray[Any, Any]:
+        """Receipts of chunks, (n, 32); zeros where there is none. Reads no others."""
+        chosen = np.asarray(indices, dtype=int)
+        if len(chosen) == 0:
+            return np.zeros((0, 2 * HASH_BYTES), np.uint8)
+        return np.asarray(self._arrays[RECEIPTS].oindex[chosen, slice(None)])
 
-    def done(self) -> np.ndarray[Any, Any]:
-        """Which chunks have been computed, (chunks,).
+    def done(self, indices: Sequence[int] | None = None) -> np.ndarray[Any, Any]:
+        """Which chunks have been computed, (n,); None: of all.
 
         Raises:
             PlanMismatchError: One belongs to another plan.
         """
-        receipts = self.receipts()
+        chosen = range(self.job.chunks) if indices is None else indices
+        receipts = self.receipts(chosen)
         present = receipts.any(axis=1)
         other = present & (receipts[:, :HASH_BYTES] != _id_bytes(self.job)).any(axis=1)
         if other.any():
-            index = int(np.argmax(other))
+            first = int(np.argmax(other))
             raise PlanMismatchError(
-                f"{self.chunk_name(index)} belongs to the plan "
-                f"{receipts[index, :HASH_BYTES].tobytes().hex()}, not to this map's "
+                f"{self.chunk_name(chosen[first])} belongs to the plan "
+                f"{receipts[first, :HASH_BYTES].tobytes().hex()}, not to this map's "
                 f"{self.job.id}"
             )
         return np.asarray(present)
@@ -122,16 +123,16 @@ class Store:
 
     def forget(self, index: int) -> None:
         """Remove what there is of a chunk, its receipt first."""
-        self._file(RECEIPTS, (index, 0)).unlink(missing_ok=True)
+        self.place.remove(_file(RECEIPTS, (index, 0)))
         places = np.unravel_index(index, self.job.chunk_grid)
         for spec in self.specs:
             places_of = (*map(int, places), *(0 for _ in spec.shape))
-            self._file(spec.name, places_of).unlink(missing_ok=True)
+            self.place.remove(_file(spec.name, places_of))
 
     def chunk_name(self, index: int) -> str:
         """A chunk for messages: its number and the file of its first array."""
         places = tuple(map(int, np.unravel_index(index, self.job.chunk_grid)))
-        return f"chunk {index} ('{self._file(self.specs[0].name, places)}')"
+        return f"chunk {index} ('{self.path}/{_file(self.specs[0].name, places)}')"
 
     def damaged(
         self, indices: Sequence[int]
@@ -150,8 +151,10 @@ class Store:
             digest.update(np.ascontiguousarray(arrays[spec.name]).data)
         return _id_bytes(self.job).tobytes() + digest.digest()
 
-    def _file(self, name: str, places: tuple[int, ...]) -> Path:
-        return self.path.joinpath(name, "c", *map(str, places))
+
+def _file(array: str, places: tuple[int, ...]) -> str:
+    """The file of a chunk of an array, in its store."""
+    return "/".join((array, "c", *map(str, places)))
 
 
 def read_job(path: StrPath) -> Job:
@@ -162,7 +165,7 @@ def read_job(path: StrPath) -> Job:
         PlanMismatchError: It is not one of this version's, or was changed.
     """
     try:
-        text = (Path(path) / "zarr.json").read_text(encoding="utf-8")
+        text = locate(path).read_text("zarr.json")
         stored = json.loads(text).get("attributes", {}).get(ATTRIBUTE)
     except FileNotFoundError:
         raise MapIoError(f"'{path}' is no map: it has no zarr.json") from None
@@ -193,27 +196,24 @@ def create(job: Job, path: StrPath) -> Store:
         MapIoError: There is something else, or it cannot be written.
         PlanMismatchError: There is a map of another plan.
     """
-    target = Path(path)
-    if target.exists():
-        if not (target / "zarr.json").is_file():
-            raise MapIoError(f"'{target}' is there already, and is no map")
-        store = Store(target, writable=True)
-        if store.job.id != job.id:
-            raise PlanMismatchError(
-                f"'{target}' is there already, with another plan ({store.job.id}, not "
-                f"{job.id})"
-            )
-        return store
-    # Complete or not there at all, also if two do it at once.
-    beside = target.with_name(f"{target.name}.{uuid.uuid4().hex}.partial")
+    target = locate(path)
     try:
-        _make_group(job, beside)
-        beside.rename(target)
+        if not target.exists():
+            target.make(lambda folder: _make_group(job, folder))
+            return Store(path, writable=True)
     except OSError as error:
         raise MapIoError(f"'{target}' cannot be written: {error}") from error
-    finally:
-        shutil.rmtree(beside, ignore_errors=True)
-    return Store(target, writable=True)
+    try:
+        target.read_text("zarr.json")
+    except OSError:
+        raise MapIoError(f"'{target}' is there already, and is no map") from None
+    store = Store(path, writable=True)
+    if store.job.id != job.id:
+        raise PlanMismatchError(
+            f"'{target}' is there already, with another plan ({store.job.id}, not "
+            f"{job.id})"
+        )
+    return store
 
 
 def _make_group(job: Job, path: Path) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A worker process of _local: numbers of chunks come in, a line of JSON goes out."""
+"""A worker process of _local: a filter and numbers of chunks come in, JSON goes out."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import signal
 import sys
 
 from iksel.reach._errors import need
+from iksel.reach._local import unpack
 from iksel.reach._run import compute_chunk
 from iksel.reach._store import Store
 
@@ -19,12 +20,13 @@ def main(path: str) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     need("zarr")  # which takes a while, until there is something to do
     store = None
+    filter = unpack(sys.stdin.readline())  # noqa: A001 (as in solve)
     for line in sys.stdin:
         chunk = int(line)
         answer: dict[str, object] = {"chunk": chunk}
         try:
             store = store or Store(path, writable=True)
-            compute_chunk(store, chunk)
+            compute_chunk(store, chunk, filter)
         except Exception as error:  # noqa: BLE001 (told to the other process)
             answer["error"] = f"{type(error).__name__}: {error}"
             answer["io"] = isinstance(error, OSError)

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pybind11/stl.h>
 
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "bindings.hpp"
 #include "iksel/link_tree.hpp"
+#include "iksel/urdf_text.hpp"
 #include "pickle.hpp"
 #include "urdf_source.hpp"
 
@@ -14,8 +17,12 @@ namespace iksel::python {
 
 namespace {
 
-LinkTree tree_from_urdf(const PathLike& path_or_xml) {
-  return read_urdf(path_or_xml, &LinkTree::from_urdf_string, &LinkTree::from_urdf_file);
+LinkTree tree_from_urdf(const PathLike& path_or_xml,
+                        const std::optional<Loose<std::string>>& link) {
+  const std::string name = link ? from_python<std::string>(*link, "link") : "";
+  return read_urdf(
+      path_or_xml, [&](const std::string& xml) { return LinkTree::from_urdf_string(xml, name); },
+      [&](const std::filesystem::path& path) { return LinkTree::from_urdf_file(path, name); });
 }
 
 std::string tree_repr(const LinkTree& self) {
@@ -67,6 +74,21 @@ LinkTree tree_from_state(const py::object& state) {
 }  // namespace
 
 void bind_link_tree(py::module_& m) {
+  m.def(
+      "mend_xml",
+      [](const py::bytes& data, const std::string& link) { return mend_xml(data, link); },
+      py::arg("data"), py::arg("link") = "",
+      R"(The text of an XML file (URDF, SRDF, MJCF) as every XML reader takes it.
+
+It is UTF-8, with what people and exporters get wrong mended where it is clear what is meant; a DOCTYPE,
+comments and a default namespace are left out, and quat_xyzw of URDF 1.1 becomes rpy.
+
+Args:
+    data: the bytes of the file.
+    link: of a URDF whose links hang in several trees, the one of this link is left.
+
+Raises:
+    UrdfError: it is not clear what is meant; the message says the line.)");
   py::class_<LinkTreeJoint>(m, "LinkTreeJoint", "One joint of a URDF.")
       .def_readonly("name", &LinkTreeJoint::name, "Its name.")
       .def_readonly("type", &LinkTreeJoint::type, "'revolute', 'fixed', ...")
@@ -81,13 +103,15 @@ void bind_link_tree(py::module_& m) {
                        "The links of a URDF and the joints between them, depth first from the "
                        "root; str() draws the tree.")
       .def_static("from_urdf", &tree_from_urdf, py::arg("path_or_xml"),
+                  py::arg("link") = py::none(),
                   R"(Reads the tree of a URDF.
 
 Args:
     path_or_xml: a path, or the URDF text itself (a str whose first character is '<').
+    link: a link of the tree that is meant, where the links hang in several.
 
 Raises:
-    UrdfError: the file or the XML is no good.)")
+    UrdfError: the file or the XML is no good, or there are several trees.)")
       .def_readonly("robot_name", &LinkTree::robot_name, "Name in the URDF.")
       .def_readonly("links", &LinkTree::links, "Names of all links, the root first.")
       .def_readonly("joints", &LinkTree::joints, "All joints.")

@@ -133,7 +133,8 @@ void bind_chain(py::class_<Robot>& cls) {
   add_property(cls, "link_names", &Robot::link_names,
                "Names of all links of the URDF, the chain's and others, depth first "
                "from the root.");
-  add_property(cls, "urdf", &Robot::urdf, "The URDF text this robot was made of.");
+  add_property(cls, "urdf", &Robot::urdf,
+               "The URDF text this robot was made of, as every XML reader takes it.");
   bind_common_options(cls);
   add_property(
       cls, "mimic_curves", [](const Robot& self) { return self.options().mimic_curves; },

@@ -125,7 +125,8 @@ void bind_facts(py::class_<TreeRobot>& cls) {
   add_property(cls, "name", &TreeRobot::name, "Name in the URDF.");
   add_property(cls, "base_link", &TreeRobot::base_link, "Link that all poses are relative to.");
   add_property(cls, "tip_links", &TreeRobot::tip_links, "Links whose poses are solved for.");
-  add_property(cls, "urdf", &TreeRobot::urdf, "The URDF text this robot was made of.");
+  add_property(cls, "urdf", &TreeRobot::urdf,
+               "The URDF text this robot was made of, as every XML reader takes it.");
   add_property(
       cls, "tcps", [](const TreeRobot& self) { return to_stack(self.options().tcps); },
       "T_tip_tcp of each tip, (k, 4, 4).");

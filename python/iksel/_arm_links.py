@@ -42,7 +42,7 @@ class ArmLinks:
                 in the arm are 0.
         """
         text = _without_geometry(root)
-        self._joints = LinkTree.from_urdf(text).joints
+        self._joints = LinkTree.from_urdf(text, robot.base_link).joints
         self._check_known("robot", robot.joint_names)
         self._check_known("other_joints", others)
         self._robot = self._find_arm(text, robot, others)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from iksel_cpp import InvalidArgumentError, LinkTree, UnknownNameError
 
-from iksel._files import read_text
+from iksel._urdf_xml import read_xml
 from iksel.description import Source, read_description
 from iksel.pose import check_pose, euler_from_pose
 
@@ -108,9 +108,8 @@ def _read(
 ) -> tuple[ET.Element, str]:
     """The robot's links, joints and materials by their new names, and its root link."""
     read = read_description(source, packages=packages)
-    text = read.urdf if isinstance(read.urdf, str) else read_text(read.urdf)
-    root = prefix + LinkTree.from_urdf(text).links[0]
-    robot = ET.fromstring(text)  # noqa: S314 (the user's own file)
+    root = prefix + LinkTree.from_urdf(read.urdf).links[0]
+    robot = read_xml("urdf", read.urdf)[0]
     for element in list(robot):
         if element.tag not in _KEPT:
             robot.remove(element)

@@ -11,7 +11,7 @@ from iksel_cpp import InvalidArgumentError, UrdfError
 from iksel._packages import resolve_path
 from iksel._primitive_cover import cover_box, cover_cylinder
 from iksel._sphere_cover import Mesh
-from iksel._urdf_xml import read_numbers, read_origin
+from iksel._urdf_xml import GEOMETRIES, read_numbers, read_origin
 
 if TYPE_CHECKING:
     import xml.etree.ElementTree as ET
@@ -182,16 +182,15 @@ def _make_shape(
         return coal.Box(*_read_lengths(element, "size", 3))
     if element.tag == "sphere":
         return coal.Sphere(*_read_lengths(element, "radius", 1))
-    if element.tag == "cylinder":
+    if element.tag in {"cylinder", "capsule"}:  # that has half a ball on each end
         (radius,) = _read_lengths(element, "radius", 1)
-        return coal.Cylinder(radius, *_read_lengths(element, "length", 1))
+        make = coal.Cylinder if element.tag == "cylinder" else coal.Capsule
+        return make(radius, *_read_lengths(element, "length", 1))
     if element.tag == "mesh":
         path = resolve_path(element.get("filename", ""), packages, folder)
         scale = np.array(read_numbers(element, "scale", 3, "1 1 1"))
         return _load_mesh(coal, path, scale)
-    raise UrdfError(
-        f"no geometry {element.tag!r}; possible: box, cylinder, sphere, mesh"
-    )
+    raise UrdfError(f"no geometry {element.tag!r}; possible: {GEOMETRIES}")
 
 
 def _read_lengths(element: ET.Element, attribute: str, count: int) -> list[float]:
@@ -241,16 +240,16 @@ def mesh_of(shape: Shape) -> Mesh:
 def spheres_around(
     shape: Shape, balls: FloatArray, *, of_box: float, of_cylinder: float
 ) -> FloatArray | None:
-    """Spheres that cover a box or a cylinder, in the frame of its link.
+    """Spheres that cover a box, cylinder or capsule, in the frame of its link.
 
     Args:
         shape: Any shape.
         balls: The spheres of its link, (n, 4).
         of_box: How far spheres may stick out of a box [m].
-        of_cylinder: The same of a cylinder [m].
+        of_cylinder: The same of a cylinder or capsule [m].
 
     Returns:
-        (m, 4), rows of centre and radius [m]; None if it is neither.
+        (m, 4), rows of centre and radius [m]; None if it is none of them.
     """
     geometry = shape.geometry
     kind = type(geometry).__name__
@@ -260,6 +259,11 @@ def spheres_around(
         half = geometry.halfLength
         bare = (_is_bare(shape, -half, balls), _is_bare(shape, half, balls))
         rows = cover_cylinder(geometry.radius, half, of_cylinder, bare=bare)
+    elif kind == "Capsule":
+        radius, half = geometry.radius, geometry.halfLength
+        ends = [[0, 0, -half, radius], [0, 0, half, radius]]
+        between = cover_cylinder(radius, half, of_cylinder, bare=(False, False))
+        rows = np.concatenate([ends, between])
     else:
         return None
     return np.column_stack([_placed(rows[:, :3], shape.origin), rows[:, 3]])

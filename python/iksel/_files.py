@@ -18,6 +18,21 @@ LARGEST = 1 << 28
 """Bytes; text that is longer is no robot and no path, but a device without an end."""
 
 
+def read_bytes(path: Path) -> bytes:
+    """What a file holds.
+
+    Raises:
+        OSError: It cannot be read.
+        ValueError: It is too long.
+    """
+    with path.open("rb") as file:
+        data = file.read(LARGEST + 1)
+    if len(data) > LARGEST:
+        msg = f"'{path}' is larger than {LARGEST >> 20} MiB"
+        raise ValueError(msg)
+    return data
+
+
 def read_text(path: Path) -> str:
     """The UTF-8 text of a file.
 
@@ -25,12 +40,7 @@ def read_text(path: Path) -> str:
         OSError: It cannot be read.
         ValueError: It is too long, or not UTF-8.
     """
-    with path.open("rb") as file:
-        data = file.read(LARGEST + 1)
-    if len(data) > LARGEST:
-        msg = f"'{path}' is larger than {LARGEST >> 20} MiB"
-        raise ValueError(msg)
-    return data.decode("utf-8")
+    return read_bytes(path).decode("utf-8")
 
 
 def write_file(path: Path, content: bytes) -> None:

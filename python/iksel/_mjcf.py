@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from iksel_cpp import UrdfError
 
-from iksel._files import read_text
+from iksel._urdf_xml import read_xml
 from iksel.pose import euler_from_pose, pose_from_quaternion, pose_from_rotation_vector
 
 if TYPE_CHECKING:
@@ -103,7 +103,7 @@ def _compile(mujoco: Any, path: Path) -> Any:
 
 def _remedy(reason: str, path: Path, version: str) -> str:
     """What to do about a file that MuJoCo refuses for a reason."""
-    root = ET.fromstring(read_text(path))  # noqa: S314 (the user's own file)
+    root = read_xml("mjcf", path)[0]
     bodies = {"worldbody", "include", "attach"}
     if root.tag == "mujocoinclude" or not any(e.tag in bodies for e in root):
         return "it is a part of a model: give the file that includes it"

@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 import os
-import xml.etree.ElementTree as ET
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from iksel_cpp import UnknownNameError
+from iksel_cpp import UnknownNameError, UrdfError
+
+from iksel._urdf_xml import read_xml
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -86,7 +87,7 @@ def _roots(variable: str) -> list[Path]:
 def _package_name(folder: Path) -> str:
     """The name that a folder's package.xml gives it, or else its own."""
     try:
-        root = ET.parse(folder / "package.xml").getroot()  # noqa: S314 (the user's own)
-    except (OSError, ET.ParseError):
+        root = read_xml("packages", folder / "package.xml")[0]
+    except UrdfError:
         return folder.name
     return (root.findtext("name") or folder.name).strip()

@@ -117,7 +117,7 @@ class SelfCollision:
         if samples < 0:
             raise InvalidArgumentError(f"samples: {samples} is not 0 or more")
         coal = import_coal()
-        root, folder = read_urdf(urdf, packages or {}, xacro_args)
+        root, folder = read_urdf(urdf, packages or {}, xacro_args, robot.base_link)
         shapes = read_shapes(coal, root, folder, packages or {})
         self._dof = robot.dof
         self._name = root.get("name", "")
@@ -281,8 +281,12 @@ def read_urdf(
     source: str | os.PathLike[str],
     packages: Mapping[str, str | os.PathLike[str]],
     xacro_args: Mapping[str, str] | None,
+    link: str,
 ) -> tuple[ET.Element, Path]:
-    """The root of a robot's URDF, and the folder that its file names start from."""
+    """The root of a robot's URDF, and the folder that its file names start from.
+
+    Where its links hang in several trees, only the one of `link` is in it.
+    """
     read = read_description(source, packages=packages, xacro_args=xacro_args)
-    root, _, folder = read_xml("urdf", read.urdf)
+    root, _, folder = read_xml("urdf", read.urdf, link)
     return root, folder if read.format == "URDF" else read.folder

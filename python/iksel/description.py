@@ -9,7 +9,6 @@ print(read_description("arm.urdf.xacro", xacro_args={"prefix": "left_"}).urdf)
 from __future__ import annotations
 
 import os
-import xml.etree.ElementTree as ET
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -17,10 +16,11 @@ from typing import TYPE_CHECKING, Literal
 from iksel_cpp import UrdfError
 
 from iksel import _descriptions, _mjcf, _xacro
-from iksel._files import read_text
 from iksel._manifest import manifest, urdf_text
+from iksel._urdf_xml import is_xml, read_xml
 
 if TYPE_CHECKING:
+    import xml.etree.ElementTree as ET
     from collections.abc import Mapping
 
     from iksel._packages import Packages
@@ -70,7 +70,7 @@ def read_description(
     """
     packages = packages or {}
     if isinstance(source, str):
-        if source.lstrip().startswith("<"):
+        if is_xml(source):
             return Description(_refuse_other_text(source), "URDF")
         if source in manifest():
             return Description(urdf_text(manifest()[source]), "URDF")
@@ -97,21 +97,18 @@ def _read_file(
     return Description(path, "URDF", path.parent)
 
 
-def _root(path: Path) -> ET.Element | None:
-    """The root of an XML file; None if that cannot be read, as UrdfError will say."""
+def _root(source: Source) -> ET.Element | None:
+    """The root of XML; None if that cannot be read, as UrdfError will say."""
     try:
-        return ET.fromstring(read_text(path))  # noqa: S314 (the user's own file)
-    except (OSError, ValueError, ET.ParseError):
+        return read_xml("", source)[0]
+    except UrdfError:
         return None
 
 
 def _refuse_other_text(text: str) -> str:
     """The text, unless it is MJCF, whose files are relative to its own path."""
-    try:
-        root = ET.fromstring(text)  # noqa: S314 (the user's own)
-    except (ValueError, ET.ParseError):
-        return text
-    if _mjcf.is_mjcf(root):
+    root = _root(text)
+    if root is not None and _mjcf.is_mjcf(root):
         raise UrdfError("MJCF text; give the path of its file instead")
     return text
 

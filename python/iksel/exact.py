@@ -79,7 +79,9 @@ class ExactCollision:
         """
         self._coal = import_coal()
         self._scene = copy.copy(scene)
-        root, folder = read_urdf(urdf, packages or {}, xacro_args)
+        root, folder = read_urdf(
+            urdf, packages or {}, xacro_args, scene.robot.base_link
+        )
         _add_objects(root, scene)
         for mesh in root.iter("mesh"):
             name = resolve_path(mesh.get("filename", ""), packages or {}, folder)

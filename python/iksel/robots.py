@@ -19,6 +19,7 @@ from iksel_cpp import (
 from iksel._descriptions import PREFIX
 from iksel._keywords import with_hints
 from iksel._manifest import RobotInfo, manifest
+from iksel._urdf_xml import is_xml
 from iksel.description import FILE_SUFFIXES, Description, read_description
 from iksel.pose import pose_from_euler
 from iksel.srdf import Srdf
@@ -117,7 +118,7 @@ def load_robot(
         if group is None and len(groups) == 1:
             (group,) = groups
         if group is not None:
-            base, tip = given.ends(group, read.urdf)
+            base, tip = given.ends(group, read.urdf, tip_link)
     base, tip = base_link or base, tip_link or tip
     if info is not None:
         base, tip = base or info.base_link, tip or info.tip_link
@@ -148,13 +149,17 @@ def load_robot(
 def load_tree(
     source: str | os.PathLike[str],
     *,
+    link: str | None = None,
     xacro_args: Mapping[str, str] | None = None,
     packages: Packages | None = None,
 ) -> LinkTree:
-    """The tree of all links of a robot; arguments and errors are load_robot's."""
+    """The tree of all links of a robot; arguments and errors are load_robot's.
+
+    Where the links hang in several trees, the one of `link` is meant.
+    """
     _checked_name(source)
     read = read_description(source, xacro_args=xacro_args, packages=packages)
-    return LinkTree.from_urdf(read.urdf)
+    return LinkTree.from_urdf(read.urdf, link)
 
 
 def _checked_name(source: str | os.PathLike[str]) -> str:
@@ -163,7 +168,7 @@ def _checked_name(source: str | os.PathLike[str]) -> str:
         return ""
     text = str(source)
     known = text in manifest() or text.startswith(PREFIX)
-    if not (known or text.lstrip().startswith("<") or _looks_like_a_file(text)):
+    if not (known or is_xml(text) or _looks_like_a_file(text)):
         try:
             robot_info(source)
         except UnknownNameError as error:

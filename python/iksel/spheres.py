@@ -107,7 +107,7 @@ def from_urdf(
     if not 0 < max_error < np.inf:
         raise InvalidArgumentError(f"max_error: {max_error} m is not above 0")
     ignore = sorted(ignore)
-    root, folder = read_urdf(urdf, packages or {}, xacro_args)
+    root, folder = read_urdf(urdf, packages or {}, xacro_args, robot.base_link)
     kept = None
     if cache is not None:
         listed = read_xml("srdf", srdf)[1] if srdf is not None else None

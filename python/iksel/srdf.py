@@ -52,25 +52,33 @@ class Srdf:
         """Names of the groups."""
         return list(self._groups)
 
-    def ends(self, group: str, urdf: str | os.PathLike[str]) -> tuple[str, str]:
+    def ends(
+        self,
+        group: str,
+        urdf: str | os.PathLike[str],
+        tip_link: str | None = None,
+    ) -> tuple[str, str]:
         """The links that a group's chain is between.
 
         Args:
-            group: One of `groups`, that has one chain, or joints or links of one.
+            group: One of `groups`: it has one chain, or joints or links of one.
             urdf: Path of the robot's URDF, or its text.
+            tip_link: Which end is meant of a group with several.
 
         Returns:
             Base and tip link.
 
         Raises:
             UnknownNameError: The SRDF lacks the group, or the URDF a joint or link.
-            UrdfError: The group is empty, or branches.
+            UrdfError: The group is empty, or branches and `tip_link` names no end.
         """
         self._check_group(group)
-        chains = self._groups[group].findall("chain")
+        chains = [_chain_ends(e) for e in self._groups[group].findall("chain")]
         if len(self._groups[group]) == len(chains) == 1:
-            return _chain_ends(chains[0])
-        joints = LinkTree.from_urdf(urdf).joints
+            return chains[0]
+        links = [e.get("name", "") for e in self._groups[group].findall("link")]
+        some = next((base for base, _ in chains), next(iter(links), None))
+        joints = LinkTree.from_urdf(urdf, tip_link or some).joints
         above = {joint.child_link: joint for joint in joints}
         members = self._members(group, joints, ())
         paths = {name: _path(name, joints, above) for name in members}
@@ -78,15 +86,20 @@ class Srdf:
         last = [name for name in members if name not in inner]
         if not last:
             raise UrdfError(f"srdf: group {group!r} has no chain, joint or link")
-        if len(last) > 1:
-            tips = [j.child_link for j in joints if j.name in last]
+        ends = {}
+        for name in last:
+            first = next(joint for joint in paths[name] if joint in members)
+            ends[_joint(name, joints).child_link] = _joint(first, joints).parent_link
+        if len(ends) > 1:
+            ends |= {tip: base for base, tip in chains}
+        tip = tip_link if tip_link in ends or len(ends) > 1 else next(iter(ends))
+        if tip not in ends:
+            listed = ", ".join(j.child_link for j in joints if j.child_link in ends)
             raise UrdfError(
                 f"srdf: group {group!r} is no chain, it ends in several links; choose "
-                f"one by tip_link: {', '.join(tips)}"
+                f"one by tip_link: {listed}"
             )
-        by_name = {joint.name: joint for joint in joints}
-        first = next(name for name in paths[last[0]] if name in members)
-        return by_name[first].parent_link, by_name[last[0]].child_link
+        return ends[tip], tip
 
     def states(self, robot: Robot, group: str | None = None) -> dict[str, FloatArray]:
         """Joint values of the named states that give all joints of a robot.
@@ -159,15 +172,21 @@ def _path(
     name: str, joints: Sequence[LinkTreeJoint], above: dict[str, LinkTreeJoint]
 ) -> list[str]:
     """Names of the joints from the root to a joint, which is the last."""
-    joint = next((joint for joint in joints if joint.name == name), None)
-    if joint is None:
-        known = ", ".join(joint.name for joint in joints)
-        raise UnknownNameError(f"srdf: the URDF has no joint {name!r}; it has: {known}")
+    joint: LinkTreeJoint | None = _joint(name, joints)
     names = []
     while joint is not None:
         names.append(joint.name)
         joint = above.get(joint.parent_link)
     return names[::-1]
+
+
+def _joint(name: str, joints: Sequence[LinkTreeJoint]) -> LinkTreeJoint:
+    """The joint of a name."""
+    for joint in joints:
+        if joint.name == name:
+            return joint
+    known = ", ".join(joint.name for joint in joints)
+    raise UnknownNameError(f"srdf: the URDF has no joint {name!r}; it has: {known}")
 
 
 def _joints_between(

@@ -14,7 +14,7 @@ import numpy
 import numpy.typing
 import os
 import typing
-__all__: list[str] = ['AngleUnitWarning', 'ArcEnd', 'Axis', 'BatchResult', 'Cause', 'Contact', 'CoupledLimit', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'Diagnosis', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'KeyScheme', 'Kinematics', 'Lanes', 'LinkTree', 'LinkTreeJoint', 'MimicCurve', 'MoveNorm', 'Objective', 'ObjectiveKind', 'Obstacle', 'Paper', 'PathResult', 'Proof', 'RIGID_TOLERANCE', 'Ranking', 'Reselection', 'Result', 'Robot', 'RobotSpheres', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'Scene', 'SelfMotion', 'SelfMotionArc', 'SelfMotionEnd', 'SignatureError', 'SolutionOrder', 'Solutions', 'Solver', 'SolverOptions', 'Status', 'Structure', 'StructureKind', 'Task', 'TaskFrame', 'Tracker', 'TreeBatchResult', 'TreeDiagnosis', 'TreeResult', 'TreeRobot', 'TreeSolver', 'UnknownNameError', 'UrdfError', 'check_pose', 'evaluate', 'grid_counts', 'orthonormalized', 'pose_error', 'pose_matrices', 'rigid_deviation', 'simd_level', 'time_kdl_fk_jacobian']
+__all__: list[str] = ['AngleUnitWarning', 'ArcEnd', 'Axis', 'BatchResult', 'Cause', 'Contact', 'CoupledLimit', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'Diagnosis', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'KeyScheme', 'Kinematics', 'Lanes', 'LinkTree', 'LinkTreeJoint', 'MimicCurve', 'MoveNorm', 'Objective', 'ObjectiveKind', 'Obstacle', 'Paper', 'PathResult', 'Proof', 'RIGID_TOLERANCE', 'Ranking', 'Reselection', 'Result', 'Robot', 'RobotSpheres', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'Scene', 'SelfMotion', 'SelfMotionArc', 'SelfMotionEnd', 'SignatureError', 'SolutionOrder', 'Solutions', 'Solver', 'SolverOptions', 'Status', 'Structure', 'StructureKind', 'Task', 'TaskFrame', 'Tracker', 'TreeBatchResult', 'TreeDiagnosis', 'TreeResult', 'TreeRobot', 'TreeSolver', 'UnknownNameError', 'UrdfError', 'check_pose', 'evaluate', 'grid_counts', 'mend_xml', 'orthonormalized', 'pose_error', 'pose_matrices', 'rigid_deviation', 'simd_level', 'time_kdl_fk_jacobian']
 class AngleUnitWarning(UserWarning):
     """
     Angles that look like degrees were given where radians are meant.
@@ -88,15 +88,16 @@ class LinkTree:
     The links of a URDF and the joints between them, depth first from the root; str() draws the tree.
     """
     @staticmethod
-    def from_urdf(path_or_xml: str | os.PathLike[str]) -> LinkTree:
+    def from_urdf(path_or_xml: str | os.PathLike[str], link: str | None = None) -> LinkTree:
         """
         Reads the tree of a URDF.
 
         Args:
             path_or_xml: a path, or the URDF text itself (a str whose first character is '<').
+            link: a link of the tree that is meant, where the links hang in several.
 
         Raises:
-            UrdfError: the file or the XML is no good.
+            UrdfError: the file or the XML is no good, or there are several trees.
         """
     def __repr__(self) -> str:
         ...
@@ -497,7 +498,7 @@ class Robot:
     @property
     def urdf(self) -> str:
         """
-        The URDF text this robot was made of.
+        The URDF text this robot was made of, as every XML reader takes it.
         """
     @property
     def velocity_limit(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -2723,7 +2724,7 @@ class TreeRobot:
     @property
     def urdf(self) -> str:
         """
-        The URDF text this robot was made of.
+        The URDF text this robot was made of, as every XML reader takes it.
         """
     @property
     def velocity_limit(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -3130,6 +3131,20 @@ def evaluate(solver: Solver, targets: int, seed: int, stages: bool = False, prog
 def grid_counts(dof: int, scale: Scale | str) -> list[int]:
     """
     Points per joint of the paper's grid, base to tip.
+    """
+def mend_xml(data: bytes, link: str = '') -> str:
+    """
+    The text of an XML file (URDF, SRDF, MJCF) as every XML reader takes it.
+
+    It is UTF-8, with what people and exporters get wrong mended where it is clear what is meant; a DOCTYPE,
+    comments and a default namespace are left out, and quat_xyzw of URDF 1.1 becomes rpy.
+
+    Args:
+        data: the bytes of the file.
+        link: of a URDF whose links hang in several trees, the one of this link is left.
+
+    Raises:
+        UrdfError: it is not clear what is meant; the message says the line.
     """
 def orthonormalized(pose: numpy.typing.ArrayLike | typing.Any) -> numpy.typing.NDArray[numpy.float64]:
     """

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "database/data.hpp"
+#include "iksel/urdf_text.hpp"
 #include "kinematics/chain_model.hpp"
 #include "robots.hpp"
 #include "search/context.hpp"
@@ -386,6 +387,53 @@ TEST(Urdf, RefusesTextThatDoesNotParse) {
         "<mesh/>", "<robot name='x'><link name='a'/><link name='b'/></robot>"}) {
     EXPECT_FALSE(refusal(text, "a", "b").empty()) << text;
   }
+}
+
+/// The text in UTF-16.
+std::string wide(const std::string& ascii, bool big_endian) {
+  std::string bytes = big_endian ? "\xFE\xFF" : "\xFF\xFE";
+  for (const char c : ascii) {
+    const char unit[] = {big_endian ? '\0' : c, big_endian ? c : '\0'};
+    bytes.append(unit, 2);
+  }
+  return bytes;
+}
+
+TEST(Urdf, MendedTextIsOfTheSameRobotAndStaysAsItIs) {
+  std::string odd = tree();
+  odd.replace(odd.find("<link"), 0,
+              "<!-- a -- b --><joint:x joint:y='R&D'/><![CDATA[ <a> ]]>&lt;&#x41;&none; < ");
+  odd.insert(0, "<!-- first -->");
+  odd.replace(odd.find("<robot"), 0, "<!DOCTYPE robot [<!ENTITY pi '3.14'> <!-- ]> -->]>");
+  for (const std::string& text : {odd, wide(odd, false), wide(odd, true), "\xEF\xBB\xBF" + odd}) {
+    const std::string mended = iksel::mend_xml(text);
+    EXPECT_EQ(mended, iksel::mend_xml(odd));
+    EXPECT_EQ(iksel::mend_xml(mended), mended);
+    EXPECT_EQ(load(text, "a", "c").urdf(), mended);
+    EXPECT_EQ(load(text, "a", "c").chain_hash(), load(tree(), "a", "c").chain_hash());
+  }
+  expect_mentions(iksel::mend_xml(odd), {"xmlns:joint=\"joint\"", "joint:y=\"R&amp;D\"",
+                                         " &lt;a&gt; ", "&lt;A&amp;none; &lt; <link"});
+}
+
+TEST(Urdf, TheTreeOfTheChainIsLeft) {
+  std::string two = tree();
+  two.insert(two.find("<link"),
+             "<link name='x'/><link name='y'/>" + joint("xy", "revolute", "x", "y", kTurn));
+  const Robot robot = load(two, "a", "c");
+  EXPECT_EQ(robot.link_names(), load(tree(), "a", "c").link_names());
+  EXPECT_EQ(load(two, "", "y").joint_names(), (std::vector<std::string>{"xy"}));
+  EXPECT_EQ(iksel::LinkTree::from_urdf_string(two, "c").links, robot.link_names());
+  expect_mentions(refusal(two, "", ""), {"several trees, whose roots are x, a"});
+  expect_mentions(refusal(two, "a", "y"), {"'a' and 'y' are not connected"});
+}
+
+TEST(Urdf, FaultsOfXmlHaveALine) {
+  const std::string text = "<robot name='a'>\n<link name='b'/>\n";
+  expect_mentions(refusal(text, "", ""), {"line 3: ", "cut off"});
+  expect_mentions(refusal(text + "<link name='c>\n</robot>", "", ""),
+                  {"line 3: ", "closing quote"});
+  expect_mentions(refusal(text + "</link>", "", ""), {"line 3: ", "</link>", "<robot> of line 1"});
 }
 
 TEST(Urdf, NamesAFileThatIsNotThere) {

@@ -102,8 +102,8 @@ def test_errors_name_the_culprit(arm) -> None:
         collision.SelfCollision(URDF.replace(TUBE, TUBE.replace("0.04", "-0.04")), arm)
     with pytest.raises(iksel.UrdfError, match="'l2'.*size='1 1 -1', which is below 0"):
         collision.SelfCollision(URDF.replace(TUBE, '<box size="1 1 -1"/>'), arm)
-    with pytest.raises(iksel.UrdfError, match="'l2'.*'capsule'.*box, cylinder"):
-        collision.SelfCollision(URDF.replace(TUBE, "<capsule/>"), arm)
+    with pytest.raises(iksel.UrdfError, match="'l2'.*'cone'.*box, capsule, cylinder"):
+        collision.SelfCollision(URDF.replace(TUBE, "<cone/>"), arm)
     with pytest.raises(iksel.UrdfError, match=r"absent\.urdf"):
         collision.SelfCollision("absent.urdf", arm)
     with pytest.raises(iksel.UnknownNameError, match="'gripper'.*j0, j1"):

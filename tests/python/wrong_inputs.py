@@ -256,8 +256,6 @@ NOT_PORTABLE = (
     (r"\d+ bytes instead of \d+", "<n> bytes instead of <n>"),
     (r"\d+ truth values for the \(\d+,", "<n> truth values for the (<n>,"),
     (r"(?<=at q = )\[[^\]]*\]", "<q>"),
-    # "(Error ...)" of urdfdom 3's, "(Error=... ErrorID=8 (0x8) ...)" of urdfdom 4's.
-    (r"\(Error[ =](?:[^()]|\([^()]*\))*\)", "(<words of the XML parser>)"),
     (r"choose from '([^)]*)'", r"choose from \1"),  # newer Pythons have no quotes
     (r"(?<=\w)', '(?=\w)", ", "),
 )

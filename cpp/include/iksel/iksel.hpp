@@ -28,4 +28,5 @@
 #include "iksel/tree_robot.hpp"     // IWYU pragma: export
 #include "iksel/tree_solver.hpp"    // IWYU pragma: export
 #include "iksel/types.hpp"          // IWYU pragma: export
+#include "iksel/urdf_text.hpp"      // IWYU pragma: export
 #include "iksel/version.hpp"        // IWYU pragma: export

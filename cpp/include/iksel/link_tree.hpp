@@ -30,10 +30,11 @@ struct IKSEL_EXPORT LinkTree {
   };
   std::vector<Tip> tips;
 
-  /// Reads a URDF file. Throws UrdfError.
-  static LinkTree from_urdf_file(const std::filesystem::path& path);
-  /// Parses URDF text. Throws UrdfError.
-  static LinkTree from_urdf_string(const std::string& xml);
+  /// Reads a URDF file. Where its links hang in several trees, the one with `link` is meant.
+  /// Throws UrdfError.
+  static LinkTree from_urdf_file(const std::filesystem::path& path, const std::string& link = "");
+  /// Reads the bytes of a URDF file, as from_urdf_file does.
+  static LinkTree from_urdf_string(const std::string& xml, const std::string& link = "");
 
   /// One line per link, indented under its parent, with the joint that carries it.
   [[nodiscard]] std::string draw() const;

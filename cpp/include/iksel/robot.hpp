@@ -39,7 +39,8 @@ class IKSEL_EXPORT Robot {
   [[nodiscard]] const std::string& name() const;
   [[nodiscard]] const std::string& base_link() const;
   [[nodiscard]] const std::string& tip_link() const;
-  /// The URDF text and options this robot was made of (base and tip link filled in).
+  /// The URDF text this robot was made of, as mend_xml gives it, without trees of links that the
+  /// chain is not in; and the options, base and tip link filled in.
   [[nodiscard]] const std::string& urdf() const;
   [[nodiscard]] const RobotOptions& options() const;
   /// Names of all links of the URDF, the chain's and others, depth first from the root.

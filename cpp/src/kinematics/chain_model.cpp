@@ -10,6 +10,7 @@
 #include "base/message_text.hpp"
 #include "iksel/error.hpp"
 #include "iksel/pose.hpp"
+#include "iksel/urdf_text.hpp"
 #include "kinematics/coupled_limits.hpp"
 
 namespace iksel {
@@ -91,6 +92,7 @@ ChainModel::ChainModel(std::string urdf_xml, const RobotOptions& options_in)
     : urdf(std::move(urdf_xml)), options(options_in) {
   options.tcp = check_tool(Pose(options.tcp));
   spec = read_chain(urdf, options);
+  urdf = mend_xml(urdf, options.base_link);
   dof = static_cast<int>(spec.variables.size());
   joints = JointSpace(dof);
   for (JointVector* v : {&soft_lower, &soft_upper}) v->resize(dof);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "base/constants.hpp"
 #include "base/message_text.hpp"
@@ -89,10 +90,6 @@ class ChainReader {
       --common_base;
       --common_tip;
     }
-    if (common_base == base_up.size()) {
-      throw UrdfError("links '" + options_.base_link + "' and '" + options_.tip_link +
-                      "' are not connected");
-    }
     for (std::size_t i = 0; i < common_base; ++i) add_joint(*base_up[i]->parent_joint, true);
     for (std::size_t i = common_tip; i-- > 0;) add_joint(*tip_up[i]->parent_joint, false);
 
@@ -129,17 +126,9 @@ class ChainReader {
                        spec_.link_names);
   }
 
-  std::vector<const urdf::Link*> path_to_root(const urdf::Link* link) const {
+  static std::vector<const urdf::Link*> path_to_root(const urdf::Link* link) {
     std::vector<const urdf::Link*> path;
-    urdf::LinkSharedPtr parent;
-    while (link != nullptr) {
-      path.push_back(link);
-      if (path.size() > model_.links_.size()) {
-        throw UrdfError("link '" + path.front()->name + "' hangs on a circle of links");
-      }
-      parent = link->getParent();
-      link = parent.get();
-    }
+    for (; link != nullptr; link = link->getParent().get()) path.push_back(link);
     return path;
   }
 
@@ -226,8 +215,10 @@ class ChainReader {
 }  // namespace
 
 ChainSpec read_chain(const std::string& urdf_xml, RobotOptions& options) {
-  return explain_xacro(urdf_xml,
-                       [&] { return ChainReader(*parse_urdf(urdf_xml), options).read(); });
+  return explain_xacro(urdf_xml, [&] {
+    const auto model = parse_urdf(urdf_xml, {options.base_link, options.tip_link});
+    return ChainReader(*model, options).read();
+  });
 }
 
 }  // namespace iksel

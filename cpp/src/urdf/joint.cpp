@@ -17,19 +17,61 @@ namespace {
 
 bool is_limited(const urdf::Joint& joint) { return joint.type != urdf::Joint::CONTINUOUS; }
 
-/// Exporters write 0, 0 where they know no limits; urdfdom reads a limit without numbers so.
-bool lacks_limits(const urdf::Joint& joint) {
-  return is_limited(joint) &&
-         (!joint.limits || (joint.limits->lower == 0 && joint.limits->upper == 0));
+/// A number that exporters write where there is no limit, or that urdf_text.cpp has for infinity.
+double infinite_if_huge(double limit) {
+  return std::abs(limit) > kMaxCoordinate ? std::copysign(kInfinity, limit) : limit;
 }
 
-bool are_usable(double lower, double upper) {
-  return std::isfinite(lower) && std::isfinite(upper) && lower < upper;
+/// The limits that the URDF gives a joint; infinite where it gives none. Exporters write 0, 0 where
+/// they know none; urdfdom reads a limit without numbers so.
+std::pair<double, double> limits_of(const urdf::Joint& joint) {
+  const urdf::JointLimits* limits = joint.limits.get();
+  if (!is_limited(joint) || limits == nullptr || (limits->lower == 0 && limits->upper == 0)) {
+    return {-kInfinity, kInfinity};
+  }
+  return {infinite_if_huge(limits->lower), infinite_if_huge(limits->upper)};
+}
+
+/// A joint that turns without end says so, or has numbers that stand for infinity.
+bool turns_freely(const urdf::Joint& joint) {
+  if (!is_limited(joint)) return true;
+  const auto [lower, upper] = limits_of(joint);
+  return joint.type == urdf::Joint::REVOLUTE && joint.limits && joint.limits->upper != 0 &&
+         lower == -kInfinity && upper == kInfinity;
 }
 
 void set_limits(ChainVariable& variable, double lower, double upper) {
   variable.lower = variable.soft_lower = lower;
   variable.upper = variable.soft_upper = upper;
+}
+
+/// The degree of freedom that a joint is by its URDF, with infinite limits where it has none.
+ChainVariable read_variable(const urdf::Joint& joint, const RobotOptions& options) {
+  ChainVariable variable;
+  variable.name = joint.name;
+  const double velocity = joint.limits ? joint.limits->velocity : 0;
+  variable.velocity = velocity > 0 ? infinite_if_huge(velocity) : kInfinity;
+  const auto [lower, upper] = limits_of(joint);
+  set_limits(variable, lower, upper);
+  if (turns_freely(joint)) {
+    // Safety limits of continuous joints are placeholders in practice (0, 0).
+    variable.type = JointType::continuous;
+    return variable;
+  }
+  variable.type = joint.type == urdf::Joint::PRISMATIC ? JointType::prismatic : JointType::revolute;
+  if (joint.safety && joint.safety->soft_lower_limit < joint.safety->soft_upper_limit) {
+    variable.soft_lower = std::max(lower, joint.safety->soft_lower_limit);
+    variable.soft_upper = std::min(upper, joint.safety->soft_upper_limit);
+  }
+  if (options.soft_limits) {
+    variable.lower = variable.soft_lower;
+    variable.upper = variable.soft_upper;
+  }
+  return variable;
+}
+
+bool are_usable(double lower, double upper) {
+  return std::isfinite(lower) && std::isfinite(upper) && lower < upper;
 }
 
 void narrow_to_ends(const MotionCurve& curve, ChainVariable& variable) {
@@ -106,33 +148,23 @@ Motion resolve_mimic(const urdf::ModelInterface& model, const CheckedCurves& cur
 }
 
 ChainVariable make_variable(const urdf::Joint& joint, const RobotOptions& options) {
-  ChainVariable variable;
-  variable.name = joint.name;
-  variable.velocity =
-      joint.limits && joint.limits->velocity > 0 ? joint.limits->velocity : kInfinity;
-  if (!is_limited(joint)) {
-    // Safety limits of continuous joints are placeholders in practice (0, 0).
-    variable.type = JointType::continuous;
-    set_limits(variable, -kInfinity, kInfinity);
-    return variable;
+  ChainVariable variable = read_variable(joint, options);
+  if (variable.type == JointType::continuous) return variable;
+  const bool has_lower = variable.lower != -kInfinity;
+  const bool has_upper = variable.upper != kInfinity;
+  if (has_lower && has_upper) return variable;
+  if (!options.default_limits) {
+    const char* what = has_lower ? "upper limit" : has_upper ? "lower limit" : "limits";
+    throw UrdfError("joint '" + joint.name + "' has no " + what +
+                    " (missing, 0, 0 or infinite): give default_limits for such joints, or hold it "
+                    "at a value by locked_joints");
   }
-  variable.type = joint.type == urdf::Joint::PRISMATIC ? JointType::prismatic : JointType::revolute;
-  if (!lacks_limits(joint)) {
-    set_limits(variable, joint.limits->lower, joint.limits->upper);
-  } else if (options.default_limits) {
-    set_limits(variable, options.default_limits->first, options.default_limits->second);
-  } else {
-    throw UrdfError("joint '" + joint.name +
-                    "' has no limits (they are missing or 0, 0): give default_limits for such "
-                    "joints, or hold it at a value by locked_joints");
+  const auto [least, most] = *options.default_limits;
+  for (double* lower : {&variable.lower, &variable.soft_lower}) {
+    if (!has_lower) *lower = std::max(*lower, least);
   }
-  if (joint.safety && joint.safety->soft_lower_limit < joint.safety->soft_upper_limit) {
-    variable.soft_lower = std::max(variable.lower, joint.safety->soft_lower_limit);
-    variable.soft_upper = std::min(variable.upper, joint.safety->soft_upper_limit);
-  }
-  if (options.soft_limits) {
-    variable.lower = variable.soft_lower;
-    variable.upper = variable.soft_upper;
+  for (double* upper : {&variable.upper, &variable.soft_upper}) {
+    if (!has_upper) *upper = std::min(*upper, most);
   }
   return variable;
 }
@@ -141,9 +173,7 @@ void narrow_by_follower(const urdf::Joint& follower, const Motion& motion,
                         const RobotOptions& options, ChainVariable& variable) {
   if (motion.source == &follower || motion.multiplier == 0.0) return;
   if (motion.curve) narrow_to_ends(*motion.curve, variable);
-  // A curve has ends of its own.
-  if ((options.default_limits || motion.curve) && lacks_limits(follower)) return;
-  const ChainVariable own = make_variable(follower, options);
+  const ChainVariable own = read_variable(follower, options);
   const auto narrow = [&](double low, double high, double& lower, double& upper) {
     low = (low - motion.offset) / motion.multiplier;
     high = (high - motion.offset) / motion.multiplier;

@@ -35,8 +35,8 @@ struct Motion {
 Motion resolve_mimic(const urdf::ModelInterface& model, const CheckedCurves& curves,
                      const urdf::Joint& joint);
 
-/// The degree of freedom that a joint is. Throws UrdfError if it has no limits and the options no
-/// default ones.
+/// The degree of freedom that a joint is. One that turns and has infinite limits is continuous.
+/// Throws UrdfError if it has no limits and the options no default ones.
 ChainVariable make_variable(const urdf::Joint& joint, const RobotOptions& options);
 
 /// Narrows the limits of `variable` to those of a joint that follows it, and to the ends of the

@@ -10,12 +10,12 @@
 
 namespace iksel {
 
-LinkTree LinkTree::from_urdf_file(const std::filesystem::path& path) {
-  return read_with_path(path, [](const std::string& xml) { return from_urdf_string(xml); });
+LinkTree LinkTree::from_urdf_file(const std::filesystem::path& path, const std::string& link) {
+  return read_with_path(path, [&](const std::string& xml) { return from_urdf_string(xml, link); });
 }
 
-LinkTree LinkTree::from_urdf_string(const std::string& xml) {
-  return explain_xacro(xml, [&] { return make_link_tree(*parse_urdf(xml)); });
+LinkTree LinkTree::from_urdf_string(const std::string& xml, const std::string& link) {
+  return explain_xacro(xml, [&] { return make_link_tree(*parse_urdf(xml, {link})); });
 }
 
 LinkTree make_link_tree(const urdf::ModelInterface& model) {

@@ -13,7 +13,8 @@
 #include <system_error>
 
 #include "iksel/error.hpp"
-#include "urdf/precheck.hpp"
+#include "urdf/urdf_text.hpp"
+#include "urdf/urdf_tree.hpp"
 
 namespace iksel {
 namespace {
@@ -65,11 +66,12 @@ struct Remedy {
 };
 
 constexpr Remedy kRemedies[] = {
-    {"No name given for the robot", "give the <robot> a name"},
+    {"unnamed joint found", "give each <joint> a name"},
+    {"is not unique", "give each a name of its own"},
     {"No link elements found", "it needs a <link> for each body"},
     {"no XML element", "give the path of a URDF file, or its text"},
+    {"has no type", "write type=\"revolute\" or what it is"},
     {"has no known type", "a joint is revolute, continuous, prismatic, fixed, planar or floating"},
-    {"Unknown geometry type", "a geometry is a box, cylinder, sphere or mesh"},
     {"expected while parsing vector", "give as many numbers as are expected"},
     {"Unable to parse component", "write numbers as in xyz=\"0 0.5 -1e-3\", without commas"},
     {"is not a valid float", "write the number as in -1.57"},
@@ -84,33 +86,17 @@ std::string find_remedies(const std::string& messages) {
   return text;
 }
 
-/// Length of the UTF-8 sequence that begins at `at`; 0: none does.
-std::size_t utf8_length(const std::string& text, std::size_t at) {
-  const auto byte = [&](std::size_t i) {
-    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
-  };
-  const unsigned lead = byte(at);
-  if (lead < 0x80) return 1;
-  if (lead < 0xC2 || lead > 0xF4) return 0;
-  const std::size_t length = lead < 0xE0 ? 2 : lead < 0xF0 ? 3 : 4;
-  // Not longer than need be, no half of a surrogate pair, nothing beyond the last character.
-  const unsigned least = lead == 0xE0 ? 0xA0 : lead == 0xF0 ? 0x90 : 0x80;
-  const unsigned most = lead == 0xED ? 0x9F : lead == 0xF4 ? 0x8F : 0xBF;
-  if (byte(at + 1) < least || byte(at + 1) > most) return 0;
-  for (std::size_t i = 2; i < length; ++i) {
-    if (byte(at + i) < 0x80 || byte(at + i) > 0xBF) return 0;
+/// The root element of a URDF; throws UrdfError where it is none.
+XmlElement read_robot(const std::string& xml) {
+  const std::string other = explain_root(xml_root_name(xml));
+  std::string reason = other;
+  try {
+    XmlElement root = parse_xml(xml);
+    if (other.empty()) return root;
+  } catch (const UrdfError& error) {
+    reason = error.what() + find_remedies(error.what()) + (other.empty() ? "" : "; " + other);
   }
-  return length;
-}
-
-/// Letters of other encodings, as in authors' names, become question marks: names and messages are
-/// shown as text.
-void replace_what_is_no_utf8(std::string& text) {
-  for (std::size_t i = 0; i < text.size();) {
-    const std::size_t length = utf8_length(text, i);
-    if (length == 0) text[i] = '?';
-    i += std::max<std::size_t>(length, 1);
-  }
+  throw UrdfError("URDF does not parse: " + reason);
 }
 
 }  // namespace
@@ -135,12 +121,15 @@ std::string read_urdf_file(const std::filesystem::path& path) {
     }
   }
   if (file.bad()) throw UrdfError("cannot read URDF file '" + path.string() + "'");
-  replace_what_is_no_utf8(text);
   return text;
 }
 
-urdf::ModelInterfaceSharedPtr parse_urdf(const std::string& xml) {
-  const std::string text = prepare_urdf(xml);
+urdf::ModelInterfaceSharedPtr parse_urdf(const std::string& xml,
+                                         const std::vector<std::string>& links) {
+  XmlElement robot = read_robot(xml);
+  keep_one_tree(robot, links);
+  replace_quaternions(robot);
+  const std::string text = kinematic_text(robot);
   urdf::ModelInterfaceSharedPtr model;
   std::string messages;
   {
@@ -153,11 +142,7 @@ urdf::ModelInterfaceSharedPtr parse_urdf(const std::string& xml) {
     }
   }
   if (!model) {
-    const std::string reason = explain_broken_xml(xml);
-    if (!reason.empty()) messages = reason + " (" + messages + ")";
-    throw UrdfError(
-        "URDF does not parse: " + (messages.empty() ? "no robot in it" : one_line(messages)) +
-        find_remedies(messages));
+    throw UrdfError("URDF does not parse: " + one_line(messages) + find_remedies(messages));
   }
   return model;
 }
@@ -188,9 +173,14 @@ const char* joint_type_name(int type) {
 }
 
 void throw_if_xacro(const std::string& xml, const std::string& reason) {
-  const std::string sign = find_xacro(xml);
+  std::string sign;
+  try {
+    sign = find_xacro(parse_xml(xml));
+  } catch (const UrdfError&) {
+    return;  // the XML itself is the reason
+  }
   if (sign.empty()) return;
-  throw UrdfError("it is xacro (" + one_line(sign) +
+  throw UrdfError("it is xacro (" + sign +
                   "), which has to be expanded first: xacro FILE > robot.urdf, or in Python "
                   "iksel.load_robot(FILE) (as URDF: " +
                   reason + ")");

@@ -13,11 +13,13 @@
 
 namespace iksel {
 
-/// Text of a URDF file. Throws UrdfError if it cannot be read.
+/// Bytes of a URDF file. Throws UrdfError if it cannot be read.
 std::string read_urdf_file(const std::filesystem::path& path);
 
-/// Parses URDF text by urdfdom, whose console messages become the text of the UrdfError.
-urdf::ModelInterfaceSharedPtr parse_urdf(const std::string& xml);
+/// Parses the bytes of a URDF by urdfdom, whose console messages become the text of the UrdfError.
+/// Of several trees of links that with `links` is left, see keep_one_tree (urdf/urdf_tree.hpp).
+urdf::ModelInterfaceSharedPtr parse_urdf(const std::string& xml,
+                                         const std::vector<std::string>& links = {});
 
 /// Names of all joints, in order of the alphabet.
 std::vector<std::string> joint_names_of(const urdf::ModelInterface& model);

@@ -206,7 +206,9 @@ def load_tree(arguments: argparse.Namespace) -> LinkTree:
     """
     name = arguments.robot
     try:
-        return load_tree_of(name, **of_files(arguments))
+        return load_tree_of(
+            name, link=arguments.base or arguments.tip, **of_files(arguments)
+        )
     except (UnknownNameError, UrdfError) as error:
         raise type(error)(_with_flags(str(error), name)) from None
 
@@ -285,7 +287,7 @@ def _joint_limits(
     read = read_description(arguments.robot, **of_files(arguments))
     try:
         root = read_xml("robot", read.urdf)[0]
-    except UrdfError:  # such as comments in Latin-1, which URDF's own reader takes
+    except UrdfError:  # as whoever loads the robot will say
         return {}
     limits = {}
     for joint in root.iter("joint"):

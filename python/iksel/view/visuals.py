@@ -11,7 +11,7 @@ from iksel_cpp import UnknownNameError, UrdfError
 from iksel import _extras
 from iksel import _rotations as rotations
 from iksel._packages import resolve_path
-from iksel._urdf_xml import read_numbers, read_origin, read_xml
+from iksel._urdf_xml import GEOMETRIES, read_numbers, read_origin, read_xml
 from iksel.description import read_description
 
 if TYPE_CHECKING:
@@ -84,11 +84,14 @@ def read_pieces(
 
 
 def _colour(material: ET.Element) -> Colour | None:
-    """What a <material> says itself."""
+    """What a <material> says itself; None where that is no colour."""
     element = material.find("color")
     if element is None:
         return None
-    r, g, b = (round(255 * x) for x in read_numbers(element, "rgba", 4)[:3])
+    try:
+        r, g, b = (round(255 * x) for x in read_numbers(element, "rgba", 4)[:3])
+    except UrdfError:
+        return None
     return r, g, b
 
 
@@ -136,14 +139,13 @@ def _primitive(element: ET.Element) -> Any:
         return creation.box(read_numbers(element, "size", 3))
     if element.tag == "sphere":
         return creation.icosphere(radius=read_numbers(element, "radius", 1)[0])
-    if element.tag == "cylinder":
+    if element.tag in {"cylinder", "capsule"}:  # that has half a ball on each end
         radius, length = (
             read_numbers(element, name, 1)[0] for name in ("radius", "length")
         )
-        return creation.cylinder(radius=radius, height=length)
-    raise UrdfError(
-        f"no geometry {element.tag!r}; possible: box, cylinder, sphere, mesh"
-    )
+        make = creation.cylinder if element.tag == "cylinder" else creation.capsule
+        return make(radius=radius, height=length)
+    raise UrdfError(f"no geometry {element.tag!r}; possible: {GEOMETRIES}")
 
 
 def _own_colour(mesh: Any) -> Colour | None:

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The text of a URDF before urdfdom sees it: what is mended in it, and what is left out because
+// kinematics do not need it.
+#pragma once
+
+#include <string>
+
+#include "urdf/xml.hpp"
+
+namespace iksel {
+
+/// Writes orientations by `quat_xyzw`, which are URDF's from version 1.1 on, as `rpy`. Such ones of
+/// older files, or beside an rpy, stay as they are.
+void replace_quaternions(XmlElement& robot);
+
+/// Text for urdfdom with what kinematics need: links by name, and of joints what they join, where
+/// and how they move. What urdfdom insists on beyond that, effort and velocity of a limit or the
+/// limit itself, is there with zeros. A number may be infinite, and stands between any blanks.
+/// Throws UrdfError for joints whose orientation is a quaternion that does not count.
+std::string kinematic_text(const XmlElement& robot);
+
+/// What to do about a document that is no URDF, by the name of its root; empty for <robot>.
+std::string explain_root(const std::string& name);
+
+/// The first sign that a document is xacro which has to be expanded; empty if there is none.
+std::string find_xacro(const XmlElement& root);
+
+}  // namespace iksel

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// XML of robot files: read in spite of the faults that people and exporters make, and written so
+// that every XML reader takes it.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace iksel {
+
+struct XmlElement {
+  std::string name;
+  std::vector<std::pair<std::string, std::string>> attributes;  ///< names and values
+  std::string text;                                             ///< up to the first child
+  std::vector<XmlElement> children;
+  std::string tail;  ///< text behind the element, in its parent
+
+  /// Value of an attribute; null where there is none.
+  [[nodiscard]] const std::string* attribute(std::string_view key) const;
+  /// The first child of a name; null where there is none.
+  [[nodiscard]] const XmlElement* child(std::string_view child_name) const;
+};
+
+/// Reads the bytes of an XML file.
+///
+/// Left out are comments, processing instructions and a DOCTYPE, whose entities are not expanded:
+/// an & that begins none of XML's own stands for itself. A default namespace is left out, and
+/// prefixes that nothing binds are bound. Tabs and line breaks in values are spaces.
+///
+/// Throws UrdfError, which begins with the line, where tags are not closed, values have no quotes
+/// or anything else leaves open what is meant, and for text that would take all memory.
+XmlElement parse_xml(const std::string& bytes);
+
+/// Name of the first element; empty where there is none.
+std::string xml_root_name(const std::string& bytes);
+
+/// Text of the document, in UTF-8.
+std::string write_xml(const XmlElement& root);
+
+}  // namespace iksel

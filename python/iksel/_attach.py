@@ -29,6 +29,7 @@ def attach(
     pose: PoseLike | None = None,
     prefixes: tuple[str, str] = ("", ""),
     packages: Packages | None = None,
+    trusted: bool = False,
 ) -> str:
     """Fix a robot to a link of another: two arms on a stand, an arm on a rail.
 
@@ -45,6 +46,7 @@ def attach(
         pose: T_at_root, where the child's root link is, (4, 4) [m]; None: at the link.
         prefixes: Of the names of the parent's links and joints, and of the child's.
         packages: Folders of ROS packages that xacro's $(find ...) names.
+        trusted: Whether a xacro file may run whatever Python it contains.
 
     Returns:
         URDF text of both: links, joints and materials, with paths of meshes that were
@@ -56,8 +58,8 @@ def attach(
         InvalidArgumentError: Both have a link or a joint of the same name; or the pose
             is not rigid.
     """
-    whole, root = _read(parent, prefixes[0], packages)
-    part, part_root = _read(child, prefixes[1], packages)
+    whole, root = _read(parent, prefixes[0], packages, trusted=trusted)
+    part, part_root = _read(child, prefixes[1], packages, trusted=trusted)
     links = _names(whole, "link")
     link = root if at is None else prefixes[0] + at
     if link not in links:
@@ -104,10 +106,10 @@ def _names(robot: ET.Element, kind: str) -> set[str]:
 
 
 def _read(
-    source: Source, prefix: str, packages: Packages | None
+    source: Source, prefix: str, packages: Packages | None, *, trusted: bool
 ) -> tuple[ET.Element, str]:
     """The robot's links, joints and materials by their new names, and its root link."""
-    read = read_description(source, packages=packages)
+    read = read_description(source, packages=packages, trusted=trusted)
     root = prefix + LinkTree.from_urdf(read.urdf).links[0]
     robot = read_xml("urdf", read.urdf)[0]
     for element in list(robot):

@@ -18,17 +18,17 @@ LARGEST = 1 << 28
 """Bytes; text that is longer is no robot and no path, but a device without an end."""
 
 
-def read_bytes(path: Path) -> bytes:
-    """What a file holds.
+def read_bytes(path: Path, largest: int = LARGEST) -> bytes:
+    """What a file of at most so many bytes holds.
 
     Raises:
         OSError: It cannot be read.
         ValueError: It is too long.
     """
     with path.open("rb") as file:
-        data = file.read(LARGEST + 1)
-    if len(data) > LARGEST:
-        msg = f"'{path}' is larger than {LARGEST >> 20} MiB"
+        data = file.read(largest + 1)
+    if len(data) > largest:
+        msg = f"'{path}' is larger than {largest >> 20} MiB"
         raise ValueError(msg)
     return data
 

@@ -75,6 +75,7 @@ class SelfCollision:
         other_joints: Mapping[str, float] | None = None,
         packages: Mapping[str, str | os.PathLike[str]] | None = None,
         xacro_args: Mapping[str, str] | None = None,
+        trusted: bool = False,
         cache: str | os.PathLike[str] | None = None,
         progress: Callable[[int, int], Any] | None = None,
     ) -> None:
@@ -97,6 +98,7 @@ class SelfCollision:
             packages: Folders of package:// names of meshes; others are looked for
                 around the file, in $ROS_PACKAGE_PATH and $AMENT_PREFIX_PATH.
             xacro_args: Values of a xacro file's arguments.
+            trusted: Whether a xacro file may run whatever Python it contains.
             cache: Folder, such as the database's, that keeps what was found of the
                 pairs, in a file named after the robot and a hash of all that it depends
                 on. None: they are looked at anew.
@@ -117,7 +119,9 @@ class SelfCollision:
         if samples < 0:
             raise InvalidArgumentError(f"samples: {samples} is not 0 or more")
         coal = import_coal()
-        root, folder = read_urdf(urdf, packages or {}, xacro_args, robot.base_link)
+        root, folder = read_urdf(
+            urdf, packages or {}, xacro_args, robot.base_link, trusted=trusted
+        )
         shapes = read_shapes(coal, root, folder, packages or {})
         self._dof = robot.dof
         self._name = root.get("name", "")
@@ -282,11 +286,15 @@ def read_urdf(
     packages: Mapping[str, str | os.PathLike[str]],
     xacro_args: Mapping[str, str] | None,
     link: str,
+    *,
+    trusted: bool,
 ) -> tuple[ET.Element, Path]:
     """The root of a robot's URDF, and the folder that its file names start from.
 
     Where its links hang in several trees, only the one of `link` is in it.
     """
-    read = read_description(source, packages=packages, xacro_args=xacro_args)
+    read = read_description(
+        source, packages=packages, xacro_args=xacro_args, trusted=trusted
+    )
     root, _, folder = read_xml("urdf", read.urdf, link)
     return root, folder if read.format == "URDF" else read.folder

@@ -51,6 +51,7 @@ def read_description(
     *,
     xacro_args: Mapping[str, str] | None = None,
     packages: Packages | None = None,
+    trusted: bool = False,
 ) -> Description:
     """Read a robot in any format.
 
@@ -60,6 +61,7 @@ def read_description(
         xacro_args: Values of a xacro file's arguments.
         packages: Folders of ROS packages that xacro's $(find ...) names; others are
             looked for around the file, in $ROS_PACKAGE_PATH and $AMENT_PREFIX_PATH.
+        trusted: Whether a xacro file may run whatever Python its expressions contain.
 
     Returns:
         Its URDF, not checked.
@@ -77,19 +79,24 @@ def read_description(
         if source.startswith(_descriptions.PREFIX):
             found = _descriptions.find_described(source)
             arguments = {**found.arguments, **(xacro_args or {})}
-            read = _read_file(found.path, arguments, _with_names(packages, found))
+            named = _with_names(packages, found)
+            read = _read_file(found.path, arguments, named, trusted=trusted)
             return Description(read.urdf, read.format, read.folder, found.srdf)
-    return _read_file(Path(source), xacro_args, packages)
+    return _read_file(Path(source), xacro_args, packages, trusted=trusted)
 
 
 def _read_file(
-    path: Path, xacro_args: Mapping[str, str] | None, packages: Packages
+    path: Path,
+    xacro_args: Mapping[str, str] | None,
+    packages: Packages,
+    *,
+    trusted: bool,
 ) -> Description:
     root = _root(path)
     if root is not None and _mjcf.is_mjcf(root):
         return Description(_mjcf.urdf_of_mjcf(path), "MJCF", path.parent)
-    if root is not None and _xacro.is_xacro(root):
-        text = _xacro.expand(path, xacro_args, packages)
+    if root is not None and _xacro.is_xacro(root, path):
+        text = _xacro.expand(path, xacro_args, packages, trusted=trusted)
         return Description(text, "xacro", path.parent)
     if xacro_args and root is not None:
         names = ", ".join(xacro_args)

@@ -62,6 +62,7 @@ class ExactCollision:
         other_joints: Mapping[str, float] | None = None,
         packages: Mapping[str, str | os.PathLike[str]] | None = None,
         xacro_args: Mapping[str, str] | None = None,
+        trusted: bool = False,
     ) -> None:
         """Read the collision geometry of the links.
 
@@ -71,6 +72,7 @@ class ExactCollision:
             other_joints: Values of joints that are not the arm's [rad or m].
             packages: Folders of package:// names of meshes.
             xacro_args: Values of a xacro file's arguments.
+            trusted: Whether a xacro file may run whatever Python it contains.
 
         Raises:
             InvalidArgumentError: coal is missing.
@@ -80,7 +82,7 @@ class ExactCollision:
         self._coal = import_coal()
         self._scene = copy.copy(scene)
         root, folder = read_urdf(
-            urdf, packages or {}, xacro_args, scene.robot.base_link
+            urdf, packages or {}, xacro_args, scene.robot.base_link, trusted=trusted
         )
         _add_objects(root, scene)
         for mesh in root.iter("mesh"):

@@ -74,6 +74,7 @@ def load_robot(
     group: str | None = None,
     xacro_args: Mapping[str, str] | None = None,
     packages: Packages | None = None,
+    trusted: bool = False,
 ) -> Robot:
     """Load a built-in robot, or one from a file.
 
@@ -98,6 +99,7 @@ def load_robot(
         xacro_args: Values of a xacro file's arguments.
         packages: Folders of ROS packages that xacro's $(find ...) names; others are
             looked for around the file, in $ROS_PACKAGE_PATH and $AMENT_PREFIX_PATH.
+        trusted: Whether a xacro file may run whatever Python its expressions contain.
 
     Raises:
         UnknownNameError: No such robot, file, link, joint, group or package.
@@ -109,7 +111,9 @@ def load_robot(
     """
     name = _checked_name(source)
     info = manifest().get(name)
-    read = read_description(source, xacro_args=xacro_args, packages=packages)
+    read = read_description(
+        source, xacro_args=xacro_args, packages=packages, trusted=trusted
+    )
     base = tip = None
     groups: list[str] = []
     if group is not None or (srdf is not None and not info and not tip_link):
@@ -152,13 +156,16 @@ def load_tree(
     link: str | None = None,
     xacro_args: Mapping[str, str] | None = None,
     packages: Packages | None = None,
+    trusted: bool = False,
 ) -> LinkTree:
     """The tree of all links of a robot; arguments and errors are load_robot's.
 
     Where the links hang in several trees, the one of `link` is meant.
     """
     _checked_name(source)
-    read = read_description(source, xacro_args=xacro_args, packages=packages)
+    read = read_description(
+        source, xacro_args=xacro_args, packages=packages, trusted=trusted
+    )
     return LinkTree.from_urdf(read.urdf, link)
 
 

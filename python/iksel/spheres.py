@@ -70,6 +70,7 @@ def from_urdf(
     other_joints: Mapping[str, float] | None = None,
     packages: Mapping[str, str | os.PathLike[str]] | None = None,
     xacro_args: Mapping[str, str] | None = None,
+    trusted: bool = False,
     cache: str | os.PathLike[str] | None = None,
     progress: Callable[[int, int], Any] | None = None,
 ) -> RobotSpheres:
@@ -93,6 +94,7 @@ def from_urdf(
         other_joints: Values of joints that are not the arm's [rad or m].
         packages: Folders of package:// names of meshes.
         xacro_args: Values of a xacro file's arguments.
+        trusted: Whether a xacro file may run whatever Python it contains.
         cache: Folder, such as the database's, that keeps what is made here, in a file
             named after the robot and a hash of all that it depends on. None: it is made
             anew.
@@ -107,7 +109,9 @@ def from_urdf(
     if not 0 < max_error < np.inf:
         raise InvalidArgumentError(f"max_error: {max_error} m is not above 0")
     ignore = sorted(ignore)
-    root, folder = read_urdf(urdf, packages or {}, xacro_args, robot.base_link)
+    root, folder = read_urdf(
+        urdf, packages or {}, xacro_args, robot.base_link, trusted=trusted
+    )
     kept = None
     if cache is not None:
         listed = read_xml("srdf", srdf)[1] if srdf is not None else None
@@ -129,6 +133,7 @@ def from_urdf(
         other_joints=other_joints,
         packages=packages,
         xacro_args=xacro_args,
+        trusted=trusted,
         cache=cache,
         progress=progress,
     ).pairs

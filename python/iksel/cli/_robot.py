@@ -39,6 +39,7 @@ _FLAGS = {
     "locked_joints": "--lock JOINT=VALUE",
     "xacro_args": "--xacro-arg NAME=VALUE",
     "packages: ": "--package NAME=FOLDER: ",
+    "trusted=True": "--trust",
     "tip_link: ": "--tip: ",
     "(group)": "(--group)",
 }
@@ -140,6 +141,12 @@ def _add_formats(group: argparse._ArgumentGroup) -> None:
         "around the file, in $ROS_PACKAGE_PATH and $AMENT_PREFIX_PATH); may be "
         "repeated",
     )
+    group.add_argument(
+        "--trust",
+        action="store_true",
+        help="let a xacro file run whatever Python its expressions contain (default: "
+        "only arithmetic and the like; see 'Files from strangers' in the manual)",
+    )
 
 
 def chain_text(robot: Robot) -> str:
@@ -226,16 +233,17 @@ def _with_flags(message: str, name: str) -> str:
     return message
 
 
-def of_files(arguments: argparse.Namespace) -> dict[str, dict[str, str]]:
-    """What --xacro-arg and --package give."""
+def of_files(arguments: argparse.Namespace) -> dict[str, Any]:
+    """What --xacro-arg, --package and --trust give."""
     flags = {
         "xacro_args": ("--xacro-arg", "NAME=VALUE", arguments.xacro_arg),
         "packages": ("--package", "NAME=FOLDER", arguments.package),
     }
-    return {
+    pairs = {
         argument: dict(_pair(flag, form, text) for text in texts)
         for argument, (flag, form, texts) in flags.items()
     }
+    return {**pairs, "trusted": arguments.trust}
 
 
 def _pair(flag: str, form: str, text: str) -> tuple[str, str]:

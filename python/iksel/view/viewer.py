@@ -53,6 +53,7 @@ class Viewer:
         urdf: Source | None = None,
         packages: Packages | None = None,
         xacro_args: Mapping[str, str] | None = None,
+        trusted: bool = False,
         port: int = PORT,
         host: str = "127.0.0.1",
     ) -> None:
@@ -66,6 +67,7 @@ class Viewer:
             packages: Folders of package:// names of meshes; others are looked for
                 around the file, in $ROS_PACKAGE_PATH and $AMENT_PREFIX_PATH.
             xacro_args: Values of a xacro file's arguments.
+            trusted: Whether a xacro file may run whatever Python it contains.
             port: Where to serve; the next free one if another program has it.
             host: Address to listen at: by default only this machine can look;
                 "0.0.0.0" for all.
@@ -79,7 +81,9 @@ class Viewer:
         _check_host(host)
         self.session = Session(solver)
         pieces, self.lost = (
-            ([], []) if urdf is None else read_pieces(urdf, packages, xacro_args)
+            ([], [])
+            if urdf is None
+            else read_pieces(urdf, packages, xacro_args, trusted=trusted)
         )
         self._lock = threading.RLock()
         self._drawing = False

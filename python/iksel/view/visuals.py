@@ -41,7 +41,11 @@ class Piece(NamedTuple):
 
 
 def read_pieces(
-    urdf: Source, packages: Packages | None, xacro_args: Mapping[str, str] | None
+    urdf: Source,
+    packages: Packages | None,
+    xacro_args: Mapping[str, str] | None,
+    *,
+    trusted: bool = False,
 ) -> tuple[list[Piece], list[str]]:
     """What the links of a robot look like.
 
@@ -49,6 +53,7 @@ def read_pieces(
         urdf: As read_description() takes it.
         packages: Folders of package:// names; others are looked for around the file.
         xacro_args: Values of a xacro file's arguments.
+        trusted: Whether a xacro file may run whatever Python it contains.
 
     Returns:
         The pieces, and why those that are not among them cannot be shown.
@@ -56,7 +61,9 @@ def read_pieces(
     Raises:
         UrdfError, UnknownNameError: The robot's file cannot be read.
     """
-    read = read_description(urdf, packages=packages, xacro_args=xacro_args)
+    read = read_description(
+        urdf, packages=packages, xacro_args=xacro_args, trusted=trusted
+    )
     root = read_xml("urdf", read.urdf)[0]
     named = {
         m.get("name"): colour

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Laws of the spheres around boxes and cylinders: they cover them, and closely."""
+"""Laws of the spheres around boxes, cylinders and capsules: they cover them closely."""
 
 from __future__ import annotations
 
@@ -8,7 +8,9 @@ from itertools import product
 import numpy as np
 import pytest
 
+from iksel._collision_shapes import Shape, spheres_around
 from iksel._primitive_cover import cover_box, cover_cylinder
+from iksel.pose import pose_from_euler
 
 SEED = 20261124
 CASES = 16
@@ -107,3 +109,28 @@ def test_few_are_enough() -> None:
     assert 5 * coarse < fine < 50 * coarse
     assert len(cover_cylinder(0.06, 0.14, 5e-4, bare=(False, False))) < 30
     assert len(cover_cylinder(0.04, 0.07, 5e-4, bare=(False, True))) < 1_000
+
+
+def test_spheres_cover_capsules() -> None:
+    coal = pytest.importorskip("coal")
+    rng = np.random.default_rng(SEED)
+    for _ in range(CASES):
+        radius, length = lengths(rng, 2)
+        error = radius * 10 ** rng.uniform(-2, -0.5)
+        pose = pose_from_euler(rng.normal(size=3), rng.normal(size=3))
+        capsule = coal.Capsule(radius, length)
+        shape = Shape("link", capsule, capsule, pose)
+        none = np.empty((0, 4))
+        rows = spheres_around(shape, none, of_box=error, of_cylinder=error)
+        assert rows is not None
+        rows = np.column_stack([(rows[:, :3] - pose[:3, 3]) @ pose[:3, :3], rows[:, 3]])
+        ends = np.array([[0, 0, -length / 2, radius], [0, 0, length / 2, radius]])
+        along = rng.uniform(-length / 2, length / 2, 200)[:, None] * [0, 0, 1]
+        around = rng.normal(size=(200, 3)) * [1, 1, 0]
+        around *= radius / np.linalg.norm(around, axis=1, keepdims=True)
+        inside = np.concatenate([points_on(ends, rng), along + around])
+        assert are_covered(inside * (1 - ROUNDING), rows)
+        found = points_on(rows, rng)
+        found[:, 2] -= np.clip(found[:, 2], -length / 2, length / 2)
+        off = np.linalg.norm(found, axis=1) - radius
+        assert off.max() <= error * (1 + ROUNDING) + 1e-12

@@ -64,6 +64,7 @@ find_missing() {
   want_command g++ g++
   want_command cmake cmake
   want_command make make
+  want_command ninja ninja-build
   want_command ccache ccache
   want_command pkg-config pkg-config
   want_library eigen3 libeigen3-dev
@@ -154,8 +155,8 @@ install_project() {
   if $dev; then target='.[dev]'; fi
   # As the tests build it, so that ccache knows it. In variables: the options that say the same are not
   # known to every pip.
-  export SKBUILD_BUILD_DIR=build/python SKBUILD_CMAKE_DEFINE=BUILD_SHARED_LIBS=OFF
-  if $dev || [[ -n ${CI-} ]]; then SKBUILD_CMAKE_DEFINE+=";IKSEL_WARNINGS_AS_ERRORS=ON"; fi
+  export SKBUILD_BUILD_DIR=build/python
+  export SKBUILD_CMAKE_DEFINE="BUILD_SHARED_LIBS=OFF;IKSEL_WARNINGS_AS_ERRORS=$IKSEL_WARNINGS_AS_ERRORS"
   state="$(source_hash) $("$python" -V)"
   # Once the extra is there, it stays there.
   if [[ -f $stamp ]] && { [[ $(<"$stamp") == "$state $target" ]] ||
@@ -168,8 +169,9 @@ install_project() {
   export PIP_NO_COMPILE=1
   # Once, where it stays: pip's own environment for builds has another path each time.
   mapfile -t build_system < <(from_pyproject 'project["build-system"]["requires"]')
-  quietly "installing ${build_system[*]} ninja" "$python" -m pip install "${build_system[@]}" ninja
-  quietly "installing iksel into $venv" "$python" -m pip install --no-build-isolation "$target"
+  quietly "installing ${build_system[*]}" "$python" -m pip install "${build_system[@]}"
+  with_progress "installing iksel into $venv" \
+    "$python" -m pip install --verbose --no-build-isolation "$target"
   printf '%s\n' "$state $target" >"$stamp"
 }
 
@@ -183,7 +185,7 @@ install_extras() { # PREFIX
 }
 
 install_missing
-use_ccache
+use_build_tools
 if ! $apt_only; then
   install_project
   if $bench; then install_extras bench; fi

@@ -10,6 +10,9 @@
 #   --bring  afterwards copies what is in this folder of the clone to that of the checkout
 #   COMMAND  run by bash, in order, at the top of a clone of HEAD; the first that fails ends it
 #
+# Says how many sources were compiled, and fails if one was compiled twice: what has flags of its own
+# unsets CCACHE_STATSLOG.
+#
 # Of this machine it takes the package sources and pip's settings, and what those name (certificates,
 # folders of packages); nothing else. Needs root, and the right to mount. What it made is gone when it
 # ends, however it ends; processes that the commands left running end with it.
@@ -41,6 +44,8 @@ work=$(mktemp -d "${TMPDIR:-/tmp}/iksel-debian.XXXXXX")
 system=$work/system
 # The checkout's name in there.
 readonly home=/srv/iksel
+# What ccache did, in there.
+readonly ccache_log=/var/log/ccache
 inside=
 # Processes run in namespaces of their own, which end with `inside`, and all mounts with them: none stands
 # where rm goes.
@@ -130,7 +135,7 @@ copy_pip_settings() {
 enter() { # COMMAND
   # shellcheck disable=SC2016  # expanded inside
   isolated bash -euc '
-    system=$1 home=$2 command=$3
+    system=$1 home=$2 command=$3 ccache_log=$4
     mount -t proc proc "$system/proc"
     mount -t tmpfs tmpfs "$system/tmp"
     mount -t tmpfs tmpfs "$system/dev/shm"
@@ -140,8 +145,9 @@ enter() { # COMMAND
     mapfile -t environment <"$system/../environment"
     exec chroot "$system" env -i HOME="$HOME" TERM=dumb LANG=C.UTF-8 \
       PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
-      ${CI:+CI="$CI"} "${environment[@]}" bash -ec "cd $home && $command"
-  ' bash "$system" "$home" "$1" </dev/null
+      IKSEL_WARNINGS_AS_ERRORS="$IKSEL_WARNINGS_AS_ERRORS" CCACHE_STATSLOG="$ccache_log" \
+      "${environment[@]}" bash -ec "cd $home && $command"
+  ' bash "$system" "$home" "$1" "$ccache_log" </dev/null
 }
 
 debootstrap_here() {
@@ -168,5 +174,6 @@ for command in "${commands[@]}"; do
   enter "$command" || status=$?
   printf '== %s s, exit status %s: %s\n' "$SECONDS" "$status" "$command"
   ((status == 0)) || exit "$status"
+  if [[ -f $system$ccache_log ]]; then scripts/compiled.sh "$system$ccache_log"; fi
 done
 if [[ -n $bring ]]; then cp -rT "$system$home/$bring" "$bring"; fi

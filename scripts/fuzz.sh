@@ -37,6 +37,8 @@ export UBSAN_OPTIONS=print_stacktrace=1
 native() { [[ $1 == urdf || $1 == database ]]; }
 
 build_native() {
+  # With flags of its own.
+  unset CCACHE_STATSLOG
   scripts/bootstrap.sh --apt-only --fuzz
   step "build (fuzz)"
   cmake --preset fuzz >/dev/null

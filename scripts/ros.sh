@@ -20,7 +20,7 @@ prefix=$root/build/ros/iksel
 
 # As the tests build it, and in a folder as deep as theirs, so that ccache knows it.
 quietly "configuring the library" cmake -S . -B build/ros -DCMAKE_BUILD_TYPE=Release \
-  -DCMAKE_INSTALL_PREFIX="$prefix" -DIKSEL_WARNINGS_AS_ERRORS="${CI:+ON}"
+  -DCMAKE_INSTALL_PREFIX="$prefix" -DIKSEL_WARNINGS_AS_ERRORS="$IKSEL_WARNINGS_AS_ERRORS"
 quietly "building the library" cmake --build build/ros --target install
 
 # Debian's Python has Debian's modules; another may come first in the path.

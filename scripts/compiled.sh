@@ -15,7 +15,7 @@ esac
 
 awk '
   /^# / {
-    source = $0
+    source = substr($0, 3)
     own = source !~ /\/cmake[^\/]*\/Modules\//
     sub(/^.*build\/[^\/]*\//, "", source)
   }

@@ -13,7 +13,7 @@ LARGEST_INTEGER = 4096
 """Bits of a whole number."""
 MOST_STEPS = 10_000_000
 """Characters, items and elements that are made while a file is expanded."""
-LONGEST_TIME = 20.0
+LONGEST_TIME = 10.0
 """Processor time that a file is expanded for [s]."""
 
 

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 _PART = re.compile(r"\$\$+[{(]|\$\{[^}]*\}|\$\([^)]*\)|[^$]+|\$")
 _WILD = "*[?"  # in names of files
+_ELEMENT = 200  # steps for an element, which take as long as it does
 _SHOWN = 60  # characters of an expression in an error
 _LARGEST_FILE = 1 << 23  # bytes; the largest of real robots has 200,000
 _UNITS = {
@@ -104,7 +105,7 @@ class _Files:
         """The package's loop over an element, which counts its elements."""
 
         def counted(node: Any, macros: Any, symbols: Any) -> None:
-            self._budget.spend(100)
+            self._budget.spend(_ELEMENT)
             eval_all(node, macros, symbols)
 
         return counted

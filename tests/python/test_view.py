@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import importlib
 import socket
 import subprocess
 import sys
@@ -384,3 +385,48 @@ def test_a_missing_extra_is_named(made, monkeypatch):
         view.Viewer(made.solver("ur5e"))
     assert issubclass(view.MissingExtraError, iksel.Error)
     assert issubclass(view.MissingExtraError, ImportError)
+
+
+@pytest.mark.parametrize("port", [70000, -1, "x", 1.5, True, None, 65536])
+def test_no_port_is_an_error_at_once(made, port) -> None:
+    with pytest.raises(iksel.InvalidArgumentError, match="^port: "):
+        view.Viewer(made.solver("ur5e"), port=port)
+
+
+def test_the_last_port_taken_is_an_error(made) -> None:
+    """viser would try 65536, and wait for ever."""
+    with socket.socket() as some:
+        some.bind(("127.0.0.1", 65535))
+        some.listen()
+        with pytest.raises(iksel.InvalidArgumentError, match="none is free"):
+            view.Viewer(made.solver("ur5e"), port=65535)
+
+
+def test_pages_of_other_sites_are_refused(show) -> None:
+    refusal = importlib.import_module("websockets.exceptions").InvalidStatus
+    connect = importlib.import_module("websockets.sync.client").connect
+    viewer = show()
+    at = f"127.0.0.1:{viewer.port}"
+
+    def ask(origin, host=None):
+        headers = {"Origin": origin} if origin else {}
+        url = f"ws://{host or at}"
+        with (
+            socket.create_connection(("127.0.0.1", viewer.port)) as link,
+            connect(url, sock=link, additional_headers=headers),
+        ):
+            return True
+
+    assert ask(None)
+    assert ask(f"http://{at}")
+    assert ask(f"http://localhost:{viewer.port}", f"localhost:{viewer.port}")
+    foreign = f"evil.example:{viewer.port}"
+    for origin, host in (
+        ("http://evil.example", None),
+        (f"http://{foreign}", None),
+        (f"http://{foreign}", foreign),  # a name that was made to point here
+        ("null", None),
+        (f"http://localhost:{viewer.port + 1}", None),
+    ):
+        with pytest.raises(refusal, match="403"):
+            ask(origin, host)

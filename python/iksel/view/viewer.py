@@ -4,8 +4,6 @@
 from __future__ import annotations
 
 import contextlib
-import io
-import socket
 import threading
 import time
 from typing import TYPE_CHECKING, Any
@@ -15,6 +13,7 @@ from iksel_cpp import InvalidArgumentError, PathResult
 
 from iksel import _extras
 from iksel._arrays import as_floats, reject
+from iksel.view._server import quietly, start
 from iksel.view.controls import Controls
 from iksel.view.scene import Scene
 from iksel.view.session import Session
@@ -44,6 +43,7 @@ class Viewer:
 
     The robot follows a target that is dragged in the browser or moved by
     move_target(); sliders turn its joints. Every method may be called from any thread.
+    Pages of other sites are refused.
     """
 
     def __init__(
@@ -74,11 +74,10 @@ class Viewer:
 
         Raises:
             MissingExtraError: viser is not installed.
-            InvalidArgumentError: No address of this machine.
+            InvalidArgumentError: No address of this machine, or no port that is free.
             UrdfError, UnknownNameError: `urdf` cannot be read.
         """
         viser = _extras.need("viser", user="iksel.view", extra="'iksel[view]'")
-        _check_host(host)
         self.session = Session(solver)
         pieces, self.lost = (
             ([], [])
@@ -90,8 +89,7 @@ class Viewer:
         self._dragged = False
         self._map: Map | None = None
         self._closed = threading.Event()
-        with _quietly():
-            self._server = viser.ViserServer(host=host, port=port, verbose=False)
+        self._server = start(viser, host, port)
         self.host = host
         robot = solver.robot
         self._server.gui.set_panel_label(f"iksel: {robot.name}")
@@ -233,7 +231,7 @@ class Viewer:
         """Stop to serve."""
         if not self._closed.is_set():
             self._closed.set()
-            with _quietly():
+            with quietly():
                 self._server.stop()
 
     def _drag(self) -> None:
@@ -305,17 +303,3 @@ class Viewer:
             yield
         finally:
             self._drawing = before
-
-
-def _check_host(host: str) -> None:
-    """Refuse what cannot be listened at; viser would wait for it without an end."""
-    try:
-        with socket.create_server((host, 0)):
-            pass
-    except OSError as error:
-        reject("host", f"cannot listen at {host!r}: {error}")
-
-
-def _quietly() -> contextlib.AbstractContextManager[Any]:
-    """Keep what viser says of its starts and stops off the standard output."""
-    return contextlib.redirect_stdout(io.StringIO())

@@ -117,6 +117,12 @@ ABLATION_3_ROWS: dict[str, dict[str, Any]] = {
     "#ReA 20": {"max_attempts": 21},
 }
 
+KINEMATICS_ROWS: dict[str, dict[str, Any]] = {
+    "KDL": {},
+    "kernel": {"kinematics": "kernel"},
+}
+"""What computes forward kinematics and Jacobians: as in the paper KDL, or IKSel."""
+
 
 def figure_cell(robot: str, size: Size, selection: str, rea: int) -> Settings:
     """Mean and deviation of the time at one #ReA."""
@@ -149,8 +155,8 @@ def paper_jobs(size: Size) -> list[Job]:
             timed = [cell for cell in cells if cell["cell"] != "attempts"]
             name = f"paper, {short}, {sampling}"
             if sampling == "grid":
-                both = (UNSORTED, UNSORTED_STOPPED)
-                timed += [paper_cell(robot, size, row) for row in both]
+                others = (UNSORTED, UNSORTED_STOPPED, KINEMATICS_ROWS["kernel"])
+                timed += [paper_cell(robot, size, row) for row in others]
             jobs.append(Job(f"{name}, curves", "paper", curves, timed=False))
             jobs.append(Job(name, "paper", timed))
         figure = [

@@ -25,13 +25,14 @@ HEADER = [f"{PAPER_ARMS[robot]}" for robot in ROBOTS]
 def parts(view: View) -> list[str]:
     """The section's parts; empty where there are no results."""
     return [
-        *_ablation(view, "I", "size of the database", rows_1()),
+        *_ablation(view, "Ablation I: size of the database", rows_1()),
         _sizes(view),
-        *_ablation(view, "II", "scheme of iteration", rows_2()),
+        *_ablation(view, "Ablation II: scheme of iteration", rows_2()),
         _readings(view),
         _cwln_outside(view),
-        *_ablation(view, "III", "ranking and number of re-selections", rows_3()),
+        *_ablation(view, "Ablation III: ranking and number of re-selections", rows_3()),
         _distances(view),
+        *_ablation(view, "Kinematics: KDL, as in the paper, and IKSel", kinematics()),
         *_cvt(view),
     ]
 
@@ -68,7 +69,12 @@ def rows_3() -> Rows:
     ]
 
 
-def _ablation(view: View, number: str, what: str, rows: Rows) -> list[str]:
+def kinematics() -> Rows:
+    """The preset by KDL's kinematics, and by the library's."""
+    return [(name, row, None) for name, row in paper_plan.KINEMATICS_ROWS.items()]
+
+
+def _ablation(view: View, title: str, rows: Rows) -> list[str]:
     success, times = [], []
     for label, overrides, row in rows:
         cells = [
@@ -82,7 +88,7 @@ def _ablation(view: View, number: str, what: str, rows: Rows) -> list[str]:
     if not success:
         return []
     return [
-        f"### Ablation {number}: {what}",
+        f"### {title}",
         table(["success %", *HEADER], success),
         table([TIMES, *HEADER], times),
     ]

@@ -41,5 +41,6 @@ void bind_tree_result(pybind11::module_& m);
 void bind_tree_diagnosis(pybind11::module_& m);
 void bind_tree_solver(pybind11::module_& m);
 void bind_evaluation(pybind11::module_& m);
+void bind_selector(pybind11::module_& m);
 
 }  // namespace iksel::python

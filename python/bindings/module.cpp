@@ -35,5 +35,6 @@ Kinematics Iterations" (Yuan, Wan, Harada, 2025), called the paper below.)";
   iksel::python::bind_tree_diagnosis(m);
   iksel::python::bind_tree_solver(m);
   iksel::python::bind_evaluation(m);
+  iksel::python::bind_selector(m);
   iksel::python::guard_module(m);
 }

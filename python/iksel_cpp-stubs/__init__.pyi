@@ -14,7 +14,7 @@ import numpy
 import numpy.typing
 import os
 import typing
-__all__: list[str] = ['AngleUnitWarning', 'ArcEnd', 'Axis', 'BatchResult', 'Cause', 'Contact', 'CoupledLimit', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'Diagnosis', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'KeyScheme', 'Kinematics', 'Lanes', 'LinkTree', 'LinkTreeJoint', 'MimicCurve', 'MoveNorm', 'Objective', 'ObjectiveKind', 'Obstacle', 'Paper', 'PathResult', 'Proof', 'RIGID_TOLERANCE', 'Ranking', 'Reselection', 'Result', 'Robot', 'RobotSpheres', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'Scene', 'SelfMotion', 'SelfMotionArc', 'SelfMotionEnd', 'SignatureError', 'SolutionOrder', 'Solutions', 'Solver', 'SolverOptions', 'Status', 'Structure', 'StructureKind', 'Task', 'TaskFrame', 'Tracker', 'TreeBatchResult', 'TreeDiagnosis', 'TreeResult', 'TreeRobot', 'TreeSolver', 'UnknownNameError', 'UrdfError', 'check_pose', 'evaluate', 'grid_counts', 'mend_xml', 'orthonormalized', 'pose_error', 'pose_matrices', 'rigid_deviation', 'simd_level', 'time_kdl_fk_jacobian']
+__all__: list[str] = ['AngleUnitWarning', 'ArcEnd', 'Axis', 'BatchResult', 'Cause', 'Contact', 'CoupledLimit', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'Diagnosis', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'KeyScheme', 'Kinematics', 'Lanes', 'LinkTree', 'LinkTreeJoint', 'MimicCurve', 'MoveNorm', 'Objective', 'ObjectiveKind', 'Obstacle', 'Paper', 'PathResult', 'Proof', 'RIGID_TOLERANCE', 'Ranking', 'Reselection', 'Result', 'Robot', 'RobotSpheres', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'Scene', 'Selector', 'SelfMotion', 'SelfMotionArc', 'SelfMotionEnd', 'SignatureError', 'SolutionOrder', 'Solutions', 'Solver', 'SolverOptions', 'Status', 'Structure', 'StructureKind', 'Task', 'TaskFrame', 'Tracker', 'TreeBatchResult', 'TreeDiagnosis', 'TreeResult', 'TreeRobot', 'TreeSolver', 'UnknownNameError', 'UrdfError', 'check_pose', 'evaluate', 'grid_counts', 'mend_xml', 'orthonormalized', 'pose_error', 'pose_matrices', 'rigid_deviation', 'simd_level', 'time_kdl_fk_jacobian']
 class AngleUnitWarning(UserWarning):
     """
     Angles that look like degrees were given where radians are meant.
@@ -945,7 +945,7 @@ class Paper:
     __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
     def __eq__(self, other: object) -> bool:
         ...
-    def __init__(self, *, neighbours: int = 200, neighbour_radius: float = 0.0, ranking: Ranking | str = 'joint_adjustment', rotation_difference: RotationDifference | str = 'rotation_vector', limit_aware: bool = False, candidates: int = 20, reselection: Reselection | str = 'farthest', iteration: Iteration | str = 'dls', damping: float = 0.0, pinv_cutoff: float = 0.0001, position_clamp: float = 0.1, rotation_clamp: float = 0.3141592653589793, growth_stop: GrowthStop | str = 'by_scheme', min_step: float = 1e-06, limit_margin: float = 0.1, whole_turns: bool = False, kinematics: Kinematics | str = 'kernel') -> None:
+    def __init__(self, *, neighbours: int = 200, neighbour_radius: float = 0.0, ranking: Ranking | str = 'joint_adjustment', rotation_difference: RotationDifference | str = 'rotation_vector', limit_aware: bool = False, candidates: int = 20, reselection: Reselection | str = 'farthest', iteration: Iteration | str = 'dls', damping: float = 0.0, pinv_cutoff: float = 0.0001, position_clamp: float = 0.1, rotation_clamp: float = 0.3141592653589793, growth_stop: GrowthStop | str = 'by_scheme', min_step: float = 1e-06, limit_margin: float = 0.1, whole_turns: bool = False, kinematics: Kinematics | str = 'kdl') -> None:
         """
         Fields that are not given keep their default.
 
@@ -3090,6 +3090,74 @@ class Evaluation:
     def targets(self) -> int:
         """
         Targets tried.
+        """
+class Selector:
+    """
+    Selects seeds of a database for one target after the other, as the paper does and a Solver with the strategy Paper: query, rank, re-select. Not to be used from two threads at once.
+    """
+    def __init__(self, database: Database, scheme: Paper | collections.abc.Mapping[str, typing.Any] = ...) -> None:
+        """
+        Takes a database with a full key, as DatabaseOptions.paper() describes it.
+
+        Args:
+            database: where the seeds come from.
+            scheme: how they are selected; what it says of the iteration is not read.
+
+        Raises:
+            InvalidArgumentError: the scheme is out of range or limit-aware, or the database's key is
+                reduced: of limits, and of the joints that such a key leaves out, a database alone says
+                nothing.
+        """
+    def __repr__(self) -> str:
+        ...
+    def candidates(self, pose: numpy.typing.ArrayLike | typing.Any, count: int | None = None, ranking: Ranking | str | None = None) -> tuple[numpy.typing.NDArray[numpy.int64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+        """
+        The samples nearest to a pose, the best first.
+
+        Args:
+            pose: T_base_tip [m] of the tip link, without the TCP; as in Solver.solve.
+            count: how many are asked from the KD-tree; None: as many as the scheme says.
+            ranking: how they are put in order; None: as the scheme says.
+
+        Returns:
+            (indices, distances, adjustments, q): the samples' indices in the database (k,); the distances
+            of their keys from the pose's, Eq. (2) of the paper (k,); the norms of the joint adjustments
+            J^+ (x_target - x_i), Eq. (5) (k,) [rad or m]; and their joint values (k, dof) [rad or m].
+
+        Raises:
+            InvalidArgumentError: a pose that is not rigid, a count of 0.
+        """
+    def next(self, failed: collections.abc.Sequence[int] = ()) -> int | None:
+        """
+        The sample to be tried after those that failed.
+
+        Args:
+            failed: indices of the samples that were tried, in that order.
+
+        Returns:
+            Its index in the database: if none has failed the first in the order, else the one that the
+            scheme's re-selection takes among its `candidates` best, by default the one farthest from those
+            that failed. None if there is none left.
+
+        Raises:
+            InvalidArgumentError: an index that is no candidate or comes twice, or there was no pose yet.
+        """
+    def rank(self, ranking: Ranking | str) -> tuple[numpy.typing.NDArray[numpy.int64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+        """
+        The candidates of the last pose in another order, as `candidates` gives them.
+
+        Raises:
+            InvalidArgumentError: there was no pose yet.
+        """
+    @property
+    def database(self) -> Database:
+        """
+        Where the seeds come from.
+        """
+    @property
+    def scheme(self) -> Paper:
+        """
+        How they are selected.
         """
 def _did_you_mean(name: str, known: collections.abc.Sequence[str]) -> str:
     """

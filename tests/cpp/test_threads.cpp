@@ -40,9 +40,9 @@ std::vector<SolverOptions> presets() {
   paper.database.samples = 2000;
   SolverOptions random_restarts = paper;
   iksel_test::paper_of(random_restarts).iteration = iksel::Iteration::pinv_rr;
-  SolverOptions kdl = paper;
-  iksel_test::paper_of(kdl).kinematics = iksel::Kinematics::kdl;
-  return {SolverOptions{}, paper, random_restarts, kdl};
+  SolverOptions kernel = paper;
+  iksel_test::paper_of(kernel).kinematics = iksel::Kinematics::kernel;
+  return {SolverOptions{}, paper, random_restarts, kernel};
 }
 
 /// Whatever the number of threads; and but for seeds in lanes, what single solves give.

@@ -68,6 +68,9 @@ def examples(solver: iksel.Solver) -> list[object]:
         iksel.Paper(iteration="cwln"),
         solver.options.database,
         solver.database,
+        iksel.Selector(
+            iksel.Database.build(robot, {"key_scheme": "full", "samples": 9})
+        ),
         iksel.Task.free_spin(),
         solver.solve(poses[0]),
         solver.solve(far),

@@ -19,6 +19,7 @@
 #include "iksel/robot_options.hpp"  // IWYU pragma: export
 #include "iksel/robot_spheres.hpp"  // IWYU pragma: export
 #include "iksel/scene.hpp"          // IWYU pragma: export
+#include "iksel/selector.hpp"       // IWYU pragma: export
 #include "iksel/self_motion.hpp"    // IWYU pragma: export
 #include "iksel/simd.hpp"           // IWYU pragma: export
 #include "iksel/solver.hpp"         // IWYU pragma: export

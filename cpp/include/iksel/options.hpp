@@ -123,7 +123,7 @@ struct IKSEL_EXPORT Lanes {
 };
 
 /// The pipeline of the paper: query, rank, iterate, re-select, one seed at a time. The defaults are
-/// the paper's: k = 200, Eq. (5), best 20, farthest first, DLS.
+/// the paper's: k = 200, Eq. (5), best 20, farthest first, DLS, KDL's kinematics.
 struct IKSEL_EXPORT Paper {
   /// Neighbours asked from the KD-tree (k).
   int neighbours = 200;
@@ -159,7 +159,8 @@ struct IKSEL_EXPORT Paper {
 
   /// Bring joints with a range of more than 2 pi inside their limits by whole turns.
   bool whole_turns = false;
-  Kinematics kinematics = Kinematics::kernel;
+  /// What computes FK and Jacobians of the iterations. The kernel agrees to 1e-12, and is faster.
+  Kinematics kinematics = Kinematics::kdl;
 
   /// Throws InvalidArgumentError naming the first option that is out of range, or that differs from
   /// its default though nothing reads it.

@@ -50,7 +50,7 @@ using StoredPose = Eigen::Transform<double, 3, Eigen::Isometry, Eigen::DontAlign
 
 /// Which implementation computes forward kinematics and Jacobians; they agree to 1e-12.
 enum class Kinematics {
-  kernel,  ///< the library's flattened chain (default)
+  kernel,  ///< the library's flattened chain
   kdl,     ///< Orocos KDL, the reference
 };
 

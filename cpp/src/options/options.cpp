@@ -100,6 +100,7 @@ Paper one_at_a_time(const Strategy& strategy) {
   paper.iteration = Iteration::lm;
   paper.damping = lanes.damping;
   paper.whole_turns = true;
+  paper.kinematics = Kinematics::kernel;
   return paper;
 }
 

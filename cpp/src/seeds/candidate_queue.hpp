@@ -43,6 +43,13 @@ class CandidateQueue {
     kept_ = std::min(most, candidates_.size());
     std::partial_sort(candidates_.begin(), at(kept_), candidates_.end());
   }
+  /// The candidates in order, those that were dropped too. To be asked before any is taken.
+  const std::vector<Candidate>& in_order() {
+    std::sort(at(kept_), candidates_.end());
+    return candidates_;
+  }
+  /// How many were not dropped.
+  [[nodiscard]] std::size_t kept() const { return kept_; }
 
   /// Joint values of the next seed, which `q_of(candidate)` gives; null if there is none left. Only
   /// the scheme's `candidates` best are re-selected; what is kept beyond follows by rank.
@@ -51,9 +58,25 @@ class CandidateQueue {
     if (taken_ >= kept_) return nullptr;
     if (taken_ > 0 && scheme_.reselection == Reselection::none) return nullptr;
     if (taken_ > 0 && scheme_.reselection == Reselection::farthest) bring_farthest_forward(q_of);
-    const double* q = q_of(candidates_[taken_]);
-    ++taken_;
-    return q;
+    return take_first(q_of);
+  }
+  /// The one that was taken last.
+  [[nodiscard]] const Candidate& last() const { return candidates_[taken_ - 1]; }
+
+  /// Takes none as taken so far.
+  void restart() {
+    std::sort(candidates_.begin(), at(kept_));
+    taken_ = 0;
+  }
+  /// Takes a candidate out of turn; false if it was taken already, or is none that was kept.
+  template <typename QOf>
+  bool take(std::size_t index, const QOf& q_of) {
+    const auto found = std::find_if(at(taken_), at(kept_),
+                                    [&](const Candidate& each) { return each.index == index; });
+    if (found == at(kept_)) return false;
+    std::rotate(at(taken_), found, found + 1);
+    take_first(q_of);
+    return true;
   }
 
  private:
@@ -61,15 +84,22 @@ class CandidateQueue {
 
   Iterator at(std::size_t i) { return candidates_.begin() + static_cast<std::ptrdiff_t>(i); }
 
+  /// The first of those not taken yet.
+  template <typename QOf>
+  const double* take_first(const QOf& q_of) {
+    const double* q = q_of(candidates_[taken_]);
+    if (taken_ == 0) std::fill_n(sum_of_taken_, dof_, 0.0);
+    for (int j = 0; j < dof_; ++j) sum_of_taken_[j] += q[j];
+    ++taken_;
+    return q;
+  }
+
   /// Of those not tried yet, the one with the largest |m q - sum of the m failed q|; the others
   /// keep their order.
   template <typename QOf>
   void bring_farthest_forward(const QOf& q_of) {
     const std::size_t end = std::min(kept_, static_cast<std::size_t>(scheme_.candidates));
     if (taken_ >= end) return;
-    const double* failed = q_of(candidates_[taken_ - 1]);
-    if (taken_ == 1) std::fill_n(sum_of_failed_, dof_, 0.0);
-    for (int j = 0; j < dof_; ++j) sum_of_failed_[j] += failed[j];
     const auto m = static_cast<double>(taken_);
     std::size_t best = taken_;
     double best_distance = -1;
@@ -77,7 +107,7 @@ class CandidateQueue {
       const double* q = q_of(candidates_[i]);
       double distance = 0;
       for (int j = 0; j < dof_; ++j) {
-        const double d = m * q[j] - sum_of_failed_[j];
+        const double d = m * q[j] - sum_of_taken_[j];
         distance += d * d;
       }
       if (distance > best_distance) {
@@ -93,7 +123,7 @@ class CandidateQueue {
   std::vector<Candidate> candidates_;
   std::size_t kept_ = 0;
   std::size_t taken_ = 0;
-  double sum_of_failed_[kMaxDof];
+  double sum_of_taken_[kMaxDof];
 };
 
 }  // namespace iksel

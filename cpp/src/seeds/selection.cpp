@@ -13,7 +13,7 @@
 
 namespace iksel {
 
-Selection::Selection(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
+Selection::Selection(const ChainModel* model, const ChainModel* nominal, const DatabaseData& data,
                      const Paper& scheme)
     : model_(model),
       nominal_(nominal),
@@ -21,10 +21,10 @@ Selection::Selection(const ChainModel& model, const ChainModel& nominal, const D
       scheme_(scheme),
       chain_{},
       neighbours_(std::min<std::size_t>(static_cast<std::size_t>(scheme.neighbours), data.size)),
-      queue_(model.dof, scheme, neighbours_.size()) {
+      queue_(data.dof, scheme, neighbours_.size()) {
   if (data.reduction) {
-    chain_ = make_lane_chain(nominal);
-    seeds_.resize(neighbours_.size() * static_cast<std::size_t>(model.dof));
+    chain_ = make_lane_chain(*nominal);
+    seeds_.resize(neighbours_.size() * static_cast<std::size_t>(data.dof));
   }
 }
 
@@ -67,9 +67,9 @@ void Selection::rank() {
 }
 
 void Selection::prepare_seeds() {
-  const lanes::SeedChain chain = make_seed_chain(nominal_, *data_.reduction);
+  const lanes::SeedChain chain = make_seed_chain(*nominal_, *data_.reduction);
   const lanes::SeedTarget target = make_seed_target(target_);
-  const auto dof = static_cast<std::size_t>(model_.dof);
+  const auto dof = static_cast<std::size_t>(data_.dof);
   float block[lanes::block_rows(kMaxDof) * lanes::kBlock];
   lanes::SeedPack pack;
   std::size_t kept = 0;
@@ -84,10 +84,10 @@ void Selection::prepare_seeds() {
       double* q = &seeds_[kept * dof];
       std::copy_n(data_.q(neighbours_[first + s].index), dof, q);
       if (data_.reduction->leaves_out(0)) q[0] = static_cast<double>(pack.first[s]);
-      if (data_.reduction->leaves_out(model_.dof - 1)) {
+      if (data_.reduction->leaves_out(data_.dof - 1)) {
         q[dof - 1] = static_cast<double>(pack.last[s]);
       }
-      if (!model_.joints.contains(q)) continue;
+      if (!model_->joints.contains(q)) continue;
       neighbours_[kept] = neighbours_[first + s];
       ++kept;
     }
@@ -96,7 +96,7 @@ void Selection::prepare_seeds() {
 }
 
 const double* Selection::seed_of(const Candidate& candidate) const {
-  return data_.reduction ? &seeds_[candidate.place * static_cast<std::size_t>(model_.dof)]
+  return data_.reduction ? &seeds_[candidate.place * static_cast<std::size_t>(data_.dof)]
                          : data_.q(candidate.index);
 }
 
@@ -117,25 +117,28 @@ Vector6 Selection::error_of(const Candidate& candidate) const {
   return e;
 }
 
-void Selection::score(Candidate& candidate) const {
-  // Eq. (4): the joint adjustment that the sample's own pseudo-inverse predicts.
+JointVector Selection::adjustment(const Candidate& candidate) const {
   const Vector6 e = error_of(candidate);
   const double* pseudo_inverse = data_.pseudo_inverse(candidate.index);
-  double adjustment[kMaxDof];
-  const int dof = model_.dof;
+  const int dof = data_.dof;
+  JointVector adjustment(dof);
   for (int i = 0; i < dof; ++i) adjustment[i] = pseudo_inverse[i] * e[0];
   for (int j = 1; j < 6; ++j) {
     const double* column = pseudo_inverse + j * dof;
     for (int i = 0; i < dof; ++i) adjustment[i] += column[i] * e[j];
   }
+  return adjustment;
+}
+
+void Selection::score(Candidate& candidate) const {
+  const JointVector predicted = adjustment(candidate);
   if (scheme_.ranking == Ranking::joint_adjustment) {
-    double sum = 0;
-    for (int i = 0; i < dof; ++i) sum += adjustment[i] * adjustment[i];
+    const double sum = square(predicted);
     // Not a number has no place in an order.
     candidate.score = std::isnan(sum) ? kInfinity : sum;
   }
   candidate.leaves_limits =
-      scheme_.limit_aware && model_.joints.leaves(seed_of(candidate), adjustment);
+      scheme_.limit_aware && model_->joints.leaves(seed_of(candidate), predicted.data());
 }
 
 }  // namespace iksel

@@ -2,6 +2,8 @@
 // Query and rank: the seeds for one target, best first; and re-selection among them.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <vector>
@@ -18,7 +20,14 @@ class Selection {
  public:
   /// `nominal` is the chain that the data belongs to; `model` may differ from it a little.
   Selection(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
-            const Paper& scheme);
+            const Paper& scheme)
+      : Selection(&model, &nominal, data, scheme) {}
+  /// Without a chain: for a full key, and a scheme that asks for no limits.
+  Selection(const DatabaseData& data, const Paper& scheme)
+      : Selection(nullptr, nullptr, data, scheme) {}
+
+  /// From now on there is room for that many neighbours.
+  void make_room(std::size_t k) { neighbours_.resize(std::min(k, data_.size)); }
 
   /// The neighbours of T_base_flange (the tip link, without the tool), k at most.
   void query(const Pose& T_base_flange, std::size_t k = std::numeric_limits<std::size_t>::max());
@@ -27,7 +36,7 @@ class Selection {
   std::size_t nearest_seeds(const Pose& T_base_flange, std::size_t k);
   /// The dof values of seed i of nearest_seeds().
   [[nodiscard]] const double* nearest_seed(std::size_t i) const {
-    return data_.reduction ? &seeds_[i * static_cast<std::size_t>(model_.dof)]
+    return data_.reduction ? &seeds_[i * static_cast<std::size_t>(data_.dof)]
                            : data_.q(neighbours_[i].index);
   }
   /// The sample that seed i of nearest_seeds() is made of.
@@ -39,20 +48,40 @@ class Selection {
     return queue_.next([&](const Candidate& candidate) { return seed_of(candidate); });
   }
 
- private:
-  /// Keeps those within the threshold of Eq. (3).
-  void drop_far_neighbours();
-  void score(Candidate& candidate) const;
-  /// Error from sample to target, in the frame that the sample's pseudo-inverse is made for.
-  [[nodiscard]] Eigen::Matrix<double, 6, 1> error_of(const Candidate& candidate) const;
+  /// What rank() put in order, and what the sources of seeds by hand ask of it (selector.cpp).
+  [[nodiscard]] CandidateQueue& queue() { return queue_; }
+  /// Distance of a candidate's key from the target's, Eq. (2).
+  [[nodiscard]] double distance(const Candidate& candidate) const {
+    return std::sqrt(neighbours_[candidate.place].distance);
+  }
+  /// Square of the joint adjustment that a candidate's own pseudo-inverse predicts, Eq. (5).
+  [[nodiscard]] double squared_adjustment(const Candidate& candidate) const {
+    return square(adjustment(candidate));
+  }
   /// Joint values to start from: the sample's, with the joints that a reduced key leaves out set
   /// for this target.
   [[nodiscard]] const double* seed_of(const Candidate& candidate) const;
+
+ private:
+  Selection(const ChainModel* model, const ChainModel* nominal, const DatabaseData& data,
+            const Paper& scheme);
+  /// Keeps those within the threshold of Eq. (3).
+  void drop_far_neighbours();
+  void score(Candidate& candidate) const;
+  /// Eq. (4).
+  [[nodiscard]] JointVector adjustment(const Candidate& candidate) const;
+  [[nodiscard]] static double square(const JointVector& adjustment) {
+    double sum = 0;
+    for (const double each : adjustment) sum += each * each;
+    return sum;
+  }
+  /// Error from sample to target, in the frame that the sample's pseudo-inverse is made for.
+  [[nodiscard]] Eigen::Matrix<double, 6, 1> error_of(const Candidate& candidate) const;
   /// Makes the seeds of all neighbours of a reduced key; drops those outside the limits.
   void prepare_seeds();
 
-  const ChainModel& model_;
-  const ChainModel& nominal_;
+  const ChainModel* model_;
+  const ChainModel* nominal_;
   const DatabaseData& data_;
   const Paper& scheme_;
   /// Pose of the tip link, or Y of reduction.hpp.

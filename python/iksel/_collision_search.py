@@ -138,7 +138,7 @@ class PairSampler:
 
 def load_verdicts(path: Path, pairs: Sequence[Pair]) -> dict[Pair, str] | None:
     """What save_verdicts() wrote of these pairs; None: not there, or damaged."""
-    with contextlib.suppress(OSError, ValueError, TypeError, KeyError):
+    with contextlib.suppress(OSError, ValueError, TypeError, KeyError, RecursionError):
         data = json.loads(read_text(path))
         found = {(str(a), str(b)): str(verdict) for a, b, verdict in data["pairs"]}
         if found.keys() <= set(pairs) and set(found.values()) <= set(VERDICTS):

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from iksel_cpp import InvalidArgumentError, UrdfError
 
+from iksel._mesh_files import check_mesh_file
 from iksel._packages import resolve_path
 from iksel._primitive_cover import cover_box, cover_cylinder
 from iksel._sphere_cover import Mesh
@@ -202,8 +203,7 @@ def _read_lengths(element: ET.Element, attribute: str, count: int) -> list[float
 
 
 def _load_mesh(coal: Any, path: Path, scale: FloatArray) -> Any:
-    if not path.is_file():
-        raise UrdfError(f"no mesh file {str(path)!r}")
+    check_mesh_file(path)
     try:
         return coal.MeshLoader().load(str(path), scale)
     except (RuntimeError, ValueError) as error:

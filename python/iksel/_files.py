@@ -6,9 +6,10 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
+import zipfile
 from typing import IO, TYPE_CHECKING
 
-from iksel_cpp import InvalidArgumentError
+from iksel_cpp import InvalidArgumentError, UrdfError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -41,6 +42,30 @@ def read_text(path: Path) -> str:
         ValueError: It is too long, or not UTF-8.
     """
     return read_bytes(path).decode("utf-8")
+
+
+def check_regular(path: Path) -> None:
+    """Refuse a pipe or device that a file names, which may have no end.
+
+    Raises:
+        UrdfError: It is there, and no regular file.
+    """
+    if path.exists() and not path.is_file():
+        raise UrdfError(f"'{path}' is no regular file")
+
+
+def check_unpacked(path: Path) -> None:
+    """Refuse an archive that is too large when it is unpacked.
+
+    Raises:
+        OSError, zipfile.BadZipFile: It cannot be read.
+        ValueError: It is too large.
+    """
+    with zipfile.ZipFile(path) as archive:
+        size = sum(member.file_size for member in archive.infolist())
+    if size > LARGEST:
+        msg = f"it unpacks to {size >> 20} MiB, and at most {LARGEST >> 20} are read"
+        raise ValueError(msg)
 
 
 def write_file(path: Path, content: bytes) -> None:

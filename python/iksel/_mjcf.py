@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from iksel_cpp import UrdfError
 
+from iksel._mjcf_bounds import check_size
 from iksel._urdf_xml import read_xml
 from iksel.pose import euler_from_pose, pose_from_quaternion, pose_from_rotation_vector
 
@@ -64,6 +65,7 @@ def urdf_of_mjcf(path: Path) -> str:
         UrdfError: The package mujoco is missing, or it refuses the file.
     """
     mujoco = _import_mujoco(path)
+    check_size(path)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of what the file is made of

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-LONGEST_TEXT = 1 << 24  # characters; PyYAML needs 10 s for a MiB
+LONGEST_TEXT = 1 << 20  # characters; PyYAML needs 10 s for them
 MOST_NODES = 2_000_000  # each as often as its anchor is named
 
 

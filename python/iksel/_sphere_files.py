@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from iksel_cpp import InvalidArgumentError
 
-from iksel._files import read_text
+from iksel import _safe_yaml
+from iksel._files import check_regular, read_text
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -23,15 +24,14 @@ def read_yaml(path: Path) -> dict[str, Any]:
         InvalidArgumentError: It cannot be read, or is none.
     """
     try:
-        import yaml  # noqa: PLC0415 (an optional extra)
+        check_regular(path)
+        data = _safe_yaml.load(read_text(path))
     except ImportError as error:
         raise InvalidArgumentError(
             f"path: YAML needs PyYAML, which cannot be imported ({error}); install "
             "it by: pip install pyyaml"
         ) from None
-    try:
-        data = yaml.safe_load(read_text(path))
-    except (OSError, ValueError, yaml.YAMLError) as error:
+    except (OSError, ValueError) as error:
         raise InvalidArgumentError(f"path: {error}") from None
     if not isinstance(data, dict):
         raise InvalidArgumentError(f"path: {str(path)!r} is no mapping")
@@ -45,15 +45,16 @@ def read_links(
     links = {}
     for link, spheres in data.items():
         rows = []
-        for sphere in spheres:
+        for sphere in spheres if isinstance(spheres, list) else [spheres]:
             try:
                 place = sphere.get(centre, sphere.get("center"))
                 row = np.array([*place, sphere["radius"]], dtype=float)
             except (AttributeError, KeyError, TypeError, ValueError):
                 row = np.empty(0)
             if row.shape != (4,):
+                shown = str(sphere)[:80]
                 raise InvalidArgumentError(
-                    f"path: {str(path)!r}: link {link!r} has {sphere!r}, expected "
+                    f"path: {str(path)!r}: link {link!r} has {shown!r}, expected "
                     f"{centre} (3 numbers) and radius"
                 )
             if row[3] > 0:

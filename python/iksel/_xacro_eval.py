@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 LONGEST_EXPRESSION = 4000  # characters
 
-_UNARY = {
+_UNARY: dict[type, Callable[[Any], Any]] = {
     ast.UAdd: operator.pos,
     ast.USub: operator.neg,
     ast.Not: operator.not_,
@@ -282,8 +282,11 @@ class _Evaluation:
         return self.value(node.body if self.value(node.test) else node.orelse)
 
     def _dict(self, node: ast.Dict) -> Any:
-        pairs = zip(node.keys, node.values, strict=True)
-        return {self.value(k or ast.Starred()): self.value(v) for k, v in pairs}
+        if None in node.keys:
+            msg = "a star is no part of the expressions that are evaluated"
+            raise RefusedError(msg)
+        keys = [self.value(key) for key in node.keys if key is not None]
+        return dict(zip(keys, map(self.value, node.values), strict=True))
 
 
 def _kind(value: Any) -> type:

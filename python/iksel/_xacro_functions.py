@@ -39,7 +39,7 @@ def format_text(text: str, values: Any) -> str:
     if "%" in left:
         msg = f"the format {text!r}"
         raise RefusedError(msg)
-    return text % values
+    return str(text % values)
 
 
 def _range(*ends: int) -> list[int]:

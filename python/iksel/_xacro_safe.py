@@ -22,9 +22,11 @@ from iksel._xacro_eval import evaluate
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-_PART = re.compile(r"\$\$+[{(]|\$\{[^}]*\}|\$\([^)]*\)|[^$]+|\$")
+# What is not closed goes on to the end, so that it is looked through only once.
+_PART = re.compile(r"\$\$+[{(]|\$\{[^}]*(?:\}|\Z)|\$\([^)]*(?:\)|\Z)|[^$]+|\$")
+_CLOSED = {"${": "}", "$(": ")"}
 _WILD = "*[?"  # in names of files
-_ELEMENT = 200  # steps for an element, which take as long as it does
+_ELEMENT = 400  # steps for an element, which take as long as it does
 _SHOWN = 60  # characters of an expression in an error
 _LARGEST_FILE = 1 << 23  # bytes; the largest of real robots has 200,000
 _UNITS = {
@@ -79,6 +81,14 @@ def replaced_parts(package: Any, find: Callable[[str], str]) -> Iterator[None]:
         yield
     finally:
         vars(package).update(before)
+
+
+class _PlacedError(Exception):
+    """An error whose text begins with the place in the file."""
+
+
+class _PlacedRefusedError(_PlacedError, RefusedError):
+    """A refusal whose text begins with the place in the file."""
 
 
 def _unreached(*_arguments: Any, **_options: Any) -> Any:
@@ -139,6 +149,9 @@ class _Files:
         """A text with the values of all `${...}` and `$(...)` in it."""
         results: list[Any] = []
         for part in _PART.findall(text):
+            if part[:2] in _CLOSED and part[-1] != _CLOSED[part[:2]]:
+                msg = f"{part[:_SHOWN]}: {part[:2]} is not closed"
+                raise RefusedError(msg)
             if part.startswith("${"):
                 results.append(self._evaluate(part, symbols))
             elif part.startswith("$("):
@@ -162,16 +175,16 @@ class _Files:
 
     def _placed(self, error: Exception, part: str) -> Exception:
         """An error with the place of the text that it is of."""
-        if getattr(error, "placed", False):
+        if isinstance(error, _PlacedError):
             return error
         shown = part if len(part) <= _SHOWN else part[: _SHOWN - 4] + " ..."
         reason = str(error) or type(error).__name__
         if isinstance(error, RecursionError):
             reason = "it is nested too deep"
-        kind = RefusedError if isinstance(error, RefusedError) else ValueError
-        placed: Any = kind(f"{self._place(part)}{shown}: {reason}")
-        placed.placed = True
-        return placed
+        text = f"{self._place(part)}{shown}: {reason}"
+        if isinstance(error, RefusedError):
+            return _PlacedRefusedError(text)
+        return _PlacedError(text)
 
     def _place(self, part: str) -> str:
         """File and line of the first place where a text stands."""
@@ -276,7 +289,7 @@ def _parse_parameter(
     check_length(len(text))
     match = _PARAMETER.match(text)
     if match is None:
-        first, *rest = text.split(None, 1) or [""]
-        return first, None, rest[0] if rest else ""
+        words = [*text.split(None, 1), "", ""]
+        return words[0], None, words[1]
     name, forward, default, rest = match.groups()
     return name, (name if forward else None, default or None), rest

@@ -31,7 +31,7 @@ from iksel._collision_shapes import (
     read_shapes,
     spheres_around,
 )
-from iksel._files import read_text, replaced
+from iksel._files import check_unpacked, read_text, replaced
 from iksel._sphere_cover import cover
 from iksel._sphere_files import read_links, read_yaml
 from iksel._urdf_xml import read_xml
@@ -165,19 +165,24 @@ def from_curobo(path: str | os.PathLike[str]) -> RobotSpheres:
     path = Path(path)
     data = read_yaml(path)
     for key in ("robot_cfg", "kinematics"):
-        data = data.get(key, data)
+        inner = data.get(key)
+        data = inner if isinstance(inner, dict) else data
     spheres = data.get("collision_spheres")
     if isinstance(spheres, str):
         spheres = read_yaml(path.parent / spheres).get("collision_spheres")
     if not isinstance(spheres, dict):
         raise InvalidArgumentError(f"path: {str(path)!r} has no collision_spheres")
     buffer = data.get("collision_sphere_buffer", 0.0)
-    links = read_links(path, spheres, "center", buffer or 0.0)
-    ignored = {
-        frozenset((link, other))
-        for link, others in (data.get("self_collision_ignore") or {}).items()
-        for other in others
-    }
+    listed = data.get("self_collision_ignore") or {}
+    try:
+        links = read_links(path, spheres, "center", float(buffer or 0.0))
+        ignored = {
+            frozenset((link, str(other)))
+            for link, others in listed.items()
+            for other in others
+        }
+    except (AttributeError, TypeError, ValueError) as error:
+        raise InvalidArgumentError(f"path: {str(path)!r}: {error}") from None
     pairs = combinations(links, 2) if ignored else ()
     return RobotSpheres(
         links, [pair for pair in pairs if frozenset(pair) not in ignored]
@@ -199,7 +204,7 @@ def from_json(path: str | os.PathLike[str]) -> RobotSpheres:
     path = Path(path)
     try:
         data = json.loads(read_text(path))
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, RecursionError) as error:
         raise InvalidArgumentError(f"path: {error}") from None
     if not isinstance(data, dict):
         raise InvalidArgumentError(f"path: {str(path)!r} is no mapping of links")
@@ -277,6 +282,7 @@ def load(path: str | os.PathLike[str]) -> RobotSpheres:
         InvalidArgumentError: It cannot be read, or is no such file.
     """
     try:
+        check_unpacked(Path(path))
         # Opened here: numpy leaves a damaged file open.
         with Path(path).open("rb") as file, np.load(file, allow_pickle=False) as held:
             data = {name: held[name] for name in held.files}
@@ -290,6 +296,9 @@ def load(path: str | os.PathLike[str]) -> RobotSpheres:
         EOFError,
         ValueError,
         KeyError,
+        IndexError,
+        TypeError,
+        MemoryError,
         zipfile.BadZipFile,
         zlib.error,
     ) as error:

@@ -215,7 +215,9 @@ class Map(Space):
 
     def to_xarray(self) -> Any:
         """The arrays as an xarray.Dataset, read when they are used and unchecked."""
-        dataset = need("xarray").open_zarr(self._store.path, consolidated=False)
+        dataset = need("xarray").open_zarr(
+            self._store.path, consolidated=False, zarr_format=3
+        )
         return dataset.drop_vars("receipt")
 
     def _query(self, poses: FloatArray) -> Answers:

@@ -169,7 +169,7 @@ def read_job(path: StrPath) -> Job:
         stored = json.loads(text).get("attributes", {}).get(ATTRIBUTE)
     except FileNotFoundError:
         raise MapIoError(f"'{path}' is no map: it has no zarr.json") from None
-    except (OSError, ValueError, AttributeError) as error:
+    except (OSError, ValueError, AttributeError, RecursionError) as error:
         raise MapIoError(f"'{path}' cannot be read: {error}") from error
     if not isinstance(stored, dict) or not isinstance(stored.get("plan"), dict):
         raise PlanMismatchError(f"'{path}' is a Zarr group, but no map of iksel")

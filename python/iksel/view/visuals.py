@@ -10,6 +10,7 @@ from iksel_cpp import UnknownNameError, UrdfError
 
 from iksel import _extras
 from iksel import _rotations as rotations
+from iksel._mesh_files import check_mesh_file
 from iksel._packages import resolve_path
 from iksel._urdf_xml import GEOMETRIES, read_numbers, read_origin, read_xml
 from iksel.description import read_description
@@ -130,8 +131,7 @@ def _read_visual(
 def _load(path: Path) -> list[Any]:
     """The meshes of a file, at their places."""
     trimesh = _trimesh()
-    if not path.is_file():
-        raise UrdfError(f"no mesh file {str(path)!r}")
+    check_mesh_file(path)
     try:
         scene = trimesh.load_scene(path)
         return [mesh for mesh in scene.dump() if hasattr(mesh, "faces")]

@@ -40,13 +40,32 @@ inline std::string shape_text(const py::array& array) {
                              shape_text(got) + hint);
 }
 
+/// Throws InvalidArgumentError about a tensor, or a sequence with one, that has to be detached from
+/// its gradients before numpy takes it.
+inline void refuse_gradients(py::handle value, const char* name) {
+  if (py::isinstance<py::array>(value) || py::isinstance<py::str>(value)) return;
+  if (py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value)) {
+    for (const py::handle item : value) refuse_gradients(item, name);
+    return;
+  }
+  if (!py::hasattr(value, "detach") || !py::hasattr(value, "requires_grad")) return;
+  if (PyObject_IsTrue(value.attr("requires_grad").ptr()) != 1) return;
+  throw InvalidArgumentError(std::string(name) +
+                             ": a tensor that requires gradients, which end here: call .detach()");
+}
+
 inline DoubleArray convert_to_doubles(py::handle value, const char* name) {
   const auto array = py::array::ensure(value);
-  if (!array) throw_wrong_type(name, "an array of real numbers", value);
+  if (!array) {
+    refuse_gradients(value, name);
+    throw_wrong_type(name, "an array of real numbers", value);
+  }
   const char kind = array.dtype().kind();
   if (kind != 'f' && kind != 'i' && kind != 'u') {
-    if (!py::isinstance<py::array>(value))
+    if (!py::isinstance<py::array>(value)) {
+      refuse_gradients(value, name);
       throw_wrong_type(name, "an array of real numbers", value);
+    }
     throw InvalidArgumentError(std::string(name) + ": expected real numbers, got dtype " +
                                py::cast<std::string>(py::str(array.dtype())));
   }

@@ -17,7 +17,7 @@ namespace iksel::python {
 
 namespace {
 
-LinkTree tree_from_urdf(const PathLike& path_or_xml,
+LinkTree tree_from_urdf(const UrdfSource& path_or_xml,
                         const std::optional<Loose<std::string>>& link) {
   const std::string name = link ? from_python<std::string>(*link, "link") : "";
   return read_urdf(
@@ -107,7 +107,7 @@ Raises:
                   R"(Reads the tree of a URDF.
 
 Args:
-    path_or_xml: a path, or the URDF text itself (a str whose first character is '<').
+    path_or_xml: a path, or the URDF itself: a str whose first character is '<', or bytes.
     link: a link of the tree that is meant, where the links hang in several.
 
 Raises:

@@ -61,7 +61,7 @@ std::uint64_t fresh_seed() {
   return (std::uint64_t{device()} << 32) | device();
 }
 
-Robot from_urdf(const PathLike& path_or_xml, const std::optional<Loose<std::string>>& base_link,
+Robot from_urdf(const UrdfSource& path_or_xml, const std::optional<Loose<std::string>>& base_link,
                 const std::optional<Loose<std::string>>& tip_link,
                 const std::optional<PoseLike>& tcp, const std::optional<JointValues>& locked_joints,
                 const Loose<bool>& soft_limits, const std::optional<ArrayLike>& default_limits,
@@ -183,7 +183,7 @@ void bind_from_urdf(py::class_<Robot>& cls) {
                  R"(Reads the chain between two links of a URDF.
 
 Args:
-    path_or_xml: a path, or the URDF text itself (a str whose first character is '<').
+    path_or_xml: a path, or the URDF itself: a str whose first character is '<', or bytes.
     base_link: link the poses are relative to; None: the root link.
     tip_link: link whose pose is solved for; None: the one link without children.
     tcp: T_tip_tcp, (4, 4): tool centre point. Poses, FK and IK are then of the TCP.
@@ -243,6 +243,7 @@ void bind_robot(py::module_& m) {
                         "An immutable serial chain between two links of a URDF, with its limits. "
                         "Safe to use from many threads at once.");
   bind_from_urdf(cls);
+  bind_dh(m, cls);
   bind_chain(cls);
   cls.def(
       "with_tcp",

@@ -40,7 +40,7 @@ std::vector<StoredPose> as_tools(py::handle value, const std::string& name) {
   return tools;
 }
 
-TreeRobot tree_robot_from_urdf(const PathLike& path_or_xml, const LinkNames& tip_links,
+TreeRobot tree_robot_from_urdf(const UrdfSource& path_or_xml, const LinkNames& tip_links,
                                const std::optional<Loose<std::string>>& base_link,
                                const std::optional<PoseLike>& tcps,
                                const std::optional<JointValues>& locked_joints,
@@ -102,7 +102,7 @@ void bind_from_urdf(py::class_<TreeRobot>& cls) {
                  R"(Reads the chains from one link of a URDF to several.
 
 Args:
-    path_or_xml: a path, or the URDF text itself (a str whose first character is '<').
+    path_or_xml: a path, or the URDF itself: a str whose first character is '<', or bytes.
     tip_links: links whose poses are solved for, 1 to 8.
     base_link: link that all poses are relative to; None: the root link.
     tcps: T_tip_tcp of each tip, (k, 4, 4), or None: no tip has a tool.

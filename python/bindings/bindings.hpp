@@ -19,6 +19,8 @@ void bind_structure(pybind11::module_& m);
 void bind_coupled_limit(pybind11::module_& m);
 void bind_mimic_curve(pybind11::module_& m);
 void bind_robot(pybind11::module_& m);
+/// Robot.from_dh.
+void bind_dh(pybind11::module_& m, pybind11::class_<Robot>& robot);
 /// The methods of Robot that compute poses and Jacobians.
 void bind_kinematics(pybind11::class_<Robot>& robot);
 /// To come before the options, one of which is a task.

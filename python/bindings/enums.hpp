@@ -9,6 +9,7 @@
 #include <string>
 #include <type_traits>
 
+#include "iksel/dh.hpp"
 #include "iksel/diagnosis.hpp"
 #include "iksel/options.hpp"
 #include "iksel/request.hpp"
@@ -51,6 +52,19 @@ struct EnumTable<JointType> {
       {"revolute", JointType::revolute, "turns between limits [rad]"},
       {"continuous", JointType::continuous, "turns without limits [rad]"},
       {"prismatic", JointType::prismatic, "slides between limits [m]"},
+  };
+};
+
+template <>
+struct EnumTable<DhConvention> {
+  static constexpr const char* kName = "DhConvention";
+  static constexpr const char* kDoc =
+      "How a row of Denavit and Hartenberg's parameters places the next frame.";
+  static constexpr EnumValue<DhConvention> kValues[] = {
+      {"standard", DhConvention::standard,
+       "Rz(theta) Tz(d) Tx(a) Rx(alpha): Denavit and Hartenberg, Siciliano, Spong"},
+      {"modified", DhConvention::modified,
+       "Rx(alpha) Tx(a) Rz(theta) Tz(d): Craig; a and alpha of the link before"},
   };
 };
 

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pose_arguments.hpp"
 
+#include <pybind11/stl.h>
+
+#include <Eigen/Geometry>
 #include <cmath>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace iksel::python {
 namespace {
@@ -36,14 +41,71 @@ py::array to_numbers(py::handle value) {
   }
 }
 
+/// What a message, or a mapping, has under a name; null if it has nothing there, or a method.
+py::object field_of(py::handle value, const char* name) {
+  py::object found;
+  if (py::isinstance<py::dict>(value)) {
+    const auto items = py::reinterpret_borrow<py::dict>(value);
+    if (items.contains(name)) found = items[name];
+  } else if (py::hasattr(value, name)) {
+    found = value.attr(name);
+  }
+  return found && PyCallable_Check(found.ptr()) == 0 ? found : py::object();
+}
+
+/// The numbers that a message has under the names, each a letter; empty if not all are there.
+std::vector<double> numbers_of(py::handle value, const std::string& names, const char* argument) {
+  std::vector<double> numbers;
+  if (is_array(value)) return numbers;
+  for (const char name : names) {
+    const py::object number = field_of(value, std::string(1, name).c_str());
+    if (!number) return {};
+    numbers.push_back(from_python<double>(number, argument));
+  }
+  return numbers;
+}
+
+/// The matrix of a pose whose position and quaternion have named fields: ROS's Pose and Transform,
+/// and what holds one of them: PoseStamped, TransformStamped, PoseWithCovarianceStamped.
+py::object matrix_of_message(py::handle value, const char* argument) {
+  if (is_array(value)) return {};
+  for (const char* inner : {"pose", "transform"}) {
+    const py::object message = field_of(value, inner);
+    if (message) return matrix_of_message(message, argument);
+  }
+  for (const auto& [first, second] :
+       {std::pair("position", "orientation"), std::pair("translation", "rotation")}) {
+    const py::object position = field_of(value, first);
+    const py::object rotation = field_of(value, second);
+    if (!position || !rotation) continue;
+    const std::vector<double> p = numbers_of(position, "xyz", argument);
+    const std::vector<double> q = numbers_of(rotation, "xyzw", argument);
+    if (p.empty() || q.empty()) continue;
+    const Eigen::Quaterniond quaternion(q[3], q[0], q[1], q[2]);
+    if (!(std::abs(quaternion.norm() - 1) <= kRigidTolerance)) {
+      throw InvalidArgumentError(
+          std::string(argument) + ": its " + second +
+          " is no unit quaternion: x, y, z, w = " + py::cast<std::string>(py::str(py::cast(q))) +
+          (quaternion.norm() == 0 ? ", as in a message that was not filled in" : ""));
+    }
+    Pose pose = Pose::Identity();
+    pose.linear() = quaternion.normalized().toRotationMatrix();
+    pose.translation() << p[0], p[1], p[2];
+    return to_array(pose);
+  }
+  return {};
+}
+
 /// The matrix that an object of another library has for itself: scipy's Rotation and
-/// RigidTransform, Pinocchio's SE3, and the SE3 of spatialmath.
+/// RigidTransform, Pinocchio's SE3, and the SE3 and UnitQuaternion of spatialmath.
 py::object matrix_of(py::handle value) {
   if (is_array(value) || is_sequence(value)) return {};
   if (py::hasattr(value, "as_matrix")) return value.attr("as_matrix")();
   if (py::hasattr(value, "homogeneous")) return value.attr("homogeneous");
-  if (py::hasattr(value, "A")) return value.attr("A");
-  return {};
+  if (!py::hasattr(value, "A")) return {};
+  // A quaternion's A are its four numbers, a scalar and a vector.
+  const bool is_quaternion = py::hasattr(value, "s") && py::hasattr(value, "v");
+  return value.attr(is_quaternion && py::hasattr(value, "R") ? "R" : "A");
 }
 
 [[noreturn]] void throw_quaternion(const char* name) {
@@ -51,10 +113,6 @@ py::object matrix_of(py::handle value) {
       std::string(name) +
       ": a position and a quaternion do not say in which order the quaternion is; name it: "
       "iksel.as_pose(value, order=\"wxyz\") or order=\"xyzw\"");
-}
-
-bool is_quaternion(const py::array& value) {
-  return ends_with(value, 4) && !ends_with(value, 4, 4);
 }
 
 /// The rotation matrix of a rotation or matrix, or whatever numbers it is.
@@ -68,9 +126,13 @@ bool is_pair(py::handle value) {
   if (!is_sequence(value) || py::len(value) != 2) return false;
   const auto pair = py::reinterpret_borrow<py::sequence>(value);
   const py::array position = to_numbers(pair[0]);
-  if (!ends_with(position, 3) || ends_with(position, 3, 3)) return false;
+  if (!ends_with(position, 3)) return false;
   const py::array R = rotation_of(pair[1]);
-  return ends_with(R, 3, 3) || is_quaternion(R);
+  if (ends_with(R, 4)) return R.ndim() <= position.ndim();
+  if (!ends_with(R, 3, 3)) return false;
+  // Two matrices (3, 3) are no pair; three positions with rotations are.
+  const bool is_matrix = is_array(pair[1]) || is_sequence(pair[1]);
+  return !ends_with(position, 3, 3) || R.ndim() > position.ndim() || !is_matrix;
 }
 
 /// Poses (..., 4, 4) from positions (..., 3) and rotation matrices (..., 3, 3).
@@ -115,8 +177,12 @@ py::object to_matrices(py::handle value, const char* name) {
   if (is_pair(value)) {
     const auto pair = py::reinterpret_borrow<py::sequence>(value);
     const py::array R = rotation_of(pair[1]);
-    if (is_quaternion(R)) throw_quaternion(name);
+    if (!ends_with(R, 3, 3)) throw_quaternion(name);
     return assemble(to_numbers(pair[0]), R);
+  }
+  if (const py::object message = matrix_of_message(value, name)) return message;
+  if (const py::object poses = field_of(value, "poses")) {  // of ROS's PoseArray and Path
+    return to_matrices(py::list(poses), name);
   }
   if (const py::object matrix = matrix_of(value)) {
     if (ends_with(to_numbers(matrix), 3, 3)) {
@@ -126,7 +192,7 @@ py::object to_matrices(py::handle value, const char* name) {
   }
   if (is_sequence(value) && py::len(value) > 0) {
     const auto items = py::reinterpret_borrow<py::sequence>(value);
-    if (is_pair(items[0]) || matrix_of(items[0])) {
+    if (is_pair(items[0]) || matrix_of(items[0]) || matrix_of_message(items[0], name)) {
       py::list matrices;
       for (const py::handle item : items) matrices.append(to_matrices(item, name));
       return matrices;
@@ -136,6 +202,7 @@ py::object to_matrices(py::handle value, const char* name) {
   if (ends_with(numbers, 3, 4)) return with_last_row(numbers);
   if (ends_with(numbers, 7)) throw_quaternion(name);
   if (numbers.size() > 0) return numbers;
+  refuse_gradients(value, name);
   return py::reinterpret_borrow<py::object>(value);
 }
 

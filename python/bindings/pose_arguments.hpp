@@ -17,8 +17,9 @@ class PoseLike : public py::object {
 
 /// `value` as matrices (..., 4, 4), if it is a pose or several: (..., 3, 4) matrices; a pair
 /// (position, rotation), (..., 3) and (..., 3, 3) or an object with as_matrix(); an object with
-/// as_matrix(), .homogeneous or .A; a list of such. Else what it is. Throws InvalidArgumentError
-/// about a quaternion, whose order is not known.
+/// as_matrix(), .homogeneous or .A; a message with named fields, as ROS has them; a list of such.
+/// Else what it is. Throws InvalidArgumentError about a quaternion, whose order is not known, or
+/// which is none, and about tensors that require gradients.
 py::object to_matrices(py::handle value, const char* name);
 
 /// For what is not simply a (4, 4) array of doubles; `task` may be null.

@@ -32,6 +32,11 @@ class ClosestLike : public py::object {
   PYBIND11_OBJECT_DEFAULT(ClosestLike, object, is_any_object)
 };
 
+/// A path, or the text or bytes of a URDF.
+class UrdfSource : public py::object {
+  PYBIND11_OBJECT_DEFAULT(UrdfSource, object, is_any_object)
+};
+
 /// A path, or any other text where there is a choice.
 class PathLike : public py::object {
   PYBIND11_OBJECT_DEFAULT(PathLike, object, is_any_object)
@@ -219,6 +224,11 @@ struct handle_type_name<iksel::python::ClosestLike> {
 template <>
 struct handle_type_name<iksel::python::PathLike> {
   static constexpr auto name = const_name("str | os.PathLike[str]");
+};
+
+template <>
+struct handle_type_name<iksel::python::UrdfSource> {
+  static constexpr auto name = const_name("str | bytes | os.PathLike[str]");
 };
 
 template <>

@@ -101,16 +101,14 @@ void guard_function(py::handle thing) {
 
 }  // namespace
 
-using Names = std::vector<std::string>;
-
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& known) {
-  Names close;
+  std::vector<std::string> close;
   // Of tip_link the word tip; two letters are too few to tell.
-  for (const std::string& one : name.size() > 2 ? known : Names()) {
+  for (const std::string& one : name.size() > 2 ? known : std::vector<std::string>()) {
     if (("_" + one).find("_" + name) != std::string::npos) close.push_back(one);
   }
   if (close.empty()) {
-    close = py::cast<Names>(
+    close = py::cast<std::vector<std::string>>(
         py::module_::import("difflib").attr("get_close_matches")(name, py::cast(known), 1));
   }
   std::string text;

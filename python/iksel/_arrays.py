@@ -46,6 +46,8 @@ def as_floats(
         array = np.asarray(value)
     except (ValueError, TypeError):
         reject(name, f"expected numbers of shape {expected}, got a ragged sequence")
+    except RuntimeError as error:  # a tensor that numpy does not take as it is
+        reject(name, f"expected numbers of shape {expected}, got a tensor: {error}")
     shape = array.shape
     if shape[len(shape) - len(tail) :] != tail or len(shape) < len(tail):
         reject(name, f"expected shape {expected}, got {shape}")

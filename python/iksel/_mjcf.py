@@ -5,17 +5,18 @@ from __future__ import annotations
 
 import importlib
 import warnings
-import xml.etree.ElementTree as ET
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from iksel_cpp import UrdfError
 
 from iksel._mjcf_bounds import check_size
+from iksel._urdf_writer import UrdfWriter
 from iksel._urdf_xml import read_xml
-from iksel.pose import euler_from_pose, pose_from_quaternion, pose_from_rotation_vector
+from iksel.pose import pose_from_quaternion, pose_from_rotation_vector
 
 if TYPE_CHECKING:
+    import xml.etree.ElementTree as ET
     from pathlib import Path
 
     from iksel._arrays import FloatArray
@@ -35,7 +36,6 @@ _NEEDLESS = (
     "flexes",
     "cameras",
     "lights",
-    "sites",
     "geoms",
     "meshes",
     "hfields",
@@ -45,18 +45,32 @@ _NEEDLESS = (
 )
 
 
+# Kinds of joints: mjtJoint.
+_FREE, _BALL, _SLIDE, _HINGE = range(4)
+
+
 def is_mjcf(root: ET.Element) -> bool:
     """Whether XML is MuJoCo's."""
     return root.tag in {"mujoco", "mujocoinclude"}
 
 
-def urdf_of_mjcf(path: Path) -> str:
-    """The URDF text with the bodies and joints of an MJCF file.
+class Tree(NamedTuple):
+    """The bodies and joints of a model of MuJoCo."""
+
+    urdf: str
+    """Their URDF."""
+    tip_link: str | None
+    """The one body that holds no other; None: there are several."""
+
+
+def read_file(path: Path) -> Tree:
+    """The bodies and joints of an MJCF file.
 
     Each body is a link of its name, without a name `body` and its number, the root
     `world`. A joint is at its place in the body, moved back by its `ref`: joint
     values are MuJoCo's `qpos`. Between several joints of a body, and where the last is
     not at its origin, are links `BODY/JOINT`. Joints without a range have no limits.
+    Sites of bodies are links of their names, `SITE/site` where that name is taken.
     Free and ball joints become `floating` ones, whose names end in the body's: no chain
     goes through them. Equality constraints are left out, as in MuJoCo's forward
     kinematics.
@@ -69,8 +83,8 @@ def urdf_of_mjcf(path: Path) -> str:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of what the file is made of
-            model = _compile(mujoco, path)
-        return _Tree(mujoco, model).text()
+            model = compile_bare(mujoco.MjSpec.from_file(str(path)))
+        return read_model(model)
     except (ValueError, TypeError, RuntimeError, mujoco.FatalError) as error:
         reason = " ".join(str(error).split())
         remedy = _remedy(reason, path, mujoco.__version__)
@@ -88,12 +102,35 @@ def _import_mujoco(path: Path) -> Any:
     return mujoco
 
 
-def _compile(mujoco: Any, path: Path) -> Any:
-    """MuJoCo's model of the bodies and joints alone."""
-    spec = mujoco.MjSpec.from_file(str(path))
+def read_spec(spec: Any) -> Tree:
+    """The bodies and joints of an MjSpec, which stays as it is.
+
+    Raises:
+        UrdfError: MuJoCo refuses them.
+    """
+    try:
+        model = compile_bare(spec.copy())
+    except (ValueError, TypeError, RuntimeError) as error:
+        reason = " ".join(str(error).split())
+        raise UrdfError(f"MjSpec: mujoco says: {reason}; mend that element") from None
+    return read_model(model)
+
+
+def read_model(model: Any) -> Tree:
+    """The bodies and joints of an MjModel."""
+    holding = set(model.body_parentid[1:].tolist())
+    tips = [i for i in range(1, model.nbody) if i not in holding]
+    tree = _Tree(model)
+    return Tree(tree.text(), tree.links[tips[0]] if len(tips) == 1 else None)
+
+
+def compile_bare(spec: Any) -> Any:
+    """MuJoCo's model of bodies, joints and sites; all else leaves the specification."""
     for name in _NEEDLESS:
         for element in list(getattr(spec, name, ())):
             spec.delete(element)
+    for site in spec.sites:
+        site.material = ""
     # Bodies that had their mass from what is gone still need some.
     spec.compiler.boundmass = 1.0
     spec.compiler.boundinertia = 1.0
@@ -122,26 +159,29 @@ def _remedy(reason: str, path: Path, version: str) -> str:
 
 
 class _Tree:
-    """Writes URDF, body by body."""
+    """Writes URDF, body by body.
 
-    def __init__(self, mujoco: Any, model: Any) -> None:
-        self._kinds = mujoco.mjtJoint
+    Attributes:
+        links: Names of the links that the bodies are.
+    """
+
+    def __init__(self, model: Any) -> None:
         self._model = model
-        self._bodies = [model.body(i).name or f"body{i}" for i in range(model.nbody)]
-        self._root = ET.Element("robot", name=_model_name(model))
+        self.links = [model.body(i).name or f"body{i}" for i in range(model.nbody)]
+        self._writer = UrdfWriter(_model_name(model), self.links[0])
 
     def text(self) -> str:
         """The URDF."""
-        ET.SubElement(self._root, "link", name=self._bodies[0])
         for body in range(1, self._model.nbody):
             self._add_body(body)
-        ET.indent(self._root)
-        return ET.tostring(self._root, "unicode")
+        for site in range(self._model.nsite):
+            self._add_site(site)
+        return self._writer.text()
 
     def _add_body(self, body: int) -> None:
-        model, name = self._model, self._bodies[body]
+        model, name = self._model, self.links[body]
         first, count = int(model.body_jntadr[body]), int(model.body_jntnum[body])
-        parent = self._bodies[int(model.body_parentid[body])]
+        parent = self.links[int(model.body_parentid[body])]
         # From the parent's frame to that of the body, all joints at their reference.
         origin = pose_from_quaternion(
             model.body_pos[body], _unit(model.body_quat[body]), order="wxyz"
@@ -154,7 +194,20 @@ class _Tree:
             if last:
                 return
             parent, origin = child, _shift(-anchor)
-        self._write_joint(f"{name}/fixed", "fixed", parent, name, origin)
+        self._writer.add_fixed(parent, name, origin)
+
+    def _add_site(self, site: int) -> None:
+        """Add a site as a link; those of the world move with nothing."""
+        model, body = self._model, int(self._model.site_bodyid[site])
+        name = model.site(site).name
+        if body == 0 or not name:
+            return
+        if name in self._writer.links:
+            name = self._writer.free_link(f"{name}/site")
+        origin = pose_from_quaternion(
+            model.site_pos[site], _unit(model.site_quat[site]), order="wxyz"
+        )
+        self._writer.add_fixed(self.links[body], name, origin)
 
     def _add_joint(
         self, joint: int, parent: str, child: str, origin: FloatArray
@@ -163,45 +216,30 @@ class _Tree:
         model, kind = self._model, self._kind(joint)
         axis = _unit(model.jnt_axis[joint])
         back = -float(model.qpos0[model.jnt_qposadr[joint]]) * axis
-        limited = bool(model.jnt_limited[joint])
-        body = self._bodies[int(model.jnt_bodyid[joint])]
+        body = self.links[int(model.jnt_bodyid[joint])]
         name = model.joint(joint).name or f"{body}/joint{joint}"
-        write = self._write_joint
-        if kind == self._kinds.mjJNT_HINGE:
-            turned = origin @ pose_from_rotation_vector(np.zeros(3), back)
-            urdf_kind = "revolute" if limited else "continuous"
-            element = write(name, urdf_kind, parent, child, turned)
-        elif kind == self._kinds.mjJNT_SLIDE:
-            element = write(name, "prismatic", parent, child, origin @ _shift(back))
+        if kind == _HINGE:
+            urdf_kind = "revolute"
+            origin = origin @ pose_from_rotation_vector(np.zeros(3), back)
+        elif kind == _SLIDE:
+            urdf_kind, origin = "prismatic", origin @ _shift(back)
         else:
-            word = "free" if kind == self._kinds.mjJNT_FREE else "ball"
-            write(f"{word} joint of body {body}", "floating", parent, child, origin)
+            word = "free" if kind == _FREE else "ball"
+            name = f"{word} joint of body {body}"
+            self._writer.add_joint(name, "floating", parent, child, origin)
             return
-        ET.SubElement(element, "axis", xyz=_words(axis))
-        if limited:
-            lower, upper = (repr(float(end)) for end in model.jnt_range[joint])
-            limit = {"lower": lower, "upper": upper, "effort": "0", "velocity": "0"}
-            ET.SubElement(element, "limit", limit)
+        lower, upper = model.jnt_range[joint]
+        limits = (float(lower), float(upper)) if model.jnt_limited[joint] else None
+        self._writer.add_joint(
+            name, urdf_kind, parent, child, origin, axis=axis, limits=limits
+        )
 
-    def _write_joint(
-        self, name: str, kind: str, parent: str, child: str, origin: FloatArray
-    ) -> ET.Element:
-        """Write a joint and the link that it carries."""
-        ET.SubElement(self._root, "link", name=child)
-        element = ET.SubElement(self._root, "joint", name=name, type=kind)
-        ET.SubElement(element, "parent", link=parent)
-        ET.SubElement(element, "child", link=child)
-        rpy = _words(euler_from_pose(origin))
-        ET.SubElement(element, "origin", xyz=_words(origin[:3, 3]), rpy=rpy)
-        return element
-
-    def _kind(self, joint: int) -> Any:
-        return self._kinds(int(self._model.jnt_type[joint]))
+    def _kind(self, joint: int) -> int:
+        return int(self._model.jnt_type[joint])
 
     def _anchor(self, joint: int) -> FloatArray:
         """The point in the body that a joint turns about; 0 where that is no matter."""
-        turns = (self._kinds.mjJNT_HINGE, self._kinds.mjJNT_BALL)
-        if self._kind(joint) not in turns:
+        if self._kind(joint) not in {_HINGE, _BALL}:
             return np.zeros(3)
         anchor: FloatArray = self._model.jnt_pos[joint]
         return anchor
@@ -209,7 +247,7 @@ class _Tree:
     def _between(self, body: str, joint: int) -> str:
         """Name of the link behind a joint that is not the body's last."""
         name = f"{body}/{self._model.joint(joint).name or f'joint{joint}'}"
-        while name in self._bodies:
+        while name in self.links or name in self._writer.links:
             name += "'"
         return name
 
@@ -227,8 +265,3 @@ def _shift(position: FloatArray) -> FloatArray:
     pose = np.eye(4)
     pose[:3, 3] = position
     return pose
-
-
-def _words(values: FloatArray) -> str:
-    """Numbers that are read back as the same."""
-    return " ".join(repr(float(value) + 0.0) for value in values)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -25,6 +26,8 @@ def find_package(name: str, packages: Packages, near: Path) -> Path:
     Looked for, in this order: in `packages`; among the folders that hold `near`, and
     beside them; in $ROS_PACKAGE_PATH and $AMENT_PREFIX_PATH. A folder is the package's
     if its package.xml names it or, without that file, if it has the package's name.
+    Where none is, a folder of that name is taken though its package.xml has another:
+    installed packages are named by their folders.
 
     Args:
         name: The package's.
@@ -36,9 +39,11 @@ def find_package(name: str, packages: Packages, near: Path) -> Path:
     """
     if name in packages:
         return Path(packages[name])
-    for folder in _candidates(name, near.absolute()):
-        if folder.is_dir() and _package_name(folder) == name:
-            return folder
+    folders = [f for f in _candidates(name, near.absolute()) if f.is_dir()]
+    named = (f for f in folders if _package_name(f) == name)
+    of_that_name = (f for f in folders if f.name == name)
+    for folder in itertools.chain(named, of_that_name):
+        return folder
     listed = ", ".join(packages) or "none"
     raise UnknownNameError(
         f"packages: no folder for package {name!r}; given: {listed}; it is neither "
@@ -59,7 +64,8 @@ def resolve_path(name: str, packages: Packages, folder: Path) -> Path:
     """
     for scheme in _SCHEMES:
         if name.startswith(scheme):
-            package, _, rest = name.removeprefix(scheme).partition("/")
+            # Files have one slash too many.
+            package, _, rest = name.removeprefix(scheme).lstrip("/").partition("/")
             try:
                 return find_package(package, packages, folder) / rest
             except UnknownNameError as error:

@@ -8,14 +8,15 @@ print(read_description("arm.urdf.xacro", xacro_args={"prefix": "left_"}).urdf)
 
 from __future__ import annotations
 
+import dataclasses
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
-from iksel_cpp import UrdfError
+from iksel_cpp import UrdfError, mend_xml
 
-from iksel import _descriptions, _mjcf, _xacro
+from iksel import _descriptions, _mjcf, _models, _xacro
 from iksel._manifest import manifest, urdf_text
 from iksel._urdf_xml import is_xml, read_xml
 
@@ -25,8 +26,10 @@ if TYPE_CHECKING:
 
     from iksel._packages import Packages
 
-Source = str | os.PathLike[str]
-Format = Literal["URDF", "xacro", "MJCF"]
+Source = Any
+"""A robot in one of the forms that `read_description` lists."""
+
+Format = Literal["URDF", "xacro", "MJCF", "object"]
 
 FILE_SUFFIXES = (".urdf", ".xml", ".xacro", ".mjcf")
 """Endings that make a name without a folder a file's rather than a robot's."""
@@ -44,6 +47,8 @@ class Description:
     """Where its relative file names start."""
     srdf: Path | None = None
     """SRDF that belongs to it, if robot_descriptions names one."""
+    tip_link: str | None = None
+    """Link to take as the tip where none is named; None: the one without children."""
 
 
 def read_description(
@@ -57,7 +62,10 @@ def read_description(
 
     Args:
         source: Name of a built-in robot; path of a URDF, xacro or MJCF file; a name of
-            robot_descriptions, as `rd:panda_description`; or URDF text.
+            robot_descriptions, as `rd:panda_description`; URDF text, as str or bytes;
+            or an object of another library: Pinocchio's Model or RobotWrapper, MuJoCo's
+            MjModel, MjSpec or MjData, a URDF of yourdfpy, urchin, urdfpy or
+            urdf_parser_py, a robot of the Robotics Toolbox, a Chain of ikpy.
         xacro_args: Values of a xacro file's arguments.
         packages: Folders of ROS packages that xacro's $(find ...) names; others are
             looked for around the file, in $ROS_PACKAGE_PATH and $AMENT_PREFIX_PATH.
@@ -69,8 +77,13 @@ def read_description(
     Raises:
         UnknownNameError: No robot of robot_descriptions, or no such ROS package.
         UrdfError: The package that the format needs is missing, or refuses the file.
+        InvalidArgumentError: An object that is no robot, or none that can be read.
     """
     packages = packages or {}
+    if not isinstance(source, str | bytes | os.PathLike):
+        return _read_object(source, xacro_args)
+    if isinstance(source, bytes):
+        source = mend_xml(source)
     if isinstance(source, str):
         if is_xml(source):
             return Description(_refuse_other_text(source), "URDF")
@@ -81,7 +94,7 @@ def read_description(
             arguments = {**found.arguments, **(xacro_args or {})}
             named = _with_names(packages, found)
             read = _read_file(found.path, arguments, named, trusted=trusted)
-            return Description(read.urdf, read.format, read.folder, found.srdf)
+            return dataclasses.replace(read, srdf=found.srdf)
     return _read_file(Path(source), xacro_args, packages, trusted=trusted)
 
 
@@ -94,7 +107,8 @@ def _read_file(
 ) -> Description:
     root = _root(path)
     if root is not None and _mjcf.is_mjcf(root):
-        return Description(_mjcf.urdf_of_mjcf(path), "MJCF", path.parent)
+        tree = _mjcf.read_file(path)
+        return Description(tree.urdf, "MJCF", path.parent, tip_link=tree.tip_link)
     if root is not None and _xacro.is_xacro(root, path):
         text = _xacro.expand(path, xacro_args, packages, trusted=trusted)
         return Description(text, "xacro", path.parent)
@@ -102,6 +116,15 @@ def _read_file(
         names = ", ".join(xacro_args)
         raise UrdfError(f"'{path}': xacro_args: {names}, but the file is not xacro")
     return Description(path, "URDF", path.parent)
+
+
+def _read_object(value: Any, xacro_args: Mapping[str, str] | None) -> Description:
+    model = _models.read_model(value)
+    if xacro_args:
+        names = ", ".join(xacro_args)
+        raise UrdfError(f"xacro_args: {names}, but the robot is no xacro file")
+    urdf = mend_xml(model.urdf) if isinstance(model.urdf, bytes) else model.urdf
+    return Description(urdf, "object", tip_link=model.tip_link)
 
 
 def _root(source: Source) -> ET.Element | None:

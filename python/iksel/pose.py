@@ -252,17 +252,21 @@ def orthonormalized(pose: PoseLike) -> FloatArray:
 def as_pose(value: PoseLike, order: QuaternionOrder | None = None) -> FloatArray:
     """Turn a pose as other libraries hold it into a matrix.
 
-    All but the quaternions are also taken wherever iksel takes a pose; those, whose
-    order differs between libraries, by this function only.
+    All but quaternions without names are also taken wherever iksel takes a pose;
+    those, whose order differs between libraries, by this function only.
 
     Args:
         value: One of these, or a list of one of them:
 
             - a matrix (..., 4, 4) or (..., 3, 4);
             - a pair (position, rotation): (..., 3) and a matrix (..., 3, 3) or an
-              object with as_matrix(), such as a scipy Rotation;
+              object with as_matrix(), such as a scipy Rotation, or a spatialmath
+              UnitQuaternion;
             - an object with as_matrix() (scipy RigidTransform), .homogeneous
               (Pinocchio SE3) or .A (spatialmath SE3);
+            - a message with named fields, as an object or a dict: position and
+              orientation (ROS Pose), translation and rotation (ROS Transform), or one
+              that holds such under .pose, .transform or, several, .poses;
             - a pair (position, quaternion), (..., 3) and (..., 4);
             - position and quaternion in one row, (..., 7).
         order: Order of a quaternion: "wxyz" or "xyzw".

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from iksel_cpp import CoupledLimit, MimicCurve
 
     from iksel._packages import Packages
+    from iksel.description import Source
 
 FROM_MANIFEST = "manifest"
 """Value of `tcp` that takes the manifest's tool."""
@@ -60,7 +61,7 @@ def robot_info(name: str) -> RobotInfo:
 
 @with_hints
 def load_robot(
-    source: str | os.PathLike[str],
+    source: Source,
     *,
     tcp: npt.ArrayLike | None = FROM_MANIFEST,
     base_link: str | None = None,
@@ -76,18 +77,21 @@ def load_robot(
     packages: Packages | None = None,
     trusted: bool = False,
 ) -> Robot:
-    """Load a built-in robot, or one from a file.
+    """Load a built-in robot, one from a file, or one that another library holds.
 
     Args:
         source: One of robot_names(); path of a URDF, xacro or MJCF file; a name of
-            robot_descriptions, as `rd:panda_description`; or URDF text.
+            robot_descriptions, as `rd:panda_description`; URDF text, as str or bytes;
+            or an object of another library: Pinocchio's Model or RobotWrapper, MuJoCo's
+            MjModel, MjSpec or MjData, a URDF of yourdfpy, urchin, urdfpy or
+            urdf_parser_py, a robot of the Robotics Toolbox, a Chain of ikpy.
         tcp: T_tip_tcp, (4, 4), the tool that poses are of; None: the tip link itself.
             By default the tool of the paper's experiments for its robots and none for
             the others; a tip_link of your own also has none.
         base_link: Link that poses are relative to; None: the group's, the manifest's,
             or a file's root link.
         tip_link: Link that the TCP is fixed to; None: the group's, the manifest's, or a
-            file's one link without children.
+            file's one link without children; sites of MJCF do not count.
         locked_joints: Joints held at a value [rad or m]; no degrees of freedom.
         soft_limits: Narrow the limits to the soft limits of the URDF, if it has any.
         default_limits: (lower, upper) [rad or m] of joints that the URDF gives none.
@@ -106,8 +110,9 @@ def load_robot(
         UrdfError: The file cannot be read, the package for its format is missing, the
             links are not connected, or a joint between them cannot be used. Without
             tip_link, where several links have no children, `available` has them.
-        InvalidArgumentError: `tcp` is no rigid 4x4 matrix, a group without an SRDF, or
-            coupled limits or curves that make no sense or leave no configuration.
+        InvalidArgumentError: An object that cannot be read, `tcp` is no rigid 4x4
+            matrix, a group without an SRDF, or coupled limits or curves that make no
+            sense or leave no configuration.
     """
     name = _checked_name(source)
     info = manifest().get(name)
@@ -123,7 +128,7 @@ def load_robot(
             (group,) = groups
         if group is not None:
             base, tip = given.ends(group, read.urdf, tip_link)
-    base, tip = base_link or base, tip_link or tip
+    base, tip = base_link or base, tip_link or tip or read.tip_link
     if info is not None:
         base, tip = base or info.base_link, tip or info.tip_link
     if isinstance(tcp, str) and tcp == FROM_MANIFEST:
@@ -151,7 +156,7 @@ def load_robot(
 
 @with_hints
 def load_tree(
-    source: str | os.PathLike[str],
+    source: Source,
     *,
     link: str | None = None,
     xacro_args: Mapping[str, str] | None = None,
@@ -169,13 +174,12 @@ def load_tree(
     return LinkTree.from_urdf(read.urdf, link)
 
 
-def _checked_name(source: str | os.PathLike[str]) -> str:
+def _checked_name(source: Source) -> str:
     """The name that a source may be; an error if it is a mistyped one."""
-    if isinstance(source, os.PathLike):
+    if not isinstance(source, str):
         return ""
-    text = str(source)
-    known = text in manifest() or text.startswith(PREFIX)
-    if not (known or is_xml(text) or _looks_like_a_file(text)):
+    known = source in manifest() or source.startswith(PREFIX)
+    if not (known or is_xml(source) or _looks_like_a_file(source)):
         try:
             robot_info(source)
         except UnknownNameError as error:

@@ -14,7 +14,7 @@ import numpy
 import numpy.typing
 import os
 import typing
-__all__: list[str] = ['AngleUnitWarning', 'ArcEnd', 'Axis', 'BatchResult', 'Cause', 'Contact', 'CoupledLimit', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'Diagnosis', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'KeyScheme', 'Kinematics', 'Lanes', 'LinkTree', 'LinkTreeJoint', 'MimicCurve', 'MoveNorm', 'Objective', 'ObjectiveKind', 'Obstacle', 'Paper', 'PathResult', 'Proof', 'RIGID_TOLERANCE', 'Ranking', 'Reselection', 'Result', 'Robot', 'RobotSpheres', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'Scene', 'Selector', 'SelfMotion', 'SelfMotionArc', 'SelfMotionEnd', 'SignatureError', 'SolutionOrder', 'Solutions', 'Solver', 'SolverOptions', 'Status', 'Structure', 'StructureKind', 'Task', 'TaskFrame', 'Tracker', 'TreeBatchResult', 'TreeDiagnosis', 'TreeResult', 'TreeRobot', 'TreeSolver', 'UnknownNameError', 'UrdfError', 'check_pose', 'evaluate', 'grid_counts', 'mend_xml', 'orthonormalized', 'pose_error', 'pose_matrices', 'rigid_deviation', 'simd_level', 'time_kdl_fk_jacobian']
+__all__: list[str] = ['AngleUnitWarning', 'ArcEnd', 'Axis', 'BatchResult', 'Cause', 'Contact', 'CoupledLimit', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'DhConvention', 'Diagnosis', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'KeyScheme', 'Kinematics', 'Lanes', 'LinkTree', 'LinkTreeJoint', 'MimicCurve', 'MoveNorm', 'Objective', 'ObjectiveKind', 'Obstacle', 'Paper', 'PathResult', 'Proof', 'RIGID_TOLERANCE', 'Ranking', 'Reselection', 'Result', 'Robot', 'RobotSpheres', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'Scene', 'Selector', 'SelfMotion', 'SelfMotionArc', 'SelfMotionEnd', 'SignatureError', 'SolutionOrder', 'Solutions', 'Solver', 'SolverOptions', 'Status', 'Structure', 'StructureKind', 'Task', 'TaskFrame', 'Tracker', 'TreeBatchResult', 'TreeDiagnosis', 'TreeResult', 'TreeRobot', 'TreeSolver', 'UnknownNameError', 'UrdfError', 'check_pose', 'evaluate', 'grid_counts', 'mend_xml', 'orthonormalized', 'pose_error', 'pose_matrices', 'rigid_deviation', 'simd_level', 'time_kdl_fk_jacobian']
 class AngleUnitWarning(UserWarning):
     """
     Angles that look like degrees were given where radians are meant.
@@ -88,12 +88,12 @@ class LinkTree:
     The links of a URDF and the joints between them, depth first from the root; str() draws the tree.
     """
     @staticmethod
-    def from_urdf(path_or_xml: str | os.PathLike[str], link: str | None = None) -> LinkTree:
+    def from_urdf(path_or_xml: str | bytes | os.PathLike[str], link: str | None = None) -> LinkTree:
         """
         Reads the tree of a URDF.
 
         Args:
-            path_or_xml: a path, or the URDF text itself (a str whose first character is '<').
+            path_or_xml: a path, or the URDF itself: a str whose first character is '<', or bytes.
             link: a link of the tree that is meant, where the links hang in several.
 
         Raises:
@@ -279,12 +279,45 @@ class Robot:
     An immutable serial chain between two links of a URDF, with its limits. Safe to use from many threads at once.
     """
     @staticmethod
-    def from_urdf(path_or_xml: str | os.PathLike[str], base_link: str | None = None, tip_link: str | None = None, tcp: numpy.typing.ArrayLike | typing.Any | None = None, locked_joints: collections.abc.Mapping[str, float] | None = None, soft_limits: bool = False, default_limits: numpy.typing.ArrayLike | None = None, coupled_limits: collections.abc.Sequence[CoupledLimit] = (), mimic_curves: collections.abc.Sequence[MimicCurve] = ()) -> Robot:
+    def from_dh(a: numpy.typing.ArrayLike, alpha: numpy.typing.ArrayLike, d: numpy.typing.ArrayLike, theta: numpy.typing.ArrayLike | None = None, *, convention: DhConvention | str = 'standard', types: collections.abc.Sequence[JointType | str] | None = None, lower: numpy.typing.ArrayLike | None = None, upper: numpy.typing.ArrayLike | None = None, velocity: numpy.typing.ArrayLike | None = None, names: collections.abc.Sequence[str] | None = None, base: numpy.typing.ArrayLike | typing.Any | None = None, tcp: numpy.typing.ArrayLike | typing.Any | None = None, name: str = 'dh') -> Robot:
+        """
+        Makes an arm of Denavit and Hartenberg's parameters, a column of the table each.
+
+        The links are `base`, in whose frame poses are, and the table's frames `link0` to `linkN`, of which
+        the last is the tip. Other links of the chain, locked joints and coupled limits: make another robot of
+        `robot.urdf` by from_urdf.
+
+        Args:
+            a: lengths along x [m], (N,).
+            alpha: turns about x [rad], (N,).
+            d: offsets along z [m], (N,); the value of a prismatic joint is added.
+            theta: turns about z [rad], (N,), to which the value of a joint that turns is added; None: 0.
+            convention: "standard": Rz(theta) Tz(d) Tx(a) Rx(alpha), as of Denavit and Hartenberg,
+                Siciliano, Spong; "modified": Rx(alpha) Tx(a) Rz(theta) Tz(d), as of Craig, where a and
+                alpha are those of the link before.
+            types: how each joint moves; None: all are revolute.
+            lower: lower limits [rad or m], (N,), -inf for none; without limits, a revolute joint is
+                continuous, and a prismatic one is refused.
+            upper: upper limits [rad or m], (N,), inf for none.
+            velocity: velocity limits [rad/s or m/s], (N,), inf for none.
+            names: names of the joints; None: `joint1` to `jointN`.
+            base: T_base_link0, (4, 4); None: the identity.
+            tcp: T_linkN_tcp, (4, 4): the tool, whose pose is solved for; None: the identity.
+            name: name of the robot.
+
+        Raises:
+            InvalidArgumentError: columns that are no numbers or not as long as a, a number that is not
+                finite, a name that is there twice, one limit without the other, or a prismatic joint
+                without limits.
+            UrdfError: limits that leave a joint no range, or a length or joint value beyond 1e8.
+        """
+    @staticmethod
+    def from_urdf(path_or_xml: str | bytes | os.PathLike[str], base_link: str | None = None, tip_link: str | None = None, tcp: numpy.typing.ArrayLike | typing.Any | None = None, locked_joints: collections.abc.Mapping[str, float] | None = None, soft_limits: bool = False, default_limits: numpy.typing.ArrayLike | None = None, coupled_limits: collections.abc.Sequence[CoupledLimit] = (), mimic_curves: collections.abc.Sequence[MimicCurve] = ()) -> Robot:
         """
         Reads the chain between two links of a URDF.
 
         Args:
-            path_or_xml: a path, or the URDF text itself (a str whose first character is '<').
+            path_or_xml: a path, or the URDF itself: a str whose first character is '<', or bytes.
             base_link: link the poses are relative to; None: the root link.
             tip_link: link whose pose is solved for; None: the one link without children.
             tcp: T_tip_tcp, (4, 4): tool centre point. Poses, FK and IK are then of the TCP.
@@ -505,6 +538,16 @@ class Robot:
         """
         Velocity limits [rad/s or m/s], (dof,); inf where the URDF has none.
         """
+class DhConvention(enum.Enum):
+    """
+    How a row of Denavit and Hartenberg's parameters places the next frame.
+    """
+    modified = 1
+    standard = 0
+    def __format__(self, arg0: str) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
 class TaskFrame(enum.Enum):
     """
     Axes that the tolerances of a task lie along.
@@ -2569,12 +2612,12 @@ class TreeRobot:
     The chains from one link of a URDF to several tips, joined: a joint that lies on several of them is one degree of freedom. Immutable, safe to use from many threads at once.
     """
     @staticmethod
-    def from_urdf(path_or_xml: str | os.PathLike[str], tip_links: collections.abc.Sequence[str], base_link: str | None = None, tcps: numpy.typing.ArrayLike | typing.Any | None = None, locked_joints: collections.abc.Mapping[str, float] | None = None, soft_limits: bool = False, default_limits: numpy.typing.ArrayLike | None = None, coupled_limits: collections.abc.Sequence[CoupledLimit] = ()) -> TreeRobot:
+    def from_urdf(path_or_xml: str | bytes | os.PathLike[str], tip_links: collections.abc.Sequence[str], base_link: str | None = None, tcps: numpy.typing.ArrayLike | typing.Any | None = None, locked_joints: collections.abc.Mapping[str, float] | None = None, soft_limits: bool = False, default_limits: numpy.typing.ArrayLike | None = None, coupled_limits: collections.abc.Sequence[CoupledLimit] = ()) -> TreeRobot:
         """
         Reads the chains from one link of a URDF to several.
 
         Args:
-            path_or_xml: a path, or the URDF text itself (a str whose first character is '<').
+            path_or_xml: a path, or the URDF itself: a str whose first character is '<', or bytes.
             tip_links: links whose poses are solved for, 1 to 8.
             base_link: link that all poses are relative to; None: the root link.
             tcps: T_tip_tcp of each tip, (k, 4, 4), or None: no tip has a tool.

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import iksel
-from iksel._mjcf import _compile
+from iksel._mjcf import compile_bare
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -21,7 +21,8 @@ class MjcfFile:
     Attributes:
         parsed: Whether MuJoCo compiles it.
         whole: Whether it does with everything in it; else without geometry.
-        tips: Names of the bodies that hold no other.
+        tips: Names of the bodies that hold no other and no site with a name, and of
+            such sites but the world's, `SITE/site` where a body has the name, too.
     """
 
     def __init__(self, path: Path) -> None:
@@ -43,7 +44,14 @@ class MjcfFile:
             names = [model.body(i).name or f"body{i}" for i in range(model.nbody)]
             self._number = {name: i for i, name in enumerate(names)}
             holding = set(model.body_parentid[1:].tolist())
+            self._site: dict[str, int] = {}
+            for i in range(model.nsite):
+                name, body = model.site(i).name, int(model.site_bodyid[i])
+                if name and body:
+                    self._site[f"{name}/site" if name in self._number else name] = i
+                    holding.add(body)
             self.tips = [n for n, i in self._number.items() if i not in holding]
+            self.tips += self._site
 
     def compare(self, robot: iksel.Robot, seed: int, count: int = 5) -> None:
         """Check that poses of a robot of this file, from the world, are MuJoCo's."""
@@ -58,13 +66,13 @@ class MjcfFile:
         """MuJoCo's T_base_tip (n, 4, 4) at joint values (n, dof)."""
         model, data = self._model, self._data
         poses = np.empty((len(q), 4, 4))
-        tip, base = (self._number[n] for n in (robot.tip_link, robot.base_link))
         addresses = [self._address(name) for name in robot.joint_names]
         for i, row in enumerate(q):
             data.qpos[:] = model.qpos0
             data.qpos[addresses] = row
             self._mujoco.mj_kinematics(model, data)
-            poses[i] = np.linalg.solve(self._pose(base), self._pose(tip))
+            base, tip = map(self._pose, (robot.base_link, robot.tip_link))
+            poses[i] = np.linalg.solve(base, tip)
         return poses
 
     def cause(self, tip: str, message: str) -> str | None:
@@ -89,7 +97,9 @@ class MjcfFile:
 
     def _chain(self, tip: str) -> list[int]:
         """The joints between the world and a body."""
-        model, body, joints = self._model, self._number[tip], []
+        model, joints = self._model, []
+        of_site = tip in self._site
+        body = model.site_bodyid[self._site[tip]] if of_site else self._number[tip]
         while body:
             first, count = int(model.body_jntadr[body]), int(model.body_jntnum[body])
             joints += range(first, first + count)
@@ -104,16 +114,24 @@ class MjcfFile:
         number = int(joint.rpartition("/joint")[2]) if found < 0 else found
         return int(self._model.jnt_qposadr[number])
 
-    def _pose(self, body: int) -> np.ndarray:
+    def _pose(self, name: str) -> np.ndarray:
+        """T_world_body or T_world_site."""
+        data = self._data
+        if name in self._site:
+            place, turn = data.site_xpos, data.site_xmat
+        else:
+            place, turn = data.xpos, data.xmat
+        number = self._site.get(name, self._number.get(name))
         pose = np.eye(4)
-        pose[:3, :3] = self._data.xmat[body].reshape(3, 3)
-        pose[:3, 3] = self._data.xpos[body]
+        pose[:3, :3] = turn[number].reshape(3, 3)
+        pose[:3, 3] = place[number]
         return pose
 
     def _compile_bare(self) -> bool:
         """Compile bodies and joints alone, as IKSel does: meshes may be missing."""
         try:
-            self._model = _compile(self._mujoco, self.path)
+            spec = self._mujoco.MjSpec.from_file(str(self.path))
+            self._model = compile_bare(spec)
         except (ValueError, RuntimeError, TypeError, self._mujoco.FatalError):
             return False
         return True

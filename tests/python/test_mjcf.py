@@ -131,6 +131,35 @@ def test_equal_names_of_bodies_and_links_between(tmp_path: Path) -> None:
     MjcfFile(path).compare(iksel.load_robot(path, tip_link="trunk/i"), SEED)
 
 
+SITES = """<mujoco><compiler angle="radian"/>
+  <asset><texture name="t" type="2d" file="lost.png"/><material name="m" texture="t"/>
+  </asset>
+  <worldbody><site name="mark" pos="1 1 1"/>
+    <body name="a"><joint name="i" axis="0 0 1" pos="0.1 0.2 0"/><geom size=".02"/>
+      <site name="flag" pos="0.1 0 0.2" quat="0.5 0.5 -0.5 0.5" material="m"/>
+      <body name="b" pos="0 0 .3"><joint name="j" axis="0 1 0"/><geom size=".02"/>
+        <site name="b" pos="0 0 .2" euler="0.3 1.2 -2"/><site pos="3 0 0"/>
+        <site name="grip" pos="0 0 .2" euler="0 1.5707963267948966 0"/></body>
+  </body></worldbody></mujoco>"""
+
+
+def test_sites_are_tips(run: Run, tmp_path: Path) -> None:
+    path = write(tmp_path, SITES)
+    file = MjcfFile(path)
+    assert {tip for tip, _ in iksel.load_tree(path).tips} == set(file.tips)
+    for tip, joints in (("flag", ["i"]), ("grip", ["i", "j"]), ("b/site", ["i", "j"])):
+        assert tip in file.tips
+        robot = iksel.load_robot(path, tip_link=tip)
+        assert robot.joint_names == joints
+        file.compare(robot, SEED)
+    # Without a name it is the last body, as if there were no sites.
+    assert iksel.load_robot(path).tip_link == "b"
+    assert assert_good(run("info", path, "--json")).json()["tip_link"] == "b"
+    assert_good(run("info", path, "--tip", "grip"))
+    with pytest.raises(iksel.UnknownNameError, match="'mark'"):
+        iksel.load_robot(path, tip_link="mark")
+
+
 REFUSED = {
     "leave that joint out": ARM.replace('type="slide"', 'type="fixed"'),
     "save the converted model": ARM.replace(

@@ -27,9 +27,21 @@ def test_given_folders_come_first(tmp_path: Path) -> None:
     (around / "package.xml").write_text("<package><name>b</name></package>")
     assert find_package("b", {}, around / "urdf") == around
     with pytest.raises(
-        iksel.UnknownNameError, match="'arm'; given: c; .*ROS_PACKAGE_P"
+        iksel.UnknownNameError, match="'leg'; given: c; .*ROS_PACKAGE_P"
     ):
-        find_package("arm", {"c": other}, around / "urdf")
+        find_package("leg", {"c": other}, around / "urdf")
+
+
+def test_a_folders_name_counts_where_no_package_xml_says_it(tmp_path: Path) -> None:
+    # As example-robot-data 6 is installed: its package.xml says example_robot_data.
+    share = make(tmp_path / "share/robot-data", "robot_data")
+    urdf = make(share / "robots/arm/urdf")
+    for name in ("robot-data", "robot_data"):
+        found = resolve_path(f"package://{name}/a.stl", {}, urdf)
+        assert found == share / "a.stl"
+    inner = make(share / "robots/robot_data", "other")
+    assert find_package("robot_data", {}, urdf) == share
+    assert find_package("other", {}, inner) == inner
 
 
 def test_names_of_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -38,6 +50,7 @@ def test_names_of_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None
     monkeypatch.setenv("AMENT_PREFIX_PATH", f"/nowhere:{tmp_path}")
     assert resolve_path("package://arm/a/b.stl", {}, near) == share / "a/b.stl"
     assert resolve_path("model://arm/b.stl", {}, near) == share / "b.stl"
+    assert resolve_path("package:///arm/b.stl", {}, near) == share / "b.stl"
     assert resolve_path("a/b.stl", {}, near) == near / "a/b.stl"
     assert resolve_path("file:///a/b.stl", {}, near) == Path("/a/b.stl")
     with pytest.raises(iksel.UnknownNameError, match=r"\(for 'package://leg/b.stl'\)"):

@@ -32,7 +32,39 @@ class Array:
         return np.array(self.matrix, dtype)
 
 
+def message(first: str, second: str, around: str = ""):
+    """As of ROS: a position and a quaternion with named fields, or several."""
+
+    def one(matrix):
+        w, *xyz = iksel.quaternion_from_pose(matrix)
+        position = types.SimpleNamespace(**dict(zip("xyz", matrix[:3, 3], strict=True)))
+        rotation = types.SimpleNamespace(**dict(zip("xyzw", (*xyz, w), strict=True)))
+        made = types.SimpleNamespace(**{first: position, second: rotation})
+        return types.SimpleNamespace(header=None, **{around: made}) if around else made
+
+    def make(matrices):
+        if matrices.ndim == 2:
+            return one(matrices)
+        return types.SimpleNamespace(poses=[one(matrix) for matrix in matrices])
+
+    return make
+
+
+def as_dict(value):
+    """A message as ROS's tools print it."""
+    if isinstance(value, list):
+        return [as_dict(item) for item in value]
+    if isinstance(value, types.SimpleNamespace):
+        return {name: as_dict(item) for name, item in vars(value).items()}
+    return value
+
+
 FORMS = {
+    "Pose": message("position", "orientation"),
+    "PoseStamped": message("position", "orientation", "pose"),
+    "Transform": message("translation", "rotation"),
+    "TransformStamped": message("translation", "rotation", "transform"),
+    "dict": lambda t: as_dict(message("position", "orientation")(t)),
     "matrix": lambda t: t,
     "3x4": lambda t: t[..., :3, :],
     "3x4 list": lambda t: t[..., :3, :].tolist(),
@@ -85,7 +117,7 @@ def test_forms_of_one_pose(made, poses, form) -> None:
 
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("listed", [False, True])
-@pytest.mark.parametrize("n", [1, 2, 5])
+@pytest.mark.parametrize("n", [1, 2, 3, 4, 5])
 def test_forms_of_many_poses(made, poses, form, listed, n) -> None:
     solver, poses = made.solver("ur3"), poses[:n]
     make = FORMS[form]
@@ -93,6 +125,101 @@ def test_forms_of_many_poses(made, poses, form, listed, n) -> None:
     same(solver.solve_batch(held).q, solver.solve_batch(poses).q, form)
     same(solver.solve_path(held).q, solver.solve_path(poses).q, form)
     same(iksel.as_pose(held), poses, form)
+
+
+@pytest.mark.parametrize("n", [2, 3, 4])
+def test_many_positions_may_have_one_rotation(poses, n) -> None:
+    positions, rotation = poses[:n, :3, 3], poses[0, :3, :3]
+    expected = iksel.pose_from_matrix(positions, rotation)
+    same(iksel.as_pose((positions, Rotation(rotation))), expected, "")
+
+
+@pytest.mark.parametrize(
+    ("orientation", "text"),
+    [
+        ((0, 0, 0, 0), "x, y, z, w = .*, as in a message that was not filled in"),
+        ((0, 0, 0.5, 1), "its orientation is no unit quaternion"),
+        ((0, 0, 0, np.nan), "its orientation is no unit quaternion"),
+        ((0, 0, 0, "1"), "expected a number"),
+    ],
+)
+def test_a_message_without_a_rotation_is_refused(made, orientation, text) -> None:
+    quaternion = dict(zip("xyzw", orientation, strict=True))
+    held = {"position": {"x": 0, "y": 0, "z": 0.3}, "orientation": quaternion}
+    with pytest.raises(iksel.InvalidArgumentError, match="^pose: .*" + text):
+        made.solver("ur3").solve(held)
+    with pytest.raises(iksel.InvalidArgumentError, match="^poses: .*" + text):
+        made.solver("ur3").solve_batch([{"pose": held}])
+
+
+def test_a_rounded_quaternion_of_a_message_is_made_one(poses) -> None:
+    held = message("position", "orientation")(poses[0])
+    for name in "xyzw":
+        setattr(held.orientation, name, round(getattr(held.orientation, name), 4))
+    np.testing.assert_allclose(iksel.as_pose(held), poses[0], rtol=0, atol=2e-4)
+
+
+class Tensor:
+    """Like one of torch's that requires gradients."""
+
+    requires_grad = True
+
+    def __array__(self, dtype=None, copy=None):
+        raise RuntimeError("Can't call numpy() on Tensor that requires grad.")
+
+    def detach(self):
+        return np.eye(4)
+
+
+def refusals_of_gradients(solver, tensor, row):
+    return {
+        "pose": lambda: solver.solve(tensor),
+        "poses": lambda: solver.solve_batch([tensor, tensor]),
+        "near": lambda: solver.solve(np.eye(4), near=row),
+        "q": lambda: solver.robot.fk(row),
+        "value": lambda: iksel.as_pose((row, tensor)),
+        "position": lambda: iksel.pose_from_euler(row, [0, 0, 0]),
+    }
+
+
+@pytest.mark.parametrize("argument", refusals_of_gradients(None, None, None))
+def test_tensors_with_gradients(made, argument) -> None:
+    call = refusals_of_gradients(made.solver("ur3"), Tensor(), Tensor())[argument]
+    with pytest.raises(iksel.InvalidArgumentError, match=f"^{argument}: .*") as error:
+        call()
+    assert "detach()" in str(error.value) or argument == "position"
+
+
+@pytest.mark.parametrize("argument", refusals_of_gradients(None, None, None))
+def test_tensors_of_torch(made, argument) -> None:
+    torch = pytest.importorskip("torch")
+    tensor = torch.eye(4, dtype=torch.float64, requires_grad=True)
+    row = torch.zeros(6, dtype=torch.float64, requires_grad=True)
+    call = refusals_of_gradients(made.solver("ur3"), tensor, row)[argument]
+    with pytest.raises(iksel.InvalidArgumentError, match=f"^{argument}: .*detach()"):
+        call()
+    detached = refusals_of_gradients(made.solver("ur3"), tensor.detach(), row.detach())
+    if argument in {"pose", "poses", "near", "q"}:
+        detached[argument]()
+
+
+def test_spatialmath(made, poses) -> None:
+    spatial = pytest.importorskip("spatialmath")
+    held = spatial.SE3(list(poses))
+    same(iksel.as_pose(held), poses, "")
+    same(iksel.as_pose(held[0]), poses[0], "")
+    for n in (1, 2, 3, 4, 5):
+        turns = spatial.UnitQuaternion(list(iksel.quaternion_from_pose(poses[:n])))
+        positions = poses[:n, :3, 3] if n > 1 else poses[0, :3, 3]
+        expected = poses[:n] if n > 1 else poses[0]
+        same(iksel.as_pose((positions, turns)), expected, "")
+    one = (
+        poses[0, :3, 3],
+        spatial.UnitQuaternion(iksel.quaternion_from_pose(poses[0])),
+    )
+    same(made.solver("ur3").solve(one).q, made.solver("ur3").solve(poses[0]).q, "")
+    with pytest.raises(iksel.InvalidArgumentError, match="pair"):
+        made.solver("ur3").solve(one[1])
 
 
 def test_one_position_may_have_many_rotations(made, poses) -> None:

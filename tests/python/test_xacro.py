@@ -141,8 +141,6 @@ def test_packages_are_found_where_ros_looks(
     named = "<package><name>parts</name></package>"
     write_parts(tmp_path / "one/other_name", named)
     write_parts(tmp_path / "two/share/parts", named)
-    stranger = "<package><name>stranger</name></package>"
-    write_parts(tmp_path / "workspace/parts", stranger)
     with pytest.raises(iksel.UrdfError, match="no folder for package 'parts'"):
         iksel.load_robot(macro)
     with monkeypatch.context() as patch:
@@ -151,6 +149,9 @@ def test_packages_are_found_where_ros_looks(
     with monkeypatch.context() as patch:
         patch.setenv("AMENT_PREFIX_PATH", str(tmp_path / "two"))
         assert_made(iksel.load_robot(macro))
+    # By its folder's name, though its package.xml has another.
+    write_parts(tmp_path / "workspace/parts", named.replace("parts", "stranger"))
+    assert_made(iksel.load_robot(macro))
 
 
 def test_what_xacro_refuses_is_named(run: Run, tmp_path: Path, macro: Path) -> None:

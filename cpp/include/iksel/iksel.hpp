@@ -4,6 +4,7 @@
 
 #include "iksel/coupled_limit.hpp"  // IWYU pragma: export
 #include "iksel/database.hpp"       // IWYU pragma: export
+#include "iksel/dh.hpp"             // IWYU pragma: export
 #include "iksel/diagnosis.hpp"      // IWYU pragma: export
 #include "iksel/error.hpp"          // IWYU pragma: export
 #include "iksel/evaluation.hpp"     // IWYU pragma: export

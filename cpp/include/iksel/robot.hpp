@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "iksel/dh.hpp"
 #include "iksel/export.hpp"
 #include "iksel/robot_options.hpp"
 #include "iksel/types.hpp"
@@ -27,6 +28,9 @@ class IKSEL_EXPORT Robot {
   static Robot from_urdf_file(const std::filesystem::path& path, const RobotOptions& options = {});
   /// Parses URDF text. Throws as from_urdf_file.
   static Robot from_urdf_string(const std::string& xml, const RobotOptions& options = {});
+  /// Makes an arm of Denavit and Hartenberg's parameters. Throws InvalidArgumentError (a number, a
+  /// name or limits of the table), and as from_urdf_file.
+  static Robot from_dh(const DhTable& table, const RobotOptions& options = {});
 
   /// The same chain with another tool T_tip_tcp; databases built for one serve the other.
   [[nodiscard]] Robot with_tcp(const Pose& T_tip_tcp) const;

@@ -11,6 +11,7 @@
 #include "base/rotation.hpp"
 #include "iksel/error.hpp"
 #include "kinematics/chain_model.hpp"
+#include "urdf/dh.hpp"
 #include "urdf/parse.hpp"
 
 namespace iksel {
@@ -24,6 +25,10 @@ Robot Robot::from_urdf_file(const std::filesystem::path& path, const RobotOption
 
 Robot Robot::from_urdf_string(const std::string& xml, const RobotOptions& options) {
   return Robot(std::make_shared<ChainModel>(xml, options));
+}
+
+Robot Robot::from_dh(const DhTable& table, const RobotOptions& options) {
+  return from_urdf_string(urdf_of_dh(table), options);
 }
 
 Robot Robot::with_tcp(const Pose& T_tip_tcp) const { return Robot(model_->with_tcp(T_tip_tcp)); }

@@ -220,6 +220,11 @@ def load_tree(arguments: argparse.Namespace) -> LinkTree:
         raise type(error)(_with_flags(str(error), name)) from None
 
 
+def default_tip(arguments: argparse.Namespace) -> str | None:
+    """The link that the robot's format makes the tip where several could be."""
+    return read_description(arguments.robot, **of_files(arguments)).tip_link
+
+
 def is_built_in(name: str) -> bool:
     """Whether a ROBOT argument is the name of a built-in robot."""
     return name in robot_names()

@@ -17,7 +17,7 @@ from iksel.cli._output import (
     print_pairs,
     print_table,
 )
-from iksel.cli._robot import add_robot, is_built_in, load, load_tree
+from iksel.cli._robot import add_robot, default_tip, is_built_in, load, load_tree
 from iksel.pose import euler_from_pose
 from iksel.robots import robot_info
 from iksel.srdf import Srdf
@@ -77,7 +77,8 @@ def run(arguments: argparse.Namespace) -> int:
     chosen = arguments.tip or arguments.srdf or arguments.group
     if arguments.tree or not (chosen or is_built_in(arguments.robot)):
         tree = load_tree(arguments)
-        if arguments.tree or len(tree.tips) > 1:
+        several = len(tree.tips) > 1 and default_tip(arguments) is None
+        if arguments.tree or several:
             show_tree(tree, arguments)
             return 0
     robot = load(arguments)

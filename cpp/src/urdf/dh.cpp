@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "urdf/dh.hpp"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <cstddef>
+#include <set>
+#include <string>
+
+#include "base/message_text.hpp"
+#include "iksel/error.hpp"
+#include "iksel/pose.hpp"
+
+namespace iksel {
+namespace {
+
+/// So that numbers are read back as the same.
+constexpr int kDigits = 17;
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += c;
+    }
+  }
+  return out;
+}
+
+std::string words(const Eigen::Vector3d& v) {
+  return number_text(v.x(), kDigits) + " " + number_text(v.y(), kDigits) + " " +
+         number_text(v.z(), kDigits);
+}
+
+/// A joint, and the link that it carries. `inside`: further elements.
+std::string joint_element(const std::string& name, const char* type, const std::string& parent,
+                          const std::string& child, const Eigen::Vector3d& xyz,
+                          const Eigen::Vector3d& rpy, const std::string& inside = "") {
+  return "  <link name=\"" + child + "\"/>\n  <joint name=\"" + escaped(name) + "\" type=\"" +
+         type + "\">\n    <parent link=\"" + parent + "\"/>\n    <child link=\"" + child +
+         "\"/>\n    <origin xyz=\"" + words(xyz) + "\" rpy=\"" + words(rpy) + "\"/>\n" + inside +
+         "  </joint>\n";
+}
+
+void check_row(const DhJoint& row, std::ptrdiff_t i) {
+  for (const double number : {row.a, row.alpha, row.d, row.theta}) {
+    if (!std::isfinite(number)) {
+      throw_invalid("joints", i, "a, alpha, d or theta is " + number_text(number));
+    }
+  }
+  if (std::isfinite(row.lower) != std::isfinite(row.upper)) {
+    throw_invalid("joints", i,
+                  "limits " + number_text(row.lower) + " to " + number_text(row.upper) +
+                      ": give both, or none");
+  }
+  const bool is_limited = std::isfinite(row.lower);
+  if (row.type == JointType::prismatic && !is_limited) {
+    throw_invalid("joints", i, "a prismatic joint needs limits: give lower and upper [m]");
+  }
+  if (row.type == JointType::continuous && is_limited) {
+    throw_invalid("joints", i, "a continuous joint has no limits; a revolute one has");
+  }
+}
+
+/// The joint itself, which moves about or along z.
+std::string moving(const DhJoint& row, const std::string& name, const std::string& parent,
+                   const std::string& child) {
+  const bool slides = row.type == JointType::prismatic;
+  const bool is_limited = std::isfinite(row.lower);
+  const char* type = slides ? "prismatic" : is_limited ? "revolute" : "continuous";
+  std::string inside = "    <axis xyz=\"0 0 1\"/>\n    <limit effort=\"0\" velocity=\"" +
+                       number_text(std::isfinite(row.velocity) ? row.velocity : 0.0, kDigits) +
+                       "\"";
+  if (is_limited) {
+    inside += " lower=\"" + number_text(row.lower, kDigits) + "\" upper=\"" +
+              number_text(row.upper, kDigits) + "\"";
+  }
+  return joint_element(name, type, parent, child, {0, 0, row.d}, {0, 0, row.theta},
+                       inside + "/>\n");
+}
+
+std::string fixed(const std::string& parent, const std::string& child, const Eigen::Vector3d& xyz,
+                  const Eigen::Vector3d& rpy) {
+  return joint_element(child + "_fixed", "fixed", parent, child, xyz, rpy);
+}
+
+/// Roll, pitch and yaw of R = Rz(yaw) Ry(pitch) Rx(roll).
+Eigen::Vector3d rpy_of(const Eigen::Matrix3d& R) {
+  const double roll = std::atan2(R(2, 1), R(2, 2));
+  const Eigen::Matrix3d S = R * Eigen::AngleAxisd(-roll, Eigen::Vector3d::UnitX());
+  return {roll, std::atan2(-S(2, 0), S(2, 2)), std::atan2(-S(0, 1), S(1, 1))};
+}
+
+}  // namespace
+
+std::string urdf_of_dh(const DhTable& table) {
+  if (table.joints.empty()) throw InvalidArgumentError("joints: a table has one row or more");
+  const Pose base = check_pose(table.T_base_link0, "base");
+  std::string text = "<robot name=\"" + escaped(table.robot_name) +
+                     "\">\n  <link name=\"base\"/>\n" +
+                     fixed("base", "link0", base.translation(), rpy_of(base.linear()));
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < table.joints.size(); ++i) {
+    const DhJoint& row = table.joints[i];
+    const auto index = static_cast<std::ptrdiff_t>(i);
+    check_row(row, index);
+    const std::string number = std::to_string(i + 1);
+    const std::string name = row.name.empty() ? "joint" + number : row.name;
+    if (!names.insert(name).second) throw_invalid("joints", index, "a second '" + name + "'");
+    const std::string before = "link" + std::to_string(i);
+    const std::string between = "axis" + number;
+    const std::string link = "link" + number;
+    const Eigen::Vector3d xyz(row.a, 0, 0);
+    const Eigen::Vector3d rpy(row.alpha, 0, 0);
+    text += table.convention == DhConvention::standard
+                ? moving(row, name, before, between) + fixed(between, link, xyz, rpy)
+                : fixed(before, between, xyz, rpy) + moving(row, name, between, link);
+  }
+  return text + "</robot>\n";
+}
+
+}  // namespace iksel

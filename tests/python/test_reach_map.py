@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 from reach_maps import computed, random_cells
@@ -334,3 +336,30 @@ def test_pictures_are_drawn_the_same_each_time(full, rings, tmp_path, suffix):
         assert paths[0].read_bytes() == paths[1].read_bytes()
     with pytest.raises(iksel.InvalidArgumentError, match="axis"):
         full.slice("w")
+
+
+def test_arrays_of_older_formats_are_not_read(robot, tmp_path):
+    """They may be pickles; a group's metadata can hold them for its arrays."""
+    path = computed(tmp_path / "map.zarr", robot, spacing=0.4, orientations=50)
+    group = json.loads((path / "zarr.json").read_text())
+    names = [folder.name for folder in path.iterdir() if folder.is_dir()]
+    array = {
+        "zarr_format": 2,
+        "node_type": "array",
+        "shape": [1],
+        "chunks": [1],
+        "dtype": "<f8",
+        "compressor": None,
+        "fill_value": 0.0,
+        "order": "C",
+        "filters": [{"id": "pickle"}],
+        "attributes": {},
+    }
+    group["consolidated_metadata"] = {
+        "kind": "inline",
+        "must_understand": False,
+        "metadata": dict.fromkeys(names, array),
+    }
+    before = reach.open(path).array("status")
+    (path / "zarr.json").write_text(json.dumps(group))
+    np.testing.assert_array_equal(reach.open(path).array("status"), before)

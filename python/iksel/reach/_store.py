@@ -53,7 +53,10 @@ class Store:
         zarr = need("zarr")
         try:
             mode = "r+" if writable else "r"
-            group = zarr.open_group(self.path, mode=mode, zarr_format=3)
+            # Arrays of format 3 alone: those of 2 may be pickles.
+            group = zarr.open_group(
+                self.path, mode=mode, zarr_format=3, use_consolidated=False
+            )
             names = (*(spec.name for spec in self.specs), RECEIPTS)
             self._arrays = {name: group[name] for name in names}
         except (OSError, ValueError, KeyError) as error:

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "refine/best_effort.hpp"
 
+#include <cmath>
+
 #include "base/random.hpp"
+#include "iksel/result.hpp"
 
 namespace iksel {
 namespace {
@@ -27,6 +30,39 @@ JointVector BestEffort::from(const JointVector& seed) {
     q_ = q;
   }
   return q;
+}
+
+bool descend_into_tolerances(const ChainModel& model, const Goal& goal, JointVector& q) {
+  constexpr int kSteps = 50;
+  /// Weights of the rotation that are tried, each halving what is left between two others.
+  constexpr int kRounds = 12;
+  /// Logarithms of the least and the largest, where a tolerance counts 1.
+  double least = -6;
+  double largest = 6;
+  const double position_tolerance = goal.task().position_tolerance();
+  const double rotation_tolerance = goal.task().rotation_tolerance();
+  const JointVector seed = q;
+  for (int round = 0; round < kRounds; ++round) {
+    const double weight = std::exp(0.5 * (least + largest));
+    q = seed;
+    int steps = 0;
+    // In metres, as the descent is meant for.
+    const Remainder remainder(model, goal,
+                              weights_of(weight * position_tolerance / rotation_tolerance));
+    descend_from_seed(model, remainder, kSteps, q, steps);
+    Result answer;
+    if (goal.check(q, answer)) return true;
+    double position = 0;
+    double rotation = 0;
+    goal.measure(q, position, rotation);
+    position /= position_tolerance;
+    rotation /= rotation_tolerance;
+    // An answer would have come to less than this.
+    const double weight2 = weight * weight;
+    if (!(position * position + weight2 * rotation * rotation < 1 + weight2)) return false;
+    (rotation > position ? least : largest) = 0.5 * (least + largest);
+  }
+  return false;
 }
 
 std::vector<JointVector> BestEffort::from_anywhere(int n, std::uint64_t seed) {

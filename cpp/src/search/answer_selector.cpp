@@ -52,7 +52,8 @@ bool AnswerSelector::select(const Collector& search, JointVector& q) {
     if (cost < kInfinity) ranked[count++] = {cost, i};
   }
   if (count == 0) return select_image(kInfinity, q);
-  const bool descends = goal_.is_redundant() && !search.is_settled;
+  const bool descends =
+      (goal_.is_redundant() && !search.is_settled) || (search.may_be_singular() && nearest_to_);
   const std::size_t descents = descends ? std::min(count, kDescents) : 1;
   std::partial_sort(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(descents),
                     ranked.begin() + static_cast<std::ptrdiff_t>(count));

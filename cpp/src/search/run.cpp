@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "base/work.hpp"
+#include "refine/best_effort.hpp"
 #include "search/curve_search.hpp"
 #include "search/first_answer.hpp"
 #include "search/search.hpp"
@@ -73,6 +74,10 @@ struct Search {
   template <typename Branches>
   std::optional<Proof> by_branches(Branches& branches, Proof kind, NearSeed& near,
                                    GivenSeeds& given, const Pose& Y) const;
+  /// From solutions that lie beside limits to answers inside, where the tolerances allow them.
+  /// `joints(i)`: the i-th of them. Returns whether the answers want no more.
+  template <typename Joints>
+  bool descend_from(int count, const Joints& joints) const;
   /// For a first answer of seven joints: by the sweep of one, and where that leaves a doubt by the
   /// ends of the self-motion's arcs. Nothing if there may be answers left to search for.
   std::optional<Proof> by_sweep(const Pose& Y) const;
@@ -154,8 +159,11 @@ Proof Search<Answers>::in_lanes() const {
   if constexpr (std::is_same_v<Answers, Collector>) {
     if (workspace.lanes->sweep && request.database_seeds) {
       auto proof = on_curve(Y).collect();
-      if (workspace.lanes->ends && answers.status == Status::not_converged &&
-          (!proof || workspace.lanes->ends->are_closed())) {
+      // What ranks answers otherwise has looked for none there.
+      const bool has_looked =
+          answers.spread() > 0 || answers.wants_nearest() || answers.wants_nearest_free();
+      if (workspace.lanes->ends && has_looked && answers.status == Status::not_converged &&
+          (!proof || answers.spread() > 0 || workspace.lanes->ends->are_closed())) {
         if (const auto by_ends = this->by_ends()) proof = by_ends;
       }
       if (proof) return *proof;
@@ -169,6 +177,7 @@ Proof Search<Answers>::in_lanes() const {
     }
     SpreadSeeds spread(query, model.joints, options.seed, answers, work);
     search(refiner, spread, answers, work);
+    if (workspace.lanes->ends && !answers.has_any()) by_ends();
   } else {
     if (workspace.lanes->sweep) {
       if (const auto proof = by_sweep(Y)) return *proof;
@@ -184,6 +193,20 @@ Proof Search<Answers>::in_lanes() const {
 }
 
 template <typename Answers>
+template <typename Joints>
+bool Search<Answers>::descend_from(int count, const Joints& joints) const {
+  bool is_satisfied = false;
+  for (int i = 0; i < count && !is_satisfied && answers.should_continue(); ++i) {
+    work.take_on_top();
+    JointVector q = Eigen::Map<const Eigen::VectorXd>(joints(i), model.dof);
+    if (!descend_into_tolerances(model, goal, q)) continue;
+    is_satisfied = answers.offer(0, q) == Verdict::stop;
+  }
+  clock.lap(&StageTimes::iterate);
+  return is_satisfied;
+}
+
+template <typename Answers>
 std::optional<Proof> Search<Answers>::by_ends() const {
   LaneRefiner& refiner = workspace.lanes->refiner;
   EndSeeds ends(*workspace.lanes->ends, goal.target(), work, clock);
@@ -192,6 +215,8 @@ std::optional<Proof> Search<Answers>::by_ends() const {
   refiner.begin(goal.task(), kFirst, Width::narrow);
   clock.lap(&StageTimes::iterate);
   if (is_satisfied || answers.has_any()) return Proof::none;
+  if (descend_from(ends.count(), [&](int i) { return ends.q(i); })) return Proof::none;
+  if (answers.has_any()) return Proof::none;
   return ends.is_certain() ? std::optional(Proof::sweep) : std::nullopt;
 }
 
@@ -242,10 +267,13 @@ std::optional<Proof> Search<Answers>::by_branches(Branches& branches, Proof kind
   answers.look_for_partners(true);
   clock.lap(&StageTimes::iterate);
   if (is_satisfied) return Proof::none;
+  if (branches.may_be_singular()) answers.set_may_be_singular();
   // Branches of which none could be refined to the tolerances prove nothing.
   if (enumerated.is_certain()) {
     if (enumerated.is_empty()) return kind;
     if (answers.has_any() && !branches.has_families()) return kind;
+  } else if (!answers.has_any() && descend_from(branches.size(), [&](int i) { return branches.q(i); })) {
+    return Proof::none;
   } else if (enumerated.is_certain_but_for_limits() && !branches.has_families()) {
     return Proof::none;
   }

@@ -9,6 +9,9 @@ ArcEnds::ArcEnds(const LockedArms& arms, double position_tolerance, double rotat
                  const lanes::LaneKernels& kernels)
     : are_all_(arms.are_all), are_closed_(arms.are_closed) {
   ends_.reserve(arms.arms.size());
+  // Memory is taken here, and none while solving; the last of more gives way.
+  constexpr std::size_t kKept = 128;
+  kept_.reserve(kKept);
   for (const LockedArm& arm : arms.arms) {
     const ChainModel& model = *arm.model;
     End& end = ends_.emplace_back();
@@ -47,12 +50,15 @@ bool ArcEnds::find(std::size_t i, const Pose& T_base_tcp) {
   return is_certain;
 }
 
-void ArcEnds::copy_joints(int k, double* q) const {
+const double* ArcEnds::keep(int k) {
   const double* others = by_roots_ ? last_->roots->q(k) : last_->branches->q(k);
   const int joint = last_->arm->joint;
+  if (kept_.size() < kept_.capacity()) kept_.emplace_back();
+  double* q = kept_.back().data();
   std::copy_n(others, joint, q);
   q[joint] = last_->arm->value;
   std::copy_n(others + joint, 6 - joint, q + joint + 1);
+  return q;
 }
 
 }  // namespace iksel

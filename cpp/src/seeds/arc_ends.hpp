@@ -25,8 +25,12 @@ class ArcEnds {
   /// to them that it cannot be told. False if there may be others.
   bool find(std::size_t i, const Pose& T_base_tcp);
   [[nodiscard]] int count() const { return count_; }
-  /// The k-th solution of the last find(), seven joint values [rad or m].
-  void copy_joints(int k, double* q) const;
+  /// The k-th solution of the last find(), seven joint values [rad or m]; kept until begin().
+  const double* keep(int k);
+  /// Forgets what is kept.
+  void begin() { kept_.clear(); }
+  [[nodiscard]] int kept() const { return static_cast<int>(kept_.size()); }
+  [[nodiscard]] const double* kept(int i) const { return kept_[static_cast<std::size_t>(i)].data(); }
   /// Whether each end that a joint's limit could make is looked for.
   [[nodiscard]] bool are_all() const { return are_all_; }
   /// Whether each is solved for in closed form.
@@ -45,13 +49,16 @@ class ArcEnds {
   const End* last_ = nullptr;
   bool by_roots_ = false;
   int count_ = 0;
+  std::vector<std::array<double, 7>> kept_;
 };
 
 /// These as a source of seeds, an arm a stage.
 class EndSeeds {
  public:
   EndSeeds(ArcEnds& ends, const Pose& T_base_tcp, Work& work, StageClock& clock)
-      : ends_(ends), target_(T_base_tcp), work_(work), clock_(clock), certain_(ends.are_all()) {}
+      : ends_(ends), target_(T_base_tcp), work_(work), clock_(clock), certain_(ends.are_all()) {
+    ends_.begin();
+  }
 
   bool next_stage() {
     if (arm_ == ends_.size()) return false;
@@ -64,12 +71,13 @@ class EndSeeds {
   template <typename Refiner>
   bool load(Refiner& refiner, int lane) {
     if (next_ == ends_.count()) return false;
-    std::array<double, 7> q;
-    ends_.copy_joints(next_++, q.data());
     work_.take_on_top();
-    refiner.load_seed(lane, q.data());
+    refiner.load_seed(lane, ends_.keep(next_++));
     return true;
   }
+  /// Those that were tried, seven joint values each [rad or m].
+  [[nodiscard]] int count() const { return ends_.kept(); }
+  [[nodiscard]] const double* q(int i) const { return ends_.kept(i); }
   /// Whether no arc has an end but these, and each was tried.
   [[nodiscard]] bool is_certain() const { return certain_ && arm_ == ends_.size(); }
 

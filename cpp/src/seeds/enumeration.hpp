@@ -40,6 +40,8 @@ class Enumeration {
   /// Whether these are the solutions but for branches so close to a limit, and away from
   /// singularities: such a branch is one, or there is none beside it.
   [[nodiscard]] bool is_certain_but_for_limits() const { return certain_but_for_limits_; }
+  /// Whether the arm may be singular at one of these.
+  [[nodiscard]] bool may_be_singular() const { return may_be_singular_; }
   /// Whether each solution is near to one of these, if they are not certain either.
   [[nodiscard]] bool has_all() const { return is_nominal_ && !has_families(); }
   /// Whether each branch stands for many solutions.
@@ -72,6 +74,7 @@ class Enumeration {
   int size_ = 0;
   bool certain_ = false;
   bool certain_but_for_limits_ = false;
+  bool may_be_singular_ = false;
 };
 
 /// Whether a lane that solve_branches solved has no branch inside the limits, or none at all, as

@@ -87,6 +87,7 @@ void RootSweep::find(const Pose& Y) {
   const bool is_clear = chain_.loop ? find_loop_roots(Y) : find_product_roots(Y);
   certain_ = concludes_ && roots_.is_complete() && is_clear;
   is_at_limit_ = false;
+  may_be_singular_ = !is_clear;
   size_ = 0;
   // Each root has a lane, or by the first two of the three signs four: two to this power.
   const unsigned lanes_power = chain_.loop ? 0 : 2;
@@ -139,6 +140,7 @@ void RootSweep::take(const Pose& Y, const RootFinder::Root& root, int lane) {
     }
     is_at_limit_ = true;
   }
+  may_be_singular_ = may_be_singular_ || is_vague;
   ++size_;
 }
 

@@ -37,6 +37,8 @@ class RootSweep {
   /// The same but for those so close to a limit, and away from singularities: such a one is a
   /// solution, or there is none beside it.
   [[nodiscard]] bool is_certain_but_for_limits() const { return certain_but_for_limits_; }
+  /// Whether the arm may be singular at one of these, where roots are double.
+  [[nodiscard]] bool may_be_singular() const { return may_be_singular_; }
   /// Double roots may be missed.
   [[nodiscard]] static bool has_all() { return false; }
   [[nodiscard]] static bool has_families() { return false; }
@@ -65,6 +67,7 @@ class RootSweep {
   bool certain_ = false;
   bool is_at_limit_ = false;
   bool certain_but_for_limits_ = false;
+  bool may_be_singular_ = false;
 };
 
 }  // namespace iksel

@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from bench import body, closest, coupled, dual, laws, lost, plan, scene, tips
+from bench import beside, body, closest, coupled, dual, laws, lost, plan, scene, tips
 from bench.arguments import add_robots
 from bench.arms import RIVAL_ARMS
 from bench.frozen import compare, record
@@ -40,6 +40,7 @@ if TYPE_CHECKING:
 BENCH = Path(__file__).resolve().parent
 
 ALONE = {
+    "beside": beside,
     "scene": scene,
     "body": body,
     "closest": closest,

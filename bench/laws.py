@@ -87,7 +87,7 @@ def violations(arm: Arm, count: int, seed: int) -> dict[str, int]:
     poses = arm.chain.fk(q)
     row["lost"] += int(np.count_nonzero(~solver.solve_batch(poses).success))
     for known, pose in zip(q, poses, strict=True):
-        _of_reachable(arm, solver, known, pose, random, row)
+        _of_reachable(arm, solver, (known, pose), random, row)
     _beside_limits(arm, solver, q, random, row)
     return row
 
@@ -95,11 +95,11 @@ def violations(arm: Arm, count: int, seed: int) -> dict[str, int]:
 def _of_reachable(
     arm: Arm,
     solver: iksel.Solver,
-    known: Array,
-    pose: Array,
+    known_and_pose: tuple[Array, Array],
     random: np.random.Generator,
     row: dict[str, int],
 ) -> None:
+    known, pose = known_and_pose
     there = solver.solve(pose, near=known)
     row["stays"] += not there.success or there.move > SAME
     away = random.uniform(-1, 1, len(known)) * random.choice([1e-3, 0.1, 1.0])

@@ -176,17 +176,20 @@ def _seven(
     random: np.random.Generator, *, shoulder: bool, elbow: bool, wrist: bool
 ) -> list[Frame]:
     """Of an S-R-S arm, each of its three parts with an offset or without."""
-    x = (lambda has: _offset(random) if has else 0.0)  # noqa: E731
+
+    def x(*, has: bool) -> float:
+        return _offset(random) if has else 0.0
+
     base: Frame = ((0, 0, _length(random)), (0, 0, 0))
     upper = _length(random)
     return [
         base,
-        _across(random, x(shoulder)),
+        _across(random, x(has=shoulder)),
         _across(random),
-        _across(random, x(elbow), upper),
-        _across(random, x(elbow), 0.0),
+        _across(random, x(has=elbow), upper),
+        _across(random, x(has=elbow), 0.0),
         ((0, 0, _length(random)), (_turn(random), 0, 0)),
-        _across(random, x(wrist)),
+        _across(random, x(has=wrist)),
     ]
 
 
@@ -218,11 +221,19 @@ def _limits(random: np.random.Generator) -> tuple[str, float, float]:
     if kind < 0.1:
         return "continuous", -np.inf, np.inf
     if kind < 0.2:  # wider than a turn
-        return "revolute", -float(random.uniform(3.2, 6.3)), float(random.uniform(3.2, 6.3))
+        return (
+            "revolute",
+            -float(random.uniform(3.2, 6.3)),
+            float(random.uniform(3.2, 6.3)),
+        )
     if kind < 0.35:  # on one side of zero only
         low = float(random.uniform(0.0, 0.5))
         high = low + float(random.uniform(0.3, 2.5))
-        return ("revolute", low, high) if random.random() < 0.5 else ("revolute", -high, -low)
+        return (
+            ("revolute", low, high)
+            if random.random() < 0.5
+            else ("revolute", -high, -low)
+        )
     return "revolute", -float(random.uniform(0.3, 3.1)), float(random.uniform(0.3, 3.1))
 
 
@@ -281,9 +292,7 @@ def arm_from_urdf(name: str, urdf: str, base: str, tip: str) -> Arm:
     return Arm(name, robot, chain, chain_urdf(robot), base)
 
 
-def random_arm(
-    build: str, seed: int, write: Callable[[float], str] = repr
-) -> Arm:
+def random_arm(build: str, seed: int, write: Callable[[float], str] = repr) -> Arm:
     """The random arm of that build and seed, as its numbers are written.
 
     Raises:

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Laws that every arm has to keep, on arms drawn at random and on built-in ones.
+
+`python -m bench laws` asks the same of more arms and poses.
+"""
+
+from __future__ import annotations
+
+import os
+
+import numpy as np
+import pytest
+from bench import laws, random_arms
+
+import iksel
+
+SEED = int(os.environ.get("IKSEL_TEST_SEED", "7"))
+ARMS = 2
+POSES = 15
+
+OF_SIX = [*random_arms.SIX, "ur5e", "irb120", "gen3_6dof", "cvr038"]
+SEARCHED = {"near_longer", "near_beside"}
+"""Laws that seven joints break in up to 2 % of the poses: nearest are searched among
+samples of the self-motion."""
+FAMILIES = ("middle_sphere", "right_angles_6")
+"""Builds whose solutions come in families of two dimensions, where the nearest is gone
+down to from a few."""
+
+
+def broken(name: str, written: str | None, poses: int = POSES) -> dict[str, int]:
+    """How often each law is broken by arms of a build, or by a built-in robot."""
+    total = dict.fromkeys(laws.LAWS, 0)
+    for i, arm in enumerate(laws.arms(name, ARMS, written, SEED)):
+        row = laws.violations(arm, poses, SEED + i)
+        assert row["poses"] == poses
+        for law in laws.LAWS:
+            total[law] += row[law]
+    return {law: count for law, count in total.items() if count}
+
+
+@pytest.mark.parametrize("name", OF_SIX)
+def test_six_joints_keep_every_law(name: str) -> None:
+    found = broken(name, None)
+    if name in FAMILIES:
+        found.pop("near_longer", None)
+    assert found == {}, f"seed {SEED}"
+
+
+@pytest.mark.parametrize("written", ["4", "5", "6", "1e-3", "1e-5", "1e-7", "1e-9"])
+@pytest.mark.parametrize("name", ["ur5e", "irb120", "vs060"])
+def test_files_that_are_rounded_or_off_keep_every_law(name: str, written: str) -> None:
+    found = broken(name, written)
+    if name == "ur5e":
+        # Near a joint that ends at a whole turn, its other end may be given.
+        found.pop("near_longer", None)
+    assert found == {}, f"seed {SEED}"
+
+
+@pytest.mark.parametrize("name", [*random_arms.SEVEN, "panda", "iiwa14"])
+def test_seven_joints_lose_nothing_and_stay(name: str) -> None:
+    found = broken(name, None)
+    assert {law: found[law] for law in found if law not in SEARCHED} == {}, SEED
+
+
+def test_the_judge_finds_what_is_broken() -> None:
+    """A law that nothing can break would say nothing."""
+    arm = random_arms.random_arm("spherical_wrist", SEED)
+    row = dict.fromkeys(laws.LAWS, 0)
+    pose = arm.chain.fk(np.zeros((1, arm.chain.dof)))[0]
+    off = np.full(arm.chain.dof, 1e-4)
+    laws._judge(arm, pose, [off], row)
+    assert row["false"] == 1
+
+
+@pytest.mark.parametrize("distance", [1e-5, 1e-4, 1e-3, 1e-2])
+@pytest.mark.parametrize("name", ["vs060", "irb120", "cvr038"])
+def test_a_no_beside_a_limit_needs_few_iterations(name: str, distance: float) -> None:
+    """What has to be searched is searched beside the branch, not everywhere."""
+    robot = iksel.load_robot(name)
+    solver = iksel.Solver(robot)
+    q = robot.random_configurations(200, SEED)
+    limited = np.flatnonzero(np.isfinite(robot.lower))
+    rows = np.arange(len(q))
+    joints = limited[rows % limited.size]
+    q[rows, joints] = robot.upper[joints] + distance
+    results = [solver.solve(robot.fk(one)) for one in q]
+    noes = [result for result in results if not result.success]
+    assert noes
+    iterations = np.array([result.iterations for result in noes])
+    # A search of everything takes 1,000 and more.
+    assert iterations.mean() < 60, iterations

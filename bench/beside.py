@@ -39,6 +39,8 @@ DISTANCES = (1e-5, 1e-4, 1e-3, 1e-2, 3e-2)
 """How far the joint is outside [rad or m]."""
 PASSES = 3
 """Runs through all poses; of each pose the least time counts."""
+LIMIT_S = 600.0
+"""Of a run [s]."""
 
 
 def outside_poses(arm: Arm, distance: float, count: int, seed: int) -> Array:
@@ -63,7 +65,7 @@ def outside_poses(arm: Arm, distance: float, count: int, seed: int) -> Array:
 def noes(solver: iksel.Solver, poses: Array) -> tuple[Array, Array]:
     """Which poses get a no, and the least time of each pose [us]."""
     arguments = [(pose,) for pose in poses]
-    runs = [time_calls(solver.solve, arguments, np.inf) for _ in range(PASSES)]
+    runs = [time_calls(solver.solve, arguments, LIMIT_S) for _ in range(PASSES)]
     failed = np.array([not result.success for result in runs[0][1]])
     return failed, least_times([times for times, _ in runs]) / 1e3
 

@@ -57,7 +57,7 @@ TABLE: dict[str, tuple[str, ...]] = {
         'iksel.Robot.from_urdf("plain.urdf")',
         'iksel.Robot.from_urdf("floating.urdf")',
         'iksel.load_robot({"robot": "ur3"})',
-        "iksel.load_robot(iksel.load_robot('ur3'))",
+        'iksel.load_robot(iksel.load_robot("ur3"))',
         "iksel.Robot.from_dh([0, 1], [0], [0, 0])",
         'iksel.Robot.from_dh([0], [0], [0], types=["prismatic"])',
         'iksel.Robot.from_dh([0], [0], [0], convention="craig")',

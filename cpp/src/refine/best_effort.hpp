@@ -28,8 +28,9 @@ class BestEffort {
   JointVector q_;
 };
 
-/// Moves q, which is near to a solution, to where it is an answer inside the limits, if it finds such
-/// a place: at a limit the tolerances may be needed to their edge, of position and of rotation each.
+/// Moves q, which is near to a solution, to where it is an answer inside the limits, if it finds
+/// such a place: at a limit the tolerances may be needed to their edge, of position and of rotation
+/// each.
 bool descend_into_tolerances(const ChainModel& model, const Goal& goal, JointVector& q);
 
 }  // namespace iksel

@@ -272,7 +272,8 @@ std::optional<Proof> Search<Answers>::by_branches(Branches& branches, Proof kind
   if (enumerated.is_certain()) {
     if (enumerated.is_empty()) return kind;
     if (answers.has_any() && !branches.has_families()) return kind;
-  } else if (!answers.has_any() && descend_from(branches.size(), [&](int i) { return branches.q(i); })) {
+  } else if (!answers.has_any() &&
+             descend_from(branches.size(), [&](int i) { return branches.q(i); })) {
     return Proof::none;
   } else if (enumerated.is_certain_but_for_limits() && !branches.has_families()) {
     return Proof::none;

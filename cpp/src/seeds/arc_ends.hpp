@@ -30,7 +30,9 @@ class ArcEnds {
   /// Forgets what is kept.
   void begin() { kept_.clear(); }
   [[nodiscard]] int kept() const { return static_cast<int>(kept_.size()); }
-  [[nodiscard]] const double* kept(int i) const { return kept_[static_cast<std::size_t>(i)].data(); }
+  [[nodiscard]] const double* kept(int i) const {
+    return kept_[static_cast<std::size_t>(i)].data();
+  }
   /// Whether each end that a joint's limit could make is looked for.
   [[nodiscard]] bool are_all() const { return are_all_; }
   /// Whether each is solved for in closed form.

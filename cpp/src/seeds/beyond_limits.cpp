@@ -42,8 +42,8 @@ bool is_beyond_limits(const ChainModel& model, const Pose& T_base_tcp, JointVect
   }
   if (!is_beyond || !and_partner) return is_beyond;
   const FoldPartner partner = find_fold_partner(J, q, 0);
-  return !partner.paired || is_beyond_limits(model, T_base_tcp, partner.other, position_tolerance,
-                                             rotation_tolerance);
+  return !partner.paired ||
+         is_beyond_limits(model, T_base_tcp, partner.other, position_tolerance, rotation_tolerance);
 }
 
 }  // namespace iksel

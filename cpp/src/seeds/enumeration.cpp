@@ -35,9 +35,8 @@ Enumeration::Enumeration(const ChainModel& model, const ClosedFormChain& chain, 
   // end by the arm's.
   const double lever = chain.tail.norm() + to_pose(model.kernel.tip).translation().norm() +
                        (chain.reversed ? model.reach_of_tcp() : 0.0);
-  const double tolerance =
-      std::max({(position_tolerance + lever * rotation_tolerance) / chain.unit, rotation_tolerance,
-                kStructureTolerance});
+  const double tolerance = std::max({(position_tolerance + lever * rotation_tolerance) / chain.unit,
+                                     rotation_tolerance, kStructureTolerance});
   chain_.form.error = kMargin * (tolerance + chain.deviation);
   are_answers_ = is_nominal && !chain.is_almost();
 }

@@ -22,8 +22,8 @@ class AxisPattern {
 
   [[nodiscard]] const ScrewAxes& axes() const { return axes_; }
   /// By how much the pose of an arm with the axes as they were moved may differ from that of the
-  /// arm as it is [rad, and m in units of the reach]: an axis that is turned by an angle, or shifted
-  /// by a distance, moves what is behind it by no more than twice that.
+  /// arm as it is [rad, and m in units of the reach]: an axis that is turned by an angle, or
+  /// shifted by a distance, moves what is behind it by no more than twice that.
   [[nodiscard]] double deviation() const;
   /// Of axes 2 and 3 from being parallel [rad], and of i and i + 1 from meeting [in units of the
   /// reach].

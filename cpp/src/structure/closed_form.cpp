@@ -204,8 +204,7 @@ std::optional<ClosedFormChain> look_from(const ChainModel& model, const Complete
 }
 
 std::optional<ClosedFormChain> look_at(const ChainModel& model, const CompletedAxes& completed,
-                                       Sought sought, double tolerance,
-                                       bool is_full_pose = true) {
+                                       Sought sought, double tolerance, bool is_full_pose = true) {
   for (const bool reversed : {false, true}) {
     auto chain = look_from(model, completed, reversed, sought, tolerance);
     if (chain && (!is_full_pose || finds_known_solutions(model, *chain))) return chain;
@@ -227,8 +226,8 @@ bool can_be_closed(const ChainModel& model) {
 std::optional<ClosedFormChain> find_closed_form(const ChainModel& model, const Task& task) {
   if (!can_be_closed(model)) return std::nullopt;
   for (const CompletedAxes& completed : complete_axes(model, task, kStructureTolerance)) {
-    auto chain = look_at(model, completed, Sought::closure, kStructureTolerance,
-                         task.is_full_pose());
+    auto chain =
+        look_at(model, completed, Sought::closure, kStructureTolerance, task.is_full_pose());
     if (chain) return chain;
   }
   if (!task.is_full_pose() || (model.dof != kSix && model.dof != kSix + 1)) return std::nullopt;

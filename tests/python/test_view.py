@@ -70,7 +70,7 @@ def test_a_robot_follows_the_target(show, name, cases):
         np.testing.assert_allclose(drawn_tip(viewer), pose[:3, 3], atol=1e-5)
         assert viewer.text.startswith("**solved** in ")
         for slider, value in zip(viewer.controls.joints, viewer.session.q, strict=True):
-            assert np.cos(slider.value - value) == pytest.approx(1)
+            assert np.cos(np.deg2rad(slider.value) - value) == pytest.approx(1)
 
 
 def test_without_an_answer_the_robot_stays_and_the_reason_is_shown(show):
@@ -97,10 +97,11 @@ def test_sliders_turn_joints_and_take_the_target_along(show):
     robot = viewer.session.robot
     q = viewer.session.q.copy()
     for joint, slider in enumerate(viewer.controls.joints):
-        q[joint] = slider.value = 0.1 * joint - 0.2
-        np.testing.assert_array_equal(viewer.session.q, q)
+        q[joint] = 0.1 * joint - 0.2
+        slider.value = np.rad2deg(q[joint])
+        np.testing.assert_allclose(viewer.session.q, q, rtol=0, atol=1e-15)
     pose = robot.fk(q)
-    np.testing.assert_array_equal(viewer.session.target, pose)
+    np.testing.assert_allclose(viewer.session.target, pose, rtol=0, atol=1e-14)
     np.testing.assert_allclose(viewer.scene.target_pose(), pose, atol=1e-9)
     np.testing.assert_allclose(drawn_tip(viewer), pose[:3, 3], atol=1e-6)
 
@@ -114,10 +115,13 @@ def test_sliders_have_the_limits_and_endless_joints_a_turn(show):
     for slider, low, high, no_end in zip(
         viewer.controls.joints, robot.lower, robot.upper, endless, strict=True
     ):
-        expected = (-np.pi, np.pi) if no_end else (low, high)
-        assert (slider.min, slider.max) == pytest.approx(expected)
+        ends = (-np.pi, np.pi) if no_end else (low, high)
+        shown = (slider.min, slider.max)
+        assert shown == pytest.approx(np.rad2deg(ends), rel=0, abs=0.11)
+        # Fields have room for six characters.
+        assert all(len(f"{end:g}") <= 6 for end in shown)
     viewer.show(np.where(endless, 4.0, 0.0))
-    shown = [slider.value for slider in viewer.controls.joints]
+    shown = [np.deg2rad(slider.value) for slider in viewer.controls.joints]
     assert shown == pytest.approx(list(np.where(endless, 4.0 - 2 * np.pi, 0.0)))
     np.testing.assert_array_equal(viewer.session.q, np.where(endless, 4.0, 0.0))
 
@@ -262,7 +266,7 @@ def test_limits_and_manipulability_are_shown(show):
     viewer.show(q)
     value = np.linalg.svd(robot.jacobian(q), compute_uv=False).prod()
     assert f"manipulability: {value:.4g}" in viewer.text
-    assert "nearest limit: elbow_joint, 0.05 off (1 % of its range)" in viewer.text
+    assert "nearest limit: elbow_joint, 2.86° off (1 % of its range)" in viewer.text
     drums = viewer.scene._bones._node.batched_colors[-6:]
     assert len({tuple(colour) for colour in drums}) == 1
     q[2] = robot.upper[2]

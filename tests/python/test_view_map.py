@@ -10,6 +10,7 @@ from test_view import free_port
 
 import iksel
 from iksel import reach, view
+from iksel.view.controls import legend
 from iksel.view.scene import share_colours
 
 pytest.importorskip("viser", reason="pip install iksel[view]")
@@ -28,8 +29,10 @@ def shown(made, tmp_path):
 def test_there_is_a_ball_where_something_is_reached(shown):
     viewer, found = shown
     assert not viewer.controls.map.visible
+    assert not viewer.controls.legend.visible
     viewer.show_map(found)
     assert viewer.controls.map.visible
+    assert viewer.controls.legend.visible
     (x, y, _), shares = found.box()
     half = (shares[:, y >= 0] > 0).sum()
     assert 0 < viewer.scene.map_balls == half
@@ -44,6 +47,20 @@ def test_there_is_a_ball_where_something_is_reached(shown):
     assert viewer.scene.map_balls == 0
     viewer.controls.map.value = True
     assert viewer.scene.map_balls == (shares > 0).sum()
+
+
+def test_the_camera_sees_the_map(shown):
+    viewer, found = shown
+    camera = viewer._server.initial_camera
+    before = np.linalg.norm(camera.position - camera.look_at)
+    viewer.show_map(found)
+    assert np.linalg.norm(camera.position - camera.look_at) > before
+
+
+def test_the_legend_has_the_colours_of_the_balls():
+    ends = share_colours(np.array([0.0, 1.0]))
+    for red, green, blue in ends:
+        assert f"rgb({red}, {green}, {blue})" in legend()
 
 
 def test_maps_of_others_are_refused(shown, made):

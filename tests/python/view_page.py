@@ -76,8 +76,12 @@ class Page:
         camera = client.camera
         pose = iksel.pose_from_quaternion(camera.position, camera.wxyz)
         x, y, z = (np.linalg.inv(pose) @ np.append(point, 1))[:3]
-        scale = HEIGHT / 2 / np.tan(camera.fov / 2)
-        return np.array([WIDTH / 2 + scale * x / z, HEIGHT / 2 + scale * y / z])
+        canvas = self.page.locator("canvas").first.bounding_box()
+        scale = canvas["height"] / 2 / np.tan(camera.fov / 2)
+        middle = [
+            canvas[a] + canvas[b] / 2 for a, b in (("x", "width"), ("y", "height"))
+        ]
+        return np.array(middle) + scale / z * np.array([x, y])
 
     def handle(self) -> tuple[int, np.ndarray, np.ndarray]:
         """The target's arrow that is seen from the side.

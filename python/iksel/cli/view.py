@@ -34,8 +34,8 @@ def add_parser(commands: Any) -> None:
         usage="iksel view ROBOT [options]",
         help="drag a target in the browser, and see inverse kinematics follow",
         description="Serve a page with the robot, a target to drag, sliders for the "
-        "joints, all branches, and why there is no answer where there is none. Needs "
-        "pip install 'iksel[view]'.",
+        "joints, joint values and poses to copy and type, all branches, and why there "
+        "is no answer where there is none. Needs pip install 'iksel[view]'.",
         epilog=EXAMPLES,
     )
     add_robot(parser)

@@ -10,6 +10,8 @@ from iksel_cpp import JointType
 
 from iksel._limits import violated_limits
 from iksel._qualities import limit_distance, manipulability
+from iksel.view._numbers import DEGREES, UNITS, Numbers
+from iksel.view.scene import RAMP
 from iksel.view.session import CHOICES
 
 if TYPE_CHECKING:
@@ -17,18 +19,36 @@ if TYPE_CHECKING:
 
     from iksel.view.session import Session
 
-STEP = 1e-4  # of the sliders
+DECIMALS = 3  # of the self-motion's slider
+DECIMALS_OF = {"°": 1, "rad": 3, "m": 3}
+"""Of the joints' sliders, by unit. Their fields have room for six characters."""
 
 
 class Controls:
-    """Sliders, switches and the text."""
+    """Sliders, switches, numbers to copy and type, and the text."""
 
     def __init__(self, gui: Any, session: Session) -> None:
         """Take viser's GUI and what is shown."""
         self._session = session
-        robot = session.robot
-        gui.configure_theme(dark_mode=False, show_logo=False, show_share_button=False)
+        look = {"show_logo": False, "show_share_button": False}
+        # Beside the picture, not in front of it; older viser has another name for that.
+        if hasattr(gui, "main_panel"):
+            gui.configure_theme(control_width="large", **look)
+            gui.main_panel.dock_right()
+        else:
+            gui.configure_theme(
+                control_width="large", control_layout="collapsible", **look
+            )
         self.text = gui.add_markdown("")
+        self.note = ""  # below the text
+        self._add_switches(gui)
+        self._add_map(gui)
+        self._add_joints(gui)
+        with gui.add_folder("copy or type"):
+            self.numbers = Numbers(gui, session)
+
+    def _add_switches(self, gui: Any) -> None:
+        session = self._session
         names = list(session.tasks)
         self.task = gui.add_dropdown("task", names, initial_value=session.task_name)
         self.choice = gui.add_dropdown(
@@ -43,7 +63,7 @@ class Controls:
         self.motion: Any = None
         if session.motion is not None:
             self.motion = gui.add_slider(
-                "self-motion", min=0.0, max=1.0, step=STEP, initial_value=0.0
+                "self-motion", min=0.0, max=1.0, step=10.0**-DECIMALS, initial_value=0.0
             )
         self.meshes = gui.add_checkbox(
             "meshes",
@@ -51,33 +71,69 @@ class Controls:
             visible=False,
             hint="show the links as their URDF does",
         )
-        self.note = ""  # below the text
+
+    def _add_map(self, gui: Any) -> None:
+        """Add what belongs to a reachability map; shown with one."""
         self.map = gui.add_checkbox("map", initial_value=True, visible=False)
         self.cut = gui.add_checkbox(
             "map cut open", initial_value=True, visible=False, hint="leave out y < 0"
         )
+        self.legend = gui.add_html(legend(), visible=False)
+
+    def _add_joints(self, gui: Any) -> None:
+        robot = self._session.robot
         self._turns = np.array([k != JointType.prismatic for k in robot.joint_types])
         self._endless = self._turns & ~np.isfinite(robot.upper - robot.lower)
         self._lower = np.where(self._endless, -np.pi, robot.lower)
         self._upper = np.where(self._endless, np.pi, robot.upper)
         with gui.add_folder("joints"):
+            self.unit = gui.add_dropdown("angles", UNITS, initial_value=DEGREES)
             self.joints = [
-                gui.add_slider(
-                    f"{name} [{'rad' if turns else 'm'}]",
-                    min=float(low),
-                    max=float(high),
-                    step=STEP,
-                    initial_value=float(value),
-                )
-                for name, turns, low, high, value in zip(
-                    robot.joint_names,
-                    self._turns,
-                    self._lower,
-                    self._upper,
-                    self._values(),
-                    strict=True,
-                )
+                gui.add_slider(name, min=0.0, max=1.0, step=0.1, initial_value=0.0)
+                for name in robot.joint_names
             ]
+        self.set_unit()
+
+    @property
+    def _scales(self) -> np.ndarray[Any, Any]:
+        """What a joint's value [rad or m] is multiplied by to be shown, (dof,)."""
+        angle = np.rad2deg(1.0) if self.unit.value == DEGREES else 1.0
+        return np.where(self._turns, angle, 1.0)
+
+    def set_unit(self) -> None:
+        """Give the sliders the unit that is chosen."""
+        sign = "°" if self.unit.value == DEGREES else "rad"
+        for slider, turns, scale, low, high, value, name in zip(
+            self.joints,
+            self._turns,
+            self._scales,
+            self._lower,
+            self._upper,
+            self._values(),
+            self._session.robot.joint_names,
+            strict=True,
+        ):
+            unit = sign if turns else "m"
+            slider.precision = DECIMALS_OF[unit]
+            step = 10.0**-slider.precision
+            slider.label = name if turns else f"{name} [m]"
+            # Outwards to whole steps, but for rounding: they have few digits.
+            lowest = np.floor(low * scale / step + 1e-3) * step
+            highest = np.ceil(high * scale / step - 1e-3) * step
+            slider.min = round(float(lowest), slider.precision)
+            slider.max = round(float(highest), slider.precision)
+            slider.step = step
+            slider.value = float(value * scale)
+
+    def joint_value(self, joint: int) -> float:
+        """Where a joint's slider is, inside the limits [rad or m]."""
+        value = self.joints[joint].value / self._scales[joint]
+        return float(np.clip(value, self._lower[joint], self._upper[joint]))
+
+    @property
+    def of_map(self) -> list[Any]:
+        """What is shown with a map only."""
+        return [self.map, self.cut, self.legend]
 
     def inputs(self) -> list[Any]:
         """Everything that can be set, but the sliders."""
@@ -88,6 +144,7 @@ class Controls:
             self.meshes,
             self.map,
             self.cut,
+            self.unit,
         ]
 
     def on_change(self, listen: Callable[[Any], Any]) -> None:
@@ -95,6 +152,8 @@ class Controls:
         sliders = [*self.joints, *([self.motion] if self.motion else [])]
         for handle in [*self.inputs(), *sliders]:
             handle.on_update(lambda event: listen(event.target))
+        for button in self.numbers.buttons:
+            button.on_click(lambda event: listen(event.target))
 
     def draw(self, source: Any = None, solutions: int | None = None) -> None:
         """Show where the robot is, and how it got there.
@@ -104,9 +163,11 @@ class Controls:
             solutions: How many the target has; None: not asked.
         """
         self.text.content = describe(self._session, solutions) + self.note
-        for slider, value in zip(self.joints, self._values(), strict=True):
+        shown = self._values() * self._scales
+        for slider, value in zip(self.joints, shown, strict=True):
             if slider is not source:
                 slider.value = float(value)
+        self.numbers.draw(degrees=self.unit.value == DEGREES)
         if self.motion:
             self.motion.disabled = not self._session.motion
             if self.motion is not source:
@@ -156,7 +217,20 @@ def nearest_limit(session: Session) -> str:
     shares = np.where(limited, gaps / np.where(limited, ranges, 1.0), np.inf)
     joint = int(np.argmin(shares))
     share = limit_distance(robot, q[None])[0]
+    slides = robot.joint_types[joint] == JointType.prismatic
+    gap = f"{gaps[joint]:.3g} m" if slides else f"{np.rad2deg(gaps[joint]):.3g}°"
     return (
-        f"nearest limit: {robot.joint_names[joint]}, {gaps[joint]:.3g} off "
+        f"nearest limit: {robot.joint_names[joint]}, {gap} off "
         f"({100 * share:.0f} % of its range)"
+    )
+
+
+def legend() -> str:
+    """What the colours of a map mean, in HTML."""
+    stops = ", ".join(f"rgb({r:.0f}, {g:.0f}, {b:.0f})" for r, g, b in RAMP)
+    return (
+        '<div style="padding: 0 0.75em 0.5em; font-size: 0.8em">'
+        f'<div style="height: 0.9em; background: linear-gradient(to right, {stops})">'
+        '</div><div style="display: flex; justify-content: space-between">'
+        "<span>few</span><span>orientations reached</span><span>all</span></div></div>"
     )

@@ -8,10 +8,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from iksel import _rotations as rotations
+from iksel.view._obstacles import draw_obstacles
 from iksel.view.skeleton import Placed, ball, cylinder
 from iksel.view.visuals import PLAIN, Visuals
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from iksel_cpp import Obstacle
+
     from iksel._arrays import BoolArray, FloatArray, IntArray
     from iksel.view.skeleton import Skeleton
     from iksel.view.visuals import Piece
@@ -93,10 +98,16 @@ class Scene:
         ghost = {"opacity": GHOST_OPACITY}
         self._ghosts = Copies(scene, "/ghosts/links", cylinder(12), **ghost)
         self._ghost_balls = Copies(scene, "/ghosts/frames", ball(8), **ghost)
+        self.obstacles: list[Any] = []
         self._map = Copies(scene, "/map", ball(6), lod="auto")
         self.target = scene.add_transform_controls(
             "/target", scale=TARGET * reach, line_width=4.0, depth_test=False
         )
+
+    def add_obstacles(self, obstacles: Mapping[str, Obstacle]) -> None:
+        """Show obstacles, by name."""
+        reach = self._skeleton.robot.reach
+        self.obstacles += draw_obstacles(self._scene, obstacles, reach)
 
     @property
     def ghosts(self) -> int:

@@ -7,7 +7,15 @@ import time
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from iksel_cpp import ArcEnd, InvalidArgumentError, SelfMotion, Solver, Status, Task
+from iksel_cpp import (
+    ArcEnd,
+    InvalidArgumentError,
+    JointType,
+    SelfMotion,
+    Solver,
+    Status,
+    Task,
+)
 
 from iksel._arrays import as_floats, reject
 from iksel._qualities import limit_distance, manipulability
@@ -15,7 +23,7 @@ from iksel.pose import check_pose
 
 if TYPE_CHECKING:
     import numpy.typing as npt
-    from iksel_cpp import Result, SelfMotionEnd
+    from iksel_cpp import Result, Scene, SelfMotionEnd
 
     from iksel._arrays import FloatArray
     from iksel.pose import PoseLike
@@ -32,6 +40,7 @@ CHOICES = ("nearest", "same branch", "any")
 that an attempt from there leads to and no other, or the first that is found."""
 DIAGNOSIS_DEADLINE = 0.1  # [s], so that dragging goes on where nothing is found
 MOST_BRANCHES = 64
+SAMPLES = 4096  # of configurations to begin with
 SPACING = 0.02  # [rad] between the configurations of a self-motion
 
 
@@ -52,12 +61,20 @@ class Session:
     seconds: float | None
     """How long the last answer took [s]; None where nothing had to be solved."""
 
-    def __init__(self, solver: Solver, q: npt.ArrayLike | None = None) -> None:
+    def __init__(
+        self,
+        solver: Solver,
+        q: npt.ArrayLike | None = None,
+        *,
+        scene: Scene | None = None,
+    ) -> None:
         """Take a solver, and joint values (dof,) to begin with [rad or m].
 
-        Without these it begins away from singularities and limits.
+        Without these it begins away from singularities and limits, upright. Answers
+        keep free of the scene.
         """
         self.solver = solver
+        self._scene = scene
         self.robot = solver.robot
         self.tasks = dict(TASKS)
         own = solver.options.task
@@ -66,7 +83,7 @@ class Session:
         self.task_name = next(name for name, task in self.tasks.items() if task == own)
         self.choice = CHOICES[0]
         self._motion: SelfMotion | None = None
-        self.show(_open_configuration(solver) if q is None else q)
+        self.show(_open_configuration(solver, scene) if q is None else q)
 
     @property
     def task(self) -> Task:
@@ -133,7 +150,7 @@ class Session:
         """Solve for the target; which solution is taken, `choice` says."""
         started = time.perf_counter()
         result: Result = self.solver.solve(
-            self.target, task=self.task, **self._wishes()
+            self.target, task=self.task, scene=self._scene, **self._wishes()
         )
         seconds = time.perf_counter() - started
         if result.q is not None:
@@ -145,7 +162,10 @@ class Session:
             self._ended(result.status, reason, seconds)
             return
         diagnosis = self.solver.diagnose(
-            self.target, task=self.task, deadline=DIAGNOSIS_DEADLINE
+            self.target,
+            task=self.task,
+            scene=self._scene,
+            deadline=DIAGNOSIS_DEADLINE,
         )
         if diagnosis.q_is_solution and diagnosis.q is not None:
             self.q = diagnosis.q
@@ -165,12 +185,17 @@ class Session:
 
     def _has_another_branch(self) -> bool:
         """Whether the target has a solution, wherever the robot is."""
-        return bool(self.solver.solve(self.target, task=self.task))
+        found = self.solver.solve(self.target, task=self.task, scene=self._scene)
+        return bool(found)
 
     def branches(self) -> FloatArray:
         """All solutions of the target, (n, dof) [rad or m], the robot's own first."""
         found = self.solver.solve_all(
-            self.target, MOST_BRANCHES, near=self.q, task=self.task
+            self.target,
+            MOST_BRANCHES,
+            near=self.q,
+            task=self.task,
+            scene=self._scene,
         )
         return found.q
 
@@ -236,14 +261,35 @@ class Session:
         self._motion = None
 
 
-def _open_configuration(solver: Solver) -> FloatArray:
-    """Of some random configurations one that is manipulable, and far from limits.
+def _open_configuration(solver: Solver, scene: Scene | None) -> FloatArray:
+    """Of some random configurations one that shows the robot well.
 
-    And with every link above the base's floor, where that is possible.
+    It is manipulable, far from limits, and free; no link is below the base's floor,
+    where that is possible; and the arm stands up, with its tool before it (along x) and
+    pointing down.
     """
     robot = solver.robot
-    some = robot.random_configurations(256, seed=0)
-    lowest = robot.link_poses(some)[..., 2, 3].min(axis=1)
-    some = some[lowest >= min(0.0, lowest.max()) - 1e-9]
-    quality = manipulability(robot, some) * limit_distance(robot, some)
-    return np.asarray(some[np.argmax(quality)])
+    some = robot.random_configurations(SAMPLES, seed=0)
+    if scene is not None:
+        free = np.asarray(scene.is_free(some))
+        some = some[free] if free.any() else some
+    heights = robot.link_poses(some)[..., 2, 3]
+    lowest = heights.min(axis=1)
+    above = lowest >= min(0.0, lowest.max()) - 1e-9
+    some, heights = some[above], heights[above]
+    tool = robot.fk(some)
+    sideways = tool[:, :2, 3]
+    before = sideways[:, 0] / np.maximum(np.linalg.norm(sideways, axis=1), 1e-9)
+    quality = (
+        manipulability(robot, some)
+        * limit_distance(robot, some)
+        * np.maximum(heights.mean(axis=1) - heights[:, 0].min(), 1e-9) ** 2
+        * (1.2 + before)
+        * (1.5 - tool[:, 2, 2])
+    )
+    q = some[np.argmax(quality)]
+    # Of joints that can turn further than once around, the least turn.
+    turns = np.array([kind != JointType.prismatic for kind in robot.joint_types])
+    least = np.where(turns, (q + np.pi) % (2 * np.pi) - np.pi, q)
+    inside = (robot.lower <= least) & (least <= robot.upper)
+    return np.asarray(np.where(inside, least, q))

@@ -16,9 +16,12 @@ if TYPE_CHECKING:
 
     from iksel._arrays import FloatArray, IntArray
 
-# Sizes as shares of the robot's reach.
-BAR, BALL = 0.018, 0.024  # radii
-DRUM, DRUM_HEIGHT = 0.034, 0.085
+# Sizes as shares of the robot's reach: at the base, and at the TCP. Arms become thinner
+# towards their tools.
+BAR = np.array([0.038, 0.02])  # radii
+BALL = np.array([0.042, 0.022])
+DRUM = np.array([0.056, 0.032])
+HEIGHT = np.array([0.13, 0.075])  # of a drum, along its joint's axis
 LEAST = 1e-6  # [m]; a bar between frames that coincide has this length
 
 
@@ -66,23 +69,21 @@ class Skeleton:
 
     def balls(self, q: FloatArray) -> Placed:
         """Unit balls at the frames of configurations (n, dof)."""
-        points = self.points(q).reshape(-1, 3)
-        count = len(points)
-        size = BALL * self.robot.reach
-        return Placed(points, np.tile([1.0, 0, 0, 0], (count, 1)), _full(count, size))
+        points = self.points(q)
+        sizes = np.broadcast_to(self._sizes(BALL)[:, None], points.shape)
+        points = points.reshape(-1, 3)
+        turns = np.tile([1.0, 0, 0, 0], (len(points), 1))
+        return Placed(points, turns, sizes.reshape(-1, 3))
 
     def cylinders(self, q: FloatArray) -> Placed:
         """Unit cylinders (along z): for each configuration the bars, then the drums."""
-        reach = self.robot.reach
         points = self.points(q)
         starts, ends = points[:, :-1], points[:, 1:]
         lengths = np.maximum(np.linalg.norm(ends - starts, axis=-1), LEAST)
-        bars = _full(lengths.shape, BAR * reach)
-        bars[..., 2] = lengths
-        drums = np.tile(
-            [DRUM * reach, DRUM * reach, DRUM_HEIGHT * reach],
-            (len(q), self.robot.dof, 1),
-        )
+        radii = np.broadcast_to(self._sizes(BAR)[1:], lengths.shape)
+        bars = np.stack([radii, radii, lengths], axis=-1)
+        radius, height = (self._sizes(s)[self._moved] for s in (DRUM, HEIGHT))
+        drums = np.tile(np.stack([radius, radius, height], -1), (len(q), 1, 1))
         along = np.concatenate([ends - starts, self._axes(q)], axis=1)
         middles = np.concatenate([(starts + ends) / 2, points[:, self._moved]], axis=1)
         scales = np.concatenate([bars, drums], axis=1)
@@ -91,6 +92,11 @@ class Skeleton:
             turns_of_z(along.reshape(-1, 3)),
             scales.reshape(-1, 3),
         )
+
+    def _sizes(self, ends: FloatArray) -> FloatArray:
+        """Sizes at the frames of the links and the TCP, (links + 1,) [m]."""
+        shares = np.linspace(ends[0], ends[1], len(self.links) + 1)
+        return np.asarray(self.robot.reach * shares)
 
     def _axes(self, q: FloatArray) -> FloatArray:
         """Directions along which joints turn or slide, (n, dof, 3)."""
@@ -146,9 +152,3 @@ def ball(segments: int = 16) -> tuple[FloatArray, IntArray]:
     profile = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
     profile[[0, -1], 0] = 0.0
     return turned(profile, segments)
-
-
-def _full(shape: int | tuple[int, ...], value: float) -> FloatArray:
-    """Scales (*shape, 3), all the same."""
-    lengths = (shape,) if isinstance(shape, int) else shape
-    return np.full((*lengths, 3), value)

@@ -13,6 +13,7 @@ from iksel_cpp import InvalidArgumentError, PathResult
 
 from iksel import _extras
 from iksel._arrays import as_floats, reject
+from iksel.view._obstacles import corners
 from iksel.view._server import quietly, start
 from iksel.view.controls import Controls
 from iksel.view.scene import Scene
@@ -24,9 +25,11 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
     from types import TracebackType
 
+    import iksel_cpp
     import numpy.typing as npt
     from iksel_cpp import Solver
 
+    from iksel._arrays import FloatArray
     from iksel._packages import Packages
     from iksel.description import Source
     from iksel.pose import PoseLike
@@ -34,7 +37,13 @@ if TYPE_CHECKING:
 
 PORT = 8080
 """Where a viewer is served unless another port is given."""
-VIEWPOINT = np.array([0.7, -1.0, 0.6])  # from the first joint, in reaches
+VIEW_FROM = np.array([0.75, -1.0, 0.45])
+"""Direction from the robot to the camera."""
+FIELD_OF_VIEW = np.deg2rad(40.0)
+"""From the upper edge of the picture to the lower; narrow, so that the robot's
+proportions are little changed by perspective."""
+FARTHEST_IN_VIEW = 2.0
+"""How far from the robot the picture goes at first for a map or obstacles [reaches]."""
 LIMIT_MARGIN = 1e-3  # [rad or m]; a joint that near to a limit is shown as at it
 
 
@@ -54,6 +63,7 @@ class Viewer:
         packages: Packages | None = None,
         xacro_args: Mapping[str, str] | None = None,
         trusted: bool = False,
+        scene: iksel_cpp.Scene | None = None,
         port: int = PORT,
         host: str = "127.0.0.1",
     ) -> None:
@@ -68,6 +78,7 @@ class Viewer:
                 around the file, in $ROS_PACKAGE_PATH and $AMENT_PREFIX_PATH.
             xacro_args: Values of a xacro file's arguments.
             trusted: Whether a xacro file may run whatever Python it contains.
+            scene: What answers may not collide with; its obstacles are shown.
             port: Where to serve; the next free one if another program has it.
             host: Address to listen at: by default only this machine can look;
                 "0.0.0.0" for all.
@@ -78,7 +89,7 @@ class Viewer:
             UrdfError, UnknownNameError: `urdf` cannot be read.
         """
         viser = _extras.need("viser", user="iksel.view", extra="'iksel[view]'")
-        self.session = Session(solver)
+        self.session = Session(solver, scene=scene)
         pieces, self.lost = (
             ([], [])
             if urdf is None
@@ -93,10 +104,12 @@ class Viewer:
         self.host = host
         robot = solver.robot
         self._server.gui.set_panel_label(f"iksel: {robot.name}")
-        reach = robot.reach
-        self._server.initial_camera.position = robot.reach_centre + reach * VIEWPOINT
-        self._server.initial_camera.look_at = robot.reach_centre
-        self.scene = Scene(self._server.scene, Skeleton(robot), pieces)
+        skeleton = Skeleton(robot)
+        self.scene = Scene(self._server.scene, skeleton, pieces)
+        self._body = skeleton.points(self.session.q[None])[0]
+        obstacles = {} if scene is None else scene.obstacles
+        self.scene.add_obstacles(obstacles)
+        self._look_at(corners(obstacles))
         self.controls = Controls(self._server.gui, self.session)
         if len(self.scene.visuals):
             self.controls.meshes.visible = True
@@ -218,7 +231,10 @@ class Viewer:
             )
         with self._lock:
             self._map = reach_map
-            self.controls.map.visible = self.controls.cut.visible = True
+            axes, _ = reach_map.box()
+            self._look_at(np.array([[axis[0], axis[-1]] for axis in axes]).T)
+            for handle in self.controls.of_map:
+                handle.visible = True
             self._draw_map()
         return self
 
@@ -260,13 +276,45 @@ class Viewer:
             elif handle is controls.motion:
                 session.slide(handle.value)
             elif handle in controls.joints:
-                session.move_joint(controls.joints.index(handle), handle.value)
+                joint = controls.joints.index(handle)
+                session.move_joint(joint, controls.joint_value(joint))
+            elif handle in controls.numbers.buttons:
+                self._typed(handle)
+                return
+            elif handle is controls.unit:
+                with self._silently():
+                    controls.set_unit()
             elif handle is controls.meshes:
                 self.scene.dress(dressed=bool(handle.value))
             elif handle is not controls.ghosts:
                 self._draw_map()
                 return
             self._draw(handle)
+
+    def _typed(self, button: Any) -> None:
+        """Move to what has been typed, or say why not."""
+        try:
+            self.controls.numbers.apply(button)
+        except InvalidArgumentError as error:
+            self.controls.text.content = f"**not moved**: {error}"
+        else:
+            self._draw()
+
+    def _look_at(self, others: FloatArray) -> None:
+        """Have the camera see the robot and other points (n, 3), and little else."""
+        robot, camera = self.session.robot, self._server.initial_camera
+        away = np.linalg.norm(others - robot.reach_centre, axis=-1)
+        near = others[away < FARTHEST_IN_VIEW * robot.reach]
+        points = np.concatenate([self._body, near])
+        lowest, highest = points.min(axis=0), points.max(axis=0)
+        centre = (lowest + highest) / 2
+        # The target's handles stick out.
+        radius = np.linalg.norm(points - centre, axis=1).max() + 0.12 * robot.reach
+        distance = radius / np.sin(FIELD_OF_VIEW / 2)
+        direction = VIEW_FROM / np.linalg.norm(VIEW_FROM)
+        camera.fov = float(FIELD_OF_VIEW)
+        camera.position = centre + distance * direction
+        camera.look_at = centre
 
     def _draw(self, source: Any = None) -> None:
         """Draw everything but the map, and the handle that a user is just moving."""

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Joint values and the target as text, to be copied and typed."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from iksel_cpp import InvalidArgumentError, JointType
+
+from iksel._arrays import reject
+from iksel.pose import euler_from_pose, pose_from_euler, pose_from_quaternion
+
+if TYPE_CHECKING:
+    from iksel._arrays import FloatArray
+    from iksel.view.session import Session
+
+DEGREES = "degrees"
+UNITS = (DEGREES, "radians")
+_DIGITS = 6
+
+
+class Numbers:
+    """Two fields of text, and a button for each that moves the robot there."""
+
+    def __init__(self, gui: Any, session: Session) -> None:
+        """Take viser's GUI and what is shown."""
+        self._session = session
+        robot = session.robot
+        self._turns = np.array([k != JointType.prismatic for k in robot.joint_types])
+        self._degrees = True
+        self.q = gui.add_text(
+            "q",
+            "",
+            multiline=True,
+            hint="values of all joints, in the unit of the sliders",
+        )
+        self.to_q = gui.add_button("move to q")
+        self.pose = gui.add_text(
+            "target",
+            "",
+            multiline=True,
+            hint="x y z [m] roll pitch yaw, or x y z and a quaternion w x y z",
+        )
+        self.to_pose = gui.add_button("move to target")
+
+    @property
+    def buttons(self) -> list[Any]:
+        """What moves the robot."""
+        return [self.to_q, self.to_pose]
+
+    def draw(self, *, degrees: bool) -> None:
+        """Show where the robot and the target are."""
+        self._degrees = degrees
+        pose = self._session.target
+        self.q.value = _words(self._session.q * self._scales())
+        angles = np.array(euler_from_pose(pose)) * self._angle()
+        self.pose.value = _words([*pose[:3, 3], *angles])
+
+    def apply(self, button: Any) -> None:
+        """Move the robot to what is in the field of a button.
+
+        Raises:
+            InvalidArgumentError: The field holds something else.
+        """
+        if button is self.to_q:
+            q = _read("q", self.q.value, (self._session.robot.dof,))
+            self._session.show(q / self._scales())
+            return
+        values = _read("target", self.pose.value, (6, 7))
+        if len(values) == 6:
+            pose = pose_from_euler(values[:3], values[3:] / self._angle())
+        else:
+            norm = np.linalg.norm(values[3:])
+            if norm < 0.9 or norm > 1.1:
+                reject("target", f"a quaternion has length 1, this {norm:.3g}")
+            pose = pose_from_quaternion(values[:3], values[3:] / norm)
+        self._session.move_target(pose)
+
+    def _angle(self) -> float:
+        """What an angle [rad] is multiplied by to be shown."""
+        return float(np.rad2deg(1.0)) if self._degrees else 1.0
+
+    def _scales(self) -> FloatArray:
+        return np.where(self._turns, self._angle(), 1.0)
+
+
+def _words(values: Any) -> str:
+    """Numbers as text; what is nothing but rounding is 0."""
+    rounded = np.round(np.asarray(values, float), _DIGITS) + 0.0
+    return " ".join(f"{value:.{_DIGITS}g}" for value in rounded)
+
+
+def _read(name: str, text: str, counts: tuple[int, ...]) -> FloatArray:
+    """The numbers of a field, which may have commas and brackets between them."""
+    words = re.split(r"[\s,;\[\]()]+", text.strip().strip("[]();,"))
+    listed = " or ".join(map(str, counts))
+    try:
+        values = np.array([float(word) for word in words if word])
+    except ValueError as error:
+        raise InvalidArgumentError(f"{name}: {error}") from None
+    if len(values) not in counts or not np.isfinite(values).all():
+        reject(name, f"expected {listed} numbers, got {text[:80]!r}")
+    return values

@@ -23,7 +23,8 @@ def load(text: str, tags: Mapping[str, Callable[[str], Any]] | None = None) -> A
         ImportError: PyYAML is not installed.
         ValueError: The text is no YAML, or would be too much.
     """
-    import yaml  # noqa: PLC0415 (an optional extra)
+    # An optional extra.
+    import yaml  # type: ignore[import-untyped, unused-ignore]  # noqa: PLC0415
 
     class Loader(yaml.SafeLoader):  # type: ignore[misc, unused-ignore]
         """One whose tags are not SafeLoader's, to which other modules add."""

@@ -229,7 +229,10 @@ class Session : private Questions {
       const Result result = tracker.track(target.pose, dt);
       ++tally_.cases;
       std::string why;
-      EXPECT_TRUE(inside_limits(chain_, tracker.q(), why)) << "tracker: " << why;
+      // From outside it comes back as fast as the joints may move.
+      if (inside_limits(chain_, before, why)) {
+        EXPECT_TRUE(inside_limits(chain_, tracker.q(), why)) << "tracker: " << why;
+      }
       EXPECT_TRUE(step_is_slow_enough(before, tracker.q(), dt)) << "tracker";
       if (result.success()) {
         ++tally_.solved;

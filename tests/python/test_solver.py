@@ -171,7 +171,7 @@ PAPER = iksel.Paper(limit_aware=True, candidates=100, whole_turns=True)
             )
         ],
         (LANES, {"damping": 1.0}),
-        (PAPER, {"kinematics": "kdl"}),
+        (PAPER, {"kinematics": "kernel"}),
         (PAPER, {"ranking": "nearest"}),
         (PAPER, {"rotation_difference": "geodesic"}),
         (PAPER, {"limit_aware": False}),

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 HERE = Path(__file__).parent
 FOLDER = Path(
     os.environ.get("IKSEL_CHAIN_FILES", HERE.parents[1] / "build/chain_files")
-)
+).absolute()
 SEED = int(os.environ.get("IKSEL_TEST_SEED", "1"))
 MOST_JOINTS = 10
 FARTHEST = 10.0
@@ -122,7 +122,15 @@ def report() -> Iterator[list[str]]:
 
 
 @pytest.fixture(scope="module")
-def chains(tmp_path_factory, report) -> list[Found]:
+def elsewhere(tmp_path_factory) -> Iterator[None]:
+    """Be in an empty folder, for MuJoCo writes its warnings to where it is."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(tmp_path_factory.mktemp("elsewhere"))
+        yield
+
+
+@pytest.fixture(scope="module")
+def chains(tmp_path_factory, report, elsewhere) -> list[Found]:
     """All chains that differ in more than names and what is fixed at their ends."""
     different: dict[tuple, Found] = {}
     refused: list[str] = []

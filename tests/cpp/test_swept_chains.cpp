@@ -34,7 +34,7 @@ using lanes::Closure;
 constexpr double kTwoPi = 6.28318530717958647692;
 
 RootSweep sweep_of(const Robot& robot) {
-  return {robot.model(), *iksel::find_closed_form(robot.model()), /*is_nominal=*/true, 1e-6,
+  return {robot.model(), *iksel::find_residual(robot.model()), /*is_nominal=*/true, 1e-6,
           lanes::choose_kernels()};
 }
 
@@ -139,7 +139,7 @@ class SweptChains : public testing::TestWithParam<Swept> {
       SCOPED_TRACE("chain of seed " + std::to_string(seed));
       Dice dice(seed);
       const Robot robot = iksel_test::make_robot(swept.make(dice), dice, limit);
-      auto chain = iksel::find_closed_form(robot.model());
+      auto chain = iksel::find_residual(robot.model());
       ASSERT_TRUE(chain.has_value());
       EXPECT_EQ(iksel::find_structure(robot).kind, iksel::StructureKind::swept);
       check(robot, *chain, dice);

@@ -48,6 +48,26 @@ _NEEDLESS = (
 # Kinds of joints: mjtJoint.
 _FREE, _BALL, _SLIDE, _HINGE = range(4)
 
+# Numbers of what forward kinematics does without, set to MuJoCo's own defaults: a file
+# can ask by one of them for more memory than there is.
+_SIZES = {
+    "memory": -1,
+    "nconmax": -1,
+    "nemax": 0,
+    "njmax": -1,
+    "nkey": 0,
+    "nstack": -1,
+    "nuser_actuator": -1,
+    "nuser_body": -1,
+    "nuser_cam": -1,
+    "nuser_geom": -1,
+    "nuser_jnt": -1,
+    "nuser_sensor": -1,
+    "nuser_site": -1,
+    "nuser_tendon": -1,
+    "nuserdata": 0,
+}
+
 
 def is_mjcf(root: ET.Element) -> bool:
     """Whether XML is MuJoCo's."""
@@ -131,6 +151,8 @@ def compile_bare(spec: Any) -> Any:
             spec.delete(element)
     for site in spec.sites:
         site.material = ""
+    for name, size in _SIZES.items():
+        setattr(spec, name, size)
     # Bodies that had their mass from what is gone still need some.
     spec.compiler.boundmass = 1.0
     spec.compiler.boundinertia = 1.0

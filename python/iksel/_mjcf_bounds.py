@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 MOST_ELEMENTS = 100_000
 """MuJoCo needs 20 s and 2 GB for so many; real models have a tenth at most."""
+MOST_POINTS = 10_000_000
+"""Of a height field or a built-in mesh; real ones have less than a million."""
 
 _COUNTED = ("replicate", "composite", "flexcomp")
 
@@ -49,6 +51,7 @@ def _size(path: Path, folder: Path, known: dict[str, float]) -> float:
     while left:
         element, times = left.pop()
         total += times
+        _check_points(path, element)
         if element.tag == "include":
             total += times * _size(folder / element.get("file", ""), folder, known)
         elif element.tag == "attach" and element.get("model", "") in models:
@@ -57,6 +60,28 @@ def _size(path: Path, folder: Path, known: dict[str, float]) -> float:
         total += times * (_count(element) - 1)
     known[name] = total
     return total
+
+
+def _check_points(path: Path, element: ET.Element) -> None:
+    """Refuse a shape that MuJoCo makes while it reads, if it has too many points."""
+    if element.tag == "hfield":
+        numbers = [element.get("nrow", "0"), element.get("ncol", "0")]
+    elif element.tag == "mesh" and "builtin" in element.attrib:
+        numbers = element.get("params", "").split()
+    else:
+        return
+    try:
+        points = math.prod(max(1.0, abs(float(number))) for number in numbers)
+    except ValueError:
+        return  # as MuJoCo will say
+    # Of some shapes one number says how fine they are in both directions.
+    largest = max((abs(float(number)) for number in numbers), default=0.0)
+    if max(points, largest**2 if element.tag == "mesh" else 0.0) > MOST_POINTS:
+        name = element.get("name", "")
+        raise UrdfError(
+            f"'{path}': refused: {element.tag} {name!r} has more than {MOST_POINTS} "
+            "points; take it out"
+        )
 
 
 def _count(element: ET.Element) -> float:

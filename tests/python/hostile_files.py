@@ -63,6 +63,13 @@ _ENTITIES = '<!DOCTYPE robot [<!ENTITY a0 "aaaaaaaaaa">' + "".join(
     f'<!ENTITY a{i} "{f"&a{i - 1};" * 10}">' for i in range(1, 12)
 )
 _MJ_BODY = '<body><geom size="1"/></body>'
+
+
+def _mjcf(before: str) -> str:
+    """MJCF of a body, with something before it."""
+    return f"<mujoco>{before}<worldbody>{_MJ_BODY}</worldbody></mujoco>"
+
+
 _REPLICAS = '<replicate count="1000">' * 3 + _MJ_BODY + "</replicate>" * 3
 
 TEXTS: dict[str, str] = {
@@ -120,6 +127,15 @@ TEXTS: dict[str, str] = {
     "deep.urdf": '<robot name="r">' + "<a>" * 100_000,
     # MJCF.
     "replicas.xml": f"<mujoco><worldbody>{_REPLICAS}</worldbody></mujoco>",
+    "keys.xml": _mjcf('<size nkey="1000000000"/>'),
+    "user_data.xml": _mjcf('<size nuser_jnt="500000000"/>'),
+    "arena.xml": _mjcf('<size memory="1E"/>'),
+    "height_field.xml": _mjcf(
+        '<asset><hfield name="h" nrow="50000" ncol="50000" size="1 1 1 1"/></asset>'
+    ),
+    "built_mesh.xml": _mjcf(
+        '<asset><mesh name="m" builtin="supersphere" params="100000 1 1"/></asset>'
+    ),
     "in_itself.xml": '<mujoco><include file="in_itself.xml"/></mujoco>',
     "pipe.xml": '<mujoco><include file="pipe"/></mujoco>',
     "plugin.xml": '<mujoco><extension><plugin plugin="os.system"/></extension>'

@@ -406,31 +406,54 @@ def test_the_last_port_taken_is_an_error(made) -> None:
             view.Viewer(made.solver("ur5e"), port=65535)
 
 
-def test_pages_of_other_sites_are_refused(show) -> None:
+def ask(viewer, origin, host=None) -> bool:
+    """Whether a page of an origin may connect; asks for `host` as browsers do."""
     refusal = importlib.import_module("websockets.exceptions").InvalidStatus
     connect = importlib.import_module("websockets.sync.client").connect
-    viewer = show()
-    at = f"127.0.0.1:{viewer.port}"
-
-    def ask(origin, host=None):
-        headers = {"Origin": origin} if origin else {}
-        url = f"ws://{host or at}"
+    headers = {"Origin": origin} if origin else {}
+    url = f"ws://{host or f'127.0.0.1:{viewer.port}'}"
+    try:
         with (
             socket.create_connection(("127.0.0.1", viewer.port)) as link,
             connect(url, sock=link, additional_headers=headers),
         ):
             return True
+    except refusal as error:
+        return error.response.status_code != 403
 
-    assert ask(None)
-    assert ask(f"http://{at}")
-    assert ask(f"http://localhost:{viewer.port}", f"localhost:{viewer.port}")
-    foreign = f"evil.example:{viewer.port}"
+
+def test_pages_of_other_sites_are_refused(show) -> None:
+    viewer = show()
+    port = viewer.port
+    assert ask(viewer, None)
+    assert ask(viewer, f"http://127.0.0.1:{port}")
+    assert ask(viewer, f"http://localhost:{port}", f"localhost:{port}")
+    foreign = f"evil.example:{port}"
     for origin, host in (
         ("http://evil.example", None),
         (f"http://{foreign}", None),
         (f"http://{foreign}", foreign),  # a name that was made to point here
         ("null", None),
-        (f"http://localhost:{viewer.port + 1}", None),
+        (f"http://localhost:{port + 1}", None),
     ):
-        with pytest.raises(refusal, match="403"):
-            ask(origin, host)
+        assert not ask(viewer, origin, host)
+
+
+def test_pages_that_are_allowed_may_connect(made) -> None:
+    origins = ["https://lab.example:8443", "https://Desk.example/"]
+    port = free_port()
+    with view.Viewer(made.solver("ur5e"), port=port, origins=origins) as viewer:
+        for origin in ("https://lab.example:8443", "https://desk.example"):
+            assert ask(viewer, origin)
+            assert ask(viewer, origin, "lab.example:8443")  # as a proxy passes it on
+        assert ask(viewer, f"http://127.0.0.1:{port}")
+        for origin in ("http://lab.example:8443", "https://lab.example", "null"):
+            assert not ask(viewer, origin)
+
+
+@pytest.mark.parametrize(
+    "origins", ["https://a.example", ["lab.example"], ["https://a/b"], ["*"], [""]]
+)
+def test_what_is_no_origin_is_named(made, origins) -> None:
+    with pytest.raises(iksel.InvalidArgumentError, match="^origins: "):
+        view.Viewer(made.solver("ur5e"), port=free_port(), origins=origins)

@@ -73,6 +73,14 @@ def add_server(parser: argparse.ArgumentParser) -> None:
         help="address to listen at (default: %(default)s, this machine alone; 0.0.0.0: "
         "all)",
     )
+    parser.add_argument(
+        "--origin",
+        action="append",
+        default=[],
+        metavar="URL",
+        help="a page that may connect besides the viewer's own, such as one behind a "
+        "proxy: https://lab.example:8443; may be repeated",
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -95,7 +103,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 def serve(arguments: argparse.Namespace, solver: Solver, **looks: Any) -> Viewer:
     """A viewer where the flags of add_server() say; `looks` are Viewer's."""
-    return Viewer(solver, port=arguments.port, host=arguments.host, **looks)
+    where = {"port": arguments.port, "host": arguments.host}
+    return Viewer(solver, **where, origins=arguments.origin, **looks)
 
 
 def announce(viewer: Viewer) -> None:

@@ -18,7 +18,7 @@ from iksel_cpp import InvalidArgumentError
 from iksel._arrays import reject
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
 MOST_PORTS = 1000
 """How many ports are tried, from the one that is asked for."""
@@ -26,14 +26,22 @@ _LAST_PORT = 65535
 _lock = threading.Lock()  # the package websockets is changed for a moment
 
 
-def start(viser: Any, host: str, port: int) -> Any:
+def start(viser: Any, host: str, port: int, origins: Iterable[str] = ()) -> Any:
     """Start a server of viser, at a port or the next free one.
 
+    Args:
+        viser: The module.
+        host: Where it listens.
+        port: The first port that is tried.
+        origins: Of pages that may connect besides its own, as https://lab.example:8443.
+
     Raises:
-        InvalidArgumentError: No address of this machine, no port, or none is free.
+        InvalidArgumentError: No address of this machine, no port, or none is free; or
+            what is no origin.
     """
+    allowed = _checked_origins(origins)
     free = _free_port(host, port)
-    with _lock, quietly(), _own_pages_alone(host):
+    with _lock, quietly(), _chosen_pages_alone(host, allowed):
         return viser.ViserServer(host=host, port=free, verbose=False)
 
 
@@ -56,6 +64,20 @@ def is_own_page(host: str, origin: str | None, asked: str | None) -> bool:
     # Of a foreign name that was made to point here, both agree.
     own = {host.lower(), "localhost", socket.gethostname().lower()}
     return origin is None or name in own | {socket.getfqdn().lower()} or _is_ip(name)
+
+
+def _checked_origins(origins: Iterable[str]) -> frozenset[str]:
+    """Origins as browsers send them."""
+    if isinstance(origins, str):
+        reject("origins", f"expected a list of texts, got {origins!r}")
+    found = set()
+    for origin in origins:
+        parts = urlsplit(str(origin).rstrip("/").lower())
+        bare = f"{parts.scheme}://{parts.netloc}"
+        if not (parts.scheme and parts.netloc) or parts.geturl() != bare:
+            reject("origins", f"{origin!r} is no origin such as https://lab.example")
+        found.add(bare)
+    return frozenset(found)
 
 
 def _is_ip(name: str) -> bool:
@@ -89,7 +111,7 @@ def _free_port(host: str, port: int) -> int:
 
 
 @contextlib.contextmanager
-def _own_pages_alone(host: str) -> Iterator[None]:
+def _chosen_pages_alone(host: str, allowed: frozenset[str]) -> Iterator[None]:
     """Let servers of websockets that are started meanwhile refuse foreign pages."""
     module: Any = importlib.import_module("websockets.asyncio.server")
     serve = module.serve
@@ -99,7 +121,10 @@ def _own_pages_alone(host: str) -> Iterator[None]:
         def process(connection: Any, request: Any) -> Any:
             origins = request.headers.get_all("Origin") or [None]
             asked = request.headers.get("Host")
-            if not all(is_own_page(host, origin, asked) for origin in origins):
+            if not all(
+                origin in allowed or is_own_page(host, origin, asked)
+                for origin in origins
+            ):
                 return connection.respond(403, "a page of another site\n")
             return (
                 None

@@ -22,7 +22,7 @@ from iksel.view.skeleton import Skeleton
 from iksel.view.visuals import read_pieces
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
     from types import TracebackType
 
     import iksel_cpp
@@ -52,7 +52,7 @@ class Viewer:
 
     The robot follows a target that is dragged in the browser or moved by
     move_target(); sliders turn its joints. Every method may be called from any thread.
-    Pages of other sites are refused.
+    Pages of other sites are refused, but for `origins`.
     """
 
     def __init__(
@@ -66,6 +66,7 @@ class Viewer:
         scene: iksel_cpp.Scene | None = None,
         port: int = PORT,
         host: str = "127.0.0.1",
+        origins: Iterable[str] = (),
     ) -> None:
         """Start to serve.
 
@@ -82,10 +83,13 @@ class Viewer:
             port: Where to serve; the next free one if another program has it.
             host: Address to listen at: by default only this machine can look;
                 "0.0.0.0" for all.
+            origins: Pages that may connect besides the viewer's own, such as one behind
+                a proxy: ["https://lab.example:8443"].
 
         Raises:
             MissingExtraError: viser is not installed.
-            InvalidArgumentError: No address of this machine, or no port that is free.
+            InvalidArgumentError: No address of this machine, no port that is free, or
+                what is no origin.
             UrdfError, UnknownNameError: `urdf` cannot be read.
         """
         viser = _extras.need("viser", user="iksel.view", extra="'iksel[view]'")
@@ -100,7 +104,7 @@ class Viewer:
         self._dragged = False
         self._map: Map | None = None
         self._closed = threading.Event()
-        self._server = start(viser, host, port)
+        self._server = start(viser, host, port, origins)
         self.host = host
         robot = solver.robot
         self._server.gui.set_panel_label(f"iksel: {robot.name}")

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib
 import warnings
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -17,6 +18,7 @@ from iksel.pose import pose_from_quaternion, pose_from_rotation_vector
 
 if TYPE_CHECKING:
     import xml.etree.ElementTree as ET
+    from collections.abc import Iterator
     from pathlib import Path
 
     from iksel._arrays import FloatArray
@@ -101,14 +103,29 @@ def read_file(path: Path) -> Tree:
     mujoco = _import_mujoco(path)
     check_size(path)
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of what the file is made of
+        with _without_warnings(mujoco):
             model = compile_bare(mujoco.MjSpec.from_file(str(path)))
         return read_model(model)
     except (ValueError, TypeError, RuntimeError, mujoco.FatalError) as error:
         reason = " ".join(str(error).split())
         remedy = _remedy(reason, path, mujoco.__version__)
         raise UrdfError(f"'{path}': mujoco says: {reason}; {remedy}") from None
+
+
+@contextlib.contextmanager
+def _without_warnings(mujoco: Any) -> Iterator[None]:
+    """Take no notice of what MuJoCo warns of in a file.
+
+    It would print some of that, and write it to MUJOCO_LOG.TXT in the working folder.
+    """
+    before = mujoco.get_mju_user_warning()
+    mujoco.set_mju_user_warning(lambda _message: None)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            yield
+    finally:
+        mujoco.set_mju_user_warning(before)
 
 
 def _import_mujoco(path: Path) -> Any:

@@ -127,6 +127,8 @@ TEXTS: dict[str, str] = {
     "deep.urdf": '<robot name="r">' + "<a>" * 100_000,
     # MJCF.
     "replicas.xml": f"<mujoco><worldbody>{_REPLICAS}</worldbody></mujoco>",
+    "warned_of.xml": "<mujoco><worldbody><body pos='nan 0 0'>"
+    "<joint/><geom size='1'/></body></worldbody></mujoco>",
     "keys.xml": _mjcf('<size nkey="1000000000"/>'),
     "user_data.xml": _mjcf('<size nuser_jnt="500000000"/>'),
     "arena.xml": _mjcf('<size memory="1E"/>'),
@@ -277,6 +279,7 @@ def main(folder: Path) -> None:
     events: list[str] = []
     watch(events)
     os.chdir(folder)
+    before = set(folder.rglob("*"))
     for path in paths:
         for number, read in enumerate(known[path.suffix]):
             events.clear()
@@ -286,6 +289,8 @@ def main(folder: Path) -> None:
             except Exception as error:  # noqa: BLE001 (which is looked at)
                 raised = " ".join(kind.__name__ for kind in type(error).__mro__)
                 said = str(error)
+            # Libraries in C write without a word to Python.
+            events += [f"new {new}" for new in set(folder.rglob("*")) - before]
             report = [path.name, number, raised, said, events]
             print(json.dumps(report), flush=True)  # noqa: T201 (its output)
 

@@ -32,6 +32,8 @@ class IKSEL_EXPORT Selector {
   /// key is reduced: to limits and to the joints that such a key leaves out, a database alone says
   /// nothing.
   explicit Selector(const Database& database, const Paper& scheme = {});
+  Selector(const Selector&) = delete;
+  Selector& operator=(const Selector&) = delete;
   Selector(Selector&&) noexcept;
   Selector& operator=(Selector&&) noexcept;
   ~Selector();

@@ -272,11 +272,11 @@ std::optional<Proof> Search<Answers>::by_branches(Branches& branches, Proof kind
   if (enumerated.is_certain()) {
     if (enumerated.is_empty()) return kind;
     if (answers.has_any() && !branches.has_families()) return kind;
-  } else if (!answers.has_any() &&
-             descend_from(branches.size(), [&](int i) { return branches.q(i); })) {
-    return Proof::none;
-  } else if (enumerated.is_certain_but_for_limits() && !branches.has_families()) {
-    return Proof::none;
+  } else {
+    const bool has_descended =
+        !answers.has_any() && descend_from(branches.size(), [&](int i) { return branches.q(i); });
+    const bool is_all = enumerated.is_certain_but_for_limits() && !branches.has_families();
+    if (has_descended || is_all) return Proof::none;
   }
   if (kind == Proof::sweep) {
     work.leave(kBesideRoots);

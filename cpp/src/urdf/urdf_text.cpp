@@ -25,7 +25,7 @@ struct Part {
 };
 
 const std::vector<Part>& joint_parts() {
-  static const std::vector<Part> parts = {
+  static const std::vector<Part> kParts = {
       {"parent", {"link"}, {}, {}},
       {"child", {"link"}, {}, {}},
       {"origin", {}, {"xyz", "rpy"}, {}},
@@ -34,7 +34,7 @@ const std::vector<Part>& joint_parts() {
       {"mimic", {"joint"}, {"multiplier", "offset"}, {}},
       {"safety_controller", {}, {}, {"soft_lower_limit", "soft_upper_limit"}},
   };
-  return parts;
+  return kParts;
 }
 
 /// The words of a text.
@@ -55,7 +55,7 @@ std::string plain_numbers(const std::string& text) {
 
 /// A limit as urdfdom reads it. Infinity, which it does not know, is the largest number.
 std::string plain_limit(const std::string& text) {
-  const std::string number = plain_numbers(text);
+  std::string number = plain_numbers(text);
   std::string size = number.substr(number.find_first_not_of("+-") == 1 ? 1 : 0);
   std::transform(size.begin(), size.end(), size.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });

@@ -20,7 +20,7 @@ from iksel.view.visuals import read_pieces
 
 SEED = int(os.environ.get("IKSEL_TEST_SEED", "1"))
 FILES = 20
-FOUND = Path("/work/shared/found")
+FOUND = Path(__file__).parents[3] / "shared" / "found"
 EACH = pytest.mark.parametrize(
     "rng",
     [(SEED, i) for i in range(FILES)],

@@ -5,7 +5,7 @@
 # Usage: scripts/compiled.sh LOG    (where $CCACHE_STATSLOG had ccache write)
 #
 # A source is the same one in whatever folder of build it was made or compiled. What CMake compiles to know
-# the compiler does not count.
+# the compiler, an src.cxx of its own, does not count.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 case ${1-} in
@@ -16,7 +16,7 @@ esac
 awk '
   /^# / {
     source = substr($0, 3)
-    own = source !~ /\/cmake[^\/]*\/Modules\//
+    own = source !~ /\/cmake[^\/]*\/Modules\/|(^|\/)src\.cxx$/
     sub(/^.*build\/[^\/]*\//, "", source)
   }
   /^cache_miss$/ && own { compiled += 1; times[source] += 1 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/constants.hpp"
 #include "goal/task_space.hpp"
 #include "iksel/options.hpp"
 #include "kinematics/chain_model.hpp"
@@ -20,6 +21,9 @@ struct Patience {
   int most;
   /// Every so many iterations it may be looked where a seed is heading; 0: never.
   int look = 0;
+  /// A seed that almost arrived is given up when so often in a row its error did not fall by half;
+  /// 0: never.
+  int stalls = 0;
 };
 
 /// Whether as few lanes as give an answer soonest, or as many as do most (lane_types.hpp).
@@ -47,6 +51,8 @@ class LaneRefiner {
     if (chain_.coupled_rows > 0) hold_coupled(lane);
     age_[lane] = 0;
     next_look_[lane] = patience_.look > 0 ? patience_.look : kNever;
+    refused_error2_[lane] = kInfinity;
+    stalls_[lane] = 0;
   }
   /// Starts a lane at a configuration that came from elsewhere, held to the limits.
   void load_seed(int lane, const double* q);
@@ -63,6 +69,14 @@ class LaneRefiner {
   int advance(unsigned busy);
   [[nodiscard]] bool has_arrived(int lane) const {
     return (arrived_ >> static_cast<unsigned>(lane) & 1U) != 0;
+  }
+  /// What arrived is no answer yet: notes it, and returns whether it stays there.
+  bool stays(int lane) {
+    constexpr double kHalf2 = 0.25;
+    const double error2 = pack_.error2[lane];
+    stalls_[lane] = error2 > kHalf2 * refused_error2_[lane] ? stalls_[lane] + 1 : 0;
+    refused_error2_[lane] = error2;
+    return patience_.stalls > 0 && stalls_[lane] >= patience_.stalls;
   }
   [[nodiscard]] bool is_spent(int lane) const {
     return age_[lane] >= patience_.most ||
@@ -115,6 +129,8 @@ class LaneRefiner {
   Patience patience_{};
   int age_[lanes::kWidth] = {};
   int next_look_[lanes::kWidth] = {};
+  double refused_error2_[lanes::kWidth] = {};
+  int stalls_[lanes::kWidth] = {};
   unsigned arrived_ = 0;
   unsigned there_ = 0;  ///< lanes loaded with answers since the last advance()
 };

@@ -27,6 +27,7 @@ class SchemeRefiner {
   [[nodiscard]] bool has_arrived(int /*lane*/) const { return outcome_ == Outcome::solved; }
   [[nodiscard]] bool is_spent(int /*lane*/) const { return true; }
   [[nodiscard]] bool is_to_be_looked_at(int /*lane*/) const { return false; }
+  static bool stays(int /*lane*/) { return false; }
   [[nodiscard]] const JointVector& at(int /*lane*/) const { return q_; }
   [[nodiscard]] const JointVector& q(int /*lane*/) const { return q_; }
   /// Whether an attempt since begin() reached the goal outside the limits.

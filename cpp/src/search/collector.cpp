@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "base/constants.hpp"
+#include "refine/self_motion.hpp"
 #include "seeds/fold_partner.hpp"
 
 namespace iksel {
@@ -22,6 +24,9 @@ constexpr int kStagnationBalanced = 28;
 /// The same after all branches in closed form. What 400 seeds find besides are no solutions of
 /// their own, but points of a curve that is one to within the tolerances (bench/README.md).
 constexpr int kStagnationEnumerated = 8;
+/// An image that lies no farther beyond a limit may have an answer at the limit beside it, where the
+/// arm is almost singular [rad].
+constexpr double kBesideLimit = 5e-3;
 
 /// Where the images of an answer are wanted.
 JointVector wanted_images(const JointSpace& joints, const SolveRequest& request,
@@ -87,19 +92,31 @@ void Collector::offer_near() {
 }
 
 void Collector::wrap_near(const JointVector& near, Result& answer) const {
-  // An answer at a limit lies outside by rounding as often as not. Held to the limit it need not be
-  // a whole turn away.
-  JointVector image = answer.q;
   const auto length = [&](const JointVector& d) {
     return nearest_to_ ? nearest_to_->move.length(d) : JointMove(model_.dof, request_).length(d);
   };
-  const double slack = goal_.task().rotation_tolerance();
-  const bool held = model_.joints.wrap_nearest(near, slack, length, image);
-  if (image == answer.q) return;
+  const JointVector found = answer.q;
+  JointVector image = found;
+  const auto wrap = [&](double slack) {
+    image = found;
+    return model_.joints.wrap_nearest(near, slack, length, image);
+  };
+  // An answer at a limit lies outside by rounding as often as not. Held to the limit it need not be
+  // a whole turn away.
+  const bool is_held = wrap(goal_.task().rotation_tolerance());
   // Whole turns round, and so measured again.
-  if (goal_.check(image, answer) || !held) return;
-  image = answer.q;
-  model_.joints.wrap_nearest(near, 0, length, image);
+  if (image == found || goal_.check(image, answer)) {
+    if ((image - near).cwiseAbs().maxCoeff() <= kPi || !wrap(kBesideLimit)) return;
+  } else if (!is_held) {
+    return;
+  }
+  // Nor need the answer at the limit that the others make up for.
+  const JointVector held = image;
+  if (converge(model_, goal_, kStepsToNext, image) &&
+      (image - held).cwiseAbs().maxCoeff() < 2 * kBesideLimit && goal_.check(image, answer)) {
+    return;
+  }
+  wrap(0);
   goal_.check(image, answer);
 }
 

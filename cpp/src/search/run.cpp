@@ -10,6 +10,7 @@
 #include "search/first_answer.hpp"
 #include "search/search.hpp"
 #include "seeds/allowed_seeds.hpp"
+#include "seeds/beyond_limits.hpp"
 #include "seeds/given_seeds.hpp"
 #include "seeds/leaf_seeds.hpp"
 #include "seeds/nearby_seeds.hpp"
@@ -145,7 +146,10 @@ Proof Search<Answers>::in_lanes() const {
     const int from_leaf = is_screened              ? kBeforeSamples
                           : workspace.lanes->roots ? kBeforeRoots
                                                    : lanes::kBlock;
-    if (workspace.lanes->sweep) refiner.begin(goal.task(), kBeforeSweep, Width::narrow);
+    const bool is_swept = workspace.lanes->sweep.has_value();
+    if (is_swept || workspace.lanes->roots) {
+      refiner.begin(goal.task(), is_swept ? kBeforeSweep : kBeforeBranches, Width::narrow);
+    }
     LeafSeeds leaf(query, from_leaf, work, clock);
     if (run(refiner, near, given, leaf) || !request.database_seeds) return Proof::none;
     if (is_screened) {
@@ -199,6 +203,11 @@ bool Search<Answers>::descend_from(int count, const Joints& joints) const {
   for (int i = 0; i < count && !is_satisfied && answers.should_continue(); ++i) {
     work.take_on_top();
     JointVector q = Eigen::Map<const Eigen::VectorXd>(joints(i), model.dof);
+    if (goal.is_full_pose() && seems_beyond_limits(model, goal.target(), q,
+                                                   options.position_tolerance,
+                                                   options.rotation_tolerance)) {
+      continue;
+    }
     if (!descend_into_tolerances(model, goal, q)) continue;
     is_satisfied = answers.offer(0, q) == Verdict::stop;
   }
@@ -225,12 +234,24 @@ std::optional<Proof> Search<Answers>::by_sweep(const Pose& Y) const {
   Workspace::InLanes& lanes = *workspace.lanes;
   SweptSeeds swept(*lanes.sweep, Y, work, clock);
   if (search(lanes.refiner, swept, answers, work)) return Proof::none;
-  if (lanes.ends && (!swept.is_none() || lanes.ends->are_closed())) {
-    if (const auto proof = by_ends()) return *proof;
+  if (lanes.ends && lanes.ends->are_closed()) {
+    const auto proof = by_ends();
+    if (proof == Proof::none) return proof;
+    if (proof) {
+      // No curve of solutions crosses a limit: one inside is closed, and between two samples.
+      swept.look_between(Sweep::Between::beyond_folds);
+      return search(lanes.refiner, swept, answers, work) ? Proof::none : proof;
+    }
+  }
+  swept.look_between(Sweep::Between::all);
+  if (search(lanes.refiner, swept, answers, work)) return Proof::none;
+  if (swept.is_none()) return Proof::sweep;
+  if (lanes.ends && !lanes.ends->are_closed()) {
+    if (const auto proof = by_ends()) return proof;
   }
   swept.give_close();
   if (search(lanes.refiner, swept, answers, work)) return Proof::none;
-  return swept.is_none() ? std::optional(Proof::sweep) : std::nullopt;
+  return std::nullopt;
 }
 
 template <typename Answers>

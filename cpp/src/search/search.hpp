@@ -3,8 +3,8 @@
 // until the answers ask for no more.
 //
 // What takes part is chosen by the caller:
-//   Refiner  width(), advance(busy), has_arrived, is_spent, is_to_be_looked_at, at and q of a lane
-//            (lane_refiner.hpp, scheme_refiner.hpp);
+//   Refiner  width(), advance(busy), has_arrived, stays, is_spent, is_to_be_looked_at, at and q
+//            of a lane (lane_refiner.hpp, scheme_refiner.hpp);
 //   Seeds    bool next_stage(), false if there are no more; bool load(refiner, lane), false if the
 //            stage has no more for this lane (seeds/);
 //   Answers  Verdict offer(lane, q); bool knows(q), where a seed need not be followed any further;
@@ -49,7 +49,7 @@ bool search(Refiner& refiner, Seeds& seeds, Answers& answers, Work& work) {
           JointVector q = refiner.q(lane);
           const Verdict verdict = answers.offer(lane, q);
           if (verdict == Verdict::stop) return true;
-          finished = finished || verdict == Verdict::next;
+          finished = verdict == Verdict::refine ? refiner.stays(lane) || finished : true;
         }
         if (finished) refill(lane);
       }

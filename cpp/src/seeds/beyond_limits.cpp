@@ -2,16 +2,35 @@
 #include "seeds/beyond_limits.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
 
+#include "base/constants.hpp"
+#include "base/pseudo_inverse.hpp"
 #include "iksel/pose.hpp"
 #include "seeds/fold_partner.hpp"
 
 namespace iksel {
+namespace {
+
+/// Farthest that joints may move for the first order to tell [rad or m].
+constexpr double kFarthest = 0.01;
+
+/// Along which a redundant arm of seven joints moves.
+JointVector self_motion_direction(const JacobianMatrix& J, const PseudoInverse& inverse) {
+  const auto dof = static_cast<int>(J.cols());
+  JointVector best = JointVector::Zero(dof);
+  for (int k = 0; k < dof; ++k) {
+    const JointVector n = JointVector::Unit(dof, k) - inverse * J.col(k);
+    if (n.squaredNorm() > best.squaredNorm()) best = n;
+  }
+  return best;
+}
+
+}  // namespace
 
 bool is_beyond_limits(const ChainModel& model, const Pose& T_base_tcp, JointVector q,
                       double position_tolerance, double rotation_tolerance, bool and_partner) {
-  /// Farthest that joints may move for the first order to tell [rad or m].
-  constexpr double kFarthest = 0.01;
   /// The tolerances count so many times, for what the first order does not tell.
   constexpr double kMargin = 2;
   /// Newton's method is there [rad or m].
@@ -44,6 +63,58 @@ bool is_beyond_limits(const ChainModel& model, const Pose& T_base_tcp, JointVect
   const FoldPartner partner = find_fold_partner(J, q, 0);
   return !partner.paired ||
          is_beyond_limits(model, T_base_tcp, partner.other, position_tolerance, rotation_tolerance);
+}
+
+bool seems_beyond_limits(const ChainModel& model, const Pose& T_base_tcp, const JointVector& q,
+                         double position_tolerance, double rotation_tolerance) {
+  constexpr double kMargin = 1.05;
+  if (model.dof != 6 && model.dof != 7) return false;
+  Pose pose;
+  Jacobian columns;
+  model.fk_jacobian(q.data(), pose, columns);
+  const JacobianMatrix J = columns;
+  const PseudoInverse inverse = damped_inverse(J, 0);
+  const JointVector step = inverse * pose_error(T_base_tcp, pose);
+  // A displacement within the tolerances adds no more than this to a weighted sum of joints, whose
+  // row of the inverse this is.
+  const auto reach = [&](const Eigen::Matrix<double, 1, 6>& row) {
+    return kMargin * (position_tolerance * row.head<3>().norm() +
+                      rotation_tolerance * row.tail<3>().norm());
+  };
+  // How far each is outside, less than 0 inside, and outwards of which limit.
+  JointVector beyond(model.dof);
+  JointVector outwards(model.dof);
+  for (int j = 0; j < model.dof; ++j) {
+    // Written so that NaN tells nothing.
+    if (!(std::abs(step[j]) < kFarthest && reach(inverse.row(j)) < kFarthest)) return false;
+    const double at = q[j] + step[j];
+    const double above = at - model.joints.upper[j];
+    const double below = model.joints.lower[j] - at;
+    outwards[j] = above > below ? 1 : -1;
+    beyond[j] = model.joints.is_periodic(j) ? -kInfinity : std::max(above, below);
+  }
+  if (model.dof == 6) {
+    for (int j = 0; j < 6; ++j) {
+      if (beyond[j] > reach(inverse.row(j))) return true;
+    }
+    return false;
+  }
+  // Of two joints that a self-motion moves outwards and inwards, the weighted sum that it leaves
+  // as it is.
+  const JointVector along = self_motion_direction(J, inverse).cwiseProduct(outwards);
+  for (int a = 0; a < model.dof; ++a) {
+    for (int b = 0; b < a; ++b) {
+      if (!(along[a] * along[b] < 0 && std::min(beyond[a], beyond[b]) > -kFarthest)) continue;
+      const double weight_a = std::abs(along[b]);
+      const double weight_b = std::abs(along[a]);
+      const double sum = weight_a * beyond[a] + weight_b * beyond[b];
+      if (sum > reach(weight_a * outwards[a] * inverse.row(a) +
+                      weight_b * outwards[b] * inverse.row(b))) {
+        return true;
+      }
+    }
+  }
+  return false;
 }
 
 }  // namespace iksel

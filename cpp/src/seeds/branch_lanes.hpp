@@ -23,6 +23,7 @@ class BranchLanes {
   int advance(unsigned busy);
   [[nodiscard]] bool has_arrived(int lane) const { return lanes_[lane].is_inside; }
   [[nodiscard]] static bool is_spent(int /*lane*/) { return true; }
+  static bool stays(int /*lane*/) { return false; }
   [[nodiscard]] static bool is_to_be_looked_at(int /*lane*/) { return false; }
   [[nodiscard]] static int age(int /*lane*/) { return 0; }
   [[nodiscard]] JointVector at(int lane) const { return q(lane); }

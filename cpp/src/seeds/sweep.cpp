@@ -16,7 +16,7 @@ Sweep::Sweep(const ChainModel& model, const ClosedFormChain& chain, bool is_nomi
       miss_(is_nominal, tolerance),
       rows_(kSamples) {}
 
-bool Sweep::find(const Pose& Y) {
+bool Sweep::find_at_samples(const Pose& Y) {
   set_target(Y);
   for (int pack = 0; pack < kPacks; ++pack) {
     // Far from each other first, so that an answer is soon found.
@@ -29,11 +29,19 @@ bool Sweep::find(const Pose& Y) {
       if (take_answer(first + i)) return true;
     }
   }
+  return false;
+}
+
+bool Sweep::find_between(Between where) {
   nearest_.find(places_, rows_, kNear);
   least_ = kInfinity;
   close_.clear();
   for (const LeastPlace& near : nearest_) {
     least_ = std::min(least_, near.value);
+    if (where == Between::beyond_folds) {
+      branches_.solve_all(places_.value(near.place));
+      if (branches_.least(near.branch) >= 0) continue;
+    }
     if (follow(near)) return true;
   }
   return false;

@@ -24,7 +24,14 @@ class Sweep {
 
   /// Looks for an answer to Y (reduction.hpp): at the samples, and where branches come near to one,
   /// between them. True if there is one.
-  bool find(const Pose& Y);
+  bool find(const Pose& Y) { return find_at_samples(Y) || find_between(Between::all); }
+  /// The first part of it.
+  bool find_at_samples(const Pose& Y);
+  /// Where it is looked between samples: wherever a branch comes near to an answer, or only where
+  /// none exists at the sample, so that a closed curve of answers may lie beside it.
+  enum class Between { all, beyond_folds };
+  /// The second part.
+  bool find_between(Between where);
   /// Adds the branches inside the limits at every `stride`-th sample from `first` on, seven joint
   /// values each [rad].
   void add_samples(const Pose& Y, int first, int stride, std::vector<double>& q);
@@ -90,24 +97,26 @@ class Sweep {
   int branch_ = 0;
 };
 
-/// These as a source of seeds: the answer in a first stage; where there is none, and it is asked
-/// for, what comes close to one in a second.
+/// These as a source of seeds: an answer at a sample; where there is none, and it is asked for, one
+/// between samples, and then what comes close to one.
 class SweptSeeds {
  public:
   SweptSeeds(Sweep& sweep, const Pose& Y, Work& work, StageClock& clock)
       : sweep_(sweep), Y_(Y), work_(work), clock_(clock) {}
 
   bool next_stage() {
-    if (!work_.has_left() || stage_ == (with_close_ ? 2 : 1)) return false;
-    if (stage_++ > 0) return !found_;
-    found_ = sweep_.find(Y_);
+    if (!work_.has_left() || found_ || next_part_ == Part::none) return false;
+    part_ = next_part_;
+    next_part_ = Part::none;
+    if (part_ == Part::samples) found_ = sweep_.find_at_samples(Y_);
+    if (part_ == Part::between) found_ = sweep_.find_between(where_);
     clock_.lap(&StageTimes::query);
     return true;
   }
 
   template <typename Refiner>
   bool load(Refiner& refiner, int lane) {
-    const std::size_t count = stage_ > 1 ? sweep_.close_count() : found_ ? 1 : 0;
+    const std::size_t count = part_ == Part::close ? sweep_.close_count() : found_ ? 1 : 0;
     if (next_ == count || !work_.take()) return false;
     if (found_) {
       refiner.load_answer(lane, sweep_.q());
@@ -117,18 +126,26 @@ class SweptSeeds {
     ++next_;
     return true;
   }
-  /// From now on, what comes close to an answer is given too.
-  void give_close() { with_close_ = true; }
-  /// Whether there is no answer.
-  [[nodiscard]] bool is_none() const { return stage_ > 0 && !found_ && sweep_.is_none(); }
+  /// Next, it is looked between samples.
+  void look_between(Sweep::Between where) {
+    next_part_ = Part::between;
+    where_ = where;
+  }
+  /// Next, what was found to come close to an answer is given.
+  void give_close() { next_part_ = Part::close; }
+  /// Whether there is no answer, once all between the samples was looked at.
+  [[nodiscard]] bool is_none() const { return !found_ && sweep_.is_none(); }
 
  private:
+  enum class Part { none, samples, between, close };
+
   Sweep& sweep_;
   const Pose& Y_;
   Work& work_;
   StageClock& clock_;
-  int stage_ = 0;
-  bool with_close_ = false;
+  Part part_ = Part::none;
+  Part next_part_ = Part::samples;
+  Sweep::Between where_ = Sweep::Between::all;
   bool found_ = false;
   std::size_t next_ = 0;
 };

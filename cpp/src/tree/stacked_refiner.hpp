@@ -33,6 +33,7 @@ class StackedRefiner {
   int advance(unsigned busy);
   [[nodiscard]] bool has_arrived(int /*lane*/) const { return has_arrived_; }
   [[nodiscard]] bool is_spent(int /*lane*/) const { return true; }
+  static bool stays(int /*lane*/) { return false; }
   [[nodiscard]] bool is_to_be_looked_at(int /*lane*/) const { return false; }
   [[nodiscard]] const JointVector& at(int /*lane*/) const { return q_; }
   [[nodiscard]] const JointVector& q(int /*lane*/) const { return q_; }

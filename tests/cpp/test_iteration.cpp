@@ -138,8 +138,8 @@ TEST(Steps, LmNeverLeavesTheLimits) {
       JointVector at = q.row(i);
       at[1] = i % 2 == 0 ? robot.lower()[1] : robot.upper()[1];
       const Vector6 e = 5 * random_error(random);
-      const JointVector goal =
-          at + iksel::lm_step(robot.model(), at, robot.jacobian(at), e, 1e-3 * e.squaredNorm());
+      const JointVector goal = at + iksel::lm_step(robot.model(), at, robot.jacobian(at), e,
+                                                   1e-3 * e.squaredNorm(), true);
       for (int j = 0; j < robot.dof(); ++j) {
         if (robot.model().joints.is_periodic(j)) continue;
         EXPECT_GE(goal[j], robot.lower()[j] - 1e-12);

@@ -46,7 +46,7 @@ JointVector make_step(const IterationContext& context, const JointVector& q,
     case Iteration::lm:
       break;
   }
-  return lm_step(context.model, q, J, e, scheme.damping * squared_error);
+  return lm_step(context.model, q, J, e, scheme.damping * squared_error, scheme.whole_turns);
 }
 
 /// What follows a step besides adding it.

@@ -66,11 +66,11 @@ JointVector cwpi_step(const ChainModel& model, const JointVector& q, const Jacob
 }
 
 JointVector lm_step(const ChainModel& model, const JointVector& q, const JacobianMatrix& J,
-                    const Vector6& e, double damping) {
+                    const Vector6& e, double damping, bool wraps) {
   JacobianMatrix active = J;
   JointVector free = JointVector::Ones(model.dof);
   for (int i = 0; i < model.dof; ++i) {
-    if (model.joints.winds(i)) continue;
+    if (wraps && model.joints.winds(i)) continue;
     const double gradient = J.col(i).dot(e);
     if ((q[i] <= model.joints.lower[i] && gradient < 0) ||
         (q[i] >= model.joints.upper[i] && gradient > 0)) {
@@ -85,7 +85,7 @@ JointVector lm_step(const ChainModel& model, const JointVector& q, const Jacobia
   // The floor keeps the solve regular where the error is zero in double precision.
   JointVector step = damped_solve(active, damping + 1e-18, e);
   for (int i = 0; i < model.dof; ++i) {
-    if (model.joints.winds(i)) continue;
+    if (wraps && model.joints.winds(i)) continue;
     const double goal =
         std::min(std::max(q[i] + step[i], model.joints.lower[i]), model.joints.upper[i]);
     step[i] = goal - q[i];

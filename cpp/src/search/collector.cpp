@@ -24,8 +24,8 @@ constexpr int kStagnationBalanced = 28;
 /// The same after all branches in closed form. What 400 seeds find besides are no solutions of
 /// their own, but points of a curve that is one to within the tolerances (bench/README.md).
 constexpr int kStagnationEnumerated = 8;
-/// An image that lies no farther beyond a limit may have an answer at the limit beside it, where the
-/// arm is almost singular [rad].
+/// An image that lies no farther beyond a limit may have an answer at the limit beside it, where
+/// the arm is almost singular [rad].
 constexpr double kBesideLimit = 5e-3;
 
 /// Where the images of an answer are wanted.
@@ -89,6 +89,13 @@ void Collector::offer_near() {
   if (!request_.near || !goal_.check(*request_.near, stays)) return;
   JointVector q = *request_.near;
   offer(0, q);
+}
+
+void Collector::set_may_be_singular() {
+  may_be_singular_ = true;
+  if (!nearest_to_) return;
+  JointVector q = nearest_to_->from;
+  if (converge(model_, goal_, kStepsToNext, q)) offer(0, q);
 }
 
 void Collector::wrap_near(const JointVector& near, Result& answer) const {

@@ -66,8 +66,9 @@ class Collector {
   void look_for_partners(bool look) { looks_for_partners_ = look; }
   /// Says that all branches in closed form were tried: what is left lies around those in doubt.
   void set_all_branches_tried() { has_all_branches_ = true; }
-  /// Says that the arm may be singular at a solution, which is then one of a family.
-  void set_may_be_singular() { may_be_singular_ = true; }
+  /// Says that the arm may be singular at a solution, which is then one of a family: the one beside
+  /// `near` need not be among the branches, and is looked for.
+  void set_may_be_singular();
   [[nodiscard]] bool may_be_singular() const { return may_be_singular_; }
   /// Whether more than the first answer is wanted.
   [[nodiscard]] bool wants_more() const { return aim_.until_complete || ranks_answers(request_); }

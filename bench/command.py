@@ -10,7 +10,19 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from bench import beside, body, closest, coupled, dual, laws, lost, plan, scene, tips
+from bench import (
+    beside,
+    body,
+    closest,
+    cold,
+    coupled,
+    dual,
+    laws,
+    lost,
+    plan,
+    scene,
+    tips,
+)
 from bench.arguments import add_robots
 from bench.arms import RIVAL_ARMS
 from bench.frozen import compare, record
@@ -44,6 +56,7 @@ ALONE = {
     "scene": scene,
     "body": body,
     "closest": closest,
+    "cold": cold,
     "coupled": coupled,
     "dual": dual,
     "laws": laws,

@@ -158,7 +158,11 @@ Raises:
   cls.def("__len__", &Database::size);
   add_property(cls, "dof", &Database::dof, "Degrees of freedom of its robot.");
   add_property(cls, "key_dimension", &Database::key_dimension, "Dimension of the KD-tree's key.");
-  add_property(cls, "nbytes", &Database::bytes, "Bytes of samples, keys and pseudo-inverses.");
+  add_property(
+      cls, "nbytes", &Database::bytes,
+      "Bytes of all that it holds: samples, keys and pseudo-inverses, the trees over them, "
+      "and the copies that are laid out for the lanes. Bytes of a mapped file are among "
+      "them.");
   add_property(cls, "chain_hash", &Database::chain_hash,
                "Robot.chain_hash of the robot it belongs to.");
   bind_samples(cls);

@@ -54,14 +54,16 @@ namespace {
 
 Evaluation evaluate_solver(const Loose<Solver>& given, const Loose<std::size_t>& targets,
                            const Loose<std::uint64_t>& seed, const Loose<bool>& stages,
-                           const std::optional<ProgressCallable>& progress) {
+                           const std::optional<ProgressCallable>& progress,
+                           const Loose<std::size_t>& touched) {
   const auto solver = from_python<Solver>(given, "solver");
   const auto count = from_python<std::size_t>(targets, "targets");
   const auto number = from_python<std::uint64_t>(seed, "seed");
   const auto with_stages = from_python<bool>(stages, "stages");
+  const auto bytes = from_python<std::size_t>(touched, "touched");
   const Progress report = make_progress(progress);
   const GilRelease release;
-  return evaluate(solver, count, number, with_stages, report);
+  return evaluate(solver, count, number, with_stages, report, bytes);
 }
 
 }  // namespace
@@ -69,7 +71,8 @@ Evaluation evaluate_solver(const Loose<Solver>& given, const Loose<std::size_t>&
 void bind_evaluation(py::module_& m) {
   bind_fields<Evaluation>(m, FieldClass::result);
   m.def("evaluate", &evaluate_solver, py::arg("solver"), py::arg("targets"), py::arg("seed"),
-        py::arg("stages") = false, py::arg("progress") = py::none(),
+        py::arg("stages") = false, py::arg("progress") = py::none(), py::kw_only(),
+        py::arg("touched") = 0,
         R"(The paper's experiment protocol: success and time over random reachable targets.
 
 Solves poses FK(q), q uniform inside the limits, one after another on this thread with the GIL
@@ -81,7 +84,10 @@ Args:
     seed: seed of the targets.
     stages: take the time of each stage in a second pass.
     progress: called now and then with (targets done, targets in all). What it raises ends the
-        evaluation. Ctrl-C works.)");
+        evaluation. Ctrl-C works.
+    touched: bytes of other memory that are touched before each timed solve, not counted; at most
+        2**30. From some times the processor's caches on, a solve finds nothing in them, as in a
+        control loop beside other work.)");
   m.def(
       "time_kdl_fk_jacobian",
       [](const Loose<Robot>& given) {

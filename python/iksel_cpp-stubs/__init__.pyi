@@ -1358,7 +1358,7 @@ class Database:
     @property
     def nbytes(self) -> int:
         """
-        Bytes of samples, keys and pseudo-inverses.
+        Bytes of all that it holds: samples, keys and pseudo-inverses, the trees over them, and the copies that are laid out for the lanes. Bytes of a mapped file are among them.
         """
     @property
     def options(self) -> DatabaseOptions:
@@ -3224,7 +3224,7 @@ def check_pose(pose: numpy.typing.ArrayLike | typing.Any, name: str = 'pose') ->
     Raises:
         InvalidArgumentError: wrong shape, not finite, or not rigid; the message says which and why.
     """
-def evaluate(solver: Solver, targets: int, seed: int, stages: bool = False, progress: collections.abc.Callable[[int, int], typing.Any] | None = None) -> Evaluation:
+def evaluate(solver: Solver, targets: int, seed: int, stages: bool = False, progress: collections.abc.Callable[[int, int], typing.Any] | None = None, *, touched: int = 0) -> Evaluation:
     """
     The paper's experiment protocol: success and time over random reachable targets.
 
@@ -3238,6 +3238,9 @@ def evaluate(solver: Solver, targets: int, seed: int, stages: bool = False, prog
         stages: take the time of each stage in a second pass.
         progress: called now and then with (targets done, targets in all). What it raises ends the
             evaluation. Ctrl-C works.
+        touched: bytes of other memory that are touched before each timed solve, not counted; at most
+            2**30. From some times the processor's caches on, a solve finds nothing in them, as in a
+            control loop beside other work.
     """
 def grid_counts(dof: int, scale: Scale | str) -> list[int]:
     """

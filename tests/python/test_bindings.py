@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import copy
+import ctypes
+import gc
 import pickle
 import sys
 import threading
@@ -145,6 +147,40 @@ def test_database_facts(robot, database):
     assert database.key_dimension == 6
     text = f"Database(2000 samples, dof=6, {database.options!r})"
     assert repr(database) == text
+
+
+class _Allocated(ctypes.Structure):
+    """The struct mallinfo2 of glibc, of which two fields count here."""
+
+    _fields_ = tuple(
+        (name, ctypes.c_size_t)
+        for name in (
+            *("arena", "ordblks", "smblks", "hblks", "hblkhd"),
+            *("usmblks", "fsmblks", "uordblks", "fordblks", "keepcost"),
+        )
+    )
+
+
+def allocated() -> int:
+    """Bytes that the process has from malloc."""
+    mallinfo = getattr(ctypes.CDLL(None), "mallinfo2", None)
+    if mallinfo is None:
+        pytest.skip("this C library does not tell what is allocated")
+    mallinfo.restype = _Allocated
+    found = mallinfo()
+    return int(found.uordblks + found.hblkhd)
+
+
+@pytest.mark.parametrize("preset", ["default", "paper"])
+def test_nbytes_is_what_a_database_takes(made, preset):
+    robot = made.robot("ur3")
+    options = core.SolverOptions.paper() if preset == "paper" else core.SolverOptions()
+    core.Database.build(robot, options.database)  # what is made once
+    gc.collect()
+    before = allocated()
+    database = core.Database.build(robot, options.database)
+    taken = allocated() - before
+    assert database.nbytes == pytest.approx(taken, rel=0.03)
 
 
 def test_samples_are_consistent(robot, database):
@@ -298,6 +334,15 @@ def test_evaluation(solver):
     assert outcome.to_dict()["seed"] == 3
     with pytest.raises(AttributeError):
         outcome.solved = 200
+
+
+def test_evaluation_beside_other_work_solves_the_same(solver):
+    alone = core.evaluate(solver, 20, 3)
+    beside = core.evaluate(solver, 20, 3, touched=1 << 20)
+    for name in ("solved", "mean_attempts", "mean_iterations", "max_iterations"):
+        assert getattr(beside, name) == getattr(alone, name)
+    with pytest.raises(core.InvalidArgumentError, match=r"^touched: at most \d+ bytes"):
+        core.evaluate(solver, 20, 3, touched=(1 << 30) + 1)
 
 
 def test_evaluation_with_stages(solver):

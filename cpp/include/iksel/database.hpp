@@ -54,7 +54,8 @@ class IKSEL_EXPORT Database {
   [[nodiscard]] int dof() const;
   /// Dimension of the KD-tree's key.
   [[nodiscard]] int key_dimension() const;
-  /// Bytes of samples, keys and pseudo-inverses.
+  /// Bytes of all that it holds: samples, keys and pseudo-inverses, the trees over them, and the
+  /// copies that are laid out for the lanes. Bytes of a mapped file are among them.
   [[nodiscard]] std::size_t bytes() const;
   /// Robot::chain_hash of the robot it belongs to.
   [[nodiscard]] std::uint64_t chain_hash() const;

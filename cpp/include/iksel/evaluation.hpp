@@ -30,10 +30,17 @@ struct Evaluation {
   double query_us = 0, rank_us = 0, iterate_us = 0, reselect_us = 0;
 };
 
+/// Most bytes of other memory that `evaluate` touches between solves.
+inline constexpr std::size_t kMostTouched = std::size_t{1} << 30U;
+
 /// Solves `targets` poses FK(q), q uniform inside the limits, one after another on the calling
-/// thread, timing each solve. With `stages`, a second pass takes the time of each stage.
+/// thread, timing each solve. With `stages`, a second pass takes the time of each stage. `touched`
+/// bytes of other memory are written before each timed solve, not counted in its time: from some
+/// times the processor's caches on, a solve finds nothing in them, as in a control loop beside
+/// other work.
 IKSEL_EXPORT Evaluation evaluate(const Solver& solver, std::size_t targets, std::uint64_t seed,
-                                 bool stages = false, const Progress& progress = {});
+                                 bool stages = false, const Progress& progress = {},
+                                 std::size_t touched = 0);
 
 /// Mean time of one KDL FK plus one KDL Jacobian over random configurations [us].
 IKSEL_EXPORT double time_kdl_fk_jacobian(const Robot& robot, std::size_t calls = 20'000);

@@ -61,7 +61,12 @@ const DatabaseOptions& Database::options() const { return data_->options; }
 std::size_t Database::size() const { return data_->size; }
 int Database::dof() const { return data_->dof; }
 int Database::key_dimension() const { return data_->key_dim; }
-std::size_t Database::bytes() const { return data_->storage.size; }
+std::size_t Database::bytes() const {
+  const DatabaseData& data = *data_;
+  const std::size_t own_keys = data.own_keys ? data.own_keys->capacity() * sizeof(double) : 0;
+  return sizeof data + data.storage.size + own_keys + data.tree->bytes() + data.leaves.bytes() +
+         data.blocks.bytes();
+}
 std::uint64_t Database::chain_hash() const { return data_->chain_hash; }
 
 JointVector Database::q(std::size_t i) const {

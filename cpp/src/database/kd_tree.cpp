@@ -84,6 +84,11 @@ class NanoflannTree final : public KdTree {
 
   [[nodiscard]] std::vector<std::uint32_t> order() const override { return tree_.vAcc; }
 
+  [[nodiscard]] std::size_t bytes() const override {
+    return sizeof *this + tree_.pool.usedMemory + tree_.pool.wastedMemory +
+           tree_.vAcc.capacity() * sizeof(std::uint32_t);
+  }
+
  private:
   using Metric = nanoflann::L2_Simple_Adaptor<double, Points, double, std::uint32_t>;
   Points points_;

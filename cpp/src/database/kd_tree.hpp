@@ -27,6 +27,8 @@ class KdTree {
   /// The k nearest points, in no order, written to `out` (room for k); returns how many. Allocates
   /// nothing in the dimensions that a database's key may have.
   virtual std::size_t nearest(const double* point, std::size_t k, Neighbour* out) const = 0;
+  /// Bytes that it takes besides the points.
+  [[nodiscard]] virtual std::size_t bytes() const = 0;
 };
 
 /// Tree over `count` points of `dimension` doubles, which it refers to and does not own.

@@ -25,6 +25,10 @@ class SampleBlocks {
   [[nodiscard]] const float* block(std::size_t block) const {
     return &blocks_[block * block_size_];
   }
+  /// Bytes of all blocks and their middles.
+  [[nodiscard]] std::size_t bytes() const {
+    return (blocks_.capacity() + middles_.capacity()) * sizeof(float);
+  }
   /// Squared distance of each block's middle from a key.
   void measure(const double* key, float* distance2) const;
 
@@ -50,6 +54,11 @@ class LeafIndex {
     return &blocks_[descend(key, depth_) * block_size_];
   }
 
+  /// Bytes of the tree and its leaves.
+  [[nodiscard]] std::size_t bytes() const {
+    return blocks_.capacity() * sizeof(float) + value_.capacity() * sizeof(double) +
+           dimension_.capacity();
+  }
   [[nodiscard]] std::size_t leaves() const { return dimension_.size() + 1; }
   [[nodiscard]] int depth() const { return depth_; }
   /// Number of the node at a level that a key falls into; those of the last are the leaves.

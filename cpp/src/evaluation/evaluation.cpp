@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <numeric>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -62,13 +63,30 @@ std::vector<Pose> make_targets(const Robot& robot, KdlChain& kdl, std::size_t co
   return targets;
 }
 
+/// Memory of other work, which takes the place of all else in the processor's caches when it is
+/// touched.
+class OtherWork {
+ public:
+  explicit OtherWork(std::size_t bytes) : memory_(bytes) {}
+  void touch() {
+    // A byte of each cache line.
+    for (std::size_t i = 0; i < memory_.size(); i += 64) ++memory_[i];
+  }
+
+ private:
+  std::vector<unsigned char> memory_;
+};
+
 /// Solves one target after another, and adds up what they took. Returns each call's time [us].
 std::vector<double> solve_targets(const Solver& solver, const std::vector<Pose>& targets,
-                                  KdlChain& kdl, Pace& pace, Evaluation& out) {
+                                  KdlChain& kdl, OtherWork other, Pace& pace, Evaluation& out) {
   std::vector<double> times(targets.size());
   double attempts = 0;
   double iterations = 0;
   for (std::size_t i = 0; i < targets.size(); ++i) {
+    other.touch();
+    // The clock's own code is no part of a solve.
+    static_cast<void>(Clock::now());
     const auto start = Clock::now();
     const Result result = solver.solve(targets[i]);
     const auto end = Clock::now();
@@ -136,8 +154,12 @@ double time_kdl_fk_jacobian(const Robot& robot, std::size_t calls) {
 }
 
 Evaluation evaluate(const Solver& solver, std::size_t targets, std::uint64_t seed, bool stages,
-                    const Progress& progress) {
+                    const Progress& progress, std::size_t touched) {
   if (targets == 0) throw InvalidArgumentError("targets: at least 1 is needed");
+  if (touched > kMostTouched) {
+    throw InvalidArgumentError("touched: at most " + std::to_string(kMostTouched) + " bytes, not " +
+                               std::to_string(touched));
+  }
   const Robot& robot = solver.robot();
   const std::unique_ptr<KdlChain> kdl = robot.model().make_kdl();
   Pace pace(progress, targets);
@@ -154,7 +176,7 @@ Evaluation evaluate(const Solver& solver, std::size_t targets, std::uint64_t see
     static_cast<void>(solver.solve(poses[i]));
     pace(0);
   }
-  std::vector<double> times = solve_targets(solver, poses, *kdl, pace, out);
+  std::vector<double> times = solve_targets(solver, poses, *kdl, OtherWork(touched), pace, out);
   out.kdl_fk_jac_us = 0.5 * (kdl_before + time_kdl_fk_jacobian(robot));
   summarize(std::move(times), out);
   if (stages) time_stages(solver, poses, pace, out);

@@ -10,6 +10,9 @@ namespace iksel::lanes {
 
 /// Angles that follow from a quotient by less may be any.
 inline constexpr double kAnyAngle = 1e-6;
+/// Beside such a place they change as fast as the root of what they are divided by is small: how far
+/// they lie beyond limits counts no more than so many times that, and so falls towards it.
+inline constexpr double kSteepness = 3;
 
 /// Whether a branch may be near to an answer, by the angles found so far.
 template <typename T>
@@ -55,7 +58,11 @@ IKSEL_INLINE bool is_enough(const ClosedForm& form, int j, Branch<T, Prospect<T>
   const LimitArc& arc = form.arc[j];
   if (arc.ends) {
     const T sine = sine_beyond(arc, branch.q[j]);
-    const T known = select(prospect.divisor < T(kAnyAngle), T(0.0), sine);
+    T known = sine;
+    if (any(prospect.divisor < T(1 / (kSteepness * kSteepness)))) {
+      const T steep = T(kSteepness) * sqrt(max(prospect.divisor, T(0.0)));
+      known = select(prospect.divisor < T(kAnyAngle), T(0.0), min(sine, steep));
+    }
     prospect.beyond = max(prospect.beyond, known);
   }
   prospect.is_over = !prospect.is_open();

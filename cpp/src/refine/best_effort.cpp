@@ -46,7 +46,7 @@ bool descend_into_tolerances(const ChainModel& model, const Goal& goal, JointVec
     const double weight = std::exp(0.5 * (least + largest));
     q = seed;
     int steps = 0;
-    // In metres, as the descent is meant for.
+    // A position counts in metres, a rotation as many as the weight says.
     const Remainder remainder(model, goal,
                               weights_of(weight * position_tolerance / rotation_tolerance));
     descend_from_seed(model, remainder, kSteps, q, steps);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/constants.hpp"
+#include "base/pseudo_inverse.hpp"
 #include "base/random.hpp"
 #include "simd/kernels.hpp"
 
@@ -75,6 +76,16 @@ bool takes_part_in_self_motion(const ChainModel& model, int joint) {
     takes_part = takes_part || part_of_self_motion(J, joint) > kRounding;
   });
   return takes_part;
+}
+
+bool is_singular_everywhere(const ChainModel& model) {
+  constexpr double kRounding = 1e-9;
+  bool is_singular = true;
+  visit_configurations(model, [&](const JointVector&, const Pose&, const Jacobian& J) {
+    const auto sigma = singular_values(J);
+    is_singular = is_singular && !(sigma[5] > kRounding * sigma[0]);
+  });
+  return is_singular;
 }
 
 bool finds_known_solutions(const ChainModel& model, ClosedFormChain chain) {

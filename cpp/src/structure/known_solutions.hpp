@@ -16,4 +16,8 @@ bool finds_known_solutions(const ChainModel& model, ClosedFormChain chain);
 /// fixed by the pose, and the six others are singular wherever it is held.
 bool takes_part_in_self_motion(const ChainModel& model, int joint);
 
+/// Whether six joints move the tip in five directions at most, wherever they are: solutions are
+/// then no points, and residuals have no roots but for rounding.
+bool is_singular_everywhere(const ChainModel& model);
+
 }  // namespace iksel

@@ -9,8 +9,8 @@
 namespace iksel {
 
 inline constexpr int kMostIterations = std::numeric_limits<int>::max();
-/// Of a seed that is held by a limit beside an answer the error stays as it is: beside a fold, where
-/// steps are slowest, its square falls to a sixteenth each time.
+/// Of a seed that is held by a limit beside an answer the error stays as it is: beside a fold,
+/// where steps are slowest, its square falls to a sixteenth each time.
 inline constexpr int kStalled = 2;
 /// Where any answer will do.
 inline constexpr Patience kFirst{8, kMostIterations};

@@ -203,9 +203,9 @@ bool Search<Answers>::descend_from(int count, const Joints& joints) const {
   for (int i = 0; i < count && !is_satisfied && answers.should_continue(); ++i) {
     work.take_on_top();
     JointVector q = Eigen::Map<const Eigen::VectorXd>(joints(i), model.dof);
-    if (goal.is_full_pose() && seems_beyond_limits(model, goal.target(), q,
-                                                   options.position_tolerance,
-                                                   options.rotation_tolerance)) {
+    if (goal.is_full_pose() &&
+        seems_beyond_limits(model, goal.target(), q, options.position_tolerance,
+                            options.rotation_tolerance)) {
       continue;
     }
     if (!descend_into_tolerances(model, goal, q)) continue;

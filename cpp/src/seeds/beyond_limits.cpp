@@ -78,8 +78,8 @@ bool seems_beyond_limits(const ChainModel& model, const Pose& T_base_tcp, const 
   // A displacement within the tolerances adds no more than this to a weighted sum of joints, whose
   // row of the inverse this is.
   const auto reach = [&](const Eigen::Matrix<double, 1, 6>& row) {
-    return kMargin * (position_tolerance * row.head<3>().norm() +
-                      rotation_tolerance * row.tail<3>().norm());
+    return kMargin *
+           (position_tolerance * row.head<3>().norm() + rotation_tolerance * row.tail<3>().norm());
   };
   // How far each is outside, less than 0 inside, and outwards of which limit.
   JointVector beyond(model.dof);

@@ -14,9 +14,9 @@ bool is_beyond_limits(const ChainModel& model, const Pose& T_base_tcp, JointVect
                       double position_tolerance, double rotation_tolerance,
                       bool and_partner = false);
 
-/// Whether the solution q, of six joints or seven, and all that the tolerances [m, rad] allow beside
-/// it lie outside the limits, as far as the first order tells. Less sure than is_beyond_limits(),
-/// and no proof: whether it is worth while to look closer.
+/// Whether the solution q, of six joints or seven, and all that the tolerances [m, rad] allow
+/// beside it lie outside the limits, as far as the first order tells. Less sure than
+/// is_beyond_limits(), and no proof: whether it is worth while to look closer.
 bool seems_beyond_limits(const ChainModel& model, const Pose& T_base_tcp, const JointVector& q,
                          double position_tolerance, double rotation_tolerance);
 

@@ -10,8 +10,8 @@ namespace iksel::lanes {
 
 /// Angles that follow from a quotient by less may be any.
 inline constexpr double kAnyAngle = 1e-6;
-/// Beside such a place they change as fast as the root of what they are divided by is small: how far
-/// they lie beyond limits counts no more than so many times that, and so falls towards it.
+/// Beside such a place they change as fast as the root of what they are divided by is small: how
+/// far they lie beyond limits counts no more than so many times that, and so falls towards it.
 inline constexpr double kSteepness = 3;
 
 /// Whether a branch may be near to an answer, by the angles found so far.

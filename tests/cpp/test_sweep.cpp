@@ -159,12 +159,14 @@ TEST_P(Sweeps, WhatIsJustOffAStraightArmIsFound) {
   EXPECT_LE(missed, 1 + n / 1000) << "seed " << iksel_test::seed();
 }
 
-/// Ratings leave out what is far off, and have sines in the place of angles.
+/// Ratings leave out what is far off, and have sines in the place of angles; beside a singularity,
+/// where a little less far off angles would be others, they are less, but only there 0 or less.
 TEST_P(Sweeps, BranchesAreRatedAsTheyAreSolved) {
   constexpr double kBound = 0.3;
   iksel::SweptBranches branches(robot().model(), *iksel::find_closed_form(robot().model()),
                                 iksel::lanes::choose_kernels());
   int near = 0;
+  int less = 0;
   for (const Pose& target : iksel_test::random_targets(robot(), iksel_test::cases(100))) {
     branches.set_target(iksel_test::reduced(robot(), target));
     const iksel::Places places = branches.places(iksel::SweptBranches::kCount);
@@ -181,7 +183,10 @@ TEST_P(Sweeps, BranchesAreRatedAsTheyAreSolved) {
         if (rated > kBound) {
           EXPECT_GT(off, kBound) << place << ", branch " << branch;
         } else {
-          EXPECT_NEAR(rated, std::sin(off), 1e-9) << place << ", branch " << branch;
+          const double sine = off < 0.5 * iksel::kPi ? std::sin(off) : 1.0;
+          EXPECT_LE(rated, sine + 1e-9) << place << ", branch " << branch;
+          EXPECT_EQ(rated <= 0, off <= 0) << place << ", branch " << branch;
+          less += rated < sine - 1e-9;
           ++near;
         }
         double one[iksel::SweptBranches::kCount];
@@ -194,6 +199,7 @@ TEST_P(Sweeps, BranchesAreRatedAsTheyAreSolved) {
     }
   }
   EXPECT_GE(near, 100);
+  EXPECT_LE(less, near / 3) << "of " << near;
 }
 
 /// What is measured of all branches at once leaves out only what lies far away.

@@ -132,5 +132,6 @@ def test_a_no_beside_a_limit_needs_few_iterations(name: str, distance: float) ->
     noes = [result for result in results if not result.success]
     assert noes
     iterations = np.array([result.iterations for result in noes])
-    # A search of everything takes 1,000 and more.
-    assert iterations.mean() < 60, iterations
+    # A search of everything takes 1,000 and more; fewer lanes take turns.
+    turns = {"scalar": 4, "sse2": 2}.get(iksel.simd_level(), 1)
+    assert iterations.mean() < 60 * turns, iterations

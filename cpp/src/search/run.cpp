@@ -161,6 +161,7 @@ Proof Search<Answers>::in_lanes() const {
     if (proof) return *proof;
   }
   if constexpr (std::is_same_v<Answers, Collector>) {
+    bool has_asked_ends = false;
     if (workspace.lanes->sweep && request.database_seeds) {
       auto proof = on_curve(Y).collect();
       // What ranks answers otherwise has looked for none there.
@@ -168,6 +169,7 @@ Proof Search<Answers>::in_lanes() const {
           answers.spread() > 0 || answers.wants_nearest() || answers.wants_nearest_free();
       if (workspace.lanes->ends && has_looked && answers.status == Status::not_converged &&
           (!proof || answers.spread() > 0 || workspace.lanes->ends->are_closed())) {
+        has_asked_ends = true;
         if (const auto by_ends = this->by_ends()) proof = by_ends;
       }
       if (proof) return *proof;
@@ -181,7 +183,7 @@ Proof Search<Answers>::in_lanes() const {
     }
     SpreadSeeds spread(query, model.joints, options.seed, answers, work);
     search(refiner, spread, answers, work);
-    if (workspace.lanes->ends && !answers.has_any()) by_ends();
+    if (workspace.lanes->ends && !has_asked_ends && !answers.has_any()) by_ends();
   } else {
     if (workspace.lanes->sweep) {
       if (const auto proof = by_sweep(Y)) return *proof;

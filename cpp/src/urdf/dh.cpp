@@ -10,32 +10,13 @@
 #include "base/message_text.hpp"
 #include "iksel/error.hpp"
 #include "iksel/pose.hpp"
+#include "urdf/xml.hpp"
 
 namespace iksel {
 namespace {
 
 /// So that numbers are read back as the same.
 constexpr int kDigits = 17;
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
 
 std::string words(const Eigen::Vector3d& v) {
   return number_text(v.x(), kDigits) + " " + number_text(v.y(), kDigits) + " " +
@@ -46,7 +27,7 @@ std::string words(const Eigen::Vector3d& v) {
 std::string joint_element(const std::string& name, const char* type, const std::string& parent,
                           const std::string& child, const Eigen::Vector3d& xyz,
                           const Eigen::Vector3d& rpy, const std::string& inside = "") {
-  return "  <link name=\"" + child + "\"/>\n  <joint name=\"" + escaped(name) + "\" type=\"" +
+  return "  <link name=\"" + child + "\"/>\n  <joint name=\"" + escape_xml(name) + "\" type=\"" +
          type + "\">\n    <parent link=\"" + parent + "\"/>\n    <child link=\"" + child +
          "\"/>\n    <origin xyz=\"" + words(xyz) + "\" rpy=\"" + words(rpy) + "\"/>\n" + inside +
          "  </joint>\n";
@@ -106,7 +87,7 @@ Eigen::Vector3d rpy_of(const Eigen::Matrix3d& R) {
 std::string urdf_of_dh(const DhTable& table) {
   if (table.joints.empty()) throw InvalidArgumentError("joints: a table has one row or more");
   const Pose base = check_pose(table.T_base_link0, "base");
-  std::string text = "<robot name=\"" + escaped(table.robot_name) +
+  std::string text = "<robot name=\"" + escape_xml(table.robot_name) +
                      "\">\n  <link name=\"base\"/>\n" +
                      fixed("base", "link0", base.translation(), rpy_of(base.linear()));
   std::set<std::string> names;

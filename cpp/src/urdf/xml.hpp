@@ -36,6 +36,9 @@ XmlElement parse_xml(const std::string& bytes);
 /// Name of the first element; empty where there is none.
 std::string xml_root_name(const std::string& bytes);
 
+/// Text as it stands in an element or an attribute.
+std::string escape_xml(const std::string& text);
+
 /// Text of the document, in UTF-8.
 std::string write_xml(const XmlElement& root);
 

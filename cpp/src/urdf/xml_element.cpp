@@ -6,7 +6,41 @@
 namespace iksel {
 namespace {
 
-void append_escaped(std::string& out, const std::string& text) {
+void append_element(std::string& out, const XmlElement& element) {
+  out += '<' + element.name;
+  for (const auto& [name, value] : element.attributes) {
+    out += ' ' + name + "=\"";
+    out += escape_xml(value) + '"';
+  }
+  if (element.text.empty() && element.children.empty()) {
+    out += "/>";
+    return;
+  }
+  out += '>';
+  out += escape_xml(element.text);
+  for (const XmlElement& child : element.children) {
+    append_element(out, child);
+    out += escape_xml(child.tail);
+  }
+  out += "</" + element.name + '>';
+}
+
+}  // namespace
+
+const std::string* XmlElement::attribute(std::string_view key) const {
+  const auto found = std::find_if(attributes.begin(), attributes.end(),
+                                  [&](const auto& entry) { return entry.first == key; });
+  return found == attributes.end() ? nullptr : &found->second;
+}
+
+const XmlElement* XmlElement::child(std::string_view child_name) const {
+  const auto found = std::find_if(children.begin(), children.end(),
+                                  [&](const XmlElement& e) { return e.name == child_name; });
+  return found == children.end() ? nullptr : &*found;
+}
+
+std::string escape_xml(const std::string& text) {
+  std::string out;
   for (const char c : text) {
     switch (c) {
       case '&':
@@ -25,40 +59,7 @@ void append_escaped(std::string& out, const std::string& text) {
         out += c;
     }
   }
-}
-
-void append_element(std::string& out, const XmlElement& element) {
-  out += '<' + element.name;
-  for (const auto& [name, value] : element.attributes) {
-    out += ' ' + name + "=\"";
-    append_escaped(out, value);
-    out += '"';
-  }
-  if (element.text.empty() && element.children.empty()) {
-    out += "/>";
-    return;
-  }
-  out += '>';
-  append_escaped(out, element.text);
-  for (const XmlElement& child : element.children) {
-    append_element(out, child);
-    append_escaped(out, child.tail);
-  }
-  out += "</" + element.name + '>';
-}
-
-}  // namespace
-
-const std::string* XmlElement::attribute(std::string_view key) const {
-  const auto found = std::find_if(attributes.begin(), attributes.end(),
-                                  [&](const auto& entry) { return entry.first == key; });
-  return found == attributes.end() ? nullptr : &found->second;
-}
-
-const XmlElement* XmlElement::child(std::string_view child_name) const {
-  const auto found = std::find_if(children.begin(), children.end(),
-                                  [&](const XmlElement& e) { return e.name == child_name; });
-  return found == children.end() ? nullptr : &*found;
+  return out;
 }
 
 std::string write_xml(const XmlElement& root) {

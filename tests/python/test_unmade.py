@@ -4,11 +4,13 @@
 from __future__ import annotations
 
 import contextlib
+import importlib.util
 import math
 import pickle
 import subprocess
 import sys
 import textwrap
+from pathlib import Path
 
 import iksel_cpp as core
 import numpy as np
@@ -151,6 +153,17 @@ def contents(thing: object) -> dict[str, object]:
 def test_every_class_has_an_example(solver) -> None:
     assert {type(thing) for thing in examples(solver)} == set(CLASSES)
     assert len(CLASSES) >= 14
+
+
+def test_the_fuzzer_of_pickles_knows_every_class() -> None:
+    folder = Path(__file__).parents[1] / "fuzz"
+    spec = importlib.util.spec_from_file_location(
+        "pickle_samples", folder / "pickle_samples.py"
+    )
+    samples = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(samples)
+    assert {type(sample) for sample in samples.make_samples()} == samples.CLASSES
+    assert set(CLASSES) == samples.CLASSES
 
 
 # Pickles

@@ -63,9 +63,7 @@ def make_samples() -> list[Any]:
         solver.solve_batch([POSE, POSE]),
         solver.solve_path([POSE]),
         solver.diagnose(POSE),
-        iksel.Selector(
-            iksel.Database.build(ARM, {"key_scheme": "full", "samples": 6})
-        ),
+        iksel.Selector(iksel.Database.build(ARM, {"key_scheme": "full", "samples": 6})),
         iksel.Tracker(solver, [0.1, 0.2]),
         iksel.Tracker(solver, [0.1, 0.2], closest=[1, 1, 1, 1, 1, 1]),
         iksel_cpp.evaluate(solver, 3, 1),

@@ -128,4 +128,23 @@ double determinant(double (&rows)[6][6]) {
   return product;
 }
 
+bool is_almost_singular(const JacobianMatrix& J) {
+  constexpr double kVolume = 1e-4;
+  // Of joints that are not there, the products of a 1 and zeros.
+  Matrix6 products = Matrix6::Identity();
+  if (J.cols() > 6) {
+    products = J * J.transpose();
+  } else {
+    products.topLeftCorner(J.cols(), J.cols()) = J.transpose() * J;
+  }
+  double rows[6][6];
+  for (int i = 0; i < 6; ++i) {
+    for (int k = 0; k < 6; ++k) {
+      rows[i][k] = products(i, k) / std::sqrt(products(i, i) * products(k, k));
+    }
+  }
+  // Written so that NaN is singular.
+  return !(determinant(rows) > kVolume * kVolume);
+}
+
 }  // namespace iksel

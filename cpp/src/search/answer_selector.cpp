@@ -14,6 +14,9 @@ namespace {
 constexpr int kRedundantSeeds = 64;
 /// The best solutions of a redundant arm that are brought to a least cost.
 constexpr std::size_t kDescents = 4;
+/// The same where an arm that is not redundant is singular: the nearest of several families may be
+/// that of the sixth (python -m bench laws right_angles_6 --poses 100).
+constexpr std::size_t kSingularDescents = 16;
 /// Images looked at, at most: joints with a wide range have more than time allows.
 constexpr std::size_t kMostImages = 65536;
 
@@ -52,14 +55,20 @@ bool AnswerSelector::select(const Collector& search, JointVector& q) {
     if (cost < kInfinity) ranked[count++] = {cost, i};
   }
   if (count == 0) return select_image(kInfinity, q);
-  const bool descends =
-      (goal_.is_redundant() && !search.is_settled) || (search.may_be_singular() && nearest_to_);
-  const std::size_t descents = descends ? std::min(count, kDescents) : 1;
+  // Where not all solutions are known for certain, they may come in families.
+  const bool is_in_doubt = nearest_to_ && search.proof == Proof::none;
+  const bool is_redundant = goal_.is_redundant() && !search.is_settled;
+  const std::size_t descents = std::min(count, is_redundant  ? kDescents
+                                               : is_in_doubt ? kSingularDescents
+                                                             : 1);
   std::partial_sort(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(descents),
                     ranked.begin() + static_cast<std::ptrdiff_t>(count));
   q = found_.at(ranked[0].index);
   double best = ranked[0].cost;
-  if (descends) best = descend_from(ranked.data(), descents, q);
+  for (std::size_t k = 0; k < descents; ++k) {
+    const JointVector from = found_.at(ranked[k].index);
+    if (is_redundant || (is_in_doubt && search.is_singular(from))) descend_from(from, best, q);
+  }
   // An image of one that was refused, or costs infinitely much, may be better still.
   if (count < found_.size()) select_image(best, q);
   return true;
@@ -82,20 +91,15 @@ void AnswerSelector::screen_new() {
   while (first_kept_ < asked_ && !kept_[first_kept_]) ++first_kept_;
 }
 
-double AnswerSelector::descend_from(const Ranked* ranked, std::size_t count, JointVector& q) {
-  double best = ranked[0].cost;
-  for (std::size_t k = 0; k < count; ++k) {
-    JointVector end = found_.at(ranked[k].index);
-    descend(end);
-    const double cost = cost_of(end);
-    if (!(cost < best) || !goal_.is_solution(end)) continue;
-    bool keep = true;
-    screen_.apply(end.data(), 1, &keep);
-    if (!keep) continue;
-    best = cost;
-    q = end;
-  }
-  return best;
+void AnswerSelector::descend_from(JointVector end, double& best, JointVector& q) {
+  descend(end);
+  const double cost = cost_of(end);
+  if (!(cost < best) || !goal_.is_solution(end)) return;
+  bool keep = true;
+  screen_.apply(end.data(), 1, &keep);
+  if (!keep) return;
+  best = cost;
+  q = end;
 }
 
 void AnswerSelector::descend(JointVector& q) {

@@ -42,9 +42,9 @@ class AnswerSelector {
   [[nodiscard]] double cost_of(const JointVector& q) const;
   /// Screens what was found since the last time.
   void screen_new();
-  /// Brings the best of what passed to the least cost along their self-motions; q is the best
-  /// before, and after. Its cost.
-  double descend_from(const Ranked* ranked, std::size_t count, JointVector& q);
+  /// Goes from a solution along its self-motion to the least cost; q is the best before, and after,
+  /// and `best` its cost.
+  void descend_from(JointVector end, double& best, JointVector& q);
   void descend(JointVector& q);
   /// As select, among the images whose cost is less than `best`. False if there is none, and q is
   /// what it was.

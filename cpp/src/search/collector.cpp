@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/constants.hpp"
+#include "base/pseudo_inverse.hpp"
 #include "refine/self_motion.hpp"
 #include "seeds/fold_partner.hpp"
 
@@ -64,9 +65,7 @@ Collector::Collector(const ChainModel& model, const Goal& goal, const SolveReque
 Verdict Collector::offer(int /*lane*/, JointVector& q) {
   model_.joints.wrap(q.data());
   Result answer;
-  Jacobian J;
-  const bool pairs = comes_in_pairs_ && looks_for_partners_;
-  goal_.measure(q, answer.position_error, answer.rotation_error, pairs ? &J : nullptr);
+  goal_.measure(q, answer.position_error, answer.rotation_error);
   if (!goal_.is_reached(answer.position_error, answer.rotation_error)) return Verdict::refine;
   if (!model_.joints.contains(q.data())) {
     status = Status::outside_limits;
@@ -80,7 +79,7 @@ Verdict Collector::offer(int /*lane*/, JointVector& q) {
   status = Status::solved;
   ++solutions_;
   last_new_ = work.attempts;
-  if (pairs) look_for_partner(J, answer.q);
+  look_for_partners(looks_for_partners_);
   return Verdict::next;
 }
 
@@ -91,9 +90,9 @@ void Collector::offer_near() {
   offer(0, q);
 }
 
-void Collector::set_may_be_singular() {
-  may_be_singular_ = true;
-  if (!nearest_to_) return;
+void Collector::converge_from_near() {
+  if (!nearest_to_ || has_converged_) return;
+  has_converged_ = true;
   JointVector q = nearest_to_->from;
   if (converge(model_, goal_, kStepsToNext, q)) offer(0, q);
 }
@@ -127,7 +126,24 @@ void Collector::wrap_near(const JointVector& near, Result& answer) const {
   goal_.check(image, answer);
 }
 
-void Collector::look_for_partner(const Jacobian& J, const JointVector& q) {
+void Collector::look_for_partners(bool look) {
+  looks_for_partners_ = look;
+  if (!look || !comes_in_pairs_) return;
+  for (; paired_ < found_.size(); ++paired_) look_for_partner(found_.at(paired_));
+}
+
+bool Collector::is_singular(const JointVector& q) const {
+  if (!goal_.is_full_pose() || model_.dof > 6) return true;
+  Pose pose;
+  Jacobian J;
+  model_.fk_jacobian(q.data(), pose, J);
+  return is_almost_singular(J);
+}
+
+void Collector::look_for_partner(const JointVector& q) {
+  Pose pose;
+  Jacobian J;
+  model_.fk_jacobian(q.data(), pose, J);
   // Of a pair that counts as one, the other may lie on the side of a limit where `near` is.
   FoldPartner partner = find_fold_partner(J, q, request_.near ? 0.0 : aim_.min_distance);
   jacobian_signs_ += partner.jacobian_sign;

@@ -62,14 +62,16 @@ class Collector {
   /// The next predicted partner, if there is one.
   bool pop_partner(JointVector& q) const;
   [[nodiscard]] bool has_any() const { return solutions_ > 0; }
-  /// Whether partners of solutions are to be looked for: not where all are known.
-  void look_for_partners(bool look) { looks_for_partners_ = look; }
+  /// Whether partners of solutions are to be looked for: not while branches are tried, which are
+  /// all as a rule. Where they were not, those of what was found meanwhile are.
+  void look_for_partners(bool look);
   /// Says that all branches in closed form were tried: what is left lies around those in doubt.
   void set_all_branches_tried() { has_all_branches_ = true; }
-  /// Says that the arm may be singular at a solution, which is then one of a family: the one beside
-  /// `near` need not be among the branches, and is looked for.
-  void set_may_be_singular();
-  [[nodiscard]] bool may_be_singular() const { return may_be_singular_; }
+  /// Looks for an answer that is reached from `near`: of a family of them, where the arm is
+  /// singular, the one beside it need not be among the branches.
+  void converge_from_near();
+  /// Whether a solution may be one of a family: the arm is redundant, or singular there, or almost.
+  [[nodiscard]] bool is_singular(const JointVector& q) const;
   /// Whether more than the first answer is wanted.
   [[nodiscard]] bool wants_more() const { return aim_.until_complete || ranks_answers(request_); }
   /// Whether of answers the nearest is the best.
@@ -124,7 +126,7 @@ class Collector {
   }
   /// Brings a success to the image nearest to `near`, where it still is one.
   void wrap_near(const JointVector& near, Result& answer) const;
-  void look_for_partner(const Jacobian& J, const JointVector& q);
+  void look_for_partner(const JointVector& q);
 
   const ChainModel& model_;
   const Goal& goal_;
@@ -142,8 +144,9 @@ class Collector {
   bool looks_for_partners_ = true;
   bool signs_cancel_;
   bool has_all_branches_ = false;
-  bool may_be_singular_ = false;
+  bool has_converged_ = false;  ///< from `near`
   double basin_radius_;
+  std::size_t paired_ = 0;  ///< of what was found, partners of so many were looked for
   int solutions_ = 0;       ///< those that the set had no room for included
   int last_new_ = 0;        ///< seeds tried until the last new solution
   int jacobian_signs_ = 0;  ///< sum of the solutions' signs of det J

@@ -37,7 +37,7 @@ class FirstAnswer {
   [[nodiscard]] bool wants_more() const { return false; }
   void look_for_partners(bool /*look*/) {}
   void set_all_branches_tried() {}
-  void set_may_be_singular() {}
+  void converge_from_near() {}
   /// Says that all answers collide.
   void refuse() { result_.status = Status::in_collision; }
   /// Whether the target was reached inside the limits, be it in a collision.

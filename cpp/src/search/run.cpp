@@ -5,7 +5,6 @@
 #include <type_traits>
 
 #include "base/work.hpp"
-#include "refine/best_effort.hpp"
 #include "search/curve_search.hpp"
 #include "search/first_answer.hpp"
 #include "search/search.hpp"
@@ -75,10 +74,10 @@ struct Search {
   template <typename Branches>
   std::optional<Proof> by_branches(Branches& branches, Proof kind, NearSeed& near,
                                    GivenSeeds& given, const Pose& Y) const;
-  /// From solutions that lie beside limits to answers inside, where the tolerances allow them.
+  /// From solutions that lie beside limits to answers inside, as move_inside_limits() does.
   /// `joints(i)`: the i-th of them. Returns whether the answers want no more.
   template <typename Joints>
-  bool descend_from(int count, const Joints& joints) const;
+  bool move_inside(int count, const Joints& joints) const;
   /// For a first answer of seven joints: by the sweep of one, and where that leaves a doubt by the
   /// ends of the self-motion's arcs. Nothing if there may be answers left to search for.
   std::optional<Proof> by_sweep(const Pose& Y) const;
@@ -175,6 +174,7 @@ Proof Search<Answers>::in_lanes() const {
       if (proof) return *proof;
     }
     if (request.database_seeds && answers.wants_nearest() && hold_preferred()) return Proof::none;
+    answers.converge_from_near();
     if (run(refiner, near, given) || !request.database_seeds) return Proof::none;
     refiner.begin(goal.task(), kAll, Width::wide);
     if (model.dof > kSweptJoints && answers.ranks_by_move() && !request.objective.is_set()) {
@@ -200,17 +200,12 @@ Proof Search<Answers>::in_lanes() const {
 
 template <typename Answers>
 template <typename Joints>
-bool Search<Answers>::descend_from(int count, const Joints& joints) const {
+bool Search<Answers>::move_inside(int count, const Joints& joints) const {
   bool is_satisfied = false;
   for (int i = 0; i < count && !is_satisfied && answers.should_continue(); ++i) {
     work.take_on_top();
     JointVector q = Eigen::Map<const Eigen::VectorXd>(joints(i), model.dof);
-    if (goal.is_full_pose() &&
-        seems_beyond_limits(model, goal.target(), q, options.position_tolerance,
-                            options.rotation_tolerance)) {
-      continue;
-    }
-    if (!descend_into_tolerances(model, goal, q)) continue;
+    if (!move_inside_limits(model, goal, q)) continue;
     is_satisfied = answers.offer(0, q) == Verdict::stop;
   }
   clock.lap(&StageTimes::iterate);
@@ -226,7 +221,7 @@ std::optional<Proof> Search<Answers>::by_ends() const {
   refiner.begin(goal.task(), kFirst, Width::narrow);
   clock.lap(&StageTimes::iterate);
   if (is_satisfied || answers.has_any()) return Proof::none;
-  if (descend_from(ends.count(), [&](int i) { return ends.q(i); })) return Proof::none;
+  if (move_inside(ends.count(), [&](int i) { return ends.q(i); })) return Proof::none;
   if (answers.has_any()) return Proof::none;
   return ends.is_certain() ? std::optional(Proof::sweep) : std::nullopt;
 }
@@ -287,25 +282,25 @@ std::optional<Proof> Search<Answers>::by_branches(Branches& branches, Proof kind
   refiner.begin(goal.task(), kNearAnswer, Width::narrow);
   answers.look_for_partners(false);
   const bool is_satisfied = search(refiner, seeds, answers, work);
-  answers.look_for_partners(true);
   clock.lap(&StageTimes::iterate);
   if (is_satisfied) return Proof::none;
-  if (branches.may_be_singular()) answers.set_may_be_singular();
+  if (branches.may_be_singular()) answers.converge_from_near();
   // Branches of which none could be refined to the tolerances prove nothing.
   if (enumerated.is_certain()) {
     if (enumerated.is_empty()) return kind;
     if (answers.has_any() && !branches.has_families()) return kind;
   } else {
-    const bool has_descended =
-        !answers.has_any() && descend_from(branches.size(), [&](int i) { return branches.q(i); });
+    const bool is_satisfied_inside =
+        !answers.has_any() && move_inside(branches.size(), [&](int i) { return branches.q(i); });
     const bool is_all = enumerated.is_certain_but_for_limits() && !branches.has_families();
-    if (has_descended || is_all) return Proof::none;
+    if (is_satisfied_inside || is_all) return Proof::none;
   }
   if (kind == Proof::sweep) {
     work.leave(kBesideRoots);
   } else if (enumerated.has_all() && !answers.wants_more()) {
     work.leave(kBesideBranches);
   }
+  answers.look_for_partners(true);
   if (enumerated.has_all()) answers.set_all_branches_tried();
   refiner.begin(goal.task(), kFirst, Width::narrow);
   return std::nullopt;

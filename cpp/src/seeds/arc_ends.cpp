@@ -42,7 +42,7 @@ bool ArcEnds::find(std::size_t i, const Pose& T_base_tcp) {
     is_certain = end.branches->is_certain_but_for_limits();
   }
   if (!is_certain && end.roots) {
-    end.roots->find(Y);
+    end.roots->find(Y, /*wants_all=*/false);
     by_roots_ = true;
     count_ = end.roots->size();
     is_certain = end.roots->is_certain_but_for_limits();

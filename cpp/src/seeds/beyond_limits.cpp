@@ -8,6 +8,7 @@
 #include "base/constants.hpp"
 #include "base/pseudo_inverse.hpp"
 #include "iksel/pose.hpp"
+#include "refine/best_effort.hpp"
 #include "seeds/fold_partner.hpp"
 
 namespace iksel {
@@ -27,59 +28,24 @@ JointVector self_motion_direction(const JacobianMatrix& J, const PseudoInverse& 
   return best;
 }
 
-}  // namespace
-
-bool is_beyond_limits(const ChainModel& model, const Pose& T_base_tcp, JointVector q,
-                      double position_tolerance, double rotation_tolerance, bool and_partner) {
-  /// The tolerances count so many times, for what the first order does not tell.
-  constexpr double kMargin = 2;
-  /// Newton's method is there [rad or m].
-  constexpr double kThere = 1e-9;
-  constexpr int kSteps = 3;
-  if (model.dof != 6) return false;
-  Pose pose;
-  Jacobian J;
-  Eigen::Matrix<double, 6, 6> inverse;
-  Vector6 step;
-  for (int i = 0; i < kSteps; ++i) {
-    model.fk_jacobian(q.data(), pose, J);
-    inverse = Eigen::Matrix<double, 6, 6>(J).partialPivLu().inverse();
-    step = inverse * pose_error(T_base_tcp, pose);
-    // Written so that NaN tells nothing.
-    if (!(step.cwiseAbs().maxCoeff() < kFarthest)) return false;
-    q += step;
-    if (step.cwiseAbs().maxCoeff() < kThere) break;
-  }
-  const Vector6 moved = kMargin * (position_tolerance * inverse.leftCols<3>().rowwise().norm() +
-                                   rotation_tolerance * inverse.rightCols<3>().rowwise().norm()) +
-                        step.cwiseAbs();
-  if (!(moved.maxCoeff() < kFarthest)) return false;
-  const JointVector violations = model.joints.violations(q);
-  bool is_beyond = false;
-  for (int j = 0; j < model.dof; ++j) {
-    is_beyond = is_beyond || (!model.joints.is_periodic(j) && violations[j] > moved[j]);
-  }
-  if (!is_beyond || !and_partner) return is_beyond;
-  const FoldPartner partner = find_fold_partner(J, q, 0);
-  return !partner.paired ||
-         is_beyond_limits(model, T_base_tcp, partner.other, position_tolerance, rotation_tolerance);
-}
-
-bool seems_beyond_limits(const ChainModel& model, const Pose& T_base_tcp, const JointVector& q,
-                         double position_tolerance, double rotation_tolerance) {
+/// Whether the solution q, of six joints or seven, and all that the tolerances allow beside it lie
+/// outside the limits, as far as the first order tells. No proof: whether it is worth while to look
+/// closer.
+bool seems_beyond_limits(const ChainModel& model, const Goal& goal, const JointVector& q) {
   constexpr double kMargin = 1.05;
   if (model.dof != 6 && model.dof != 7) return false;
   Pose pose;
   Jacobian columns;
   model.fk_jacobian(q.data(), pose, columns);
   const JacobianMatrix J = columns;
+  if (is_almost_singular(J)) return false;
   const PseudoInverse inverse = damped_inverse(J, 0);
-  const JointVector step = inverse * pose_error(T_base_tcp, pose);
+  const JointVector step = inverse * pose_error(goal.target(), pose);
   // A displacement within the tolerances adds no more than this to a weighted sum of joints, whose
   // row of the inverse this is.
   const auto reach = [&](const Eigen::Matrix<double, 1, 6>& row) {
-    return kMargin *
-           (position_tolerance * row.head<3>().norm() + rotation_tolerance * row.tail<3>().norm());
+    return kMargin * (goal.task().position_tolerance() * row.head<3>().norm() +
+                      goal.task().rotation_tolerance() * row.tail<3>().norm());
   };
   // How far each is outside, less than 0 inside, and outwards of which limit.
   JointVector beyond(model.dof);
@@ -115,6 +81,51 @@ bool seems_beyond_limits(const ChainModel& model, const Pose& T_base_tcp, const 
     }
   }
   return false;
+}
+
+}  // namespace
+
+bool is_beyond_limits(const ChainModel& model, const Pose& T_base_tcp, JointVector q,
+                      double position_tolerance, double rotation_tolerance, bool and_partner) {
+  /// The tolerances count so many times, for what the first order does not tell.
+  constexpr double kMargin = 2;
+  /// Newton's method is there [rad or m].
+  constexpr double kThere = 1e-9;
+  constexpr int kSteps = 3;
+  if (model.dof != 6) return false;
+  Pose pose;
+  Jacobian J;
+  Eigen::Matrix<double, 6, 6> inverse;
+  Vector6 step;
+  for (int i = 0; i < kSteps; ++i) {
+    model.fk_jacobian(q.data(), pose, J);
+    inverse = Eigen::Matrix<double, 6, 6>(J).partialPivLu().inverse();
+    step = inverse * pose_error(T_base_tcp, pose);
+    // Written so that NaN tells nothing.
+    if (!(step.cwiseAbs().maxCoeff() < kFarthest)) return false;
+    q += step;
+    if (step.cwiseAbs().maxCoeff() < kThere) break;
+  }
+  const Vector6 moved = kMargin * (position_tolerance * inverse.leftCols<3>().rowwise().norm() +
+                                   rotation_tolerance * inverse.rightCols<3>().rowwise().norm()) +
+                        step.cwiseAbs();
+  // Farther, the second order is more than the tolerances.
+  const double farthest = std::sqrt(2 * std::min(position_tolerance, rotation_tolerance));
+  if (!(moved.maxCoeff() < std::min(kFarthest, farthest))) return false;
+  const JointVector violations = model.joints.violations(q);
+  bool is_beyond = false;
+  for (int j = 0; j < model.dof; ++j) {
+    is_beyond = is_beyond || (!model.joints.is_periodic(j) && violations[j] > moved[j]);
+  }
+  if (!is_beyond || !and_partner) return is_beyond;
+  const FoldPartner partner = find_fold_partner(J, q, 0);
+  return !partner.paired ||
+         is_beyond_limits(model, T_base_tcp, partner.other, position_tolerance, rotation_tolerance);
+}
+
+bool move_inside_limits(const ChainModel& model, const Goal& goal, JointVector& q) {
+  if (goal.is_full_pose() && seems_beyond_limits(model, goal, q)) return false;
+  return descend_into_tolerances(model, goal, q);
 }
 
 }  // namespace iksel

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether a solution lies outside the limits, told from the arm itself.
+// Solutions that lie outside the limits, and what the tolerances allow beside them.
 #pragma once
 
-#include "kinematics/chain_model.hpp"
+#include "goal/goal.hpp"
 
 namespace iksel {
 
@@ -14,10 +14,8 @@ bool is_beyond_limits(const ChainModel& model, const Pose& T_base_tcp, JointVect
                       double position_tolerance, double rotation_tolerance,
                       bool and_partner = false);
 
-/// Whether the solution q, of six joints or seven, and all that the tolerances [m, rad] allow
-/// beside it lie outside the limits, as far as the first order tells. Less sure than
-/// is_beyond_limits(), and no proof: whether it is worth while to look closer.
-bool seems_beyond_limits(const ChainModel& model, const Pose& T_base_tcp, const JointVector& q,
-                         double position_tolerance, double rotation_tolerance);
+/// From q, a solution beside limits, to an answer inside of them, if the tolerances allow one that
+/// can be found from there. q becomes the answer.
+bool move_inside_limits(const ChainModel& model, const Goal& goal, JointVector& q);
 
 }  // namespace iksel

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <array>
-#include <type_traits>
 
 #include "base/work.hpp"
 #include "goal/goal.hpp"
@@ -91,11 +90,7 @@ class EnumeratedSeeds {
   bool next_stage() {
     if (done_ || !work_.has_left()) return false;
     done_ = true;
-    if constexpr (std::is_same_v<Branches, Enumeration>) {
-      branches_.find(Y_, wants_all_);
-    } else {
-      branches_.find(Y_);
-    }
+    branches_.find(Y_, wants_all_);
     clock_.lap(&StageTimes::query);
     return true;
   }

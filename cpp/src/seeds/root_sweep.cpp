@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/constants.hpp"
+#include "base/pseudo_inverse.hpp"
 #include "seeds/beyond_limits.hpp"
 #include "structure/residual_form.hpp"
 
@@ -27,6 +28,10 @@ constexpr double kFarthestApart = 32;
 constexpr double kAboveNoise = 30;
 /// By how much a loop may stay open at a root of its determinant, which is known but to its noise.
 constexpr double kOpen = 0.02;
+/// And by how many tolerances, if what is concluded is to be certain.
+constexpr double kClosed = 4;
+/// So far beyond a limit no tolerance counts, but where any angle would do [rad].
+constexpr double kFarBeyond = 0.01;
 
 /// Roots are found to within this [rad], or to within this share of what the axes lie off; so many
 /// times the tolerances, what they lie off counts as nothing.
@@ -61,6 +66,7 @@ RootSweep::RootSweep(const ChainModel& model, const ClosedFormChain& chain, bool
                       std::max(kPrecision, kShare * chain.deviation), kernels)),
       polynomial_(kernels) {
   chain_.use_limits(model);
+  chain_.form.error = tolerance;
   for (int lane = 0; lane < lanes::kWidth; ++lane) pack_.sign[2][lane] = 1;
 }
 
@@ -83,14 +89,15 @@ bool RootSweep::find_loop_roots(const Pose& Y) {
   return roots_.faintest() > kAboveNoise * polynomial_.noise();
 }
 
-void RootSweep::find(const Pose& Y) {
+void RootSweep::find(const Pose& Y, bool wants_all) {
   const bool is_clear = chain_.loop ? find_loop_roots(Y) : find_product_roots(Y);
   certain_ = concludes_ && roots_.is_complete() && is_clear;
   is_at_limit_ = false;
   may_be_singular_ = !is_clear;
   size_ = 0;
-  // Each root has a lane, or by the first two of the three signs four: two to this power.
-  const unsigned lanes_power = chain_.loop ? 0 : 2;
+  // Each root has a lane, or by the first one or two of the three signs two or four: two to this
+  // power.
+  const unsigned lanes_power = chain_.loop ? chain_.loop->form().has_two_ways() : 2;
   const std::size_t at_once = static_cast<std::size_t>(lanes::kWidth) >> lanes_power;
   for (std::size_t first = 0; first < roots_.size(); first += at_once) {
     const std::size_t n = std::min(at_once, roots_.size() - first) << lanes_power;
@@ -106,9 +113,23 @@ void RootSweep::find(const Pose& Y) {
       take(Y, roots_[first + (lane >> lanes_power)], static_cast<int>(lane));
     }
   }
+  if (wants_all && certain_ && has_singular()) {
+    may_be_singular_ = true;
+    certain_ = false;
+  }
   certain_but_for_limits_ = certain_;
   // At a limit, what the tolerances allow decides.
   certain_ = certain_ && !is_at_limit_;
+}
+
+bool RootSweep::has_singular() const {
+  Pose pose;
+  Jacobian J;
+  for (int i = 0; i < size_; ++i) {
+    model_.fk_jacobian(q(i), pose, J);
+    if (is_almost_singular(J)) return true;
+  }
+  return false;
 }
 
 void RootSweep::take(const Pose& Y, const RootFinder::Root& root, int lane) {
@@ -121,25 +142,36 @@ void RootSweep::take(const Pose& Y, const RootFinder::Root& root, int lane) {
   // Of two solutions that all but share an angle of a loop's first joint, one or both are not
   // found.
   if (chain_.loop && is_vague) certain_ = false;
-  if (!(std::abs(pack_.residual[lane]) < most && pack_.least[lane] > -slack)) {
+  if (!(pack_.least[lane] > -slack)) return;
+  if (!(std::abs(pack_.residual[lane]) < most)) {
     if (chain_.loop) certain_ = false;
     return;
   }
-  if (!(pack_.beyond[lane] < slack)) return;
+  // A loop that closes nearly may do so beside the angles of another solution.
+  const bool is_closed = !chain_.loop || std::abs(pack_.residual[lane]) < kClosed * tolerance_;
+  if (!is_closed) certain_ = false;
+  // Where any angle would do, it need not be one outside the limits.
+  const double beyond = pack_.beyond[lane];
+  const bool is_free = beyond > 0 && !(pack_.error[lane] < beyond);
+  const bool is_sure = is_closed && !is_free;
+  if (is_sure && beyond > std::max(slack, kFarBeyond)) return;
   if (size_ == kMost) {
     certain_ = false;
     return;
   }
   double* q = q_[static_cast<std::size_t>(size_)].data();
   chain_.copy_joints(pack_.q, lane, q);
-  if (certain_ && pack_.beyond[lane] > 0) {
+  if (beyond > 0) {
     const Pose T_base_tcp = to_pose(model_.kernel.base) * Y * to_pose(model_.kernel.tip);
-    if (is_beyond_limits(model_, T_base_tcp, Eigen::Map<const Eigen::VectorXd>(q, model_.dof),
+    if (is_sure &&
+        is_beyond_limits(model_, T_base_tcp, Eigen::Map<const Eigen::VectorXd>(q, model_.dof),
                          tolerance_ * chain_.unit, tolerance_, is_vague)) {
       return;
     }
     is_at_limit_ = true;
+    if (beyond > slack) certain_ = false;
   }
+  may_be_singular_ = may_be_singular_ || is_free;
   may_be_singular_ = may_be_singular_ || is_vague;
   ++size_;
 }

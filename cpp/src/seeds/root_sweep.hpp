@@ -25,10 +25,11 @@ class RootSweep {
             double tolerance, const lanes::LaneKernels& kernels);
 
   /// Finds the solutions of the goal, a full pose, that lie inside the limits, or so near to them
-  /// that it cannot be told. Y as in reduction.hpp.
-  void find(const Pose& Y);
+  /// that it cannot be told. Y as in reduction.hpp. Where all are wanted, it is looked whether they
+  /// come in families.
+  void find(const Pose& Y, bool wants_all);
   [[nodiscard]] int size() const { return size_; }
-  /// Inside the limits, or nearly [rad].
+  /// Inside the limits, or nearly; anywhere, if these are not certain [rad].
   [[nodiscard]] const double* q(int i) const { return q_[static_cast<std::size_t>(i)].data(); }
   /// Whether they reach the goal without being refined, as a rule.
   [[nodiscard]] bool are_answers() const { return are_answers_; }
@@ -49,6 +50,8 @@ class RootSweep {
   bool find_product_roots(const Pose& Y);
   bool find_loop_roots(const Pose& Y);
   void take(const Pose& Y, const RootFinder::Root& root, int lane);
+  /// Whether one of these is singular, or almost.
+  [[nodiscard]] bool has_singular() const;
 
   const ChainModel& model_;
   ClosedFormChain chain_;

@@ -38,7 +38,7 @@ IKSEL_INLINE void hold(const ClosedForm& form, const T& value, BranchTarget<T>& 
   target.w = add(turned_back(axis, t, add(target.w, T(1.0), from)), T(-1.0), from);
 }
 
-/// Q is Certainty or Existence.
+/// Q is Certainty or Definiteness.
 template <typename T, typename Q>
 struct Branch {
   Angle<T> q[6];

@@ -152,11 +152,12 @@ void solve_branches(const ClosedForm& form, BranchPack& pack) {
   }
 }
 
-/// Of any form, without `best`, `worst` and `error`.
+/// Of any form, without `best` and `worst`; `error` is the least that it may be.
 template <typename T>
 void find_branches(const ClosedForm& form, BranchPack& pack) {
   for (int first = 0; first < kWidth; first += Lanes<T>::kCount) {
-    solve_branch<T>(form, first, Existence<T>{}, pack);
+    const Definiteness<T> quality = solve_branch<T>(form, first, Definiteness<T>{}, pack).quality;
+    Lanes<T>::store(quality.error(form.error), pack.error + first);
   }
 }
 

@@ -86,14 +86,21 @@ struct Certainty {
   }
 };
 
-/// Whether there are such angles is all that is asked.
+/// Whether there are such angles, and whether they are determined: the least of what they were
+/// divided by is 0 where any angle would do.
 template <typename T>
-struct Existence {
+struct Definiteness {
   T least = T(1.0);
+  T size = T(1.0);
 
-  IKSEL_INLINE void divide_by_product(const T& /*product*/) {}
-  IKSEL_INLINE void take_root(const T& square, const T& /*near*/, const T& /*root*/) {
+  IKSEL_INLINE void divide_by_product(const T& product) { size = min(size, product); }
+  IKSEL_INLINE void take_root(const T& square, const T& /*near*/, const T& root) {
     least = min(least, square);
+    size = min(size, root);
+  }
+  /// What an error of the target may have grown to in an angle, at least [rad].
+  [[nodiscard]] IKSEL_INLINE T error(double of_target) const {
+    return T(of_target) / max(size, T(1e-12));
   }
 };
 

@@ -169,7 +169,7 @@ using FindLargest = int (*)(int count, const float* numbers);
 
 struct ClosedForm;
 struct BranchPack;
-/// The angles of all lanes of a pack (branch_types.hpp); find_branches does not say how certain
+/// The angles of all lanes of a pack (branch_types.hpp); find_branches says less of how certain
 /// they are.
 using SolveBranches = void (*)(const ClosedForm& form, BranchPack& pack);
 struct Regularity;

@@ -122,7 +122,7 @@ IKSEL_INLINE void find_null_vector(const Products<T>& m, T (&x)[kProducts]) {
 
 /// Angles d and e of a null vector.
 template <typename T>
-IKSEL_INLINE void read_products(const T (&x)[kProducts], Branch<T, Existence<T>>& out) {
+IKSEL_INLINE void read_products(const T (&x)[kProducts], Branch<T, Definiteness<T>>& out) {
   T c = T(0.0);
   T s = T(0.0);
   for (int k = 0; k < 4; ++k) {
@@ -184,15 +184,20 @@ struct LeastSquares {
   }
   template <typename Q>
   IKSEL_INLINE Angle<T> solve(Q& quality) const {
-    return normalized(ss * c - cs * s, cc * s - cs * c, quality);
+    quality.divide_by_product(sqrt(max(cc * ss - cs * cs, T(0.0))));
+    Q ignored;
+    return normalized(ss * c - cs * s, cc * s - cs * c, ignored);
   }
 };
 
 /// Joints b and a, which bring what c, d and e have moved back to axis f. About axis a, of a point
 /// and a direction do not change: the distances of the point along the axis and from its own point,
 /// the direction's share along the axis, its product with the way to the point, and its moment.
+/// Where f, a and b meet or are parallel, one of these is left, and `sign` tells its two solutions
+/// apart.
 template <typename T, typename Q>
-IKSEL_INLINE void turn_back(const LoopForm& form, Moving<T>& from, Branch<T, Q>& out) {
+IKSEL_INLINE void turn_back(const LoopForm& form, const T& sign, Moving<T>& from,
+                            Branch<T, Q>& out) {
   const Vec<T> ha = constant<T>(form.h[4]);
   const Vec<T> pa = constant<T>(form.p[4]);
   const Vec<T> pb = constant<T>(form.p[5]);
@@ -200,19 +205,31 @@ IKSEL_INLINE void turn_back(const LoopForm& form, Moving<T>& from, Branch<T, Q>&
   const Vec<T> goal = add(constant<T>(form.p[3]), T(-1.0), pa);
   const Vec<T> way = add(pb, T(-1.0), pa);
   const Vec<T> v = add(from.p, T(-1.0), pb);
-  LeastSquares<T> b{constant<T>(form.h[5])};
-  b.add_equation(ha, from.along, dot(ha, hf));
-  b.add_equation(ha, v, dot(ha, add(goal, T(-1.0), way)));
-  b.add_equation(way, v, T(0.5) * (dot(goal, goal) - dot(way, way) - dot(v, v)));
-  b.add_equation(way, from.along, dot(goal, hf) - dot(v, from.along));
-  // The moment: (ha x way) . R along + ha . R (v x along).
-  const Vec<T> lever = cross(ha, way);
-  const Vec<T> moment = cross(v, from.along);
-  b.add_row(b.by_cosine(lever, from.along) + b.by_cosine(ha, moment),
-            dot(lever, cross(b.k, from.along)) + dot(ha, cross(b.k, moment)),
-            dot(ha, cross(goal, hf)) - dot(b.k, lever) * dot(b.k, from.along) -
-                dot(b.k, ha) * dot(b.k, moment));
-  out.q[5] = b.solve(out.quality);
+  const Vec<T> hb = constant<T>(form.h[5]);
+  const T distance = T(0.5) * (dot(goal, goal) - dot(way, way) - dot(v, v));
+  const auto one_of_two = [&](const Vec<T>& x, const Vec<T>& y, const T& rest) {
+    const T axial = dot(hb, x) * dot(hb, y);
+    return solve_angle(dot(x, y) - axial, dot(x, cross(hb, y)), rest - axial, sign, out.quality);
+  };
+  if (form.rest == LoopForm::Rest::meet) {
+    out.q[5] = one_of_two(ha, from.along, dot(ha, hf));
+  } else if (form.rest == LoopForm::Rest::parallel) {
+    out.q[5] = one_of_two(way, v, distance);
+  } else {
+    LeastSquares<T> b{hb};
+    b.add_equation(ha, from.along, dot(ha, hf));
+    b.add_equation(ha, v, dot(ha, add(goal, T(-1.0), way)));
+    b.add_equation(way, v, distance);
+    b.add_equation(way, from.along, dot(goal, hf) - dot(v, from.along));
+    // The moment: (ha x way) . R along + ha . R (v x along).
+    const Vec<T> lever = cross(ha, way);
+    const Vec<T> moment = cross(v, from.along);
+    b.add_row(b.by_cosine(lever, from.along) + b.by_cosine(ha, moment),
+              dot(lever, cross(hb, from.along)) + dot(ha, cross(hb, moment)),
+              dot(ha, cross(goal, hf)) - dot(hb, lever) * dot(hb, from.along) -
+                  dot(hb, ha) * dot(hb, moment));
+    out.q[5] = b.solve(out.quality);
+  }
   from.turn(form.h[5], form.p[5], out.q[5]);
   const Vec<T> arm = add(from.p, T(-1.0), pa);
   LeastSquares<T> a{ha};
@@ -228,7 +245,7 @@ template <typename T>
 void close_loops(const LoopForm& form, const LoopTarget& target, const ClosedForm& limits,
                  BranchPack& pack) {
   for (int first = 0; first < kWidth; first += Lanes<T>::kCount) {
-    Branch<T, Existence<T>> out;
+    Branch<T, Definiteness<T>> out;
     sincos(Lanes<T>::load(pack.held + first), out.q[0].s, out.q[0].c);
     Products<T> m;
     fill_products(target, out.q[0], m);
@@ -242,7 +259,7 @@ void close_loops(const LoopForm& form, const LoopTarget& target, const ClosedFor
       moving.turn(form.h[j], form.p[j], out.q[j]);
     }
     if (form.before == 0) moving.move(target);
-    turn_back(form, moving, out);
+    turn_back(form, Lanes<T>::load(pack.sign[0] + first), moving, out);
     const Vec<T> hf = constant<T>(form.h[3]);
     const Vec<T> across = constant<T>(form.across);
     // What is left is a turn about axis f, of the others.
@@ -251,6 +268,7 @@ void close_loops(const LoopForm& form, const LoopTarget& target, const ClosedFor
     const Vec<T> off = add(moving.p, T(-1.0), constant<T>(form.p[3]));
     const Vec<T> tilt = add(moving.along, T(-1.0), hf);
     Lanes<T>::store(sqrt(dot(off, off) + dot(tilt, tilt)), pack.residual + first);
+    Lanes<T>::store(out.quality.error(limits.error), pack.error + first);
     store_joints(limits, out, first, pack);
   }
 }

@@ -9,6 +9,12 @@ namespace iksel::lanes {
 /// Six joints in the order of the loop, from the one that is swept on: c, d, e, f, a, b. Axes lie
 /// as they do where all angles are zero; lengths are in units of the reach.
 struct LoopForm {
+  /// What f, a and b are to each other. Where they meet in a point, or are parallel, two solutions
+  /// share the angles of c, d and e.
+  enum class Rest { anyhow, meet, parallel };
+
+  Rest rest;
+  [[nodiscard]] bool has_two_ways() const { return rest != Rest::anyhow; }
   int before;        ///< how many of c, d and e the loop passes before the target
   double h[6][3];    ///< unit vectors along the axes
   double p[6][3];    ///< a point on each

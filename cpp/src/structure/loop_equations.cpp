@@ -2,9 +2,11 @@
 #include "structure/loop_equations.hpp"
 
 #include <Eigen/SVD>
+#include <algorithm>
 #include <cmath>
 
 #include "base/constants.hpp"
+#include "structure/closed_form.hpp"
 
 namespace iksel {
 namespace {
@@ -71,6 +73,28 @@ Eigen::Matrix<double, kInvariant, kInvariant + 1> moved(const Pose& motion) {
   return out;
 }
 
+/// What the last three axes are to each other.
+lanes::LoopForm::Rest rest_of(const lanes::LoopForm& form) {
+  const Vector3d f(form.h[3]);
+  const Vector3d a(form.h[4]);
+  const Vector3d b(form.h[5]);
+  const auto are_parallel = [](const Vector3d& u, const Vector3d& v) {
+    return u.cross(v).norm() < kStructureTolerance;
+  };
+  if (are_parallel(a, b)) {
+    return are_parallel(f, a) ? lanes::LoopForm::Rest::parallel : lanes::LoopForm::Rest::anyhow;
+  }
+  // The point on axis b that is nearest to axis a.
+  const Vector3d across = a.cross(b);
+  const Vector3d from = Vector3d(form.p[4]) - Vector3d(form.p[5]);
+  const Vector3d point = Vector3d(form.p[5]) + from.cross(a).dot(across) / across.squaredNorm() * b;
+  const auto distance = [&](int i) {
+    return Vector3d(form.h[i]).cross(point - Vector3d(form.p[i])).norm();
+  };
+  return std::max(distance(3), distance(4)) < kStructureTolerance ? lanes::LoopForm::Rest::meet
+                                                                  : lanes::LoopForm::Rest::anyhow;
+}
+
 }  // namespace
 
 LoopEquations::LoopEquations(const ScrewAxes& axes, double unit, int swept)
@@ -86,6 +110,7 @@ LoopEquations::LoopEquations(const ScrewAxes& axes, double unit, int swept)
       form_.p[i][k] = p[k];
     }
   }
+  form_.rest = rest_of(form_);
   const Vector3d across = Vector3d(form_.h[3]).unitOrthogonal();
   for (int k = 0; k < 3; ++k) form_.across[k] = across[k];
   const int count = power_of_three(3 - form_.before);

@@ -128,6 +128,40 @@ double determinant(double (&rows)[6][6]) {
   return product;
 }
 
+Matrix6 inverse_of(const Matrix6& A) {
+  // Gauss and Jordan, in place: where a column of A has gone, one of the inverse is.
+  double row[6][6];
+  for (int r = 0; r < 6; ++r) {
+    for (int i = 0; i < 6; ++i) row[r][i] = A(r, i);
+  }
+  int swapped[6];
+  for (int k = 0; k < 6; ++k) {
+    int largest = k;
+    for (int r = k + 1; r < 6; ++r) {
+      if (std::abs(row[r][k]) > std::abs(row[largest][k])) largest = r;
+    }
+    swapped[k] = largest;
+    if (largest != k) std::swap(row[k], row[largest]);
+    const double inverse = 1 / row[k][k];
+    row[k][k] = 1;
+    for (double& value : row[k]) value *= inverse;
+    for (int r = 0; r < 6; ++r) {
+      if (r == k) continue;
+      const double factor = row[r][k];
+      row[r][k] = 0;
+      for (int i = 0; i < 6; ++i) row[r][i] -= factor * row[k][i];
+    }
+  }
+  Matrix6 inverse;
+  for (int r = 0; r < 6; ++r) {
+    for (int i = 0; i < 6; ++i) inverse(r, i) = row[r][i];
+  }
+  for (int k = 6; k-- > 0;) {
+    if (swapped[k] != k) inverse.col(k).swap(inverse.col(swapped[k]));
+  }
+  return inverse;
+}
+
 bool is_almost_singular(const JacobianMatrix& J) {
   constexpr double kVolume = 1e-4;
   // Of joints that are not there, the products of a 1 and zeros.

@@ -51,6 +51,9 @@ JointVector damped_solve(const JacobianMatrix& J, double lambda, const Vector6& 
 /// a column first. Everything is unrolled.
 double determinant(double (&rows)[6][6]);
 
+/// A^-1, by elimination, the largest of a column first; unrolled. Not finite where A is singular.
+Matrix6 inverse_of(const Matrix6& A);
+
 /// Whether the arm is singular, or almost: the volume that the joints' twists span, or of more than
 /// six the rows of their Jacobian, is next to nothing of the product of their lengths. Solutions
 /// then come in families, as far as the tolerances and rounding tell.

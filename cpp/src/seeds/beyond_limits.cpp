@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "seeds/beyond_limits.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -89,26 +88,27 @@ bool is_beyond_limits(const ChainModel& model, const Pose& T_base_tcp, JointVect
                       double position_tolerance, double rotation_tolerance, bool and_partner) {
   /// The tolerances count so many times, for what the first order does not tell.
   constexpr double kMargin = 2;
-  /// Newton's method is there [rad or m].
-  constexpr double kThere = 1e-9;
+  /// After so small a step of Newton's method the next would be next to nothing [rad or m].
+  constexpr double kSmall = 3e-4;
   constexpr int kSteps = 3;
   if (model.dof != 6) return false;
   Pose pose;
   Jacobian J;
-  Eigen::Matrix<double, 6, 6> inverse;
+  Matrix6 inverse;
   Vector6 step;
   for (int i = 0; i < kSteps; ++i) {
     model.fk_jacobian(q.data(), pose, J);
-    inverse = Eigen::Matrix<double, 6, 6>(J).partialPivLu().inverse();
+    inverse = inverse_of(J);
     step = inverse * pose_error(T_base_tcp, pose);
     // Written so that NaN tells nothing.
     if (!(step.cwiseAbs().maxCoeff() < kFarthest)) return false;
     q += step;
-    if (step.cwiseAbs().maxCoeff() < kThere) break;
+    if (step.cwiseAbs().maxCoeff() < kSmall) break;
   }
-  const Vector6 moved = kMargin * (position_tolerance * inverse.leftCols<3>().rowwise().norm() +
-                                   rotation_tolerance * inverse.rightCols<3>().rowwise().norm()) +
-                        step.cwiseAbs();
+  const double off = step.squaredNorm();
+  const Vector6 moved =
+      (kMargin * position_tolerance + off) * inverse.leftCols<3>().rowwise().norm() +
+      (kMargin * rotation_tolerance + off) * inverse.rightCols<3>().rowwise().norm();
   // Farther, the second order is more than the tolerances.
   const double farthest = std::sqrt(2 * std::min(position_tolerance, rotation_tolerance));
   if (!(moved.maxCoeff() < std::min(kFarthest, farthest))) return false;

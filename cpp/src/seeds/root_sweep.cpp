@@ -32,6 +32,8 @@ constexpr double kOpen = 0.02;
 constexpr double kClosed = 4;
 /// So far beyond a limit no tolerance counts, but where any angle would do [rad].
 constexpr double kFarBeyond = 0.01;
+/// Where an angle may be off by more than this, any would do [rad].
+constexpr double kFreely = 0.1;
 
 /// Roots are found to within this [rad], or to within this share of what the axes lie off; so many
 /// times the tolerances, what they lie off counts as nothing.
@@ -150,9 +152,9 @@ void RootSweep::take(const Pose& Y, const RootFinder::Root& root, int lane) {
   // A loop that closes nearly may do so beside the angles of another solution.
   const bool is_closed = !chain_.loop || std::abs(pack_.residual[lane]) < kClosed * tolerance_;
   if (!is_closed) certain_ = false;
-  // Where any angle would do, it need not be one outside the limits.
+  // Where any angle would do, or nearly, it need not be one outside the limits.
   const double beyond = pack_.beyond[lane];
-  const bool is_free = beyond > 0 && !(pack_.error[lane] < beyond);
+  const bool is_free = beyond > 0 && !(pack_.error[lane] < std::max(beyond, kFreely));
   const bool is_sure = is_closed && !is_free;
   if (is_sure && beyond > std::max(slack, kFarBeyond)) return;
   if (size_ == kMost) {
@@ -163,13 +165,13 @@ void RootSweep::take(const Pose& Y, const RootFinder::Root& root, int lane) {
   chain_.copy_joints(pack_.q, lane, q);
   if (beyond > 0) {
     const Pose T_base_tcp = to_pose(model_.kernel.base) * Y * to_pose(model_.kernel.tip);
-    if (is_sure &&
+    if (is_closed &&
         is_beyond_limits(model_, T_base_tcp, Eigen::Map<const Eigen::VectorXd>(q, model_.dof),
                          tolerance_ * chain_.unit, tolerance_, is_vague)) {
       return;
     }
     is_at_limit_ = true;
-    if (beyond > slack) certain_ = false;
+    if (!is_sure) certain_ = false;
   }
   may_be_singular_ = may_be_singular_ || is_free;
   may_be_singular_ = may_be_singular_ || is_vague;

@@ -252,6 +252,44 @@ TEST(Loops, CloseWhereTheyWereMade) {
   }
 }
 
+/// Where the last three axes of the loop meet or are parallel, two solutions share the others'
+/// angles.
+TEST(Loops, CloseBothWays) {
+  const auto& kernels = lanes::choose_kernels();
+  for (int i = 0; i < iksel_test::cases(40); ++i) {
+    Dice dice(iksel_test::seed() * 1000 + static_cast<std::uint64_t>(i));
+    iksel_test::AxisChain axes = AxisMaker(dice).make(Pair::none, 0);
+    std::vector<Eigen::Vector3d>& same = i % 2 == 0 ? axes.p : axes.h;
+    same[4] = same[5] = same[3];
+    const Robot robot = iksel_test::make_robot(axes, dice);
+    JointVector q(6);
+    for (int j = 0; j < 6; ++j) q[j] = dice.uniform(-3, 3);
+    const Pose target = robot.fk(q);
+    const iksel::LoopEquations loop(iksel::ScrewAxes::of(robot.model()), robot.model().reach, 0);
+    EXPECT_TRUE(loop.form().has_two_ways());
+    lanes::LoopTarget of_target;
+    loop.set_target(iksel_test::reduced(robot, target), of_target);
+    lanes::ClosedForm limits{};
+    lanes::BranchPack pack{};
+    for (int j = 0; j < 6; ++j) {
+      limits.offset[j] = robot.model().kernel.joints[static_cast<std::size_t>(j)].offset;
+    }
+    std::fill_n(pack.held, lanes::kWidth, q[0] + limits.offset[0]);
+    for (int lane = 0; lane < lanes::kWidth; ++lane) pack.sign[0][lane] = lane % 2 == 0 ? 1 : -1;
+    kernels.close_loops(loop.form(), of_target, limits, pack);
+    double nearest = 10;
+    for (int lane = 0; lane < 2; ++lane) {
+      JointVector other(6);
+      for (int j = 0; j < 6; ++j) other[j] = pack.q[j][lane];
+      EXPECT_LT((robot.fk(other).matrix() - target.matrix()).norm(), 1e-6)
+          << "way " << lane << ", seed " << iksel_test::seed() << ", " << i;
+      nearest = std::min(nearest, iksel_test::distance(robot, other, q));
+    }
+    EXPECT_LT(nearest, 1e-5) << "seed " << iksel_test::seed() << ", " << i;
+    EXPECT_GT(std::abs(pack.q[5][0] - pack.q[5][1]), 1e-6);
+  }
+}
+
 /// Of this pose, two solutions share the angle of the joint that is swept.
 TEST(Loops, AreNotConcludedFromWhereTwoShareAnAngle) {
   constexpr std::uint64_t kSeed = 19;

@@ -14,7 +14,7 @@ namespace iksel {
 namespace {
 
 /// Farthest that joints may move for the first order to tell [rad or m].
-constexpr double kFarthest = 0.01;
+constexpr double kFarthestStep = 0.01;
 
 /// Along which a redundant arm of seven joints moves.
 JointVector self_motion_direction(const JacobianMatrix& J, const PseudoInverse& inverse) {
@@ -51,7 +51,7 @@ bool seems_beyond_limits(const ChainModel& model, const Goal& goal, const JointV
   JointVector outwards(model.dof);
   for (int j = 0; j < model.dof; ++j) {
     // Written so that NaN tells nothing.
-    if (!(std::abs(step[j]) < kFarthest && reach(inverse.row(j)) < kFarthest)) return false;
+    if (!(std::abs(step[j]) < kFarthestStep && reach(inverse.row(j)) < kFarthestStep)) return false;
     const double at = q[j] + step[j];
     const double above = at - model.joints.upper[j];
     const double below = model.joints.lower[j] - at;
@@ -69,7 +69,7 @@ bool seems_beyond_limits(const ChainModel& model, const Goal& goal, const JointV
   const JointVector along = self_motion_direction(J, inverse).cwiseProduct(outwards);
   for (int a = 0; a < model.dof; ++a) {
     for (int b = 0; b < a; ++b) {
-      if (!(along[a] * along[b] < 0 && std::min(beyond[a], beyond[b]) > -kFarthest)) continue;
+      if (!(along[a] * along[b] < 0 && std::min(beyond[a], beyond[b]) > -kFarthestStep)) continue;
       const double weight_a = std::abs(along[b]);
       const double weight_b = std::abs(along[a]);
       const double sum = weight_a * beyond[a] + weight_b * beyond[b];
@@ -101,7 +101,7 @@ bool is_beyond_limits(const ChainModel& model, const Pose& T_base_tcp, JointVect
     inverse = inverse_of(J);
     step = inverse * pose_error(T_base_tcp, pose);
     // Written so that NaN tells nothing.
-    if (!(step.cwiseAbs().maxCoeff() < kFarthest)) return false;
+    if (!(step.cwiseAbs().maxCoeff() < kFarthestStep)) return false;
     q += step;
     if (step.cwiseAbs().maxCoeff() < kSmall) break;
   }
@@ -111,7 +111,7 @@ bool is_beyond_limits(const ChainModel& model, const Pose& T_base_tcp, JointVect
       (kMargin * rotation_tolerance + off) * inverse.rightCols<3>().rowwise().norm();
   // Farther, the second order is more than the tolerances.
   const double farthest = std::sqrt(2 * std::min(position_tolerance, rotation_tolerance));
-  if (!(moved.maxCoeff() < std::min(kFarthest, farthest))) return false;
+  if (!(moved.maxCoeff() < std::min(kFarthestStep, farthest))) return false;
   const JointVector violations = model.joints.violations(q);
   bool is_beyond = false;
   for (int j = 0; j < model.dof; ++j) {

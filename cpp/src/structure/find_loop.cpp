@@ -12,12 +12,12 @@
 namespace iksel {
 namespace {
 
-constexpr int kJoints = 6;
+constexpr int kJointsOfLoop = 6;
 
 /// The last joint's frame at these angles.
-Pose end_at(const ScrewAxes& axes, const double (&angles)[kJoints]) {
+Pose end_at(const ScrewAxes& axes, const double (&angles)[kJointsOfLoop]) {
   Pose pose = axes.end;
-  for (std::size_t j = kJoints; j-- > 0;) {
+  for (std::size_t j = kJointsOfLoop; j-- > 0;) {
     const Eigen::AngleAxisd turn(angles[j], axes.h[j]);
     pose = Eigen::Translation3d(axes.p[j]) * turn * Eigen::Translation3d(-axes.p[j]) * pose;
   }
@@ -36,7 +36,7 @@ double tell_apart(const LoopEquations& loop, const ScrewAxes& axes, int swept) {
   Random random(kSeed);
   double sum = 0;
   for (int i = 0; i < kSolutions; ++i) {
-    double angles[kJoints];
+    double angles[kJointsOfLoop];
     for (double& angle : angles) angle = random.uniform(-kPi, kPi);
     lanes::LoopTarget target;
     loop.set_target(end_at(axes, angles), target);
@@ -64,11 +64,11 @@ std::optional<ClosedFormChain> find_loop(const ChainModel& model) {
       if (!(apart > best)) continue;
       best = apart;
       ClosedFormChain& chain = found.emplace();
-      for (int i = 0; i < kJoints; ++i) {
-        const int joint = (swept + i) % kJoints;
-        chain.joints[i] = reversed ? kJoints - 1 - joint : joint;
+      for (int i = 0; i < kJointsOfLoop; ++i) {
+        const int joint = (swept + i) % kJointsOfLoop;
+        chain.joints[i] = reversed ? kJointsOfLoop - 1 - joint : joint;
       }
-      chain.dof = kJoints;
+      chain.dof = kJointsOfLoop;
       chain.held = chain.joints[0];
       chain.reversed = reversed;
       chain.form.closure = lanes::Closure::loop;

@@ -14,10 +14,10 @@ namespace {
 
 constexpr int kConfigurations = 24;
 constexpr int kEnough = kConfigurations * 3 / 4;
-constexpr std::uint64_t kSeed = 8;
+constexpr std::uint64_t kDrawSeed = 8;
 /// How far a branch may be from the configuration that it is [rad]: near singularities rounding
 /// counts more.
-constexpr double kSame = 1e-4;
+constexpr double kSameSolution = 1e-4;
 /// What the axes lie off may count so many times.
 constexpr double kMagnified = 30;
 /// Of a self-motion's direction, the least that a swept joint has of it: where it has less, the
@@ -56,7 +56,7 @@ double part_of_self_motion(const Jacobian& J, int joint) {
 /// Visits random configurations inside the limits, always the same ones.
 template <typename Visit>
 void visit_configurations(const ChainModel& model, const Visit& visit) {
-  Random random(kSeed);
+  Random random(kDrawSeed);
   JointVector q(model.dof);
   Pose pose;
   Jacobian J;
@@ -94,7 +94,7 @@ bool finds_known_solutions(const ChainModel& model, ClosedFormChain chain) {
   const lanes::LaneKernels& kernels = lanes::choose_kernels();
   const Pose base_inverse = to_pose(model.kernel.base).inverse();
   const Pose tip_inverse = to_pose(model.kernel.tip).inverse();
-  const double most = kSame + kMagnified * chain.deviation;
+  const double most = kSameSolution + kMagnified * chain.deviation;
   lanes::BranchPack pack = all_branches();
   int found = 0;
   visit_configurations(model, [&](const JointVector& q, const Pose& pose, const Jacobian& J) {

@@ -65,7 +65,9 @@ Collector::Collector(const ChainModel& model, const Goal& goal, const SolveReque
 Verdict Collector::offer(int /*lane*/, JointVector& q) {
   model_.joints.wrap(q.data());
   Result answer;
-  goal_.measure(q, answer.position_error, answer.rotation_error);
+  Jacobian J;
+  const bool pairs = comes_in_pairs_ && looks_for_partners_;
+  goal_.measure(q, answer.position_error, answer.rotation_error, pairs ? &J : nullptr);
   if (!goal_.is_reached(answer.position_error, answer.rotation_error)) return Verdict::refine;
   if (!model_.joints.contains(q.data())) {
     status = Status::outside_limits;
@@ -79,7 +81,10 @@ Verdict Collector::offer(int /*lane*/, JointVector& q) {
   status = Status::solved;
   ++solutions_;
   last_new_ = work.attempts;
-  look_for_partners(looks_for_partners_);
+  if (pairs) {
+    look_for_partner(J, answer.q);
+    paired_ = found_.size();
+  }
   return Verdict::next;
 }
 
@@ -129,7 +134,13 @@ void Collector::wrap_near(const JointVector& near, Result& answer) const {
 void Collector::look_for_partners(bool look) {
   looks_for_partners_ = look;
   if (!look || !comes_in_pairs_) return;
-  for (; paired_ < found_.size(); ++paired_) look_for_partner(found_.at(paired_));
+  for (; paired_ < found_.size(); ++paired_) {
+    const JointVector q = found_.at(paired_);
+    Pose pose;
+    Jacobian J;
+    model_.fk_jacobian(q.data(), pose, J);
+    look_for_partner(J, q);
+  }
 }
 
 bool Collector::is_singular(const JointVector& q) const {
@@ -140,10 +151,7 @@ bool Collector::is_singular(const JointVector& q) const {
   return is_almost_singular(J);
 }
 
-void Collector::look_for_partner(const JointVector& q) {
-  Pose pose;
-  Jacobian J;
-  model_.fk_jacobian(q.data(), pose, J);
+void Collector::look_for_partner(const Jacobian& J, const JointVector& q) {
   // Of a pair that counts as one, the other may lie on the side of a limit where `near` is.
   FoldPartner partner = find_fold_partner(J, q, request_.near ? 0.0 : aim_.min_distance);
   jacobian_signs_ += partner.jacobian_sign;

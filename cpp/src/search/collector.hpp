@@ -126,7 +126,7 @@ class Collector {
   }
   /// Brings a success to the image nearest to `near`, where it still is one.
   void wrap_near(const JointVector& near, Result& answer) const;
-  void look_for_partner(const JointVector& q);
+  void look_for_partner(const Jacobian& J, const JointVector& q);
 
   const ChainModel& model_;
   const Goal& goal_;

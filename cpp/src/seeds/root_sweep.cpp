@@ -34,6 +34,8 @@ constexpr double kClosed = 4;
 constexpr double kFarBeyond = 0.01;
 /// Where an angle may be off by more than this, any would do [rad].
 constexpr double kFreely = 0.1;
+/// Where none is off by more than this, and no root is double, the arm is not singular [rad].
+constexpr double kDelicate = 1e-3;
 
 /// Roots are found to within this [rad], or to within this share of what the axes lie off; so many
 /// times the tolerances, what they lie off counts as nothing.
@@ -95,6 +97,7 @@ void RootSweep::find(const Pose& Y, bool wants_all) {
   const bool is_clear = chain_.loop ? find_loop_roots(Y) : find_product_roots(Y);
   certain_ = concludes_ && roots_.is_complete() && is_clear;
   is_at_limit_ = false;
+  is_delicate_ = chain_.loop != nullptr;
   may_be_singular_ = !is_clear;
   size_ = 0;
   // Each root has a lane, or by the first one or two of the three signs two or four: two to this
@@ -115,7 +118,7 @@ void RootSweep::find(const Pose& Y, bool wants_all) {
       take(Y, roots_[first + (lane >> lanes_power)], static_cast<int>(lane));
     }
   }
-  if (wants_all && certain_ && has_singular()) {
+  if (wants_all && certain_ && is_delicate_ && has_singular()) {
     may_be_singular_ = true;
     certain_ = false;
   }
@@ -174,6 +177,7 @@ void RootSweep::take(const Pose& Y, const RootFinder::Root& root, int lane) {
     if (!is_sure) certain_ = false;
   }
   may_be_singular_ = may_be_singular_ || is_free;
+  is_delicate_ = is_delicate_ || is_vague || !(pack_.error[lane] < kDelicate);
   may_be_singular_ = may_be_singular_ || is_vague;
   ++size_;
 }

@@ -69,6 +69,7 @@ class RootSweep {
   int size_ = 0;
   bool certain_ = false;
   bool is_at_limit_ = false;
+  bool is_delicate_ = false;  ///< whether one may be singular
   bool certain_but_for_limits_ = false;
   bool may_be_singular_ = false;
 };

@@ -91,16 +91,16 @@ struct Certainty {
 template <typename T>
 struct Definiteness {
   T least = T(1.0);
-  T size = T(1.0);
+  T size2 = T(1.0);
 
-  IKSEL_INLINE void divide_by_product(const T& product) { size = min(size, product); }
-  IKSEL_INLINE void take_root(const T& square, const T& /*near*/, const T& root) {
+  IKSEL_INLINE void divide_by_product(const T& product) { size2 = min(size2, product * product); }
+  IKSEL_INLINE void take_root(const T& square, const T& /*near*/, const T& /*root*/) {
     least = min(least, square);
-    size = min(size, root);
+    size2 = min(size2, abs(square));
   }
   /// What an error of the target may have grown to in an angle, at least [rad].
   [[nodiscard]] IKSEL_INLINE T error(double of_target) const {
-    return T(of_target) / max(size, T(1e-12));
+    return T(of_target) / sqrt(max(size2, T(1e-24)));
   }
 };
 

@@ -185,7 +185,7 @@ TEST_P(SweptChains, HoldsTheSolutionThatWasPutIn) {
         for (int i = 0; i < random.rows(); ++i) {
           const JointVector q = random.row(i);
           find(sweep, robot, robot.fk(q));
-          for (int k = 0; k < sweep.size() && sweep.is_certain(); ++k) {
+          for (int k = 0; k < sweep.size(); ++k) {
             EXPECT_LE(Eigen::Map<const JointVector>(sweep.q(k), 6).cwiseAbs().maxCoeff(), 3.1);
           }
           if (least_singular_value(robot, q) < 1e-4) continue;

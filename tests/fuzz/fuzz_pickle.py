@@ -23,11 +23,12 @@ import atheris
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parent))
-from pickle_samples import CLASSES, POSE, make_samples
+from pickle_samples import POSE, make_samples
 
 import iksel
 
 SAMPLES = make_samples()
+CLASSES = {type(sample) for sample in SAMPLES}
 PICKLES = [pickle.dumps(sample, 4) for sample in SAMPLES]
 
 

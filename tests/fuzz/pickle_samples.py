@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import inspect
 import sys
 from pathlib import Path
 from typing import Any
@@ -72,10 +71,3 @@ def make_samples() -> list[Any]:
         iksel.LinkTree.from_urdf(urdf_text.arm()),
         iksel.LinkTree.from_urdf(urdf_text.arm()).joints[0],
     ]
-
-
-CLASSES = {
-    kind
-    for kind in vars(iksel_cpp).values()
-    if inspect.isclass(kind) and "pybind11_object" in {c.__name__ for c in kind.__mro__}
-}

@@ -162,8 +162,7 @@ def test_the_fuzzer_of_pickles_knows_every_class() -> None:
     )
     samples = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(samples)
-    assert {type(sample) for sample in samples.make_samples()} == samples.CLASSES
-    assert set(CLASSES) == samples.CLASSES
+    assert {type(sample) for sample in samples.make_samples()} == set(CLASSES)
 
 
 # Pickles

@@ -51,7 +51,7 @@ JointVector damped_solve(const JacobianMatrix& J, double lambda, const Vector6& 
 /// a column first. Everything is unrolled.
 double determinant(double (&rows)[6][6]);
 
-/// A^-1, by elimination, the largest of a column first; unrolled. Not finite where A is singular.
+/// A^-1, by elimination, the largest of a column first. Not finite where A is singular.
 Matrix6 inverse_of(const Matrix6& A);
 
 /// Whether the arm is singular, or almost: the volume that the joints' twists span, or of more than

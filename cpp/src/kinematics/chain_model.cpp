@@ -8,6 +8,7 @@
 #include "base/constants.hpp"
 #include "base/hash.hpp"
 #include "base/message_text.hpp"
+#include "base/pseudo_inverse.hpp"
 #include "iksel/error.hpp"
 #include "iksel/pose.hpp"
 #include "iksel/urdf_text.hpp"
@@ -288,6 +289,12 @@ Frame ChainModel::fk_jacobian(const double* q, Jacobian& jacobian, bool with_too
 void ChainModel::fk_jacobian(const double* q, Pose& pose, Jacobian& jacobian,
                              bool with_tool) const {
   pose = to_pose(fk_jacobian(q, jacobian, with_tool));
+}
+
+bool ChainModel::is_almost_singular(const double* q) const {
+  Jacobian J;
+  fk_jacobian(q, J);
+  return iksel::is_almost_singular(J);
 }
 
 }  // namespace iksel

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "base/constants.hpp"
-#include "base/pseudo_inverse.hpp"
 #include "refine/self_motion.hpp"
 #include "seeds/fold_partner.hpp"
 
@@ -136,19 +135,14 @@ void Collector::look_for_partners(bool look) {
   if (!look || !comes_in_pairs_) return;
   for (; paired_ < found_.size(); ++paired_) {
     const JointVector q = found_.at(paired_);
-    Pose pose;
     Jacobian J;
-    model_.fk_jacobian(q.data(), pose, J);
+    model_.fk_jacobian(q.data(), J);
     look_for_partner(J, q);
   }
 }
 
 bool Collector::is_singular(const JointVector& q) const {
-  if (!goal_.is_full_pose() || model_.dof > 6) return true;
-  Pose pose;
-  Jacobian J;
-  model_.fk_jacobian(q.data(), pose, J);
-  return is_almost_singular(J);
+  return !goal_.is_full_pose() || model_.dof > 6 || model_.is_almost_singular(q.data());
 }
 
 void Collector::look_for_partner(const Jacobian& J, const JointVector& q) {

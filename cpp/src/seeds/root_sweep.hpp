@@ -29,7 +29,7 @@ class RootSweep {
   /// come in families.
   void find(const Pose& Y, bool wants_all);
   [[nodiscard]] int size() const { return size_; }
-  /// Inside the limits, or nearly; anywhere, if these are not certain [rad].
+  /// Inside the limits, or nearly [rad].
   [[nodiscard]] const double* q(int i) const { return q_[static_cast<std::size_t>(i)].data(); }
   /// Whether they reach the goal without being refined, as a rule.
   [[nodiscard]] bool are_answers() const { return are_answers_; }

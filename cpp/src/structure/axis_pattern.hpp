@@ -20,6 +20,10 @@ class AxisPattern {
   /// What closes it for an angle of one joint.
   std::optional<lanes::Closure> find_sweep();
 
+  [[nodiscard]] bool are_parallel(std::size_t i, std::size_t j) const;
+  /// Whether axes i, i + 1 and i + 2 meet in one point.
+  [[nodiscard]] bool three_meet(std::size_t i) const;
+
   [[nodiscard]] const ScrewAxes& axes() const { return axes_; }
   /// By how much the pose of an arm with the axes as they were moved may differ from that of the
   /// arm as it is [rad, and m in units of the reach]: an axis that is turned by an angle, or
@@ -30,9 +34,7 @@ class AxisPattern {
   [[nodiscard]] double deviation(std::size_t i) const;
 
  private:
-  [[nodiscard]] bool are_parallel(std::size_t i, std::size_t j) const;
   [[nodiscard]] bool meet(std::size_t i, std::size_t j) const;
-  [[nodiscard]] bool three_meet(std::size_t i) const;
   [[nodiscard]] bool is_on(const Eigen::Vector3d& point, std::size_t i) const;
   /// Where axes i and i + 1 meet becomes the point on both, and on `more` others.
   void join(std::size_t i, std::size_t more = 0);

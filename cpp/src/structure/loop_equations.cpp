@@ -2,10 +2,10 @@
 #include "structure/loop_equations.hpp"
 
 #include <Eigen/SVD>
-#include <algorithm>
 #include <cmath>
 
 #include "base/constants.hpp"
+#include "structure/axis_pattern.hpp"
 #include "structure/closed_form.hpp"
 
 namespace iksel {
@@ -73,26 +73,13 @@ Eigen::Matrix<double, kInvariant, kInvariant + 1> moved(const Pose& motion) {
   return out;
 }
 
-/// What the last three axes are to each other.
-lanes::LoopForm::Rest rest_of(const lanes::LoopForm& form) {
-  const Vector3d f(form.h[3]);
-  const Vector3d a(form.h[4]);
-  const Vector3d b(form.h[5]);
-  const auto are_parallel = [](const Vector3d& u, const Vector3d& v) {
-    return u.cross(v).norm() < kStructureTolerance;
-  };
-  if (are_parallel(a, b)) {
-    return are_parallel(f, a) ? lanes::LoopForm::Rest::parallel : lanes::LoopForm::Rest::anyhow;
-  }
-  // The point on axis b that is nearest to axis a.
-  const Vector3d across = a.cross(b);
-  const Vector3d from = Vector3d(form.p[4]) - Vector3d(form.p[5]);
-  const Vector3d point = Vector3d(form.p[5]) + from.cross(a).dot(across) / across.squaredNorm() * b;
-  const auto distance = [&](int i) {
-    return Vector3d(form.h[i]).cross(point - Vector3d(form.p[i])).norm();
-  };
-  return std::max(distance(3), distance(4)) < kStructureTolerance ? lanes::LoopForm::Rest::meet
-                                                                  : lanes::LoopForm::Rest::anyhow;
+/// What three axes from one on are to each other.
+lanes::LoopForm::Rest rest_of(const AxisPattern& pattern, std::size_t first) {
+  using Rest = lanes::LoopForm::Rest;
+  if (pattern.three_meet(first)) return Rest::meet;
+  const bool are_parallel =
+      pattern.are_parallel(first, first + 1) && pattern.are_parallel(first + 1, first + 2);
+  return are_parallel ? Rest::parallel : Rest::anyhow;
 }
 
 }  // namespace
@@ -110,7 +97,9 @@ LoopEquations::LoopEquations(const ScrewAxes& axes, double unit, int swept)
       form_.p[i][k] = p[k];
     }
   }
-  form_.rest = rest_of(form_);
+  // The target does not stand between these.
+  const auto last_three = static_cast<std::size_t>((swept + 3) % kLoopJoints);
+  form_.rest = rest_of(AxisPattern(axes, unit, kStructureTolerance), last_three);
   const Vector3d across = Vector3d(form_.h[3]).unitOrthogonal();
   for (int k = 0; k < 3; ++k) form_.across[k] = across[k];
   const int count = power_of_three(3 - form_.before);

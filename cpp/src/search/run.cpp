@@ -34,9 +34,9 @@ constexpr int kBeforeSamples = 2;
 constexpr int kBesideBranches = 48;
 constexpr int kBesideRoots = 96;
 /// Seeds after a sweep that came close to an answer, but did not find one; and after the ends of
-/// arcs did not either.
+/// arcs did not either (python -m bench laws shoulder_offset shoulder_elbow_offset; beside panda).
 constexpr int kBesideSweep = 192;
-constexpr int kBesideEnds = 64;
+constexpr int kBesideEnds = 16;
 
 /// What one search works with.
 template <typename Answers>

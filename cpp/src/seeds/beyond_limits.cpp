@@ -15,8 +15,10 @@ namespace {
 
 /// Farthest that joints may move for the first order to tell [rad or m].
 constexpr double kFarthestStep = 0.01;
+/// Farther than this, there is no solution beside a configuration [rad or m].
+constexpr double kNotBeside = 0.3;
 
-/// Along which a redundant arm of seven joints moves.
+/// Along which a redundant arm of seven joints moves, of length 1 or 0.
 JointVector self_motion_direction(const JacobianMatrix& J, const PseudoInverse& inverse) {
   const auto dof = static_cast<int>(J.cols());
   JointVector best = JointVector::Zero(dof);
@@ -24,12 +26,12 @@ JointVector self_motion_direction(const JacobianMatrix& J, const PseudoInverse& 
     const JointVector n = JointVector::Unit(dof, k) - inverse * J.col(k);
     if (n.squaredNorm() > best.squaredNorm()) best = n;
   }
-  return best;
+  return best.normalized();
 }
 
-/// Whether the solution q, of six joints or seven, and all that the tolerances allow beside it lie
-/// outside the limits, as far as the first order tells. No proof: whether it is worth while to look
-/// closer.
+/// Whether all that the tolerances allow beside q, of six joints or seven, lies outside the limits,
+/// or there is nothing beside it, as far as the first order tells. No proof: whether it is worth
+/// while to look closer.
 bool seems_beyond_limits(const ChainModel& model, const Goal& goal, const JointVector& q) {
   constexpr double kMargin = 1.05;
   if (model.dof != 6 && model.dof != 7) return false;
@@ -40,6 +42,7 @@ bool seems_beyond_limits(const ChainModel& model, const Goal& goal, const JointV
   if (is_almost_singular(J)) return false;
   const PseudoInverse inverse = damped_inverse(J, 0);
   const JointVector step = inverse * pose_error(goal.target(), pose);
+  if (step.cwiseAbs().maxCoeff() > kNotBeside) return true;
   // A displacement within the tolerances adds no more than this to a weighted sum of joints, whose
   // row of the inverse this is.
   const auto reach = [&](const Eigen::Matrix<double, 1, 6>& row) {
@@ -64,9 +67,12 @@ bool seems_beyond_limits(const ChainModel& model, const Goal& goal, const JointV
     }
     return false;
   }
-  // Of two joints that a self-motion moves outwards and inwards, the weighted sum that it leaves
-  // as it is.
   const JointVector along = self_motion_direction(J, inverse).cwiseProduct(outwards);
+  // A joint that a self-motion leaves as it is, or nearly, as where it turns back before a limit.
+  for (int j = 0; j < model.dof; ++j) {
+    if (beyond[j] > reach(inverse.row(j)) + std::abs(along[j]) * kFarthestStep) return true;
+  }
+  // Of two joints that it moves outwards and inwards, the weighted sum that it leaves as it is.
   for (int a = 0; a < model.dof; ++a) {
     for (int b = 0; b < a; ++b) {
       if (!(along[a] * along[b] < 0 && std::min(beyond[a], beyond[b]) > -kFarthestStep)) continue;

@@ -6,6 +6,9 @@ Targets that can be reached, as poses of configurations inside the limits
 solved one at a time, in a batch, and as near as can be to a random configuration, and
 every answer is judged by numpy. For arms whose solutions are isolated, the branches of
 solve_all beside those that random restarts of the iteration find.
+
+With --random, so many random arms of each build, and uniform targets in batches only;
+what a batch loses is asked again in every other way.
 """
 
 from __future__ import annotations
@@ -17,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import iksel
+from bench import random_arms
 from bench.arguments import add_robots
 from bench.arms import load_arm
 from bench.branches import (
@@ -53,6 +57,8 @@ ROBOTS = (
 KINDS = ("near_limits", "near_singular")
 CHUNK = 100_000
 """Targets at a time."""
+WAYS = ("solve", "near", "solve_all", "diagnose")
+"""What finds an answer where a batch says no."""
 
 
 def chunks(arm: Arm, kind: str, count: int, seed: int) -> Iterator[Targets]:
@@ -91,6 +97,53 @@ def reached(arm: Arm, kind: str, count: int, seed: int) -> dict[str, Any]:
             row["lost" + way] += int(np.count_nonzero(~solved))
             row["false" + way] += int(np.count_nonzero(~good))
     return row
+
+
+def lost_of_random(arm: Arm, count: int, seed: int) -> dict[str, int]:
+    """How many of so many uniform targets a batch loses, and what contradicts it."""
+    solver = iksel.Solver(arm.robot)
+    row = dict.fromkeys(("targets", "lost", "proven", *WAYS, "false"), 0)
+    tolerance = TOLERANCE + ROUNDING
+    for first in range(0, count, CHUNK):
+        n = min(CHUNK, count - first)
+        q = arm.robot.random_configurations(n, seed + first)
+        poses = arm.robot.fk(q)
+        batch = solver.solve_batch(poses)
+        good = right(
+            arm.chain,
+            poses[batch.success],
+            batch.q[batch.success],
+            tolerance,
+            tolerance,
+        )
+        row["targets"] += n
+        row["false"] += int(np.count_nonzero(~good))
+        for i in np.flatnonzero(~batch.success):
+            row["lost"] += 1
+            row["proven"] += int(batch.proof[i] != int(iksel.Proof.none))
+            row["solve"] += solver.solve(poses[i]).success
+            row["near"] += solver.solve(poses[i], near=q[i]).success
+            row["solve_all"] += bool(len(solver.solve_all(poses[i])))
+            row["diagnose"] += bool(solver.diagnose(poses[i]).q_is_solution)
+    return row
+
+
+def run_random(args: argparse.Namespace, conditions: dict[str, Any]) -> int:
+    """Count on random arms, and print a line of JSON for each build."""
+    bad = 0
+    for build in args.builds or random_arms.BUILDS:
+        total: dict[str, int] = {}
+        worst = 0
+        for i in range(args.seed, args.seed + args.random):
+            arm = random_arms.random_arm(build, i)
+            row = lost_of_random(arm, args.targets, i)
+            worst = max(worst, row["lost"])
+            for key, value in {"arms": 1, **row}.items():
+                total[key] = total.get(key, 0) + value
+        bad += total["lost"] + total["false"]
+        line = {**conditions, "build": build, **total, "most_of_an_arm": worst}
+        print(json.dumps(line), flush=True)
+    return 1 if bad else 0
 
 
 def beside_restarts(arm: Arm, count: int, restarts: int, seed: int) -> dict[str, Any]:
@@ -143,6 +196,16 @@ def add(commands: Any) -> None:
         "of which no joint is redundant",
     )
     command.add_argument("--restarts", type=int, default=10_000, metavar="N")
+    command.add_argument(
+        "--random", type=int, default=0, metavar="N", help="random arms of each build"
+    )
+    command.add_argument(
+        "--builds",
+        nargs="*",
+        choices=tuple(random_arms.BUILDS),
+        metavar="BUILD",
+        help=f"of random arms: {' '.join(random_arms.BUILDS)}",
+    )
     command.add_argument("--seed", type=int, default=1)
 
 
@@ -152,6 +215,8 @@ def run(args: argparse.Namespace) -> int:
     The exit status is 1 if anything is lost or false.
     """
     conditions = {"simd": iksel.simd_level(), "seed": args.seed}
+    if args.random > 0:
+        return run_random(args, conditions)
     bad = 0
     for name in args.robots:
         arm = load_arm(name)

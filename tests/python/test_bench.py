@@ -22,6 +22,7 @@ from bench import (
     lost,
     no,
     plan,
+    random_arms,
     run,
     targets,
 )
@@ -526,6 +527,17 @@ def test_lost_counts_what_is_not_found_and_what_is_false(monkeypatch) -> None:
     assert row["lost"] + row["false"] == 100
     assert row["lost"] > 0
     assert row["false"] > 0
+    row = lost.lost_of_random(arm, 100, SEED)
+    assert row["lost"] + row["false"] == row["targets"] == 100
+    assert row["near"] <= row["lost"]
+
+
+def test_lost_of_random_arms() -> None:
+    for build in ("offset_wrist", "wrist_offset"):
+        arm = random_arms.random_arm(build, SEED)
+        row = lost.lost_of_random(arm, 200, SEED)
+        assert row.pop("targets") == 200
+        assert not any(row.values())
 
 
 def test_lost_finds_the_branches_of_restarts() -> None:

@@ -49,10 +49,7 @@ bool descend_into_tolerances(const ChainModel& model, const Goal& goal, JointVec
     // A position counts in metres, a rotation as many as the weight says.
     const Remainder remainder(model, goal,
                               weights_of(weight * position_tolerance / rotation_tolerance));
-    // An answer comes to no more than this.
-    const double weight2 = weight * weight;
-    const double most = 0.5 * position_tolerance * position_tolerance * (1 + weight2);
-    descend_from_seed(model, remainder, kSteps, q, steps, most);
+    descend_from_seed(model, remainder, kSteps, q, steps);
     Result answer;
     if (goal.check(q, answer)) return true;
     double position = 0;
@@ -60,6 +57,8 @@ bool descend_into_tolerances(const ChainModel& model, const Goal& goal, JointVec
     goal.measure(q, position, rotation);
     position /= position_tolerance;
     rotation /= rotation_tolerance;
+    // An answer would have come to less than this.
+    const double weight2 = weight * weight;
     if (!(position * position + weight2 * rotation * rotation < 1 + weight2)) return false;
     (rotation > position ? least : largest) = 0.5 * (least + largest);
   }

@@ -2,6 +2,7 @@
 #include "seeds/enumeration.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "seeds/beyond_limits.hpp"
 
@@ -80,7 +81,18 @@ void Enumeration::take(const Pose& Y, int lane, bool wants_all) {
   certain_ = certain_ && is_sure && !(beyond > 0);
   certain_but_for_limits_ = certain_but_for_limits_ && is_sure;
   may_be_singular_ = may_be_singular_ || !is_sure;
+  // Where a square is below 0, its two roots are taken to be the same.
+  if (pack_.least[lane] < 0 && has_taken(q)) return;
   ++size_;
+}
+
+bool Enumeration::has_taken(const std::array<double, 6>& q) const {
+  constexpr double kSame = 1e-12;
+  const auto is_same = [&](const std::array<double, 6>& other) {
+    return std::equal(q.begin(), q.begin() + model_.dof, other.begin(),
+                      [](double a, double b) { return std::abs(a - b) < kSame; });
+  };
+  return std::any_of(q_.begin(), q_.begin() + size_, is_same);
 }
 
 bool Enumeration::is_regular(int lane, double& bound) {

@@ -56,6 +56,8 @@ class Enumeration {
  private:
   /// Takes a lane's branch if it may be one.
   void take(const Pose& Y, int lane, bool wants_all);
+  /// Whether q is one of those taken so far.
+  [[nodiscard]] bool has_taken(const std::array<double, 6>& q) const;
   /// Whether a lane's branch reaches the target far enough from singularities to tell by how much
   /// the tolerances may move it [rad].
   bool is_regular(int lane, double& bound);

@@ -4,6 +4,9 @@
 from __future__ import annotations
 
 import json
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -578,3 +581,19 @@ def test_frozen_sees_a_bit() -> None:
     rows = [digest.row() for digest in digests]
     assert rows[0] == rows[1]
     assert len(set(rows)) == 3
+
+
+def test_who_has_an_installed_package_only_collects_the_other_tests(tmp_path) -> None:
+    """scripts/packages.sh runs them so, without the benchmarks."""
+    tests = Path(__file__).parent
+    command = [sys.executable, "-m", "pytest", "--collect-only", "-qq", "-o"]
+    command += ["pythonpath=", "-c", str(tests.parents[1] / "pyproject.toml")]
+    done = subprocess.run(
+        [*command, str(tests)],
+        cwd=tmp_path,
+        env={k: v for k, v in os.environ.items() if k != "PYTHONPATH"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout[-2000:]

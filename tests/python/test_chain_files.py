@@ -17,10 +17,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import pytest
-from chain_reference import ReferenceChain
 
 import iksel
 from iksel.description import read_description
+
+pytest.importorskip("bench", reason="the benchmarks are in the repository only")
+
+from chain_reference import ReferenceChain
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -6,7 +6,7 @@ import pickle
 
 import numpy as np
 import pytest
-from tests.python.command_line import assert_bad
+from command_line import assert_bad
 from tubes import LENGTHS, NAMES, URDF
 
 import iksel

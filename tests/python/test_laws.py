@@ -11,9 +11,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from bench import laws, random_arms
 
 import iksel
+
+pytest.importorskip("bench", reason="the benchmarks are in the repository only")
+
+from bench import laws, random_arms
 
 SEED = int(os.environ.get("IKSEL_TEST_SEED", "7"))
 ARMS = 2

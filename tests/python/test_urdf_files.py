@@ -52,6 +52,7 @@ REMEDIES = (
     "a joint that turns freely is 'continuous'",
     "give the <robot> a name",
     "it needs a <link> for each body",
+    "each of them a <link>",
     "To fix this problem you can",
     "give the path of a URDF file, or its text",
     "a joint is revolute, continuous, prismatic, fixed, planar or floating",

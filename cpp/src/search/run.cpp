@@ -166,8 +166,7 @@ Proof Search<Answers>::in_lanes() const {
       // What ranks answers otherwise has looked for none there.
       const bool has_looked =
           answers.spread() > 0 || answers.wants_nearest() || answers.wants_nearest_free();
-      if (workspace.lanes->ends && has_looked && answers.status == Status::not_converged &&
-          (!proof || answers.spread() > 0 || workspace.lanes->ends->are_closed())) {
+      if (workspace.lanes->ends && has_looked && answers.status == Status::not_converged) {
         has_asked_ends = true;
         if (const auto by_ends = this->by_ends()) proof = by_ends;
       }
@@ -231,7 +230,7 @@ std::optional<Proof> Search<Answers>::by_sweep(const Pose& Y) const {
   Workspace::InLanes& lanes = *workspace.lanes;
   SweptSeeds swept(*lanes.sweep, Y, work, clock);
   if (search(lanes.refiner, swept, answers, work)) return Proof::none;
-  if (lanes.ends && lanes.ends->are_closed()) {
+  if (lanes.ends) {
     const auto proof = by_ends();
     if (proof == Proof::none) return proof;
     if (proof) {
@@ -242,10 +241,8 @@ std::optional<Proof> Search<Answers>::by_sweep(const Pose& Y) const {
   }
   swept.look_between(Sweep::Between::all);
   if (search(lanes.refiner, swept, answers, work)) return Proof::none;
-  if (swept.is_none()) return Proof::sweep;
-  if (lanes.ends && !lanes.ends->are_closed()) {
-    if (const auto proof = by_ends()) return proof;
-  }
+  const bool knows_all_ends = lanes.ends && lanes.ends->are_all();
+  if (!knows_all_ends && swept.is_none()) return Proof::sweep;
   swept.give_close();
   if (search(lanes.refiner, swept, answers, work)) return Proof::none;
   return std::nullopt;

@@ -7,7 +7,7 @@ namespace iksel {
 
 ArcEnds::ArcEnds(const LockedArms& arms, double position_tolerance, double rotation_tolerance,
                  const lanes::LaneKernels& kernels)
-    : are_all_(arms.are_all), are_closed_(arms.are_closed) {
+    : are_all_(arms.are_all) {
   ends_.reserve(arms.arms.size());
   // Memory is taken here, and none while solving; the last of more gives way.
   constexpr std::size_t kKept = 128;

@@ -35,8 +35,6 @@ class ArcEnds {
   }
   /// Whether each end that a joint's limit could make is looked for.
   [[nodiscard]] bool are_all() const { return are_all_; }
-  /// Whether each is solved for in closed form.
-  [[nodiscard]] bool are_closed() const { return are_closed_; }
 
  private:
   struct End {
@@ -47,7 +45,7 @@ class ArcEnds {
   };
 
   std::vector<End> ends_;
-  bool are_all_, are_closed_;
+  bool are_all_;
   const End* last_ = nullptr;
   bool by_roots_ = false;
   int count_ = 0;

@@ -192,7 +192,8 @@ constexpr LaneKernels make_kernels(const char* name) {
           find_clearance<Narrow>,
           find_determinants<Wide>,
           evaluate_polynomial<Wide>,
-          close_loops<Wide>};
+          close_loops<Wide>,
+          multiply<Wide>};
 }
 
 }  // namespace iksel::lanes

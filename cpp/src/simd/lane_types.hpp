@@ -204,6 +204,9 @@ using FindDeterminants = void (*)(const LoopTarget& target, const double* angles
                                   double* values);
 using EvaluatePolynomial = void (*)(const TrigonometricPolynomial& polynomial, const double* angles,
                                     int n, double* values);
+/// C = A B, by columns; so many rows of A and C, a multiple of kWidth.
+using Multiply = void (*)(const double* A, int rows, const double* B, int inner, int columns,
+                          double* C);
 /// The other joints' angles, at kWidth roots.
 using CloseLoops = void (*)(const LoopForm& form, const LoopTarget& target,
                             const ClosedForm& limits, BranchPack& pack);
@@ -246,6 +249,7 @@ struct LaneKernels {
   FindDeterminants find_determinants;
   EvaluatePolynomial evaluate_polynomial;
   CloseLoops close_loops;
+  Multiply multiply;
 };
 
 }  // namespace iksel::lanes

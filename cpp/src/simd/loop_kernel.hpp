@@ -77,7 +77,21 @@ void find_determinants(const LoopTarget& target, const double* angles, int n, do
   }
 }
 
-/// The same by its Fourier coefficients.
+/// C = A B, as Multiply says.
+template <typename T>
+void multiply(const double* A, int rows, const double* B, int inner, int columns, double* C) {
+  for (int k = 0; k < columns; ++k) {
+    for (int first = 0; first < rows; first += Lanes<T>::kCount) {
+      T sum = T(0.0);
+      for (int i = 0; i < inner; ++i) {
+        sum = sum + Lanes<T>::load(A + i * rows + first) * T(B[k * inner + i]);
+      }
+      Lanes<T>::store(sum, C + k * rows + first);
+    }
+  }
+}
+
+/// The determinants by their Fourier coefficients.
 template <typename T>
 void evaluate_polynomial(const TrigonometricPolynomial& p, const double* angles, int n,
                          double* values) {

@@ -13,7 +13,7 @@ LockedArms LockedArms::of(const ChainModel& whole) {
   LockedArms found;
   const JointSpace& joints = whole.joints;
   if (whole.dof != kJoints || !is_simple(whole) || !joints.coupled.empty()) return found;
-  found.are_all = found.are_closed = true;
+  found.are_all = true;
   for (int j = 0; j < kJoints; ++j) {
     if (joints.type(j) == JointType::continuous || !takes_part_in_self_motion(whole, j)) continue;
     for (const double value : {joints.lower[j], joints.upper[j]}) {
@@ -26,10 +26,9 @@ LockedArms LockedArms::of(const ChainModel& whole) {
       arm.pose = find_closed_form(*arm.model);
       if (!arm.pose || arm.pose->is_almost()) arm.residual = find_residual(*arm.model);
       if (arm.pose || arm.residual) {
-        found.are_closed = found.are_closed && !arm.residual;
         found.arms.push_back(std::move(arm));
       } else {
-        found.are_all = found.are_closed = false;
+        found.are_all = false;
       }
     }
   }

@@ -25,8 +25,6 @@ struct LockedArms {
   std::vector<LockedArm> arms;
   /// Whether these are all: each joint with limits can be solved for with that joint locked.
   bool are_all = false;
-  /// Whether each has a closed form, and no residual: a tenth of its time.
-  bool are_closed = false;
 
   /// Those of a chain of seven joints; none of other chains, or where limits are coupled.
   static LockedArms of(const ChainModel& whole);

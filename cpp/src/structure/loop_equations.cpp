@@ -85,7 +85,7 @@ lanes::LoopForm::Rest rest_of(const AxisPattern& pattern, std::size_t first) {
 }  // namespace
 
 LoopEquations::LoopEquations(const ScrewAxes& axes, double unit, int swept)
-    : unit_(unit), end_(axes.end) {
+    : unit_(unit), end_(axes.end), kernels_(&lanes::choose_kernels()) {
   end_.translation() /= unit;
   constexpr int kLoopJoints = 6;
   form_.before = (kLoopJoints - swept) % kLoopJoints;
@@ -102,16 +102,18 @@ LoopEquations::LoopEquations(const ScrewAxes& axes, double unit, int swept)
   form_.rest = rest_of(AxisPattern(axes, unit, kStructureTolerance), last_three);
   const Vector3d across = Vector3d(form_.h[3]).unitOrthogonal();
   for (int k = 0; k < 3; ++k) form_.across[k] = across[k];
-  const int count = power_of_three(3 - form_.before);
-  for (int i = 0; i < count; ++i) {
-    Line line{Vector3d(form_.p[3]), Vector3d(form_.h[3])};
-    for (int j = 2, rest = i; j >= form_.before; --j, rest /= kAngles) {
-      const Pose turn = motion(j, node(rest % kAngles));
-      line = {turn * line.p, turn.linear() * line.l};
+  make_points();
+  make_equations();
+  const auto n = static_cast<int>(points_.cols());
+  for (int k = 0; k < n; ++k) {
+    for (int row = 0; row < kCoefficients / n; ++row) {
+      // The three angles' harmonics as one number of base 3, and the equation between them.
+      const int of = row / kEquations * n + k;
+      const int place = of / 9 * 9 * kEquations + row % kEquations * 9 + of % 9;
+      place_[static_cast<std::size_t>(kCoefficients / n * k + row)] =
+          static_cast<unsigned char>(place);
     }
-    points_.push_back(line);
   }
-  eliminate();
 }
 
 Pose LoopEquations::motion(int joint, double angle) const {
@@ -122,7 +124,32 @@ Pose LoopEquations::motion(int joint, double angle) const {
   return turn;
 }
 
-void LoopEquations::eliminate() {
+void LoopEquations::make_points() {
+  const int count = power_of_three(3 - form_.before);
+  points_.setZero(kFeatures, count);
+  for (int i = 0; i < count; ++i) {
+    Vector3d p(form_.p[3]);
+    Vector3d l(form_.h[3]);
+    for (int j = 2, rest = i; j >= form_.before; --j, rest /= kAngles) {
+      const Pose turn = motion(j, node(rest % kAngles));
+      p = turn * p;
+      l = turn.linear() * l;
+    }
+    points_.col(i).head<kInvariant + 1>() = features(p, l);
+  }
+  // By the angles, one after the other, in place of the values.
+  const Matrix3d F = by_harmonics();
+  for (int stride = 1; stride < count; stride *= kAngles) {
+    for (int i = 0; i < count; ++i) {
+      if (i / stride % kAngles != 0) continue;
+      Eigen::Matrix<double, kFeatures, kAngles> values;
+      for (int k = 0; k < kAngles; ++k) values.col(k) = points_.col(i + k * stride);
+      for (int k = 0; k < kAngles; ++k) points_.col(i + k * stride) = values * F.row(k).transpose();
+    }
+  }
+}
+
+void LoopEquations::make_equations() {
   const Matrix3d F = by_harmonics();
   Eigen::Matrix<double, kInvariant, 9> products;
   products.setZero();
@@ -137,22 +164,23 @@ void LoopEquations::eliminate() {
   const Eigen::Matrix<double, kEquations, kInvariant> left =
       svd.matrixU().rightCols<kEquations>().transpose();
   const int count = power_of_three(form_.before);
-  equations_.setZero(kEquations * count, kFeatures);
+  const int rows = kEquations * count;
+  equations_.setZero((rows + lanes::kWidth - 1) / lanes::kWidth * lanes::kWidth, kFeatures);
   for (int i = 0; i < count; ++i) {
     Pose turn = Pose::Identity();
     for (int j = form_.before - 1, rest = i; j >= 0; --j, rest /= kAngles) {
       turn = motion(j, node(rest % kAngles)) * turn;
     }
-    const Eigen::Matrix<double, kEquations, kFeatures> at = left * moved(turn);
+    const Eigen::Matrix<double, kEquations, kInvariant + 1> at = left * moved(turn);
     for (int k = 0; k < count; ++k) {
       double share = 1;
       for (int j = 0, a = i, b = k; j < form_.before; ++j, a /= kAngles, b /= kAngles) {
         share *= F(b % kAngles, a % kAngles);
       }
-      equations_.middleRows<kEquations>(kEquations * k) += share * at;
+      equations_.block<kEquations, kInvariant + 1>(kEquations * k, 0) += share * at;
     }
   }
-  equations_.topRightCorner<kEquations, 1>() -= left * products.col(0);
+  equations_.block<kEquations, 1>(0, kInvariant) -= left * products.col(0);
 }
 
 void LoopEquations::set_target(const Pose& Y, lanes::LoopTarget& target) const {
@@ -162,29 +190,26 @@ void LoopEquations::set_target(const Pose& Y, lanes::LoopTarget& target) const {
     for (int i = 0; i < 3; ++i) target.R[k][i] = R(i, k);
     target.t[k] = t[k];
   }
-  // By the angles of the joints behind the target, one after the other in place of its values.
-  Eigen::Matrix<double, kFeatures, Eigen::Dynamic, 0, kFeatures, kMostPoints> at(
-      kFeatures, static_cast<Eigen::Index>(points_.size()));
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    at.col(static_cast<Eigen::Index>(i)) = features(R * points_[i].p + t, R * points_[i].l);
-  }
-  const Matrix3d F = by_harmonics();
-  const auto n = static_cast<int>(points_.size());
-  for (int stride = 1; stride < n; stride *= kAngles) {
-    for (int i = 0; i < n; ++i) {
-      if (i / stride % kAngles != 0) continue;
-      Eigen::Matrix<double, kFeatures, kAngles> values;
-      for (int k = 0; k < kAngles; ++k) values.col(k) = at.col(i + k * stride);
-      for (int k = 0; k < kAngles; ++k) at.col(i + k * stride) = values * F.row(k).transpose();
-    }
-  }
+  Pose motion = Pose::Identity();
+  motion.linear() = R;
+  motion.translation() = t;
+  alignas(64) double by_motion[kFeatures * kFeatures];
+  Eigen::Map<Eigen::Matrix<double, kFeatures, kFeatures>> map(by_motion);
+  map.setZero();
+  map.topLeftCorner<kInvariant, kInvariant + 1>() = moved(motion);
+  map(kInvariant, kInvariant) = 1;
+  const auto n = static_cast<int>(points_.cols());
   const auto rows = static_cast<int>(equations_.rows());
-  for (int row = 0; row < rows; ++row) {
-    for (int k = 0; k < n; ++k) {
-      // The three angles' harmonics as one number of base 3.
-      const int of = row / kEquations * n + k;
-      target.equation[of / 9][row % kEquations][of / 3 % 3][of % 3] =
-          equations_.row(row).dot(at.col(k));
+  // 27 columns at most; of 3, 9 and 27 times six equations with zeros 9, 3 and 1.
+  alignas(64) double at[kFeatures * 27];
+  alignas(64) double products[27 * lanes::kWidth];
+  kernels_->multiply(by_motion, kFeatures, points_.data(), kFeatures, n, at);
+  kernels_->multiply(equations_.data(), rows, at, kFeatures, n, products);
+  double* coefficients = &target.equation[0][0][0][0];
+  const int used = kCoefficients / n;
+  for (int k = 0, i = 0; k < n; ++k) {
+    for (int row = 0; row < used; ++row, ++i) {
+      coefficients[place_[static_cast<std::size_t>(i)]] = products[k * rows + row];
     }
   }
 }

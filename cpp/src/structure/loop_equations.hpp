@@ -12,8 +12,9 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <vector>
+#include <array>
 
+#include "simd/kernels.hpp"
 #include "simd/loop_types.hpp"
 #include "structure/screw_axes.hpp"
 
@@ -30,25 +31,27 @@ class LoopEquations {
   void set_target(const Pose& Y, lanes::LoopTarget& target) const;
 
  private:
-  static constexpr int kFeatures = 15;
-  static constexpr int kMostPoints = 27;
-  using Features = Eigen::Matrix<double, kFeatures, 1>;
-  struct Line {
-    Eigen::Vector3d p, l;
-  };
+  /// What is linear in itself under a motion, 1 among it, and zeros up to whole packs.
+  static constexpr int kFeatures = 16;
+  static constexpr int kCoefficients = 162;
 
   [[nodiscard]] Pose motion(int joint, double angle) const;
-  /// What is left of equations when products of a and b have gone, by the features of `points_`.
-  void eliminate();
+  /// What is left of equations when products of a and b have gone, by the features of axis f.
+  void make_equations();
+  /// Features of axis f as the joints behind the target move it.
+  void make_points();
 
   double unit_;
   Pose end_;  ///< [units]
+  const lanes::LaneKernels* kernels_;
   lanes::LoopForm form_{};
   /// Rows: of the angles of the joints before the target, the first joint's slowest, by what is
-  /// constant, goes by cosine and sine; of each six equations.
+  /// constant, goes by cosine and sine; of each six equations. And zeros up to whole packs.
   Eigen::Matrix<double, Eigen::Dynamic, kFeatures> equations_;
-  /// Axis f as the joints behind the target move it, each at three angles, the first's slowest.
-  std::vector<Line> points_;
+  /// Columns: of the angles of the joints behind the target, in the same way.
+  Eigen::Matrix<double, kFeatures, Eigen::Dynamic> points_;
+  /// Where their products stand in the target's equations, row by row of each column.
+  std::array<unsigned char, kCoefficients> place_{};
 };
 
 }  // namespace iksel

@@ -9,9 +9,14 @@
 namespace iksel {
 
 LoopPolynomial::LoopPolynomial(const lanes::LaneKernels& kernels) : kernels_(kernels) {
-  for (std::size_t i = 0; i < kSamples; ++i) {
-    angles_[i] = kTwoPi / kSamples * static_cast<double>(i);
-    cosines_[i] = std::cos(angles_[i]);
+  for (int i = 0; i < kSamples; ++i) {
+    const double angle = kTwoPi / kSamples * i;
+    angles_[static_cast<std::size_t>(i)] = angle;
+    for (int k = 0; k < kHarmonics; ++k) {
+      const double share = (k == 0 ? 1.0 : 2.0) / kSamples;
+      by_harmonics_(2 * k, i) = share * std::cos(k * angle);
+      by_harmonics_(2 * k + 1, i) = share * std::sin(k * angle);
+    }
   }
 }
 
@@ -19,20 +24,13 @@ void LoopPolynomial::find(const lanes::LoopTarget& target) {
   constexpr int kDegree = lanes::TrigonometricPolynomial::kDegree;
   std::array<double, kSamples> values;
   kernels_.find_determinants(target, angles_.data(), kSamples, values.data());
+  const Harmonics harmonics = by_harmonics_.lazyProduct(
+      Eigen::Map<const Eigen::Matrix<double, kSamples, 1>>(values.data()));
   noise_ = 0;
   double squares = 0;
   for (int k = 0; k < kHarmonics; ++k) {
-    double a = 0;
-    double b = 0;
-    for (int i = 0; i < kSamples; ++i) {
-      const auto at = static_cast<std::size_t>(i);
-      a += values[at] * cosines_[static_cast<std::size_t>(k * i % kSamples)];
-      // The cosine a quarter of a turn before.
-      b += values[at] * cosines_[static_cast<std::size_t>((k * i + 3 * kSamples / 4) % kSamples)];
-    }
-    const double share = (k == 0 ? 1.0 : 2.0) / kSamples;
-    a *= share;
-    b *= share;
+    const double a = harmonics[2 * k];
+    const double b = harmonics[2 * k + 1];
     if (k > kDegree) {
       noise_ = std::max({noise_, std::abs(a), std::abs(b)});
       continue;

@@ -2,6 +2,7 @@
 // The determinant of a loop (loop_kernel.hpp) as the trigonometric polynomial that it is.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 
 #include "simd/kernels.hpp"
@@ -27,7 +28,10 @@ class LoopPolynomial {
   static constexpr int kHarmonics = kSamples / 2;
 
   const lanes::LaneKernels& kernels_;
-  std::array<double, kSamples> angles_, cosines_;
+  std::array<double, kSamples> angles_;
+  /// From values at these to what goes by the cosine and the sine of so many times the angle.
+  using Harmonics = Eigen::Matrix<double, 2 * kHarmonics, 1>;
+  Eigen::Matrix<double, 2 * kHarmonics, kSamples> by_harmonics_;
   lanes::TrigonometricPolynomial polynomial_{};
   double noise_ = 0;
   double size_ = 0;

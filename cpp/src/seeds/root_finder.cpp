@@ -14,11 +14,12 @@ constexpr int round_up(int n) { return (n + kBlock - 1) / kBlock * kBlock; }
 
 }  // namespace
 
-RootFinder::RootFinder(double lower, double range, double vague, double precision,
+RootFinder::RootFinder(double lower, double range, double vague, double faint, double precision,
                        const lanes::LaneKernels& kernels)
     : kernels_(kernels),
       turns_(range >= kTwoPi),
       vague_(vague),
+      faint_(faint),
       precision_(precision),
       step_(std::min(range, kTwoPi) / kCells),
       angles_(static_cast<std::size_t>(round_up(kBefore + kCells + kAfter))),
@@ -51,6 +52,21 @@ void RootFinder::find(const Residual& residual) {
     }
   }
   polish(residual);
+  if (faint_ > 0) add_faint();
+}
+
+void RootFinder::add_faint() {
+  // Mostly there are none, which is soon known.
+  int faint = 0;
+  for (int i = 0; i < kCells; ++i) faint += std::abs(values_[kBefore + i]) <= faint_ ? 1 : 0;
+  if (faint == 0) return;
+  for (std::size_t i = kBefore; i < kBefore + kCells && size_ < kMost; ++i) {
+    const double here = std::abs(values_[i]);
+    if (here > faint_ || here > std::abs(values_[i - 1]) || here > std::abs(values_[i + 1]))
+      continue;
+    const bool crosses = values_[i - 1] * values_[i] <= 0 || values_[i] * values_[i + 1] <= 0;
+    if (!crosses) roots_[size_++] = {angles_[i], true, 0, true};
+  }
 }
 
 double RootFinder::faintest() const {

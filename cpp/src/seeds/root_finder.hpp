@@ -22,15 +22,16 @@ class RootFinder {
   static constexpr std::size_t kMost = 48;
 
   struct Root {
-    double angle;   ///< [rad]
-    bool is_vague;  ///< there may be two near to here, or just none
-    double apart;   ///< so far away are these, real or not, if that is known [rad]
+    double angle;           ///< [rad]
+    bool is_vague;          ///< there may be two near to here, or just none
+    double apart;           ///< so far away are these, real or not, if that is known [rad]
+    bool is_faint = false;  ///< it turns here, hardly different from 0, and that is all
   };
 
   /// From `lower` on, over `range`, which is all if it is a whole turn or more [rad]. Where the
-  /// residual turns and its two roots are at most `vague` away, real or not, a root is vague [rad].
-  /// Others are found to within `precision` [rad].
-  RootFinder(double lower, double range, double vague, double precision,
+  /// residual turns and its two roots are at most `vague` away, real or not [rad], or it is at most
+  /// `faint` there, a root is vague. Others are found to within `precision` [rad].
+  RootFinder(double lower, double range, double vague, double faint, double precision,
              const lanes::LaneKernels& kernels);
 
   /// Writes the residuals of `n` angles, a multiple of kWidth.
@@ -65,12 +66,15 @@ class RootFinder {
   void look_closer(const Residual& residual, double left, double length, int depth);
   void add_bracket(double left, double length, const double* value);
   void add(double angle, bool is_vague, double apart = 0);
+  /// Adds where the residual turns, but hardly differs from 0.
+  void add_faint();
   /// Narrows all brackets.
   void polish(const Residual& residual);
 
   const lanes::LaneKernels& kernels_;
   bool turns_;
   double vague_;
+  double faint_;
   double precision_;
   double step_;
   std::vector<double> angles_, values_;  ///< with those before and after

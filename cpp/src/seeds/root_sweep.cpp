@@ -22,6 +22,12 @@ constexpr double kFartherApart = 8;
 /// targets near singularities two had been lost, where four roots all but meet.
 constexpr double kFarthestApart = 32;
 
+/// Where a product over all branches turns and is no more than this many times the square of what
+/// all but double roots are off, there may be roots that are farther apart: elbow and wrist are
+/// both all but straight. `near` of gen3_6dof had lost two of a million targets near singularities
+/// (python -m bench lost gen3_6dof --targets 0 --hard 1000000).
+constexpr double kFaint = 0.001;
+
 /// Where neighbouring values of a loop's determinant are less than so many times its noise, there
 /// may be roots or none.
 constexpr double kAboveNoise = 30;
@@ -42,13 +48,13 @@ constexpr double kDelicate = 1e-3;
 constexpr double kPrecision = 5e-10;
 constexpr double kShare = 0.1;
 
-RootFinder make_finder(const ChainModel& model, int joint, double vague, double precision,
-                       const lanes::LaneKernels& kernels) {
+RootFinder make_finder(const ChainModel& model, int joint, double vague, double faint,
+                       double precision, const lanes::LaneKernels& kernels) {
   constexpr double kBeyond = 0.05;
   const double offset = model.kernel.joints[static_cast<std::size_t>(joint)].offset;
   const double lower = model.joints.sample_lower(joint) - kBeyond;
   const double upper = model.joints.sample_upper(joint) + kBeyond;
-  return {lower + offset, upper - lower, vague, precision, kernels};
+  return {lower + offset, upper - lower, vague, faint, precision, kernels};
 }
 
 }  // namespace
@@ -67,6 +73,7 @@ RootSweep::RootSweep(const ChainModel& model, const ClosedFormChain& chain, bool
       roots_(
           make_finder(model, chain.held,
                       2 * std::sqrt(tolerance + kFarthestApart * kFarthestApart * chain.deviation),
+                      chain.loop ? 0.0 : kFaint * vague_ * vague_,
                       std::max(kPrecision, kShare * chain.deviation), kernels)),
       polynomial_(kernels) {
   chain_.use_limits(model);
@@ -145,6 +152,8 @@ void RootSweep::take(const Pose& Y, const RootFinder::Root& root, int lane) {
   // found.
   if (chain_.loop && is_vague) certain_ = false;
   if (!(pack_.least[lane] > -slack)) return;
+  // Of a product that hardly differs from 0, only branches that all but meet tell of roots.
+  if (root.is_faint && !(std::abs(pack_.least[lane]) < vague_ * vague_)) return;
   if (!(std::abs(pack_.residual[lane]) < most)) {
     if (chain_.loop) certain_ = false;
     return;

@@ -88,7 +88,10 @@ TEST(Threads, BatchInLanesAnswersEachTargetByItself) {
     std::vector<Pose> others;
     for (const std::size_t i : order) others.push_back(targets[i]);
     const std::vector<Result> shuffled = solver.solve_batch(others, {}, {}, 1);
-    for (std::size_t k = 0; k < order.size(); ++k) expect_same(shuffled[k], batch[order[k]]);
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      SCOPED_TRACE(name + ", target " + std::to_string(order[k]));
+      expect_same(shuffled[k], batch[order[k]]);
+    }
     for (std::size_t i = 0; i < targets.size(); ++i) {
       const Result single = solver.solve(targets[i]);
       EXPECT_EQ(batch[i].status, single.status) << name << " " << i;
@@ -98,6 +101,24 @@ TEST(Threads, BatchInLanesAnswersEachTargetByItself) {
       const auto apart = iksel::pose_error(robot.fk(single.q), robot.fk(batch[i].q));
       EXPECT_LE(apart.head<3>().norm(), 2 * solver.options().position_tolerance + 1e-12);
       EXPECT_LE(apart.tail<3>().norm(), 2 * solver.options().rotation_tolerance + 1e-12);
+    }
+  }
+}
+
+/// What was solved before leaves nothing behind.
+TEST(Threads, AnswersDoNotDependOnWhatWasSolvedBefore) {
+  for (const char* name : {"xarm5", "irb120", "cvr038", "panda"}) {
+    const Solver& solver = iksel_test::solver(name);
+    auto targets =
+        iksel_test::random_targets(iksel_test::robot(name), iksel_test::cases(3000, 100));
+    for (std::size_t i = 0; i + 1 < targets.size(); i += 3) {
+      targets[i].linear() = targets[i + 1].linear().transpose();  // most without an answer
+    }
+    std::vector<Result> forwards;
+    for (const Pose& target : targets) forwards.push_back(solver.solve(target));
+    for (std::size_t i = targets.size(); i-- > 0;) {
+      SCOPED_TRACE(std::string(name) + ", target " + std::to_string(i));
+      expect_same(solver.solve(targets[i]), forwards[i]);
     }
   }
 }

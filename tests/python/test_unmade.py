@@ -157,6 +157,8 @@ def test_every_class_has_an_example(solver) -> None:
 
 def test_the_fuzzer_of_pickles_knows_every_class() -> None:
     folder = Path(__file__).parents[1] / "fuzz"
+    if not folder.is_dir():
+        pytest.skip("the fuzzers are not part of the package")
     spec = importlib.util.spec_from_file_location(
         "pickle_samples", folder / "pickle_samples.py"
     )

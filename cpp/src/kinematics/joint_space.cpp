@@ -53,7 +53,7 @@ void JointSpace::wrap(double* q) const {
     if (is_slide(j)) continue;
     if (type(j) == JointType::continuous) {
       // Any value is allowed; a principal one is what users expect.
-      if (std::abs(q[j]) > kPi) q[j] = std::remainder(q[j], kTwoPi);
+      if (std::abs(q[j]) > kPi) q[j] = without_turns(q[j]);
     } else if (q[j] < lower[j]) {
       const double wrapped = q[j] + kTwoPi * std::ceil((lower[j] - q[j]) / kTwoPi);
       if (wrapped <= upper[j]) q[j] = wrapped;

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "base/angle.hpp"
 #include "base/constants.hpp"
 #include "base/function_ref.hpp"
 #include "base/random.hpp"
@@ -120,17 +121,28 @@ class JointSpace {
   /// q at the first. Starts from first_image.
   bool next_image(JointVector& q) const;
 
-  /// The largest difference of a joint, whole turns counting nothing; or anything not below `bound`
-  /// if it is not below.
+  /// By how much a joint's values differ, whole turns counting nothing where it is periodic.
+  [[nodiscard]] double difference(int joint, double from, double to) const {
+    const double d = to - from;
+    return std::abs(d) > kPi && is_periodic(joint) ? without_turns(d) : d;
+  }
+  /// The same of all joints.
   template <typename A, typename B>
-  [[nodiscard]] double distance(const A& a, const B& b, double bound) const {
+  [[nodiscard]] JointVector difference(const A& from, const B& to) const {
+    JointVector d(dof());
+    for (int j = 0; j < dof(); ++j) {
+      const auto i = static_cast<std::size_t>(j);
+      d[j] = difference(j, from[i], to[i]);
+    }
+    return d;
+  }
+  /// The largest of these; or anything not below `bound` if it is not below.
+  template <typename A, typename B>
+  [[nodiscard]] double distance(const A& a, const B& b, double bound = kInfinity) const {
     double largest = 0;
     for (int j = 0; j < dof(); ++j) {
-      double d = std::abs(a[j] - b[j]);
-      if (d >= bound && is_periodic(j)) {
-        d = std::abs(d - kTwoPi * static_cast<double>(static_cast<long>(d / kTwoPi + 0.5)));
-      }
-      largest = std::max(largest, d);
+      const auto i = static_cast<std::size_t>(j);
+      largest = std::max(largest, std::abs(difference(j, b[i], a[i])));
       if (largest >= bound) return largest;
     }
     return largest;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/constants.hpp"
+#include "base/angle.hpp"
 #include "base/rotation.hpp"
 #include "iksel/pose.hpp"
 #include "refine/schemes.hpp"
@@ -56,7 +56,7 @@ void after_step(const IterationContext& context, JointVector& q) {
   } else if (context.scheme.iteration == Iteration::cwln) {
     for (int i = 0; i < context.model.dof; ++i) {
       if (!context.model.joints.is_slide(i)) {
-        q[i] = std::remainder(q[i], kTwoPi);
+        q[i] = without_turns(q[i]);
       }
     }
   }

@@ -49,6 +49,8 @@ class LaneRefiner {
   void load(int lane, const Value& value) {
     for (int j = 0; j < chain_.n; ++j) pack_.q[j][lane] = value(j);
     if (chain_.coupled_rows > 0) hold_coupled(lane);
+    there_ &= ~(1U << static_cast<unsigned>(lane));  // of a search that ended before advance()
+    pack_.error2[lane] = kInfinity;                  // not measured yet
     age_[lane] = 0;
     next_look_[lane] = patience_.look > 0 ? patience_.look : kNever;
     refused_error2_[lane] = kInfinity;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "base/angle.hpp"
+
 namespace iksel {
 
 InnerArm::InnerArm(const ChainModel& whole, const InnerChain& inner,
@@ -40,7 +42,7 @@ bool InnerArm::find(const Pose& T_base_tcp, const NearestTo& to) {
   // Where it is preferred itself, the swept joint may have had to move.
   constexpr double kStays = 1e-9;
   double moved = q_[swept_] - to.from[swept_];
-  if (!whole_.joints.is_slide(swept_)) moved = std::remainder(moved, kTwoPi);
+  if (!whole_.joints.is_slide(swept_)) moved = without_turns(moved);
   return !to.prefers(swept_) || std::abs(moved) <= kStays;
 }
 

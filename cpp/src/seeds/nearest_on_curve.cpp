@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angle.hpp"
 #include "seeds/least_cost.hpp"
 
 namespace iksel {
@@ -11,11 +12,6 @@ namespace {
 
 /// Rounds of eight values in which a fold is looked for.
 constexpr int kFoldRounds = 3;
-
-/// What is left of an angle without whole turns.
-double without_turns(double d) {
-  return d - kTwoPi * static_cast<double>(static_cast<long>(d / kTwoPi + (d > 0 ? 0.5 : -0.5)));
-}
 
 }  // namespace
 

@@ -114,8 +114,6 @@ class SelfMotionArcs {
   void append_between(const BranchSpan& span, const Node& a, const Node& b, double spacing,
                       int depth, Arc& arc);
   void finish(Arc& arc, double spacing) const;
-  /// The largest difference of a joint, whole turns counting nothing.
-  [[nodiscard]] double distance(const Joints& a, const Joints& b) const;
 
   SweptBranches branches_;
   Places places_;

@@ -7,16 +7,6 @@
 
 namespace iksel {
 
-double SelfMotionArcs::distance(const Joints& a, const Joints& b) const {
-  double largest = 0;
-  for (int j = 0; j < SweptBranches::kDof; ++j) {
-    const auto i = static_cast<std::size_t>(j);
-    const double d = a[i] - b[i];
-    largest = std::max(largest, std::abs(joints_.is_periodic(j) ? std::remainder(d, kTwoPi) : d));
-  }
-  return largest;
-}
-
 void SelfMotionArcs::join() {
   /// Branches that merge are so near to each other at the last value where they exist [rad].
   constexpr double kMerged = 0.05;
@@ -38,7 +28,7 @@ void SelfMotionArcs::join() {
       // A branch merges with another one; at the seam of a whole turn it goes on itself.
       const bool is_fold = from.ends[a % 2].kind == ArcEnd::fold;
       if (is_fold == (to.span.branch == from.span.branch)) continue;
-      const double away = distance(last(from, a % 2), last(to, b % 2));
+      const double away = joints_.distance(last(from, a % 2), last(to, b % 2));
       if (away >= nearest) continue;
       nearest = away;
       found = b;
@@ -81,7 +71,7 @@ bool SelfMotionArcs::add_partner(int branch, const BranchSpan& span, double part
   const auto value = [&](int lane) { return inside + (ahead - inside) * lane / (kLanes - 1); };
   branches_.solve_one(branch, value);
   constexpr double kMerged = 0.1;
-  if (branches_.least(0) < 0 || distance(node(0, 0).q, fold) > kMerged) return false;
+  if (branches_.least(0) < 0 || joints_.distance(node(0, 0).q, fold) > kMerged) return false;
   int end = 1;
   while (end < kLanes && branches_.least(end) >= 0) ++end;
   if (end == kLanes) return false;
@@ -150,7 +140,7 @@ void SelfMotionArcs::append(const Piece& piece, bool backwards, double spacing, 
 void SelfMotionArcs::append_between(const BranchSpan& span, const Node& a, const Node& b,
                                     double spacing, int depth, Arc& arc) {
   constexpr int kDeepest = 6;
-  if (depth == kDeepest || splits_left_ <= 0 || distance(a.q, b.q) <= spacing) return;
+  if (depth == kDeepest || splits_left_ <= 0 || joints_.distance(a.q, b.q) <= spacing) return;
   --splits_left_;
   const std::array<Node, kLanes> between = nodes_between(span, a, b);
   const Node* before = &a;
@@ -169,12 +159,13 @@ void SelfMotionArcs::finish(Arc& arc, double spacing) const {
   std::size_t kept = 0;
   for (std::size_t i = 1; i < arc.q.size(); ++i) {
     const bool is_last = i + 1 == arc.q.size();
-    if (!is_last && distance(arc.q[kept], arc.q[i + 1]) <= spacing) continue;
+    if (!is_last && joints_.distance(arc.q[kept], arc.q[i + 1]) <= spacing) continue;
     arc.q[++kept] = arc.q[i];
   }
   arc.q.resize(kept + 1);
-  for (std::size_t i = 1; i < arc.q.size(); ++i) arc.length += distance(arc.q[i - 1], arc.q[i]);
-  if (closed) arc.length += distance(arc.q.back(), arc.q.front());
+  for (std::size_t i = 1; i < arc.q.size(); ++i)
+    arc.length += joints_.distance(arc.q[i - 1], arc.q[i]);
+  if (closed) arc.length += joints_.distance(arc.q.back(), arc.q.front());
 }
 
 std::vector<SelfMotionArcs::Joints> SelfMotionArcs::spread(int count, double least) const {
@@ -192,14 +183,13 @@ std::vector<SelfMotionArcs::Joints> SelfMotionArcs::spread(int count, double lea
     for (std::size_t i = 1; i < arc.q.size() + (closed ? 1 : 0); ++i) {
       const Joints& a = arc.q[i - 1];
       const Joints& b = arc.q[i % arc.q.size()];
-      const double way = distance(a, b);
+      const double way = joints_.distance(a, b);
       double at = left;
       for (; at <= way; at += step) {
         Joints q = a;
         for (int j = 0; j < SweptBranches::kDof; ++j) {
           const auto k = static_cast<std::size_t>(j);
-          const double d = b[k] - a[k];
-          q[k] += at / way * (joints_.is_periodic(j) ? std::remainder(d, kTwoPi) : d);
+          q[k] += at / way * joints_.difference(j, a[k], b[k]);
         }
         places.push_back(q);
       }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angle.hpp"
 #include "seeds/least_cost.hpp"
 #include "seeds/self_motion_arcs.hpp"
 
@@ -97,7 +98,7 @@ void SelfMotionArcs::sample_densely(const BranchSpan& span) {
 double SelfMotionArcs::turn(const Joints& a, const Joints& b) {
   double largest = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
-    largest = std::max(largest, std::abs(std::remainder(a[i] - b[i], kTwoPi)));
+    largest = std::max(largest, std::abs(without_turns(a[i] - b[i])));
   }
   return largest;
 }

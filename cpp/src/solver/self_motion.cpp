@@ -108,11 +108,7 @@ SelfMotionArc make_arc(const ChainModel& model, const Goal& goal, const SelfMoti
     arc.q.push_back(q);
   }
   const auto move = [&](const JointVector& a, const JointVector& b) {
-    JointVector d = b - a;
-    for (int j = 0; j < model.dof; ++j) {
-      if (model.joints.is_periodic(j)) d[j] = std::remainder(d[j], kTwoPi);
-    }
-    return d.norm();
+    return model.joints.difference(a, b).norm();
   };
   for (std::size_t i = 1; i < arc.q.size(); ++i) arc.length += move(arc.q[i - 1], arc.q[i]);
   if (arc.is_closed() && !arc.q.empty()) arc.length += move(arc.q.back(), arc.q.front());

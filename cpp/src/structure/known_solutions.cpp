@@ -4,7 +4,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "base/constants.hpp"
+#include "base/angle.hpp"
 #include "base/pseudo_inverse.hpp"
 #include "base/random.hpp"
 #include "simd/kernels.hpp"
@@ -31,7 +31,7 @@ bool is_same(const ClosedFormChain& chain, const lanes::BranchPack& pack, int la
     const int joint = chain.joints[i];
     if (joint >= chain.dof || chain.turns_freely(joint)) continue;
     // Written so that NaN is not the same.
-    if (!(std::abs(std::remainder(pack.q[i][lane] - q[joint], kTwoPi)) <= most)) return false;
+    if (!(std::abs(without_turns(pack.q[i][lane] - q[joint])) <= most)) return false;
   }
   return true;
 }

@@ -196,8 +196,8 @@ void bind_self_motion(py::module_& m, py::class_<Solver>& solver) {
       R"(All solutions of a redundant arm at once: the arcs of its self-motion inside the limits.
 
 Seven joints that turn, of which one can be swept (`Robot.structure`). Joints with a range of a
-whole turn or more end no arc. An arc shorter than what 64 samples of the swept joint tell apart may
-be missed. Of a calibrated arm the arcs are those of its nominal chain, moved onto its own solutions.
+whole turn or more end no arc. Each arc that a joint's limit ends is followed from there; a closed one,
+or one that coupled limits end, may be missed if it lies between two of 128 samples of the swept joint.
 
 Args:
     pose: T_base_tip [m], as in solve.

@@ -83,9 +83,10 @@ class IKSEL_EXPORT Solver {
 
   /// All solutions of a redundant arm at once: the arcs of its self-motion inside the limits, with
   /// what ends each (iksel/self_motion.hpp). For seven joints of which one can be swept
-  /// (find_structure); one joint moves by at most `spacing` from a sample to the next [rad]. An arc
-  /// shorter than the sweep's 64 samples tell apart may be missed. Of a calibrated arm the arcs are
-  /// those of its nominal chain, moved onto its own solutions. Throws InvalidArgumentError on a
+  /// (find_structure); one joint moves by at most `spacing` from a sample to the next [rad]. Each
+  /// arc that a joint's limit ends is followed from there; a closed one, or one that coupled limits
+  /// end, may be missed if it lies between two of 128 samples of the swept joint. Throws
+  /// InvalidArgumentError on a
   /// robot of another structure, a task with free axes, a strategy other than Lanes, a spacing not
   /// in [0.0001, pi], and a pose that is none.
   [[nodiscard]] SelfMotion self_motion(const Pose& T_base_tip, double spacing = 0.1) const;

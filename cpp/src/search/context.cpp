@@ -61,7 +61,7 @@ Workspace::InLanes::InLanes(const ChainModel& model, const ChainModel& nominal,
   } else {
     sweep.emplace(model, *closed_form, is_nominal, tolerance_of(*closed_form), kernels);
     nearest_on_curve.emplace(model, *closed_form, is_nominal, kernels);
-    arcs.emplace(model, *closed_form, kernels);
+    curve.emplace(model, kernels);
     if (trials != nullptr) branch_lanes.emplace(model, *closed_form, *trials, kernels);
   }
 }

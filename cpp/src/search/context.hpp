@@ -19,6 +19,7 @@
 #include "seeds/arc_ends.hpp"
 #include "seeds/branch_lanes.hpp"
 #include "seeds/closest_screen.hpp"
+#include "seeds/curve.hpp"
 #include "seeds/enumeration.hpp"
 #include "seeds/free_samples.hpp"
 #include "seeds/inner_arm.hpp"
@@ -28,7 +29,6 @@
 #include "seeds/screened_seeds.hpp"
 #include "seeds/seed_ranking.hpp"
 #include "seeds/selection.hpp"
-#include "seeds/self_motion_arcs.hpp"
 #include "seeds/sweep.hpp"
 #include "seeds/task_samples.hpp"
 
@@ -58,6 +58,12 @@ struct Workspace {
     LaneQuery query;
     SeedScreen screen;
     ClosestScreen closest;
+    /// The arcs of the self-motion, for a target and its Y (reduction.hpp).
+    const std::vector<Curve::Arc>& find_arcs(const Pose& T_base_tcp, const Pose& Y,
+                                             double spacing) {
+      curve->find(T_base_tcp, Y, ends ? &*ends : nullptr, *sweep, spacing);
+      return curve->arcs();
+    }
     /// All branches of a goal of that task; null if it cannot be solved in closed form at once.
     [[nodiscard]] Enumeration* branches_of(const TaskSpace& task);
 
@@ -68,7 +74,7 @@ struct Workspace {
     std::optional<Sweep> sweep;
     std::optional<RootSweep> roots;
     std::optional<NearestOnCurve> nearest_on_curve;
-    std::optional<SelfMotionArcs> arcs;
+    std::optional<Curve> curve;
     std::optional<ArcEnds> ends;
     /// Of longer chains.
     std::vector<InnerArm> inner_arms;

@@ -79,10 +79,9 @@ template <typename Answers>
 std::optional<Proof> CurveSearch<Answers>::collect_spread() const {
   // Between points no farther apart, a straight line is near enough to the curve [rad].
   constexpr double kStraight = 0.3;
-  SelfMotionArcs& arcs = *lanes.arcs;
-  arcs.find(Y, kStraight);
-  const std::vector<SelfMotionArcs::Joints> points =
-      arcs.spread(answers.spread(), answers.min_distance());
+  lanes.find_arcs(goal.target(), Y, kStraight);
+  const std::vector<Curve::Joints> points =
+      lanes.curve->spread(answers.spread(), answers.min_distance());
   clock.lap(&StageTimes::query);
   RowSeeds seeds(points.empty() ? nullptr : points[0].data(), points.size(), SweptBranches::kDof,
                  /*are_answers=*/false, work);
@@ -98,8 +97,7 @@ std::optional<Proof> CurveSearch<Answers>::collect_nearest_free() const {
   constexpr double kSpacing = 0.05;
   /// So many of them are refined.
   constexpr std::size_t kMost = 16;
-  SelfMotionArcs& arcs = *lanes.arcs;
-  arcs.find(Y, kSpacing);
+  const std::vector<Curve::Arc>& arcs = lanes.find_arcs(goal.target(), Y, kSpacing);
   std::vector<double>& q = lanes.samples.q;
   const auto& [near, move] = answers.nearest_to();
   const bool has_any = find_nearest_free(arcs, *request.scene, model.joints, near, move, kMost, q);

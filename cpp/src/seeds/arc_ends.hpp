@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/work.hpp"
+#include "iksel/self_motion.hpp"
 #include "seeds/enumeration.hpp"
 #include "seeds/root_sweep.hpp"
 #include "structure/locked_arms.hpp"
@@ -21,6 +22,11 @@ class ArcEnds {
           const lanes::LaneKernels& kernels);
 
   [[nodiscard]] std::size_t size() const { return ends_.size(); }
+  /// Which limit the i-th arm is locked at.
+  [[nodiscard]] SelfMotionEnd limit(std::size_t i) const {
+    const LockedArm& arm = *ends_[i].arm;
+    return {ArcEnd::limit, arm.joint, arm.is_upper};
+  }
   /// Solves the target with the i-th arm: a number of joint values, inside the limits or so near
   /// to them that it cannot be told. False if there may be others.
   bool find(std::size_t i, const Pose& T_base_tcp);

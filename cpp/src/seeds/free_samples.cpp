@@ -153,15 +153,15 @@ void FreeSamples::screen_pack() {
   at_ += count;
 }
 
-bool find_nearest_free(const SelfMotionArcs& arcs, const Scene& scene, const JointSpace& joints,
-                       const JointVector& near, const JointMove& move, std::size_t most,
-                       std::vector<double>& q) {
+bool find_nearest_free(const std::vector<Curve::Arc>& arcs, const Scene& scene,
+                       const JointSpace& joints, const JointVector& near, const JointMove& move,
+                       std::size_t most, std::vector<double>& q) {
   constexpr std::size_t kPack = SweptBranches::kCount;
   constexpr std::size_t kDof = SweptBranches::kDof;
   // Nearest first, so that the scene looks at few.
   std::vector<std::pair<double, JointVector>> points;
-  for (const SelfMotionArcs::Arc& arc : arcs.arcs()) {
-    for (const SelfMotionArcs::Joints& on_arc : arc.q) {
+  for (const Curve::Arc& arc : arcs) {
+    for (const Curve::Joints& on_arc : arc.q) {
       JointVector point = Eigen::Map<const Eigen::VectorXd>(on_arc.data(), kDof);
       joints.wrap_nearest(near, 0, point);
       points.emplace_back(move.length(point - near), std::move(point));

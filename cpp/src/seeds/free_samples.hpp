@@ -9,7 +9,7 @@
 
 #include "goal/joint_move.hpp"
 #include "scene/scene_data.hpp"
-#include "seeds/self_motion_arcs.hpp"
+#include "seeds/curve.hpp"
 #include "seeds/sweep.hpp"
 
 namespace iksel {
@@ -115,8 +115,8 @@ class FreeSamples {
 
 /// Of the points on the arcs that are free the `most` nearest to `near`, row by row. False if there
 /// is no point at all.
-bool find_nearest_free(const SelfMotionArcs& arcs, const Scene& scene, const JointSpace& joints,
-                       const JointVector& near, const JointMove& move, std::size_t most,
-                       std::vector<double>& q);
+bool find_nearest_free(const std::vector<Curve::Arc>& arcs, const Scene& scene,
+                       const JointSpace& joints, const JointVector& near, const JointMove& move,
+                       std::size_t most, std::vector<double>& q);
 
 }  // namespace iksel

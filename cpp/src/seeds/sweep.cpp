@@ -128,11 +128,11 @@ void Sweep::add_end(const Sample& inside, bool up, std::vector<double>& q) {
 }
 
 void Sweep::visit_between(FunctionRef<void(const double* q, int branch)> visit) {
-  nearest_.find(places_, rows_, kNear);
+  nearest_.find(places_, rows_, kNear, 0);
   least_ = kInfinity;
   close_.clear();
   for (const LeastPlace& near : nearest_) {
-    if (near.value > 0 && follow(near)) visit(q_.data(), branch_);
+    if (follow(near)) visit(q_.data(), branch_);
   }
 }
 

@@ -51,6 +51,7 @@ class Sweep {
   /// but at neither.
   void visit_between(FunctionRef<void(const double* q, int branch)> visit);
   [[nodiscard]] const Places& places() const { return places_; }
+  [[nodiscard]] int joint() const { return branches_.joint(); }
   void set_target(const Pose& Y) {
     branches_.set_target(Y);
     places_ = branches_.places(kSamples);

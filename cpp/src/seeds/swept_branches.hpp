@@ -226,8 +226,9 @@ struct LeastPlace {
 template <std::size_t kMost>
 class LeastPlaces : public Least<LeastPlace, kMost> {
  public:
-  /// Of values at all places, of every branch; only those up to `bound`.
-  void find(const Places& places, const std::vector<SweptBranches::Row>& rows, double bound) {
+  /// Of values at all places, of every branch; only those up to `bound`, and above `beyond`.
+  void find(const Places& places, const std::vector<SweptBranches::Row>& rows, double bound,
+            double beyond = -kInfinity) {
     static constexpr SweptBranches::Row kNone{kInfinity, kInfinity, kInfinity, kInfinity,
                                               kInfinity, kInfinity, kInfinity, kInfinity};
     const auto row = [&](int place) -> const SweptBranches::Row& {
@@ -242,7 +243,7 @@ class LeastPlaces : public Least<LeastPlace, kMost> {
       for (std::size_t i = 0; i < here.size(); ++i) {
         // Of conditions one by one few could be foreseen.
         const double least = std::min(bound, std::min(before[i], behind[i]));
-        if (here[i] <= least) this->add({here[i], place, static_cast<int>(i)});
+        if (here[i] <= least && here[i] > beyond) this->add({here[i], place, static_cast<int>(i)});
       }
     }
   }

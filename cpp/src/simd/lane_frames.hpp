@@ -64,4 +64,41 @@ IKSEL_INLINE void place_joints(const LaneChainOf<NumberOf<T>>& chain, const T* q
   }
 }
 
+/// From a joint's origin and axis to the twist by which it moves a point: its column of a Jacobian.
+template <typename T, typename Joint>
+IKSEL_INLINE void make_twist(const Joint& joint, const T* point, T (&column)[6]) {
+  const T* axis = column + 3;
+  if (joint.prismatic) {
+    for (int i = 0; i < 3; ++i) {
+      column[i] = axis[i];
+      column[3 + i] = T(0.0);
+    }
+  } else {
+    const T r[3] = {point[0] - column[0], point[1] - column[1], point[2] - column[2]};
+    for (int i = 0; i < 3; ++i) {
+      const int a = (i + 1) % 3;
+      const int b = (i + 2) % 3;
+      column[i] = axis[a] * r[b] - axis[b] * r[a];
+    }
+  }
+}
+
+/// Rows kFirst to kLast - 1 of the lower half of A = J J^T: few at a time stay in registers.
+template <int kFirst, int kLast, typename T>
+inline void multiply_rows(int n, const T (*J)[6], T (&A)[6][6]) {
+#pragma GCC unroll 6
+  for (int r = kFirst; r < kLast; ++r) {
+#pragma GCC unroll 6
+    for (int c = 0; c <= r; ++c) A[r][c] = J[0][r] * J[0][c];
+  }
+#pragma GCC unroll 10
+  for (int j = 1; j < n; ++j) {
+#pragma GCC unroll 6
+    for (int r = kFirst; r < kLast; ++r) {
+#pragma GCC unroll 6
+      for (int c = 0; c <= r; ++c) A[r][c] = A[r][c] + J[j][r] * J[j][c];
+    }
+  }
+}
+
 }  // namespace iksel::lanes

@@ -6,6 +6,7 @@
 #include "simd/branch_kernel.hpp"
 #include "simd/closest_kernel.hpp"
 #include "simd/coupled_kernel.hpp"
+#include "simd/curve_kernel.hpp"
 #include "simd/lane_frames.hpp"
 #include "simd/lane_goal.hpp"
 #include "simd/lane_math.hpp"
@@ -21,24 +22,6 @@
 
 namespace iksel::lanes {
 
-/// Rows kFirst to kLast - 1 of the lower half of A = J J^T: few at a time stay in registers.
-template <int kFirst, int kLast, typename T>
-inline void multiply_rows(int n, const T (*J)[6], T (&A)[6][6]) {
-#pragma GCC unroll 6
-  for (int r = kFirst; r < kLast; ++r) {
-#pragma GCC unroll 6
-    for (int c = 0; c <= r; ++c) A[r][c] = J[0][r] * J[0][c];
-  }
-#pragma GCC unroll 10
-  for (int j = 1; j < n; ++j) {
-#pragma GCC unroll 6
-    for (int r = kFirst; r < kLast; ++r) {
-#pragma GCC unroll 6
-      for (int c = 0; c <= r; ++c) A[r][c] = A[r][c] + J[j][r] * J[j][c];
-    }
-  }
-}
-
 /// From origins and axes to the columns of the goal's Jacobian; those of joints that stand at a
 /// limit and would leave it are zero.
 template <typename T, typename Goal>
@@ -50,20 +33,7 @@ IKSEL_INLINE void make_columns(const LaneChainOf<NumberOf<T>>& chain, const T* q
   for (int j = 0; j < n; ++j) {
     const auto& joint = chain.joint[j];
     T(&column)[6] = J[j];
-    const T* axis = column + 3;
-    if (joint.prismatic) {
-      for (int i = 0; i < 3; ++i) {
-        column[i] = axis[i];
-        column[3 + i] = T(0.0);
-      }
-    } else {
-      const T r[3] = {point[0] - column[0], point[1] - column[1], point[2] - column[2]};
-      for (int i = 0; i < 3; ++i) {
-        const int a = (i + 1) % 3;
-        const int b = (i + 2) % 3;
-        column[i] = axis[a] * r[b] - axis[b] * r[a];
-      }
-    }
+    make_twist(joint, point, column);
     goal.to_rows(column);
     if (joint.limited) {
       const auto low = q[j] <= T(joint.lower);
@@ -193,7 +163,9 @@ constexpr LaneKernels make_kernels(const char* name) {
           find_determinants<Wide>,
           evaluate_polynomial<Wide>,
           close_loops<Wide>,
-          multiply<Wide>};
+          multiply<Wide>,
+          orient_curves<Wide>,
+          follow_curves<Wide>};
 }
 
 }  // namespace iksel::lanes

@@ -213,6 +213,12 @@ using CloseLoops = void (*)(const LoopForm& form, const LoopTarget& target,
 /// The number of roots between values beside each other: 0, 1, or 2 if that is not certain.
 using CountRoots = void (*)(const double* values, int n, double apart, double* counts);
 
+struct CurvePack;
+/// The tangents of curves where the lanes stand, and a step of each along its curve; returns the
+/// lanes that went (curve_kernel.hpp).
+using OrientCurves = void (*)(const LaneChain& chain, CurvePack& pack);
+using FollowCurves = unsigned (*)(const LaneChain& chain, CurvePack& pack);
+
 struct SceneView;
 struct SceneRoom;
 /// The clearance of a configuration (scene_types.hpp).
@@ -250,6 +256,8 @@ struct LaneKernels {
   EvaluatePolynomial evaluate_polynomial;
   CloseLoops close_loops;
   Multiply multiply;
+  OrientCurves orient_curves;
+  FollowCurves follow_curves;
 };
 
 }  // namespace iksel::lanes

@@ -86,10 +86,9 @@ class PathSearch {
     constexpr double kSpacing = 0.02;
     constexpr double kFarthest = 0.25;
     const Pose Y = lanes.query.reduce(goal.target());
-    lanes.arcs->find(Y, kSpacing);
     std::vector<double> q(start.data(), start.data() + start.size());
-    for (const SelfMotionArcs::Arc& arc : lanes.arcs->arcs()) {
-      for (const SelfMotionArcs::Joints& point : arc.q) {
+    for (const Curve::Arc& arc : lanes.find_arcs(goal.target(), Y, kSpacing)) {
+      for (const Curve::Joints& point : arc.q) {
         if (model_.joints.distance(point.data(), start, kFarthest) >= kFarthest) continue;
         JointVector image = Eigen::Map<const Eigen::VectorXd>(point.data(), model_.dof);
         model_.joints.wrap_nearest(start, 0, image);

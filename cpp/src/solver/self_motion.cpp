@@ -88,7 +88,7 @@ void hold_to_limit(const ChainModel& model, const Goal& goal, const SelfMotionEn
 }
 
 /// The arc through what was refined of its points, `first` the first of them.
-SelfMotionArc make_arc(const ChainModel& model, const Goal& goal, const SelfMotionArcs::Arc& found,
+SelfMotionArc make_arc(const ChainModel& model, const Goal& goal, const Curve::Arc& found,
                        std::size_t first, const RowAnswers& answers,
                        const std::optional<Elbow>& elbow) {
   SelfMotionArc arc;
@@ -157,10 +157,9 @@ SelfMotion Solver::Impl::self_motion(const Pose& target, double spacing,
   }
   Workspace::InLanes& lanes = *workspace.lanes;
   const Pose Y = lanes.query.reduce(target);
-  lanes.arcs->find(Y, spacing);
-  std::vector<SelfMotionArcs::Joints> points;
-  for (const auto& arc : lanes.arcs->arcs())
-    points.insert(points.end(), arc.q.begin(), arc.q.end());
+  const std::vector<Curve::Arc>& arcs = lanes.find_arcs(goal.target(), Y, spacing);
+  std::vector<Curve::Joints> points;
+  for (const auto& arc : arcs) points.insert(points.end(), arc.q.begin(), arc.q.end());
   Work work(options.max_attempts);
   RowSeeds seeds(points.empty() ? nullptr : points[0].data(), points.size(), SweptBranches::kDof,
                  /*are_answers=*/true, work);
@@ -168,7 +167,7 @@ SelfMotion Solver::Impl::self_motion(const Pose& target, double spacing,
       refine_rows(seeds, model().joints, goal, Y, kNearAnswer, lanes.refiner, work);
   const std::optional<Elbow> elbow = Elbow::of(model());
   std::size_t first = 0;
-  for (const auto& found : lanes.arcs->arcs()) {
+  for (const auto& found : arcs) {
     SelfMotionArc arc = make_arc(model(), goal, found, first, answers, elbow);
     first += found.q.size();
     if (!arc.q.empty()) motion.arcs.push_back(std::move(arc));

@@ -12,17 +12,20 @@ LockedArms LockedArms::of(const ChainModel& whole) {
   constexpr int kJoints = 7;
   LockedArms found;
   const JointSpace& joints = whole.joints;
-  if (whole.dof != kJoints || !is_simple(whole) || !joints.coupled.empty()) return found;
-  found.are_all = true;
+  if (whole.dof != kJoints || !is_simple(whole)) return found;
+  found.are_all = joints.coupled.empty();
   for (int j = 0; j < kJoints; ++j) {
     if (joints.type(j) == JointType::continuous || !takes_part_in_self_motion(whole, j)) continue;
-    for (const double value : {joints.lower[j], joints.upper[j]}) {
+    for (const bool is_upper : {false, true}) {
+      const double value = is_upper ? joints.upper[j] : joints.lower[j];
       RobotOptions options = whole.options;
       options.locked_joints[joints.name(j)] = value;
+      options.coupled_limits.clear();
       LockedArm arm;
       arm.model = std::make_shared<const ChainModel>(whole.urdf, options);
       arm.joint = j;
       arm.value = value;
+      arm.is_upper = is_upper;
       arm.pose = find_closed_form(*arm.model);
       if (!arm.pose || arm.pose->is_almost()) arm.residual = find_residual(*arm.model);
       if (arm.pose || arm.residual) {

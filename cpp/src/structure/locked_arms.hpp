@@ -19,14 +19,16 @@ struct LockedArm {
   /// The joint of the seven that is locked, and where [rad or m].
   int joint = 0;
   double value = 0;
+  bool is_upper = false;  ///< of its two limits
 };
 
 struct LockedArms {
   std::vector<LockedArm> arms;
-  /// Whether these are all: each joint with limits can be solved for with that joint locked.
+  /// Whether these are all: each joint with limits can be solved for with that joint locked, and no
+  /// limits are coupled.
   bool are_all = false;
 
-  /// Those of a chain of seven joints; none of other chains, or where limits are coupled.
+  /// Those of a chain of seven joints; none of other chains.
   static LockedArms of(const ChainModel& whole);
 };
 

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "seeds/curve.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "simd/lane_chain.hpp"
+
+namespace iksel {
+Curve::Curve(const ChainModel& model, const lanes::LaneKernels& kernels)
+    : joints_(model.joints), kernels_(kernels), chain_(make_lane_chain(model)) {
+  for (int j = 0; j < kDof; ++j) {
+    if (joints_.is_periodic(j)) continue;
+    limits_.push_back({{ArcEnd::limit, j}, nullptr, joints_.lower[j], joints_.upper[j]});
+  }
+  for (const CoupledRow& row : joints_.coupled) {
+    SelfMotionEnd at{ArcEnd::limit};
+    at.coupled_limit = row.given;
+    limits_.push_back({at, &row, row.lower, row.upper});
+  }
+}
+
+void Curve::find(const Pose& T_base_tcp, const Pose& Y, ArcEnds* ends, Sweep& sweep,
+                 double spacing) {
+  /// Curves are straight enough for longer steps, but limits between would be passed over [rad].
+  constexpr double kLongest = 0.25;
+  arcs_.clear();
+  ends_.clear();
+  // What the way back to the curve adds to a step is a twentieth of it at most.
+  pack_.longest = std::min(0.95 * spacing, kLongest);
+  for (int row = 0; row < lanes::kFullPoseRows; ++row) {
+    pack_.target[row] = Y(row % 3, (row / 3 + 3) % 4);
+  }
+  find_samples(Y, sweep);
+  if (ends != nullptr) find_ends(T_base_tcp, *ends);
+  follow_from_ends();
+  follow_from_samples(sweep);
+  drop_points();
+  for (Arc& arc : arcs_) thin_out(arc, spacing);
+}
+
+void Curve::find_samples(const Pose& Y, Sweep& sweep) {
+  swept_ = sweep.joint();
+  places_ = &sweep.places();
+  samples_.clear();
+  sampled_q_.clear();
+  sampled_.clear();
+  sweep.set_target(Y);
+  sweep.add_samples(0, 1, sampled_q_, sampled_);
+  std::size_t place = 0;
+  for (std::size_t i = 0; i < sampled_.size(); ++i) {
+    while (place <= static_cast<std::size_t>(sampled_[i].place)) first_sample_[place++] = i;
+    Sample& sample = samples_.emplace_back();
+    std::copy_n(&sampled_q_[i * kDof], kDof, sample.q.begin());
+    sample.is_known = false;
+  }
+  while (place < first_sample_.size()) first_sample_[place++] = sampled_.size();
+}
+
+void Curve::find_ends(const Pose& T_base_tcp, ArcEnds& ends) {
+  /// What is farther from the curve is none: it comes near to a limit, or all but touches it, and
+  /// whether it does is seen on the way [rad or m].
+  constexpr double kExact = 1e-5;
+  ends.begin();
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    const SelfMotionEnd at = ends.limit(i);
+    if (joints_.is_periodic(at.joint)) continue;
+    ends.find(i, T_base_tcp);
+    for (int k = 0; k < ends.count(); ++k) {
+      End end{};
+      std::copy_n(ends.keep(k), kDof, end.q.begin());
+      end.at = at;
+      if (is_inside(end.q)) ends_.push_back(end);
+    }
+  }
+  for (std::size_t i = 0; i < ends_.size(); i += kLanes) {
+    orient(&ends_[i], std::min<std::size_t>(kLanes, ends_.size() - i));
+  }
+  ends_.erase(std::remove_if(ends_.begin(), ends_.end(),
+                             [](const End& end) { return !(end.moved <= kExact); }),
+              ends_.end());
+}
+
+void Curve::orient(End* ends, std::size_t count) {
+  /// Where a curve all but touches a limit, it is followed both ways.
+  constexpr double kTouches = 1e-4;
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    const Joints& q = ends[std::min(lane, count - 1)].q;
+    for (std::size_t j = 0; j < kDof; ++j) pack_.q[j][lane] = q[j];
+  }
+  kernels_.orient_curves(chain_, pack_);
+  for (std::size_t lane = 0; lane < count; ++lane) {
+    End& end = ends[lane];
+    end.moved = 0;
+    for (std::size_t j = 0; j < kDof; ++j) {
+      end.tangent[j] = pack_.tangent[j][lane];
+      end.moved = std::max(end.moved, std::abs(pack_.q[j][lane] - end.q[j]));
+    }
+    if (end.at.kind != ArcEnd::limit) continue;
+    const double up = end.tangent[static_cast<std::size_t>(end.at.joint)];
+    const double inside = end.at.at_upper ? -up : up;
+    end.leads_in = !(inside < -kTouches);
+    end.leads_out = !(inside > kTouches);
+  }
+}
+
+bool Curve::is_inside(const Joints& q) const {
+  return std::all_of(limits_.begin(), limits_.end(), [&](const Limit& limit) {
+    const double at = limit.value(q);
+    return at >= limit.lower - kAtLimit && at <= limit.upper + kAtLimit;
+  });
+}
+
+std::vector<Curve::Joints> Curve::spread(int count, double least) const {
+  double length = 0;
+  for (const Arc& arc : arcs_) length += arc.length;
+  const double spacing = std::max(length / count, 1.01 * least);
+  std::vector<Joints> places;
+  for (const Arc& arc : arcs_) {
+    places.push_back(arc.q.front());
+    const double steps = std::floor(arc.length / spacing);
+    if (steps < 1) continue;
+    const double step = arc.length / steps;
+    double left = step;
+    for (std::size_t i = 1; i < arc.q.size() + (arc.is_closed() ? 1 : 0); ++i) {
+      const Joints& a = arc.q[i - 1];
+      const Joints& b = arc.q[i % arc.q.size()];
+      const double way = joints_.distance(a, b);
+      double at = left;
+      for (; at <= way; at += step) {
+        Joints q = a;
+        for (int j = 0; j < kDof; ++j) {
+          const auto k = static_cast<std::size_t>(j);
+          q[k] += at / way * joints_.difference(j, a[k], b[k]);
+        }
+        places.push_back(q);
+      }
+      left = at - way;
+    }
+    // Rounding may have left out the end.
+    if (!arc.is_closed() && left < 0.5 * step) places.push_back(arc.q.back());
+  }
+  return places;
+}
+
+void Curve::drop_points() {
+  constexpr double kSame = 1e-3;
+  const auto is_point = [&](const Arc& arc) {
+    return joints_.distance(arc.q.front(), arc.q.back()) < kSame && arc.q.size() <= 2;
+  };
+  const auto is_part_of_another = [&](const Arc& arc) {
+    return is_point(arc) && std::any_of(arcs_.begin(), arcs_.end(), [&](const Arc& other) {
+             return &other != &arc && !is_point(other) &&
+                    (joints_.distance(arc.q.front(), other.q.front()) < kSame ||
+                     joints_.distance(arc.q.front(), other.q.back()) < kSame);
+           });
+  };
+  std::vector<Arc> kept;
+  for (Arc& arc : arcs_) {
+    if (!is_part_of_another(arc)) kept.push_back(arc);
+  }
+  if (kept.size() < arcs_.size()) arcs_ = std::move(kept);
+}
+
+void Curve::thin_out(Arc& arc, double spacing) const {
+  std::size_t kept = 0;
+  for (std::size_t i = 1; i < arc.q.size(); ++i) {
+    const bool is_last = i + 1 == arc.q.size();
+    if (!is_last && joints_.distance(arc.q[kept], arc.q[i + 1]) <= spacing) continue;
+    arc.q[++kept] = arc.q[i];
+  }
+  arc.q.resize(kept + 1);
+  for (std::size_t i = 1; i < arc.q.size(); ++i) {
+    arc.length += joints_.distance(arc.q[i - 1], arc.q[i]);
+  }
+  if (arc.is_closed()) arc.length += joints_.distance(arc.q.back(), arc.q.front());
+}
+
+}  // namespace iksel

@@ -86,9 +86,8 @@ class IKSEL_EXPORT Solver {
   /// (find_structure); one joint moves by at most `spacing` from a sample to the next [rad]. Each
   /// arc that a joint's limit ends is followed from there; a closed one, or one that coupled limits
   /// end, may be missed if it lies between two of 128 samples of the swept joint. Throws
-  /// InvalidArgumentError on a
-  /// robot of another structure, a task with free axes, a strategy other than Lanes, a spacing not
-  /// in [0.0001, pi], and a pose that is none.
+  /// InvalidArgumentError on a robot of another structure, a task with free axes, a strategy other
+  /// than Lanes, a spacing not in [0.0001, pi], and a pose that is none.
   [[nodiscard]] SelfMotion self_motion(const Pose& T_base_tip, double spacing = 0.1) const;
 
   /// Why solve(T_base_tip, request) gives no answer, and the best that can be done. Where a closed

@@ -80,15 +80,14 @@ void LaneRefiner::make_rows(const Pose& T_base_tcp, const Write& write) const {
 }
 
 void LaneRefiner::set_pose(const Pose& Y) {
-  // Columns after the position, as LanePack has them.
   for (int row = 0; row < lanes::kFullPoseRows; ++row) {
-    std::fill_n(pack_.target[row], lanes::kWidth, Y(row % 3, (row / 3 + 3) % 4));
+    std::fill_n(pack_.target[row], lanes::kWidth, full_pose_row(Y, row));
   }
 }
 
 void LaneRefiner::set_pose(int lane, const Pose& Y) {
   for (int row = 0; row < lanes::kFullPoseRows; ++row) {
-    pack_.target[row][lane] = Y(row % 3, (row / 3 + 3) % 4);
+    pack_.target[row][lane] = full_pose_row(Y, row);
   }
 }
 

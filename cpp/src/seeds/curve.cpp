@@ -7,6 +7,7 @@
 #include "simd/lane_chain.hpp"
 
 namespace iksel {
+
 Curve::Curve(const ChainModel& model, const lanes::LaneKernels& kernels)
     : joints_(model.joints), kernels_(kernels), chain_(make_lane_chain(model)) {
   for (int j = 0; j < kDof; ++j) {
@@ -29,7 +30,7 @@ void Curve::find(const Pose& T_base_tcp, const Pose& Y, ArcEnds* ends, Sweep& sw
   // What the way back to the curve adds to a step is a twentieth of it at most.
   pack_.longest = std::min(0.95 * spacing, kLongest);
   for (int row = 0; row < lanes::kFullPoseRows; ++row) {
-    pack_.target[row] = Y(row % 3, (row / 3 + 3) % 4);
+    pack_.target[row] = probe_.target[row] = full_pose_row(Y, row);
   }
   find_samples(Y, sweep);
   if (ends != nullptr) find_ends(T_base_tcp, *ends);
@@ -44,17 +45,20 @@ void Curve::find_samples(const Pose& Y, Sweep& sweep) {
   places_ = &sweep.places();
   samples_.clear();
   sampled_q_.clear();
-  sampled_.clear();
   sweep.set_target(Y);
-  sweep.add_samples(0, 1, sampled_q_, sampled_);
+  sweep.add_samples(0, 1, sampled_q_, samples_);
+  is_known_.assign(samples_.size(), false);
   std::size_t place = 0;
-  for (std::size_t i = 0; i < sampled_.size(); ++i) {
-    while (place <= static_cast<std::size_t>(sampled_[i].place)) first_sample_[place++] = i;
-    Sample& sample = samples_.emplace_back();
-    std::copy_n(&sampled_q_[i * kDof], kDof, sample.q.begin());
-    sample.is_known = false;
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    while (place <= static_cast<std::size_t>(samples_[i].place)) first_sample_[place++] = i;
   }
-  while (place < first_sample_.size()) first_sample_[place++] = sampled_.size();
+  while (place < first_sample_.size()) first_sample_[place++] = samples_.size();
+}
+
+Curve::Joints Curve::sample(std::size_t i) const {
+  Joints q;
+  std::copy_n(&sampled_q_[i * kDof], kDof, q.begin());
+  return q;
 }
 
 void Curve::find_ends(const Pose& T_base_tcp, ArcEnds& ends) {
@@ -76,9 +80,15 @@ void Curve::find_ends(const Pose& T_base_tcp, ArcEnds& ends) {
   for (std::size_t i = 0; i < ends_.size(); i += kLanes) {
     orient(&ends_[i], std::min<std::size_t>(kLanes, ends_.size() - i));
   }
-  ends_.erase(std::remove_if(ends_.begin(), ends_.end(),
-                             [](const End& end) { return !(end.moved <= kExact); }),
-              ends_.end());
+  // Written so that NaN is no end.
+  const auto is_none = [](const End& end) {
+    double moved = 0;
+    for (std::size_t j = 0; j < kDof; ++j) {
+      moved = std::max(moved, std::abs(end.on_curve[j] - end.q[j]));
+    }
+    return !(moved <= kExact);
+  };
+  ends_.erase(std::remove_if(ends_.begin(), ends_.end(), is_none), ends_.end());
 }
 
 void Curve::orient(End* ends, std::size_t count) {
@@ -91,10 +101,9 @@ void Curve::orient(End* ends, std::size_t count) {
   kernels_.orient_curves(chain_, pack_);
   for (std::size_t lane = 0; lane < count; ++lane) {
     End& end = ends[lane];
-    end.moved = 0;
     for (std::size_t j = 0; j < kDof; ++j) {
+      end.on_curve[j] = pack_.q[j][lane];
       end.tangent[j] = pack_.tangent[j][lane];
-      end.moved = std::max(end.moved, std::abs(pack_.q[j][lane] - end.q[j]));
     }
     if (end.at.kind != ArcEnd::limit) continue;
     const double up = end.tangent[static_cast<std::size_t>(end.at.joint)];
@@ -148,6 +157,7 @@ void Curve::drop_points() {
   const auto is_point = [&](const Arc& arc) {
     return joints_.distance(arc.q.front(), arc.q.back()) < kSame && arc.q.size() <= 2;
   };
+  if (std::none_of(arcs_.begin(), arcs_.end(), is_point)) return;
   const auto is_part_of_another = [&](const Arc& arc) {
     return is_point(arc) && std::any_of(arcs_.begin(), arcs_.end(), [&](const Arc& other) {
              return &other != &arc && !is_point(other) &&
@@ -159,7 +169,7 @@ void Curve::drop_points() {
   for (Arc& arc : arcs_) {
     if (!is_part_of_another(arc)) kept.push_back(arc);
   }
-  if (kept.size() < arcs_.size()) arcs_ = std::move(kept);
+  arcs_ = std::move(kept);
 }
 
 void Curve::thin_out(Arc& arc, double spacing) const {

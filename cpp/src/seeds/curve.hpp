@@ -4,11 +4,12 @@
 // An arc ends where a joint is at a limit (arc_ends.hpp). The tangent is oriented
 // (curve_kernel.hpp): at one of an arc's ends it leads inside, at the other outside. From the first
 // the arc is followed to the second. Curves that meet no limit are followed from samples of the
-// swept joint that lie on none of these arcs; so are arcs whose ends are not known.
+// swept joint that lie on none of these arcs; so are arcs whose ends are not known. How long steps
+// are and what counts as the same is measured on random arms by tests/python/test_laws.py,
+// test_no_answer_lies_off_the_arcs.
 #pragma once
 
 #include <array>
-#include <optional>
 #include <vector>
 
 #include "iksel/self_motion.hpp"
@@ -57,38 +58,42 @@ class Curve {
   struct End {
     Joints q;
     SelfMotionEnd at;
+    Joints on_curve;           ///< but for rounding, where it is near
     Joints tangent;            ///< oriented
-    double moved;              ///< how far it is from the curve, about
     bool leads_in, leads_out;  ///< whether it leads inside, and whether it comes from there
     bool is_taken;             ///< an arc begins or ends there
-    std::size_t arc;           ///< which, if one ends there
   };
-  /// A branch at a sample of the swept joint, inside the limits.
-  struct Sample {
-    Joints q;
-    bool is_known;  ///< that it lies on an arc that was found
-  };
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
   /// What a lane follows.
   struct Walk {
     std::vector<Joints> q;
     Joints tangent;       ///< at the last, the way that it goes
     SelfMotionEnd begin;  ///< a fold: it begins at a sample
     bool is_reversed;     ///< against the orientation
+    /// Of the walk, once it has ended; kNone if that is part of another.
+    std::size_t arc = kNone;
   };
   /// A configuration between two of a walk, where it leaves a limit.
   struct Exit {
     double part;  ///< of the way; above 1: it does not
     SelfMotionEnd at;
   };
+  /// What a lane goes from one configuration to the next: a cubic for each joint.
+  struct Step {
+    const Joints &from, &tangent_from, &to, &tangent_to;
+    double way;
+
+    [[nodiscard]] Joints at(double part) const;
+  };
   /// What lies beyond a limit by no more is at it [rad or m].
   static constexpr double kAtLimit = 1e-7;
-  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
   void find_samples(const Pose& Y, Sweep& sweep);
   void find_ends(const Pose& T_base_tcp, ArcEnds& ends);
-  /// Finds the tangents of so many.
+  /// Finds where so many are on the curve, at most as there are lanes, and their tangents.
   void orient(End* ends, std::size_t count);
   [[nodiscard]] bool is_inside(const Joints& q) const;
+  [[nodiscard]] Joints sample(std::size_t i) const;
 
   // curve_walk.cpp
   static Walk walk_from(const End& end, bool is_reversed);
@@ -96,22 +101,33 @@ class Curve {
   void follow_from_samples(Sweep& sweep);
   /// From between two ends, or on a curve without any, unless that is known.
   void follow_both_ways(const Joints& from);
-  /// Follows these, as many at a time as there are lanes; returns the number of the last one's arc.
-  std::size_t follow(std::vector<Walk>& walks);
+  /// Follows these, as many at a time as there are lanes.
+  void follow(std::vector<Walk>& walks);
   void start(const Walk& walk, int lane);
   /// Takes a further configuration. False if the walk ends there.
-  bool advance(Walk& walk, int lane, std::size_t& arc);
-  /// Goes on at another image, if coupled limits hold there.
-  bool turn_round(Walk& walk, int lane, const Joints& next);
-  [[nodiscard]] Exit exit(const Walk& walk, const Joints& next, const Joints& tangent, double way);
-  /// What lies beside a curve, on it but for rounding.
-  [[nodiscard]] Joints corrected(const Joints& q);
-  /// Ends a walk at a limit; the number of its arc, or kNone if that is part of another.
-  std::size_t leave(Walk& walk, const Joints& q, const SelfMotionEnd& at);
+  bool advance(Walk& walk, int lane);
+  /// How q lies beside the straight way between two configurations: along it, and its distance from
+  /// the first, both times the way's length; squares.
+  struct Beside {
+    double along, way2, rest2;
+  };
+  [[nodiscard]] Beside beside(const Joints& from, const Joints& to, const Joints& q) const;
   [[nodiscard]] bool is_closed(const Walk& walk, const Joints& next) const;
   void mark_samples(const Joints& from, const Joints& to);
-  std::size_t finish(Walk& walk, const SelfMotionEnd& end);
+  void finish(Walk& walk, const SelfMotionEnd& end);
   [[nodiscard]] bool is_on_arc(const Joints& q) const;
+
+  // curve_exit.cpp
+  [[nodiscard]] Exit exit(const Step& step);
+  /// Where one of a step's values leaves a limit, if that is before `first`.
+  void look_at_limit(const Limit& limit, const Step& step, Exit& first);
+  /// What lies beside a curve, on it but for rounding.
+  [[nodiscard]] Joints corrected(const Joints& q);
+  /// Goes on at another image, if coupled limits hold there.
+  bool turn_round(Walk& walk, int lane, const Joints& next);
+  /// Ends a walk at a limit.
+  void leave(Walk& walk, const Joints& q, const SelfMotionEnd& at);
+
   /// Leaves out arcs that are but a point of another.
   void drop_points();
   void thin_out(Arc& arc, double spacing) const;
@@ -126,11 +142,12 @@ class Curve {
   std::vector<End> ends_;
   const Places* places_ = nullptr;
   int swept_ = -1;
-  std::vector<Sample> samples_;
+  /// Branches at samples of the swept joint, inside the limits, and their joint values.
+  std::vector<Sweep::Sample> samples_;
+  std::vector<double> sampled_q_;
+  std::vector<bool> is_known_;  ///< that they lie on arcs that were found
   /// The first sample of each place, and the number of all.
   std::array<std::size_t, Sweep::kSamples + 1> first_sample_{};
-  std::vector<double> sampled_q_;
-  std::vector<Sweep::Sample> sampled_;
   std::vector<Arc> arcs_;
 };
 

@@ -18,7 +18,7 @@ SeedScreen::SeedScreen(const ChainModel& model, const SolverOptions& options,
 
 void SeedScreen::begin(const Pose& Y) {
   for (int row = 0; row < lanes::kFullPoseRows; ++row) {
-    pack_.target[row] = static_cast<float>(Y(row % 3, (row / 3 + 3) % 4));
+    pack_.target[row] = static_cast<float>(full_pose_row(Y, row));
   }
   filled_ = 0;
 }

@@ -136,12 +136,6 @@ double SweptBranches::Fold::end() const {
   return inside + way;
 }
 
-double SweptBranches::last_existing(int branch, double inside, double outside, int rounds) {
-  Fold fold{inside, outside};
-  narrow(branch, rounds, fold);
-  return fold.inside;
-}
-
 bool SweptBranches::jumps(const lanes::BranchRow& a, int lane_a, const lanes::BranchRow& b,
                           int lane_b) const {
   if (!joints_.coupled_turning.empty()) {

@@ -119,8 +119,6 @@ class SweptBranches {
   /// Narrows the way between `inside`, where a branch exists, and `outside`, where it does not, to
   /// a ninth in each round.
   void narrow(int branch, int rounds, Fold& fold);
-  /// The last value on that way where it was seen to exist.
-  double last_existing(int branch, double inside, double outside, int rounds);
   /// Whether a joint turns so far from a to b that it was at one limit before and is beyond the
   /// other: between them it may be outside of both.
   [[nodiscard]] bool jumps(const double* a, const double* b) const;

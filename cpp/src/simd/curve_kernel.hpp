@@ -145,7 +145,8 @@ IKSEL_INLINE T orientation(const CurvePlace<T>& at, const T (&n)[kCurveJoints]) 
 
 /// A step of each lane, unless the curve turns too far on the way or another is met: then the next
 /// is shorter. After the step the way back to the curve is gone twice, of which the second has to
-/// be far shorter than the first.
+/// be far shorter than the first. The numbers below are measured on random arms by
+/// tests/python/test_laws.py, test_no_answer_lies_off_the_arcs.
 template <typename T>
 unsigned follow_curves(const LaneChain& chain, CurvePack& pack) {
   // Of the angle between the tangents: what is refused, and what is so little that steps grow.

@@ -7,6 +7,9 @@
 
 namespace iksel {
 
+/// The `row`-th number of Y (reduction.hpp) as packs have it: its position, then its columns.
+inline double full_pose_row(const Pose& Y, int row) { return Y(row % 3, (row / 3 + 3) % 4); }
+
 /// True if the degrees of freedom are the joints, one to one: no mimic joints.
 bool is_simple(const ChainModel& model);
 

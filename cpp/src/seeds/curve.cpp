@@ -4,22 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "simd/lane_chain.hpp"
-
 namespace iksel {
-
-Curve::Curve(const ChainModel& model, const lanes::LaneKernels& kernels)
-    : joints_(model.joints), kernels_(kernels), chain_(make_lane_chain(model)) {
-  for (int j = 0; j < kDof; ++j) {
-    if (joints_.is_periodic(j)) continue;
-    limits_.push_back({{ArcEnd::limit, j}, nullptr, joints_.lower[j], joints_.upper[j]});
-  }
-  for (const CoupledRow& row : joints_.coupled) {
-    SelfMotionEnd at{ArcEnd::limit};
-    at.coupled_limit = row.given;
-    limits_.push_back({at, &row, row.lower, row.upper});
-  }
-}
 
 void Curve::find(const Pose& T_base_tcp, const Pose& Y, ArcEnds* ends, Sweep& sweep,
                  double spacing) {
@@ -28,10 +13,7 @@ void Curve::find(const Pose& T_base_tcp, const Pose& Y, ArcEnds* ends, Sweep& sw
   arcs_.clear();
   ends_.clear();
   // What the way back to the curve adds to a step is a twentieth of it at most.
-  pack_.longest = std::min(0.95 * spacing, kLongest);
-  for (int row = 0; row < lanes::kFullPoseRows; ++row) {
-    pack_.target[row] = probe_.target[row] = full_pose_row(Y, row);
-  }
+  walker_.set_target(Y, std::min(0.95 * spacing, kLongest));
   find_samples(Y, sweep);
   if (ends != nullptr) find_ends(T_base_tcp, *ends);
   follow_from_ends();
@@ -65,7 +47,10 @@ void Curve::find_ends(const Pose& T_base_tcp, ArcEnds& ends) {
   /// What is farther from the curve is none: it comes near to a limit, or all but touches it, and
   /// whether it does is seen on the way [rad or m].
   constexpr double kExact = 1e-5;
+  /// Where a curve all but touches a limit, it is followed both ways.
+  constexpr double kTouches = 1e-4;
   ends.begin();
+  places_of_ends_.clear();
   for (std::size_t i = 0; i < ends.size(); ++i) {
     const SelfMotionEnd at = ends.limit(i);
     if (joints_.is_periodic(at.joint)) continue;
@@ -74,50 +59,30 @@ void Curve::find_ends(const Pose& T_base_tcp, ArcEnds& ends) {
       End end{};
       std::copy_n(ends.keep(k), kDof, end.q.begin());
       end.at = at;
-      if (is_inside(end.q)) ends_.push_back(end);
+      if (!walker_.is_inside(end.q)) continue;
+      ends_.push_back(end);
+      places_of_ends_.push_back({end.q, {}});
     }
   }
-  for (std::size_t i = 0; i < ends_.size(); i += kLanes) {
-    orient(&ends_[i], std::min<std::size_t>(kLanes, ends_.size() - i));
-  }
-  // Written so that NaN is no end.
-  const auto is_none = [](const End& end) {
+  walker_.orient(places_of_ends_.data(), ends_.size());
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < ends_.size(); ++i) {
+    End& end = ends_[kept];
+    end = ends_[i];
+    end.on_curve = places_of_ends_[i];
     double moved = 0;
     for (std::size_t j = 0; j < kDof; ++j) {
-      moved = std::max(moved, std::abs(end.on_curve[j] - end.q[j]));
+      moved = std::max(moved, std::abs(end.on_curve.q[j] - end.q[j]));
     }
-    return !(moved <= kExact);
-  };
-  ends_.erase(std::remove_if(ends_.begin(), ends_.end(), is_none), ends_.end());
-}
-
-void Curve::orient(End* ends, std::size_t count) {
-  /// Where a curve all but touches a limit, it is followed both ways.
-  constexpr double kTouches = 1e-4;
-  for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    const Joints& q = ends[std::min(lane, count - 1)].q;
-    for (std::size_t j = 0; j < kDof; ++j) pack_.q[j][lane] = q[j];
-  }
-  kernels_.orient_curves(chain_, pack_);
-  for (std::size_t lane = 0; lane < count; ++lane) {
-    End& end = ends[lane];
-    for (std::size_t j = 0; j < kDof; ++j) {
-      end.on_curve[j] = pack_.q[j][lane];
-      end.tangent[j] = pack_.tangent[j][lane];
-    }
-    if (end.at.kind != ArcEnd::limit) continue;
-    const double up = end.tangent[static_cast<std::size_t>(end.at.joint)];
+    // Written so that NaN is no end.
+    if (!(moved <= kExact)) continue;
+    const double up = end.on_curve.tangent[static_cast<std::size_t>(end.at.joint)];
     const double inside = end.at.at_upper ? -up : up;
     end.leads_in = !(inside < -kTouches);
     end.leads_out = !(inside > kTouches);
+    ++kept;
   }
-}
-
-bool Curve::is_inside(const Joints& q) const {
-  return std::all_of(limits_.begin(), limits_.end(), [&](const Limit& limit) {
-    const double at = limit.value(q);
-    return at >= limit.lower - kAtLimit && at <= limit.upper + kAtLimit;
-  });
+  ends_.resize(kept);
 }
 
 std::vector<Curve::Joints> Curve::spread(int count, double least) const {

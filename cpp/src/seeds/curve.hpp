@@ -12,17 +12,16 @@
 #include <array>
 #include <vector>
 
-#include "iksel/self_motion.hpp"
 #include "seeds/arc_ends.hpp"
+#include "seeds/curve_walker.hpp"
 #include "seeds/sweep.hpp"
-#include "simd/curve_types.hpp"
 
 namespace iksel {
 
 class Curve {
  public:
-  static constexpr int kDof = lanes::kCurveJoints;
-  using Joints = std::array<double, kDof>;
+  static constexpr int kDof = CurveWalker::kDof;
+  using Joints = CurveWalker::Joints;
   struct Arc {
     std::vector<Joints> q;
     SelfMotionEnd begin, end;
@@ -31,7 +30,8 @@ class Curve {
     [[nodiscard]] bool is_closed() const { return begin.kind == ArcEnd::closed; }
   };
 
-  Curve(const ChainModel& model, const lanes::LaneKernels& kernels);
+  Curve(const ChainModel& model, const lanes::LaneKernels& kernels)
+      : joints_(model.joints), walker_(model, kernels) {}
 
   /// Finds the arcs for a target, Y as in reduction.hpp; with points so near to each other that no
   /// joint moves farther than `spacing` between them [rad]. `ends` may be null.
@@ -42,70 +42,43 @@ class Curve {
   [[nodiscard]] std::vector<Joints> spread(int count, double least) const;
 
  private:
-  static constexpr int kLanes = lanes::kWidth;
+  using Place = CurveWalker::Place;
+  using Step = CurveWalker::Step;
 
-  /// A limit of a joint, or of several together.
-  struct Limit {
-    SelfMotionEnd at;       ///< but for the side
-    const CoupledRow* row;  ///< null: a joint's
-    double lower, upper;
-
-    [[nodiscard]] double value(const Joints& q) const {
-      return row != nullptr ? row->sum(q.data()) : q[static_cast<std::size_t>(at.joint)];
-    }
-  };
   /// A joint at a limit.
   struct End {
     Joints q;
     SelfMotionEnd at;
-    Joints on_curve;           ///< but for rounding, where it is near
-    Joints tangent;            ///< oriented
+    Place on_curve;            ///< oriented
     bool leads_in, leads_out;  ///< whether it leads inside, and whether it comes from there
     bool is_taken;             ///< an arc begins or ends there
   };
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-  /// What a lane follows.
+  /// From an end or a sample along a curve.
   struct Walk {
     std::vector<Joints> q;
-    Joints tangent;       ///< at the last, the way that it goes
+    Joints tangent;       ///< where it begins, the way that it goes
     SelfMotionEnd begin;  ///< a fold: it begins at a sample
     bool is_reversed;     ///< against the orientation
     /// Of the walk, once it has ended; kNone if that is part of another.
     std::size_t arc = kNone;
   };
-  /// A configuration between two of a walk, where it leaves a limit.
-  struct Exit {
-    double part;  ///< of the way; above 1: it does not
-    SelfMotionEnd at;
-  };
-  /// What a lane goes from one configuration to the next: a cubic for each joint.
-  struct Step {
-    const Joints &from, &tangent_from, &to, &tangent_to;
-    double way;
-
-    [[nodiscard]] Joints at(double part) const;
-  };
-  /// What lies beyond a limit by no more is at it [rad or m].
-  static constexpr double kAtLimit = 1e-7;
+  class Walks;
 
   void find_samples(const Pose& Y, Sweep& sweep);
   void find_ends(const Pose& T_base_tcp, ArcEnds& ends);
-  /// Finds where so many are on the curve, at most as there are lanes, and their tangents.
-  void orient(End* ends, std::size_t count);
-  [[nodiscard]] bool is_inside(const Joints& q) const;
   [[nodiscard]] Joints sample(std::size_t i) const;
 
   // curve_walk.cpp
-  static Walk walk_from(const End& end, bool is_reversed);
+  static Walk walk_from(const Joints& q, const Place& on_curve, const SelfMotionEnd& at,
+                        bool is_reversed);
   void follow_from_ends();
   void follow_from_samples(Sweep& sweep);
   /// From between two ends, or on a curve without any, unless that is known.
   void follow_both_ways(const Joints& from);
-  /// Follows these, as many at a time as there are lanes.
   void follow(std::vector<Walk>& walks);
-  void start(const Walk& walk, int lane);
   /// Takes a further configuration. False if the walk ends there.
-  bool advance(Walk& walk, int lane);
+  bool advance(Walk& walk, int lane, const Step& step);
   /// How q lies beside the straight way between two configurations: along it, and its distance from
   /// the first, both times the way's length; squares.
   struct Beside {
@@ -116,13 +89,6 @@ class Curve {
   void mark_samples(const Joints& from, const Joints& to);
   void finish(Walk& walk, const SelfMotionEnd& end);
   [[nodiscard]] bool is_on_arc(const Joints& q) const;
-
-  // curve_exit.cpp
-  [[nodiscard]] Exit exit(const Step& step);
-  /// Where one of a step's values leaves a limit, if that is before `first`.
-  void look_at_limit(const Limit& limit, const Step& step, Exit& first);
-  /// What lies beside a curve, on it but for rounding.
-  [[nodiscard]] Joints corrected(const Joints& q);
   /// Goes on at another image, if coupled limits hold there.
   bool turn_round(Walk& walk, int lane, const Joints& next);
   /// Ends a walk at a limit.
@@ -133,13 +99,11 @@ class Curve {
   void thin_out(Arc& arc, double spacing) const;
 
   const JointSpace& joints_;
-  const lanes::LaneKernels& kernels_;
-  lanes::LaneChain chain_;
-  std::vector<Limit> limits_;
+  CurveWalker walker_;
 
   // Of the last search.
-  lanes::CurvePack pack_{}, probe_{};
   std::vector<End> ends_;
+  std::vector<Place> places_of_ends_;
   const Places* places_ = nullptr;
   int swept_ = -1;
   /// Branches at samples of the swept joint, inside the limits, and their joint values.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the arcs of a self-motion leave the limits.
+// Where self-motions leave the limits.
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "seeds/curve.hpp"
+#include "seeds/curve_walker.hpp"
 
 namespace iksel {
 namespace {
@@ -38,26 +38,26 @@ struct Cubic {
 
 }  // namespace
 
-Curve::Joints Curve::Step::at(double part) const {
+CurveWalker::Joints CurveWalker::Step::at(double part) const {
   Joints q;
   for (std::size_t j = 0; j < kDof; ++j) {
-    q[j] = Cubic{from[j], way * tangent_from[j], to[j], way * tangent_to[j]}(part);
+    q[j] = Cubic{from.q[j], way * from.tangent[j], to.q[j], way * to.tangent[j]}(part);
   }
   return q;
 }
 
-Curve::Exit Curve::exit(const Step& step) {
-  Exit first{2, {}};
+CurveWalker::Exit CurveWalker::exit(const Step& step) {
+  Exit first{2, {}, nullptr};
   for (const Limit& limit : limits_) look_at_limit(limit, step, first);
   return first;
 }
 
-void Curve::look_at_limit(const Limit& limit, const Step& step, Exit& first) {
+void CurveWalker::look_at_limit(const Limit& limit, const Step& step, Exit& first) {
   constexpr int kHalvings = 40;
   /// What a cubic may be off by [rad or m].
   constexpr double kDoubtful = 2e-3;
-  const Cubic value{limit.value(step.from), step.way * limit.value(step.tangent_from),
-                    limit.value(step.to), step.way * limit.value(step.tangent_to)};
+  const Cubic value{limit.value(step.from.q), step.way * limit.value(step.from.tangent),
+                    limit.value(step.to.q), step.way * limit.value(step.to.tangent)};
   // Far from it, nothing is to be looked for between.
   const double room = std::min({value.from - limit.lower, limit.upper - value.from,
                                 value.to - limit.lower, limit.upper - value.to});
@@ -70,7 +70,11 @@ void Curve::look_at_limit(const Limit& limit, const Step& step, Exit& first) {
     const double at = value(outside);
     if (beyond(at) <= kAtLimit) continue;
     const bool is_doubtful = beyond(at) < kDoubtful;
-    if (is_doubtful && beyond(limit.value(corrected(step.at(outside)))) <= kAtLimit) continue;
+    if (is_doubtful) {
+      Place on_curve{step.at(outside), {}};
+      correct(on_curve);
+      if (beyond(limit.value(on_curve.q)) <= kAtLimit) continue;
+    }
     const bool at_upper = at > limit.upper;
     double inside = i > 0 ? turns[static_cast<std::size_t>(i - 1)] : 0;
     for (int halving = 0; halving < kHalvings; ++halving) {
@@ -79,54 +83,26 @@ void Curve::look_at_limit(const Limit& limit, const Step& step, Exit& first) {
       (is_out ? outside : inside) = middle;
     }
     if (inside >= first.part) return;
-    first = {inside, limit.at};
+    first = {inside, limit.at, &limit};
     first.at.at_upper = at_upper;
     return;
   }
 }
 
-Curve::Joints Curve::corrected(const Joints& q) {
-  constexpr int kRounds = 2;
-  for (std::size_t j = 0; j < kDof; ++j) std::fill_n(probe_.q[j], kLanes, q[j]);
-  for (int round = 0; round < kRounds; ++round) kernels_.orient_curves(chain_, probe_);
-  Joints on_curve;
-  for (std::size_t j = 0; j < kDof; ++j) on_curve[j] = probe_.q[j][0];
-  return on_curve;
-}
-
-bool Curve::turn_round(Walk& walk, int lane, const Joints& next) {
-  if (joints_.coupled_turning.empty()) return false;
-  Joints image = next;
-  joints_.wrap(image.data());
-  if (!is_inside(image)) return false;
-  for (std::size_t j = 0; j < kDof; ++j) pack_.q[j][lane] = image[j];
-  walk.q.push_back(image);
-  return true;
-}
-
-void Curve::leave(Walk& walk, const Joints& q, const SelfMotionEnd& at) {
-  /// So near to where a walk leaves is its end [rad or m].
-  constexpr double kSame = 0.03;
-  End* end = nullptr;
-  double nearest = kSame;
-  for (End& each : ends_) {
-    if (each.at.joint != at.joint || each.at.at_upper != at.at_upper) continue;
-    if (!(walk.is_reversed ? each.leads_in : each.leads_out)) continue;
-    const double away = joints_.distance(each.q, q);
-    if (away >= nearest) continue;
-    nearest = away;
-    end = &each;
+CurveWalker::Place CurveWalker::leave(const Step& step, const Exit& exit) {
+  constexpr int kRounds = 3;
+  /// Where a curve runs along the limit, it is left as it is.
+  constexpr double kAlong = 0.05;
+  Place at{step.at(exit.part), {}};
+  const double value = exit.at.at_upper ? exit.limit->upper : exit.limit->lower;
+  for (int round = 0; round < kRounds; ++round) {
+    orient(&at, 1);
+    const double slope = exit.limit->value(at.tangent);
+    if (!(std::abs(slope) > kAlong)) break;
+    const double way = (value - exit.limit->value(at.q)) / slope;
+    for (std::size_t j = 0; j < kDof; ++j) at.q[j] += way * at.tangent[j];
   }
-  if (end == nullptr) {
-    walk.q.push_back(q);
-    finish(walk, at);
-    return;
-  }
-  // Of two that come to one end, one has gone over where the curve is outside of a limit.
-  if (end->is_taken) return;
-  walk.q.push_back(end->q);
-  end->is_taken = true;
-  finish(walk, at);
+  return at;
 }
 
 }  // namespace iksel

@@ -6,22 +6,10 @@
 #include "seeds/curve.hpp"
 
 namespace iksel {
-namespace {
 
-double way_between(const Curve::Joints& a, const Curve::Joints& b) {
-  double way2 = 0;
-  for (std::size_t j = 0; j < a.size(); ++j) way2 += (b[j] - a[j]) * (b[j] - a[j]);
-  return std::sqrt(way2);
-}
-
-}  // namespace
-
-Curve::Walk Curve::walk_from(const End& end, bool is_reversed) {
-  Walk walk{{end.q}, end.tangent, end.at, is_reversed};
-  if (is_reversed) {
-    for (double& part : walk.tangent) part = -part;
-  }
-  return walk;
+Curve::Walk Curve::walk_from(const Joints& q, const Place& on_curve, const SelfMotionEnd& at,
+                             bool is_reversed) {
+  return {{q}, (is_reversed ? on_curve.reversed() : on_curve).tangent, at, is_reversed};
 }
 
 void Curve::follow_from_ends() {
@@ -32,7 +20,7 @@ void Curve::follow_from_ends() {
     for (End& end : ends_) {
       if (end.is_taken || !(is_reversed ? end.leads_out : end.leads_in)) continue;
       if (is_reversed || !end.leads_out) end.is_taken = true;
-      walks.push_back(walk_from(end, is_reversed));
+      walks.push_back(walk_from(end.q, end.on_curve, end.at, is_reversed));
     }
     follow(walks);
   }
@@ -51,16 +39,13 @@ void Curve::follow_from_samples(Sweep& sweep) {
 
 void Curve::follow_both_ways(const Joints& from) {
   if (is_on_arc(from)) return;
-  End at{};
-  at.q = from;
-  at.at.kind = ArcEnd::fold;
-  orient(&at, 1);
-  at.q = at.on_curve;
-  std::vector<Walk> forwards{walk_from(at, false)};
+  Place at{from, {}};
+  walker_.orient(&at, 1);
+  std::vector<Walk> forwards{walk_from(at.q, at, {ArcEnd::fold}, false)};
   follow(forwards);
   const std::size_t ahead = forwards[0].arc;
   if (ahead == kNone || arcs_[ahead].is_closed()) return;
-  std::vector<Walk> backwards{walk_from(at, true)};
+  std::vector<Walk> backwards{walk_from(at.q, at, {ArcEnd::fold}, true)};
   follow(backwards);
   const std::size_t behind = backwards[0].arc;
   if (behind == kNone) return;
@@ -72,66 +57,46 @@ void Curve::follow_both_ways(const Joints& from) {
   arcs_.pop_back();
 }
 
+/// As many walks at a time as there are lanes.
+class Curve::Walks {
+ public:
+  Walks(Curve& curve, std::vector<Walk>& walks) : curve_(curve), walks_(walks) {}
+
+  bool begin(int lane, Place& from, bool& is_reversed) {
+    if (next_ == walks_.size()) return false;
+    const Walk& walk = walks_[next_];
+    from = {walk.q.front(), walk.tangent};
+    is_reversed = walk.is_reversed;
+    of_[static_cast<std::size_t>(lane)] = next_++;
+    return true;
+  }
+  bool advance(int lane, const Step& step) { return curve_.advance(at(lane), lane, step); }
+  void stop(int lane) { curve_.finish(at(lane), {ArcEnd::fold}); }
+
+ private:
+  Walk& at(int lane) { return walks_[of_[static_cast<std::size_t>(lane)]]; }
+
+  Curve& curve_;
+  std::vector<Walk>& walks_;
+  std::size_t next_ = 0;
+  std::array<std::size_t, lanes::kWidth> of_{};  ///< which walk a lane follows
+};
+
 void Curve::follow(std::vector<Walk>& walks) {
-  /// A walk that comes to so short steps is at a singularity [rad and m].
-  constexpr double kShortest = 1e-6;
-  std::array<std::size_t, kLanes> walk_of{};
-  std::size_t next = 0;
-  unsigned busy = 0;
-  const auto bit = [](int lane) { return 1U << static_cast<unsigned>(lane); };
-  const auto load = [&](int lane) {
-    busy &= ~bit(lane);
-    if (next == walks.size()) return;
-    walk_of[static_cast<std::size_t>(lane)] = next;
-    start(walks[next++], lane);
-    busy |= bit(lane);
-  };
-  for (int lane = 0; lane < kLanes; ++lane) load(lane);
-  while (busy != 0) {
-    const unsigned went = kernels_.follow_curves(chain_, pack_);
-    for (int lane = 0; lane < kLanes; ++lane) {
-      if ((busy & bit(lane)) == 0) continue;
-      Walk& walk = walks[walk_of[static_cast<std::size_t>(lane)]];
-      if ((went & bit(lane)) != 0) {
-        if (advance(walk, lane)) continue;
-      } else {
-        if (pack_.step[lane] >= kShortest) continue;
-        finish(walk, {ArcEnd::fold});
-      }
-      load(lane);
-    }
-  }
+  Walks in_lanes(*this, walks);
+  walker_.follow(in_lanes);
 }
 
-void Curve::start(const Walk& walk, int lane) {
-  constexpr double kFirstStep = 0.05;
-  for (std::size_t j = 0; j < kDof; ++j) {
-    pack_.q[j][lane] = walk.q.front()[j];
-    pack_.tangent[j][lane] = walk.tangent[j];
-  }
-  pack_.side[lane] = walk.is_reversed ? -1 : 1;
-  pack_.step[lane] = std::min(kFirstStep, pack_.longest);
-}
-
-bool Curve::advance(Walk& walk, int lane) {
+bool Curve::advance(Walk& walk, int lane, const Step& step) {
   constexpr double kLongestArc = 20 * kTwoPi;
-  Joints next;
-  Joints tangent;
-  for (std::size_t j = 0; j < kDof; ++j) {
-    next[j] = pack_.q[j][lane];
-    tangent[j] = pack_.tangent[j][lane];
-  }
-  const Joints& last = walk.q.back();
-  const Step step{last, walk.tangent, next, tangent, way_between(last, next)};
-  const Exit out = exit(step);
-  if (out.part <= 1) {
-    if (turn_round(walk, lane, next)) {
-      walk.tangent = tangent;
-      return true;
-    }
-    const Joints q = step.at(out.part);
+  const Joints& last = step.from.q;
+  const Joints& next = step.to.q;
+  const CurveWalker::Exit exit = walker_.exit(step);
+  if (exit.part <= 1) {
+    if (turn_round(walk, lane, next)) return true;
+    const Joints q = step.at(exit.part);
     mark_samples(last, q);
-    leave(walk, q, out.at);
+    leave(walk, q, exit.at);
     return false;
   }
   mark_samples(last, next);
@@ -141,8 +106,7 @@ bool Curve::advance(Walk& walk, int lane) {
     return false;
   }
   walk.q.push_back(next);
-  walk.tangent = tangent;
-  if (static_cast<double>(walk.q.size()) < 1000 + kLongestArc / pack_.longest) return true;
+  if (static_cast<double>(walk.q.size()) < 1000 + kLongestArc / walker_.longest()) return true;
   finish(walk, {ArcEnd::fold});
   return false;
 }
@@ -216,6 +180,41 @@ bool Curve::is_on_arc(const Joints& q) const {
     }
   }
   return false;
+}
+
+bool Curve::turn_round(Walk& walk, int lane, const Joints& next) {
+  if (joints_.coupled_turning.empty()) return false;
+  Joints image = next;
+  joints_.wrap(image.data());
+  if (!walker_.is_inside(image)) return false;
+  walker_.turn_to(lane, image);
+  walk.q.push_back(image);
+  return true;
+}
+
+void Curve::leave(Walk& walk, const Joints& q, const SelfMotionEnd& at) {
+  /// So near to where a walk leaves is its end [rad or m].
+  constexpr double kSame = 0.03;
+  End* end = nullptr;
+  double nearest = kSame;
+  for (End& each : ends_) {
+    if (each.at.joint != at.joint || each.at.at_upper != at.at_upper) continue;
+    if (!(walk.is_reversed ? each.leads_in : each.leads_out)) continue;
+    const double away = joints_.distance(each.q, q);
+    if (away >= nearest) continue;
+    nearest = away;
+    end = &each;
+  }
+  if (end == nullptr) {
+    walk.q.push_back(q);
+    finish(walk, at);
+    return;
+  }
+  // Of two that come to one end, one has gone over where the curve is outside of a limit.
+  if (end->is_taken) return;
+  walk.q.push_back(end->q);
+  end->is_taken = true;
+  finish(walk, at);
 }
 
 }  // namespace iksel

@@ -69,8 +69,8 @@ class CurveWalker {
 
   /// Follows curves, as many at a time as there are lanes. `walks.begin(lane, from, is_reversed)`
   /// gives the next to follow, and whether against the orientation; false: there is none.
-  /// `walks.advance(lane, step)` takes a step; false: it ends there. `walks.stop(lane)` ends it at a
-  /// singularity.
+  /// `walks.advance(lane, step)` takes a step; false: it ends there. `walks.stop(lane)` ends it at
+  /// a singularity.
   template <typename Walks>
   void follow(Walks& walks);
   /// In the course of it: goes on at another image of where a lane is.
@@ -101,13 +101,14 @@ void CurveWalker::follow(Walks& walks) {
   unsigned busy = 0;
   const auto bit = [](int lane) { return 1U << static_cast<unsigned>(lane); };
   const auto load = [&](int lane) {
-    busy &= ~bit(lane);
     bool is_reversed = false;
-    if (!walks.begin(lane, at_[static_cast<std::size_t>(lane)], is_reversed)) return;
-    start(lane, is_reversed);
-    busy |= bit(lane);
+    const bool is_busy = walks.begin(lane, at_[static_cast<std::size_t>(lane)], is_reversed);
+    if (is_busy) start(lane, is_reversed);
+    return is_busy;
   };
-  for (int lane = 0; lane < kLanes; ++lane) load(lane);
+  for (int lane = 0; lane < kLanes; ++lane) {
+    if (load(lane)) busy |= bit(lane);
+  }
   while (busy != 0) {
     const unsigned went = kernels_.follow_curves(chain_, pack_);
     for (int lane = 0; lane < kLanes; ++lane) {
@@ -122,7 +123,7 @@ void CurveWalker::follow(Walks& walks) {
         if (pack_.step[lane] >= kShortest) continue;
         walks.stop(lane);
       }
-      load(lane);
+      if (!load(lane)) busy &= ~bit(lane);
     }
   }
 }

@@ -236,6 +236,8 @@ std::optional<Proof> Search<Answers>::by_sweep(const Pose& Y) const {
     if (proof) {
       // No curve of solutions crosses a limit: one inside is closed, and between two samples.
       swept.look_between(Sweep::Between::beyond_folds);
+      if (search(lanes.refiner, swept, answers, work)) return Proof::none;
+      swept.give_close();
       return search(lanes.refiner, swept, answers, work) ? Proof::none : proof;
     }
   }

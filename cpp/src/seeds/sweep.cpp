@@ -166,6 +166,18 @@ struct RatedBranches {
   }
 };
 
+/// Whether of two branches that merge, and differ by one of three signs, it is the second.
+bool is_second_of_merged(int branch) {
+  return __builtin_parity(static_cast<unsigned>(branch)) != 0;
+}
+
+/// From the middle of a small closed curve, where Newton's steps lead nowhere: the arm is singular
+/// there. In a direction that is none of the arm's.
+void step_aside(std::array<double, SweptBranches::kDof>& q) {
+  constexpr double kAside = 3e-3;  // [rad or m]; of loops from 1e-3 on
+  for (std::size_t j = 0; j < q.size(); ++j) q[j] += kAside * std::cos(static_cast<double>(j));
+}
+
 }  // namespace
 
 bool Sweep::follow(const LeastPlace& near) {
@@ -192,6 +204,7 @@ bool Sweep::follow(const LeastPlace& near) {
   if (least <= 0 && take(0, near.branch)) return true;
   SweptJoints best{least, {}};
   branches_.copy_joints(0, best.q.data());
+  if (branches_.least(0) < 0 && is_second_of_merged(near.branch)) step_aside(best.q);
   close_.add(best);
   return false;
 }

@@ -76,8 +76,9 @@ class IKSEL_EXPORT Solver {
 
   /// Every distinct solution inside the limits that is found within the bounds on work: all
   /// branches of an arm with as many joints as the pose has directions (Solutions::proof says
-  /// whether there certainly are no others), a spread over the families of a redundant one. With an
-  /// objective the best by that first, where they are found. Throws as solve.
+  /// whether there certainly are no others), a spread over the families of a redundant one, which
+  /// may leave out small arcs that self_motion has. With an objective the best by that first, where
+  /// they are found. Throws as solve.
   [[nodiscard]] Solutions solve_all(const Pose& T_base_tip, const SolveAllOptions& options = {},
                                     const SolveRequest& request = {}) const;
 

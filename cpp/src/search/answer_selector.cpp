@@ -42,6 +42,7 @@ bool AnswerSelector::is_satisfied(const Collector& search) {
 }
 
 bool AnswerSelector::select(const Collector& search, JointVector& q) {
+  screen_new();
   if (first_kept_ == found_.size()) return select_image(kInfinity, q);
   if (!ranks_) {
     q = found_.at(first_kept_);
@@ -81,6 +82,8 @@ double AnswerSelector::cost_of(const JointVector& q) const {
 }
 
 void AnswerSelector::screen_new() {
+  if (found_.replacements() != replacements_) asked_ = first_kept_ = 0;
+  replacements_ = found_.replacements();
   if (asked_ < found_.size()) {
     const std::size_t count = found_.size() - asked_;
     screen_.find_free(found_.q(asked_), count, &free_[asked_]);

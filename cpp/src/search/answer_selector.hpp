@@ -40,7 +40,7 @@ class AnswerSelector {
 
   /// Smaller is better; 0 where nothing is.
   [[nodiscard]] double cost_of(const JointVector& q) const;
-  /// Screens what was found since the last time.
+  /// Screens what was found since the last time; all, if some were replaced.
   void screen_new();
   /// Goes from a solution along its self-motion to the least cost; q is the best before, and after,
   /// and `best` its cost.
@@ -62,6 +62,7 @@ class AnswerSelector {
   std::array<bool, SolutionSet::kMost> free_{};
   std::array<bool, SolutionSet::kMost> kept_{};
   std::size_t asked_ = 0;
+  int replacements_ = 0;  ///< of solutions that were screened
   std::size_t first_kept_ = 0;
   int steps_ = 0;
 };

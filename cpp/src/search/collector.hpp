@@ -62,6 +62,7 @@ class Collector {
   /// The next predicted partner, if there is one.
   bool pop_partner(JointVector& q) const;
   [[nodiscard]] bool has_any() const { return solutions_ > 0; }
+  [[nodiscard]] std::size_t count() const { return found_.size(); }
   /// Whether partners of solutions are to be looked for: not while branches are tried, which are
   /// all as a rule. Where they were not, those of what was found meanwhile are.
   void look_for_partners(bool look);

@@ -40,6 +40,8 @@ struct CurveSearch {
   /// Searches by seeds that all but are answers. Returns whether the answers want no more.
   template <typename Seeds>
   bool refine(Seeds& seeds, Width width) const;
+  /// By those that were sampled, answers or all but.
+  void refine_rows(bool are_answers) const;
   /// Any solution, as soon as can be; true if there certainly is none.
   [[nodiscard]] bool collect_any_or_none() const;
   /// The solution nearest to `near`, or to the objective's posture.
@@ -76,19 +78,30 @@ std::optional<Proof> CurveSearch<Answers>::find_free() const {
 }
 
 template <typename Answers>
+void CurveSearch<Answers>::refine_rows(bool are_answers) const {
+  const std::vector<double>& q = lanes.samples.q;
+  RowSeeds seeds(q.data(), q.size() / SweptBranches::kDof, SweptBranches::kDof, are_answers, work);
+  refine(seeds, Width::wide);
+}
+
+template <typename Answers>
 std::optional<Proof> CurveSearch<Answers>::collect_spread() const {
   // Between points no farther apart, a straight line is near enough to the curve [rad].
   constexpr double kStraight = 0.3;
-  lanes.find_arcs(goal.target(), Y, kStraight);
-  const std::vector<Curve::Joints> points =
-      lanes.curve->spread(answers.spread(), answers.min_distance());
+  std::vector<double>& q = lanes.samples.q;
+  const auto wanted = static_cast<std::size_t>(answers.spread());
+  const double least = 1.01 * answers.min_distance();
+  lanes.sweep->find_spread(Y, wanted, least, q);
   clock.lap(&StageTimes::query);
-  RowSeeds seeds(points.empty() ? nullptr : points[0].data(), points.size(), SweptBranches::kDof,
-                 /*are_answers=*/false, work);
-  refine(seeds, Width::wide);
+  refine_rows(/*are_answers=*/true);
+  if (answers.count() >= wanted) return Proof::none;
+  lanes.find_arcs(goal.target(), Y, kStraight);
+  lanes.curve->spread(wanted + wanted / 4 + 8, least, q);
+  clock.lap(&StageTimes::query);
+  refine_rows(/*are_answers=*/false);
   if (answers.has_any()) return Proof::none;
   Sweep& sweep = *lanes.sweep;
-  if (points.empty() && !sweep.find(Y) && sweep.is_none()) return Proof::sweep;
+  if (q.empty() && !sweep.find(Y) && sweep.is_none()) return Proof::sweep;
   return std::nullopt;
 }
 
@@ -103,10 +116,8 @@ std::optional<Proof> CurveSearch<Answers>::collect_nearest_free() const {
   const bool has_any = find_nearest_free(arcs, *request.scene, model.joints, near, move, kMost, q);
   clock.lap(&StageTimes::query);
   if (!has_any) return std::nullopt;
-  RowSeeds seeds(q.data(), q.size() / SweptBranches::kDof, SweptBranches::kDof,
-                 /*are_answers=*/false, work);
-  refine(seeds, Width::wide);
-  if (seeds.count() > 0) return Proof::none;
+  refine_rows(/*are_answers=*/false);
+  if (!q.empty()) return Proof::none;
   answers.status = Status::in_collision;
   return Proof::sweep;
 }

@@ -30,22 +30,38 @@ class SolutionSet {
     }
   }
 
-  void clear() { size_ = 0; }
-
-  /// Adds a success unless one lies nearer than `min_distance` in every joint, whole turns
-  /// not counted; or there is no room. Of two that lie so near, the one of smaller cost
-  /// stays, at the place of the first. True if it is a new one.
-  bool add(const Result& solution, double cost, double min_distance) {
-    for (std::size_t i = 0; i < size_; ++i) {
-      const double away = model_.joints.distance(q(i), solution.q, min_distance);
-      if (away >= min_distance) continue;
-      if (cost < cost_[i]) put(i, solution, cost);
-      return false;
-    }
-    if (size_ == kMost) return false;
-    put(size_++, solution, cost);
-    return true;
+  void clear() {
+    size_ = 0;
+    replacements_ = 0;
   }
+
+  /// Adds a success, unless one of no larger cost lies nearer than `min_distance` in every joint,
+  /// whole turns not counted, or there is no room; those of larger cost that do go, and it takes
+  /// the place of the first of them. True if there were none.
+  bool add(const Result& solution, double cost, double min_distance) {
+    const auto is_near = [&](std::size_t i) {
+      return model_.joints.distance(q(i), solution.q, min_distance) < min_distance;
+    };
+    std::size_t place = size_;
+    for (std::size_t i = 0; i < size_; ++i) {
+      if (!is_near(i)) continue;
+      if (cost >= cost_[i]) return false;
+      place = std::min(place, i);
+    }
+    if (place == size_) {
+      if (size_ == kMost) return false;
+      put(size_++, solution, cost);
+      return true;
+    }
+    ++replacements_;
+    put(place, solution, cost);
+    for (std::size_t i = size_; --i > place;) {
+      if (is_near(i)) erase(i);
+    }
+    return false;
+  }
+  /// How often some were replaced by others, so that what is known of single ones no longer holds.
+  [[nodiscard]] int replacements() const { return replacements_; }
 
   /// True if q lies within `radius` of a solution in every joint.
   template <typename Q>
@@ -91,6 +107,20 @@ class SolutionSet {
     rotation_error_[i] = solution.rotation_error;
   }
 
+  void erase(std::size_t i) {
+    const auto dof = static_cast<std::size_t>(model_.dof);
+    const auto close_gap = [&](std::vector<double>& values, std::size_t each) {
+      const auto gap = values.begin() + static_cast<std::ptrdiff_t>(i * each);
+      std::copy(gap + static_cast<std::ptrdiff_t>(each),
+                values.begin() + static_cast<std::ptrdiff_t>(size_ * each), gap);
+    };
+    close_gap(q_, dof);
+    close_gap(cost_, 1);
+    close_gap(position_error_, 1);
+    close_gap(rotation_error_, 1);
+    --size_;
+  }
+
   /// A joint's difference without its whole turns. Added to so large a number, a double loses what
   /// comes after its point: cheaper than to round.
   [[nodiscard]] double turned_difference(int joint, double d) const {
@@ -106,6 +136,7 @@ class SolutionSet {
   std::vector<double> rotation_error_;  ///< [rad]
   std::vector<double> turns_;           ///< 1 / 2 pi for joints with whole turns, else 0
   std::size_t size_ = 0;
+  int replacements_ = 0;
 };
 
 }  // namespace iksel

@@ -85,13 +85,14 @@ void Curve::find_ends(const Pose& T_base_tcp, ArcEnds& ends) {
   ends_.resize(kept);
 }
 
-std::vector<Curve::Joints> Curve::spread(int count, double least) const {
+void Curve::spread(std::size_t count, double least, std::vector<double>& q) const {
+  q.clear();
+  const auto add = [&](const Joints& place) { q.insert(q.end(), place.begin(), place.end()); };
   double length = 0;
   for (const Arc& arc : arcs_) length += arc.length;
-  const double spacing = std::max(length / count, 1.01 * least);
-  std::vector<Joints> places;
+  const double spacing = std::max(length / static_cast<double>(count), least);
   for (const Arc& arc : arcs_) {
-    places.push_back(arc.q.front());
+    add(arc.q.front());
     const double steps = std::floor(arc.length / spacing);
     if (steps < 1) continue;
     const double step = arc.length / steps;
@@ -102,19 +103,18 @@ std::vector<Curve::Joints> Curve::spread(int count, double least) const {
       const double way = joints_.distance(a, b);
       double at = left;
       for (; at <= way; at += step) {
-        Joints q = a;
+        Joints between = a;
         for (int j = 0; j < kDof; ++j) {
           const auto k = static_cast<std::size_t>(j);
-          q[k] += at / way * joints_.difference(j, a[k], b[k]);
+          between[k] += at / way * joints_.difference(j, a[k], b[k]);
         }
-        places.push_back(q);
+        add(between);
       }
       left = at - way;
     }
     // Rounding may have left out the end.
-    if (!arc.is_closed() && left < 0.5 * step) places.push_back(arc.q.back());
+    if (!arc.is_closed() && left < 0.5 * step) add(arc.q.back());
   }
-  return places;
 }
 
 void Curve::drop_points() {

@@ -38,8 +38,9 @@ class Curve {
   void find(const Pose& T_base_tcp, const Pose& Y, ArcEnds* ends, Sweep& sweep, double spacing);
   [[nodiscard]] const std::vector<Arc>& arcs() const { return arcs_; }
   /// About so many places evenly along these arcs, on straight lines between their points, and both
-  /// ends of each; no nearer to each other along the arc than `least` [rad].
-  [[nodiscard]] std::vector<Joints> spread(int count, double least) const;
+  /// ends of each; no nearer to each other along the arc than `least` [rad]. Seven joint values
+  /// each.
+  void spread(std::size_t count, double least, std::vector<double>& q) const;
 
  private:
   using Place = CurveWalker::Place;

@@ -11,7 +11,8 @@ namespace iksel {
 
 Sweep::Sweep(const ChainModel& model, const ClosedFormChain& chain, bool is_nominal,
              double tolerance, const lanes::LaneKernels& kernels)
-    : branches_(model, chain, kernels),
+    : joints_(model.joints),
+      branches_(model, chain, kernels),
       places_(branches_.places(kSamples)),
       miss_(is_nominal, tolerance),
       rows_(kSamples) {}

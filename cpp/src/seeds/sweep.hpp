@@ -44,6 +44,9 @@ class Sweep {
   };
   /// The same, for the target as it is set, and which they are.
   void add_samples(int first, int stride, std::vector<double>& q, std::vector<Sample>& samples);
+  /// `count` branches inside the limits, at samples and between them, that lie far from each other
+  /// and no nearer than `least`; seven joint values each [rad]. None if there are not so many.
+  void find_spread(const Pose& Y, std::size_t count, double least, std::vector<double>& q);
   /// Adds places of a branch towards where it leaves the limits, or ends, between a sample where it
   /// is inside and the one beside it, up or down, where it is not: the last ones are very near.
   void add_end(const Sample& inside, bool up, std::vector<double>& q);
@@ -84,6 +87,10 @@ class Sweep {
   bool take(int lane, int branch);
   /// Looks between the samples beside; true if there is an answer.
   bool follow(const LeastPlace& near);
+
+  const JointSpace& joints_;
+  // sweep_spread.cpp
+  class Spread;
 
   SweptBranches branches_;
   Places places_;

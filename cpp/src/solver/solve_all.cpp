@@ -10,6 +10,7 @@
 #include "goal/screen.hpp"
 #include "iksel/error.hpp"
 #include "iksel/pose.hpp"
+#include "kinematics/farthest_first.hpp"
 #include "solver/solver_impl.hpp"
 
 namespace iksel {
@@ -66,20 +67,17 @@ double cost_of(const ChainModel& model, SolutionOrder order, const JointMove& mo
   return move.length(q - from);
 }
 
-/// Moves `count` to the front that lie far from each other: after the best, always the one farthest
-/// from those before.
-void move_apart(const ChainModel& model, std::size_t count, std::vector<Image>& images) {
-  std::vector<double> distance(images.size(), std::numeric_limits<double>::infinity());
-  for (std::size_t chosen = 1; chosen < count; ++chosen) {
-    std::size_t farthest = chosen;
-    for (std::size_t i = chosen; i < images.size(); ++i) {
-      const double d = model.joints.distance(images[chosen - 1].q, images[i].q, distance[i]);
-      distance[i] = std::min(distance[i], d);
-      if (distance[i] > distance[farthest]) farthest = i;
-    }
-    std::swap(images[chosen], images[farthest]);
-    std::swap(distance[chosen], distance[farthest]);
+/// Keeps `count` that lie far from each other, the first among them.
+void keep_apart(const JointSpace& joints, std::size_t count, std::vector<Image>& images) {
+  std::vector<double> q;
+  q.reserve(images.size() * static_cast<std::size_t>(joints.dof()));
+  for (const Image& image : images) q.insert(q.end(), image.q.begin(), image.q.end());
+  std::vector<Image> kept;
+  kept.reserve(count);
+  for (const std::size_t i : farthest_first(joints, q.data(), images.size(), count)) {
+    kept.push_back(std::move(images[i]));
   }
+  images = std::move(kept);
 }
 
 /// The solutions found that are free, each at all its images inside the limits or as it is.
@@ -123,11 +121,10 @@ void apply_filter(Screen& screen, int dof, std::vector<Image>& images) {
   images.resize(kept);
 }
 
-/// How many solutions to look for on a self-motion: a few more than asked for, as branches come
-/// near to each other; and what is refused is replaced by others.
+/// How many solutions to look for on a self-motion: what is refused is replaced by others.
 int spread_for(int most, bool is_screened) {
   const int spread = std::min(most, kMostSpread);
-  return is_screened ? static_cast<int>(kChoice) * spread : spread + spread / 4 + 8;
+  return is_screened ? static_cast<int>(kChoice) * spread : spread;
 }
 
 /// Of the images of each solution, in order, the first.
@@ -196,8 +193,11 @@ Solutions Solver::Impl::solve_all(const Pose& target, const SolveAllOptions& all
   if (!all.whole_turns) take_first_of_each(found.size(), images);
   if (images.size() > most) {
     solutions.proof = Proof::none;  // others are left out
-    if (goal.is_redundant()) move_apart(model(), most, images);
-    images.resize(most);
+    if (goal.is_redundant()) {
+      keep_apart(model().joints, most, images);
+    } else {
+      images.resize(most);
+    }
     std::sort(images.begin(), images.end(), cheaper);
   }
 

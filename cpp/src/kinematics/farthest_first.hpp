@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A few of many configurations that lie far from each other.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "kinematics/joint_space.hpp"
+
+namespace iksel {
+
+/// Of `all` configurations, one after another in q [rad or m], the first, and then always the one
+/// farthest from those before, by the joint that moves most; `count` of them at most, and none
+/// nearer to another than `least`. In single precision: which of two that are equally far is taken
+/// matters little.
+std::vector<std::size_t> farthest_first(const JointSpace& joints, const double* q, std::size_t all,
+                                        std::size_t count, double least = 0);
+
+}  // namespace iksel

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Solutions spread over a self-motion.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "kinematics/farthest_first.hpp"
+#include "seeds/sweep.hpp"
+
+namespace iksel {
+namespace {
+
+constexpr std::size_t kDof = SweptBranches::kDof;
+
+}  // namespace
+
+class Sweep::Spread {
+ public:
+  Spread(Sweep& sweep, const JointSpace& joints, std::vector<double>& q)
+      : sweep_(sweep), joints_(joints), q_(q) {
+    q.clear();
+  }
+
+  /// Looks at so many samples; how many branches are inside the limits there.
+  int find_runs(int samples) {
+    const Places places = sweep_.branches_.places(samples);
+    sweep_.places_ = places;
+    for (int i = 0; i < samples; i += kBranches) {
+      sweep_.branches_.rate([&](int k) { return places.value(i + k); }, kNear,
+                            &sweep_.rows_[static_cast<std::size_t>(i)]);
+    }
+    runs_.clear();
+    int inside = 0;
+    for (int branch = 0; branch < kBranches; ++branch) {
+      bool goes_on = false;
+      for (int i = 0; i < samples; ++i) {
+        const SweptBranches::Row& row = sweep_.rows_[static_cast<std::size_t>(i)];
+        const bool is_inside = row[static_cast<std::size_t>(branch)] <= 0;
+        if (is_inside && !goes_on) runs_.push_back({branch, i, i});
+        if (is_inside) runs_.back().last = i;
+        inside += is_inside ? 1 : 0;
+        goes_on = is_inside;
+      }
+    }
+    return inside;
+  }
+
+  /// Adds both ends of each run, places between them, so many for each sample, and some on the way
+  /// to the samples beside.
+  void add_places(double each) {
+    for (const Run& run : runs_) {
+      const int steps = static_cast<int>(std::ceil(each * (run.last - run.first)));
+      const double step = steps > 0 ? static_cast<double>(run.last - run.first) / steps : 0;
+      // As many as make the lanes full.
+      const int beyond = 1 + (kBranches - (steps + 3) % kBranches) % kBranches / 2;
+      const auto at = [&](int i) {
+        if (i < 0) return run.first + static_cast<double>(i) / beyond;
+        if (i > steps) return run.last + static_cast<double>(i - steps) / beyond;
+        return run.first + step * i;
+      };
+      add(run.branch, -beyond, steps + beyond, at);
+    }
+  }
+
+  /// Adds what is inside the limits between two samples only.
+  void add_between() {
+    const Places& places = sweep_.places_;
+    sweep_.visit_between([&](const double* q, int branch) {
+      q_.insert(q_.end(), q, q + kDof);
+      const double place = (q[sweep_.joint()] - places.lower) / places.step;
+      add(branch, 0, kBranches - 1, [&](int i) { return place - 0.5 + i / (kBranches - 1.0); });
+    });
+  }
+
+  /// Adds places in gaps: beside singular poses joints move far between two samples.
+  void fill_gaps() {
+    constexpr int kRounds = 3;
+    for (int round = 0; round < kRounds && !gaps_.empty(); ++round) {
+      for (const Gap& gap : std::exchange(gaps_, {})) {
+        // With its ends, from which the next may still be far.
+        const double step = (gap.to - gap.from) / (kBranches - 1);
+        add(gap.branch, 0, kBranches - 1, [&](int i) { return gap.from + step * i; });
+      }
+    }
+  }
+
+  /// Keeps `count` that are far from each other, or none if so many are not `least` apart.
+  void thin_out(std::size_t count, double least) {
+    const std::vector<std::size_t> chosen =
+        farthest_first(joints_, q_.data(), q_.size() / kDof, count, least);
+    std::vector<double> kept;
+    kept.reserve(count * kDof);
+    for (const std::size_t i : chosen) {
+      kept.insert(kept.end(), &q_[i * kDof], &q_[i * kDof] + kDof);
+    }
+    if (chosen.size() < count) kept.clear();
+    q_ = std::move(kept);
+  }
+
+ private:
+  /// A branch that is inside the limits at samples from `first` to `last`.
+  struct Run {
+    int branch, first, last;
+  };
+  /// Between two places of a branch, which may lie between samples.
+  struct Gap {
+    int branch;
+    double from, to;
+  };
+
+  /// Adds a branch at the samples `at(i)`, and between such, where it is inside the limits; and
+  /// what is beside that and far from it to the gaps.
+  template <typename At>
+  void add(int branch, int first, int last, const At& at) {
+    std::array<double, kDof> before{};
+    bool was_inside = false;
+    for (int i = first; i <= last; i += kBranches) {
+      sweep_.branches_.solve_one(branch, [&](int lane) {
+        const double place = at(std::min(i + lane, last));
+        return sweep_.branches_.clamp(sweep_.places_.lower + sweep_.places_.step * place);
+      });
+      for (int lane = 0; lane < std::min(kBranches, last + 1 - i); ++lane) {
+        std::array<double, kDof> here{};
+        sweep_.branches_.copy_joints(lane, here.data());
+        const bool is_inside = sweep_.branches_.off(lane) <= 0;
+        if (is_inside) q_.insert(q_.end(), here.begin(), here.end());
+        const Gap gap{branch, at(i + lane - 1), at(i + lane)};
+        if (i + lane > first && (was_inside || is_inside) && is_wide(gap, before, here)) {
+          gaps_.push_back(gap);
+        }
+        before = here;
+        was_inside = is_inside;
+      }
+    }
+  }
+  [[nodiscard]] bool is_wide(const Gap& gap, const std::array<double, kDof>& from,
+                             const std::array<double, kDof>& to) const {
+    constexpr double kWide = 0.7;  // [rad or m]
+    constexpr double kSteep = 4;   // as against the swept joint
+    const double wide = std::max(kWide, kSteep * sweep_.places_.step * (gap.to - gap.from));
+    return joints_.distance(from, to, wide) >= wide;
+  }
+
+  Sweep& sweep_;
+  const JointSpace& joints_;
+  std::vector<double>& q_;
+  std::vector<Run> runs_;
+  std::vector<Gap> gaps_;
+};
+
+void Sweep::find_spread(const Pose& Y, std::size_t count, double least, std::vector<double>& q) {
+  /// So many times as many are looked at as are wanted.
+  constexpr std::size_t kChoice = 2;
+  const auto places = static_cast<int>(count + count / 2);
+  set_target(Y);
+  Spread spread(*this, joints_, q);
+  int samples = 2 * places < kSamples ? kSamples / 2 : kSamples;
+  int inside = spread.find_runs(samples);
+  if (samples < kSamples && 2 * inside < places) inside = spread.find_runs(kSamples);
+  if (inside == 0) return;
+  spread.add_places(static_cast<double>(places) / inside);
+  spread.add_between();
+  spread.fill_gaps();
+  spread.thin_out(count, least);
+}
+
+}  // namespace iksel

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// All answers that are wanted of seven joints of which one can be swept: they lie on a self-motion.
+#include "search/explore.hpp"
+#include "seeds/free_samples.hpp"
+
+namespace iksel {
+namespace {
+
+/// By what was sampled of it, answers or all but.
+void refine_samples(const AllSearch& parts, bool are_answers) {
+  const std::vector<double>& q = parts.workspace.lanes->samples.q;
+  parts.refine_rows(q.data(), q.size() / SweptBranches::kDof, are_answers, Width::wide);
+}
+
+/// Solutions all over it.
+Explored explore_spread(const AllSearch& parts, const Pose& Y) {
+  // Between points no farther apart, a straight line is near enough to the curve [rad].
+  constexpr double kStraight = 0.3;
+  Workspace::InLanes& lanes = *parts.workspace.lanes;
+  Collector& answers = parts.answers;
+  std::vector<double>& q = lanes.samples.q;
+  const auto wanted = static_cast<std::size_t>(answers.spread());
+  const double least = 1.01 * answers.min_distance();
+  lanes.sweep->find_spread(Y, wanted, least, q);
+  parts.clock.lap(&StageTimes::query);
+  refine_samples(parts, /*are_answers=*/true);
+  if (answers.count() >= wanted) return Explored::done();
+  lanes.find_arcs(parts.goal.target(), Y, kStraight);
+  // Where branches meet, some are the same.
+  lanes.curve->spread(wanted + wanted / 4 + 8, least, q);
+  parts.clock.lap(&StageTimes::query);
+  refine_samples(parts, /*are_answers=*/false);
+  if (answers.has_any()) return Explored::done();
+  const bool is_none = q.empty() && !lanes.sweep->find(Y) && lanes.sweep->is_none();
+  return is_none ? Explored::done(Proof::sweep) : Explored::doubtful();
+}
+
+/// Any solution, as soon as can be; true if there certainly is none.
+bool find_any_or_none(const AllSearch& parts, const Pose& Y) {
+  Sweep& sweep = *parts.workspace.lanes->sweep;
+  const bool is_found = sweep.find(Y);
+  parts.clock.lap(&StageTimes::query);
+  if (!is_found) return sweep.is_none();
+  parts.refine_rows(sweep.q(), 1, /*are_answers=*/true, Width::narrow);
+  return false;
+}
+
+/// The solution nearest to `near`, or to the objective's posture.
+Explored explore_nearest(const AllSearch& parts, const Pose& Y) {
+  // Where `near` itself leads bounds the others. Of 1,000 poses of `near` itself, the samples of
+  // the curve alone led elsewhere in 5 (panda) to 16 (xarm7).
+  Workspace::InLanes& lanes = *parts.workspace.lanes;
+  Collector& answers = parts.answers;
+  NearestOnCurve& curve = *lanes.nearest_on_curve;
+  const auto& [near, move] = answers.nearest_to();
+  const bool stays = curve.prefers_staying(move);
+  NearSeed first(stays ? nullptr : &near, parts.work);
+  search(lanes.refiner, first, answers, parts.work);
+  // Any answer bounds the others as well, and where there is none, what looks for any is sooner
+  // through.
+  const auto is_none = [&] { return !answers.has_any() && find_any_or_none(parts, Y); };
+  if (!stays && is_none()) return Explored::done(Proof::sweep);
+  NearestOnCurveSeeds nearest(curve, Y, near, move, answers, parts.work, parts.clock);
+  parts.refine(nearest, Width::narrow);
+  answers.is_settled = curve.is_settled() && nearest.has_led_to_answer();
+  if (stays && is_none()) return Explored::done(Proof::sweep);
+  return answers.has_any() ? Explored::done() : Explored::doubtful();
+}
+
+/// The free solutions nearest to it.
+Explored explore_nearest_free(const AllSearch& parts, const Pose& Y) {
+  constexpr double kSpacing = 0.05;
+  /// So many of them are refined.
+  constexpr std::size_t kMost = 16;
+  Workspace::InLanes& lanes = *parts.workspace.lanes;
+  const std::vector<Curve::Arc>& arcs = lanes.find_arcs(parts.goal.target(), Y, kSpacing);
+  std::vector<double>& q = lanes.samples.q;
+  const auto& [near, move] = parts.answers.nearest_to();
+  const bool has_any =
+      find_nearest_free(arcs, *parts.request.scene, parts.model.joints, near, move, kMost, q);
+  parts.clock.lap(&StageTimes::query);
+  if (!has_any) return Explored::doubtful();
+  refine_samples(parts, /*are_answers=*/false);
+  if (!q.empty()) return Explored::done();
+  parts.answers.status = Status::in_collision;
+  return Explored::done(Proof::sweep);
+}
+
+}  // namespace
+
+Explored explore_curve(const AllSearch& parts, const Pose& Y) {
+  Collector& answers = parts.answers;
+  if (answers.spread() > 0) return explore_spread(parts, Y);
+  if (answers.wants_nearest()) return explore_nearest(parts, Y);
+  if (!answers.wants_nearest_free()) return Explored::doubtful();
+  // Mostly the nearest of all is free.
+  const Explored nearest = explore_nearest(parts, Y);
+  bool is_free = false;
+  if (answers.has_any()) {
+    parts.request.scene->find_free(answers.solution(answers.nearest()), 1, &is_free);
+  }
+  if (is_free || nearest.proof == Proof::sweep) return nearest;
+  answers.is_settled = false;
+  return explore_nearest_free(parts, Y);
+}
+
+}  // namespace iksel

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// All answers to a full pose that are wanted, in lanes.
+#include "search/explore_branches.hpp"
+#include "seeds/nearby_seeds.hpp"
+#include "seeds/spread_seeds.hpp"
+
+namespace iksel {
+namespace {
+
+/// More than so many have more than one joint to spare, and are not swept.
+constexpr int kSweptJoints = 7;
+
+/// From the whole database, and before it from around what the nearest is wanted to. Returns
+/// whether the answers want no more.
+bool search_widely(const AllSearch& parts) {
+  Workspace::InLanes& lanes = *parts.workspace.lanes;
+  Collector& answers = parts.answers;
+  lanes.refiner.begin(parts.goal.task(), kAll, Width::wide);
+  if (parts.model.dof > kSweptJoints && answers.ranks_by_move() &&
+      !parts.request.objective.is_set()) {
+    NearbySeeds nearby(parts.model.joints, answers.nearest_to().from, parts.options.seed,
+                       parts.work);
+    if (search(lanes.refiner, nearby, answers, parts.work)) return true;
+  }
+  SpreadSeeds spread(lanes.query, parts.model.joints, parts.options.seed, answers, parts.work);
+  const bool is_satisfied = search(lanes.refiner, spread, answers, parts.work);
+  parts.clock.lap(&StageTimes::iterate);
+  return is_satisfied;
+}
+
+}  // namespace
+
+Proof search_pose(const AllSearch& parts, NearSeed& near, GivenSeeds& given, const Pose& Y) {
+  Workspace::InLanes& lanes = *parts.workspace.lanes;
+  Collector& answers = parts.answers;
+  if (!parts.request.database_seeds) {
+    answers.converge_from_near();
+    parts.run(lanes.refiner, near, given);
+    return Proof::none;
+  }
+  if (lanes.roots) {
+    const auto roots = explore_branches(parts, *lanes.roots, Proof::sweep, near, given, Y);
+    if (roots.is_done) return roots.proof;
+  }
+  bool has_asked_ends = false;
+  if (lanes.sweep) {
+    Explored curve = explore_curve(parts, Y);
+    // What ranks answers otherwise has looked for none there.
+    const bool has_looked =
+        answers.spread() > 0 || answers.wants_nearest() || answers.wants_nearest_free();
+    has_asked_ends = lanes.ends && has_looked && answers.status == Status::not_converged;
+    if (has_asked_ends) {
+      if (const auto ends = explore_ends(parts); ends.is_done) curve = ends;
+    }
+    if (curve.is_done) return curve.proof;
+  }
+  if (answers.wants_nearest() && explore_held(parts).is_done) return Proof::none;
+  answers.converge_from_near();
+  if (parts.run(lanes.refiner, near, given)) return Proof::none;
+  if (search_widely(parts)) return Proof::none;
+  if (lanes.ends && !has_asked_ends && !answers.has_any()) explore_ends(parts);
+  return Proof::none;
+}
+
+Explored explore_held(const AllSearch& parts) {
+  for (InnerArm& inner : parts.workspace.lanes->inner_arms) {
+    if (!inner.can_hold(parts.answers.nearest_to())) continue;
+    const bool found = inner.find(parts.goal.target(), parts.answers.nearest_to());
+    parts.clock.lap(&StageTimes::query);
+    if (!found) continue;
+    parts.refine_rows(inner.q().data(), 1, /*are_answers=*/true, Width::narrow);
+    if (!parts.answers.has_any()) continue;
+    parts.answers.is_settled = true;
+    return Explored::done();
+  }
+  return Explored::doubtful();
+}
+
+}  // namespace iksel

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A first answer to a full pose, in lanes.
+#include "search/explore_branches.hpp"
+#include "seeds/leaf_seeds.hpp"
+
+namespace iksel {
+namespace {
+
+/// Of the nearest leaf, before the roots of a sweep: more cost more than those. Where seven joints
+/// are swept, all are tried: with 4, two of a million reachable targets of pr2_right_arm were lost.
+constexpr int kBeforeRoots = 4;
+/// The same in a scene, where each that collides costs more than a pack of samples.
+constexpr int kBeforeSamples = 2;
+/// Seeds after a sweep that came close to an answer, but did not find one; and after the ends of
+/// arcs did not either (python -m bench laws shoulder_offset shoulder_elbow_offset; beside panda).
+constexpr int kBesideSweep = 192;
+constexpr int kBesideEnds = 16;
+
+/// The nearest leaf of the database. Returns whether the answers want no more.
+bool search_leaf(const FirstSearch& parts, bool is_screened, NearSeed& near, GivenSeeds& given) {
+  Workspace::InLanes& lanes = *parts.workspace.lanes;
+  const int from_leaf = is_screened ? kBeforeSamples : lanes.roots ? kBeforeRoots : lanes::kBlock;
+  if (lanes.sweep || lanes.roots) {
+    lanes.refiner.begin(parts.goal.task(), lanes.sweep ? kBeforeSweep : kBeforeBranches,
+                        Width::narrow);
+  }
+  LeafSeeds leaf(lanes.query, from_leaf, parts.work, parts.clock);
+  return parts.run(lanes.refiner, near, given, leaf);
+}
+
+}  // namespace
+
+Proof search_pose(const FirstSearch& parts, NearSeed& near, GivenSeeds& given, const Pose& Y) {
+  Workspace::InLanes& lanes = *parts.workspace.lanes;
+  const bool is_screened = parts.goal.scene() != nullptr && lanes.sweep;
+  if (search_leaf(parts, is_screened, near, given)) return Proof::none;
+  if (!parts.request.database_seeds) return Proof::none;
+  if (is_screened) {
+    if (const auto free = explore_free_curve(parts, Y); free.is_done) return free.proof;
+  }
+  if (lanes.roots) {
+    const auto roots = explore_branches(parts, *lanes.roots, Proof::sweep, near, given, Y);
+    if (roots.is_done) return roots.proof;
+  }
+  if (lanes.sweep) {
+    if (const auto curve = explore_curve(parts, Y); curve.is_done) return curve.proof;
+    parts.work.leave(lanes.ends ? kBesideEnds : kBesideSweep);
+  }
+  lanes.refiner.begin(parts.goal.task(), kScreened, Width::wide);
+  ScreenedSeeds screened(lanes.query, lanes.screen, Y, parts.model.joints, parts.options.seed,
+                         parts.work, parts.clock);
+  search(lanes.refiner, screened, parts.answers, parts.work);
+  parts.clock.lap(&StageTimes::iterate);
+  return Proof::none;
+}
+
+Explored explore_free_curve(const FirstSearch& parts, const Pose& Y) {
+  Workspace::InLanes& lanes = *parts.workspace.lanes;
+  if (parts.answers.is_never_free()) {
+    if (!parts.answers.has_any() && !lanes.sweep->find(Y)) return Explored::doubtful();
+    parts.answers.refuse();
+    return Explored::done(Proof::target);
+  }
+  FreeSamples samples(*lanes.sweep, *parts.goal.scene(), Y, lanes.samples, parts.work, parts.clock);
+  if (parts.refine(samples, Width::narrow)) return Explored::done();
+  if (!samples.has_any()) return Explored::doubtful();
+  parts.answers.refuse();
+  return Explored::done(Proof::sweep);
+}
+
+Explored explore_curve(const FirstSearch& parts, const Pose& Y) {
+  Workspace::InLanes& lanes = *parts.workspace.lanes;
+  SweptSeeds swept(*lanes.sweep, Y, parts.work, parts.clock);
+  const auto is_satisfied = [&] { return search(lanes.refiner, swept, parts.answers, parts.work); };
+  if (is_satisfied()) return Explored::done();
+  if (lanes.ends) {
+    const Explored ends = explore_ends(parts);
+    if (ends.is_done) {
+      if (ends.proof == Proof::none) return ends;
+      // No curve of solutions crosses a limit: one inside is closed, and between two samples.
+      swept.look_between(Sweep::Between::beyond_folds);
+      if (is_satisfied()) return Explored::done();
+      swept.give_close();
+      return is_satisfied() ? Explored::done() : ends;
+    }
+  }
+  swept.look_between(Sweep::Between::all);
+  if (is_satisfied()) return Explored::done();
+  const bool knows_all_ends = lanes.ends && lanes.ends->are_all();
+  if (!knows_all_ends && swept.is_none()) return Explored::done(Proof::sweep);
+  swept.give_close();
+  return is_satisfied() ? Explored::done() : Explored::doubtful();
+}
+
+}  // namespace iksel

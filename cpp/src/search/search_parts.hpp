@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What one search works with, and what all families of solutions are explored by.
+#pragma once
+
+#include <cstddef>
+
+#include <Eigen/Core>
+
+#include "base/function_ref.hpp"
+#include "base/work.hpp"
+#include "search/context.hpp"
+#include "search/patience.hpp"
+#include "search/search.hpp"
+#include "seeds/beyond_limits.hpp"
+#include "seeds/given_seeds.hpp"
+#include "seeds/row_seeds.hpp"
+#include "seeds/seed_sequence.hpp"
+
+namespace iksel {
+
+/// What exploring a family of solutions led to.
+struct Explored {
+  /// Whether the search is over: the answers want no more, or there are no others.
+  bool is_done = false;
+  /// That there certainly are no answers but those found.
+  Proof proof = Proof::none;
+
+  static Explored done(Proof proof = Proof::none) { return {true, proof}; }
+  static Explored doubtful() { return {}; }
+};
+
+template <typename Answers>
+struct SearchParts {
+  const ChainModel& model;
+  const SolverOptions& options;
+  const Goal& goal;
+  const SolveRequest& request;
+  Workspace& workspace;
+  Answers& answers;
+  Work& work;
+  StageClock& clock;
+
+  [[nodiscard]] NearSeed near_seed() const {
+    return {request.near ? &*request.near : nullptr, work};
+  }
+  [[nodiscard]] GivenSeeds given_seeds(int per_stage, FunctionRef<bool()> should_continue) const {
+    return {workspace.given, goal, request.seeds, options.max_attempts, per_stage,
+            should_continue, work};
+  }
+
+  // Each returns whether the answers want no more.
+
+  /// From what the request gives, and then from other sources, if they are asked for.
+  template <typename Refiner, typename... Others>
+  bool run(Refiner& refiner, NearSeed& near, GivenSeeds& given, Others&... others) const {
+    SeedSequence seeds(request.database_seeds ? 2 + sizeof...(others) : 2, near, given, others...);
+    return search(refiner, seeds, answers, work);
+  }
+  /// In lanes, from seeds that all but are answers.
+  template <typename Seeds>
+  bool refine(Seeds& seeds, Width width) const {
+    LaneRefiner& refiner = workspace.lanes->refiner;
+    refiner.begin(goal.task(), kNearAnswer, width);
+    const bool is_satisfied = search(refiner, seeds, answers, work);
+    refiner.begin(goal.task(), kFirst, Width::narrow);
+    clock.lap(&StageTimes::iterate);
+    return is_satisfied;
+  }
+  /// The same of rows of joint values.
+  bool refine_rows(const double* q, std::size_t count, bool are_answers, Width width) const {
+    RowSeeds seeds(q, count, static_cast<std::size_t>(model.dof), are_answers, work);
+    return refine(seeds, width);
+  }
+  /// From solutions that lie beside limits to answers inside, as move_inside_limits() does.
+  /// `joints(i)`: the i-th of them.
+  template <typename Joints>
+  bool move_inside(int count, const Joints& joints) const {
+    bool is_satisfied = false;
+    for (int i = 0; i < count && !is_satisfied && answers.should_continue(); ++i) {
+      work.take_on_top();
+      JointVector q = Eigen::Map<const Eigen::VectorXd>(joints(i), model.dof);
+      if (!move_inside_limits(model, goal, q)) continue;
+      is_satisfied = answers.offer(0, q) == Verdict::stop;
+    }
+    clock.lap(&StageTimes::iterate);
+    return is_satisfied;
+  }
+};
+
+}  // namespace iksel

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -22,6 +23,7 @@ from bench import (
     command,
     frozen,
     guard,
+    instructions,
     lost,
     no,
     plan,
@@ -567,6 +569,27 @@ def test_frozen_names_the_calls_that_differ(
     assert "before aa solved 1\n  after  cc solved 1" in told
     assert "ur3 paper avx2 solve\n  before bb\n  after  not there" in told
     assert "0 of 3 calls are the same" in told
+
+
+def test_instructions_names_the_calls_that_take_more(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    before = {"ur3 yes": 1000, "panda near": 1000}
+    assert instructions.compare(before, {"ur3 yes": 1020, "panda near": 500}) == 0
+    assert "more" not in capsys.readouterr().out
+    assert instructions.compare(before, {"ur3 yes": 1021, "ur3 no": 7}) == 1
+    told = capsys.readouterr().out
+    assert "ur3 yes: 1000 to 1021, 1.021  more" in told
+    assert "ur3 no: 7, was not measured before" in told
+
+
+@pytest.mark.skipif(shutil.which("valgrind") is None, reason="needs valgrind")
+@pytest.mark.slow
+def test_instructions_are_the_same_again(tmp_path: Path) -> None:
+    file = tmp_path / "instructions.json"
+    command = [sys.executable, "-m", "bench", "instructions"]
+    for action in ("record", "compare"):
+        subprocess.run([*command, action, str(file), "ur3"], check=True)
 
 
 def test_frozen_sees_a_bit() -> None:

@@ -150,8 +150,7 @@ class Sweep::Spread {
 };
 
 void Sweep::find_spread(const Pose& Y, std::size_t count, double least, std::vector<double>& q) {
-  /// So many times as many are looked at as are wanted.
-  constexpr std::size_t kChoice = 2;
+  // Half as many again are looked at as are wanted.
   const auto places = static_cast<int>(count + count / 2);
   set_target(Y);
   Spread spread(*this, joints_, q);

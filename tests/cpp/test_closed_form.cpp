@@ -215,26 +215,38 @@ TEST_P(ClosedChains, EveryLevelGivesTheSameBranches) {
       });
 }
 
-/// Every axis in turn, off by so much.
+/// An axis off by so much: by rounding, nearly as it should be, or not at all.
 TEST_P(ClosedChains, IsOneUpToRoundingOnly) {
-  for_each_chain(iksel_test::cases(40) / 8 + 1, [&](const Robot&, ClosedFormChain&, Dice& dice) {
+  const int n = iksel_test::cases(40) / 8 + 1;
+  int refused = 0;
+  for_each_chain(n, [&](const Robot&, ClosedFormChain&, Dice& dice) {
     AxisMaker maker(dice);
     const AxisChain axes = maker.make(closure(), is_reversed());
     // One that belongs to the class's parallel or meeting axes, whatever the class.
     const std::size_t at = closure() == Closure::three_parallel ? 2 : 4;
     const std::size_t i = is_reversed() ? 5 - at : at;
     const Eigen::Vector3d across = axes.h[i].unitOrthogonal();
-    for (const double off : {1e-11, 1e-6, 1e-2}) {
+    const auto structure = [&](double off) {
       AxisChain other = axes;
       other.h[i] = (axes.h[i] + off * across).normalized();
       // Turned about its point, it must not pass through where the others meet.
       other.p[i] += 0.5 * (at == 4 ? axes.h[i] : Eigen::Vector3d::Zero());
-      const auto structure = iksel::find_structure(iksel_test::make_robot(other, dice));
-      EXPECT_EQ(structure.kind == iksel::StructureKind::closed_form, off < 1e-3) << off;
-      const bool is_nearly = structure.description.find("nearly") != std::string::npos;
-      EXPECT_EQ(is_nearly, 1e-9 < off && off < 1e-3) << structure.description;
-    }
+      return iksel::find_structure(iksel_test::make_robot(other, dice));
+    };
+    const auto is_nearly = [](const iksel::Structure& found) {
+      return found.description.find("nearly") != std::string::npos;
+    };
+    const auto exact = structure(1e-11);
+    EXPECT_EQ(exact.kind, iksel::StructureKind::closed_form);
+    EXPECT_FALSE(is_nearly(exact)) << exact.description;
+    // Where solutions known beforehand are too far from those of the regular arm, it is refused.
+    const auto nearly = structure(1e-6);
+    EXPECT_EQ(nearly.kind == iksel::StructureKind::closed_form, is_nearly(nearly))
+        << nearly.description;
+    refused += is_nearly(nearly) ? 0 : 1;
+    EXPECT_NE(structure(1e-2).kind, iksel::StructureKind::closed_form);
   });
+  EXPECT_LE(refused, n / 20) << "of " << n << ", seed " << iksel_test::seed();
 }
 
 INSTANTIATE_TEST_SUITE_P(Each, ClosedChains,

@@ -176,8 +176,9 @@ TEST_P(SelfMotions, SolveAllSpreadsOverTheArcs) {
       judge.expect_solution(target, one.q);
       EXPECT_LE(distance_from(robot(), motion, one.q), kSpacing);
     }
-    // On shorter ones not so many lie min_distance apart, each joint counted.
-    if (length > 1.5) {
+    // On shorter ones not so many lie min_distance apart, each joint counted; of some that pass by
+    // the stretched arm two and two hardly differ.
+    if (length > 3.5) {
       EXPECT_EQ(all.all.size(), 64U) << length;
     }
     double farthest = 0;

@@ -214,7 +214,8 @@ TEST_P(SweptChains, EveryLevelFindsTheSameRoots) {
           const RootFinder other = roots();
           ASSERT_EQ(other.size(), reference.size()) << level;
           for (std::size_t i = 0; i < other.size(); ++i) {
-            EXPECT_NEAR(other[i].angle, reference[i].angle, 1e-7) << level;
+            // Where the residual hardly crosses zero, rounding moves a root by so much.
+            EXPECT_NEAR(other[i].angle, reference[i].angle, 1e-5) << level;
           }
         }
       });

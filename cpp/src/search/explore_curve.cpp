@@ -23,13 +23,22 @@ Explored explore_spread(const AllSearch& parts, const Pose& Y) {
   const double least = 1.01 * answers.min_distance();
   lanes.sweep->find_spread(Y, wanted, least, q);
   parts.clock.lap(&StageTimes::query);
-  refine_samples(parts, /*are_answers=*/true);
-  if (answers.count() >= wanted) return Explored::done();
+  std::vector<double> few;
+  if (q.size() < wanted * SweptBranches::kDof) {
+    few.swap(q);
+  } else {
+    refine_samples(parts, /*are_answers=*/true);
+    if (answers.count() >= wanted) return Explored::done();
+  }
   lanes.find_arcs(parts.goal.target(), Y, kStraight);
   // Where branches meet, some are the same.
   lanes.curve->spread(wanted + wanted / 4 + 8, least, q);
   parts.clock.lap(&StageTimes::query);
   refine_samples(parts, /*are_answers=*/false);
+  if (!few.empty() && answers.count() < wanted) {
+    q.swap(few);
+    refine_samples(parts, /*are_answers=*/true);
+  }
   if (answers.has_any()) return Explored::done();
   const bool is_none = q.empty() && !lanes.sweep->find(Y) && lanes.sweep->is_none();
   return is_none ? Explored::done(Proof::sweep) : Explored::doubtful();

@@ -44,8 +44,8 @@ class Sweep {
   };
   /// The same, for the target as it is set, and which they are.
   void add_samples(int first, int stride, std::vector<double>& q, std::vector<Sample>& samples);
-  /// `count` branches inside the limits, at samples and between them, that lie far from each other
-  /// and no nearer than `least`; seven joint values each [rad]. None if there are not so many.
+  /// Up to `count` branches inside the limits, at samples and between them, that lie far from each
+  /// other and no nearer than `least`; seven joint values each [rad].
   void find_spread(const Pose& Y, std::size_t count, double least, std::vector<double>& q);
   /// Adds places of a branch towards where it leaves the limits, or ends, between a sample where it
   /// is inside and the one beside it, up or down, where it is not: the last ones are very near.

@@ -85,7 +85,7 @@ class Sweep::Spread {
     }
   }
 
-  /// Keeps `count` that are far from each other, or none if so many are not `least` apart.
+  /// Keeps `count` that are far from each other, and no nearer than `least`.
   void thin_out(std::size_t count, double least) {
     const std::vector<std::size_t> chosen =
         farthest_first(joints_, q_.data(), q_.size() / kDof, count, least);
@@ -94,7 +94,6 @@ class Sweep::Spread {
     for (const std::size_t i : chosen) {
       kept.insert(kept.end(), &q_[i * kDof], &q_[i * kDof] + kDof);
     }
-    if (chosen.size() < count) kept.clear();
     q_ = std::move(kept);
   }
 

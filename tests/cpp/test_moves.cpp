@@ -22,7 +22,9 @@ double shortest_turn(const iksel::lanes::MoveForm& form, int j, double q, bool i
   for (int k = -6; k <= 6; ++k) {
     const double image = q + iksel_test::kTwoPi * k;
     if (inside && form.has_images[j] && (image < form.lower[j] || image > form.upper[j])) continue;
-    if (inside && !form.has_images[j] && k != 0) continue;
+    // Of a joint with one image inside the limits, as is one that is inside.
+    const bool is_inside = q >= form.lower[j] && q <= form.upper[j];
+    if (!form.has_images[j] && (inside || is_inside) && k != 0) continue;
     least = std::min(least, std::abs(image - form.from[j]));
   }
   return least;
@@ -44,8 +46,10 @@ TEST(Moves, InLanesAreThoseOfEachJointAlone) {
       form.upper[j] = form.lower[j] + range;
       form.from[j] = dice.uniform(form.lower[j] - 0.5, form.upper[j] + 0.5);
       form.weight[j] = dice.uniform(0, 2);
+      const double beyond = form.has_images[j] ? 0 : 0.5;
       for (int lane = 0; lane < kWidth; ++lane) {
-        (j == 6 ? pack.held : pack.q[j])[lane] = dice.uniform(form.lower[j], form.upper[j]);
+        (j == 6 ? pack.held : pack.q[j])[lane] =
+            dice.uniform(form.lower[j] - beyond, form.upper[j] + beyond);
       }
     }
     for (int lane = 0; lane < kWidth; ++lane) {

@@ -212,6 +212,7 @@ TEST_P(Sweeps, BranchesAreMeasuredAsTheyAreSolved) {
   const Eigen::MatrixXd near =
       robot().random_configurations(static_cast<int>(targets.size()), iksel_test::seed() + 1);
   int close = 0;
+  int whole = 0;
   for (std::size_t i = 0; i < targets.size(); ++i) {
     branches.set_target(iksel_test::reduced(robot(), targets[i]));
     iksel::SolveRequest request;
@@ -238,8 +239,10 @@ TEST_P(Sweeps, BranchesAreMeasuredAsTheyAreSolved) {
           continue;
         }
         EXPECT_NEAR(row.least[place], branches.least(branch), 1e-9);
-        EXPECT_NEAR(row.moves.off[place], moves.off[branch], 1e-9);
-        EXPECT_NEAR(row.moves.loose[place], moves.loose[branch], 1e-9);
+        // What joints that swing beside are away is counted less.
+        EXPECT_LT(row.moves.off[place], moves.off[branch] + 1e-9);
+        EXPECT_LT(row.moves.loose[place], moves.loose[branch] + 1e-9);
+        whole += row.moves.loose[place] > moves.loose[branch] - 1e-9 ? 1 : 0;
         if (moves.off[branch] > 0) continue;
         EXPECT_NEAR(row.moves.inside[place], moves.inside[branch], 1e-9);
         JointVector one(7), other(7);
@@ -251,6 +254,7 @@ TEST_P(Sweeps, BranchesAreMeasuredAsTheyAreSolved) {
     }
   }
   EXPECT_GE(close, 100);
+  EXPECT_GE(whole, close / 2);
 }
 
 TEST_P(Sweeps, NoOneElseSolvesWhatHasNone) {

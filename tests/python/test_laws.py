@@ -159,6 +159,54 @@ def test_no_answer_lies_off_the_arcs(build: str) -> None:
             assert away < 2 * spacing, f"{build} {number}, seed {SEED}, pose {i}"
 
 
+@pytest.mark.parametrize(
+    ("build", "number", "pose"),
+    [
+        # Joints swing between two samples: the wrist is all but straight.
+        *(("srs", 1020, i) for i in (7, 92)),
+        *(("shoulder_elbow_offset", 1020, 1), ("shoulder_offset", 1027, 41)),
+        # The image that is nearest lies inside the limits on a short piece only.
+        *(("srs", 1027, i) for i in (74, 83)),
+        *(("shoulder_elbow_offset", 1010, 86), ("shoulder_elbow_offset", 1016, 170)),
+        *(("shoulder_offset", 1003, i) for i in (2, 11)),
+    ],
+)
+def test_near_is_no_longer_than_along_the_arcs(
+    build: str, number: int, pose: int
+) -> None:
+    robot = random_arms.random_arm(build, number).robot
+    near = robot.random_configurations(200, seed=number + 77777)[pose]
+    target = robot.fk(robot.random_configurations(200, seed=number))[pose]
+    solver = iksel.Solver(robot)
+    arcs = np.vstack([arc.q for arc in solver.self_motion(target, 0.02)])
+    turns = robot.upper - robot.lower >= 2 * np.pi
+    images = arcs[None] + 2 * np.pi * turns * np.arange(-2, 3)[:, None, None]
+    inside = (images >= robot.lower) & (images <= robot.upper)
+    moves = np.where(inside, np.abs(images - near), np.inf).min(axis=0)
+    shortest = np.linalg.norm(moves, axis=1).min()
+    assert solver.solve(target, near=near).move < shortest + 0.01
+
+
+def test_near_goes_through_what_swings_where_the_wrist_is_straight() -> None:
+    """There two joints turn against each other while all others stand still.
+
+    Without what is between samples, a quarter of the moves are longer.
+    """
+    robot = iksel.load_robot("iiwa14")
+    solver = iksel.Solver(robot)
+    straight = robot.random_configurations(ARC_POSES, seed=SEED)
+    straight[:, 5] = 0
+    draw = np.random.default_rng(SEED)
+    near = straight + draw.uniform(-1, 1, straight.shape)
+    moves = [
+        solver.solve(pose, near=q).move
+        for pose, q in zip(robot.fk(straight), near, strict=True)
+    ]
+    known = np.linalg.norm(near - straight, axis=1)
+    longer = np.flatnonzero(moves > known + laws.LONGER)
+    assert longer.size < 0.08 * ARC_POSES, f"seed {SEED}: {longer}"
+
+
 def test_the_judge_finds_what_is_broken() -> None:
     """A law that nothing can break would say nothing."""
     arm = random_arms.random_arm("spherical_wrist", SEED)

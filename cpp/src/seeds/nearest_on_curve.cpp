@@ -40,6 +40,7 @@ void NearestOnCurve::find(const Pose& Y, const JointVector& near, const JointMov
   places_ = branches_.places(kSamples);
   known_move_ = known;
   found_.clear();
+  spans_left_ = kMostSpans;
   if (prefers_staying(move)) stay();
   if (found_.size() > 0) return;
   look_around();
@@ -47,7 +48,7 @@ void NearestOnCurve::find(const Pose& Y, const JointVector& near, const JointMov
   for (const LeastPlace& least : least_) {
     if (may_be_shorter(least)) follow(least);
   }
-  for (int branch = 0; branch < SweptBranches::kCount; ++branch) look_beside_folds(branch);
+  for (int branch = 0; branch < SweptBranches::kCount; ++branch) look_between_samples(branch);
 }
 
 bool NearestOnCurve::prefers_staying(const JointMove& move) const {
@@ -103,22 +104,8 @@ void NearestOnCurve::look_around() {
   }
 }
 
-NearestOnCurve::Way NearestOnCurve::way_between(const Joints& a, const Joints& b) const {
-  Way way{0, 0};
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const double turn = std::abs(without_turns(a[i] - b[i]));
-    const double d = weight_[i] * turn;
-    way.largest = std::max(way.largest, turn);
-    way.move = std::max(way.move, d);
-    sum += d * d;
-  }
-  if (!takes_largest_) way.move = std::sqrt(sum);
-  return way;
-}
-
 double NearestOnCurve::distance(int place, int beside, int branch) const {
-  return way_between(joints(sample(place, branch)), joints(sample(beside, branch))).move;
+  return bounds().way(point(sample(place, branch)), point(sample(beside, branch))).move;
 }
 
 double NearestOnCurve::solve_pack(int pack, double best) {
@@ -199,7 +186,7 @@ void NearestOnCurve::follow(const LeastPlace& least) {
     branches_.narrow(least.branch, kFoldRounds, fold);
     *end = fold.end();
   }
-  look_into(span, 2);
+  look_into(span, kDeepest);
 }
 
 bool NearestOnCurve::is_hopeless(double so_far, int round) const {

@@ -10,6 +10,7 @@
 
 #include "base/work.hpp"
 #include "goal/joint_move.hpp"
+#include "seeds/move_bounds.hpp"
 #include "seeds/swept_branches.hpp"
 
 namespace iksel {
@@ -50,10 +51,15 @@ class NearestOnCurve {
   /// distance from the next.
   static constexpr int kNarrowings = 9;
   static constexpr double kFinest = 1e-5;
+  /// Levels of spans within spans, each a seventh of the one above: to 1e-5 of a sample's.
+  static constexpr int kDeepest = 6;
+  /// And so many in all: where joints may be any at every sample, each span would have seven.
+  static constexpr int kMostSpans = 128;
   /// Branches are followed only if they come so near to an answer at a sample [mixed units].
   static constexpr double kNear = 0.3;
   /// Nor is there anything beside samples that are so much farther away than what is known [rad].
-  static constexpr double kFarther = 0.6;
+  /// By 0.6 as many are lost (bench/README.md).
+  static constexpr double kFarther = 0.1;
   /// But up to here they are looked at: of 10,000 answers of iiwa14 around 0.3 rad away, 5 are
   /// longer and 7 shorter than when none was left out, without this 25 and 8 [rad].
   static constexpr double kAlwaysWithin = 2.5;
@@ -82,25 +88,14 @@ class NearestOnCurve {
     [[nodiscard]] double loose() const { return is_far() ? kInfinity : row.moves.loose[lane]; }
   };
 
-  /// A branch at a part of a span.
-  struct Node {
-    double part;
-    double cost;  ///< the move to it, or more than kRefused
-    double loose, off;
-    Joints q;
-  };
-
-  /// How far the joints are from one configuration to another, by nearest images: as a move, and
-  /// the one that turns most [rad].
-  struct Way {
-    double move, largest;
-  };
-
   /// The move to what a lane holds, or more than kRefused.
   [[nodiscard]] static double cost(const lanes::MovePack& moves, int lane) {
     return moves.off[lane] > 0 ? kRefused + moves.off[lane] : moves.inside[lane];
   }
   [[nodiscard]] double cost(int lane) const { return cost(branches_.moves(), lane); }
+  [[nodiscard]] static double cost(const BranchPoint& point) {
+    return point.off > 0 ? kRefused + point.off : point.inside;
+  }
   /// At least how long the move is to any answer at a value of the swept joint; and how much less
   /// that may be one sample nearer.
   [[nodiscard]] double least_move(double value) const;
@@ -134,6 +129,10 @@ class NearestOnCurve {
     branches_.copy_joints(sample.value, sample.row.q, sample.lane, q.data());
     return q;
   }
+  [[nodiscard]] MoveBounds bounds() const { return MoveBounds(branches_.move_form()); }
+  [[nodiscard]] BranchPoint point(const Sample& sample) const {
+    return branches_.point(sample.value, sample.row, sample.lane);
+  }
   [[nodiscard]] bool exists(int place, int branch) const {
     const int at = places_.find(place);
     return at >= 0 && (exist_[static_cast<std::size_t>(branch)] >> at & 1U) != 0;
@@ -148,14 +147,13 @@ class NearestOnCurve {
   }
   /// How far the joints move between two samples, by nearest images.
   [[nodiscard]] double distance(int place, int beside, int branch) const;
-  [[nodiscard]] Way way_between(const Joints& a, const Joints& b) const;
 
   /// Whether there may be a shorter move than the best so far beside a sample.
   [[nodiscard]] bool may_be_shorter(const LeastPlace& least) const;
   void follow(const LeastPlace& least);
-  /// Beside folds the other joints turn a lot from one sample to the next: above all where the arm
-  /// is stretched, and a branch may exist for few samples only.
-  void look_beside_folds(int branch);
+  void look_between_samples(int branch);
+  /// Between a sample and the one before.
+  void look_before(int place, int branch);
   /// From its first sample to its last.
   void look_into_span(int branch, int first, int last);
   /// Where a branch ends between a sample and the one on that side of it.
@@ -165,24 +163,17 @@ class NearestOnCurve {
   [[nodiscard]] bool short_span_may_be_shorter(int branch, int first, int last) const;
   /// The same where branches fold between a sample and the one on that side of it.
   [[nodiscard]] bool fold_may_be_shorter(int branch, int end, int side) const;
-  /// Whether a joint is at one limit at a sample and beyond the other at the one before: between
-  /// them it may be outside of both.
-  [[nodiscard]] bool jumps(int place, int branch) const;
-  /// Between two samples, of which the second may not exist.
-  [[nodiscard]] bool may_lead_to_shorter(int place, int beside, int branch) const;
   /// Whether a search that came so far after some rounds need not go on.
   [[nodiscard]] bool is_hopeless(double so_far, int round) const;
-  /// Solves kCount nodes of a span, from a part of it on.
-  void solve_nodes(const BranchSpan& span, double from, double spacing, Node* nodes);
-  /// Whether there may be a shorter move than the best so far between two nodes, or beside one,
-  /// where the joints go such a way.
-  [[nodiscard]] bool may_be_shorter(const Node& a, const Node& b, const Way& way) const;
-  /// Narrows a part of a span to where there may be.
-  bool narrow_to_shorter(const BranchSpan& span, double& from, double& to);
-  /// Looks for the least moves in a span, over one pack of nodes, or over two where that may be
-  /// worth it.
-  void look_into(const BranchSpan& span, int packs);
-  void follow(const BranchSpan& span, double part, double width);
+  /// Looks for the least moves in a span, over kCount nodes, and between these where there may be
+  /// shorter ones that they do not tell of, down to so many levels.
+  void look_into(const BranchSpan& span, int depth);
+  /// Adds the nearest between two points at all but the same value of the swept joint.
+  void add_swing(const BranchPoint& a, const BranchPoint& b);
+  /// Looks for the least move around a part of a span, up to `width` and `way` to both sides.
+  void follow(const BranchSpan& span, double part, double width, const MoveBounds::Way& way);
+  /// Whether there may be a shorter move than the best so far such a way around one of that cost.
+  [[nodiscard]] bool may_lead_to_shorter(double cost, const MoveBounds::Way& way) const;
 
   SweptBranches branches_;
   Places places_;
@@ -194,6 +185,7 @@ class NearestOnCurve {
   std::array<std::uint64_t, kCount> exist_{};
   double known_move_ = 0;
   bool takes_largest_ = false;
+  int spans_left_ = 0;
   std::vector<SweptBranches::Row> rows_;
   std::vector<SamplePack> packs_;
   LeastPlaces<2 * kMost> least_;

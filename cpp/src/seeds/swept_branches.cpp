@@ -136,27 +136,4 @@ double SweptBranches::Fold::end() const {
   return inside + way;
 }
 
-bool SweptBranches::jumps(const lanes::BranchRow& a, int lane_a, const lanes::BranchRow& b,
-                          int lane_b) const {
-  if (!joints_.coupled_turning.empty()) {
-    std::array<double, kDof> from, to;
-    copy_joints(0, a.q, lane_a, from.data());
-    copy_joints(0, b.q, lane_b, to.data());
-    return jumps(from.data(), to.data());
-  }
-  for (int i = 0; i < kDof - 1; ++i) {
-    if (std::abs(a.q[i][lane_a] - b.q[i][lane_b]) > kPi && !joints_.is_periodic(chain_.joints[i])) {
-      return true;
-    }
-  }
-  return false;
-}
-
-bool SweptBranches::jumps(const double* a, const double* b) const {
-  for (int j = 0; j < kDof; ++j) {
-    if (!joints_.is_periodic(j) && std::abs(a[j] - b[j]) > kPi && j != joint()) return true;
-  }
-  return false;
-}
-
 }  // namespace iksel

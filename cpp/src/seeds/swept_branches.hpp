@@ -13,6 +13,7 @@
 #include "base/sincos.hpp"
 #include "goal/joint_move.hpp"
 #include "kinematics/chain_model.hpp"
+#include "seeds/move_bounds.hpp"
 #include "simd/kernels.hpp"
 #include "structure/closed_form.hpp"
 
@@ -119,15 +120,17 @@ class SweptBranches {
   /// Narrows the way between `inside`, where a branch exists, and `outside`, where it does not, to
   /// a ninth in each round.
   void narrow(int branch, int rounds, Fold& fold);
-  /// Whether a joint turns so far from a to b that it was at one limit before and is beyond the
-  /// other: between them it may be outside of both.
-  [[nodiscard]] bool jumps(const double* a, const double* b) const;
-  /// The same of a branch's joints in two lanes.
-  [[nodiscard]] bool jumps(const lanes::BranchRow& a, int lane_a, const lanes::BranchRow& b,
-                           int lane_b) const;
-
   /// From now on, the moves from `near` are measured to all that is solved [rad].
   void measure_moves_from(const JointVector& near, const JointMove& move);
+  [[nodiscard]] const lanes::MoveForm& move_form() const { return move_form_; }
+  /// What was measured of a branch at a value of the swept joint.
+  [[nodiscard]] BranchPoint point(double swept, const lanes::BranchRow& row, int lane) const {
+    return make_point(swept + offset_, row.q, row.moves, lane);
+  }
+  /// The same of what was solved last.
+  [[nodiscard]] BranchPoint point(int lane) const {
+    return make_point(last_->held[lane], last_->q, moves_, lane);
+  }
 
   // What the last of these found in a lane.
 
@@ -152,6 +155,12 @@ class SweptBranches {
     if (!joints_.coupled_turning.empty()) joints_.wrap(q);
   }
 
+  void copy_joints(const BranchPoint& point, double* q) const {
+    double others[6][kCount];
+    for (std::size_t i = 0; i < 6; ++i) others[i][0] = point.q[i];
+    copy_joints(point.q[6] - offset_, others, 0, q);
+  }
+
   /// Those of an answer: inside the limits, where rounding may have left them outside.
   void copy_inside(int lane, double* q) const {
     copy_joints(lane, q);
@@ -170,6 +179,13 @@ class SweptBranches {
   void find_branches(lanes::BranchPack& pack);
   void measure_moves();
   void rate(double bound, Row* rows);
+  [[nodiscard]] static BranchPoint make_point(double held, const double (&q)[6][kCount],
+                                              const lanes::MovePack& moves, int lane) {
+    return {{q[0][lane], q[1][lane], q[2][lane], q[3][lane], q[4][lane], q[5][lane], held},
+            moves.loose[lane],
+            moves.inside[lane],
+            moves.off[lane]};
+  }
 
   ClosedFormChain chain_;
   const JointSpace& joints_;

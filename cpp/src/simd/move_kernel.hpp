@@ -23,12 +23,17 @@ IKSEL_INLINE void add_way(const MoveForm& form, int j, const T& d, T& sum) {
   sum = form.takes_largest ? max(sum, way) : sum + way * way;
 }
 
-/// What the lanes of a joint move by to its nearest image, inside the limits or not.
+/// What the lanes of a joint move by to its nearest image: to any, unless it has but one inside the
+/// limits, and is inside.
 template <typename T>
-IKSEL_INLINE void add_loose_move(const MoveForm& form, int j, const T& q, T& loose) {
+IKSEL_INLINE T loose_move(const MoveForm& form, int j, const T& q) {
   const T d = q - T(form.from[j]);
-  const T turns = form.turns[j] ? nearest_integer(d * T(0.15915494309189533577)) : T(0.0);
-  add_way(form, j, d - T(6.28318530717958647693) * turns, loose);
+  if (!form.turns[j]) return abs(d);
+  const T turns = nearest_integer(d * T(0.15915494309189533577));
+  const T loose = abs(d - T(6.28318530717958647693) * turns);
+  if (form.has_images[j]) return loose;
+  const T beyond = max(T(form.lower[j]) - q, q - T(form.upper[j]));
+  return select(beyond > T(form.margin), loose, abs(d));
 }
 
 /// And to that nearest inside the limits.
@@ -100,7 +105,7 @@ void measure_moves(const MoveForm& form, const BranchPack& pack, MovePack& out) 
     for (int j = 0; j < 6; ++j) q[j] = Lanes<T>::load(pack.q[j] + first);
     q[6] = Lanes<T>::load(pack.held + first);
     T loose(0.0);
-    for (int j = 0; j < 7; ++j) add_loose_move(form, j, q[j], loose);
+    for (int j = 0; j < 7; ++j) add_way(form, j, loose_move(form, j, q[j]), loose);
     store_moves(form, loose, inside_move(form, q), Lanes<T>::load(pack.beyond + first),
                 Lanes<T>::load(pack.least + first), first, out);
   }

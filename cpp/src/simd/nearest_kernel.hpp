@@ -9,6 +9,9 @@
 
 namespace iksel::lanes {
 
+/// As kSteepness, of samples beside each other; others are measured in bench/README.md.
+inline constexpr double kSwingSteepness = 6;
+
 /// Whether a branch may be near to an answer that is not far away, by the joints found so far.
 template <typename T>
 struct NearProspect : Prospect<T> {
@@ -29,12 +32,10 @@ IKSEL_INLINE bool is_enough(const ClosedForm& form, int j, Branch<T, NearProspec
   NearProspect<T>& prospect = branch.quality;
   const T q = joint_value(form, j, branch.q[j]);
   prospect.q[j] = q;
-  const auto is_any = prospect.divisor < T(kAnyAngle);
-  T loose = prospect.loose;
-  add_loose_move(*prospect.move, j, q, loose);
-  prospect.loose = select(is_any, prospect.loose, loose);
+  const T move = prospect.at_least(loose_move(*prospect.move, j, q), kSwingSteepness);
+  add_way(*prospect.move, j, move, prospect.loose);
   prospect.beyond =
-      select(is_any, prospect.beyond, max(prospect.beyond, beyond_limits(form, j, q)));
+      max(prospect.beyond, prospect.at_least(beyond_limits(form, j, q), kSwingSteepness));
   prospect.is_over = !prospect.is_open();
   return prospect.is_over;
 }
@@ -51,7 +52,7 @@ void measure_branches(const ClosedForm& form, const MoveForm& move, const Branch
     prospect.bound = bound;
     prospect.most = move.takes_largest ? most : most * most;
     prospect.loose = T(0.0);
-    add_loose_move(move, 6, held, prospect.loose);
+    add_way(move, 6, loose_move(move, 6, held), prospect.loose);
     for (int lane = 0; lane < kWidth / 2; ++lane) {
       const int other = lane + kWidth / 2;
       const auto take = [&](int i, const Branch<T, NearProspect<T>>& branch)

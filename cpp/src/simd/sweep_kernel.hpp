@@ -36,6 +36,15 @@ struct Prospect {
   [[nodiscard]] IKSEL_INLINE T room() const {
     return min(T(bound) - beyond, least + T(bound * bound));
   }
+  /// What a joint whose angle is known now is away from something, at least: limits, or where it
+  /// was.
+  [[nodiscard]] IKSEL_INLINE T at_least(const T& away, double steepness = kSteepness) const {
+    const auto changes = divisor < T(1 / (steepness * steepness));
+    if (!any(changes)) return away;
+    const T steep = T(steepness) * sqrt(max(divisor, T(0.0)));
+    const T known = select(divisor < T(kAnyAngle), T(0.0), min(away, steep));
+    return select(changes, known, away);
+  }
   /// Whether it may be in some lane.
   [[nodiscard]] IKSEL_INLINE bool is_open() const { return any(room() >= T(0.0)); }
 };
@@ -58,12 +67,7 @@ IKSEL_INLINE bool is_enough(const ClosedForm& form, int j, Branch<T, Prospect<T>
   const LimitArc& arc = form.arc[j];
   if (arc.ends) {
     const T sine = sine_beyond(arc, branch.q[j]);
-    T known = sine;
-    if (any(prospect.divisor < T(1 / (kSteepness * kSteepness)))) {
-      const T steep = T(kSteepness) * sqrt(max(prospect.divisor, T(0.0)));
-      known = select(prospect.divisor < T(kAnyAngle), T(0.0), min(sine, steep));
-    }
-    prospect.beyond = max(prospect.beyond, known);
+    prospect.beyond = max(prospect.beyond, prospect.at_least(sine));
   }
   prospect.is_over = !prospect.is_open();
   return prospect.is_over;

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How short a move may be to what lies between two points of a branch.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/constants.hpp"
+#include "simd/branch_types.hpp"
+
+namespace iksel {
+
+/// What is known of a branch at a value of the swept joint.
+struct BranchPoint {
+  std::array<double, 7> q;  ///< six joints as a form counts them, and the swept one [rad or m]
+  double loose;             ///< the move to it by each joint's nearest image
+  double inside;            ///< by the nearest inside the limits
+  double off;               ///< how far it is from being an answer [mixed units]
+
+  /// Whether a limit keeps its joints from the images that are nearest.
+  [[nodiscard]] bool is_blocked() const {
+    constexpr double kRounding = 1e-6;
+    return off > 0 || inside > loose + kRounding;
+  }
+};
+
+/// Of the moves that a form measures.
+class MoveBounds {
+ public:
+  explicit MoveBounds(const lanes::MoveForm& form) : form_(form) {}
+
+  /// How far the joints are from one point to another, by nearest images: as a move, and the one
+  /// that turns most [rad].
+  struct Way {
+    double move, largest;
+    /// Whether a joint turns from one limit beyond the other.
+    bool leaves_limits = false;
+  };
+  [[nodiscard]] Way way(const BranchPoint& a, const BranchPoint& b) const {
+    Way way{0, 0};
+    double sum = 0;
+    for (std::size_t i = 0; i < a.q.size(); ++i) {
+      const double d = std::abs(a.q[i] - b.q[i]);
+      const double turn = form_.turns[i] ? std::min(d, std::abs(kTwoPi - d)) : d;
+      const double move = form_.weight[i] * turn;
+      way.largest = std::max(way.largest, turn);
+      way.leaves_limits = way.leaves_limits || (turn < d && !form_.has_images[i]);
+      way.move = std::max(way.move, move);
+      sum += move * move;
+    }
+    if (!form_.takes_largest) way.move = std::sqrt(sum);
+    return way;
+  }
+
+  /// The curve is longer than a straight line by no more than half as much again.
+  static constexpr double kCurved = 1.5;
+  /// Whether there may be a shorter move than `best` to an answer between two points that are such
+  /// a way apart.
+  [[nodiscard]] static bool may_be_shorter(const BranchPoint& a, const BranchPoint& b,
+                                           const Way& way, double best) {
+    const double loose = way.leaves_limits ? 2 * std::min(a.loose, b.loose) : a.loose + b.loose;
+    return loose - kCurved * way.move <= 2 * best && a.off + b.off - kCurved * way.largest <= 0;
+  }
+
+  /// The same of a piece on which joints may turn by `slack` more, there and back.
+  [[nodiscard]] bool may_be_shorter(const BranchPoint& a, const BranchPoint& b, double slack,
+                                    double best) const;
+
+  /// Whether there may be one that neither point tells of: joints turn far between them, or one may
+  /// meet a limit there, where the branch enters the limits or another image is the nearest.
+  /// `usual`: what else joints turn between such points [rad].
+  [[nodiscard]] bool may_hide_shorter(const BranchPoint& a, const BranchPoint& b, double usual,
+                                      double best) const;
+
+  /// The nearest between two points at which joints swing: they turn against each other about axes
+  /// that are in line, so that all between is on the curve, one way round and the other.
+  [[nodiscard]] BranchPoint nearest_between(const BranchPoint& a, const BranchPoint& b) const;
+
+ private:
+  /// The nearest that is inside the limits.
+  [[nodiscard]] BranchPoint nearest_on_line(const std::array<double, 7>& from,
+                                            const std::array<double, 7>& turn) const;
+  /// The move to the joints' nearest images inside the limits; infinite if there are none.
+  [[nodiscard]] double inside_move(const std::array<double, 7>& q) const;
+  /// The least move of each joint between two points, together, and whether one may meet a limit.
+  struct Between {
+    double move;
+    bool meets_limit;
+  };
+  [[nodiscard]] Between between(const BranchPoint& a, const BranchPoint& b, double slack) const;
+
+  const lanes::MoveForm& form_;
+};
+
+}  // namespace iksel

@@ -144,9 +144,8 @@ void NearestOnCurve::look_into(const BranchSpan& span, int depth) {
 }
 
 bool NearestOnCurve::may_lead_to_shorter(double cost, const MoveBounds::Way& way) const {
-  constexpr double kGain = 1e-3;
   if (cost >= kRefused) return cost - kRefused < way.largest;
-  return cost - way.move < best() - kGain;
+  return cost - way.move < best();
 }
 
 void NearestOnCurve::add_swing(const BranchPoint& a, const BranchPoint& b) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/angle.hpp"
 #include "base/constants.hpp"
 #include "simd/branch_types.hpp"
 
@@ -39,17 +40,15 @@ class MoveBounds {
   };
   [[nodiscard]] Way way(const BranchPoint& a, const BranchPoint& b) const {
     Way way{0, 0};
-    double sum = 0;
+    Norm norm(form_);
     for (std::size_t i = 0; i < a.q.size(); ++i) {
       const double d = std::abs(a.q[i] - b.q[i]);
       const double turn = form_.turns[i] ? std::min(d, std::abs(kTwoPi - d)) : d;
-      const double move = form_.weight[i] * turn;
       way.largest = std::max(way.largest, turn);
       way.leaves_limits = way.leaves_limits || (turn < d && !form_.has_images[i]);
-      way.move = std::max(way.move, move);
-      sum += move * move;
+      norm.add(i, turn);
     }
-    if (!form_.takes_largest) way.move = std::sqrt(sum);
+    way.move = norm.value();
     return way;
   }
 
@@ -70,8 +69,8 @@ class MoveBounds {
   /// Whether there may be one that neither point tells of: joints turn far between them, or one may
   /// meet a limit there, where the branch enters the limits or another image is the nearest.
   /// `usual`: what else joints turn between such points [rad].
-  [[nodiscard]] bool may_hide_shorter(const BranchPoint& a, const BranchPoint& b, double usual,
-                                      double best) const;
+  [[nodiscard]] bool may_hide_shorter(const BranchPoint& a, const BranchPoint& b, const Way& way,
+                                      double usual, double best) const;
 
   /// The nearest between two points at which joints swing: they turn against each other about axes
   /// that are in line, so that all between is on the curve, one way round and the other.
@@ -80,15 +79,42 @@ class MoveBounds {
  private:
   /// The nearest that is inside the limits.
   [[nodiscard]] BranchPoint nearest_on_line(const std::array<double, 7>& from,
-                                            const std::array<double, 7>& turn) const;
+                                            const std::array<double, 7>& turns) const;
   /// The move to the joints' nearest images inside the limits; infinite if there are none.
   [[nodiscard]] double inside_move(const std::array<double, 7>& q) const;
-  /// The least move of each joint between two points, together, and whether one may meet a limit.
-  struct Between {
+  /// The least that joints move to a range of values, and whether these meet a limit.
+  struct Reach {
     double move;
     bool meets_limit;
   };
-  [[nodiscard]] Between between(const BranchPoint& a, const BranchPoint& b, double slack) const;
+  /// The least move of each joint between two points, together, and whether one may meet a limit.
+  [[nodiscard]] Reach between(const BranchPoint& a, const BranchPoint& b, double slack) const;
+  /// Of a joint to any image of the values from `low` to `high` that is inside the limits, or so
+  /// far outside [rad or m].
+  [[nodiscard]] Reach reach(std::size_t joint, double low, double high, double outside) const;
+  /// What a joint turns from one value to another, the shorter way round.
+  [[nodiscard]] double turn(std::size_t joint, double from, double to) const {
+    return form_.turns[joint] ? without_turns(to - from) : to - from;
+  }
+
+  /// What joints move by, together.
+  class Norm {
+   public:
+    explicit Norm(const lanes::MoveForm& form) : form_(form) {}
+    void add(std::size_t joint, double way) {
+      const double move = form_.weight[joint] * way;
+      largest_ = std::max(largest_, move);
+      squares_ += move * move;
+    }
+    [[nodiscard]] double value() const {
+      return form_.takes_largest ? largest_ : std::sqrt(squares_);
+    }
+
+   private:
+    const lanes::MoveForm& form_;
+    double largest_ = 0;
+    double squares_ = 0;
+  };
 
   const lanes::MoveForm& form_;
 };

@@ -4,7 +4,6 @@
 // a limit, the nearest image is another one from there on.
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 
 #include "seeds/least_cost.hpp"
@@ -36,7 +35,9 @@ void NearestOnCurve::look_before(int place, int branch) {
   constexpr double kSteeper = 4;
   const BranchPoint a = point(sample(place - 1, branch));
   const BranchPoint b = point(sample(place, branch));
-  if (!bounds().may_hide_shorter(a, b, kSteeper * places_.step, best())) return;
+  if (!bounds().may_hide_shorter(a, b, bounds().way(a, b), kSteeper * places_.step, best())) {
+    return;
+  }
   const double value = places_.value(place);
   look_into({branch, value - places_.step, value, false, false}, kDeepest);
 }
@@ -84,8 +85,9 @@ bool NearestOnCurve::short_span_may_be_shorter(int branch, int first, int last) 
   // With one sample, nothing tells how steep it is.
   if (best() == kInfinity || first == last) return true;
   for (int place = first; place < last; ++place) {
-    const double loose = std::min(sample(place, branch).loose(), sample(place + 1, branch).loose());
-    if (loose - distance(place, place + 1, branch) < best()) return true;
+    const BranchPoint a = point(sample(place, branch));
+    const BranchPoint b = point(sample(place + 1, branch));
+    if (std::min(a.loose, b.loose) - bounds().way(a, b).move < best()) return true;
   }
   return fold_may_be_shorter(branch, first, -1) || fold_may_be_shorter(branch, last, 1);
 }
@@ -109,37 +111,35 @@ bool NearestOnCurve::fold_may_be_shorter(int branch, int end, int side) const {
 }
 
 void NearestOnCurve::look_into(const BranchSpan& span, int depth) {
-  std::array<BranchPoint, kCount> nodes;
   constexpr double kSpacing = 1.0 / (kCount - 1);
-  const auto value = [&](std::size_t k) {
-    return span.value(std::min(kSpacing * static_cast<double>(k), 1.0));
-  };
-  branches_.solve_one(span.branch, [&](int lane) { return value(static_cast<std::size_t>(lane)); });
+  const auto part = [](std::size_t i) { return kSpacing * static_cast<double>(i); };
+  branches_.solve_one(span.branch, [&](int lane) { return span.value(kSpacing * lane); });
+  std::array<BranchPoint, kCount> nodes;
   for (int lane = 0; lane < kCount; ++lane) {
     nodes[static_cast<std::size_t>(lane)] = branches_.point(lane);
   }
+  // From each node to the next.
+  std::array<MoveBounds::Way, kCount - 1> ways;
+  for (std::size_t i = 0; i < ways.size(); ++i) ways[i] = bounds().way(nodes[i], nodes[i + 1]);
+
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    MoveBounds::Way widest{0, 0};
-    bool is_least = true;
-    for (const std::size_t beside : {i - 1, i + 1}) {
-      if (beside >= nodes.size() || !is_least) continue;
-      is_least = cost(nodes[i]) <= cost(nodes[beside]);
-      const MoveBounds::Way way = bounds().way(nodes[i], nodes[beside]);
-      widest = {std::max(widest.move, way.move), std::max(widest.largest, way.largest)};
-    }
-    if (is_least && may_lead_to_shorter(cost(nodes[i]), widest)) {
-      follow(span, kSpacing * static_cast<double>(i), kSpacing, widest);
-    }
+    if (i > 0 && cost(nodes[i]) > cost(nodes[i - 1])) continue;
+    if (i < ways.size() && cost(nodes[i]) > cost(nodes[i + 1])) continue;
+    const MoveBounds::Way& before = ways[i > 0 ? i - 1 : 0];
+    const MoveBounds::Way& behind = ways[std::min(i, ways.size() - 1)];
+    const MoveBounds::Way widest{std::max(before.move, behind.move),
+                                 std::max(before.largest, behind.largest)};
+    if (may_lead_to_shorter(cost(nodes[i]), widest)) follow(span, part(i), kSpacing, widest);
   }
-  if (depth == 0) {
-    for (std::size_t i = 0; i + 1 < nodes.size(); ++i) add_swing(nodes[i], nodes[i + 1]);
-    return;
-  }
-  for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
-    if (!bounds().may_hide_shorter(nodes[i], nodes[i + 1], 0, best())) continue;
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    if (!bounds().may_hide_shorter(nodes[i], nodes[i + 1], ways[i], 0, best())) continue;
+    if (depth == 0) {
+      add_swing(nodes[i], nodes[i + 1]);
+      continue;
+    }
     if (spans_left_ == 0) return;
     --spans_left_;
-    look_into({span.branch, value(i), value(i + 1), false, false}, depth - 1);
+    look_into({span.branch, span.value(part(i)), span.value(part(i + 1)), false, false}, depth - 1);
   }
 }
 
@@ -149,7 +149,6 @@ bool NearestOnCurve::may_lead_to_shorter(double cost, const MoveBounds::Way& way
 }
 
 void NearestOnCurve::add_swing(const BranchPoint& a, const BranchPoint& b) {
-  if (!bounds().may_hide_shorter(a, b, 0, best())) return;
   const BranchPoint nearest = bounds().nearest_between(a, b);
   if (!(nearest.inside < best())) return;
   SweptJoints found{nearest.inside, {}};
@@ -167,7 +166,7 @@ void NearestOnCurve::follow(const BranchSpan& span, double part, double width,
       branches_, bracket, value, [&](int lane) { return cost(lane); }, kRefused, take,
       [&](double so_far, int round) {
         // Each round looks at less than a quarter of the way.
-        const double part_of_way = std::pow(0.25, round);
+        const double part_of_way = 1.0 / (1 << 2 * round);
         return round > 0 &&
                !may_lead_to_shorter(so_far, {part_of_way * way.move, part_of_way * way.largest});
       });

@@ -104,10 +104,6 @@ void NearestOnCurve::look_around() {
   }
 }
 
-double NearestOnCurve::distance(int place, int beside, int branch) const {
-  return bounds().way(point(sample(place, branch)), point(sample(beside, branch))).move;
-}
-
 double NearestOnCurve::solve_pack(int pack, double best) {
   SamplePack& samples = packs_[static_cast<std::size_t>(pack)];
   samples.is_solved = true;

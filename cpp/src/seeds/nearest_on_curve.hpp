@@ -88,13 +88,17 @@ class NearestOnCurve {
     [[nodiscard]] double loose() const { return is_far() ? kInfinity : row.moves.loose[lane]; }
   };
 
+  /// A move, or more than kRefused where that is so far from an answer.
+  [[nodiscard]] static double cost(double inside, double off) {
+    return off > 0 ? kRefused + off : inside;
+  }
   /// The move to what a lane holds, or more than kRefused.
   [[nodiscard]] static double cost(const lanes::MovePack& moves, int lane) {
-    return moves.off[lane] > 0 ? kRefused + moves.off[lane] : moves.inside[lane];
+    return cost(moves.inside[lane], moves.off[lane]);
   }
   [[nodiscard]] double cost(int lane) const { return cost(branches_.moves(), lane); }
   [[nodiscard]] static double cost(const BranchPoint& point) {
-    return point.off > 0 ? kRefused + point.off : point.inside;
+    return cost(point.inside, point.off);
   }
   /// At least how long the move is to any answer at a value of the swept joint; and how much less
   /// that may be one sample nearer.
@@ -145,8 +149,6 @@ class NearestOnCurve {
   [[nodiscard]] bool is_none(int place, int branch) const {
     return is_known(place) && sample(place, branch).is_none();
   }
-  /// How far the joints move between two samples, by nearest images.
-  [[nodiscard]] double distance(int place, int beside, int branch) const;
 
   /// Whether there may be a shorter move than the best so far beside a sample.
   [[nodiscard]] bool may_be_shorter(const LeastPlace& least) const;

@@ -155,6 +155,7 @@ class SweptBranches {
     if (!joints_.coupled_turning.empty()) joints_.wrap(q);
   }
 
+  /// The same of a point.
   void copy_joints(const BranchPoint& point, double* q) const {
     double others[6][kCount];
     for (std::size_t i = 0; i < 6; ++i) others[i][0] = point.q[i];

@@ -118,7 +118,8 @@ struct MoveForm {
 
 /// How far branches are away, lane by lane.
 struct MovePack {
-  /// The move by each joint's nearest image, inside the limits or not.
+  /// The move by each joint's nearest image, inside the limits or not; but of one that is inside
+  /// and has no other image there, by that.
   alignas(64) double loose[kWidth];
   /// By the nearest inside the limits, if the branch is inside of them at all.
   alignas(64) double inside[kWidth];
@@ -127,7 +128,9 @@ struct MovePack {
 };
 
 /// A branch at kWidth values of the held joint. Where it is known to lie too far away before all is
-/// known of it, `off` is kFarOff, and only `least` means anything, of what was known by then.
+/// known of it, `off` is kFarOff, and only `least` means anything, of what was known by then. What
+/// joints that may be any beside are away, `loose` and `off` count less
+/// (Prospect::most_that_counts).
 inline constexpr double kFarOff = 1e30;
 struct BranchRow {
   alignas(64) double q[6][kWidth];

@@ -32,10 +32,9 @@ IKSEL_INLINE bool is_enough(const ClosedForm& form, int j, Branch<T, NearProspec
   NearProspect<T>& prospect = branch.quality;
   const T q = joint_value(form, j, branch.q[j]);
   prospect.q[j] = q;
-  const T move = prospect.at_least(loose_move(*prospect.move, j, q), kSwingSteepness);
-  add_way(*prospect.move, j, move, prospect.loose);
-  prospect.beyond =
-      max(prospect.beyond, prospect.at_least(beyond_limits(form, j, q), kSwingSteepness));
+  const T most = prospect.most_that_counts(kSwingSteepness);
+  add_way(*prospect.move, j, min(loose_move(*prospect.move, j, q), most), prospect.loose);
+  prospect.beyond = max(prospect.beyond, min(beyond_limits(form, j, q), most));
   prospect.is_over = !prospect.is_open();
   return prospect.is_over;
 }

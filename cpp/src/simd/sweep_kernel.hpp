@@ -36,14 +36,14 @@ struct Prospect {
   [[nodiscard]] IKSEL_INLINE T room() const {
     return min(T(bound) - beyond, least + T(bound * bound));
   }
-  /// What a joint whose angle is known now is away from something, at least: limits, or where it
-  /// was.
-  [[nodiscard]] IKSEL_INLINE T at_least(const T& away, double steepness = kSteepness) const {
+  /// How far the joint whose angle is known now may be away from something, limits or where it was,
+  /// and still count as that far.
+  [[nodiscard]] IKSEL_INLINE T most_that_counts(double steepness) const {
+    const T all(1e30);
     const auto changes = divisor < T(1 / (steepness * steepness));
-    if (!any(changes)) return away;
+    if (!any(changes)) return all;
     const T steep = T(steepness) * sqrt(max(divisor, T(0.0)));
-    const T known = select(divisor < T(kAnyAngle), T(0.0), min(away, steep));
-    return select(changes, known, away);
+    return select(changes, select(divisor < T(kAnyAngle), T(0.0), steep), all);
   }
   /// Whether it may be in some lane.
   [[nodiscard]] IKSEL_INLINE bool is_open() const { return any(room() >= T(0.0)); }
@@ -67,7 +67,7 @@ IKSEL_INLINE bool is_enough(const ClosedForm& form, int j, Branch<T, Prospect<T>
   const LimitArc& arc = form.arc[j];
   if (arc.ends) {
     const T sine = sine_beyond(arc, branch.q[j]);
-    prospect.beyond = max(prospect.beyond, prospect.at_least(sine));
+    prospect.beyond = max(prospect.beyond, min(sine, prospect.most_that_counts(kSteepness)));
   }
   prospect.is_over = !prospect.is_open();
   return prospect.is_over;

@@ -144,8 +144,10 @@ void NearestOnCurve::look_into(const BranchSpan& span, int depth) {
 }
 
 bool NearestOnCurve::may_lead_to_shorter(double cost, const MoveBounds::Way& way) const {
+  // Nothing is begun for less; but what is the best so far is followed to its end [rad].
+  constexpr double kGain = 1e-3;
   if (cost >= kRefused) return cost - kRefused < way.largest;
-  return cost - way.move < best();
+  return cost < best() || cost - way.move < best() - kGain;
 }
 
 void NearestOnCurve::add_swing(const BranchPoint& a, const BranchPoint& b) {

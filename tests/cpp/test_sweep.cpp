@@ -202,6 +202,15 @@ TEST_P(Sweeps, BranchesAreRatedAsTheyAreSolved) {
   EXPECT_LE(less, near / 3) << "of " << near;
 }
 
+/// Whether the six other joints are near to a singularity, where they turn far for little.
+bool may_swing(const Robot& robot, const iksel::SweptBranches& branches, int branch) {
+  JointVector q(7);
+  branches.copy_joints(branch, q.data());
+  Eigen::MatrixXd J = robot.jacobian(q);
+  J.col(branches.joint()).setZero();
+  return J.jacobiSvd().singularValues()[5] < 0.15;
+}
+
 /// What is measured of all branches at once leaves out only what lies far away.
 TEST_P(Sweeps, BranchesAreMeasuredAsTheyAreSolved) {
   constexpr double kBound = 0.3;
@@ -242,7 +251,11 @@ TEST_P(Sweeps, BranchesAreMeasuredAsTheyAreSolved) {
         // What joints that swing beside are away is counted less.
         EXPECT_LT(row.moves.off[place], moves.off[branch] + 1e-9);
         EXPECT_LT(row.moves.loose[place], moves.loose[branch] + 1e-9);
-        whole += row.moves.loose[place] > moves.loose[branch] - 1e-9 ? 1 : 0;
+        if (!may_swing(robot(), branches, branch)) {
+          EXPECT_GT(row.moves.off[place], moves.off[branch] - 1e-9);
+          EXPECT_GT(row.moves.loose[place], moves.loose[branch] - 1e-9);
+          ++whole;
+        }
         if (moves.off[branch] > 0) continue;
         EXPECT_NEAR(row.moves.inside[place], moves.inside[branch], 1e-9);
         JointVector one(7), other(7);
@@ -254,7 +267,7 @@ TEST_P(Sweeps, BranchesAreMeasuredAsTheyAreSolved) {
     }
   }
   EXPECT_GE(close, 100);
-  EXPECT_GE(whole, close / 2);
+  EXPECT_GT(whole, 0);
 }
 
 TEST_P(Sweeps, NoOneElseSolvesWhatHasNone) {

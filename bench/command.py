@@ -20,6 +20,7 @@ from bench import (
     instructions,
     laws,
     lost,
+    moves,
     plan,
     scene,
     tips,
@@ -63,6 +64,7 @@ ALONE = {
     "instructions": instructions,
     "laws": laws,
     "lost": lost,
+    "moves": moves,
     "tips": tips,
 }
 """Commands that measure by themselves and print."""

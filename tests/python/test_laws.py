@@ -16,7 +16,7 @@ import iksel
 
 pytest.importorskip("bench", reason="the benchmarks are in the repository only")
 
-from bench import laws, random_arms
+from bench import laws, moves, random_arms
 
 SEED = int(os.environ.get("IKSEL_TEST_SEED", "7"))
 ARMS = 2
@@ -175,16 +175,11 @@ def test_near_is_no_longer_than_along_the_arcs(
     build: str, number: int, pose: int
 ) -> None:
     robot = random_arms.random_arm(build, number).robot
-    near = robot.random_configurations(200, seed=number + 77777)[pose]
-    target = robot.fk(robot.random_configurations(200, seed=number))[pose]
+    poses, starts = moves.poses_and_starts(robot, 200, number)
     solver = iksel.Solver(robot)
-    arcs = np.vstack([arc.q for arc in solver.self_motion(target, 0.02)])
-    turns = robot.upper - robot.lower >= 2 * np.pi
-    images = arcs[None] + 2 * np.pi * turns * np.arange(-2, 3)[:, None, None]
-    inside = (images >= robot.lower) & (images <= robot.upper)
-    moves = np.where(inside, np.abs(images - near), np.inf).min(axis=0)
-    shortest = np.linalg.norm(moves, axis=1).min()
-    assert solver.solve(target, near=near).move < shortest + 0.01
+    shortest = moves.along_arcs(solver, poses[pose], starts[pose])
+    found = solver.solve(poses[pose], near=starts[pose])
+    assert found.move < shortest + moves.LONGER
 
 
 def test_near_goes_through_what_swings_where_the_wrist_is_straight() -> None:
@@ -198,12 +193,12 @@ def test_near_goes_through_what_swings_where_the_wrist_is_straight() -> None:
     straight[:, 5] = 0
     draw = np.random.default_rng(SEED)
     near = straight + draw.uniform(-1, 1, straight.shape)
-    moves = [
+    found = [
         solver.solve(pose, near=q).move
         for pose, q in zip(robot.fk(straight), near, strict=True)
     ]
     known = np.linalg.norm(near - straight, axis=1)
-    longer = np.flatnonzero(moves > known + laws.LONGER)
+    longer = np.flatnonzero(found > known + laws.LONGER)
     assert longer.size < 0.08 * ARC_POSES, f"seed {SEED}: {longer}"
 
 

@@ -58,7 +58,7 @@ class NearestOnCurve {
   /// Branches are followed only if they come so near to an answer at a sample [mixed units].
   static constexpr double kNear = 0.3;
   /// Nor is there anything beside samples that are so much farther away than what is known [rad].
-  /// By 0.6 as many are lost (bench/README.md).
+  /// By 0.6 as many are lost (`python -m bench moves`).
   static constexpr double kFarther = 0.1;
   /// But up to here they are looked at: of 10,000 answers of iiwa14 around 0.3 rad away, 5 are
   /// longer and 7 shorter than when none was left out, without this 25 and 8 [rad].

@@ -9,7 +9,7 @@
 
 namespace iksel::lanes {
 
-/// As kSteepness, of samples beside each other; others are measured in bench/README.md.
+/// As kSteepness, of samples beside each other; measured by `python -m bench moves`.
 inline constexpr double kSwingSteepness = 6;
 
 /// Whether a branch may be near to an answer that is not far away, by the joints found so far.

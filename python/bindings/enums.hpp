@@ -246,7 +246,8 @@ struct EnumTable<Proof> {
       {"none", Proof::none, "nothing does: no answer was found by a search"},
       {"reach", Proof::reach, "the target lies farther away than the links are long together"},
       {"closed_form", Proof::closed_form,
-       "all branches are known (Robot.structure), and no other lies inside the limits"},
+       "all branches are known (Robot.structure), and no other lies inside the limits; of seven "
+       "joints, all ends of curves of solutions, and there are none inside"},
       {"sweep", Proof::sweep,
        "not proven: a joint was swept over its range (Robot.structure), and no branch came inside "
        "the limits at its values or beside them"},

@@ -40,7 +40,8 @@ IKSEL_EXPORT const char* to_string(Status status);
 enum class Proof : std::uint8_t {
   none,         ///< nothing does: no answer was found by a search
   reach,        ///< the target lies farther away than the links are long together
-  closed_form,  ///< all branches are known (find_structure), and no other lies inside the limits
+  closed_form,  ///< all branches are known (find_structure), and no other lies inside the limits;
+                ///< of seven joints, all ends of curves of solutions, and there are none inside
   sweep,   ///< not proven: a joint was swept over its range (find_structure), and no other branch
            ///< came inside the limits at its values or beside them
   target,  ///< what the target itself places touches something in the scene: the tip, with what is

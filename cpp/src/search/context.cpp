@@ -134,7 +134,7 @@ std::unique_ptr<Workspace> WorkspacePool::make() const {
     workspace->lanes->inner_arms.emplace_back(robot_.model(), inner, lanes::choose_kernels());
   }
   if (!locked_arms_.arms.empty()) {
-    workspace->lanes->ends.emplace(locked_arms_, options_.position_tolerance,
+    workspace->lanes->ends.emplace(robot_.model(), locked_arms_, options_.position_tolerance,
                                    options_.rotation_tolerance, lanes::choose_kernels());
   }
   return workspace;

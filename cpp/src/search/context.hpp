@@ -64,6 +64,11 @@ struct Workspace {
       curve->find(T_base_tcp, Y, ends ? &*ends : nullptr, *sweep, spacing);
       return curve->arcs();
     }
+    /// Whether a self-motion has no configuration inside the limits, for the same.
+    Proof find_none(const Pose& T_base_tcp, const Pose& Y) {
+      if (ends && ends->rules_out(T_base_tcp)) return Proof::closed_form;
+      return !sweep->find(Y) && sweep->is_none() ? Proof::sweep : Proof::none;
+    }
     /// All branches of a goal of that task; null if it cannot be solved in closed form at once.
     [[nodiscard]] Enumeration* branches_of(const TaskSpace& task);
 

@@ -47,6 +47,7 @@ Explored explore_ends(const Parts& parts) {
   if (parts.refine(ends, Width::narrow) || parts.answers.has_any()) return Explored::done();
   const bool is_satisfied = parts.move_inside(ends.count(), [&](int i) { return ends.q(i); });
   if (is_satisfied || parts.answers.has_any()) return Explored::done();
+  if (ends.is_none()) return Explored::done(Proof::closed_form);
   return ends.is_certain() ? Explored::done(Proof::sweep) : Explored::doubtful();
 }
 

@@ -40,18 +40,26 @@ Explored explore_spread(const AllSearch& parts, const Pose& Y) {
     refine_samples(parts, /*are_answers=*/true);
   }
   if (answers.has_any()) return Explored::done();
-  const bool is_none = q.empty() && !lanes.sweep->find(Y) && lanes.sweep->is_none();
-  return is_none ? Explored::done(Proof::sweep) : Explored::doubtful();
+  const Proof proof = q.empty() ? lanes.find_none(parts.goal.target(), Y) : Proof::none;
+  return proof != Proof::none ? Explored::done(proof) : Explored::doubtful();
 }
 
-/// Any solution, as soon as can be; true if there certainly is none.
-bool find_any_or_none(const AllSearch& parts, const Pose& Y) {
-  Sweep& sweep = *parts.workspace.lanes->sweep;
-  const bool is_found = sweep.find(Y);
+/// Any solution, as soon as can be; done if there certainly is none.
+Explored find_any_or_none(const AllSearch& parts, const Pose& Y) {
+  Workspace::InLanes& lanes = *parts.workspace.lanes;
+  Sweep& sweep = *lanes.sweep;
+  bool is_found = sweep.find_at_samples(Y);
+  if (!is_found) {
+    if (lanes.ends && lanes.ends->rules_out(parts.goal.target())) {
+      parts.clock.lap(&StageTimes::query);
+      return Explored::done(Proof::closed_form);
+    }
+    is_found = sweep.find_between(Sweep::Between::all);
+  }
   parts.clock.lap(&StageTimes::query);
-  if (!is_found) return sweep.is_none();
+  if (!is_found) return sweep.is_none() ? Explored::done(Proof::sweep) : Explored::doubtful();
   parts.refine_rows(sweep.q(), 1, /*are_answers=*/true, Width::narrow);
-  return false;
+  return Explored::doubtful();
 }
 
 /// The solution nearest to `near`, or to the objective's posture.
@@ -67,12 +75,18 @@ Explored explore_nearest(const AllSearch& parts, const Pose& Y) {
   search(lanes.refiner, first, answers, parts.work);
   // Any answer bounds the others as well, and where there is none, what looks for any is sooner
   // through.
-  const auto is_none = [&] { return !answers.has_any() && find_any_or_none(parts, Y); };
-  if (!stays && is_none()) return Explored::done(Proof::sweep);
+  const auto find_any = [&] {
+    return answers.has_any() ? Explored::doubtful() : find_any_or_none(parts, Y);
+  };
+  if (!stays) {
+    if (const Explored none = find_any(); none.is_done) return none;
+  }
   NearestOnCurveSeeds nearest(curve, Y, near, move, answers, parts.work, parts.clock);
   parts.refine(nearest, Width::narrow);
   answers.is_settled = curve.is_settled() && nearest.has_led_to_answer();
-  if (stays && is_none()) return Explored::done(Proof::sweep);
+  if (stays) {
+    if (const Explored none = find_any(); none.is_done) return none;
+  }
   return answers.has_any() ? Explored::done() : Explored::doubtful();
 }
 
@@ -108,7 +122,7 @@ Explored explore_curve(const AllSearch& parts, const Pose& Y) {
   if (answers.has_any()) {
     parts.request.scene->find_free(answers.solution(answers.nearest()), 1, &is_free);
   }
-  if (is_free || nearest.proof == Proof::sweep) return nearest;
+  if (is_free || nearest.proof != Proof::none) return nearest;
   answers.is_settled = false;
   return explore_nearest_free(parts, Y);
 }

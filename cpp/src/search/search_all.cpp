@@ -48,7 +48,8 @@ Proof search_pose(const AllSearch& parts, NearSeed& near, GivenSeeds& given, con
     // What ranks answers otherwise has looked for none there.
     const bool has_looked =
         answers.spread() > 0 || answers.wants_nearest() || answers.wants_nearest_free();
-    has_asked_ends = lanes.ends && has_looked && answers.status == Status::not_converged;
+    has_asked_ends = lanes.ends && has_looked && answers.status == Status::not_converged &&
+                     curve.proof != Proof::closed_form;
     if (has_asked_ends) {
       if (const auto ends = explore_ends(parts); ends.is_done) curve = ends;
     }

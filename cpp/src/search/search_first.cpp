@@ -6,8 +6,9 @@
 namespace iksel {
 namespace {
 
-/// Of the nearest leaf, before the roots of a sweep: more cost more than those. Where seven joints
-/// are swept, all are tried: with 4, two of a million reachable targets of pr2_right_arm were lost.
+/// Of the nearest leaf, before the roots of a sweep or ends in closed form: more cost more than
+/// those. Where seven joints are swept otherwise, all are tried: with 4, two of a million reachable
+/// targets of pr2_right_arm were lost.
 constexpr int kBeforeRoots = 4;
 /// The same in a scene, where each that collides costs more than a pack of samples.
 constexpr int kBeforeSamples = 2;
@@ -19,7 +20,8 @@ constexpr int kBesideEnds = 16;
 /// The nearest leaf of the database. Returns whether the answers want no more.
 bool search_leaf(const FirstSearch& parts, bool is_screened, NearSeed& near, GivenSeeds& given) {
   Workspace::InLanes& lanes = *parts.workspace.lanes;
-  const int from_leaf = is_screened ? kBeforeSamples : lanes.roots ? kBeforeRoots : lanes::kBlock;
+  const bool are_known = lanes.roots || (lanes.ends && lanes.ends->are_closed());
+  const int from_leaf = is_screened ? kBeforeSamples : are_known ? kBeforeRoots : lanes::kBlock;
   if (lanes.sweep || lanes.roots) {
     lanes.refiner.begin(parts.goal.task(), lanes.sweep ? kBeforeSweep : kBeforeBranches,
                         Width::narrow);
@@ -70,10 +72,14 @@ Explored explore_free_curve(const FirstSearch& parts, const Pose& Y) {
 
 Explored explore_curve(const FirstSearch& parts, const Pose& Y) {
   Workspace::InLanes& lanes = *parts.workspace.lanes;
+  const bool are_closed = lanes.ends && lanes.ends->are_closed();
+  if (are_closed) {
+    if (const Explored ends = explore_ends(parts); ends.is_done) return ends;
+  }
   SweptSeeds swept(*lanes.sweep, Y, parts.work, parts.clock);
   const auto is_satisfied = [&] { return search(lanes.refiner, swept, parts.answers, parts.work); };
   if (is_satisfied()) return Explored::done();
-  if (lanes.ends) {
+  if (lanes.ends && !are_closed) {
     const Explored ends = explore_ends(parts);
     if (ends.is_done) {
       if (ends.proof == Proof::none) return ends;

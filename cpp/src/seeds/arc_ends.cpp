@@ -2,36 +2,90 @@
 #include "seeds/arc_ends.hpp"
 
 #include <algorithm>
+#include <cmath>
+
+#include "base/constants.hpp"
 
 namespace iksel {
 
-ArcEnds::ArcEnds(const LockedArms& arms, double position_tolerance, double rotation_tolerance,
-                 const lanes::LaneKernels& kernels)
-    : are_all_(arms.are_all) {
+ArcEnds::ArcEnds(const ChainModel& whole, const LockedArms& arms, double position_tolerance,
+                 double rotation_tolerance, const lanes::LaneKernels& kernels)
+    : joints_(whole.joints),
+      position_tolerance_(position_tolerance),
+      rotation_tolerance_(rotation_tolerance),
+      kernels_(kernels),
+      are_all_(arms.are_all),
+      are_closed_(arms.are_closed) {
   ends_.reserve(arms.arms.size());
   // Memory is taken here, and none while solving; the last of more gives way.
   constexpr std::size_t kKept = 128;
   kept_.reserve(kKept);
-  for (const LockedArm& arm : arms.arms) {
-    const ChainModel& model = *arm.model;
-    End& end = ends_.emplace_back();
-    end.arm = &arm;
-    end.base_inverse = to_pose(model.kernel.base).inverse();
-    end.tip_inverse = to_pose(model.kernel.tip).inverse();
-    if (arm.pose) {
-      end.branches.emplace(model, *arm.pose, /*is_nominal=*/true, position_tolerance,
-                           rotation_tolerance, kernels);
-    }
-    if (arm.residual) {
-      const double tolerance =
-          std::max(position_tolerance / arm.residual->unit, rotation_tolerance);
-      end.roots.emplace(model, *arm.residual, /*is_nominal=*/true, tolerance, kernels);
-    }
+  for (const LockedArm& arm : arms.arms) ends_.push_back(make_end(arm));
+  if (arms.crossing) {
+    const Pose base = to_pose(whole.kernel.base);
+    crossing_.emplace(Crossing{&arms.crossing->elbow, make_end(arms.crossing->first), base,
+                               base.inverse(), to_pose(whole.kernel.tip).inverse()});
   }
 }
 
+ArcEnds::End ArcEnds::make_end(const LockedArm& arm) const {
+  const ChainModel& model = *arm.model;
+  End end;
+  end.arm = &arm;
+  end.base_inverse = to_pose(model.kernel.base).inverse();
+  end.tip_inverse = to_pose(model.kernel.tip).inverse();
+  if (arm.pose) {
+    end.branches.emplace(model, *arm.pose, /*is_nominal=*/true, position_tolerance_,
+                         rotation_tolerance_, kernels_);
+  }
+  if (arm.residual) {
+    const double tolerance =
+        std::max(position_tolerance_ / arm.residual->unit, rotation_tolerance_);
+    end.roots.emplace(model, *arm.residual, /*is_nominal=*/true, tolerance, kernels_);
+  }
+  return end;
+}
+
 bool ArcEnds::find(std::size_t i, const Pose& T_base_tcp) {
-  End& end = ends_[i];
+  locked_ = ends_[i].arm->value;
+  return solve(ends_[i], T_base_tcp);
+}
+
+bool ArcEnds::find_crossings(std::size_t side, const Pose& T_base_tcp) {
+  // What rounding leaves of a limit [rad].
+  constexpr double kRounding = 1e-6;
+  const Crossing& crossing = *crossing_;
+  const Pose from_first = crossing.base_inverse * T_base_tcp;
+  const double lower = joints_.lower[0] - kRounding;
+  const double upper = joints_.upper[0] + kRounding;
+  double value = crossing.elbow->first_joint_to_plane(from_first * crossing.tip_inverse);
+  if (side == 1) value += kPi;
+  if (joints_.type(0) != JointType::continuous) {
+    value += kTwoPi * std::ceil((lower - value) / kTwoPi);
+    count_ = 0;
+    if (value > upper) return true;
+    value = std::min(std::max(value, joints_.lower[0]), joints_.upper[0]);
+  }
+  locked_ = value;
+  // With the first joint locked elsewhere, the target turns instead.
+  const double turn = crossing.first.arm->value - value;
+  const Eigen::AngleAxisd back(turn, Eigen::Vector3d::UnitZ());
+  return solve(crossing_->first, crossing.base * (back * from_first));
+}
+
+bool ArcEnds::rules_out(const Pose& T_base_tcp) {
+  if (!are_closed()) return false;
+  const auto is_none = [&](bool is_certain) { return is_certain && count_ == 0; };
+  for (std::size_t i = 0; i < size(); ++i) {
+    if (!is_none(find(i, T_base_tcp))) return false;
+  }
+  for (std::size_t side = 0; side < crossings(); ++side) {
+    if (!is_none(find_crossings(side, T_base_tcp))) return false;
+  }
+  return true;
+}
+
+bool ArcEnds::solve(End& end, const Pose& T_base_tcp) {
   last_ = &end;
   const Pose Y = end.base_inverse * T_base_tcp * end.tip_inverse;
   bool is_certain = false;
@@ -56,7 +110,7 @@ const double* ArcEnds::keep(int k) {
   if (kept_.size() < kept_.capacity()) kept_.emplace_back();
   double* q = kept_.back().data();
   std::copy_n(others, joint, q);
-  q[joint] = last_->arm->value;
+  q[joint] = locked_;
   std::copy_n(others + joint, 6 - joint, q + joint + 1);
   return q;
 }

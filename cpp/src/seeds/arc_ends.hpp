@@ -17,9 +17,9 @@ namespace iksel {
 
 class ArcEnds {
  public:
-  /// Tolerances are the solver's [m, rad]. `arms` has to outlive this.
-  ArcEnds(const LockedArms& arms, double position_tolerance, double rotation_tolerance,
-          const lanes::LaneKernels& kernels);
+  /// Tolerances are the solver's [m, rad]. `whole` and its `arms` have to outlive this.
+  ArcEnds(const ChainModel& whole, const LockedArms& arms, double position_tolerance,
+          double rotation_tolerance, const lanes::LaneKernels& kernels);
 
   [[nodiscard]] std::size_t size() const { return ends_.size(); }
   /// Which limit the i-th arm is locked at.
@@ -30,6 +30,15 @@ class ArcEnds {
   /// Solves the target with the i-th arm: a number of joint values, inside the limits or so near
   /// to them that it cannot be told. False if there may be others.
   bool find(std::size_t i, const Pose& T_base_tcp);
+  /// Whether it can be told in closed form that no curve of solutions lies inside the limits: not
+  /// by its ends, and if it has none, not by where it crosses the plane of the elbow.
+  [[nodiscard]] bool are_closed() const { return are_closed_; }
+  /// Where closed curves cross the plane of the elbow is asked on so many sides of the first axis.
+  [[nodiscard]] std::size_t crossings() const { return crossing_ ? 2 : 0; }
+  /// Solves for those on one side, as find() does.
+  bool find_crossings(std::size_t side, const Pose& T_base_tcp);
+  /// Whether there is certainly none, of either.
+  bool rules_out(const Pose& T_base_tcp);
   [[nodiscard]] int count() const { return count_; }
   /// The k-th solution of the last find(), seven joint values [rad or m]; kept until begin().
   const double* keep(int k);
@@ -49,16 +58,30 @@ class ArcEnds {
     std::optional<Enumeration> branches;
     std::optional<RootSweep> roots;
   };
+  struct Crossing {
+    const Elbow* elbow;
+    End first;
+    Pose base, base_inverse, tip_inverse;  ///< of the whole kernel chain
+  };
 
+  [[nodiscard]] End make_end(const LockedArm& arm) const;
+  bool solve(End& end, const Pose& T_base_tcp);
+
+  const JointSpace& joints_;
+  double position_tolerance_, rotation_tolerance_;  ///< [m, rad]
+  const lanes::LaneKernels& kernels_;
   std::vector<End> ends_;
   bool are_all_;
+  bool are_closed_;
+  std::optional<Crossing> crossing_;
   const End* last_ = nullptr;
+  double locked_ = 0;  ///< where the last one's joint is [rad or m]
   bool by_roots_ = false;
   int count_ = 0;
   std::vector<std::array<double, 7>> kept_;
 };
 
-/// These as a source of seeds, an arm a stage.
+/// These as a source of seeds, an arm a stage, and where they are closed the crossings after them.
 class EndSeeds {
  public:
   EndSeeds(ArcEnds& ends, const Pose& T_base_tcp, Work& work, StageClock& clock)
@@ -67,8 +90,11 @@ class EndSeeds {
   }
 
   bool next_stage() {
-    if (arm_ == ends_.size()) return false;
-    if (!ends_.find(arm_++, target_)) certain_ = false;
+    if (is_through()) return false;
+    const std::size_t arm = arm_++;
+    const bool is_certain = arm < ends_.size() ? ends_.find(arm, target_)
+                                               : ends_.find_crossings(arm - ends_.size(), target_);
+    certain_ = certain_ && is_certain;
     next_ = 0;
     clock_.lap(&StageTimes::query);
     return true;
@@ -85,9 +111,13 @@ class EndSeeds {
   [[nodiscard]] int count() const { return ends_.kept(); }
   [[nodiscard]] const double* q(int i) const { return ends_.kept(i); }
   /// Whether no arc has an end but these, and each was tried.
-  [[nodiscard]] bool is_certain() const { return certain_ && arm_ == ends_.size(); }
+  [[nodiscard]] bool is_certain() const { return certain_ && is_through(); }
+  /// Whether there certainly is no solution.
+  [[nodiscard]] bool is_none() const { return is_certain() && ends_.are_closed() && count() == 0; }
 
  private:
+  [[nodiscard]] bool is_through() const { return arm_ == ends_.size() + ends_.crossings(); }
+
   ArcEnds& ends_;
   const Pose& target_;
   Work& work_;

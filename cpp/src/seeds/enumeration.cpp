@@ -11,15 +11,11 @@ namespace {
 
 /// A target is taken to be off by so many tolerances, to be on the safe side.
 constexpr double kMargin = 4;
-/// An angle off by more says nothing [rad].
-constexpr double kVague = 0.3;
 
 }  // namespace
 
 bool is_ruled_out(const lanes::BranchPack& pack, int lane) {
-  if (pack.best[lane] < 0) return true;
-  // Written so that NaN says nothing either.
-  return pack.error[lane] < kVague && pack.beyond[lane] > pack.error[lane];
+  return pack.best[lane] < 0 || pack.outside[lane] > 0;
 }
 
 Enumeration::Enumeration(const ChainModel& model, const ClosedFormChain& chain, bool is_nominal,
@@ -42,9 +38,14 @@ Enumeration::Enumeration(const ChainModel& model, const ClosedFormChain& chain, 
   are_answers_ = is_nominal && !chain.is_almost();
 }
 
-void Enumeration::find(const Pose& Y, bool wants_all) {
+void Enumeration::solve(const Pose& Y) {
   chain_.set_target(Y, pack_);
   kernels_.solve_branches(chain_.form, pack_);
+}
+
+void Enumeration::find(const Pose& Y, bool wants_all) {
+  chain_.set_target(Y, pack_);
+  kernels_.solve_inside(chain_.form, pack_);
   size_ = 0;
   is_measured_ = false;
   certain_ = is_nominal_;
@@ -68,7 +69,7 @@ void Enumeration::take(const Pose& Y, int lane, bool wants_all) {
   copy_joints(lane, q.data());
   const double beyond = pack_.beyond[lane];
   double bound = pack_.error[lane];
-  bool is_sure = bound < kVague && pack_.worst[lane] >= 0;
+  bool is_sure = bound < lanes::kVague && pack_.worst[lane] >= 0;
   if (beyond > 0 || (wants_all && !is_sure)) is_sure = is_regular(lane, bound);
   if (is_sure && beyond > bound) return;
   if (is_sure && beyond > 0 && is_nominal_ && !chain_.is_completed()) {

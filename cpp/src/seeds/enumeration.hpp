@@ -27,6 +27,8 @@ class Enumeration {
   /// be told; of the task that the chain was completed for. Y as in reduction.hpp. Where not all
   /// are wanted, branches inside the limits are not looked at any closer: one of them will do.
   void find(const Pose& Y, bool wants_all);
+  /// Solves for all branches, inside the limits or not, for chain() and pack().
+  void solve(const Pose& Y);
   [[nodiscard]] int size() const { return size_; }
   /// Inside the limits [rad].
   [[nodiscard]] const double* q(int i) const { return q_[static_cast<std::size_t>(i)].data(); }
@@ -46,7 +48,7 @@ class Enumeration {
   /// Whether each branch stands for many solutions.
   [[nodiscard]] bool has_families() const { return chain_.has_families(); }
 
-  /// What the last find() solved: those outside the limits too, and lanes without a branch.
+  /// What the last solve() found: those outside the limits too, and lanes without a branch.
   [[nodiscard]] const ClosedFormChain& chain() const { return chain_; }
   [[nodiscard]] const lanes::BranchPack& pack() const { return pack_; }
   /// Writes a lane's joint values to q, those of which the angle does not matter inside their

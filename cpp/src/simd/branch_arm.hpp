@@ -62,10 +62,18 @@ IKSEL_INLINE T beyond_limits(const ClosedForm& form, int j, const T& q) {
 }
 
 /// Whether nothing more needs to be known of a branch, now that joint j is known: for Prospect
-/// (sweep_kernel.hpp) only.
+/// (sweep_kernel.hpp) and Certainty only.
 template <typename T, typename Q>
 IKSEL_INLINE bool is_enough(const ClosedForm& /*form*/, int /*j*/, Branch<T, Q>& /*branch*/) {
   return false;
+}
+
+template <typename T>
+IKSEL_INLINE bool is_enough(const ClosedForm& form, int j, Branch<T, Certainty<T>>& branch) {
+  const T q = joint_value(form, j, branch.q[j]);
+  branch.quality.value[j] = q;
+  branch.quality.take_beyond(beyond_limits(form, j, q));
+  return branch.quality.is_over();
 }
 
 /// The angle of joint 3 that brings the wrist to a distance from the point on axis 2.
@@ -75,9 +83,24 @@ IKSEL_INLINE Angle<T> bend_elbow(const ClosedForm& form, const T& distance2, con
   return solve_angle(form.elbow, T(0.5) * (distance2 - T(form.arm2)), sign, quality);
 }
 
-/// From the point on axis 2 to the wrist, with joint 2 at zero.
+// As Certainty has them; of others nothing.
+template <typename Q>
+IKSEL_INLINE void turn_way(double /*length*/, Q& /*quality*/) {}
 template <typename T>
-IKSEL_INLINE Vec<T> arm_at(const ClosedForm& form, const Angle<T>& q3) {
+IKSEL_INLINE void turn_way(double length, Certainty<T>& quality) {
+  quality.turn_way(length);
+}
+template <typename Q>
+IKSEL_INLINE void turn_rotation(Q& /*quality*/) {}
+template <typename T>
+IKSEL_INLINE void turn_rotation(Certainty<T>& quality) {
+  quality.turn_rotation();
+}
+
+/// From the point on axis 2 to the wrist, with joint 2 at zero.
+template <typename T, typename Q>
+IKSEL_INLINE Vec<T> arm_at(const ClosedForm& form, const Angle<T>& q3, Q& quality) {
+  turn_way(form.forearm, quality);
   const Vec<T> forearm = turned(constant<T>(form.h[2]), q3, constant<T>(form.p[2]));
   return add(constant<T>(form.p[1]), T(1.0), forearm);
 }
@@ -109,7 +132,7 @@ IKSEL_INLINE void place_parallel_23(const ClosedForm& form, const Vec<T>& w, con
   const Vec<T> v = behind_base(form, out.q[0], w);
   out.q[2] = bend_elbow(form, dot(v, v), sign[1], out.quality);
   if (is_enough(form, 2, out)) return;
-  out.q[1] = angle_between(h2, arm_at(form, out.q[2]), v, out.quality);
+  out.q[1] = angle_between(h2, arm_at(form, out.q[2], out.quality), v, out.quality);
   is_enough(form, 1, out);
 }
 
@@ -121,7 +144,7 @@ IKSEL_INLINE void place_intersect_12(const ClosedForm& form, const Vec<T>& w, co
   const T distance2 = dot(w, w);
   out.q[2] = bend_elbow(form, distance2, sign[1], out.quality);
   if (is_enough(form, 2, out)) return;
-  const Vec<T> arm = arm_at(form, out.q[2]);
+  const Vec<T> arm = arm_at(form, out.q[2], out.quality);
   const Vec<T> v =
       solve_common(h1, h2, form.cross12, dot(h1, w), dot(h2, arm), distance2, sign[0], out.quality);
   out.q[1] = angle_between(h2, arm, v, out.quality);
@@ -157,7 +180,7 @@ IKSEL_INLINE void place_parallel_12(const ClosedForm& form, const Vec<T>& w, con
   const Vec<T> p12 = constant<T>(form.p[0]);
   out.q[2] = solve_angle(form.shoulder, dot(h1, w) - T(form.rest), sign[0], out.quality);
   if (is_enough(form, 2, out)) return;
-  const Vec<T> arm = arm_at(form, out.q[2]);
+  const Vec<T> arm = arm_at(form, out.q[2], out.quality);
   const T axial = dot(h2, arm) * dot(h2, p12);
   const T rest = T(0.5) * (dot(w, w) - dot(p12, p12) - dot(arm, arm));
   out.q[1] = solve_angle(dot(p12, arm) - axial, dot(p12, cross(h2, arm)), rest - axial, sign[1],

@@ -32,6 +32,7 @@ IKSEL_INLINE void turn_wrist(const ClosedForm& form, const WristTarget<T>& targe
   const Vec<T> h4 = constant<T>(form.h[3]);
   const Vec<T> h5 = constant<T>(form.h[4]);
   const Vec<T> h6 = constant<T>(form.h[5]);
+  turn_rotation(out.quality);
   out.q[4] = solve_angle(form.wrist, dot(h4, target.axis), sign, out.quality);
   if (is_enough(form, 4, out)) return;
   out.q[3] = angle_between(h4, turned(h5, out.q[4], h6), target.axis, out.quality);
@@ -51,12 +52,14 @@ IKSEL_INLINE void solve_three_parallel(const ClosedForm& form, const BranchTarge
   const Vec<T> p34 = constant<T>(form.p[2]);
   const Vec<T>& w = target.w;
   out.q[0] = turn_base(form, h, w, T(form.rest), sign[0], quality);
+  if (is_enough(form, 0, out)) return;
   const auto before = [&](const Vec<T>& v) { return turned_back(h1, out.q[0], v); };
   // h . R_1^T R_06 h6 = h . R_5 h6, and R_06^T R_1 h = R_6^T R_5^T h.
   const Vec<T> X = before(target.X);
   const Vec<T> Y = before(target.Y);
   const Vec<T> Z = before(target.Z);
   out.q[4] = solve_angle(form.wrist, dot(h, Z), sign[2], quality);
+  if (is_enough(form, 4, out)) return;
   const Vec<T> from = turned_back(h5, out.q[4], h);
   const T u = dot(constant<T>(form.basis[0]), from);
   const T v = dot(constant<T>(form.basis[1]), from);
@@ -64,6 +67,7 @@ IKSEL_INLINE void solve_three_parallel(const ClosedForm& form, const BranchTarge
   const T y = dot(Y, h);
   // Of (u, v) = R(q6) (x, y).
   out.q[5] = normalized(u * x + v * y, v * x - u * y, quality);
+  if (is_enough(form, 5, out)) return;
   const T& c = out.q[5].c;
   const T& s = out.q[5].s;
   // R_2 R_3 R_4 turns about h, and so a vector e across it: R_2 R_3 R_4 e = R_1^T R_06 R_6^T R_5^T
@@ -90,74 +94,148 @@ IKSEL_INLINE void solve_three_parallel(const ClosedForm& form, const BranchTarge
   const Angle<T> two{out.q[1].c * about.c - out.q[1].s * about.s,
                      out.q[1].s * about.c + out.q[1].c * about.s};
   out.q[3] = {all.c * two.c + all.s * two.s, T(form.side4) * (all.s * two.c - all.c * two.s)};
+  is_enough(form, 1, out);
+  is_enough(form, 2, out);
+  is_enough(form, 3, out);
 }
 
-/// How far the joint values that are stored lie outside of coupled limits.
+/// How far joint values lie outside of coupled limits.
 template <typename T>
-T beyond_coupled(const ClosedForm& form, int first, const BranchPack& pack) {
+T beyond_coupled(const ClosedForm& form, int first, const T (&of_six)[6], const BranchPack& pack) {
   T q[7];
-  for (int j = 0; j < 6; ++j) q[j] = Lanes<T>::load(pack.q[j] + first);
+  for (int j = 0; j < 6; ++j) q[j] = of_six[j];
   q[6] = form.is_held ? Lanes<T>::load(pack.held + first) : T(0.0);
   return beyond_coupled(*form.coupled, q);
 }
 
 /// The joint values, and how far they are outside of their limits.
 template <typename T, typename Q>
-IKSEL_INLINE void store_joints(const ClosedForm& form, const Branch<T, Q>& branch, int first,
+IKSEL_INLINE void store_branch(const ClosedForm& form, const Branch<T, Q>& branch, int first,
                                BranchPack& pack) {
   T beyond = T(0.0);
+  T value[6];
   for (int j = 0; j < 6; ++j) {
-    const T q = joint_value(form, j, branch.q[j]);
-    beyond = max(beyond, beyond_limits(form, j, q));
-    Lanes<T>::store(q, pack.q[j] + first);
+    value[j] = joint_value(form, j, branch.q[j]);
+    beyond = max(beyond, beyond_limits(form, j, value[j]));
+    Lanes<T>::store(value[j], pack.q[j] + first);
   }
-  if (form.coupled != nullptr) beyond = max(beyond, beyond_coupled<T>(form, first, pack));
+  if (form.coupled != nullptr) beyond = max(beyond, beyond_coupled(form, first, value, pack));
   Lanes<T>::store(beyond, pack.beyond + first);
   Lanes<T>::store(branch.quality.least, pack.least + first);
+  Lanes<T>::store(branch.quality.error(form.error), pack.error + first);
 }
-
-/// The lanes from `first` on.
-template <typename T, typename Q>
-IKSEL_INLINE Branch<T, Q> solve_branch(const ClosedForm& form, int first, Q quality,
-                                       BranchPack& pack) {
-  BranchTarget<T> target = load_target<T>(pack, first);
-  const T held = Lanes<T>::load(pack.held + first);
-  if (form.is_held) hold(form, held, target);
-  const T sign[3] = {Lanes<T>::load(pack.sign[0] + first), Lanes<T>::load(pack.sign[1] + first),
-                     Lanes<T>::load(pack.sign[2] + first)};
-  Branch<T, Q> branch;
-  branch.quality = quality;
-  if (form.closure == Closure::three_parallel) {
-    solve_three_parallel(form, target, sign, branch);
-  } else if (form.closure == Closure::sweep_4 || form.closure == Closure::sweep_6) {
-    solve_sweep(form, target, held, sign, branch, pack.residual + first);
-  } else {
-    place_wrist(form, target.w, sign, branch);
-    turn_wrist(form, behind_arm(form, target, branch), sign[2], branch);
+template <typename T>
+IKSEL_INLINE void store_branch(const ClosedForm& form, Branch<T, Certainty<T>>& branch, int first,
+                               BranchPack& pack) {
+  Certainty<T>& quality = branch.quality;
+  if (!quality.is_over()) {
+    for (int j = 0; j < 6; ++j) Lanes<T>::store(quality.value[j], pack.q[j] + first);
+    if (form.coupled != nullptr) {
+      quality.take_beyond(beyond_coupled(form, first, quality.value, pack));
+    }
   }
-  store_joints(form, branch, first, pack);
-  return branch;
+  Lanes<T>::store(max(quality.beyond, T(0.0)), pack.beyond + first);
+  Lanes<T>::store(quality.least, pack.least + first);
+  Lanes<T>::store(quality.best, pack.best + first);
+  Lanes<T>::store(quality.worst, pack.worst + first);
+  Lanes<T>::store(quality.error / quality.scale, pack.error + first);
+  Lanes<T>::store(quality.outside, pack.outside + first);
 }
 
-/// Of a form without a held joint, and how certain it is.
+template <typename T>
+struct Signs {
+  T of[3];
+
+  IKSEL_INLINE Signs(const BranchPack& pack, int first)
+      : of{Lanes<T>::load(pack.sign[0] + first), Lanes<T>::load(pack.sign[1] + first),
+           Lanes<T>::load(pack.sign[2] + first)} {}
+};
+
+/// Joints 1 to 3 of a wrist's arm, and what is left to the wrist.
+template <typename T>
+struct PlacedArm {
+  Branch<T, Certainty<T>> branch;
+  WristTarget<T> wrist;
+};
+
+// Not inlined: whatever asks, the same code gives the same bits.
+
+template <typename T>
+[[gnu::noinline]] void place_arm(const ClosedForm& form, int first, const BranchPack& pack,
+                                 PlacedArm<T>& arm) {
+  const BranchTarget<T> target = load_target<T>(pack, first);
+  place_wrist(form, target.w, Signs<T>(pack, first).of, arm.branch);
+  if (!arm.branch.quality.is_over()) arm.wrist = behind_arm(form, target, arm.branch);
+}
+
+template <typename T>
+[[gnu::noinline]] void finish_arm(const ClosedForm& form, const PlacedArm<T>& arm, int first,
+                                  BranchPack& pack) {
+  Branch<T, Certainty<T>> branch = arm.branch;
+  if (!branch.quality.is_over()) {
+    turn_wrist(form, arm.wrist, Signs<T>(pack, first).of[2], branch);
+  }
+  store_branch(form, branch, first, pack);
+}
+
+template <typename T>
+[[gnu::noinline]] void solve_parallels(const ClosedForm& form, bool stops_outside, int first,
+                                       BranchPack& pack) {
+  Branch<T, Certainty<T>> branch{{}, Certainty<T>(form.error, stops_outside)};
+  solve_three_parallel(form, load_target<T>(pack, first), Signs<T>(pack, first).of, branch);
+  store_branch(form, branch, first, pack);
+}
+
+/// Of a form that is closed without a held joint, and how certain it is. Where the first lanes and
+/// those half a pack on have the same arms, these share them.
+template <typename T>
+void solve_closed(const ClosedForm& form, bool stops_outside, bool shares_arms, BranchPack& pack) {
+  constexpr int kCount = Lanes<T>::kCount;
+  constexpr int kHalf = kWidth / 2;
+  const bool is_shared = shares_arms && kCount <= kHalf;
+  for (int first = 0; first < (is_shared ? kHalf : kWidth); first += kCount) {
+    if (form.closure == Closure::three_parallel) {
+      solve_parallels<T>(form, stops_outside, first, pack);
+      continue;
+    }
+    PlacedArm<T> arm{{{}, Certainty<T>(form.error, stops_outside)}, {}};
+    place_arm(form, first, pack, arm);
+    finish_arm(form, arm, first, pack);
+    if (is_shared) finish_arm(form, arm, first + kHalf, pack);
+  }
+}
+
 template <typename T>
 void solve_branches(const ClosedForm& form, BranchPack& pack) {
-  for (int first = 0; first < kWidth; first += Lanes<T>::kCount) {
-    Certainty<T> start;
-    start.error = T(form.error);
-    const Certainty<T> quality = solve_branch<T>(form, first, start, pack).quality;
-    Lanes<T>::store(quality.best, pack.best + first);
-    Lanes<T>::store(quality.worst, pack.worst + first);
-    Lanes<T>::store(quality.error / quality.scale, pack.error + first);
-  }
+  solve_closed<T>(form, /*stops_outside=*/false, /*shares_arms=*/false, pack);
+}
+
+/// The same of all branches of one target (all_branches()), as far as it takes to tell that they
+/// are not inside the limits.
+template <typename T>
+void solve_inside(const ClosedForm& form, BranchPack& pack) {
+  const bool shares_arms = form.closure != Closure::three_parallel;
+  solve_closed<T>(form, /*stops_outside=*/true, shares_arms, pack);
 }
 
 /// Of any form, without `best` and `worst`; `error` is the least that it may be.
 template <typename T>
 void find_branches(const ClosedForm& form, BranchPack& pack) {
   for (int first = 0; first < kWidth; first += Lanes<T>::kCount) {
-    const Definiteness<T> quality = solve_branch<T>(form, first, Definiteness<T>{}, pack).quality;
-    Lanes<T>::store(quality.error(form.error), pack.error + first);
+    BranchTarget<T> target = load_target<T>(pack, first);
+    const T held = Lanes<T>::load(pack.held + first);
+    if (form.is_held) hold(form, held, target);
+    const Signs<T> sign(pack, first);
+    Branch<T, Definiteness<T>> branch;
+    if (form.closure == Closure::three_parallel) {
+      solve_three_parallel(form, target, sign.of, branch);
+    } else if (form.closure == Closure::sweep_4 || form.closure == Closure::sweep_6) {
+      solve_sweep(form, target, held, sign.of, branch, pack.residual + first);
+    } else {
+      place_wrist(form, target.w, sign.of, branch);
+      turn_wrist(form, behind_arm(form, target, branch), sign.of[2], branch);
+    }
+    store_branch(form, branch, first, pack);
   }
 }
 

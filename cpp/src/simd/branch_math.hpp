@@ -57,7 +57,7 @@ IKSEL_INLINE T to_radians(const Angle<T>& t) {
   return select(t.s < T(0.0), T(0.0) - a, a);
 }
 
-/// How certain the angles found so far are, as BranchPack has it.
+/// How certain the angles found so far are, and what they say of the limits, as BranchPack has it.
 template <typename T>
 struct Certainty {
   T least = T(1.0);
@@ -66,6 +66,16 @@ struct Certainty {
   /// Error of the angles so far: of this numerator and denominator, so as not to divide each time.
   T error;
   T scale = T(1.0);
+  T of_target;
+  T turned_error = T(0.0), turned_scale = T(1.0);  ///< the same of turn_way()
+  T value[6]{};                                    ///< of the joints [rad]
+  T beyond = T(-1e30);
+  T outside = T(-1.0);
+  /// Whether nothing more is asked of branches that are not inside the limits.
+  bool stops_outside;
+
+  IKSEL_INLINE Certainty(double error_of_target, bool stops)
+      : error(error_of_target), of_target(error_of_target), stops_outside(stops) {}
 
   /// An angle follows from a quotient by a number of the size `size`.
   IKSEL_INLINE void divide_by(const T& size) {
@@ -75,14 +85,38 @@ struct Certainty {
   /// The same by the product of two lengths, mostly equal ones.
   IKSEL_INLINE void divide_by_product(const T& product) { divide_by(sqrt(product)); }
   /// An angle follows from the root of `square`, the difference of squares of a number near to
-  /// `near` where that is near 0.
+  /// `near` where that is near 0. Roots differ by no more than the root of the squares' difference:
+  /// the error of an angle on a circle of that size is at most the root of twice the error by it.
   IKSEL_INLINE void take_root(const T& square, const T& near, const T& root) {
     const T scaled = square * scale;
     const T of_square = T(2.0) * error * near;
     least = min(least, square);
     best = min(best, scaled + of_square);
     worst = min(worst, scaled - of_square);
-    divide_by(root);
+    const T least_root = sqrt(T(0.5) * error * scale * min(near, T(1.0)));
+    error = error * (root + T(1.0));
+    scale = max(scale * root, least_root);
+  }
+  /// What follows is a way, of which the last angle turned a part of that length; until
+  /// turn_rotation(), where all angles count again.
+  IKSEL_INLINE void turn_way(double length) {
+    turned_error = error;
+    turned_scale = scale;
+    error = min(error, error * T(length) + of_target * scale);
+  }
+  IKSEL_INLINE void turn_rotation() {
+    error = max(error * turned_scale, turned_error * scale);
+    scale = scale * turned_scale;
+  }
+  /// What is known now lies so far outside of limits, 0 or less if it does not [rad].
+  IKSEL_INLINE void take_beyond(const T& of_limits) {
+    beyond = max(beyond, of_limits);
+    const T certainly = select(error < T(kVague) * scale, of_limits * scale - error, T(-1.0));
+    outside = max(outside, certainly);
+  }
+  /// Whether no lane's branch is inside.
+  [[nodiscard]] IKSEL_INLINE bool is_over() const {
+    return stops_outside && !any(min(best, T(0.0) - outside) >= T(0.0));
   }
 };
 
@@ -158,7 +192,8 @@ IKSEL_INLINE Vec<T> solve_common(const Vec<T>& k1, const Vec<T>& k2, double c, c
   const T beta = (along2 - T(c) * along1) * inverse;
   const T square = length2 - alpha * along1 - beta * along2;
   const T root = sqrt(max(square, T(0.0)));
-  quality.take_root(square, T(1.0), root);
+  // No less than the length, of 1 at most.
+  quality.take_root(square, min(length2 + T(0.25), T(1.0)), root);
   const T gamma = sign * root * T(__builtin_sqrt(1.0 / (1.0 - c * c)));
   const Vec<T> plane{alpha * k1.x + beta * k2.x, alpha * k1.y + beta * k2.y,
                      alpha * k1.z + beta * k2.z};

@@ -20,6 +20,9 @@ enum class Closure : int {
   loop,            ///< anyhow; for an angle of the first in the order of a loop (loop_types.hpp)
 };
 
+/// An angle off by more says nothing [rad].
+inline constexpr double kVague = 0.3;
+
 /// x . R(k, t) y = a cos(t) + b sin(t) + c, for constant x, k and y.
 struct Turned {
   double a, b, c;
@@ -51,6 +54,7 @@ struct ClosedForm {
   double side3;        ///< of parallel axes 3 and 2: 1, or -1 if they point opposite ways
   double side4;        ///< the same of axes 4 and 2
   double arm2;         ///< |p23|^2 + |p34|^2
+  double forearm;      ///< |p34|
   double along45, along56;  ///< h4 . h5 and h5 . h6
   double rest;          ///< what the way along parallel axes adds up to; of intersect_23 |p34|^2 -
                         ///< |p12|^2
@@ -90,6 +94,9 @@ struct BranchPack {
   alignas(64) double worst[kWidth];
   /// What such an error may have grown to in the angles, to first order [rad].
   alignas(64) double error[kWidth];
+  /// Whether one of the joints lies outside of its limits, whatever that error is in its angle: if
+  /// above 0. Its size means nothing.
+  alignas(64) double outside[kWidth];
 };
 
 /// How well the branches of a pack are determined, lane by lane; NaN says nothing.

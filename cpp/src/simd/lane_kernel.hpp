@@ -151,6 +151,7 @@ constexpr LaneKernels make_kernels(const char* name) {
           add_known<Single>,
           find_largest<Single>,
           solve_branches<Wide>,
+          solve_inside<Wide>,
           find_branches<Wide>,
           measure_regularity<Wide>,
           rate_branches<Wide>,

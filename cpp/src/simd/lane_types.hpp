@@ -169,8 +169,9 @@ using FindLargest = int (*)(int count, const float* numbers);
 
 struct ClosedForm;
 struct BranchPack;
-/// The angles of all lanes of a pack (branch_types.hpp); find_branches says less of how certain
-/// they are.
+/// The angles of all lanes of a pack (branch_types.hpp); solve_inside, of all branches of one
+/// target, says no more of those outside the limits than that they are there; find_branches says
+/// less of how certain they are.
 using SolveBranches = void (*)(const ClosedForm& form, BranchPack& pack);
 struct Regularity;
 using MeasureRegularity = void (*)(const ClosedForm& form, const BranchPack& pack, Regularity& out);
@@ -243,6 +244,7 @@ struct LaneKernels {
   AddKnown add_known;
   FindLargest find_largest;
   SolveBranches solve_branches;
+  SolveBranches solve_inside;
   SolveBranches find_branches;
   MeasureRegularity measure_regularity;
   RateBranches rate_branches;

@@ -282,8 +282,7 @@ void close_loops(const LoopForm& form, const LoopTarget& target, const ClosedFor
     const Vec<T> off = add(moving.p, T(-1.0), constant<T>(form.p[3]));
     const Vec<T> tilt = add(moving.along, T(-1.0), hf);
     Lanes<T>::store(sqrt(dot(off, off) + dot(tilt, tilt)), pack.residual + first);
-    Lanes<T>::store(out.quality.error(limits.error), pack.error + first);
-    store_joints(limits, out, first, pack);
+    store_branch(limits, out, first, pack);
   }
 }
 

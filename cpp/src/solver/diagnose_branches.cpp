@@ -79,7 +79,7 @@ std::string describe_elbow(const ChainModel& model, const ClosedFormChain& chain
 
 std::optional<BranchReasons> explain_branches(const ChainModel& model, const Goal& goal,
                                               const Pose& Y, Enumeration& branches) {
-  branches.find(Y, /*wants_all=*/true);
+  branches.solve(Y);
   BranchReasons reasons;
   Diagnosis& out = reasons.diagnosis;
   out.branch = find_nearest(model, goal, branches);

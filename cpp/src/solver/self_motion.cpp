@@ -178,8 +178,8 @@ SelfMotion Solver::Impl::self_motion(const Pose& target, double spacing,
   if (!motion.arcs.empty()) {
     motion.status = Status::solved;
     motion.proof = Proof::answer;
-  } else if (!lanes.sweep->find(Y) && lanes.sweep->is_none()) {
-    motion.proof = Proof::sweep;
+  } else {
+    motion.proof = lanes.find_none(goal.target(), Y);
   }
   return motion;
 }

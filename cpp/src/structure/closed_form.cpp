@@ -61,6 +61,7 @@ lanes::ClosedForm make_form(Closure closure, const ScrewAxes& axes, double unit)
   form.side3 = side_of(2);
   form.side4 = side_of(3);
   form.arm2 = p23.squaredNorm() + p34.squaredNorm();
+  form.forearm = p34.norm();
   form.elbow = turned(p23, closure == Closure::three_parallel ? h[1] : h[2], p34);
   form.shoulder = turned(h[0], h[2], p34);
   form.wrist = turned(closure == Closure::three_parallel ? h[1] : h[3], h[4], h[5]);

@@ -31,8 +31,25 @@ std::optional<Elbow> Elbow::of(const ChainModel& model) {
   };
   if (!centre(0, elbow.shoulder_) || !centre(4, elbow.wrist_)) return std::nullopt;
   elbow.elbow_ = axes.p[3] + axes.h[3] * axes.h[3].dot(elbow.shoulder_ - axes.p[3]);
+  const auto meet_exactly = [&](std::size_t i, const Vector3d& point) {
+    bool do_meet = true;
+    for (std::size_t j = i; j < i + 3; ++j) {
+      do_meet = do_meet && axes.distance(j, point) <= kStructureTolerance * model.reach;
+    }
+    return do_meet && std::abs(axes.h[i].dot(axes.h[i + 1])) <= kStructureTolerance &&
+           std::abs(axes.h[i + 1].dot(axes.h[i + 2])) <= kStructureTolerance;
+  };
+  elbow.goes_round_ = meet_exactly(0, elbow.shoulder_) && meet_exactly(4, elbow.wrist_);
   for (std::size_t j = 0; j < 4; ++j) elbow.offset_[j] = model.kernel.joints[j].offset;
   return elbow;
+}
+
+double Elbow::first_joint_to_plane(const Pose& Y) const {
+  // The first axis is z. The second, h, is across the upper arm: it has to be across the way to the
+  // wrist.
+  const Vector3d w = Y * (axes_.end.inverse() * wrist_) - shoulder_;
+  const Vector3d& h = axes_.h[1];
+  return std::atan2(-(h.x() * w.x() + h.y() * w.y()), h.x() * w.y() - h.y() * w.x()) - offset_[0];
 }
 
 double Elbow::angle(const double* q) const {

@@ -8,6 +8,7 @@
 
 #include "kinematics/chain_model.hpp"
 #include "structure/closed_form.hpp"
+#include "structure/elbow.hpp"
 
 namespace iksel {
 
@@ -27,6 +28,18 @@ struct LockedArms {
   /// Whether these are all: each joint with limits can be solved for with that joint locked, and no
   /// limits are coupled.
   bool are_all = false;
+  /// Whether the elbow goes round, and all are solved exactly in closed form: whether there are
+  /// solutions is then known in closed form, by these and the crossing.
+  bool are_closed = false;
+  /// Closed curves of solutions, which have no ends, meet the plane of the elbow, and there the
+  /// first joint is known. As the elbow goes round, shoulder and wrist turn about a line by a whole
+  /// turn, which no way of their joints undoes: one of the two outer joints of each winds, or ends
+  /// at a limit. So there are such curves only where one of each has no limits.
+  struct Crossing {
+    Elbow elbow;
+    LockedArm first;  ///< with the first joint locked anywhere
+  };
+  std::optional<Crossing> crossing;
 
   /// Those of a chain of seven joints; none of other chains.
   static LockedArms of(const ChainModel& whole);

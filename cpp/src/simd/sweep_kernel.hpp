@@ -120,7 +120,6 @@ IKSEL_INLINE void solve_signs(const ClosedForm& form, const BranchTarget<T>& tar
       turn_wrist(form, wrist, T(last[i]), branch);
     } else {
       solve_three_parallel(form, target, {side[0], side[1], T(last[i])}, branch);
-      for (int j = 0; j < 6; ++j) is_enough(form, j, branch);
     }
     take(i, branch);
   }

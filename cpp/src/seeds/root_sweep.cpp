@@ -67,7 +67,6 @@ RootSweep::RootSweep(const ChainModel& model, const ClosedFormChain& chain, bool
       tolerance_(tolerance),
       are_answers_(is_nominal && chain.deviation <= kShare * tolerance),
       concludes_(concludes_from_branches(is_nominal, tolerance)),
-      counts_(concludes_),
       vague_(2 * std::sqrt(tolerance + chain.deviation)),
       farther_(2 * std::sqrt(tolerance + kFartherApart * kFartherApart * chain.deviation)),
       vague_divisor_(std::pow(kBesideAxis * (tolerance + chain.deviation), 2)),
@@ -104,7 +103,6 @@ bool RootSweep::find_loop_roots(const Pose& Y) {
 void RootSweep::find(const Pose& Y, bool wants_all) {
   const bool is_clear = chain_.loop ? find_loop_roots(Y) : find_product_roots(Y);
   certain_ = concludes_ && roots_.is_complete() && is_clear;
-  is_counted_ = counts_;
   is_at_limit_ = false;
   is_delicate_ = chain_.loop != nullptr;
   may_be_singular_ = !is_clear;
@@ -132,7 +130,6 @@ void RootSweep::find(const Pose& Y, bool wants_all) {
     certain_ = false;
   }
   certain_but_for_limits_ = certain_;
-  is_counted_ = is_counted_ && certain_;
   // At a limit, what the tolerances allow decides.
   certain_ = certain_ && !is_at_limit_;
 }
@@ -144,13 +141,6 @@ bool RootSweep::has_singular() const {
   return false;
 }
 
-bool RootSweep::is_clear(int lane) const {
-  const double off = 4 * vague_;
-  return pack_.least[lane] < -off || std::abs(pack_.residual[lane]) > off ||
-         (pack_.beyond[lane] > kFreely &&
-          pack_.beyond[lane] * tolerance_ > off * pack_.error[lane]);
-}
-
 void RootSweep::take(const Pose& Y, const RootFinder::Root& root, int lane) {
   const bool is_vague = root.is_vague;
   // Roots are off by what the tolerances allow, many times over; but where there are two, by its
@@ -158,7 +148,6 @@ void RootSweep::take(const Pose& Y, const RootFinder::Root& root, int lane) {
   const bool is_loose = is_vague && root.apart <= farther_;
   const double slack = is_loose ? 4 * vague_ : 25 * vague_ * vague_;
   const double most = chain_.loop ? std::max(slack, kOpen) : slack;
-  if (is_vague && !is_clear(lane)) is_counted_ = false;
   // Of two solutions that all but share an angle of a loop's first joint, one or both are not
   // found.
   if (chain_.loop && is_vague) certain_ = false;

@@ -38,8 +38,6 @@ class RootSweep {
   /// The same but for those so close to a limit, and away from singularities: such a one is a
   /// solution, or there is none beside it.
   [[nodiscard]] bool is_certain_but_for_limits() const { return certain_but_for_limits_; }
-  /// What it proves if these are all.
-  [[nodiscard]] Proof proof() const { return is_counted_ ? Proof::roots_counted : Proof::sweep; }
   /// Whether the arm may be singular at one of these, where roots are double.
   [[nodiscard]] bool may_be_singular() const { return may_be_singular_; }
   /// Double roots may be missed.
@@ -52,9 +50,6 @@ class RootSweep {
   bool find_product_roots(const Pose& Y);
   bool find_loop_roots(const Pose& Y);
   void take(const Pose& Y, const RootFinder::Root& root, int lane);
-  /// Where roots are vague: whether a lane's branch certainly is no solution inside the limits, as
-  /// far off as such roots may be.
-  [[nodiscard]] bool is_clear(int lane) const;
   /// Whether one of these is singular, or almost.
   [[nodiscard]] bool has_singular() const;
 
@@ -62,7 +57,7 @@ class RootSweep {
   ClosedFormChain chain_;
   const lanes::LaneKernels& kernels_;
   double tolerance_;
-  bool are_answers_, concludes_, counts_;
+  bool are_answers_, concludes_;
   double vague_;          ///< by how much roots that are nearly double may be off [rad]
   double farther_;        ///< vague roots that are farther apart must be nearer to an answer [rad]
   double vague_divisor_;  ///< nothing is concluded from residuals divided by less [units^2]
@@ -76,7 +71,6 @@ class RootSweep {
   bool is_at_limit_ = false;
   bool is_delicate_ = false;  ///< whether one may be singular
   bool certain_but_for_limits_ = false;
-  bool is_counted_ = false;
   bool may_be_singular_ = false;
 };
 

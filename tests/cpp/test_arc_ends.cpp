@@ -80,7 +80,7 @@ TEST(ArcEnds, ClosedCurvesCrossThePlaneOfTheElbow) {
     int crossings = 0;
     for (const std::size_t side : {0, 1}) {
       // Where it cannot be told, some are counted that are none.
-      const bool is_known = ends->find_crossings(side, target);
+      const bool is_known = ends->find(ends->size() + side, target);
       crossings += ends->count();
       for (int k = 0; is_known && k < ends->count(); ++k) {
         judge.expect_solution(target, Eigen::Map<const Eigen::VectorXd>(ends->keep(k), 7));

@@ -14,6 +14,7 @@
 #include "closed_chains.hpp"
 #include "levels.hpp"
 #include "robots.hpp"
+#include "seeds/enumeration.hpp"
 #include "simd/branch_kernel.hpp"
 #include "simd/kernels.hpp"
 #include "simd/regular_kernel.hpp"
@@ -195,19 +196,28 @@ TEST_P(ClosedChains, EveryLevelGivesTheSameBranches) {
           chain.set_target(iksel_test::reduced(robot, robot.fk(q.row(i))), reference);
           auto pack = reference;
           auto found = reference;
+          auto inside = reference;
           lanes::kKernelsScalar.solve_branches(chain.form, reference);
           for (const std::string& level : iksel_test::levels()) {
             const iksel_test::ForcedLevel forced(level);
             lanes::choose_kernels().solve_branches(chain.form, pack);
             lanes::choose_kernels().find_branches(chain.form, found);
+            lanes::choose_kernels().solve_inside(chain.form, inside);
             for (int lane = 0; lane < lanes::kWidth; ++lane) {
               const double least = reference.least[lane];
               EXPECT_NEAR(pack.least[lane], least, 1e-10 * (1 + std::abs(least))) << level;
               EXPECT_NEAR(found.least[lane], least, 1e-10 * (1 + std::abs(least))) << level;
+              const bool is_none = iksel::is_ruled_out(pack, lane);
+              EXPECT_EQ(iksel::is_ruled_out(inside, lane), is_none) << level;
+              if (!is_none) {
+                EXPECT_EQ(branch_of(chain, inside, lane), branch_of(chain, pack, lane)) << level;
+                EXPECT_EQ(inside.beyond[lane], pack.beyond[lane]) << level;
+              }
               if (least < 1e-12 || reference.error[lane] > 1e-8) continue;
               const JointVector expected = branch_of(chain, reference, lane);
               EXPECT_LE(turned_away(branch_of(chain, pack, lane), expected), 1e-9) << level;
               EXPECT_LE(turned_away(branch_of(chain, found, lane), expected), 1e-9) << level;
+              EXPECT_NEAR(pack.beyond[lane], found.beyond[lane], 1e-9) << level;
             }
           }
         }

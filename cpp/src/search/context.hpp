@@ -64,6 +64,8 @@ struct Workspace {
       curve->find(T_base_tcp, Y, ends ? &*ends : nullptr, *sweep, spacing);
       return curve->arcs();
     }
+    /// Whether the ends of a self-motion tell in closed form if there is a solution.
+    [[nodiscard]] bool has_closed_ends() const { return ends && ends->are_closed(); }
     /// Whether a self-motion has no configuration inside the limits, for the same.
     Proof find_none(const Pose& T_base_tcp, const Pose& Y) {
       if (ends && ends->rules_out(T_base_tcp)) return Proof::closed_form;

@@ -20,7 +20,7 @@ constexpr int kBesideEnds = 16;
 /// The nearest leaf of the database. Returns whether the answers want no more.
 bool search_leaf(const FirstSearch& parts, bool is_screened, NearSeed& near, GivenSeeds& given) {
   Workspace::InLanes& lanes = *parts.workspace.lanes;
-  const bool are_known = lanes.roots || (lanes.ends && lanes.ends->are_closed());
+  const bool are_known = lanes.roots || lanes.has_closed_ends();
   const int from_leaf = is_screened ? kBeforeSamples : are_known ? kBeforeRoots : lanes::kBlock;
   if (lanes.sweep || lanes.roots) {
     lanes.refiner.begin(parts.goal.task(), lanes.sweep ? kBeforeSweep : kBeforeBranches,
@@ -72,7 +72,7 @@ Explored explore_free_curve(const FirstSearch& parts, const Pose& Y) {
 
 Explored explore_curve(const FirstSearch& parts, const Pose& Y) {
   Workspace::InLanes& lanes = *parts.workspace.lanes;
-  const bool are_closed = lanes.ends && lanes.ends->are_closed();
+  const bool are_closed = lanes.has_closed_ends();
   if (are_closed) {
     if (const Explored ends = explore_ends(parts); ends.is_done) return ends;
   }

@@ -10,12 +10,24 @@ namespace iksel {
 
 ArcEnds::ArcEnds(const ChainModel& whole, const LockedArms& arms, double position_tolerance,
                  double rotation_tolerance, const lanes::LaneKernels& kernels)
-    : joints_(whole.joints),
-      position_tolerance_(position_tolerance),
-      rotation_tolerance_(rotation_tolerance),
-      kernels_(kernels),
-      are_all_(arms.are_all),
-      are_closed_(arms.are_closed) {
+    : joints_(whole.joints), are_all_(arms.are_all), are_closed_(arms.are_closed) {
+  const auto make_end = [&](const LockedArm& arm) {
+    const ChainModel& model = *arm.model;
+    End end;
+    end.arm = &arm;
+    end.base_inverse = to_pose(model.kernel.base).inverse();
+    end.tip_inverse = to_pose(model.kernel.tip).inverse();
+    if (arm.pose) {
+      end.branches.emplace(model, *arm.pose, /*is_nominal=*/true, position_tolerance,
+                           rotation_tolerance, kernels);
+    }
+    if (arm.residual) {
+      const double tolerance =
+          std::max(position_tolerance / arm.residual->unit, rotation_tolerance);
+      end.roots.emplace(model, *arm.residual, /*is_nominal=*/true, tolerance, kernels);
+    }
+    return end;
+  };
   ends_.reserve(arms.arms.size());
   // Memory is taken here, and none while solving; the last of more gives way.
   constexpr std::size_t kKept = 128;
@@ -28,25 +40,8 @@ ArcEnds::ArcEnds(const ChainModel& whole, const LockedArms& arms, double positio
   }
 }
 
-ArcEnds::End ArcEnds::make_end(const LockedArm& arm) const {
-  const ChainModel& model = *arm.model;
-  End end;
-  end.arm = &arm;
-  end.base_inverse = to_pose(model.kernel.base).inverse();
-  end.tip_inverse = to_pose(model.kernel.tip).inverse();
-  if (arm.pose) {
-    end.branches.emplace(model, *arm.pose, /*is_nominal=*/true, position_tolerance_,
-                         rotation_tolerance_, kernels_);
-  }
-  if (arm.residual) {
-    const double tolerance =
-        std::max(position_tolerance_ / arm.residual->unit, rotation_tolerance_);
-    end.roots.emplace(model, *arm.residual, /*is_nominal=*/true, tolerance, kernels_);
-  }
-  return end;
-}
-
 bool ArcEnds::find(std::size_t i, const Pose& T_base_tcp) {
+  if (i >= size()) return find_crossings(i - size(), T_base_tcp);
   locked_ = ends_[i].arm->value;
   return solve(ends_[i], T_base_tcp);
 }
@@ -75,12 +70,8 @@ bool ArcEnds::find_crossings(std::size_t side, const Pose& T_base_tcp) {
 
 bool ArcEnds::rules_out(const Pose& T_base_tcp) {
   if (!are_closed()) return false;
-  const auto is_none = [&](bool is_certain) { return is_certain && count_ == 0; };
-  for (std::size_t i = 0; i < size(); ++i) {
-    if (!is_none(find(i, T_base_tcp))) return false;
-  }
-  for (std::size_t side = 0; side < crossings(); ++side) {
-    if (!is_none(find_crossings(side, T_base_tcp))) return false;
+  for (std::size_t i = 0; i < places(); ++i) {
+    if (!find(i, T_base_tcp) || count_ > 0) return false;
   }
   return true;
 }

@@ -27,17 +27,16 @@ class ArcEnds {
     const LockedArm& arm = *ends_[i].arm;
     return {ArcEnd::limit, arm.joint, arm.is_upper};
   }
-  /// Solves the target with the i-th arm: a number of joint values, inside the limits or so near
-  /// to them that it cannot be told. False if there may be others.
+  /// The ends, and where closed curves cross the plane of the elbow, on either side of the first
+  /// axis.
+  [[nodiscard]] std::size_t places() const { return size() + (crossing_ ? 2 : 0); }
+  /// Solves the target with the i-th arm, or for the crossings of a side: a number of joint values,
+  /// inside the limits or so near to them that it cannot be told. False if there may be others.
   bool find(std::size_t i, const Pose& T_base_tcp);
-  /// Whether it can be told in closed form that no curve of solutions lies inside the limits: not
-  /// by its ends, and if it has none, not by where it crosses the plane of the elbow.
+  /// Whether it can be told in closed form that no curve of solutions lies inside the limits: none
+  /// goes through one of the places.
   [[nodiscard]] bool are_closed() const { return are_closed_; }
-  /// Where closed curves cross the plane of the elbow is asked on so many sides of the first axis.
-  [[nodiscard]] std::size_t crossings() const { return crossing_ ? 2 : 0; }
-  /// Solves for those on one side, as find() does.
-  bool find_crossings(std::size_t side, const Pose& T_base_tcp);
-  /// Whether there is certainly none, of either.
+  /// Whether that is so.
   bool rules_out(const Pose& T_base_tcp);
   [[nodiscard]] int count() const { return count_; }
   /// The k-th solution of the last find(), seven joint values [rad or m]; kept until begin().
@@ -64,12 +63,10 @@ class ArcEnds {
     Pose base, base_inverse, tip_inverse;  ///< of the whole kernel chain
   };
 
-  [[nodiscard]] End make_end(const LockedArm& arm) const;
+  bool find_crossings(std::size_t side, const Pose& T_base_tcp);
   bool solve(End& end, const Pose& T_base_tcp);
 
   const JointSpace& joints_;
-  double position_tolerance_, rotation_tolerance_;  ///< [m, rad]
-  const lanes::LaneKernels& kernels_;
   std::vector<End> ends_;
   bool are_all_;
   bool are_closed_;
@@ -81,7 +78,7 @@ class ArcEnds {
   std::vector<std::array<double, 7>> kept_;
 };
 
-/// These as a source of seeds, an arm a stage, and where they are closed the crossings after them.
+/// These as a source of seeds, a place a stage.
 class EndSeeds {
  public:
   EndSeeds(ArcEnds& ends, const Pose& T_base_tcp, Work& work, StageClock& clock)
@@ -91,10 +88,7 @@ class EndSeeds {
 
   bool next_stage() {
     if (is_through()) return false;
-    const std::size_t arm = arm_++;
-    const bool is_certain = arm < ends_.size() ? ends_.find(arm, target_)
-                                               : ends_.find_crossings(arm - ends_.size(), target_);
-    certain_ = certain_ && is_certain;
+    if (!ends_.find(place_++, target_)) certain_ = false;
     next_ = 0;
     clock_.lap(&StageTimes::query);
     return true;
@@ -116,14 +110,14 @@ class EndSeeds {
   [[nodiscard]] bool is_none() const { return is_certain() && ends_.are_closed() && count() == 0; }
 
  private:
-  [[nodiscard]] bool is_through() const { return arm_ == ends_.size() + ends_.crossings(); }
+  [[nodiscard]] bool is_through() const { return place_ == ends_.places(); }
 
   ArcEnds& ends_;
   const Pose& target_;
   Work& work_;
   StageClock& clock_;
   bool certain_;
-  std::size_t arm_ = 0;
+  std::size_t place_ = 0;
   int next_ = 0;
 };
 

@@ -186,36 +186,36 @@ template <typename T>
   store_branch(form, branch, first, pack);
 }
 
-/// Of a form that is closed without a held joint, and how certain it is. Where the first lanes and
-/// those half a pack on have the same arms, these share them.
-template <typename T>
-void solve_closed(const ClosedForm& form, bool stops_outside, bool shares_arms, BranchPack& pack) {
+/// Of a form that is closed without a held joint, and how certain it is. With `kOfOneTarget`, of
+/// all branches of it (all_branches()), as far as it takes to tell that they are not inside the
+/// limits; branches with the same arm, half a pack apart, share it where they are in other lanes.
+template <typename T, bool kOfOneTarget>
+void solve_closed(const ClosedForm& form, BranchPack& pack) {
   constexpr int kCount = Lanes<T>::kCount;
   constexpr int kHalf = kWidth / 2;
-  const bool is_shared = shares_arms && kCount <= kHalf;
-  for (int first = 0; first < (is_shared ? kHalf : kWidth); first += kCount) {
-    if (form.closure == Closure::three_parallel) {
-      solve_parallels<T>(form, stops_outside, first, pack);
-      continue;
+  if (form.closure == Closure::three_parallel) {
+    for (int first = 0; first < kWidth; first += kCount) {
+      solve_parallels<T>(form, kOfOneTarget, first, pack);
     }
-    PlacedArm<T> arm{{{}, Certainty<T>(form.error, stops_outside)}, {}};
+    return;
+  }
+  constexpr bool kShares = kOfOneTarget && kCount <= kHalf;
+  for (int first = 0; first < (kShares ? kHalf : kWidth); first += kCount) {
+    PlacedArm<T> arm{{{}, Certainty<T>(form.error, kOfOneTarget)}, {}};
     place_arm(form, first, pack, arm);
     finish_arm(form, arm, first, pack);
-    if (is_shared) finish_arm(form, arm, first + kHalf, pack);
+    if (kShares) finish_arm(form, arm, first + kHalf, pack);
   }
 }
 
 template <typename T>
 void solve_branches(const ClosedForm& form, BranchPack& pack) {
-  solve_closed<T>(form, /*stops_outside=*/false, /*shares_arms=*/false, pack);
+  solve_closed<T, /*kOfOneTarget=*/false>(form, pack);
 }
 
-/// The same of all branches of one target (all_branches()), as far as it takes to tell that they
-/// are not inside the limits.
 template <typename T>
 void solve_inside(const ClosedForm& form, BranchPack& pack) {
-  const bool shares_arms = form.closure != Closure::three_parallel;
-  solve_closed<T>(form, /*stops_outside=*/true, shares_arms, pack);
+  solve_closed<T, /*kOfOneTarget=*/true>(form, pack);
 }
 
 /// Of any form, without `best` and `worst`; `error` is the least that it may be.

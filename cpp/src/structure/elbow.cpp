@@ -21,25 +21,26 @@ std::optional<Elbow> Elbow::of(const ChainModel& model) {
   Elbow elbow;
   elbow.axes_ = ScrewAxes::of(model);
   const ScrewAxes& axes = elbow.axes_;
-  const double tolerance = kSweptTolerance * model.reach;
-  // Where three axes from one on meet.
+  // Whether three axes from one on go through a point, up to a tolerance [in units of the reach].
+  const auto meet_in = [&](const Vector3d& point, std::size_t i, double tolerance) {
+    const double most = tolerance * model.reach;
+    return axes.distance(i, point) <= most && axes.distance(i + 1, point) <= most &&
+           axes.distance(i + 2, point) <= most;
+  };
+  // Where they meet.
   const auto centre = [&](std::size_t i, Vector3d& point) {
     if (axes.angle(i, i + 1) <= kParallel || axes.angle(i + 1, i + 2) <= kParallel) return false;
     point = axes.middle(i, i + 1);
-    return axes.distance(i, point) <= tolerance && axes.distance(i + 1, point) <= tolerance &&
-           axes.distance(i + 2, point) <= tolerance;
+    return meet_in(point, i, kSweptTolerance);
   };
   if (!centre(0, elbow.shoulder_) || !centre(4, elbow.wrist_)) return std::nullopt;
   elbow.elbow_ = axes.p[3] + axes.h[3] * axes.h[3].dot(elbow.shoulder_ - axes.p[3]);
-  const auto meet_exactly = [&](std::size_t i, const Vector3d& point) {
-    bool do_meet = true;
-    for (std::size_t j = i; j < i + 3; ++j) {
-      do_meet = do_meet && axes.distance(j, point) <= kStructureTolerance * model.reach;
-    }
-    return do_meet && std::abs(axes.h[i].dot(axes.h[i + 1])) <= kStructureTolerance &&
+  const auto is_spherical = [&](const Vector3d& point, std::size_t i) {
+    return meet_in(point, i, kStructureTolerance) &&
+           std::abs(axes.h[i].dot(axes.h[i + 1])) <= kStructureTolerance &&
            std::abs(axes.h[i + 1].dot(axes.h[i + 2])) <= kStructureTolerance;
   };
-  elbow.goes_round_ = meet_exactly(0, elbow.shoulder_) && meet_exactly(4, elbow.wrist_);
+  elbow.goes_round_ = is_spherical(elbow.shoulder_, 0) && is_spherical(elbow.wrist_, 4);
   for (std::size_t j = 0; j < 4; ++j) elbow.offset_[j] = model.kernel.joints[j].offset;
   return elbow;
 }

@@ -107,11 +107,11 @@ void AnswerSelector::descend_from(JointVector end, double& best, JointVector& q)
 
 void AnswerSelector::descend(JointVector& q) {
   if (nearest_to_) {
-    steps_ += descend_to_near(model_, goal_, nearest_to_->move, nearest_to_->from, q);
+    steps_ += descend_to_near(goal_, nearest_to_->move, nearest_to_->from, q);
   } else {
     constexpr int kObjectiveSteps = 50;
     const ObjectiveCost cost(model_, request_.objective);
-    steps_ += descend_self_motion(model_, goal_, JointCost(cost), kObjectiveSteps, q);
+    steps_ += descend_self_motion(goal_, JointCost(cost), kObjectiveSteps, q);
   }
 }
 

@@ -98,7 +98,7 @@ void Collector::converge_from_near() {
   if (!nearest_to_ || has_converged_) return;
   has_converged_ = true;
   JointVector q = nearest_to_->from;
-  if (converge(model_, goal_, kStepsToNext, q)) offer(0, q);
+  if (converge(goal_, kStepsToNext, q)) offer(0, q);
 }
 
 void Collector::wrap_near(const JointVector& near, Result& answer) const {
@@ -122,7 +122,7 @@ void Collector::wrap_near(const JointVector& near, Result& answer) const {
   }
   // Nor need the answer at the limit that the others make up for.
   const JointVector held = image;
-  if (converge(model_, goal_, kStepsToNext, image) &&
+  if (converge(goal_, kStepsToNext, image) &&
       (image - held).cwiseAbs().maxCoeff() < 2 * kBesideLimit && goal_.check(image, answer)) {
     return;
   }

@@ -48,7 +48,7 @@ Proof search_pose(const AllSearch& parts, NearSeed& near, GivenSeeds& given, con
     // What ranks answers otherwise has looked for none there.
     const bool has_looked =
         answers.spread() > 0 || answers.wants_nearest() || answers.wants_nearest_free();
-    has_asked_ends = lanes.ends && has_looked && answers.status == Status::not_converged &&
+    has_asked_ends = lanes.ends && has_looked && answers.status() == Status::not_converged &&
                      curve.proof != Proof::closed_form;
     if (has_asked_ends) {
       if (const auto ends = explore_ends(parts); ends.is_done) curve = ends;
@@ -71,7 +71,7 @@ Explored explore_held(const AllSearch& parts) {
     if (!found) continue;
     parts.refine_rows(inner.q().data(), 1, /*are_answers=*/true, Width::narrow);
     if (!parts.answers.has_any()) continue;
-    parts.answers.is_settled = true;
+    parts.answers.settle(true);
     return Explored::done();
   }
   return Explored::doubtful();

@@ -167,8 +167,8 @@ Solutions Solver::Impl::solve_all(const Pose& target, const SolveAllOptions& all
   collect(model(), options, search, workspace);
 
   Solutions solutions;
-  solutions.status = search.status;
-  solutions.proof = search.proof;
+  solutions.status = search.status();
+  solutions.proof = search.proof();
   solutions.attempts = search.work.all_attempts();
   solutions.iterations = search.work.iterations;
 
@@ -217,7 +217,7 @@ Solutions Solver::Impl::solve_all(const Pose& target, const SolveAllOptions& all
   }
   if (solutions.all.empty()) {
     if (solutions.status == Status::solved) solutions.status = screen.refusal();
-    if (search.is_out_of_time) solutions.status = Status::out_of_time;
+    if (search.is_out_of_time()) solutions.status = Status::out_of_time;
   } else if (solutions.proof == Proof::none) {
     solutions.proof = Proof::answer;
   }

@@ -122,8 +122,8 @@ Result Solver::Impl::find_answer(const Pose& target, const TaskSpace& of_call,
   collect(model(), options, search, workspace, times);
 
   JointVector q;
-  if (search.status != Status::solved) {
-    result.status = search.status;
+  if (search.status() != Status::solved) {
+    result.status = search.status();
   } else if (selector.select(search, q) && goal.check(q, result)) {
     if (request.objective.is_set()) {
       result.cost = ObjectiveCost(model(), request.objective).value(q);
@@ -133,8 +133,8 @@ Result Solver::Impl::find_answer(const Pose& target, const TaskSpace& of_call,
     result.status = screen.refusal();
   }
   if (!result.success()) {
-    result.proof = search.proof;
-    if (search.is_out_of_time) result.status = Status::out_of_time;
+    result.proof = search.proof();
+    if (search.is_out_of_time()) result.status = Status::out_of_time;
   }
   result.attempts = search.work.all_attempts();
   result.iterations = search.work.iterations + selector.steps();

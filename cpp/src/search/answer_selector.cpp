@@ -17,8 +17,6 @@ constexpr std::size_t kDescents = 4;
 /// The same where an arm that is not redundant is singular: the nearest of several families may be
 /// that of the sixth (python -m bench laws right_angles_6 --poses 100).
 constexpr std::size_t kSingularDescents = 16;
-/// Images looked at, at most: joints with a wide range have more than time allows.
-constexpr std::size_t kMostImages = 65536;
 
 }  // namespace
 

@@ -7,16 +7,13 @@
 namespace iksel {
 namespace {
 
-/// More than so many have more than one joint to spare, and are not swept.
-constexpr int kSweptJoints = 7;
-
 /// From the whole database, and before it from around what the nearest is wanted to. Returns
 /// whether the answers want no more.
 bool search_widely(const AllSearch& parts) {
   Workspace::InLanes& lanes = *parts.workspace.lanes;
   Collector& answers = parts.answers;
   lanes.refiner.begin(parts.goal.task(), kAll, Width::wide);
-  if (parts.model.dof > kSweptJoints && answers.ranks_by_move() &&
+  if (parts.model.dof > kCurveJoints && answers.ranks_by_move() &&
       !parts.request.objective.is_set()) {
     NearbySeeds nearby(parts.model.joints, answers.nearest_to().from, parts.options.seed,
                        parts.work);

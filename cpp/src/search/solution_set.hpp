@@ -12,6 +12,10 @@
 
 namespace iksel {
 
+/// Images of solutions that are looked at, at most: joints with a wide range have more than time
+/// allows.
+inline constexpr std::size_t kMostImages = 65536;
+
 /// Memory is taken at construction, none later.
 class SolutionSet {
  public:

@@ -20,8 +20,6 @@ namespace {
 constexpr std::size_t kChoice = 4;
 /// Solutions spread over a self-motion, at most: as many as a set can hold.
 constexpr int kMostSpread = static_cast<int>(SolutionSet::kMost / kChoice);
-/// Images looked at, at most.
-constexpr std::size_t kImageBound = 65536;
 
 /// A solution, or one of its periodic images.
 struct Image {
@@ -98,7 +96,7 @@ std::vector<Image> images_of(const JointSpace& joints, const SolutionSet& found,
     joints.first_image(q);
     do {
       images.push_back({q, cost(q), i});
-    } while (images.size() < kImageBound && joints.next_image(q));
+    } while (images.size() < kMostImages && joints.next_image(q));
   }
   return images;
 }

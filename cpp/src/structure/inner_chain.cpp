@@ -7,8 +7,8 @@ namespace iksel {
 
 std::vector<InnerChain> InnerChain::of(const ChainModel& whole) {
   std::vector<InnerChain> found;
-  if (whole.dof <= kJoints || !is_simple(whole)) return found;
-  for (int first = 0; first + kJoints <= whole.dof; ++first) {
+  if (whole.dof <= kCurveJoints || !is_simple(whole)) return found;
+  for (int first = 0; first + kCurveJoints <= whole.dof; ++first) {
     InnerChain inner;
     inner.first = first;
     RobotOptions options = whole.options;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/low_discrepancy.hpp"
+
 namespace iksel {
 namespace {
 
@@ -16,14 +18,10 @@ constexpr int kNearPatience = 16;
 }  // namespace
 
 SharedValues::SharedValues(const TreeModel& model, const NearBound* bound)
-    : model_(model), bound_(bound), index_(bound != nullptr ? -1 : 0) {
-  const std::size_t count = model.shared.size();
-  double phi = 2.0;
-  for (int i = 0; i < 64; ++i) phi = std::pow(1.0 + phi, 1.0 / static_cast<double>(count + 1));
-  for (std::size_t j = 0; j < count; ++j) {
-    step_[j] = std::pow(1.0 / phi, static_cast<double>(j + 1));
-  }
-}
+    : model_(model),
+      bound_(bound),
+      index_(bound != nullptr ? -1 : 0),
+      step_(low_discrepancy_steps(model.shared.size())) {}
 
 std::pair<double, double> SharedValues::range(int joint) const {
   const JointSpace& joints = model_.joints;

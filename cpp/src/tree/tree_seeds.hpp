@@ -4,6 +4,7 @@
 
 #include <array>
 #include <utility>
+#include <vector>
 
 #include "base/constants.hpp"
 #include "base/work.hpp"
@@ -21,9 +22,7 @@ struct NearBound {
 };
 
 /// Values of the shared joints: those of `near` if there is one, those in the middle of the limits,
-/// then spread evenly over the limits, as far as they lie within the bound (R_d: the additive
-/// recurrence by the powers of 1 / phi, phi the real root of x^(d+1) = x + 1; M. Roberts, "The
-/// unreasonable effectiveness of quasirandom sequences", 2018).
+/// then spread evenly over the limits, as far as they lie within the bound.
 class SharedValues {
  public:
   /// `bound` may be null. All must outlive this.
@@ -41,7 +40,7 @@ class SharedValues {
   const TreeModel& model_;
   const NearBound* bound_;
   int index_;
-  std::array<double, kMaxDof> step_{};
+  std::vector<double> step_;
 };
 
 /// The arms solved behind one value of the shared joints after another; a stage has one value. Only

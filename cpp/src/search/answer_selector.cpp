@@ -55,7 +55,8 @@ bool AnswerSelector::select(const Collector& search, JointVector& q) {
   }
   if (count == 0) return select_image(kInfinity, q);
   // Where not all solutions are known for certain, they may come in families.
-  const bool is_in_doubt = nearest_to_ && !goal_.is_redundant() && search.proof() == Proof::none;
+  const bool is_in_doubt =
+      nearest_to_ && !goal_.is_redundant() && search.result().proof == Proof::none;
   const bool is_redundant = goal_.is_redundant() && !search.is_settled();
   const std::size_t descents = std::min(count, is_redundant  ? kDescents
                                                : is_in_doubt ? kSingularDescents

@@ -114,9 +114,14 @@ class Collector : public SearchState {
   void settle(bool is_settled) { is_settled_ = is_settled; }
   [[nodiscard]] bool is_settled() const { return is_settled_; }
 
-  /// Says what is proven of solutions besides those found.
-  void conclude(Proof proof) { result_.proof = proof; }
-  [[nodiscard]] Proof proof() const { return result_.proof; }
+  /// Says that the search is over, and what is proven of solutions besides those found.
+  void conclude(Proof proof) {
+    result_.proof = proof;
+    result_.attempts = work.all_attempts();
+    result_.iterations = work.iterations;
+  }
+  /// What it came to, without any of the answers.
+  [[nodiscard]] const Result& result() const { return result_; }
   [[nodiscard]] bool is_out_of_time() const { return is_out_of_time_; }
 
  private:

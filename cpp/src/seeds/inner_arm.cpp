@@ -4,8 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "base/angle.hpp"
-
 namespace iksel {
 
 InnerArm::InnerArm(const ChainModel& whole, const InnerChain& inner,
@@ -41,9 +39,8 @@ bool InnerArm::find(const Pose& T_base_tcp, const NearestTo& to) {
   for (int j = 0; j < kCurveJoints; ++j) q_[inner_.first + j] = curve_.q(0)[j];
   // Where it is preferred itself, the swept joint may have had to move.
   constexpr double kStays = 1e-9;
-  double moved = q_[swept_] - to.from[swept_];
-  if (!whole_.joints.is_slide(swept_)) moved = without_turns(moved);
-  return !to.prefers(swept_) || std::abs(moved) <= kStays;
+  return !to.prefers(swept_) ||
+         std::abs(whole_.joints.difference(swept_, to.from[swept_], q_[swept_])) <= kStays;
 }
 
 }  // namespace iksel

@@ -120,36 +120,33 @@ bool ArmSeeds::is_too_far(unsigned solved) const {
 }
 
 void ArmSeeds::keep_partial(unsigned solved, int count) {
-  int at = std::min(partial_count_, kPartials - 1);
-  if (partial_count_ == kPartials && partial_[kPartials - 1].count >= count) return;
-  partial_count_ = at + 1;
-  for (; at > 0 && partial_[static_cast<std::size_t>(at) - 1].count < count; --at) {
-    partial_[static_cast<std::size_t>(at)] = partial_[static_cast<std::size_t>(at) - 1];
-  }
-  partial_[static_cast<std::size_t>(at)] = {q_, solved, count};
+  const auto place = std::find_if(partials_.begin(), partials_.end(),
+                                  [&](const Partial& other) { return other.count < count; });
+  partials_.insert(place, {q_, solved, count});
+  if (partials_.size() > kPartials) partials_.pop_back();
 }
 
 bool StackedSeeds::next_stage() {
   if (!work_.take()) return false;
   const int tips = goal_.model().tip_count();
-  const int partials = before_.partial_count();
+  const std::vector<ArmSeeds::Partial>& partials = before_.partials();
+  const auto count = static_cast<int>(partials.size());
   const int i = index_++;
   if (i < tips) {
     if (!make_from_chain(i, /*at_random=*/false)) return false;
-  } else if (i - tips < partials) {
-    make_from_partial(i - tips);
+  } else if (i - tips < count) {
+    make_from(partials[static_cast<std::size_t>(i - tips)]);
   } else {
-    make_from_chain((i - partials) % tips, /*at_random=*/true);
+    make_from_chain((i - count) % tips, /*at_random=*/true);
   }
   is_loaded_ = true;
   return true;
 }
 
-void StackedSeeds::make_from_partial(int i) {
-  q_ = before_.partial(i);
+void StackedSeeds::make_from(const ArmSeeds::Partial& partial) {
+  q_ = partial.q;
   for (int tip = 0; tip < goal_.model().tip_count(); ++tip) {
-    const unsigned bit = 1U << static_cast<unsigned>(tip);
-    if ((before_.solved_in_partial(i) & bit) == 0) arms_.bring_closest(tip, q_);
+    if ((partial.solved & (1U << static_cast<unsigned>(tip))) == 0) arms_.bring_closest(tip, q_);
   }
 }
 

@@ -2,7 +2,6 @@
 // Sources of seeds for several tips at once, made of what the solvers of the chains know.
 #pragma once
 
-#include <array>
 #include <utility>
 #include <vector>
 
@@ -59,21 +58,17 @@ class ArmSeeds {
     return true;
   }
 
-  /// Of the values where some arm could not be solved: those where most others could, best first.
-  [[nodiscard]] int partial_count() const { return partial_count_; }
-  [[nodiscard]] JointVector partial(int i) const { return partial_[static_cast<std::size_t>(i)].q; }
-  /// Bit t: arm t could be solved there.
-  [[nodiscard]] unsigned solved_in_partial(int i) const {
-    return partial_[static_cast<std::size_t>(i)].solved;
-  }
-
- private:
+  /// Values where some arm could not be solved.
   struct Partial {
     JointVector q;
-    unsigned solved = 0;
-    int count = 0;
+    unsigned solved;  ///< bit t: arm t could be solved
+    int count;        ///< of those that could
   };
-  static constexpr int kPartials = 8;
+  /// Those where most could, best first.
+  [[nodiscard]] const std::vector<Partial>& partials() const { return partials_; }
+
+ private:
+  static constexpr std::size_t kPartials = 8;
 
   void keep_partial(unsigned solved, int count);
   /// Whether the shared joints, and those of the solved arms, alone move too far.
@@ -91,8 +86,7 @@ class ArmSeeds {
   int first_ = 0;
   JointVector q_;
   bool is_complete_ = false;
-  std::array<Partial, kPartials> partial_;
-  int partial_count_ = 0;
+  std::vector<Partial> partials_;
 };
 
 /// Seeds for all joints together. First from where most arms could be solved, the others as close
@@ -115,7 +109,7 @@ class StackedSeeds {
   }
 
  private:
-  void make_from_partial(int i);
+  void make_from(const ArmSeeds::Partial& partial);
   /// False if the chain of that tip cannot be solved by itself.
   bool make_from_chain(int lead, bool at_random);
 

@@ -88,23 +88,16 @@ bool ArmSeeds::next_stage() {
   values_.next(q_);
   const int tips = goal_.model().tip_count();
   unsigned solved = 0;
-  int count = 0;
-  int missing = -1;
   for (int k = 0; k < tips; ++k) {
     const int tip = (first_ + k) % tips;
     if (is_too_far(solved)) return true;
-    if (arms_.solve_arm(tip, solved, q_)) {
-      solved |= 1U << static_cast<unsigned>(tip);
-      ++count;
-    } else if (missing < 0) {
-      missing = tip;
+    if (!arms_.solve_arm(tip, solved, q_)) {
+      first_ = tip;
+      return true;
     }
+    solved |= 1U << static_cast<unsigned>(tip);
   }
-  is_complete_ = count == tips;
-  if (!is_complete_) {
-    keep_partial(solved, count);
-    first_ = missing;
-  }
+  is_complete_ = true;
   return true;
 }
 
@@ -119,35 +112,12 @@ bool ArmSeeds::is_too_far(unsigned solved) const {
   return bound_->move.length(moved - bound_->near) >= bound_->best;
 }
 
-void ArmSeeds::keep_partial(unsigned solved, int count) {
-  const auto place = std::find_if(partials_.begin(), partials_.end(),
-                                  [&](const Partial& other) { return other.count < count; });
-  partials_.insert(place, {q_, solved, count});
-  if (partials_.size() > kPartials) partials_.pop_back();
-}
-
 bool StackedSeeds::next_stage() {
   if (!work_.take()) return false;
   const int tips = goal_.model().tip_count();
-  const std::vector<ArmSeeds::Partial>& partials = before_.partials();
-  const auto count = static_cast<int>(partials.size());
-  const int i = index_++;
-  if (i < tips) {
-    if (!make_from_chain(i, /*at_random=*/false)) return false;
-  } else if (i - tips < count) {
-    make_from(partials[static_cast<std::size_t>(i - tips)]);
-  } else {
-    make_from_chain((i - count) % tips, /*at_random=*/true);
-  }
-  is_loaded_ = true;
-  return true;
-}
-
-void StackedSeeds::make_from(const ArmSeeds::Partial& partial) {
-  q_ = partial.q;
-  for (int tip = 0; tip < goal_.model().tip_count(); ++tip) {
-    if ((partial.solved & (1U << static_cast<unsigned>(tip))) == 0) arms_.bring_closest(tip, q_);
-  }
+  is_loaded_ = make_from_chain(index_ % tips, /*at_random=*/index_ >= tips);
+  ++index_;
+  return is_loaded_;
 }
 
 bool StackedSeeds::make_from_chain(int lead, bool at_random) {

@@ -17,6 +17,8 @@ class StackedRefiner {
   [[nodiscard]] int width() const { return 1; }
   void load_seed(int /*lane*/, const double* q) {
     q_ = Eigen::Map<const Eigen::VectorXd>(q, goal_.model().dof());
+    // Each chain was solved without what it shares with others.
+    if (!goal_.joints().coupled.empty()) q_ = goal_.joints().clamp(q_);
   }
   /// An attempt from beginning to end. Returns the steps.
   int advance(unsigned busy);

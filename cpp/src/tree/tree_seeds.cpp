@@ -91,7 +91,7 @@ bool ArmSeeds::next_stage() {
   for (int k = 0; k < tips; ++k) {
     const int tip = (first_ + k) % tips;
     if (is_too_far(solved)) return true;
-    if (!arms_.solve_arm(tip, solved, q_)) {
+    if (!arms_.solve_arm(tip, q_)) {
       first_ = tip;
       return true;
     }

@@ -9,6 +9,7 @@
 #include "goal/goal.hpp"
 #include "iksel/iksel.hpp"
 #include "refine/iterate.hpp"
+#include "refine/limited_step.hpp"
 #include "refine/schemes.hpp"
 #include "robots.hpp"
 
@@ -138,8 +139,9 @@ TEST(Steps, LmNeverLeavesTheLimits) {
       JointVector at = q.row(i);
       at[1] = i % 2 == 0 ? robot.lower()[1] : robot.upper()[1];
       const Vector6 e = 5 * random_error(random);
-      const JointVector goal = at + iksel::lm_step(robot.model(), at, robot.jacobian(at), e,
-                                                   1e-3 * e.squaredNorm(), true);
+      const JacobianMatrix J = robot.jacobian(at);
+      const JointVector goal = at + iksel::lm_step(robot.model().joints, at, J, e,
+                                                   1e-3 * e.squaredNorm(), /*wraps=*/true);
       for (int j = 0; j < robot.dof(); ++j) {
         if (robot.model().joints.is_periodic(j)) continue;
         EXPECT_GE(goal[j], robot.lower()[j] - 1e-12);

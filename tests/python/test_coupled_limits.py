@@ -19,6 +19,7 @@ from linkage_arms import (
     searched,
     sums,
 )
+from trees import two_arms_on_torso
 
 import iksel
 from iksel._limits import violated_limits
@@ -354,6 +355,24 @@ def test_limits_of_mimic_and_locked_joints_are_of_their_sources() -> None:
     assert second.min() >= -1.6
     assert second.max() <= 1.6
     assert second.max() > 1.5
+
+
+def test_limits_of_what_carries_an_arm_are_kept() -> None:
+    """Seven joints of the arm are an arm themselves, wherever the torso stands."""
+    panda = iksel.load_robot("panda")
+    torso = iksel.CoupledLimit({"lift": 4, "turn": 1}, 0.9, 1.1)
+    robot = iksel.Robot.from_urdf(
+        two_arms_on_torso(panda), "base", "l_" + panda.tip_link, coupled_limits=[torso]
+    )
+    solver = iksel.Solver(robot)
+    q = robot.random_configurations(CASES, seed=5)
+    near = q + 0.1 * np.sin(np.arange(q.size)).reshape(q.shape)
+    for answers in (
+        solver.solve_batch(robot.fk(q)),
+        solver.solve_batch(robot.fk(q), near=near),
+    ):
+        assert answers.solved == len(q)
+        assert is_inside(robot, answers.q).all()
 
 
 def test_databases_are_of_one_set_of_limits() -> None:

@@ -9,4 +9,9 @@ inline constexpr double kPi = 3.14159265358979323846;
 inline constexpr double kTwoPi = 2.0 * kPi;
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// Joints of an arm whose solutions of a pose are a curve: one more than the pose fixes.
+inline constexpr int kCurveJoints = 7;
+/// Most images that the joints in coupled limits may have together.
+inline constexpr int kMostCoupledImages = 64;
+
 }  // namespace iksel

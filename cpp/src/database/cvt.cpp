@@ -21,16 +21,14 @@ namespace {
 /// A random point inside the limits, scaled; what is coupled is convex, and so means stay inside.
 void draw_point(const SampleSpace& space, const std::vector<double>& scale, Random& random,
                 double* point) {
-  constexpr int kMostDraws = 1000;
   double q[kMaxDof];
-  for (int draw = 0; draw < kMostDraws; ++draw) {
+  space.draw_inside(q, [&] {
     for (std::size_t j = 0; j < space.dof(); ++j) {
       const double lower = space.lower[j] * scale[j];
       point[j] = lower + (space.upper[j] - space.lower[j]) * scale[j] * random.uniform();
       q[j] = point[j] / scale[j];
     }
-    if (space.holds(q)) return;
-  }
+  });
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "base/low_discrepancy.hpp"
 #include "base/random.hpp"
 #include "iksel/database.hpp"
 
@@ -52,47 +53,35 @@ void fill_grid(const SampleSpace& space, const DatabaseOptions& options,
   }
 }
 
-/// Draws are repeated at most so often where they lie outside coupled limits.
-constexpr int kMostRepeats = 1000;
-
 void fill_random(const SampleSpace& space, std::uint64_t seed, std::vector<double>& samples) {
   Random random(seed);
   const std::size_t dof = space.dof();
   for (std::size_t i = 0; i < samples.size(); i += dof) {
-    for (int draw = 0; draw < kMostRepeats; ++draw) {
+    space.draw_inside(&samples[i], [&] {
       for (std::size_t j = 0; j < dof; ++j) {
         samples[i + j] = random.uniform(space.lower[j], space.upper[j]);
       }
-      if (space.holds(&samples[i])) break;
-    }
+    });
   }
 }
 
-/// R_d: the additive recurrence by the powers of 1 / phi, phi the real root of x^(d+1) = x + 1
-/// (M. Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018), shifted by the
-/// seed.
+/// Shifted by the seed.
 void fill_low_discrepancy(const SampleSpace& space, std::uint64_t seed,
                           std::vector<double>& samples) {
   const std::size_t dof = space.dof();
-  double phi = 2.0;
-  for (int i = 0; i < 64; ++i) phi = std::pow(1.0 + phi, 1.0 / static_cast<double>(dof + 1));
+  const std::vector<double> step = low_discrepancy_steps(dof);
   Random random(seed);
-  std::vector<double> alpha(dof);
   std::vector<double> shift(dof);
-  for (std::size_t j = 0; j < dof; ++j) {
-    alpha[j] = std::pow(1.0 / phi, static_cast<double>(j + 1));
-    shift[j] = random.uniform();
-  }
+  for (double& each : shift) each = random.uniform();
   double index = 0;
   for (std::size_t i = 0; i < samples.size(); i += dof) {
-    for (int draw = 0; draw < kMostRepeats; ++draw) {
+    space.draw_inside(&samples[i], [&] {
       ++index;
       for (std::size_t j = 0; j < dof; ++j) {
-        const double x = shift[j] + alpha[j] * index;
+        const double x = shift[j] + step[j] * index;
         samples[i + j] = space.lower[j] + (space.upper[j] - space.lower[j]) * (x - std::floor(x));
       }
-      if (space.holds(&samples[i])) break;
-    }
+    });
   }
 }
 

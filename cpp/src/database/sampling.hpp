@@ -26,6 +26,15 @@ struct SampleSpace {
   /// Whether no coupled limit is violated.
   [[nodiscard]] bool holds(const double* sample) const;
   [[nodiscard]] std::size_t dof() const { return lower.size(); }
+  /// Draws a sample by draw(), again where it violates a coupled limit, though not without end.
+  template <typename Draw>
+  void draw_inside(const double* sample, const Draw& draw) const {
+    constexpr int kMostDraws = 1000;
+    for (int i = 0; i < kMostDraws; ++i) {
+      draw();
+      if (holds(sample)) return;
+    }
+  }
 };
 
 /// All joints, or those that `reduction` does not leave out.

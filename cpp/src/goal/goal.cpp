@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/constants.hpp"
+#include "iksel/pose.hpp"
 #include "scene/scene_data.hpp"
 
 namespace iksel {
@@ -63,6 +64,26 @@ void Goal::measure(const JointVector& q, double& position, double& rotation,
     measure_error(target_, model_.fk_jacobian(q.data(), *jacobian), position, rotation);
   } else {
     measure_error(target_, model_.fk_frame(q.data()), position, rotation);
+  }
+}
+
+void Goal::linearize(const JointVector& q, bool exact, Linear& at) const {
+  Pose pose;
+  Jacobian of_pose;
+  model_.fk_jacobian(q.data(), pose, of_pose);
+  at.J = of_pose;
+  linearize(pose, exact, at);
+}
+
+void Goal::linearize(const Pose& pose, bool exact, Linear& at) const {
+  at.lower = task_.aim_lower();
+  at.upper = task_.aim_upper();
+  if (is_full_pose() && !exact) {
+    at.missing = pose_error(target_, pose);
+    at.deviation = -at.missing;
+  } else {
+    at.deviation = task_.deviation(target_, pose, at.J);
+    at.missing = task_.missing(at.deviation);
   }
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "base/random.hpp"
+#include "goal/linear_goal.hpp"
 #include "goal/task_space.hpp"
 #include "iksel/result.hpp"
 #include "iksel/scene.hpp"
@@ -18,6 +19,7 @@ class Goal {
        const Scene* scene = nullptr)
       : model_(model), task_(task), target_(T_base_tcp), scene_(scene) {}
 
+  [[nodiscard]] const JointSpace& joints() const { return model_.joints; }
   [[nodiscard]] const TaskSpace& task() const { return task_; }
   [[nodiscard]] bool is_full_pose() const { return task_.is_full_pose(); }
   /// T_base_tcp.
@@ -40,6 +42,18 @@ class Goal {
                Jacobian* jacobian = nullptr) const;
   [[nodiscard]] bool is_reached(double position, double rotation) const {
     return position <= task_.position_tolerance() && rotation <= task_.rotation_tolerance();
+  }
+
+  using Linear = LinearGoal<6, 6>;
+  /// What is wanted around q, as deviations of the TCP from the task. If not `exact`, the rotation
+  /// of a full pose is to first order near the target.
+  void linearize(const JointVector& q, bool exact, Linear& at) const;
+  /// The same where the TCP is at `pose`, of which `at` has the Jacobian.
+  void linearize(const Pose& pose, bool exact, Linear& at) const;
+  /// Whether what is missing of a deviation is less than that part of the tolerances.
+  [[nodiscard]] bool is_reached(const Vector6& missing, double part) const {
+    return missing.head<3>().norm() < part * task_.position_tolerance() &&
+           missing.tail<3>().norm() < part * task_.rotation_tolerance();
   }
   /// Computes the errors of q anew, whatever a search has found them to be; only if q reaches the
   /// target inside the limits, it becomes the result.

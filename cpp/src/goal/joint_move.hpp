@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/function_ref.hpp"
 #include "iksel/request.hpp"
 
 namespace iksel {
@@ -45,6 +46,11 @@ struct NearestTo {
 /// a posture, or else `near`. Joints without weight in the objective decide between answers that
 /// are equally good, as `near` would if there is one.
 std::optional<NearestTo> find_nearest_to(int dof, const SolveRequest& request);
+
+/// Value of a cost at q; also its gradient, and the diagonal of a positive approximation of its
+/// second derivative, if they are not null.
+using JointCost =
+    FunctionRef<double(const JointVector& q, JointVector* gradient, JointVector* curvature)>;
 
 /// Half the squared weighted move from a configuration, or for the max norm a p-norm near to it. A
 /// joint without weight still has a little, so that it does not drift.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -17,6 +18,15 @@ namespace iksel {
 /// Whether answers to the request may be refused.
 inline bool screens_answers(const SolveRequest& request) {
   return request.scene || static_cast<bool>(request.filter);
+}
+
+/// The filter for several threads, which ask one after the other; both must outlive it.
+inline Filter in_turn(const Filter& filter, std::mutex& turn) {
+  if (!filter) return {};
+  return [&](const double* q, std::size_t count, bool* keep) {
+    const std::lock_guard<std::mutex> held(turn);
+    filter(q, count, keep);
+  };
 }
 
 class Screen {

@@ -21,9 +21,6 @@
 
 namespace iksel {
 
-/// Most images that the joints in coupled limits may have together.
-inline constexpr int kMostCoupledImages = 64;
-
 /// lower <= c . q <= upper
 struct CoupledRow {
   int given = 0;        ///< its number in the options

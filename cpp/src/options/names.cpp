@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The enums of results in words, in the order of their values.
+// Enums in words, in the order of their values.
 #include <cstddef>
 
 #include "iksel/diagnosis.hpp"
 #include "iksel/result.hpp"
+#include "iksel/scene.hpp"
+#include "iksel/self_motion.hpp"
+#include "iksel/structure.hpp"
 
 namespace iksel {
 namespace {
@@ -29,6 +32,16 @@ const char* to_string(Status status) {
 const char* to_string(Cause cause) {
   return name_of(cause, {"none", "out_of_reach", "orientation", "joint_limits", "no_branch",
                          "rejected", "singular", "budget", "out_of_time", "collision"});
+}
+
+const char* to_string(StructureKind kind) {
+  return name_of(kind, {"closed_form", "swept", "searched"});
+}
+
+const char* to_string(ArcEnd end) { return name_of(end, {"limit", "fold", "closed"}); }
+
+const char* to_string(Obstacle::Shape shape) {
+  return name_of(shape, {"sphere", "box", "capsule", "cylinder", "half_space", "points"});
 }
 
 }  // namespace iksel

@@ -75,16 +75,15 @@ void Paper::validate() const {
              "where there is a re-selection");
   check_read("damping", is_one_of(Iteration::dls, Iteration::lm), damping, standard.damping,
              "by iteration 'dls' and 'lm'");
-  check_read("pinv_cutoff",
-             is_one_of(Iteration::dls, Iteration::pinv, Iteration::pinv_rr, Iteration::cwpi),
-             pinv_cutoff, standard.pinv_cutoff, "by iteration 'dls', 'pinv', 'pinv_rr' and 'cwpi'");
+  const bool inverts =
+      is_one_of(Iteration::dls, Iteration::pinv, Iteration::pinv_rr, Iteration::cwpi);
+  constexpr const char* kInverting = "by iteration 'dls', 'pinv', 'pinv_rr' and 'cwpi'";
+  check_read("pinv_cutoff", inverts, pinv_cutoff, standard.pinv_cutoff, kInverting);
   check_read("position_clamp", !is_lm, position_clamp, standard.position_clamp,
              "by all iterations but 'lm'");
   check_read("rotation_clamp", !is_lm, rotation_clamp, standard.rotation_clamp,
              "by all iterations but 'lm'");
-  check_read("min_step",
-             is_one_of(Iteration::dls, Iteration::pinv, Iteration::pinv_rr, Iteration::cwpi),
-             min_step, standard.min_step, "by iteration 'dls', 'pinv', 'pinv_rr' and 'cwpi'");
+  check_read("min_step", inverts, min_step, standard.min_step, kInverting);
   check_read("limit_margin", is_one_of(Iteration::cwln, Iteration::cwpi), limit_margin,
              standard.limit_margin, "by iteration 'cwln' and 'cwpi'");
 }

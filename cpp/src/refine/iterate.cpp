@@ -7,6 +7,7 @@
 #include "base/angle.hpp"
 #include "base/rotation.hpp"
 #include "iksel/pose.hpp"
+#include "refine/limited_step.hpp"
 #include "refine/schemes.hpp"
 
 namespace iksel {
@@ -46,7 +47,7 @@ JointVector make_step(const IterationContext& context, const JointVector& q,
     case Iteration::lm:
       break;
   }
-  return lm_step(context.model, q, J, e, scheme.damping * squared_error, scheme.whole_turns);
+  return lm_step(context.model.joints, q, J, e, scheme.damping * squared_error, scheme.whole_turns);
 }
 
 /// What follows a step besides adding it.
@@ -62,85 +63,48 @@ void after_step(const IterationContext& context, JointVector& q) {
   }
 }
 
-/// A step that brings the deviation d (its Jacobian J, its error e) into the box, made by
-/// `step(rows, asked, squared_error)`. Parts inside the box ask for nothing, unless the step would
-/// take them out of it: then they are to stay at the bound.
-template <typename Step>
-JointVector task_step(const TaskSpace& task, const JacobianMatrix& J, const Vector6& d,
-                      const Vector6& e, const Step& step) {
-  const Vector6& lower = task.aim_lower();
-  const Vector6& upper = task.aim_upper();
-  const double squared_error = e.squaredNorm();
-  Vector6 asked = e;
-  JacobianMatrix rows = J;
-  bool active[6];
-  for (int i = 0; i < 6; ++i) {
-    active[i] = e[i] != 0 || lower[i] == upper[i];
-    if (!active[i]) rows.row(i).setZero();
-  }
-  for (int round = 0;; ++round) {
-    JointVector adjustment = step(rows, asked, squared_error);
-    constexpr int kRounds = 3;
-    if (round == kRounds) return adjustment;
-    bool changed = false;
-    for (int i = 0; i < 6; ++i) {
-      if (active[i]) continue;
-      const double goal = d[i] + J.row(i).dot(adjustment);
-      if (goal >= lower[i] && goal <= upper[i]) continue;
-      active[i] = true;
-      changed = true;
-      rows.row(i) = J.row(i);
-      asked[i] = (goal < lower[i] ? lower[i] : upper[i]) - d[i];
-    }
-    if (!changed) return adjustment;
-  }
-}
-
 /// Where an attempt stands.
 struct Standing {
-  JacobianMatrix J;  ///< of the error's parts
-  Vector6 d;         ///< deviation, for a task only
-  Vector6 e;         ///< what is missing
+  Goal::Linear at;  ///< of a full pose only what is missing and its Jacobian
   double position, rotation;
   double tcp_position;  ///< the rotation is the same there
 };
 
 Standing evaluate(const IterationContext& context, const JointVector& q) {
-  const ChainModel& model = context.model;
   const Goal& goal = context.goal;
-  const bool at_tcp = !goal.is_full_pose() || context.steps_at_tcp;
-  Standing at;
+  const bool at_tcp = !goal.is_full_pose();
+  Standing standing;
+  Goal::Linear& at = standing.at;
   Pose pose;
   if (context.kdl != nullptr) {
     pose = context.kdl->fk(q);
     at.J = context.kdl->jacobian(q);
   } else {
     Jacobian J;
-    model.fk_jacobian(q.data(), pose, J, at_tcp);
+    context.model.fk_jacobian(q.data(), pose, J, at_tcp);
     at.J = J;
   }
   if (goal.is_full_pose()) {
-    at.e = pose_error(context.tip_target, pose);
+    at.missing = pose_error(context.tip_target, pose);
   } else {
-    at.d = goal.task().deviation(goal.target(), pose, at.J);
-    at.e = goal.task().missing(at.d);
+    goal.linearize(pose, /*exact=*/true, at);
   }
-  at.position = at.tcp_position = at.e.head<3>().norm();
-  at.rotation = at.e.tail<3>().norm();
+  standing.position = standing.tcp_position = at.missing.head<3>().norm();
+  standing.rotation = at.missing.tail<3>().norm();
   if (!at_tcp) {
-    const Eigen::Vector3d tcp = pose * Eigen::Vector3d(model.tcp.translation());
-    at.tcp_position = (goal.target().translation() - tcp).norm();
+    const Eigen::Vector3d tcp = pose * Eigen::Vector3d(context.model.tcp.translation());
+    standing.tcp_position = (goal.target().translation() - tcp).norm();
   }
-  return at;
+  return standing;
 }
 
-/// The joint adjustment from q, whose error stands clamped in `at`.
-JointVector adjust(const IterationContext& context, const JointVector& q, const Standing& at) {
-  const auto step_by = [&](const JacobianMatrix& rows, const Vector6& asked, double squared) {
-    return make_step(context, q, rows, asked, squared);
+/// The joint adjustment from q, where what is missing stands clamped in `at`.
+JointVector adjust(const IterationContext& context, const JointVector& q, const Goal::Linear& at) {
+  const double squared_error = at.missing.squaredNorm();
+  const auto step_by = [&](const JacobianMatrix& rows, const Vector6& asked) {
+    return make_step(context, q, rows, asked, squared_error);
   };
-  if (context.goal.is_full_pose()) return step_by(at.J, at.e, at.e.squaredNorm());
-  return task_step(context.goal.task(), at.J, at.d, at.e, step_by);
+  return context.goal.is_full_pose() ? step_by(at.J, at.missing) : step_into_bounds(at, step_by);
 }
 
 }  // namespace
@@ -158,24 +122,24 @@ Outcome iterate(const IterationContext& context, JointVector& q, int& steps) {
   double last_rotation = kInfinity;
 
   for (int step = 0;; ++step) {
-    Standing at = evaluate(context, q);
-    const double part = step == context.max_iterations ? 1 : context.aim;
-    if (at.tcp_position < part * task.position_tolerance() &&
-        at.rotation < part * task.rotation_tolerance()) {
+    Standing now = evaluate(context, q);
+    if (now.tcp_position < task.position_tolerance() && now.rotation < task.rotation_tolerance()) {
       if (scheme.whole_turns) model.joints.wrap(q.data());
       if (model.joints.contains(q.data())) return Outcome::solved;
       outcome = Outcome::outside_limits;
       // Only the paper's first schemes go on from here; the others have nothing left to gain.
       if (!stops_on_small_step(scheme.iteration)) return outcome;
     }
-    if (growth_stop && at.position > last_position && at.rotation > last_rotation) return outcome;
-    last_position = at.position;
-    last_rotation = at.rotation;
+    if (growth_stop && now.position > last_position && now.rotation > last_rotation) return outcome;
+    last_position = now.position;
+    last_rotation = now.rotation;
     if (step == context.max_iterations) return outcome;
-    if (step >= context.patience && at.e.squaredNorm() > kFarOff2) return outcome;
+    if (step >= context.patience && now.at.missing.squaredNorm() > kFarOff2) return outcome;
 
-    if (scheme.iteration != Iteration::lm) clamp_error(at.e, at.position, at.rotation, scheme);
-    const JointVector adjustment = adjust(context, q, at);
+    if (scheme.iteration != Iteration::lm) {
+      clamp_error(now.at.missing, now.position, now.rotation, scheme);
+    }
+    const JointVector adjustment = adjust(context, q, now.at);
     ++steps;
     if (!adjustment.allFinite()) return outcome;
     if (small_step_stop && std::abs(adjustment.sum()) < scheme.min_step) {

@@ -36,10 +36,6 @@ struct IterationContext {
   KdlChain* kdl;
   /// Source of restarts.
   Random& random;
-  /// Part of the tolerances at which an attempt ends; after its last step they count whole.
-  double aim = 1;
-  /// Steps are made for the TCP, where `tip_target` is to be too.
-  bool steps_at_tcp = false;
   /// An attempt that is still far off after so many steps is given up.
   int patience = std::numeric_limits<int>::max();
 };

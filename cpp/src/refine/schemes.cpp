@@ -65,35 +65,4 @@ JointVector cwpi_step(const ChainModel& model, const JointVector& q, const Jacob
   return c + root.cwiseProduct(y);
 }
 
-JointVector lm_step(const ChainModel& model, const JointVector& q, const JacobianMatrix& J,
-                    const Vector6& e, double damping, bool wraps) {
-  JacobianMatrix active = J;
-  JointVector free = JointVector::Ones(model.dof);
-  for (int i = 0; i < model.dof; ++i) {
-    if (wraps && model.joints.winds(i)) continue;
-    const double gradient = J.col(i).dot(e);
-    if ((q[i] <= model.joints.lower[i] && gradient < 0) ||
-        (q[i] >= model.joints.upper[i] && gradient > 0)) {
-      active.col(i).setZero();
-      free[i] = 0;
-    }
-  }
-  if (!model.joints.coupled.empty()) {
-    const CoupledNormals N = model.joints.coupled_normals(q, active.transpose() * e, free);
-    active -= JacobianMatrix((active * N) * N.transpose());
-  }
-  // The floor keeps the solve regular where the error is zero in double precision.
-  JointVector step = damped_solve(active, damping + 1e-18, e);
-  for (int i = 0; i < model.dof; ++i) {
-    if (wraps && model.joints.winds(i)) continue;
-    const double goal =
-        std::min(std::max(q[i] + step[i], model.joints.lower[i]), model.joints.upper[i]);
-    step[i] = goal - q[i];
-  }
-  if (model.joints.coupled.empty()) return step;
-  JointVector end = q + step;
-  model.joints.hold_coupled(end);
-  return end - q;
-}
-
 }  // namespace iksel

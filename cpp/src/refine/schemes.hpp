@@ -30,10 +30,4 @@ JointVector cwln_step(const ChainModel& model, const JointVector& q, const Jacob
 JointVector cwpi_step(const ChainModel& model, const JointVector& q, const JacobianMatrix& J,
                       const Vector6& e, const Paper& scheme);
 
-/// lm: J^T (J J^T + damping I)^-1 e, with the columns of joints that stand at a limit and would
-/// leave it set to zero, and the step cut off at the limits. `wraps`: joints that turn on and on
-/// are brought inside at the end, and are not held.
-JointVector lm_step(const ChainModel& model, const JointVector& q, const JacobianMatrix& J,
-                    const Vector6& e, double damping, bool wraps);
-
 }  // namespace iksel

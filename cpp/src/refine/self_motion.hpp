@@ -1,40 +1,49 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A redundant arm moves its joints while the TCP stays where it is. Moving along this self-motion
-// makes a cost of the joint values small.
+// All joints brought to a goal, and along a self-motion, where redundant arms move their joints
+// while the tip stays where it is, to where a cost of the joint values is small.
+//
+// `AnyGoal` is a Goal, or one of several tips, with
+//   joints()                     the JointSpace,
+//   linearize(q, exact, linear)  writes its Linear around q; if not `exact`, rotations are to first
+//                                order near the target, as iterations have them,
+//   is_reached(missing, part)    whether no more is missing than that part of the tolerances.
+// The templates are instantiated in self_motion.cpp, and for several tips in tree/.
 #pragma once
 
-#include "base/function_ref.hpp"
 #include "goal/goal.hpp"
 #include "goal/joint_move.hpp"
-#include "kinematics/chain_model.hpp"
 
 namespace iksel {
 
-/// Value of a cost at q; also its gradient, and the diagonal of a positive approximation of its
-/// second derivative, if they are not null.
-using JointCost =
-    FunctionRef<double(const JointVector& q, JointVector* gradient, JointVector* curvature)>;
+/// Part of the tolerances to which joint values are brought that others start from.
+inline constexpr double kWellInside = 0.01;
+
+/// Brings q to the goal by Levenberg-Marquardt with the limits inside the step, to the part `aim`
+/// of the tolerances, or to all of it in the last of `most` steps; `steps` counts those taken.
+/// `wraps`: joints that turn on and on are not held at their limits, but wrapped at the end. False
+/// if it does not get within the tolerances and the limits.
+template <typename AnyGoal>
+bool converge(const AnyGoal& goal, int most, double aim, bool wraps, JointVector& q, int& steps);
+inline bool converge(const Goal& goal, int most, JointVector& q, int& steps) {
+  return converge(goal, most, kWellInside, /*wraps=*/false, q, steps);
+}
+inline bool converge(const Goal& goal, int most, JointVector& q) {
+  int steps = 0;
+  return converge(goal, most, q, steps);
+}
 
 /// Moves q, a solution inside the limits, over what the goal allows until the cost is at a local
 /// minimum or after `most` steps. q is a solution inside the limits and costs no more than before
 /// when it ends. Returns the steps taken.
-int descend_self_motion(const ChainModel& model, const Goal& goal, const JointCost& cost, int most,
-                        JointVector& q);
+template <typename AnyGoal>
+int descend_self_motion(const AnyGoal& goal, const JointCost& cost, int most, JointVector& q);
 
-/// The same for the move from `near`.
-int descend_to_near(const ChainModel& model, const Goal& goal, const JointMove& move,
-                    const JointVector& near, JointVector& q);
+/// Moves q so to where the move from `near` is at a local minimum.
+template <typename AnyGoal>
+int descend_to_near(const AnyGoal& goal, const JointMove& move, const JointVector& near,
+                    JointVector& q);
 
 /// Steps from a configuration to the next pose of a path at most.
 inline constexpr int kStepsToNext = 20;
-
-/// Brings q to the goal by Levenberg-Marquardt with the limits inside the step, to a hundredth of
-/// the tolerances, in at most `most` steps; `steps` counts those taken. False if it does not get
-/// within the tolerances and the limits.
-bool converge(const ChainModel& model, const Goal& goal, int most, JointVector& q, int& steps);
-inline bool converge(const ChainModel& model, const Goal& goal, int most, JointVector& q) {
-  int steps = 0;
-  return converge(model, goal, most, q, steps);
-}
 
 }  // namespace iksel

@@ -126,24 +126,6 @@ void Obstacle::validate() const {
   }
 }
 
-const char* to_string(Obstacle::Shape shape) {
-  switch (shape) {
-    case Obstacle::Shape::sphere:
-      return "sphere";
-    case Obstacle::Shape::box:
-      return "box";
-    case Obstacle::Shape::capsule:
-      return "capsule";
-    case Obstacle::Shape::cylinder:
-      return "cylinder";
-    case Obstacle::Shape::half_space:
-      return "half_space";
-    case Obstacle::Shape::points:
-      return "points";
-  }
-  return "";
-}
-
 Scene::Scene(const Robot& robot, const RobotSpheres& spheres,
              const std::map<std::string, double>& other_joints)
     : data_(std::make_shared<Data>(robot, spheres, other_joints)) {}

@@ -17,8 +17,6 @@ constexpr std::size_t kDescents = 4;
 /// The same where an arm that is not redundant is singular: the nearest of several families may be
 /// that of the sixth (python -m bench laws right_angles_6 --poses 100).
 constexpr std::size_t kSingularDescents = 16;
-/// Images looked at, at most: joints with a wide range have more than time allows.
-constexpr std::size_t kMostImages = 65536;
 
 }  // namespace
 
@@ -57,8 +55,9 @@ bool AnswerSelector::select(const Collector& search, JointVector& q) {
   }
   if (count == 0) return select_image(kInfinity, q);
   // Where not all solutions are known for certain, they may come in families.
-  const bool is_in_doubt = nearest_to_ && !goal_.is_redundant() && search.proof == Proof::none;
-  const bool is_redundant = goal_.is_redundant() && !search.is_settled;
+  const bool is_in_doubt =
+      nearest_to_ && !goal_.is_redundant() && search.result().proof == Proof::none;
+  const bool is_redundant = goal_.is_redundant() && !search.is_settled();
   const std::size_t descents = std::min(count, is_redundant  ? kDescents
                                                : is_in_doubt ? kSingularDescents
                                                              : 1);
@@ -107,11 +106,11 @@ void AnswerSelector::descend_from(JointVector end, double& best, JointVector& q)
 
 void AnswerSelector::descend(JointVector& q) {
   if (nearest_to_) {
-    steps_ += descend_to_near(model_, goal_, nearest_to_->move, nearest_to_->from, q);
+    steps_ += descend_to_near(goal_, nearest_to_->move, nearest_to_->from, q);
   } else {
     constexpr int kObjectiveSteps = 50;
     const ObjectiveCost cost(model_, request_.objective);
-    steps_ += descend_self_motion(model_, goal_, JointCost(cost), kObjectiveSteps, q);
+    steps_ += descend_self_motion(goal_, JointCost(cost), kObjectiveSteps, q);
   }
 }
 

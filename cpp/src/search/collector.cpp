@@ -41,16 +41,13 @@ JointVector wanted_images(const JointSpace& joints, const SolveRequest& request,
 Collector::Collector(const ChainModel& model, const Goal& goal, const SolveRequest& request,
                      const Aim& aim, FunctionRef<bool(const Collector&)> is_satisfied,
                      int max_attempts, CollectorMemory& memory)
-    : work(max_attempts),
+    : SearchState(goal, request, max_attempts),
       model_(model),
-      goal_(goal),
-      request_(request),
       aim_(aim),
       is_satisfied_(is_satisfied),
       found_(memory.found),
       partners_(memory.partners),
       nearest_to_(find_nearest_to(model.dof, request)),
-      deadline_(request.deadline),
       images_near_(wanted_images(model.joints, request, nearest_to_)),
       // What a filter has been asked about stays as it is.
       counts_moves_(nearest_to_ && !screens_answers(request)),
@@ -69,7 +66,7 @@ Verdict Collector::offer(int /*lane*/, JointVector& q) {
   goal_.measure(q, answer.position_error, answer.rotation_error, pairs ? &J : nullptr);
   if (!goal_.is_reached(answer.position_error, answer.rotation_error)) return Verdict::refine;
   if (!model_.joints.contains(q.data())) {
-    status = Status::outside_limits;
+    leave_limits();
     return Verdict::next;
   }
   answer.status = Status::solved;
@@ -77,7 +74,7 @@ Verdict Collector::offer(int /*lane*/, JointVector& q) {
   wrap_near(images_near_, answer);
   const double cost = counts_moves_ ? nearest_to_->move.length(answer.q - nearest_to_->from) : 0.0;
   if (!found_.add(answer, cost, aim_.min_distance)) return Verdict::next;
-  status = Status::solved;
+  result_.status = Status::solved;
   ++solutions_;
   last_new_ = work.attempts;
   if (pairs) {
@@ -98,7 +95,7 @@ void Collector::converge_from_near() {
   if (!nearest_to_ || has_converged_) return;
   has_converged_ = true;
   JointVector q = nearest_to_->from;
-  if (converge(model_, goal_, kStepsToNext, q)) offer(0, q);
+  if (converge(goal_, kStepsToNext, q)) offer(0, q);
 }
 
 void Collector::wrap_near(const JointVector& near, Result& answer) const {
@@ -122,7 +119,7 @@ void Collector::wrap_near(const JointVector& near, Result& answer) const {
   }
   // Nor need the answer at the limit that the others make up for.
   const JointVector held = image;
-  if (converge(model_, goal_, kStepsToNext, image) &&
+  if (converge(goal_, kStepsToNext, image) &&
       (image - held).cwiseAbs().maxCoeff() < 2 * kBesideLimit && goal_.check(image, answer)) {
     return;
   }
@@ -156,8 +153,8 @@ void Collector::look_for_partner(const Jacobian& J, const JointVector& q) {
 
 bool Collector::should_continue() {
   if (is_satisfied_(*this) || is_complete()) return false;
-  is_out_of_time = deadline_.has_passed();
-  return !is_out_of_time;
+  is_out_of_time_ = deadline_.has_passed();
+  return !is_out_of_time_;
 }
 
 bool Collector::pop_partner(JointVector& q) const {

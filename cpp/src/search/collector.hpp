@@ -6,12 +6,10 @@
 #include <vector>
 
 #include "base/function_ref.hpp"
-#include "base/work.hpp"
-#include "goal/goal.hpp"
 #include "goal/joint_move.hpp"
 #include "goal/screen.hpp"
-#include "iksel/request.hpp"
 #include "search/search.hpp"
+#include "search/search_state.hpp"
 #include "search/solution_set.hpp"
 
 namespace iksel {
@@ -32,7 +30,7 @@ struct CollectorMemory {
   static constexpr std::size_t kPartners = 64;
 };
 
-class Collector {
+class Collector : public SearchState {
  public:
   /// What a search looks for.
   struct Aim {
@@ -112,14 +110,19 @@ class Collector {
   /// Seeds nearer to a solution need not be tried [rad or m]; 0: all are.
   [[nodiscard]] double basin_radius() const { return basin_radius_; }
 
-  [[nodiscard]] const Goal& goal() const { return goal_; }
-  [[nodiscard]] const SolveRequest& request() const { return request_; }
+  /// Says whether the nearest that was found is the least move already.
+  void settle(bool is_settled) { is_settled_ = is_settled; }
+  [[nodiscard]] bool is_settled() const { return is_settled_; }
 
-  Work work;
-  Status status = Status::not_converged;  ///< solved if anything was found
-  Proof proof = Proof::none;              ///< that there are no more solutions
-  bool is_out_of_time = false;
-  bool is_settled = false;  ///< the nearest that was found is the least move already
+  /// Says that the search is over, and what is proven of solutions besides those found.
+  void conclude(Proof proof) {
+    result_.proof = proof;
+    result_.attempts = work.all_attempts();
+    result_.iterations = work.iterations;
+  }
+  /// What it came to, without any of the answers.
+  [[nodiscard]] const Result& result() const { return result_; }
+  [[nodiscard]] bool is_out_of_time() const { return is_out_of_time_; }
 
  private:
   [[nodiscard]] double move_to(std::size_t i) const {
@@ -130,14 +133,11 @@ class Collector {
   void look_for_partner(const Jacobian& J, const JointVector& q);
 
   const ChainModel& model_;
-  const Goal& goal_;
-  const SolveRequest& request_;
   Aim aim_;
   FunctionRef<bool(const Collector&)> is_satisfied_;
   SolutionSet& found_;
   std::vector<JointVector>& partners_;
   std::optional<NearestTo> nearest_to_;
-  Deadline deadline_;
   /// Solutions are brought to their images nearest to this.
   JointVector images_near_;
   bool counts_moves_;
@@ -146,6 +146,8 @@ class Collector {
   bool signs_cancel_;
   bool has_all_branches_ = false;
   bool has_converged_ = false;  ///< from `near`
+  bool is_settled_ = false;
+  bool is_out_of_time_ = false;
   double basin_radius_;
   std::size_t paired_ = 0;  ///< of what was found, partners of so many were looked for
   int solutions_ = 0;       ///< those that the set had no room for included

@@ -83,7 +83,7 @@ Explored explore_nearest(const AllSearch& parts, const Pose& Y) {
   }
   NearestOnCurveSeeds nearest(curve, Y, near, move, answers, parts.work, parts.clock);
   parts.refine(nearest, Width::narrow);
-  answers.is_settled = curve.is_settled() && nearest.has_led_to_answer();
+  answers.settle(curve.is_settled() && nearest.has_led_to_answer());
   if (stays) {
     if (const Explored none = find_any(); none.is_done) return none;
   }
@@ -105,7 +105,7 @@ Explored explore_nearest_free(const AllSearch& parts, const Pose& Y) {
   if (!has_any) return Explored::doubtful();
   refine_samples(parts, /*are_answers=*/false);
   if (!q.empty()) return Explored::done();
-  parts.answers.status = Status::in_collision;
+  parts.answers.refuse();
   return Explored::done(Proof::sweep);
 }
 
@@ -123,7 +123,7 @@ Explored explore_curve(const AllSearch& parts, const Pose& Y) {
     parts.request.scene->find_free(answers.solution(answers.nearest()), 1, &is_free);
   }
   if (is_free || nearest.proof != Proof::none) return nearest;
-  answers.is_settled = false;
+  answers.settle(false);
   return explore_nearest_free(parts, Y);
 }
 

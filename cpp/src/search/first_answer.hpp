@@ -4,25 +4,23 @@
 
 #include <optional>
 
-#include "base/work.hpp"
-#include "goal/goal.hpp"
 #include "search/search.hpp"
+#include "search/search_state.hpp"
 
 namespace iksel {
 
-class FirstAnswer {
+class FirstAnswer : public SearchState {
  public:
   /// `wraps`: answers are brought inside the limits by whole turns.
-  FirstAnswer(const JointSpace& joints, bool wraps, const Goal& goal, double deadline,
-              Result& result)
-      : joints_(joints), wraps_(wraps), goal_(goal), deadline_(deadline), result_(result) {}
+  FirstAnswer(bool wraps, const Goal& goal, const SolveRequest& request, int max_attempts)
+      : SearchState(goal, request, max_attempts), wraps_(wraps) {}
 
   Verdict offer(int /*lane*/, JointVector& q) {
-    if (wraps_) joints_.wrap(q.data());
+    if (wraps_) goal_.joints().wrap(q.data());
     if (!goal_.check(q, result_)) return Verdict::refine;
     if (goal_.is_free(q)) return Verdict::stop;
     result_ = {};
-    result_.status = Status::in_collision;
+    refuse();
     return is_never_free() ? Verdict::stop : Verdict::next;
   }
   /// Whether no answer is free, whatever is found (Goal).
@@ -34,28 +32,32 @@ class FirstAnswer {
   [[nodiscard]] bool knows(const Q& /*q*/) const {
     return false;
   }
-  [[nodiscard]] bool wants_more() const { return false; }
-  void look_for_partners(bool /*look*/) {}
-  void set_all_branches_tried() {}
-  void converge_from_near() {}
-  /// Says that all answers collide.
-  void refuse() { result_.status = Status::in_collision; }
-  /// Whether the target was reached inside the limits, be it in a collision.
-  [[nodiscard]] bool has_any() const {
-    return result_.success() || result_.status == Status::in_collision;
-  }
   [[nodiscard]] bool should_continue() {
     if (!deadline_.has_passed()) return true;
     result_.status = Status::out_of_time;
     return false;
   }
+  /// Whether the target was reached inside the limits, be it in a collision.
+  [[nodiscard]] bool has_any() const {
+    return result_.success() || result_.status == Status::in_collision;
+  }
+  /// The answer, or why there is none. `proof`: that of the search.
+  [[nodiscard]] Result result(Proof proof) {
+    if (!result_.success()) result_.proof = proof;
+    if (result_.status == Status::in_collision && is_never_free()) result_.proof = Proof::target;
+    result_.attempts = work.attempts;
+    result_.iterations = work.iterations;
+    return result_;
+  }
+
+  // What a Collector has to be told, and does (collector.hpp).
+  [[nodiscard]] bool wants_more() const { return false; }
+  void look_for_partners(bool /*look*/) {}
+  void set_all_branches_tried() {}
+  void converge_from_near() {}
 
  private:
-  const JointSpace& joints_;
   bool wraps_;
-  const Goal& goal_;
-  Deadline deadline_;
-  Result& result_;
   std::optional<bool> never_free_;  ///< once it was asked
 };
 

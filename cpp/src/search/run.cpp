@@ -66,52 +66,34 @@ Proof search_in_lanes(const Parts& parts) {
   return Proof::none;
 }
 
+/// The proof that there are no answers but those found.
+template <typename Answers>
+Proof search_for(const ChainModel& model, const SolverOptions& options, Answers& answers,
+                 Workspace& workspace, StageTimes* times) {
+  if (answers.goal().is_out_of_reach()) {
+    answers.put_out_of_reach();
+    return Proof::reach;
+  }
+  StageClock clock(times);
+  const SearchParts<Answers> parts{model,     options, answers.goal(), answers.request(),
+                                   workspace, answers, answers.work,   clock};
+  if (workspace.lanes) return search_in_lanes(parts);
+  if (search_by_scheme(parts)) answers.leave_limits();
+  return Proof::none;
+}
+
 }  // namespace
 
 Result find_first(const ChainModel& model, const SolverOptions& options, const Goal& goal,
                   const SolveRequest& request, Workspace& workspace, StageTimes* times) {
-  Result result;
-  if (goal.is_out_of_reach()) {
-    result.status = Status::out_of_reach;
-    result.proof = Proof::reach;
-    return result;
-  }
-  StageClock clock(times);
-  Work work(options.max_attempts);
-  const bool wraps = workspace.scheme.whole_turns;
-  FirstAnswer answers(model.joints, wraps, goal, request.deadline, result);
-  const FirstSearch parts{model, options, goal, request, workspace, answers, work, clock};
-  if (workspace.lanes) {
-    const Proof proof = search_in_lanes(parts);
-    if (!result.success()) result.proof = proof;
-  } else if (search_by_scheme(parts) && result.status == Status::not_converged) {
-    result.status = Status::outside_limits;
-  }
-  if (result.status == Status::in_collision && answers.is_never_free()) {
-    result.proof = Proof::target;
-  }
-  result.attempts = work.attempts;
-  result.iterations = work.iterations;
-  return result;
+  FirstAnswer answers(workspace.scheme.whole_turns, goal, request, options.max_attempts);
+  return answers.result(search_for(model, options, answers, workspace, times));
 }
 
 void collect(const ChainModel& model, const SolverOptions& options, Collector& collector,
              Workspace& workspace, StageTimes* times) {
-  const Goal& goal = collector.goal();
-  if (goal.is_out_of_reach()) {
-    collector.status = Status::out_of_reach;
-    collector.proof = Proof::reach;
-    return;
-  }
-  StageClock clock(times);
   collector.offer_near();
-  const AllSearch parts{model,     options,   goal,           collector.request(),
-                        workspace, collector, collector.work, clock};
-  if (workspace.lanes) {
-    collector.proof = search_in_lanes(parts);
-  } else if (search_by_scheme(parts) && collector.status == Status::not_converged) {
-    collector.status = Status::outside_limits;
-  }
+  collector.conclude(search_for(model, options, collector, workspace, times));
 }
 
 }  // namespace iksel

@@ -7,16 +7,13 @@
 namespace iksel {
 namespace {
 
-/// More than so many have more than one joint to spare, and are not swept.
-constexpr int kSweptJoints = 7;
-
 /// From the whole database, and before it from around what the nearest is wanted to. Returns
 /// whether the answers want no more.
 bool search_widely(const AllSearch& parts) {
   Workspace::InLanes& lanes = *parts.workspace.lanes;
   Collector& answers = parts.answers;
   lanes.refiner.begin(parts.goal.task(), kAll, Width::wide);
-  if (parts.model.dof > kSweptJoints && answers.ranks_by_move() &&
+  if (parts.model.dof > kCurveJoints && answers.ranks_by_move() &&
       !parts.request.objective.is_set()) {
     NearbySeeds nearby(parts.model.joints, answers.nearest_to().from, parts.options.seed,
                        parts.work);
@@ -48,7 +45,7 @@ Proof search_pose(const AllSearch& parts, NearSeed& near, GivenSeeds& given, con
     // What ranks answers otherwise has looked for none there.
     const bool has_looked =
         answers.spread() > 0 || answers.wants_nearest() || answers.wants_nearest_free();
-    has_asked_ends = lanes.ends && has_looked && answers.status == Status::not_converged &&
+    has_asked_ends = lanes.ends && has_looked && answers.status() == Status::not_converged &&
                      curve.proof != Proof::closed_form;
     if (has_asked_ends) {
       if (const auto ends = explore_ends(parts); ends.is_done) curve = ends;
@@ -71,7 +68,7 @@ Explored explore_held(const AllSearch& parts) {
     if (!found) continue;
     parts.refine_rows(inner.q().data(), 1, /*are_answers=*/true, Width::narrow);
     if (!parts.answers.has_any()) continue;
-    parts.answers.is_settled = true;
+    parts.answers.settle(true);
     return Explored::done();
   }
   return Explored::doubtful();

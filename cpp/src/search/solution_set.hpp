@@ -12,6 +12,10 @@
 
 namespace iksel {
 
+/// Images of solutions that are looked at, at most: joints with a wide range have more than time
+/// allows.
+inline constexpr std::size_t kMostImages = 65536;
+
 /// Memory is taken at construction, none later.
 class SolutionSet {
  public:
@@ -23,12 +27,7 @@ class SolutionSet {
         q_(kMost * static_cast<std::size_t>(model.dof)),
         cost_(kMost),
         position_error_(kMost),
-        rotation_error_(kMost),
-        turns_(static_cast<std::size_t>(model.dof)) {
-    for (int j = 0; j < model.dof; ++j) {
-      turns_[static_cast<std::size_t>(j)] = model.joints.is_periodic(j) ? 1 / kTwoPi : 0;
-    }
-  }
+        rotation_error_(kMost) {}
 
   void clear() {
     size_ = 0;
@@ -69,7 +68,7 @@ class SolutionSet {
     const double* known = q_.data();
     for (std::size_t i = 0; i < size_; ++i, known += model_.dof) {
       int j = 0;
-      while (j < model_.dof && std::abs(turned_difference(j, q[j] - known[j])) < radius) ++j;
+      while (j < model_.dof && std::abs(model_.joints.difference(j, known[j], q[j])) < radius) ++j;
       if (j == model_.dof) return true;
     }
     return false;
@@ -121,20 +120,11 @@ class SolutionSet {
     --size_;
   }
 
-  /// A joint's difference without its whole turns. Added to so large a number, a double loses what
-  /// comes after its point: cheaper than to round.
-  [[nodiscard]] double turned_difference(int joint, double d) const {
-    constexpr double kNoFraction = 6755399441055744.0;
-    const double turns = (d * turns_[static_cast<std::size_t>(joint)] + kNoFraction) - kNoFraction;
-    return d - kTwoPi * turns;
-  }
-
   const ChainModel& model_;
   std::vector<double> q_;
   std::vector<double> cost_;
   std::vector<double> position_error_;  ///< [m]
   std::vector<double> rotation_error_;  ///< [rad]
-  std::vector<double> turns_;           ///< 1 / 2 pi for joints with whole turns, else 0
   std::size_t size_ = 0;
   int replacements_ = 0;
 };

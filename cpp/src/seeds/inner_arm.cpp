@@ -4,8 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "base/angle.hpp"
-
 namespace iksel {
 
 InnerArm::InnerArm(const ChainModel& whole, const InnerChain& inner,
@@ -32,18 +30,17 @@ bool InnerArm::find(const Pose& T_base_tcp, const NearestTo& to) {
     if (!(q_[j] >= whole_.joints.lower[j] && q_[j] <= whole_.joints.upper[j])) return false;
   }
   const Pose Y = inner_.target(whole_, T_base_tcp, q_);
-  const JointVector near = q_.segment(inner_.first, InnerChain::kJoints);
+  const JointVector near = q_.segment(inner_.first, kCurveJoints);
   // Of the usual size, however little these joints count beside the others.
-  JointVector weights = to.move.weights().segment(inner_.first, InnerChain::kJoints);
+  JointVector weights = to.move.weights().segment(inner_.first, kCurveJoints);
   if (weights.maxCoeff() > 0) weights /= weights.maxCoeff();
   curve_.find(Y, near, JointMove(std::move(weights)), kInfinity);
   if (curve_.size() == 0) return false;
-  for (int j = 0; j < InnerChain::kJoints; ++j) q_[inner_.first + j] = curve_.q(0)[j];
+  for (int j = 0; j < kCurveJoints; ++j) q_[inner_.first + j] = curve_.q(0)[j];
   // Where it is preferred itself, the swept joint may have had to move.
   constexpr double kStays = 1e-9;
-  double moved = q_[swept_] - to.from[swept_];
-  if (!whole_.joints.is_slide(swept_)) moved = without_turns(moved);
-  return !to.prefers(swept_) || std::abs(moved) <= kStays;
+  return !to.prefers(swept_) ||
+         std::abs(whole_.joints.difference(swept_, to.from[swept_], q_[swept_])) <= kStays;
 }
 
 }  // namespace iksel

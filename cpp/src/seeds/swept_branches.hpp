@@ -58,7 +58,7 @@ struct BranchSpan {
 class SweptBranches {
  public:
   static constexpr int kCount = lanes::kWidth;
-  static constexpr int kDof = 7;
+  static constexpr int kDof = kCurveJoints;
   using Row = std::array<double, kCount>;
 
   /// `chain` has a joint that is held: the one to be swept; limits are the model's.

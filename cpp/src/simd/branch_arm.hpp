@@ -2,6 +2,7 @@
 // Joints 1 to 3 of six in closed form (branch_kernel.hpp), by how their axes lie.
 #pragma once
 
+#include "base/constants.hpp"
 #include "simd/branch_math.hpp"
 #include "simd/branch_types.hpp"
 
@@ -45,15 +46,13 @@ struct Branch {
   Q quality;
 };
 
-inline constexpr double kWholeTurn = 6.28318530717958647693;
-
 /// The joint value of an angle [rad]: of its images the one nearest to the middle of the limits,
 /// which lies inside them if one does.
 template <typename T>
 IKSEL_INLINE T joint_value(const ClosedForm& form, int j, const Angle<T>& angle) {
   const T q = to_radians(angle) - T(form.offset[j]);
-  const T turns = nearest_integer((T(form.middle[j]) - q) * T(1 / kWholeTurn));
-  return q + T(kWholeTurn) * turns;
+  const T turns = nearest_integer((T(form.middle[j]) - q) * T(1 / kTwoPi));
+  return q + T(kTwoPi) * turns;
 }
 /// How far a joint value lies outside of its limits, 0 or less if it does not [rad].
 template <typename T>

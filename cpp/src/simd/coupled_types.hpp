@@ -2,12 +2,12 @@
 // Limits of sums of joint values, as the kernels take them: plain numbers (lane_types.hpp).
 #pragma once
 
+#include "base/constants.hpp"
+
 namespace iksel::lanes {
 
 /// Most coupled limits, as kMaxCoupledLimits.
 inline constexpr int kMostCoupled = 8;
-/// Most images together of the joints in them.
-inline constexpr int kMostCoupledImages = 64;
 
 /// Over seven joints: six as a closed form counts them, and the held one. Scaled so that the sizes
 /// of a row's coefficients add up to 1: angles that are off by e take a sum off by no more.

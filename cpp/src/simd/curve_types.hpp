@@ -2,11 +2,12 @@
 // Where the lanes of a pack stand on self-motions of seven joints.
 #pragma once
 
+#include "base/constants.hpp"
 #include "simd/lane_types.hpp"
 
 namespace iksel::lanes {
 
-inline constexpr int kCurveJoints = 7;
+using iksel::kCurveJoints;
 
 /// All lanes reach the same pose, given as RoughPack gives it.
 struct CurvePack {

@@ -63,16 +63,10 @@ class Batch {
     constexpr std::size_t kFew = 8;
     const bool is_screened = screens_answers(request_) && !std::isfinite(request_.deadline);
     const std::size_t chunk = plain || is_screened ? kMost : kFew;
-    std::mutex one_at_a_time;
+    std::mutex turn;
     SolveRequest locked = request_;
-    const auto lock = [&](const Filter& filter) {
-      return [&](const double* q, std::size_t n, bool* keep) {
-        const std::lock_guard<std::mutex> held(one_at_a_time);
-        filter(q, n, keep);
-      };
-    };
-    if (request_.filter) locked.filter = lock(request_.filter);
-    if (request_.exact) locked.exact = lock(request_.exact);
+    locked.filter = in_turn(request_.filter, turn);
+    locked.exact = in_turn(request_.exact, turn);
     const auto make_worker = [&] {
       return [&, own = locked, lease = std::make_shared<WorkspacePool::Lease>(solver_.workspaces)](
                  std::size_t begin, std::size_t end) mutable {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Why not: by all branches, or by questions with more work and fewer demands, one after the other.
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -27,15 +26,6 @@ constexpr int kPatientIterations = 200;
 /// Seeds of a best effort.
 constexpr int kEfforts = 24;
 
-/// Singular values below this part of the largest are close to a singularity.
-constexpr double kNearlySingular = 1e-3;
-
-/// The number in place of the pattern's one "%.Ng", in every locale the same.
-std::string format(const std::string& pattern, double value) {
-  const std::size_t at = pattern.find("%.");
-  return pattern.substr(0, at) + number_text(value, pattern[at + 2] - '0') + pattern.substr(at + 4);
-}
-
 SolverOptions generous(SolverOptions options) {
   Lanes lanes;
   lanes.neighbours = neighbours_of(options.strategy);
@@ -54,18 +44,6 @@ Task position_of(Task task) {
   return task;
 }
 
-/// Puts q into a diagnosis; true if it is close to a singularity.
-bool describe(const ChainModel& model, const Goal& goal, const JointVector& q, Diagnosis& out) {
-  out.q = q;
-  goal.measure(q, out.position_error, out.rotation_error);
-  Pose ignored;
-  Jacobian J;
-  model.fk_jacobian(q.data(), ignored, J);
-  const auto sigma = singular_values(JacobianMatrix(J));
-  out.least_singular_value = sigma.minCoeff();
-  return out.least_singular_value < kNearlySingular * sigma.maxCoeff();
-}
-
 /// The possible causes, one after the other; each check returns whether it was the reason.
 class Diagnoser {
  public:
@@ -79,9 +57,8 @@ class Diagnoser {
         position_goal_(model_, position_task_, target),
         request_(request),
         open_(request) {
-    open_.filter = nullptr;
+    open_.filter = open_.exact = nullptr;
     open_.scene.reset();
-    open_.exact = nullptr;
     open_.near.reset();
     open_.objective = {};
     open_.deadline = kInfinity;
@@ -92,10 +69,10 @@ class Diagnoser {
   bool explain_by_branches(Workspace& workspace) {
     if (!workspace.lanes) return false;
     Enumeration* branches = workspace.lanes->branches_of(task_);
-    // Of a completed chain, what is missing may be of a joint that there is not.
-    if (branches == nullptr || branches->chain().is_completed()) return false;
-    // Nor are those of an arm that is but nearly regular its own.
-    if (!branches->are_answers()) return false;
+    if (branches == nullptr) return false;
+    // Of a completed chain, what is missing may be of a joint that there is not; nor are those of
+    // an arm that is but nearly regular its own.
+    if (branches->chain().is_completed() || !branches->are_answers()) return false;
     const Pose Y = workspace.lanes->query.reduce(goal_.target());
     auto reasons = explain_branches(model_, goal_, Y, *branches);
     if (!reasons) return false;
@@ -121,22 +98,17 @@ class Diagnoser {
     const bool singular = describe(found.q);
     out_.q_is_solution = true;
     if (plain == Status::out_of_time) {
-      out_.cause = Cause::out_of_time;
-      out_.message =
-          "an answer exists, but the deadline passed before it was found: allow more "
-          "time";
+      say(Cause::out_of_time,
+          "an answer exists, but the deadline passed before it was found: allow more time");
     } else if (singular) {
-      out_.cause = Cause::singular;
-      out_.message = format(
-          "an answer exists close to a singularity (least singular value %.3g), "
-          "where iterations are slow: raise max_iterations, or loosen the "
-          "tolerances",
-          out_.least_singular_value);
+      say(Cause::singular,
+          "an answer exists close to a singularity (least singular value " +
+              number_text(out_.least_singular_value, 3) +
+              "), where iterations are slow: raise max_iterations, or loosen the tolerances");
     } else {
-      out_.cause = Cause::budget;
-      out_.message =
-          "an answer exists that the bounds on work were too low to find: raise "
-          "max_attempts or max_iterations";
+      say(Cause::budget,
+          "an answer exists that the bounds on work were too low to find: raise max_attempts or "
+          "max_iterations");
     }
     return true;
   }
@@ -167,9 +139,9 @@ class Diagnoser {
     if (is_answer(effort.q())) return true;
     set_violation(model_.joints, out_.branch, out_);
     describe(effort.q());
-    out_.cause = Cause::joint_limits;
-    out_.message = "answers exist only outside the limits: " + describe_violation(model_, out_) +
-                   " or more; move the target, or leave an axis free";
+    say(Cause::joint_limits,
+        "answers exist only outside the limits: " + describe_violation(model_, out_) +
+            " or more; move the target, or leave an axis free");
     return true;
   }
 
@@ -197,15 +169,12 @@ class Diagnoser {
     const Result held = patient().solve(goal_.target(), at_position);
     out_.attempts += held.attempts;
     describe(held.success() ? held.q : position.q);
-    out_.cause = Cause::orientation;
     out_.rotation_gap = out_.rotation_error;
-    out_.message =
-        format(
-            "the position can be reached, but not with this rotation, which is off by %.4g rad "
-            "or more: ",
-            out_.rotation_gap) +
-        (model_.dof < task_.constrained_axes() ? task_hint(solver_.robot, task_.task())
-                                               : "turn the target, or leave an axis free");
+    say(Cause::orientation,
+        "the position can be reached, but not with this rotation, which is off by " +
+            number_text(out_.rotation_gap, kShownDigits) + " rad or more: " +
+            (model_.dof < task_.constrained_axes() ? task_hint(solver_.robot, task_.task())
+                                                   : "turn the target, or leave an axis free"));
     return true;
   }
 
@@ -219,13 +188,19 @@ class Diagnoser {
     effort.from(nearest.q());
     effort.from_anywhere(kEfforts, solver_.options.seed);
     describe(effort.q());
-    out_.cause = Cause::out_of_reach;
-    out_.message =
-        format("the position lies %.4g m beyond what the arm reaches", out_.beyond_reach) +
-        (plain == Status::out_of_reach ? "" : " within its limits") +
-        ": move the target or the base, or allow a tolerance";
+    say(Cause::out_of_reach, "the position lies " + number_text(out_.beyond_reach, kShownDigits) +
+                                 " m beyond what the arm reaches" +
+                                 (plain == Status::out_of_reach ? "" : " within its limits") +
+                                 ": move the target or the base, or allow a tolerance");
   }
 
+  /// Where there is nothing to explain.
+  [[nodiscard]] const Diagnosis& of_answer(const Result& plain) {
+    describe(plain.q);
+    out_.q_is_solution = true;
+    out_.message = "solved";
+    return diagnosis(plain.proof);
+  }
   /// With what the plain solve has proven.
   [[nodiscard]] const Diagnosis& diagnosis(Proof proof) {
     out_.proof = out_.q_is_solution ? Proof::answer : proof;
@@ -256,7 +231,23 @@ class Diagnoser {
     if (q.size() > 0) describe(q);
   }
 
-  bool describe(const JointVector& q) { return iksel::describe(model_, goal_, q, out_); }
+  void say(Cause cause, const std::string& message) {
+    out_.cause = cause;
+    out_.message = message;
+  }
+
+  /// Puts q into the diagnosis; true if it is close to a singularity.
+  bool describe(const JointVector& q) {
+    /// Singular values below this part of the largest are close to a singularity.
+    constexpr double kNearlySingular = 1e-3;
+    out_.q = q;
+    goal_.measure(q, out_.position_error, out_.rotation_error);
+    Jacobian J;
+    model_.fk_jacobian(q.data(), J);
+    const auto sigma = singular_values(JacobianMatrix(J));
+    out_.least_singular_value = sigma.minCoeff();
+    return out_.least_singular_value < kNearlySingular * sigma.maxCoeff();
+  }
 
   /// Whether q is an answer that the search has missed; it is then what is said.
   bool is_answer(const JointVector& q) {
@@ -265,8 +256,8 @@ class Diagnoser {
     describe(q);
     out_.branch = JointVector();
     out_.q_is_solution = true;
-    out_.cause = Cause::budget;
-    out_.message = "an answer exists that the search has missed: give it as a seed, or as `near`";
+    say(Cause::budget,
+        "an answer exists that the search has missed: give it as a seed, or as `near`");
     return true;
   }
 
@@ -288,16 +279,8 @@ class Diagnoser {
 Diagnosis Solver::Impl::diagnose(const Pose& target, const SolveRequest& request) const {
   const WorkspacePool::Lease lease(workspaces);
   const Result plain = solve(target, request, lease.get(), nullptr);
-  if (plain.success()) {
-    const TaskSpace of_call = task_of(request);
-    Diagnosis fine;
-    describe(model(), Goal(model(), of_call, target), plain.q, fine);
-    fine.q_is_solution = true;
-    fine.proof = plain.proof;
-    fine.message = "solved";
-    return fine;
-  }
   Diagnoser diagnoser(*this, target, request);
+  if (plain.success()) return diagnoser.of_answer(plain);
   bool is_explained = plain.proof == Proof::closed_form && !is_refusal(plain.status) &&
                       diagnoser.explain_by_branches(lease.get());
   if (!is_explained && plain.status != Status::out_of_reach) {

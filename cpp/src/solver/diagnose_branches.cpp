@@ -12,7 +12,6 @@ namespace iksel {
 namespace {
 
 constexpr const char* kCertainly = "certainly no answer: ";
-constexpr int kShownDigits = 4;
 
 std::string quoted(const ChainModel& model, int joint) {
   return "'" + model.joints.name(joint) + "'";

@@ -10,12 +10,10 @@
 namespace iksel {
 namespace {
 
-constexpr int kViolationDigits = 4;
-
 /// "at 3.3 rad, 0.2 rad beyond its upper limit"
 std::string place_text(double value, double outside, bool is_upper, const std::string& unit) {
-  return " at " + number_text(value, kViolationDigits) + unit + ", " +
-         number_text(outside, kViolationDigits) + unit + " beyond its " +
+  return " at " + number_text(value, kShownDigits) + unit + ", " +
+         number_text(outside, kShownDigits) + unit + " beyond its " +
          (is_upper ? "upper" : "lower") + " limit";
 }
 
@@ -73,7 +71,7 @@ std::string describe_violation(const ChainModel& model, const Diagnosis& diagnos
     unit = unit_of(joints, *row);
   }
   return who + " would have to go beyond by " +
-         number_text(diagnosis.limit_violation, kViolationDigits) + unit;
+         number_text(diagnosis.limit_violation, kShownDigits) + unit;
 }
 
 std::string list_violations(const ChainModel& model, const JointVector& q) {

@@ -9,6 +9,9 @@
 
 namespace iksel {
 
+/// Of lengths and angles in messages.
+inline constexpr int kShownDigits = 4;
+
 /// How far q lies outside the limits: the joint that is farthest, or what is coupled, as far as one
 /// of its joints would have to move by [rad or m].
 double worst_violation(const JointSpace& joints, const JointVector& q);

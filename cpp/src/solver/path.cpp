@@ -35,10 +35,10 @@ Status search_layer(const ChainModel& model, const SolverOptions& options, const
   search.screen(layer);
   const bool kept = layer.size() > 0;
   search.connect(before, layer);
-  return kept                                 ? Status::too_fast
-         : any                                ? search.refusal()
-         : collector.status == Status::solved ? Status::not_converged
-                                              : collector.status;
+  return kept                                   ? Status::too_fast
+         : any                                  ? search.refusal()
+         : collector.status() == Status::solved ? Status::not_converged
+                                                : collector.status();
 }
 
 /// The same path begun a little beside on the self-motion, if that makes it shorter: candidates of

@@ -52,7 +52,7 @@ class PathSearch {
       }
       if (same == origins.size()) {
         JointVector q = from;
-        if (!converge(model_, goal, kStepsToNext, q)) continue;
+        if (!converge(goal, kStepsToNext, q)) continue;
         origins.push_back(from);
         moves.emplace_back(q - from);
       }

@@ -16,19 +16,6 @@
 #include "structure/elbow.hpp"
 
 namespace iksel {
-
-const char* to_string(ArcEnd end) {
-  switch (end) {
-    case ArcEnd::limit:
-      return "limit";
-    case ArcEnd::fold:
-      return "fold";
-    case ArcEnd::closed:
-      return "closed";
-  }
-  return "unknown";
-}
-
 namespace {
 
 /// Moves q on the goal to where a coupled limit is reached; where that fails, it stays.

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -20,8 +21,6 @@ namespace {
 constexpr std::size_t kChoice = 4;
 /// Solutions spread over a self-motion, at most: as many as a set can hold.
 constexpr int kMostSpread = static_cast<int>(SolutionSet::kMost / kChoice);
-/// Images looked at, at most.
-constexpr std::size_t kImageBound = 65536;
 
 /// A solution, or one of its periodic images.
 struct Image {
@@ -53,19 +52,46 @@ double limit_distance(const ChainModel& model, const JointVector& q) {
   return least;
 }
 
-/// The cost that puts solutions in order where there is no objective, smaller first.
-double cost_of(const ChainModel& model, SolutionOrder order, const JointMove& move,
-               const JointVector& from, const JointVector& q) {
-  switch (order) {
-    case SolutionOrder::limit_distance:
-      return -limit_distance(model, q);
-    case SolutionOrder::manipulability:
-      return -manipulability(model, q);
-    case SolutionOrder::move:
-      break;
+/// What puts the solutions of a request in order.
+class SolutionRanking {
+ public:
+  /// All must outlive this.
+  SolutionRanking(const ChainModel& model, SolutionOrder order, const SolveRequest& request)
+      : model_(model),
+        order_(order),
+        objective_(request.objective),
+        nearest_to_(find_nearest_to(model.dof, request)),
+        move_(model.dof, request),
+        from_(request.near ? *request.near : model.joints.middle()) {}
+
+  /// Smaller comes first.
+  [[nodiscard]] double cost(const JointVector& q) const {
+    if (objective_.is_set()) {
+      return nearest_to_ ? nearest_to_->move.length(q - nearest_to_->from) : objective(q);
+    }
+    switch (order_) {
+      case SolutionOrder::limit_distance:
+        return -limit_distance(model_, q);
+      case SolutionOrder::manipulability:
+        return -manipulability(model_, q);
+      case SolutionOrder::move:
+        break;
+    }
+    return move(q);
   }
-  return move.length(q - from);
-}
+  [[nodiscard]] double move(const JointVector& q) const { return move_.length(q - from_); }
+  [[nodiscard]] double objective(const JointVector& q) const {
+    return ObjectiveCost(model_, objective_).value(q);
+  }
+
+ private:
+  const ChainModel& model_;
+  SolutionOrder order_;
+  const Objective& objective_;
+  std::optional<NearestTo> nearest_to_;
+  JointMove move_;
+  JointVector from_;
+};
 
 /// Keeps `count` that lie far from each other, the first among them.
 void keep_apart(const JointSpace& joints, std::size_t count, std::vector<Image>& images) {
@@ -81,9 +107,9 @@ void keep_apart(const JointSpace& joints, std::size_t count, std::vector<Image>&
 }
 
 /// The solutions found that are free, each at all its images inside the limits or as it is.
-template <typename Cost>
 std::vector<Image> images_of(const JointSpace& joints, const SolutionSet& found,
-                             const Screen& screen, bool with_images, const Cost& cost) {
+                             const Screen& screen, bool with_images,
+                             const SolutionRanking& ranking) {
   std::vector<Image> images;
   images.reserve(found.size());
   const std::unique_ptr<bool[]> free(new bool[found.size() + 1]());
@@ -92,13 +118,13 @@ std::vector<Image> images_of(const JointSpace& joints, const SolutionSet& found,
     if (!free[i]) continue;
     JointVector q = found.at(i);
     if (!with_images) {
-      images.push_back({q, cost(q), i});
+      images.push_back({q, ranking.cost(q), i});
       continue;
     }
     joints.first_image(q);
     do {
-      images.push_back({q, cost(q), i});
-    } while (images.size() < kImageBound && joints.next_image(q));
+      images.push_back({q, ranking.cost(q), i});
+    } while (images.size() < kMostImages && joints.next_image(q));
   }
   return images;
 }
@@ -139,6 +165,29 @@ void take_first_of_each(std::size_t solutions, std::vector<Image>& images) {
                images.end());
 }
 
+/// The best of the images, in order, at most so many; true if there were more.
+bool take_best(const JointSpace& joints, std::size_t most, bool is_redundant,
+               std::vector<Image>& images) {
+  if (images.size() <= most) return false;
+  if (is_redundant) {
+    keep_apart(joints, most, images);
+    std::sort(images.begin(), images.end(), cheaper);
+  } else {
+    images.resize(most);
+  }
+  return true;
+}
+
+/// What a search for answers came to, without them.
+Solutions without_answers(const Result& none) {
+  Solutions solutions;
+  solutions.status = none.status;
+  solutions.proof = none.proof;
+  solutions.attempts = none.attempts;
+  solutions.iterations = none.iterations;
+  return solutions;
+}
+
 }  // namespace
 
 Solutions Solver::Impl::solve_all(const Pose& target, const SolveAllOptions& all,
@@ -146,13 +195,7 @@ Solutions Solver::Impl::solve_all(const Pose& target, const SolveAllOptions& all
   const TaskSpace of_call = task_of(request);
   const Goal goal(model(), of_call, target, request.scene ? &*request.scene : nullptr);
   if (!request.exact && goal.is_never_free()) {
-    const Result none = find_first(target, of_call, request, workspace, nullptr);
-    Solutions solutions;
-    solutions.status = none.status;
-    solutions.proof = none.proof;
-    solutions.attempts = none.attempts;
-    solutions.iterations = none.iterations;
-    return solutions;
+    return without_answers(find_first(target, of_call, request, workspace, nullptr));
   }
   const auto most = static_cast<std::size_t>(all.max);
   const SolutionSet& found = workspace.collected.found;
@@ -166,40 +209,20 @@ Solutions Solver::Impl::solve_all(const Pose& target, const SolveAllOptions& all
                    workspace.collected);
   collect(model(), options, search, workspace);
 
-  Solutions solutions;
-  solutions.status = search.status;
-  solutions.proof = search.proof;
-  solutions.attempts = search.work.all_attempts();
-  solutions.iterations = search.work.iterations;
-
-  const JointMove move(robot.dof(), request);
-  const JointVector from = request.near ? *request.near : model().joints.middle();
-  const Objective& objective = request.objective;
-  const std::optional<NearestTo> nearest_to = find_nearest_to(robot.dof(), request);
-  const auto cost = [&](const JointVector& q) {
-    if (!objective.is_set()) return cost_of(model(), all.order, move, from, q);
-    if (nearest_to) return nearest_to->move.length(q - nearest_to->from);
-    return ObjectiveCost(model(), objective).value(q);
-  };
+  Solutions solutions = without_answers(search.result());
+  const SolutionRanking ranking(model(), all.order, request);
   // Without, each solution is at its best image already.
   const bool with_images =
-      all.whole_turns || request.filter || objective.kind == Objective::Kind::custom;
-  std::vector<Image> images = images_of(model().joints, found, screen, with_images, cost);
+      all.whole_turns || request.filter || request.objective.kind == Objective::Kind::custom;
+  std::vector<Image> images = images_of(model().joints, found, screen, with_images, ranking);
   apply_filter(screen, robot.dof(), images);
   images.erase(std::remove_if(images.begin(), images.end(),
                               [](const Image& image) { return std::isinf(image.cost); }),
                images.end());
   std::sort(images.begin(), images.end(), cheaper);
   if (!all.whole_turns) take_first_of_each(found.size(), images);
-  if (images.size() > most) {
-    solutions.proof = Proof::none;  // others are left out
-    if (goal.is_redundant()) {
-      keep_apart(model().joints, most, images);
-    } else {
-      images.resize(most);
-    }
-    std::sort(images.begin(), images.end(), cheaper);
-  }
+  const bool are_left_out = take_best(model().joints, most, goal.is_redundant(), images);
+  if (are_left_out) solutions.proof = Proof::none;
 
   solutions.all.reserve(images.size());
   for (const Image& image : images) {
@@ -209,15 +232,15 @@ Solutions Solver::Impl::solve_all(const Pose& target, const SolveAllOptions& all
     } else if (!goal.check(image.q, result)) {
       continue;
     }
-    if (request.near) result.move = move.length(image.q - from);
-    if (objective.is_set()) result.cost = ObjectiveCost(model(), objective).value(image.q);
+    if (request.near) result.move = ranking.move(image.q);
+    if (request.objective.is_set()) result.cost = ranking.objective(image.q);
     result.attempts = solutions.attempts;
     result.iterations = solutions.iterations;
     solutions.all.push_back(result);
   }
   if (solutions.all.empty()) {
     if (solutions.status == Status::solved) solutions.status = screen.refusal();
-    if (search.is_out_of_time) solutions.status = Status::out_of_time;
+    if (search.is_out_of_time()) solutions.status = Status::out_of_time;
   } else if (solutions.proof == Proof::none) {
     solutions.proof = Proof::answer;
   }

@@ -121,23 +121,20 @@ Result Solver::Impl::find_answer(const Pose& target, const TaskSpace& of_call,
                    workspace.collected);
   collect(model(), options, search, workspace, times);
 
+  result = search.result();
   JointVector q;
-  if (search.status != Status::solved) {
-    result.status = search.status;
-  } else if (selector.select(search, q) && goal.check(q, result)) {
+  if (result.success() && !(selector.select(search, q) && goal.check(q, result))) {
+    result.status = screen.refusal();
+  }
+  if (result.success()) {
     if (request.objective.is_set()) {
       result.cost = ObjectiveCost(model(), request.objective).value(q);
     }
     if (request.near) result.move = JointMove(robot.dof(), request).length(q - *request.near);
-  } else {
-    result.status = screen.refusal();
+  } else if (search.is_out_of_time()) {
+    result.status = Status::out_of_time;
   }
-  if (!result.success()) {
-    result.proof = search.proof;
-    if (search.is_out_of_time) result.status = Status::out_of_time;
-  }
-  result.attempts = search.work.all_attempts();
-  result.iterations = search.work.iterations + selector.steps();
+  result.iterations += selector.steps();
   return result;
 }
 

@@ -91,7 +91,7 @@ Result Tracker::track(const Pose& T_base_tip, double dt, const Scene* scene) {
   const JointVector from = model.joints.clamp(is_at_edge_ ? lean(q_, reached_) : q_);
   JointVector end = from;
   result.attempts = 1;
-  const bool is_reached = converge(model, goal, kStepsToNext, end, result.iterations);
+  const bool is_reached = converge(goal, kStepsToNext, end, result.iterations);
   if (!is_reached) {
     if (!closest_) return result;
     const Vector6 weights = to_vector(*closest_, solver_.database().data());

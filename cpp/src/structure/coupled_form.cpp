@@ -7,8 +7,7 @@
 
 namespace iksel {
 
-static_assert(lanes::kMostCoupled == kMaxCoupledLimits &&
-              lanes::kMostCoupledImages == kMostCoupledImages);
+static_assert(lanes::kMostCoupled == kMaxCoupledLimits);
 
 std::shared_ptr<const lanes::CoupledForm> make_coupled_form(const ChainModel& model,
                                                             const ClosedFormChain& chain) {

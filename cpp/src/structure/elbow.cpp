@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/constants.hpp"
 #include "simd/lane_chain.hpp"
 #include "structure/closed_form.hpp"
 
@@ -12,9 +13,8 @@ namespace iksel {
 using Eigen::Vector3d;
 
 std::optional<Elbow> Elbow::of(const ChainModel& model) {
-  constexpr int kJoints = 7;
   constexpr double kParallel = 1e-3;
-  if (model.dof != kJoints || !is_simple(model)) return std::nullopt;
+  if (model.dof != kCurveJoints || !is_simple(model)) return std::nullopt;
   for (const KernelJoint& joint : model.kernel.joints) {
     if (joint.prismatic) return std::nullopt;
   }

@@ -1,19 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "structure/inner_chain.hpp"
 
+#include <algorithm>
+#include <string>
+
 #include "simd/lane_chain.hpp"
 
 namespace iksel {
 
 std::vector<InnerChain> InnerChain::of(const ChainModel& whole) {
   std::vector<InnerChain> found;
-  if (whole.dof <= kJoints || !is_simple(whole)) return found;
-  for (int first = 0; first + kJoints <= whole.dof; ++first) {
+  if (whole.dof <= kCurveJoints || !is_simple(whole)) return found;
+  for (int first = 0; first + kCurveJoints <= whole.dof; ++first) {
     InnerChain inner;
     inner.first = first;
     RobotOptions options = whole.options;
+    auto& limits = options.coupled_limits;
     for (int j = 0; j < whole.dof; ++j) {
-      if (!inner.contains(j)) options.locked_joints[whole.joints.name(j)] = 0;
+      if (inner.contains(j)) continue;
+      const std::string& name = whole.joints.name(j);
+      options.locked_joints[name] = 0;
+      // What is coupled with a joint at 0 says nothing of it anywhere else.
+      limits.erase(std::remove_if(limits.begin(), limits.end(),
+                                  [&](const CoupledLimit& limit) {
+                                    return limit.coefficients.count(name) > 0;
+                                  }),
+                   limits.end());
     }
     inner.model = std::make_shared<const ChainModel>(whole.urdf, options);
     const auto form = find_closed_form(*inner.model);

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "base/constants.hpp"
 #include "kinematics/chain_model.hpp"
 #include "structure/closed_form.hpp"
 
@@ -21,12 +22,12 @@ struct InnerChain {
   /// All that a chain has; none of chains of seven joints or fewer, or where joints mimic others.
   static std::vector<InnerChain> of(const ChainModel& whole);
 
-  [[nodiscard]] bool contains(int joint) const { return joint >= first && joint < first + kJoints; }
+  [[nodiscard]] bool contains(int joint) const {
+    return joint >= first && joint < first + kCurveJoints;
+  }
   /// Y (reduction.hpp) of the target for these joints while the others are at their values in q.
   [[nodiscard]] Pose target(const ChainModel& whole, const Pose& T_base_tcp,
                             const JointVector& q) const;
-
-  static constexpr int kJoints = 7;
 };
 
 }  // namespace iksel

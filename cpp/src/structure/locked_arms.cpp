@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/constants.hpp"
 #include "simd/lane_chain.hpp"
 #include "structure/known_solutions.hpp"
 
@@ -29,12 +30,11 @@ bool is_exact(const LockedArm& arm) { return arm.pose && !arm.pose->is_almost();
 }  // namespace
 
 LockedArms LockedArms::of(const ChainModel& whole) {
-  constexpr int kJoints = 7;
   LockedArms found;
   const JointSpace& joints = whole.joints;
-  if (whole.dof != kJoints || !is_simple(whole)) return found;
+  if (whole.dof != kCurveJoints || !is_simple(whole)) return found;
   found.are_all = joints.coupled.empty();
-  for (int j = 0; j < kJoints; ++j) {
+  for (int j = 0; j < kCurveJoints; ++j) {
     if (joints.type(j) == JointType::continuous || !takes_part_in_self_motion(whole, j)) continue;
     for (const bool is_upper : {false, true}) {
       LockedArm arm = lock(whole, j, is_upper ? joints.upper[j] : joints.lower[j], is_upper);

@@ -66,18 +66,6 @@ std::string describe_axes(const ClosedFormChain& chain) {
 
 }  // namespace
 
-const char* to_string(StructureKind kind) {
-  switch (kind) {
-    case StructureKind::closed_form:
-      return "closed_form";
-    case StructureKind::swept:
-      return "swept";
-    case StructureKind::searched:
-      return "searched";
-  }
-  return "unknown";
-}
-
 Structure find_structure(const Robot& robot) {
   auto chain = find_closed_form(robot.model());
   if (!chain) chain = find_residual(robot.model());

@@ -33,55 +33,7 @@ ArmSearch::ArmSearch(const StackedGoal& goal, const std::vector<TipSolvers>& sol
     SolveRequest of_arm = tip.arm ? request_for(*tip.arm, request) : SolveRequest{};
     of_arm.task = draws ? Task::pose() : task;
     of_arm_.push_back(of_arm);
-    limits_beyond_arm_.push_back(tip.arm ? limits_beyond_arm(*tip.arm)
-                                         : std::vector<const CoupledRow*>());
   }
-}
-
-std::vector<const CoupledRow*> ArmSearch::limits_beyond_arm(const TreePart& arm) const {
-  const auto& known = arm.robot.options().coupled_limits;
-  std::vector<const CoupledRow*> beyond;
-  for (const CoupledRow& row : goal_.model().joints.coupled) {
-    const CoupledLimit& limit =
-        goal_.model().options.coupled_limits[static_cast<std::size_t>(row.given)];
-    const bool is_known = std::find(known.begin(), known.end(), limit) != known.end();
-    const bool bounds_arm = std::any_of(arm.joints.begin(), arm.joints.end(),
-                                        [&](int joint) { return row.c[joint] != 0; });
-    if (bounds_arm && !is_known) beyond.push_back(&row);
-  }
-  return beyond;
-}
-
-Filter ArmSearch::filter_of_limits(int tip, unsigned solved, const JointVector& q) const {
-  const TreeModel& model = goal_.model();
-  std::vector<bool> is_known(static_cast<std::size_t>(model.dof()), false);
-  const auto know = [&](const std::vector<int>& joints) {
-    for (const int joint : joints) is_known[static_cast<std::size_t>(joint)] = true;
-  };
-  know(model.shared);
-  for (int other = 0; other < model.tip_count(); ++other) {
-    const bool counts = other == tip || (solved & (1U << static_cast<unsigned>(other))) != 0;
-    if (counts) know(model.tip(other).arm->joints);
-  }
-  std::vector<const CoupledRow*> rows;
-  for (const CoupledRow* row : limits_beyond_arm_[static_cast<std::size_t>(tip)]) {
-    bool bounds_unknown = false;
-    for (int j = 0; j < model.dof(); ++j) {
-      bounds_unknown = bounds_unknown || (row->c[j] != 0 && !is_known[static_cast<std::size_t>(j)]);
-    }
-    if (!bounds_unknown) rows.push_back(row);
-  }
-  if (rows.empty()) return {};
-  const auto& joints = model.tip(tip).arm->joints;
-  return filter_each(static_cast<int>(joints.size()), [=, &model, &q](const JointVector& of_arm) {
-    JointVector all = q;
-    put(of_arm, joints, all);
-    // At the whole turns at which the answer will be given.
-    model.joints.wrap(all.data());
-    return std::all_of(rows.begin(), rows.end(), [&](const CoupledRow* row) {
-      return row->beyond(row->sum(all.data())) <= 0;
-    });
-  });
 }
 
 bool ArmSearch::has_arm(int tip) const {
@@ -105,9 +57,8 @@ Pose ArmSearch::target_of_arm(int tip, const JointVector& q) {
   return stem ? compose(stem->fk(q).inverse(), target) : target;
 }
 
-bool ArmSearch::solve_arm(int tip, unsigned solved, JointVector& q) {
+bool ArmSearch::solve_arm(int tip, JointVector& q) {
   const auto i = static_cast<std::size_t>(tip);
-  if (!limits_beyond_arm_[i].empty()) of_arm_[i].filter = filter_of_limits(tip, solved, q);
   const Result result = solvers_[i].arm->solve(target_of_arm(tip, q), of_arm_[i]);
   if (result.success()) put(result.q, goal_.model().tip(tip).arm->joints, q);
   return result.success();
@@ -117,7 +68,6 @@ void ArmSearch::bring_closest(int tip, JointVector& q) {
   const auto i = static_cast<std::size_t>(tip);
   if (!solvers_[i].arm) return;
   of_arm_[i].closest.emplace();
-  of_arm_[i].filter = {};
   const Result result = solvers_[i].arm->solve(target_of_arm(tip, q), of_arm_[i]);
   of_arm_[i].closest.reset();
   if (has_joints(result.status)) put(result.q, goal_.model().tip(tip).arm->joints, q);

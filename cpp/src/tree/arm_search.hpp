@@ -28,9 +28,9 @@ class ArmSearch {
   [[nodiscard]] bool has_arm(int tip) const;
   /// Whether each has.
   [[nodiscard]] bool has_all_arms() const;
-  /// Solves for the joints of that tip's arm, the shared ones and those of the arms in the mask
-  /// `solved` as in q; false leaves q as it is.
-  bool solve_arm(int tip, unsigned solved, JointVector& q);
+  /// Solves for the joints of that tip's arm, the shared ones as in q; false leaves q as it is.
+  /// Limits that arms share are left to what iterates all joints.
+  bool solve_arm(int tip, JointVector& q);
   /// The same, or if there is none the joint values with the tip closest to its target; without an
   /// arm q stays as it is.
   void bring_closest(int tip, JointVector& q);
@@ -42,12 +42,6 @@ class ArmSearch {
   /// The target as the arm's base sees it.
   [[nodiscard]] Pose target_of_arm(int tip, const JointVector& q);
 
-  /// Coupled limits that the arm's solver does not know, of its joints and others.
-  [[nodiscard]] std::vector<const CoupledRow*> limits_beyond_arm(const TreePart& arm) const;
-  /// Those of them that bound an arm's joints where the shared ones, and the arms in the mask, are
-  /// known: a filter for its solver. `q` must outlive it.
-  [[nodiscard]] Filter filter_of_limits(int tip, unsigned solved, const JointVector& q) const;
-
   const StackedGoal& goal_;
   const std::vector<TipSolvers>& solvers_;
   /// What is asked of each tip's arm.
@@ -55,8 +49,6 @@ class ArmSearch {
   /// Tips whose task lies along axes of the base, which turns under the arm: one pose that the task
   /// allows is asked for after another.
   std::vector<bool> draws_pose_;
-  /// Of each tip.
-  std::vector<std::vector<const CoupledRow*>> limits_beyond_arm_;
   Random random_;
 };
 

@@ -1,23 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// All joints of several chains brought to all targets at once: Levenberg-Marquardt with the limits
-// inside the step, on the errors of all tips one below the other. One seed at a time; the interface
-// is that of search.hpp.
+// All joints of several chains brought to all targets at once: the errors of all tips are rows of
+// one goal. One seed at a time; the interface is that of search.hpp.
 #pragma once
 
+#include "refine/self_motion.hpp"
 #include "tree/stacked_goal.hpp"
 
 namespace iksel {
-
-/// The step that takes `missing` away, lower <= q + step <= upper: J^T (J J^T + damping I)^-1
-/// missing, with the columns of joints that stand at a limit and would leave it set to zero, cut
-/// off at the limits.
-JointVector stacked_step(const JointSpace& joints, const JointVector& q, const StackedJacobian& J,
-                         const StackedVector& missing, double damping);
-
-/// W J^T (J W J^T)^+ missing for W = diag(weights): of all steps that take `missing` away the
-/// least, measured by 1 / weights.
-JointVector weighted_solve(const StackedJacobian& J, const JointVector& weights,
-                           const StackedVector& missing);
 
 class StackedRefiner {
  public:
@@ -28,6 +17,8 @@ class StackedRefiner {
   [[nodiscard]] int width() const { return 1; }
   void load_seed(int /*lane*/, const double* q) {
     q_ = Eigen::Map<const Eigen::VectorXd>(q, goal_.model().dof());
+    // Each chain was solved without what it shares with others.
+    if (!goal_.joints().coupled.empty()) q_ = goal_.joints().clamp(q_);
   }
   /// An attempt from beginning to end. Returns the steps.
   int advance(unsigned busy);
@@ -37,10 +28,6 @@ class StackedRefiner {
   [[nodiscard]] bool is_to_be_looked_at(int /*lane*/) const { return false; }
   [[nodiscard]] const JointVector& at(int /*lane*/) const { return q_; }
   [[nodiscard]] const JointVector& q(int /*lane*/) const { return q_; }
-
-  /// Brings q to the goal, to `aim` of the tolerances where that can be had in at most `most`
-  /// steps; adds the steps. False if it does not get within the tolerances.
-  static bool converge(const StackedGoal& goal, int most, double aim, JointVector& q, int& steps);
 
  private:
   const StackedGoal& goal_;

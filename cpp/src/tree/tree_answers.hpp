@@ -5,8 +5,8 @@
 #include "base/constants.hpp"
 #include "base/work.hpp"
 #include "goal/joint_move.hpp"
+#include "refine/self_motion.hpp"
 #include "search/search.hpp"
-#include "tree/stacked_descent.hpp"
 
 namespace iksel {
 

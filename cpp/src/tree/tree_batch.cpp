@@ -7,6 +7,7 @@
 #include "base/message_text.hpp"
 #include "base/parallel.hpp"
 #include "base/pose_check.hpp"
+#include "goal/screen.hpp"
 #include "iksel/error.hpp"
 #include "tree/tree_solver_impl.hpp"
 
@@ -43,14 +44,9 @@ std::vector<TreeResult> TreeSolver::solve_batch(const std::vector<Pose>& T_base_
   }
   for (const JointVector& each : near) impl_->check_near(each);
   std::vector<TreeResult> results(count);
-  std::mutex one_at_a_time;
+  std::mutex turn;
   TreeRequest locked = request;
-  if (request.filter) {
-    locked.filter = [&](const double* q, std::size_t n, bool* keep) {
-      const std::lock_guard<std::mutex> lock(one_at_a_time);
-      request.filter(q, n, keep);
-    };
-  }
+  locked.filter = in_turn(request.filter, turn);
   const auto make_worker = [&] {
     return [&, own = locked](std::size_t begin, std::size_t end) mutable {
       for (std::size_t i = begin; i < end; ++i) {

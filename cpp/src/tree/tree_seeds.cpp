@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/low_discrepancy.hpp"
+
 namespace iksel {
 namespace {
 
@@ -16,14 +18,10 @@ constexpr int kNearPatience = 16;
 }  // namespace
 
 SharedValues::SharedValues(const TreeModel& model, const NearBound* bound)
-    : model_(model), bound_(bound), index_(bound != nullptr ? -1 : 0) {
-  const std::size_t count = model.shared.size();
-  double phi = 2.0;
-  for (int i = 0; i < 64; ++i) phi = std::pow(1.0 + phi, 1.0 / static_cast<double>(count + 1));
-  for (std::size_t j = 0; j < count; ++j) {
-    step_[j] = std::pow(1.0 / phi, static_cast<double>(j + 1));
-  }
-}
+    : model_(model),
+      bound_(bound),
+      index_(bound != nullptr ? -1 : 0),
+      step_(low_discrepancy_steps(model.shared.size())) {}
 
 std::pair<double, double> SharedValues::range(int joint) const {
   const JointSpace& joints = model_.joints;
@@ -90,23 +88,16 @@ bool ArmSeeds::next_stage() {
   values_.next(q_);
   const int tips = goal_.model().tip_count();
   unsigned solved = 0;
-  int count = 0;
-  int missing = -1;
   for (int k = 0; k < tips; ++k) {
     const int tip = (first_ + k) % tips;
     if (is_too_far(solved)) return true;
-    if (arms_.solve_arm(tip, solved, q_)) {
-      solved |= 1U << static_cast<unsigned>(tip);
-      ++count;
-    } else if (missing < 0) {
-      missing = tip;
+    if (!arms_.solve_arm(tip, q_)) {
+      first_ = tip;
+      return true;
     }
+    solved |= 1U << static_cast<unsigned>(tip);
   }
-  is_complete_ = count == tips;
-  if (!is_complete_) {
-    keep_partial(solved, count);
-    first_ = missing;
-  }
+  is_complete_ = true;
   return true;
 }
 
@@ -121,38 +112,12 @@ bool ArmSeeds::is_too_far(unsigned solved) const {
   return bound_->move.length(moved - bound_->near) >= bound_->best;
 }
 
-void ArmSeeds::keep_partial(unsigned solved, int count) {
-  int at = std::min(partial_count_, kPartials - 1);
-  if (partial_count_ == kPartials && partial_[kPartials - 1].count >= count) return;
-  partial_count_ = at + 1;
-  for (; at > 0 && partial_[static_cast<std::size_t>(at) - 1].count < count; --at) {
-    partial_[static_cast<std::size_t>(at)] = partial_[static_cast<std::size_t>(at) - 1];
-  }
-  partial_[static_cast<std::size_t>(at)] = {q_, solved, count};
-}
-
 bool StackedSeeds::next_stage() {
   if (!work_.take()) return false;
   const int tips = goal_.model().tip_count();
-  const int partials = before_.partial_count();
-  const int i = index_++;
-  if (i < tips) {
-    if (!make_from_chain(i, /*at_random=*/false)) return false;
-  } else if (i - tips < partials) {
-    make_from_partial(i - tips);
-  } else {
-    make_from_chain((i - partials) % tips, /*at_random=*/true);
-  }
-  is_loaded_ = true;
-  return true;
-}
-
-void StackedSeeds::make_from_partial(int i) {
-  q_ = before_.partial(i);
-  for (int tip = 0; tip < goal_.model().tip_count(); ++tip) {
-    const unsigned bit = 1U << static_cast<unsigned>(tip);
-    if ((before_.solved_in_partial(i) & bit) == 0) arms_.bring_closest(tip, q_);
-  }
+  is_loaded_ = make_from_chain(index_ % tips, /*at_random=*/index_ >= tips);
+  ++index_;
+  return is_loaded_;
 }
 
 bool StackedSeeds::make_from_chain(int lead, bool at_random) {

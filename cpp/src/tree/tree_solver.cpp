@@ -115,7 +115,7 @@ TreeResult TreeSolver::Impl::solve(const std::vector<Pose>& targets,
   } else {
     FirstTreeAnswer answers(goal, request, result);
     ArmSeeds behind_shared(goal, arms, nullptr, work);
-    StackedSeeds stacked(goal, arms, behind_shared, options.seed, work, result);
+    StackedSeeds stacked(goal, arms, options.seed, work, result);
     SeedSequence seeds(2, behind_shared, stacked);
     search(refiner, seeds, answers, work);
   }
@@ -135,7 +135,7 @@ void TreeSolver::Impl::find_nearest(const StackedGoal& goal, const TreeRequest& 
   SeedSequence near_seeds(2, from_near, behind_shared);
   if (search(refiner, near_seeds, answers, work)) return;
   if (!result.success()) {
-    StackedSeeds stacked(goal, arms, behind_shared, options.seed, work, result);
+    StackedSeeds stacked(goal, arms, options.seed, work, result);
     FirstTreeAnswer first(goal, request, result);
     search(refiner, stacked, first, work);
     if (!result.success()) return;

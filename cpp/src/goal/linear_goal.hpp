@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A goal to first order around a configuration, as one step of an iteration sees it.
+#pragma once
+
+#include "iksel/types.hpp"
+
+namespace iksel {
+
+/// lower <= deviation + J step <= upper. `kRowCount` may be dynamic, with `kMost` rows at most.
+template <int kRowCount, int kMost>
+struct LinearGoal {
+  static constexpr int kRows = kRowCount;
+  static constexpr int kMostRows = kMost;
+  using Vector = Eigen::Matrix<double, kRows, 1, Eigen::ColMajor, kMostRows, 1>;
+  using Jacobian =
+      Eigen::Matrix<double, kRows, Eigen::Dynamic, Eigen::ColMajor, kMostRows, kMaxDof>;
+
+  Jacobian J;
+  Vector deviation;
+  Vector lower, upper;
+  Vector missing;  ///< from the deviation to the bounds
+
+  [[nodiscard]] bool is_fixed(Eigen::Index row) const { return lower[row] == upper[row]; }
+};
+
+}  // namespace iksel

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a search has come to so far, whichever answers it is for.
+#pragma once
+
+#include "base/work.hpp"
+#include "goal/goal.hpp"
+#include "iksel/request.hpp"
+
+namespace iksel {
+
+class SearchState {
+ public:
+  /// All must outlive this.
+  SearchState(const Goal& goal, const SolveRequest& request, int max_attempts)
+      : work(max_attempts), goal_(goal), request_(request), deadline_(request.deadline) {}
+
+  [[nodiscard]] const Goal& goal() const { return goal_; }
+  [[nodiscard]] const SolveRequest& request() const { return request_; }
+  [[nodiscard]] Status status() const { return result_.status; }
+
+  // What families of solutions tell, and seeds.
+
+  /// All answers collide.
+  void refuse() { result_.status = Status::in_collision; }
+  /// The target was reached outside the limits.
+  void leave_limits() {
+    if (result_.status == Status::not_converged) result_.status = Status::outside_limits;
+  }
+  void put_out_of_reach() { result_.status = Status::out_of_reach; }
+
+  Work work;
+
+ protected:
+  const Goal& goal_;
+  const SolveRequest& request_;
+  Deadline deadline_;
+  Result result_;
+};
+
+}  // namespace iksel

@@ -259,8 +259,8 @@ struct EnumTable<Proof> {
        "about others"},
       {"roots_counted", Proof::roots_counted,
        "all roots of the equation that a joint's angle fulfils (Robot.structure) were counted, by "
-       "Descartes' rule of signs, and no solution lies inside the limits, nor could the tolerances "
-       "bring one there"},
+       "Descartes' rule of signs, none of them all but double; and no other solution lies inside "
+       "the limits"},
   };
 };
 

@@ -78,7 +78,7 @@ RootSweep::RootSweep(const ChainModel& model, const ClosedFormChain& chain, bool
       tolerance_(tolerance),
       are_answers_(is_nominal && chain.deviation <= kShare * tolerance),
       concludes_(concludes_from_branches(is_nominal, tolerance)),
-      counts_(concludes_ && !chain.loop && tolerance + chain.deviation <= kMostOff),
+      counts_(concludes_ && tolerance + chain.deviation <= kMostOff),
       vague_(2 * std::sqrt(tolerance + chain.deviation)),
       farther_(2 * std::sqrt(tolerance + kFartherApart * kFartherApart * chain.deviation)),
       vague_divisor_(std::pow(kBesideAxis * (tolerance + chain.deviation), 2)),

@@ -257,10 +257,6 @@ struct EnumTable<Proof> {
       {"answer", Proof::answer,
        "of what was found: it is measured on the joint values themselves. Of a set nothing is said "
        "about others"},
-      {"roots_counted", Proof::roots_counted,
-       "all roots of the equation that a joint's angle fulfils (Robot.structure) were counted, by "
-       "Descartes' rule of signs, none of them all but double; and no other solution lies inside "
-       "the limits"},
   };
 };
 

@@ -35,7 +35,6 @@ inline bool is_proven(Proof proof) {
     case Proof::reach:
     case Proof::target:
     case Proof::closed_form:
-    case Proof::roots_counted:
       return true;
     case Proof::sweep:
     case Proof::none:

@@ -1733,7 +1733,6 @@ class Proof(enum.IntEnum):
     closed_form = 2
     none = 0
     reach = 1
-    roots_counted = 6
     sweep = 3
     target = 4
     def __format__(self, arg0: str) -> str:

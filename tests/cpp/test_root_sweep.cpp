@@ -42,7 +42,7 @@ TEST_P(RootSweeps, SolutionsAreThoseOfManySeeds) {
   for (int i = 0; i < n; ++i) {
     const Pose target = robot().fk(random.row(i));
     const iksel::Solutions all = solver().solve_all(target);
-    concluded += all.proof == Proof::sweep || all.proof == Proof::roots_counted;
+    concluded += all.proof == Proof::sweep;
     for (const Result& result : all.all) judge.expect_solution(target, result.q);
     auto known = iksel_test::brute_force(solver(), target, 300);
     known.emplace_back(random.row(i));
@@ -75,10 +75,6 @@ TEST_P(RootSweeps, WhatIsReachableIsNotSaidToHaveNoSolution) {
     unsolved += !result.success();
     EXPECT_TRUE(result.success() || result.proof == Proof::none)
         << q.transpose() << ", seed " << iksel_test::seed();
-    // Off by as much as the tolerances allow.
-    const Pose off = iksel_test::shifted(robot().fk(q), 0.99e-6, 0.99e-6, dice);
-    EXPECT_NE(solver().solve(off).proof, Proof::roots_counted)
-        << q.transpose() << ", seed " << iksel_test::seed();
   }
   EXPECT_LE(unsolved, n / 100);
 }
@@ -88,21 +84,18 @@ TEST_P(RootSweeps, NoOneElseSolvesWhatHasNone) {
   const int n = iksel_test::cases(60, 20);
   const Eigen::MatrixXd random = robot().random_configurations(n, iksel_test::seed());
   int none = 0;
-  int proven = 0;
   for (int i = 0; i < n; ++i) {
     Pose target = robot().fk(random.row(i));
     target.linear() = iksel_test::rotation_of_rpy<double>(dice.vector(3.1));
     const Result result = solver().solve(target);
     EXPECT_NE(result.proof, Proof::closed_form);
-    if (result.success() || result.proof == Proof::none) continue;
+    if (result.proof != Proof::sweep) continue;
     ++none;
-    proven += result.proof == Proof::roots_counted;
-    EXPECT_EQ(solver().solve_batch({target})[0].proof, result.proof);
-    EXPECT_EQ(solver().solve_all(target).proof, result.proof);
+    EXPECT_EQ(solver().solve_batch({target})[0].proof, Proof::sweep);
+    EXPECT_EQ(solver().solve_all(target).proof, Proof::sweep);
     EXPECT_TRUE(iksel_test::brute_force(solver(), target, 200).empty()) << i;
   }
   EXPECT_GE(none, 1);
-  EXPECT_GE(proven, none / 2) << "seed " << iksel_test::seed();
 }
 
 /// A joint past its limit by far more than the tolerances, or by what they allow.

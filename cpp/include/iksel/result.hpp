@@ -48,9 +48,6 @@ enum class Proof : std::uint8_t {
            ///< fixed to it, whatever the arm does
   answer,  ///< of what was found: it is measured on the joint values themselves. Of a set nothing
            ///< is said about others
-  roots_counted,  ///< all roots of the equation that a joint's angle fulfils (find_structure) were
-                  ///< counted, by Descartes' rule of signs, none of them all but double; and no
-                  ///< other solution lies inside the limits
 };
 
 /// Lower-case name of a proof.

@@ -13,10 +13,10 @@ namespace iksel {
 using FirstSearch = SearchParts<FirstAnswer>;
 using AllSearch = SearchParts<Collector>;
 
-/// Near, given seeds and all branches.
+/// Near, given seeds and all branches. `kind`: the proof that branches give.
 template <typename Parts, typename Branches>
-Explored explore_branches(const Parts& parts, Branches& branches, NearSeed& near, GivenSeeds& given,
-                          const Pose& Y);
+Explored explore_branches(const Parts& parts, Branches& branches, Proof kind, NearSeed& near,
+                          GivenSeeds& given, const Pose& Y);
 
 // On the self-motion of seven joints of which one can be swept.
 

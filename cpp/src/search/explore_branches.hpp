@@ -12,8 +12,8 @@ inline constexpr int kBesideBranches = 48;
 inline constexpr int kBesideRoots = 96;
 
 template <typename Parts, typename Branches>
-Explored explore_branches(const Parts& parts, Branches& branches, NearSeed& near, GivenSeeds& given,
-                          const Pose& Y) {
+Explored explore_branches(const Parts& parts, Branches& branches, Proof kind, NearSeed& near,
+                          GivenSeeds& given, const Pose& Y) {
   auto& answers = parts.answers;
   EnumeratedSeeds enumerated(branches, Y, answers.wants_more(), parts.work, parts.clock);
   SeedSequence seeds(3, near, given, enumerated);
@@ -22,8 +22,8 @@ Explored explore_branches(const Parts& parts, Branches& branches, NearSeed& near
   if (branches.may_be_singular()) answers.converge_from_near();
   // Branches of which none could be refined to the tolerances prove nothing.
   if (enumerated.is_certain()) {
-    if (enumerated.is_empty()) return Explored::done(branches.proof());
-    if (answers.has_any() && !branches.has_families()) return Explored::done(branches.proof());
+    if (enumerated.is_empty()) return Explored::done(kind);
+    if (answers.has_any() && !branches.has_families()) return Explored::done(kind);
   } else {
     const bool is_satisfied_inside =
         !answers.has_any() &&
@@ -31,7 +31,7 @@ Explored explore_branches(const Parts& parts, Branches& branches, NearSeed& near
     const bool is_all = enumerated.is_certain_but_for_limits() && !branches.has_families();
     if (is_satisfied_inside || is_all) return Explored::done();
   }
-  if (branches.proof() != Proof::closed_form) {
+  if (kind == Proof::sweep) {
     parts.work.leave(kBesideRoots);
   } else if (enumerated.has_all() && !answers.wants_more()) {
     parts.work.leave(kBesideBranches);

@@ -50,7 +50,7 @@ Proof search_in_lanes(const Parts& parts) {
   Enumeration* branches = lanes.branches_of(goal.task());
   if (branches != nullptr && parts.request.database_seeds) {
     NearSeed none(nullptr, parts.work);
-    const auto explored = explore_branches(parts, *branches, none, given, Y);
+    const auto explored = explore_branches(parts, *branches, Proof::closed_form, none, given, Y);
     if (explored.is_done) return explored.proof;
   }
   if (goal.is_full_pose()) {

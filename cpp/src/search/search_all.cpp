@@ -36,7 +36,7 @@ Proof search_pose(const AllSearch& parts, NearSeed& near, GivenSeeds& given, con
     return Proof::none;
   }
   if (lanes.roots) {
-    const auto roots = explore_branches(parts, *lanes.roots, near, given, Y);
+    const auto roots = explore_branches(parts, *lanes.roots, Proof::sweep, near, given, Y);
     if (roots.is_done) return roots.proof;
   }
   bool has_asked_ends = false;

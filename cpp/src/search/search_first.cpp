@@ -41,7 +41,7 @@ Proof search_pose(const FirstSearch& parts, NearSeed& near, GivenSeeds& given, c
     if (const auto free = explore_free_curve(parts, Y); free.is_done) return free.proof;
   }
   if (lanes.roots) {
-    const auto roots = explore_branches(parts, *lanes.roots, near, given, Y);
+    const auto roots = explore_branches(parts, *lanes.roots, Proof::sweep, near, given, Y);
     if (roots.is_done) return roots.proof;
   }
   if (lanes.sweep) {

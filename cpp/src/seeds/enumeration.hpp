@@ -41,8 +41,6 @@ class Enumeration {
   /// Whether these are the solutions but for branches so close to a limit, and away from
   /// singularities: such a branch is one, or there is none beside it.
   [[nodiscard]] bool is_certain_but_for_limits() const { return certain_but_for_limits_; }
-  /// What it proves if these are all.
-  [[nodiscard]] static Proof proof() { return Proof::closed_form; }
   /// Whether the arm may be singular at one of these.
   [[nodiscard]] bool may_be_singular() const { return may_be_singular_; }
   /// Whether each solution is near to one of these, if they are not certain either.

@@ -69,56 +69,6 @@ void RootFinder::add_faint() {
   }
 }
 
-std::array<bool, RootFinder::kCells> RootFinder::find_crowded() const {
-  constexpr double kApart = kTwoPi / kCells;
-  // Heat that flows backwards makes roots real that are less than `kApart` away from being so, and
-  // leaves real ones real (de Bruijn, "The roots of trigonometric integrals", 1950). Here by the
-  // first order of its flow, which moves roots that meet by less than twice as far.
-  const double share = 0.5 * kApart * kApart / (step_ * step_);
-  const int farthest = static_cast<int>(std::ceil(2 * kApart / step_));
-  std::array<double, round_up(kBefore + kCells + kAfter)> sharper;
-  for (std::size_t i = 0; i < values_.size(); ++i) {
-    const std::size_t k = std::clamp<std::size_t>(i, 1, values_.size() - 2);
-    sharper[i] = values_[i] - share * (values_[k + 1] - 2 * values_[k] + values_[k - 1]);
-  }
-  std::array<double, kCells> counts;
-  kernels_.count_roots(sharper.data() + kBefore, kCells, /*apart=*/0, counts.data());
-  for (std::size_t i = 0; i < size_; ++i) {
-    const double cell = std::floor(place_of(roots_[i]));
-    if (roots_[i].is_vague || cell < 0 || cell >= kCells) continue;
-    counts[static_cast<std::size_t>(cell)] -= 1;
-  }
-  std::array<bool, kCells> is_crowded{};
-  for (int i = 0; i < kCells; ++i) {
-    if (counts[static_cast<std::size_t>(i)] <= 0) continue;
-    const int first = std::max(0, i - farthest);
-    const int last = std::min(kCells - 1, i + farthest + 1);
-    std::fill(is_crowded.begin() + first, is_crowded.begin() + last + 1, true);
-  }
-  return is_crowded;
-}
-
-std::size_t RootFinder::find_doubtful(std::array<double, kMostDoubtful>& angles) const {
-  constexpr double kBeside = 0.25;
-  std::size_t n = 0;
-  for (std::size_t i = 0; i < size_; ++i) {
-    if (roots_[i].is_vague) angles[n++] = roots_[i].angle;
-  }
-  const std::array<bool, kCells> is_crowded = find_crowded();
-  for (std::size_t half = 0; half < 2 * kCells; ++half) {
-    if (!is_crowded[half / 2]) continue;
-    double place = 0.5 * static_cast<double>(half);
-    for (std::size_t i = 0; i < size_; ++i) {
-      const double off = place - place_of(roots_[i]);
-      if (roots_[i].is_vague || std::abs(off) >= kBeside) continue;
-      place = place_of(roots_[i]) + std::copysign(kBeside, off);
-    }
-    angles[n++] = angles_[kBefore] + step_ * place;
-  }
-  for (; n % kBlock != 0; ++n) angles[n] = angles[n - 1];
-  return n;
-}
-
 double RootFinder::faintest() const {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = kBefore; i < kBefore + kCells; ++i) {

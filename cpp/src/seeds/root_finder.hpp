@@ -39,12 +39,6 @@ class RootFinder {
   void find(const Residual& residual);
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] const Root& operator[](std::size_t i) const { return roots_[i]; }
-  /// Angles that tell whether there would be more roots if the residual were slightly another one:
-  /// vague roots, and within a quarter of a cell from where two roots that are not real come nearer
-  /// to the real line than a cell of a whole turn is wide; but none beside roots that are real.
-  /// Returns how many there are, a multiple of kWidth.
-  static constexpr std::size_t kMostDoubtful = 2 * kCells + kMost;
-  std::size_t find_doubtful(std::array<double, kMostDoubtful>& angles) const;
   /// Of the larger of the residuals at both ends of a cell, the least.
   [[nodiscard]] double faintest() const;
   /// Whether these are all.
@@ -72,12 +66,6 @@ class RootFinder {
   void look_closer(const Residual& residual, double left, double length, int depth);
   void add_bracket(double left, double length, const double* value);
   void add(double angle, bool is_vague, double apart = 0);
-  /// In which cells roots appear, if those that are not real are moved towards the real line.
-  [[nodiscard]] std::array<bool, kCells> find_crowded() const;
-  /// In cells from the first one's left end on.
-  [[nodiscard]] double place_of(const Root& root) const {
-    return (root.angle - angles_[kBefore]) / step_;
-  }
   /// Adds where the residual turns, but hardly differs from 0.
   void add_faint();
   /// Narrows all brackets.

@@ -43,17 +43,6 @@ constexpr double kFreely = 0.1;
 /// Where none is off by more than this, and no root is double, the arm is not singular [rad].
 constexpr double kDelicate = 1e-3;
 
-/// If roots are to be counted, no more may appear where the target is off along each axis and about
-/// it by so many times the tolerances, and by this [rad, units] for what lies between the angles
-/// that are looked at. With 1e-5 instead, 7 of 300,000 targets of cvr038 beside singularities, off
-/// by 0.99 tolerances, were proven away, with 2.5e-5 none (IKSEL_TEST_CASES=300000 iksel_tests
-/// --gtest_filter=*RootSweeps.WhatIsReachable*cvr038).
-constexpr double kOff = 4;
-constexpr double kBetween = 5e-5;
-/// Where the tolerances, with what the axes lie off, are more, roots may come from farther away
-/// than is looked.
-constexpr double kMostOff = 1e-5;
-
 /// Roots are found to within this [rad], or to within this share of what the axes lie off; so many
 /// times the tolerances, what they lie off counts as nothing.
 constexpr double kPrecision = 5e-10;
@@ -78,7 +67,6 @@ RootSweep::RootSweep(const ChainModel& model, const ClosedFormChain& chain, bool
       tolerance_(tolerance),
       are_answers_(is_nominal && chain.deviation <= kShare * tolerance),
       concludes_(concludes_from_branches(is_nominal, tolerance)),
-      counts_(concludes_ && tolerance + chain.deviation <= kMostOff),
       vague_(2 * std::sqrt(tolerance + chain.deviation)),
       farther_(2 * std::sqrt(tolerance + kFartherApart * kFartherApart * chain.deviation)),
       vague_divisor_(std::pow(kBesideAxis * (tolerance + chain.deviation), 2)),
@@ -93,64 +81,32 @@ RootSweep::RootSweep(const ChainModel& model, const ClosedFormChain& chain, bool
   for (int lane = 0; lane < lanes::kWidth; ++lane) pack_.sign[2][lane] = 1;
 }
 
-void RootSweep::set_residual(const Pose& Y) {
-  if (chain_.loop) {
-    chain_.loop->set_target(chain_.reversed ? Y.inverse() : Y, loop_);
-    polynomial_.find(loop_);
-  } else {
-    chain_.set_target(Y, pack_);
-    form_ = make_residual(chain_, pack_);
-  }
-}
-
-double RootSweep::evaluate(const double* angles, int n, double* residuals) const {
-  if (!chain_.loop) return kernels_.find_residuals(form_, angles, n, residuals);
-  kernels_.evaluate_polynomial(polynomial_.get(), angles, n, residuals);
-  return kInfinity;
-}
-
-bool RootSweep::find_roots(const Pose& Y) {
-  set_residual(Y);
+bool RootSweep::find_product_roots(const Pose& Y) {
+  chain_.set_target(Y, pack_);
+  const lanes::ResidualForm form = make_residual(chain_, pack_);
   double least_divisor = kInfinity;
   roots_.find([&](const double* angles, int n, double* residuals) {
-    least_divisor = std::min(least_divisor, evaluate(angles, n, residuals));
+    least_divisor = std::min(least_divisor, kernels_.find_residuals(form, angles, n, residuals));
   });
-  if (chain_.loop) return roots_.faintest() > kAboveNoise * polynomial_.noise();
   return least_divisor > vague_divisor_;
 }
 
-bool RootSweep::may_have_more_roots(const Pose& Y) {
-  std::array<double, RootFinder::kMostDoubtful> angles, values, moved, room;
-  const std::size_t size = roots_.find_doubtful(angles);
-  const int n = static_cast<int>(size);
-  if (n == 0) return false;
-  evaluate(angles.data(), n, values.data());
-  for (std::size_t i = 0; i < size; ++i) room[i] = std::abs(values[i]);
-  const double shift = kOff * (tolerance_ + chain_.deviation) + kBetween;
-  for (int k = 0; k < 6; ++k) {
-    const Eigen::Vector3d axis = Eigen::Vector3d::Unit(k % 3);
-    Pose other = Y;
-    if (k < 3) {
-      other.translation() += shift * chain_.unit * axis;
-    } else {
-      other.linear() = Eigen::AngleAxisd(shift, axis).toRotationMatrix() * other.linear();
-    }
-    set_residual(other);
-    evaluate(angles.data(), n, moved.data());
-    for (std::size_t i = 0; i < size; ++i) room[i] -= std::abs(moved[i] - values[i]);
-  }
-  // Written so that NaN may be anything.
-  return !std::all_of(room.begin(), room.begin() + n, [](double left) { return left > 0; });
+bool RootSweep::find_loop_roots(const Pose& Y) {
+  chain_.loop->set_target(chain_.reversed ? Y.inverse() : Y, loop_);
+  polynomial_.find(loop_);
+  roots_.find([&](const double* angles, int n, double* values) {
+    kernels_.evaluate_polynomial(polynomial_.get(), angles, n, values);
+  });
+  return roots_.faintest() > kAboveNoise * polynomial_.noise();
 }
 
 void RootSweep::find(const Pose& Y, bool wants_all) {
-  const bool can_tell = find_roots(Y);
-  is_counted_ = counts_;  // until something speaks against it
-  certain_ = concludes_ && roots_.is_complete() && can_tell;
+  const bool is_clear = chain_.loop ? find_loop_roots(Y) : find_product_roots(Y);
+  certain_ = concludes_ && roots_.is_complete() && is_clear;
   is_at_limit_ = false;
   is_delicate_ = chain_.loop != nullptr;
-  may_be_singular_ = !can_tell;
-  size_ = rejected_size_ = 0;
+  may_be_singular_ = !is_clear;
+  size_ = 0;
   // Each root has a lane, or by the first one or two of the three signs two or four: two to this
   // power.
   const unsigned lanes_power = chain_.loop ? chain_.loop->form().has_two_ways() : 2;
@@ -174,40 +130,8 @@ void RootSweep::find(const Pose& Y, bool wants_all) {
     certain_ = false;
   }
   certain_but_for_limits_ = certain_;
-  is_counted_ = is_counted_ && certain_ && size_ == 0 && !may_come_inside();
-  is_counted_ = is_counted_ && !may_have_more_roots(Y);
   // At a limit, what the tolerances allow decides.
   certain_ = certain_ && !is_at_limit_;
-}
-
-void RootSweep::reject(int lane) {
-  if (rejected_size_ == kMost) {
-    is_counted_ = false;
-    return;
-  }
-  auto& q = rejected_[static_cast<std::size_t>(rejected_size_++)];
-  for (std::size_t j = 0; j < q.size(); ++j) q[j] = pack_.q[j][lane];
-}
-
-bool RootSweep::may_come_inside() {
-  // Of poses in units of the reach, second derivatives are about 2: by Kantorovich's theorem there
-  // is one solution near to this one, and it moves by no more than twice what it does to first
-  // order, where the product is below 1 / 4. A quarter of that is on the safe side.
-  constexpr double kLargest = 1.0 / 16;
-  lanes::Regularity regularity;
-  for (int first = 0; first < rejected_size_; first += lanes::kWidth) {
-    const int n = std::min(lanes::kWidth, rejected_size_ - first);
-    for (int lane = 0; lane < lanes::kWidth; ++lane) {
-      const auto& q = rejected_[static_cast<std::size_t>(first + std::min(lane, n - 1))];
-      for (std::size_t j = 0; j < q.size(); ++j) pack_.q[j][lane] = q[j];
-    }
-    kernels_.measure_regularity(chain_.form, pack_, regularity);
-    for (int lane = 0; lane < n; ++lane) {
-      const double norm = regularity.inverse_norm[lane];
-      if (!(norm * norm * (tolerance_ + chain_.deviation) < kLargest)) return true;
-    }
-  }
-  return false;
 }
 
 bool RootSweep::has_singular() const {
@@ -242,10 +166,7 @@ void RootSweep::take(const Pose& Y, const RootFinder::Root& root, int lane) {
   const bool is_free = beyond > 0 && !(pack_.error[lane] < std::max(beyond, kFreely));
   const bool is_sure = is_closed && !is_free;
   const bool is_far = beyond > std::max(slack, kFarBeyond);
-  if (is_far && is_sure) {
-    reject(lane);
-    return;
-  }
+  if (is_far && is_sure) return;
   if (size_ == kMost) {
     certain_ = false;
     return;

@@ -9,7 +9,6 @@
 #include "kinematics/chain_model.hpp"
 #include "seeds/root_finder.hpp"
 #include "simd/branch_types.hpp"
-#include "simd/residual_types.hpp"
 #include "structure/closed_form.hpp"
 #include "structure/loop_polynomial.hpp"
 
@@ -39,8 +38,6 @@ class RootSweep {
   /// The same but for those so close to a limit, and away from singularities: such a one is a
   /// solution, or there is none beside it.
   [[nodiscard]] bool is_certain_but_for_limits() const { return certain_but_for_limits_; }
-  /// What it proves if these are all.
-  [[nodiscard]] Proof proof() const { return is_counted_ ? Proof::roots_counted : Proof::sweep; }
   /// Whether the arm may be singular at one of these, where roots are double.
   [[nodiscard]] bool may_be_singular() const { return may_be_singular_; }
   /// Double roots may be missed.
@@ -48,20 +45,11 @@ class RootSweep {
   [[nodiscard]] static bool has_families() { return false; }
 
  private:
-  /// The residual of a target: the product over all branches, or the loop's determinant.
-  void set_residual(const Pose& Y);
-  /// Its values at `n` angles; of the product also what it was divided by, at least.
-  double evaluate(const double* angles, int n, double* residuals) const;
-  /// Returns whether rounding leaves enough of the residual to conclude from.
-  bool find_roots(const Pose& Y);
-  /// Whether another target within the tolerances may have solutions where this one has none.
-  bool may_have_more_roots(const Pose& Y);
+  /// Finds the roots by the product over all branches, or by the loop's determinant. Returns
+  /// whether rounding leaves enough of it to conclude from.
+  bool find_product_roots(const Pose& Y);
+  bool find_loop_roots(const Pose& Y);
   void take(const Pose& Y, const RootFinder::Root& root, int lane);
-  /// Keeps a solution that lies outside the limits.
-  void reject(int lane);
-  /// Whether solutions that lie outside the limits may come inside for another target within the
-  /// tolerances: where the arm is almost singular they move far.
-  bool may_come_inside();
   /// Whether one of these is singular, or almost.
   [[nodiscard]] bool has_singular() const;
 
@@ -69,13 +57,12 @@ class RootSweep {
   ClosedFormChain chain_;
   const lanes::LaneKernels& kernels_;
   double tolerance_;
-  bool are_answers_, concludes_, counts_;
+  bool are_answers_, concludes_;
   double vague_;          ///< by how much roots that are nearly double may be off [rad]
   double farther_;        ///< vague roots that are farther apart must be nearer to an answer [rad]
   double vague_divisor_;  ///< nothing is concluded from residuals divided by less [units^2]
   RootFinder roots_;
   LoopPolynomial polynomial_;
-  lanes::ResidualForm form_{};
   lanes::LoopTarget loop_{};
   lanes::BranchPack pack_ = all_branches();
   std::array<std::array<double, 6>, kMost> q_{};
@@ -84,10 +71,7 @@ class RootSweep {
   bool is_at_limit_ = false;
   bool is_delicate_ = false;  ///< whether one may be singular
   bool certain_but_for_limits_ = false;
-  bool is_counted_ = false;
   bool may_be_singular_ = false;
-  std::array<std::array<double, 6>, kMost> rejected_{};  ///< outside the limits, as the form counts
-  int rejected_size_ = 0;
 };
 
 }  // namespace iksel

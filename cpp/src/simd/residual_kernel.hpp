@@ -140,11 +140,11 @@ IKSEL_INLINE auto all_but_touches(const T& before, const T& at, const T& after, 
 }
 
 /// For each of `n` cells between two of the evenly spaced values and the next, how many roots there
-/// are at most: certainly none or one, or 2 and more where that is not certain. By Descartes' rule
-/// of signs for the polynomial of fifth degree through the six values around, in Bernstein form;
-/// what it may differ from the function is told by the sixth difference. Nor is it certain where
-/// the values turn at an end of the cell and all but reach 0 (all_but_touches). There are 3 values
-/// before the first and 4 after the last cell's left one, and `n` is a multiple of kWidth.
+/// are: none, one, or 2 where that is not certain. By Descartes' rule of signs for the polynomial
+/// of fifth degree through the six values around, in Bernstein form; what it may differ from the
+/// function is told by the sixth difference. Nor is it certain where the values turn at an end of
+/// the cell and all but reach 0 (all_but_touches). There are 3 values before the first and 4 after
+/// the last cell's left one, and `n` is a multiple of kWidth.
 template <typename T>
 void count_roots(const double* values, int n, double apart, double* counts) {
   // For the first two inner coefficients; the other two are their mirror images.
@@ -168,8 +168,8 @@ void count_roots(const double* values, int n, double apart, double* counts) {
     }
     const auto touches =
         all_but_touches(v[2], v[3], v[4], T(apart)) | all_but_touches(v[3], v[4], v[5], T(apart));
-    const T count = most_sign_changes(b, margin);
-    Lanes<T>::store(select(touches, max(count, T(2.0)), count), counts + i);
+    const T count = min(most_sign_changes(b, margin), T(2.0));
+    Lanes<T>::store(select(touches, T(2.0), count), counts + i);
   }
 }
 

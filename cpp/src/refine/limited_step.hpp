@@ -10,7 +10,8 @@
 
 namespace iksel {
 
-/// J^T (J J^T + lambda I)^-1 e, by the smaller of the two systems that give it.
+/// As damped_solve in pseudo_inverse.hpp, which six rows go to, for any number of rows: by the
+/// smaller of the two systems that give it. Here, because it is seen by few sources.
 template <typename Matrix, typename Vector>
 JointVector damped_solve(const Matrix& J, double lambda, const Vector& e) {
   constexpr int kMost = Matrix::MaxRowsAtCompileTime;

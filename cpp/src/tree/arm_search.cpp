@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tree/arm_search.hpp"
 
-#include <algorithm>
-
 #include "base/rotation.hpp"
 
 namespace iksel {

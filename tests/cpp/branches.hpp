@@ -11,8 +11,6 @@
 
 namespace iksel_test {
 
-inline constexpr double kTwoPi = 6.28318530717958647692;
-
 inline bool turns(const iksel::Robot& robot, int j) {
   return robot.joint_types()[static_cast<std::size_t>(j)] != iksel::JointType::prismatic &&
          robot.upper()[j] - robot.lower()[j] >= kTwoPi;

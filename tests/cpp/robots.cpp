@@ -11,6 +11,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "base/rotation.hpp"
 #include "kinematics/chain_model.hpp"
 #include "kinematics/kdl_chain.hpp"
 #include "task_errors.hpp"
@@ -173,6 +174,16 @@ int count_solved(const iksel::Solver& solver, int n) {
     judge.expect_solution(targets[i], result.q, solver.options());
   }
   return solved;
+}
+
+double least_singular_value(const Eigen::MatrixXd& J) {
+  return J.jacobiSvd().singularValues().minCoeff();
+}
+
+Eigen::Matrix<double, 6, 1> pose_vector(const iksel::Pose& pose) {
+  Eigen::Matrix<double, 6, 1> x;
+  x << pose.translation(), iksel::to_rotation_vector(pose.linear());
+  return x;
 }
 
 }  // namespace iksel_test

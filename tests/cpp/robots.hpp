@@ -11,11 +11,17 @@
 #include <string>
 #include <vector>
 
+#include "base/constants.hpp"
+
 namespace iksel {
 class KdlChain;
 }
 
 namespace iksel_test {
+
+using iksel::kInfinity;
+using iksel::kPi;
+using iksel::kTwoPi;
 
 /// The built-in robot of that name, tool included, as robots.toml describes it.
 const iksel::Robot& robot(const std::string& name);
@@ -64,6 +70,12 @@ std::vector<iksel::Pose> poses(const iksel::Robot& robot, const Eigen::MatrixXd&
 
 /// FK at n random configurations.
 std::vector<iksel::Pose> random_targets(const iksel::Robot& robot, int n);
+
+/// How far a matrix is from losing rank.
+double least_singular_value(const Eigen::MatrixXd& J);
+
+/// A pose as the paper counts distances: translation [m] and rotation vector [rad].
+Eigen::Matrix<double, 6, 1> pose_vector(const iksel::Pose& pose);
 
 /// Names the cases of a suite by their parameter.
 inline std::string name_of(const testing::TestParamInfo<std::string>& info) { return info.param; }

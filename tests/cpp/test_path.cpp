@@ -18,8 +18,7 @@ using iksel::Pose;
 using iksel::Result;
 using iksel::Solver;
 using iksel::Status;
-
-constexpr double kTwoPi = 6.28318530717958647692;
+using iksel_test::kTwoPi;
 
 /// n poses from `first` along a straight line.
 std::vector<Pose> line(const Pose& first, const Eigen::Vector3d& length, int n) {

@@ -22,11 +22,6 @@ using iksel::Robot;
 using iksel::Solver;
 using iksel_test::Dice;
 
-/// How far q is from being singular.
-double least_singular_value(const Robot& robot, const JointVector& q) {
-  return robot.jacobian(q).jacobiSvd().singularValues().minCoeff();
-}
-
 class RootSweeps : public testing::TestWithParam<const char*> {
  protected:
   [[nodiscard]] const Solver& solver() const { return iksel_test::solver(GetParam()); }
@@ -47,7 +42,7 @@ TEST_P(RootSweeps, SolutionsAreThoseOfManySeeds) {
     auto known = iksel_test::brute_force(solver(), target, 300);
     known.emplace_back(random.row(i));
     for (const JointVector& q : known) {
-      if (least_singular_value(robot(), q) < 1e-3) continue;
+      if (iksel_test::least_singular_value(robot().jacobian(q)) < 1e-3) continue;
       missed += std::none_of(all.all.begin(), all.all.end(), [&](const Result& result) {
         return iksel_test::distance(robot(), result.q, q) < 0.02;
       });

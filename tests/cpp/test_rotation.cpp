@@ -12,7 +12,7 @@
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using iksel_test::kPi;
 
 Eigen::Vector3d random_axis(iksel::Random& random) {
   Eigen::Vector3d v(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));

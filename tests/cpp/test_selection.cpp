@@ -6,7 +6,6 @@
 #include <numeric>
 #include <vector>
 
-#include "base/rotation.hpp"
 #include "database/data.hpp"
 #include "iksel/iksel.hpp"
 #include "kinematics/chain_model.hpp"
@@ -20,6 +19,7 @@ using iksel::JointVector;
 using iksel::Ranking;
 using iksel::Reselection;
 using iksel::Robot;
+using iksel_test::pose_vector;
 
 struct Bench {
   Robot robot = iksel_test::robot("irb14050");
@@ -33,12 +33,6 @@ struct Bench {
   }();
   Robot bare = robot.with_tcp(iksel::Pose::Identity());
 };
-
-Eigen::Matrix<double, 6, 1> pose_vector(const iksel::Pose& pose) {
-  Eigen::Matrix<double, 6, 1> x;
-  x << pose.translation(), iksel::to_rotation_vector(pose.linear());
-  return x;
-}
 
 /// Indices of the samples in the paper's order, all neighbours.
 std::vector<std::size_t> reference_order(const Bench& s, const iksel::Pose& target) {

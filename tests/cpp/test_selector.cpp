@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/rotation.hpp"
 #include "robots.hpp"
 
 namespace {
@@ -23,6 +22,7 @@ using iksel::Selector;
 using iksel::Solver;
 using iksel::SolverOptions;
 using iksel_test::paper_of;
+using iksel_test::pose_vector;
 using Indices = std::vector<std::size_t>;
 
 /// The preset over a small database, with some of its fields changed.
@@ -119,12 +119,6 @@ TEST(Selector, MakesTheLoopOfEveryScheme) {
     paper.iteration = iksel::Iteration::cwln;
     paper.kinematics = iksel::Kinematics::kernel;
   });
-}
-
-Eigen::Matrix<double, 6, 1> pose_vector(const Pose& pose) {
-  Eigen::Matrix<double, 6, 1> x;
-  x << pose.translation(), iksel::to_rotation_vector(pose.linear());
-  return x;
 }
 
 TEST(Selector, ItsNumbersAreThoseOfTheEquations) {

@@ -209,7 +209,7 @@ bool may_swing(const Robot& robot, const iksel::SweptBranches& branches, int bra
   branches.copy_joints(branch, q.data());
   Eigen::MatrixXd J = robot.jacobian(q);
   J.col(branches.joint()).setZero();
-  return J.jacobiSvd().singularValues()[5] < 0.15;
+  return iksel_test::least_singular_value(J) < 0.15;
 }
 
 /// What is measured of all branches at once leaves out only what lies far away.

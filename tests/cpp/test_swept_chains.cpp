@@ -29,9 +29,8 @@ using iksel::RootSweep;
 using iksel_test::AxisMaker;
 using iksel_test::Dice;
 using iksel_test::Pair;
+using iksel_test::kTwoPi;
 using lanes::Closure;
-
-constexpr double kTwoPi = 6.28318530717958647692;
 
 RootSweep sweep_of(const Robot& robot) {
   return {robot.model(), *iksel::find_residual(robot.model()), /*is_nominal=*/true, 1e-6,
@@ -50,11 +49,6 @@ bool holds(const RootSweep& sweep, const Robot& robot, const JointVector& q, dou
 /// Finds all solutions of a pose.
 void find(RootSweep& sweep, const Robot& robot, const Pose& target) {
   sweep.find(iksel_test::reduced(robot, target), /*wants_all=*/true);
-}
-
-/// How far q is from being singular.
-double least_singular_value(const Robot& robot, const JointVector& q) {
-  return robot.jacobian(q).jacobiSvd().singularValues().minCoeff();
 }
 
 /// The residual of a chain by the angle of the joint that is swept, for the pose of its last frame.
@@ -188,7 +182,7 @@ TEST_P(SweptChains, HoldsTheSolutionThatWasPutIn) {
           for (int k = 0; k < sweep.size(); ++k) {
             EXPECT_LE(Eigen::Map<const JointVector>(sweep.q(k), 6).cwiseAbs().maxCoeff(), 3.1);
           }
-          if (least_singular_value(robot, q) < 1e-4) continue;
+          if (iksel_test::least_singular_value(robot.jacobian(q)) < 1e-4) continue;
           ++all;
           certain += sweep.is_certain();
           // Where two branches meet, roots are double, and a seed is near to the solution.

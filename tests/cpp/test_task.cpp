@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "base/random.hpp"
@@ -27,10 +26,9 @@ using iksel::Status;
 using iksel::Task;
 using iksel::TaskSpace;
 using iksel::Vector6;
+using iksel_test::kInfinity;
+using iksel_test::kPi;
 using iksel_test::tasks;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kPi = 3.14159265358979323846;
 
 /// What a task asks for, by formulas that share nothing with the library's.
 void expect_reached(const Task& task, const Pose& target, const Pose& pose, const char* what) {

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <iksel/iksel.hpp>
-#include <limits>
 
 #include "base/random.hpp"
 #include "goal/task_space.hpp"
@@ -25,9 +24,8 @@ using iksel::TaskFrame;
 using iksel::TaskSpace;
 using iksel::Vector6;
 using iksel_test::angle_between;
+using iksel_test::kInfinity;
 using iksel_test::tasks;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 TaskSpace space_of(const Task& task) { return {task, 1e-6, 1e-6}; }
 

@@ -7,6 +7,8 @@
 // sin(d / 2), cos(3 d / 2) and sin(3 d / 2) with 1, cos(e) and sin(e).
 #pragma once
 
+#include <utility>
+
 #include "simd/branch_arm.hpp"
 #include "simd/loop_types.hpp"
 
@@ -42,53 +44,102 @@ IKSEL_INLINE void fill_products(const LoopTarget& target, const Angle<T>& angle,
   }
 }
 
-/// By Householder's reflections, an odd number of them. Returns the product of the diagonal.
-template <typename T>
-IKSEL_INLINE T make_triangular(Products<T>& m) {
-  T product = T(1.0);
-  for (int k = 0; k + 1 < kProducts; ++k) {
-    T square = T(0.0);
-    for (int i = k; i < kProducts; ++i) square = square + m[k][i] * m[k][i];
-    const T norm = sqrt(square);
-    const T diagonal = select(m[k][k] > T(0.0), T(0.0) - norm, norm);
-    const T inverse = T(1.0) / max(square + norm * abs(m[k][k]), T(1e-200));
-    m[k][k] = m[k][k] - diagonal;
-    for (int j = k + 1; j < kProducts; ++j) {
-      T share = T(0.0);
-      for (int i = k; i < kProducts; ++i) share = share + m[k][i] * m[j][i];
-      share = share * inverse;
-      for (int i = k; i < kProducts; ++i) m[j][i] = m[j][i] - share * m[k][i];
+/// Householder's reflection that leaves nothing below the diagonal of column k. What is reflected
+/// stays in registers: its length is known to the compiler.
+template <int k, typename T>
+IKSEL_INLINE void reflect(Products<T>& m, T& product) {
+  constexpr int kRows = kProducts - k;
+  const T* own = m[k] + k;
+  T square = T(0.0);
+  for (int i = 0; i < kRows; ++i) square = square + own[i] * own[i];
+  const T norm = sqrt(square);
+  const T diagonal = select(own[0] > T(0.0), T(0.0) - norm, norm);
+  const T inverse = T(1.0) / max(square + norm * abs(own[0]), T(1e-200));
+  m[k][k] = own[0] - diagonal;
+  for (int j = k + 1; j < kProducts; ++j) {
+    T column[kRows];
+    T share = T(0.0);
+    for (int i = 0; i < kRows; ++i) {
+      column[i] = m[j][k + i];
+      share = share + own[i] * column[i];
     }
-    m[k][k] = diagonal;
-    product = product * diagonal;
+    share = share * inverse;
+    for (int i = 0; i < kRows; ++i) m[j][k + i] = column[i] - share * own[i];
   }
-  return product * m[kProducts - 1][kProducts - 1];
+  m[k][k] = diagonal;
+  product = product * diagonal;
+}
+
+/// Several at once, whose roots and quotients do not wait for each other: each by an odd number of
+/// reflections. Returns the products of the diagonals.
+template <typename T, int kCount, int... k>
+IKSEL_INLINE void make_triangular(Products<T> (&m)[kCount], T (&products)[kCount],
+                                  std::integer_sequence<int, k...> /*columns*/) {
+  for (T& product : products) product = T(1.0);
+  const auto reflect_all = [&](auto column) __attribute__((always_inline)) {
+    for (int i = 0; i < kCount; ++i) reflect<decltype(column)::value>(m[i], products[i]);
+  };
+  (reflect_all(std::integral_constant<int, k>{}), ...);
+  for (int i = 0; i < kCount; ++i) {
+    products[i] = products[i] * m[i][kProducts - 1][kProducts - 1];
+  }
+}
+template <typename T, int kCount>
+IKSEL_INLINE void make_triangular(Products<T> (&m)[kCount], T (&products)[kCount]) {
+  make_triangular(m, products, std::make_integer_sequence<int, kProducts - 1>{});
+}
+
+/// At so many packs of angles.
+template <int kCount, typename T>
+IKSEL_INLINE void find_determinants(const LoopTarget& target, const double* angles,
+                                    double* values) {
+  Products<T> m[kCount];
+  T products[kCount];
+  for (int i = 0; i < kCount; ++i) {
+    Angle<T> angle;
+    sincos(Lanes<T>::load(angles + i * Lanes<T>::kCount), angle.s, angle.c);
+    fill_products(target, angle, m[i]);
+  }
+  make_triangular(m, products);
+  for (int i = 0; i < kCount; ++i) Lanes<T>::store(products[i], values + i * Lanes<T>::kCount);
 }
 
 /// At `n` angles [rad], a multiple of kWidth.
 template <typename T>
 void find_determinants(const LoopTarget& target, const double* angles, int n, double* values) {
-  for (int first = 0; first < n; first += Lanes<T>::kCount) {
-    Angle<T> angle;
-    sincos(Lanes<T>::load(angles + first), angle.s, angle.c);
-    Products<T> m;
-    fill_products(target, angle, m);
-    Lanes<T>::store(make_triangular<T>(m), values + first);
+  constexpr int kPack = Lanes<T>::kCount;
+  int first = 0;
+  for (; first + 2 * kPack <= n; first += 2 * kPack) {
+    find_determinants<2, T>(target, angles + first, values + first);
+  }
+  for (; first < n; first += kPack) {
+    find_determinants<1, T>(target, angles + first, values + first);
+  }
+}
+
+/// So many columns of C = A B, whose sums do not wait for each other.
+template <int kColumns, typename T>
+IKSEL_INLINE void multiply_columns(const double* A, int rows, const double* B, int inner,
+                                   double* C) {
+  for (int first = 0; first < rows; first += Lanes<T>::kCount) {
+    T sum[kColumns];
+    for (int k = 0; k < kColumns; ++k) sum[k] = T(0.0);
+    for (int i = 0; i < inner; ++i) {
+      const T a = Lanes<T>::load(A + i * rows + first);
+      for (int k = 0; k < kColumns; ++k) sum[k] = sum[k] + a * T(B[k * inner + i]);
+    }
+    for (int k = 0; k < kColumns; ++k) Lanes<T>::store(sum[k], C + k * rows + first);
   }
 }
 
 /// C = A B, as Multiply says.
 template <typename T>
 void multiply(const double* A, int rows, const double* B, int inner, int columns, double* C) {
-  for (int k = 0; k < columns; ++k) {
-    for (int first = 0; first < rows; first += Lanes<T>::kCount) {
-      T sum = T(0.0);
-      for (int i = 0; i < inner; ++i) {
-        sum = sum + Lanes<T>::load(A + i * rows + first) * T(B[k * inner + i]);
-      }
-      Lanes<T>::store(sum, C + k * rows + first);
-    }
+  int k = 0;
+  for (; k + 3 <= columns; k += 3) {
+    multiply_columns<3, T>(A, rows, B + k * inner, inner, C + k * rows);
   }
+  for (; k < columns; ++k) multiply_columns<1, T>(A, rows, B + k * inner, inner, C + k * rows);
 }
 
 /// The determinants by their Fourier coefficients.
@@ -261,11 +312,12 @@ void close_loops(const LoopForm& form, const LoopTarget& target, const ClosedFor
   for (int first = 0; first < kWidth; first += Lanes<T>::kCount) {
     Branch<T, Definiteness<T>> out;
     sincos(Lanes<T>::load(pack.held + first), out.q[0].s, out.q[0].c);
-    Products<T> m;
-    fill_products(target, out.q[0], m);
-    make_triangular<T>(m);
+    Products<T> m[1];
+    T determinant[1];
+    fill_products(target, out.q[0], m[0]);
+    make_triangular(m, determinant);
     T x[kProducts];
-    find_null_vector<T>(m, x);
+    find_null_vector<T>(m[0], x);
     read_products(x, out);
     Moving<T> moving{constant<T>(form.p[3]), constant<T>(form.h[3]), constant<T>(form.across)};
     for (int j = 2; j >= 0; --j) {

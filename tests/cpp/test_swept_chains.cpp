@@ -28,8 +28,8 @@ using iksel::RootFinder;
 using iksel::RootSweep;
 using iksel_test::AxisMaker;
 using iksel_test::Dice;
-using iksel_test::Pair;
 using iksel_test::kTwoPi;
+using iksel_test::Pair;
 using lanes::Closure;
 
 RootSweep sweep_of(const Robot& robot) {

@@ -226,7 +226,7 @@ TEST(Kernels, SeedsAreKeptFromWhatIsKnown) {
         }
         expected[entry] = std::min(nearest[entry], away);
       }
-      kernels.add_known(kJoints, per_turn, from, seeds, nearest);
+      kernels.add_known(kJoints, per_turn, from, seeds.q[0], 1, 0, nearest);
       for (int entry = 0; entry < lanes::kBlock; ++entry) {
         EXPECT_NEAR(nearest[entry], expected[entry], 1e-5) << level << " round " << round;
       }

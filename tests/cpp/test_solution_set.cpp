@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "iksel/iksel.hpp"
-#include "kinematics/farthest_first.hpp"
 #include "robots.hpp"
 #include "search/solution_set.hpp"
+#include "seeds/farthest_first.hpp"
 
 namespace {
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Seeds of some blocks that were not tried yet, the one farthest from every solution first: the
-// paper's farthest-first re-selection, with solutions found in the place of seeds that failed.
+// Of many configurations always the one that lies farthest from those before.
 #pragma once
 
-#include "base/constants.hpp"
+#include <cstddef>
+#include <vector>
+
 #include "kinematics/joint_space.hpp"
 #include "simd/lane_types.hpp"
 
@@ -12,14 +13,18 @@ namespace iksel {
 /// Blocks whose seeds are iterated together, so that lanes find work.
 inline constexpr int kBlocksAtOnce = 4;
 
+/// Of `all` configurations, one after another in q [rad or m], the first, and then always the one
+/// farthest from those before, by the joint that moves most; `count` of them at most, and none
+/// nearer to another than `least`. In single precision: which of two that are equally far is taken
+/// matters little.
+std::vector<std::size_t> farthest_first(const JointSpace& joints, const double* q, std::size_t all,
+                                        std::size_t count, double least = 0);
+
+/// Seeds of some blocks that were not tried yet, the one farthest from every solution first: the
+/// paper's farthest-first re-selection, with solutions found in the place of seeds that failed.
 class FarthestFirstQueue {
  public:
-  FarthestFirstQueue(const JointSpace& joints, const lanes::LaneKernels& kernels)
-      : dof_(joints.dof()), kernels_(kernels) {
-    for (int j = 0; j < dof_; ++j) {
-      per_turn_[j] = joints.is_periodic(j) ? static_cast<float>(1 / kTwoPi) : 0;
-    }
-  }
+  FarthestFirstQueue(const JointSpace& joints, const lanes::LaneKernels& kernels);
 
   /// The seeds of `blocks` packs in place of those before. The packs are the caller's.
   void reset(const lanes::SeedPack* packs, int blocks) {
@@ -39,9 +44,8 @@ class FarthestFirstQueue {
   void add_known(const double* solution) {
     float from[lanes::kMaxJoints];
     for (int j = 0; j < dof_; ++j) from[j] = static_cast<float>(solution[j]);
-    for (int block = 0; block < blocks_; ++block) {
-      kernels_.add_known(dof_, per_turn_, from, packs_[block], nearest_ + block * lanes::kBlock);
-    }
+    kernels_.add_known(dof_, per_turn_, from, packs_->q[0], blocks_,
+                       sizeof(lanes::SeedPack) / sizeof(float), nearest_);
   }
 
   /// Index of the next seed, -1 if none is left; and its distance from what it was to be kept from,

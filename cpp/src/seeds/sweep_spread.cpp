@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "kinematics/farthest_first.hpp"
+#include "seeds/farthest_first.hpp"
 #include "seeds/sweep.hpp"
 
 namespace iksel {

@@ -3,6 +3,8 @@
 // different instruction sets agree on them.
 #pragma once
 
+#include <cstddef>
+
 #include "simd/coupled_types.hpp"
 
 namespace iksel::lanes {
@@ -158,11 +160,12 @@ struct SeedPack {
 using PrepareSeeds = void (*)(const SeedChain& chain, const SeedTarget& target, const float* block,
                               SeedPack& out);
 
-/// The `seeds` of a chain from a configuration: lowers nearest[entry] to their distance in the
+/// Blocks of configurations of n joints, kBlock values of each joint one after the other and so
+/// many numbers from block to block, from one more: lowers their `nearest` to the distance in the
 /// joint where that is largest [rad or m]. `per_turn`: 1 / 2 pi for joints whose whole turns change
 /// nothing, else 0.
-using AddKnown = void (*)(int n, const float* per_turn, const float* from, const SeedPack& seeds,
-                          float* nearest);
+using AddKnown = void (*)(int n, const float* per_turn, const float* from, const float* q,
+                          int blocks, std::ptrdiff_t stride, float* nearest);
 
 /// Index of the largest of `count` numbers, a multiple of kBlock; of equals the first.
 using FindLargest = int (*)(int count, const float* numbers);

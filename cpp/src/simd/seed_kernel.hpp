@@ -224,17 +224,24 @@ void prepare_seeds(const SeedChain& chain, const SeedTarget& target, const float
 }
 
 template <typename T>
-void add_known(int n, const float* per_turn, const float* from, const SeedPack& seeds,
-               float* nearest) {
+void add_known(int n, const float* per_turn, const float* from, const float* q, int blocks,
+               std::ptrdiff_t stride, float* nearest) {
   using L = Lanes<T>;
-  for (int entry = 0; entry < kBlock; entry += L::kCount) {
-    T away = T(0.0F);
+  constexpr int kVectors = kBlock / L::kCount;
+  for (int block = 0; block < blocks; ++block, q += stride, nearest += kBlock) {
+    T away[kVectors];
+    for (T& each : away) each = T(0.0F);
     for (int j = 0; j < n; ++j) {
-      const T d = L::load(seeds.q[j] + entry) - T(from[j]);
-      const T turns = nearest_integer(d * T(per_turn[j]));
-      away = max(away, abs(d - turns * T(6.2831853F)));
+      for (int v = 0; v < kVectors; ++v) {
+        T d = L::load(q + j * kBlock + v * L::kCount) - T(from[j]);
+        if (per_turn[j] > 0) d = d - nearest_integer(d * T(per_turn[j])) * T(6.2831853F);
+        away[v] = max(away[v], abs(d));
+      }
     }
-    L::store(min(away, L::load(nearest + entry)), nearest + entry);
+    for (int v = 0; v < kVectors; ++v) {
+      float* at = nearest + v * L::kCount;
+      L::store(min(away[v], L::load(at)), at);
+    }
   }
 }
 

@@ -11,7 +11,7 @@
 #include "goal/screen.hpp"
 #include "iksel/error.hpp"
 #include "iksel/pose.hpp"
-#include "kinematics/farthest_first.hpp"
+#include "seeds/farthest_first.hpp"
 #include "solver/solver_impl.hpp"
 
 namespace iksel {

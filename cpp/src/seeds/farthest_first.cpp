@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "seeds/farthest_first.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "base/constants.hpp"
+#include "simd/kernels.hpp"
+
+namespace iksel {
+namespace {
+
+void fill_per_turn(const JointSpace& joints, float* per_turn) {
+  for (int j = 0; j < joints.dof(); ++j) {
+    per_turn[j] = joints.is_periodic(j) ? static_cast<float>(1 / kTwoPi) : 0;
+  }
+}
+
+}  // namespace
+
+std::vector<std::size_t> farthest_first(const JointSpace& joints, const double* q, std::size_t all,
+                                        std::size_t count, double least) {
+  constexpr auto kBlock = static_cast<std::size_t>(lanes::kBlock);
+  const auto dof = static_cast<std::size_t>(joints.dof());
+  const std::size_t blocks = (all + kBlock - 1) / kBlock;
+  // Whole turns are left out, which single precision would take for more than they are.
+  std::vector<float> columns(blocks * dof * kBlock);
+  const auto at = [&](std::size_t i, std::size_t j) -> float& {
+    return columns[(i / kBlock * dof + j) * kBlock + i % kBlock];
+  };
+  for (std::size_t i = 0; i < all; ++i) {
+    for (std::size_t j = 0; j < dof; ++j, ++q) {
+      at(i, j) = static_cast<float>(joints.difference(static_cast<int>(j), 0.0, *q));
+    }
+  }
+  // Those that are there not, or were taken, are never the farthest.
+  std::vector<float> nearest(blocks * kBlock, -1);
+  std::fill_n(nearest.begin(), all, std::numeric_limits<float>::max());
+  float per_turn[lanes::kMaxJoints];
+  fill_per_turn(joints, per_turn);
+  float from[lanes::kMaxJoints];
+  const lanes::LaneKernels& kernels = lanes::choose_kernels();
+  std::vector<std::size_t> chosen;
+  chosen.reserve(std::min(count, all));
+  std::size_t last = 0;
+  while (chosen.size() < std::min(count, all)) {
+    chosen.push_back(last);
+    nearest[last] = -1;
+    for (std::size_t j = 0; j < dof; ++j) from[j] = at(last, j);
+    kernels.add_known(joints.dof(), per_turn, from, columns.data(), static_cast<int>(blocks),
+                      static_cast<std::ptrdiff_t>(dof * kBlock), nearest.data());
+    const int count_of_numbers = static_cast<int>(nearest.size());
+    last = static_cast<std::size_t>(kernels.find_largest(count_of_numbers, nearest.data()));
+    if (nearest[last] < static_cast<float>(least)) break;
+  }
+  return chosen;
+}
+
+FarthestFirstQueue::FarthestFirstQueue(const JointSpace& joints, const lanes::LaneKernels& kernels)
+    : dof_(joints.dof()), kernels_(kernels) {
+  fill_per_turn(joints, per_turn_);
+}
+
+}  // namespace iksel

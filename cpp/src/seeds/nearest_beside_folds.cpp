@@ -239,17 +239,19 @@ bool NearestOnCurve::look_for_loop(int place, int branch) {
   if (above == -kInfinity) above = below;
   if (!may_be_between(below, here, above)) return false;
   if (least_move(value) - margin_of_step() > best()) return false;
-  BranchSpan span{branch, branches_.clamp(value - places_.step),
-                  branches_.clamp(value + places_.step), true, true};
-  const double exists_at = branches_.find_one(branch, span.lower, span.upper, below, above);
-  if (exists_at == kInfinity) return false;
+  const SweptBranches::Loop loop =
+      branches_.find_loop(branch, branches_.clamp(value - places_.step),
+                          branches_.clamp(value + places_.step), below, above);
+  if (loop.inside == kInfinity) return false;
   // Rounds of eight values in which a fold is looked for.
-  constexpr int kFoldRounds = 3;
-  for (double* end : {&span.lower, &span.upper}) {
-    SweptBranches::Fold fold{exists_at, *end};
+  constexpr int kFoldRounds = 2;
+  const auto find_end = [&](double outside) {
+    SweptBranches::Fold fold{loop.inside, outside};
     branches_.narrow(branch, kFoldRounds, fold);
-    *end = fold.end();
-  }
+    return fold.end();
+  };
+  const double lower = find_end(loop.below);
+  const BranchSpan span{branch, lower, find_end(loop.above), true, true};
   look_into(span, kDeepest);
   return true;
 }

@@ -61,11 +61,11 @@ SweptBranches::Fold NearestOnCurve::fold_beside(int branch, int end, int side) c
 }
 
 bool NearestOnCurve::short_span_may_be_shorter(int branch, int first, int last) const {
-  if (best() == kInfinity) return true;
+  if (best() == kInfinity || first == last) return true;
   for (int place = first; place < last; ++place) {
     const BranchPoint a = point(sample(place, branch));
     const BranchPoint b = point(sample(place + 1, branch));
-    if (bounds().may_be_shorter(a, b, 0, best())) return true;
+    if (std::min(a.loose, b.loose) - bounds().way(a, b).move < best()) return true;
   }
   return fold_may_be_shorter(branch, first, -1) || fold_may_be_shorter(branch, last, 1);
 }

@@ -61,11 +61,11 @@ SweptBranches::Fold NearestOnCurve::fold_beside(int branch, int end, int side) c
 }
 
 bool NearestOnCurve::short_span_may_be_shorter(int branch, int first, int last) const {
-  if (best() == kInfinity) return true;
+  if (best() == kInfinity || first == last) return true;
   for (int place = first; place < last; ++place) {
     const BranchPoint a = point(sample(place, branch));
     const BranchPoint b = point(sample(place + 1, branch));
-    if (bounds().may_be_shorter(a, b, 0, best())) return true;
+    if (std::min(a.loose, b.loose) - bounds().way(a, b).move < best()) return true;
   }
   return fold_may_be_shorter(branch, first, -1) || fold_may_be_shorter(branch, last, 1);
 }
@@ -239,17 +239,19 @@ bool NearestOnCurve::look_for_loop(int place, int branch) {
   if (above == -kInfinity) above = below;
   if (!may_be_between(below, here, above)) return false;
   if (least_move(value) - margin_of_step() > best()) return false;
-  BranchSpan span{branch, branches_.clamp(value - places_.step),
-                  branches_.clamp(value + places_.step), true, true};
-  const double exists_at = branches_.find_one(branch, span.lower, span.upper, below, above);
-  if (exists_at == kInfinity) return false;
+  const SweptBranches::Loop loop =
+      branches_.find_loop(branch, branches_.clamp(value - places_.step),
+                          branches_.clamp(value + places_.step), below, above);
+  if (loop.inside == kInfinity) return false;
   // Rounds of eight values in which a fold is looked for.
-  constexpr int kFoldRounds = 3;
-  for (double* end : {&span.lower, &span.upper}) {
-    SweptBranches::Fold fold{exists_at, *end};
+  constexpr int kFoldRounds = 2;
+  const auto find_end = [&](double outside) {
+    SweptBranches::Fold fold{loop.inside, outside};
     branches_.narrow(branch, kFoldRounds, fold);
-    *end = fold.end();
-  }
+    return fold.end();
+  };
+  const double lower = find_end(loop.below);
+  const BranchSpan span{branch, lower, find_end(loop.above), true, true};
   look_into(span, kDeepest);
   return true;
 }

@@ -117,9 +117,9 @@ void SweptBranches::narrow(int branch, int rounds, Fold& fold) {
   }
 }
 
-double SweptBranches::find_one(int branch, double lower, double upper, double least_lower,
-                               double least_upper) {
-  constexpr int kRounds = 6;
+SweptBranches::Loop SweptBranches::find_loop(int branch, double lower, double upper,
+                                             double least_lower, double least_upper) {
+  constexpr int kRounds = 9;
   for (int round = 0; round < kRounds; ++round) {
     const double step = (upper - lower) / (kCount + 1);
     const double from = lower;
@@ -130,7 +130,13 @@ double SweptBranches::find_one(int branch, double lower, double upper, double le
       if (least(lane) > least(best)) best = lane;
     }
     const double here = least(best);
-    if (here >= 0) return value(best);
+    if (here >= 0) {
+      int first = best;
+      int last = best;
+      while (first > 0 && least(first - 1) >= 0) --first;
+      while (last < kCount - 1 && least(last + 1) >= 0) ++last;
+      return {value(best), from + step * first, from + step * (last + 2)};
+    }
     if (best > 0) least_lower = least(best - 1);
     if (best < kCount - 1) least_upper = least(best + 1);
     // It rises by no more than beside the highest, and by half as much again where two subproblems
@@ -139,7 +145,7 @@ double SweptBranches::find_one(int branch, double lower, double upper, double le
     lower = from + step * best;
     upper = from + step * (best + 2);
   }
-  return kInfinity;
+  return {kInfinity, lower, upper};
 }
 
 double SweptBranches::Fold::end() const {

@@ -244,8 +244,10 @@ TEST_P(Sweeps, BranchesAreMeasuredAsTheyAreSolved) {
           EXPECT_LT(branches.least(branch), 0);
           continue;
         }
-        if (row.moves.off[place] >= iksel::lanes::kFarOff) {
+        if (row.moves.inside[place] >= iksel::lanes::kFarAway) {
           EXPECT_TRUE(moves.off[branch] > kBound || moves.loose[branch] > most);
+          EXPECT_LT(row.moves.off[place], moves.off[branch] + 1e-9);
+          EXPECT_LT(row.moves.loose[place], moves.loose[branch] + 1e-9);
           continue;
         }
         EXPECT_NEAR(row.least[place], branches.least(branch), 1e-9);

@@ -169,6 +169,17 @@ def test_no_answer_lies_off_the_arcs(build: str) -> None:
         *(("srs", 1027, i) for i in (74, 83)),
         *(("shoulder_elbow_offset", 1010, 86), ("shoulder_elbow_offset", 1016, 170)),
         *(("shoulder_offset", 1003, i) for i in (2, 11)),
+        # Beside a fold: at the sample before, joints are far beyond limits.
+        *(("srs", 1015, i) for i in (102, 129)),
+        *(("elbow_offset", 1021, i) for i in (10, 54)),
+        *(("wrist_offset", 1036, 62), ("shoulder_offset", 1002, 25)),
+        *(("shoulder_offset", 1014, 14), ("shoulder_elbow_offset", 1016, 95)),
+        # At two samples beside each other, other joints are far beyond limits.
+        *(("srs", 1025, 31), ("elbow_offset", 1021, 131), ("wrist_offset", 1020, 167)),
+        # All of the loop lies between two samples.
+        *(("wrist_offset", 1023, 133), ("shoulder_elbow_offset", 1004, 66)),
+        # At a fold itself.
+        *(("srs", 1012, 177), ("wrist_offset", 1021, 2), ("wrist_offset", 1021, 166)),
     ],
 )
 def test_near_is_no_longer_than_along_the_arcs(

@@ -83,6 +83,7 @@ MoveBounds::Reach MoveBounds::between(const BranchPoint& a, const BranchPoint& b
   Norm norm(form_);
   for (std::size_t i = 0; i < a.q.size(); ++i) {
     const double turn = this->turn(i, a.q[i], b.q[i]);
+    if (std::isnan(turn)) continue;
     const bool is_either_way = form_.turns[i] && std::abs(turn) > kEitherWay;
     const double around = is_either_way ? kPi : kBeyond * std::abs(turn) + slack;
     const Reach one = reach(i, a.q[i] + std::min(turn, 0.0) - around,

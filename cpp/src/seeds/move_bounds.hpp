@@ -14,7 +14,8 @@ namespace iksel {
 
 /// What is known of a branch at a value of the swept joint.
 struct BranchPoint {
-  std::array<double, 7> q;  ///< six joints as a form counts them, and the swept one [rad or m]
+  /// Six joints as a form counts them, and the swept one [rad or m]; NaN where not known.
+  std::array<double, 7> q;
   double loose;             ///< the move to it by each joint's nearest image
   double inside;            ///< by the nearest inside the limits
   double off;               ///< how far it is from being an answer [mixed units]
@@ -44,6 +45,7 @@ class MoveBounds {
     Norm norm(form_);
     for (std::size_t i = 0; i < a.q.size(); ++i) {
       const double d = std::abs(a.q[i] - b.q[i]);
+      if (std::isnan(d)) continue;
       const double turn = form_.turns[i] ? std::min(d, std::abs(kTwoPi - d)) : d;
       way.largest = std::max(way.largest, turn);
       way.leaves_limits = way.leaves_limits || (turn < d && !form_.has_images[i]);

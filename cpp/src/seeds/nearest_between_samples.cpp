@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is near may lie between samples: where branches end and the curve turns back, or the wrist
-// is all but straight, other joints turn a lot from one sample to the next; and where a joint meets
-// a limit, the nearest image is another one from there on.
+// What is near may lie between samples: where the wrist is all but straight, other joints turn a
+// lot from one sample to the next; and where a joint meets a limit, the nearest image is another
+// one from there on.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -12,12 +12,16 @@
 namespace iksel {
 
 void NearestOnCurve::look_between_samples(int branch) {
-  const std::uint64_t here = exist_[static_cast<std::size_t>(branch)];
-  const std::uint64_t behind = here << 1 | (places_.turns ? here >> (kSamples - 1) : 0);
-  for (std::uint64_t both = here & behind; both != 0; both &= both - 1) {
+  const auto i = static_cast<std::size_t>(branch);
+  const std::uint64_t here = exist_[i];
+  const std::uint64_t any = here | far_[i];
+  const std::uint64_t within = here | within_[i];
+  for (std::uint64_t both =
+           any & behind(any) & (within | behind(within)) & ~behind(find_staying(branch));
+       both != 0; both &= both - 1) {
     look_before(__builtin_ctzll(both), branch);
   }
-  for (std::uint64_t firsts = here & ~behind; firsts != 0; firsts &= firsts - 1) {
+  for (std::uint64_t firsts = here & ~behind(here); firsts != 0; firsts &= firsts - 1) {
     const int first = __builtin_ctzll(firsts);
     int last = first;
     double least = least_move(places_.value(first));
@@ -30,87 +34,47 @@ void NearestOnCurve::look_between_samples(int branch) {
   }
 }
 
+std::uint64_t NearestOnCurve::find_staying(int branch) const {
+  constexpr std::uint64_t kLast = kFirstLanes << (kCount - 1);
+  std::uint64_t all = 0;
+  for (int pack = 0; pack < kPacks; ++pack) {
+    const SamplePack& here = packs_[static_cast<std::size_t>(pack)];
+    if (!here.is_solved) continue;
+    const lanes::BranchRow& row = here.branch[branch];
+    const int next_pack = places_.find((pack + 1) * kCount) / kCount;
+    const SamplePack& next = packs_[static_cast<std::size_t>(next_pack)];
+    const auto stay = [&](std::uint64_t bits, std::uint64_t next_bits) {
+      return bits & ((bits >> 1 & ~kLast) | (next_bits & kFirstLanes) << (kCount - 1));
+    };
+    const bool is_next = next.is_solved;
+    std::uint64_t bits = stay(row.below, is_next ? next.branch[branch].below : 0) |
+                         stay(row.above, is_next ? next.branch[branch].above : 0);
+    bits |= bits >> 32;
+    bits |= bits >> 16;
+    bits |= bits >> 8;
+    all |= (bits & 0xff) << (pack * kCount);
+  }
+  return all;
+}
+
 void NearestOnCurve::look_before(int place, int branch) {
   // How much more than the swept one other joints turn from one sample to the next.
   constexpr double kSteeper = 4;
-  const BranchPoint a = point(sample(place - 1, branch));
-  const BranchPoint b = point(sample(place, branch));
-  if (!bounds().may_hide_shorter(a, b, bounds().way(a, b), kSteeper * places_.step, best())) {
-    return;
-  }
+  const Sample before = sample(place - 1, branch);
+  const Sample here = sample(place, branch);
+  const bool is_far = before.is_far() || here.is_far();
+  if (is_far && std::min(before.loose(), here.loose()) - kFarther >= best()) return;
+  const BranchPoint a = point(before);
+  const BranchPoint b = point(here);
+  const bool may_be =
+      is_far ? bounds().may_be_shorter(a, b, 0, best())
+             : bounds().may_hide_shorter(a, b, bounds().way(a, b), kSteeper * places_.step, best());
+  if (!may_be) return;
   const double value = places_.value(place);
   look_into({branch, value - places_.step, value, false, false}, kDeepest);
 }
 
-void NearestOnCurve::look_into_span(int branch, int first, int last) {
-  const bool is_short = last - first < kShort;
-  BranchSpan span{branch, places_.value(first), places_.value(last), is_none(first - 1, branch),
-                  is_none(last + 1, branch)};
-  if (!span.folds_below && !span.folds_above) return;
-  if (is_short && !short_span_may_be_shorter(branch, first, last)) return;
-  const bool below = is_short ? span.folds_below : fold_may_be_shorter(branch, first, -1);
-  const bool above = is_short ? span.folds_above : fold_may_be_shorter(branch, last, 1);
-  const double low = span.lower;
-  const double high = span.upper;
-  SweptBranches::Fold fold_below = fold_beside(branch, first, -1);
-  SweptBranches::Fold fold_above = fold_beside(branch, last, 1);
-  const auto narrow = [&] {
-    if (below) branches_.narrow(branch, 1, fold_below);
-    if (below) span.lower = fold_below.end();
-    if (above) branches_.narrow(branch, 1, fold_above);
-    if (above) span.upper = fold_above.end();
-  };
-  narrow();
-  if (is_short && span.upper - span.lower < places_.step) narrow();
-  if (is_short && (below || above)) {
-    look_into(span, kDeepest);
-    return;
-  }
-  if (below) look_into({branch, span.lower, low, true, false}, kDeepest);
-  if (above) look_into({branch, high, span.upper, false, true}, kDeepest);
-}
-
-SweptBranches::Fold NearestOnCurve::fold_beside(int branch, int end, int side) const {
-  if (!is_none(end + side, branch)) return {};
-  SweptBranches::Fold fold{places_.value(end), places_.value(end) + side * places_.step,
-                           least(end, branch), least(end + side, branch)};
-  if (exists(end - side, branch)) {
-    fold.before = places_.value(end - side);
-    fold.least_before = least(end - side, branch);
-  }
-  return fold;
-}
-
-bool NearestOnCurve::short_span_may_be_shorter(int branch, int first, int last) const {
-  // With one sample, nothing tells how steep it is.
-  if (best() == kInfinity || first == last) return true;
-  for (int place = first; place < last; ++place) {
-    const BranchPoint a = point(sample(place, branch));
-    const BranchPoint b = point(sample(place + 1, branch));
-    if (std::min(a.loose, b.loose) - bounds().way(a, b).move < best()) return true;
-  }
-  return fold_may_be_shorter(branch, first, -1) || fold_may_be_shorter(branch, last, 1);
-}
-
-bool NearestOnCurve::fold_may_be_shorter(int branch, int end, int side) const {
-  if (!is_none(end + side, branch)) return false;
-  if (best() == kInfinity) return true;
-  const BranchPoint here = point(sample(end, branch));
-  // It merges with one that takes the other solution of one of its subproblems, and which ends
-  // there too.
-  for (const int sign : {1, 2, 4}) {
-    const int other = branch ^ sign;
-    if (!is_none(end + side, other)) continue;
-    if (!exists(end, other)) {
-      if (here.loose - kSteep < best()) return true;
-    } else if (bounds().may_be_shorter(here, point(sample(end, other)), 2 * places_.step, best())) {
-      return true;
-    }
-  }
-  return false;
-}
-
-void NearestOnCurve::look_into(const BranchSpan& span, int depth) {
+NearestOnCurve::Ends NearestOnCurve::look_into(const BranchSpan& span, int depth) {
   constexpr double kSpacing = 1.0 / (kCount - 1);
   const auto part = [](std::size_t i) { return kSpacing * static_cast<double>(i); };
   branches_.solve_one(span.branch, [&](int lane) { return span.value(kSpacing * lane); });
@@ -137,10 +101,16 @@ void NearestOnCurve::look_into(const BranchSpan& span, int depth) {
       add_swing(nodes[i], nodes[i + 1]);
       continue;
     }
-    if (spans_left_ == 0) return;
+    if (spans_left_ == 0) break;
     --spans_left_;
     look_into({span.branch, span.value(part(i)), span.value(part(i + 1)), false, false}, depth - 1);
   }
+  const auto gets_shorter = [&](const BranchPoint& end, const BranchPoint& before,
+                                const MoveBounds::Way& way) {
+    return cost(end) <= cost(before) && may_lead_to_shorter(cost(end), way);
+  };
+  return {gets_shorter(nodes.front(), nodes[1], ways.front()),
+          gets_shorter(nodes.back(), nodes[kCount - 2], ways.back())};
 }
 
 bool NearestOnCurve::may_lead_to_shorter(double cost, const MoveBounds::Way& way) const {

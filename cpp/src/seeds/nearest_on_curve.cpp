@@ -8,19 +8,12 @@
 #include "seeds/least_cost.hpp"
 
 namespace iksel {
-namespace {
-
-/// Rounds of eight values in which a fold is looked for.
-constexpr int kFoldRounds = 3;
-
-}  // namespace
 
 NearestOnCurve::NearestOnCurve(const ChainModel& model, const ClosedFormChain& chain,
                                bool is_nominal, const lanes::LaneKernels& kernels)
     : branches_(model, chain, kernels),
       places_(branches_.places(kSamples)),
       is_nominal_(is_nominal),
-      rows_(kSamples),
       packs_(kPacks) {}
 
 double NearestOnCurve::least_move(double value) const {
@@ -44,11 +37,13 @@ void NearestOnCurve::find(const Pose& Y, const JointVector& near, const JointMov
   if (prefers_staying(move)) stay();
   if (found_.size() > 0) return;
   look_around();
-  least_.find(places_, rows_, kRefused + kNear);
+  find_least_places();
   for (const LeastPlace& least : least_) {
     if (may_be_shorter(least)) follow(least);
   }
   for (int branch = 0; branch < SweptBranches::kCount; ++branch) look_between_samples(branch);
+  look_beyond_folds();
+  look_for_loops();
 }
 
 bool NearestOnCurve::prefers_staying(const JointMove& move) const {
@@ -76,9 +71,12 @@ void NearestOnCurve::stay() {
 }
 
 void NearestOnCurve::look_around() {
-  for (SweptBranches::Row& row : rows_) row.fill(kInfinity);
   for (SamplePack& pack : packs_) pack.is_solved = false;
   exist_.fill(0);
+  far_.fill(0);
+  none_.fill(0);
+  within_.fill(0);
+  rising_.fill(0);
   double best = std::min(known_move_, kRefused);
   const double from = near_[static_cast<std::size_t>(branches_.joint())] - places_.lower;
   const double start = places_.turns ? from - kTwoPi * std::floor(from / kTwoPi) : from;
@@ -108,19 +106,42 @@ double NearestOnCurve::solve_pack(int pack, double best) {
   SamplePack& samples = packs_[static_cast<std::size_t>(pack)];
   samples.is_solved = true;
   const int first = pack * kCount;
-  const double most = std::max(best + kFarther, kAlwaysWithin);
+  const double most = best + kFarther;
   branches_.measure([&](int i) { return places_.value(first + i); }, kNear, most, samples.branch);
   for (std::size_t branch = 0; branch < kCount; ++branch) {
     const lanes::BranchRow& row = samples.branch[branch];
+    within_[branch] |= row.within << first;
+    rising_[branch] |= std::uint64_t{1} << first;
     for (int i = 0; i < kCount; ++i) {
-      const double move = cost(row.moves, i);
-      rows_[static_cast<std::size_t>(first + i)][branch] = move;
-      best = std::min(best, move);
-      const std::uint64_t exists = Sample{row, i, 0}.exists() ? 1 : 0;
-      exist_[branch] |= exists << (first + i);
+      if (i > 0 && row.least[i] >= row.least[i - 1])
+        rising_[branch] |= std::uint64_t{1} << (first + i);
+      const Sample at{row, i, 0};
+      const std::uint64_t bit = std::uint64_t{1} << (first + i);
+      if (at.is_none()) {
+        none_[branch] |= bit;
+      } else if (at.is_far()) {
+        far_[branch] |= bit;
+      } else {
+        exist_[branch] |= bit;
+        best = std::min(best, cost(row.moves, i));
+      }
     }
   }
   return best;
+}
+
+void NearestOnCurve::find_least_places() {
+  least_.clear();
+  for (int branch = 0; branch < kCount; ++branch) {
+    std::uint64_t left = exist_[static_cast<std::size_t>(branch)];
+    for (; left != 0; left &= left - 1) {
+      const int place = __builtin_ctzll(left);
+      const double here = cost(place, branch);
+      if (here > kRefused + kNear) continue;
+      if (here > cost(place - 1, branch) || here > cost(place + 1, branch)) continue;
+      least_.add({here, place, branch});
+    }
+  }
 }
 
 bool NearestOnCurve::may_be_shorter(const LeastPlace& least) const {
@@ -128,8 +149,6 @@ bool NearestOnCurve::may_be_shorter(const LeastPlace& least) const {
   if (best == kInfinity) return true;
   if (least_move(places_.value(least.place)) - margin_of_step() > best) return false;
   if (least.value >= kRefused) {
-    // The joints of what does not exist say little of what may exist beside it.
-    if (!exists(least.place, least.branch)) return true;
     double loose = kInfinity;
     for (const int side : {-1, 0, 1}) {
       if (!is_known(least.place + side)) continue;
@@ -144,10 +163,8 @@ bool NearestOnCurve::may_be_shorter(const LeastPlace& least) const {
   for (const int side : {-1, 1}) {
     const int beside = places_.find(least.place + side);
     if (beside < 0) continue;
-    const double there =
-        rows_[static_cast<std::size_t>(beside)][static_cast<std::size_t>(least.branch)];
     const bool is_far = is_known(beside) && sample(beside, least.branch).is_far();
-    const double before = is_far ? best + kFarther : there;
+    const double before = is_far ? best + kFarther : cost(beside, least.branch);
     change = std::max(change, before < kRefused ? before - least.value : kAtEnd);
   }
   return least.value - change < best;
@@ -155,12 +172,8 @@ bool NearestOnCurve::may_be_shorter(const LeastPlace& least) const {
 
 void NearestOnCurve::follow(const LeastPlace& least) {
   SweptJoints best{kInfinity, {}};
-  double exists_at = kInfinity;
   const auto value = [&](double place) { return branches_.clamp(place); };
-  const auto take = [&](int lane, double place) {
-    branches_.copy_joints(lane, best.q.data());
-    if (branches_.least(lane) >= 0) exists_at = place;
-  };
+  const auto take = [&](int lane, double) { branches_.copy_joints(lane, best.q.data()); };
   const Bracket bracket{least.branch, places_.value(least.place), places_.step,
                         kNarrowings,  kFinest * places_.step,     !takes_largest_};
   best.value = minimize(
@@ -169,20 +182,6 @@ void NearestOnCurve::follow(const LeastPlace& least) {
   // The sample itself may be all there is.
   if (least.value < best.value) best = {least.value, joints(sample(least.place, least.branch))};
   if (best.value < kRefused) found_.add(best);
-  if (exists_at == kInfinity) return;
-  for (const int side : {-1, 0, 1}) {
-    if (exists(least.place + side, least.branch)) return;
-  }
-  // All of it lies between two samples, and the other joints turn a lot there.
-  const double middle = places_.value(least.place);
-  BranchSpan span{least.branch, branches_.clamp(middle - places_.step),
-                  branches_.clamp(middle + places_.step), true, true};
-  for (double* end : {&span.lower, &span.upper}) {
-    SweptBranches::Fold fold{exists_at, *end};
-    branches_.narrow(least.branch, kFoldRounds, fold);
-    *end = fold.end();
-  }
-  look_into(span, kDeepest);
 }
 
 bool NearestOnCurve::is_hopeless(double so_far, int round) const {

@@ -37,12 +37,12 @@ class NearestOnCurve {
   [[nodiscard]] bool is_settled() const { return is_nominal_; }
 
  private:
+  /// As many as bits of a word.
   static constexpr int kSamples = 64;
-  static_assert(kSamples == 64, "as many as bits of a word");
   static constexpr int kPacks = kSamples / lanes::kWidth;
   static constexpr std::size_t kMost = 8;
   /// Samples of a short span.
-  static constexpr int kShort = 8;
+  static constexpr int kShort = 3;
   /// What is no answer counts more than any move, and the more the farther it is from one.
   static constexpr double kRefused = 1e9;
   /// The move to where the curve ends may be so much shorter than at the sample before.
@@ -56,15 +56,12 @@ class NearestOnCurve {
   /// And so many in all: where joints may be any at every sample, each span would have seven.
   static constexpr int kMostSpans = 128;
   /// Branches are followed only if they come so near to an answer at a sample [mixed units].
-  static constexpr double kNear = 0.3;
+  static constexpr double kNear = 0.2;
   /// Nor is there anything beside samples that are so much farther away than what is known [rad].
-  /// By 0.6 as many are lost (`python -m bench moves`).
   static constexpr double kFarther = 0.1;
-  /// But up to here they are looked at: of 10,000 answers of iiwa14 around 0.3 rad away, 5 are
-  /// longer and 7 shorter than when none was left out, without this 25 and 8 [rad].
-  static constexpr double kAlwaysWithin = 2.5;
-
   static constexpr int kCount = SweptBranches::kCount;
+  /// The first lane of each joint in what BranchRow has of limits: a byte for each.
+  static constexpr std::uint64_t kFirstLanes = 0x0101010101010101;
   using Joints = std::array<double, SweptBranches::kDof>;
 
   /// Every branch at kCount samples of the swept joint beside each other.
@@ -79,13 +76,12 @@ class NearestOnCurve {
     int lane;
     double value;  ///< of the swept joint
 
-    /// Whether it is known to be, or not to be. Of what lies far away it may be neither.
-    [[nodiscard]] bool exists() const { return row.least[lane] >= 0 && !is_far(); }
+    /// Whether it is known not to be.
     [[nodiscard]] bool is_none() const { return row.least[lane] < 0; }
-    /// Whether its joints are not known, as they are far from an answer, or that far from `near`.
-    [[nodiscard]] bool is_far() const { return row.moves.off[lane] >= lanes::kFarOff; }
-    /// The move to it by its joints' nearest images, inside the limits or not.
-    [[nodiscard]] double loose() const { return is_far() ? kInfinity : row.moves.loose[lane]; }
+    /// Whether not all joints are known, as some are far from an answer, or that far from `near`.
+    [[nodiscard]] bool is_far() const { return row.moves.inside[lane] >= lanes::kFarAway; }
+    /// The move to it by its joints' nearest images, inside the limits or not; at least so much.
+    [[nodiscard]] double loose() const { return row.moves.loose[lane]; }
   };
 
   /// A move, or more than kRefused where that is so far from an answer.
@@ -97,6 +93,12 @@ class NearestOnCurve {
     return cost(moves.inside[lane], moves.off[lane]);
   }
   [[nodiscard]] double cost(int lane) const { return cost(branches_.moves(), lane); }
+  /// Of a branch at a sample; infinite where it is not known to be.
+  [[nodiscard]] double cost(int place, int branch) const {
+    if (!exists(place, branch)) return kInfinity;
+    const Sample at = sample(place, branch);
+    return cost(at.row.moves, at.lane);
+  }
   [[nodiscard]] static double cost(const BranchPoint& point) {
     return cost(point.inside, point.off);
   }
@@ -149,15 +151,51 @@ class NearestOnCurve {
   [[nodiscard]] bool is_none(int place, int branch) const {
     return is_known(place) && sample(place, branch).is_none();
   }
-
   /// Whether there may be a shorter move than the best so far beside a sample.
   [[nodiscard]] bool may_be_shorter(const LeastPlace& least) const;
   void follow(const LeastPlace& least);
+  /// Finds the samples at which a branch costs less than at those beside.
+  void find_least_places();
   void look_between_samples(int branch);
   /// Between a sample and the one before.
   void look_before(int place, int branch);
   /// From its first sample to its last.
   void look_into_span(int branch, int first, int last);
+  /// Where branches that are far at a sample fold between that and the one beside it.
+  void look_beyond_folds();
+  /// The same of one sample, on one side of it.
+  void look_beyond(int end, int side);
+  /// From `inside`, where a branch exists, to its fold, which is narrowed further where it is worth
+  /// it.
+  void look_into_fold(int branch, double inside, SweptBranches::Fold& fold);
+  /// Narrows the way from `inside`, a point of a branch, to its fold; whether there may be a
+  /// shorter move than the best so far on it.
+  bool narrow_where_shorter(int branch, const BranchPoint& inside, SweptBranches::Fold& fold);
+  /// Where branches are at none of three samples, but come nearest to being at the middle one: they
+  /// may be beside it, from fold to fold.
+  void look_for_loops();
+  /// The same of one branch and middle sample; whether it is.
+  bool look_for_loop(int place, int branch);
+  /// Whether two branches are equally far from being at a sample and those beside.
+  [[nodiscard]] bool are_as_far(int place, int branch, int other) const;
+  /// From three values of how near a branch is to being, whether it may be between them.
+  [[nodiscard]] static bool may_be_between(double before, double here, double behind) {
+    // It falls faster and faster away from where the branch is: nowhere does it rise by more than
+    // beside the highest of three, and by half as much again where two subproblems are in turn.
+    return here >= before && here >= behind &&
+           here + MoveBounds::kCurved * (here - std::min(before, behind)) >= 0;
+  }
+  /// Bits of the places before these, or behind.
+  [[nodiscard]] std::uint64_t before(std::uint64_t places) const {
+    return places >> 1 | (places_.turns ? places << (kSamples - 1) : 0);
+  }
+  [[nodiscard]] std::uint64_t behind(std::uint64_t places) const {
+    return places << 1 | (places_.turns ? places >> (kSamples - 1) : 0);
+  }
+  /// The samples from which to the next a joint stays beyond the same limit, as bits.
+  [[nodiscard]] std::uint64_t find_staying(int branch) const;
+  /// Whether a joint lies beyond the same limit in two branches at a sample.
+  [[nodiscard]] bool are_beyond(int place, int branch, int other) const;
   /// Where a branch ends between a sample and the one on that side of it.
   [[nodiscard]] SweptBranches::Fold fold_beside(int branch, int end, int side) const;
   /// Whether there may be a shorter move than the best so far on a span of few samples, and where
@@ -167,9 +205,13 @@ class NearestOnCurve {
   [[nodiscard]] bool fold_may_be_shorter(int branch, int end, int side) const;
   /// Whether a search that came so far after some rounds need not go on.
   [[nodiscard]] bool is_hopeless(double so_far, int round) const;
+  /// Whether moves may get shorter beyond the ends of a span.
+  struct Ends {
+    bool below, above;
+  };
   /// Looks for the least moves in a span, over kCount nodes, and between these where there may be
   /// shorter ones that they do not tell of, down to so many levels.
-  void look_into(const BranchSpan& span, int depth);
+  Ends look_into(const BranchSpan& span, int depth);
   /// Adds the nearest between two points at all but the same value of the swept joint.
   void add_swing(const BranchPoint& a, const BranchPoint& b);
   /// Looks for the least move around a part of a span, up to `width` and `way` to both sides.
@@ -183,12 +225,15 @@ class NearestOnCurve {
 
   // Of the last search.
   std::array<double, SweptBranches::kDof> near_{}, weight_{};
-  /// The samples at which a branch is known to be, as bits.
-  std::array<std::uint64_t, kCount> exist_{};
+  /// The samples at which all joints of a branch are known, at which it is far, and at which it is
+  /// not, as bits.
+  std::array<std::uint64_t, kCount> exist_{}, far_{}, none_{};
+  /// Those at which by the joints known it may be near enough, and at which it is not, but comes
+  /// nearer to being than at the sample before.
+  std::array<std::uint64_t, kCount> within_{}, rising_{};
   double known_move_ = 0;
   bool takes_largest_ = false;
   int spans_left_ = 0;
-  std::vector<SweptBranches::Row> rows_;
   std::vector<SamplePack> packs_;
   LeastPlaces<2 * kMost> least_;
   Least<SweptJoints, kMost> found_;

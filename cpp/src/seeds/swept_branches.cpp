@@ -117,6 +117,37 @@ void SweptBranches::narrow(int branch, int rounds, Fold& fold) {
   }
 }
 
+SweptBranches::Loop SweptBranches::find_loop(int branch, double lower, double upper,
+                                             double least_lower, double least_upper) {
+  constexpr int kRounds = 9;
+  for (int round = 0; round < kRounds; ++round) {
+    const double step = (upper - lower) / (kCount + 1);
+    const double from = lower;
+    hold_one(branch, [&](int lane) { return from + step * (lane + 1); });
+    find_branches(one_);
+    int best = 0;
+    for (int lane = 1; lane < kCount; ++lane) {
+      if (least(lane) > least(best)) best = lane;
+    }
+    const double here = least(best);
+    if (here >= 0) {
+      int first = best;
+      int last = best;
+      while (first > 0 && least(first - 1) >= 0) --first;
+      while (last < kCount - 1 && least(last + 1) >= 0) ++last;
+      return {value(best), from + step * first, from + step * (last + 2)};
+    }
+    if (best > 0) least_lower = least(best - 1);
+    if (best < kCount - 1) least_upper = least(best + 1);
+    // It rises by no more than beside the highest, and by half as much again where two subproblems
+    // are in turn.
+    if (here + MoveBounds::kCurved * (here - std::min(least_lower, least_upper)) < 0) break;
+    lower = from + step * best;
+    upper = from + step * (best + 2);
+  }
+  return {kInfinity, lower, upper};
+}
+
 double SweptBranches::Fold::end() const {
   // Where the parabola through the three values is 0; from where the line through the last two is.
   const double range = outside - inside;

@@ -120,6 +120,12 @@ class SweptBranches {
   /// Narrows the way between `inside`, where a branch exists, and `outside`, where it does not, to
   /// a ninth in each round.
   void narrow(int branch, int rounds, Fold& fold);
+  /// Values between two, at which a branch does not exist and is so far from it: one at which it
+  /// does, and around it two at which it does not; that one infinite if there seems to be none.
+  struct Loop {
+    double inside, below, above;
+  };
+  Loop find_loop(int branch, double lower, double upper, double least_lower, double least_upper);
   /// From now on, the moves from `near` are measured to all that is solved [rad].
   void measure_moves_from(const JointVector& near, const JointMove& move);
   [[nodiscard]] const lanes::MoveForm& move_form() const { return move_form_; }

@@ -2,6 +2,8 @@
 // What the closed-form kernels work on: the geometry of six joints, and poses lane by lane.
 #pragma once
 
+#include <cstdint>
+
 #include "simd/lane_types.hpp"
 
 namespace iksel::lanes {
@@ -135,14 +137,20 @@ struct MovePack {
 };
 
 /// A branch at kWidth values of the held joint. Where it is known to lie too far away before all is
-/// known of it, `off` is kFarOff, and only `least` means anything, of what was known by then. What
-/// joints that may be any beside are away, `loose` and `off` count less
-/// (Prospect::most_that_counts).
-inline constexpr double kFarOff = 1e30;
+/// known of it, `inside` is not less than kFarAway, joints that are not known yet are kUnknown, and
+/// `least`, `loose` and `off` are of what was known by then, the last two at least so much. What
+/// joints that may be any beside are away, they count less (Prospect::most_that_counts).
+inline constexpr double kFarAway = 1e30;
+inline constexpr double kUnknown = __builtin_nan("");
 struct BranchRow {
   alignas(64) double q[6][kWidth];
   alignas(64) double least[kWidth];
   MovePack moves;
+  /// Where a joint lies beyond its lower limit by more than the bound, as bits of the lanes, in the
+  /// joint's byte; and beyond its upper one.
+  std::uint64_t below, above;
+  /// Where `loose` is no more than the most, as bits of the lanes.
+  std::uint64_t within;
 };
 
 }  // namespace iksel::lanes

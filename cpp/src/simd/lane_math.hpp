@@ -52,6 +52,11 @@ inline double abs(double x) { return __builtin_fabs(x); }
 /// The lanes where a condition holds, as bits.
 template <typename T, typename Mask>
 IKSEL_INLINE unsigned to_bits(const Mask& condition) {
+#ifdef __AVX512F__
+  if constexpr (sizeof(Mask) == sizeof(__mmask8) && Lanes<T>::kCount == 8) {
+    return static_cast<unsigned>(static_cast<__mmask8>(condition));
+  }
+#endif
 #ifdef __AVX__
   if constexpr (sizeof(Mask) == sizeof(__m256d) && sizeof(NumberOf<T>) == sizeof(double)) {
     return static_cast<unsigned>(_mm256_movemask_pd(condition));

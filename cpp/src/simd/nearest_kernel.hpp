@@ -20,7 +20,9 @@ struct NearProspect : Prospect<T> {
   double most;
   /// By what the joints move, or the sum of the squares of that.
   T loose;
-  T q[6] = {};
+  T q[6] = {T(kUnknown), T(kUnknown), T(kUnknown), T(kUnknown), T(kUnknown), T(kUnknown)};
+  /// As BranchRow has them, of these lanes.
+  std::uint64_t below = 0, above = 0;
 
   [[nodiscard]] IKSEL_INLINE bool is_open() const {
     return any(min(this->room(), T(most) - loose) >= T(0.0));
@@ -34,7 +36,13 @@ IKSEL_INLINE bool is_enough(const ClosedForm& form, int j, Branch<T, NearProspec
   prospect.q[j] = q;
   const T most = prospect.most_that_counts(kSwingSteepness);
   add_way(*prospect.move, j, min(loose_move(*prospect.move, j, q), most), prospect.loose);
-  prospect.beyond = max(prospect.beyond, min(beyond_limits(form, j, q), most));
+  const T past = min(beyond_limits(form, j, q), most);
+  prospect.beyond = max(prospect.beyond, past);
+  if (const std::uint64_t far = to_bits<T>(past > T(prospect.bound)); far != 0) {
+    const std::uint64_t above = far & to_bits<T>(q > T(form.middle[j]));
+    prospect.above |= above << (kWidth * j);
+    prospect.below |= (far & ~above) << (kWidth * j);
+  }
   prospect.is_over = !prospect.is_open();
   return prospect.is_over;
 }
@@ -58,11 +66,10 @@ void measure_branches(const ClosedForm& form, const MoveForm& move, const Branch
           __attribute__((always_inline)) {
         const NearProspect<T>& found = branch.quality;
         BranchRow& row = rows[i == 0 ? lane : other];
-        Lanes<T>::store(found.least, row.least + first);
-        if (found.is_over) {
-          Lanes<T>::store(T(kFarOff), row.moves.off + first);
-          return;
-        }
+        const std::uint64_t within = to_bits<T>(found.loose <= T(found.most));
+        row.within = (first == 0 ? 0 : row.within) | within << first;
+        row.below = (first == 0 ? 0 : row.below) | found.below << first;
+        row.above = (first == 0 ? 0 : row.above) | found.above << first;
         T q[7];
         for (int j = 0; j < 6; ++j) {
           q[j] = found.q[j];
@@ -70,8 +77,13 @@ void measure_branches(const ClosedForm& form, const MoveForm& move, const Branch
         }
         q[6] = held;
         T beyond = found.beyond;
-        if (form.coupled != nullptr) beyond = max(beyond, beyond_coupled(*form.coupled, q));
-        store_moves(move, found.loose, inside_move(move, q), beyond, found.least, first, row.moves);
+        T inside(kFarAway * kFarAway);
+        if (!found.is_over) {
+          if (form.coupled != nullptr) beyond = max(beyond, beyond_coupled(*form.coupled, q));
+          inside = inside_move(move, q);
+        }
+        Lanes<T>::store(found.least, row.least + first);
+        store_moves(move, found.loose, inside, beyond, found.least, first, row.moves);
       };
       solve_signs(form, target, {pack.sign[0][lane], pack.sign[1][lane]},
                   {pack.sign[2][lane], pack.sign[2][other]}, prospect, take);

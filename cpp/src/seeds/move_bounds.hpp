@@ -16,9 +16,9 @@ namespace iksel {
 struct BranchPoint {
   /// Six joints as a form counts them, and the swept one [rad or m]; NaN where not known.
   std::array<double, 7> q;
-  double loose;             ///< the move to it by each joint's nearest image
-  double inside;            ///< by the nearest inside the limits
-  double off;               ///< how far it is from being an answer [mixed units]
+  double loose;   ///< the move to it by each joint's nearest image
+  double inside;  ///< by the nearest inside the limits
+  double off;     ///< how far it is from being an answer [mixed units]
 
   /// Whether a limit keeps its joints from the images that are nearest.
   [[nodiscard]] bool is_blocked() const {

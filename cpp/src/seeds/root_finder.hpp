@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The roots of a residual (residual_kernel.hpp, loop_kernel.hpp) over a range of its angle.
+// The roots of a residual (residual_kernel.hpp, loop_determinant.hpp) over a range of its angle.
 #pragma once
 
 #include <array>

@@ -203,7 +203,7 @@ using FindResiduals = double (*)(const ResidualForm& form, const double* angles,
 struct LoopForm;
 struct LoopTarget;
 struct TrigonometricPolynomial;
-/// The determinants of six equations at `n` angles, a multiple of kWidth (loop_kernel.hpp).
+/// The determinants of six equations at `n` angles, a multiple of kWidth (loop_determinant.hpp).
 using FindDeterminants = void (*)(const LoopTarget& target, const double* angles, int n,
                                   double* values);
 using EvaluatePolynomial = void (*)(const TrigonometricPolynomial& polynomial, const double* angles,

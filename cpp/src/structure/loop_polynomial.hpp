@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The determinant of a loop (loop_kernel.hpp) as the trigonometric polynomial that it is.
+// The determinant of a loop (loop_determinant.hpp) as the trigonometric polynomial that it is.
 #pragma once
 
 #include <Eigen/Core>

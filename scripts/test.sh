@@ -33,14 +33,9 @@ fi
 
 scripts/bootstrap.sh --dev
 
-if [[ $only != python ]]; then build_and_test dev; fi
-
-if [[ $only != cpp ]]; then
-  step pytest
-  "$python" -m pytest "${selection[@]}"
-fi
-
 if [[ $only != python ]]; then
+  build_and_test dev
+
   step "examples: C++ and Python print the same"
   tests/package/compare_examples.sh build/release/cpp/examples "$python"
 
@@ -48,4 +43,9 @@ if [[ $only != python ]]; then
     step "consumers of the installed package"
     tests/package/run.sh build/release
   fi
+fi
+
+if [[ $only != cpp ]]; then
+  step pytest
+  "$python" -m pytest "${selection[@]}"
 fi

@@ -2,6 +2,7 @@
 // All answers that are wanted of seven joints of which one can be swept: they lie on a self-motion.
 #include "search/explore.hpp"
 #include "seeds/free_samples.hpp"
+#include "seeds/nearest_on_curve_seeds.hpp"
 
 namespace iksel {
 namespace {

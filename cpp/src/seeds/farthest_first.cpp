@@ -41,16 +41,17 @@ std::vector<std::size_t> farthest_first(const JointSpace& joints, const double* 
   float from[lanes::kMaxJoints];
   const lanes::LaneKernels& kernels = lanes::choose_kernels();
   std::vector<std::size_t> chosen;
-  chosen.reserve(std::min(count, all));
+  count = std::min(count, all);
+  chosen.reserve(count);
   std::size_t last = 0;
-  while (chosen.size() < std::min(count, all)) {
+  while (chosen.size() < count) {
     chosen.push_back(last);
     nearest[last] = -1;
     for (std::size_t j = 0; j < dof; ++j) from[j] = at(last, j);
     kernels.add_known(joints.dof(), per_turn, from, columns.data(), static_cast<int>(blocks),
                       static_cast<std::ptrdiff_t>(dof * kBlock), nearest.data());
-    const int count_of_numbers = static_cast<int>(nearest.size());
-    last = static_cast<std::size_t>(kernels.find_largest(count_of_numbers, nearest.data()));
+    last = static_cast<std::size_t>(
+        kernels.find_largest(static_cast<int>(nearest.size()), nearest.data()));
     if (nearest[last] < static_cast<float>(least)) break;
   }
   return chosen;

@@ -11,42 +11,44 @@
 namespace iksel {
 
 void NearestOnCurve::look_into_span(int branch, int first, int last) {
-  const bool is_short = last - first < kShort;
+  if (last - first < kShort) {
+    look_into_short_span(branch, first, last);
+    return;
+  }
+  const bool below = fold_may_be_shorter(branch, first, -1);
+  const bool above = fold_may_be_shorter(branch, last, 1);
+  const auto look_at_end = [&](int end, int side) {
+    SweptBranches::Fold fold = fold_beside(branch, end, side);
+    if (!narrow_where_shorter(branch, point(sample(end, branch)), fold)) return;
+    look_into_fold(branch, places_.value(end), fold);
+  };
+  if (below) look_at_end(first, -1);
+  if (above) look_at_end(last, 1);
+}
+
+void NearestOnCurve::look_into_short_span(int branch, int first, int last) {
   BranchSpan span{branch, places_.value(first), places_.value(last), is_none(first - 1, branch),
                   is_none(last + 1, branch)};
   if (!span.folds_below && !span.folds_above) return;
-  if (is_short && !short_span_may_be_shorter(branch, first, last)) return;
-  const bool below = is_short ? span.folds_below : fold_may_be_shorter(branch, first, -1);
-  const bool above = is_short ? span.folds_above : fold_may_be_shorter(branch, last, 1);
-  SweptBranches::Fold fold_below = fold_beside(branch, first, -1);
-  SweptBranches::Fold fold_above = fold_beside(branch, last, 1);
-  if (!is_short) {
-    const auto look_at_end = [&](int end, SweptBranches::Fold& fold) {
-      if (!narrow_where_shorter(branch, point(sample(end, branch)), fold)) return;
-      look_into_fold(branch, places_.value(end), fold);
-    };
-    if (below) look_at_end(first, fold_below);
-    if (above) look_at_end(last, fold_above);
-    return;
-  }
+  if (!short_span_may_be_shorter(branch, first, last)) return;
+  SweptBranches::Fold below = fold_beside(branch, first, -1);
+  SweptBranches::Fold above = fold_beside(branch, last, 1);
   const auto narrow = [&] {
-    if (below) branches_.narrow(branch, 1, fold_below);
-    if (below) span.lower = fold_below.end();
-    if (above) branches_.narrow(branch, 1, fold_above);
-    if (above) span.upper = fold_above.end();
+    if (span.folds_below) branches_.narrow(branch, 1, below);
+    if (span.folds_below) span.lower = below.end();
+    if (span.folds_above) branches_.narrow(branch, 1, above);
+    if (span.folds_above) span.upper = above.end();
   };
   narrow();
   if (span.upper - span.lower < places_.step) narrow();
-  if (below || above) {
-    const Ends ends = look_into(span, kDeepest);
-    const auto look_at_end = [&](SweptBranches::Fold& fold) {
-      const double inside = fold.inside;
-      branches_.narrow(branch, 1, fold);
-      look_into_fold(branch, inside, fold);
-    };
-    if (below && ends.below) look_at_end(fold_below);
-    if (above && ends.above) look_at_end(fold_above);
-  }
+  const Ends ends = look_into(span, kDeepest);
+  const auto look_at_end = [&](SweptBranches::Fold& fold) {
+    const double inside = fold.inside;
+    branches_.narrow(branch, 1, fold);
+    look_into_fold(branch, inside, fold);
+  };
+  if (span.folds_below && ends.below) look_at_end(below);
+  if (span.folds_above && ends.above) look_at_end(above);
 }
 
 SweptBranches::Fold NearestOnCurve::fold_beside(int branch, int end, int side) const {
@@ -109,37 +111,36 @@ void NearestOnCurve::look_beyond(int end, int side) {
   const double value = places_.value(end);
   if (least_move(value) - margin_of_step() > best()) return;
   // Both that may merge have to be looked at, and joints that are far beyond the same limit at both
-  // stay there.
-  std::array<unsigned, kCount> partners{};
-  bool any = false;
+  // stay there. Each has three that differ from it in one sign.
+  struct Pair {
+    int branch, other;
+  };
+  std::array<Pair, std::size_t{3} * kCount / 2> pairs{};
+  std::size_t size = 0;
   for (int branch = 0; branch < kCount; ++branch) {
     if (is_none(end, branch) || !is_none(end + side, branch)) continue;
     for (const int sign : {1, 2, 4}) {
       const int other = branch ^ sign;
       if (other < branch || is_none(end, other) || !is_none(end + side, other)) continue;
       if (exists(end, branch) && exists(end, other)) continue;
-      if (are_beyond(end, branch, other)) continue;
-      partners[static_cast<std::size_t>(branch)] |= static_cast<unsigned>(sign);
-      any = true;
+      if (!are_beyond(end, branch, other)) pairs[size++] = {branch, other};
     }
   }
-  if (!any) return;
+  if (size == 0) return;
   branches_.solve_all(value);
   std::array<BranchPoint, kCount> points;
-  std::array<bool, kCount> are_there;
   for (int lane = 0; lane < kCount; ++lane) {
     points[static_cast<std::size_t>(lane)] = branches_.point(lane);
-    are_there[static_cast<std::size_t>(lane)] = branches_.least(lane) >= 0;
   }
   std::array<bool, kCount> worth{};
-  for (std::size_t i = 0; i < kCount; ++i) {
-    for (const std::size_t sign : {1, 2, 4}) {
-      const std::size_t other = i ^ sign;
-      if ((partners[i] & sign) == 0 || !are_there[i] || !are_there[other]) continue;
-      if (worth[i] && worth[other]) continue;
-      if (!bounds().may_be_shorter(points[i], points[other], places_.step, best())) continue;
-      worth[i] = worth[other] = true;
-    }
+  for (std::size_t k = 0; k < size; ++k) {
+    const auto [branch, other] = pairs[k];
+    const auto a = static_cast<std::size_t>(branch);
+    const auto b = static_cast<std::size_t>(other);
+    if ((worth[a] && worth[b]) || branches_.least(branch) < 0 || branches_.least(other) < 0)
+      continue;
+    if (!bounds().may_be_shorter(points[a], points[b], places_.step, best())) continue;
+    worth[a] = worth[b] = true;
   }
   for (int branch = 0; branch < kCount; ++branch) {
     const auto i = static_cast<std::size_t>(branch);
@@ -174,7 +175,7 @@ bool NearestOnCurve::narrow_where_shorter(int branch, const BranchPoint& inside,
     fold.outside = branches_.value(lane);
     fold.least_outside = branches_.least(lane);
   }
-  // Joints go on as the root of the way to the fold.
+  // Joints go on as the root of the way to the fold (python -m bench moves; 20 costs too much).
   constexpr double kAtMost = 4;
   return may_be ||
          (last.loose - kAtMost * way.move < best() && last.off - kAtMost * way.largest <= 0);
@@ -195,27 +196,24 @@ void NearestOnCurve::look_into_fold(int branch, double inside, SweptBranches::Fo
 }
 
 void NearestOnCurve::look_for_loops() {
-  // What follows the last of a pack may be lower.
-  constexpr std::uint64_t kLasts = kFirstLanes << (kCount - 1);
   std::array<std::uint64_t, kCount> highest;
   std::uint64_t places = 0;
   for (std::size_t i = 0; i < kCount; ++i) {
-    highest[i] = none_[i] & rising_[i] & (~before(rising_[i]) | kLasts);
+    // What follows the last of a pack may be lower.
+    highest[i] = none_[i] & rising_[i] & (~before(rising_[i]) | kLastLanes);
     places |= highest[i];
   }
   for (; places != 0; places &= places - 1) {
     const int place = __builtin_ctzll(places);
-    // Branches that differ in what there is none of are equally far from being.
-    std::array<bool, kCount> are_none{};
+    // Those that were looked at, and are not.
+    std::array<int, kCount> missing{};
+    auto end = missing.begin();
     for (int branch = 0; branch < kCount; ++branch) {
       if ((highest[static_cast<std::size_t>(branch)] >> place & 1U) == 0) continue;
-      bool is_none = false;
-      for (int other = 0; other < branch; ++other) {
-        is_none = is_none ||
-                  (are_none[static_cast<std::size_t>(other)] && are_as_far(place, branch, other));
-      }
-      if (!is_none) is_none = !look_for_loop(place, branch);
-      are_none[static_cast<std::size_t>(branch)] = is_none;
+      // Branches that differ in what there is none of are equally far from being.
+      const auto is_as_far = [&](int other) { return are_as_far(place, branch, other); };
+      if (std::any_of(missing.begin(), end, is_as_far)) continue;
+      if (!look_for_loop(place, branch)) *end++ = branch;
     }
   }
 }

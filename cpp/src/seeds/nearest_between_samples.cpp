@@ -35,7 +35,6 @@ void NearestOnCurve::look_between_samples(int branch) {
 }
 
 std::uint64_t NearestOnCurve::find_staying(int branch) const {
-  constexpr std::uint64_t kLast = kFirstLanes << (kCount - 1);
   std::uint64_t all = 0;
   for (int pack = 0; pack < kPacks; ++pack) {
     const SamplePack& here = packs_[static_cast<std::size_t>(pack)];
@@ -44,7 +43,7 @@ std::uint64_t NearestOnCurve::find_staying(int branch) const {
     const int next_pack = places_.find((pack + 1) * kCount) / kCount;
     const SamplePack& next = packs_[static_cast<std::size_t>(next_pack)];
     const auto stay = [&](std::uint64_t bits, std::uint64_t next_bits) {
-      return bits & ((bits >> 1 & ~kLast) | (next_bits & kFirstLanes) << (kCount - 1));
+      return bits & ((bits >> 1 & ~kLastLanes) | (next_bits & kFirstLanes) << (kCount - 1));
     };
     const bool is_next = next.is_solved;
     std::uint64_t bits = stay(row.below, is_next ? next.branch[branch].below : 0) |

@@ -26,7 +26,6 @@ LAYERS = [
     "seeds",
     "search",
     "solver",
-    "tree",
     "evaluation",
 ]
 # Headers of KDL and urdfdom, and who may include them.

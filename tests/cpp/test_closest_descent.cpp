@@ -42,7 +42,7 @@ TEST(ClosestDescent, DerivativesAreThoseOfDifferences) {
         const Pose target = robot.fk(q.row(2 * i));
         const Goal goal(robot.model(), space, target);
         const Vector6 weights = i % 2 == 0 ? some_weights() : weights_of_alike_turns();
-        const Remainder remainder(robot.model(), goal, weights);
+        const Remainder remainder(goal, weights);
         const JointVector at = q.row(2 * i + 1);
         JointVector gradient(robot.dof());
         JointVector ignored(robot.dof());
@@ -84,7 +84,7 @@ TEST(ClosestDescent, EndsWhereNoStepInsideTheLimitsLowersIt) {
       Pose target = robot.fk(q.row(2 * i));
       target.translation() *= 1.5;
       const Goal goal(robot.model(), space, target);
-      const Remainder remainder(robot.model(), goal, some_weights());
+      const Remainder remainder(goal, some_weights());
       JointVector end = q.row(2 * i + 1);
       int steps = 0;
       const double value = descend_from_seed(robot.model(), remainder, 500, end, steps);

@@ -15,20 +15,20 @@ namespace {
 using iksel::CoupledLimit;
 using iksel::JointVector;
 using iksel::Pose;
-using iksel::TreeRequest;
-using iksel::TreeResult;
-using iksel::TreeRobot;
-using iksel::TreeSolver;
+using iksel::Result;
+using iksel::Robot;
+using iksel::SolveRequest;
+using iksel::Solver;
 
 /// Joint j of the left arm, or of the right.
 std::string left(int j) { return "l_" + iksel_test::robot("panda").joint_names()[j]; }
 std::string right(int j) { return "r_" + iksel_test::robot("panda").joint_names()[j]; }
 
-TreeRobot bound(const std::vector<CoupledLimit>& limits) {
-  const iksel::Robot& arm = iksel_test::robot("panda");
-  iksel::TreeOptions options = iksel_test::tips_of({"l_" + arm.tip_link(), "r_" + arm.tip_link()});
+Robot bound(const std::vector<CoupledLimit>& limits) {
+  const Robot& arm = iksel_test::robot("panda");
+  iksel::RobotOptions options = iksel_test::tips_of({"l_" + arm.tip_link(), "r_" + arm.tip_link()});
   options.coupled_limits = limits;
-  return TreeRobot::from_urdf_string(iksel_test::two_arms_on_torso(arm), options);
+  return Robot::from_urdf_string(iksel_test::two_arms_on_torso(arm), options);
 }
 
 struct Coupled {
@@ -51,7 +51,7 @@ std::vector<Coupled> all_coupled() {
 class CoupledTips : public testing::TestWithParam<Coupled> {
  protected:
   /// Whether the sums lie inside, joint by joint from the names.
-  static bool holds(const TreeRobot& robot, const JointVector& q) {
+  static bool holds(const Robot& robot, const JointVector& q) {
     const auto& names = robot.joint_names();
     for (const CoupledLimit& limit : GetParam().limits) {
       double sum = 0;
@@ -63,11 +63,11 @@ class CoupledTips : public testing::TestWithParam<Coupled> {
     return true;
   }
 
-  static void expect_answer(const TreeRobot& robot, const std::vector<Pose>& targets,
+  static void expect_answer(const Robot& robot, const std::vector<Pose>& targets,
                             const JointVector& q) {
     EXPECT_TRUE(holds(robot, q));
     EXPECT_TRUE(robot.within_limits(q));
-    const std::vector<Pose> reached = robot.fk(q);
+    const std::vector<Pose> reached = robot.tip_poses(q);
     for (std::size_t i = 0; i < targets.size(); ++i) {
       const auto error = iksel::pose_error(targets[i], reached[i]);
       EXPECT_LT(error.head<3>().norm(), 1.001e-6);
@@ -77,21 +77,21 @@ class CoupledTips : public testing::TestWithParam<Coupled> {
 };
 
 TEST_P(CoupledTips, ReachableTargetsAreSolvedInside) {
-  const TreeSolver solver(bound(GetParam().limits));
-  const TreeRobot& robot = solver.robot();
+  const Solver solver(bound(GetParam().limits));
+  const Robot& robot = solver.robot();
   const int n = iksel_test::cases(200, 30);
   const iksel::Matrix random =
       robot.random_configurations(static_cast<std::size_t>(n), iksel_test::seed());
   for (int i = 0; i < n; ++i) {
     const JointVector q = random.row(i);
     EXPECT_TRUE(holds(robot, q));
-    const std::vector<Pose> targets = robot.fk(q);
-    const TreeResult result = solver.solve(targets);
+    const std::vector<Pose> targets = robot.tip_poses(q);
+    const Result result = solver.solve(targets);
     ASSERT_TRUE(result.success()) << "target " << i << ", seed " << iksel_test::seed();
     expect_answer(robot, targets, result.q);
-    TreeRequest request;
+    SolveRequest request;
     request.near = q;
-    const TreeResult nearest = solver.solve(targets, request);
+    const Result nearest = solver.solve(targets, request);
     ASSERT_TRUE(nearest.success()) << "target " << i << ", seed " << iksel_test::seed();
     expect_answer(robot, targets, nearest.q);
     EXPECT_LT(nearest.move, 1e-3) << "target " << i << ", seed " << iksel_test::seed();
@@ -99,18 +99,18 @@ TEST_P(CoupledTips, ReachableTargetsAreSolvedInside) {
 }
 
 TEST_P(CoupledTips, NearFromOutsideEndsInside) {
-  const TreeSolver solver(bound(GetParam().limits));
-  const TreeRobot& robot = solver.robot();
+  const Solver solver(bound(GetParam().limits));
+  const Robot& robot = solver.robot();
   const int n = iksel_test::cases(40, 20);
   const auto rows = static_cast<std::size_t>(n);
   const iksel::Matrix random = robot.random_configurations(rows, iksel_test::seed());
   const iksel::Matrix from = bound({}).random_configurations(rows, iksel_test::seed() + 1);
   int farther = 0;
   for (int i = 0; i < n; ++i) {
-    const std::vector<Pose> targets = robot.fk(random.row(i));
-    TreeRequest request;
+    const std::vector<Pose> targets = robot.tip_poses(random.row(i));
+    SolveRequest request;
     request.near = from.row(i);
-    const TreeResult result = solver.solve(targets, request);
+    const Result result = solver.solve(targets, request);
     ASSERT_TRUE(result.success()) << "target " << i << ", seed " << iksel_test::seed();
     expect_answer(robot, targets, result.q);
     farther += result.move > (random.row(i) - from.row(i)).norm() + 1e-6;
@@ -123,7 +123,7 @@ INSTANTIATE_TEST_SUITE_P(Limits, CoupledTips, testing::ValuesIn(all_coupled()),
                          [](const auto& info) { return info.param.name; });
 
 TEST(CoupledTips, ArmsAndChainsKnowTheirOwnLimits) {
-  const TreeRobot robot = bound(all_coupled().back().limits);
+  const Robot robot = bound(all_coupled().back().limits);
   ASSERT_EQ(robot.options().coupled_limits.size(), 4U);
   EXPECT_EQ(robot.chain(0).options().coupled_limits.size(), 3U);  // not that of both arms
   EXPECT_EQ(robot.chain(1).options().coupled_limits.size(), 1U);  // the torso's

@@ -53,15 +53,15 @@ inline std::string two_arms_on_torso(const iksel::Robot& arm) {
                     mounted(arm, "r_", "turn_link", "xyz=\"0 -0.2 0.2\" rpy=\"0.8 0 0\""));
 }
 
-inline iksel::TreeOptions tips_of(const std::vector<std::string>& tip_links) {
-  iksel::TreeOptions options;
+inline iksel::RobotOptions tips_of(const std::vector<std::string>& tip_links) {
+  iksel::RobotOptions options;
   options.tip_links = tip_links;
   return options;
 }
 
 /// That robot, its tips those of the arms.
-inline iksel::TreeRobot two_armed(const iksel::Robot& arm) {
-  return iksel::TreeRobot::from_urdf_string(
+inline iksel::Robot two_armed(const iksel::Robot& arm) {
+  return iksel::Robot::from_urdf_string(
       two_arms_on_torso(arm), tips_of({"l_" + arm.tip_link(), "r_" + arm.tip_link()}));
 }
 

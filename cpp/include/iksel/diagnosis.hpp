@@ -29,6 +29,7 @@ enum class Cause : std::uint8_t {
   budget,        ///< more work finds an answer: the bounds on attempts or iterations are too low
   out_of_time,   ///< more time finds an answer: the deadline is too short
   collision,     ///< answers exist, but each collides in the scene
+  shared_joints,  ///< each of several tips can be reached by itself, but not all at once
 };
 
 /// Lower-case name of a cause.
@@ -77,6 +78,10 @@ struct Diagnosis {
   /// Whether q is an answer: within the tolerances, inside the limits, passed by the scene
   /// and the filter.
   bool q_is_solution = false;
+
+  /// Of several tips: the first that cannot be reached by itself, whose chain the numbers above are
+  /// about, and q has that chain's joints; -1: each can.
+  int unreachable_tip = -1;
 };
 
 /// What to ask of an arm that has fewer joints than `task` has axes, in a sentence: tasks whose

@@ -27,8 +27,6 @@
 #include "iksel/structure.hpp"      // IWYU pragma: export
 #include "iksel/task.hpp"           // IWYU pragma: export
 #include "iksel/tracker.hpp"        // IWYU pragma: export
-#include "iksel/tree_robot.hpp"     // IWYU pragma: export
-#include "iksel/tree_solver.hpp"    // IWYU pragma: export
 #include "iksel/types.hpp"          // IWYU pragma: export
 #include "iksel/urdf_text.hpp"      // IWYU pragma: export
 #include "iksel/version.hpp"        // IWYU pragma: export

@@ -49,13 +49,46 @@ struct IKSEL_EXPORT PoseWeights {
   void validate() const;
 };
 
+/// What is asked of every answer, whatever it is asked for: of solve, solve_all, solve_path, ...
+struct IKSEL_EXPORT AnswerCriteria {
+  /// Factor on each joint's part of a move, >= 0 and not all 0 (so that radians and metres can be
+  /// compared); empty: all 1.
+  JointVector weights;
+  MoveNorm norm = MoveNorm::two;
+
+  /// What answers may not collide with. As it is when the solve begins. Of a robot with the same
+  /// chains.
+  std::optional<Scene> scene;
+  /// A second opinion, which is asked about what collides in the scene by its spheres: what this
+  /// keeps is free. Where nothing is free by spheres, it is asked about what a search finds within
+  /// its bounds. Only with a scene. Empty: the spheres decide.
+  Filter exact;
+  /// Refuses candidates, of those that do not collide; the search then continues within its bounds.
+  /// Empty: takes all.
+  Filter filter;
+
+  /// What of the pose has to be reached, of several tips of each; what is not given here is as the
+  /// solver's options say.
+  std::optional<Task> task;
+  /// Of several tips, one for each in the place of `task`; or empty.
+  std::vector<Task> tasks;
+  /// Of several tips, for each the number of the tip in whose frame its pose is given, that of its
+  /// TCP; -1: in the base frame. Empty: all are. So two hands keep what they carry between them. No
+  /// tip may follow itself by way of others.
+  std::vector<int> in_frame_of;
+
+  /// Throws InvalidArgumentError naming the first field that does not fit `dof` joints and so many
+  /// tips.
+  void validate(int dof, int tips) const;
+};
+
 /// What is asked of an answer besides reaching the pose. The defaults ask for nothing.
 ///
 /// Angles of `near`, `seeds` and the objective's posture are refused where their rounding alone
 /// could move the TCP by a tenth of the tolerances: beyond 2^53 / 10 min(rotation_tolerance,
 /// position_tolerance / reach) / (number of joints that turn), 1.5e8 rad for an arm of six joints
 /// with 1 m of reach at the default tolerances; up to 100 rad always pass.
-struct IKSEL_EXPORT SolveRequest {
+struct IKSEL_EXPORT SolveRequest : AnswerCriteria {
   /// Seeds of any origin, each with dof joint values [rad or m], inside the limits or not. They are
   /// ranked and iterated as the database's own, and come before those; re-selection is among the
   /// best SolverOptions::candidates of them, and SolverOptions::max_attempts bounds how many are
@@ -71,21 +104,6 @@ struct IKSEL_EXPORT SolveRequest {
   /// found within the bounds on work; a redundant arm's is moved along its self-motion to a local
   /// minimum of the move.
   std::optional<JointVector> near;
-  /// Factor on each joint's part of the move, >= 0 and not all 0 (so that radians and metres can be
-  /// compared); empty: all 1.
-  JointVector weights;
-  MoveNorm norm = MoveNorm::two;
-
-  /// What answers may not collide with. As it is when the solve begins. Of a robot with the same
-  /// chain.
-  std::optional<Scene> scene;
-  /// A second opinion, which is asked about what collides in the scene by its spheres: what this
-  /// keeps is free. Where nothing is free by spheres, it is asked about what a search finds within
-  /// its bounds. Only with a scene. Empty: the spheres decide.
-  Filter exact;
-  /// Refuses candidates, of those that do not collide; the search then continues within its bounds.
-  /// Empty: takes all.
-  Filter filter;
   /// Wall-clock time after which no new stage of the search begins [s], above 0. What was found by
   /// then is judged. The one option under which the same input may give different answers.
   double deadline = std::numeric_limits<double>::infinity();
@@ -93,9 +111,6 @@ struct IKSEL_EXPORT SolveRequest {
   /// What the answer is to be good at besides; comes before `near`, which then only measures the
   /// move, and chooses among periodic images that cost the same.
   Objective objective;
-
-  /// What of the pose has to be reached; empty: what the solver's options say.
-  std::optional<Task> task;
 
   /// Of solve and solve_batch: what a target without an answer gets, with Status::closest, is the
   /// configuration inside the limits that is nearest to it by these weights; of equally near ones
@@ -109,8 +124,8 @@ struct IKSEL_EXPORT SolveRequest {
 
   /// Whether anything is asked for; weights, norm and on_invalid_pose alone ask for nothing.
   [[nodiscard]] bool has_requirements() const;
-  /// Throws InvalidArgumentError naming the first field that does not fit a chain of `dof` joints.
-  void validate(int dof) const;
+  /// Throws as AnswerCriteria::validate.
+  void validate(int dof, int tips = 1) const;
 };
 
 /// In which order solve_all gives its solutions where the request has no objective.
@@ -137,8 +152,10 @@ struct IKSEL_EXPORT SolveAllOptions {
   void validate() const;
 };
 
-/// How solve_path chooses among the solutions of each waypoint.
-struct IKSEL_EXPORT PathOptions {
+/// How solve_path chooses among the solutions of each waypoint: the path with the least sum of the
+/// moves is taken, each measured by the weights and the norm. The scene is not held against the
+/// moves between waypoints.
+struct IKSEL_EXPORT PathOptions : AnswerCriteria {
   /// Where the arm is one time step before the first waypoint; may lie outside the limits. Empty:
   /// the path may begin anywhere; of its periodic images, the one that begins nearest to the
   /// middle of the limits is taken.
@@ -146,22 +163,13 @@ struct IKSEL_EXPORT PathOptions {
   /// Time from one waypoint to the next [s]: no joint then moves farther than its velocity limit
   /// allows. 0: speeds are not limited.
   double dt = 0;
-  /// The path with the least sum of the moves is taken, each measured so (as in SolveRequest).
-  JointVector weights;
-  MoveNorm norm = MoveNorm::two;
-  /// What waypoints may not collide with; the moves between them are not looked at.
-  std::optional<Scene> scene;
-  /// As in SolveRequest.
-  Filter exact;
-  /// Refuses candidates, those of one waypoint at a time.
-  Filter filter;
   /// Candidates kept per waypoint at most.
   int candidates = 64;
   /// Told after each waypoint; its exceptions end the search and reach the caller.
   Progress progress;
 
-  /// Throws InvalidArgumentError naming the first option that does not fit a chain of `dof` joints.
-  void validate(int dof) const;
+  /// Throws as AnswerCriteria::validate.
+  void validate(int dof, int tips = 1) const;
 };
 
 }  // namespace iksel

@@ -53,7 +53,8 @@ enum class Proof : std::uint8_t {
 /// Lower-case name of a proof.
 IKSEL_EXPORT const char* to_string(Proof proof);
 
-/// Answer to one target. Everything in it is measured on the returned q, not predicted.
+/// Answer to one target, or to one of each tip. Everything in it is measured on the returned q, not
+/// predicted; errors are the largest of all tips.
 struct Result {
   Status status = Status::not_converged;
   /// `answer` of a success; of a failure, how certain it is that there is no answer.
@@ -70,10 +71,13 @@ struct Result {
   double move = std::numeric_limits<double>::quiet_NaN();
   /// Cost of q by the request's objective; NaN unless solved with one.
   double cost = std::numeric_limits<double>::quiet_NaN();
-  /// Seeds tried.
+  /// Seeds tried; of several tips, values of the joints that they share among them.
   int attempts = 0;
   /// Iteration steps over all attempts.
   int iterations = 0;
+  /// Of a failure with several tips: one whose target its chain cannot reach by itself, as far as a
+  /// search can tell, and status and proof are that chain's; -1: each can, or none was looked at.
+  int unreachable_tip = -1;
 
   [[nodiscard]] bool success() const { return status == Status::solved; }
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A robot arm: the serial chain between two links of a URDF.
+// A robot: the serial chain between two links of a URDF, or several that share joints.
 #pragma once
 
 #include <cstdint>
@@ -17,14 +17,19 @@
 namespace iksel {
 
 class ChainModel;
+class RobotModel;
+class TipsModel;
 
-/// An immutable serial chain with its limits; copies are cheap and share the data. Safe to use from
-/// many threads at once.
+/// An immutable serial chain with its limits, or the chains from one base link to several tip links
+/// (RobotOptions::tip_links), joined: a joint that lies on several of them is one degree of freedom.
+/// Copies are cheap and share the data. Safe to use from many threads at once. What is said below
+/// of the chain or the tip throws InvalidArgumentError if there are several.
 class IKSEL_EXPORT Robot {
  public:
   /// Reads a URDF file. Throws UrdfError (file, XML, joint type, limits, a length or joint value
   /// beyond kMaxCoordinate), UnknownNameError (links, locked joints), InvalidArgumentError (numbers
-  /// in the options).
+  /// in the options). Of several chains also UrdfError if they have more than kMaxDof joints
+  /// together, or leave a joint that they share no value between its limits.
   static Robot from_urdf_file(const std::filesystem::path& path, const RobotOptions& options = {});
   /// Parses URDF text. Throws as from_urdf_file.
   static Robot from_urdf_string(const std::string& xml, const RobotOptions& options = {});
@@ -52,7 +57,18 @@ class IKSEL_EXPORT Robot {
   /// T_tip_tcp.
   [[nodiscard]] Pose tcp() const;
 
-  /// Degrees of freedom, 1 to kMaxDof. The vectors below have that length, base to tip.
+  /// Number of tips, 1 to kMaxTips, and their links.
+  [[nodiscard]] int tips() const;
+  [[nodiscard]] const std::vector<std::string>& tip_links() const;
+  /// The chain to one tip by itself; `tip` counts from 0. Throws InvalidArgumentError, as the next.
+  [[nodiscard]] const Robot& chain(int tip) const;
+  /// Where that chain's joints stand among all: chain joint j has the value q[joints_of(tip)[j]].
+  [[nodiscard]] const std::vector<int>& joints_of(int tip) const;
+  /// The joints that move more than one tip, ascending.
+  [[nodiscard]] const std::vector<int>& shared_joints() const;
+
+  /// Degrees of freedom, 1 to kMaxDof. The vectors below have that length, base to tip; of several
+  /// chains the joints of the first, then those that only the second has, and so on.
   [[nodiscard]] int dof() const;
   [[nodiscard]] const std::vector<std::string>& joint_names() const;
   [[nodiscard]] const std::vector<JointType>& joint_types() const;
@@ -72,6 +88,12 @@ class IKSEL_EXPORT Robot {
   /// Geometric Jacobian at q, 6 x dof. Throws as fk.
   [[nodiscard]] Jacobian jacobian(const JointVector& q,
                                   Kinematics kinematics = Kinematics::kernel) const;
+
+  /// T_base_tip of each tip (of its TCP, if it has one). Throws as fk.
+  [[nodiscard]] std::vector<Pose> tip_poses(const JointVector& q) const;
+  /// Geometric Jacobians of all tips, one below the other: 6 rows [linear; angular] for each, dof
+  /// columns. Throws as fk.
+  [[nodiscard]] Matrix tip_jacobians(const JointVector& q) const;
 
   /// Poses of all links of the URDF in the base link's frame at q, in the order of link_names:
   /// side branches move with the arm's joints, too, and with what mimics them. Joints that q does
@@ -107,12 +129,24 @@ class IKSEL_EXPORT Robot {
   /// share a database. The TCP and names are not part of it.
   [[nodiscard]] std::uint64_t chain_hash() const;
 
-  /// For the library itself: the flattened chain.
-  [[nodiscard]] const ChainModel& model() const { return *model_; }
+  /// For the library itself: the flattened chain; what does not depend on the number of tips; and
+  /// several chains, null if there is one.
+  [[nodiscard]] const ChainModel& model() const {
+    if (chain_ == nullptr) refuse_several_tips();
+    return *chain_;
+  }
+  [[nodiscard]] const RobotModel& all() const { return *model_; }
+  [[nodiscard]] const TipsModel* several() const { return several_; }
 
  private:
-  explicit Robot(std::shared_ptr<const ChainModel> model);
-  std::shared_ptr<const ChainModel> model_;
+  explicit Robot(std::shared_ptr<const ChainModel> chain);
+  explicit Robot(std::shared_ptr<const TipsModel> several);
+  [[noreturn]] void refuse_several_tips() const;
+
+  std::shared_ptr<const RobotModel> model_;
+  /// The same, as the one of these that it is; the other is null.
+  const ChainModel* chain_ = nullptr;
+  const TipsModel* several_ = nullptr;
 };
 
 }  // namespace iksel

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which chain of a URDF a robot is.
+// Which chain of a URDF a robot is, or which chains.
 #pragma once
 
 #include <map>
@@ -15,6 +15,9 @@
 
 namespace iksel {
 
+/// Most tips that a robot may have.
+inline constexpr int kMaxTips = 8;
+
 /// What to take out of a URDF.
 struct RobotOptions {
   /// Link the poses are relative to; empty: the root link.
@@ -23,6 +26,11 @@ struct RobotOptions {
   std::string tip_link;
   /// T_tip_tcp: tool centre point appended to the tip link. Poses, FK and IK are then of the TCP.
   StoredPose tcp = StoredPose::Identity();
+  /// In the place of tip_link for a robot with several tips, whose chains may share joints: a torso
+  /// and its two arms. kMaxTips at most.
+  std::vector<std::string> tip_links;
+  /// In the place of tcp: T_tip_tcp of each of the tip_links, or empty: none has a tool.
+  std::vector<StoredPose> tcps;
   /// Joints held at a value [rad or m]; they are no degrees of freedom.
   std::map<std::string, double> locked_joints;
   /// Narrow the position limits to the URDF's safety_controller soft limits where there are any.

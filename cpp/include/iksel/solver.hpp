@@ -31,12 +31,20 @@ IKSEL_EXPORT CalibrationDeviation measure_calibration_deviation(const Robot& rob
                                                                 const Robot& nominal,
                                                                 std::size_t samples = 2'000);
 
-/// Solves inverse kinematics for one robot. Immutable; copies share the data. Safe to use from many
+/// Solves inverse kinematics for one robot, with one tip or several. Immutable; copies share the data. Safe to use from many
 /// threads at once, and the same input gives the same bits from any of them. Solving allocates
 /// nothing on the heap as long as no more threads solve at once than the machine has cores.
 class IKSEL_EXPORT Solver {
  public:
-  /// Builds a database by `options.database`. Throws InvalidArgumentError on options out of range.
+  /// Builds a database by `options.database`, of several tips one for the chain of each. Throws
+  /// InvalidArgumentError on options out of range.
+  ///
+  /// Of several tips the tolerances, the task and the bounds on work hold for each. The joints that
+  /// they share are set to a value, and behind them each arm is a chain that is solved for by
+  /// itself, completely where a chain is (find_structure). Where that leads nowhere, or an arm has
+  /// too few joints of its own for its task, all joints are iterated together: Levenberg-Marquardt
+  /// with the limits inside the step on the errors of all tips. Where below is one pose, it is of
+  /// the only tip; several poses are one for each tip, in the order of Robot::tip_links.
   explicit Solver(const Robot& robot, const SolverOptions& options = {});
   /// Uses a given database. Throws DatabaseMismatchError if it belongs to another chain.
   Solver(const Robot& robot, const SolverOptions& options, const Database& database);
@@ -53,7 +61,10 @@ class IKSEL_EXPORT Solver {
 
   [[nodiscard]] const Robot& robot() const;
   [[nodiscard]] const SolverOptions& options() const;
+  /// Of several tips each chain_solver has its own: throws InvalidArgumentError.
   [[nodiscard]] const Database& database() const;
+  /// The solver of one tip's chain by itself. Throws InvalidArgumentError if there is no such tip.
+  [[nodiscard]] const Solver& chain_solver(int tip) const;
   /// The chain that the database was built for: the robot itself, unless that is a calibrated one.
   [[nodiscard]] const Robot& nominal() const;
   /// The robot's deviation from `nominal`.
@@ -73,6 +84,10 @@ class IKSEL_EXPORT Solver {
   /// request that asks for nothing gives solve(T_base_tip).
   [[nodiscard]] Result solve(const Pose& T_base_tip, const SolveRequest& request,
                              StageTimes* times = nullptr) const;
+  /// Joint values that put each tip at its pose. Throws as solve, and InvalidArgumentError if there
+  /// is not one pose for each tip.
+  [[nodiscard]] Result solve(const std::vector<Pose>& T_base_tip, const SolveRequest& request = {},
+                             StageTimes* times = nullptr) const;
 
   /// Every distinct solution inside the limits that is found within the bounds on work: all
   /// branches of an arm with as many joints as the pose has directions (Solutions::proof says
@@ -80,6 +95,9 @@ class IKSEL_EXPORT Solver {
   /// may leave out small arcs that self_motion has. With an objective the best by that first, where
   /// they are found. Throws as solve.
   [[nodiscard]] Solutions solve_all(const Pose& T_base_tip, const SolveAllOptions& options = {},
+                                    const SolveRequest& request = {}) const;
+  [[nodiscard]] Solutions solve_all(const std::vector<Pose>& T_base_tip,
+                                    const SolveAllOptions& options = {},
                                     const SolveRequest& request = {}) const;
 
   /// All solutions of a redundant arm at once: the arcs of its self-motion inside the limits, with
@@ -95,14 +113,17 @@ class IKSEL_EXPORT Solver {
   /// form proves that there is none, its branches say why: no search. Else it spends more than
   /// solving does, milliseconds. Throws as solve.
   [[nodiscard]] Diagnosis diagnose(const Pose& T_base_tip, const SolveRequest& request = {}) const;
+  [[nodiscard]] Diagnosis diagnose(const std::vector<Pose>& T_base_tip,
+                                   const SolveRequest& request = {}) const;
 
   /// Joint values along a path of poses, by a choice among the solutions of all waypoints that
-  /// makes the whole way in joint space short. Throws InvalidArgumentError naming a bad pose or
-  /// option.
+  /// makes the whole way in joint space short. Of several tips the poses of all at the first
+  /// waypoint, at the second, ... Throws InvalidArgumentError naming a bad pose or option.
   [[nodiscard]] PathResult solve_path(const std::vector<Pose>& T_base_tip,
                                       const PathOptions& options) const;
 
-  /// Solves many targets; result i belongs to target i and has the same bits whatever the number
+  /// Solves many targets (of several tips the poses of all at the first, at the second, ...);
+  /// result i belongs to target i and has the same bits whatever the number
   /// of threads and whatever else is in the batch. It has the bits that solve() gives, but in
   /// lanes: there a target has a lane to itself. Where all joints are solved in closed form, only
   /// `attempts` differs, which counts no branches after the first that is an answer; else the
@@ -118,7 +139,7 @@ class IKSEL_EXPORT Solver {
                                                 const SolveRequest& request = {},
                                                 const std::vector<JointVector>& near = {},
                                                 int threads = 0) const;
-  /// The same over `count` 4x4 matrices, row by row, into arrays that the caller owns; `near` is
+  /// The same over `count` targets, 4x4 matrices row by row, into arrays that the caller owns; `near` is
   /// null, or has (count, dof) values row by row. An exception of `progress` ends the batch and
   /// reaches the caller.
   void solve_batch(const double* T_base_tip, std::size_t count, const SolveRequest& request,

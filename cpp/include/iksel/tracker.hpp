@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "iksel/export.hpp"
 #include "iksel/request.hpp"
@@ -13,10 +14,12 @@
 
 namespace iksel {
 
+class Goal;
+
 /// What a Tracker remembers of its targets.
 struct TargetStream {
-  std::optional<StoredPose> last;  ///< T_base_tip; empty: where the tool is
-  double speed = 0;                ///< when it last moved, by the weights [1/s]; 0: it never did
+  std::vector<StoredPose> last;  ///< T_base_tip of each tip; empty: where the tools are
+  double speed = 0;              ///< when it last moved, by the weights [1/s]; 0: it never did
 };
 
 /// Follows a stream of poses: each answer continues from the last, within the velocity limits. Not
@@ -47,6 +50,9 @@ class IKSEL_EXPORT Tracker {
   /// its move; the way there is not looked at. Throws InvalidArgumentError if the pose is not
   /// rigid, dt is not above 0, or the scene is of another chain.
   [[nodiscard]] Result track(const Pose& T_base_tip, double dt, const Scene* scene = nullptr);
+  /// The same of several tips, a pose for each; what is said of the tool holds for the fastest.
+  [[nodiscard]] Result track(const std::vector<Pose>& T_base_tip, double dt,
+                             const Scene* scene = nullptr);
 
   /// Where the arm is now [rad or m]; once inside the limits, always inside.
   [[nodiscard]] const JointVector& q() const { return q_; }
@@ -61,6 +67,13 @@ class IKSEL_EXPORT Tracker {
   [[nodiscard]] const std::optional<PoseWeights>& closest() const { return closest_; }
 
  private:
+  /// Of a target for each tip.
+  [[nodiscard]] Result follow(const Pose* targets, double dt, const Scene* scene);
+  [[nodiscard]] Result approach(const Goal& goal, double dt);
+  /// How far the tools are apart at two configurations, by the weights.
+  [[nodiscard]] double tool_way(const JointVector& from, const JointVector& to) const;
+  /// Remembers targets, and how fast they are.
+  void stream_on(const Pose* targets, double dt);
   /// How much of a move brings the tool no farther than it may go in `dt`, part at most.
   [[nodiscard]] double part_for_tool(const JointVector& move, double part, double dt) const;
 

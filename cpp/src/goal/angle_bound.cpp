@@ -5,8 +5,10 @@
 #include <cmath>
 #include <string>
 
+#include "base/constants.hpp"
 #include "base/message_text.hpp"
 #include "iksel/error.hpp"
+#include "kinematics/tips_model.hpp"
 
 namespace iksel {
 namespace {
@@ -31,19 +33,27 @@ double find_largest(const ChainModel& model, const SolverOptions& options) {
 
 }  // namespace
 
-AngleBound::AngleBound(const ChainModel& model, const SolverOptions& options)
-    : model_(model),
+AngleBound::AngleBound(const Robot& robot, const SolverOptions& options)
+    : joints_(robot.all().joints),
       position_tolerance_(options.position_tolerance),
       rotation_tolerance_(options.rotation_tolerance),
-      largest_(find_largest(model, options)) {
+      largest_(JointVector::Constant(robot.dof(), kInfinity)) {
+  for (int tip = 0; tip < robot.tips(); ++tip) {
+    const ChainModel& chain = robot.chain(tip).model();
+    const double largest = find_largest(chain, options);
+    for (int j = 0; j < chain.dof; ++j) {
+      double& of_joint = largest_[robot.joints_of(tip)[static_cast<std::size_t>(j)]];
+      if (turns_a_joint(chain, j)) of_joint = std::min(of_joint, largest);
+    }
+  }
   const auto finite = [](double limit) { return std::isfinite(limit) ? limit : 0.0; };
-  check(model.joints.lower.unaryExpr(finite), "lower limit");
-  check(model.joints.upper.unaryExpr(finite), "upper limit");
+  check(joints_.lower.unaryExpr(finite), "lower limit");
+  check(joints_.upper.unaryExpr(finite), "upper limit");
 }
 
 int AngleBound::first_beyond(const JointVector& q) const {
-  for (int j = 0; j < model_.dof; ++j) {
-    if (!(std::abs(q[j]) <= largest_) && turns_a_joint(model_, j)) return j;
+  for (int j = 0; j < joints_.dof(); ++j) {
+    if (!(std::abs(q[j]) <= largest_[j])) return j;
   }
   return -1;
 }
@@ -51,11 +61,11 @@ int AngleBound::first_beyond(const JointVector& q) const {
 void AngleBound::check(const JointVector& q, const char* name) const {
   const int j = first_beyond(q);
   if (j < 0) return;
-  const bool slides = model_.joints.is_slide(j);
+  const bool slides = joints_.is_slide(j);
   throw InvalidArgumentError(
-      std::string(name) + "[" + std::to_string(j) + "] (joint '" + model_.joints.name(j) +
+      std::string(name) + "[" + std::to_string(j) + "] (joint '" + joints_.name(j) +
       "'): " + number_text(q[j]) + (slides ? " m, by which others turn" : " rad") +
-      "; at angles beyond " + number_text(largest_) +
+      "; at angles beyond " + number_text(largest_[j]) +
       " rad a double cannot tell poses of this robot apart to a tenth of the tolerances (" +
       number_text(position_tolerance_) + " m, " + number_text(rotation_tolerance_) +
       " rad): " + (slides ? "narrow its limits" : "take off whole turns"));
@@ -66,7 +76,7 @@ void AngleBound::check(const SolveRequest& request) const {
   if (request.objective.posture.size() != 0) check(request.objective.posture, "posture");
   for (std::size_t i = 0; i < request.seeds.size(); ++i) {
     // There may be many: names are made for the error only.
-    if (request.seeds[i].cwiseAbs().maxCoeff() <= largest_) continue;
+    if (holds(request.seeds[i])) continue;
     check(request.seeds[i], ("seeds[" + std::to_string(i) + "]").c_str());
   }
 }

@@ -10,8 +10,8 @@ namespace iksel {
 
 class AngleBound {
  public:
-  /// `model` must outlive this. Throws InvalidArgumentError if the limits go beyond.
-  AngleBound(const ChainModel& model, const SolverOptions& options);
+  /// `robot` must outlive this. Throws InvalidArgumentError if the limits go beyond.
+  AngleBound(const Robot& robot, const SolverOptions& options);
 
   /// Throws InvalidArgumentError naming the first joint beyond.
   void check(const JointVector& q, const char* name) const;
@@ -23,10 +23,11 @@ class AngleBound {
   /// The first joint beyond, or -1.
   [[nodiscard]] int first_beyond(const JointVector& q) const;
 
-  const ChainModel& model_;
+  const JointSpace& joints_;
   double position_tolerance_, rotation_tolerance_;
-  /// Angles up to this lose a tenth of the tolerances at most when FK rounds them [rad].
-  double largest_;
+  /// Angles up to these lose a tenth of the tolerances at most when FK rounds them [rad]; infinite
+  /// for joints that turn nothing.
+  JointVector largest_;
 };
 
 }  // namespace iksel

@@ -51,6 +51,7 @@ Pose Goal::random_pose(Random& random) const {
 }
 
 bool Goal::is_out_of_reach() const {
+  if (tips_ != nullptr) return tips_->first_out_of_reach() >= 0;
   const double distance = is_full_pose() ? (target_.translation() - model_.reach_centre).norm()
                                          : task_.distance_from(target_, model_.reach_centre);
   return distance > model_.reach_of_tcp() + task_.position_tolerance();
@@ -58,7 +59,9 @@ bool Goal::is_out_of_reach() const {
 
 void Goal::measure(const JointVector& q, double& position, double& rotation,
                    Jacobian* jacobian) const {
-  if (!is_full_pose()) {
+  if (tips_ != nullptr) {
+    tips_->measure(q, position, rotation);
+  } else if (!is_full_pose()) {
     task_.measure(target_, model_.fk(q.data()), position, rotation);
   } else if (jacobian != nullptr) {
     measure_error(target_, model_.fk_jacobian(q.data(), *jacobian), position, rotation);
@@ -88,7 +91,7 @@ void Goal::linearize(const Pose& pose, bool exact, Linear& at) const {
 }
 
 bool Goal::check(const JointVector& q, Result& result) const {
-  if (!model_.joints.contains(q.data())) return false;
+  if (!joints().contains(q.data())) return false;
   double position = std::numeric_limits<double>::quiet_NaN();
   double rotation = position;
   measure(q, position, rotation);

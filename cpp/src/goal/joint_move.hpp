@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far joints move between configurations, by the norm and weights of a request.
+// How far joints move between configurations, by the norm and weights that are asked for.
 #pragma once
 
 #include <optional>
@@ -12,10 +12,10 @@ namespace iksel {
 
 class JointMove {
  public:
-  JointMove(int dof, const SolveRequest& request)
-      : weights_(request.weights.size() == 0 ? JointVector(JointVector::Ones(dof))
-                                             : request.weights),
-        norm_(request.norm) {}
+  JointMove(int dof, const AnswerCriteria& criteria)
+      : weights_(criteria.weights.size() == 0 ? JointVector(JointVector::Ones(dof))
+                                              : criteria.weights),
+        norm_(criteria.norm) {}
   explicit JointMove(JointVector weights) : weights_(std::move(weights)), norm_(MoveNorm::two) {}
 
   [[nodiscard]] double length(const JointVector& difference) const {

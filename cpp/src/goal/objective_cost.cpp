@@ -13,9 +13,14 @@
 
 namespace iksel {
 
-double manipulability(const ChainModel& model, const JointVector& q) {
-  Jacobian J;
-  model.fk_jacobian(q.data(), J);
+double manipulability(const RobotModel& model, const JointVector& q) {
+  const Jacobians rows = model.jacobians(q.data());
+  if (model.tip_count() > 1) {
+    const Eigen::MatrixXd gram = rows.rows() <= rows.cols() ? Eigen::MatrixXd(rows * rows.transpose())
+                                                            : rows.transpose() * rows;
+    return std::sqrt(std::max(gram.determinant(), 0.0));
+  }
+  const Jacobian J = rows;
   // With fewer joints than six, of J^T J, filled up by the identity.
   double gram[6][6] = {};
   for (int i = 0; i < 6; ++i) {

@@ -4,19 +4,20 @@
 #pragma once
 
 #include "iksel/objective.hpp"
-#include "kinematics/chain_model.hpp"
+#include "kinematics/robot_model.hpp"
 
 namespace iksel {
 
-/// sqrt(det(J J^T)), or sqrt(det(J^T J)) for fewer than 6 joints (Yoshikawa 1985).
-double manipulability(const ChainModel& model, const JointVector& q);
+/// sqrt(det(J J^T)), or sqrt(det(J^T J)) where there are fewer joints than rows (Yoshikawa 1985); of
+/// several tips with the rows of all.
+double manipulability(const RobotModel& model, const JointVector& q);
 
 /// For one descent: where the second derivative is not known, it is estimated from the gradients
 /// that were asked for so far (Barzilai and Borwein 1988).
 class ObjectiveCost {
  public:
   /// Both must outlive this.
-  ObjectiveCost(const ChainModel& model, const Objective& objective)
+  ObjectiveCost(const RobotModel& model, const Objective& objective)
       : model_(model), objective_(objective) {}
 
   [[nodiscard]] double value(const JointVector& q) const { return (*this)(q, nullptr, nullptr); }
@@ -30,7 +31,7 @@ class ObjectiveCost {
   [[nodiscard]] JointVector slope(const JointVector& q) const;
   [[nodiscard]] double estimate_curvature(const JointVector& q, const JointVector& gradient) const;
 
-  const ChainModel& model_;
+  const RobotModel& model_;
   const Objective& objective_;
   mutable JointVector last_q_, last_gradient_;
   mutable double last_curvature_ = 0;

@@ -15,9 +15,9 @@
 
 namespace iksel {
 
-/// Whether answers to the request may be refused.
-inline bool screens_answers(const SolveRequest& request) {
-  return request.scene || static_cast<bool>(request.filter);
+/// Whether answers may be refused.
+inline bool screens_answers(const AnswerCriteria& criteria) {
+  return criteria.scene || static_cast<bool>(criteria.filter);
 }
 
 /// The filter for several threads, which ask one after the other; both must outlive it.
@@ -31,9 +31,12 @@ inline Filter in_turn(const Filter& filter, std::mutex& turn) {
 
 class Screen {
  public:
-  /// All must outlive this.
-  Screen(const std::optional<Scene>& scene, const Filter& exact, const Filter& filter, int dof)
-      : scene_(scene), exact_(exact), filter_(filter), dof_(static_cast<std::size_t>(dof)) {}
+  /// `criteria` must outlive this.
+  Screen(const AnswerCriteria& criteria, int dof)
+      : scene_(criteria.scene),
+        exact_(criteria.exact),
+        filter_(criteria.filter),
+        dof_(static_cast<std::size_t>(dof)) {}
 
   [[nodiscard]] bool is_set() const { return scene_ || static_cast<bool>(filter_); }
   [[nodiscard]] bool has_filter() const { return static_cast<bool>(filter_); }

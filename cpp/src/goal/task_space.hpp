@@ -59,6 +59,11 @@ class TaskSpace {
   [[nodiscard]] Vector6 missing(const Vector6& deviation) const {
     return deviation.cwiseMax(aim_lower_).cwiseMin(aim_upper_) - deviation;
   }
+  /// Whether what is missing of a deviation is less than that part of the tolerances.
+  [[nodiscard]] bool is_reached(const Vector6& missing, double part) const {
+    return missing.head<3>().norm() < part * position_tolerance_ &&
+           missing.tail<3>().norm() < part * rotation_tolerance_;
+  }
   /// Distances of a TCP pose from the box: position [m] and rotation [rad].
   void measure(const Pose& target, const Pose& pose, double& position, double& rotation) const;
 

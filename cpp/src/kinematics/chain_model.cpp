@@ -90,11 +90,17 @@ Pose to_pose(const Frame& f) {
 }
 
 ChainModel::ChainModel(std::string urdf_xml, const RobotOptions& options_in)
-    : urdf(std::move(urdf_xml)), options(options_in) {
+    : RobotModel(std::move(urdf_xml), options_in) {
   options.tcp = check_tool(Pose(options.tcp));
   spec = read_chain(urdf, options);
   urdf = mend_xml(urdf, options.base_link);
+  name = spec.robot_name;
+  link_names = spec.link_names;
+  tip_links = {options.tip_link};
   dof = static_cast<int>(spec.variables.size());
+  for (auto& all = joints_of_tip.emplace_back(); static_cast<int>(all.size()) < dof;) {
+    all.push_back(static_cast<int>(all.size()));
+  }
   joints = JointSpace(dof);
   for (JointVector* v : {&soft_lower, &soft_upper}) v->resize(dof);
   for (int i = 0; i < dof; ++i) {
@@ -289,6 +295,12 @@ Frame ChainModel::fk_jacobian(const double* q, Jacobian& jacobian, bool with_too
 void ChainModel::fk_jacobian(const double* q, Pose& pose, Jacobian& jacobian,
                              bool with_tool) const {
   pose = to_pose(fk_jacobian(q, jacobian, with_tool));
+}
+
+Jacobians ChainModel::jacobians(const double* q) const {
+  Jacobian J;
+  fk_jacobian(q, J);
+  return J;
 }
 
 bool ChainModel::is_almost_singular(const double* q) const {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Everything the library knows of one chain: what the URDF says, flattened once for the kernels.
+// Everything the library knows of one chain: what the URDF says, flattened once for the kernels. A
+// robot with one tip is a chain.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -9,15 +10,14 @@
 #include <vector>
 
 #include "iksel/robot.hpp"
-#include "kinematics/joint_space.hpp"
 #include "kinematics/kdl_chain.hpp"
 #include "kinematics/kernel.hpp"
-#include "kinematics/link_poses.hpp"
+#include "kinematics/robot_model.hpp"
 #include "urdf/chain_spec.hpp"
 
 namespace iksel {
 
-class ChainModel {
+class ChainModel final : public RobotModel {
  public:
   ChainModel(std::string urdf, const RobotOptions& options);
   /// The same chain with another tool.
@@ -41,12 +41,9 @@ class ChainModel {
   /// Whether the arm is singular at q, or almost (base/pseudo_inverse.hpp).
   [[nodiscard]] bool is_almost_singular(const double* q) const;
 
-  int dof;
-  std::string urdf;
-  RobotOptions options;
+  [[nodiscard]] Jacobians jacobians(const double* q) const override;
+
   ChainSpec spec;
-  JointSpace joints;
-  JointVector soft_lower, soft_upper;
   KernelChain kernel;
   /// T_tip_tcp and its inverse.
   StoredPose tcp, tcp_inverse;
@@ -54,9 +51,6 @@ class ChainModel {
   double reach;
   /// Farthest that the TCP may be from reach_centre [m].
   [[nodiscard]] double reach_of_tcp() const { return reach + tcp.translation().norm(); }
-  std::uint64_t hash;
-  /// Shared by all copies, which have the same URDF and locked joints.
-  std::shared_ptr<LinkPoseCache> link_poses = std::make_shared<LinkPoseCache>();
 
  private:
   void flatten();

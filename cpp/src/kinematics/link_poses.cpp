@@ -6,7 +6,7 @@
 
 #include "base/message_text.hpp"
 #include "iksel/error.hpp"
-#include "kinematics/chain_model.hpp"
+#include "kinematics/robot_model.hpp"
 
 namespace iksel {
 namespace {
@@ -14,7 +14,7 @@ namespace {
 using Values = std::map<std::string, double>;
 
 /// Index of the degree of freedom that moves a joint; -1 if it is held.
-int variable_of(const LinkJoint& joint, const ChainModel& model) {
+int variable_of(const LinkJoint& joint, const RobotModel& model) {
   const Values& locked = model.options.locked_joints;
   if (!joint.moves || locked.count(joint.name) || locked.count(joint.source)) return -1;
   const auto& names = model.joints.names;
@@ -22,7 +22,7 @@ int variable_of(const LinkJoint& joint, const ChainModel& model) {
   return at == names.end() ? -1 : static_cast<int>(at - names.begin());
 }
 
-void check_other_joints(const ChainModel& model, const std::vector<LinkJoint>& joints,
+void check_other_joints(const RobotModel& model, const std::vector<LinkJoint>& joints,
                         const Values& other_joints) {
   for (const auto& [name, value] : other_joints) {
     const auto joint = std::find_if(joints.begin(), joints.end(),
@@ -54,12 +54,12 @@ double held_value(const LinkJoint& joint, const Values& held) {
 
 }  // namespace
 
-LinkPoses::LinkPoses(const ChainModel& model, const std::vector<LinkJoint>& joints,
+LinkPoses::LinkPoses(const RobotModel& model, const std::vector<LinkJoint>& joints,
                      const Values& other_joints) {
   check_other_joints(model, joints, other_joints);
   Values held = other_joints;
   held.insert(model.options.locked_joints.begin(), model.options.locked_joints.end());
-  const auto& links = model.spec.link_names;
+  const auto& links = model.link_names;
   base_ = static_cast<std::size_t>(std::find(links.begin(), links.end(), model.options.base_link) -
                                    links.begin());
   for (const LinkJoint& joint : joints) {
@@ -89,7 +89,7 @@ void LinkPoses::at(const double* q, Pose* T_base_link) const {
   T_base_link[base_] = Pose::Identity();
 }
 
-void LinkPoseCache::read(const ChainModel& model) {
+void LinkPoseCache::read(const RobotModel& model) {
   std::call_once(once_, [&] {
     joints_ = read_link_joints(model.urdf, model.options.mimic_curves);
     plain_ = std::make_unique<const LinkPoses>(model, joints_, Values{});

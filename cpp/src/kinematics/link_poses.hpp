@@ -14,13 +14,13 @@
 
 namespace iksel {
 
-class ChainModel;
+class RobotModel;
 
-/// The links of a URDF as one arm moves them, the other joints held.
+/// The links of a URDF as a robot moves them, the other joints held.
 class LinkPoses {
  public:
   /// Throws UnknownNameError or InvalidArgumentError naming a bad entry of `other_joints`.
-  LinkPoses(const ChainModel& model, const std::vector<LinkJoint>& joints,
+  LinkPoses(const RobotModel& model, const std::vector<LinkJoint>& joints,
             const std::map<std::string, double>& other_joints);
 
   /// Poses of all links in the base link's frame.
@@ -45,7 +45,7 @@ class LinkPoses {
 class LinkPoseCache {
  public:
   template <class Use>
-  void with(const ChainModel& model, const std::map<std::string, double>& other_joints,
+  void with(const RobotModel& model, const std::map<std::string, double>& other_joints,
             const Use& use) {
     read(model);
     if (other_joints.empty()) return use(*plain_);
@@ -53,7 +53,7 @@ class LinkPoseCache {
   }
 
  private:
-  void read(const ChainModel& model);
+  void read(const RobotModel& model);
 
   std::once_flag once_;
   std::vector<LinkJoint> joints_;

@@ -11,12 +11,43 @@
 #include "base/rotation.hpp"
 #include "iksel/error.hpp"
 #include "kinematics/chain_model.hpp"
+#include "kinematics/tips_model.hpp"
 #include "urdf/dh.hpp"
 #include "urdf/parse.hpp"
 
 namespace iksel {
 
-Robot::Robot(std::shared_ptr<const ChainModel> model) : model_(std::move(model)) {}
+namespace {
+
+void check_tip(const RobotModel& model, int tip) {
+  if (tip >= 0 && tip < model.tip_count()) return;
+  throw InvalidArgumentError("tip: " + std::to_string(tip) + " is not in 0 .. " +
+                             std::to_string(model.tip_count() - 1) + " (" +
+                             list_names(model.tip_links) + ")");
+}
+
+/// With the only one of tip_links as the tip link.
+RobotOptions with_one_tip(RobotOptions options) {
+  if (options.tip_links.empty() && options.tcps.empty()) return options;
+  if (!options.tip_link.empty() || options.tip_links.size() != 1 || options.tcps.size() > 1) {
+    throw InvalidArgumentError("tip_links: " + std::to_string(options.tip_links.size()) +
+                               " links and " + std::to_string(options.tcps.size()) +
+                               " tcps; expected a tip_link, or tip_links with as many tcps or none");
+  }
+  options.tip_link = options.tip_links.front();
+  if (!options.tcps.empty()) options.tcp = options.tcps.front();
+  options.tip_links.clear();
+  options.tcps.clear();
+  return options;
+}
+
+}  // namespace
+
+Robot::Robot(std::shared_ptr<const ChainModel> chain)
+    : model_(std::move(chain)), chain_(static_cast<const ChainModel*>(model_.get())) {}
+
+Robot::Robot(std::shared_ptr<const TipsModel> several)
+    : model_(std::move(several)), several_(static_cast<const TipsModel*>(model_.get())) {}
 
 Robot Robot::from_urdf_file(const std::filesystem::path& path, const RobotOptions& options) {
   return read_with_path(path,
@@ -24,24 +55,25 @@ Robot Robot::from_urdf_file(const std::filesystem::path& path, const RobotOption
 }
 
 Robot Robot::from_urdf_string(const std::string& xml, const RobotOptions& options) {
-  return Robot(std::make_shared<ChainModel>(xml, options));
+  if (options.tip_links.size() > 1) return Robot(std::make_shared<const TipsModel>(xml, options));
+  return Robot(std::make_shared<const ChainModel>(xml, with_one_tip(options)));
 }
 
 Robot Robot::from_dh(const DhTable& table, const RobotOptions& options) {
   return from_urdf_string(urdf_of_dh(table), options);
 }
 
-Robot Robot::with_tcp(const Pose& T_tip_tcp) const { return Robot(model_->with_tcp(T_tip_tcp)); }
+Robot Robot::with_tcp(const Pose& T_tip_tcp) const { return Robot(model().with_tcp(T_tip_tcp)); }
 
-Robot Robot::without_limits() const { return Robot(model_->without_limits()); }
+Robot Robot::without_limits() const { return Robot(model().without_limits()); }
 
-const std::string& Robot::name() const { return model_->spec.robot_name; }
+const std::string& Robot::name() const { return model_->name; }
 const std::string& Robot::base_link() const { return model_->options.base_link; }
-const std::string& Robot::tip_link() const { return model_->options.tip_link; }
-const std::vector<std::string>& Robot::link_names() const { return model_->spec.link_names; }
+const std::string& Robot::tip_link() const { return model().options.tip_link; }
+const std::vector<std::string>& Robot::link_names() const { return model_->link_names; }
 const std::string& Robot::urdf() const { return model_->urdf; }
 const RobotOptions& Robot::options() const { return model_->options; }
-Pose Robot::tcp() const { return Pose(model_->tcp); }
+Pose Robot::tcp() const { return Pose(model().tcp); }
 int Robot::dof() const { return model_->dof; }
 const std::vector<std::string>& Robot::joint_names() const { return model_->joints.names; }
 const std::vector<JointType>& Robot::joint_types() const { return model_->joints.types; }
@@ -51,6 +83,26 @@ const JointVector& Robot::velocity_limit() const { return model_->joints.velocit
 const JointVector& Robot::soft_lower() const { return model_->soft_lower; }
 const JointVector& Robot::soft_upper() const { return model_->soft_upper; }
 
+int Robot::tips() const { return model_->tip_count(); }
+const std::vector<std::string>& Robot::tip_links() const { return model_->tip_links; }
+const std::vector<int>& Robot::shared_joints() const { return model_->shared; }
+
+const Robot& Robot::chain(int tip) const {
+  check_tip(*model_, tip);
+  return several_ == nullptr ? *this : several_->tip(tip).chain.robot;
+}
+
+const std::vector<int>& Robot::joints_of(int tip) const {
+  check_tip(*model_, tip);
+  return model_->joints_of_tip[static_cast<std::size_t>(tip)];
+}
+
+void Robot::refuse_several_tips() const {
+  throw InvalidArgumentError("robot '" + name() + "' has " + std::to_string(tips()) + " tips (" +
+                             list_names(tip_links()) +
+                             "), and this is about one; take the chain to one of them");
+}
+
 bool Robot::within_limits(const JointVector& q) const {
   check_joints(q, dof(), "q");
   return model_->joints.contains(q.data());
@@ -58,16 +110,28 @@ bool Robot::within_limits(const JointVector& q) const {
 
 Pose Robot::fk(const JointVector& q, Kinematics kinematics) const {
   check_joints(q, dof(), "q");
-  if (kinematics == Kinematics::kdl) return model_->make_kdl()->fk(q);
-  return model_->fk(q.data());
+  if (kinematics == Kinematics::kdl) return model().make_kdl()->fk(q);
+  return model().fk(q.data());
 }
 
 Jacobian Robot::jacobian(const JointVector& q, Kinematics kinematics) const {
   check_joints(q, dof(), "q");
-  if (kinematics == Kinematics::kdl) return model_->make_kdl()->jacobian(q);
+  if (kinematics == Kinematics::kdl) return model().make_kdl()->jacobian(q);
   Jacobian J;
-  model_->fk_jacobian(q.data(), J);
+  model().fk_jacobian(q.data(), J);
   return J;
+}
+
+std::vector<Pose> Robot::tip_poses(const JointVector& q) const {
+  std::vector<Pose> poses;
+  check_joints(q, dof(), "q");
+  for (int i = 0; i < tips(); ++i) poses.push_back(chain(i).fk(picked(q, joints_of(i))));
+  return poses;
+}
+
+Matrix Robot::tip_jacobians(const JointVector& q) const {
+  check_joints(q, dof(), "q");
+  return model_->jacobians(q.data());
 }
 
 std::vector<Pose> Robot::link_poses(const JointVector& q,
@@ -110,8 +174,8 @@ Matrix Robot::random_configurations(std::size_t n, std::uint64_t seed,
   return model_->joints.samples(n, seed, progress);
 }
 
-double Robot::reach() const { return model_->reach_of_tcp(); }
-Eigen::Vector3d Robot::reach_centre() const { return model_->reach_centre; }
+double Robot::reach() const { return model().reach_of_tcp(); }
+Eigen::Vector3d Robot::reach_centre() const { return model().reach_centre; }
 std::uint64_t Robot::chain_hash() const { return model_->hash; }
 
 Eigen::Matrix<double, 6, 1> pose_error(const Pose& target, const Pose& pose) {

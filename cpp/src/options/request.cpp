@@ -39,16 +39,10 @@ void PoseWeights::validate() const {
 
 bool SolveRequest::has_requirements() const {
   return !seeds.empty() || !database_seeds || near || scene || filter || objective.is_set() ||
-         task || std::isfinite(deadline) || closest;
+         task || !tasks.empty() || !in_frame_of.empty() || std::isfinite(deadline) || closest;
 }
 
-void SolveRequest::validate(int dof) const {
-  for (std::size_t i = 0; i < seeds.size(); ++i) {
-    // There may be many: names are made for the error only.
-    if (seeds[i].size() == dof && seeds[i].allFinite()) continue;
-    check_joints(seeds[i], dof, ("seeds[" + std::to_string(i) + "]").c_str());
-  }
-  if (near) check_joints(*near, dof, "near");
+void AnswerCriteria::validate(int dof, int tips) const {
   if (weights.size() != 0) {
     check_joints(weights, dof, "weights");
     for (int i = 0; i < dof; ++i) {
@@ -62,15 +56,39 @@ void SolveRequest::validate(int dof) const {
   if (norm != MoveNorm::two && norm != MoveNorm::max) {
     throw InvalidArgumentError("norm: not a value of MoveNorm (two, max)");
   }
+  if (exact && !scene) {
+    throw InvalidArgumentError("exact: there is no scene of which it could judge");
+  }
+  if (task) task->validate();
+  for (const Task& each : tasks) each.validate();
+  const auto check_count = [&](const char* name, std::size_t count) {
+    if (count == 0 || count == static_cast<std::size_t>(tips)) return;
+    throw InvalidArgumentError(std::string(name) + ": expected one for each of " +
+                               std::to_string(tips) + " tips, or none, got " +
+                               std::to_string(count));
+  };
+  check_count("tasks", tasks.size());
+  check_count("in_frame_of", in_frame_of.size());
+  for (std::size_t i = 0; i < in_frame_of.size(); ++i) {
+    if (in_frame_of[i] >= -1 && in_frame_of[i] < tips) continue;
+    throw_invalid("in_frame_of", static_cast<std::ptrdiff_t>(i),
+                  std::to_string(in_frame_of[i]) + " is not in -1 .. " + std::to_string(tips - 1));
+  }
+}
+
+void SolveRequest::validate(int dof, int tips) const {
+  for (std::size_t i = 0; i < seeds.size(); ++i) {
+    // There may be many: names are made for the error only.
+    if (seeds[i].size() == dof && seeds[i].allFinite()) continue;
+    check_joints(seeds[i], dof, ("seeds[" + std::to_string(i) + "]").c_str());
+  }
+  if (near) check_joints(*near, dof, "near");
+  AnswerCriteria::validate(dof, tips);
   if (on_invalid_pose != OnInvalidPose::status && on_invalid_pose != OnInvalidPose::raise) {
     throw InvalidArgumentError("on_invalid_pose: not a value of OnInvalidPose (status, raise)");
   }
   objective.validate(dof);
-  if (task) task->validate();
   if (closest) closest->validate();
-  if (exact && !scene) {
-    throw InvalidArgumentError("exact: there is no scene of which it could judge");
-  }
   if (!(deadline > 0)) {
     throw InvalidArgumentError("deadline: " + number_text(deadline) + " s is not above 0");
   }
@@ -89,14 +107,9 @@ void SolveAllOptions::validate() const {
   }
 }
 
-void PathOptions::validate(int dof) const {
-  SolveRequest request;
-  request.weights = weights;
-  request.norm = norm;
-  request.scene = scene;
-  request.exact = exact;
+void PathOptions::validate(int dof, int tips) const {
   if (start) check_joints(*start, dof, "start");
-  request.validate(dof);
+  AnswerCriteria::validate(dof, tips);
   if (!(dt >= 0 && dt <= 1e9)) {
     throw InvalidArgumentError("dt: " + number_text(dt) + " s is not 0 or more");
   }

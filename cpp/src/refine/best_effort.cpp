@@ -17,8 +17,8 @@ Vector6 weights_of(double rotation) {
 
 }  // namespace
 
-BestEffort::BestEffort(const ChainModel& model, const Goal& goal, double weight)
-    : model_(model), remainder_(model, goal, weights_of(weight)) {}
+BestEffort::BestEffort(const RobotModel& model, const Goal& goal, double weight)
+    : model_(model), remainder_(goal, weights_of(weight)) {}
 
 JointVector BestEffort::from(const JointVector& seed) {
   constexpr int kSteps = 200;
@@ -47,8 +47,7 @@ bool descend_into_tolerances(const ChainModel& model, const Goal& goal, JointVec
     q = seed;
     int steps = 0;
     // A position counts in metres, a rotation as many as the weight says.
-    const Remainder remainder(model, goal,
-                              weights_of(weight * position_tolerance / rotation_tolerance));
+    const Remainder remainder(goal, weights_of(weight * position_tolerance / rotation_tolerance));
     descend_from_seed(model, remainder, kSteps, q, steps);
     Result answer;
     if (goal.check(q, answer)) return true;

@@ -13,7 +13,7 @@ namespace iksel {
 class BestEffort {
  public:
   /// `weight` is the length that 1 rad counts [m].
-  BestEffort(const ChainModel& model, const Goal& goal, double weight);
+  BestEffort(const RobotModel& model, const Goal& goal, double weight);
 
   /// Where it ended.
   JointVector from(const JointVector& seed);
@@ -22,7 +22,7 @@ class BestEffort {
   [[nodiscard]] const JointVector& q() const { return q_; }
 
  private:
-  const ChainModel& model_;
+  const RobotModel& model_;
   Remainder remainder_;
   double least_ = kInfinity;
   JointVector q_;

@@ -88,7 +88,7 @@ struct Slope {
 
 /// A step of Newton's method from q that lowers the remainder, damped as it must be: false if there
 /// is none.
-bool step_down(const ChainModel& model, const Remainder& remainder, const Slope& at,
+bool step_down(const RobotModel& model, const Remainder& remainder, const Slope& at,
                double& damping, JointVector& q) {
   constexpr double kNothing = 1e-14;
   constexpr double kLeastDamping = 1e-10;
@@ -138,7 +138,7 @@ bool find_falling(const SquareMatrix& H, JointVector& v) {
 /// Leaves a point where the gradient is nothing, but the remainder falls to both sides: an arm
 /// stretched out towards a target that has come back within reach. Goes to the side of the middle
 /// of the limits, if it falls there. False if there is no such side.
-bool leave_saddle(const ChainModel& model, const Remainder& remainder, const Slope& at,
+bool leave_saddle(const RobotModel& model, const Remainder& remainder, const Slope& at,
                   JointVector& q) {
   constexpr double kWorthIt = 1e-3;
   JointVector side;
@@ -157,7 +157,32 @@ bool leave_saddle(const ChainModel& model, const Remainder& remainder, const Slo
 
 }  // namespace
 
+double Remainder::value_of_tips(const JointVector& q, JointVector* gradient,
+                                JointVector* diagonal) const {
+  const TipsGoal& tips = *goal_.tips();
+  TipsGoal::Linear at;
+  tips.linearize(q, /*exact=*/true, at);
+  if (gradient != nullptr) {
+    gradient->setZero(q.size());
+    diagonal->setZero(q.size());
+  }
+  double sum = 0;
+  for (int tip = 0; tip < tips.count(); ++tip) {
+    const TaskSpace& task = tips.task(tip);
+    const Vector6 outside = task.outside(Vector6(at.deviation.segment<6>(6 * tip)));
+    sum += 0.5 * outside.dot(weights2_.cwiseProduct(outside));
+    for (int i = 0; i < 6 && gradient != nullptr; ++i) {
+      if (outside[i] == 0 && task.lower()[i] < task.upper()[i]) continue;
+      const JointVector row = at.J.row(6 * tip + i);
+      *gradient += weights2_[i] * outside[i] * row;
+      *diagonal += weights2_[i] * row.cwiseAbs2();
+    }
+  }
+  return sum;
+}
+
 double Remainder::value(const JointVector& q) const {
+  if (goal_.tips() != nullptr) return value_of_tips(q, nullptr, nullptr);
   const Vector6 d = goal_.task().deviation(goal_.target(), model_.fk(q.data()));
   const Vector6 outside = goal_.task().outside(d);
   return 0.5 * outside.dot(weights2_.cwiseProduct(outside));
@@ -204,6 +229,11 @@ Matrix6 Remainder::stiffness(const Pose& pose, const AtPose& at) const {
 
 double Remainder::value(const JointVector& q, JointVector& gradient, JointVector& diagonal,
                         SquareMatrix* second) const {
+  if (goal_.tips() != nullptr) {
+    const double here = value_of_tips(q, &gradient, &diagonal);
+    if (second != nullptr) *second = difference_gradients(*this, q, gradient);
+    return here;
+  }
   Pose pose;
   Jacobian of_pose;
   model_.fk_jacobian(q.data(), pose, of_pose);
@@ -232,7 +262,7 @@ double Remainder::value(const JointVector& q, JointVector& gradient, JointVector
   return here.value;
 }
 
-double descend_to_closest(const ChainModel& model, const Remainder& remainder, int most,
+double descend_to_closest(const RobotModel& model, const Remainder& remainder, int most,
                           JointVector& q, int& steps, double best) {
   constexpr double kSettled = 1e-9;
   /// So many more steps that are worth as much as the last must be enough to come below `best`.
@@ -264,7 +294,7 @@ double descend_to_closest(const ChainModel& model, const Remainder& remainder, i
   return value;
 }
 
-double descend_from_seed(const ChainModel& model, const Remainder& remainder, int most,
+double descend_from_seed(const RobotModel& model, const Remainder& remainder, int most,
                          JointVector& q, int& steps, double best) {
   /// Remainders that differ by less, relative to them, are the same.
   constexpr double kSame = 1e-9;

@@ -13,16 +13,16 @@ using SquareMatrix =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::DontAlign, kMaxDof, kMaxDof>;
 
 /// How far a configuration is from a goal: half the squared length of what is missing, each part of
-/// it times its weight.
+/// it times its weight; of several tips, what is missing of all.
 class Remainder {
  public:
   /// `weights` of position [1/m] and rotation [1/rad] along the axes of the task. All must outlive
   /// this.
-  Remainder(const ChainModel& model, const Goal& goal, const Vector6& weights)
-      : model_(model),
-        goal_(goal),
+  Remainder(const Goal& goal, const Vector6& weights)
+      : goal_(goal),
+        model_(goal.model()),
         weights2_(weights.cwiseAbs2()),
-        is_simple_(is_simple(model)),
+        is_simple_(goal.tips() == nullptr && is_simple(model_)),
         turns_alike_((weights2_.tail<3>().array() == weights2_[3]).all()) {}
 
   [[nodiscard]] double value(const JointVector& q) const;
@@ -46,8 +46,11 @@ class Remainder {
   [[nodiscard]] AtPose at(const Pose& pose) const;
   [[nodiscard]] Matrix6 stiffness(const Pose& pose, const AtPose& at) const;
 
-  const ChainModel& model_;
+  /// Of several tips.
+  double value_of_tips(const JointVector& q, JointVector* gradient, JointVector* diagonal) const;
+
   const Goal& goal_;
+  const ChainModel& model_;
   Vector6 weights2_;
   bool is_simple_;
   bool turns_alike_;  ///< rotations about all axes weigh the same
@@ -57,11 +60,11 @@ class Remainder {
 /// the limits as an active set (Bertsekas: "Projected Newton methods", SIAM J. Control and
 /// Optimization 20, 1982) and damped as Levenberg-Marquardt. Given up where it will most likely not
 /// come below `best`. Returns the remainder there; `steps` counts those taken.
-double descend_to_closest(const ChainModel& model, const Remainder& remainder, int most,
+double descend_to_closest(const RobotModel& model, const Remainder& remainder, int most,
                           JointVector& q, int& steps, double best = kInfinity);
 
 /// The same from a seed that may lie anywhere, without the turns that joints took on the way.
-double descend_from_seed(const ChainModel& model, const Remainder& remainder, int most,
+double descend_from_seed(const RobotModel& model, const Remainder& remainder, int most,
                          JointVector& q, int& steps, double best = kInfinity);
 
 /// Descents from seeds at random, where there are no lanes to find better ones.

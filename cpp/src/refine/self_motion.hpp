@@ -1,13 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // All joints brought to a goal, and along a self-motion, where redundant arms move their joints
 // while the tip stays where it is, to where a cost of the joint values is small.
-//
-// `AnyGoal` is a Goal, or one of several tips, with
-//   joints()                     the JointSpace,
-//   linearize(q, exact, linear)  writes its Linear around q; if not `exact`, rotations are to first
-//                                order near the target, as iterations have them,
-//   is_reached(missing, part)    whether no more is missing than that part of the tolerances.
-// The templates are instantiated in self_motion.cpp, and for several tips in tree/.
 #pragma once
 
 #include "goal/goal.hpp"
@@ -22,8 +15,7 @@ inline constexpr double kWellInside = 0.01;
 /// of the tolerances, or to all of it in the last of `most` steps; `steps` counts those taken.
 /// `wraps`: joints that turn on and on are not held at their limits, but wrapped at the end. False
 /// if it does not get within the tolerances and the limits.
-template <typename AnyGoal>
-bool converge(const AnyGoal& goal, int most, double aim, bool wraps, JointVector& q, int& steps);
+bool converge(const Goal& goal, int most, double aim, bool wraps, JointVector& q, int& steps);
 inline bool converge(const Goal& goal, int most, JointVector& q, int& steps) {
   return converge(goal, most, kWellInside, /*wraps=*/false, q, steps);
 }
@@ -35,12 +27,10 @@ inline bool converge(const Goal& goal, int most, JointVector& q) {
 /// Moves q, a solution inside the limits, over what the goal allows until the cost is at a local
 /// minimum or after `most` steps. q is a solution inside the limits and costs no more than before
 /// when it ends. Returns the steps taken.
-template <typename AnyGoal>
-int descend_self_motion(const AnyGoal& goal, const JointCost& cost, int most, JointVector& q);
+int descend_self_motion(const Goal& goal, const JointCost& cost, int most, JointVector& q);
 
 /// Moves q so to where the move from `near` is at a local minimum.
-template <typename AnyGoal>
-int descend_to_near(const AnyGoal& goal, const JointMove& move, const JointVector& near,
+int descend_to_near(const Goal& goal, const JointMove& move, const JointVector& near,
                     JointVector& q);
 
 /// Steps from a configuration to the next pose of a path at most.

@@ -38,11 +38,11 @@ ArmShape::ArmShape(const Robot& robot, const RobotSpheres& spheres,
         "sphere file (in Python iksel.spheres)");
   }
   spheres.validate();
-  const ChainModel& model = robot.model();
+  const RobotModel& model = robot.all();
   model.link_poses->with(model, other_joints,
                          [&](const LinkPoses& links) { make_bodies(robot, links); });
-  tip_body_ = place_of(robot.tip_link()).body;
-  T_body_tip_ = place_of(robot.tip_link()).T_body_link;
+  tip_body_ = place_of(robot.tip_links().front()).body;
+  T_body_tip_ = place_of(robot.tip_links().front()).T_body_link;
   for (const auto& [name, of_link] : spheres.links) check_link(name, "spheres");
   // What is on one body stands together: the kernel places it in lanes.
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body) {

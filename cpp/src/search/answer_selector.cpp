@@ -20,7 +20,7 @@ constexpr std::size_t kSingularDescents = 16;
 
 }  // namespace
 
-AnswerSelector::AnswerSelector(const ChainModel& model, const Goal& goal,
+AnswerSelector::AnswerSelector(const RobotModel& model, const Goal& goal,
                                const SolveRequest& request, const SolutionSet& found,
                                Screen& screen)
     : model_(model),

@@ -16,7 +16,7 @@ namespace iksel {
 class AnswerSelector {
  public:
   /// All must outlive this.
-  AnswerSelector(const ChainModel& model, const Goal& goal, const SolveRequest& request,
+  AnswerSelector(const RobotModel& model, const Goal& goal, const SolveRequest& request,
                  const SolutionSet& found, Screen& screen);
 
   /// Screens what was found since the last look. True if the best of all that passed
@@ -50,7 +50,7 @@ class AnswerSelector {
   /// what it was.
   bool select_image(double best, JointVector& q);
 
-  const ChainModel& model_;
+  const RobotModel& model_;
   const Goal& goal_;
   const SolveRequest& request_;
   /// Whether some answers are better than others.

@@ -35,7 +35,7 @@ constexpr double kSameRemainder = 1e-6;
 /// Local minima of what is missing, from seeds of all kinds.
 class Minima {
  public:
-  Minima(const ChainModel& model, const Remainder& remainder, const SolveRequest& request,
+  Minima(const RobotModel& model, const Remainder& remainder, const SolveRequest& request,
          std::vector<LocalMinimum>& found, Result& result)
       : model_(model),
         remainder_(remainder),
@@ -84,7 +84,7 @@ class Minima {
   }
 
  private:
-  const ChainModel& model_;
+  const RobotModel& model_;
   const Remainder& remainder_;
   const SolveRequest& request_;
   JointMove move_;
@@ -96,7 +96,7 @@ class Minima {
 };
 
 /// The seeds of the screen that are worth it.
-void descend_from_screen(const ChainModel& model, const Goal& goal, const Vector6& weights,
+void descend_from_screen(const RobotModel& model, const Goal& goal, const Vector6& weights,
                          Workspace::InLanes& lanes, Minima& minima, Result& result) {
   ClosestScreen& screen = lanes.closest;
   screen.find(goal, weights, lanes.query);
@@ -126,12 +126,12 @@ void descend_from_screen(const ChainModel& model, const Goal& goal, const Vector
 
 }  // namespace
 
-Vector6 to_vector(const PoseWeights& weights, const DatabaseData& data) {
+Vector6 to_vector(const PoseWeights& weights, double rotation) {
   Vector6 all;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     all[row] = weights.position[i];
-    all[row + 3] = weights.rotation ? (*weights.rotation)[i] : data.weight;
+    all[row + 3] = weights.rotation ? (*weights.rotation)[i] : rotation;
   }
   return all;
 }
@@ -144,10 +144,10 @@ void set_closest(const Goal& goal, const JointVector& q, Result& result) {
   goal.measure(q, result.position_error, result.rotation_error);
 }
 
-void give_closest(const ChainModel& model, const SolverOptions& options, const Goal& goal,
+void give_closest(const RobotModel& model, const SolverOptions& options, const Goal& goal,
                   const SolveRequest& request, const Vector6& weights, Workspace& workspace,
                   Result& result) {
-  const Remainder remainder(model, goal, weights);
+  const Remainder remainder(goal, weights);
   Minima minima(model, remainder, request, workspace.minima, result);
   if (request.near) minima.descend(*request.near);
   const auto given = std::min(request.seeds.size(), static_cast<std::size_t>(options.max_attempts));
@@ -162,7 +162,7 @@ void give_closest(const ChainModel& model, const SolverOptions& options, const G
       minima.descend(seed);
     }
   }
-  Screen screen(request.scene, request.exact, request.filter, model.dof);
+  Screen screen(request, model.dof);
   for (const LocalMinimum& minimum : minima.sorted()) {
     bool keep = true;
     screen.apply(minimum.q.data(), 1, &keep);

@@ -7,11 +7,12 @@
 namespace iksel {
 
 /// The weights of position [1/m] and rotation [1/rad].
-Vector6 to_vector(const PoseWeights& weights, const DatabaseData& data);
+/// `rotation`: those that are not given [1/rad].
+Vector6 to_vector(const PoseWeights& weights, double rotation);
 
 /// Makes a failure the nearest configuration that the request's scene and filter take, if there is
 /// one.
-void give_closest(const ChainModel& model, const SolverOptions& options, const Goal& goal,
+void give_closest(const RobotModel& model, const SolverOptions& options, const Goal& goal,
                   const SolveRequest& request, const Vector6& weights, Workspace& workspace,
                   Result& result);
 

@@ -38,7 +38,7 @@ JointVector wanted_images(const JointSpace& joints, const SolveRequest& request,
 
 }  // namespace
 
-Collector::Collector(const ChainModel& model, const Goal& goal, const SolveRequest& request,
+Collector::Collector(const RobotModel& model, const Goal& goal, const SolveRequest& request,
                      const Aim& aim, FunctionRef<bool(const Collector&)> is_satisfied,
                      int max_attempts, CollectorMemory& memory)
     : SearchState(goal, request, max_attempts),
@@ -52,7 +52,7 @@ Collector::Collector(const ChainModel& model, const Goal& goal, const SolveReque
       // What a filter has been asked about stays as it is.
       counts_moves_(nearest_to_ && !screens_answers(request)),
       comes_in_pairs_(goal.is_full_pose() && model.dof <= 6),
-      signs_cancel_(goal.is_full_pose() && jacobian_signs_cancel(model)),
+      signs_cancel_(goal.is_full_pose() && jacobian_signs_cancel(goal.model())),
       basin_radius_(goal.is_full_pose() && model.dof <= 6 ? kBasinRadius : 0.0) {
   found_.clear();
   partners_.clear();
@@ -72,16 +72,30 @@ Verdict Collector::offer(int /*lane*/, JointVector& q) {
   answer.status = Status::solved;
   answer.q = q;
   wrap_near(images_near_, answer);
-  const double cost = counts_moves_ ? nearest_to_->move.length(answer.q - nearest_to_->from) : 0.0;
-  if (!found_.add(answer, cost, aim_.min_distance)) return Verdict::next;
-  result_.status = Status::solved;
-  ++solutions_;
-  last_new_ = work.attempts;
+  if (!keep(answer)) return Verdict::next;
   if (pairs) {
     look_for_partner(J, answer.q);
     paired_ = found_.size();
   }
+  if (goal_.tips() != nullptr && ranks_by_move()) keep_nearer(answer);
   return Verdict::next;
+}
+
+bool Collector::keep(const Result& answer) {
+  const double cost = counts_moves_ ? nearest_to_->move.length(answer.q - nearest_to_->from) : 0.0;
+  if (!found_.add(answer, cost, aim_.min_distance)) return false;
+  result_.status = Status::solved;
+  ++solutions_;
+  last_new_ = work.attempts;
+  return true;
+}
+
+void Collector::keep_nearer(Result answer) {
+  JointVector q = answer.q;
+  work.iterations += descend_to_near(goal_, nearest_to_->move, nearest_to_->from, q);
+  if (!goal_.check(q, answer)) return;
+  wrap_near(images_near_, answer);
+  keep(answer);
 }
 
 void Collector::offer_near() {
@@ -133,13 +147,13 @@ void Collector::look_for_partners(bool look) {
   for (; paired_ < found_.size(); ++paired_) {
     const JointVector q = found_.at(paired_);
     Jacobian J;
-    model_.fk_jacobian(q.data(), J);
+    goal_.model().fk_jacobian(q.data(), J);
     look_for_partner(J, q);
   }
 }
 
 bool Collector::is_singular(const JointVector& q) const {
-  return !goal_.is_full_pose() || model_.dof > 6 || model_.is_almost_singular(q.data());
+  return !goal_.is_full_pose() || model_.dof > 6 || goal_.model().is_almost_singular(q.data());
 }
 
 void Collector::look_for_partner(const Jacobian& J, const JointVector& q) {

@@ -21,7 +21,7 @@ inline bool ranks_answers(const SolveRequest& request) {
 
 /// What a Collector writes to. Memory is taken at construction, none later.
 struct CollectorMemory {
-  explicit CollectorMemory(const ChainModel& model) : found(model) { partners.reserve(kPartners); }
+  explicit CollectorMemory(const RobotModel& model) : found(model) { partners.reserve(kPartners); }
 
   SolutionSet found;
   /// Predicted partners of solutions that were found, still to be tried (fold_partner.hpp).
@@ -43,7 +43,7 @@ class Collector : public SearchState {
   };
 
   /// `is_satisfied` is asked between stages. All must outlive this.
-  Collector(const ChainModel& model, const Goal& goal, const SolveRequest& request, const Aim& aim,
+  Collector(const RobotModel& model, const Goal& goal, const SolveRequest& request, const Aim& aim,
             FunctionRef<bool(const Collector&)> is_satisfied, int max_attempts,
             CollectorMemory& memory);
 
@@ -131,8 +131,13 @@ class Collector : public SearchState {
   /// Brings a success to the image nearest to `near`, where it still is one.
   void wrap_near(const JointVector& near, Result& answer) const;
   void look_for_partner(const Jacobian& J, const JointVector& q);
+  /// Adds a success to what was found; false if it was known.
+  bool keep(const Result& answer);
+  /// Also keeps where the move is least along the self-motion of a success: of several tips each
+  /// solution is one of a family, and those near to its best are looked for around that.
+  void keep_nearer(Result answer);
 
-  const ChainModel& model_;
+  const RobotModel& model_;
   Aim aim_;
   FunctionRef<bool(const Collector&)> is_satisfied_;
   SolutionSet& found_;

@@ -96,11 +96,18 @@ Workspace::Workspace(const ChainModel& model, const ChainModel& nominal, const D
   }
 }
 
+Workspace::Workspace(const RobotModel& several, const SolverOptions& options)
+    : scheme(iksel::one_at_a_time(options.strategy)),
+      given(several, scheme, /*cutoff=*/0),
+      collected(several) {
+  minima.reserve(kRandomDescents + 1);
+}
+
 WorkspacePool::WorkspacePool(const Robot& robot, const Robot& nominal, const Database& database,
                              const SolverOptions& options)
     : robot_(robot),
       nominal_(nominal),
-      database_(database),
+      database_(&database),
       options_(options),
       closed_forms_(closed_forms_of(robot.model(), nominal.model())),
       solves_in_lanes_(iksel::solves_in_lanes(robot.model(), database.data(), options)),
@@ -118,6 +125,15 @@ WorkspacePool::WorkspacePool(const Robot& robot, const Robot& nominal, const Dat
       trials_.emplace(robot.model(), *chain, database.data(), task, lanes::choose_kernels());
     }
   }
+  fill();
+}
+
+WorkspacePool::WorkspacePool(const Robot& several, const SolverOptions& options)
+    : robot_(several), nominal_(several), database_(nullptr), options_(options) {
+  fill();
+}
+
+void WorkspacePool::fill() {
   const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
   for (std::size_t i = 0; i < std::min(cores, kPlaces); ++i) idle_[i] = make().release();
 }
@@ -127,8 +143,9 @@ WorkspacePool::~WorkspacePool() {
 }
 
 std::unique_ptr<Workspace> WorkspacePool::make() const {
+  if (database_ == nullptr) return std::make_unique<Workspace>(robot_.all(), options_);
   auto workspace =
-      std::make_unique<Workspace>(robot_.model(), nominal_.model(), database_.data(), options_,
+      std::make_unique<Workspace>(robot_.model(), nominal_.model(), database_->data(), options_,
                                   closed_forms_, trials_ ? &*trials_ : nullptr);
   for (const InnerChain& inner : inner_chains_) {
     workspace->lanes->inner_arms.emplace_back(robot_.model(), inner, lanes::choose_kernels());
@@ -141,7 +158,7 @@ std::unique_ptr<Workspace> WorkspacePool::make() const {
 }
 
 WorkspacePool::Lease::Lease(const WorkspacePool& pool) : pool_(pool) {
-  if (pool.damaged_ != nullptr) pool.database_.data().check_intact();
+  if (pool.damaged_ != nullptr) pool.database_->data().check_intact();
   for (auto& place : pool.idle_) {
     if (place.load(std::memory_order_relaxed) == nullptr) continue;
     workspace_ = place.exchange(nullptr, std::memory_order_acquire);

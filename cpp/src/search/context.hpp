@@ -40,6 +40,8 @@ struct Workspace {
   Workspace(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
             const SolverOptions& options, const ClosedForms& closed_forms,
             const BranchTrials* trials);
+  /// Of several tips, whose chains have their own: neither in lanes nor one at a time.
+  Workspace(const RobotModel& several, const SolverOptions& options);
 
   /// The scheme of one seed at a time, by which given seeds are ranked too.
   Paper scheme;
@@ -48,7 +50,7 @@ struct Workspace {
   /// Where descents to what is closest ended.
   std::vector<LocalMinimum> minima;
 
-  /// One of two ways to search: lanes, if the options, the chain and the database allow it.
+  /// One of two ways to search of one tip: lanes, if the options, the chain and the database allow it.
   struct InLanes {
     InLanes(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
             const SolverOptions& options, const ClosedForms& closed_forms,
@@ -105,6 +107,8 @@ class WorkspacePool {
  public:
   WorkspacePool(const Robot& robot, const Robot& nominal, const Database& database,
                 const SolverOptions& options);
+  /// Of several tips.
+  WorkspacePool(const Robot& several, const SolverOptions& options);
   WorkspacePool(const WorkspacePool&) = delete;
   WorkspacePool& operator=(const WorkspacePool&) = delete;
   ~WorkspacePool();
@@ -135,17 +139,19 @@ class WorkspacePool {
  private:
   [[nodiscard]] std::unique_ptr<Workspace> make() const;
 
+  void fill();
+
   const Robot& robot_;
   const Robot& nominal_;
-  const Database& database_;
+  const Database* database_;  ///< null: of several tips
   const SolverOptions& options_;
   ClosedForms closed_forms_;
   std::vector<InnerChain> inner_chains_;
   LockedArms locked_arms_;
-  bool solves_in_lanes_;
+  bool solves_in_lanes_ = false;
   std::optional<BranchTrials> trials_;
   /// As Storage::damaged of the database.
-  const std::atomic<bool>* damaged_;
+  const std::atomic<bool>* damaged_ = nullptr;
   /// Those that lie idle; a null is a place to put one back. More solves at once than places make
   /// their own.
   static constexpr std::size_t kPlaces = 64;

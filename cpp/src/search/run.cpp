@@ -68,15 +68,16 @@ Proof search_in_lanes(const Parts& parts) {
 
 /// The proof that there are no answers but those found.
 template <typename Answers>
-Proof search_for(const ChainModel& model, const SolverOptions& options, Answers& answers,
-                 Workspace& workspace, StageTimes* times) {
+Proof search_for(const SolverOptions& options, Answers& answers, Workspace& workspace,
+                 StageTimes* times) {
   if (answers.goal().is_out_of_reach()) {
     answers.put_out_of_reach();
     return Proof::reach;
   }
   StageClock clock(times);
-  const SearchParts<Answers> parts{model,     options, answers.goal(), answers.request(),
-                                   workspace, answers, answers.work,   clock};
+  const Goal& goal = answers.goal();
+  const SearchParts<Answers> parts{goal.model(), options, goal,         answers.request(),
+                                   workspace,    answers, answers.work, clock};
   if (workspace.lanes) return search_in_lanes(parts);
   if (search_by_scheme(parts)) answers.leave_limits();
   return Proof::none;
@@ -84,16 +85,16 @@ Proof search_for(const ChainModel& model, const SolverOptions& options, Answers&
 
 }  // namespace
 
-Result find_first(const ChainModel& model, const SolverOptions& options, const Goal& goal,
-                  const SolveRequest& request, Workspace& workspace, StageTimes* times) {
+Result find_first(const SolverOptions& options, const Goal& goal, const SolveRequest& request,
+                  Workspace& workspace, StageTimes* times) {
   FirstAnswer answers(workspace.scheme.whole_turns, goal, request, options.max_attempts);
-  return answers.result(search_for(model, options, answers, workspace, times));
+  return answers.result(search_for(options, answers, workspace, times));
 }
 
-void collect(const ChainModel& model, const SolverOptions& options, Collector& collector,
-             Workspace& workspace, StageTimes* times) {
+void collect(const SolverOptions& options, Collector& collector, Workspace& workspace,
+             StageTimes* times) {
   collector.offer_near();
-  collector.conclude(search_for(model, options, collector, workspace, times));
+  collector.conclude(search_for(options, collector, workspace, times));
 }
 
 }  // namespace iksel

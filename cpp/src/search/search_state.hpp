@@ -27,6 +27,11 @@ class SearchState {
     if (result_.status == Status::not_converged) result_.status = Status::outside_limits;
   }
   void put_out_of_reach() { result_.status = Status::out_of_reach; }
+  /// Of several tips: that one cannot reach its target by itself.
+  void put_unreachable(int tip, Status status) {
+    result_.unreachable_tip = tip;
+    if (!result_.success()) result_.status = status;
+  }
 
   Work work;
 

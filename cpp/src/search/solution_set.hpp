@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "iksel/result.hpp"
-#include "kinematics/chain_model.hpp"
+#include "kinematics/robot_model.hpp"
 #include "kinematics/joint_space.hpp"
 
 namespace iksel {
@@ -22,7 +22,7 @@ class SolutionSet {
   /// Solutions kept at most; a search is bounded, and redundant arms have one for every seed.
   static constexpr std::size_t kMost = 1024;
 
-  explicit SolutionSet(const ChainModel& model)
+  explicit SolutionSet(const RobotModel& model)
       : model_(model),
         q_(kMost * static_cast<std::size_t>(model.dof)),
         cost_(kMost),
@@ -120,7 +120,7 @@ class SolutionSet {
     --size_;
   }
 
-  const ChainModel& model_;
+  const RobotModel& model_;
   std::vector<double> q_;
   std::vector<double> cost_;
   std::vector<double> position_error_;  ///< [m]

@@ -4,10 +4,11 @@
 #include "base/pseudo_inverse.hpp"
 #include "base/rotation.hpp"
 #include "kinematics/joint_space.hpp"
+#include "refine/limited_step.hpp"
 
 namespace iksel {
 
-SeedRanking::SeedRanking(const ChainModel& model, const Paper& scheme, double cutoff)
+SeedRanking::SeedRanking(const RobotModel& model, const Paper& scheme, double cutoff)
     : model_(model), scheme_(scheme), cutoff_(cutoff), queue_(model.dof, scheme, kRoom) {}
 
 bool SeedRanking::rank(const Goal& goal, const std::vector<JointVector>& seeds,
@@ -30,7 +31,7 @@ Vector6 SeedRanking::error_of(const JointVector& q, const Goal& goal, JacobianMa
   Pose pose;
   Jacobian of_pose;
   if (!task.is_full_pose()) {
-    model_.fk_jacobian(q.data(), pose, of_pose);
+    goal.model().fk_jacobian(q.data(), pose, of_pose);
     J = of_pose;
     e = -task.outside(task.deviation(goal.target(), pose, J));
     for (int i = 0; i < 6; ++i) {
@@ -39,7 +40,7 @@ Vector6 SeedRanking::error_of(const JointVector& q, const Goal& goal, JacobianMa
     return e;
   }
   const Pose tip_target = goal.tip_target();
-  model_.fk_jacobian(q.data(), pose, of_pose, false);
+  goal.model().fk_jacobian(q.data(), pose, of_pose, false);
   J = of_pose;
   e.head<3>() = tip_target.translation() - pose.translation();
   e.tail<3>() = scheme_.rotation_difference == RotationDifference::geodesic
@@ -53,6 +54,7 @@ Candidate SeedRanking::rank_one(std::size_t index, const Goal& goal) const {
   const JointVector& q = (*seeds_)[index];
   Candidate ranked{0, static_cast<std::uint32_t>(index), 0, false};
   if (seeds_->size() == 1) return ranked;
+  if (goal.tips() != nullptr) return rank_for_tips(ranked, goal);
   JacobianMatrix J;
   const Vector6 e = error_of(q, goal, J);
   ranked.score = e.squaredNorm();
@@ -60,6 +62,16 @@ Candidate SeedRanking::rank_one(std::size_t index, const Goal& goal) const {
   const JointVector adjustment = TruncatedSvd(J, cutoff_).solve(e);
   if (scheme_.ranking == Ranking::joint_adjustment) ranked.score = adjustment.squaredNorm();
   ranked.leaves_limits = scheme_.limit_aware && model_.joints.leaves(q.data(), adjustment.data());
+  return ranked;
+}
+
+Candidate SeedRanking::rank_for_tips(Candidate ranked, const Goal& goal) const {
+  // Small beside what is missing of a pose of interest, and enough where the robot is singular.
+  constexpr double kDamping = 1e-6;
+  const JointVector& q = (*seeds_)[ranked.index];
+  TipsGoal::Linear at;
+  goal.linearize(q, /*exact=*/false, at);
+  ranked.score = damped_solve(at.J, kDamping, at.missing).squaredNorm();
   return ranked;
 }
 

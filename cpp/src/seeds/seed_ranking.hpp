@@ -19,7 +19,7 @@ class SeedRanking {
   static constexpr std::size_t kRoom = 1024;
 
   /// `cutoff` is that of the database's pseudo-inverses.
-  SeedRanking(const ChainModel& model, const Paper& scheme, double cutoff);
+  SeedRanking(const RobotModel& model, const Paper& scheme, double cutoff);
 
   /// Puts `seeds`, which must outlive their use, in order: n log n for n of them. Asks
   /// `should_continue` every few; false if that said no, and there are no seeds then.
@@ -33,10 +33,12 @@ class SeedRanking {
 
  private:
   [[nodiscard]] Candidate rank_one(std::size_t index, const Goal& goal) const;
+  /// The same of several tips.
+  [[nodiscard]] Candidate rank_for_tips(Candidate ranked, const Goal& goal) const;
   /// The error to be reduced, and the Jacobian J of what reduces it.
   Vector6 error_of(const JointVector& q, const Goal& goal, JacobianMatrix& J) const;
 
-  const ChainModel& model_;
+  const RobotModel& model_;
   const Paper& scheme_;
   double cutoff_;
   const std::vector<JointVector>* seeds_ = nullptr;

@@ -13,7 +13,9 @@
 #include "search/batch_stream.hpp"
 #include "seeds/leaf_lanes.hpp"
 #include "solver/batch_targets.hpp"
+#include "solver/batch_tips.hpp"
 #include "solver/solver_impl.hpp"
+#include "solver/tips_search.hpp"
 
 namespace iksel {
 namespace {
@@ -95,7 +97,9 @@ class Batch {
     if (workspace.lanes) left = solve_in_lanes(left, *workspace.lanes, tell);
     const SolveRequest none;
     for (const std::size_t i : left) {
-      tell(i, solver_.find_first(target_(i), solver_.task, none, workspace, nullptr));
+      const Pose& target = target_(i);
+      const Goal goal(solver_.model(), solver_.task, target);
+      tell(i, solver_.find_first(goal, none, workspace, nullptr));
     }
   }
 
@@ -131,7 +135,8 @@ class Batch {
     if (const double* values = near_(i)) {
       request.near = JointVector(Eigen::Map<const Eigen::VectorXd>(values, solver_.robot.dof()));
     }
-    return solver_.solve(target_(i), request, workspace, nullptr);
+    const Pose& target = target_(i);
+    return solver_.solve(&target, request, workspace, nullptr);
   }
 
   /// What is found without the scene and the filter is put before them in one go; where they
@@ -157,7 +162,7 @@ class Batch {
     }
     std::array<bool, kMost> keep{};
     const std::size_t count = candidates.size() / static_cast<std::size_t>(solver_.robot.dof());
-    Screen screen(request.scene, request.exact, request.filter, solver_.robot.dof());
+    Screen screen(request, solver_.robot.dof());
     if (count > 0) screen.apply(candidates.data(), count, keep.data());
 
     std::size_t asked = 0;
@@ -187,6 +192,10 @@ template <typename PoseAt, typename Near, typename OnRow>
 void Solver::Impl::solve_rows(std::size_t count, const PoseAt& pose_at, const SolveRequest& request,
                               const Near& near_of, int threads, const OnRow& on_row,
                               const Progress& progress) const {
+  if (tips) {
+    solve_rows_of_tips(*this, count, pose_at, request, near_of, threads, on_row, progress);
+    return;
+  }
   const BatchTargets<PoseAt> targets(count, pose_at, request.on_invalid_pose);
   for (const std::size_t row : targets.invalid_rows()) on_row(row, no_pose());
   const auto on_result = [&](std::size_t i, const Result& result) {
@@ -205,19 +214,20 @@ std::vector<Result> Solver::solve_batch(const std::vector<Pose>& T_base_tip,
                                         const std::vector<JointVector>& near, int threads) const {
   impl_->check(request);
   threads = resolve_threads(threads);
-  if (!near.empty() && near.size() != T_base_tip.size()) {
+  const std::size_t count = impl_->check_rows(T_base_tip.size());
+  if (!near.empty() && near.size() != count) {
     throw InvalidArgumentError("near: expected none, or one for each of the " +
-                               std::to_string(T_base_tip.size()) + " poses, got " +
-                               std::to_string(near.size()));
+                               std::to_string(count) + (impl_->tips ? " targets" : " poses") +
+                               ", got " + std::to_string(near.size()));
   }
   for (std::size_t i = 0; i < near.size(); ++i) {
     const std::string name = "near[" + std::to_string(i) + "]";
     check_joints(near[i], robot().dof(), name.c_str());
     impl_->angles.check(near[i], name.c_str());
   }
-  std::vector<Result> results(T_base_tip.size());
+  std::vector<Result> results(count);
   impl_->solve_rows(
-      results.size(), [&](std::size_t row) -> const Pose& { return T_base_tip[row]; }, request,
+      count, [&](std::size_t i) -> const Pose& { return T_base_tip[i]; }, request,
       [&](std::size_t row) { return near.empty() ? nullptr : near[row].data(); }, threads,
       [&](std::size_t row, const Result& result) { results[row] = result; }, {});
   return results;
@@ -239,7 +249,7 @@ void Solver::solve_batch(const double* T_base_tip, std::size_t count, const Solv
     impl_->angles.check(q, name.c_str());
   }
   impl_->solve_rows(
-      count, [&](std::size_t row) { return to_pose(T_base_tip + 16 * row); }, request, near_of,
+      count, [&](std::size_t i) { return to_pose(T_base_tip + 16 * i); }, request, near_of,
       threads, [&](std::size_t row, const Result& result) { write_row(result, row, dof, out); },
       progress);
 }

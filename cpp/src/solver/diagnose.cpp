@@ -16,6 +16,7 @@
 #include "solver/diagnose_refusals.hpp"
 #include "solver/limit_violations.hpp"
 #include "solver/solver_impl.hpp"
+#include "solver/tips_search.hpp"
 
 namespace iksel {
 namespace {
@@ -214,12 +215,12 @@ class Diagnoser {
   }
   /// A solver that works harder. The nominal chain is the one that it was accepted for.
   [[nodiscard]] Solver make_patient(const Robot& arm) const {
-    return Solver(arm, generous(solver_.options), solver_.database, solver_.nominal,
+    return Solver(arm, generous(solver_.options), solver_.data(), solver_.nominal,
                   CalibrationDeviation{kInfinity, kInfinity});
   }
   /// A rotation counts that part of what it counts otherwise.
   [[nodiscard]] BestEffort make_effort(const Goal& towards, double part = 1) const {
-    return {model_, towards, part * solver_.database.data().weight};
+    return {model_, towards, part * solver_.data().data().weight};
   }
 
   void explain_refusals(Status status) {
@@ -278,7 +279,7 @@ class Diagnoser {
 
 Diagnosis Solver::Impl::diagnose(const Pose& target, const SolveRequest& request) const {
   const WorkspacePool::Lease lease(workspaces);
-  const Result plain = solve(target, request, lease.get(), nullptr);
+  const Result plain = solve(&target, request, lease.get(), nullptr);
   Diagnoser diagnoser(*this, target, request);
   if (plain.success()) return diagnoser.of_answer(plain);
   bool is_explained = plain.proof == Proof::closed_form && !is_refusal(plain.status) &&
@@ -291,10 +292,15 @@ Diagnosis Solver::Impl::diagnose(const Pose& target, const SolveRequest& request
 }
 
 Diagnosis Solver::diagnose(const Pose& T_base_tip, const SolveRequest& request) const {
-  const Pose target = check_pose(T_base_tip);
+  return diagnose(std::vector<Pose>{T_base_tip}, request);
+}
+
+Diagnosis Solver::diagnose(const std::vector<Pose>& T_base_tip, const SolveRequest& request) const {
+  const std::vector<Pose> targets = impl_->check_targets(T_base_tip);
   impl_->check(request);
   if (request.closest) throw InvalidArgumentError("closest: diagnose gives it anyway, as q");
-  return impl_->diagnose(target, request);
+  return impl_->tips ? impl_->diagnose_tips(targets, request)
+                     : impl_->diagnose(targets.front(), request);
 }
 
 }  // namespace iksel

@@ -11,9 +11,9 @@ namespace iksel {
 namespace {
 
 /// Makes a layer by continuation and search; why there is nothing in it if so.
-Status search_layer(const ChainModel& model, const SolverOptions& options, const Goal& goal,
-                    const Layer* before, const PathOptions& path, PathSearch& search,
-                    Workspace& workspace, Layer& layer) {
+Status search_layer(const Solver::Impl& solver, const Goal& goal, const Layer* before,
+                    const PathOptions& path, PathSearch& search, Workspace& workspace,
+                    Layer& layer) {
   if (before != nullptr) search.add_continuations(goal, *before, layer);
   const SolutionSet& found = workspace.collected.found;
   // Of an arm that is not redundant all, which are few but where axes line up.
@@ -22,9 +22,9 @@ Status search_layer(const ChainModel& model, const SolverOptions& options, const
   const std::size_t most = goal.is_redundant() ? candidates : std::max(candidates, kBranches);
   const auto is_satisfied = [&](const Collector&) { return found.size() >= most; };
   const Collector::Aim aim{kSameSolution, true, goal.is_redundant() ? path.candidates : 0};
-  Collector collector(model, goal, search.request(), aim, is_satisfied, options.max_attempts,
-                      workspace.collected);
-  collect(model, options, collector, workspace);
+  Collector collector(solver.robot.all(), goal, search.request(), aim, is_satisfied,
+                      solver.options.max_attempts, workspace.collected);
+  solver.collect(collector, workspace);
   if (before != nullptr) {
     search.add_solutions(found, *before, layer);
   } else {
@@ -73,41 +73,42 @@ void improve_start(const ChainModel& model, const TaskSpace& task, const std::ve
 PathResult Solver::Impl::solve_path(const std::vector<Pose>& targets, const PathOptions& path,
                                     Workspace& workspace) const {
   const auto dof = static_cast<std::size_t>(robot.dof());
-  PathSearch search(model(), path);
+  const auto each = static_cast<std::size_t>(robot.tips());
+  const std::size_t count = targets.size() / each;
+  PathSearch search(robot.all(), path);
   const Layer start = path.start
                           ? Layer{dof, {path.start->data(), path.start->data() + dof}, {0.0}, {0}}
                           : Layer{dof, {}, {}, {}};
+  const TaskSpace of_path = task_of(path);
+  const bool is_swept = !tips && of_path.is_full_pose() && workspace.lanes && workspace.lanes->sweep;
 
   std::vector<Layer> layers;
-  layers.reserve(targets.size());
+  layers.reserve(count);
   PathResult result;
   result.status = Status::solved;
-  for (std::size_t w = 0; w < targets.size(); ++w) {
+  for (std::size_t w = 0; w < count && result.success(); ++w) {
     const Layer* before = !layers.empty() ? &layers.back() : path.start ? &start : nullptr;
-    const Goal goal(model(), task, targets[w]);
     Layer layer{dof, {}, {}, {}};
-    const bool is_swept = goal.is_full_pose() && workspace.lanes && workspace.lanes->sweep;
-    if (before != nullptr && is_swept) {
-      search.add_on_curve(goal, *before, w, /*with_others=*/true, *workspace.lanes, layer);
-      search.screen(layer);
-      search.connect(before, layer);
-    }
-    if (layer.size() == 0) {
-      const Status status =
-          search_layer(model(), options, goal, before, path, search, workspace, layer);
-      if (layer.size() == 0) {
-        result.status = status;
-        result.first_unreachable = static_cast<std::ptrdiff_t>(w);
-        break;
+    result.status = with_goal(&targets[w * each], path, nullptr, [&](const Goal& goal) {
+      if (before != nullptr && is_swept) {
+        search.add_on_curve(goal, *before, w, /*with_others=*/true, *workspace.lanes, layer);
+        search.screen(layer);
+        search.connect(before, layer);
+        if (layer.size() > 0) return Status::solved;
       }
+      const Status status = search_layer(*this, goal, before, path, search, workspace, layer);
+      return layer.size() > 0 ? Status::solved : status;
+    });
+    if (!result.success()) {
+      result.first_unreachable = static_cast<std::ptrdiff_t>(w);
+      break;
     }
     layers.push_back(std::move(layer));
-    if (path.progress) path.progress(w + 1, targets.size());
+    if (path.progress) path.progress(w + 1, count);
   }
   search.trace(layers, result);
-  if (result.success() && !path.start && workspace.lanes && workspace.lanes->sweep &&
-      task.is_full_pose()) {
-    improve_start(model(), task, targets, path, *workspace.lanes, result);
+  if (result.success() && !path.start && is_swept) {
+    improve_start(model(), of_path, targets, path, *workspace.lanes, result);
   }
   return result;
 }
@@ -115,12 +116,13 @@ PathResult Solver::Impl::solve_path(const std::vector<Pose>& targets, const Path
 PathResult Solver::solve_path(const std::vector<Pose>& T_base_tip,
                               const PathOptions& options) const {
   if (T_base_tip.empty()) throw InvalidArgumentError("poses: there are none");
+  impl_->check_rows(T_base_tip.size());
   std::vector<Pose> targets(T_base_tip);
   for (std::size_t i = 0; i < targets.size(); ++i) {
     Pose nearest;
     targets[i] = to_rigid(targets[i], nearest, "poses", static_cast<std::ptrdiff_t>(i));
   }
-  options.validate(robot().dof());
+  options.validate(robot().dof(), robot().tips());
   if (options.scene) options.scene->check_fits(robot());
   if (options.start) impl_->angles.check(*options.start, "start");
   const WorkspacePool::Lease lease(impl_->workspaces);

@@ -25,11 +25,11 @@ inline constexpr double kSameSolution = 20 * kSameCandidate;
 
 class PathSearch {
  public:
-  PathSearch(const ChainModel& model, const PathOptions& options)
+  PathSearch(const RobotModel& model, const PathOptions& options)
       : model_(model),
         options_(options),
         request_(make_request(options)),
-        screen_(options.scene, options.exact, options.filter, model.dof),
+        screen_(options, model.dof),
         move_(model.dof, request_),
         longest_(model.joints.longest_moves(options.dt)),
         middle_(model.joints.middle()) {
@@ -252,12 +252,14 @@ class PathSearch {
 
   static SolveRequest make_request(const PathOptions& options) {
     SolveRequest request;
-    request.weights = options.weights;
-    request.norm = options.norm;
+    static_cast<AnswerCriteria&>(request) = options;
+    // Of whole layers at once.
+    request.scene.reset();
+    request.filter = request.exact = nullptr;
     return request;
   }
 
-  const ChainModel& model_;
+  const RobotModel& model_;
   const PathOptions& options_;
   SolveRequest request_;
   Screen screen_;

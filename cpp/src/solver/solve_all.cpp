@@ -37,7 +37,7 @@ bool cheaper(const Image& a, const Image& b) {
 
 /// Smallest distance from a limit, relative to the range of the joint, or of what is coupled;
 /// joints without limits have none.
-double limit_distance(const ChainModel& model, const JointVector& q) {
+double limit_distance(const RobotModel& model, const JointVector& q) {
   double least = 0.5;
   for (int j = 0; j < model.dof; ++j) {
     const double range = model.joints.upper[j] - model.joints.lower[j];
@@ -56,7 +56,7 @@ double limit_distance(const ChainModel& model, const JointVector& q) {
 class SolutionRanking {
  public:
   /// All must outlive this.
-  SolutionRanking(const ChainModel& model, SolutionOrder order, const SolveRequest& request)
+  SolutionRanking(const RobotModel& model, SolutionOrder order, const SolveRequest& request)
       : model_(model),
         order_(order),
         objective_(request.objective),
@@ -85,7 +85,7 @@ class SolutionRanking {
   }
 
  private:
-  const ChainModel& model_;
+  const RobotModel& model_;
   SolutionOrder order_;
   const Objective& objective_;
   std::optional<NearestTo> nearest_to_;
@@ -190,38 +190,36 @@ Solutions without_answers(const Result& none) {
 
 }  // namespace
 
-Solutions Solver::Impl::solve_all(const Pose& target, const SolveAllOptions& all,
+Solutions Solver::Impl::solve_all(const Goal& goal, const SolveAllOptions& all,
                                   const SolveRequest& request, Workspace& workspace) const {
-  const TaskSpace of_call = task_of(request);
-  const Goal goal(model(), of_call, target, request.scene ? &*request.scene : nullptr);
   if (!request.exact && goal.is_never_free()) {
-    return without_answers(find_first(target, of_call, request, workspace, nullptr));
+    return without_answers(find_first(goal, request, workspace, nullptr));
   }
   const auto most = static_cast<std::size_t>(all.max);
   const SolutionSet& found = workspace.collected.found;
   const auto is_satisfied = [&](const Collector&) {
     return goal.is_redundant() && found.size() >= std::max<std::size_t>(kChoice * most, 64);
   };
-  Screen screen(request.scene, request.exact, request.filter, robot.dof());
+  Screen screen(request, robot.dof());
   const int spread = goal.is_redundant() ? spread_for(all.max, screen.is_set()) : 0;
   const Collector::Aim aim{all.min_distance, true, spread};
-  Collector search(model(), goal, request, aim, is_satisfied, options.max_attempts,
+  Collector search(robot.all(), goal, request, aim, is_satisfied, options.max_attempts,
                    workspace.collected);
-  collect(model(), options, search, workspace);
+  collect(search, workspace);
 
   Solutions solutions = without_answers(search.result());
-  const SolutionRanking ranking(model(), all.order, request);
+  const SolutionRanking ranking(robot.all(), all.order, request);
   // Without, each solution is at its best image already.
   const bool with_images =
       all.whole_turns || request.filter || request.objective.kind == Objective::Kind::custom;
-  std::vector<Image> images = images_of(model().joints, found, screen, with_images, ranking);
+  std::vector<Image> images = images_of(goal.joints(), found, screen, with_images, ranking);
   apply_filter(screen, robot.dof(), images);
   images.erase(std::remove_if(images.begin(), images.end(),
                               [](const Image& image) { return std::isinf(image.cost); }),
                images.end());
   std::sort(images.begin(), images.end(), cheaper);
   if (!all.whole_turns) take_first_of_each(found.size(), images);
-  const bool are_left_out = take_best(model().joints, most, goal.is_redundant(), images);
+  const bool are_left_out = take_best(goal.joints(), most, goal.is_redundant(), images);
   if (are_left_out) solutions.proof = Proof::none;
 
   solutions.all.reserve(images.size());
@@ -249,7 +247,12 @@ Solutions Solver::Impl::solve_all(const Pose& target, const SolveAllOptions& all
 
 Solutions Solver::solve_all(const Pose& T_base_tip, const SolveAllOptions& options,
                             const SolveRequest& request) const {
-  const Pose target = check_pose(T_base_tip);
+  return solve_all(std::vector<Pose>{T_base_tip}, options, request);
+}
+
+Solutions Solver::solve_all(const std::vector<Pose>& T_base_tip, const SolveAllOptions& options,
+                            const SolveRequest& request) const {
+  const std::vector<Pose> targets = impl_->check_targets(T_base_tip);
   options.validate();
   impl_->check(request);
   if (request.closest) throw InvalidArgumentError("closest: solve_all gives answers only");
@@ -257,7 +260,10 @@ Solutions Solver::solve_all(const Pose& T_base_tip, const SolveAllOptions& optio
     throw InvalidArgumentError("order: with an objective that decides the order; leave out one");
   }
   const WorkspacePool::Lease lease(impl_->workspaces);
-  return impl_->solve_all(target, options, request, lease.get());
+  return impl_->with_goal(targets.data(), request, request.scene ? &*request.scene : nullptr,
+                          [&](const Goal& goal) {
+                            return impl_->solve_all(goal, options, request, lease.get());
+                          });
 }
 
 }  // namespace iksel

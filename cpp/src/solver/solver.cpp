@@ -11,6 +11,7 @@
 #include "search/answer_selector.hpp"
 #include "search/closest.hpp"
 #include "solver/solver_impl.hpp"
+#include "solver/tips_search.hpp"
 
 namespace iksel {
 namespace {
@@ -68,58 +69,116 @@ Solver::Impl::Impl(const Robot& robot_in, const SolverOptions& options_in,
       database(check_fits(nominal_in, database_in)),
       nominal(nominal_in),
       task(options.task, options.position_tolerance, options.rotation_tolerance),
-      angles(model(), options),
-      workspaces(robot, nominal, database, options) {}
+      angles(robot, options),
+      workspaces(robot, nominal, *database, options) {}
+
+Solver::Impl::Impl(const Robot& robot_in, const SolverOptions& options_in)
+    : robot(robot_in),
+      options(options_in),
+      nominal(robot_in),
+      task(options.task, options.position_tolerance, options.rotation_tolerance),
+      angles(robot, options),
+      workspaces(robot, options),
+      tips(std::make_unique<const TipsSearch>(*robot.several(), options)) {}
+
+Solver::Impl::~Impl() = default;
+
+double Solver::Impl::rotation_weight() const {
+  if (!tips) return database->data().weight;
+  double most = 0;
+  for (int i = 0; i < robot.tips(); ++i) {
+    most = std::max(most, tips->chain(i).database().data().weight);
+  }
+  return most;
+}
 
 void Solver::Impl::check(const SolveRequest& request) const {
-  request.validate(robot.dof());
+  request.validate(robot.dof(), robot.tips());
   if (request.scene) request.scene->check_fits(robot);
   angles.check(request);
 }
 
-TaskSpace Solver::Impl::task_of(const SolveRequest& request) const {
-  if (!request.task) return task;
-  return {*request.task, options.position_tolerance, options.rotation_tolerance};
+void Solver::Impl::check_tips(std::size_t poses) const {
+  if (poses == static_cast<std::size_t>(robot.tips())) return;
+  throw InvalidArgumentError("poses: expected one for each of " + std::to_string(robot.tips()) +
+                             " tips (" + list_names(robot.tip_links()) + "), got " +
+                             std::to_string(poses));
 }
 
-Result Solver::Impl::find_first(const Pose& target, const TaskSpace& of_call,
-                                const SolveRequest& request, Workspace& workspace,
-                                StageTimes* times) const {
-  const Goal goal(model(), of_call, target, request.scene ? &*request.scene : nullptr);
-  return iksel::find_first(model(), options, goal, request, workspace, times);
+std::size_t Solver::Impl::check_rows(std::size_t poses) const {
+  const auto each = static_cast<std::size_t>(robot.tips());
+  if (poses % each == 0) return poses / each;
+  throw InvalidArgumentError("poses: expected " + std::to_string(each) +
+                             " for each target, one for each tip, got " + std::to_string(poses));
 }
 
-Result Solver::Impl::solve(const Pose& target, const SolveRequest& request, Workspace& workspace,
+std::vector<Pose> Solver::Impl::check_targets(const std::vector<Pose>& T_base_tip) const {
+  check_tips(T_base_tip.size());
+  std::vector<Pose> targets;
+  for (std::size_t i = 0; i < T_base_tip.size(); ++i) {
+    Pose nearest;
+    targets.push_back(tips ? to_rigid(T_base_tip[i], nearest, "poses",
+                                      static_cast<std::ptrdiff_t>(i))
+                           : to_rigid(T_base_tip[i], nearest));
+  }
+  return targets;
+}
+
+TaskSpace Solver::Impl::task_of(const AnswerCriteria& criteria) const {
+  if (!criteria.tasks.empty()) return tasks_of(criteria).front();
+  if (!criteria.task) return task;
+  return {*criteria.task, options.position_tolerance, options.rotation_tolerance};
+}
+
+std::vector<TaskSpace> Solver::Impl::tasks_of(const AnswerCriteria& criteria) const {
+  std::vector<TaskSpace> tasks;
+  for (const Task& each : criteria.tasks) {
+    tasks.emplace_back(each, options.position_tolerance, options.rotation_tolerance);
+  }
+  if (tasks.empty()) tasks.assign(static_cast<std::size_t>(robot.tips()), task_of(criteria));
+  return tasks;
+}
+
+Result Solver::Impl::find_first(const Goal& goal, const SolveRequest& request,
+                                Workspace& workspace, StageTimes* times) const {
+  if (tips) return tips->find_first(goal, request, workspace);
+  return iksel::find_first(options, goal, request, workspace, times);
+}
+
+void Solver::Impl::collect(Collector& collector, Workspace& workspace, StageTimes* times) const {
+  if (tips) return tips->collect(collector, workspace);
+  iksel::collect(options, collector, workspace, times);
+}
+
+Result Solver::Impl::solve(const Pose* targets, const SolveRequest& request, Workspace& workspace,
                            StageTimes* times) const {
-  const TaskSpace of_call = task_of(request);
-  Result result = find_answer(target, of_call, request, workspace, times);
-  if (result.success() || !request.closest) return result;
-  const Goal goal(model(), of_call, target);
-  give_closest(model(), options, goal, request, to_vector(*request.closest, database.data()),
-               workspace, result);
-  return result;
+  const Scene* scene = request.scene ? &*request.scene : nullptr;
+  return with_goal(targets, request, scene, [&](const Goal& goal) {
+    Result result = find_answer(goal, request, workspace, times);
+    if (result.success() || !request.closest) return result;
+    give_closest(robot.all(), options, goal, request, to_vector(*request.closest, rotation_weight()),
+                 workspace, result);
+    return result;
+  });
 }
 
-Result Solver::Impl::find_answer(const Pose& target, const TaskSpace& of_call,
-                                 const SolveRequest& request, Workspace& workspace,
-                                 StageTimes* times) const {
+Result Solver::Impl::find_answer(const Goal& goal, const SolveRequest& request,
+                                 Workspace& workspace, StageTimes* times) const {
   if (!ranks_answers(request) && !request.filter) {
-    Result first = find_first(target, of_call, request, workspace, times);
+    Result first = find_first(goal, request, workspace, times);
     if (!request.exact || first.status != Status::in_collision) return first;
   }
-  const Goal goal(model(), of_call, target, request.scene ? &*request.scene : nullptr);
   Result result;
   if (stays(goal, request, result)) return result;
-  if (!request.exact && goal.is_never_free())
-    return find_first(target, of_call, request, workspace, times);
-  Screen screen(request.scene, request.exact, request.filter, robot.dof());
-  AnswerSelector selector(model(), goal, request, workspace.collected.found, screen);
+  if (!request.exact && goal.is_never_free()) return find_first(goal, request, workspace, times);
+  Screen screen(request, robot.dof());
+  AnswerSelector selector(robot.all(), goal, request, workspace.collected.found, screen);
   const auto is_satisfied = [&](const Collector& so_far) { return selector.is_satisfied(so_far); };
   // With a screen the selector decides: nothing may have passed it yet.
   const Collector::Aim aim{kSame, selector.wants_all() && !screen.is_set()};
-  Collector search(model(), goal, request, aim, is_satisfied, options.max_attempts,
+  Collector search(robot.all(), goal, request, aim, is_satisfied, options.max_attempts,
                    workspace.collected);
-  collect(model(), options, search, workspace, times);
+  collect(search, workspace, times);
 
   result = search.result();
   JointVector q;
@@ -128,7 +187,7 @@ Result Solver::Impl::find_answer(const Pose& target, const TaskSpace& of_call,
   }
   if (result.success()) {
     if (request.objective.is_set()) {
-      result.cost = ObjectiveCost(model(), request.objective).value(q);
+      result.cost = ObjectiveCost(robot.all(), request.objective).value(q);
     }
     if (request.near) result.move = JointMove(robot.dof(), request).length(q - *request.near);
   } else if (search.is_out_of_time()) {
@@ -140,17 +199,24 @@ Result Solver::Impl::find_answer(const Pose& target, const TaskSpace& of_call,
 
 Solver::Solver(const Robot& robot, const SolverOptions& options) {
   options.validate();
-  impl_ = std::make_shared<Impl>(robot, options, Database::build(robot, options.database), robot);
+  impl_ = robot.tips() > 1 ? std::make_shared<const Impl>(robot, options)
+                           : std::make_shared<const Impl>(
+                                 robot, options, Database::build(robot, options.database), robot);
 }
 
 Solver::Solver(const Robot& robot, const SolverOptions& options, const Database& database) {
   options.validate();
-  impl_ = std::make_shared<Impl>(robot, options, database, robot);
+  impl_ = std::make_shared<const Impl>(robot, options, database, robot);
 }
 
 const Robot& Solver::robot() const { return impl_->robot; }
 const SolverOptions& Solver::options() const { return impl_->options; }
-const Database& Solver::database() const { return impl_->database; }
+const Database& Solver::database() const { return impl_->data(); }
+
+const Solver& Solver::chain_solver(int tip) const {
+  static_cast<void>(robot().chain(tip));  // checks
+  return impl_->tips ? impl_->tips->chain(tip) : *this;
+}
 
 std::size_t Solver::work_bound() const {
   return static_cast<std::size_t>(options().max_attempts) *
@@ -158,18 +224,29 @@ std::size_t Solver::work_bound() const {
 }
 
 Result Solver::solve(const Pose& T_base_tip) const {
+  if (impl_->tips) impl_->check_tips(1);
   Pose nearest;
   const Pose& target = to_rigid(T_base_tip, nearest);
   const WorkspacePool::Lease lease(impl_->workspaces);
-  return impl_->find_first(target, impl_->task, impl_->nothing, lease.get(), nullptr);
+  return impl_->find_first(Goal(impl_->model(), impl_->task, target), impl_->nothing, lease.get(),
+                           nullptr);
 }
 
 Result Solver::solve(const Pose& T_base_tip, const SolveRequest& request, StageTimes* times) const {
+  if (impl_->tips) impl_->check_tips(1);
   Pose nearest;
   const Pose& target = to_rigid(T_base_tip, nearest);
   impl_->check(request);
   const WorkspacePool::Lease lease(impl_->workspaces);
-  return impl_->solve(target, request, lease.get(), times);
+  return impl_->solve(&target, request, lease.get(), times);
+}
+
+Result Solver::solve(const std::vector<Pose>& T_base_tip, const SolveRequest& request,
+                     StageTimes* times) const {
+  const std::vector<Pose> targets = impl_->check_targets(T_base_tip);
+  impl_->check(request);
+  const WorkspacePool::Lease lease(impl_->workspaces);
+  return impl_->solve(targets.data(), request, lease.get(), times);
 }
 
 }  // namespace iksel

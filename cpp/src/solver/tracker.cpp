@@ -11,6 +11,7 @@
 #include "refine/closest_descent.hpp"
 #include "refine/self_motion.hpp"
 #include "search/closest.hpp"
+#include "kinematics/tips_model.hpp"
 #include "solver/solver_impl.hpp"
 
 namespace iksel {
@@ -51,42 +52,75 @@ Tracker::Tracker(const Solver& solver, const JointVector& start,
     solver.impl_->angles.check(*q, name);
   }
   if (closest) closest->validate();
-  if (stream.last) check_pose(Pose(*stream.last));
+  if (!stream.last.empty()) solver.impl_->check_tips(stream.last.size());
+  for (const StoredPose& last : stream.last) check_pose(Pose(last));
   if (!(stream.speed >= 0) || !std::isfinite(stream.speed)) {
     throw InvalidArgumentError("speed: " + number_text(stream.speed) + " is not 0 or more");
   }
 }
 
+double Tracker::tool_way(const JointVector& from, const JointVector& to) const {
+  const Vector6 weights = to_vector(*closest_, solver_.impl_->rotation_weight());
+  const Robot& robot = solver_.robot();
+  double most = 0;
+  for (int i = 0; i < robot.tips(); ++i) {
+    const ChainModel& chain = robot.chain(i).model();
+    const auto pose = [&](const JointVector& q) {
+      return chain.fk(picked(q, robot.joints_of(i)).data());
+    };
+    most = std::max(most, distance(pose(from), pose(to), weights));
+  }
+  return most;
+}
+
 double Tracker::part_for_tool(const JointVector& move, double part, double dt) const {
   constexpr double kShorter = 0.9;
-  const ChainModel& model = solver_.robot().model();
-  const Vector6 weights = to_vector(*closest_, solver_.database().data());
   const double most = kFastestTool * stream_.speed * dt;
-  const Pose here = model.fk(q_.data());
   while (part > 0) {
-    const JointVector q = q_ + part * move;
-    const double way = distance(here, model.fk(q.data()), weights);
+    const double way = tool_way(q_, q_ + part * move);
     if (way <= most) break;
     part *= std::max(kShorter * most / way, 1e-3);
   }
   return part;
 }
 
+void Tracker::stream_on(const Pose* targets, double dt) {
+  const Robot& robot = solver_.robot();
+  const Vector6 weights = to_vector(*closest_, solver_.impl_->rotation_weight());
+  const bool is_first = stream_.last.empty();
+  if (is_first) stream_.last.resize(static_cast<std::size_t>(robot.tips()));
+  double way = 0;
+  for (int i = 0; i < robot.tips(); ++i) {
+    StoredPose& last = stream_.last[static_cast<std::size_t>(i)];
+    if (is_first) last = robot.chain(i).model().fk(picked(q_, robot.joints_of(i)).data());
+    way = std::max(way, distance(Pose(last), targets[i], weights));
+    last = targets[i];
+  }
+  if (way > 0) stream_.speed = way / dt;
+}
+
 Result Tracker::track(const Pose& T_base_tip, double dt, const Scene* scene) {
+  solver_.impl_->check_tips(1);
   Pose nearest;
-  const Pose& target = to_rigid(T_base_tip, nearest);
+  return follow(&to_rigid(T_base_tip, nearest), dt, scene);
+}
+
+Result Tracker::track(const std::vector<Pose>& T_base_tip, double dt, const Scene* scene) {
+  return follow(solver_.impl_->check_targets(T_base_tip).data(), dt, scene);
+}
+
+Result Tracker::follow(const Pose* targets, double dt, const Scene* scene) {
   if (!(dt > 0)) {
     throw InvalidArgumentError("dt: " + number_text(dt) + " s is not above 0");
   }
-  const ChainModel& model = solver_.robot().model();
   if (scene != nullptr) scene->check_fits(solver_.robot());
-  const Goal goal(model, solver_.impl_->task, target, scene);
-  if (closest_) {
-    const Pose last = stream_.last ? Pose(*stream_.last) : model.fk(q_.data());
-    const double way = distance(last, target, to_vector(*closest_, solver_.database().data()));
-    if (way > 0) stream_.speed = way / dt;
-    stream_.last = target;
-  }
+  if (closest_) stream_on(targets, dt);
+  return solver_.impl_->with_goal(targets, {}, scene,
+                                  [&](const Goal& goal) { return approach(goal, dt); });
+}
+
+Result Tracker::approach(const Goal& goal, double dt) {
+  const RobotModel& model = solver_.robot().all();
   Result result;
   const JointVector from = model.joints.clamp(is_at_edge_ ? lean(q_, reached_) : q_);
   JointVector end = from;
@@ -94,10 +128,9 @@ Result Tracker::track(const Pose& T_base_tip, double dt, const Scene* scene) {
   const bool is_reached = converge(goal, kStepsToNext, end, result.iterations);
   if (!is_reached) {
     if (!closest_) return result;
-    const Vector6 weights = to_vector(*closest_, solver_.database().data());
+    const Vector6 weights = to_vector(*closest_, solver_.impl_->rotation_weight());
     end = from;
-    descend_to_closest(model, Remainder(model, goal, weights), kStepsToNext, end,
-                       result.iterations);
+    descend_to_closest(model, Remainder(goal, weights), kStepsToNext, end, result.iterations);
   }
   const JointVector move = end - q_;
   const JointVector longest = model.joints.longest_moves(dt);

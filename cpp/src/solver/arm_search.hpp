@@ -3,12 +3,13 @@
 // joints, and the chains as a whole.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "base/random.hpp"
+#include "goal/goal.hpp"
 #include "iksel/solver.hpp"
-#include "tree/stacked_goal.hpp"
 
 namespace iksel {
 
@@ -20,9 +21,9 @@ struct TipSolvers {
 
 class ArmSearch {
  public:
-  /// `near` may be null. All must outlive this.
-  ArmSearch(const StackedGoal& goal, const std::vector<TipSolvers>& solvers,
-            const TreeRequest& request, std::uint64_t seed);
+  /// All must outlive this.
+  ArmSearch(const TipsGoal& goal, const std::vector<TipSolvers>& solvers,
+            const SolveRequest& request, std::uint64_t seed);
 
   /// Whether that tip has an arm with as many joints as its task fixes axes.
   [[nodiscard]] bool has_arm(int tip) const;
@@ -31,18 +32,23 @@ class ArmSearch {
   /// Solves for the joints of that tip's arm, the shared ones as in q; false leaves q as it is.
   /// Limits that arms share are left to what iterates all joints.
   bool solve_arm(int tip, JointVector& q);
+  /// The joint values of that tip's arm in as many solutions, at most; those nearest to the
+  /// request's `near` first, if it has one.
+  std::vector<JointVector> solve_arm(int tip, const JointVector& q, int most);
   /// The same, or if there is none the joint values with the tip closest to its target; without an
   /// arm q stays as it is.
   void bring_closest(int tip, JointVector& q);
-  /// Solves for all joints of that tip's chain; from those in q first if `from_here`. What the
-  /// chain's own solver says; without success q stays as it is.
+  /// Solves for all joints of that tip's chain, other tips where q puts them; from those in q first
+  /// if `from_here`. What the chain's own solver says; without success q stays as it is.
   Result solve_chain(int tip, bool from_here, JointVector& q);
 
  private:
+  /// Whether its task bounds axes of the frame in which its target is.
+  [[nodiscard]] bool is_along_frame(int tip) const;
   /// The target as the arm's base sees it.
   [[nodiscard]] Pose target_of_arm(int tip, const JointVector& q);
 
-  const StackedGoal& goal_;
+  const TipsGoal& goal_;
   const std::vector<TipSolvers>& solvers_;
   /// What is asked of each tip's arm.
   std::vector<SolveRequest> of_arm_;

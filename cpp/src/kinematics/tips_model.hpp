@@ -12,13 +12,13 @@
 #include <string>
 #include <vector>
 
-#include "iksel/tree_robot.hpp"
+#include "iksel/robot.hpp"
 #include "kinematics/chain_model.hpp"
-#include "kinematics/joint_space.hpp"
+#include "kinematics/robot_model.hpp"
 
 namespace iksel {
 
-/// Joint values of a chain, picked from those of the tree.
+/// Joint values of a chain, picked from those of the robot.
 inline JointVector picked(const JointVector& q, const std::vector<int>& joints) {
   JointVector out(static_cast<Eigen::Index>(joints.size()));
   for (std::size_t j = 0; j < joints.size(); ++j) {
@@ -34,8 +34,8 @@ inline void put(const JointVector& values, const std::vector<int>& joints, Joint
   }
 }
 
-/// A part of a chain, and where its joints stand among those of the tree.
-struct TreePart {
+/// A part of a chain, and where its joints stand among those of the robot.
+struct ChainPart {
   Robot robot;
   std::vector<int> joints;
 
@@ -43,40 +43,37 @@ struct TreePart {
   [[nodiscard]] Pose fk(const JointVector& q) const { return model().fk(picked(q, joints).data()); }
 };
 
-struct TreeTip {
-  TreePart chain;
+struct Tip {
+  ChainPart chain;
   /// Behind the shared joints; without any, the chain itself. None where the chain does not split.
-  std::optional<TreePart> arm;
+  std::optional<ChainPart> arm;
   /// From the base to where the arm begins; none if no joint is shared.
-  std::optional<TreePart> stem;
+  std::optional<ChainPart> stem;
 };
 
-class TreeModel {
+class TipsModel final : public RobotModel {
  public:
-  TreeModel(const std::string& urdf, const TreeOptions& options_in);
+  /// Throws as Robot.
+  TipsModel(const std::string& urdf, const RobotOptions& options_in);
 
-  [[nodiscard]] int dof() const { return joints.dof(); }
-  [[nodiscard]] int tip_count() const { return static_cast<int>(tips.size()); }
-  [[nodiscard]] const TreeTip& tip(int i) const { return tips[static_cast<std::size_t>(i)]; }
+  [[nodiscard]] const Tip& tip(int i) const { return tips[static_cast<std::size_t>(i)]; }
+  [[nodiscard]] Jacobians jacobians(const double* q) const override;
 
-  TreeOptions options;
-  std::vector<TreeTip> tips;
-  JointSpace joints;
-  std::vector<int> shared;
+  std::vector<Tip> tips;
 
  private:
   void check_options() const;
-  /// Adds a chain's joints to those of the tree; returns where they stand.
-  std::vector<int> add_joints(const JointSpace& chain);
+  /// Adds a chain's joints to those of the robot; returns where they stand.
+  std::vector<int> add_joints(const ChainModel& model);
   void find_shared();
-  void split(TreeTip& tip, const std::string& urdf) const;
+  void split(Tip& tip) const;
   [[nodiscard]] bool is_shared(int joint) const;
   [[nodiscard]] std::vector<int> places_of(const Robot& part) const;
   [[nodiscard]] RobotOptions options_between(const std::string& base, const std::string& tip) const;
   /// Adds the options' coupled limits to those of all joints, and to the chains that have them.
-  void couple_joints(const std::string& urdf);
+  void couple_joints();
   /// A robot under those coupled limits of which it has all joints.
-  [[nodiscard]] Robot coupled(const Robot& part, const std::string& urdf) const;
+  [[nodiscard]] Robot coupled(const Robot& part) const;
 };
 
 }  // namespace iksel

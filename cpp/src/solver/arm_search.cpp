@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tree/arm_search.hpp"
+#include "solver/arm_search.hpp"
 
 #include "base/rotation.hpp"
 
 namespace iksel {
 namespace {
 
-/// What is asked of the joints of one part of the tree.
-SolveRequest request_for(const TreePart& part, const TreeRequest& request) {
+/// What is asked of the joints of one part of the robot.
+SolveRequest request_for(const ChainPart& part, const SolveRequest& request) {
   SolveRequest out;
   out.norm = request.norm;
   if (!request.near) return out;
@@ -20,13 +20,13 @@ SolveRequest request_for(const TreePart& part, const TreeRequest& request) {
 
 }  // namespace
 
-ArmSearch::ArmSearch(const StackedGoal& goal, const std::vector<TipSolvers>& solvers,
-                     const TreeRequest& request, std::uint64_t seed)
+ArmSearch::ArmSearch(const TipsGoal& goal, const std::vector<TipSolvers>& solvers,
+                     const SolveRequest& request, std::uint64_t seed)
     : goal_(goal), solvers_(solvers), random_(seed) {
-  for (int i = 0; i < goal.model().tip_count(); ++i) {
-    const TreeTip& tip = goal.model().tip(i);
+  for (int i = 0; i < goal.count(); ++i) {
+    const Tip& tip = goal.model().tip(i);
     const Task& task = goal.task(i).task();
-    const bool draws = tip.stem && task.frame == TaskFrame::base && !task.is_full_pose();
+    const bool draws = tip.stem && is_along_frame(i) && goal.frame_of(i) < 0;
     draws_pose_.push_back(draws);
     SolveRequest of_arm = tip.arm ? request_for(*tip.arm, request) : SolveRequest{};
     of_arm.task = draws ? Task::pose() : task;
@@ -34,25 +34,33 @@ ArmSearch::ArmSearch(const StackedGoal& goal, const std::vector<TipSolvers>& sol
   }
 }
 
+bool ArmSearch::is_along_frame(int tip) const {
+  const Task& task = goal_.task(tip).task();
+  return task.frame == TaskFrame::base && !task.is_full_pose();
+}
+
 bool ArmSearch::has_arm(int tip) const {
   const auto& arm = goal_.model().tip(tip).arm;
+  // Another tip's axes are none of the arm's base.
+  if (goal_.frame_of(tip) >= 0 && is_along_frame(tip)) return false;
   const int fixed = draws_pose_[static_cast<std::size_t>(tip)] ? 6 : goal_.task(tip).fixed_axes();
   return arm && arm->robot.dof() >= fixed;
 }
 
 bool ArmSearch::has_all_arms() const {
-  for (int i = 0; i < goal_.model().tip_count(); ++i) {
+  for (int i = 0; i < goal_.count(); ++i) {
     if (!has_arm(i)) return false;
   }
   return true;
 }
 
 Pose ArmSearch::target_of_arm(int tip, const JointVector& q) {
+  const Tip& of_tip = goal_.model().tip(tip);
   const Pose target = draws_pose_[static_cast<std::size_t>(tip)]
-                          ? goal_.of(tip).random_pose(random_)
-                          : goal_.target(tip);
-  const auto& stem = goal_.model().tip(tip).stem;
-  return stem ? compose(stem->fk(q).inverse(), target) : target;
+                          ? Goal(of_tip.chain.model(), goal_.task(tip), goal_.target(tip))
+                                .random_pose(random_)
+                          : goal_.target_at(tip, q);
+  return of_tip.stem ? compose(of_tip.stem->fk(q).inverse(), target) : target;
 }
 
 bool ArmSearch::solve_arm(int tip, JointVector& q) {
@@ -60,6 +68,18 @@ bool ArmSearch::solve_arm(int tip, JointVector& q) {
   const Result result = solvers_[i].arm->solve(target_of_arm(tip, q), of_arm_[i]);
   if (result.success()) put(result.q, goal_.model().tip(tip).arm->joints, q);
   return result.success();
+}
+
+std::vector<JointVector> ArmSearch::solve_arm(int tip, const JointVector& q, int most) {
+  const auto i = static_cast<std::size_t>(tip);
+  SolveAllOptions all;
+  all.max = most;
+  // Apart from each other, so that few are many places.
+  all.min_distance = 0.1;
+  const Solutions solutions = solvers_[i].arm->solve_all(target_of_arm(tip, q), all, of_arm_[i]);
+  std::vector<JointVector> found;
+  for (const Result& each : solutions.all) found.push_back(each.q);
+  return found;
 }
 
 void ArmSearch::bring_closest(int tip, JointVector& q) {
@@ -73,11 +93,11 @@ void ArmSearch::bring_closest(int tip, JointVector& q) {
 
 Result ArmSearch::solve_chain(int tip, bool from_here, JointVector& q) {
   const auto i = static_cast<std::size_t>(tip);
-  const TreePart& chain = goal_.model().tip(tip).chain;
+  const ChainPart& chain = goal_.model().tip(tip).chain;
   SolveRequest request;
   request.task = goal_.task(tip).task();
   if (from_here) request.seeds.push_back(picked(q, chain.joints));
-  Result result = solvers_[i].chain.solve(goal_.target(tip), request);
+  Result result = solvers_[i].chain.solve(goal_.target_at(tip, q), request);
   if (result.success()) {
     put(result.q, chain.joints, q);
     q = goal_.model().joints.clamp(q);

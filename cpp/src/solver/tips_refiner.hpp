@@ -4,24 +4,27 @@
 #pragma once
 
 #include "refine/self_motion.hpp"
-#include "tree/stacked_goal.hpp"
 
 namespace iksel {
 
-class StackedRefiner {
+class TipsRefiner {
  public:
-  /// All must outlive this.
-  StackedRefiner(const StackedGoal& goal, int max_iterations)
+  /// `goal` must outlive this.
+  TipsRefiner(const Goal& goal, int max_iterations)
       : goal_(goal), max_iterations_(max_iterations) {}
 
   [[nodiscard]] int width() const { return 1; }
   void load_seed(int /*lane*/, const double* q) {
-    q_ = Eigen::Map<const Eigen::VectorXd>(q, goal_.model().dof());
+    q_ = Eigen::Map<const Eigen::VectorXd>(q, goal_.joints().dof());
     // Each chain was solved without what it shares with others.
     if (!goal_.joints().coupled.empty()) q_ = goal_.joints().clamp(q_);
   }
   /// An attempt from beginning to end. Returns the steps.
-  int advance(unsigned busy);
+  int advance(unsigned /*busy*/) {
+    int steps = 0;
+    has_arrived_ = converge(goal_, max_iterations_, /*aim=*/1, /*wraps=*/true, q_, steps);
+    return steps;
+  }
   [[nodiscard]] bool has_arrived(int /*lane*/) const { return has_arrived_; }
   [[nodiscard]] bool is_spent(int /*lane*/) const { return true; }
   static bool stays(int /*lane*/) { return false; }
@@ -30,7 +33,7 @@ class StackedRefiner {
   [[nodiscard]] const JointVector& q(int /*lane*/) const { return q_; }
 
  private:
-  const StackedGoal& goal_;
+  const Goal& goal_;
   int max_iterations_;
   JointVector q_;
   bool has_arrived_ = false;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tree/tree_model.hpp"
+#include "kinematics/tips_model.hpp"
 
 #include <algorithm>
 #include <utility>
 
+#include "base/hash.hpp"
 #include "base/message_text.hpp"
 #include "iksel/error.hpp"
 #include "iksel/link_tree.hpp"
@@ -28,38 +29,65 @@ std::string link_behind(const LinkTree& tree, const std::string& joint,
 }
 
 /// Appends joint j of `from`.
-void append_joint(const JointSpace& from, int j, JointSpace& to) {
-  const Eigen::Index n = to.dof();
-  to.names.push_back(from.name(j));
-  to.types.push_back(from.type(j));
-  for (auto [values, source] :
-       {std::make_pair(&to.lower, &from.lower), std::make_pair(&to.upper, &from.upper),
-        std::make_pair(&to.velocity, &from.velocity)}) {
-    values->conservativeResize(n + 1);
-    (*values)[n] = (*source)[j];
-  }
+void append_joint(const ChainModel& from, int j, RobotModel& to) {
+  const Eigen::Index n = to.dof++;
+  to.joints.names.push_back(from.joints.name(j));
+  to.joints.types.push_back(from.joints.type(j));
+  const auto append = [&](const JointVector& source, JointVector& values) {
+    values.conservativeResize(n + 1);
+    values[n] = source[j];
+  };
+  append(from.joints.lower, to.joints.lower);
+  append(from.joints.upper, to.joints.upper);
+  append(from.joints.velocity, to.joints.velocity);
+  append(from.soft_lower, to.soft_lower);
+  append(from.soft_upper, to.soft_upper);
 }
 
 }  // namespace
 
-TreeModel::TreeModel(const std::string& urdf, const TreeOptions& options_in) : options(options_in) {
+TipsModel::TipsModel(const std::string& urdf_in, const RobotOptions& options_in)
+    : RobotModel(urdf_in, options_in) {
   check_options();
-  options.tcps.resize(options.tip_links.size(), StoredPose::Identity());
-  for (std::size_t i = 0; i < options.tip_links.size(); ++i) {
-    RobotOptions of_chain = options_between(options.base_link, options.tip_links[i]);
+  tip_links = options.tip_links;
+  options.tcps.resize(tip_links.size(), StoredPose::Identity());
+  Hash64 hasher;
+  for (std::size_t i = 0; i < tip_links.size(); ++i) {
+    RobotOptions of_chain = options_between(options.base_link, tip_links[i]);
     of_chain.tcp = options.tcps[i];
-    const Robot chain = Robot::from_urdf_string(urdf, of_chain);
+    const Robot chain = Robot::from_urdf_string(urdf_in, of_chain);
     options.base_link = chain.base_link();
-    tips.push_back({{chain, add_joints(chain.model().joints)}, std::nullopt, std::nullopt});
+    joints_of_tip.push_back(add_joints(chain.model()));
+    tips.push_back({{chain, joints_of_tip.back()}, std::nullopt, std::nullopt});
+    hasher.add(chain.chain_hash());
   }
-  if (!options.coupled_limits.empty()) couple_joints(urdf);
+  const ChainModel& first = tips.front().chain.model();
+  urdf = first.urdf;
+  name = first.name;
+  link_names = first.link_names;
+  if (!options.coupled_limits.empty()) couple_joints();
+  hash = hasher.value();
   find_shared();
-  for (TreeTip& tip : tips) split(tip, urdf);
+  for (Tip& tip : tips) split(tip);
 }
 
-void TreeModel::couple_joints(const std::string& urdf) {
+Jacobians TipsModel::jacobians(const double* q) const {
+  const JointVector all = Eigen::Map<const Eigen::VectorXd>(q, dof);
+  Jacobians out = Jacobians::Zero(6 * tip_count(), dof);
+  Jacobian J;
+  for (int i = 0; i < tip_count(); ++i) {
+    const ChainPart& chain = tip(i).chain;
+    chain.model().fk_jacobian(picked(all, chain.joints).data(), J);
+    for (std::size_t j = 0; j < chain.joints.size(); ++j) {
+      out.block<6, 1>(6 * i, chain.joints[j]) = J.col(static_cast<Eigen::Index>(j));
+    }
+  }
+  return out;
+}
+
+void TipsModel::couple_joints() {
   ChainSpec all;
-  for (const TreeTip& tip : tips) {
+  for (const Tip& tip : tips) {
     for (ChainJoint joint : tip.chain.model().spec.joints) {
       const bool known = std::any_of(all.joints.begin(), all.joints.end(),
                                      [&](const auto& other) { return other.name == joint.name; });
@@ -71,16 +99,17 @@ void TreeModel::couple_joints(const std::string& urdf) {
     }
   }
   add_coupled_limits(options.coupled_limits, all, joints);
-  for (TreeTip& tip : tips) tip.chain.robot = coupled(tip.chain.robot, urdf);
+  for (Tip& tip : tips) tip.chain.robot = coupled(tip.chain.robot);
 }
 
-Robot TreeModel::coupled(const Robot& part, const std::string& urdf) const {
+Robot TipsModel::coupled(const Robot& part) const {
   const ChainModel& model = part.model();
-  const auto has = [&](const std::string& name) {
+  const auto has = [&](const std::string& wanted) {
     const auto& names = model.joints.names;
-    return std::find(names.begin(), names.end(), name) != names.end() ||
-           std::any_of(model.spec.joints.begin(), model.spec.joints.end(),
-                       [&](const auto& joint) { return joint.name == name && joint.has_value(); });
+    return std::find(names.begin(), names.end(), wanted) != names.end() ||
+           std::any_of(model.spec.joints.begin(), model.spec.joints.end(), [&](const auto& joint) {
+             return joint.name == wanted && joint.has_value();
+           });
   };
   RobotOptions of_part = model.options;
   for (const CoupledLimit& limit : options.coupled_limits) {
@@ -92,9 +121,15 @@ Robot TreeModel::coupled(const Robot& part, const std::string& urdf) const {
   return of_part.coupled_limits.empty() ? part : Robot::from_urdf_string(urdf, of_part);
 }
 
-void TreeModel::check_options() const {
+void TipsModel::check_options() const {
+  if (!options.tip_link.empty()) {
+    throw InvalidArgumentError("tip_link: '" + options.tip_link +
+                               "' is given, and tip_links too; give one of them");
+  }
+  if (options.tcp.matrix() != StoredPose::Identity().matrix()) {
+    throw InvalidArgumentError("tcp: with several tips each has its own; give tcps");
+  }
   const std::size_t count = options.tip_links.size();
-  if (count == 0) throw InvalidArgumentError("tip_links: expected one link or more, got none");
   if (count > static_cast<std::size_t>(kMaxTips)) {
     throw InvalidArgumentError("tip_links: " + std::to_string(count) + " links; at most " +
                                std::to_string(kMaxTips) + " are possible");
@@ -114,19 +149,20 @@ void TreeModel::check_options() const {
   }
 }
 
-std::vector<int> TreeModel::add_joints(const JointSpace& chain) {
+std::vector<int> TipsModel::add_joints(const ChainModel& model) {
+  const JointSpace& chain = model.joints;
   std::vector<int> places;
-  for (int j = 0; j < chain.dof(); ++j) {
+  for (int j = 0; j < model.dof; ++j) {
     const auto known = std::find(joints.names.begin(), joints.names.end(), chain.name(j));
     const int place = static_cast<int>(known - joints.names.begin());
     places.push_back(place);
     if (known == joints.names.end()) {
-      if (joints.dof() == kMaxDof) {
+      if (dof == kMaxDof) {
         throw UrdfError("the chains from '" + options.base_link + "' to " +
                         list_names(options.tip_links) + " have more than " +
                         std::to_string(kMaxDof) + " movable joints together");
       }
-      append_joint(chain, j, joints);
+      append_joint(model, j, *this);
       continue;
     }
     // A joint that follows this one on another chain may narrow its limits there.
@@ -141,39 +177,40 @@ std::vector<int> TreeModel::add_joints(const JointSpace& chain) {
   return places;
 }
 
-void TreeModel::find_shared() {
-  for (int j = 0; j < dof(); ++j) {
-    const auto moves = [j](const TreeTip& tip) {
+void TipsModel::find_shared() {
+  for (int j = 0; j < dof; ++j) {
+    const auto moves = [j](const Tip& tip) {
       return std::count(tip.chain.joints.begin(), tip.chain.joints.end(), j) > 0;
     };
     if (std::count_if(tips.begin(), tips.end(), moves) > 1) shared.push_back(j);
   }
 }
 
-bool TreeModel::is_shared(int joint) const {
+bool TipsModel::is_shared(int joint) const {
   return std::binary_search(shared.begin(), shared.end(), joint);
 }
 
-std::vector<int> TreeModel::places_of(const Robot& part) const {
+std::vector<int> TipsModel::places_of(const Robot& part) const {
   std::vector<int> places;
-  for (const std::string& name : part.joint_names()) {
-    places.push_back(static_cast<int>(std::find(joints.names.begin(), joints.names.end(), name) -
+  for (const std::string& each : part.joint_names()) {
+    places.push_back(static_cast<int>(std::find(joints.names.begin(), joints.names.end(), each) -
                                       joints.names.begin()));
   }
   return places;
 }
 
-RobotOptions TreeModel::options_between(const std::string& base, const std::string& tip) const {
+RobotOptions TipsModel::options_between(const std::string& base, const std::string& tip) const {
   RobotOptions between;
   between.base_link = base;
   between.tip_link = tip;
   between.locked_joints = options.locked_joints;
   between.soft_limits = options.soft_limits;
   between.default_limits = options.default_limits;
+  between.mimic_curves = options.mimic_curves;
   return between;
 }
 
-void TreeModel::split(TreeTip& tip, const std::string& urdf) const {
+void TipsModel::split(Tip& tip) const {
   const std::vector<ChainJoint>& chain = tip.chain.model().spec.joints;
   const auto is_of_stem = [&](const ChainJoint& joint) {
     return !joint.fixed && is_shared(tip.chain.joints[static_cast<std::size_t>(joint.variable)]);
@@ -195,8 +232,8 @@ void TreeModel::split(TreeTip& tip, const std::string& urdf) const {
   RobotOptions of_arm = options_between(link, tip.chain.robot.tip_link());
   of_arm.tcp = tip.chain.robot.tcp();
   const Robot arm = Robot::from_urdf_string(urdf, of_arm);
-  tip.stem = TreePart{coupled(stem, urdf), places_of(stem)};
-  tip.arm = TreePart{coupled(arm, urdf), places_of(arm)};
+  tip.stem = ChainPart{coupled(stem), places_of(stem)};
+  tip.arm = ChainPart{coupled(arm), places_of(arm)};
 }
 
 }  // namespace iksel

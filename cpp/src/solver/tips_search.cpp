@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "solver/tips_search.hpp"
+
+#include <algorithm>
+
+#include "search/first_answer.hpp"
+#include "seeds/given_seeds.hpp"
+#include "seeds/nearby_seeds.hpp"
+#include "seeds/seed_sequence.hpp"
+#include "solver/tips_refiner.hpp"
+#include "solver/tips_seeds.hpp"
+
+namespace iksel {
+namespace {
+
+/// Seeds that one arm has behind each value of the shared joints, of which there are others.
+constexpr int kArmAttempts = 64;
+
+}  // namespace
+
+TipsSearch::TipsSearch(const TipsModel& model, const SolverOptions& options) : options_(options) {
+  SolverOptions of_arm = options;
+  of_arm.max_attempts = std::min(options.max_attempts, kArmAttempts);
+  for (const Tip& tip : model.tips) {
+    TipSolvers& of_tip = solvers_.emplace_back(TipSolvers{Solver(tip.chain.robot, options), {}});
+    if (!tip.arm) continue;
+    if (tip.stem) {
+      of_tip.arm.emplace(tip.arm->robot, of_arm);
+    } else {
+      of_tip.arm = of_tip.chain;
+    }
+  }
+}
+
+template <typename Answers>
+Proof TipsSearch::search_for(Answers& answers, const Collector* collector,
+                             Workspace& workspace) const {
+  const Goal& goal = answers.goal();
+  const SolveRequest& request = answers.request();
+  Work& work = answers.work;
+  if (const int tip = goal.tips()->first_out_of_reach(); tip >= 0) {
+    answers.put_unreachable(tip, Status::out_of_reach);
+    return Proof::reach;
+  }
+  ArmSearch arms(*goal.tips(), solvers_, request, options_.seed);
+  TipsRefiner refiner(goal, options_.max_iterations);
+  const auto should_continue = [&] { return answers.should_continue(); };
+  NearSeed near(request.near ? &*request.near : nullptr, work);
+  GivenSeeds given(workspace.given, goal, request.seeds, options_.max_attempts, 1, should_continue,
+                   work);
+  ArmSeeds behind_shared(goal, arms, collector, work);
+  SeedSequence known(request.database_seeds ? 3 : 2, near, given, behind_shared);
+  if (search(refiner, known, answers, work) || !request.database_seeds) return Proof::none;
+  const bool wants_nearest = collector != nullptr && collector->ranks_by_move();
+  const auto unreachable = [&](int tip, const Result& alone) {
+    answers.put_unreachable(tip, alone.status);
+    return alone.proof;
+  };
+  // Where the nearest is wanted, one is enough to look around.
+  const auto is_enough = [&] { return wants_nearest && collector->has_any(); };
+  StackedSeeds stacked(*goal.tips(), arms, options_.seed, work, unreachable, is_enough);
+  if (search(refiner, stacked, answers, work)) return Proof::none;
+  if (wants_nearest && collector->has_any() && !arms.has_all_arms()) {
+    // No values of the shared joints were tried: other answers are nearer at times.
+    NearbySeeds nearby(goal.joints(), collector->nearest_to().from, options_.seed, work);
+    search(refiner, nearby, answers, work);
+  }
+  return stacked.proof();
+}
+
+Result TipsSearch::find_first(const Goal& goal, const SolveRequest& request,
+                              Workspace& workspace) const {
+  FirstAnswer answers(/*wraps=*/true, goal, request, options_.max_attempts);
+  return answers.result(search_for(answers, nullptr, workspace));
+}
+
+void TipsSearch::collect(Collector& collector, Workspace& workspace) const {
+  collector.offer_near();
+  collector.conclude(search_for(collector, &collector, workspace));
+}
+
+}  // namespace iksel

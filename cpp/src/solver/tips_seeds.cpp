@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "solver/tips_seeds.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/low_discrepancy.hpp"
+
+namespace iksel {
+namespace {
+
+/// Values of the shared joints that are tried before all joints are iterated; and where many answers
+/// are wanted.
+constexpr int kSharedValues = 32;
+constexpr int kManyValues = 256;
+/// Values at which the nearest is looked for, at most, and after the last that gave a nearer one.
+constexpr int kNearValues = 48;
+constexpr int kNearPatience = 16;
+/// Combinations of the arms' solutions behind one value, at most.
+constexpr int kCombinations = 256;
+/// Of those that are free, so many of the nearest, where the nearest is wanted; so many where many
+/// are: the others lie behind other values.
+constexpr std::size_t kNearestKept = 4;
+constexpr std::size_t kManyKept = 16;
+
+/// How many solutions of each of so many arms give kCombinations.
+int solutions_of_each(int arms) {
+  int each = 1;
+  while (std::pow(each + 1, arms) <= kCombinations) ++each;
+  return each;
+}
+
+}  // namespace
+
+SharedValues::SharedValues(const TipsModel& model, const NearestTo* to)
+    : model_(model),
+      to_(to),
+      index_(to != nullptr ? -1 : 0),
+      step_(low_discrepancy_steps(model.shared.size())) {}
+
+std::pair<double, double> SharedValues::range(int joint, double best) const {
+  const JointSpace& joints = model_.joints;
+  double lower = joints.sample_lower(joint);
+  double upper = joints.sample_upper(joint);
+  if (to_ == nullptr) return {lower, upper};
+  const double weight = to_->move.weights()[joint];
+  if (!(weight > 0) || best == kInfinity) return {lower, upper};
+  const double reach = best / weight;
+  const double near = to_->from[joint];
+  if (joints.type(joint) == JointType::continuous && reach < kPi)
+    return {near - reach, near + reach};
+  lower = std::max(lower, std::min(near - reach, upper));
+  return {lower, std::max(lower, std::min(near + reach, upper))};
+}
+
+void SharedValues::hold_coupled(JointVector& q) const {
+  for (const Tip& tip : model_.tips) {
+    if (!tip.stem) continue;
+    const auto& [stem, joints] = *tip.stem;
+    if (stem.options().coupled_limits.empty()) continue;
+    put(stem.model().joints.clamp(picked(q, joints)), joints, q);
+  }
+}
+
+void SharedValues::next(double best, JointVector& q) {
+  if (index_ < 0) {
+    for (const int joint : model_.shared) q[joint] = to_->from[joint];
+    q = model_.joints.clamp(q);
+  } else {
+    for (std::size_t j = 0; j < model_.shared.size(); ++j) {
+      const auto [lower, upper] = range(model_.shared[j], best);
+      // The first is the middle.
+      const double x = 0.5 + index_ * step_[j];
+      q[model_.shared[j]] = lower + (upper - lower) * (x - std::floor(x));
+    }
+    hold_coupled(q);
+  }
+  ++index_;
+}
+
+ArmSeeds::ArmSeeds(const Goal& goal, ArmSearch& arms, const Collector* collector, Work& work)
+    : goal_(goal),
+      model_(goal.tips()->model()),
+      arms_(arms),
+      collector_(collector),
+      work_(work),
+      to_(collector != nullptr && collector->ranks_by_move() ? &collector->nearest_to() : nullptr),
+      values_(model_, to_),
+      left_(to_ != nullptr          ? kNearValues
+            : collector != nullptr ? kManyValues
+                                   : kSharedValues),
+      patience_(kNearPatience),
+      order_(goal.tips()->order()) {
+  const bool wants_many = collector != nullptr && to_ == nullptr;
+  of_each_ = wants_many || goal.scene() != nullptr ? solutions_of_each(model_.tip_count()) : 1;
+  if (model_.shared.empty()) left_ = 1;
+  if (!arms.has_all_arms()) left_ = 0;
+}
+
+bool ArmSeeds::next_stage() {
+  seeds_.clear();
+  next_ = 0;
+  const double best = to_ != nullptr ? collector_->least_move() : kInfinity;
+  if (best < last_best_) {
+    last_best_ = best;
+    patience_ = kNearPatience;
+  }
+  if (left_ == 0 || patience_ == 0 || !work_.take()) return false;
+  --left_;
+  if (last_best_ < kInfinity) --patience_;
+  JointVector q = model_.joints.middle();
+  values_.next(last_best_, q);
+  solutions_.assign(order_.size(), std::nullopt);
+  failed_ = 0;
+  extend(0, q);
+  const bool are_apart = std::all_of(order_.begin(), order_.end(),
+                                     [&](int tip) { return goal_.tips()->frame_of(tip) < 0; });
+  if (seeds_.empty() && are_apart) {
+    std::rotate(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(failed_),
+                order_.end());
+  }
+  sort_out();
+  return true;
+}
+
+void ArmSeeds::extend(std::size_t k, JointVector q) {
+  if (is_too_far(k, q) || seeds_.size() >= kCombinations) return;
+  if (k == order_.size()) {
+    seeds_.push_back(q);
+    return;
+  }
+  const int tip = order_[k];
+  const std::vector<JointVector>& solutions = solve(tip, q);
+  if (solutions.empty()) failed_ = k;
+  for (const JointVector& solution : solutions) {
+    put(solution, model_.tip(tip).arm->joints, q);
+    extend(k + 1, q);
+  }
+}
+
+const std::vector<JointVector>& ArmSeeds::solve(int tip, const JointVector& q) {
+  auto& found = solutions_[static_cast<std::size_t>(tip)];
+  // Of a target in the base frame they are the same whatever the other arms do.
+  if (found && goal_.tips()->frame_of(tip) < 0) return *found;
+  found.emplace();
+  if (of_each_ > 1) {
+    *found = arms_.solve_arm(tip, q, of_each_);
+  } else if (JointVector solved = q; arms_.solve_arm(tip, solved)) {
+    found->push_back(picked(solved, model_.tip(tip).arm->joints));
+  }
+  return *found;
+}
+
+void ArmSeeds::sort_out() {
+  if (goal_.scene() != nullptr) {
+    seeds_.erase(std::remove_if(seeds_.begin(), seeds_.end(),
+                                [&](const JointVector& q) { return !goal_.is_free(q); }),
+                 seeds_.end());
+  }
+  if (of_each_ == 1 || collector_ == nullptr) return;
+  const std::size_t most = std::min(seeds_.size(), to_ != nullptr ? kNearestKept : kManyKept);
+  if (to_ != nullptr) {
+    const auto length = [&](const JointVector& q) { return to_->move.length(q - to_->from); };
+    std::stable_sort(seeds_.begin(), seeds_.end(), [&](const auto& a, const auto& b) {
+      return length(a) < length(b);
+    });
+  } else if (most > 0) {
+    // Some of all: their order is that of the first arm's solutions.
+    for (std::size_t i = 0; i < most; ++i) seeds_[i] = seeds_[i * seeds_.size() / most];
+  }
+  seeds_.resize(most);
+}
+
+bool ArmSeeds::is_too_far(std::size_t arms, const JointVector& q) const {
+  if (to_ == nullptr || last_best_ == kInfinity) return false;
+  JointVector moved = to_->from;
+  for (const int joint : model_.shared) moved[joint] = q[joint];
+  for (std::size_t k = 0; k < arms; ++k) {
+    for (const int joint : model_.tip(order_[k]).arm->joints) moved[joint] = q[joint];
+  }
+  return to_->move.length(moved - to_->from) >= last_best_;
+}
+
+bool StackedSeeds::next_stage() {
+  if (is_enough_() || !work_.take()) return false;
+  const int tips = goal_.count();
+  is_loaded_ = make_from_chain(index_ % tips, /*at_random=*/index_ >= tips);
+  ++index_;
+  return is_loaded_;
+}
+
+bool StackedSeeds::make_from_chain(int lead, bool at_random) {
+  q_.resize(goal_.model().dof);
+  goal_.model().joints.sample(random_, q_);
+  const Result of_chain = arms_.solve_chain(lead, at_random, q_);
+  // What is seen from another tip depends on where that is.
+  if (!of_chain.success() && !at_random && goal_.frame_of(lead) < 0) {
+    proof_ = unreachable_(lead, of_chain);
+    return false;
+  }
+  for (const int tip : goal_.order()) {
+    if (tip != lead) arms_.bring_closest(tip, q_);
+  }
+  return true;
+}
+
+}  // namespace iksel

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Sources of seeds for several tips at once, made of what the solvers of the chains know.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "base/constants.hpp"
+#include "base/function_ref.hpp"
+#include "base/work.hpp"
+#include "search/collector.hpp"
+#include "solver/arm_search.hpp"
+
+namespace iksel {
+
+/// Values of the shared joints: those of what the nearest is wanted to, if it is, those in the
+/// middle of the limits, then spread evenly over the limits, as far as they may lead to something
+/// nearer.
+class SharedValues {
+ public:
+  /// `to` may be null. All must outlive this.
+  SharedValues(const TipsModel& model, const NearestTo* to);
+
+  /// Writes the next ones to q; `best` is the least move so far.
+  void next(double best, JointVector& q);
+
+ private:
+  /// Moves the shared joints inside the coupled limits that are of these alone.
+  void hold_coupled(JointVector& q) const;
+  /// What of a joint's range is of use.
+  [[nodiscard]] std::pair<double, double> range(int joint, double best) const;
+
+  const TipsModel& model_;
+  const NearestTo* to_;
+  int index_;
+  std::vector<double> step_;
+};
+
+/// The arms solved behind one value of the shared joints after another; a stage has one value. Only
+/// where all arms could be solved are there seeds, which are answers already: one, or where many are
+/// wanted or a scene may refuse some, combinations of several solutions of each arm.
+class ArmSeeds {
+ public:
+  /// `collector` gets what is found; null: the first answer is enough. All must outlive this.
+  ArmSeeds(const Goal& goal, ArmSearch& arms, const Collector* collector, Work& work);
+
+  bool next_stage();
+  template <typename Refiner>
+  bool load(Refiner& refiner, int lane) {
+    if (next_ == seeds_.size()) return false;
+    refiner.load_seed(lane, seeds_[next_++].data());
+    return true;
+  }
+
+ private:
+  /// Solves the arms from number `k` of the order on, with those before as in q, and adds all
+  /// combinations.
+  void extend(std::size_t k, JointVector q);
+  /// The joint values of a tip's arm, with those before it in the order as in q.
+  const std::vector<JointVector>& solve(int tip, const JointVector& q);
+  /// Leaves those that are free, and where the nearest is wanted the nearest first.
+  void sort_out();
+  /// Whether the joints of q that are set so far move too far: the shared ones, and those of the
+  /// first `arms` arms of the order.
+  [[nodiscard]] bool is_too_far(std::size_t arms, const JointVector& q) const;
+
+  const Goal& goal_;
+  const TipsModel& model_;
+  ArmSearch& arms_;
+  const Collector* collector_;
+  Work& work_;
+  /// What the nearest is wanted to; null if it is not.
+  const NearestTo* to_;
+  SharedValues values_;
+  /// Values left, and those left until one has to be nearer than the best so far.
+  int left_, patience_;
+  double last_best_ = kInfinity;
+  /// Solutions of each arm that are combined.
+  int of_each_;
+  /// The tips' arms as they are solved one after the other: that which could not be solved last time
+  /// is first, unless a target is in another tip's frame.
+  std::vector<int> order_;
+  std::size_t failed_ = 0;  ///< number in the order
+  /// The last of each arm.
+  std::vector<std::optional<std::vector<JointVector>>> solutions_;
+  std::vector<JointVector> seeds_;
+  std::size_t next_ = 0;
+};
+
+/// Seeds for all joints together. One chain after another is solved as a whole, which sets the
+/// shared joints; the arms of the others are brought as close as they come behind it, or where
+/// there are none they are at random. (What ArmSeeds could solve in part is no better to begin
+/// from: of 84,000 reachable targets of seven pairs of arms none is lost either way.)
+class StackedSeeds {
+ public:
+  /// Told about a chain that cannot be solved by itself; gives the proof of that.
+  using Unreachable = FunctionRef<Proof(int tip, const Result& alone)>;
+  /// No more stages where `is_enough`. All must outlive this.
+  StackedSeeds(const TipsGoal& goal, ArmSearch& arms, std::uint64_t seed, Work& work,
+               const Unreachable& unreachable, const FunctionRef<bool()>& is_enough)
+      : goal_(goal),
+        arms_(arms),
+        random_(seed),
+        work_(work),
+        unreachable_(unreachable),
+        is_enough_(is_enough) {}
+
+  /// That of a chain that cannot be solved by itself.
+  [[nodiscard]] Proof proof() const { return proof_; }
+
+  bool next_stage();
+  template <typename Refiner>
+  bool load(Refiner& refiner, int lane) {
+    if (!is_loaded_) return false;
+    is_loaded_ = false;
+    refiner.load_seed(lane, q_.data());
+    return true;
+  }
+
+ private:
+  /// False if the chain of that tip cannot be solved by itself.
+  bool make_from_chain(int lead, bool at_random);
+
+  const TipsGoal& goal_;
+  ArmSearch& arms_;
+  Random random_;
+  Work& work_;
+  Unreachable unreachable_;
+  FunctionRef<bool()> is_enough_;
+  Proof proof_ = Proof::none;
+  int index_ = 0;
+  JointVector q_;
+  bool is_loaded_ = false;
+};
+
+}  // namespace iksel

@@ -18,6 +18,8 @@
 
 namespace iksel {
 
+class ArmSearch;
+
 /// The largest difference between the tip links' poses of a calibrated chain and its nominal one at
 /// the same joint values.
 struct CalibrationDeviation {
@@ -150,6 +152,7 @@ class IKSEL_EXPORT Solver {
   struct Impl;
 
  private:
+  friend class ArmSearch;
   friend class Tracker;
   std::shared_ptr<const Impl> impl_;
 };

@@ -12,8 +12,11 @@ namespace iksel {
 class FirstAnswer : public SearchState {
  public:
   /// `wraps`: answers are brought inside the limits by whole turns.
-  FirstAnswer(bool wraps, const Goal& goal, const SolveRequest& request, int max_attempts)
-      : SearchState(goal, request, max_attempts), wraps_(wraps) {}
+  FirstAnswer(bool wraps, const Goal& goal, const SolveRequest& request, int max_attempts,
+              Effort effort = Effort::full)
+      : SearchState(goal, request, max_attempts), wraps_(wraps), effort_(effort) {}
+
+  [[nodiscard]] Effort effort() const { return effort_; }
 
   Verdict offer(int /*lane*/, JointVector& q) {
     if (wraps_) goal_.joints().wrap(q.data());
@@ -58,6 +61,7 @@ class FirstAnswer : public SearchState {
 
  private:
   bool wraps_;
+  Effort effort_;
   std::optional<bool> never_free_;  ///< once it was asked
 };
 

@@ -86,8 +86,8 @@ Proof search_for(const SolverOptions& options, Answers& answers, Workspace& work
 }  // namespace
 
 Result find_first(const SolverOptions& options, const Goal& goal, const SolveRequest& request,
-                  Workspace& workspace, StageTimes* times) {
-  FirstAnswer answers(workspace.scheme.whole_turns, goal, request, options.max_attempts);
+                  Workspace& workspace, StageTimes* times, Effort effort) {
+  FirstAnswer answers(workspace.scheme.whole_turns, goal, request, options.max_attempts, effort);
   return answers.result(search_for(options, answers, workspace, times));
 }
 

@@ -36,7 +36,7 @@ Proof search_pose(const FirstSearch& parts, NearSeed& near, GivenSeeds& given, c
   Workspace::InLanes& lanes = *parts.workspace.lanes;
   const bool is_screened = parts.goal.scene() != nullptr && lanes.sweep;
   if (search_leaf(parts, is_screened, near, given)) return Proof::none;
-  if (!parts.request.database_seeds) return Proof::none;
+  if (!parts.request.database_seeds || parts.answers.effort() == Effort::quick) return Proof::none;
   if (is_screened) {
     if (const auto free = explore_free_curve(parts, Y); free.is_done) return free.proof;
   }

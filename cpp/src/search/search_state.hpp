@@ -8,6 +8,12 @@
 
 namespace iksel {
 
+/// How much is done for an answer.
+enum class Effort {
+  quick,  ///< what finds most: closed forms, or else the nearest seeds; no answer says little
+  full,
+};
+
 class SearchState {
  public:
   /// All must outlive this.

@@ -2,6 +2,8 @@
 #include "solver/arm_search.hpp"
 
 #include "base/rotation.hpp"
+#include "solver/solver_impl.hpp"
+#include "solver/tips_search.hpp"
 
 namespace iksel {
 namespace {
@@ -67,6 +69,38 @@ bool ArmSearch::solve_arm(int tip, JointVector& q) {
   const auto i = static_cast<std::size_t>(tip);
   const Result result = solvers_[i].arm->solve(target_of_arm(tip, q), of_arm_[i]);
   if (result.success()) put(result.q, goal_.model().tip(tip).arm->joints, q);
+  return result.success();
+}
+
+Result ArmSearch::try_solver(const Solver& solver, const Pose& target,
+                             const SolveRequest& request) {
+  const Solver::Impl& of = *solver.impl_;
+  const TaskSpace task = of.task_of(request);
+  const WorkspacePool::Lease lease(of.workspaces);
+  return find_first(of.options, Goal(of.model(), task, target), request, lease.get(), nullptr,
+                    Effort::quick);
+}
+
+bool ArmSearch::try_arm(int tip, JointVector& q) {
+  const auto i = static_cast<std::size_t>(tip);
+  SolveRequest request;
+  request.task = of_arm_[i].task;
+  const Result result = try_solver(*solvers_[i].arm, target_of_arm(tip, q), request);
+  if (result.success()) put(result.q, goal_.model().tip(tip).arm->joints, q);
+  return result.success();
+}
+
+bool ArmSearch::try_chain(int tip, JointVector& q) {
+  const ChainPart& chain = goal_.model().tip(tip).chain;
+  SolveRequest request;
+  request.task = goal_.task(tip).task();
+  request.seeds.push_back(picked(q, chain.joints));
+  const Result result = try_solver(solvers_[static_cast<std::size_t>(tip)].chain,
+                                   goal_.target_at(tip, q), request);
+  if (result.success()) {
+    put(result.q, chain.joints, q);
+    q = goal_.model().joints.clamp(q);
+  }
   return result.success();
 }
 

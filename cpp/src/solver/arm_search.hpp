@@ -32,6 +32,8 @@ class ArmSearch {
   /// Solves for the joints of that tip's arm, the shared ones as in q; false leaves q as it is.
   /// Limits that arms share are left to what iterates all joints.
   bool solve_arm(int tip, JointVector& q);
+  /// The same by little work, whatever the request: false says little.
+  bool try_arm(int tip, JointVector& q);
   /// The joint values of that tip's arm in as many solutions, at most; those nearest to the
   /// request's `near` first, if it has one.
   std::vector<JointVector> solve_arm(int tip, const JointVector& q, int most);
@@ -41,8 +43,13 @@ class ArmSearch {
   /// Solves for all joints of that tip's chain, other tips where q puts them; from those in q first
   /// if `from_here`. What the chain's own solver says; without success q stays as it is.
   Result solve_chain(int tip, bool from_here, JointVector& q);
+  /// The same from q by little work.
+  bool try_chain(int tip, JointVector& q);
 
  private:
+  /// A solver's first answer by little work.
+  [[nodiscard]] static Result try_solver(const Solver& solver, const Pose& target,
+                                         const SolveRequest& request);
   /// Whether its task bounds axes of the frame in which its target is.
   [[nodiscard]] bool is_along_frame(int tip) const;
   /// The target as the arm's base sees it.

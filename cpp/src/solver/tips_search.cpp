@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/low_discrepancy.hpp"
 #include "search/first_answer.hpp"
 #include "seeds/given_seeds.hpp"
 #include "seeds/nearby_seeds.hpp"
@@ -15,10 +16,12 @@ namespace {
 
 /// Seeds that one arm has behind each value of the shared joints, of which there are others.
 constexpr int kArmAttempts = 64;
+/// Iterations of a seed while little work is done.
+constexpr int kQuickIterations = 16;
 
 }  // namespace
 
-TipsSearch::TipsSearch(const TipsModel& model, const SolverOptions& options) : options_(options) {
+TipsSearch::TipsSearch(const TipsModel& model, const SolverOptions& options) : options_(options), steps_(low_discrepancy_steps(model.shared.size())) {
   SolverOptions of_arm = options;
   of_arm.max_attempts = std::min(options.max_attempts, kArmAttempts);
   for (const Tip& tip : model.tips) {
@@ -43,21 +46,27 @@ Proof TipsSearch::search_for(Answers& answers, const Collector* collector,
     return Proof::reach;
   }
   ArmSearch arms(*goal.tips(), solvers_, request, options_.seed);
+  TipsRefiner quick_refiner(goal, std::min(options_.max_iterations, kQuickIterations));
   TipsRefiner refiner(goal, options_.max_iterations);
   const auto should_continue = [&] { return answers.should_continue(); };
   NearSeed near(request.near ? &*request.near : nullptr, work);
   GivenSeeds given(workspace.given, goal, request.seeds, options_.max_attempts, 1, should_continue,
                    work);
-  ArmSeeds behind_shared(goal, arms, collector, work);
-  SeedSequence known(request.database_seeds ? 3 : 2, near, given, behind_shared);
-  if (search(refiner, known, answers, work) || !request.database_seeds) return Proof::none;
+  SeedSequence given_ones(2, near, given);
+  if (search(refiner, given_ones, answers, work) || !request.database_seeds) return Proof::none;
   const bool wants_nearest = collector != nullptr && collector->ranks_by_move();
+  // Where the nearest is wanted, one is enough to look around.
+  const auto is_enough = [&] { return wants_nearest && collector->has_any(); };
+  ArmSeeds quickly_behind_shared(goal, arms, steps_, Effort::quick, collector, work);
+  if (search(quick_refiner, quickly_behind_shared, answers, work)) return Proof::none;
+  ChainSeeds of_chains(*goal.tips(), arms, options_.seed, work, is_enough);
+  if (search(quick_refiner, of_chains, answers, work)) return Proof::none;
+  ArmSeeds behind_shared(goal, arms, steps_, Effort::full, collector, work);
+  if (!is_enough() && search(refiner, behind_shared, answers, work)) return Proof::none;
   const auto unreachable = [&](int tip, const Result& alone) {
     answers.put_unreachable(tip, alone.status);
     return alone.proof;
   };
-  // Where the nearest is wanted, one is enough to look around.
-  const auto is_enough = [&] { return wants_nearest && collector->has_any(); };
   StackedSeeds stacked(*goal.tips(), arms, options_.seed, work, unreachable, is_enough);
   if (search(refiner, stacked, answers, work)) return Proof::none;
   if (wants_nearest && collector->has_any() && !arms.has_all_arms()) {

@@ -25,6 +25,7 @@ class TipsSearch {
   Proof search_for(Answers& answers, const Collector* collector, Workspace& workspace) const;
 
   const SolverOptions& options_;
+  std::vector<double> steps_;  ///< between values of the shared joints
   std::vector<TipSolvers> solvers_;
 };
 

@@ -4,18 +4,19 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/low_discrepancy.hpp"
-
 namespace iksel {
 namespace {
 
 /// Values of the shared joints that are tried before all joints are iterated; and where many answers
 /// are wanted.
+constexpr int kQuickValues = 16;
 constexpr int kSharedValues = 32;
 constexpr int kManyValues = 256;
 /// Values at which the nearest is looked for, at most, and after the last that gave a nearer one.
 constexpr int kNearValues = 48;
 constexpr int kNearPatience = 16;
+/// Seeds of one chain each, after the first values.
+constexpr int kChainSeeds = 24;
 /// Combinations of the arms' solutions behind one value, at most.
 constexpr int kCombinations = 256;
 /// Of those that are free, so many of the nearest, where the nearest is wanted; so many where many
@@ -32,11 +33,12 @@ int solutions_of_each(int arms) {
 
 }  // namespace
 
-SharedValues::SharedValues(const TipsModel& model, const NearestTo* to)
+SharedValues::SharedValues(const TipsModel& model, const std::vector<double>& steps,
+                           const NearestTo* to)
     : model_(model),
       to_(to),
       index_(to != nullptr ? -1 : 0),
-      step_(low_discrepancy_steps(model.shared.size())) {}
+      steps_(steps) {}
 
 std::pair<double, double> SharedValues::range(int joint, double best) const {
   const JointSpace& joints = model_.joints;
@@ -70,7 +72,7 @@ void SharedValues::next(double best, JointVector& q) {
     for (std::size_t j = 0; j < model_.shared.size(); ++j) {
       const auto [lower, upper] = range(model_.shared[j], best);
       // The first is the middle.
-      const double x = 0.5 + index_ * step_[j];
+      const double x = 0.5 + index_ * steps_[j];
       q[model_.shared[j]] = lower + (upper - lower) * (x - std::floor(x));
     }
     hold_coupled(q);
@@ -78,17 +80,20 @@ void SharedValues::next(double best, JointVector& q) {
   ++index_;
 }
 
-ArmSeeds::ArmSeeds(const Goal& goal, ArmSearch& arms, const Collector* collector, Work& work)
+ArmSeeds::ArmSeeds(const Goal& goal, ArmSearch& arms, const std::vector<double>& steps,
+                   Effort effort, const Collector* collector, Work& work)
     : goal_(goal),
       model_(goal.tips()->model()),
       arms_(arms),
+      effort_(effort),
       collector_(collector),
       work_(work),
       to_(collector != nullptr && collector->ranks_by_move() ? &collector->nearest_to() : nullptr),
-      values_(model_, to_),
-      left_(to_ != nullptr          ? kNearValues
-            : collector != nullptr ? kManyValues
-                                   : kSharedValues),
+      values_(model_, steps, to_),
+      left_(to_ != nullptr            ? kNearValues
+            : collector != nullptr   ? kManyValues
+            : effort == Effort::quick ? kQuickValues
+                                     : kSharedValues),
       patience_(kNearPatience),
       order_(goal.tips()->order()) {
   const bool wants_many = collector != nullptr && to_ == nullptr;
@@ -143,7 +148,11 @@ const std::vector<JointVector>& ArmSeeds::solve(int tip, const JointVector& q) {
   // Of a target in the base frame they are the same whatever the other arms do.
   if (found && goal_.tips()->frame_of(tip) < 0) return *found;
   found.emplace();
-  if (of_each_ > 1) {
+  JointVector tried = q;
+  if (effort_ == Effort::quick && !arms_.try_arm(tip, tried)) return *found;
+  if (of_each_ == 1 && collector_ == nullptr && effort_ == Effort::quick) {
+    found->push_back(picked(tried, model_.tip(tip).arm->joints));
+  } else if (of_each_ > 1) {
     *found = arms_.solve_arm(tip, q, of_each_);
   } else if (JointVector solved = q; arms_.solve_arm(tip, solved)) {
     found->push_back(picked(solved, model_.tip(tip).arm->joints));
@@ -179,6 +188,19 @@ bool ArmSeeds::is_too_far(std::size_t arms, const JointVector& q) const {
     for (const int joint : model_.tip(order_[k]).arm->joints) moved[joint] = q[joint];
   }
   return to_->move.length(moved - to_->from) >= last_best_;
+}
+
+bool ChainSeeds::next_stage() {
+  if (index_ == kChainSeeds || is_enough_() || !work_.take()) return false;
+  q_.resize(goal_.model().dof);
+  goal_.model().joints.sample(random_, q_);
+  const int lead = index_ % goal_.count();
+  is_loaded_ = arms_.try_chain(lead, q_);
+  for (const int tip : goal_.order()) {
+    if (is_loaded_ && tip != lead && arms_.has_arm(tip)) arms_.try_arm(tip, q_);
+  }
+  ++index_;
+  return true;
 }
 
 bool StackedSeeds::next_stage() {

@@ -9,17 +9,18 @@
 #include "base/function_ref.hpp"
 #include "base/work.hpp"
 #include "search/collector.hpp"
+#include "search/first_answer.hpp"
 #include "solver/arm_search.hpp"
 
 namespace iksel {
 
 /// Values of the shared joints: those of what the nearest is wanted to, if it is, those in the
 /// middle of the limits, then spread evenly over the limits, as far as they may lead to something
-/// nearer.
+/// nearer. `steps`: low_discrepancy_steps of so many joints.
 class SharedValues {
  public:
   /// `to` may be null. All must outlive this.
-  SharedValues(const TipsModel& model, const NearestTo* to);
+  SharedValues(const TipsModel& model, const std::vector<double>& steps, const NearestTo* to);
 
   /// Writes the next ones to q; `best` is the least move so far.
   void next(double best, JointVector& q);
@@ -33,7 +34,36 @@ class SharedValues {
   const TipsModel& model_;
   const NearestTo* to_;
   int index_;
-  std::vector<double> step_;
+  const std::vector<double>& steps_;
+};
+
+/// Seeds for all joints together by little work: one chain after another is solved as a whole from a
+/// configuration at random, and the arms of the others behind it, or they stay.
+class ChainSeeds {
+ public:
+  /// No more stages where `is_enough`. All must outlive this.
+  ChainSeeds(const TipsGoal& goal, ArmSearch& arms, std::uint64_t seed, Work& work,
+             const FunctionRef<bool()>& is_enough)
+      : goal_(goal), arms_(arms), random_(seed), work_(work), is_enough_(is_enough) {}
+
+  bool next_stage();
+  template <typename Refiner>
+  bool load(Refiner& refiner, int lane) {
+    if (!is_loaded_) return false;
+    is_loaded_ = false;
+    refiner.load_seed(lane, q_.data());
+    return true;
+  }
+
+ private:
+  const TipsGoal& goal_;
+  ArmSearch& arms_;
+  Random random_;
+  Work& work_;
+  FunctionRef<bool()> is_enough_;
+  int index_ = 0;
+  JointVector q_;
+  bool is_loaded_ = false;
 };
 
 /// The arms solved behind one value of the shared joints after another; a stage has one value. Only
@@ -41,8 +71,10 @@ class SharedValues {
 /// wanted or a scene may refuse some, combinations of several solutions of each arm.
 class ArmSeeds {
  public:
-  /// `collector` gets what is found; null: the first answer is enough. All must outlive this.
-  ArmSeeds(const Goal& goal, ArmSearch& arms, const Collector* collector, Work& work);
+  /// `collector` gets what is found; null: the first answer is enough. With little effort values are
+  /// left at once where an arm is not solved with little. All must outlive this.
+  ArmSeeds(const Goal& goal, ArmSearch& arms, const std::vector<double>& steps, Effort effort,
+           const Collector* collector, Work& work);
 
   bool next_stage();
   template <typename Refiner>
@@ -67,6 +99,7 @@ class ArmSeeds {
   const Goal& goal_;
   const TipsModel& model_;
   ArmSearch& arms_;
+  Effort effort_;
   const Collector* collector_;
   Work& work_;
   /// What the nearest is wanted to; null if it is not.

@@ -10,6 +10,11 @@ import iksel_cpp
 PICKLING = re.compile(
     r"    def __(?:get|set)state__\(.*\) -> .*:\n        \.\.\.\n",
 )
+# What the classes' own refuses what was never made.
+NEW = re.compile(
+    r"    @staticmethod\n    def __new__\(type, .*\n"
+    r"        \"\"\"\n.*\n        \"\"\"\n"
+)
 # What every enum has from enum.Enum, listed anew without types.
 ENUM_METHODS = re.compile(
     r"    @classmethod\n    def __new__\(cls, value\):\n        \.\.\.\n"
@@ -63,6 +68,7 @@ def tell_solved_from_unsolved(text: str) -> str:
 def tidy(text: str) -> str:
     """The stub without private parts, and with the types that only Python knows."""
     text = PICKLING.sub("", text)
+    text = NEW.sub("", text)
     text = ENUM_METHODS.sub("", text)
     text = ENUM_MEMBER.sub(enum_member, text)
     text = text.replace(

@@ -19,12 +19,15 @@
 #include "iksel/types.hpp"
 #include "progress.hpp"
 #include "python_types.hpp"
+#include "results.hpp"
 
 namespace iksel::python {
 
+/// NPY_ARRAY_ALIGNED of numpy's interface in C.
+constexpr int kAligned = 0x0100;
+
 /// Aligned doubles in C order, made by conversion if need be.
-using DoubleArray = py::array_t<double, py::array::c_style | py::array::forcecast |
-                                            py::detail::npy_api::NPY_ARRAY_ALIGNED_>;
+using DoubleArray = py::array_t<double, py::array::c_style | py::array::forcecast | kAligned>;
 
 using RowMajorPose = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
 using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -76,11 +79,10 @@ inline DoubleArray convert_to_doubles(py::handle value, const char* name) {
 
 /// Whether it is an array of aligned doubles in C order, which is read in place.
 inline bool is_doubles(py::handle value) {
-  constexpr int kInPlace =
-      py::array::c_style | static_cast<int>(py::detail::npy_api::NPY_ARRAY_ALIGNED_);
-  if (!py::detail::npy_api::get().PyArray_Check_(value.ptr())) return false;
-  const auto* array = py::detail::array_proxy(value.ptr());
-  return (array->flags & kInPlace) == kInPlace && py::isinstance<DoubleArray>(value);
+  constexpr int kInPlace = py::array::c_style | kAligned;
+  if (!py::isinstance<py::array>(value)) return false;
+  const int flags = py::reinterpret_borrow<py::array>(value).flags();
+  return (flags & kInPlace) == kInPlace && py::isinstance<DoubleArray>(value);
 }
 
 /// The array itself if it is read in place, a converted one otherwise.
@@ -161,6 +163,12 @@ py::array_t<T> map_joints(py::handle value, int dof, const char* name,
   return out;
 }
 
+/// What map_joints gives for a truth value.
+inline BoolOrArray to_bool_or_array(const py::array_t<bool>& values) {
+  return BoolOrArray(values.ndim() == 0 ? py::object(py::bool_(*values.data()))
+                                        : py::object(values));
+}
+
 /// As map_joints, but applies `function(const double* q, std::size_t count, double* out)` to many
 /// rows at a time.
 template <class Function>
@@ -200,6 +208,10 @@ inline py::array_t<double> to_array(const JointVector& values) {
   return py::array_t<double>(values.size(), values.data());
 }
 
+inline py::array_t<double> to_array(const std::vector<double>& values) {
+  return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
+}
+
 /// A C-ordered array of its own. Ctrl-C ends the copying of many rows.
 inline py::array_t<double> to_array(const Matrix& matrix) {
   constexpr Eigen::Index kBlock = 1 << 16;
@@ -215,7 +227,11 @@ inline py::array_t<double> to_array(const Matrix& matrix) {
 
 /// The array, which from now on nobody may write to.
 inline py::array_t<double> read_only(py::array_t<double> array) {
-  py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+  static PyObject* const name = PyUnicode_InternFromString("setflags");
+  PyObject* arguments[] = {array.ptr(), Py_False};
+  PyObject* none = PyObject_VectorcallMethod(name, arguments, 2, nullptr);
+  if (none == nullptr) throw py::error_already_set();
+  Py_DECREF(none);
   return array;
 }
 

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pybind11/stl.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "array_checks.hpp"
 #include "bindings.hpp"
@@ -15,32 +12,25 @@
 #include "option_fields.hpp"
 #include "pose_arguments.hpp"
 #include "progress.hpp"
-#include "property.hpp"
 
 namespace iksel::python {
 
 namespace {
 
-Database build(const Loose<Robot>& given_robot, const Loose<DatabaseOptions>& given_options,
+Database build(const Robot& robot, const DatabaseOptions& options,
                const std::optional<ProgressCallable>& progress) {
-  const auto robot = from_python<Robot>(given_robot, "robot");
-  const auto options = from_python<DatabaseOptions>(given_options, "options");
   const Progress report = make_progress(progress);
-  const GilRelease release;
-  return Database::build(robot, options, report);
+  return without_gil([&] { return Database::build(robot, options, report); });
 }
 
-Database load(const PathLike& path, const Loose<bool>& mmap) {
+Database load(const PathLike& path, bool mmap) {
   const std::filesystem::path file = as_path(path, "path");
-  const auto mapped = from_python<bool>(mmap, "mmap");
-  const GilRelease release;
-  return Database::load(file, mapped);
+  return without_gil([&] { return Database::load(file, mmap); });
 }
 
 void save(const Database& self, const PathLike& path) {
   const std::filesystem::path file = as_path(path, "path");
-  const GilRelease release;
-  self.save(file);
+  without_gil([&] { self.save(file); });
 }
 
 py::bytes to_bytes(const Database& self) {
@@ -53,56 +43,52 @@ py::bytes to_bytes(const Database& self) {
 }
 
 Database from_bytes(const py::bytes& content) {
-  const std::string copy(content);
-  const GilRelease release;
-  return Database::from_bytes(copy);
+  const std::string copy = content;
+  return without_gil([&] { return Database::from_bytes(copy); });
 }
 
-std::size_t sample_index(const Database& self, const Loose<std::size_t>& i) {
-  const auto index = from_python<std::size_t>(i, "i");
-  if (index >= self.size()) {
-    throw InvalidArgumentError("i: expected a sample from 0 to " + std::to_string(self.size() - 1) +
-                               ", got " + std::to_string(index));
-  }
-  return index;
+/// What `get` gives of the sample.
+template <class Get>
+py::array_t<double> of_sample(const Database& self, std::size_t i, const Get& get) {
+  if (i < self.size()) return to_array(get(i));
+  throw InvalidArgumentError("i: expected a sample from 0 to " + std::to_string(self.size() - 1) +
+                             ", got " + std::to_string(i));
 }
 
-py::array_t<std::int64_t> nearest(const Database& self, const PoseLike& pose,
-                                  const Loose<std::size_t>& k) {
-  const Pose T_base_tip = as_pose(pose, "pose");
-  const auto found = self.nearest(T_base_tip, from_python<std::size_t>(k, "k"));
+py::array_t<std::int64_t> nearest(const Database& self, const Pose& T_base_tip, std::size_t k) {
+  const auto found = self.nearest(T_base_tip, k);
   py::array_t<std::int64_t> indices(static_cast<py::ssize_t>(found.size()));
   std::copy(found.begin(), found.end(), indices.mutable_data());
   return indices;
 }
 
 void bind_samples(py::class_<Database>& cls) {
-  cls.def(
-      "q",
-      [](const Database& self, const Loose<std::size_t>& i) {
-        return to_array(self.q(sample_index(self, i)));
+  def(
+      cls, "q", "i",
+      [](const Database& self, std::size_t i) {
+        return of_sample(self, i, [&](std::size_t k) { return self.q(k); });
       },
-      py::arg("i"), "Joint values of sample i [rad or m], (dof,).");
-  cls.def(
-      "pose",
-      [](const Database& self, const Loose<std::size_t>& i) {
-        return to_array(self.pose(sample_index(self, i)));
+      "Joint values of sample i [rad or m], (dof,).");
+  def(
+      cls, "pose", "i",
+      [](const Database& self, std::size_t i) {
+        return of_sample(self, i, [&](std::size_t k) { return self.pose(k); });
       },
-      py::arg("i"), "T_base_tip of sample i, of the tip link without the TCP, (4, 4).");
-  cls.def(
-      "pseudo_inverse",
-      [](const Database& self, const Loose<std::size_t>& i) {
-        return to_array(self.pseudo_inverse(sample_index(self, i)));
+      "T_base_tip of sample i, of the tip link without the TCP, (4, 4).");
+  def(
+      cls, "pseudo_inverse", "i",
+      [](const Database& self, std::size_t i) {
+        return of_sample(self, i, [&](std::size_t k) { return self.pseudo_inverse(k); });
       },
-      py::arg("i"), "J^+ of sample i, as in Eq. (4) of the paper, (dof, 6).");
-  cls.def("nearest", &nearest, py::arg("pose"), py::arg("k"),
-          "Indices of the k samples whose keys are nearest to that of a (4, 4) pose of the tip "
-          "link, nearest first; Eq. (2) of the paper.");
+      "J^+ of sample i, as in Eq. (4) of the paper, (dof, 6).");
+  def(cls, "nearest", "pose, k", fn<&nearest>,
+      "Indices of the k samples whose keys are nearest to that of a (4, 4) pose of the tip "
+      "link, nearest first; Eq. (2) of the paper.");
 }
 
 void bind_files(py::class_<Database>& cls) {
-  cls.def_static("load", &load, py::arg("path"), py::kw_only(), py::arg("mmap") = false,
-                 R"(Reads a file, after which it may be changed or removed.
+  def_static(cls, "load", "path, *, mmap=False", fn<&load>,
+             R"(Reads a file, after which it may be changed or removed.
 
 Args:
     path: what `save` wrote.
@@ -118,28 +104,27 @@ Raises:
     DatabaseIoError: the file cannot be read.
     DatabaseCorruptError: the file is damaged or no database.
     DatabaseMismatchError: another format version or byte order.)");
-  cls.def("save", &save, py::arg("path"),
-          R"(Writes beside `path` and renames, so that a crash leaves the old file or the new one.
+  def(cls, "save", "path", fn<&save>,
+      R"(Writes beside `path` and renames, so that a crash leaves the old file or the new one.
 
 Removes files named iksel-*.tmp in the same folder that saves which were killed have left.
 
 Raises:
     DatabaseIoError: the file cannot be written; an old one is untouched.)");
-  cls.def("to_bytes", &to_bytes, "The content of a file, for sending.");
-  cls.def_static("from_bytes", &from_bytes, py::arg("content"),
-                 "The database that `to_bytes` wrote. Raises as `load`.");
+  def(cls, "to_bytes", "", fn<&to_bytes>, "The content of a file, for sending.");
+  def_static(cls, "from_bytes", "content", fn<&from_bytes>,
+             "The database that `to_bytes` wrote. Raises as `load`.");
 }
 
 }  // namespace
 
 void bind_database(py::module_& m) {
-  py::class_<Database> cls(m, "Database",
-                           "An immutable set of samples (q_i, x_i, J_i^+) of a robot under a "
-                           "KD-tree. Safe to use from many threads at once.");
-  cls.def_static("build", &build, py::arg("robot"),
-                 py::arg_v("options", DatabaseOptions{}, "DatabaseOptions()"),
-                 py::arg("progress") = py::none(),
-                 R"(Samples the joint limits and computes pose, Jacobian and pseudo-inverse.
+  auto cls = bind_class<Database>(m, "Database",
+                                  "An immutable set of samples (q_i, x_i, J_i^+) of a robot under "
+                                  "a KD-tree. Safe to use from many threads at once.",
+                                  "Database.build(robot) or Database.load(path)");
+  def_static(cls, "build", "robot, options=DatabaseOptions(), progress=None", fn<&build>,
+             R"(Samples the joint limits and computes pose, Jacobian and pseudo-inverse.
 
 Args:
     robot: the chain; its TCP plays no part.
@@ -155,7 +140,7 @@ Raises:
       cls, "options", [](const Database& self) { return self.options(); },
       "A copy of the options it was built with.");
   add_property(cls, "size", &Database::size, "Number of samples.");
-  cls.def("__len__", &Database::size);
+  def(cls, "__len__", "", fn<&Database::size>);
   add_property(cls, "dof", &Database::dof, "Degrees of freedom of its robot.");
   add_property(cls, "key_dimension", &Database::key_dimension, "Dimension of the KD-tree's key.");
   add_property(
@@ -167,21 +152,16 @@ Raises:
                "Robot.chain_hash of the robot it belongs to.");
   bind_samples(cls);
 
-  cls.def("__repr__", [](const Database& self) {
+  def(cls, "__repr__", "", [](const Database& self) {
     return "Database(" + std::to_string(self.size()) +
            " samples, dof=" + std::to_string(self.dof()) + ", " + to_repr(self.options()) + ")";
   });
-  cls.def("__copy__", [](const Database& self) { return self; });
-  cls.def(
-      "__deepcopy__", [](const Database& self, const py::dict&) { return self; }, py::arg("memo"));
-  cls.def(py::pickle(&to_bytes, &from_bytes));
-
-  m.def(
-      "grid_counts",
-      [](const Loose<int>& dof, const Loose<Scale>& scale) {
-        return grid_counts(from_python<int>(dof, "dof"), from_python<Scale>(scale, "scale"));
-      },
-      py::arg("dof"), py::arg("scale"), "Points per joint of the paper's grid, base to tip.");
+  def_copies(cls);
+  def(cls, "__getstate__", "", [](const Database& self) { return to_bytes(self); });
+  def_init(
+      cls, "state", [](const py::bytes& state) { return from_bytes(state); }, "", "__setstate__");
+  def(m, "grid_counts", "dof, scale", fn<&grid_counts>,
+      "Points per joint of the paper's grid, base to tip.");
 }
 
 }  // namespace iksel::python

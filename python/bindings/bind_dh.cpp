@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pybind11/stl.h>
-
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,37 +6,32 @@
 #include "angle_warning.hpp"
 #include "array_checks.hpp"
 #include "bindings.hpp"
-#include "enums.hpp"
+#include "function.hpp"
 #include "iksel/dh.hpp"
 #include "iksel/pose.hpp"
 #include "iksel/robot.hpp"
 #include "pose_arguments.hpp"
-#include "robot_arguments.hpp"
 #include "sequence_of.hpp"
 
 namespace iksel::python {
 
-/// A sequence of joint types, or their names.
-class JointTypes : public py::object {
-  PYBIND11_OBJECT_DEFAULT(JointTypes, object, is_any_object)
-};
-
-}  // namespace iksel::python
-
-// NOLINTBEGIN(readability-identifier-naming): pybind11 looks for `name`.
-namespace pybind11::detail {
+/// Types of joints, or their names.
 template <>
-struct handle_type_name<iksel::python::JointTypes> {
-  static constexpr auto name = const_name("collections.abc.Sequence[iksel_cpp.JointType | str]");
+struct FromPython<std::vector<JointType>> {
+  static std::string text() { return "collections.abc.Sequence[iksel_cpp.JointType | str]"; }
+  static std::vector<JointType> convert(py::handle value, const char* name) {
+    return read_sequence(value, name, "a sequence of joint types", from_python<JointType>);
+  }
 };
-}  // namespace pybind11::detail
-// NOLINTEND(readability-identifier-naming)
 
-namespace iksel::python {
+struct JointNames : RawArgument {
+  using RawArgument::RawArgument;
+  static constexpr const char* kText = "collections.abc.Sequence[str]";
+};
 
 namespace {
 
-using OptionalArray = std::optional<ArrayLike>;
+using Column = std::optional<ArrayLike>;
 
 void check_rows(std::size_t got, std::size_t rows, const char* name) {
   if (got == rows) return;
@@ -70,12 +63,11 @@ void set_angles(const ArrayLike& value, const char* name, double DhJoint::*field
   if (look_like_degrees(angles.data(), count)) warn_of_degrees(name);
 }
 
-Robot from_dh(const ArrayLike& a, const ArrayLike& alpha, const ArrayLike& d,
-              const OptionalArray& theta, const Loose<DhConvention>& convention,
-              const std::optional<JointTypes>& types, const OptionalArray& lower,
-              const OptionalArray& upper, const OptionalArray& velocity,
-              const std::optional<LinkNames>& names, const std::optional<PoseLike>& base,
-              const std::optional<PoseLike>& tcp, const Loose<std::string>& name) {
+Robot from_dh(const ArrayLike& a, const ArrayLike& alpha, const ArrayLike& d, const Column& theta,
+              DhConvention convention, const std::optional<std::vector<JointType>>& types,
+              const Column& lower, const Column& upper, const Column& velocity,
+              const std::optional<JointNames>& names, const std::optional<Pose>& base,
+              const std::optional<Pose>& tcp, const std::string& name) {
   DhTable table;
   const DoubleArray first = as_doubles(a, "a");
   if (first.ndim() != 1) {
@@ -84,10 +76,8 @@ Robot from_dh(const ArrayLike& a, const ArrayLike& alpha, const ArrayLike& d,
   table.joints.resize(static_cast<std::size_t>(first.size()));
   auto& rows = table.joints;
   if (types) {
-    const auto given =
-        read_sequence(*types, "types", "a sequence of joint types", from_python<JointType>);
-    check_rows(given.size(), rows.size(), "types");
-    for (std::size_t i = 0; i < rows.size(); ++i) rows[i].type = given[i];
+    check_rows(types->size(), rows.size(), "types");
+    for (std::size_t i = 0; i < rows.size(); ++i) rows[i].type = (*types)[i];
   }
   if (names) {
     const auto given =
@@ -102,11 +92,11 @@ Robot from_dh(const ArrayLike& a, const ArrayLike& alpha, const ArrayLike& d,
   if (lower) set_angles(*lower, "lower", &DhJoint::lower, rows, true);
   if (upper) set_angles(*upper, "upper", &DhJoint::upper, rows, true);
   if (velocity) set_column(*velocity, "velocity", &DhJoint::velocity, rows);
-  table.convention = from_python<DhConvention>(convention, "convention");
-  if (base) table.T_base_link0 = check_pose(as_pose(*base, "base"), "base");
-  table.robot_name = from_python<std::string>(name, "name");
+  table.convention = convention;
+  if (base) table.T_base_link0 = check_pose(*base, "base");
+  table.robot_name = name;
   RobotOptions options;
-  if (tcp) options.tcp = check_pose(as_pose(*tcp, "tcp"), "tcp");
+  if (tcp) options.tcp = check_pose(*tcp, "tcp");
   return Robot::from_dh(table, options);
 }
 
@@ -115,13 +105,14 @@ Robot from_dh(const ArrayLike& a, const ArrayLike& alpha, const ArrayLike& d,
 void bind_dh(py::module_& m, py::class_<Robot>& robot) {
   bind_enum<DhConvention>(m);
   const DhTable defaults;
-  const Loose<DhConvention> convention = py::str(enum_name(defaults.convention));
-  robot.def_static(
-      "from_dh", &from_dh, py::arg("a"), py::arg("alpha"), py::arg("d"),
-      py::arg("theta") = py::none(), py::kw_only(), py::arg("convention") = convention,
-      py::arg("types") = py::none(), py::arg("lower") = py::none(), py::arg("upper") = py::none(),
-      py::arg("velocity") = py::none(), py::arg("names") = py::none(), py::arg("base") = py::none(),
-      py::arg("tcp") = py::none(), py::arg("name") = defaults.robot_name,
+  const std::string convention = std::string("'") + enum_name(defaults.convention) + "'";
+  def_static(
+      robot, "from_dh",
+      "a, alpha, d, theta=None, *, convention=" + convention +
+          ", types=None, lower=None, upper=None, velocity=None, names=None, base=None, tcp=None, "
+          "name='" +
+          defaults.robot_name + "'",
+      fn<&from_dh>,
       R"(Makes an arm of Denavit and Hartenberg's parameters, a column of the table each.
 
 The links are `base`, in whose frame poses are, and the table's frames `link0` to `linkN`, of which

@@ -2,66 +2,86 @@
 #include <pybind11/stl.h>
 
 #include <exception>
+#include <new>
+#include <vector>
 
 #include "bindings.hpp"
+#include "class.hpp"
+#include "errors.hpp"
 #include "iksel/error.hpp"
-#include "signature.hpp"
 
 namespace iksel::python {
 
-namespace py = pybind11;
-
 namespace {
 
-template <class CppError>
-py::handle bind_error(py::module_& m, const char* name, const py::handle& bases, const char* doc) {
-  // The translator of a derived class must be registered after, and so tried before, its base's.
-  auto& type = py::register_local_exception<CppError>(m, name, bases);
-  type.doc() = doc;
+struct ErrorClass {
+  bool (*is)(const std::exception& error);
+  PyObject* type;
+};
+
+/// Those derived from others before them.
+std::vector<ErrorClass>& error_classes() {
+  static std::vector<ErrorClass> all;
+  return all;
+}
+
+py::object new_class(py::module_& m, const char* name, const py::handle& bases, const char* doc) {
+  const std::string full = std::string("iksel_cpp.") + name;
+  auto type = py::reinterpret_steal<py::object>(
+      PyErr_NewExceptionWithDoc(full.c_str(), doc, bases.ptr(), nullptr));
+  if (!type) throw py::error_already_set();
+  m.attr(name) = type;
   return type;
 }
 
-/// Errors about names carry the names that there were as `available`.
 template <class CppError>
-void bind_available(py::handle type) {
-  static py::handle class_of_error;
-  class_of_error = type;
-  type.attr("available") = py::tuple();
-  py::register_local_exception_translator([](std::exception_ptr raised) {
-    try {
-      if (raised) std::rethrow_exception(raised);
-    } catch (const CppError& error) {
-      const py::object object = class_of_error(error.what());
-      object.attr("available") = py::tuple(py::cast(error.available()));
-      PyErr_SetObject(class_of_error.ptr(), object.ptr());
-    }
-  });
+py::object bind_error(py::module_& m, const char* name, const py::handle& bases, const char* doc) {
+  py::object type = new_class(m, name, bases, doc);
+  auto& all = error_classes();
+  all.insert(all.begin(), {[](const std::exception& error) {
+                             return dynamic_cast<const CppError*>(&error) != nullptr;
+                           },
+                           py::object(type).release().ptr()});
+  return type;
 }
 
-/// The category is Python's: nothing is thrown.
-void bind_angle_unit_warning(py::module_& m) {
-  const auto type = py::reinterpret_steal<py::object>(
-      PyErr_NewExceptionWithDoc("iksel_cpp.AngleUnitWarning",
-                                "Angles that look like degrees were given where radians are meant.",
-                                PyExc_UserWarning, nullptr));
-  if (!type) throw py::error_already_set();
-  m.attr("AngleUnitWarning") = type;
+PyObject* class_of(const std::exception& error) {
+  for (const ErrorClass& each : error_classes()) {
+    if (each.is(error)) return each.type;
+  }
+  return dynamic_cast<const std::bad_alloc*>(&error) != nullptr ? PyExc_MemoryError
+                                                                : PyExc_RuntimeError;
 }
 
 }  // namespace
 
+void set_error(const std::exception& error) {
+  const py::handle type = class_of(error);
+  const auto* names = dynamic_cast<const UrdfError*>(&error);
+  if (names == nullptr) {
+    PyErr_SetString(type.ptr(), error.what());
+    return;
+  }
+  // Errors about names carry those that there were.
+  const py::object object = type(error.what());
+  object.attr("available") = py::tuple(py::cast(names->available()));
+  PyErr_SetObject(type.ptr(), object.ptr());
+}
+
 void bind_errors(py::module_& m) {
-  bind_angle_unit_warning(m);
+  // The category is Python's: nothing is thrown.
+  new_class(m, "AngleUnitWarning", PyExc_UserWarning,
+            "Angles that look like degrees were given where radians are meant.");
   const auto error =
       bind_error<Error>(m, "Error", PyExc_Exception, "Base of every exception of the library.");
   const auto urdf = bind_error<UrdfError>(
       m, "UrdfError", error,
       "A URDF that cannot be read, parsed or turned into a chain; `available` is a tuple of all "
       "the names there were to choose from, where it is about a name.");
-  bind_available<UrdfError>(urdf);
-  bind_available<UnknownNameError>(bind_error<UnknownNameError>(
+  const auto unknown = bind_error<UnknownNameError>(
       m, "UnknownNameError", urdf,
-      "A link or joint name that the URDF does not have; `available` has those it has."));
+      "A link or joint name that the URDF does not have; `available` has those it has.");
+  for (const py::object& type : {urdf, unknown}) type.attr("available") = py::tuple();
   const auto invalid = bind_error<InvalidArgumentError>(
       m, "InvalidArgumentError", py::make_tuple(error, py::handle(PyExc_ValueError)),
       "An argument of the wrong type, shape or value: a pose that is not rigid, a non-finite "
@@ -79,6 +99,14 @@ void bind_errors(py::module_& m) {
   bind_error<DatabaseMismatchError>(
       m, "DatabaseMismatchError", database,
       "An intact database that does not fit: other robot, other format version, other byte order.");
+  // For what pybind11 calls: properties.
+  py::register_local_exception_translator([](std::exception_ptr raised) {
+    try {
+      if (raised) std::rethrow_exception(raised);
+    } catch (const Error& thrown) {
+      set_error(thrown);
+    }
+  });
 }
 
 }  // namespace iksel::python

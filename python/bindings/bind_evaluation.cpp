@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "iksel/evaluation.hpp"
 
-#include <pybind11/stl.h>
-
+#include <cstddef>
+#include <cstdint>
 #include <optional>
+#include <string>
 
 #include "bindings.hpp"
 #include "fields.hpp"
@@ -52,28 +53,24 @@ struct FieldTable<Evaluation> {
 
 namespace {
 
-Evaluation evaluate_solver(const Loose<Solver>& given, const Loose<std::size_t>& targets,
-                           const Loose<std::uint64_t>& seed, const Loose<bool>& stages,
-                           const std::optional<ProgressCallable>& progress,
-                           const Loose<std::size_t>& touched) {
-  const auto solver = from_python<Solver>(given, "solver");
-  const auto count = from_python<std::size_t>(targets, "targets");
-  const auto number = from_python<std::uint64_t>(seed, "seed");
-  const auto with_stages = from_python<bool>(stages, "stages");
-  const auto bytes = from_python<std::size_t>(touched, "touched");
+Evaluation evaluate_solver(const Solver& solver, std::size_t targets, std::uint64_t seed,
+                           bool stages, const std::optional<ProgressCallable>& progress,
+                           std::size_t touched) {
   const Progress report = make_progress(progress);
-  const GilRelease release;
-  return evaluate(solver, count, number, with_stages, report, bytes);
+  return without_gil([&] { return evaluate(solver, targets, seed, stages, report, touched); });
+}
+
+double time_kdl(const Robot& robot) {
+  return without_gil([&] { return time_kdl_fk_jacobian(robot); });
 }
 
 }  // namespace
 
 void bind_evaluation(py::module_& m) {
-  bind_fields<Evaluation>(m, FieldClass::result);
-  m.def("evaluate", &evaluate_solver, py::arg("solver"), py::arg("targets"), py::arg("seed"),
-        py::arg("stages") = false, py::arg("progress") = py::none(), py::kw_only(),
-        py::arg("touched") = 0,
-        R"(The paper's experiment protocol: success and time over random reachable targets.
+  bind_values<Evaluation>(m, "evaluate");
+  def(m, "evaluate", "solver, targets, seed, stages=False, progress=None, *, touched=0",
+      fn<&evaluate_solver>,
+      R"(The paper's experiment protocol: success and time over random reachable targets.
 
 Solves poses FK(q), q uniform inside the limits, one after another on this thread with the GIL
 released, timing each solve inside C++.
@@ -88,17 +85,11 @@ Args:
     touched: bytes of other memory that are touched before each timed solve, not counted; at most
         2**30. From some times the processor's caches on, a solve finds nothing in them, as in a
         control loop beside other work.)");
-  m.def(
-      "time_kdl_fk_jacobian",
-      [](const Loose<Robot>& given) {
-        const auto robot = from_python<Robot>(given, "robot");
-        const GilRelease release;
-        return time_kdl_fk_jacobian(robot);
-      },
-      py::arg("robot"),
+  def(m, "time_kdl_fk_jacobian", "robot", fn<&time_kdl>,
       "Mean time of one KDL FK plus one KDL Jacobian over random configurations [us].");
-  m.def("simd_level", &simd_level,
-        R"(The instruction set whose lanes solve on this machine.
+  def(
+      m, "simd_level", "", [] { return std::string(simd_level()); },
+      R"(The instruction set whose lanes solve on this machine.
 
 avx512, avx2, sse2, neon or scalar; the environment variable IKSEL_SIMD forces one.
 

@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pybind11/stl.h>
-
-#include <map>
 #include <optional>
-#include <string>
 
 #include "array_checks.hpp"
 #include "bindings.hpp"
@@ -16,16 +12,13 @@ namespace iksel::python {
 
 namespace {
 
-py::array_t<double> fk(const Robot& self, const ArrayLike& q, const Loose<Kinematics>& kinematics) {
-  const auto how = from_python<Kinematics>(kinematics, "kinematics");
+py::array_t<double> fk(const Robot& self, const ArrayLike& q, Kinematics how) {
   return map_joints(q, self.dof(), "q", {4, 4}, [&](const JointVector& joints, double* out) {
     Eigen::Map<RowMajorPose>{out} = self.fk(joints, how).matrix();
   });
 }
 
-py::array_t<double> jacobian(const Robot& self, const ArrayLike& q,
-                             const Loose<Kinematics>& kinematics) {
-  const auto how = from_python<Kinematics>(kinematics, "kinematics");
+py::array_t<double> jacobian(const Robot& self, const ArrayLike& q, Kinematics how) {
   const int dof = self.dof();
   return map_joints(q, dof, "q", {6, dof}, [&](const JointVector& joints, double* out) {
     Eigen::Map<RowMajorMatrix>(out, 6, dof) = self.jacobian(joints, how);
@@ -34,8 +27,7 @@ py::array_t<double> jacobian(const Robot& self, const ArrayLike& q,
 
 py::array_t<double> link_poses(const Robot& self, const ArrayLike& q,
                                const std::optional<JointValues>& other_joints) {
-  std::map<std::string, double> others;
-  if (other_joints) others = as_joint_values(*other_joints, "other_joints");
+  const JointValues others = other_joints.value_or(JointValues());
   const auto links = static_cast<py::ssize_t>(self.link_names().size());
   return map_joint_blocks(q, self.dof(), "q", {links, 4, 4},
                           [&](const double* rows, std::size_t count, double* out) {
@@ -43,9 +35,16 @@ py::array_t<double> link_poses(const Robot& self, const ArrayLike& q,
                           });
 }
 
-void bind_jacobians(py::class_<Robot>& cls, const Loose<Kinematics>& kernel) {
-  cls.def("jacobian", &jacobian, py::arg("q"), py::arg("kinematics") = kernel,
-          R"(Geometric Jacobian: rows [linear; angular] in base axes at the TCP.
+py::array_t<double> inverse_jacobian(const Robot& self, const ArrayLike& q, double damping) {
+  const int dof = self.dof();
+  return map_joints(q, dof, "q", {dof, 6}, [&](const JointVector& joints, double* out) {
+    Eigen::Map<RowMajorMatrix>(out, dof, 6) = self.inverse_jacobian(joints, damping);
+  });
+}
+
+void bind_jacobians(py::class_<Robot>& cls) {
+  def(cls, "jacobian", "q, kinematics='kernel'", fn<&jacobian>,
+      R"(Geometric Jacobian: rows [linear; angular] in base axes at the TCP.
 
 Args:
     q: joint values [rad or m], (dof,) or (N, dof).
@@ -56,16 +55,7 @@ Returns:
 
 Raises:
     InvalidArgumentError: wrong shape or dtype, or a number that is not finite.)");
-  cls.def(
-      "inverse_jacobian",
-      [](const Robot& self, const ArrayLike& q, const Loose<double>& damping) {
-        const auto factor = from_python<double>(damping, "damping");
-        const int dof = self.dof();
-        return map_joints(q, dof, "q", {dof, 6}, [&](const JointVector& joints, double* out) {
-          Eigen::Map<RowMajorMatrix>(out, dof, 6) = self.inverse_jacobian(joints, factor);
-        });
-      },
-      py::arg("q"), py::arg("damping") = 0.0,
+  def(cls, "inverse_jacobian", "q, damping=0.0", fn<&inverse_jacobian>,
       R"(Derivative of an answer q by its target, for differentiable use.
 
 dq = inverse_jacobian @ [linear; angular] for a small twist of the target in base axes at the TCP,
@@ -85,9 +75,8 @@ Raises:
 }  // namespace
 
 void bind_kinematics(py::class_<Robot>& cls) {
-  const Loose<Kinematics> kernel = py::str(enum_name(Kinematics::kernel));
-  cls.def("fk", &fk, py::arg("q"), py::arg("kinematics") = kernel,
-          R"(Forward kinematics: T_base_tip, of the TCP if there is a tool.
+  def(cls, "fk", "q, kinematics='kernel'", fn<&fk>,
+      R"(Forward kinematics: T_base_tip, of the TCP if there is a tool.
 
 Args:
     q: joint values [rad or m], (dof,) or (N, dof).
@@ -98,9 +87,8 @@ Returns:
 
 Raises:
     InvalidArgumentError: wrong shape or dtype, or a number that is not finite.)");
-  cls.def("link_poses", &link_poses, py::arg("q"), py::kw_only(),
-          py::arg("other_joints") = py::none(),
-          R"(Poses of all links of the URDF in the base link's frame, in the order of link_names.
+  def(cls, "link_poses", "q, *, other_joints=None", fn<&link_poses>,
+      R"(Poses of all links of the URDF in the base link's frame, in the order of link_names.
 
 Side branches move with the arm's joints, too, and with what mimics them at any depth. The TCP plays
 no part.
@@ -118,7 +106,7 @@ Raises:
         other_joints that q moves.
     UnknownNameError: a name in other_joints, or in a mimic tag, that is no joint's.
     UrdfError: a joint off the chain is no good: it mimics itself, or has no axis.)");
-  bind_jacobians(cls, kernel);
+  bind_jacobians(cls);
 }
 
 }  // namespace iksel::python

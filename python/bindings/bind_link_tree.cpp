@@ -1,72 +1,79 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pybind11/stl.h>
-
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "array_fields.hpp"
 #include "bindings.hpp"
 #include "iksel/link_tree.hpp"
 #include "iksel/urdf_text.hpp"
-#include "pickle.hpp"
 #include "urdf_source.hpp"
 
 namespace iksel::python {
 
+template <>
+struct FieldTable<LinkTreeJoint> {
+  using J = LinkTreeJoint;
+  static constexpr const char* kName = "LinkTreeJoint";
+  static constexpr const char* kDoc = "One joint of a URDF.";
+  static std::vector<Field> fields() {
+    return {field("name", &J::name, "Its name."),
+            field("type", &J::type, "'revolute', 'fixed', ..."),
+            field("parent_link", &J::parent_link, "The link that it is on."),
+            field("child_link", &J::child_link, "The link that it carries.")};
+  }
+};
+
 namespace {
 
-LinkTree tree_from_urdf(const UrdfSource& path_or_xml,
-                        const std::optional<Loose<std::string>>& link) {
-  const std::string name = link ? from_python<std::string>(*link, "link") : "";
+using Tips = std::vector<std::pair<std::string, int>>;
+
+LinkTree tree_from_urdf(const UrdfSource& path_or_xml, const std::optional<std::string>& link) {
+  const std::string name = link.value_or("");
   return read_urdf(
       path_or_xml, [&](const std::string& xml) { return LinkTree::from_urdf_string(xml, name); },
       [&](const std::filesystem::path& path) { return LinkTree::from_urdf_file(path, name); });
 }
 
 std::string tree_repr(const LinkTree& self) {
-  return "LinkTree(" + py::cast<std::string>(py::repr(py::str(self.robot_name))) + ", " +
+  return "LinkTree(" + repr_text(py::str(self.robot_name)) + ", " +
          std::to_string(self.links.size()) + " links, " + std::to_string(self.tips.size()) +
          " tips)";
 }
 
-py::object joint_state(const LinkTreeJoint& self) {
-  return py::make_tuple(self.name, self.type, self.parent_link, self.child_link);
-}
-
-LinkTreeJoint joint_from_state(const py::object& state) {
-  PickleState in(state, "LinkTreeJoint", 4);
-  LinkTreeJoint joint;
-  joint.name = in.value<std::string>("name");
-  joint.type = in.value<std::string>("type");
-  joint.parent_link = in.value<std::string>("parent_link");
-  joint.child_link = in.value<std::string>("child_link");
-  return joint;
+Tips tips_of(const LinkTree& self) {
+  Tips tips;
+  for (const auto& [link, moving] : self.tips) tips.emplace_back(link, moving);
+  return tips;
 }
 
 /// Joint after joint, each leading to the next link.
-py::object tree_state(const LinkTree& self) {
-  py::list joints;
-  for (const LinkTreeJoint& joint : self.joints) joints.append(joint_state(joint));
-  py::list tips;
-  for (const auto& [link, moving] : self.tips) tips.append(py::make_tuple(link, moving));
-  return py::make_tuple(self.robot_name, self.links.front(), joints, tips);
+py::dict tree_state(const LinkTree& self) {
+  py::dict state;
+  state["robot_name"] = self.robot_name;
+  state["root"] = self.links.front();
+  state["joints"] = self.joints;
+  state["tips"] = tips_of(self);
+  return state;
 }
 
-LinkTree tree_from_state(const py::object& state) {
-  PickleState in(state, "LinkTree", 4);
+LinkTree tree_from_state(const std::string& robot_name, const std::string& root,
+                         const std::vector<LinkTreeJoint>& joints, const py::object& tips) {
   LinkTree tree;
-  tree.robot_name = in.value<std::string>("robot_name");
-  tree.links = {in.value<std::string>("root")};
-  for (const py::handle joint : in.list("joints")) {
-    tree.joints.push_back(joint_from_state(py::reinterpret_borrow<py::object>(joint)));
-    tree.links.push_back(tree.joints.back().child_link);
-  }
-  for (const py::handle tip : in.list("tips")) {
-    PickleState of_tip(py::reinterpret_borrow<py::object>(tip), "LinkTree, tip", 2);
-    const auto link = of_tip.value<std::string>("link");
-    tree.tips.push_back({link, of_tip.count("moving joints")});
+  tree.robot_name = robot_name;
+  tree.links = {root};
+  tree.joints = joints;
+  for (const LinkTreeJoint& joint : joints) tree.links.push_back(joint.child_link);
+  const std::string name = "pickled LinkTree, tips";
+  if (!py::isinstance<py::list>(tips)) throw_wrong_type(name, "a list", tips);
+  for (const py::handle tip : tips) {
+    if (!py::isinstance<py::tuple>(tip) || py::len(tip) != 2) throw_wrong_type(name, "pairs", tip);
+    const auto pair = py::reinterpret_borrow<py::tuple>(tip);
+    const auto moving = from_python<int>(pair[1], name.c_str());
+    is_count(moving, name);
+    tree.tips.push_back({from_python<std::string>(pair[0], name.c_str()), moving});
   }
   return tree;
 }
@@ -74,10 +81,9 @@ LinkTree tree_from_state(const py::object& state) {
 }  // namespace
 
 void bind_link_tree(py::module_& m) {
-  m.def(
-      "mend_xml",
+  def(
+      m, "mend_xml", "data, link=''",
       [](const py::bytes& data, const std::string& link) { return mend_xml(data, link); },
-      py::arg("data"), py::arg("link") = "",
       R"(The text of an XML file (URDF, SRDF, MJCF) as every XML reader takes it.
 
 It is UTF-8, with what people and exporters get wrong mended where it is clear what is meant; a DOCTYPE,
@@ -89,43 +95,33 @@ Args:
 
 Raises:
     UrdfError: it is not clear what is meant; the message says the line.)");
-  py::class_<LinkTreeJoint>(m, "LinkTreeJoint", "One joint of a URDF.")
-      .def_readonly("name", &LinkTreeJoint::name, "Its name.")
-      .def_readonly("type", &LinkTreeJoint::type, "'revolute', 'fixed', ...")
-      .def_readonly("parent_link", &LinkTreeJoint::parent_link, "The link that it is on.")
-      .def_readonly("child_link", &LinkTreeJoint::child_link, "The link that it carries.")
-      .def(py::pickle(&joint_state, &joint_from_state))
-      .def("__repr__", [](const LinkTreeJoint& self) {
-        return "LinkTreeJoint('" + self.name + "', " + self.type + ", '" + self.parent_link +
-               "' -> '" + self.child_link + "')";
-      });
-  py::class_<LinkTree>(m, "LinkTree",
-                       "The links of a URDF and the joints between them, depth first from the "
-                       "root; str() draws the tree.")
-      .def_static("from_urdf", &tree_from_urdf, py::arg("path_or_xml"),
-                  py::arg("link") = py::none(),
-                  R"(Reads the tree of a URDF.
+  auto joint = bind_fields<LinkTreeJoint>(m, "LinkTree.from_urdf(path_or_xml).joints");
+  def(joint, "__repr__", "", [](const LinkTreeJoint& self) {
+    return "LinkTreeJoint('" + self.name + "', " + self.type + ", '" + self.parent_link + "' -> '" +
+           self.child_link + "')";
+  });
+  auto tree = bind_class<LinkTree>(
+      m, "LinkTree",
+      "The links of a URDF and the joints between them, depth first from the root; str() draws the "
+      "tree.",
+      "LinkTree.from_urdf(path_or_xml)");
+  def_static(tree, "from_urdf", "path_or_xml, link=None", fn<&tree_from_urdf>,
+             R"(Reads the tree of a URDF.
 
 Args:
     path_or_xml: a path, or the URDF itself: a str whose first character is '<', or bytes.
     link: a link of the tree that is meant, where the links hang in several.
 
 Raises:
-    UrdfError: the file or the XML is no good, or there are several trees.)")
-      .def_readonly("robot_name", &LinkTree::robot_name, "Name in the URDF.")
-      .def_readonly("links", &LinkTree::links, "Names of all links, the root first.")
-      .def_readonly("joints", &LinkTree::joints, "All joints.")
-      .def_property_readonly(
-          "tips",
-          [](const LinkTree& self) {
-            std::vector<std::pair<std::string, int>> tips;
-            for (const auto& [link, moving] : self.tips) tips.emplace_back(link, moving);
-            return tips;
-          },
-          "The links without children, each with the number of joints that move it.")
-      .def("__str__", &LinkTree::draw)
-      .def("__repr__", &tree_repr)
-      .def(py::pickle(&tree_state, &tree_from_state));
+    UrdfError: the file or the XML is no good, or there are several trees.)");
+  add_property(tree, "robot_name", &LinkTree::robot_name, "Name in the URDF.");
+  add_property(tree, "links", &LinkTree::links, "Names of all links, the root first.");
+  add_property(tree, "joints", &LinkTree::joints, "All joints.");
+  add_property(tree, "tips", &tips_of,
+               "The links without children, each with the number of joints that move it.");
+  def(tree, "__str__", "", fn<&LinkTree::draw>);
+  def(tree, "__repr__", "", fn<&tree_repr>);
+  def_pickle(tree, fn<&tree_state>, "robot_name, root, joints, tips", fn<&tree_from_state>);
 }
 
 }  // namespace iksel::python

@@ -4,6 +4,16 @@
 
 namespace iksel::python {
 
+namespace {
+
+template <class Options>
+void def_validate(py::class_<Options>& cls) {
+  def(cls, "validate", "", fn<&Options::validate>,
+      "Raises InvalidArgumentError naming the first option out of range.");
+}
+
+}  // namespace
+
 void bind_options(py::module_& m) {
   bind_enum<Sampling>(m);
   bind_enum<Scale>(m);
@@ -15,27 +25,24 @@ void bind_options(py::module_& m) {
   bind_enum<Reselection>(m);
   bind_enum<GrowthStop>(m);
 
-  auto database = bind_fields<DatabaseOptions>(m, FieldClass::options);
-  database.def_static("paper", &DatabaseOptions::paper,
-                      "The paper's: grid, medium, rotation vectors, unweighted.");
-  database.def("validate", &DatabaseOptions::validate,
-               "Raises InvalidArgumentError naming the first option out of range.");
+  auto database = bind_keyword_class<DatabaseOptions>(m, /*writable=*/true);
+  def_static(database, "paper", "", fn<&DatabaseOptions::paper>,
+             "The paper's: grid, medium, rotation vectors, unweighted.");
+  def_validate(database);
 
   // Immutable, so that nobody changes the copy that SolverOptions.strategy is.
-  bind_fields<Lanes>(m, FieldClass::immutable)
-      .def("validate", &Lanes::validate,
-           "Raises InvalidArgumentError naming the first option out of range.");
-  bind_fields<Paper>(m, FieldClass::immutable)
-      .def("validate", &Paper::validate,
-           "Raises InvalidArgumentError naming the first option that is out of range, or that is "
-           "set though nothing reads it.");
+  auto lanes = bind_keyword_class<Lanes>(m, /*writable=*/false);
+  def_validate(lanes);
+  auto paper = bind_keyword_class<Paper>(m, /*writable=*/false);
+  def(paper, "validate", "", fn<&Paper::validate>,
+      "Raises InvalidArgumentError naming the first option that is out of range, or that is set "
+      "though nothing reads it.");
 
-  auto solver = bind_fields<SolverOptions>(m, FieldClass::options);
-  solver.def_static("paper", &SolverOptions::paper,
-                    "The paper's setting: medium grid, the defaults of Paper, one re-selection, "
-                    "1e-4 m and 1e-3 rad.");
-  solver.def("validate", &SolverOptions::validate,
-             "Raises InvalidArgumentError naming the first option out of range.");
+  auto solver = bind_keyword_class<SolverOptions>(m, /*writable=*/true);
+  def_static(solver, "paper", "", fn<&SolverOptions::paper>,
+             "The paper's setting: medium grid, the defaults of Paper, one re-selection, 1e-4 m "
+             "and 1e-3 rad.");
+  def_validate(solver);
 }
 
 }  // namespace iksel::python

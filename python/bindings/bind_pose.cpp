@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Poses by themselves: what counts as one, and how far two are apart.
-#include <pybind11/stl.h>
-
 #include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "bindings.hpp"
+#include "function.hpp"
 #include "iksel/pose.hpp"
 #include "iksel/robot.hpp"
 #include "pose_arguments.hpp"
@@ -102,20 +101,28 @@ py::array_t<double> pose_errors(const PoseLike& target, const PoseLike& pose) {
   return out;
 }
 
+py::object pose_matrices(const PoseLike& pose, const std::string& name) {
+  return to_matrices(pose, name.c_str());
+}
+
+DoubleArray checked(const PoseLike& pose, const std::string& name) {
+  return map_poses(as_matrices(pose, name.c_str()), name,
+                   [](const Pose& given, const char* of) { return check_pose(given, of); });
+}
+
+DoubleArray orthonormal(const PoseLike& pose) {
+  return map_poses(as_matrices(pose, "pose"), "pose",
+                   [](const Pose& given, const char* of) { return orthonormalized(given, of); });
+}
+
 }  // namespace
 
 void bind_pose(py::module_& m) {
   m.attr("RIGID_TOLERANCE") = kRigidTolerance;
-  m.def("pose_error", &pose_errors, py::arg("target"), py::arg("pose"),
-        "[p_target - p; rotvec(R_target R^T)] of two (4, 4) poses [m, rad], (6,); or of each pair "
-        "from two (..., 4, 4) arrays, (..., 6).");
-  m.def(
-      "check_pose",
-      [](const PoseLike& pose, const std::string& name) {
-        return map_poses(as_matrices(pose, name.c_str()), name,
-                         [](const Pose& given, const char* of) { return check_pose(given, of); });
-      },
-      py::arg("pose"), py::arg("name") = "pose",
+  def(m, "pose_error", "target, pose", fn<&pose_errors>,
+      "[p_target - p; rotvec(R_target R^T)] of two (4, 4) poses [m, rad], (6,); or of each pair "
+      "from two (..., 4, 4) arrays, (..., 6).");
+  def(m, "check_pose", "pose, name='pose'", fn<&checked>,
       R"(The rigid transforms that poses stand for.
 
 A pose that is rigid to rounding (|R^T R - I| <= 1e-12) is kept bit for bit; one whose rotation is
@@ -131,14 +138,7 @@ Returns:
 
 Raises:
     InvalidArgumentError: wrong shape, not finite, or not rigid; the message says which and why.)");
-  m.def(
-      "orthonormalized",
-      [](const PoseLike& pose) {
-        return map_poses(as_matrices(pose, "pose"), "pose", [](const Pose& given, const char* of) {
-          return orthonormalized(given, of);
-        });
-      },
-      py::arg("pose"),
+  def(m, "orthonormalized", "pose", fn<&orthonormal>,
       R"(The rigid transforms nearest to poses, however far off their rotations are.
 
 The rotation is the orthogonal polar factor: the nearest to the given matrix, by the sum of squares.
@@ -151,15 +151,12 @@ Returns:
 
 Raises:
     InvalidArgumentError: not finite, singular or mirrored, or a last row other than 0 0 0 1.)");
-  m.def(
-      "pose_matrices",
-      [](const PoseLike& pose, const std::string& name) { return to_matrices(pose, name.c_str()); },
-      py::arg("pose"), py::arg("name") = "pose",
+  def(m, "pose_matrices", "pose, name='pose'", fn<&pose_matrices>,
       "Poses in one of the forms that as_pose of iksel lists as matrices (..., 4, 4), not checked; "
       "what is none of them as it is.");
-  m.def("rigid_deviation", &rigid_deviations, py::arg("pose"),
-        "Largest element of |R^T R - I| of each pose (..., 4, 4), (...); infinite if it is not "
-        "finite, mirrored, or not 0 0 0 1 in its last row.");
+  def(m, "rigid_deviation", "pose", fn<&rigid_deviations>,
+      "Largest element of |R^T R - I| of each pose (..., 4, 4), (...); infinite if it is not "
+      "finite, mirrored, or not 0 0 0 1 in its last row.");
 }
 
 }  // namespace iksel::python

@@ -1,146 +1,148 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pybind11/stl.h>
-
 #include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "array_checks.hpp"
 #include "bindings.hpp"
 #include "gil.hpp"
 #include "html.hpp"
 #include "iksel/diagnosis.hpp"
 #include "iksel/solver.hpp"
-#include "pickle.hpp"
 #include "pose_arguments.hpp"
-#include "property.hpp"
-#include "py_batch.hpp"
-#include "py_result.hpp"
-#include "python_types.hpp"
 #include "request_keywords.hpp"
+#include "result_fields.hpp"
 
 namespace iksel::python {
 
-namespace {
-
 /// The distinct solutions for one target.
-struct PySolutions {
-  Solutions solutions;
+struct PySolutions : Solutions {
   int dof = 0;
 
-  [[nodiscard]] py::ssize_t size() const { return static_cast<py::ssize_t>(solutions.all.size()); }
+  [[nodiscard]] py::ssize_t size() const { return static_cast<py::ssize_t>(all.size()); }
 
   [[nodiscard]] py::array_t<double> q() const {
-    py::array_t<double> array({size(), static_cast<py::ssize_t>(dof)});
+    return stack_joints(
+        all, dof, [](const Result& each) -> const auto& { return each.q; });
+  }
+
+  template <double Result::*kMember>
+  [[nodiscard]] py::array_t<double> column() const {
+    py::array_t<double> array(size());
     double* out = array.mutable_data();
-    for (const Result& result : solutions.all) {
-      out = std::copy_n(result.q.data(), static_cast<std::size_t>(dof), out);
-    }
+    for (const Result& result : all) *out++ = result.*kMember;
     return array;
   }
 
-  template <class T>
-  [[nodiscard]] py::array_t<T> column(T Result::*member) const {
-    py::array_t<T> array(size());
-    T* out = array.mutable_data();
-    for (const Result& result : solutions.all) *out++ = result.*member;
-    return array;
-  }
-
-  [[nodiscard]] PyResult row(const RowIndex& index) const {
-    return {solutions.all[static_cast<std::size_t>(as_row(index, size(), "solution"))], {}};
+  [[nodiscard]] PyResult row(py::ssize_t i) const {
+    return PyResult(all[static_cast<std::size_t>(as_row(i, size(), "solution"))]);
   }
 };
 
-PyResult solve_plainly(const Solver& self, py::handle pose) {
-  return {self.solve(as_pose(pose, "pose", &self.options().task)), {}};
-}
+/// In pickles, a list of Result.
+template <>
+struct FromPython<std::vector<Result>> {
+  static std::string text() { return "list[iksel_cpp.Result]"; }
+  static std::vector<Result> convert(py::handle value, const char* name) {
+    const auto all = FromSequence<PyResult>::convert(value, name);
+    return {all.begin(), all.end()};
+  }
+};
+template <>
+struct ResultType<std::vector<Result>> : ResultType<std::vector<PyResult>> {};
+template <>
+struct ValueOf<std::vector<Result>> {
+  static constexpr bool kHasShortRepr = false;
+  static py::object get(const std::vector<Result>& value, py::handle /*owner*/) {
+    return to_plain(value);
+  }
+  static py::object to_plain(const std::vector<Result>& value) {
+    py::list all;
+    for (const Result& each : value) all.append(PyResult(each));
+    return all;
+  }
+  static std::string repr(const std::vector<Result>& value) { return repr_text(to_plain(value)); }
+  static bool equal(const std::vector<Result>& a, const std::vector<Result>& b) { return &a == &b; }
+};
 
-py::object solve(const Solver& self, py::handle pose, const Given& given) {
+template <>
+struct FieldTable<PySolutions> {
+  using S = PySolutions;
+  static constexpr const char* kName = "Solutions";
+  static constexpr const char* kDoc =
+      "The distinct solutions for one target, best first; true if there are any. Indexing gives a "
+      "Result.";
+  static std::vector<Field> fields() {
+    return {
+        field<S>("status", &S::status, "`solved`, or why there is none."),
+        field<S>("proof", &S::proof,
+                 "How it is known that there is certainly no solution or, of a set that is not "
+                 "empty, that "
+                 "there are certainly no more; if it is not, `none` or `answer`."),
+        field<S>("all", &S::all, nullptr),
+        field<S>("dof", &S::dof, nullptr),
+        field<&is_count, S>("attempts", &S::attempts, "Seeds tried."),
+        field<&is_count, S>("iterations", &S::iterations, "Iteration steps over all attempts.")};
+  }
+  static void check(const S& self) {
+    const std::string of = "pickled Solutions, ";
+    if (self.success() == self.all.empty()) {
+      refuse_state(of + "all", "solutions where solved, and only there", "others");
+    }
+    if (self.proof == (self.success() ? Proof::none : Proof::answer)) {
+      refuse_state(of + "proof", "answer or more where solved, and only there",
+                   enum_name(self.proof));
+    }
+    const bool fits = std::all_of(self.all.begin(), self.all.end(), [&](const Result& each) {
+      return each.success() && each.q.size() == self.dof;
+    });
+    if (!fits || self.dof < 0 || self.dof > kMaxDof) {
+      refuse_state(of + "dof", "the number of joints of all", std::to_string(self.dof));
+    }
+  }
+};
+
+namespace {
+
+PyResult solve(const Solver& self, py::handle pose, const Given& given) {
+  if (given.is_empty()) return PyResult(self.solve(as_pose(pose, "pose", &self.options().task)));
   const SolveRequest request = read_request(self, given);
   const Pose target = as_pose(pose, "pose", &task_of(self, request));
-  return py::cast(PyResult{without_gil([&] { return self.solve(target, request); }), {}});
+  return PyResult(without_gil([&] { return self.solve(target, request); }));
 }
 
-py::object solve_all(const Solver& self, py::handle pose, const Given& given) {
+PySolutions solve_all(const Solver& self, py::handle pose, const Given& given) {
   const int dof = self.robot().dof();
   const auto options = given.read<SolveAllOptions>(dof);
   const SolveRequest request = read_request(self, given);
   const Pose target = as_pose(pose, "pose", &task_of(self, request));
-  return py::cast(
-      PySolutions{without_gil([&] { return self.solve_all(target, options, request); }), dof});
+  return {without_gil([&] { return self.solve_all(target, options, request); }), dof};
 }
 
-py::object diagnose(const Solver& self, py::handle pose, const Given& given) {
+Diagnosis diagnose(const Solver& self, py::handle pose, const Given& given) {
   const SolveRequest request = read_request(self, given);
   const Pose target = as_pose(pose, "pose", &task_of(self, request));
-  return py::cast(without_gil([&] { return self.diagnose(target, request); }));
-}
-
-py::object solutions_state(const PySolutions& self) {
-  const Solutions& s = self.solutions;
-  return py::make_tuple(enum_name(s.status), self.q(), self.column(&Result::position_error),
-                        self.column(&Result::rotation_error), self.column(&Result::move),
-                        self.column(&Result::cost), s.attempts, s.iterations, enum_name(s.proof));
-}
-
-PySolutions solutions_from_state(const py::object& state) {
-  PickleState in(state, "Solutions", 9);
-  Solutions out;
-  out.status = in.value<Status>("status");
-  const auto q = in.rows("q");
-  const py::ssize_t n = q.shape(0);
-  const int dof = static_cast<int>(q.shape(1));
-  if (out.success() != (n > 0)) in.refuse("q", "solutions where solved, and only there", "others");
-  const auto position_error = in.column<double>("position_error", n);
-  const auto rotation_error = in.column<double>("rotation_error", n);
-  const auto move = in.column<double>("move", n);
-  const auto cost = in.column<double>("cost", n);
-  out.attempts = in.count("attempts");
-  out.iterations = in.count("iterations");
-  out.proof = in.value<Proof>("proof");
-  if (out.proof == (n > 0 ? Proof::none : Proof::answer)) {
-    in.refuse("proof", "answer or more where solved, and only there", enum_name(out.proof));
-  }
-  for (py::ssize_t i = 0; i < n; ++i) {
-    check_finite(q.data(i), dof, "pickled Solutions, q[" + std::to_string(i) + "]");
-    if (!(position_error.at(i) >= 0 && rotation_error.at(i) >= 0)) {
-      in.refuse("errors", "0 or more", "others");
-    }
-    Result& r = out.all.emplace_back();
-    r.status = Status::solved;
-    r.proof = Proof::answer;
-    r.q = Eigen::Map<const Eigen::VectorXd>(q.data(i), dof);
-    r.position_error = position_error.at(i);
-    r.rotation_error = rotation_error.at(i);
-    r.move = move.at(i);
-    r.cost = cost.at(i);
-    r.attempts = out.attempts;
-    r.iterations = out.iterations;
-  }
-  return {out, dof};
+  return without_gil([&] { return self.diagnose(target, request); });
 }
 
 std::string solutions_repr(const PySolutions& self) {
-  const auto& all = self.solutions.all;
+  const auto& all = self.all;
   std::string best;
   if (!all.empty()) {
     const JointVector& q = all.front().q;
     best = ", best q=" + short_numbers(q.data(), static_cast<std::size_t>(q.size()));
   }
-  return "Solutions(" + status_text(self.solutions.status, self.solutions.proof) + ", " +
-         std::to_string(all.size()) + " solutions" + best + ")";
+  return "Solutions(" + status_text(self.status, self.proof) + ", " + std::to_string(all.size()) +
+         " solutions" + best + ")";
 }
 
 std::string solutions_html(const PySolutions& self) {
-  const auto& all = self.solutions.all;
+  const auto& all = self.all;
   std::vector<std::string> header = {""};
   for (int i = 0; i < self.dof; ++i) header.push_back("q[" + std::to_string(i) + "]");
   header.insert(header.end(), {"position error [m]", "rotation error [rad]", "move"});
-  HtmlTable table(std::to_string(all.size()) + " solutions, " +
-                      status_text(self.solutions.status, self.solutions.proof),
-                  header);
+  HtmlTable table(
+      std::to_string(all.size()) + " solutions, " + status_text(self.status, self.proof), header);
   const std::size_t shown = std::min(all.size(), HtmlTable::kMostRows);
   for (std::size_t i = 0; i < shown; ++i) {
     std::vector<std::string> cells = {std::to_string(i)};
@@ -156,62 +158,35 @@ std::string solutions_html(const PySolutions& self) {
 
 void bind_solutions(py::module_& m) {
   using S = PySolutions;
-  py::class_<S> cls(m, "Solutions",
-                    "The distinct solutions for one target, best first; true if there are any. "
-                    "Indexing gives a Result.");
+  auto cls = bind_fields<S>(m, "Solver.solve_all");
   add_property(
-      cls, "success", [](const S& self) { return self.solutions.success(); },
+      cls, "success", [](const S& self) { return self.success(); },
       "Whether there is at least one.");
   add_property(
-      cls, "status", [](const S& self) { return self.solutions.status; },
-      "`solved`, or why there is none.");
-  add_property(
-      cls, "proof", [](const S& self) { return self.solutions.proof; },
-      "How it is known that there is certainly no solution or, of a set that is not empty, that "
-      "there are certainly no more; if it is not, `none` or `answer`.");
-  add_property(
-      cls, "proven", [](const S& self) { return is_proven(self.solutions.proof); },
+      cls, "proven", [](const S& self) { return is_proven(self.proof); },
       "Whether these are certainly all: `proof` is `reach`, `closed_form` or `target`.");
   add_property(cls, "q", &S::q, "Joint values [rad or m], (n, dof).");
-  add_property(
-      cls, "position_error", [](const S& self) { return self.column(&Result::position_error); },
-      "Distances to the target [m], (n,).");
-  add_property(
-      cls, "rotation_error", [](const S& self) { return self.column(&Result::rotation_error); },
-      "Lengths of the rotation vectors to the target [rad], (n,).");
-  add_property(
-      cls, "move", [](const S& self) { return self.column(&Result::move); },
-      "Lengths of the moves from `near`, (n,); NaN without one.");
-  add_property(
-      cls, "cost", [](const S& self) { return self.column(&Result::cost); },
-      "Costs by the objective, (n,); NaN without one.");
-  add_property(
-      cls, "attempts", [](const S& self) { return self.solutions.attempts; }, "Seeds tried.");
-  add_property(
-      cls, "iterations", [](const S& self) { return self.solutions.iterations; },
-      "Iteration steps over all attempts.");
-  cls.def("__len__", &S::size);
-  cls.def("__getitem__", &S::row, py::arg("i"));
-  cls.def("__iter__", &iterate_rows);
-  cls.def("__bool__", [](const S& self) { return self.solutions.success(); });
-  cls.def("__repr__", &solutions_repr);
-  cls.def("_repr_html_", &solutions_html);
-  cls.def(py::pickle(&solutions_state, &solutions_from_state));
+  add_property(cls, "position_error", &S::column<&Result::position_error>,
+               "Distances to the target [m], (n,).");
+  add_property(cls, "rotation_error", &S::column<&Result::rotation_error>,
+               "Lengths of the rotation vectors to the target [rad], (n,).");
+  add_property(cls, "move", &S::column<&Result::move>,
+               "Lengths of the moves from `near`, (n,); NaN without one.");
+  add_property(cls, "cost", &S::column<&Result::cost>,
+               "Costs by the objective, (n,); NaN without one.");
+  def(cls, "__len__", "", fn<&S::size>);
+  def(cls, "__getitem__", "i", fn<&S::row>);
+  def_iter<PyResult>(cls);
+  def(cls, "__bool__", "", [](const S& self) { return self.success(); });
+  def(cls, "__repr__", "", fn<&solutions_repr>);
+  def(cls, "_repr_html_", "", fn<&solutions_html>);
 }
 
 }  // namespace
 
 void bind_requests(py::module_& m, py::class_<Solver>& cls) {
   bind_solutions(m);
-  {
-    // The same method where no keyword is given, so that plain solving pays nothing for them. Of
-    // the two, only the other has a docstring, and a name for the pose: pybind11 would make a
-    // string of it at each call that has keywords.
-    py::options options;
-    options.disable_function_signatures();
-    cls.def("solve", &solve_plainly);
-  }
-  def_method<0>(
+  def_method(
       cls,
       {"solve",
        "Joint values that put the TCP (the tip link's frame, if there is no tool) at a pose.",
@@ -221,7 +196,6 @@ void bind_requests(py::module_& m, py::class_<Solver>& cls) {
        "(scipy, Pinocchio, spatialmath); (3,) if the task leaves the rotation free. One "
        "that is rounded stands for the nearest rigid one (see check_pose), by which the "
        "errors are measured.",
-       "Result",
        R"(Returns:
     A Result. A pose that cannot be solved is no error but a status, and `proof` says how certain
     that is.
@@ -229,36 +203,36 @@ void bind_requests(py::module_& m, py::class_<Solver>& cls) {
 Raises:
     InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, a number that is not
         finite or out of range.)"},
-      request_keywords(),
+      request_keywords(), 0,
       {"near", "weights", "norm", "seeds", "database_seeds", "scene", "exact", "filter", "deadline",
        "task", "objective", "closest"},
-      &solve);
-  def_method<1>(cls,
-                {"solve_all",
-                 "Every distinct solution that is found: all branches (there certainly are no "
-                 "others where `proven` says so), or a spread for a redundant arm.",
-                 "pose", "T_base_tip [m], as in solve.", "Solutions",
-                 R"(Returns:
+      fn<&solve>);
+  def_method(cls,
+             {"solve_all",
+              "Every distinct solution that is found: all branches (there certainly are no "
+              "others where `proven` says so), or a spread for a redundant arm.",
+              "pose", "T_base_tip [m], as in solve.",
+              R"(Returns:
     Solutions; empty, with a status that says why, if there is none.
 
 Raises:
     InvalidArgumentError: as solve.)"},
-                solve_all_keywords(),
-                {"max", "min_distance", "whole_turns", "order", "near", "weights", "norm", "seeds",
-                 "database_seeds", "scene", "exact", "filter", "deadline", "task", "objective"},
-                &solve_all);
-  def_method<0>(
+             solve_all_keywords(), 1,
+             {"max", "min_distance", "whole_turns", "order", "near", "weights", "norm", "seeds",
+              "database_seeds", "scene", "exact", "filter", "deadline", "task", "objective"},
+             fn<&solve_all>);
+  def_method(
       cls,
       {"diagnose",
        "Why solve() with the same arguments gives no answer, and the best that can be done.\n\n"
        "Spends much more than solving does, milliseconds to a second.",
-       "pose", "T_base_tip [m], as in solve.", "Diagnosis",
+       "pose", "T_base_tip [m], as in solve.",
        R"(Returns:
     A Diagnosis; its cause is `none` if there is an answer.
 
 Raises:
     InvalidArgumentError: as solve.)"},
-      request_keywords(), {"scene", "exact", "filter", "deadline", "task"}, &diagnose);
+      request_keywords(), 0, {"scene", "exact", "filter", "deadline", "task"}, fn<&diagnose>);
 }
 
 }  // namespace iksel::python

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pybind11/stl.h>
-
+#include <cstdint>
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <random>
 #include <string>
+#include <vector>
 
 #include "array_checks.hpp"
 #include "bindings.hpp"
@@ -15,41 +14,12 @@
 #include "iksel/pose.hpp"
 #include "iksel/robot.hpp"
 #include "iksel/structure.hpp"
-#include "pickle.hpp"
 #include "pose_arguments.hpp"
 #include "progress.hpp"
 #include "property.hpp"
 #include "robot_arguments.hpp"
 #include "sequence_of.hpp"
 #include "urdf_source.hpp"
-
-namespace iksel::python {
-
-/// A sequence of MimicCurve.
-class MimicCurves : public py::object {
-  PYBIND11_OBJECT_DEFAULT(MimicCurves, object, is_any_object)
-};
-
-/// A truth value for one configuration, an array of them for many.
-class BoolOrArray : public py::object {
-  PYBIND11_OBJECT_DEFAULT(BoolOrArray, object, is_any_object)
-};
-
-}  // namespace iksel::python
-
-// NOLINTBEGIN(readability-identifier-naming): pybind11 looks for `name`.
-namespace pybind11::detail {
-template <>
-struct handle_type_name<iksel::python::MimicCurves> {
-  static constexpr auto name = const_name("collections.abc.Sequence[iksel_cpp.MimicCurve]");
-};
-template <>
-struct handle_type_name<iksel::python::BoolOrArray> {
-  // Which of the two, the types of arrays do not tell.
-  static constexpr auto name = const_name("bool | typing.Any");
-};
-}  // namespace pybind11::detail
-// NOLINTEND(readability-identifier-naming)
 
 namespace iksel::python {
 
@@ -61,44 +31,49 @@ std::uint64_t fresh_seed() {
   return (std::uint64_t{device()} << 32) | device();
 }
 
-Robot from_urdf(const UrdfSource& path_or_xml, const std::optional<Loose<std::string>>& base_link,
-                const std::optional<Loose<std::string>>& tip_link,
-                const std::optional<PoseLike>& tcp, const std::optional<JointValues>& locked_joints,
-                const Loose<bool>& soft_limits, const std::optional<ArrayLike>& default_limits,
-                const CoupledLimits& coupled_limits, const MimicCurves& mimic_curves) {
+Robot from_urdf(const UrdfSource& path_or_xml, const std::optional<std::string>& base_link,
+                const std::optional<std::string>& tip_link, const std::optional<Pose>& tcp,
+                const std::optional<JointValues>& locked_joints, bool soft_limits,
+                const std::optional<Limits>& default_limits,
+                const std::vector<CoupledLimit>& coupled_limits,
+                const std::vector<MimicCurve>& mimic_curves) {
   RobotOptions options;
-  set_common_options(base_link, locked_joints, soft_limits, default_limits, coupled_limits,
-                     options);
-  if (tip_link) options.tip_link = from_python<std::string>(*tip_link, "tip_link");
-  if (tcp) options.tcp = check_pose(as_pose(*tcp, "tcp"), "tcp");
-  options.mimic_curves = as_sequence_of<MimicCurve>(mimic_curves, "mimic_curves", "MimicCurve");
+  if (base_link) options.base_link = *base_link;
+  if (tip_link) options.tip_link = *tip_link;
+  if (tcp) options.tcp = check_pose(*tcp, "tcp");
+  if (locked_joints) options.locked_joints = *locked_joints;
+  options.soft_limits = soft_limits;
+  options.default_limits = default_limits;
+  options.coupled_limits = coupled_limits;
+  options.mimic_curves = mimic_curves;
   return read_urdf(
       path_or_xml, [&](const std::string& xml) { return Robot::from_urdf_string(xml, options); },
       [&](const std::filesystem::path& path) { return Robot::from_urdf_file(path, options); });
 }
 
+constexpr const char* kFromUrdf =
+    "path_or_xml, base_link=None, tip_link=None, tcp=None, locked_joints=None, soft_limits=False, "
+    "default_limits=None, coupled_limits=(), mimic_curves=()";
+
 std::string robot_repr(const Robot& self) {
-  return "Robot(" + py::cast<std::string>(py::repr(py::str(self.name()))) +
-         ", dof=" + std::to_string(self.dof()) + ", base_link='" + self.base_link() +
-         "', tip_link='" + self.tip_link() + "')";
+  return "Robot(" + repr_text(py::str(self.name())) + ", dof=" + std::to_string(self.dof()) +
+         ", base_link='" + self.base_link() + "', tip_link='" + self.tip_link() + "')";
 }
 
-py::object robot_state(const Robot& self) {
+/// The arguments of from_urdf that make the same robot.
+py::dict robot_state(const Robot& self) {
   const RobotOptions& options = self.options();
-  return py::make_tuple(self.urdf(), options.tip_link, to_array(self.tcp())) +
-         common_state(options) + py::make_tuple(options.mimic_curves);
-}
-
-Robot robot_from_state(const py::object& state) {
-  PickleState in(state, "Robot", 9);
-  const std::string urdf = in.value<std::string>("urdf");
-  RobotOptions options;
-  options.tip_link = in.value<std::string>("tip_link");
-  options.tcp = check_pose(as_pose(in.object(), in.name("tcp").c_str()), in.name("tcp").c_str());
-  set_common_options(in, options);
-  options.mimic_curves =
-      as_sequence_of<MimicCurve>(in.object(), in.name("mimic_curves"), "MimicCurve");
-  return Robot::from_urdf_string(urdf, options);
+  py::dict state;
+  state["path_or_xml"] = self.urdf();
+  state["base_link"] = options.base_link;
+  state["tip_link"] = options.tip_link;
+  state["tcp"] = to_array(self.tcp());
+  state["locked_joints"] = options.locked_joints;
+  state["soft_limits"] = options.soft_limits;
+  state["default_limits"] = options.default_limits;
+  state["coupled_limits"] = options.coupled_limits;
+  state["mimic_curves"] = options.mimic_curves;
+  return state;
 }
 
 /// A table of the joints.
@@ -173,14 +148,8 @@ void bind_chain(py::class_<Robot>& cls) {
 }
 
 void bind_from_urdf(py::class_<Robot>& cls) {
-  const RobotOptions defaults;
-  cls.def_static("from_urdf", &from_urdf, py::arg("path_or_xml"), py::arg("base_link") = py::none(),
-                 py::arg("tip_link") = py::none(), py::arg("tcp") = py::none(),
-                 py::arg("locked_joints") = py::none(),
-                 py::arg("soft_limits") = defaults.soft_limits,
-                 py::arg("default_limits") = py::none(), py::arg("coupled_limits") = py::tuple(),
-                 py::arg("mimic_curves") = py::tuple(),
-                 R"(Reads the chain between two links of a URDF.
+  def_static(cls, "from_urdf", kFromUrdf, fn<&from_urdf>,
+             R"(Reads the chain between two links of a URDF.
 
 Args:
     path_or_xml: a path, or the URDF itself: a str whose first character is '<', or bytes.
@@ -204,33 +173,18 @@ Raises:
         coupled limits leave no configuration, or a curve is no good.)");
 }
 
-void bind_configurations(py::class_<Robot>& cls) {
-  cls.def(
-      "within_limits",
-      [](const Robot& self, const ArrayLike& q) {
-        const auto inside = map_joints<bool>(
-            q, self.dof(), "q", {},
-            [&](const JointVector& joints, bool* out) { *out = self.within_limits(joints); });
-        return BoolOrArray(inside.ndim() == 0 ? py::object(py::bool_(*inside.data()))
-                                              : py::object(inside));
-      },
-      py::arg("q"),
-      "Whether q [rad or m], (dof,), lies inside the position limits; of (N, dof) values each, "
-      "(N,).");
-  cls.def(
-      "random_configurations",
-      [](const Robot& self, const Loose<std::size_t>& n,
-         const std::optional<Loose<std::uint64_t>>& seed) {
-        const auto count = from_python<std::size_t>(n, "n");
-        const auto number = seed ? from_python<std::uint64_t>(*seed, "seed") : fresh_seed();
-        const std::optional<ProgressCallable> no_callable;
-        const Progress interruptible = make_progress(no_callable);
-        return to_array(
-            without_gil([&] { return self.random_configurations(count, number, interruptible); }));
-      },
-      py::arg("n"), py::arg("seed") = py::none(),
-      "n configurations uniform inside the limits (continuous joints in [-pi, pi)), (n, dof). The "
-      "same seed gives the same numbers everywhere; None: other numbers in each call.");
+BoolOrArray within_limits(const Robot& self, const ArrayLike& q) {
+  const auto inside = map_joints<bool>(
+      q, self.dof(), "q", {},
+      [&](const JointVector& joints, bool* out) { *out = self.within_limits(joints); });
+  return to_bool_or_array(inside);
+}
+
+py::array_t<double> random_configurations(const Robot& self, std::size_t n,
+                                          const std::optional<std::uint64_t>& seed) {
+  const std::uint64_t number = seed ? *seed : fresh_seed();
+  return to_array(
+      without_gil([&] { return self.random_configurations(n, number, interruptible()); }));
 }
 
 }  // namespace
@@ -239,26 +193,28 @@ void bind_robot(py::module_& m) {
   bind_enum<JointType>(m);
   bind_enum<Kinematics>(m);
 
-  py::class_<Robot> cls(m, "Robot",
-                        "An immutable serial chain between two links of a URDF, with its limits. "
-                        "Safe to use from many threads at once.");
+  auto cls = bind_class<Robot>(m, "Robot",
+                               "An immutable serial chain between two links of a URDF, with its "
+                               "limits. Safe to use from many threads at once.",
+                               "iksel.load_robot(name) or Robot.from_urdf(path_or_xml)");
   bind_from_urdf(cls);
   bind_dh(m, cls);
   bind_chain(cls);
-  cls.def(
-      "with_tcp",
-      [](const Robot& self, const PoseLike& tcp) { return self.with_tcp(as_pose(tcp, "tcp")); },
-      py::arg("tcp"),
+  def(
+      cls, "with_tcp", "tcp", [](const Robot& self, const Pose& tcp) { return self.with_tcp(tcp); },
       "The same chain with another tool T_tip_tcp, (4, 4). Databases built for one serve the "
       "other.");
   bind_kinematics(cls);
-  bind_configurations(cls);
-  cls.def("__repr__", &robot_repr);
-  cls.def("_repr_html_", &robot_html);
-  cls.def("__copy__", [](const Robot& self) { return self; });
-  cls.def(
-      "__deepcopy__", [](const Robot& self, const py::dict&) { return self; }, py::arg("memo"));
-  cls.def(py::pickle(&robot_state, &robot_from_state));
+  def(cls, "within_limits", "q", fn<&within_limits>,
+      "Whether q [rad or m], (dof,), lies inside the position limits; of (N, dof) values each, "
+      "(N,).");
+  def(cls, "random_configurations", "n, seed=None", fn<&random_configurations>,
+      "n configurations uniform inside the limits (continuous joints in [-pi, pi)), (n, dof). The "
+      "same seed gives the same numbers everywhere; None: other numbers in each call.");
+  def(cls, "__repr__", "", fn<&robot_repr>);
+  def(cls, "_repr_html_", "", fn<&robot_html>);
+  def_copies(cls);
+  def_pickle(cls, fn<&robot_state>, without_defaults(kFromUrdf), fn<&from_urdf>);
 }
 
 }  // namespace iksel::python

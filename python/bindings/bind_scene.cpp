@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pybind11/stl.h>
-
 #include <map>
 #include <optional>
 #include <string>
@@ -10,66 +8,30 @@
 #include "html.hpp"
 #include "iksel/scene.hpp"
 #include "joint_values.hpp"
-#include "property.hpp"
+#include "obstacle_fields.hpp"
 #include "scene_arguments.hpp"
-
-namespace iksel::python {
-
-/// A truth value for one configuration, an array of them for many.
-class FreeOrArray : public py::object {
-  PYBIND11_OBJECT_DEFAULT(FreeOrArray, object, is_any_object)
-};
-
-}  // namespace iksel::python
-
-// NOLINTBEGIN(readability-identifier-naming): pybind11 looks for `name`.
-namespace pybind11::detail {
-template <>
-struct handle_type_name<iksel::python::FreeOrArray> {
-  // Which of the two, the types of arrays do not tell.
-  static constexpr auto name = const_name("bool | typing.Any");
-};
-}  // namespace pybind11::detail
-// NOLINTEND(readability-identifier-naming)
 
 namespace iksel::python {
 
 namespace {
 
-void bind_contact(py::module_& m) {
-  py::class_<Contact> cls(m, "Contact", "Two things that touch.");
-  add_property(cls, "link", &Contact::link, "A link of the robot or an attached object.");
-  add_property(cls, "other", &Contact::other,
-               "What it touches: an obstacle, a link or an attached object.");
-  add_property(cls, "is_obstacle", &Contact::is_obstacle, "Whether `other` is an obstacle.");
-  add_property(cls, "depth", &Contact::depth,
-               "How far they would have to part, margins included [m]; 0 or more.");
-  cls.def("__repr__", [](const Contact& self) {
-    return "Contact('" + self.link + "', '" + self.other + "', depth=" + short_number(self.depth) +
-           ")";
-  });
-  cls.def(py::pickle(
-      [](const Contact& self) -> py::object {
-        return py::make_tuple(self.link, self.other, self.is_obstacle, self.depth);
-      },
-      [](const py::object& state) {
-        PickleState in(state, "Contact", 4);
-        Contact contact;
-        contact.link = in.value<std::string>("link");
-        contact.other = in.value<std::string>("other");
-        contact.is_obstacle = in.value<bool>("is_obstacle");
-        contact.depth = in.length("depth", /*may_be_nan=*/false);
-        return contact;
-      }));
+void move_obstacle(Scene& self, const std::string& name, const Place& pose) {
+  self.move(name, pose);
+}
+
+void remove_thing(Scene& self, const std::string& name) { self.remove(name); }
+
+void attach(Scene& self, const std::string& name, const std::string& link, const ArrayLike& spheres,
+            const std::optional<Names>& may_touch) {
+  AttachedObject object;
+  object.link = link;
+  object.spheres = as_spheres(spheres, "spheres");
+  if (may_touch) object.may_touch = as_names(*may_touch, "may_touch");
+  self.attach(name, object);
 }
 
 void bind_changes(py::class_<Scene>& cls) {
-  cls.def(
-      "move",
-      [](Scene& self, const Text& name, const PoseLike& pose) {
-        self.move(from_python<std::string>(name, "name"), as_place(pose));
-      },
-      py::arg("name"), py::arg("pose"),
+  def(cls, "move", "name, pose", fn<&move_obstacle>,
       R"(Puts an obstacle elsewhere.
 
 Args:
@@ -79,17 +41,7 @@ Args:
 Raises:
     UnknownNameError: no obstacle has that name.
     InvalidArgumentError: a pose that is none.)");
-  cls.def(
-      "attach",
-      [](Scene& self, const Text& name, const Text& link, const ArrayLike& spheres,
-         const std::optional<Names>& may_touch) {
-        AttachedObject object;
-        object.link = from_python<std::string>(link, "link");
-        object.spheres = as_spheres(spheres, "spheres");
-        if (may_touch) object.may_touch = as_names(*may_touch, "may_touch");
-        self.attach(from_python<std::string>(name, "name"), object);
-      },
-      py::arg("name"), py::arg("link"), py::arg("spheres"), py::arg("may_touch") = py::none(),
+  def(cls, "attach", "name, link, spheres, may_touch=None", fn<&attach>,
       R"(Has a link carry an object from now on.
 
 Args:
@@ -101,10 +53,7 @@ Args:
 Raises:
     UnknownNameError: the URDF lacks the link, or nothing has a name of `may_touch`.
     InvalidArgumentError: a sphere that is no good, or a name that a link or an obstacle has.)");
-  cls.def(
-      "remove",
-      [](Scene& self, const Text& name) { self.remove(from_python<std::string>(name, "name")); },
-      py::arg("name"),
+  def(cls, "remove", "name", fn<&remove_thing>,
       R"(Removes an obstacle or an attached object.
 
 Args:
@@ -114,11 +63,19 @@ Raises:
     UnknownNameError: nothing has that name.)");
 }
 
-FreeOrArray is_free(const Scene& self, const ArrayLike& q) {
-  const auto free =
+Scene make_scene(const Robot& robot, const RobotSpheres& spheres,
+                 const std::optional<JointValues>& other_joints) {
+  return Scene(robot, spheres, other_joints.value_or(JointValues()));
+}
+
+BoolOrArray is_free(const Scene& self, const ArrayLike& q) {
+  return to_bool_or_array(
       map_joints<bool>(q, self.robot().dof(), "q", {},
-                       [&](const JointVector& joints, bool* out) { *out = self.is_free(joints); });
-  return FreeOrArray(free.ndim() == 0 ? py::object(py::bool_(*free.data())) : py::object(free));
+                       [&](const JointVector& joints, bool* out) { *out = self.is_free(joints); }));
+}
+
+std::vector<Contact> contacts(const Scene& self, const ArrayLike& q) {
+  return self.contacts(as_joints(q, self.robot().dof(), "q"));
 }
 
 std::map<std::string, std::string> carriers_of(const Scene& self) {
@@ -139,47 +96,52 @@ std::map<std::string, std::vector<std::string>> touchable_by_attached(const Scen
   return names;
 }
 
-py::object scene_state(const Scene& self) {
-  py::list obstacles;
-  for (const auto& [name, o] : self.obstacles()) {
-    obstacles.append(py::make_tuple(name, obstacle_state(o)));
-  }
-  py::list attached;
+py::dict scene_state(const Scene& self) {
+  py::dict state;
+  state["robot"] = self.robot();
+  state["spheres"] = self.spheres();
+  state["other_joints"] = self.other_joints();
+  state["obstacles"] = self.obstacles();
+  py::dict attached;
   for (const auto& [name, object] : self.attached()) {
-    attached.append(
-        py::make_tuple(name, object.link, sphere_rows(object.spheres), object.may_touch));
+    attached[name.c_str()] =
+        py::make_tuple(object.link, sphere_rows(object.spheres), object.may_touch);
   }
-  return py::make_tuple(self.robot(), self.spheres(), self.other_joints(), obstacles, attached);
+  state["attached"] = attached;
+  return state;
 }
 
-Scene scene_from_state(const py::object& state) {
-  PickleState in(state, "Scene", 5);
-  const auto robot = in.value<Robot>("robot");
-  const py::object spheres = in.object();
-  if (!py::isinstance<RobotSpheres>(spheres)) {
-    throw_wrong_type("pickled Scene, spheres", "RobotSpheres", spheres);
+/// The items of a dict that __getstate__ made. Throws InvalidArgumentError about what is none.
+py::dict as_items(const py::object& value, const char* name) {
+  if (!py::isinstance<py::dict>(value)) throw_wrong_type(name, "a dict", value);
+  return value;
+}
+
+Scene scene_from_state(const Robot& robot, const RobotSpheres& spheres,
+                       const JointValues& other_joints, const py::object& obstacles,
+                       const py::object& attached) {
+  Scene scene(robot, spheres, other_joints);
+  const char* name_of_obstacles = "pickled Scene, obstacles";
+  for (const auto& [name, obstacle] : as_items(obstacles, name_of_obstacles)) {
+    if (!is_a<Obstacle>(obstacle)) throw_wrong_type(name_of_obstacles, "Obstacles", obstacle);
+    scene.set(from_python<std::string>(name, name_of_obstacles), made<Obstacle>(obstacle));
   }
-  const auto others = as_joint_values(JointValues(in.object()), "pickled Scene, other_joints");
-  Scene scene(robot, py::cast<RobotSpheres>(spheres), others);
-  for (const py::handle item : in.list("obstacles")) {
-    PickleState of(py::reinterpret_borrow<py::object>(item), "Scene, obstacle", 2);
-    const auto name = of.value<std::string>("name");
-    scene.set(name, obstacle_from_state(of.object()));
-  }
+  const char* name_of_attached = "pickled Scene, attached";
   // What objects may touch may be an object that comes later.
-  std::vector<std::pair<std::string, AttachedObject>> attached;
-  for (const py::handle item : in.list("attached")) {
-    PickleState of(py::reinterpret_borrow<py::object>(item), "Scene, attached object", 4);
-    auto& [name, object] = attached.emplace_back();
-    name = of.value<std::string>("name");
-    object.link = of.value<std::string>("link");
-    object.spheres = as_spheres(of.object(), "pickled Scene, spheres");
-    object.may_touch = as_names(of.object(), "pickled Scene, may_touch");
-    AttachedObject alone = object;
-    alone.may_touch.clear();
-    scene.attach(name, alone);
+  std::vector<std::pair<std::string, AttachedObject>> all;
+  for (const auto& [name, parts] : as_items(attached, name_of_attached)) {
+    if (!py::isinstance<py::tuple>(parts) || py::len(parts) != 3) {
+      throw_wrong_type(name_of_attached, "tuples of 3", parts);
+    }
+    const auto three = py::reinterpret_borrow<py::tuple>(parts);
+    AttachedObject object;
+    object.link = from_python<std::string>(three[0], name_of_attached);
+    object.spheres = as_spheres(three[1], name_of_attached);
+    scene.attach(from_python<std::string>(name, name_of_attached), object);
+    object.may_touch = as_names(three[2], name_of_attached);
+    all.emplace_back(from_python<std::string>(name, name_of_attached), object);
   }
-  for (const auto& [name, object] : attached) scene.attach(name, object);
+  for (const auto& [name, object] : all) scene.attach(name, object);
   return scene;
 }
 
@@ -187,21 +149,19 @@ Scene scene_from_state(const py::object& state) {
 
 void bind_scene(py::module_& m) {
   bind_robot_spheres(m);
-  bind_contact(m);
+  auto contact = bind_fields<Contact>(m, "Scene.contacts");
+  def(contact, "__repr__", "", [](const Contact& self) {
+    return "Contact('" + self.link + "', '" + self.other + "', depth=" + short_number(self.depth) +
+           ")";
+  });
   bind_obstacle(m);
-  py::class_<Scene> cls(
+  auto cls = bind_class<Scene>(
       m, "Scene",
       "A robot's body and what it may not touch: obstacles, objects that it carries, itself.\n\n"
       "A value: a copy does not see what is done to another, and a solve takes it as it is then. "
       "Links that no joint of the arm moves are not held against obstacles.");
-  cls.def(py::init([](const Loose<Robot>& robot, const RobotSpheres& spheres,
-                      const std::optional<JointValues>& other_joints) {
-            std::map<std::string, double> others;
-            if (other_joints) others = as_joint_values(*other_joints, "other_joints");
-            return Scene(from_python<Robot>(robot, "robot"), spheres, others);
-          }),
-          py::arg("robot"), py::arg("spheres"), py::arg("other_joints") = py::none(),
-          R"(Begins with the robot alone.
+  def_init(cls, "robot, spheres, other_joints=None", fn<&make_scene>,
+           R"(Begins with the robot alone.
 
 Args:
     robot: whose joint values are asked about; solvers of the same chain take the scene, whatever
@@ -228,25 +188,19 @@ Raises:
                "Of each attached object the links and other objects that it may touch.");
   bind_obstacles(cls);
   bind_changes(cls);
-  cls.def("is_free", &is_free, py::arg("q"),
-          "Whether nothing touches at q [rad or m], (dof,); of (N, dof) values each, (N,).");
-  cls.def(
-      "contacts",
-      [](const Scene& self, const ArrayLike& q) {
-        return self.contacts(as_joints(q, self.robot().dof(), "q"));
-      },
-      py::arg("q"),
+  def(cls, "is_free", "q", fn<&is_free>,
+      "Whether nothing touches at q [rad or m], (dof,); of (N, dof) values each, (N,).");
+  def(cls, "contacts", "q", fn<&contacts>,
       "What touches at q, (dof,) [rad or m], the deepest first: of each link and each thing that "
       "it touches, where they overlap most.");
-  cls.def("__copy__", [](const Scene& self) { return self; });
-  cls.def(
-      "__deepcopy__", [](const Scene& self, const py::dict&) { return self; }, py::arg("memo"));
-  cls.def("__repr__", [](const Scene& self) {
-    return "Scene(" + py::cast<std::string>(py::repr(py::cast(self.robot()))) + ", " +
+  def_copies(cls);
+  def(cls, "__repr__", "", [](const Scene& self) {
+    return "Scene(" + repr_text(py::cast(self.robot())) + ", " +
            std::to_string(self.obstacles().size()) + " obstacles, " +
            std::to_string(self.attached().size()) + " attached)";
   });
-  cls.def(py::pickle(&scene_state, &scene_from_state));
+  def_pickle(cls, fn<&scene_state>, "robot, spheres, other_joints, obstacles, attached",
+             fn<&scene_from_state>);
 }
 
 }  // namespace iksel::python

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "iksel/selector.hpp"
 
-#include <pybind11/stl.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "array_checks.hpp"
 #include "bindings.hpp"
 #include "option_fields.hpp"
-#include "pickle.hpp"
 #include "pose_arguments.hpp"
 #include "property.hpp"
 #include "sequence_of.hpp"
@@ -20,14 +18,15 @@
 namespace iksel::python {
 
 /// A sequence of sample numbers.
-class SamplesLike : public py::object {
-  PYBIND11_OBJECT_DEFAULT(SamplesLike, object, is_any_object)
+struct SamplesLike : RawArgument {
+  using RawArgument::RawArgument;
+  static constexpr const char* kText = "collections.abc.Sequence[int]";
 };
 
 namespace {
 
 using Doubles = py::array_t<double>;
-using CandidateArrays = py::typing::Tuple<py::array_t<std::int64_t>, Doubles, Doubles, Doubles>;
+using CandidateArrays = std::tuple<py::array_t<std::int64_t>, Doubles, Doubles, Doubles>;
 
 CandidateArrays to_arrays(const Candidates& candidates, int dof) {
   const auto n = static_cast<py::ssize_t>(candidates.indices.size());
@@ -36,21 +35,32 @@ CandidateArrays to_arrays(const Candidates& candidates, int dof) {
   Doubles q({n, static_cast<py::ssize_t>(dof)});
   double* out = q.mutable_data();
   for (const JointVector& each : candidates.q) out = std::copy_n(each.data(), dof, out);
-  return py::reinterpret_steal<CandidateArrays>(
-      py::make_tuple(indices, Doubles(n, candidates.distances.data()),
-                     Doubles(n, candidates.adjustments.data()), q)
-          .release());
+  return {indices, Doubles(n, candidates.distances.data()),
+          Doubles(n, candidates.adjustments.data()), q};
 }
 
-CandidateArrays candidates(Selector& self, const PoseLike& pose,
-                           const std::optional<Loose<std::size_t>>& count,
-                           const std::optional<Loose<Ranking>>& ranking) {
-  const Pose T_base_tip = as_pose(pose, "pose");
+CandidateArrays candidates(Selector& self, const Pose& T_base_tip,
+                           const std::optional<std::size_t>& count,
+                           const std::optional<Ranking>& ranking) {
   const Paper& scheme = self.scheme();
-  const auto k = count ? from_python<std::size_t>(*count, "count")
-                       : static_cast<std::size_t>(scheme.neighbours);
-  const Ranking order = ranking ? from_python<Ranking>(*ranking, "ranking") : scheme.ranking;
-  return to_arrays(self.candidates(T_base_tip, k, order), self.database().dof());
+  const std::size_t k = count ? *count : static_cast<std::size_t>(scheme.neighbours);
+  return to_arrays(self.candidates(T_base_tip, k, ranking ? *ranking : scheme.ranking),
+                   self.database().dof());
+}
+
+CandidateArrays rank(Selector& self, Ranking ranking) {
+  return to_arrays(self.rank(ranking), self.database().dof());
+}
+
+Selector make_selector(const Database& database, const Paper& scheme) {
+  return Selector(database, scheme);
+}
+
+py::dict selector_state(const Selector& self) {
+  py::dict state;
+  state["database"] = self.database();
+  state["scheme"] = self.scheme();
+  return state;
 }
 
 std::optional<std::size_t> next(Selector& self, const SamplesLike& failed) {
@@ -62,16 +72,12 @@ std::optional<std::size_t> next(Selector& self, const SamplesLike& failed) {
 }  // namespace
 
 void bind_selector(py::module_& m) {
-  py::class_<Selector> cls(
+  auto cls = bind_class<Selector>(
       m, "Selector",
       "Selects seeds of a database for one target after the other, as the paper does and a Solver "
       "with the strategy Paper: query, rank, re-select. Not to be used from two threads at once.");
-  cls.def(py::init([](const Loose<Database>& given, const Loose<Paper>& scheme) {
-            const auto database = from_python<Database>(given, "database");
-            return Selector(database, from_python<Paper>(scheme, "scheme"));
-          }),
-          py::arg("database"), py::arg_v("scheme", Paper{}, "Paper()"),
-          R"(Takes a database with a full key, as DatabaseOptions.paper() describes it.
+  def_init(cls, "database, scheme=Paper()", fn<&make_selector>,
+           R"(Takes a database with a full key, as DatabaseOptions.paper() describes it.
 
 Args:
     database: where the seeds come from.
@@ -81,9 +87,8 @@ Raises:
     InvalidArgumentError: the scheme is out of range or limit-aware, or the database's key is
         reduced: of limits, and of the joints that such a key leaves out, a database alone says
         nothing.)");
-  cls.def("candidates", &candidates, py::arg("pose"), py::arg("count") = py::none(),
-          py::arg("ranking") = py::none(),
-          R"(The samples nearest to a pose, the best first.
+  def(cls, "candidates", "pose, count=None, ranking=None", fn<&candidates>,
+      R"(The samples nearest to a pose, the best first.
 
 Args:
     pose: T_base_tip [m] of the tip link, without the TCP; as in Solver.solve.
@@ -97,19 +102,13 @@ Returns:
 
 Raises:
     InvalidArgumentError: a pose that is not rigid, a count of 0.)");
-  cls.def(
-      "rank",
-      [](Selector& self, const Loose<Ranking>& ranking) {
-        return to_arrays(self.rank(from_python<Ranking>(ranking, "ranking")),
-                         self.database().dof());
-      },
-      py::arg("ranking"),
+  def(cls, "rank", "ranking", fn<&rank>,
       R"(The candidates of the last pose in another order, as `candidates` gives them.
 
 Raises:
     InvalidArgumentError: there was no pose yet.)");
-  cls.def("next", &next, py::arg("failed") = py::tuple(),
-          R"(The sample to be tried after those that failed.
+  def(cls, "next", "failed=()", fn<&next>,
+      R"(The sample to be tried after those that failed.
 
 Args:
     failed: indices of the samples that were tried, in that order.
@@ -123,27 +122,10 @@ Raises:
     InvalidArgumentError: an index that is no candidate or comes twice, or there was no pose yet.)");
   add_property(cls, "database", &Selector::database, "Where the seeds come from.");
   add_property(cls, "scheme", &Selector::scheme, "How they are selected.");
-  cls.def("__repr__", [](const Selector& self) {
-    return "Selector(" + py::cast<std::string>(py::repr(py::cast(self.database()))) + ")";
+  def(cls, "__repr__", "", [](const Selector& self) {
+    return "Selector(" + repr_text(py::cast(self.database())) + ")";
   });
-  cls.def(py::pickle(
-      [](const Selector& self) -> py::object {
-        return py::make_tuple(self.database(), py::cast(self.scheme()));
-      },
-      [](const py::object& state) {
-        PickleState in(state, "Selector", 2);
-        const auto database = in.value<Database>("database");
-        return Selector(database, in.value<Paper>("scheme"));
-      }));
+  def_pickle(cls, fn<&selector_state>, "database, scheme", fn<&make_selector>);
 }
 
 }  // namespace iksel::python
-
-// NOLINTBEGIN(readability-identifier-naming): pybind11 looks for `name`.
-namespace pybind11::detail {
-template <>
-struct handle_type_name<iksel::python::SamplesLike> {
-  static constexpr auto name = const_name("collections.abc.Sequence[int]");
-};
-}  // namespace pybind11::detail
-// NOLINTEND(readability-identifier-naming)

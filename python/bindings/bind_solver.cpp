@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pybind11/stl.h>
-
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -15,10 +13,8 @@
 #include "gil.hpp"
 #include "iksel/solver.hpp"
 #include "option_fields.hpp"
-#include "pickle.hpp"
 #include "pose_arguments.hpp"
 #include "progress.hpp"
-#include "property.hpp"
 #include "py_batch.hpp"
 #include "request_keywords.hpp"
 
@@ -26,39 +22,19 @@ namespace iksel::python {
 
 namespace {
 
-template <class T>
-std::optional<T> from_optional(const std::optional<Loose<T>>& value, const char* name) {
-  if (!value) return std::nullopt;
-  return from_python<T>(*value, name);
-}
-
-Solver make_solver(const Loose<Robot>& given_robot,
-                   const std::optional<Loose<SolverOptions>>& given,
-                   const std::optional<Loose<Database>>& given_database,
-                   const std::optional<Loose<Robot>>& given_nominal,
-                   const std::optional<Loose<std::array<double, 2>>>& max_deviation) {
-  const auto robot = from_python<Robot>(given_robot, "robot");
-  const auto options = given ? from_python<SolverOptions>(*given, "options") : SolverOptions{};
+Solver make_solver(const Robot& robot, const std::optional<SolverOptions>& given,
+                   const std::optional<Database>& database, const std::optional<Robot>& nominal,
+                   const std::optional<std::array<double, 2>>& max_deviation) {
+  const SolverOptions options = given.value_or(SolverOptions());
   options.validate();
-  const auto database = from_optional<Database>(given_database, "database");
-  const auto nominal = from_optional<Robot>(given_nominal, "nominal");
   CalibrationDeviation bound = Solver::kMaxCalibrationDeviation;
-  if (max_deviation) {
-    const auto [position, rotation] =
-        from_python<std::array<double, 2>>(*max_deviation, "max_calibration_deviation");
-    bound = {position, rotation};
-  }
+  if (max_deviation) bound = {(*max_deviation)[0], (*max_deviation)[1]};
   // Built here and not by Solver, so that Ctrl-C ends a long build.
-  const std::optional<ProgressCallable> no_callable;
-  const Progress interruptible = make_progress(no_callable);
   const GilRelease release;
-  if (nominal) {
-    return Solver(robot, options,
-                  database ? *database : Database::build(*nominal, options.database, interruptible),
-                  *nominal, bound);
-  }
-  return Solver(robot, options,
-                database ? *database : Database::build(robot, options.database, interruptible));
+  const Robot& sampled = nominal ? *nominal : robot;
+  const Database seeds =
+      database ? *database : Database::build(sampled, options.database, interruptible());
+  return nominal ? Solver(robot, options, seeds, *nominal, bound) : Solver(robot, options, seeds);
 }
 
 /// (N, dof) values, or (dof,) for all targets, which go into the request.
@@ -90,7 +66,7 @@ std::vector<Keyword> batch_keywords() {
   return all;
 }
 
-py::object solve_batch(const Solver& self, py::handle poses, const Given& given) {
+PyBatchResult solve_batch(const Solver& self, py::handle poses, const Given& given) {
   const int joints = self.robot().dof();
   SolveRequest request = read_request(self, given, /*except=*/"near");
   const DoubleArray targets = as_poses(poses, "poses", &task_of(self, request));
@@ -110,31 +86,30 @@ py::object solve_batch(const Solver& self, py::handle poses, const Given& given)
                        out.iterations.mutable_data(),
                        out.move.mutable_data(),
                        out.proof.mutable_data()};
-  const std::optional<ProgressCallable> no_callable;
-  const Progress interruptible = make_progress(no_callable);
   bool* success = out.success.mutable_data();
   const double* in = targets.data();
   {
     const GilRelease release;
     self.solve_batch(in, static_cast<std::size_t>(n), request, nears ? nears->data() : nullptr,
-                     view, options.threads, interruptible);
+                     view, options.threads, interruptible());
     std::transform(view.status, view.status + n, success, [](std::uint8_t status) {
       return static_cast<Status>(status) == Status::solved;
     });
   }
-  return py::cast(std::move(out));
+  return out;
 }
 
-py::object solver_state(const Solver& self) {
-  return py::make_tuple(self.robot(), self.options(), self.database(), self.nominal());
+py::dict solver_state(const Solver& self) {
+  py::dict state;
+  state["robot"] = self.robot();
+  state["options"] = self.options();
+  state["database"] = self.database();
+  state["nominal"] = self.nominal();
+  return state;
 }
 
-Solver solver_from_state(const py::object& state) {
-  PickleState in(state, "Solver", 4);
-  const auto robot = in.value<Robot>("robot");
-  const auto options = in.value<SolverOptions>("options");
-  const auto database = in.value<Database>("database");
-  const auto nominal = in.value<Robot>("nominal");
+Solver solver_from_state(const Robot& robot, const SolverOptions& options, const Database& database,
+                         const Robot& nominal) {
   if (nominal.chain_hash() == robot.chain_hash()) return Solver(robot, options, database);
   // It was within its bound when it was made.
   constexpr double kAny = std::numeric_limits<double>::infinity();
@@ -142,10 +117,10 @@ Solver solver_from_state(const py::object& state) {
 }
 
 void bind_construction(py::class_<Solver>& cls) {
-  cls.def(py::init(&make_solver), py::arg("robot"), py::arg("options") = py::none(),
-          py::arg("database") = py::none(), py::kw_only(), py::arg("nominal") = py::none(),
-          py::arg("max_calibration_deviation") = py::none(),
-          R"(Uses a database, or builds one by `options.database` if it is given none.
+  def_init(cls,
+           "robot, options=None, database=None, *, nominal=None, max_calibration_deviation=None",
+           fn<&make_solver>,
+           R"(Uses a database, or builds one by `options.database` if it is given none.
 
 Args:
     robot: the chain to solve for.
@@ -190,7 +165,7 @@ void bind_properties(py::class_<Solver>& cls) {
 }
 
 void bind_batch(py::class_<Solver>& cls) {
-  def_method<1>(
+  def_method(
       cls,
       {"solve_batch",
        R"(Solves many targets with the GIL released; row i belongs to target i.
@@ -202,14 +177,13 @@ which counts no branches after the first that is an answer; else the answer may 
 target's solutions, within the same tolerances. The request holds for each target by itself.)",
        "poses",
        "T_base_tip, (N, 4, 4) [m], or others as in solve. Doubles in C order are read in place.",
-       "BatchResult",
        R"(Raises:
     InvalidArgumentError: wrong shape or dtype, a bad argument, or with on_invalid_pose="raise"
         a bad pose.)"},
-      batch_keywords(),
+      batch_keywords(), 1,
       {"threads", "near", "weights", "norm", "seeds", "database_seeds", "scene", "exact", "filter",
        "deadline", "task", "objective", "closest", "on_invalid_pose"},
-      &solve_batch);
+      fn<&solve_batch>);
 }
 
 }  // namespace
@@ -218,23 +192,20 @@ void bind_solver(py::module_& m) {
   bind_enum<MoveNorm>(m);
   bind_enum<SolutionOrder>(m);
 
-  py::class_<Solver> cls(m, "Solver",
-                         "Solves inverse kinematics for one robot. Immutable, safe to use from "
-                         "many threads at once; the same input gives the same bits.");
+  auto cls = bind_class<Solver>(m, "Solver",
+                                "Solves inverse kinematics for one robot. Immutable, safe to use "
+                                "from many threads at once; the same input gives the same bits.");
   bind_construction(cls);
   bind_properties(cls);
   bind_requests(m, cls);
   bind_path(m, cls);
   bind_self_motion(m, cls);
   bind_batch(cls);
-  cls.def("__repr__", [](const Solver& self) {
-    return "Solver(" + py::cast<std::string>(py::repr(py::cast(self.robot()))) + ", " +
-           to_repr(self.options()) + ")";
+  def(cls, "__repr__", "", [](const Solver& self) {
+    return "Solver(" + repr_text(py::cast(self.robot())) + ", " + to_repr(self.options()) + ")";
   });
-  cls.def("__copy__", [](const Solver& self) { return self; });
-  cls.def(
-      "__deepcopy__", [](const Solver& self, const py::dict&) { return self; }, py::arg("memo"));
-  cls.def(py::pickle(&solver_state, &solver_from_state));
+  def_copies(cls);
+  def_pickle(cls, fn<&solver_state>, "robot, options, database, nominal", fn<&solver_from_state>);
 }
 
 }  // namespace iksel::python

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pybind11/stl.h>
-
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -15,30 +13,15 @@
 namespace iksel::python {
 
 /// Names of links, and spheres (N, 4).
-class SphereTable : public py::object {
-  PYBIND11_OBJECT_DEFAULT(SphereTable, object, is_any_object)
+struct SphereTable : RawArgument {
+  using RawArgument::RawArgument;
+  static constexpr const char* kText = "collections.abc.Mapping[str, numpy.typing.ArrayLike]";
 };
 /// Pairs of names.
-class NamePairs : public py::object {
-  PYBIND11_OBJECT_DEFAULT(NamePairs, object, is_any_object)
+struct NamePairs : RawArgument {
+  using RawArgument::RawArgument;
+  static constexpr const char* kText = "collections.abc.Iterable[tuple[str, str]]";
 };
-
-}  // namespace iksel::python
-
-// NOLINTBEGIN(readability-identifier-naming): pybind11 looks for `name`.
-namespace pybind11::detail {
-template <>
-struct handle_type_name<iksel::python::SphereTable> {
-  static constexpr auto name = const_name("collections.abc.Mapping[str, numpy.typing.ArrayLike]");
-};
-template <>
-struct handle_type_name<iksel::python::NamePairs> {
-  static constexpr auto name = const_name("collections.abc.Iterable[tuple[str, str]]");
-};
-}  // namespace pybind11::detail
-// NOLINTEND(readability-identifier-naming)
-
-namespace iksel::python {
 
 std::vector<Sphere> as_spheres(py::handle value, const char* name) {
   const DoubleArray array = as_doubles(value, name);
@@ -85,7 +68,7 @@ RobotSpheres make_spheres(const SphereTable& links, const std::optional<NamePair
   if (!py::hasattr(links, "keys")) {
     throw_wrong_type("links", "a mapping of names to (N, 4) arrays", links);
   }
-  for (const auto& [key, rows] : py::dict(py::object(links))) {
+  for (const auto& [key, rows] : py::dict(py::reinterpret_borrow<py::object>(links))) {
     const auto link = from_python<std::string>(key, "links");
     spheres.links[link] = as_spheres(rows, ("links['" + link + "']").c_str());
   }
@@ -113,15 +96,28 @@ std::size_t count_spheres(const RobotSpheres& self) {
   return count;
 }
 
+std::string spheres_repr(const RobotSpheres& self) {
+  return "RobotSpheres(" + std::to_string(count_spheres(self)) + " on " +
+         std::to_string(self.links.size()) + " links, " + std::to_string(self.pairs.size()) +
+         " pairs)";
+}
+
+py::dict spheres_state(const RobotSpheres& self) {
+  py::dict state;
+  state["links"] = links_of(self);
+  state["pairs"] = self.pairs;
+  return state;
+}
+
 }  // namespace
 
 void bind_robot_spheres(py::module_& m) {
-  py::class_<RobotSpheres> cls(
+  auto cls = bind_class<RobotSpheres>(
       m, "RobotSpheres",
       "Spheres that cover the links of a robot, and which links may not touch each other; made by "
       "iksel.spheres.");
-  cls.def(py::init(&make_spheres), py::arg("links"), py::arg("pairs") = py::none(),
-          R"(Takes spheres as they are.
+  def_init(cls, "links, pairs=None", fn<&make_spheres>,
+           R"(Takes spheres as they are.
 
 Args:
     links: for each link that has a body its spheres, (N, 4), rows of centre in the link's frame and
@@ -136,18 +132,8 @@ Raises:
                "[m].");
   add_property(cls, "pairs", &RobotSpheres::pairs,
                "Pairs of links that are looked at for collisions with each other.");
-  cls.def("__repr__", [](const RobotSpheres& self) {
-    return "RobotSpheres(" + std::to_string(count_spheres(self)) + " on " +
-           std::to_string(self.links.size()) + " links, " + std::to_string(self.pairs.size()) +
-           " pairs)";
-  });
-  cls.def(py::pickle([](const RobotSpheres& self)
-                         -> py::object { return py::make_tuple(links_of(self), self.pairs); },
-                     [](const py::object& state) {
-                       PickleState in(state, "RobotSpheres", 2);
-                       const auto links = py::reinterpret_borrow<SphereTable>(in.object());
-                       return make_spheres(links, py::reinterpret_borrow<NamePairs>(in.object()));
-                     }));
+  def(cls, "__repr__", "", fn<&spheres_repr>);
+  def_pickle(cls, fn<&spheres_state>, "links, pairs", fn<&make_spheres>);
 }
 
 }  // namespace iksel::python

@@ -5,22 +5,23 @@
 #include <limits>
 #include <string>
 
-#include "array_checks.hpp"
+#include "array_fields.hpp"
 #include "bindings.hpp"
 #include "html.hpp"
-#include "pickle.hpp"
 #include "property.hpp"
 #include "py_batch.hpp"
 #include "py_tree.hpp"
 
 namespace iksel::python {
 
+template <>
+struct FromPython<std::vector<TreeResult>> : FromSequence<TreeResult> {};
+
 namespace {
 
-OptionalJoints values_or_none(const double* values, py::ssize_t count) {
-  const py::object value =
-      count == 0 ? py::object(py::none()) : py::object(py::array_t<double>(count, values));
-  return py::reinterpret_borrow<OptionalJoints>(value);
+OptionalArray values_or_none(const double* values, py::ssize_t count) {
+  return OptionalArray(count == 0 ? py::object(py::none())
+                                  : py::object(py::array_t<double>(count, values)));
 }
 
 std::string tree_result_repr(const TreeResult& self) {
@@ -34,51 +35,67 @@ std::string tree_result_repr(const TreeResult& self) {
          ", iterations=" + std::to_string(self.iterations) + ")";
 }
 
-py::object tree_result_state(const TreeResult& self) {
-  return py::make_tuple(enum_name(self.status), enum_name(self.proof), to_array(self.q),
-                        to_array(JointVector(self.position_error)),
-                        to_array(JointVector(self.rotation_error)), self.move, self.unreachable_tip,
-                        self.attempts, self.iterations);
+py::dict tree_result_state(const TreeResult& self) {
+  py::dict state;
+  state["status"] = enum_name(self.status);
+  state["proof"] = enum_name(self.proof);
+  state["q"] = to_array(self.q);
+  state["position_error"] = to_array(JointVector(self.position_error));
+  state["rotation_error"] = to_array(JointVector(self.rotation_error));
+  state["move"] = self.move;
+  state["unreachable_tip"] = self.unreachable_tip;
+  state["attempts"] = self.attempts;
+  state["iterations"] = self.iterations;
+  return state;
 }
 
 /// Errors of all tips, 0 or more.
-TipVector errors_from(PickleState& in, const char* item) {
-  const JointVector errors = in.joints(item);
+void check_tips(const JointVector& errors) {
   if (errors.size() > kMaxTips || (errors.array() < 0).any()) {
-    in.refuse(item, "up to " + std::to_string(kMaxTips) + " numbers of 0 or more", "others");
+    refuse_state("pickled TreeResult, errors",
+                 "up to " + std::to_string(kMaxTips) + " numbers of 0 or more", "others");
   }
-  return errors;
 }
 
-TreeResult tree_result_from_state(const py::object& state) {
-  PickleState in(state, "TreeResult", 9);
+TreeResult tree_result_from_state(Status status, Proof proof, const JointVector& q,
+                                  const JointVector& position_error,
+                                  const JointVector& rotation_error, double move,
+                                  int unreachable_tip, int attempts, int iterations) {
+  const std::string of = "pickled TreeResult, ";
+  check_tips(position_error);
+  check_tips(rotation_error);
+  may_be_length(move, of + "move");
+  is_index<kMaxTips>(unreachable_tip, of + "unreachable_tip");
+  is_count(attempts, of + "attempts");
+  is_count(iterations, of + "iterations");
   TreeResult out;
-  out.status = in.value<Status>("status");
-  out.proof = in.value<Proof>("proof");
-  out.q = in.joints("q");
-  out.position_error = errors_from(in, "position_error");
-  out.rotation_error = errors_from(in, "rotation_error");
-  out.move = in.length("move", /*may_be_nan=*/true);
-  out.unreachable_tip = in.index<int>("unreachable_tip", kMaxTips);
-  out.attempts = in.count("attempts");
-  out.iterations = in.count("iterations");
+  out.status = status;
+  out.proof = proof;
+  out.q = q;
+  out.position_error = position_error;
+  out.rotation_error = rotation_error;
+  out.move = move;
+  out.unreachable_tip = unreachable_tip;
+  out.attempts = attempts;
+  out.iterations = iterations;
   const bool has_q = out.q.size() > 0;
   if (has_q != out.success() || has_q != (out.position_error.size() > 0) ||
       out.position_error.size() != out.rotation_error.size()) {
-    in.refuse("q", "joint values and errors where solved, and only there", "others");
+    refuse_state(of + "q", "joint values and errors where solved, and only there", "others");
   }
   if (out.success() != (out.proof == Proof::answer) ||
       (out.success() && out.unreachable_tip >= 0)) {
-    in.refuse("proof", "answer where solved, and only there", enum_name(out.proof));
+    refuse_state(of + "proof", "answer where solved, and only there", enum_name(out.proof));
   }
   return out;
 }
 
 void bind_tree_single(py::module_& m) {
   using R = TreeResult;
-  py::class_<R> cls(m, "TreeResult",
-                    "Answer to one target of each tip, true if it is one. Everything in it is "
-                    "measured on the returned q.");
+  auto cls = bind_class<R>(m, "TreeResult",
+                           "Answer to one target of each tip, true if it is one. Everything in it "
+                           "is measured on the returned q.",
+                           "TreeSolver.solve");
   add_property(
       cls, "success", [](const R& self) { return self.success(); },
       "Whether q puts each tip at its target within both tolerances and lies inside the limits.");
@@ -114,9 +131,12 @@ void bind_tree_single(py::module_& m) {
   add_property(cls, "attempts", &R::attempts,
                "Values of the shared joints and seeds that were tried.");
   add_property(cls, "iterations", &R::iterations, "Iteration steps on all tips together.");
-  cls.def("__bool__", [](const R& self) { return self.success(); });
-  cls.def("__repr__", &tree_result_repr);
-  cls.def(py::pickle(&tree_result_state, &tree_result_from_state));
+  def(cls, "__bool__", "", [](const R& self) { return self.success(); });
+  def(cls, "__repr__", "", fn<&tree_result_repr>);
+  def_pickle(cls, fn<&tree_result_state>,
+             "status, proof, q, position_error, rotation_error, move, unreachable_tip, attempts, "
+             "iterations",
+             fn<&tree_result_from_state>);
 }
 
 /// (N,) of a number of each row.
@@ -148,28 +168,26 @@ py::ssize_t count_solved(const PyTreeBatch& self) {
                        [](const TreeResult& row) { return row.success(); });
 }
 
-py::object tree_batch_state(const PyTreeBatch& self) {
-  return py::make_tuple(self.dof, self.tips, py::cast(self.rows));
+py::dict tree_batch_state(const PyTreeBatch& self) {
+  py::dict state;
+  state["dof"] = self.dof;
+  state["tips"] = self.tips;
+  state["rows"] = self.rows;
+  return state;
 }
 
-PyTreeBatch tree_batch_from_state(const py::object& state) {
-  PickleState in(state, "TreeBatchResult", 3);
-  PyTreeBatch out;
-  out.dof = in.count("dof");
-  out.tips = in.count("tips");
-  if (out.dof > kMaxDof) in.refuse("dof", "a number of joints", std::to_string(out.dof));
-  if (out.tips > kMaxTips) in.refuse("tips", "a number of tips", std::to_string(out.tips));
-  for (const py::handle row : in.list("rows")) {
-    if (!py::isinstance<TreeResult>(row)) {
-      in.refuse("rows", "TreeResults", py::cast<std::string>(py::repr(row)));
-    }
-    out.rows.push_back(py::cast<TreeResult>(row));
-    const TreeResult& last = out.rows.back();
-    if (last.success() && (last.q.size() != out.dof || last.position_error.size() != out.tips)) {
-      in.refuse("rows", "as many joints and tips in each", "others");
+PyTreeBatch tree_batch_from_state(int dof, int tips, const std::vector<TreeResult>& rows) {
+  const std::string of = "pickled TreeBatchResult, ";
+  if (dof < 0 || dof > kMaxDof) refuse_state(of + "dof", "a number of joints", std::to_string(dof));
+  if (tips < 0 || tips > kMaxTips) {
+    refuse_state(of + "tips", "a number of tips", std::to_string(tips));
+  }
+  for (const TreeResult& row : rows) {
+    if (row.success() && (row.q.size() != dof || row.position_error.size() != tips)) {
+      refuse_state(of + "rows", "as many joints and tips in each", "others");
     }
   }
-  return out;
+  return {rows, dof, tips};
 }
 
 void bind_tree_columns(py::class_<PyTreeBatch>& cls) {
@@ -228,32 +246,28 @@ void bind_tree_columns(py::class_<PyTreeBatch>& cls) {
 
 void bind_tree_rows(py::module_& m) {
   using B = PyTreeBatch;
-  py::class_<B> cls(m, "TreeBatchResult",
-                    "Answers to many targets as arrays, each made when it is asked for; row i "
-                    "belongs to target i. Indexing gives a TreeResult. It is neither true nor "
-                    "false: ask success.all() or success.any().");
+  auto cls = bind_class<B>(m, "TreeBatchResult",
+                           "Answers to many targets as arrays, each made when it is asked for; row "
+                           "i belongs to target i. Indexing gives a TreeResult. It is neither true "
+                           "nor false: ask success.all() or success.any().",
+                           "TreeSolver.solve_batch");
   bind_tree_columns(cls);
-  cls.def("__len__", [](const B& self) { return self.rows.size(); });
-  cls.def(
-      "__getitem__",
-      [](const B& self, const RowIndex& i) {
-        const auto rows = static_cast<py::ssize_t>(self.rows.size());
-        return self.rows[static_cast<std::size_t>(as_row(i, rows, "row"))];
-      },
-      py::arg("i"));
-  cls.def("__iter__", [](const py::object& self) {
-    return py::reinterpret_steal<py::typing::Iterator<TreeResult>>(PySeqIter_New(self.ptr()));
+  def(cls, "__len__", "", [](const B& self) { return self.rows.size(); });
+  def(cls, "__getitem__", "i", [](const B& self, py::ssize_t i) {
+    const auto rows = static_cast<py::ssize_t>(self.rows.size());
+    return self.rows[static_cast<std::size_t>(as_row(i, rows, "row"))];
   });
-  cls.def("__bool__", [](const B& self) -> bool {
+  def_iter<TreeResult>(cls);
+  def(cls, "__bool__", "", [](const B& self) -> bool {
     throw InvalidArgumentError("the truth of " + std::to_string(self.rows.size()) +
                                " answers is ambiguous: ask batch.success.all(), "
                                "batch.success.any(), or each TreeResult by itself");
   });
-  cls.def("__repr__", [](const B& self) {
+  def(cls, "__repr__", "", [](const B& self) {
     return "TreeBatchResult(" + std::to_string(count_solved(self)) + " of " +
            std::to_string(self.rows.size()) + " solved)";
   });
-  cls.def(py::pickle(&tree_batch_state, &tree_batch_from_state));
+  def_pickle(cls, fn<&tree_batch_state>, "dof, tips, rows", fn<&tree_batch_from_state>);
 }
 
 }  // namespace

@@ -12,7 +12,6 @@
 #include "gil.hpp"
 #include "iksel/pose.hpp"
 #include "iksel/tree_robot.hpp"
-#include "pickle.hpp"
 #include "pose_arguments.hpp"
 #include "progress.hpp"
 #include "property.hpp"
@@ -22,9 +21,15 @@
 
 namespace iksel::python {
 
+/// A sequence of link names.
+struct LinkNames : RawArgument {
+  using RawArgument::RawArgument;
+  static constexpr const char* kText = "collections.abc.Sequence[str]";
+};
+
 namespace {
 
-std::vector<std::string> as_links(const py::object& value, const std::string& name) {
+std::vector<std::string> as_links(py::handle value, const std::string& name) {
   return read_sequence(value, name, "a list of link names", from_python<std::string>);
 }
 
@@ -41,22 +46,28 @@ std::vector<StoredPose> as_tools(py::handle value, const std::string& name) {
 }
 
 TreeRobot tree_robot_from_urdf(const UrdfSource& path_or_xml, const LinkNames& tip_links,
-                               const std::optional<Loose<std::string>>& base_link,
+                               const std::optional<std::string>& base_link,
                                const std::optional<PoseLike>& tcps,
-                               const std::optional<JointValues>& locked_joints,
-                               const Loose<bool>& soft_limits,
-                               const std::optional<ArrayLike>& default_limits,
-                               const CoupledLimits& coupled_limits) {
+                               const std::optional<JointValues>& locked_joints, bool soft_limits,
+                               const std::optional<Limits>& default_limits,
+                               const std::vector<CoupledLimit>& coupled_limits) {
   TreeOptions options;
   options.tip_links = as_links(tip_links, "tip_links");
-  set_common_options(base_link, locked_joints, soft_limits, default_limits, coupled_limits,
-                     options);
+  if (base_link) options.base_link = *base_link;
   if (tcps) options.tcps = as_tools(*tcps, "tcps");
+  if (locked_joints) options.locked_joints = *locked_joints;
+  options.soft_limits = soft_limits;
+  options.default_limits = default_limits;
+  options.coupled_limits = coupled_limits;
   return read_urdf(
       path_or_xml,
       [&](const std::string& xml) { return TreeRobot::from_urdf_string(xml, options); },
       [&](const std::filesystem::path& path) { return TreeRobot::from_urdf_file(path, options); });
 }
+
+constexpr const char* kTreeFromUrdf =
+    "path_or_xml, tip_links, base_link=None, tcps=None, locked_joints=None, soft_limits=False, "
+    "default_limits=None, coupled_limits=()";
 
 /// (k, 4, 4) of their own.
 template <class Poses>
@@ -77,29 +88,23 @@ std::string tree_robot_repr(const TreeRobot& self) {
          "', tip_links=" + py::cast<std::string>(py::repr(py::cast(self.tip_links()))) + ")";
 }
 
-py::object tree_robot_state(const TreeRobot& self) {
+py::dict tree_robot_state(const TreeRobot& self) {
   const TreeOptions& o = self.options();
-  return py::make_tuple(self.urdf(), o.tip_links, to_stack(o.tcps)) + common_state(o);
-}
-
-TreeRobot tree_robot_from_state(const py::object& state) {
-  PickleState in(state, "TreeRobot", 8);
-  const std::string urdf = in.value<std::string>("urdf");
-  TreeOptions options;
-  options.tip_links = as_links(in.object(), in.name("tip_links"));
-  options.tcps = as_tools(in.object(), in.name("tcps"));
-  set_common_options(in, options);
-  return TreeRobot::from_urdf_string(urdf, options);
+  py::dict state;
+  state["path_or_xml"] = self.urdf();
+  state["tip_links"] = o.tip_links;
+  state["base_link"] = o.base_link;
+  state["tcps"] = to_stack(o.tcps);
+  state["locked_joints"] = o.locked_joints;
+  state["soft_limits"] = o.soft_limits;
+  state["default_limits"] = o.default_limits;
+  state["coupled_limits"] = o.coupled_limits;
+  return state;
 }
 
 void bind_from_urdf(py::class_<TreeRobot>& cls) {
-  const TreeOptions defaults;
-  cls.def_static("from_urdf", &tree_robot_from_urdf, py::arg("path_or_xml"), py::arg("tip_links"),
-                 py::arg("base_link") = py::none(), py::arg("tcps") = py::none(),
-                 py::arg("locked_joints") = py::none(),
-                 py::arg("soft_limits") = defaults.soft_limits,
-                 py::arg("default_limits") = py::none(), py::arg("coupled_limits") = py::tuple(),
-                 R"(Reads the chains from one link of a URDF to several.
+  def_static(cls, "from_urdf", kTreeFromUrdf, fn<&tree_robot_from_urdf>,
+             R"(Reads the chains from one link of a URDF to several.
 
 Args:
     path_or_xml: a path, or the URDF itself: a str whose first character is '<', or bytes.
@@ -155,27 +160,19 @@ void bind_facts(py::class_<TreeRobot>& cls) {
 }
 
 void bind_tips(py::class_<TreeRobot>& cls) {
-  cls.def(
-      "chain",
-      [](const TreeRobot& self, const Loose<int>& tip) {
-        return self.chain(from_python<int>(tip, "tip"));
-      },
-      py::arg("tip"),
+  def(
+      cls, "chain", "tip", [](const TreeRobot& self, int tip) { return self.chain(tip); },
       "The chain to one tip by itself, a Robot; tips count from 0.\n\nRaises:\n"
       "    InvalidArgumentError: no such tip.");
-  cls.def(
-      "joints_of",
-      [](const TreeRobot& self, const Loose<int>& tip) {
-        return self.joints_of(from_python<int>(tip, "tip"));
-      },
-      py::arg("tip"),
+  def(
+      cls, "joints_of", "tip", [](const TreeRobot& self, int tip) { return self.joints_of(tip); },
       "Where the joints of that chain stand among all: its joint values are q[joints_of(tip)]."
       "\n\nRaises:\n    InvalidArgumentError: no such tip.");
 }
 
 void bind_configurations(py::class_<TreeRobot>& cls) {
-  cls.def(
-      "fk",
+  def(
+      cls, "fk", "q",
       [](const TreeRobot& self, const ArrayLike& q) {
         return map_joints(q, self.dof(), "q", {self.tips(), 4, 4},
                           [&](const JointVector& joints, double* out) {
@@ -185,7 +182,6 @@ void bind_configurations(py::class_<TreeRobot>& cls) {
                             }
                           });
       },
-      py::arg("q"),
       R"(Forward kinematics: T_base_tip of each tip, of its TCP if there is a tool.
 
 Args:
@@ -196,8 +192,8 @@ Returns:
 
 Raises:
     InvalidArgumentError: wrong shape or dtype, or a number that is not finite.)");
-  cls.def(
-      "jacobian",
+  def(
+      cls, "jacobian", "q",
       [](const TreeRobot& self, const ArrayLike& q) {
         const int rows = 6 * self.tips();
         const int dof = self.dof();
@@ -205,7 +201,6 @@ Raises:
           Eigen::Map<RowMajorMatrix>(out, rows, dof) = self.jacobian(joints);
         });
       },
-      py::arg("q"),
       R"(Geometric Jacobians of all tips, one below the other: rows [linear; angular] for each.
 
 Args:
@@ -216,23 +211,18 @@ Returns:
 
 Raises:
     InvalidArgumentError: wrong shape or dtype, or a number that is not finite.)");
-  cls.def(
-      "within_limits",
+  def(
+      cls, "within_limits", "q",
       [](const TreeRobot& self, const ArrayLike& q) {
         return self.within_limits(as_joints(q, self.dof(), "q"));
       },
-      py::arg("q"), "Whether q [rad or m], (dof,), lies inside the position limits.");
-  cls.def(
-      "random_configurations",
-      [](const TreeRobot& self, const Loose<std::size_t>& n, const Loose<std::uint64_t>& seed) {
-        const auto count = from_python<std::size_t>(n, "n");
-        const auto number = from_python<std::uint64_t>(seed, "seed");
-        const std::optional<ProgressCallable> no_callable;
-        const Progress interruptible = make_progress(no_callable);
+      "Whether q [rad or m], (dof,), lies inside the position limits.");
+  def(
+      cls, "random_configurations", "n, seed",
+      [](const TreeRobot& self, std::size_t n, std::uint64_t seed) {
         return to_array(
-            without_gil([&] { return self.random_configurations(count, number, interruptible); }));
+            without_gil([&] { return self.random_configurations(n, seed, interruptible()); }));
       },
-      py::arg("n"), py::arg("seed"),
       "n configurations uniform inside the limits (continuous joints in [-pi, pi)), (n, dof). The "
       "same seed gives the same numbers everywhere.");
 }
@@ -240,19 +230,19 @@ Raises:
 }  // namespace
 
 void bind_tree_robot(py::module_& m) {
-  py::class_<TreeRobot> cls(
+  auto cls = bind_class<TreeRobot>(
       m, "TreeRobot",
       "The chains from one link of a URDF to several tips, joined: a joint that lies on several of "
-      "them is one degree of freedom. Immutable, safe to use from many threads at once.");
+      "them is one degree of freedom. Immutable, safe to use from many threads at once.",
+      "TreeRobot.from_urdf");
   bind_from_urdf(cls);
   bind_facts(cls);
   bind_tips(cls);
   bind_configurations(cls);
-  cls.def("__repr__", &tree_robot_repr);
-  cls.def("__copy__", [](const TreeRobot& self) { return self; });
-  cls.def(
-      "__deepcopy__", [](const TreeRobot& self, const py::dict&) { return self; }, py::arg("memo"));
-  cls.def(py::pickle(&tree_robot_state, &tree_robot_from_state));
+  def(cls, "__repr__", "", fn<&tree_robot_repr>);
+  def_copies(cls);
+  def_pickle(cls, fn<&tree_robot_state>, without_defaults(kTreeFromUrdf),
+             fn<&tree_robot_from_urdf>);
 }
 
 }  // namespace iksel::python

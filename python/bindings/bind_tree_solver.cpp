@@ -13,7 +13,6 @@
 #include "gil.hpp"
 #include "iksel/tree_solver.hpp"
 #include "option_fields.hpp"
-#include "pickle.hpp"
 #include "pose_arguments.hpp"
 #include "progress.hpp"
 #include "property.hpp"
@@ -84,7 +83,7 @@ DoubleArray flatten(const PoseLike& poses, int tips) {
 }
 
 PyTreeBatch solve_tree_batch(const TreeSolver& self, const PoseLike& poses,
-                             const std::optional<ArrayLike>& near, const Loose<int>& threads,
+                             const std::optional<ArrayLike>& near, int threads,
                              const TreeKeywords& given) {
   TreeRequest request = read_tree_request(self, given);
   const std::vector<Pose> targets = as_targets(flatten(poses, self.robot().tips()));
@@ -105,11 +104,8 @@ PyTreeBatch solve_tree_batch(const TreeSolver& self, const PoseLike& poses,
       }
     }
   }
-  const int workers = from_python<int>(threads, "threads");
-  const std::optional<ProgressCallable> no_callable;
-  const Progress interruptible = make_progress(no_callable);
   return {without_gil(
-              [&] { return self.solve_batch(targets, request, nears, workers, interruptible); }),
+              [&] { return self.solve_batch(targets, request, nears, threads, interruptible()); }),
           self.robot().dof(), self.robot().tips()};
 }
 
@@ -121,18 +117,15 @@ TreeDiagnosis diagnose_tree(const TreeSolver& self, const PoseLike& poses,
 }
 
 void bind_tree_methods(py::class_<TreeSolver>& cls) {
-  const Loose<MoveNorm> two = py::str(enum_name(MoveNorm::two));
-  cls.def(
-      "solve",
+  def(
+      cls, "solve",
+      "poses, *, near=None, weights=None, norm='two', filter=None, deadline=None, tasks=None",
       [](const TreeSolver& self, const PoseLike& poses, const std::optional<ArrayLike>& near,
-         const std::optional<ArrayLike>& weights, const Loose<MoveNorm>& norm,
-         const std::optional<TreeFilter>& filter, const std::optional<Loose<double>>& deadline,
+         const std::optional<ArrayLike>& weights, MoveNorm norm,
+         const std::optional<TreeFilter>& filter, const std::optional<double>& deadline,
          const std::optional<TaskList>& tasks) {
         return solve_tree(self, poses, near, {weights, norm, filter, deadline, tasks});
       },
-      py::arg("poses"), py::kw_only(), py::arg("near") = py::none(),
-      py::arg("weights") = py::none(), py::arg("norm") = two, py::arg("filter") = py::none(),
-      py::arg("deadline") = py::none(), py::arg("tasks") = py::none(),
       R"(Joint values that put each tip (its TCP, if it has one) at its pose.
 
 Args:
@@ -154,18 +147,17 @@ Returns:
 Raises:
     InvalidArgumentError: wrong shape or dtype, not one pose or task for each tip, a pose that is
         not rigid, a number that is not finite, or a keyword out of range.)");
-  cls.def(
-      "solve_batch",
-      [](const TreeSolver& self, const PoseLike& poses, const Loose<int>& threads,
+  def(
+      cls, "solve_batch",
+      "poses, *, threads=0, near=None, weights=None, norm='two', filter=None, deadline=None, "
+      "tasks=None",
+      [](const TreeSolver& self, const PoseLike& poses, int threads,
          const std::optional<ArrayLike>& near, const std::optional<ArrayLike>& weights,
-         const Loose<MoveNorm>& norm, const std::optional<TreeFilter>& filter,
-         const std::optional<Loose<double>>& deadline, const std::optional<TaskList>& tasks) {
+         MoveNorm norm, const std::optional<TreeFilter>& filter,
+         const std::optional<double>& deadline, const std::optional<TaskList>& tasks) {
         return solve_tree_batch(self, poses, near, threads,
                                 {weights, norm, filter, deadline, tasks});
       },
-      py::arg("poses"), py::kw_only(), py::arg("threads") = 0, py::arg("near") = py::none(),
-      py::arg("weights") = py::none(), py::arg("norm") = two, py::arg("filter") = py::none(),
-      py::arg("deadline") = py::none(), py::arg("tasks") = py::none(),
       R"(Solves many targets with the GIL released; row i has the bits of solve(poses[i]).
 
 Args:
@@ -184,16 +176,12 @@ Returns:
 
 Raises:
     InvalidArgumentError: wrong shape or dtype, or a keyword out of range.)");
-  cls.def(
-      "diagnose",
+  def(
+      cls, "diagnose", "poses, *, filter=None, deadline=None, tasks=None",
       [](const TreeSolver& self, const PoseLike& poses, const std::optional<TreeFilter>& filter,
-         const std::optional<Loose<double>>& deadline, const std::optional<TaskList>& tasks) {
-        return diagnose_tree(
-            self, poses,
-            {std::nullopt, py::str(enum_name(MoveNorm::two)), filter, deadline, tasks});
+         const std::optional<double>& deadline, const std::optional<TaskList>& tasks) {
+        return diagnose_tree(self, poses, {std::nullopt, MoveNorm::two, filter, deadline, tasks});
       },
-      py::arg("poses"), py::kw_only(), py::arg("filter") = py::none(),
-      py::arg("deadline") = py::none(), py::arg("tasks") = py::none(),
       R"(Why there is no answer: whether each tip can be reached by itself. Milliseconds.
 
 Args:
@@ -209,31 +197,30 @@ Raises:
     InvalidArgumentError: as solve.)");
 }
 
-TreeSolver make_tree_solver(const Loose<TreeRobot>& given_robot,
-                            const std::optional<Loose<SolverOptions>>& given) {
-  const auto robot = from_python<TreeRobot>(given_robot, "robot");
-  const auto options = given ? from_python<SolverOptions>(*given, "options") : SolverOptions{};
+TreeSolver make_tree_solver(const TreeRobot& robot, const std::optional<SolverOptions>& given) {
+  const SolverOptions options = given.value_or(SolverOptions());
   options.validate();
   return without_gil([&] { return TreeSolver(robot, options); });
 }
 
-TreeSolver tree_solver_from_state(const py::object& state) {
-  PickleState in(state, "TreeSolver", 2);
-  const auto robot = in.value<TreeRobot>("robot");
-  return TreeSolver(robot, in.value<SolverOptions>("options"));
+py::dict tree_solver_state(const TreeSolver& self) {
+  py::dict state;
+  state["robot"] = self.robot();
+  state["options"] = self.options();
+  return state;
 }
 
 }  // namespace
 
 void bind_tree_solver(py::module_& m) {
-  py::class_<TreeSolver> cls(
+  auto cls = bind_class<TreeSolver>(
       m, "TreeSolver",
       "Solves inverse kinematics for all tips of a TreeRobot at once. Immutable, safe to use from "
       "many threads at once; the same input gives the same bits. The joints that tips share are "
       "set to a value, and behind them each arm is solved for by itself; where that leads nowhere, "
       "all joints are iterated together.");
-  cls.def(py::init(&make_tree_solver), py::arg("robot"), py::arg("options") = py::none(),
-          R"(Builds the databases of the chains by `options.database`.
+  def_init(cls, "robot, options=None", fn<&make_tree_solver>,
+           R"(Builds the databases of the chains by `options.database`.
 
 Args:
     robot: the robot to solve for.
@@ -245,26 +232,18 @@ Raises:
   add_property(
       cls, "options", [](const TreeSolver& self) { return self.options(); },
       "A copy of its options.");
-  cls.def(
-      "chain_solver",
-      [](const TreeSolver& self, const Loose<int>& tip) {
-        return self.chain_solver(from_python<int>(tip, "tip"));
-      },
-      py::arg("tip"),
+  def(
+      cls, "chain_solver", "tip",
+      [](const TreeSolver& self, int tip) { return self.chain_solver(tip); },
       "The Solver of one tip's chain by itself; tips count from 0.\n\nRaises:\n"
       "    InvalidArgumentError: no such tip.");
   bind_tree_methods(cls);
-  cls.def("__repr__", [](const TreeSolver& self) {
+  def(cls, "__repr__", "", [](const TreeSolver& self) {
     return "TreeSolver(" + py::cast<std::string>(py::repr(py::cast(self.robot()))) + ", " +
            to_repr(self.options()) + ")";
   });
-  cls.def("__copy__", [](const TreeSolver& self) { return self; });
-  cls.def(
-      "__deepcopy__", [](const TreeSolver& self, const py::dict&) { return self; },
-      py::arg("memo"));
-  cls.def(py::pickle(
-      [](const TreeSolver& self) { return py::make_tuple(self.robot(), self.options()); },
-      &tree_solver_from_state));
+  def_copies(cls);
+  def_pickle(cls, fn<&tree_solver_state>, "robot, options", fn<&make_tree_solver>);
 }
 
 }  // namespace iksel::python

@@ -381,6 +381,13 @@ inline void show_names(const py::object& cls) {
       py::name("__format__"), py::is_method(cls));
 }
 
+/// The Python enum.
+template <class E>
+py::handle& enum_class() {
+  static py::handle cls;
+  return cls;
+}
+
 /// Makes the Python enum; to come before any function that takes or returns it.
 template <class E>
 void bind_enum(py::module_& m) {
@@ -390,7 +397,8 @@ void bind_enum(py::module_& m) {
   py::native_enum<E> binding(m, EnumTable<E>::kName, kBase, EnumTable<E>::kDoc);
   for (const auto& entry : EnumTable<E>::kValues) binding.value(entry.name, entry.value, entry.doc);
   binding.finalize();
-  show_names(m.attr(EnumTable<E>::kName));
+  enum_class<E>() = py::object(m.attr(EnumTable<E>::kName)).release();
+  show_names(py::reinterpret_borrow<py::object>(enum_class<E>()));
 }
 
 }  // namespace iksel::python

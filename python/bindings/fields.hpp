@@ -9,19 +9,21 @@
 #include <cstddef>
 #include <string>
 #include <type_traits>
-#include <typeinfo>
 #include <vector>
 
-#include "python_types.hpp"
+#include "function.hpp"
+#include "property.hpp"
 #include "value_type.hpp"
 
 namespace iksel::python {
 
 struct Field {
   const char* name;
-  const char* doc;
+  const char* doc;     ///< null: it is part of the pickle, and no attribute
   std::size_t offset;  ///< of the member in its struct
   const ValueType* type;
+  /// Throws InvalidArgumentError about a value that a pickle may not have; may be null.
+  void (*check)(const void* value, const std::string& name) = nullptr;
 
   [[nodiscard]] void* of(void* self) const { return static_cast<char*>(self) + offset; }
   [[nodiscard]] const void* of(const void* self) const {
@@ -34,17 +36,15 @@ struct StructType {
   const char* name;
   const char* doc;
   std::vector<Field> fields;
-  const std::type_info* cpp_type;
   const void* defaults;
-  void* (*copy)(const void* self);
-  void (*destroy)(void* self);
-  /// Throws InvalidArgumentError naming the first field out of range.
-  void (*validate)(const void* self);
+  /// What a Python object holds. Throws SignatureError about one of another class.
+  void* (*unwrap)(py::handle self);
   /// What else to say about a name that is no field; may be null.
   std::string (*hint)(const std::string& name);
 };
 
-/// Specialised for every struct: kName, kDoc, fields() as a vector of Field.
+/// Specialised for every struct: kName, kDoc, fields() as a vector of Field; if need be hint(), as
+/// above, and check(), which throws InvalidArgumentError about fields that do not fit each other.
 template <class Struct>
 struct FieldTable;
 
@@ -60,6 +60,11 @@ struct CanValidate<T, std::void_t<decltype(std::declval<const T&>().validate())>
 };
 
 template <class T, class = void>
+struct HasCheck : std::false_type {};
+template <class T>
+struct HasCheck<T, std::void_t<decltype(&FieldTable<T>::check)>> : std::true_type {};
+
+template <class T, class = void>
 struct HasHint : std::false_type {};
 template <class T>
 struct HasHint<T, std::void_t<decltype(&FieldTable<T>::hint)>> : std::true_type {};
@@ -73,30 +78,43 @@ auto hint_of() -> std::string (*)(const std::string&) {
   }
 }
 
-template <class Struct, class T>
-Field field(const char* name, T Struct::*member, const char* doc) {
-  return {name, doc, offset_of(member), &value_type<T>()};
+/// Throws InvalidArgumentError naming the first field out of range.
+template <class Struct>
+void check_struct(const Struct& self) {
+  if constexpr (CanValidate<Struct>::value) self.validate();
+  if constexpr (HasCheck<Struct>::value) FieldTable<Struct>::check(self);
+}
+
+/// Of a member that `Struct` has from its base, that is said.
+template <class Struct = void, class Base, class T>
+Field field(const char* name, T Base::*member, const char* doc) {
+  using Owner = std::conditional_t<std::is_void_v<Struct>, Base, Struct>;
+  return {name, doc, offset_of<Owner, T>(member), &value_type<T>()};
+}
+
+/// One whose value in a pickle is looked at by kCheck(value, name).
+template <auto kCheck, class Struct = void, class Base, class T>
+Field field(const char* name, T Base::*member, const char* doc) {
+  Field made = field<Struct>(name, member, doc);
+  made.check = [](const void* value, const std::string& of) { kCheck(as<T>(value), of); };
+  return made;
 }
 
 template <class Struct>
 const StructType& struct_type() {
+  using Table = FieldTable<Struct>;
   static const StructType type{
-      FieldTable<Struct>::kName,
-      FieldTable<Struct>::kDoc,
-      FieldTable<Struct>::fields(),
-      &typeid(Struct),
+      Table::kName,
+      Table::kDoc,
+      Table::fields(),
       &defaults_of<Struct>(),
-      [](const void* self) -> void* { return new Struct(as<Struct>(self)); },
-      [](void* self) { delete static_cast<Struct*>(self); },
-      [](const void* self) {
-        if constexpr (CanValidate<Struct>::value) as<Struct>(self).validate();
-      },
+      [](py::handle self) -> void* { return &made<Struct>(self); },
       hint_of<Struct>(),
   };
   return type;
 }
 
-/// "Name(field=value, ...)" over the fields that differ from the default.
+/// "Lanes(damping=0.1)": the fields that are not at their default.
 std::string to_repr(const void* self, const StructType& type);
 template <class Struct>
 std::string to_repr(const Struct& self) {
@@ -109,13 +127,20 @@ bool equal_fields(const void* a, const void* b, const StructType& type);
 /// Sets the fields that a mapping names. Throws SignatureError on a name that is none.
 void assign(void* self, const StructType& type, const py::dict& changes);
 
-/// The Python class itself or a mapping of its fields, assigned to what `self` is.
+/// As assign(), of all fields, as to_dict() gave them.
+void assign_state(void* self, const StructType& type, py::handle state);
+
+/// A mapping of fields, assigned to what `self` is.
 void read_struct(void* self, const StructType& type, py::handle value, const char* name);
 
 template <class Struct>
 struct FromPython<Struct, std::enable_if_t<HasFields<Struct>::value>> {
+  static std::string text() {
+    return std::string("iksel_cpp.") + FieldTable<Struct>::kName +
+           " | collections.abc.Mapping[str, object]";
+  }
   static Struct convert(py::handle value, const char* name) {
-    if (py::isinstance<Struct>(value)) return py::cast<const Struct&>(value);
+    if (is_a<Struct>(value)) return made<Struct>(value);
     Struct out{};
     read_struct(&out, struct_type<Struct>(), value, name);
     return out;
@@ -125,8 +150,6 @@ struct FromPython<Struct, std::enable_if_t<HasFields<Struct>::value>> {
 template <class T>
 struct ValueOf<T, std::enable_if_t<HasFields<T>::value>> {
   static constexpr bool kHasShortRepr = false;
-  static std::string attribute() { return std::string("iksel_cpp.") + FieldTable<T>::kName; }
-  static std::string argument() { return attribute() + " | collections.abc.Mapping[str, object]"; }
   static py::object get(T& value, py::handle owner) {
     return py::cast(value, py::return_value_policy::reference_internal, owner);
   }
@@ -135,20 +158,69 @@ struct ValueOf<T, std::enable_if_t<HasFields<T>::value>> {
   static bool equal(const T& a, const T& b) { return equal_fields(&a, &b, struct_type<T>()); }
 };
 
-/// Which parts of a class follow from the table.
-enum class FieldClass {
-  result,     ///< read-only attributes
-  immutable,  ///< a keyword constructor and replace() as well
-  options,    ///< and attributes that can be set
-};
-
-/// Adds attributes, repr, equality, dict and pickle.
-void add_fields(py::object cls, const StructType& type, FieldClass kind);
+/// Signature and text of a method that takes all fields as keywords.
+std::string keyword_doc(const StructType& type, const char* name, const std::string& result,
+                        bool show_defaults, const char* text);
+void add_attributes(const py::object& cls, const StructType& type, bool writable);
 
 template <class Struct>
-py::class_<Struct> bind_fields(py::module_& m, FieldClass kind) {
-  py::class_<Struct> cls(m, FieldTable<Struct>::kName, FieldTable<Struct>::kDoc);
-  add_fields(cls, struct_type<Struct>(), kind);
+Struct changed(Struct copy, const py::dict& changes) {
+  assign(&copy, struct_type<Struct>(), changes);
+  check_struct(copy);
+  return copy;
+}
+
+template <class Struct>
+Struct from_state(const py::object& state) {
+  Struct self{};
+  assign_state(&self, struct_type<Struct>(), state);
+  check_struct(self);
+  return self;
+}
+
+/// Read-only attributes and pickling.
+template <class Struct>
+py::class_<Struct> bind_fields(py::module_& m, const char* how, bool writable = false) {
+  const StructType& type = struct_type<Struct>();
+  auto cls = bind_class<Struct>(m, type.name, type.doc, how);
+  add_attributes(cls, type, writable);
+  def(cls, "__getstate__", "",
+      [](const Struct& self) { return to_dict(&self, struct_type<Struct>()); });
+  def_init(
+      cls, "state", [](const py::object& state) { return from_state<Struct>(state); }, "",
+      "__setstate__");
+  return cls;
+}
+
+/// As values: to_dict(), repr and equality as well.
+template <class Struct>
+py::class_<Struct> bind_values(py::module_& m, const char* how, bool writable = false) {
+  auto cls = bind_fields<Struct>(m, how, writable);
+  def(
+      cls, "to_dict", "", [](const Struct& self) { return to_dict(&self, struct_type<Struct>()); },
+      "All fields by name as plain Python data, with the names of enums in their place.");
+  def(cls, "__repr__", "", [](const Struct& self) { return to_repr(self); });
+  def(cls, "__eq__", "other", [](const Struct& self, const py::object& other) -> py::object {
+    if (!is_a<Struct>(other)) return py::reinterpret_borrow<py::object>(Py_NotImplemented);
+    return py::bool_(equal_fields(&self, &made<Struct>(other), struct_type<Struct>()));
+  });
+  return cls;
+}
+
+/// As options: a constructor and replace() as well; with attributes to be set if `writable`.
+template <class Struct>
+py::class_<Struct> bind_keyword_class(py::module_& m, bool writable) {
+  const StructType& type = struct_type<Struct>();
+  auto cls = bind_values<Struct>(m, nullptr, writable);
+  def_init(
+      cls, "", [](const Keywords& fields) { return changed(Struct{}, fields); },
+      keyword_doc(type, "__init__", "None", /*show_defaults=*/true,
+                  "Fields that are not given keep their default."));
+  def(
+      cls, "replace", "",
+      [](const Struct& self, const Keywords& changes) { return changed(self, changes); },
+      keyword_doc(type, "replace", type_text<Struct>(), /*show_defaults=*/false,
+                  "A copy in which the given fields have another value."));
   return cls;
 }
 

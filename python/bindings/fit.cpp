@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "fit.hpp"
-
+// Why a call does not fit, in a sentence.
 #include <pybind11/stl.h>
 
 #include <algorithm>
 #include <cstddef>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "did_you_mean.hpp"
+#include "function.hpp"
 #include "option_fields.hpp"
-#include "signature.hpp"
 
 namespace iksel::python {
 
@@ -27,31 +26,6 @@ std::string join(const Names& names) {
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
   return text;
 }
-
-/// The arguments of one overload, without self.
-struct Form {
-  Names names;
-  Names required;
-  std::size_t positional = 0;
-
-  explicit Form(const py::detail::function_record& record) {
-    const std::size_t own = record.is_method ? 1 : 0;
-    positional = record.nargs_pos - own;
-    for (std::size_t i = own; i < record.args.size(); ++i) {
-      names.emplace_back(record.args[i].name);
-      if (!record.args[i].value) required.emplace_back(record.args[i].name);
-    }
-  }
-
-  /// "(pose, *, near, weights)"
-  [[nodiscard]] std::string text() const {
-    Names shown = names;
-    if (positional < shown.size()) {
-      shown.insert(shown.begin() + static_cast<std::ptrdiff_t>(positional), "*");
-    }
-    return "(" + join(shown) + ")";
-  }
-};
 
 /// What other libraries, and this one once, call something.
 struct OtherNames {
@@ -82,45 +56,23 @@ std::string of_options(const std::string& keyword) {
   return "; the solver's options have " + fields + ": Solver(robot, SolverOptions(...))";
 }
 
-struct MisfitCall {
-  std::string function;
-  std::vector<Form> forms;
-  std::size_t positional;  ///< arguments given by position, without self
+/// A call that does not fit.
+struct Misfit {
+  const Function& function;
+  std::size_t count;  ///< of arguments by position
   Names keywords;
+  Names known;
 
-  [[nodiscard]] Names all_names() const {
-    Names all;
-    for (const Form& form : forms) {
-      for (const std::string& name : form.names) {
-        if (!contains(all, name)) all.push_back(name);
-      }
+  /// "(pose, *, near, weights)"
+  [[nodiscard]] std::string form() const {
+    Names shown = known;
+    if (function.positional < shown.size()) {
+      shown.insert(shown.begin() + static_cast<std::ptrdiff_t>(function.positional), "*");
     }
-    return all;
+    return "(" + join(shown) + ")";
   }
 
-  /// The sentence, or nothing if the names fit and only a type does not.
-  [[nodiscard]] std::string sentence() const {
-    const Names known = all_names();
-    for (const std::string& keyword : keywords) {
-      if (!contains(known, keyword)) return unknown_keyword(keyword, known);
-    }
-    std::vector<Form> possible;
-    for (const Form& form : forms) {
-      const bool takes_all =
-          std::all_of(keywords.begin(), keywords.end(),
-                      [&](const auto& keyword) { return contains(form.names, keyword); });
-      if (takes_all) possible.push_back(form);
-    }
-    if (possible.empty()) return no_form_takes_all();
-    return misfit(
-        *std::max_element(possible.begin(), possible.end(), [](const Form& a, const Form& b) {
-          return std::make_pair(a.positional, a.names.size()) <
-                 std::make_pair(b.positional, b.names.size());
-        }));
-  }
-
- private:
-  [[nodiscard]] std::string unknown_keyword(const std::string& keyword, const Names& known) const {
+  [[nodiscard]] std::string unknown(const std::string& keyword) const {
     std::string hint;
     for (const OtherNames& other : kOtherNames) {
       if (contains(other.names, keyword) && contains(known, other.argument)) hint = other.hint;
@@ -128,95 +80,53 @@ struct MisfitCall {
     if (hint.empty()) hint = did_you_mean(keyword, known);
     // Of what solves, which is what takes seeds.
     if (hint.empty() && contains(known, "seeds")) hint = of_options(keyword);
-    const std::string possible = known.empty() ? "none" : join(known);
-    return function + "() has no argument '" + keyword + "'" + hint + " (possible: " + possible +
-           ")";
+    return "has no argument '" + keyword + "'" + hint +
+           " (possible: " + (known.empty() ? "none" : join(known)) + ")";
   }
 
-  [[nodiscard]] std::string no_form_takes_all() const {
-    std::string text = function + "() does not take " + join(keywords) + " together; possible: ";
-    for (std::size_t i = 0; i < forms.size(); ++i) text += (i == 0 ? "" : " or ") + forms[i].text();
-    return text;
+  [[nodiscard]] std::string too_many() const {
+    const bool one = function.positional == 1;
+    // solve(pose, q) had a seed there once.
+    const bool has_seeds = one && contains(known, "seeds");
+    return "takes at most " + std::to_string(function.positional) +
+           (one ? " argument" : " arguments") + " by position, got " + std::to_string(count) +
+           (has_seeds ? "; write seeds=[q] for where the search begins" : "") +
+           "; possible: " + form();
   }
 
-  [[nodiscard]] std::string misfit(const Form& form) const {
-    if (positional > form.positional) {
-      const bool one = form.positional == 1;
-      // solve(pose, q) had a seed there once.
-      const bool has_seeds = one && contains(form.names, "seeds");
-      return function + "() takes at most " + std::to_string(form.positional) +
-             (one ? " argument" : " arguments") + " by position, got " +
-             std::to_string(positional) +
-             (has_seeds ? "; write seeds=[q] for where the search begins" : "") +
-             "; possible: " + form.text();
+  [[nodiscard]] std::string sentence() const {
+    for (const std::string& keyword : keywords) {
+      if (!contains(known, keyword)) return unknown(keyword);
     }
-    const Names given(form.names.begin(), form.names.begin() + static_cast<std::ptrdiff_t>(std::min(
-                                                                   positional, form.names.size())));
-    for (const std::string& name : given) {
-      if (contains(keywords, name)) return function + "() is given '" + name + "' twice";
+    if (count > function.positional) return too_many();
+    for (std::size_t i = 0; i < known.size(); ++i) {
+      const bool is_named = contains(keywords, known[i]);
+      if (i < count && is_named) return "is given '" + known[i] + "' twice";
+      if (i < count || is_named || function.parameters[i].by_default) continue;
+      return "needs '" + known[i] + "': " + function.full_name() + form();
     }
-    for (const std::string& name : form.required) {
-      if (!contains(given, name) && !contains(keywords, name)) {
-        return function + "() needs '" + name + "': " + function + form.text();
-      }
-    }
-    return "";
+    return "is called with what does not fit";
   }
 };
 
-std::string type_names(PyObject* const* args, std::size_t count) {
-  Names names;
-  for (std::size_t i = 0; i < count; ++i) names.emplace_back(Py_TYPE(args[i])->tp_name);
-  return join(names);
-}
-
-/// As the docstring says it where the types of C++ are not known (method.hpp).
-std::string signature_of(const py::detail::function_record& record) {
-  const std::string name = record.name;
-  for (const auto* r = &record; r != nullptr; r = r->next) {
-    const std::string doc = r->doc == nullptr ? "" : r->doc;
-    if (doc.rfind(name + "(", 0) == 0) return doc.substr(0, doc.find('\n'));
-  }
-  return name + record.signature;
-}
-
-std::string explain(const py::detail::function_record& record, PyObject* const* args,
-                    std::size_t count, const Names& keywords) {
-  std::string function = record.name;
-  if (record.scope && PyType_Check(record.scope.ptr()) != 0) {
-    const auto scope = py::cast<std::string>(record.scope.attr("__name__"));
-    function = record.is_constructor ? scope : scope + "." + function;
-  }
-  const std::size_t own = record.is_method ? 1 : 0;
-  MisfitCall call{function, {}, count < own ? 0 : count - own, keywords};
-  for (const auto* r = &record; r != nullptr; r = r->next) {
-    // One that takes any keyword stands before one that lists them (keywords.hpp).
-    if (!r->has_kwargs || r->next == nullptr) call.forms.emplace_back(*r);
-  }
-  const std::string sentence = call.sentence();
-  if (!sentence.empty()) return sentence;
-  return function + "() does not take (" + type_names(args, count + keywords.size()) + "); it is " +
-         signature_of(record);
-}
-
 }  // namespace
 
-void explain_misfit(PyObject* self, PyObject* const* args, Py_ssize_t count,
-                    PyObject* keywords) noexcept {
-  py::error_already_set original;
-  try {
-    const auto* record = py::detail::function_record_ptr_from_PyObject(self);
-    const std::string words = std::string(record->name) + "(): incompatible ";
-    if (py::cast<std::string>(py::str(original.value())).rfind(words, 0) == 0) {
-      Names names;
-      if (keywords != nullptr) names = py::cast<Names>(py::handle(keywords));
-      const std::string text = explain(*record, args, static_cast<std::size_t>(count), names);
-      PyErr_SetString(py::module_::import("iksel_cpp").attr("SignatureError").ptr(), text.c_str());
-      return;
-    }
-  } catch (...) {  // the original says enough
-  }
-  original.restore();
+std::string Function::full_name() const {
+  if (name == "__init__") return owner;
+  return owner.empty() ? name : owner + "." + name;
+}
+
+void Function::refuse(std::size_t count, PyObject* keywords) const {
+  Misfit misfit{*this, count, {}, {}};
+  if (keywords != nullptr) misfit.keywords = py::cast<Names>(py::handle(keywords));
+  for (const Parameter& parameter : parameters) misfit.known.push_back(parameter.name);
+  throw SignatureError(full_name() + "() " + misfit.sentence());
+}
+
+void Function::check_self(PyObject* const* arguments, std::size_t count, PyTypeObject* type) const {
+  if (count > 0 && PyObject_TypeCheck(arguments[0], type) != 0) return;
+  if (count == 0) throw SignatureError(full_name() + "() needs 'self', a " + owner);
+  throw SignatureError(full_name() + "() is of a " + owner + ", not of " + describe(arguments[0]));
 }
 
 }  // namespace iksel::python

@@ -9,10 +9,12 @@
 
 namespace iksel::python {
 
-inline std::map<std::string, double> as_joint_values(const JointValues& value, const char* name) {
+using JointValues = std::map<std::string, double>;
+
+inline JointValues as_joint_values(py::handle value, const char* name) {
   if (!py::hasattr(value, "keys")) throw_wrong_type(name, "a mapping of names to numbers", value);
-  std::map<std::string, double> joints;
-  for (const auto& [key, number] : py::dict(py::object(value))) {
+  JointValues joints;
+  for (const auto& [key, number] : py::dict(py::reinterpret_borrow<py::object>(value))) {
     if (!py::isinstance<py::str>(key)) throw_wrong_type(name, "joint names as keys", key);
     const std::string joint = as_text(key, name);
     const std::string culprit = std::string(name) + "['" + joint + "']";
@@ -20,5 +22,13 @@ inline std::map<std::string, double> as_joint_values(const JointValues& value, c
   }
   return joints;
 }
+
+template <>
+struct FromPython<JointValues> {
+  static std::string text() { return "collections.abc.Mapping[str, float]"; }
+  static JointValues convert(py::handle value, const char* name) {
+    return as_joint_values(value, name);
+  }
+};
 
 }  // namespace iksel::python

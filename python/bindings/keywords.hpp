@@ -10,11 +10,10 @@
 #include <cstddef>
 #include <string>
 #include <typeinfo>
-#include <utility>
 #include <vector>
 
+#include "function.hpp"
 #include "iksel/solver.hpp"
-#include "method.hpp"
 #include "value_type.hpp"
 
 namespace iksel::python {
@@ -31,7 +30,7 @@ struct ArgumentType {
 /// Specialised for what is no plain value: text(), read(), shown().
 template <class T, class Enable = void>
 struct ArgumentOf {
-  static std::string text() { return ValueOf<T>::argument(); }
+  static std::string text() { return FromPython<T>::text(); }
   static T read(py::handle given, const char* name, int /*dof*/) {
     return from_python<T>(given, name);
   }
@@ -71,18 +70,16 @@ Keyword keyword(const char* name, T Struct::*member, const char* doc) {
       name, doc, offset_of(member), &argument_type<T>(), &typeid(Struct), &defaults_of<Struct>()};
 }
 
-/// A keyword of a method, and the object that stands for it where it is not given.
-struct MethodKeyword {
-  Keyword keyword;
-  PyObject* name;        ///< interned, as most callers' are
-  PyObject* by_default;  ///< kept alive by the method
-};
-
 /// The keyword arguments of one call.
 class Given {
  public:
-  Given(const MethodKeyword* keywords, const py::handle* values, std::size_t count)
-      : keywords_(keywords), values_(values), count_(count) {}
+  /// `values` are as many as keywords.
+  Given(const std::vector<Keyword>& keywords, const std::vector<Parameter>& parameters,
+        const py::handle* values, bool is_empty)
+      : keywords_(keywords), parameters_(parameters), values_(values), is_empty_(is_empty) {}
+
+  /// Whether there are none, so that plain solving pays nothing for them.
+  [[nodiscard]] bool is_empty() const { return is_empty_; }
 
   /// The value of one of the method's keywords.
   [[nodiscard]] py::handle operator[](const char* name) const;
@@ -98,9 +95,10 @@ class Given {
  private:
   void read_into(void* out, const std::type_info& type, int dof, const char* except) const;
 
-  const MethodKeyword* keywords_;
+  const std::vector<Keyword>& keywords_;
+  const std::vector<Parameter>& parameters_;  ///< the pose, then the keywords
   const py::handle* values_;
-  std::size_t count_;
+  bool is_empty_;
 };
 
 /// What a docstring says besides the keywords.
@@ -109,76 +107,47 @@ struct MethodText {
   const char* summary;
   const char* pose;  ///< name of the first argument
   const char* pose_doc;
-  const char* result;  ///< its class
-  const char* rest;    ///< what comes back and what is raised
+  const char* rest;  ///< what comes back and what is raised
 };
 
-/// Those of `known` that are named, with their defaults.
-std::vector<MethodKeyword> choose_keywords(const std::vector<Keyword>& known,
-                                           const char* const* names, std::size_t count,
-                                           std::vector<py::arg_v>& arguments);
-std::string method_signature(const MethodText& text, const std::vector<MethodKeyword>& keywords,
-                             std::size_t positional);
-std::string method_doc(const MethodText& text, const std::vector<MethodKeyword>& keywords);
+/// A method that takes the named of the keywords that are known.
+struct KeywordMethod {
+  Function function;
+  std::vector<Keyword> keywords;
 
-/// A name as Python has it in the calls of most callers; it lives as long as Python.
-PyObject* intern(const char* name);
+  void describe(const MethodText& text, const std::string& result,
+                const std::vector<Keyword>& known, const std::vector<const char*>& names,
+                std::size_t positional);
+};
 
-/// Returns the pose, which is `poses`' only item or has its name among the given, and writes what
-/// else is given into `values`, which hold the defaults. Throws what makes pybind11 try the next
-/// overload where this does not fit, or a name is none of the keywords'.
-py::handle find_given(const py::args& poses, PyObject* pose_name, const py::kwargs& given,
-                      const std::vector<MethodKeyword>& keywords, py::handle* values);
+template <class F>
+struct BoundKeywords {
+  static inline KeywordMethod method;
 
-using MethodBody = py::object (*)(const Solver& self, py::handle pose, const Given& given);
-
-namespace detail {
-
-template <std::size_t /*I*/>
-using Value = py::handle;
-
-template <std::size_t... P, std::size_t... K>
-void def_method(py::class_<Solver>& cls, const MethodText& text, const std::vector<Keyword>& known,
-                const char* const* names, MethodBody body, std::index_sequence<P...> /*positional*/,
-                std::index_sequence<K...> /*keyword_only*/) {
-  constexpr std::size_t kPositional = sizeof...(P);
-  constexpr std::size_t kCount = kPositional + sizeof...(K);
-  std::vector<py::arg_v> arguments;
-  const auto keywords = choose_keywords(known, names, kCount, arguments);
-  const auto call = [keywords, body](const Solver& self, py::handle pose,
-                                     const std::array<py::handle, kCount>& values) {
-    return body(self, pose, Given(keywords.data(), values.data(), kCount));
-  };
-  {
-    // pybind11 makes a string of each argument's name at each call, which takes as long as a solve
-    // does. So this overload takes what fits; the other says what the arguments are, also where
-    // they do not fit.
-    py::options options;
-    options.disable_function_signatures();
-    cls.def(text.name, [keywords, call, name = intern(text.pose)](
-                           const Solver& self, const py::args& poses, const py::kwargs& given) {
-      std::array<py::handle, kCount> values;
-      for (std::size_t i = 0; i < kCount; ++i) values[i] = keywords[i].by_default;
-      const py::handle pose = find_given(poses, name, given, keywords, values.data());
-      return call(self, pose, values);
+  static PyObject* call(PyObject* /*scope*/, PyObject* const* arguments, Py_ssize_t count,
+                        PyObject* names) {
+    return or_error([&] {
+      const auto given = static_cast<std::size_t>(count);
+      method.function.check_self(arguments, given, ClassOf<Solver>::type);
+      const Solver& self = made<Solver>(arguments[0]);
+      std::array<py::handle, 24> values;
+      method.function.bind(arguments + 1, given - 1, names, values.data());
+      const Given all(method.keywords, method.function.parameters, values.data() + 1,
+                      given == 2 && names == nullptr);
+      return py::cast(F()(self, values[0], all)).release().ptr();
     });
   }
-  def(
-      cls, text.name, method_signature(text, keywords, kPositional), method_doc(text, keywords),
-      [call](const Solver& self, py::handle pose, Value<P>... positional, Value<K>... others) {
-        return call(self, pose, {positional..., others...});
-      },
-      py::arg(text.pose), arguments[P]..., py::kw_only(), arguments[kPositional + K]...);
-}
+};
 
-}  // namespace detail
-
-/// A method of a pose, or of poses, and the keywords named, the first few by position too.
-template <std::size_t kPositional, std::size_t kCount>
+/// A method of a pose, or of poses, and the keywords named, the first few by position too. Its body
+/// is a function of the solver, the pose and what is Given.
+template <class F>
 void def_method(py::class_<Solver>& cls, const MethodText& text, const std::vector<Keyword>& known,
-                const char* const (&names)[kCount], MethodBody body) {
-  detail::def_method(cls, text, known, names, body, std::make_index_sequence<kPositional>(),
-                     std::make_index_sequence<kCount - kPositional>());
+                std::size_t positional, const std::vector<const char*>& names, F /*body*/) {
+  using Result = typename CallType<F>::Result;
+  KeywordMethod& method = BoundKeywords<F>::method;
+  method.describe(text, type_text<Result>(), known, names, positional);
+  add_method(cls, method.function, &BoundKeywords<F>::call);
 }
 
 }  // namespace iksel::python

@@ -2,8 +2,8 @@
 #include <pybind11/stl.h>
 
 #include "bindings.hpp"
+#include "did_you_mean.hpp"
 #include "iksel/version.hpp"
-#include "signature.hpp"
 
 PYBIND11_MODULE(iksel_cpp, m) {
   m.doc() = R"(IKSel: inverse kinematics from precomputed seeds.
@@ -36,5 +36,4 @@ Kinematics Iterations" (Yuan, Wan, Harada, 2025), called the paper below.)";
   iksel::python::bind_tree_solver(m);
   iksel::python::bind_evaluation(m);
   iksel::python::bind_selector(m);
-  iksel::python::guard_module(m);
 }

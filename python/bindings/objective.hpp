@@ -7,7 +7,6 @@
 
 #include <memory>
 #include <string>
-#include <utility>
 
 #include "array_checks.hpp"
 #include "gil.hpp"
@@ -16,14 +15,9 @@
 
 namespace iksel::python {
 
-/// What as_objective takes.
-class ObjectiveLike : public py::object {
-  PYBIND11_OBJECT_DEFAULT(ObjectiveLike, object, is_any_object)
-};
-
 /// A callable that may be copied and dropped without the GIL.
-inline std::shared_ptr<py::object> hold(py::object callable) {
-  return {new py::object(std::move(callable)), [](py::object* held) {
+inline std::shared_ptr<py::object> hold(py::handle callable) {
+  return {new py::object(py::reinterpret_borrow<py::object>(callable)), [](py::object* held) {
             const GilAcquire acquire;
             delete held;
           }};
@@ -48,7 +42,7 @@ struct PyGradient {
   }
 };
 
-inline Objective make_custom_objective(const py::object& cost, const py::object& gradient) {
+inline Objective make_custom_objective(py::handle cost, py::handle gradient) {
   check_callable(cost, "cost");
   Objective objective = Objective::custom(PyCost{hold(cost)});
   if (!gradient.is_none()) {
@@ -59,26 +53,16 @@ inline Objective make_custom_objective(const py::object& cost, const py::object&
 }
 
 inline Objective as_objective(py::handle value) {
-  if (py::isinstance<Objective>(value)) return py::cast<Objective>(value);
+  if (is_a<Objective>(value)) return made<Objective>(value);
   if (py::isinstance<py::str>(value)) {
     const std::string name = as_text(value, "objective");
     if (name == enum_name(Objective::Kind::limits)) return Objective::far_from_limits();
     if (name == enum_name(Objective::Kind::manipulability)) return Objective::most_manipulable();
   } else if (PyCallable_Check(value.ptr()) != 0) {
-    return make_custom_objective(py::reinterpret_borrow<py::object>(value), py::none());
+    return make_custom_objective(value, py::none());
   }
   throw_wrong_type("objective", "an Objective, a callable, or one of limits, manipulability",
                    value);
 }
 
 }  // namespace iksel::python
-
-// NOLINTBEGIN(readability-identifier-naming): pybind11 looks for `name`.
-namespace pybind11::detail {
-template <>
-struct handle_type_name<iksel::python::ObjectiveLike> {
-  static constexpr auto name =
-      const_name("iksel_cpp.Objective | str | collections.abc.Callable[[numpy.ndarray], float]");
-};
-}  // namespace pybind11::detail
-// NOLINTEND(readability-identifier-naming)

@@ -115,16 +115,20 @@ struct FieldTable<Paper> {
 /// A strategy by its class, by its name, or as a mapping of a name and fields.
 template <>
 struct FromPython<Strategy> {
+  static std::string text() {
+    return "iksel_cpp.Lanes | iksel_cpp.Paper | str | collections.abc.Mapping[str, object]";
+  }
   static Strategy convert(py::handle value, const char* name);
+};
+
+template <>
+struct ResultType<Strategy> {
+  static std::string text() { return "iksel_cpp.Lanes | iksel_cpp.Paper"; }
 };
 
 template <>
 struct ValueOf<Strategy> {
   static constexpr bool kHasShortRepr = false;
-  static std::string attribute() { return "iksel_cpp.Lanes | iksel_cpp.Paper"; }
-  static std::string argument() {
-    return attribute() + " | str | collections.abc.Mapping[str, object]";
-  }
   /// A copy: what is held may be of the other class later.
   static py::object get(const Strategy& value, py::handle owner);
   static py::object to_plain(const Strategy& value);

@@ -11,8 +11,9 @@
 namespace iksel::python {
 
 /// Anything that as_pose or as_poses takes.
-class PoseLike : public py::object {
-  PYBIND11_OBJECT_DEFAULT(PoseLike, object, is_any_object)
+struct PoseLike : RawArgument {
+  using RawArgument::RawArgument;
+  static constexpr const char* kText = "numpy.typing.ArrayLike | object";
 };
 
 /// `value` as matrices (..., 4, 4), if it is a pose or several: (..., 3, 4) matrices; a pair
@@ -39,16 +40,14 @@ inline Pose as_pose(py::handle value, const char* name, const Task* task = nullp
   return convert_to_pose(value, name, task);
 }
 
+/// One pose, as an argument of which nothing else has to be known.
+template <>
+struct FromPython<Pose> {
+  static std::string text() { return PoseLike::kText; }
+  static Pose convert(py::handle value, const char* name) { return as_pose(value, name); }
+};
+
 /// Poses as an (N, 4, 4) array, or positions (N, 3) as above.
 DoubleArray as_poses(py::handle value, const char* name, const Task* task = nullptr);
 
 }  // namespace iksel::python
-
-// NOLINTBEGIN(readability-identifier-naming): pybind11 looks for `name`.
-namespace pybind11::detail {
-template <>
-struct handle_type_name<iksel::python::PoseLike> {
-  static constexpr auto name = const_name("numpy.typing.ArrayLike | object");
-};
-}  // namespace pybind11::detail
-// NOLINTEND(readability-identifier-naming)

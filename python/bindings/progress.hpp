@@ -18,8 +18,9 @@ namespace iksel::python {
 namespace py = pybind11;
 
 /// Checked by make_progress.
-class ProgressCallable : public py::object {
-  PYBIND11_OBJECT_DEFAULT(ProgressCallable, object, is_any_object)
+struct ProgressCallable : RawArgument {
+  using RawArgument::RawArgument;
+  static constexpr const char* kText = "collections.abc.Callable[[int, int], object]";
 };
 
 /// Calls `callable(done, total)` if there is one, and lets Ctrl-C end the work in any case. To be
@@ -32,6 +33,12 @@ inline Progress make_progress(const std::optional<ProgressCallable>& callable) {
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     if (callable) call_python(*callable, done, total);
   };
+}
+
+/// Lets Ctrl-C end the work.
+inline Progress interruptible() {
+  static const std::optional<ProgressCallable> no_callable;
+  return make_progress(no_callable);
 }
 
 /// Lets Ctrl-C end a loop that runs without the GIL: to be called in each round.
@@ -54,12 +61,3 @@ class InterruptCheck {
 };
 
 }  // namespace iksel::python
-
-// NOLINTBEGIN(readability-identifier-naming): pybind11 looks for `name`.
-namespace pybind11::detail {
-template <>
-struct handle_type_name<iksel::python::ProgressCallable> {
-  static constexpr auto name = handle_type_name<typing::Callable<object(int, int)>>::name;
-};
-}  // namespace pybind11::detail
-// NOLINTEND(readability-identifier-naming)

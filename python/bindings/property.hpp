@@ -1,48 +1,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Read-only properties. pybind11's own way makes a compiler spend a tenth of a second on each; here
-// all getters of the same type share their code.
+// Read-only properties, whose getters share the code around them.
 #pragma once
 
 #include <pybind11/pybind11.h>
 
+#include <functional>
 #include <type_traits>
+
+#include "class.hpp"
+#include "results.hpp"
 
 namespace iksel::python {
 
-namespace py = pybind11;
+using Getter = std::function<py::object(py::handle)>;
+using Setter = std::function<void(py::handle, py::handle)>;
 
-namespace detail {
-
-/// A lambda without captures as the function that it is.
-template <class Get>
-auto as_function(Get get, int /*preferred*/) -> decltype(+get) {
-  return +get;
-}
-template <class Get>
-Get as_function(Get get, long /*otherwise*/) {
-  return get;
-}
-
-inline void set_property(const py::object& cls, const char* name, const py::cpp_function& getter,
-                         const char* doc) {
-  const py::handle property(reinterpret_cast<PyObject*>(&PyProperty_Type));
-  cls.attr(name) = property(getter, py::none(), py::none(), doc);
-}
-
-}  // namespace detail
+/// With the types that stubs show; without `set` nobody may set it.
+void set_property(const py::object& cls, const char* name, const std::string& type, Getter get,
+                  const char* doc, const std::string& given_type = "", Setter set = nullptr);
 
 /// `get`: a function of the object, a method or a member.
-template <class Class, class... Options, class Get>
-void add_property(py::class_<Class, Options...>& cls, const char* name, Get get, const char* doc) {
-  constexpr auto kPolicy = py::return_value_policy::reference_internal;
-  py::cpp_function getter;
-  if constexpr (std::is_member_object_pointer_v<Get>) {
-    getter = py::cpp_function(
-        [get](const Class& self) -> const auto& { return self.*get; }, py::is_method(cls), kPolicy);
-  } else {
-    getter = py::cpp_function(detail::as_function(get, 0), py::is_method(cls), kPolicy);
-  }
-  detail::set_property(cls, name, getter, doc);
+template <class Class, class Get>
+void add_property(py::class_<Class>& cls, const char* name, Get get, const char* doc) {
+  using Result = std::invoke_result_t<Get, Class&>;
+  set_property(
+      cls, name, type_text<Result>(),
+      [get](py::handle self) {
+        return to_python<Result>(std::invoke(get, made<Class>(self)), self);
+      },
+      doc);
 }
 
 }  // namespace iksel::python

@@ -15,24 +15,15 @@
 
 namespace iksel::python {
 
-inline bool is_row_index(PyObject* object) {
-  const bool is_array = py::detail::npy_api::get().PyArray_Check_(object);
-  return PyIndex_Check(object) != 0 && !(is_array && py::detail::array_proxy(object)->nd != 0);
+/// Whether it is the number of a row, which may be an array of no axes.
+inline bool is_row_number(py::handle index) {
+  const bool is_array = py::isinstance<py::array>(index);
+  return PyIndex_Check(index.ptr()) != 0 &&
+         !(is_array && py::reinterpret_borrow<py::array>(index).ndim() != 0);
 }
 
-/// The number of a row.
-class RowIndex : public py::object {
-  PYBIND11_OBJECT_DEFAULT(RowIndex, object, is_row_index)
-};
-
-/// Which rows: a slice, or an array of row numbers or truth values.
-class RowsLike : public py::object {
-  PYBIND11_OBJECT_DEFAULT(RowsLike, object, is_any_object)
-};
-
-/// Row `index` of `size`, counted from the end if negative.
-inline py::ssize_t as_row(const RowIndex& index, py::ssize_t size, const char* noun) {
-  auto i = from_python<py::ssize_t>(index, "i");
+/// Row `i` of `size`, counted from the end if negative.
+inline py::ssize_t as_row(py::ssize_t i, py::ssize_t size, const char* noun) {
   if (i < 0) i += size;
   if (i < 0 || i >= size) {
     throw py::index_error(std::string(noun) + " " + std::to_string(i) + " of " +
@@ -60,40 +51,24 @@ struct PyBatchResult {
     return std::count(first, first + success.size(), true);
   }
 
-  [[nodiscard]] PyResult row(const RowIndex& index) const {
-    const py::ssize_t i = as_row(index, size(), "row");
+  [[nodiscard]] PyResult row(py::ssize_t number) const {
+    const py::ssize_t i = as_row(number, size(), "row");
     PyResult out;
-    out.result.status = static_cast<Status>(status.at(i));
-    out.result.proof = static_cast<Proof>(proof.at(i));
-    if (has_joints(out.result.status)) {
-      out.result.q = Eigen::Map<const Eigen::VectorXd>(q.data(i), q.shape(1));
+    out.status = static_cast<Status>(status.at(i));
+    out.proof = static_cast<Proof>(proof.at(i));
+    if (has_joints(out.status)) {
+      out.q = Eigen::Map<const Eigen::VectorXd>(q.data(i), q.shape(1));
     }
-    out.result.position_error = position_error.at(i);
-    out.result.rotation_error = rotation_error.at(i);
-    out.result.attempts = attempts.at(i);
-    out.result.iterations = iterations.at(i);
-    out.result.move = move.at(i);
+    out.position_error = position_error.at(i);
+    out.rotation_error = rotation_error.at(i);
+    out.attempts = attempts.at(i);
+    out.iterations = iterations.at(i);
+    out.move = move.at(i);
     return out;
   }
 
   /// Copies of the rows that numpy's indexing takes.
-  [[nodiscard]] PyBatchResult rows(const RowsLike& index) const;
+  [[nodiscard]] PyBatchResult rows(py::handle index) const;
 };
 
 }  // namespace iksel::python
-
-// NOLINTBEGIN(readability-identifier-naming): pybind11 looks for `name`.
-namespace pybind11::detail {
-template <>
-struct handle_type_name<iksel::python::RowIndex> {
-  static constexpr auto name = const_name("int");
-};
-
-template <>
-struct handle_type_name<iksel::python::RowsLike> {
-  static constexpr auto name = const_name(
-      "slice | collections.abc.Sequence[int] | "
-      "numpy.typing.NDArray[numpy.integer[typing.Any] | numpy.bool_]");
-};
-}  // namespace pybind11::detail
-// NOLINTEND(readability-identifier-naming)

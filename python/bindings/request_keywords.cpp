@@ -102,16 +102,6 @@ struct ArgumentOf<std::optional<PoseWeights>> : ShownAsNone {
   }
 };
 
-/// No Python enum, see EnumTable.
-template <>
-struct ArgumentOf<OnInvalidPose> {
-  static std::string text() { return "typing.Literal['status', 'raise']"; }
-  static OnInvalidPose read(py::handle given, const char* name, int /*dof*/) {
-    return from_python<OnInvalidPose>(given, name);
-  }
-  static py::object shown(OnInvalidPose value) { return py::str(enum_name(value)); }
-};
-
 constexpr const char* kWeightsDoc =
     "factor on each joint's part of a move, (dof,), >= 0; None: all 1.";
 constexpr const char* kNormDoc = "how a move is measured.";

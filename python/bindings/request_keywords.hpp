@@ -22,6 +22,12 @@ std::vector<Keyword> path_keywords();
 /// degrees.
 SolveRequest read_request(const Solver& solver, const Given& given, const char* except = "");
 
+/// What `closest` may be: see as_closest.
+struct ClosestLike : RawArgument {
+  using RawArgument::RawArgument;
+  static constexpr const char* kText = "bool | numpy.typing.ArrayLike | None";
+};
+
 /// What `closest` asks for: None, a bool, or six weights.
 std::optional<PoseWeights> as_closest(py::handle given);
 

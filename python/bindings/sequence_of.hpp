@@ -7,18 +7,19 @@
 #include <vector>
 
 #include "python_types.hpp"
+#include "results.hpp"
 
 namespace iksel::python {
 
 /// What `read(item, "name[i]")` makes of each item. Throws InvalidArgumentError about what is no
 /// sequence, or a str.
 template <class Read>
-auto read_sequence(const py::handle& value, const std::string& name, const std::string& expected,
+auto read_sequence(py::handle value, const std::string& name, const std::string& expected,
                    const Read& read) {
   if (PySequence_Check(value.ptr()) == 0 || py::isinstance<py::str>(value)) {
-    throw_wrong_type(name.c_str(), expected, value);
+    throw_wrong_type(name, expected, value);
   }
-  std::vector<decltype(read(std::declval<const py::object&>(), ""))> items;
+  std::vector<Plain<decltype(read(std::declval<const py::object&>(), ""))>> items;
   // Not handles: what is made on the way of an arbitrary sequence has no other owner.
   for (const py::object item : py::reinterpret_borrow<py::sequence>(value)) {
     const std::string at = name + "[" + std::to_string(items.size()) + "]";
@@ -27,16 +28,18 @@ auto read_sequence(const py::handle& value, const std::string& name, const std::
   return items;
 }
 
-/// A sequence of `T`, whose name in Python is `type`. Throws InvalidArgumentError that names the
-/// culprit.
+/// A sequence of objects of a bound class. Throws InvalidArgumentError that names the culprit.
 template <class T>
-std::vector<T> as_sequence_of(const py::handle& value, const std::string& name,
-                              const std::string& type) {
-  return read_sequence(value, name, "a sequence of " + type,
-                       [&](const py::object& item, const char* at) {
-                         if (!py::isinstance<T>(item)) throw_wrong_type(at, "a " + type, item);
-                         return py::cast<T>(item);
-                       });
-}
+struct FromSequence {
+  static std::string text() { return "collections.abc.Sequence[" + type_text<T>() + "]"; }
+  static std::vector<T> convert(py::handle value, const char* name) {
+    const std::string& type = ClassOf<T>::name;
+    return read_sequence(value, name, "a sequence of " + type,
+                         [&](const py::object& item, const char* at) {
+                           if (!is_a<T>(item)) throw_wrong_type(at, "a " + type, item);
+                           return made<T>(item);
+                         });
+  }
+};
 
 }  // namespace iksel::python

@@ -40,8 +40,8 @@ bool has_field(const StructType& type, const std::string& name) {
 }  // namespace
 
 Strategy FromPython<Strategy>::convert(py::handle value, const char* name) {
-  if (py::isinstance<Lanes>(value)) return py::cast<const Lanes&>(value);
-  if (py::isinstance<Paper>(value)) return py::cast<const Paper&>(value);
+  if (is_a<Lanes>(value)) return made<Lanes>(value);
+  if (is_a<Paper>(value)) return made<Paper>(value);
   if (py::isinstance<py::str>(value)) return by_name(py::cast<std::string>(value), name);
   if (!py::hasattr(value, "keys")) {
     throw_wrong_type(name, "Lanes, Paper, their name, or a mapping of it and fields", value);

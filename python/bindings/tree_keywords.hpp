@@ -15,21 +15,25 @@
 namespace iksel::python {
 
 /// Called with candidates (n, dof); returns n truth values.
-class TreeFilter : public py::object {
-  PYBIND11_OBJECT_DEFAULT(TreeFilter, object, is_any_object)
+struct TreeFilter : RawArgument {
+  using RawArgument::RawArgument;
+  static constexpr const char* kText =
+      "collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any]";
 };
 
 /// A Task for each tip.
-class TaskList : public py::object {
-  PYBIND11_OBJECT_DEFAULT(TaskList, object, is_any_object)
+struct TaskList : RawArgument {
+  using RawArgument::RawArgument;
+  static constexpr const char* kText =
+      "collections.abc.Sequence[Task | collections.abc.Mapping[str, object]]";
 };
 
 /// What solve and its like take besides poses.
 struct TreeKeywords {
   std::optional<ArrayLike> weights;
-  Loose<MoveNorm> norm;
+  MoveNorm norm = MoveNorm::two;
   std::optional<TreeFilter> filter;
-  std::optional<Loose<double>> deadline;
+  std::optional<double> deadline;
   std::optional<TaskList> tasks;
 };
 
@@ -37,9 +41,9 @@ inline TreeRequest read_tree_request(const TreeSolver& self, const TreeKeywords&
   const int dof = self.robot().dof();
   TreeRequest request;
   if (given.weights) request.weights = as_joints(*given.weights, dof, "weights");
-  request.norm = from_python<MoveNorm>(given.norm, "norm");
+  request.norm = given.norm;
   if (given.filter) request.filter = make_filter(*given.filter, "filter", dof);
-  if (given.deadline) request.deadline = from_python<double>(*given.deadline, "deadline");
+  if (given.deadline) request.deadline = *given.deadline;
   if (given.tasks) {
     request.tasks = read_sequence(*given.tasks, "tasks", "a list of Tasks, one for each tip",
                                   from_python<Task>);
@@ -48,18 +52,3 @@ inline TreeRequest read_tree_request(const TreeSolver& self, const TreeKeywords&
 }
 
 }  // namespace iksel::python
-
-// NOLINTBEGIN(readability-identifier-naming): pybind11 looks for `name`.
-namespace pybind11::detail {
-template <>
-struct handle_type_name<iksel::python::TreeFilter> {
-  static constexpr auto name =
-      const_name("collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any]");
-};
-template <>
-struct handle_type_name<iksel::python::TaskList> {
-  static constexpr auto name =
-      const_name("collections.abc.Sequence[Task | collections.abc.Mapping[str, object]]");
-};
-}  // namespace pybind11::detail
-// NOLINTEND(readability-identifier-naming)

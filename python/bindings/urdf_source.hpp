@@ -8,6 +8,12 @@
 
 namespace iksel::python {
 
+/// A path, or the text or bytes of a URDF.
+struct UrdfSource : RawArgument {
+  using RawArgument::RawArgument;
+  static constexpr const char* kText = "str | bytes | os.PathLike[str]";
+};
+
 /// Whether a str is the text of a URDF and no path.
 inline bool is_xml(const std::string& text) {
   const auto start = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
@@ -31,7 +37,7 @@ auto read_urdf(const UrdfSource& path_or_xml, const FromText& from_text,
                      "robots of other libraries",
                      path_or_xml);
   }
-  return from_file(as_path(py::reinterpret_borrow<PathLike>(path_or_xml), "path_or_xml"));
+  return from_file(as_path(path_or_xml, "path_or_xml"));
 }
 
 }  // namespace iksel::python

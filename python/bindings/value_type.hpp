@@ -11,6 +11,7 @@
 #include <type_traits>
 
 #include "python_types.hpp"
+#include "results.hpp"
 
 namespace iksel::python {
 
@@ -50,9 +51,9 @@ std::size_t offset_of(T Struct::*member) {
 
 inline std::string repr_text(py::handle value) { return py::cast<std::string>(py::repr(value)); }
 
-/// Specialised for every type of field: kHasShortRepr, argument(), attribute(), get(), to_plain(),
-/// repr(), equal(). A value is read by FromPython. A std::variant of structs needs these two and
-/// nothing else: what is around fields never asks what they hold.
+/// Specialised for every type of field: kHasShortRepr, get(), to_plain(), repr(), equal(). A value
+/// is read by FromPython. A std::variant of structs needs these two and nothing else: what is
+/// around fields never asks what they hold.
 template <class T, class Enable = void>
 struct ValueOf;
 
@@ -60,8 +61,8 @@ template <class T>
 const ValueType& value_type() {
   using V = ValueOf<T>;
   static const ValueType type{
-      V::argument(),
-      V::attribute(),
+      FromPython<T>::text(),
+      type_text<T>(),
       V::kHasShortRepr,
       [](void* value, py::handle given, const char* name) {
         *static_cast<T*>(value) = from_python<T>(given, name);
@@ -85,18 +86,16 @@ struct PlainValue {
 
 template <class T>
 struct ValueOf<T, std::enable_if_t<std::is_arithmetic_v<T>>> : PlainValue<T, ValueOf<T>> {
-  static std::string argument() {
-    if constexpr (std::is_same_v<T, bool>) return "bool";
-    return std::is_integral_v<T> ? "int" : "float";
-  }
-  static std::string attribute() { return argument(); }
   static py::object to_plain(T value) { return py::cast(value); }
+};
+
+template <>
+struct ValueOf<std::string> : PlainValue<std::string, ValueOf<std::string>> {
+  static py::object to_plain(const std::string& value) { return py::str(value); }
 };
 
 template <class T>
 struct ValueOf<T, std::enable_if_t<std::is_enum_v<T>>> : PlainValue<T, ValueOf<T>> {
-  static std::string attribute() { return std::string("iksel_cpp.") + EnumTable<T>::kName; }
-  static std::string argument() { return attribute() + " | str"; }
   static py::object get(T value, py::handle /*owner*/) { return py::cast(value); }
   static py::object to_plain(T value) { return py::str(enum_name(value)); }
 };
@@ -105,12 +104,6 @@ struct ValueOf<T, std::enable_if_t<std::is_enum_v<T>>> : PlainValue<T, ValueOf<T
 template <std::size_t N>
 struct ValueOf<std::array<double, N>>
     : PlainValue<std::array<double, N>, ValueOf<std::array<double, N>>> {
-  static std::string argument() { return "collections.abc.Sequence[float]"; }
-  static std::string attribute() {
-    std::string text = "float";
-    for (std::size_t i = 1; i < N; ++i) text += ", float";
-    return "tuple[" + text + "]";
-  }
   static py::object to_plain(const std::array<double, N>& value) {
     py::tuple items(N);
     for (std::size_t i = 0; i < N; ++i) items[i] = value[i];
@@ -121,6 +114,7 @@ struct ValueOf<std::array<double, N>>
 /// A sequence of N numbers.
 template <std::size_t N>
 struct FromPython<std::array<double, N>> {
+  static std::string text() { return "collections.abc.Sequence[float]"; }
   static std::array<double, N> convert(py::handle value, const char* name) {
     const std::string expected = std::to_string(N) + " numbers";
     if (!py::isinstance<py::sequence>(value) && !py::hasattr(value, "__array__")) {

@@ -244,7 +244,7 @@ class MimicCurve:
         Values of the joint that is followed [rad or m], (N,).
         """
     @property
-    def slopes(self) -> typing.Any:
+    def slopes(self) -> numpy.typing.NDArray[numpy.float64] | None:
         """
         Derivative of `values` by q at each, (N,); None: those of a cubic spline.
         """
@@ -1442,7 +1442,7 @@ class Obstacle:
         The arm keeps this far away [m].
         """
     @property
-    def points(self) -> typing.Any:
+    def points(self) -> numpy.typing.NDArray[numpy.float64] | None:
         """
         In the obstacle's frame, (N, 3) [m]; None of others.
         """
@@ -2584,7 +2584,7 @@ class SelfMotion:
     """
     def __bool__(self) -> bool:
         ...
-    def __getitem__(self, i: typing.SupportsInt | typing.SupportsIndex) -> SelfMotionArc:
+    def __getitem__(self, i: int) -> SelfMotionArc:
         ...
     def __iter__(self) -> collections.abc.Iterator[SelfMotionArc]:
         ...

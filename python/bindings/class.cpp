@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "class.hpp"
+
+#include <map>
+
+namespace iksel::python {
+
+namespace {
+
+/// How to come by an object of a class without a constructor.
+std::map<PyTypeObject*, const char*>& makers() {
+  static std::map<PyTypeObject*, const char*> all;
+  return all;
+}
+
+/// Where the mark lies in objects: behind what pybind11 has there, which is as long in all classes.
+Py_ssize_t mark_offset = 0;
+
+bool& mark_of(PyObject* self) {
+  return *reinterpret_cast<bool*>(reinterpret_cast<char*>(self) + mark_offset);
+}
+
+/// In the place of pybind11's __new__, which is that of the class below all.
+PyObject* make_unmade(PyTypeObject* type, PyObject* arguments, PyObject* keywords) {
+  const PyTypeObject* root = type;
+  while (root->tp_base != &PyBaseObject_Type) root = root->tp_base;
+  PyObject* self = root->tp_new(type, arguments, keywords);
+  if (self != nullptr) mark_of(self) = true;
+  return self;
+}
+
+int refuse_constructor(PyObject* self, PyObject* /*arguments*/, PyObject* /*keywords*/) {
+  for (PyTypeObject* type = Py_TYPE(self); type != nullptr; type = type->tp_base) {
+    const auto found = makers().find(type);
+    if (found == makers().end()) continue;
+    const std::string name =
+        py::cast<std::string>(py::handle(reinterpret_cast<PyObject*>(type)).attr("__name__"));
+    const std::string text = name + " is not made by calling it, but by " + found->second;
+    PyErr_SetString(py::module_::import("iksel_cpp").attr("SignatureError").ptr(), text.c_str());
+    break;
+  }
+  return -1;
+}
+
+}  // namespace
+
+std::string describe(py::handle value) {
+  std::string text = py::cast<std::string>(py::repr(value));
+  constexpr std::size_t kLongest = 60;
+  if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
+  std::string type = Py_TYPE(value.ptr())->tp_name;
+  // Nobody but us knows that module.
+  const std::string own = "iksel_cpp.";
+  if (type.rfind(own, 0) == 0) type.erase(0, own.size());
+  return text + " (" + type + ")";
+}
+
+py::custom_type_setup guard(const char* how) {
+  return py::custom_type_setup([how](PyHeapTypeObject* heap_type) {
+    PyTypeObject* type = &heap_type->ht_type;
+    mark_offset = type->tp_basicsize;
+    type->tp_basicsize += static_cast<Py_ssize_t>(sizeof(void*));
+    type->tp_new = &make_unmade;
+    if (how == nullptr) return;
+    makers()[type] = how;
+    type->tp_init = &refuse_constructor;
+  });
+}
+
+bool is_unmade(PyObject* self) { return mark_of(self); }
+void set_made(PyObject* self) { mark_of(self) = false; }
+
+void throw_unmade() {
+  throw InvalidArgumentError(
+      "this object was never made: its class was called by __new__ alone, or a pickle ended "
+      "before the object's state");
+}
+
+}  // namespace iksel::python

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Classes of Python that hold an object of C++. One that Python has made by __new__ alone, or whose
+// pickle ended before its state, holds none yet: whoever asks for it is refused, since pybind11
+// would hand out memory that nobody has written to.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "iksel/error.hpp"
+
+namespace iksel::python {
+
+namespace py = pybind11;
+
+/// A call that does not fit: an unknown keyword, a missing argument, one of another class.
+class SignatureError : public InvalidArgumentError {
+ public:
+  using InvalidArgumentError::InvalidArgumentError;
+};
+
+/// "'abc' (str)", for messages.
+std::string describe(py::handle value);
+
+/// The Python class of T.
+template <class T>
+struct ClassOf {
+  static inline PyTypeObject* type = nullptr;
+  static inline std::string name;
+  static inline PyObject* place = nullptr;  ///< what puts an object of C++ into one of Python
+};
+
+/// Has a class know which of its objects were not made yet. `how` says what makes one, in the place
+/// of a constructor.
+py::custom_type_setup guard(const char* how);
+
+/// Whether there is no object of C++ in what is of such a class.
+bool is_unmade(PyObject* self);
+void set_made(PyObject* self);
+[[noreturn]] void throw_unmade();
+
+template <class T>
+bool is_a(py::handle value) {
+  return PyObject_TypeCheck(value.ptr(), ClassOf<T>::type) != 0;
+}
+
+/// The object in a Python object. Throws SignatureError about one of another class.
+template <class T>
+T& made(py::handle self) {
+  if (!is_a<T>(self)) {
+    throw SignatureError("self: expected a " + ClassOf<T>::name + ", got " + describe(self));
+  }
+  if (is_unmade(self.ptr())) throw_unmade();
+  return py::cast<T&>(self);
+}
+
+/// Puts an object into `self`, unless there is one already.
+template <class T>
+void construct(py::handle self, T&& value) {
+  if (!is_unmade(self.ptr())) return;
+  auto held = std::make_unique<T>(std::forward<T>(value));
+  py::handle(ClassOf<T>::place)(self, py::capsule(held.get(), [](void* /*object*/) {}));
+  held.release();
+  set_made(self.ptr());
+}
+
+/// Without a constructor, but for `how`.
+template <class T>
+py::class_<T> bind_class(py::module_& m, const char* name, const char* doc,
+                         const char* how = nullptr) {
+  py::class_<T> cls(m, name, doc, guard(how));
+  ClassOf<T>::type = reinterpret_cast<PyTypeObject*>(cls.ptr());
+  ClassOf<T>::name = name;
+  // pybind11's constructor is kept apart, behind one that reads arguments as all functions do.
+  const py::object before = cls.attr("__init__");
+  cls.def(py::init([](const py::capsule& object) { return object.get_pointer<T>(); }));
+  ClassOf<T>::place = py::object(cls.attr("__init__")).release().ptr();
+  cls.attr("__init__") = before;
+  return cls;
+}
+
+}  // namespace iksel::python

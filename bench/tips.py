@@ -50,7 +50,7 @@ def torso(arm: iksel.Robot) -> str:
     return text + "</robot>"
 
 
-def changed(robot: iksel.TreeRobot, q: Array, part: float, seed: int) -> Array:
+def changed(robot: iksel.Robot, q: Array, part: float, seed: int) -> Array:
     """Configurations near those given; joints without limits count as one turn."""
     turns = np.isinf(robot.upper)
     width = np.where(turns, 2 * np.pi, robot.upper - robot.lower)
@@ -59,7 +59,7 @@ def changed(robot: iksel.TreeRobot, q: Array, part: float, seed: int) -> Array:
 
 
 def row_of(
-    times: npt.NDArray[np.int64], results: list[iksel.TreeResult]
+    times: npt.NDArray[np.int64], results: list[iksel.Result]
 ) -> dict[str, Any]:
     """What a run comes to."""
     microseconds = times / 1e3
@@ -76,8 +76,8 @@ def measure(name: str, args: argparse.Namespace) -> dict[str, Any]:
     """One robot: without `near`, and with."""
     arm = iksel.load_robot(name)
     tips = ["l_" + arm.tip_link, "r_" + arm.tip_link]
-    robot = iksel.TreeRobot.from_urdf(torso(arm), tips)
-    solver = iksel.TreeSolver(robot)
+    robot = iksel.Robot.from_urdf(torso(arm), tip_links=tips)
+    solver = iksel.Solver(robot)
     q = robot.random_configurations(args.targets, args.seed)
     poses = robot.fk(q)
     times, results = time_calls(solver.solve, [(p,) for p in poses], LIMIT_S)

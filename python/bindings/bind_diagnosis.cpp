@@ -70,7 +70,9 @@ struct FieldTable<Diagnosis> {
             "farther than any joint; `joint` is -1 then. -1 otherwise."),
         field("proof", &D::proof,
               "How certain it is that there is no answer, as Result.proof; `answer` if there is "
-              "one.")};
+              "one."),
+        field<&is_index<kMaxTips>>(
+            "unreachable_tip", &D::unreachable_tip, nullptr)};
   }
   static void check(const D& self) {
     const std::string of = "pickled Diagnosis, ";
@@ -97,6 +99,11 @@ void bind_diagnosis(py::module_& m) {
   add_property(
       cls, "proven", [](const Diagnosis& self) { return is_proven(self.proof); },
       "Whether there is certainly no answer: `proof` is `reach`, `closed_form` or `target`.");
+  add_property(
+      cls, "unreachable_tip",
+      [](const Diagnosis& self) { return optional_index(self.unreachable_tip); },
+      "Of several tips: the first that cannot be reached by itself, whose chain the numbers are "
+      "about, and q has that chain's joints; None: each can.");
   def(cls, "__bool__", "", [](const Diagnosis& self) { return self.q_is_solution; });
   def(cls, "__repr__", "", [](const Diagnosis& self) {
     return std::string("Diagnosis(") + enum_name(self.cause) + ": " + self.message + ")";

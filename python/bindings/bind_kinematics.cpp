@@ -13,15 +13,30 @@ namespace iksel::python {
 namespace {
 
 py::array_t<double> fk(const Robot& self, const ArrayLike& q, Kinematics how) {
-  return map_joints(q, self.dof(), "q", {4, 4}, [&](const JointVector& joints, double* out) {
-    Eigen::Map<RowMajorPose>{out} = self.fk(joints, how).matrix();
-  });
+  if (self.tips() == 1) {
+    return map_joints(q, self.dof(), "q", {4, 4}, [&](const JointVector& joints, double* out) {
+      Eigen::Map<RowMajorPose>{out} = self.fk(joints, how).matrix();
+    });
+  }
+  return map_joints(q, self.dof(), "q", {self.tips(), 4, 4},
+                    [&](const JointVector& joints, double* out) {
+                      for (const Pose& pose : self.tip_poses(joints, how)) {
+                        Eigen::Map<RowMajorPose>{out} = pose.matrix();
+                        out += 16;
+                      }
+                    });
 }
 
 py::array_t<double> jacobian(const Robot& self, const ArrayLike& q, Kinematics how) {
   const int dof = self.dof();
-  return map_joints(q, dof, "q", {6, dof}, [&](const JointVector& joints, double* out) {
-    Eigen::Map<RowMajorMatrix>(out, 6, dof) = self.jacobian(joints, how);
+  if (self.tips() == 1) {
+    return map_joints(q, dof, "q", {6, dof}, [&](const JointVector& joints, double* out) {
+      Eigen::Map<RowMajorMatrix>(out, 6, dof) = self.jacobian(joints, how);
+    });
+  }
+  const int rows = 6 * self.tips();
+  return map_joints(q, dof, "q", {rows, dof}, [&](const JointVector& joints, double* out) {
+    Eigen::Map<RowMajorMatrix>(out, rows, dof) = self.tip_jacobians(joints, how);
   });
 }
 
@@ -51,7 +66,7 @@ Args:
     kinematics: what computes it.
 
 Returns:
-    (6, dof), or (N, 6, dof) with the GIL released.
+    (6, dof), or (N, 6, dof) with the GIL released; of k tips 6 k rows, one below the other.
 
 Raises:
     InvalidArgumentError: wrong shape or dtype, or a number that is not finite.)");
@@ -83,7 +98,7 @@ Args:
     kinematics: what computes it.
 
 Returns:
-    (4, 4), or (N, 4, 4) with the GIL released.
+    (4, 4), or (N, 4, 4) with the GIL released; of k tips (k, 4, 4), or (N, k, 4, 4).
 
 Raises:
     InvalidArgumentError: wrong shape or dtype, or a number that is not finite.)");

@@ -71,19 +71,10 @@ struct FieldTable<PyPath> {
 
 namespace {
 
-/// A number, or None where it is below 0.
-OptionalIndex optional_index(std::ptrdiff_t index) {
-  return OptionalIndex(index < 0 ? py::object(py::none()) : py::object(py::int_(index)));
-}
-
 PyPath solve_path(const Solver& self, py::handle poses, const Given& given) {
   const int dof = self.robot().dof();
-  const DoubleArray array = as_poses(poses, "poses", &self.options().task);
-  std::vector<Pose> targets(static_cast<std::size_t>(array.shape(0)));
-  for (std::size_t i = 0; i < targets.size(); ++i) {
-    targets[i].matrix() = Eigen::Map<const RowMajorPose>(array.data() + 16 * i);
-  }
   auto options = given.read<PathOptions>(dof);
+  const std::vector<Pose> targets = to_poses(as_rows(self, poses, options));
   if (options.start) warn_of_degrees(self.robot(), {*options.start}, "start");
   options.progress = interruptible();
   return {without_gil([&] { return self.solve_path(targets, options); }), dof};
@@ -123,8 +114,12 @@ Tracker make_tracker(const Solver& solver, const ArrayLike& start, const Closest
   return Tracker(solver, as_joints(start, solver.robot().dof(), "start"), as_closest(closest));
 }
 
-PyResult track(Tracker& self, const Pose& pose, double dt, const std::optional<Scene>& scene) {
-  return PyResult(scene ? self.track(pose, dt, &*scene) : self.track(pose, dt));
+PyResult track(Tracker& self, const PoseLike& pose, double dt, const std::optional<Scene>& scene) {
+  const Scene* in = scene ? &*scene : nullptr;
+  if (self.solver().robot().tips() == 1) {
+    return PyResult(self.track(as_pose(pose, "pose"), dt, in));
+  }
+  return PyResult(self.track(as_targets(self.solver(), pose, {}), dt, in));
 }
 
 /// What `closest` was asked for with.
@@ -148,17 +143,19 @@ py::dict tracker_state(const Tracker& self) {
   state["q"] = to_array(self.q());
   state["closest"] = weights_of(self);
   state["reached"] = to_array(self.reached());
-  state["last"] = last ? py::object(to_array(Pose(*last))) : py::object(py::none());
+  state["last"] = to_stack(last);
   state["speed"] = speed;
   return state;
 }
 
 Tracker tracker_from_state(const Solver& solver, const ArrayLike& q, const ClosestLike& closest,
-                           const ArrayLike& reached, const std::optional<Pose>& last,
+                           const ArrayLike& reached, const PoseLike& last,
                            double speed) {
   const int dof = solver.robot().dof();
   TargetStream stream;
-  if (last) stream.last = *last;
+  for (const Pose& each : to_poses(as_poses(last, "pickled Tracker, last"))) {
+    stream.last.emplace_back(each);
+  }
   stream.speed = speed;
   return Tracker(solver, as_joints(q, dof, "pickled Tracker, q"), as_closest(closest),
                  as_joints(reached, dof, "pickled Tracker, reached"), stream);
@@ -192,7 +189,7 @@ Raises:
       R"(Moves on towards a pose, by no more than each joint can in the time step.
 
 Args:
-    pose: T_base_tip [m], as in Solver.solve.
+    pose: T_base_tip [m], as in Solver.solve; one for each tip.
     dt: time step [s].
     scene: the arm stays, with status `in_collision`, where it would collide at the end of its move;
         the way there is not looked at.
@@ -230,11 +227,13 @@ void bind_path(py::module_& m, py::class_<Solver>& cls) {
        "Joint values along a path of poses, by a choice among the solutions of all waypoints.\n\n"
        "Of all ways through the solutions that are found, the one with the least sum of joint "
        "moves.",
-       "poses", "T_base_tip of each waypoint, (N, 4, 4) [m], or others as in solve.",
+       "poses", "T_base_tip of each waypoint, (N, 4, 4) [m], or others as in solve; of several tips "
+       "(N, k, 4, 4).",
        R"(Raises:
     InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, a number out of range.)"},
       path_keywords(), 1,
-      {"start", "dt", "weights", "norm", "scene", "exact", "filter", "candidates"},
+      {"start", "dt", "weights", "norm", "scene", "exact", "filter", "candidates", "task", "tasks",
+       "in_frame_of"},
       fn<&solve_path>);
 
   bind_tracker(m);

@@ -105,24 +105,31 @@ struct FieldTable<PySolutions> {
 namespace {
 
 PyResult solve(const Solver& self, py::handle pose, const Given& given) {
-  if (given.is_empty()) return PyResult(self.solve(as_pose(pose, "pose", &self.options().task)));
+  const bool has_one_tip = self.robot().tips() == 1;
+  if (given.is_empty() && has_one_tip) {
+    return PyResult(self.solve(as_pose(pose, "pose", &self.options().task)));
+  }
   const SolveRequest request = read_request(self, given);
-  const Pose target = as_pose(pose, "pose", &task_of(self, request));
-  return PyResult(without_gil([&] { return self.solve(target, request); }));
+  if (has_one_tip) {
+    const Pose target = as_pose(pose, "pose", &task_of(self, request));
+    return PyResult(without_gil([&] { return self.solve(target, request); }));
+  }
+  const std::vector<Pose> targets = as_targets(self, pose, request);
+  return PyResult(without_gil([&] { return self.solve(targets, request); }));
 }
 
 PySolutions solve_all(const Solver& self, py::handle pose, const Given& given) {
   const int dof = self.robot().dof();
   const auto options = given.read<SolveAllOptions>(dof);
   const SolveRequest request = read_request(self, given);
-  const Pose target = as_pose(pose, "pose", &task_of(self, request));
-  return {without_gil([&] { return self.solve_all(target, options, request); }), dof};
+  const std::vector<Pose> targets = as_targets(self, pose, request);
+  return {without_gil([&] { return self.solve_all(targets, options, request); }), dof};
 }
 
 Diagnosis diagnose(const Solver& self, py::handle pose, const Given& given) {
   const SolveRequest request = read_request(self, given);
-  const Pose target = as_pose(pose, "pose", &task_of(self, request));
-  return without_gil([&] { return self.diagnose(target, request); });
+  const std::vector<Pose> targets = as_targets(self, pose, request);
+  return without_gil([&] { return self.diagnose(targets, request); });
 }
 
 std::string solutions_repr(const PySolutions& self) {
@@ -189,13 +196,14 @@ void bind_requests(py::module_& m, py::class_<Solver>& cls) {
   def_method(
       cls,
       {"solve",
-       "Joint values that put the TCP (the tip link's frame, if there is no tool) at a pose.",
+       "Joint values that put the TCP (the tip link's frame, if there is no tool) at a pose, or the "
+       "TCP of each tip at its own.",
        "pose",
        "T_base_tip [m]: (4, 4) or (3, 4); a pair (position, rotation) with a (3, 3) "
        "matrix or a scipy Rotation; an object with as_matrix(), .homogeneous or .A "
        "(scipy, Pinocchio, spatialmath); (3,) if the task leaves the rotation free. One "
        "that is rounded stands for the nearest rigid one (see check_pose), by which the "
-       "errors are measured.",
+       "errors are measured. Of several tips, (k, 4, 4) or k of these.",
        R"(Returns:
     A Result. A pose that cannot be solved is no error but a status, and `proof` says how certain
     that is.
@@ -205,7 +213,7 @@ Raises:
         finite or out of range.)"},
       request_keywords(), 0,
       {"near", "weights", "norm", "seeds", "database_seeds", "scene", "exact", "filter", "deadline",
-       "task", "objective", "closest"},
+       "task", "objective", "closest", "tasks", "in_frame_of"},
       fn<&solve>);
   def_method(cls,
              {"solve_all",
@@ -219,7 +227,8 @@ Raises:
     InvalidArgumentError: as solve.)"},
              solve_all_keywords(), 1,
              {"max", "min_distance", "whole_turns", "order", "near", "weights", "norm", "seeds",
-              "database_seeds", "scene", "exact", "filter", "deadline", "task", "objective"},
+              "database_seeds", "scene", "exact", "filter", "deadline", "task", "objective", "tasks",
+              "in_frame_of"},
              fn<&solve_all>);
   def_method(
       cls,
@@ -232,7 +241,7 @@ Raises:
 
 Raises:
     InvalidArgumentError: as solve.)"},
-      request_keywords(), 0, {"scene", "exact", "filter", "deadline", "task"}, fn<&diagnose>);
+      request_keywords(), 0, {"scene", "exact", "filter", "deadline", "task", "tasks", "in_frame_of"}, fn<&diagnose>);
 }
 
 }  // namespace iksel::python

@@ -157,6 +157,12 @@ void bind_single(py::module_& m) {
       cls, "success", [](const PyResult& self) { return self.success(); },
       "Whether q reaches the target within both tolerances and lies inside the limits.");
   add_property(
+      cls, "unreachable_tip",
+      [](const PyResult& self) { return optional_index(self.unreachable_tip); },
+      "Of a failure with several tips: one whose target its chain cannot reach by itself, as far as "
+      "a search can tell, and status and proof are that chain's; None: each can, or none was looked "
+      "at.");
+  add_property(
       cls, "proven", [](const PyResult& self) { return is_proven(self.proof); },
       "Whether there is certainly no answer: `proof` is `reach`, `closed_form` or `target`.");
   add_property(

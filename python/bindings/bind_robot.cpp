@@ -31,12 +31,22 @@ std::uint64_t fresh_seed() {
   return (std::uint64_t{device()} << 32) | device();
 }
 
+std::vector<StoredPose> as_tools(py::handle value) {
+  std::vector<StoredPose> tools;
+  for (const Pose& tool : to_poses(as_poses(value, "tcps"))) {
+    const std::string name = "tcps[" + std::to_string(tools.size()) + "]";
+    tools.emplace_back(check_pose(tool, name.c_str()));
+  }
+  return tools;
+}
+
 Robot from_urdf(const UrdfSource& path_or_xml, const std::optional<std::string>& base_link,
                 const std::optional<std::string>& tip_link, const std::optional<Pose>& tcp,
                 const std::optional<JointValues>& locked_joints, bool soft_limits,
                 const std::optional<Limits>& default_limits,
                 const std::vector<CoupledLimit>& coupled_limits,
-                const std::vector<MimicCurve>& mimic_curves) {
+                const std::vector<MimicCurve>& mimic_curves,
+                const std::optional<LinkNames>& tip_links, const std::optional<PoseLike>& tcps) {
   RobotOptions options;
   if (base_link) options.base_link = *base_link;
   if (tip_link) options.tip_link = *tip_link;
@@ -46,6 +56,14 @@ Robot from_urdf(const UrdfSource& path_or_xml, const std::optional<std::string>&
   options.default_limits = default_limits;
   options.coupled_limits = coupled_limits;
   options.mimic_curves = mimic_curves;
+  if (tip_links) {
+    options.tip_links = read_sequence(*tip_links, "tip_links", "a list of link names",
+                                      from_python<std::string>);
+    if (options.tip_links.empty()) {
+      throw InvalidArgumentError("tip_links: expected one link or more, got none");
+    }
+  }
+  if (tcps) options.tcps = as_tools(*tcps);
   return read_urdf(
       path_or_xml, [&](const std::string& xml) { return Robot::from_urdf_string(xml, options); },
       [&](const std::filesystem::path& path) { return Robot::from_urdf_file(path, options); });
@@ -53,11 +71,17 @@ Robot from_urdf(const UrdfSource& path_or_xml, const std::optional<std::string>&
 
 constexpr const char* kFromUrdf =
     "path_or_xml, base_link=None, tip_link=None, tcp=None, locked_joints=None, soft_limits=False, "
-    "default_limits=None, coupled_limits=(), mimic_curves=()";
+    "default_limits=None, coupled_limits=(), mimic_curves=(), tip_links=None, tcps=None";
+
+/// "tip_link='tool0'", or the links of several.
+std::string tip_text(const Robot& self) {
+  if (self.tips() == 1) return "tip_link='" + self.tip_link() + "'";
+  return "tip_links=" + repr_text(py::cast(self.tip_links()));
+}
 
 std::string robot_repr(const Robot& self) {
   return "Robot(" + repr_text(py::str(self.name())) + ", dof=" + std::to_string(self.dof()) +
-         ", base_link='" + self.base_link() + "', tip_link='" + self.tip_link() + "')";
+         ", base_link='" + self.base_link() + "', " + tip_text(self) + ")";
 }
 
 /// The arguments of from_urdf that make the same robot.
@@ -66,8 +90,11 @@ py::dict robot_state(const Robot& self) {
   py::dict state;
   state["path_or_xml"] = self.urdf();
   state["base_link"] = options.base_link;
-  state["tip_link"] = options.tip_link;
-  state["tcp"] = to_array(self.tcp());
+  const bool has_one_tip = self.tips() == 1;
+  state["tip_link"] = has_one_tip ? py::cast(options.tip_link) : py::none();
+  state["tcp"] = has_one_tip ? py::object(to_array(self.tcp())) : py::none();
+  state["tip_links"] = has_one_tip ? py::none() : py::cast(options.tip_links);
+  state["tcps"] = has_one_tip ? py::none() : py::object(to_stack(options.tcps));
   state["locked_joints"] = options.locked_joints;
   state["soft_limits"] = options.soft_limits;
   state["default_limits"] = options.default_limits;
@@ -78,7 +105,9 @@ py::dict robot_state(const Robot& self) {
 
 /// A table of the joints.
 std::string robot_html(const Robot& self) {
-  HtmlTable table(self.name() + ": " + self.base_link() + " to " + self.tip_link(),
+  std::string tips;
+  for (const std::string& link : self.tip_links()) tips += (tips.empty() ? "" : ", ") + link;
+  HtmlTable table(self.name() + ": " + self.base_link() + " to " + tips,
                   {"joint", "type", "lower", "upper", "velocity limit"});
   for (int i = 0; i < self.dof(); ++i) {
     const auto k = static_cast<std::size_t>(i);
@@ -104,13 +133,24 @@ void def_joint_vector(py::class_<Robot>& cls, const char* name,
 void bind_chain(py::class_<Robot>& cls) {
   add_property(cls, "name", &Robot::name, "Name in the URDF.");
   add_property(cls, "base_link", &Robot::base_link, "Link the poses are relative to.");
-  add_property(cls, "tip_link", &Robot::tip_link, "Link whose pose is solved for.");
+  add_property(cls, "tip_link", &Robot::tip_link, "Link whose pose is solved for, of a robot with one tip.");
   add_property(cls, "link_names", &Robot::link_names,
                "Names of all links of the URDF, the chain's and others, depth first "
                "from the root.");
   add_property(cls, "urdf", &Robot::urdf,
                "The URDF text this robot was made of, as every XML reader takes it.");
-  bind_common_options(cls);
+  add_property(
+      cls, "locked_joints", [](const Robot& self) { return self.options().locked_joints; },
+      "Joints held at a value [rad or m], by name.");
+  add_property(
+      cls, "soft_limits", [](const Robot& self) { return self.options().soft_limits; },
+      "Whether the limits are narrowed to the safety controller's.");
+  add_property(
+      cls, "default_limits", [](const Robot& self) { return self.options().default_limits; },
+      "Lower and upper limit of joints that the URDF gives none [rad or m], or None.");
+  add_property(
+      cls, "coupled_limits", [](const Robot& self) { return self.options().coupled_limits; },
+      "Limits of sums of joint values, beside those of each joint.");
   add_property(
       cls, "mimic_curves", [](const Robot& self) { return self.options().mimic_curves; },
       "How joints follow others where that is no straight line.");
@@ -119,7 +159,8 @@ void bind_chain(py::class_<Robot>& cls) {
       "T_tip_tcp, the tool centre point in the tip link's frame, (4, 4).");
   add_property(cls, "dof", &Robot::dof, "Degrees of freedom.");
   add_property(cls, "joint_names", &Robot::joint_names,
-               "Names of the degrees of freedom, base to tip.");
+               "Names of the degrees of freedom, base to tip; of several tips those of the first "
+               "chain, then those that only the second has, and so on.");
   add_property(cls, "joint_types", &Robot::joint_types,
                "How each degree of freedom moves, base to tip.");
   def_joint_vector(cls, "lower", &Robot::lower,
@@ -147,9 +188,32 @@ void bind_chain(py::class_<Robot>& cls) {
                "Hash of the chain up to the tip link: equal for chains that may share a database.");
 }
 
+void bind_tips(py::class_<Robot>& cls) {
+  add_property(cls, "tips", &Robot::tips, "Number of tips.");
+  add_property(cls, "tip_links", &Robot::tip_links, "Links whose poses are solved for.");
+  add_property(
+      cls, "tcps",
+      [](const Robot& self) {
+        std::vector<Pose> tools;
+        for (int i = 0; i < self.tips(); ++i) tools.push_back(self.chain(i).tcp());
+        return to_stack(tools);
+      },
+      "T_tip_tcp of each tip, (k, 4, 4).");
+  add_property(cls, "shared_joints", &Robot::shared_joints,
+               "Indices of the joints that move more than one tip, ascending.");
+  def(
+      cls, "chain", "tip", [](const Robot& self, int tip) { return self.chain(tip); },
+      "The chain to one tip by itself; tips count from 0.\n\nRaises:\n"
+      "    InvalidArgumentError: no such tip.");
+  def(
+      cls, "joints_of", "tip", [](const Robot& self, int tip) { return self.joints_of(tip); },
+      "Where the joints of that chain stand among all: its joint values are q[joints_of(tip)]."
+      "\n\nRaises:\n    InvalidArgumentError: no such tip.");
+}
+
 void bind_from_urdf(py::class_<Robot>& cls) {
   def_static(cls, "from_urdf", kFromUrdf, fn<&from_urdf>,
-             R"(Reads the chain between two links of a URDF.
+             R"(Reads the chain between two links of a URDF, or the chains to several tips.
 
 Args:
     path_or_xml: a path, or the URDF itself: a str whose first character is '<', or bytes.
@@ -163,6 +227,9 @@ Args:
     coupled_limits: limits of sums of joint values, beside those of each joint; at most 8.
     mimic_curves: how joints follow others where that is no straight line, one MimicCurve for each
         that does; in the place of their mimic tags.
+    tip_links: in the place of tip_link, the links of a robot with several tips, 1 to 8: a torso and
+        its two arms. A joint that lies on several of the chains is one degree of freedom.
+    tcps: in the place of tcp, T_tip_tcp of each tip, (k, 4, 4); None: no tip has a tool.
 
 Raises:
     UrdfError: the file, the XML, a joint type or a limit is no good, or a length or joint value
@@ -194,12 +261,15 @@ void bind_robot(py::module_& m) {
   bind_enum<Kinematics>(m);
 
   auto cls = bind_class<Robot>(m, "Robot",
-                               "An immutable serial chain between two links of a URDF, with its "
-                               "limits. Safe to use from many threads at once.",
+                               "An immutable serial chain between two links of a URDF, or the "
+                               "chains from one link to several tips, with their limits. Safe to "
+                               "use from many threads at once. What is about one tip raises "
+                               "InvalidArgumentError where there are several.",
                                "iksel.load_robot(name) or Robot.from_urdf(path_or_xml)");
   bind_from_urdf(cls);
   bind_dh(m, cls);
   bind_chain(cls);
+  bind_tips(cls);
   def(
       cls, "with_tcp", "tcp", [](const Robot& self, const Pose& tcp) { return self.with_tcp(tcp); },
       "The same chain with another tool T_tip_tcp, (4, 4). Databases built for one serve the "

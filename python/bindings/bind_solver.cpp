@@ -31,6 +31,14 @@ Solver make_solver(const Robot& robot, const std::optional<SolverOptions>& given
   if (max_deviation) bound = {(*max_deviation)[0], (*max_deviation)[1]};
   // Built here and not by Solver, so that Ctrl-C ends a long build.
   const GilRelease release;
+  if (robot.tips() > 1) {
+    if (database || nominal || max_deviation) {
+      throw InvalidArgumentError(
+          "database, nominal, max_calibration_deviation: they are of a robot with one tip; one "
+          "with several builds a database for each of its chains");
+    }
+    return Solver(robot, options);
+  }
   const Robot& sampled = nominal ? *nominal : robot;
   const Database seeds =
       database ? *database : Database::build(sampled, options.database, interruptible());
@@ -61,7 +69,7 @@ struct BatchOptions {
 };
 
 std::vector<Keyword> batch_keywords() {
-  std::vector<Keyword> all = {keyword("threads", &BatchOptions::threads, "0: one per core.")};
+  std::vector<Keyword> all = {keyword<BatchOptions>("threads", &BatchOptions::threads, "0: one per core.")};
   for (const Keyword& each : request_keywords()) all.push_back(each);
   return all;
 }
@@ -69,9 +77,9 @@ std::vector<Keyword> batch_keywords() {
 PyBatchResult solve_batch(const Solver& self, py::handle poses, const Given& given) {
   const int joints = self.robot().dof();
   SolveRequest request = read_request(self, given, /*except=*/"near");
-  const DoubleArray targets = as_poses(poses, "poses", &task_of(self, request));
+  const DoubleArray targets = as_rows(self, poses, request);
   const auto options = given.read<BatchOptions>(joints);
-  const py::ssize_t n = targets.shape(0);
+  const py::ssize_t n = targets.shape(0) / self.robot().tips();
   const py::ssize_t dof = joints;
   const auto nears = as_near(given["near"], n, self.robot(), request);
   PyBatchResult out{
@@ -103,13 +111,18 @@ py::dict solver_state(const Solver& self) {
   py::dict state;
   state["robot"] = self.robot();
   state["options"] = self.options();
-  state["database"] = self.database();
-  state["nominal"] = self.nominal();
+  const bool has_one_tip = self.robot().tips() == 1;
+  state["database"] = has_one_tip ? py::cast(self.database()) : py::none();
+  state["nominal"] = has_one_tip ? py::cast(self.nominal()) : py::none();
   return state;
 }
 
-Solver solver_from_state(const Robot& robot, const SolverOptions& options, const Database& database,
-                         const Robot& nominal) {
+Solver solver_from_state(const Robot& robot, const SolverOptions& options,
+                         const std::optional<Database>& given, const std::optional<Robot>& of) {
+  if (robot.tips() > 1) return Solver(robot, options);
+  if (!given || !of) refuse_state("pickled Solver, database", "a Database and its Robot", "None");
+  const Database& database = *given;
+  const Robot& nominal = *of;
   if (nominal.chain_hash() == robot.chain_hash()) return Solver(robot, options, database);
   // It was within its bound when it was made.
   constexpr double kAny = std::numeric_limits<double>::infinity();
@@ -153,13 +166,21 @@ void bind_properties(py::class_<Solver>& cls) {
   add_property(cls, "robot", &Solver::robot, "The robot it solves for.");
   add_property(
       cls, "options", [](const Solver& self) { return self.options(); }, "A copy of its options.");
-  add_property(cls, "database", &Solver::database, "The database it selects seeds from.");
+  add_property(cls, "database", &Solver::database,
+               "The database it selects seeds from; of several tips each chain_solver has its own.");
+  def(
+      cls, "chain_solver", "tip", [](const Solver& self, int tip) { return self.chain_solver(tip); },
+      "The Solver of one tip's chain by itself; tips count from 0.\n\nRaises:\n"
+      "    InvalidArgumentError: no such tip.");
   add_property(cls, "work_bound", &Solver::work_bound,
                "Most iteration steps that one solve without given seeds can spend, "
                "over all its seeds: max_attempts * max_iterations.");
   add_property(
       cls, "task_hint",
-      [](const Solver& self) { return task_hint(self.robot(), self.options().task); },
+      [](const Solver& self) {
+        return self.robot().tips() == 1 ? task_hint(self.robot(), self.options().task)
+                                        : std::string();
+      },
       "For an arm with fewer joints than its task has axes, which hardly any target suits: tasks "
       "whose axes its joints can all move, in a sentence; else empty.");
 }
@@ -182,7 +203,7 @@ target's solutions, within the same tolerances. The request holds for each targe
         a bad pose.)"},
       batch_keywords(), 1,
       {"threads", "near", "weights", "norm", "seeds", "database_seeds", "scene", "exact", "filter",
-       "deadline", "task", "objective", "closest", "on_invalid_pose"},
+       "deadline", "task", "objective", "closest", "on_invalid_pose", "tasks", "in_frame_of"},
       fn<&solve_batch>);
 }
 

@@ -38,10 +38,6 @@ void bind_requests(pybind11::module_& m, pybind11::class_<Solver>& solver);
 void bind_path(pybind11::module_& m, pybind11::class_<Solver>& solver);
 void bind_self_motion(pybind11::module_& m, pybind11::class_<Solver>& solver);
 /// To come after the robot, diagnosis and solver, which they are made of.
-void bind_tree_robot(pybind11::module_& m);
-void bind_tree_result(pybind11::module_& m);
-void bind_tree_diagnosis(pybind11::module_& m);
-void bind_tree_solver(pybind11::module_& m);
 void bind_evaluation(pybind11::module_& m);
 void bind_selector(pybind11::module_& m);
 

@@ -333,6 +333,8 @@ struct EnumTable<Cause> {
        "more work finds an answer: the bounds on attempts or iterations are too low"},
       {"out_of_time", Cause::out_of_time, "more time finds an answer: the deadline is too short"},
       {"collision", Cause::collision, "answers exist, but each collides in the scene"},
+      {"shared_joints", Cause::shared_joints,
+       "each of several tips can be reached by itself, but not all at once"},
   };
 };
 

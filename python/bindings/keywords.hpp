@@ -64,10 +64,11 @@ struct Keyword {
   const void* defaults;
 };
 
-template <class Struct, class T>
-Keyword keyword(const char* name, T Struct::*member, const char* doc) {
-  return {
-      name, doc, offset_of(member), &argument_type<T>(), &typeid(Struct), &defaults_of<Struct>()};
+/// The member may be one of a base of the struct.
+template <class Struct, class Base, class T>
+Keyword keyword(const char* name, T Base::*member, const char* doc) {
+  const auto own = static_cast<T Struct::*>(member);
+  return {name, doc, offset_of(own), &argument_type<T>(), &typeid(Struct), &defaults_of<Struct>()};
 }
 
 /// The keyword arguments of one call.

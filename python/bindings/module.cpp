@@ -30,10 +30,6 @@ Kinematics Iterations" (Yuan, Wan, Harada, 2025), called the paper below.)";
   iksel::python::bind_result(m);
   iksel::python::bind_diagnosis(m);
   iksel::python::bind_solver(m);
-  iksel::python::bind_tree_robot(m);
-  iksel::python::bind_tree_result(m);
-  iksel::python::bind_tree_diagnosis(m);
-  iksel::python::bind_tree_solver(m);
   iksel::python::bind_evaluation(m);
   iksel::python::bind_selector(m);
 }

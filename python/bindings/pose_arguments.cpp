@@ -246,4 +246,12 @@ DoubleArray as_poses(py::handle value, const char* name, const Task* task) {
   return array;
 }
 
+std::vector<Pose> to_poses(const DoubleArray& array) {
+  std::vector<Pose> poses(static_cast<std::size_t>(array.shape(0)));
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    poses[i].matrix() = Eigen::Map<const RowMajorPose>(array.data() + 16 * i);
+  }
+  return poses;
+}
+
 }  // namespace iksel::python

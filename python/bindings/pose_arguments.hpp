@@ -4,6 +4,8 @@
 // in C order is read in place.
 #pragma once
 
+#include <vector>
+
 #include "array_checks.hpp"
 #include "iksel/task.hpp"
 #include "python_types.hpp"
@@ -49,5 +51,19 @@ struct FromPython<Pose> {
 
 /// Poses as an (N, 4, 4) array, or positions (N, 3) as above.
 DoubleArray as_poses(py::handle value, const char* name, const Task* task = nullptr);
+
+/// The poses of such an array, and back: (k, 4, 4).
+std::vector<Pose> to_poses(const DoubleArray& array);
+template <class Poses>
+py::array_t<double> to_stack(const Poses& poses) {
+  py::array_t<double> array(
+      {static_cast<py::ssize_t>(poses.size()), py::ssize_t{4}, py::ssize_t{4}});
+  double* out = array.mutable_data();
+  for (const auto& pose : poses) {
+    Eigen::Map<RowMajorPose>{out} = pose.matrix();
+    out += 16;
+  }
+  return array;
+}
 
 }  // namespace iksel::python

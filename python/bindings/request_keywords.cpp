@@ -10,11 +10,26 @@
 #include "filter.hpp"
 #include "iksel/path.hpp"
 #include "objective.hpp"
+#include "pose_arguments.hpp"
+#include "sequence_of.hpp"
 #include "task_fields.hpp"
 
 namespace iksel::python {
 
 namespace {
+
+/// Numbers of tips; None is -1.
+std::vector<int> as_frames(py::handle value, const char* name) {
+  std::vector<int> frames;
+  for (const py::handle& item :
+       read_sequence(value, name, "a list of numbers of tips or None, one for each tip",
+                     [](py::handle each, const char* /*name*/) {
+                       return py::reinterpret_borrow<py::object>(each);
+                     })) {
+    frames.push_back(item.is_none() ? -1 : from_python<int>(item, name));
+  }
+  return frames;
+}
 
 /// Configurations, one or an (N, dof) array of them.
 std::vector<JointVector> as_seeds(py::handle value, const char* name, int dof) {
@@ -55,6 +70,24 @@ struct ArgumentOf<std::vector<JointVector>> : ShownAsNone {
   static std::string text() { return "numpy.typing.ArrayLike"; }
   static std::vector<JointVector> read(py::handle given, const char* name, int dof) {
     return as_seeds(given, name, dof);
+  }
+};
+
+template <>
+struct ArgumentOf<std::vector<Task>> : ShownAsNone {
+  static std::string text() {
+    return "collections.abc.Sequence[Task | collections.abc.Mapping[str, object]]";
+  }
+  static std::vector<Task> read(py::handle given, const char* name, int /*dof*/) {
+    return read_sequence(given, name, "a list of Tasks, one for each tip", from_python<Task>);
+  }
+};
+
+template <>
+struct ArgumentOf<std::vector<int>> : ShownAsNone {
+  static std::string text() { return "collections.abc.Sequence[int | None]"; }
+  static std::vector<int> read(py::handle given, const char* name, int /*dof*/) {
+    return as_frames(given, name);
   }
 };
 
@@ -102,9 +135,6 @@ struct ArgumentOf<std::optional<PoseWeights>> : ShownAsNone {
   }
 };
 
-constexpr const char* kWeightsDoc =
-    "factor on each joint's part of a move, (dof,), >= 0; None: all 1.";
-constexpr const char* kNormDoc = "how a move is measured.";
 constexpr const char* kClosestDoc =
     "what a target without an answer gets, with Status.closest: the configuration inside the "
     "limits that is nearest to it, the best of the local minima that a bounded search comes to. "
@@ -121,6 +151,28 @@ constexpr const char* kFilterDoc =
     "returns n truth "
     "values. The search continues within its bounds while all are refused. In a batch it is asked "
     "about the first answers of up to 256 targets at once, along a path about one waypoint's.";
+
+template <class Struct>
+std::vector<Keyword> criteria_keywords(const char* scene_doc) {
+  using S = Struct;
+  return {
+      keyword<S>("weights", &S::weights,
+                 "factor on each joint's part of a move, (dof,), >= 0; None: all 1."),
+      keyword<S>("norm", &S::norm, "how a move is measured."),
+      keyword<S>("scene", &S::scene, scene_doc),
+      keyword<S>("exact", &S::exact, kExactDoc),
+      keyword<S>("filter", &S::filter, kFilterDoc),
+      keyword<S>("task", &S::task,
+                 "what of the pose has to be reached, of several tips of each; None: what the "
+                 "solver's options say."),
+      keyword<S>("tasks", &S::tasks,
+                 "of several tips, a Task for each in the place of `task`."),
+      keyword<S>("in_frame_of", &S::in_frame_of,
+                 "of several tips, for each the number of the tip in whose frame, that of its TCP, "
+                 "its pose is given; None: in the base frame. So two hands keep what they carry "
+                 "between them. No tip may follow itself by way of others."),
+  };
+}
 
 std::optional<PoseWeights> as_closest(py::handle given) {
   if (given.is_none() || given.ptr() == Py_False) return std::nullopt;
@@ -139,8 +191,11 @@ std::optional<PoseWeights> as_closest(py::handle given) {
 
 std::vector<Keyword> request_keywords() {
   using R = SolveRequest;
-  return {
-      keyword("near", &R::near,
+  std::vector<Keyword> all = criteria_keywords<R>(
+      "what answers may not collide with; of a robot with the same chains. The search continues "
+      "within its bounds while all collide.");
+  const std::vector<Keyword> own = {
+      keyword<R>("near", &R::near,
               "configuration to stay near, (dof,) [rad or m], for a batch also (N, dof), one for "
               "each target; may lie outside the limits. The answer is the one with the smallest "
               "joint move of all that are found, whole turns considered; a redundant arm's is "
@@ -148,49 +203,42 @@ std::vector<Keyword> request_keywords() {
               "and in a posture that are too large for a double to tell poses apart to a tenth "
               "of the tolerances are refused: 1.5e8 rad for an arm of six joints and 1 m at the "
               "default tolerances, never less than 100 rad."),
-      keyword("weights", &R::weights, kWeightsDoc),
-      keyword("norm", &R::norm, kNormDoc),
-      keyword("seeds", &R::seeds,
+      keyword<R>("seeds", &R::seeds,
               "joint values to iterate from, (dof,) or (N, dof) [rad or m]; may lie outside the "
               "limits. They are ranked as the database's seeds, and tried before them: up to "
               "max_attempts, and as many of the database's on top."),
-      keyword("database_seeds", &R::database_seeds,
+      keyword<R>("database_seeds", &R::database_seeds,
               "whether other seeds follow the given ones: the database's, random ones, and those "
               "that a closed form gives."),
-      keyword("scene", &R::scene,
-              "what answers may not collide with; of a robot with the same chain. The search "
-              "continues within its bounds while all collide."),
-      keyword("exact", &R::exact, kExactDoc),
-      keyword("filter", &R::filter, kFilterDoc),
-      keyword("deadline", &R::deadline,
+      keyword<R>("deadline", &R::deadline,
               "wall-clock time after which the search for a target ends [s]; checked between its "
               "stages."),
-      keyword("task", &R::task,
-              "what of the pose has to be reached; None: what the solver's options say."),
-      keyword("objective", &R::objective,
+      keyword<R>("objective", &R::objective,
               "what the answer is to be good at besides: an Objective, 'limits', "
               "'manipulability', or a function of joint values (dof,) that returns a cost. Comes "
               "before `near`. Of the answers found, the cheapest; a redundant arm's is moved along "
               "its self-motion to a local minimum."),
-      keyword("closest", &R::closest, kClosestDoc),
-      keyword("on_invalid_pose", &R::on_invalid_pose,
+      keyword<R>("closest", &R::closest, kClosestDoc),
+      keyword<R>("on_invalid_pose", &R::on_invalid_pose,
               "what a row does that is no pose (see check_pose): \"status\", "
               "Status.invalid_pose for it and NaN for its q; \"raise\", an error that names the "
               "first, and none is solved."),
   };
+  all.insert(all.end(), own.begin(), own.end());
+  return all;
 }
 
 std::vector<Keyword> solve_all_keywords() {
   using O = SolveAllOptions;
   std::vector<Keyword> all = {
-      keyword("max", &O::max, "solutions given at most."),
-      keyword("min_distance", &O::min_distance,
+      keyword<O>("max", &O::max, "solutions given at most."),
+      keyword<O>("min_distance", &O::min_distance,
               "solutions that differ by less in every joint are one [rad or m]."),
-      keyword("whole_turns", &O::whole_turns,
+      keyword<O>("whole_turns", &O::whole_turns,
               "whether periodic images inside the limits count as solutions of their own; "
               "otherwise each comes once, at the image nearest to `near` or to the middle of the "
               "limits."),
-      keyword("order", &O::order,
+      keyword<O>("order", &O::order,
               "what comes first; left alone where there is an objective, which decides it then."),
   };
   for (const Keyword& each : request_keywords()) all.push_back(each);
@@ -199,22 +247,58 @@ std::vector<Keyword> solve_all_keywords() {
 
 std::vector<Keyword> path_keywords() {
   using O = PathOptions;
-  return {
-      keyword("start", &O::start,
+  std::vector<Keyword> all = criteria_keywords<O>(
+      "what waypoints may not collide with; the moves between them are not looked at.");
+  const std::vector<Keyword> own = {
+      keyword<O>("start", &O::start,
               "where the arm is one time step before the first waypoint, (dof,) [rad or m]; "
               "None: the path may begin anywhere, and of its periodic images the one that "
               "begins nearest to the middle of the limits is taken."),
-      keyword("dt", &O::dt,
+      keyword<O>("dt", &O::dt,
               "time from one waypoint to the next [s], in which no joint moves farther than its "
               "velocity limit allows; 0: speeds are not limited."),
-      keyword("weights", &O::weights, kWeightsDoc),
-      keyword("norm", &O::norm, kNormDoc),
-      keyword("scene", &O::scene,
-              "what waypoints may not collide with; the moves between them are not looked at."),
-      keyword("exact", &O::exact, kExactDoc),
-      keyword("filter", &O::filter, kFilterDoc),
-      keyword("candidates", &O::candidates, "candidates kept per waypoint at most."),
+      keyword<O>("candidates", &O::candidates, "candidates kept per waypoint at most."),
   };
+  all.insert(all.end(), own.begin(), own.end());
+  return all;
+}
+
+namespace {
+
+/// What a position alone stands for, if it is the same task for all tips; else null.
+const Task* common_task(const Solver& solver, const AnswerCriteria& criteria) {
+  if (criteria.tasks.empty()) return &task_of(solver, criteria);
+  for (const Task& task : criteria.tasks) {
+    if (task != criteria.tasks.front()) return nullptr;
+  }
+  return &criteria.tasks.front();
+}
+
+}  // namespace
+
+std::vector<Pose> as_targets(const Solver& solver, py::handle poses,
+                             const AnswerCriteria& criteria) {
+  const int tips = solver.robot().tips();
+  if (tips == 1) return {as_pose(poses, "pose", common_task(solver, criteria))};
+  if (is_doubles(poses)) {
+    const auto array = py::reinterpret_borrow<DoubleArray>(poses);
+    if (array.ndim() == 4 || (array.ndim() == 2 && array.shape(1) == 4)) {
+      throw_wrong_shape("pose", "one pose for each tip, (" + std::to_string(tips) + ", 4, 4)",
+                        array, "; solve_batch() takes (N, k, 4, 4)");
+    }
+  }
+  return to_poses(as_poses(poses, "pose", common_task(solver, criteria)));
+}
+
+DoubleArray as_rows(const Solver& solver, py::handle poses, const AnswerCriteria& criteria) {
+  const int tips = solver.robot().tips();
+  if (tips == 1) return as_poses(poses, "poses", common_task(solver, criteria));
+  const DoubleArray array = as_doubles(poses, "poses");
+  if (array.ndim() != 4 || array.shape(1) != tips || array.shape(2) != 4 || array.shape(3) != 4) {
+    throw_wrong_shape("poses", "an (N, " + std::to_string(tips) + ", 4, 4) array", array);
+  }
+  const std::vector<py::ssize_t> shape = {array.shape(0) * tips, 4, 4};
+  return py::array(array).reshape(shape);
 }
 
 SolveRequest read_request(const Solver& solver, const Given& given, const char* except) {

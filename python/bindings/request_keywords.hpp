@@ -32,8 +32,14 @@ struct ClosestLike : RawArgument {
 std::optional<PoseWeights> as_closest(py::handle given);
 
 /// The task of a request, or else the solver's.
-inline const Task& task_of(const Solver& solver, const SolveRequest& request) {
-  return request.task ? *request.task : solver.options().task;
+inline const Task& task_of(const Solver& solver, const AnswerCriteria& criteria) {
+  return criteria.task ? *criteria.task : solver.options().task;
 }
+
+/// The pose of the one tip, or one for each.
+std::vector<Pose> as_targets(const Solver& solver, py::handle poses,
+                             const AnswerCriteria& criteria);
+/// Poses of many targets, one after the other: those of all tips at the first, at the second, ...
+DoubleArray as_rows(const Solver& solver, py::handle poses, const AnswerCriteria& criteria);
 
 }  // namespace iksel::python

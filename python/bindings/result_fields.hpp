@@ -35,7 +35,9 @@ struct FieldTable<PyResult> {
             field<PyResult>("cost", &Result::cost, "Cost of q by the objective; NaN without one."),
             field<&is_count, PyResult>("attempts", &Result::attempts, "Seeds tried."),
             field<&is_count, PyResult>("iterations", &Result::iterations,
-                                       "Iteration steps over all attempts.")};
+                                       "Iteration steps over all attempts."),
+            field<&is_index<kMaxTips>, PyResult>(
+                "unreachable_tip", &Result::unreachable_tip, nullptr)};
   }
   static void check(const PyResult& self) {
     const std::string of = "pickled Result, ";

@@ -7,6 +7,7 @@
 #include <pybind11/stl.h>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -36,6 +37,11 @@ struct OptionalIndex : RawResult {
   using RawResult::RawResult;
   static constexpr const char* kText = "int | None";
 };
+
+/// A number, or None where it is below 0.
+inline OptionalIndex optional_index(std::ptrdiff_t index) {
+  return OptionalIndex(index < 0 ? py::object(py::none()) : py::object(py::int_(index)));
+}
 
 /// A truth value for one configuration, an array of them for many; the types of arrays do not tell
 /// which.

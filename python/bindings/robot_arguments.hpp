@@ -32,26 +32,15 @@ struct FromPython<Limits> {
   }
 };
 
+/// Names of links; a text alone is no list of them.
+struct LinkNames : RawArgument {
+  using RawArgument::RawArgument;
+  static constexpr const char* kText = "collections.abc.Sequence[str]";
+};
+
 template <>
 struct FromPython<std::vector<CoupledLimit>> : FromSequence<CoupledLimit> {};
 template <>
 struct FromPython<std::vector<MimicCurve>> : FromSequence<MimicCurve> {};
-
-/// Properties that a robot of one tip and one of several have in common.
-template <class AnyRobot>
-void bind_common_options(py::class_<AnyRobot>& cls) {
-  add_property(
-      cls, "locked_joints", [](const AnyRobot& self) { return self.options().locked_joints; },
-      "Joints held at a value [rad or m], by name.");
-  add_property(
-      cls, "soft_limits", [](const AnyRobot& self) { return self.options().soft_limits; },
-      "Whether the limits are narrowed to the safety controller's.");
-  add_property(
-      cls, "default_limits", [](const AnyRobot& self) { return self.options().default_limits; },
-      "Lower and upper limit of joints that the URDF gives none [rad or m], or None.");
-  add_property(
-      cls, "coupled_limits", [](const AnyRobot& self) { return self.options().coupled_limits; },
-      "Limits of sums of joint values, beside those of each joint.");
-}
 
 }  // namespace iksel::python

@@ -66,6 +66,8 @@ def load_robot(
     tcp: npt.ArrayLike | None = FROM_MANIFEST,
     base_link: str | None = None,
     tip_link: str | None = None,
+    tip_links: Sequence[str] | None = None,
+    tcps: npt.ArrayLike | None = None,
     locked_joints: Mapping[str, float] | None = None,
     soft_limits: bool = False,
     default_limits: npt.ArrayLike | None = None,
@@ -92,6 +94,10 @@ def load_robot(
             or a file's root link.
         tip_link: Link that the TCP is fixed to; None: the group's, the manifest's, or a
             file's one link without children; sites of MJCF do not count.
+        tip_links: In the place of tip_link, the links of a robot with several tips, 1
+            to 8: a torso and its two arms.
+        tcps: In the place of tcp, T_tip_tcp of each of the tip_links, (k, 4, 4); None:
+            no tip has a tool.
         locked_joints: Joints held at a value [rad or m]; no degrees of freedom.
         soft_limits: Narrow the limits to the soft limits of the URDF, if it has any.
         default_limits: (lower, upper) [rad or m] of joints that the URDF gives none.
@@ -131,6 +137,8 @@ def load_robot(
     base, tip = base_link or base, tip_link or tip or read.tip_link
     if info is not None:
         base, tip = base or info.base_link, tip or info.tip_link
+    if tip_links is not None:
+        tip = tip_link
     if isinstance(tcp, str) and tcp == FROM_MANIFEST:
         tcp = None
         if info is not None and info.tcp_xyz is not None and tip == info.tip_link:
@@ -146,6 +154,8 @@ def load_robot(
             default_limits=default_limits,
             coupled_limits=coupled_limits,
             mimic_curves=mimic_curves,
+            tip_links=tip_links,
+            tcps=tcps,
         )
     except UrdfError as error:
         if error.available and groups:

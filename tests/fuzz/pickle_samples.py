@@ -29,16 +29,16 @@ def make_samples() -> list[Any]:
     scene = iksel.Scene(ARM, spheres)
     scene.add_box("box", [1.0, 1.0, 1.0], POSE, margin=0.01)
     scene.add_points("cloud", [[2.0, 0.0, 0.0]], radius=0.01)
-    tree = iksel.TreeSolver(
-        iksel.TreeRobot.from_urdf(urdf_text.arm(), ["elbow", "hand"]), options
+    two_tips = iksel.Solver(
+        iksel.Robot.from_urdf(urdf_text.arm(), tip_links=["elbow", "hand"]), options
     )
-    both = tree.robot.fk([0.3, 0.4])
+    both = two_tips.robot.fk([0.3, 0.4])
     return [
-        tree,
-        tree.robot,
-        tree.solve(both),
-        tree.solve_batch([both, both]),
-        tree.diagnose(both),
+        two_tips,
+        two_tips.robot,
+        two_tips.solve(both),
+        two_tips.solve_batch([both, both]),
+        two_tips.diagnose(both),
         scene,
         spheres,
         *scene.obstacles.values(),

@@ -112,16 +112,18 @@ def scene_and_parts(robot: iksel.Robot) -> list[object]:
 
 def two_arms(solver: iksel.Solver) -> list[object]:
     """Several tips, and what is found for them."""
-    tree = iksel.TreeSolver(two_armed(solver.robot), solver.options)
-    poses = tree.robot.fk(tree.robot.random_configurations(3, 3))
+    both = iksel.Solver(two_armed(solver.robot), solver.options)
+    poses = both.robot.fk(both.robot.random_configurations(3, 3))
     poses[2, 1, 0, 3] = 9.0
     return [
-        tree,
-        tree.robot,
-        tree.solve(poses[0]),
-        tree.solve(poses[2]),
-        tree.solve_batch(poses),
-        tree.diagnose(poses[2]),
+        both,
+        both.robot,
+        both.solve(poses[0]),
+        both.solve(poses[2]),
+        both.solve_all(poses[0]),
+        both.solve_batch(poses),
+        both.diagnose(poses[2]),
+        both.tracker(np.zeros(both.robot.dof)),
     ]
 
 

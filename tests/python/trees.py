@@ -35,7 +35,7 @@ def two_arms_on_torso(arm: iksel.Robot) -> str:
     return text + "</robot>"
 
 
-def two_armed(arm: iksel.Robot) -> iksel.TreeRobot:
+def two_armed(arm: iksel.Robot) -> iksel.Robot:
     """The robot, its tips those of the arms."""
     tips = ["l_" + arm.tip_link, "r_" + arm.tip_link]
-    return iksel.TreeRobot.from_urdf(two_arms_on_torso(arm), tips)
+    return iksel.Robot.from_urdf(two_arms_on_torso(arm), tip_links=tips)

@@ -90,10 +90,12 @@ class IKSEL_EXPORT Robot {
                                   Kinematics kinematics = Kinematics::kernel) const;
 
   /// T_base_tip of each tip (of its TCP, if it has one). Throws as fk.
-  [[nodiscard]] std::vector<Pose> tip_poses(const JointVector& q) const;
+  [[nodiscard]] std::vector<Pose> tip_poses(const JointVector& q,
+                                            Kinematics kinematics = Kinematics::kernel) const;
   /// Geometric Jacobians of all tips, one below the other: 6 rows [linear; angular] for each, dof
   /// columns. Throws as fk.
-  [[nodiscard]] Matrix tip_jacobians(const JointVector& q) const;
+  [[nodiscard]] Matrix tip_jacobians(const JointVector& q,
+                                     Kinematics kinematics = Kinematics::kernel) const;
 
   /// Poses of all links of the URDF in the base link's frame at q, in the order of link_names:
   /// side branches move with the arm's joints, too, and with what mimics them. Joints that q does

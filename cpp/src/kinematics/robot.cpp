@@ -122,16 +122,25 @@ Jacobian Robot::jacobian(const JointVector& q, Kinematics kinematics) const {
   return J;
 }
 
-std::vector<Pose> Robot::tip_poses(const JointVector& q) const {
-  std::vector<Pose> poses;
+std::vector<Pose> Robot::tip_poses(const JointVector& q, Kinematics kinematics) const {
   check_joints(q, dof(), "q");
-  for (int i = 0; i < tips(); ++i) poses.push_back(chain(i).fk(picked(q, joints_of(i))));
+  std::vector<Pose> poses;
+  for (int i = 0; i < tips(); ++i) poses.push_back(chain(i).fk(picked(q, joints_of(i)), kinematics));
   return poses;
 }
 
-Matrix Robot::tip_jacobians(const JointVector& q) const {
+Matrix Robot::tip_jacobians(const JointVector& q, Kinematics kinematics) const {
   check_joints(q, dof(), "q");
-  return model_->jacobians(q.data());
+  if (kinematics == Kinematics::kernel) return model_->jacobians(q.data());
+  Matrix all = Matrix::Zero(6 * tips(), dof());
+  for (int i = 0; i < tips(); ++i) {
+    const std::vector<int>& joints = joints_of(i);
+    const Jacobian J = chain(i).jacobian(picked(q, joints), kinematics);
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      all.block<6, 1>(6 * i, joints[j]) = J.col(static_cast<Eigen::Index>(j));
+    }
+  }
+  return all;
 }
 
 std::vector<Pose> Robot::link_poses(const JointVector& q,

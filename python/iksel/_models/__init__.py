@@ -39,7 +39,6 @@ _READERS = {
 # What objects that hold no model of their own are, and what to give in their place.
 _REMEDIES = {
     ("iksel_cpp", "Robot"): "it is a robot already; its `urdf` can be given",
-    ("iksel_cpp", "TreeRobot"): "it is a robot already; its `urdf` can be given",
     ("roboticstoolbox", "PoERobot"): "give a DHRobot or a Robot of links",
 }
 

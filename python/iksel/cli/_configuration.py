@@ -19,6 +19,13 @@ if TYPE_CHECKING:
     from iksel._arrays import FloatArray
 
 
+def tip_facts(robot: Robot) -> dict[str, Any]:
+    """The link that is the tip, or those that are."""
+    if robot.tips == 1:
+        return {"tip_link": robot.tip_link}
+    return {"tip_links": robot.tip_links}
+
+
 class Configuration(NamedTuple):
     """A robot and its joint values."""
 
@@ -33,7 +40,7 @@ class Configuration(NamedTuple):
         return {
             "robot": robot.name,
             "base_link": robot.base_link,
-            "tip_link": robot.tip_link,
+            **tip_facts(robot),
             "joint_names": robot.joint_names,
             "angle_unit": self.angles.unit,
             "q": self.angles.show(robot, self.q),

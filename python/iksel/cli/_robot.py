@@ -61,15 +61,20 @@ def add_robot(parser: argparse.ArgumentParser) -> None:
     )
     group.add_argument(
         "--tip",
+        action="append",
+        default=[],
         metavar="LINK",
-        help="link whose pose is meant (default: a file's only end link)",
+        help="link whose pose is meant (default: a file's only end link); several "
+        "times: the tips of one robot, as the hands of a torso with two arms",
     )
     group.add_argument(
         "--tcp",
         nargs="+",
+        action="append",
+        default=[],
         metavar=POSE_METAVAR,
         help="tool in the tip link's frame, written as for 'solve --pose', or 'none' "
-        "(default: a built-in robot's own, else none)",
+        "(default: a built-in robot's own, else none); once for each --tip",
     )
     group.add_argument(
         "--lock",
@@ -150,8 +155,8 @@ def _add_formats(group: argparse._ArgumentGroup) -> None:
 
 
 def chain_text(robot: Robot) -> str:
-    """A robot's name, and the links that its chain joins."""
-    return f"{robot.name}, {robot.base_link} -> {robot.tip_link}"
+    """A robot's name, and the links that its chains join."""
+    return f"{robot.name}, {robot.base_link} -> {', '.join(robot.tip_links)}"
 
 
 def load(arguments: argparse.Namespace) -> Robot:
@@ -166,7 +171,7 @@ def load(arguments: argparse.Namespace) -> Robot:
     angles = Angles(arguments)
     settings: dict[str, Any] = {
         "base_link": arguments.base,
-        "tip_link": arguments.tip,
+        **_tips(arguments, angles),
         "soft_limits": arguments.soft_limits,
         "srdf": arguments.srdf,
         "group": arguments.group,
@@ -184,9 +189,6 @@ def load(arguments: argparse.Namespace) -> Robot:
     settings["mimic_curves"] = [
         _curves.read_mimic_curve(text) for text in arguments.mimic_curve
     ]
-    if arguments.tcp is not None:
-        none = arguments.tcp == ["none"]
-        settings["tcp"] = None if none else angles.read_pose("--tcp", arguments.tcp)
     name = arguments.robot
     try:
         return load_robot(name, **settings)
@@ -204,6 +206,24 @@ def load(arguments: argparse.Namespace) -> Robot:
         raise InvalidArgumentError(_with_flags(str(error), name)) from None
 
 
+def _tips(arguments: argparse.Namespace, angles: Angles) -> dict[str, Any]:
+    """What all --tip and --tcp give."""
+    links, given = arguments.tip, arguments.tcp
+    tools = [
+        None if tool == ["none"] else angles.read_pose("--tcp", tool) for tool in given
+    ]
+    if len(tools) not in (0, max(len(links), 1)):
+        raise InvalidArgumentError(
+            f"--tcp: given {len(tools)} times; expected once for each --tip, or never"
+        )
+    if len(links) > 1:
+        none = np.eye(4)
+        each = [none if tool is None else tool for tool in tools]
+        return {"tip_links": links, "tcps": np.stack(each) if each else None}
+    settings: dict[str, Any] = {"tip_link": links[0] if links else None}
+    return settings | ({"tcp": tools[0]} if tools else {})
+
+
 def load_tree(arguments: argparse.Namespace) -> LinkTree:
     """The tree of all links of the robot.
 
@@ -214,7 +234,9 @@ def load_tree(arguments: argparse.Namespace) -> LinkTree:
     name = arguments.robot
     try:
         return load_tree_of(
-            name, link=arguments.base or arguments.tip, **of_files(arguments)
+            name,
+            link=arguments.base or next(iter(arguments.tip), None),
+            **of_files(arguments),
         )
     except (UnknownNameError, UrdfError) as error:
         raise type(error)(_with_flags(str(error), name)) from None

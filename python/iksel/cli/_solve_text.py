@@ -55,11 +55,21 @@ def print_diagnosis(robot: Robot, diagnosis: Diagnosis) -> None:
     print_joints(robot, diagnosis.q.tolist())
 
 
+def target_rows(robot: Robot, target: FloatArray) -> list[tuple[str, str]]:
+    """The target of the one tip, or of each."""
+    if robot.tips == 1:
+        return [("target", pose_text(target))]
+    return [
+        (f"target of {link}", pose_text(pose))
+        for link, pose in zip(robot.tip_links, target, strict=True)
+    ]
+
+
 def print_text(robot: Robot, result: Result, report: dict[str, Any]) -> None:
     """Print the answer for people."""
     rows = [
         ("robot", chain_text(robot)),
-        ("target", pose_text(report["target"])),
+        *target_rows(robot, report["target"]),
         ("status", result.status.name),
         *proof_row(result),
         ("attempts", str(result.attempts)),

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from iksel_cpp import Robot
 
     from iksel._arrays import FloatArray
+    from iksel.cli._angles import Angles
 
 EXAMPLES = """\
 examples:
@@ -51,33 +52,38 @@ def run(arguments: argparse.Namespace) -> int:
     configuration = read_configuration(arguments)
     robot, angles, q = configuration
     pose = robot.fk(q)
-    rpy = angles.show_angles(euler_from_pose(pose))
-    quaternion = quaternion_from_pose(pose)
     if arguments.matrix:
-        print_matrix(pose)
+        print_matrix(pose.reshape(-1, 4))
     elif arguments.json:
         print_json(
             {
                 **configuration.facts(),
                 "within_limits": bool(robot.within_limits(q)),
                 "pose": pose,
-                "position": pose[:3, 3],
-                "rpy": rpy,
-                "quaternion_wxyz": quaternion,
+                "position": pose[..., :3, 3],
+                "rpy": angles.show_angles(euler_from_pose(pose)),
+                "quaternion_wxyz": quaternion_from_pose(pose),
             }
         )
     else:
-        print_pairs(
-            [
-                ("robot", chain_text(robot)),
-                ("position", f"{numbers(pose[:3, 3])} m"),
-                ("rpy", f"{numbers(rpy)} {angles.unit}"),
-                ("quaternion", f"{numbers(quaternion)} (w x y z)"),
-                ("matrix", "\n".join(f"{numbers(row)}" for row in pose)),
-                ("limits", limits_text(robot, q)),
-            ]
-        )
+        rows = [("robot", chain_text(robot))]
+        for link, each in zip(robot.tip_links, pose.reshape(-1, 4, 4), strict=True):
+            if robot.tips > 1:
+                rows.append(("tip", link))
+            rows += _pose_rows(each, angles)
+        print_pairs([*rows, ("limits", limits_text(robot, q))])
     return 0
+
+
+def _pose_rows(pose: FloatArray, angles: Angles) -> list[tuple[str, str]]:
+    """A pose (4, 4) in all forms."""
+    rpy = angles.show_angles(euler_from_pose(pose))
+    return [
+        ("position", f"{numbers(pose[:3, 3])} m"),
+        ("rpy", f"{numbers(rpy)} {angles.unit}"),
+        ("quaternion", f"{numbers(quaternion_from_pose(pose))} (w x y z)"),
+        ("matrix", "\n".join(f"{numbers(row)}" for row in pose)),
+    ]
 
 
 def limits_text(robot: Robot, q: FloatArray) -> str:

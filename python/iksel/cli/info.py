@@ -82,7 +82,6 @@ def run(arguments: argparse.Namespace) -> int:
             show_tree(tree, arguments)
             return 0
     robot = load(arguments)
-    reach = f"{number(robot.reach, 4)} m around {_point(robot.reach_centre)}"
     origin = {}
     if is_built_in(arguments.robot):
         info = robot_info(arguments.robot)
@@ -95,10 +94,7 @@ def run(arguments: argparse.Namespace) -> int:
     print_pairs(
         [
             ("robot", f"{robot.name}, {robot.dof} degrees of freedom"),
-            ("chain", f"{robot.base_link} -> {robot.tip_link}"),
-            ("tcp", pose_text(robot.tcp)),
-            ("reach", reach),
-            ("structure", robot.structure.description),
+            *_chain_rows(robot),
             *(("coupled limit", str(limit)) for limit in robot.coupled_limits),
             *(("curve", _curve_text(curve)) for curve in robot.mimic_curves),
             ("chain hash", f"{robot.chain_hash:016x}"),
@@ -109,6 +105,24 @@ def run(arguments: argparse.Namespace) -> int:
     print()
     print_table(HEADER, _rows(robot))
     return 0
+
+
+def _chain_rows(robot: Robot) -> list[tuple[str, str]]:
+    """What there is to say of each chain, and of what they share."""
+    rows = []
+    for tip, link in enumerate(robot.tip_links):
+        chain = robot.chain(tip)
+        reach = f"{number(chain.reach, 4)} m around {_point(chain.reach_centre)}"
+        rows += [
+            ("chain", f"{robot.base_link} -> {link}"),
+            ("tcp", pose_text(chain.tcp)),
+            ("reach", reach),
+            ("structure", chain.structure.description),
+        ]
+    if robot.tips > 1:
+        names = [robot.joint_names[joint] for joint in robot.shared_joints]
+        rows.append(("shared", ", ".join(names) or "none"))
+    return rows
 
 
 def _srdf_facts(robot: Robot, path: str | None, angles: Angles) -> dict[str, Any]:
@@ -151,24 +165,34 @@ def as_dict(robot: Robot, angles: Angles) -> dict[str, Any]:
         strict=True,
     )
     names = ("name", "type", *LIMIT_FIELDS)
-    structure = robot.structure
+    chains = [_chain_as_dict(robot.chain(tip)) for tip in range(robot.tips)]
+    shared = [robot.joint_names[joint] for joint in robot.shared_joints]
+    of_chains = {"chains": chains, "shared_joints": shared}
     return {
         "name": robot.name,
         "base_link": robot.base_link,
-        "tip_link": robot.tip_link,
         "dof": robot.dof,
         "angle_unit": angles.unit,
-        "tcp": robot.tcp,
-        "reach": robot.reach,
-        "reach_centre": robot.reach_centre,
-        "structure": {
-            "kind": structure.kind.name,
-            "description": structure.description,
-        },
+        **(chains[0] if robot.tips == 1 else of_chains),
         "chain_hash": f"{robot.chain_hash:016x}",
         "coupled_limits": [_limit_as_dict(limit) for limit in robot.coupled_limits],
         "mimic_curves": [_curve_as_dict(curve) for curve in robot.mimic_curves],
         "joints": [dict(zip(names, joint, strict=True)) for joint in columns],
+    }
+
+
+def _chain_as_dict(chain: Robot) -> dict[str, Any]:
+    """What is of the chain to one tip."""
+    structure = chain.structure
+    return {
+        "tip_link": chain.tip_link,
+        "tcp": chain.tcp,
+        "reach": chain.reach,
+        "reach_centre": chain.reach_centre,
+        "structure": {
+            "kind": structure.kind.name,
+            "description": structure.description,
+        },
     }
 
 

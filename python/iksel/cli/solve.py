@@ -7,6 +7,7 @@ import sys
 import time
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from iksel_cpp import InvalidArgumentError, Solver, Status
 
 from iksel.cli._angles import Angles
@@ -24,8 +25,8 @@ from iksel.cli._solve_text import (
     print_diagnosis,
     print_text,
     proof_row,
+    target_rows,
 )
-from iksel.cli.info import pose_text
 
 if TYPE_CHECKING:
     import argparse
@@ -47,6 +48,7 @@ examples:
   iksel solve ur3 --pose 0.9 0 0.3 0 0 0 --closest
   iksel solve panda --from-q 0 -0.5 0 -2 0 1.6 0.8 --preset paper --max-attempts 6
   iksel solve arm.urdf --base base_link --tip tool0 --tcp 0 0 0.1 0 0 0 --from-q 0 0 0 0
+  iksel solve torso.urdf --tip left_hand --tip right_hand --pose 0.5 0.2 1 0 0 0 --pose 0.5 -0.2 1 0 0 0
   iksel solve ur3 --poses poses.csv -o answers.csv
   iksel solve ur3 --poses poses.jsonl -o answers.npy --near 0 -1 1 0 1 0
   cat poses.csv | iksel solve ur3 --poses - --format jsonl
@@ -70,7 +72,13 @@ def add_parser(commands: Any) -> None:
     )
     add_robot(parser)
     target = parser.add_mutually_exclusive_group(required=True)
-    target.add_argument("--pose", nargs="+", metavar=POSE_METAVAR, help=POSE_FORMS)
+    target.add_argument(
+        "--pose",
+        nargs="+",
+        action="append",
+        metavar=POSE_METAVAR,
+        help=f"{POSE_FORMS}; once for each --tip",
+    )
     target.add_argument(
         "--from-q",
         nargs="+",
@@ -143,11 +151,14 @@ def run(arguments: argparse.Namespace) -> int:
     request = read_request(robot, arguments, angles)
     if arguments.poses is not None:
         answer_format(arguments)  # an error comes before the work
+        if robot.tips > 1:
+            raise InvalidArgumentError(
+                "--poses: its rows are poses of one tip; with several, give each a --pose"
+            )
         solver = make_solver(robot, arguments)
         return solve_file(solver, request, arguments, angles)
     if arguments.pose is not None:
-        target = angles.read_pose("--pose", arguments.pose)
-        warn_of_millimetres(robot, "--pose", target)
+        target = read_target(robot, arguments, angles)
     else:
         target = robot.fk(angles.read_joints("--from-q", arguments.from_q, robot))
     solver = make_solver(robot, arguments)
@@ -193,6 +204,25 @@ def run(arguments: argparse.Namespace) -> int:
             print_diagnosis(robot, diagnosis)
     print_hint(solver, result)
     return EXIT_SOLVED if result.success else EXIT_NO_SOLUTION
+
+
+def read_target(
+    robot: Robot, arguments: argparse.Namespace, angles: Angles
+) -> FloatArray:
+    """T_base_tip of the one tip, (4, 4), or of each, (k, 4, 4).
+
+    Raises:
+        InvalidArgumentError: A bad pose, or not one for each tip.
+    """
+    poses = [angles.read_pose("--pose", pose) for pose in arguments.pose]
+    for pose, tip in zip(poses, range(robot.tips), strict=False):
+        warn_of_millimetres(robot.chain(tip), "--pose", pose)
+    if len(poses) != robot.tips:
+        raise InvalidArgumentError(
+            f"--pose: given {len(poses)} times; expected once for each of "
+            f"{', '.join(robot.tip_links)}"
+        )
+    return np.stack(poses) if robot.tips > 1 else poses[0]
 
 
 def read_request(
@@ -275,7 +305,7 @@ def run_all(
         print_pairs(
             [
                 ("robot", chain_text(robot)),
-                ("target", pose_text(target)),
+                *target_rows(robot, target),
                 ("status", found.status.name),
                 ("solutions", str(len(found))),
                 *proof_row(found),

@@ -143,14 +143,10 @@ py::object weights_of(const Tracker& tracker) {
 
 py::dict tracker_state(const Tracker& self) {
   const auto& [last, speed] = self.stream();
-  py::dict state;
-  state["solver"] = self.solver();
-  state["q"] = to_array(self.q());
-  state["closest"] = weights_of(self);
-  state["reached"] = to_array(self.reached());
-  state["last"] = last ? py::object(to_array(Pose(*last))) : py::object(py::none());
-  state["speed"] = speed;
-  return state;
+  return py::dict("solver"_a = self.solver(), "q"_a = to_array(self.q()),
+                  "closest"_a = weights_of(self), "reached"_a = to_array(self.reached()),
+                  "last"_a = last ? py::object(to_array(Pose(*last))) : py::object(py::none()),
+                  "speed"_a = speed);
 }
 
 Tracker tracker_from_state(const Solver& solver, const ArrayLike& q, const ClosestLike& closest,

@@ -63,17 +63,12 @@ std::string robot_repr(const Robot& self) {
 /// The arguments of from_urdf that make the same robot.
 py::dict robot_state(const Robot& self) {
   const RobotOptions& options = self.options();
-  py::dict state;
-  state["path_or_xml"] = self.urdf();
-  state["base_link"] = options.base_link;
-  state["tip_link"] = options.tip_link;
-  state["tcp"] = to_array(self.tcp());
-  state["locked_joints"] = options.locked_joints;
-  state["soft_limits"] = options.soft_limits;
-  state["default_limits"] = options.default_limits;
-  state["coupled_limits"] = options.coupled_limits;
-  state["mimic_curves"] = options.mimic_curves;
-  return state;
+  return py::dict("path_or_xml"_a = self.urdf(), "base_link"_a = options.base_link,
+                  "tip_link"_a = options.tip_link, "tcp"_a = to_array(self.tcp()),
+                  "locked_joints"_a = options.locked_joints, "soft_limits"_a = options.soft_limits,
+                  "default_limits"_a = options.default_limits,
+                  "coupled_limits"_a = options.coupled_limits,
+                  "mimic_curves"_a = options.mimic_curves);
 }
 
 /// A table of the joints.

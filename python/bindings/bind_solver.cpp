@@ -100,12 +100,8 @@ PyBatchResult solve_batch(const Solver& self, py::handle poses, const Given& giv
 }
 
 py::dict solver_state(const Solver& self) {
-  py::dict state;
-  state["robot"] = self.robot();
-  state["options"] = self.options();
-  state["database"] = self.database();
-  state["nominal"] = self.nominal();
-  return state;
+  return py::dict("robot"_a = self.robot(), "options"_a = self.options(),
+                  "database"_a = self.database(), "nominal"_a = self.nominal());
 }
 
 Solver solver_from_state(const Robot& robot, const SolverOptions& options, const Database& database,

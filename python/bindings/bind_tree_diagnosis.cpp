@@ -16,11 +16,8 @@ struct FromPython<std::vector<Diagnosis>> : FromSequence<Diagnosis> {};
 namespace {
 
 py::dict tree_diagnosis_state(const TreeDiagnosis& self) {
-  py::dict state;
-  state["tips"] = self.tips;
-  state["unreachable_tip"] = self.unreachable_tip;
-  state["message"] = self.message;
-  return state;
+  return py::dict("tips"_a = self.tips, "unreachable_tip"_a = self.unreachable_tip,
+                  "message"_a = self.message);
 }
 
 TreeDiagnosis tree_diagnosis_from_state(const std::vector<Diagnosis>& tips, int unreachable_tip,

@@ -36,17 +36,12 @@ std::string tree_result_repr(const TreeResult& self) {
 }
 
 py::dict tree_result_state(const TreeResult& self) {
-  py::dict state;
-  state["status"] = enum_name(self.status);
-  state["proof"] = enum_name(self.proof);
-  state["q"] = to_array(self.q);
-  state["position_error"] = to_array(JointVector(self.position_error));
-  state["rotation_error"] = to_array(JointVector(self.rotation_error));
-  state["move"] = self.move;
-  state["unreachable_tip"] = self.unreachable_tip;
-  state["attempts"] = self.attempts;
-  state["iterations"] = self.iterations;
-  return state;
+  return py::dict("status"_a = enum_name(self.status), "proof"_a = enum_name(self.proof),
+                  "q"_a = to_array(self.q),
+                  "position_error"_a = to_array(JointVector(self.position_error)),
+                  "rotation_error"_a = to_array(JointVector(self.rotation_error)),
+                  "move"_a = self.move, "unreachable_tip"_a = self.unreachable_tip,
+                  "attempts"_a = self.attempts, "iterations"_a = self.iterations);
 }
 
 /// Errors of all tips, 0 or more.
@@ -169,11 +164,7 @@ py::ssize_t count_solved(const PyTreeBatch& self) {
 }
 
 py::dict tree_batch_state(const PyTreeBatch& self) {
-  py::dict state;
-  state["dof"] = self.dof;
-  state["tips"] = self.tips;
-  state["rows"] = self.rows;
-  return state;
+  return py::dict("dof"_a = self.dof, "tips"_a = self.tips, "rows"_a = self.rows);
 }
 
 PyTreeBatch tree_batch_from_state(int dof, int tips, const std::vector<TreeResult>& rows) {

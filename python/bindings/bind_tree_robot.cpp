@@ -90,16 +90,10 @@ std::string tree_robot_repr(const TreeRobot& self) {
 
 py::dict tree_robot_state(const TreeRobot& self) {
   const TreeOptions& o = self.options();
-  py::dict state;
-  state["path_or_xml"] = self.urdf();
-  state["tip_links"] = o.tip_links;
-  state["base_link"] = o.base_link;
-  state["tcps"] = to_stack(o.tcps);
-  state["locked_joints"] = o.locked_joints;
-  state["soft_limits"] = o.soft_limits;
-  state["default_limits"] = o.default_limits;
-  state["coupled_limits"] = o.coupled_limits;
-  return state;
+  return py::dict("path_or_xml"_a = self.urdf(), "tip_links"_a = o.tip_links,
+                  "base_link"_a = o.base_link, "tcps"_a = to_stack(o.tcps),
+                  "locked_joints"_a = o.locked_joints, "soft_limits"_a = o.soft_limits,
+                  "default_limits"_a = o.default_limits, "coupled_limits"_a = o.coupled_limits);
 }
 
 void bind_from_urdf(py::class_<TreeRobot>& cls) {

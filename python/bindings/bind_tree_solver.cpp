@@ -204,10 +204,7 @@ TreeSolver make_tree_solver(const TreeRobot& robot, const std::optional<SolverOp
 }
 
 py::dict tree_solver_state(const TreeSolver& self) {
-  py::dict state;
-  state["robot"] = self.robot();
-  state["options"] = self.options();
-  return state;
+  return py::dict("robot"_a = self.robot(), "options"_a = self.options());
 }
 
 }  // namespace

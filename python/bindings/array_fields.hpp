@@ -129,18 +129,11 @@ struct FromPython<py::array_t<T>> {
         py::reinterpret_borrow<py::object>(value));
   }
 };
-template <class T>
-struct ValueOf<py::array_t<T>> : PlainValue<py::array_t<T>, ValueOf<py::array_t<T>>> {
-  static py::object to_plain(const py::array_t<T>& value) { return value; }
-  static bool equal(const py::array_t<T>& a, const py::array_t<T>& b) { return a.is(b); }
-};
-
 /// Objects of a class with fields.
 template <class T>
 struct FromPython<std::vector<T>, std::enable_if_t<HasFields<T>::value>> : FromSequence<T> {};
 template <class T>
 struct ValueOf<std::vector<T>, std::enable_if_t<HasFields<T>::value>> {
-  static constexpr bool kHasShortRepr = false;
   static py::object get(std::vector<T>& value, py::handle owner) {
     return py::cast(value, py::return_value_policy::reference_internal, owner);
   }
@@ -149,8 +142,6 @@ struct ValueOf<std::vector<T>, std::enable_if_t<HasFields<T>::value>> {
     for (const T& each : value) all.append(py::cast(each));
     return all;
   }
-  static std::string repr(const std::vector<T>& value) { return repr_text(to_plain(value)); }
-  static bool equal(const std::vector<T>& a, const std::vector<T>& b) { return &a == &b; }
 };
 
 }  // namespace iksel::python

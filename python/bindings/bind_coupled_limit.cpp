@@ -10,11 +10,6 @@
 namespace iksel::python {
 
 template <>
-struct ValueOf<JointValues> : PlainValue<JointValues, ValueOf<JointValues>> {
-  static py::object to_plain(const JointValues& value) { return py::cast(value); }
-};
-
-template <>
 struct FieldTable<CoupledLimit> {
   static constexpr const char* kName = "CoupledLimit";
   static constexpr const char* kDoc =

@@ -51,12 +51,8 @@ Tips tips_of(const LinkTree& self) {
 
 /// Joint after joint, each leading to the next link.
 py::dict tree_state(const LinkTree& self) {
-  py::dict state;
-  state["robot_name"] = self.robot_name;
-  state["root"] = self.links.front();
-  state["joints"] = self.joints;
-  state["tips"] = tips_of(self);
-  return state;
+  return py::dict("robot_name"_a = self.robot_name, "root"_a = self.links.front(),
+                  "joints"_a = self.joints, "tips"_a = tips_of(self));
 }
 
 LinkTree tree_from_state(const std::string& robot_name, const std::string& root,

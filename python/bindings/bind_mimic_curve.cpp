@@ -62,13 +62,8 @@ OptionalArray slopes_of(const MimicCurve& self) {
 }
 
 py::dict curve_state(const MimicCurve& self) {
-  py::dict state;
-  state["joint"] = self.joint;
-  state["follows"] = self.follows;
-  state["q"] = to_array(self.q);
-  state["values"] = to_array(self.values);
-  state["slopes"] = slopes_of(self);
-  return state;
+  return py::dict("joint"_a = self.joint, "follows"_a = self.follows, "q"_a = to_array(self.q),
+                  "values"_a = to_array(self.values), "slopes"_a = slopes_of(self));
 }
 
 }  // namespace

@@ -27,13 +27,9 @@ py::object callable_of(const Function& function) {
 }
 
 py::dict objective_state(const Objective& self) {
-  py::dict state;
-  state["kind"] = enum_name(self.kind);
-  state["posture"] = to_array(self.posture);
-  state["weights"] = to_array(self.weights);
-  state["cost"] = callable_of<PyCost>(self.cost);
-  state["gradient"] = callable_of<PyGradient>(self.gradient);
-  return state;
+  return py::dict("kind"_a = enum_name(self.kind), "posture"_a = to_array(self.posture),
+                  "weights"_a = to_array(self.weights), "cost"_a = callable_of<PyCost>(self.cost),
+                  "gradient"_a = callable_of<PyGradient>(self.gradient));
 }
 
 Objective objective_from_state(Objective::Kind kind, const JointVector& posture,

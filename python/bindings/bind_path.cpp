@@ -138,14 +138,9 @@ py::object weights_of(const Tracker& tracker) {
 
 py::dict tracker_state(const Tracker& self) {
   const auto& [last, speed] = self.stream();
-  py::dict state;
-  state["solver"] = self.solver();
-  state["q"] = to_array(self.q());
-  state["closest"] = weights_of(self);
-  state["reached"] = to_array(self.reached());
-  state["last"] = to_stack(last);
-  state["speed"] = speed;
-  return state;
+  return py::dict("solver"_a = self.solver(), "q"_a = to_array(self.q()),
+                  "closest"_a = weights_of(self), "reached"_a = to_array(self.reached()),
+                  "last"_a = to_stack(last), "speed"_a = speed);
 }
 
 Tracker tracker_from_state(const Solver& solver, const ArrayLike& q, const ClosestLike& closest,

@@ -52,7 +52,6 @@ template <>
 struct ResultType<std::vector<Result>> : ResultType<std::vector<PyResult>> {};
 template <>
 struct ValueOf<std::vector<Result>> {
-  static constexpr bool kHasShortRepr = false;
   static py::object get(const std::vector<Result>& value, py::handle /*owner*/) {
     return to_plain(value);
   }
@@ -61,8 +60,6 @@ struct ValueOf<std::vector<Result>> {
     for (const Result& each : value) all.append(PyResult(each));
     return all;
   }
-  static std::string repr(const std::vector<Result>& value) { return repr_text(to_plain(value)); }
-  static bool equal(const std::vector<Result>& a, const std::vector<Result>& b) { return &a == &b; }
 };
 
 template <>

@@ -87,20 +87,17 @@ std::string robot_repr(const Robot& self) {
 /// The arguments of from_urdf that make the same robot.
 py::dict robot_state(const Robot& self) {
   const RobotOptions& options = self.options();
-  py::dict state;
-  state["path_or_xml"] = self.urdf();
-  state["base_link"] = options.base_link;
   const bool has_one_tip = self.tips() == 1;
-  state["tip_link"] = has_one_tip ? py::cast(options.tip_link) : py::none();
-  state["tcp"] = has_one_tip ? py::object(to_array(self.tcp())) : py::none();
-  state["tip_links"] = has_one_tip ? py::none() : py::cast(options.tip_links);
-  state["tcps"] = has_one_tip ? py::none() : py::object(to_stack(options.tcps));
-  state["locked_joints"] = options.locked_joints;
-  state["soft_limits"] = options.soft_limits;
-  state["default_limits"] = options.default_limits;
-  state["coupled_limits"] = options.coupled_limits;
-  state["mimic_curves"] = options.mimic_curves;
-  return state;
+  const py::object none = py::none();
+  return py::dict("path_or_xml"_a = self.urdf(), "base_link"_a = options.base_link,
+                  "tip_link"_a = has_one_tip ? py::cast(options.tip_link) : none,
+                  "tcp"_a = has_one_tip ? py::object(to_array(self.tcp())) : none,
+                  "locked_joints"_a = options.locked_joints, "soft_limits"_a = options.soft_limits,
+                  "default_limits"_a = options.default_limits,
+                  "coupled_limits"_a = options.coupled_limits,
+                  "mimic_curves"_a = options.mimic_curves,
+                  "tip_links"_a = has_one_tip ? none : py::cast(options.tip_links),
+                  "tcps"_a = has_one_tip ? none : py::object(to_stack(options.tcps)));
 }
 
 /// A table of the joints.

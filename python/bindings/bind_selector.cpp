@@ -57,10 +57,7 @@ Selector make_selector(const Database& database, const Paper& scheme) {
 }
 
 py::dict selector_state(const Selector& self) {
-  py::dict state;
-  state["database"] = self.database();
-  state["scheme"] = self.scheme();
-  return state;
+  return py::dict("database"_a = self.database(), "scheme"_a = self.scheme());
 }
 
 std::optional<std::size_t> next(Selector& self, const SamplesLike& failed) {

@@ -108,13 +108,11 @@ PyBatchResult solve_batch(const Solver& self, py::handle poses, const Given& giv
 }
 
 py::dict solver_state(const Solver& self) {
-  py::dict state;
-  state["robot"] = self.robot();
-  state["options"] = self.options();
   const bool has_one_tip = self.robot().tips() == 1;
-  state["database"] = has_one_tip ? py::cast(self.database()) : py::none();
-  state["nominal"] = has_one_tip ? py::cast(self.nominal()) : py::none();
-  return state;
+  const py::object none = py::none();
+  return py::dict("robot"_a = self.robot(), "options"_a = self.options(),
+                  "database"_a = has_one_tip ? py::cast(self.database()) : none,
+                  "nominal"_a = has_one_tip ? py::cast(self.nominal()) : none);
 }
 
 Solver solver_from_state(const Robot& robot, const SolverOptions& options,

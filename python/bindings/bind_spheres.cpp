@@ -103,10 +103,7 @@ std::string spheres_repr(const RobotSpheres& self) {
 }
 
 py::dict spheres_state(const RobotSpheres& self) {
-  py::dict state;
-  state["links"] = links_of(self);
-  state["pairs"] = self.pairs;
-  return state;
+  return py::dict("links"_a = links_of(self), "pairs"_a = self.pairs);
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 namespace iksel::python {
 
 namespace py = pybind11;
+using py::literals::operator""_a;
 
 /// A call that does not fit: an unknown keyword, a missing argument, one of another class.
 class SignatureError : public InvalidArgumentError {

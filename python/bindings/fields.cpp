@@ -31,14 +31,20 @@ const Field& find_field(py::handle key, const StructType& type) {
   throw_no_field(name, type);
 }
 
+/// Whether a plain value is that of a struct, or of a variant of them.
+bool is_struct(py::handle plain) { return py::isinstance<py::dict>(plain); }
+
 }  // namespace
 
 std::string to_repr(const void* self, const StructType& type) {
   std::string text;
   for (const Field& field : type.fields) {
-    const void* value = field.of(self);
-    if (field.type->equal(value, field.of(type.defaults))) continue;
-    text += (text.empty() ? "" : ", ") + std::string(field.name) + "=" + field.type->repr(value);
+    const py::object plain = field.type->to_plain(field.of(self));
+    if (plain.equal(field.type->to_plain(field.of(type.defaults)))) continue;
+    // Structs, of which there is a copy where nobody owns it, show what they are themselves.
+    const py::object shown =
+        is_struct(plain) ? field.type->get(const_cast<void*>(field.of(self)), {}) : plain;
+    text += (text.empty() ? "" : ", ") + std::string(field.name) + "=" + repr_text(shown);
   }
   return std::string(type.name) + "(" + text + ")";
 }
@@ -47,13 +53,6 @@ py::dict to_dict(const void* self, const StructType& type) {
   py::dict dict;
   for (const Field& field : type.fields) dict[field.name] = field.type->to_plain(field.of(self));
   return dict;
-}
-
-bool equal_fields(const void* a, const void* b, const StructType& type) {
-  for (const Field& field : type.fields) {
-    if (!field.type->equal(field.of(a), field.of(b))) return false;
-  }
-  return true;
 }
 
 void assign(void* self, const StructType& type, const py::dict& changes) {
@@ -92,8 +91,8 @@ std::string keyword_doc(const StructType& type, const char* name, const std::str
   std::string signature;
   std::string arguments;
   for (const Field& field : type.fields) {
-    const bool shown = show_defaults && field.type->has_short_repr;
-    const std::string value = shown ? field.type->repr(field.of(type.defaults)) : "...";
+    const py::object plain = field.type->to_plain(field.of(type.defaults));
+    const std::string value = show_defaults && !is_struct(plain) ? repr_text(plain) : "...";
     signature += std::string(", ") + field.name + ": " + field.type->argument + " = " + value;
     arguments += std::string("\n    ") + field.name + ": " + field.doc;
   }

@@ -122,7 +122,6 @@ std::string to_repr(const Struct& self) {
 }
 
 py::dict to_dict(const void* self, const StructType& type);
-bool equal_fields(const void* a, const void* b, const StructType& type);
 
 /// Sets the fields that a mapping names. Throws SignatureError on a name that is none.
 void assign(void* self, const StructType& type, const py::dict& changes);
@@ -149,13 +148,11 @@ struct FromPython<Struct, std::enable_if_t<HasFields<Struct>::value>> {
 
 template <class T>
 struct ValueOf<T, std::enable_if_t<HasFields<T>::value>> {
-  static constexpr bool kHasShortRepr = false;
   static py::object get(T& value, py::handle owner) {
-    return py::cast(value, py::return_value_policy::reference_internal, owner);
+    using Policy = py::return_value_policy;
+    return py::cast(value, owner ? Policy::reference_internal : Policy::copy, owner);
   }
   static py::object to_plain(const T& value) { return to_dict(&value, struct_type<T>()); }
-  static std::string repr(const T& value) { return to_repr(value); }
-  static bool equal(const T& a, const T& b) { return equal_fields(&a, &b, struct_type<T>()); }
 };
 
 /// Signature and text of a method that takes all fields as keywords.
@@ -202,7 +199,8 @@ py::class_<Struct> bind_values(py::module_& m, const char* how, bool writable = 
   def(cls, "__repr__", "", [](const Struct& self) { return to_repr(self); });
   def(cls, "__eq__", "other", [](const Struct& self, const py::object& other) -> py::object {
     if (!is_a<Struct>(other)) return py::reinterpret_borrow<py::object>(Py_NotImplemented);
-    return py::bool_(equal_fields(&self, &made<Struct>(other), struct_type<Struct>()));
+    const auto plain = [](const Struct& of) { return to_dict(&of, struct_type<Struct>()); };
+    return py::bool_(plain(self).equal(plain(made<Struct>(other))));
   });
   return cls;
 }

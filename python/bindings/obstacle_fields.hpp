@@ -71,7 +71,6 @@ struct ResultType<StoredPose> : ResultType<py::array_t<double>> {};
 template <>
 struct ValueOf<StoredPose> : PlainValue<StoredPose, ValueOf<StoredPose>> {
   static py::object to_plain(const StoredPose& value) { return to_array(Pose(value)); }
-  static bool equal(const StoredPose& a, const StoredPose& b) { return a.matrix() == b.matrix(); }
 };
 
 /// By name; no Python enum.

@@ -128,12 +128,9 @@ struct ResultType<Strategy> {
 
 template <>
 struct ValueOf<Strategy> {
-  static constexpr bool kHasShortRepr = false;
   /// A copy: what is held may be of the other class later.
   static py::object get(const Strategy& value, py::handle owner);
   static py::object to_plain(const Strategy& value);
-  static std::string repr(const Strategy& value);
-  static bool equal(const Strategy& a, const Strategy& b);
 };
 
 template <>

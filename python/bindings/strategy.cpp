@@ -68,14 +68,6 @@ py::object ValueOf<Strategy>::to_plain(const Strategy& value) {
   return out;
 }
 
-std::string ValueOf<Strategy>::repr(const Strategy& value) {
-  return to_repr(held(value), type_of(value));
-}
-
-bool ValueOf<Strategy>::equal(const Strategy& a, const Strategy& b) {
-  return a.index() == b.index() && equal_fields(held(a), held(b), type_of(a));
-}
-
 std::string FieldTable<SolverOptions>::hint(const std::string& name) {
   const bool in_lanes = has_field(struct_type<Lanes>(), name);
   if (!in_lanes && !has_field(struct_type<Paper>(), name)) return "";

@@ -540,7 +540,7 @@ class Robot:
         """
 class DhConvention(enum.Enum):
     """
-    How a row of Denavit and Hartenberg's parameters places the next frame.
+    How a row of a table places the next frame; the joint moves about or along z.
     """
     modified = 1
     standard = 0
@@ -700,7 +700,7 @@ class Sampling(enum.Enum):
         ...
 class Scale(enum.Enum):
     """
-    Size of a grid, and of other samplings whose `samples` is 0 (paper, database sizes).
+    Size of a grid, and of other samplings whose `samples` is 0 (paper, Table "KDTree sizes").
     """
     large = 2
     medium = 1
@@ -2024,7 +2024,7 @@ class MoveNorm(enum.Enum):
         ...
 class SolutionOrder(enum.Enum):
     """
-    In which order solve_all gives its solutions.
+    In which order solve_all gives its solutions where the request has no objective.
     """
     limit_distance = 1
     manipulability = 2

@@ -65,7 +65,7 @@ nitpick_ignore_regex = [
     (r"cpp:identifier", r"(std|Eigen|iksel::export)(::.*)?|size_t|u?int\d+_t"),
     (
         r"cpp:identifier",
-        r"ChainModel|Data|DatabaseData|Impl|Names|StoredPose::Identity|TreeModel",
+        r"ChainModel|Data|DatabaseData|Impl|Names|StoredPose::Identity|RobotModel|TipsModel",
     ),
     (r"py:.*", r"(collections|enum|np|npt|numpy|os|pathlib|types|typing)\..*"),
     (r"py:class", r"ArrayLike|Any|Callable|Float|Int|Literal|Mapping|Sequence"),

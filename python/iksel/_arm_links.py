@@ -124,7 +124,7 @@ class ArmLinks:
             arm = Robot.from_urdf(
                 text,
                 base_link=robot.base_link,
-                tip_link=robot.tip_link,
+                tip_links=robot.tip_links,
                 locked_joints=held,
                 default_limits=robot.default_limits or (-1.0, 1.0),
             )
@@ -136,7 +136,7 @@ class ArmLinks:
             if name not in arm.joint_names:
                 raise UnknownNameError(
                     f"robot: the URDF has joint {name!r} elsewhere than between "
-                    f"{robot.base_link!r} and {robot.tip_link!r}, where it has: "
+                    f"{robot.base_link!r} and {', '.join(robot.tip_links)}, where it has: "
                     f"{', '.join(arm.joint_names)}"
                 )
         return arm

@@ -14,7 +14,7 @@ import numpy
 import numpy.typing
 import os
 import typing
-__all__: list[str] = ['AngleUnitWarning', 'ArcEnd', 'Axis', 'BatchResult', 'Cause', 'Contact', 'CoupledLimit', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'DhConvention', 'Diagnosis', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'KeyScheme', 'Kinematics', 'Lanes', 'LinkTree', 'LinkTreeJoint', 'MimicCurve', 'MoveNorm', 'Objective', 'ObjectiveKind', 'Obstacle', 'Paper', 'PathResult', 'Proof', 'RIGID_TOLERANCE', 'Ranking', 'Reselection', 'Result', 'Robot', 'RobotSpheres', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'Scene', 'Selector', 'SelfMotion', 'SelfMotionArc', 'SelfMotionEnd', 'SignatureError', 'SolutionOrder', 'Solutions', 'Solver', 'SolverOptions', 'Status', 'Structure', 'StructureKind', 'Task', 'TaskFrame', 'Tracker', 'TreeBatchResult', 'TreeDiagnosis', 'TreeResult', 'TreeRobot', 'TreeSolver', 'UnknownNameError', 'UrdfError', 'check_pose', 'evaluate', 'grid_counts', 'mend_xml', 'orthonormalized', 'pose_error', 'pose_matrices', 'rigid_deviation', 'simd_level', 'time_kdl_fk_jacobian']
+__all__: list[str] = ['AngleUnitWarning', 'ArcEnd', 'Axis', 'BatchResult', 'Cause', 'Contact', 'CoupledLimit', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'DhConvention', 'Diagnosis', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'KeyScheme', 'Kinematics', 'Lanes', 'LinkTree', 'LinkTreeJoint', 'MimicCurve', 'MoveNorm', 'Objective', 'ObjectiveKind', 'Obstacle', 'Paper', 'PathResult', 'Proof', 'RIGID_TOLERANCE', 'Ranking', 'Reselection', 'Result', 'Robot', 'RobotSpheres', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'Scene', 'Selector', 'SelfMotion', 'SelfMotionArc', 'SelfMotionEnd', 'SignatureError', 'SolutionOrder', 'Solutions', 'Solver', 'SolverOptions', 'Status', 'Structure', 'StructureKind', 'Task', 'TaskFrame', 'Tracker', 'UnknownNameError', 'UrdfError', 'check_pose', 'evaluate', 'grid_counts', 'mend_xml', 'orthonormalized', 'pose_error', 'pose_matrices', 'rigid_deviation', 'simd_level', 'time_kdl_fk_jacobian']
 class AngleUnitWarning(UserWarning):
     """
     Angles that look like degrees were given where radians are meant.
@@ -276,7 +276,7 @@ class Kinematics(enum.Enum):
         ...
 class Robot:
     """
-    An immutable serial chain between two links of a URDF, with its limits. Safe to use from many threads at once.
+    An immutable serial chain between two links of a URDF, or the chains from one link to several tips, with their limits. Safe to use from many threads at once. What is about one tip raises InvalidArgumentError where there are several.
     """
     @staticmethod
     def from_dh(a: numpy.typing.ArrayLike, alpha: numpy.typing.ArrayLike, d: numpy.typing.ArrayLike, theta: numpy.typing.ArrayLike | None = None, *, convention: DhConvention | str = 'standard', types: collections.abc.Sequence[JointType | str] | None = None, lower: numpy.typing.ArrayLike | None = None, upper: numpy.typing.ArrayLike | None = None, velocity: numpy.typing.ArrayLike | None = None, names: collections.abc.Sequence[str] | None = None, base: numpy.typing.ArrayLike | typing.Any | None = None, tcp: numpy.typing.ArrayLike | typing.Any | None = None, name: str = 'dh') -> Robot:
@@ -312,9 +312,9 @@ class Robot:
             UrdfError: limits that leave a joint no range, or a length or joint value beyond 1e8.
         """
     @staticmethod
-    def from_urdf(path_or_xml: str | bytes | os.PathLike[str], base_link: str | None = None, tip_link: str | None = None, tcp: numpy.typing.ArrayLike | typing.Any | None = None, locked_joints: collections.abc.Mapping[str, float] | None = None, soft_limits: bool = False, default_limits: numpy.typing.ArrayLike | None = None, coupled_limits: collections.abc.Sequence[CoupledLimit] = (), mimic_curves: collections.abc.Sequence[MimicCurve] = ()) -> Robot:
+    def from_urdf(path_or_xml: str | bytes | os.PathLike[str], base_link: str | None = None, tip_link: str | None = None, tcp: numpy.typing.ArrayLike | typing.Any | None = None, locked_joints: collections.abc.Mapping[str, float] | None = None, soft_limits: bool = False, default_limits: numpy.typing.ArrayLike | None = None, coupled_limits: collections.abc.Sequence[CoupledLimit] = (), mimic_curves: collections.abc.Sequence[MimicCurve] = (), tip_links: collections.abc.Sequence[str] | None = None, tcps: numpy.typing.ArrayLike | typing.Any | None = None) -> Robot:
         """
-        Reads the chain between two links of a URDF.
+        Reads the chain between two links of a URDF, or the chains to several tips.
 
         Args:
             path_or_xml: a path, or the URDF itself: a str whose first character is '<', or bytes.
@@ -328,6 +328,9 @@ class Robot:
             coupled_limits: limits of sums of joint values, beside those of each joint; at most 8.
             mimic_curves: how joints follow others where that is no straight line, one MimicCurve for each
                 that does; in the place of their mimic tags.
+            tip_links: in the place of tip_link, the links of a robot with several tips, 1 to 8: a torso and
+                its two arms. A joint that lies on several of the chains is one degree of freedom.
+            tcps: in the place of tcp, T_tip_tcp of each tip, (k, 4, 4); None: no tip has a tool.
 
         Raises:
             UrdfError: the file, the XML, a joint type or a limit is no good, or a length or joint value
@@ -345,6 +348,13 @@ class Robot:
         ...
     def _repr_html_(self) -> str:
         ...
+    def chain(self, tip: int) -> Robot:
+        """
+        The chain to one tip by itself; tips count from 0.
+
+        Raises:
+            InvalidArgumentError: no such tip.
+        """
     def fk(self, q: numpy.typing.ArrayLike, kinematics: Kinematics | str = 'kernel') -> numpy.typing.NDArray[numpy.float64]:
         """
         Forward kinematics: T_base_tip, of the TCP if there is a tool.
@@ -354,7 +364,7 @@ class Robot:
             kinematics: what computes it.
 
         Returns:
-            (4, 4), or (N, 4, 4) with the GIL released.
+            (4, 4), or (N, 4, 4) with the GIL released; of k tips (k, 4, 4), or (N, k, 4, 4).
 
         Raises:
             InvalidArgumentError: wrong shape or dtype, or a number that is not finite.
@@ -385,10 +395,17 @@ class Robot:
             kinematics: what computes it.
 
         Returns:
-            (6, dof), or (N, 6, dof) with the GIL released.
+            (6, dof), or (N, 6, dof) with the GIL released; of k tips 6 k rows, one below the other.
 
         Raises:
             InvalidArgumentError: wrong shape or dtype, or a number that is not finite.
+        """
+    def joints_of(self, tip: int) -> list[int]:
+        """
+        Where the joints of that chain stand among all: its joint values are q[joints_of(tip)].
+
+        Raises:
+            InvalidArgumentError: no such tip.
         """
     def link_poses(self, q: numpy.typing.ArrayLike, *, other_joints: collections.abc.Mapping[str, float] | None = None) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -451,7 +468,7 @@ class Robot:
     @property
     def joint_names(self) -> list[str]:
         """
-        Names of the degrees of freedom, base to tip.
+        Names of the degrees of freedom, base to tip; of several tips those of the first chain, then those that only the second has, and so on.
         """
     @property
     def joint_types(self) -> list[JointType]:
@@ -494,6 +511,11 @@ class Robot:
         A point on the first joint's axis, in the base frame [m], (3,).
         """
     @property
+    def shared_joints(self) -> list[int]:
+        """
+        Indices of the joints that move more than one tip, ascending.
+        """
+    @property
     def soft_limits(self) -> bool:
         """
         Whether the limits are narrowed to the safety controller's.
@@ -519,9 +541,24 @@ class Robot:
         T_tip_tcp, the tool centre point in the tip link's frame, (4, 4).
         """
     @property
+    def tcps(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        T_tip_tcp of each tip, (k, 4, 4).
+        """
+    @property
     def tip_link(self) -> str:
         """
-        Link whose pose is solved for.
+        Link whose pose is solved for, of a robot with one tip.
+        """
+    @property
+    def tip_links(self) -> list[str]:
+        """
+        Links whose poses are solved for.
+        """
+    @property
+    def tips(self) -> int:
+        """
+        Number of tips.
         """
     @property
     def upper(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -1793,6 +1830,11 @@ class _Result:
         """
         Why the solve ended.
         """
+    @property
+    def unreachable_tip(self) -> int | None:
+        """
+        Of a failure with several tips: one whose target its chain cannot reach by itself, as far as a search can tell, and status and proof are that chain's; None: each can, or none was looked at.
+        """
 @typing.type_check_only
 class _Solved(_Result):
     @property
@@ -1909,6 +1951,7 @@ class Cause(enum.Enum):
     out_of_reach = 1
     out_of_time = 8
     rejected = 5
+    shared_joints = 10
     singular = 6
     def __format__(self, arg0: str) -> str:
         ...
@@ -2012,6 +2055,11 @@ class Diagnosis:
         """
         orientation: least rotation error that was reached with the position held [rad].
         """
+    @property
+    def unreachable_tip(self) -> int | None:
+        """
+        Of several tips: the first that cannot be reached by itself, whose chain the numbers are about, and q has that chain's joints; None: each can.
+        """
 class MoveNorm(enum.Enum):
     """
     How the length of a joint move is measured.
@@ -2061,7 +2109,14 @@ class Solver:
         """
     def __repr__(self) -> str:
         ...
-    def diagnose(self, pose: numpy.typing.ArrayLike | typing.Any, *, scene: Scene | None = None, exact: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None) -> Diagnosis:
+    def chain_solver(self, tip: int) -> Solver:
+        """
+        The Solver of one tip's chain by itself; tips count from 0.
+
+        Raises:
+            InvalidArgumentError: no such tip.
+        """
+    def diagnose(self, pose: numpy.typing.ArrayLike | typing.Any, *, scene: Scene | None = None, exact: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, tasks: collections.abc.Sequence[Task | collections.abc.Mapping[str, typing.Any]] | None = None, in_frame_of: collections.abc.Sequence[int | None] | None = None) -> Diagnosis:
         """
         Why solve() with the same arguments gives no answer, and the best that can be done.
 
@@ -2069,7 +2124,7 @@ class Solver:
 
         Args:
             pose: T_base_tip [m], as in solve.
-            scene: what answers may not collide with; of a robot with the same chain. The search continues
+            scene: what answers may not collide with; of a robot with the same chains. The search continues
                 within its bounds while all collide.
             exact: a second opinion on the scene, an iksel.exact.ExactCollision of it: called with
                 candidates (n, dof) that collide by the scene's spheres, returns n truth values, which of
@@ -2080,7 +2135,12 @@ class Solver:
                 about one waypoint's.
             deadline: wall-clock time after which the search for a target ends [s]; checked between its
                 stages.
-            task: what of the pose has to be reached; None: what the solver's options say.
+            task: what of the pose has to be reached, of several tips of each; None: what the solver's
+                options say.
+            tasks: of several tips, a Task for each in the place of `task`.
+            in_frame_of: of several tips, for each the number of the tip in whose frame, that of its TCP,
+                its pose is given; None: in the base frame. So two hands keep what they carry between them.
+                No tip may follow itself by way of others.
 
         Returns:
             A Diagnosis; its cause is `none` if there is an answer.
@@ -2108,15 +2168,16 @@ class Solver:
             InvalidArgumentError: a robot of another structure, a task with free axes, another strategy than
                 Lanes, a spacing out of range; else as solve.
         """
-    def solve(self, pose: numpy.typing.ArrayLike | typing.Any, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, scene: Scene | None = None, exact: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None, closest: bool | numpy.typing.ArrayLike | None = None) -> Result:
+    def solve(self, pose: numpy.typing.ArrayLike | typing.Any, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, scene: Scene | None = None, exact: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None, closest: bool | numpy.typing.ArrayLike | None = None, tasks: collections.abc.Sequence[Task | collections.abc.Mapping[str, typing.Any]] | None = None, in_frame_of: collections.abc.Sequence[int | None] | None = None) -> Result:
         """
-        Joint values that put the TCP (the tip link's frame, if there is no tool) at a pose.
+        Joint values that put the TCP (the tip link's frame, if there is no tool) at a pose, or the TCP of each tip at its own.
 
         Args:
             pose: T_base_tip [m]: (4, 4) or (3, 4); a pair (position, rotation) with a (3, 3) matrix or a
                 scipy Rotation; an object with as_matrix(), .homogeneous or .A (scipy, Pinocchio,
                 spatialmath); (3,) if the task leaves the rotation free. One that is rounded stands for the
-                nearest rigid one (see check_pose), by which the errors are measured.
+                nearest rigid one (see check_pose), by which the errors are measured. Of several tips, (k,
+                4, 4) or k of these.
             near: configuration to stay near, (dof,) [rad or m], for a batch also (N, dof), one for each
                 target; may lie outside the limits. The answer is the one with the smallest joint move of
                 all that are found, whole turns considered; a redundant arm's is moved along its self-motion
@@ -2130,7 +2191,7 @@ class Solver:
                 many of the database's on top.
             database_seeds: whether other seeds follow the given ones: the database's, random ones, and
                 those that a closed form gives.
-            scene: what answers may not collide with; of a robot with the same chain. The search continues
+            scene: what answers may not collide with; of a robot with the same chains. The search continues
                 within its bounds while all collide.
             exact: a second opinion on the scene, an iksel.exact.ExactCollision of it: called with
                 candidates (n, dof) that collide by the scene's spheres, returns n truth values, which of
@@ -2141,7 +2202,8 @@ class Solver:
                 about one waypoint's.
             deadline: wall-clock time after which the search for a target ends [s]; checked between its
                 stages.
-            task: what of the pose has to be reached; None: what the solver's options say.
+            task: what of the pose has to be reached, of several tips of each; None: what the solver's
+                options say.
             objective: what the answer is to be good at besides: an Objective, 'limits', 'manipulability',
                 or a function of joint values (dof,) that returns a cost. Comes before `near`. Of the
                 answers found, the cheapest; a redundant arm's is moved along its self-motion to a local
@@ -2152,6 +2214,10 @@ class Solver:
                 the arm's reach in metres. Or six weights, of position [1/m] and rotation [1/rad] along the
                 axes of the task. Of equally near ones the nearest to `near`. Takes some 100 us on top,
                 whatever the deadline; a scene and a filter refuse it too.
+            tasks: of several tips, a Task for each in the place of `task`.
+            in_frame_of: of several tips, for each the number of the tip in whose frame, that of its TCP,
+                its pose is given; None: in the base frame. So two hands keep what they carry between them.
+                No tip may follow itself by way of others.
 
         Returns:
             A Result. A pose that cannot be solved is no error but a status, and `proof` says how certain
@@ -2161,7 +2227,7 @@ class Solver:
             InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, a number that is not
                 finite or out of range.
         """
-    def solve_all(self, pose: numpy.typing.ArrayLike | typing.Any, max: int = 64, *, min_distance: float = 0.01, whole_turns: bool = False, order: SolutionOrder | str = 'move', near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, scene: Scene | None = None, exact: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None) -> Solutions:
+    def solve_all(self, pose: numpy.typing.ArrayLike | typing.Any, max: int = 64, *, min_distance: float = 0.01, whole_turns: bool = False, order: SolutionOrder | str = 'move', near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, scene: Scene | None = None, exact: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None, tasks: collections.abc.Sequence[Task | collections.abc.Mapping[str, typing.Any]] | None = None, in_frame_of: collections.abc.Sequence[int | None] | None = None) -> Solutions:
         """
         Every distinct solution that is found: all branches (there certainly are no others where `proven` says so), or a spread for a redundant arm.
 
@@ -2185,7 +2251,7 @@ class Solver:
                 many of the database's on top.
             database_seeds: whether other seeds follow the given ones: the database's, random ones, and
                 those that a closed form gives.
-            scene: what answers may not collide with; of a robot with the same chain. The search continues
+            scene: what answers may not collide with; of a robot with the same chains. The search continues
                 within its bounds while all collide.
             exact: a second opinion on the scene, an iksel.exact.ExactCollision of it: called with
                 candidates (n, dof) that collide by the scene's spheres, returns n truth values, which of
@@ -2196,11 +2262,16 @@ class Solver:
                 about one waypoint's.
             deadline: wall-clock time after which the search for a target ends [s]; checked between its
                 stages.
-            task: what of the pose has to be reached; None: what the solver's options say.
+            task: what of the pose has to be reached, of several tips of each; None: what the solver's
+                options say.
             objective: what the answer is to be good at besides: an Objective, 'limits', 'manipulability',
                 or a function of joint values (dof,) that returns a cost. Comes before `near`. Of the
                 answers found, the cheapest; a redundant arm's is moved along its self-motion to a local
                 minimum.
+            tasks: of several tips, a Task for each in the place of `task`.
+            in_frame_of: of several tips, for each the number of the tip in whose frame, that of its TCP,
+                its pose is given; None: in the base frame. So two hands keep what they carry between them.
+                No tip may follow itself by way of others.
 
         Returns:
             Solutions; empty, with a status that says why, if there is none.
@@ -2208,7 +2279,7 @@ class Solver:
         Raises:
             InvalidArgumentError: as solve.
         """
-    def solve_batch(self, poses: numpy.typing.ArrayLike | typing.Any, threads: int = 0, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, scene: Scene | None = None, exact: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None, closest: bool | numpy.typing.ArrayLike | None = None, on_invalid_pose: typing.Literal['status', 'raise'] = 'status') -> BatchResult:
+    def solve_batch(self, poses: numpy.typing.ArrayLike | typing.Any, threads: int = 0, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, scene: Scene | None = None, exact: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None, closest: bool | numpy.typing.ArrayLike | None = None, on_invalid_pose: typing.Literal['status', 'raise'] = 'status', tasks: collections.abc.Sequence[Task | collections.abc.Mapping[str, typing.Any]] | None = None, in_frame_of: collections.abc.Sequence[int | None] | None = None) -> BatchResult:
         """
         Solves many targets with the GIL released; row i belongs to target i.
 
@@ -2234,7 +2305,7 @@ class Solver:
                 many of the database's on top.
             database_seeds: whether other seeds follow the given ones: the database's, random ones, and
                 those that a closed form gives.
-            scene: what answers may not collide with; of a robot with the same chain. The search continues
+            scene: what answers may not collide with; of a robot with the same chains. The search continues
                 within its bounds while all collide.
             exact: a second opinion on the scene, an iksel.exact.ExactCollision of it: called with
                 candidates (n, dof) that collide by the scene's spheres, returns n truth values, which of
@@ -2245,7 +2316,8 @@ class Solver:
                 about one waypoint's.
             deadline: wall-clock time after which the search for a target ends [s]; checked between its
                 stages.
-            task: what of the pose has to be reached; None: what the solver's options say.
+            task: what of the pose has to be reached, of several tips of each; None: what the solver's
+                options say.
             objective: what the answer is to be good at besides: an Objective, 'limits', 'manipulability',
                 or a function of joint values (dof,) that returns a cost. Comes before `near`. Of the
                 answers found, the cheapest; a redundant arm's is moved along its self-motion to a local
@@ -2258,19 +2330,24 @@ class Solver:
                 whatever the deadline; a scene and a filter refuse it too.
             on_invalid_pose: what a row does that is no pose (see check_pose): "status", Status.invalid_pose
                 for it and NaN for its q; "raise", an error that names the first, and none is solved.
+            tasks: of several tips, a Task for each in the place of `task`.
+            in_frame_of: of several tips, for each the number of the tip in whose frame, that of its TCP,
+                its pose is given; None: in the base frame. So two hands keep what they carry between them.
+                No tip may follow itself by way of others.
 
         Raises:
             InvalidArgumentError: wrong shape or dtype, a bad argument, or with on_invalid_pose="raise"
                 a bad pose.
         """
-    def solve_path(self, poses: numpy.typing.ArrayLike | typing.Any, start: numpy.typing.ArrayLike | None = None, *, dt: float = 0.0, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', scene: Scene | None = None, exact: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, candidates: int = 64) -> PathResult:
+    def solve_path(self, poses: numpy.typing.ArrayLike | typing.Any, start: numpy.typing.ArrayLike | None = None, *, dt: float = 0.0, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', scene: Scene | None = None, exact: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, candidates: int = 64, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, tasks: collections.abc.Sequence[Task | collections.abc.Mapping[str, typing.Any]] | None = None, in_frame_of: collections.abc.Sequence[int | None] | None = None) -> PathResult:
         """
         Joint values along a path of poses, by a choice among the solutions of all waypoints.
 
         Of all ways through the solutions that are found, the one with the least sum of joint moves.
 
         Args:
-            poses: T_base_tip of each waypoint, (N, 4, 4) [m], or others as in solve.
+            poses: T_base_tip of each waypoint, (N, 4, 4) [m], or others as in solve; of several tips (N, k,
+                4, 4).
             start: where the arm is one time step before the first waypoint, (dof,) [rad or m]; None: the
                 path may begin anywhere, and of its periodic images the one that begins nearest to the
                 middle of the limits is taken.
@@ -2287,6 +2364,12 @@ class Solver:
                 In a batch it is asked about the first answers of up to 256 targets at once, along a path
                 about one waypoint's.
             candidates: candidates kept per waypoint at most.
+            task: what of the pose has to be reached, of several tips of each; None: what the solver's
+                options say.
+            tasks: of several tips, a Task for each in the place of `task`.
+            in_frame_of: of several tips, for each the number of the tip in whose frame, that of its TCP,
+                its pose is given; None: in the base frame. So two hands keep what they carry between them.
+                No tip may follow itself by way of others.
 
         Raises:
             InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, a number out of range.
@@ -2303,7 +2386,7 @@ class Solver:
     @property
     def database(self) -> Database:
         """
-        The database it selects seeds from.
+        The database it selects seeds from; of several tips each chain_solver has its own.
         """
     @property
     def nominal(self) -> Robot:
@@ -2477,7 +2560,7 @@ class Tracker:
         Moves on towards a pose, by no more than each joint can in the time step.
 
         Args:
-            pose: T_base_tip [m], as in Solver.solve.
+            pose: T_base_tip [m], as in Solver.solve; one for each tip.
             dt: time step [s].
             scene: the arm stays, with status `in_collision`, where it would collide at the end of its move;
                 the way there is not looked at.
@@ -2606,415 +2689,6 @@ class SelfMotion:
     def success(self) -> bool:
         """
         Whether there is at least one arc.
-        """
-class TreeRobot:
-    """
-    The chains from one link of a URDF to several tips, joined: a joint that lies on several of them is one degree of freedom. Immutable, safe to use from many threads at once.
-    """
-    @staticmethod
-    def from_urdf(path_or_xml: str | bytes | os.PathLike[str], tip_links: collections.abc.Sequence[str], base_link: str | None = None, tcps: numpy.typing.ArrayLike | typing.Any | None = None, locked_joints: collections.abc.Mapping[str, float] | None = None, soft_limits: bool = False, default_limits: numpy.typing.ArrayLike | None = None, coupled_limits: collections.abc.Sequence[CoupledLimit] = ()) -> TreeRobot:
-        """
-        Reads the chains from one link of a URDF to several.
-
-        Args:
-            path_or_xml: a path, or the URDF itself: a str whose first character is '<', or bytes.
-            tip_links: links whose poses are solved for, 1 to 8.
-            base_link: link that all poses are relative to; None: the root link.
-            tcps: T_tip_tcp of each tip, (k, 4, 4), or None: no tip has a tool.
-            locked_joints: joints held at a value [rad or m]; they are no degrees of freedom.
-            soft_limits: narrow the limits to the URDF's safety_controller where there is one.
-            default_limits: (lower, upper) [rad or m] of revolute and prismatic joints whose limits the
-                URDF leaves out or has as 0, 0; without, such a joint is an error.
-            coupled_limits: limits of sums of joint values, beside those of each joint, of one chain or of
-                several; at most 8.
-
-        Raises:
-            UrdfError: as Robot.from_urdf, of each chain; more than 32 joints together; joints that follow
-                a shared one leave it no value between its limits.
-            UnknownNameError: no such link or joint.
-            InvalidArgumentError: no tip link, one twice, more than 8, not a tool for each, or a number
-                that is no good.
-        """
-    def __copy__(self) -> TreeRobot:
-        ...
-    def __deepcopy__(self, memo: dict[int, object]) -> TreeRobot:
-        ...
-    def __repr__(self) -> str:
-        ...
-    def chain(self, tip: int) -> Robot:
-        """
-        The chain to one tip by itself, a Robot; tips count from 0.
-
-        Raises:
-            InvalidArgumentError: no such tip.
-        """
-    def fk(self, q: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        Forward kinematics: T_base_tip of each tip, of its TCP if there is a tool.
-
-        Args:
-            q: joint values [rad or m], (dof,) or (N, dof).
-
-        Returns:
-            (k, 4, 4), or (N, k, 4, 4) with the GIL released.
-
-        Raises:
-            InvalidArgumentError: wrong shape or dtype, or a number that is not finite.
-        """
-    def jacobian(self, q: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        Geometric Jacobians of all tips, one below the other: rows [linear; angular] for each.
-
-        Args:
-            q: joint values [rad or m], (dof,) or (N, dof).
-
-        Returns:
-            (6 k, dof), or (N, 6 k, dof) with the GIL released.
-
-        Raises:
-            InvalidArgumentError: wrong shape or dtype, or a number that is not finite.
-        """
-    def joints_of(self, tip: int) -> list[int]:
-        """
-        Where the joints of that chain stand among all: its joint values are q[joints_of(tip)].
-
-        Raises:
-            InvalidArgumentError: no such tip.
-        """
-    def random_configurations(self, n: int, seed: int) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        n configurations uniform inside the limits (continuous joints in [-pi, pi)), (n, dof). The same seed gives the same numbers everywhere.
-        """
-    def within_limits(self, q: numpy.typing.ArrayLike) -> bool:
-        """
-        Whether q [rad or m], (dof,), lies inside the position limits.
-        """
-    @property
-    def base_link(self) -> str:
-        """
-        Link that all poses are relative to.
-        """
-    @property
-    def coupled_limits(self) -> list[CoupledLimit]:
-        """
-        Limits of sums of joint values, beside those of each joint.
-        """
-    @property
-    def default_limits(self) -> tuple[float, float] | None:
-        """
-        Lower and upper limit of joints that the URDF gives none [rad or m], or None.
-        """
-    @property
-    def dof(self) -> int:
-        """
-        Number of joints of all chains together.
-        """
-    @property
-    def joint_names(self) -> list[str]:
-        """
-        Names of the joints: those of the first chain from base to tip, then those that only the second has, and so on.
-        """
-    @property
-    def joint_types(self) -> list[JointType]:
-        """
-        How each joint moves.
-        """
-    @property
-    def locked_joints(self) -> dict[str, float]:
-        """
-        Joints held at a value [rad or m], by name.
-        """
-    @property
-    def lower(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        Lower position limits [rad or m], (dof,); -inf: none.
-        """
-    @property
-    def name(self) -> str:
-        """
-        Name in the URDF.
-        """
-    @property
-    def shared_joints(self) -> list[int]:
-        """
-        Indices of the joints that move more than one tip, ascending.
-        """
-    @property
-    def soft_limits(self) -> bool:
-        """
-        Whether the limits are narrowed to the safety controller's.
-        """
-    @property
-    def tcps(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        T_tip_tcp of each tip, (k, 4, 4).
-        """
-    @property
-    def tip_links(self) -> list[str]:
-        """
-        Links whose poses are solved for.
-        """
-    @property
-    def tips(self) -> int:
-        """
-        Number of tips.
-        """
-    @property
-    def upper(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        Upper position limits [rad or m], (dof,); inf: none.
-        """
-    @property
-    def urdf(self) -> str:
-        """
-        The URDF text this robot was made of, as every XML reader takes it.
-        """
-    @property
-    def velocity_limit(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        Velocity limits [rad/s or m/s], (dof,); inf where the URDF has none.
-        """
-class TreeResult:
-    """
-    Answer to one target of each tip, true if it is one. Everything in it is measured on the returned q.
-    """
-    def __bool__(self) -> bool:
-        ...
-    def __repr__(self) -> str:
-        ...
-    @property
-    def attempts(self) -> int:
-        """
-        Values of the shared joints and seeds that were tried.
-        """
-    @property
-    def iterations(self) -> int:
-        """
-        Iteration steps on all tips together.
-        """
-    @property
-    def move(self) -> float:
-        """
-        Length of the move from `near`, by its norm and weights; NaN without one.
-        """
-    @property
-    def position_error(self) -> numpy.typing.NDArray[numpy.float64] | None:
-        """
-        Distance of each tip to its target [m], (k,); None unless solved.
-        """
-    @property
-    def proof(self) -> Proof:
-        """
-        `answer` of a success; of a failure, how certain it is that there is no answer.
-        """
-    @property
-    def proven(self) -> bool:
-        """
-        Whether there is certainly no answer: `proof` is `reach` or `closed_form`.
-        """
-    @property
-    def q(self) -> numpy.typing.NDArray[numpy.float64] | None:
-        """
-        Joint values [rad or m], (dof,); None unless solved.
-        """
-    @property
-    def rotation_error(self) -> numpy.typing.NDArray[numpy.float64] | None:
-        """
-        Length of each tip's rotation vector to its target [rad], (k,); None unless solved.
-        """
-    @property
-    def status(self) -> Status:
-        """
-        Why the solve ended; of a failure, that of the tip that cannot be reached even by itself, if one was found.
-        """
-    @property
-    def success(self) -> bool:
-        """
-        Whether q puts each tip at its target within both tolerances and lies inside the limits.
-        """
-    @property
-    def unreachable_tip(self) -> int | None:
-        """
-        Of a failure, index of a tip whose target its chain cannot reach by itself; None if each can as far as a search can tell, or it was not looked for.
-        """
-class TreeBatchResult:
-    """
-    Answers to many targets as arrays, each made when it is asked for; row i belongs to target i. Indexing gives a TreeResult. It is neither true nor false: ask success.all() or success.any().
-    """
-    def __bool__(self) -> bool:
-        ...
-    def __getitem__(self, i: int) -> TreeResult:
-        ...
-    def __iter__(self) -> collections.abc.Iterator[TreeResult]:
-        ...
-    def __len__(self) -> int:
-        ...
-    def __repr__(self) -> str:
-        ...
-    @property
-    def attempts(self) -> numpy.typing.NDArray[numpy.int32]:
-        """
-        Values of the shared joints and seeds that were tried, (N,).
-        """
-    @property
-    def move(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        Lengths of the moves from `near`, (N,); NaN where not solved or without one.
-        """
-    @property
-    def position_error(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        Distance of each tip to its target [m], (N, k); NaN where not solved.
-        """
-    @property
-    def q(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        Joint values [rad or m], (N, dof); NaN where not solved.
-        """
-    @property
-    def rotation_error(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        Length of each tip's rotation vector to its target [rad], (N, k); NaN where not solved.
-        """
-    @property
-    def solved(self) -> int:
-        """
-        Number of targets solved.
-        """
-    @property
-    def status(self) -> numpy.typing.NDArray[numpy.uint8]:
-        """
-        Values of Status, (N,).
-        """
-    @property
-    def success(self) -> numpy.typing.NDArray[numpy.bool_]:
-        """
-        Whether each target is solved, (N,).
-        """
-    @property
-    def unreachable_tip(self) -> numpy.typing.NDArray[numpy.int32]:
-        """
-        As TreeResult.unreachable_tip, (N,); -1: none.
-        """
-class TreeDiagnosis:
-    """
-    What TreeSolver.diagnose found.
-    """
-    def __repr__(self) -> str:
-        ...
-    @property
-    def message(self) -> str:
-        """
-        What is wrong, in a sentence.
-        """
-    @property
-    def tips(self) -> list[Diagnosis]:
-        """
-        The Diagnosis of each tip's chain by itself, the others left out.
-        """
-    @property
-    def unreachable_tip(self) -> int | None:
-        """
-        Index of the first tip that cannot be reached by itself; None if each can.
-        """
-class TreeSolver:
-    """
-    Solves inverse kinematics for all tips of a TreeRobot at once. Immutable, safe to use from many threads at once; the same input gives the same bits. The joints that tips share are set to a value, and behind them each arm is solved for by itself; where that leads nowhere, all joints are iterated together.
-    """
-    def __copy__(self) -> TreeSolver:
-        ...
-    def __deepcopy__(self, memo: dict[int, object]) -> TreeSolver:
-        ...
-    def __init__(self, robot: TreeRobot, options: SolverOptions | collections.abc.Mapping[str, typing.Any] | None = None) -> None:
-        """
-        Builds the databases of the chains by `options.database`.
-
-        Args:
-            robot: the robot to solve for.
-            options: SolverOptions() if None; tolerances, task and bounds on work hold for each tip.
-
-        Raises:
-            InvalidArgumentError: an option out of range.
-        """
-    def __repr__(self) -> str:
-        ...
-    def chain_solver(self, tip: int) -> Solver:
-        """
-        The Solver of one tip's chain by itself; tips count from 0.
-
-        Raises:
-            InvalidArgumentError: no such tip.
-        """
-    def diagnose(self, poses: numpy.typing.ArrayLike | typing.Any, *, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, tasks: collections.abc.Sequence[Task | collections.abc.Mapping[str, typing.Any]] | None = None) -> TreeDiagnosis:
-        """
-        Why there is no answer: whether each tip can be reached by itself. Milliseconds.
-
-        Args:
-            poses: as in solve.
-            filter: as in solve.
-            deadline: as in solve.
-            tasks: as in solve.
-
-        Returns:
-            A TreeDiagnosis.
-
-        Raises:
-            InvalidArgumentError: as solve.
-        """
-    def solve(self, poses: numpy.typing.ArrayLike | typing.Any, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, tasks: collections.abc.Sequence[Task | collections.abc.Mapping[str, typing.Any]] | None = None) -> TreeResult:
-        """
-        Joint values that put each tip (its TCP, if it has one) at its pose.
-
-        Args:
-            poses: T_base_tip [m] of each tip, (k, 4, 4), or k others as in Solver.solve.
-            near: configuration to stay near, (dof,) [rad or m]; may lie outside the limits. The answer is
-                the one with the smallest joint move of those that a bounded search finds, each moved to
-                where the move is locally least.
-            weights: factor on each joint's part of a move, (dof,), >= 0; None: all 1.
-            norm: how a move is measured.
-            filter: called with candidates (n, dof), each at the poses and inside the limits; returns n
-                truth values. The search continues within its bounds while all are refused.
-            deadline: wall-clock time after which the search ends [s]; checked between its stages.
-            tasks: what of each tip's pose has to be reached, one for each; None: what the solver's options
-                say, of each.
-
-        Returns:
-            A TreeResult. Poses that cannot be reached are no error but a status.
-
-        Raises:
-            InvalidArgumentError: wrong shape or dtype, not one pose or task for each tip, a pose that is
-                not rigid, a number that is not finite, or a keyword out of range.
-        """
-    def solve_batch(self, poses: numpy.typing.ArrayLike | typing.Any, *, threads: int = 0, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, tasks: collections.abc.Sequence[Task | collections.abc.Mapping[str, typing.Any]] | None = None) -> TreeBatchResult:
-        """
-        Solves many targets with the GIL released; row i has the bits of solve(poses[i]).
-
-        Args:
-            poses: T_base_tip [m] of each tip, (N, k, 4, 4). A row of which one is no pose has
-                Status.invalid_pose.
-            threads: 0: one per core.
-            near: as in solve, or (N, dof): one for each target.
-            weights: as in solve.
-            norm: as in solve.
-            filter: as in solve; called from any thread, one at a time.
-            deadline: of each target by itself [s].
-            tasks: as in solve.
-
-        Returns:
-            A TreeBatchResult.
-
-        Raises:
-            InvalidArgumentError: wrong shape or dtype, or a keyword out of range.
-        """
-    @property
-    def options(self) -> SolverOptions:
-        """
-        A copy of its options.
-        """
-    @property
-    def robot(self) -> TreeRobot:
-        """
-        The robot it solves for.
         """
 class Evaluation:
     """

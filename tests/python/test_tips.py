@@ -146,7 +146,7 @@ def test_a_filter_sees_all_joints(solver, targets) -> None:
         return q[:, 4] > 0
 
     found = [solver.solve(poses, filter=left_elbow_up) for poses in targets[:10]]
-    assert all(shape == (1, 14) for shape in seen)
+    assert all(shape[1:] == (14,) for shape in seen)
     assert any(found)
     assert all(result.q[4] > 0 for result in found if result)
     refused = solver.solve(targets[0], filter=lambda q: np.zeros(len(q), bool))
@@ -230,3 +230,92 @@ def test_what_is_wrong_is_named(solver, targets) -> None:
     for error, words, call in cases:
         with pytest.raises(error, match=words):
             call()
+
+
+def test_one_tip_is_the_chain() -> None:
+    arm = iksel.load_robot("ur5e")
+    one = iksel.Robot.from_urdf(arm.urdf, tip_links=[arm.tip_link])
+    assert one.tip_links == [arm.tip_link] == [one.tip_link]
+    assert one.tips == 1
+    assert one.shared_joints == []
+    poses = arm.fk(arm.random_configurations(20, SEED))
+    np.testing.assert_array_equal(
+        iksel.Solver(one).solve_batch(poses).q, iksel.Solver(arm).solve_batch(poses).q
+    )
+
+
+def test_what_one_tip_can_several_can(solver, targets) -> None:
+    robot = solver.robot
+    found = solver.solve_all(targets[0], 8)
+    assert len(found) == 8
+    for q in found.q:
+        np.testing.assert_allclose(robot.fk(q), targets[0], atol=3e-6)
+    best = solver.solve(targets[0], objective="limits")
+    assert best.cost <= solver.solve(targets[0], objective="limits").cost
+    far = targets[0].copy()
+    far[0, 0, 3] += 3
+    closest = solver.solve(far, closest=True)
+    assert closest.status == iksel.Status.closest
+    assert robot.within_limits(closest.q)
+    seeded = solver.solve(targets[0], seeds=found.q[:2], database_seeds=False)
+    assert np.abs(found.q[:2] - seeded.q).max(axis=1).min() < 1e-6
+
+
+def test_hands_keep_what_they_carry(solver, targets) -> None:
+    robot = solver.robot
+    q = robot.random_configurations(1, SEED)[0]
+    left, right = robot.fk(q)
+    between = np.linalg.inv(left) @ right
+    path = np.stack([np.stack([left, between])] * 20)
+    path[:, 0, 2, 3] += np.linspace(0, 0.05, 20)
+    moved = solver.solve_path(path, start=q, in_frame_of=[None, 0])
+    assert moved, moved.first_unreachable
+    for pose, want in zip(robot.fk(moved.q), path, strict=True):
+        np.testing.assert_allclose(pose[0], want[0], atol=3e-6)
+        np.testing.assert_allclose(np.linalg.inv(pose[0]) @ pose[1], between, atol=3e-6)
+    assert np.abs(np.diff(moved.q, axis=0)).max() < 0.2
+    with pytest.raises(iksel.InvalidArgumentError, match="by way of others"):
+        solver.solve(targets[0], in_frame_of=[1, 0])
+
+
+def test_a_tracker_and_its_pickle_follow_both_hands(solver) -> None:
+    robot = solver.robot
+    q = robot.random_configurations(1, SEED)[0]
+    poses = robot.fk(q)
+    tracker = solver.tracker(q, closest=True)
+    for step in range(10):
+        aim = poses.copy()
+        aim[:, 2, 3] += 1e-3 * step
+        tracker.track(aim, 0.05)
+    again = pickle.loads(pickle.dumps(tracker))
+    np.testing.assert_array_equal(again.q, tracker.q)
+    assert again.track(aim, 0.05).status == tracker.track(aim, 0.05).status
+
+
+def test_a_scene_knows_all_arms() -> None:
+    arm = iksel.load_robot("panda")
+    robot = two_armed(arm)
+    links = [link for link in robot.link_names if link[:2] in ("l_", "r_")]
+    ball = [[0.0, 0.0, 0.0, 0.08]]
+    pairs = [(a, b) for a in links for b in links if a[:2] == "l_" and b[:2] == "r_"]
+    spheres = iksel.RobotSpheres(dict.fromkeys(links, ball), pairs)
+    scene = iksel.Scene(robot, spheres)
+    q = robot.random_configurations(300, SEED)
+    free = np.asarray(scene.is_free(q))
+    assert 0 < free.sum() < 300
+    poses = robot.fk(q[free][:40])
+    solver = iksel.Solver(robot)
+    batch = solver.solve_batch(poses, scene=scene)
+    assert batch.solved >= 39
+    assert np.asarray(scene.is_free(batch.q[batch.success])).all()
+    for row, target in zip(batch, poses, strict=True):
+        assert row.status in (iksel.Status.solved, iksel.Status.in_collision)
+        if row:
+            np.testing.assert_allclose(robot.fk(row.q), target, atol=3e-6)
+    hit = robot.fk(q[~free][0])
+    allowed = solver.solve(hit, scene=scene, exact=lambda q: np.ones(len(q), bool))
+    assert allowed
+    diagnosis = solver.diagnose(hit, scene=scene)
+    assert diagnosis.cause in (iksel.Cause.none, iksel.Cause.collision)
+    path = solver.solve_path(np.stack([poses[0]] * 3), start=q[free][0], scene=scene)
+    assert path

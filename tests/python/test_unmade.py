@@ -142,10 +142,18 @@ def proven_noes(solver: iksel.Solver) -> list[iksel.Diagnosis]:
     return list(found.values())
 
 
+def value_of(thing: object, name: str) -> object:
+    """An attribute, or the words of its refusal."""
+    try:
+        return getattr(thing, name)
+    except iksel.InvalidArgumentError as error:
+        return str(error)
+
+
 def contents(thing: object) -> dict[str, object]:
     """All that can be read of an object."""
     names = [n for n in dir(thing) if not n.startswith("_") and n != "nominal"]
-    values = {name: getattr(thing, name) for name in names}
+    values = {name: value_of(thing, name) for name in names}
     plain = {name: value for name, value in values.items() if not callable(value)}
     if hasattr(thing, "__len__") and not isinstance(thing, iksel.Database):
         plain["rows"] = [repr(row) for row in thing]

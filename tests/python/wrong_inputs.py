@@ -30,7 +30,8 @@ HEAD = """\
 
 What newcomers try, and what they read then. Made by
 `python tests/python/wrong_inputs.py`; a test keeps it up to date. `ur3` is a built-in
-robot with a solver `solver`, `q` a configuration of it and `pose` the pose there; in
+robot with a solver `solver`, `q` a configuration of it and `pose` the pose there;
+`hands` is a robot with the tips of `hands.urdf`; in
 the folder are `hands.urdf` (two hands and a camera), `plain.urdf` (limits 0, 0),
 `arm.urdf.xacro` (not expanded), `floating.urdf`, `broken.urdf` (cut off), `ur3.iksel`,
 `panda.iksel` (databases), `cut.iksel` (half a database) and `notes.txt`.
@@ -247,6 +248,9 @@ def answers() -> Iterator[tuple[str, str, str]]:
         make_files(Path(folder))
         os.chdir(folder)
         try:
+            names["hands"] = iksel.Robot.from_urdf(
+                "hands.urdf", tip_links=["left_hand", "right_hand"]
+            )
             for heading, lines in TABLE.items():
                 for line in lines:
                     shell = line.startswith("$ ")

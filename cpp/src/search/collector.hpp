@@ -125,9 +125,10 @@ class Collector : public SearchState {
   [[nodiscard]] bool is_out_of_time() const { return is_out_of_time_; }
 
  private:
-  [[nodiscard]] double move_to(std::size_t i) const {
-    return nearest_to_->move.length(found_.at(i) - nearest_to_->from);
+  [[nodiscard]] double move_of(const JointVector& q) const {
+    return nearest_to_->move.length(q - nearest_to_->from);
   }
+  [[nodiscard]] double move_to(std::size_t i) const { return move_of(found_.at(i)); }
   /// Brings a success to the image nearest to `near`, where it still is one.
   void wrap_near(const JointVector& near, Result& answer) const;
   void look_for_partner(const Jacobian& J, const JointVector& q);

@@ -14,21 +14,22 @@ namespace iksel {
 
 class NearbySeeds {
  public:
-  /// So many of them, on top of those that `work` allows.
+  /// So many of them for one tip, on top of those that `work` allows.
   static constexpr int kCount = 64;
   /// Each joint is at most so far away [rad or m]. Of 0.5, 1 and 1.7, 1 gave the shortest moves of
   /// two arms as one chain.
   static constexpr double kFarthest = 1;
 
   /// All must outlive this.
-  NearbySeeds(const JointSpace& joints, const JointVector& from, std::uint64_t seed, Work& work)
-      : joints_(joints), from_(from), random_(seed), work_(work) {}
+  NearbySeeds(const JointSpace& joints, const JointVector& from, std::uint64_t seed, Work& work,
+              int count = kCount)
+      : joints_(joints), from_(from), random_(seed), work_(work), count_(count) {}
 
   [[nodiscard]] bool next_stage() const { return loaded_ == 0; }
 
   template <typename Refiner>
   bool load(Refiner& refiner, int lane) {
-    if (loaded_ == kCount) return false;
+    if (loaded_ == count_) return false;
     ++loaded_;
     work_.take_guess();
     double q[kMaxDof];
@@ -44,6 +45,7 @@ class NearbySeeds {
   const JointVector& from_;
   Random random_;
   Work& work_;
+  int count_;
   int loaded_ = 0;
 };
 

@@ -24,7 +24,10 @@ SolveRequest request_for(const ChainPart& part, const SolveRequest& request) {
 
 ArmSearch::ArmSearch(const TipsGoal& goal, const std::vector<TipSolvers>& solvers,
                      const SolveRequest& request, std::uint64_t seed)
-    : goal_(goal), solvers_(solvers), random_(seed) {
+    : goal_(goal),
+      solvers_(solvers),
+      random_(seed),
+      may_collide_(static_cast<bool>(request.exact)) {
   for (int i = 0; i < goal.count(); ++i) {
     const Tip& tip = goal.model().tip(i);
     const Task& task = goal.task(i).task();

@@ -25,6 +25,8 @@ class ArmSearch {
   ArmSearch(const TipsGoal& goal, const std::vector<TipSolvers>& solvers,
             const SolveRequest& request, std::uint64_t seed);
 
+  /// Whether what collides in the scene's spheres may be an answer all the same.
+  [[nodiscard]] bool may_collide() const { return may_collide_; }
   /// Whether that tip has an arm with as many joints as its task fixes axes.
   [[nodiscard]] bool has_arm(int tip) const;
   /// Whether each has.
@@ -63,6 +65,7 @@ class ArmSearch {
   /// allows is asked for after another.
   std::vector<bool> draws_pose_;
   Random random_;
+  bool may_collide_;
 };
 
 }  // namespace iksel

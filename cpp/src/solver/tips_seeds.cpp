@@ -161,7 +161,7 @@ const std::vector<JointVector>& ArmSeeds::solve(int tip, const JointVector& q) {
 }
 
 void ArmSeeds::sort_out() {
-  if (goal_.scene() != nullptr) {
+  if (goal_.scene() != nullptr && !arms_.may_collide()) {
     seeds_.erase(std::remove_if(seeds_.begin(), seeds_.end(),
                                 [&](const JointVector& q) { return !goal_.is_free(q); }),
                  seeds_.end());

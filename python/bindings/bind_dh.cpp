@@ -6,7 +6,7 @@
 #include "angle_warning.hpp"
 #include "array_checks.hpp"
 #include "bindings.hpp"
-#include "function.hpp"
+#include "def.hpp"
 #include "iksel/dh.hpp"
 #include "iksel/pose.hpp"
 #include "iksel/robot.hpp"

@@ -99,7 +99,7 @@ void bind_errors(py::module_& m) {
   bind_error<DatabaseMismatchError>(
       m, "DatabaseMismatchError", database,
       "An intact database that does not fit: other robot, other format version, other byte order.");
-  // For what pybind11 calls: properties.
+  // For what pybind11 calls: setters of properties.
   py::register_local_exception_translator([](std::exception_ptr raised) {
     try {
       if (raised) std::rethrow_exception(raised);

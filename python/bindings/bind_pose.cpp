@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bindings.hpp"
-#include "function.hpp"
+#include "def.hpp"
 #include "iksel/pose.hpp"
 #include "iksel/robot.hpp"
 #include "pose_arguments.hpp"

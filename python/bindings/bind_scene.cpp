@@ -111,25 +111,19 @@ py::dict scene_state(const Scene& self) {
   return state;
 }
 
-/// The items of a dict that __getstate__ made. Throws InvalidArgumentError about what is none.
-py::dict as_items(const py::object& value, const char* name) {
-  if (!py::isinstance<py::dict>(value)) throw_wrong_type(name, "a dict", value);
-  return value;
-}
-
 Scene scene_from_state(const Robot& robot, const RobotSpheres& spheres,
                        const JointValues& other_joints, const py::object& obstacles,
                        const py::object& attached) {
   Scene scene(robot, spheres, other_joints);
   const char* name_of_obstacles = "pickled Scene, obstacles";
-  for (const auto& [name, obstacle] : as_items(obstacles, name_of_obstacles)) {
+  for (const auto& [name, obstacle] : copy_of_dict(obstacles, name_of_obstacles)) {
     if (!is_a<Obstacle>(obstacle)) throw_wrong_type(name_of_obstacles, "Obstacles", obstacle);
     scene.set(from_python<std::string>(name, name_of_obstacles), made<Obstacle>(obstacle));
   }
   const char* name_of_attached = "pickled Scene, attached";
   // What objects may touch may be an object that comes later.
   std::vector<std::pair<std::string, AttachedObject>> all;
-  for (const auto& [name, parts] : as_items(attached, name_of_attached)) {
+  for (const auto& [name, parts] : copy_of_dict(attached, name_of_attached)) {
     if (!py::isinstance<py::tuple>(parts) || py::len(parts) != 3) {
       throw_wrong_type(name_of_attached, "tuples of 3", parts);
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The C++ enums as Python enums: one table of names per enum, from which the Python class, the
-// parsing of names and the error messages follow. scripts/enum_tables.py makes them of the core's headers.
+// parsing of names and the error messages follow. scripts/enum_tables.py makes the tables of the
+// core's headers.
 #pragma once
 
 #include <pybind11/native_enum.h>

@@ -64,9 +64,7 @@ void assign(void* self, const StructType& type, const py::dict& changes) {
 
 void assign_state(void* self, const StructType& type, py::handle state) {
   const std::string of = std::string("pickled ") + type.name;
-  const std::string expected = "a dict of " + std::to_string(type.fields.size()) + " fields";
-  if (!py::isinstance<py::dict>(state)) throw_wrong_type(of, expected, state);
-  const auto values = py::reinterpret_borrow<py::dict>(state);
+  const py::dict values = copy_of_dict(state, of);
   for (const auto& [key, value] : values) {
     const Field& field = find_field(key, type);
     const std::string name = of + ", " + field.name;
@@ -74,8 +72,8 @@ void assign_state(void* self, const StructType& type, py::handle state) {
     if (field.check != nullptr) field.check(field.of(self), name);
   }
   if (values.size() != type.fields.size()) {
-    throw InvalidArgumentError(of + ": expected " + expected + ", got " +
-                               std::to_string(values.size()));
+    throw InvalidArgumentError(of + ": expected a dict of " + std::to_string(type.fields.size()) +
+                               " fields, got " + std::to_string(values.size()));
   }
 }
 

@@ -11,7 +11,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "function.hpp"
+#include "def.hpp"
 #include "property.hpp"
 #include "value_type.hpp"
 

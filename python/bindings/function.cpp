@@ -102,19 +102,17 @@ void Function::bind(PyObject* const* arguments, std::size_t count, PyObject* key
   }
 }
 
-void Function::bind_state(py::handle state, py::handle* values) const {
-  const std::string expected = "a dict of " + std::to_string(parameters.size()) + " items";
-  if (!py::isinstance<py::dict>(state)) throw_wrong_type("pickled " + owner, expected, state);
+void Function::bind_state(const py::dict& state, py::handle* values) const {
   std::size_t known = 0;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     values[i] = PyDict_GetItem(state.ptr(), parameters[i].interned);
     if (values[i]) ++known;
   }
-  const std::size_t size = py::len(state);
-  if (known == parameters.size() && known == size) return;
-  throw InvalidArgumentError("pickled " + owner + ": expected " + expected + ", got " +
+  if (known == parameters.size() && known == state.size()) return;
+  throw InvalidArgumentError("pickled " + owner + ": expected a dict of " +
+                             std::to_string(parameters.size()) + " items, got " +
                              std::to_string(known) + " of them and " +
-                             std::to_string(size - known) + " others");
+                             std::to_string(state.size() - known) + " others");
 }
 
 Keywords Function::bind_keywords(PyObject* const* arguments, std::size_t count,

@@ -68,6 +68,7 @@ void KeywordMethod::describe(const MethodText& text, const std::string& result,
     keywords.push_back(*keyword);
     doc += argument_doc(name, keyword->doc);
   }
+  if (function.parameters.size() > kMostArguments) throw std::logic_error("too many keywords");
   function.doc = docstring(function, "Solver", result, doc + "\n" + text.rest);
 }
 

@@ -27,20 +27,26 @@ struct ArgumentType {
   py::object (*shown)(const void* value);
 };
 
-/// Specialised for what is no plain value: text(), read(), shown().
+/// Specialised for what has to know the arm, or is read in another way.
 template <class T, class Enable = void>
 struct ArgumentOf {
   static std::string text() { return FromPython<T>::text(); }
   static T read(py::handle given, const char* name, int /*dof*/) {
     return from_python<T>(given, name);
   }
-  static py::object shown(const T& value) {
-    if constexpr (std::is_floating_point_v<T>) {
-      if (std::isinf(value)) return py::none();
-    }
-    return ValueOf<T>::to_plain(value);
-  }
 };
+
+template <class T>
+py::object shown_default(const T& value) {
+  if constexpr (std::is_floating_point_v<T>) {
+    if (std::isinf(value)) return py::none();
+  }
+  if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>) {
+    return ValueOf<T>::to_plain(value);
+  } else {
+    return py::none();
+  }
+}
 
 template <class T>
 const ArgumentType& argument_type() {
@@ -50,7 +56,7 @@ const ArgumentType& argument_type() {
       [](void* value, py::handle given, const char* name, int dof) {
         *static_cast<T*>(value) = A::read(given, name, dof);
       },
-      [](const void* value) { return A::shown(as<T>(value)); },
+      [](const void* value) { return shown_default(as<T>(value)); },
   };
   return type;
 }
@@ -121,6 +127,9 @@ struct KeywordMethod {
                 std::size_t positional);
 };
 
+/// Arguments that a method has at most.
+constexpr std::size_t kMostArguments = 24;
+
 template <class F>
 struct BoundKeywords {
   static inline KeywordMethod method;
@@ -131,7 +140,7 @@ struct BoundKeywords {
       const auto given = static_cast<std::size_t>(count);
       method.function.check_self(arguments, given, ClassOf<Solver>::type);
       const Solver& self = made<Solver>(arguments[0]);
-      std::array<py::handle, 24> values;
+      std::array<py::handle, kMostArguments> values;
       method.function.bind(arguments + 1, given - 1, names, values.data());
       const Given all(method.keywords, method.function.parameters, values.data() + 1,
                       given == 2 && names == nullptr);

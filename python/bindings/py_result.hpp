@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "array_checks.hpp"
+#include "def.hpp"
 #include "enums.hpp"
-#include "function.hpp"
 #include "iksel/result.hpp"
 
 namespace iksel::python {

@@ -10,13 +10,9 @@
 
 #include <filesystem>
 #include <limits>
-#include <map>
 #include <optional>
 #include <string>
-#include <tuple>
 #include <type_traits>
-#include <utility>
-#include <vector>
 
 #include "class.hpp"
 #include "enums.hpp"
@@ -33,6 +29,12 @@ namespace iksel::python {
 inline void check_callable(py::handle value, const char* name) {
   if (PyCallable_Check(value.ptr()) != 0) return;
   throw SignatureError(std::string(name) + ": expected a callable, got " + describe(value));
+}
+
+/// A dict that nobody else changes while its items are read.
+inline py::dict copy_of_dict(py::handle value, const std::string& name) {
+  if (!py::isinstance<py::dict>(value)) throw_wrong_type(name, "a dict", value);
+  return value.attr("copy")();
 }
 
 /// The text of a str. One that holds bytes which are no UTF-8, as Python has them from a command

@@ -50,15 +50,8 @@ std::vector<JointVector> as_seeds(py::handle value, const char* name, int dof) {
 
 }  // namespace
 
-struct ShownAsNone {
-  template <class T>
-  static py::object shown(const T& /*value*/) {
-    return py::none();
-  }
-};
-
 template <>
-struct ArgumentOf<JointVector> : ShownAsNone {
+struct ArgumentOf<JointVector> {
   static std::string text() { return "numpy.typing.ArrayLike"; }
   static JointVector read(py::handle given, const char* name, int dof) {
     return as_joints(given, dof, name);
@@ -66,7 +59,7 @@ struct ArgumentOf<JointVector> : ShownAsNone {
 };
 
 template <>
-struct ArgumentOf<std::vector<JointVector>> : ShownAsNone {
+struct ArgumentOf<std::vector<JointVector>> {
   static std::string text() { return "numpy.typing.ArrayLike"; }
   static std::vector<JointVector> read(py::handle given, const char* name, int dof) {
     return as_seeds(given, name, dof);
@@ -74,7 +67,7 @@ struct ArgumentOf<std::vector<JointVector>> : ShownAsNone {
 };
 
 template <>
-struct ArgumentOf<std::vector<Task>> : ShownAsNone {
+struct ArgumentOf<std::vector<Task>> {
   static std::string text() {
     return "collections.abc.Sequence[Task | collections.abc.Mapping[str, object]]";
   }
@@ -84,7 +77,7 @@ struct ArgumentOf<std::vector<Task>> : ShownAsNone {
 };
 
 template <>
-struct ArgumentOf<std::vector<int>> : ShownAsNone {
+struct ArgumentOf<std::vector<int>> {
   static std::string text() { return "collections.abc.Sequence[int | None]"; }
   static std::vector<int> read(py::handle given, const char* name, int /*dof*/) {
     return as_frames(given, name);
@@ -92,7 +85,7 @@ struct ArgumentOf<std::vector<int>> : ShownAsNone {
 };
 
 template <>
-struct ArgumentOf<Filter> : ShownAsNone {
+struct ArgumentOf<Filter> {
   static std::string text() {
     return "collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], object]";
   }
@@ -102,15 +95,7 @@ struct ArgumentOf<Filter> : ShownAsNone {
 };
 
 template <>
-struct ArgumentOf<Scene> {
-  static std::string text() { return "iksel_cpp.Scene"; }
-  static Scene read(py::handle given, const char* name, int /*dof*/) {
-    return from_python<Scene>(given, name);
-  }
-};
-
-template <>
-struct ArgumentOf<Objective> : ShownAsNone {
+struct ArgumentOf<Objective> {
   static std::string text() {
     return "iksel_cpp.Objective | str | collections.abc.Callable[[numpy.ndarray], float]";
   }
@@ -120,7 +105,7 @@ struct ArgumentOf<Objective> : ShownAsNone {
 };
 
 template <class T>
-struct ArgumentOf<std::optional<T>> : ShownAsNone {
+struct ArgumentOf<std::optional<T>> {
   static std::string text() { return ArgumentOf<T>::text(); }
   static std::optional<T> read(py::handle given, const char* name, int dof) {
     return ArgumentOf<T>::read(given, name, dof);
@@ -128,7 +113,7 @@ struct ArgumentOf<std::optional<T>> : ShownAsNone {
 };
 
 template <>
-struct ArgumentOf<std::optional<PoseWeights>> : ShownAsNone {
+struct ArgumentOf<std::optional<PoseWeights>> {
   static std::string text() { return "bool | numpy.typing.ArrayLike"; }
   static std::optional<PoseWeights> read(py::handle given, const char* /*name*/, int /*dof*/) {
     return as_closest(given);

@@ -120,7 +120,7 @@ def test_keywords_that_are_of_the_options(solver) -> None:
     [
         ("base", "'base_link'"),
         ("tip", "'tip_link' or 'tip_links'"),
-        ("tpc", "'tcp' or 'tcps'"),
+        ("tpc", "'tcp'"),
     ],
 )
 def test_mistyped_keywords_of_robots(wrong: str, right: str) -> None:

@@ -47,7 +47,7 @@ class Size:
     """Their seed."""
     analytic: int = 1_000
     """Targets of each kind for solvers that enumerate."""
-    analytic_s: float = 1.5
+    analytic_s: float = 1.0
     """Time after which none of them is begun any more, in each way to ask [s]."""
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from bench.rivals.axes import meeting_point
 from bench.rivals.base import UnsupportedError
 from bench.rivals.enumerator import Enumerator, Request, fit_frames
 
@@ -46,7 +47,9 @@ def opw_form(arm: Arm) -> OpwForm:
     h, p = frames[:, 0, :3, 2], frames[:, 0, :3, 3]
     z, y = h[0], h[1]
     x = np.cross(y, z)
-    wrist = _meeting(h[3:], p[3:])
+    wrist = meeting_point(h[3:], p[3:])
+    if wrist is None:
+        raise UnsupportedError("its last three axes do not meet in one point")
     perpendicular = [z @ y, h[3] @ y, h[3] @ h[4], h[4] @ h[5]]
     if np.abs(perpendicular).max() > SQUARE or abs(abs(h[2] @ y) - 1.0) > SQUARE:
         raise UnsupportedError(f"{arm.name} has no parallel elbow with a square wrist")
@@ -71,16 +74,6 @@ def opw_form(arm: Arm) -> OpwForm:
     elbow = float(np.sign(h[2] @ y))
     offsets = np.array([0.0, tilt, reach - tilt, roll, pitch, 0.0])
     return OpwForm(lengths, np.array([1.0, 1.0, elbow, along, 1.0, 1.0]), offsets)
-
-
-def _meeting(h: Array, p: Array) -> Array:
-    """Where three axes meet; UnsupportedError if they do not."""
-    across = np.eye(3) - h[:, :, None] * h[:, None, :]
-    gaps = np.einsum("nij,nj->ni", across, p)
-    point, *_ = np.linalg.lstsq(across.reshape(-1, 3), gaps.ravel(), rcond=None)
-    if np.abs(across @ point - gaps).max() > SQUARE:
-        raise UnsupportedError("its last three axes do not meet in one point")
-    return np.asarray(point)
 
 
 class Opw(Enumerator):

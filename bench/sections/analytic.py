@@ -20,6 +20,9 @@ OURS = "IKSel"
 REACHED, TURNED = KINDS
 WORDS = {"one": "one", "every": "all", "nearest": "nearest", "no": "no"}
 
+FEW = 20
+"""Noes below this are counted in the table."""
+
 HEADER = [
     "arm, solver",
     "targets",
@@ -147,7 +150,7 @@ def _row(reached: dict[str, Any], turned: dict[str, Any], failure: str) -> list[
         NONE if every is None else _time(every),
         NONE if every is None else _branches(every),
         NONE if nearest is None else _time(nearest) + _noted(nearest, "longer"),
-        _time(turned) if turned else NONE,
+        _no(turned) if turned else NONE,
         _counted(ways, "missed"),
         _counted(ways, "wrong"),
     ]
@@ -158,6 +161,12 @@ def _time(figures: dict[str, Any]) -> str:
         return NONE
     mean, median = figures["us"]
     return f"{microseconds(mean)} ({microseconds(median)})"
+
+
+def _no(turned: dict[str, Any]) -> str:
+    """With how many it is the mean of, where these are few."""
+    few = 0 < turned["noes"] < FEW
+    return _time(turned) + (f" of {turned['noes']}" if few else "")
 
 
 def _noted(figures: dict[str, Any], what: str) -> str:

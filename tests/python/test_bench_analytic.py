@@ -258,6 +258,11 @@ class TestCommand:
         assert "one 3 of 20" in text
         assert analytic.wrong(view) == ["ur3, uniform, one: 3 missed"]
 
+    @pytest.mark.parametrize(("noes", "shown"), [(3, " of 3"), (20, "")])
+    def test_a_mean_of_few_noes_says_so(self, noes, shown):
+        told = analytic._no({"us": [2.0, 1.5], "noes": noes})
+        assert told == "2.00 (1.50)" + shown
+
     def test_what_hangs_is_ended(self, monkeypatch, tmp_path):
         """Each cell with its own time, and the next one is tried."""
         given = []

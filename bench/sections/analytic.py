@@ -185,6 +185,8 @@ def _branches(every: dict[str, Any]) -> str:
 
 def _counted(ways: dict[str, Any], what: str) -> str:
     """How many of each way; 0 if there are none at all."""
+    if not ways:
+        return NONE
     parts = [
         f"{WORDS[way]} {figures[what]:,} of {figures['count']:,}"
         for way, figures in ways.items()

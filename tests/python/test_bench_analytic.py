@@ -15,6 +15,7 @@ from bench import command, run
 from bench.analytic import cells
 from bench.analytic.plan import KINDS, analytic_jobs, arms, asked_cell, job_name
 from bench.arms import BENCH_ARMS, load_arm
+from bench.markdown import NONE
 from bench.rivals import ENUMERATORS
 from bench.rivals.base import UnsupportedError
 from bench.rivals.crx import _controller, _ours
@@ -252,7 +253,8 @@ class TestCommand:
         )
         text = analytic.text(view)
         assert "| `ur3`, IKSel | 20 | 2.00 (1.50) |" in text
-        assert "| `ur3`, ikdh | ended: exit status -6 |" in text
+        ended = " | ".join(["exit status -6", *[NONE] * 7])
+        assert f"| `ur3`, ikdh | ended: {ended} |" in text
         assert "| all, frankik | not installed |" in text
         assert "- opw: `ur3`: 6R only; it is none" in text
         assert "one 3 of 20" in text

@@ -7,6 +7,7 @@ import copy
 import functools
 import xml.etree.ElementTree as ET
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import iksel
@@ -43,10 +44,15 @@ class Arm:
     tip_link: str = TCP_LINK
 
 
+BENCH_ARMS = {"crx10ia": Path(__file__).with_name("crx10ia.urdf")}
+"""Arms of the benchmarks alone, for solvers that take no built-in one."""
+
+
 @functools.cache
 def load_arm(name: str) -> Arm:
-    """A built-in robot by name, with the manifest's tool."""
-    robot = iksel.load_robot(name)
+    """A built-in robot by name, with the manifest's tool, or one of BENCH_ARMS."""
+    file = BENCH_ARMS.get(name)
+    robot = iksel.load_robot(name) if file is None else iksel.Robot.from_urdf(file)
     chain = chain_from_urdf(robot.urdf, robot.base_link, robot.tip_link, robot.tcp)
     return Arm(name, robot, chain, chain_urdf(robot), robot.base_link)
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import iksel
+from bench.analytic.cells import asked
 from bench.arms import load_arm
 from bench.branches import all_branches, near_branches, restarts
 from bench.check import judge, right
@@ -161,6 +162,7 @@ ON_TARGETS: dict[str, Callable[[Arm, Targets, Settings], dict[str, Any]]] = {
     "ikgeo_package": packaged,
     "ikgeo_enumeration": enumerated,
     "first_attempt": first_attempt,
+    "asked": asked,
 }
 """Functions of an arm, its targets and settings, by the names under "cell"."""
 

@@ -25,6 +25,7 @@ from bench import (
     scene,
     tips,
 )
+from bench.analytic import command as analytic_command
 from bench.arguments import add_robots
 from bench.arms import RIVAL_ARMS
 from bench.frozen import compare, record
@@ -100,6 +101,7 @@ def parser() -> argparse.ArgumentParser:
     frozen.add_argument("action", choices=["record", "compare"])
     frozen.add_argument("file", type=Path, help="where, e.g. build/frozen.json")
     _add_no(commands)
+    analytic_command.add(commands)
     learned_command.add(commands)
     for part in ALONE.values():
         part.add(commands)
@@ -178,7 +180,7 @@ def main(arguments: list[str] | None = None) -> int:
         return action(options.file)
     if options.command in ALONE:
         return int(ALONE[options.command].run(options))
-    others = {"no": _no, "learned": _learned}
+    others = {"no": _no, "learned": _learned, "analytic": _analytic}
     if options.command in others:
         return others[options.command](options, given)
     if options.command == "render":
@@ -202,6 +204,13 @@ def _no(options: argparse.Namespace, given: list[str]) -> int:
     for line in bad:
         sys.stdout.write(f"WRONG: {line}\n")
     return 1 if bad or report["failures"] else 0
+
+
+def _analytic(options: argparse.Namespace, given: list[str]) -> int:
+    versions = installed_rivals()
+    jobs, size = analytic_command.jobs_of(options, versions)
+    report = _measured(jobs, size, versions, given, fresh=options.fresh)
+    return 130 if report is None else analytic_command.tell(report)
 
 
 def _learned(options: argparse.Namespace, given: list[str]) -> int:

@@ -18,6 +18,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[1]
 
 MEASURING = (
+    "analytic/cells.py",
     "arms.py",
     "branches.py",
     "cells.py",
@@ -40,6 +41,7 @@ MEASURING = (
     "ikgeo/*.py",
     "rivals/*.py",
     "cpp/baselines/*",
+    "*.urdf",
 )
 """Files of bench/ that a figure depends on; the others only choose and show."""
 

@@ -11,11 +11,12 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import iksel
+from bench.analytic.plan import analytic_jobs
 from bench.arms import RIVAL_ARMS
 from bench.learned.plan import learned_jobs
 from bench.paper.plan import paper_jobs
 from bench.paper.seeding import seeding_jobs
-from bench.rivals import RIVALS
+from bench.rivals import ENUMERATORS, RIVALS
 from bench.size import SEED, Job, Size
 
 if TYPE_CHECKING:
@@ -23,7 +24,16 @@ if TYPE_CHECKING:
 
     from bench.store import Settings
 
-SECTIONS = ("paper", "learned", "seeds", "rivals", "no", "robots", "requests")
+SECTIONS = (
+    "paper",
+    "learned",
+    "seeds",
+    "rivals",
+    "no",
+    "analytic",
+    "robots",
+    "requests",
+)
 """What --only takes."""
 
 
@@ -31,7 +41,7 @@ def plan(
     size: Size,
     robots: Collection[str] | None,
     only: Collection[str] | None,
-    rivals: Collection[str] = tuple(RIVALS),
+    rivals: Collection[str] = (*RIVALS, *ENUMERATORS),
 ) -> list[Job]:
     """All jobs of a report, those without times first.
 
@@ -47,6 +57,7 @@ def plan(
         *seeding_jobs(size),
         *_rival_jobs(size),
         *no_jobs(size),
+        *analytic_jobs(size),
         _robots_job(size),
         *_request_jobs(size),
     ]
@@ -71,6 +82,14 @@ def learned_plan(
         for job in jobs
     ]
     return _ordered(kept)
+
+
+def analytic_plan(
+    size: Size, robots: Collection[str], rivals: Collection[str]
+) -> list[Job]:
+    """The jobs of the section "analytic" alone, on any robots."""
+    jobs = analytic_jobs(size, robots)
+    return _ordered([_kept(job, None, None, rivals) for job in jobs])
 
 
 def _ordered(jobs: list[Job]) -> list[Job]:
@@ -109,6 +128,7 @@ SECONDS_PER_TARGET = {
     "first_attempt": 1e-3,
     "learned": 5e-3,
     "no": 1e-3,
+    "asked": 3e-3,
     "near_branches": 1e-3,
     "near_moves": 1e-3,
     "all_branches": 1e-3,

@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 from bench import machine
 from bench.plots import draw_all
-from bench.rivals import RIVALS
+from bench.rivals import ENUMERATORS, RIVALS
 from bench.rivals.base import UnsupportedError
 from bench.sections import (
+    analytic,
     ikgeo,
     learned,
     no,
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
+    from bench.rivals.base import Rival
     from bench.size import Job, Size
     from bench.store import Settings, Store
     from bench.view import Report
@@ -94,7 +96,7 @@ def merged(
 def installed_rivals() -> dict[str, str]:
     """Versions of the solvers that can be had here, by name."""
     versions = {}
-    for name, rival in RIVALS.items():
+    for name, rival in _every_rival().items():
         with contextlib.suppress(UnsupportedError):
             versions[name] = rival.version()
     return versions
@@ -103,12 +105,16 @@ def installed_rivals() -> dict[str, str]:
 def missing_rivals() -> dict[str, str]:
     """Why the others cannot be had, by name."""
     reasons = {}
-    for name, rival in RIVALS.items():
+    for name, rival in _every_rival().items():
         try:
             rival.version()
         except UnsupportedError as reason:
             reasons[name] = str(reason)
     return reasons
+
+
+def _every_rival() -> dict[str, type[Rival]]:
+    return {**ENUMERATORS, **RIVALS}
 
 
 def save_report(report: Report, folder: Path) -> None:
@@ -132,6 +138,7 @@ def render(report: Report, folder: Path) -> None:
             _head(report),
             rivals.text(view),
             no.text(view),
+            analytic.text(view),
             paper.text(view),
             ikgeo.text(view),
             learned.text(view),

@@ -45,6 +45,10 @@ class Size:
     """The same for slow solvers, which may take a tenth of a second for a no."""
     no_seed: int = SEED
     """Their seed."""
+    analytic: int = 1_000
+    """Targets of each kind for solvers that enumerate."""
+    analytic_s: float = 1.0
+    """Time after which none of them is begun any more, in each way to ask [s]."""
 
 
 FULL = Size(
@@ -83,6 +87,8 @@ QUICK = Size(
     restarts=50,
     no=500,
     no_slow=10,
+    analytic=20,
+    analytic_s=0.2,
 )
 
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from bench.chain import Array
 
 PARALLEL = 1e-9
-"""Axes whose cross product is shorter than this are parallel."""
+"""Axes whose cross product is shorter than this are parallel; nearer, they meet [m]."""
 
 
 @dataclass(frozen=True)
@@ -56,6 +56,10 @@ def axes_of(arm: Arm) -> Axes:
     origins = frames[:, 0, :3, 3].copy()
     # From the tip backwards: the wrist's intersections matter most.
     free = [True] * 6
+    wrist = meeting_point(h[3:], origins[3:])
+    if wrist is not None:
+        origins[3:] = wrist
+        free[3:] = [False] * 3
     for i in reversed(range(5)):
         point = _intersection(origins[i], h[i], origins[i + 1], h[i + 1])
         if point is not None and free[i] and free[i + 1]:
@@ -63,6 +67,15 @@ def axes_of(arm: Arm) -> Axes:
             free[i] = free[i + 1] = False
     points = np.vstack([np.zeros(3), origins, tip[0, :3, 3]])
     return Axes(h, np.diff(points, axis=0), tip[0, :3, :3])
+
+
+def meeting_point(h: Array, p: Array) -> Array | None:
+    """Where the lines through p along unit h, (n, 3) each, meet, if they do."""
+    across = np.eye(3) - h[:, :, None] * h[:, None, :]
+    gaps = np.einsum("nij,nj->ni", across, p)
+    point, *_ = np.linalg.lstsq(across.reshape(-1, 3), gaps.ravel(), rcond=None)
+    far = np.abs(across @ point - gaps).max()
+    return np.asarray(point) if far < PARALLEL else None
 
 
 def _intersection(a: Array, u: Array, b: Array, v: Array) -> Array | None:

@@ -18,6 +18,11 @@ if TYPE_CHECKING:
 
 def family(axes: Axes) -> str:
     """The decomposition that fits, by its name in the package."""
+    if np.linalg.norm(axes.p[4:6]) < 1e-9:
+        if axes.parallel(1, 2):
+            return "spherical_two_parallel"
+        meet = np.linalg.norm(axes.p[1]) < 1e-9
+        return "spherical_two_intersecting" if meet else "spherical"
     if axes.parallel(1, 2) and axes.parallel(2, 3):
         intersect = np.linalg.norm(axes.p[5]) < 1e-9
         return "three_parallel_two_intersecting" if intersect else "three_parallel"

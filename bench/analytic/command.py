@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The command `analytic`."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from bench import plan
+from bench.analytic.plan import arms
+from bench.arguments import add_robots
+from bench.rivals import ENUMERATORS
+from bench.sections import analytic
+from bench.size import FULL, QUICK, SEED
+from bench.view import View
+
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Collection
+
+    from bench.size import Job, Size
+    from bench.view import Report
+
+
+def add(commands: Any) -> None:
+    """Its arguments."""
+    names = ", ".join(repr(name) for name in ENUMERATORS)
+    command = commands.add_parser(
+        "analytic",
+        help="the report's section on solvers that enumerate, printed",
+        description="One table: what one answer, all branches, the nearest and a no "
+        "cost IKSel and the solvers that enumerate, what they miss, and what they "
+        "answer wrongly. Results are kept as the report's are.",
+    )
+    add_robots(command, arms())
+    command.add_argument("--quick", action="store_true", help="fewer targets")
+    command.add_argument(
+        "--solvers",
+        nargs="+",
+        metavar="SOLVER",
+        choices=list(ENUMERATORS),
+        help=f"only these ({names})",
+    )
+    command.add_argument("--targets", type=int, help="of each kind")
+    command.add_argument("--seed", type=int, default=SEED)
+    command.add_argument(
+        "--fresh", action="store_true", help="measure again what was measured before"
+    )
+
+
+def jobs_of(
+    options: argparse.Namespace, installed: Collection[str]
+) -> tuple[list[Job], Size]:
+    """What is to be measured, and how much."""
+    size = QUICK if options.quick else FULL
+    count = options.targets or size.analytic
+    size = replace(size, analytic=count, no_seed=options.seed)
+    chosen = options.solvers or list(ENUMERATORS)
+    wanted = [name for name in chosen if name in installed]
+    return plan.analytic_plan(size, options.robots, wanted), size
+
+
+def tell(report: Report) -> int:
+    """Print the section; the exit status is 1 if IKSel is wrong or fails."""
+    view = View(report)
+    sys.stdout.write(analytic.text(view) + "\n")
+    bad = analytic.wrong(view)
+    for line in bad:
+        sys.stdout.write(f"WRONG: {line}\n")
+    # What ends a rival's process is a row of the table.
+    ended = any(key.startswith(f"{analytic.OURS} asked") for key in report["failures"])
+    return 1 if bad or ended else 0

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Which solvers are asked what, on which arms."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import iksel
+from bench.arms import BENCH_ARMS
+from bench.rivals import ENUMERATORS
+from bench.size import Job, Size
+
+if TYPE_CHECKING:
+    from collections.abc import Collection
+
+    from bench.store import Settings
+
+KINDS = ("uniform", "any_rotation")
+"""Targets that can all be reached, and targets of which many cannot."""
+HANG_S = 300.0
+"""A solver that takes longer for an arm is ended [s]."""
+BUILDING = ("ssik", "ssik, no rescue")
+"""Solvers that first build something for an arm, which takes minutes: they get what all
+workers do."""
+
+
+def arms() -> list[str]:
+    """The built-in robots of at least 6 joints, and those that only the bench has."""
+    names = [name for name in iksel.robot_names() if iksel.robot_info(name).dof >= 6]
+    return [*names, *BENCH_ARMS]
+
+
+def asked_cell(robot: str, name: str, kind: str, size: Size) -> Settings:
+    """One solver on targets of a kind, asked in all of its ways."""
+    cell = {
+        "cell": "asked",
+        "robot": robot,
+        "kind": kind,
+        "count": size.analytic,
+        "seed": size.no_seed,
+        "rival": name,
+        "limit_s": size.analytic_s,
+    }
+    return cell if name in BUILDING else {**cell, "hang_s": HANG_S}
+
+
+def analytic_jobs(size: Size, robots: Collection[str] | None = None) -> list[Job]:
+    """A process for each solver and arm: what one does there, no other feels."""
+    return [
+        Job(
+            job_name(robot, name),
+            "analytic",
+            [asked_cell(robot, name, kind, size) for kind in KINDS],
+        )
+        for robot in (arms() if robots is None else robots)
+        for name in ENUMERATORS
+    ]
+
+
+def job_name(robot: str, name: str) -> str:
+    """How progress and failures call a job."""
+    return f"{name} asked on {robot}"

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""IKSel, EAIK and IK-Geo, asked as the other enumerating solvers are."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import iksel
+from bench.rivals.eaik import Eaik
+from bench.rivals.enumerator import Enumerator, Request
+from bench.rivals.ikgeo import IkGeo
+from bench.rivals.iksel_ import IkselDefault
+
+if TYPE_CHECKING:
+    from bench.arms import Arm
+    from bench.chain import Array
+
+
+class Iksel(Enumerator):
+    """The default preset."""
+
+    name = IkselDefault.name
+    distribution = IkselDefault.distribution
+    settings = (
+        "SolverOptions(): 1e-6 m, 1e-6 rad; solve, solve_all, and solve with near"
+    )
+
+    @classmethod
+    def version(cls) -> str:
+        """Of the module that is measured."""
+        return iksel.__version__
+
+    def ways(self, arm: Arm) -> dict[str, Request]:
+        """All three."""
+        solver = iksel.Solver(arm.robot, IkselDefault.options())
+
+        def alone(pose: Array, near: Array) -> tuple[Any, ...]:
+            del near
+            return (pose,)
+
+        def both(pose: Array, near: Array) -> tuple[Any, ...]:
+            return pose, near
+
+        def nearest(pose: Array, near: Array) -> iksel.Result:
+            return solver.solve(pose, near=near)
+
+        def single(result: Any) -> list[Array]:
+            return [result.q] if result.success else []
+
+        return {
+            "one": Request(alone, solver.solve, single),
+            "every": Request(alone, solver.solve_all, lambda all_: list(all_.q)),
+            "nearest": Request(both, nearest, single),
+        }
+
+
+class EaikBranches(Enumerator):
+    """EAIK, which has all branches only."""
+
+    name = Eaik.name
+    distribution = Eaik.distribution
+    settings = Eaik.settings
+    keeps_limits = False
+
+    def ways(self, arm: Arm) -> dict[str, Request]:
+        """All."""
+        known = Eaik(arm)
+        return {"every": Request(known.prepare, known.call, known.answers)}
+
+
+class IkGeoBranches(Enumerator):
+    """IK-Geo, which has all branches only."""
+
+    name = IkGeo.name
+    distribution = IkGeo.distribution
+    settings = IkGeo.settings
+    keeps_limits = False
+
+    def ways(self, arm: Arm) -> dict[str, Request]:
+        """All."""
+        known = IkGeo(arm)
+        return {"every": Request(known.prepare, known.call, known.answers)}

@@ -1,0 +1,224 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""IKSel beside solvers that enumerate, as text: one table."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from bench.analytic.plan import KINDS, asked_cell, job_name
+from bench.branches import NOISE, SAME_MOVE
+from bench.check import POSITION_TOLERANCE, ROTATION_TOLERANCE
+from bench.machine import load_text
+from bench.markdown import NONE, microseconds, table
+from bench.rivals import ENUMERATORS
+from bench.rivals.enumerator import WAYS
+
+if TYPE_CHECKING:
+    from bench.view import View
+
+OURS = "IKSel"
+REACHED, TURNED = KINDS
+WORDS = {"one": "one", "every": "all", "nearest": "nearest", "no": "no"}
+
+FEW = 20
+"""Noes below this are counted in the table."""
+
+HEADER = [
+    "arm, solver",
+    "targets",
+    "one, µs",
+    "all, µs",
+    "branches",
+    "nearest, µs",
+    "no, µs",
+    "missed",
+    "wrong",
+]
+
+
+def text(view: View) -> str:
+    """The whole section."""
+    if not view.has_any("asked"):
+        return ""
+    parts = [
+        "## One answer, all branches, the nearest, a no: beside solvers that enumerate",
+        _conditions(view),
+        table(HEADER, _rows(view)),
+        NOTES,
+        _refused(view),
+        _settings(view),
+    ]
+    return "\n\n".join(part for part in parts if part)
+
+
+NOTES = (
+    "Mean (median) of each call in µs. *One*: any answer, where a solver can be asked "
+    "for one; *as all* where it only knows all. *All*: of six joints each branch once, "
+    "of seven as many samples of the self-motion as a solver takes. *Branches*: how "
+    "many are right, in the mean; of six joints (lacks n, has n more): targets for "
+    "which IKSel's `solve_all` has a branch that the solver has not, and the other way "
+    f"round. *Nearest* to a solution with normal noise of {NOISE} rad on every joint; "
+    f"(n longer): moves longer by {SAME_MOVE:g} rad than IKSel's. *No*: of the turned "
+    "targets those for which neither IKSel nor the solver has an answer. *Missed*: "
+    "targets without a right answer though there is one, by what was asked, among the "
+    "turned ones where IKSel has one. *Wrong*: answers off the target, or outside the "
+    "limits of a solver that is given them. A solver without limits has its branches "
+    "outside of them left out after the clock has stopped. pink and mink do not "
+    "enumerate: they are the loops that people write."
+)
+
+
+def wrong(view: View) -> list[str]:
+    """What must never be: an answer of IKSel's that is wrong or missed."""
+    lines = []
+    for robot in view.robots("asked"):
+        for kind in KINDS:
+            cell = view.get(asked_cell(robot, OURS, kind, view.size))
+            if cell is None:
+                continue
+            lines += [
+                f"{robot}, {kind}, {WORDS[way]}: {figures[what]} {what}"
+                for way, figures in _ways(cell).items()
+                for what in ("wrong", "missed")
+                if figures[what]
+            ]
+    return lines
+
+
+def _ways(cell: dict[str, Any]) -> dict[str, Any]:
+    """Figures by way; of turned targets there is only the no."""
+    return {"no": cell} if "noes" in cell else cell
+
+
+def _conditions(view: View) -> str:
+    size = view.size
+    facts = view.machine("analytic")
+    return (
+        f"Up to {size.analytic:,} targets per arm that can be reached, uniform in the "
+        "limits, and as many whose rotations are turned at random; seed "
+        f"{size.no_seed}; no call is begun after {size.analytic_s:g} s, so that slow "
+        "solvers get the first of them only. An answer is right within "
+        f"{POSITION_TOLERANCE:g} m and {ROTATION_TOLERANCE:g} rad by bench's own "
+        "forward kinematics, and inside the limits. One thread; each call from Python; "
+        "a process for each solver and arm; ways to ask in turns, of each call the "
+        f"least time of three. SIMD level {facts['simd']} (IKSel's), {facts['cpu']}, "
+        f"{facts['cores']} cores{load_text(facts)}."
+    )
+
+
+def _rows(view: View) -> list[list[str]]:
+    rows = []
+    for robot in view.robots("asked"):
+        for name in ENUMERATORS:
+            cells = [
+                view.get(asked_cell(robot, name, kind, view.size)) for kind in KINDS
+            ]
+            failure = _failure(view, robot, name)
+            if any(cells) or failure:
+                row = _row(cells[0] or {}, cells[1] or {}, failure)
+                rows.append([f"`{robot}`, {name}", *row])
+    absent = [
+        [f"all, {name}", "not installed", *[NONE] * (len(HEADER) - 2)]
+        for name in ENUMERATORS
+        if name in view.report["missing"]
+    ]
+    return rows + absent
+
+
+def _failure(view: View, robot: str, name: str) -> str:
+    """What ended a solver's process, in short."""
+    for kind in KINDS:
+        reason = view.report["failures"].get(
+            f"{job_name(robot, name)}, {robot}, {kind}"
+        )
+        if reason:
+            return str(reason).split(":", maxsplit=1)[0]
+    return ""
+
+
+def _row(reached: dict[str, Any], turned: dict[str, Any], failure: str) -> list[str]:
+    counts = sorted({figures["count"] for figures in reached.values()})
+    targets = " to ".join(
+        f"{count:,}" for count in dict.fromkeys([*counts[:1], *counts[-1:]])
+    )
+    one, every, nearest = (reached.get(way) for way in WAYS)
+    as_all = "as all" if every else NONE
+    ways = {**reached, **({"no": turned} if turned else {})}
+    return [
+        f"ended: {failure}" if failure else targets,
+        as_all if one is None else _time(one),
+        NONE if every is None else _time(every),
+        NONE if every is None else _branches(every),
+        NONE if nearest is None else _time(nearest) + _noted(nearest, "longer"),
+        _no(turned) if turned else NONE,
+        _counted(ways, "missed"),
+        _counted(ways, "wrong"),
+    ]
+
+
+def _time(figures: dict[str, Any]) -> str:
+    if figures["us"] is None:
+        return NONE
+    mean, median = figures["us"]
+    return f"{microseconds(mean)} ({microseconds(median)})"
+
+
+def _no(turned: dict[str, Any]) -> str:
+    """With how many it is the mean of, where these are few."""
+    few = 0 < turned["noes"] < FEW
+    return _time(turned) + (f" of {turned['noes']}" if few else "")
+
+
+def _noted(figures: dict[str, Any], what: str) -> str:
+    return f" ({figures[what]:,} {what})" if figures.get(what) else ""
+
+
+def _branches(every: dict[str, Any]) -> str:
+    notes = []
+    if every.get("lacks"):
+        notes.append(f"lacks {every['lacks']:,}")
+    if every.get("has_more"):
+        notes.append(f"has {every['has_more']:,} more")
+    mean = f"{every['branches'] / max(every['count'], 1):.1f}"
+    return mean + (f" ({', '.join(notes)})" if notes else "")
+
+
+def _counted(ways: dict[str, Any], what: str) -> str:
+    """How many of each way; 0 if there are none at all."""
+    if not ways:
+        return NONE
+    parts = [
+        f"{WORDS[way]} {figures[what]:,} of {figures['count']:,}"
+        for way, figures in ways.items()
+        if figures[what]
+    ]
+    if what == "wrong":
+        # Of many branches a target: the count of targets would say nothing.
+        parts = [part.split(" of ", maxsplit=1)[0] for part in parts]
+    return "; ".join(parts) or "0"
+
+
+def _refused(view: View) -> str:
+    """Who cannot be had for which arm, by reasons without the arm's name."""
+    arms: dict[tuple[str, str], list[str]] = {}
+    for name in ENUMERATORS:
+        for robot in view.robots("asked"):
+            why = view.why_not(asked_cell(robot, name, REACHED, view.size))
+            if why and why != "not measured":
+                reason = why.replace(robot, "it")
+                arms.setdefault((name, reason), []).append(f"`{robot}`")
+    lines = [
+        f"- {name}: {', '.join(robots)}: {reason}"
+        for (name, reason), robots in arms.items()
+    ]
+    return "\n".join(["Refused:", "", *lines]) if lines else ""
+
+
+def _settings(view: View) -> str:
+    lines = ["| solver | version | settings |", "|---|---|---|"]
+    for name, rival in ENUMERATORS.items():
+        version = view.report["versions"].get(name)
+        if version is None:
+            version = view.report["missing"].get(name, "not asked")
+        lines.append(f"| {name} | {version} | {rival.settings} |")
+    return "\n".join(lines)

@@ -58,9 +58,7 @@ def changed(robot: iksel.Robot, q: Array, part: float, seed: int) -> Array:
     return q + part * width * rng.uniform(-0.5, 0.5, q.shape)
 
 
-def row_of(
-    times: npt.NDArray[np.int64], results: list[iksel.Result]
-) -> dict[str, Any]:
+def row_of(times: npt.NDArray[np.int64], results: list[iksel.Result]) -> dict[str, Any]:
     """What a run comes to."""
     microseconds = times / 1e3
     return {

@@ -71,8 +71,7 @@ struct FieldTable<Diagnosis> {
         field("proof", &D::proof,
               "How certain it is that there is no answer, as Result.proof; `answer` if there is "
               "one."),
-        field<&is_index<kMaxTips>>(
-            "unreachable_tip", &D::unreachable_tip, nullptr)};
+        field<&is_index<kMaxTips>>("unreachable_tip", &D::unreachable_tip, nullptr)};
   }
   static void check(const D& self) {
     const std::string of = "pickled Diagnosis, ";

@@ -144,8 +144,7 @@ py::dict tracker_state(const Tracker& self) {
 }
 
 Tracker tracker_from_state(const Solver& solver, const ArrayLike& q, const ClosestLike& closest,
-                           const ArrayLike& reached, const PoseLike& last,
-                           double speed) {
+                           const ArrayLike& reached, const PoseLike& last, double speed) {
   const int dof = solver.robot().dof();
   TargetStream stream;
   for (const Pose& each : to_poses(as_poses(last, "pickled Tracker, last"))) {
@@ -222,7 +221,8 @@ void bind_path(py::module_& m, py::class_<Solver>& cls) {
        "Joint values along a path of poses, by a choice among the solutions of all waypoints.\n\n"
        "Of all ways through the solutions that are found, the one with the least sum of joint "
        "moves.",
-       "poses", "T_base_tip of each waypoint, (N, 4, 4) [m], or others as in solve; of several tips "
+       "poses",
+       "T_base_tip of each waypoint, (N, 4, 4) [m], or others as in solve; of several tips "
        "(N, k, 4, 4).",
        R"(Raises:
     InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, a number out of range.)"},

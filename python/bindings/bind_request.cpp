@@ -190,28 +190,28 @@ void bind_solutions(py::module_& m) {
 
 void bind_requests(py::module_& m, py::class_<Solver>& cls) {
   bind_solutions(m);
-  def_method(
-      cls,
-      {"solve",
-       "Joint values that put the TCP (the tip link's frame, if there is no tool) at a pose, or the "
-       "TCP of each tip at its own.",
-       "pose",
-       "T_base_tip [m]: (4, 4) or (3, 4); a pair (position, rotation) with a (3, 3) "
-       "matrix or a scipy Rotation; an object with as_matrix(), .homogeneous or .A "
-       "(scipy, Pinocchio, spatialmath); (3,) if the task leaves the rotation free. One "
-       "that is rounded stands for the nearest rigid one (see check_pose), by which the "
-       "errors are measured. Of several tips, (k, 4, 4) or k of these.",
-       R"(Returns:
+  def_method(cls,
+             {"solve",
+              "Joint values that put the TCP (the tip link's frame, if there is no tool) at a "
+              "pose, or the "
+              "TCP of each tip at its own.",
+              "pose",
+              "T_base_tip [m]: (4, 4) or (3, 4); a pair (position, rotation) with a (3, 3) "
+              "matrix or a scipy Rotation; an object with as_matrix(), .homogeneous or .A "
+              "(scipy, Pinocchio, spatialmath); (3,) if the task leaves the rotation free. One "
+              "that is rounded stands for the nearest rigid one (see check_pose), by which the "
+              "errors are measured. Of several tips, (k, 4, 4) or k of these.",
+              R"(Returns:
     A Result. A pose that cannot be solved is no error but a status, and `proof` says how certain
     that is.
 
 Raises:
     InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, a number that is not
         finite or out of range.)"},
-      request_keywords(), 0,
-      {"near", "weights", "norm", "seeds", "database_seeds", "scene", "exact", "filter", "deadline",
-       "task", "objective", "closest", "tasks", "in_frame_of"},
-      fn<&solve>);
+             request_keywords(), 0,
+             {"near", "weights", "norm", "seeds", "database_seeds", "scene", "exact", "filter",
+              "deadline", "task", "objective", "closest", "tasks", "in_frame_of"},
+             fn<&solve>);
   def_method(cls,
              {"solve_all",
               "Every distinct solution that is found: all branches (there certainly are no "
@@ -224,8 +224,8 @@ Raises:
     InvalidArgumentError: as solve.)"},
              solve_all_keywords(), 1,
              {"max", "min_distance", "whole_turns", "order", "near", "weights", "norm", "seeds",
-              "database_seeds", "scene", "exact", "filter", "deadline", "task", "objective", "tasks",
-              "in_frame_of"},
+              "database_seeds", "scene", "exact", "filter", "deadline", "task", "objective",
+              "tasks", "in_frame_of"},
              fn<&solve_all>);
   def_method(
       cls,
@@ -238,7 +238,8 @@ Raises:
 
 Raises:
     InvalidArgumentError: as solve.)"},
-      request_keywords(), 0, {"scene", "exact", "filter", "deadline", "task", "tasks", "in_frame_of"}, fn<&diagnose>);
+      request_keywords(), 0,
+      {"scene", "exact", "filter", "deadline", "task", "tasks", "in_frame_of"}, fn<&diagnose>);
 }
 
 }  // namespace iksel::python

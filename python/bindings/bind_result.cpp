@@ -159,8 +159,10 @@ void bind_single(py::module_& m) {
   add_property(
       cls, "unreachable_tip",
       [](const PyResult& self) { return optional_index(self.unreachable_tip); },
-      "Of a failure with several tips: one whose target its chain cannot reach by itself, as far as "
-      "a search can tell, and status and proof are that chain's; None: each can, or none was looked "
+      "Of a failure with several tips: one whose target its chain cannot reach by itself, as far "
+      "as "
+      "a search can tell, and status and proof are that chain's; None: each can, or none was "
+      "looked "
       "at.");
   add_property(
       cls, "proven", [](const PyResult& self) { return is_proven(self.proof); },

@@ -57,8 +57,8 @@ Robot from_urdf(const UrdfSource& path_or_xml, const std::optional<std::string>&
   options.coupled_limits = coupled_limits;
   options.mimic_curves = mimic_curves;
   if (tip_links) {
-    options.tip_links = read_sequence(*tip_links, "tip_links", "a list of link names",
-                                      from_python<std::string>);
+    options.tip_links =
+        read_sequence(*tip_links, "tip_links", "a list of link names", from_python<std::string>);
     if (options.tip_links.empty()) {
       throw InvalidArgumentError("tip_links: expected one link or more, got none");
     }
@@ -130,7 +130,8 @@ void def_joint_vector(py::class_<Robot>& cls, const char* name,
 void bind_chain(py::class_<Robot>& cls) {
   add_property(cls, "name", &Robot::name, "Name in the URDF.");
   add_property(cls, "base_link", &Robot::base_link, "Link the poses are relative to.");
-  add_property(cls, "tip_link", &Robot::tip_link, "Link whose pose is solved for, of a robot with one tip.");
+  add_property(cls, "tip_link", &Robot::tip_link,
+               "Link whose pose is solved for, of a robot with one tip.");
   add_property(cls, "link_names", &Robot::link_names,
                "Names of all links of the URDF, the chain's and others, depth first "
                "from the root.");

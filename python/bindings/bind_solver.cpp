@@ -69,7 +69,8 @@ struct BatchOptions {
 };
 
 std::vector<Keyword> batch_keywords() {
-  std::vector<Keyword> all = {keyword<BatchOptions>("threads", &BatchOptions::threads, "0: one per core.")};
+  std::vector<Keyword> all = {
+      keyword<BatchOptions>("threads", &BatchOptions::threads, "0: one per core.")};
   for (const Keyword& each : request_keywords()) all.push_back(each);
   return all;
 }
@@ -164,10 +165,12 @@ void bind_properties(py::class_<Solver>& cls) {
   add_property(cls, "robot", &Solver::robot, "The robot it solves for.");
   add_property(
       cls, "options", [](const Solver& self) { return self.options(); }, "A copy of its options.");
-  add_property(cls, "database", &Solver::database,
-               "The database it selects seeds from; of several tips each chain_solver has its own.");
+  add_property(
+      cls, "database", &Solver::database,
+      "The database it selects seeds from; of several tips each chain_solver has its own.");
   def(
-      cls, "chain_solver", "tip", [](const Solver& self, int tip) { return self.chain_solver(tip); },
+      cls, "chain_solver", "tip",
+      [](const Solver& self, int tip) { return self.chain_solver(tip); },
       "The Solver of one tip's chain by itself; tips count from 0.\n\nRaises:\n"
       "    InvalidArgumentError: no such tip.");
   add_property(cls, "work_bound", &Solver::work_bound,

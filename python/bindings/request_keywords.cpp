@@ -150,8 +150,7 @@ std::vector<Keyword> criteria_keywords(const char* scene_doc) {
       keyword<S>("task", &S::task,
                  "what of the pose has to be reached, of several tips of each; None: what the "
                  "solver's options say."),
-      keyword<S>("tasks", &S::tasks,
-                 "of several tips, a Task for each in the place of `task`."),
+      keyword<S>("tasks", &S::tasks, "of several tips, a Task for each in the place of `task`."),
       keyword<S>("in_frame_of", &S::in_frame_of,
                  "of several tips, for each the number of the tip in whose frame, that of its TCP, "
                  "its pose is given; None: in the base frame. So two hands keep what they carry "
@@ -180,34 +179,38 @@ std::vector<Keyword> request_keywords() {
       "what answers may not collide with; of a robot with the same chains. The search continues "
       "within its bounds while all collide.");
   const std::vector<Keyword> own = {
-      keyword<R>("near", &R::near,
-              "configuration to stay near, (dof,) [rad or m], for a batch also (N, dof), one for "
-              "each target; may lie outside the limits. The answer is the one with the smallest "
-              "joint move of all that are found, whole turns considered; a redundant arm's is "
-              "moved along its self-motion to where the move is smallest. Angles here, in `seeds` "
-              "and in a posture that are too large for a double to tell poses apart to a tenth "
-              "of the tolerances are refused: 1.5e8 rad for an arm of six joints and 1 m at the "
-              "default tolerances, never less than 100 rad."),
+      keyword<R>(
+          "near", &R::near,
+          "configuration to stay near, (dof,) [rad or m], for a batch also (N, dof), one for "
+          "each target; may lie outside the limits. The answer is the one with the smallest "
+          "joint move of all that are found, whole turns considered; a redundant arm's is "
+          "moved along its self-motion to where the move is smallest. Angles here, in `seeds` "
+          "and in a posture that are too large for a double to tell poses apart to a tenth "
+          "of the tolerances are refused: 1.5e8 rad for an arm of six joints and 1 m at the "
+          "default tolerances, never less than 100 rad."),
       keyword<R>("seeds", &R::seeds,
-              "joint values to iterate from, (dof,) or (N, dof) [rad or m]; may lie outside the "
-              "limits. They are ranked as the database's seeds, and tried before them: up to "
-              "max_attempts, and as many of the database's on top."),
-      keyword<R>("database_seeds", &R::database_seeds,
-              "whether other seeds follow the given ones: the database's, random ones, and those "
-              "that a closed form gives."),
-      keyword<R>("deadline", &R::deadline,
-              "wall-clock time after which the search for a target ends [s]; checked between its "
-              "stages."),
-      keyword<R>("objective", &R::objective,
-              "what the answer is to be good at besides: an Objective, 'limits', "
-              "'manipulability', or a function of joint values (dof,) that returns a cost. Comes "
-              "before `near`. Of the answers found, the cheapest; a redundant arm's is moved along "
-              "its self-motion to a local minimum."),
+                 "joint values to iterate from, (dof,) or (N, dof) [rad or m]; may lie outside the "
+                 "limits. They are ranked as the database's seeds, and tried before them: up to "
+                 "max_attempts, and as many of the database's on top."),
+      keyword<R>(
+          "database_seeds", &R::database_seeds,
+          "whether other seeds follow the given ones: the database's, random ones, and those "
+          "that a closed form gives."),
+      keyword<R>(
+          "deadline", &R::deadline,
+          "wall-clock time after which the search for a target ends [s]; checked between its "
+          "stages."),
+      keyword<R>(
+          "objective", &R::objective,
+          "what the answer is to be good at besides: an Objective, 'limits', "
+          "'manipulability', or a function of joint values (dof,) that returns a cost. Comes "
+          "before `near`. Of the answers found, the cheapest; a redundant arm's is moved along "
+          "its self-motion to a local minimum."),
       keyword<R>("closest", &R::closest, kClosestDoc),
       keyword<R>("on_invalid_pose", &R::on_invalid_pose,
-              "what a row does that is no pose (see check_pose): \"status\", "
-              "Status.invalid_pose for it and NaN for its q; \"raise\", an error that names the "
-              "first, and none is solved."),
+                 "what a row does that is no pose (see check_pose): \"status\", "
+                 "Status.invalid_pose for it and NaN for its q; \"raise\", an error that names the "
+                 "first, and none is solved."),
   };
   all.insert(all.end(), own.begin(), own.end());
   return all;
@@ -218,13 +221,15 @@ std::vector<Keyword> solve_all_keywords() {
   std::vector<Keyword> all = {
       keyword<O>("max", &O::max, "solutions given at most."),
       keyword<O>("min_distance", &O::min_distance,
-              "solutions that differ by less in every joint are one [rad or m]."),
-      keyword<O>("whole_turns", &O::whole_turns,
-              "whether periodic images inside the limits count as solutions of their own; "
-              "otherwise each comes once, at the image nearest to `near` or to the middle of the "
-              "limits."),
-      keyword<O>("order", &O::order,
-              "what comes first; left alone where there is an objective, which decides it then."),
+                 "solutions that differ by less in every joint are one [rad or m]."),
+      keyword<O>(
+          "whole_turns", &O::whole_turns,
+          "whether periodic images inside the limits count as solutions of their own; "
+          "otherwise each comes once, at the image nearest to `near` or to the middle of the "
+          "limits."),
+      keyword<O>(
+          "order", &O::order,
+          "what comes first; left alone where there is an objective, which decides it then."),
   };
   for (const Keyword& each : request_keywords()) all.push_back(each);
   return all;
@@ -236,12 +241,12 @@ std::vector<Keyword> path_keywords() {
       "what waypoints may not collide with; the moves between them are not looked at.");
   const std::vector<Keyword> own = {
       keyword<O>("start", &O::start,
-              "where the arm is one time step before the first waypoint, (dof,) [rad or m]; "
-              "None: the path may begin anywhere, and of its periodic images the one that "
-              "begins nearest to the middle of the limits is taken."),
+                 "where the arm is one time step before the first waypoint, (dof,) [rad or m]; "
+                 "None: the path may begin anywhere, and of its periodic images the one that "
+                 "begins nearest to the middle of the limits is taken."),
       keyword<O>("dt", &O::dt,
-              "time from one waypoint to the next [s], in which no joint moves farther than its "
-              "velocity limit allows; 0: speeds are not limited."),
+                 "time from one waypoint to the next [s], in which no joint moves farther than its "
+                 "velocity limit allows; 0: speeds are not limited."),
       keyword<O>("candidates", &O::candidates, "candidates kept per waypoint at most."),
   };
   all.insert(all.end(), own.begin(), own.end());

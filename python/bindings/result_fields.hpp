@@ -19,25 +19,25 @@ struct FieldTable<PyResult> {
   static constexpr const char* kDoc =
       "Answer to one target, true if it is one. Everything in it is measured on the returned q.";
   static std::vector<Field> fields() {
-    return {field<PyResult>("status", &Result::status, "Why the solve ended."),
-            field<PyResult>(
-                "proof", &Result::proof,
-                "`answer` of a success; of a failure, how certain it is that there is no answer."),
-            field<PyResult>("q", &Result::q, nullptr),
-            field<&may_be_length, PyResult>("position_error", &Result::position_error,
-                                            "Distance to the target [m]; NaN without a q."),
-            field<&may_be_length, PyResult>(
-                "rotation_error", &Result::rotation_error,
-                "Length of the rotation vector to the target [rad]; NaN without a q."),
-            field<&may_be_length, PyResult>(
-                "move", &Result::move,
-                "Length of the move from `near`, by its norm and weights; NaN without one."),
-            field<PyResult>("cost", &Result::cost, "Cost of q by the objective; NaN without one."),
-            field<&is_count, PyResult>("attempts", &Result::attempts, "Seeds tried."),
-            field<&is_count, PyResult>("iterations", &Result::iterations,
-                                       "Iteration steps over all attempts."),
-            field<&is_index<kMaxTips>, PyResult>(
-                "unreachable_tip", &Result::unreachable_tip, nullptr)};
+    return {
+        field<PyResult>("status", &Result::status, "Why the solve ended."),
+        field<PyResult>(
+            "proof", &Result::proof,
+            "`answer` of a success; of a failure, how certain it is that there is no answer."),
+        field<PyResult>("q", &Result::q, nullptr),
+        field<&may_be_length, PyResult>("position_error", &Result::position_error,
+                                        "Distance to the target [m]; NaN without a q."),
+        field<&may_be_length, PyResult>(
+            "rotation_error", &Result::rotation_error,
+            "Length of the rotation vector to the target [rad]; NaN without a q."),
+        field<&may_be_length, PyResult>(
+            "move", &Result::move,
+            "Length of the move from `near`, by its norm and weights; NaN without one."),
+        field<PyResult>("cost", &Result::cost, "Cost of q by the objective; NaN without one."),
+        field<&is_count, PyResult>("attempts", &Result::attempts, "Seeds tried."),
+        field<&is_count, PyResult>("iterations", &Result::iterations,
+                                   "Iteration steps over all attempts."),
+        field<&is_index<kMaxTips>, PyResult>("unreachable_tip", &Result::unreachable_tip, nullptr)};
   }
   static void check(const PyResult& self) {
     const std::string of = "pickled Result, ";

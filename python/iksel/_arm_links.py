@@ -134,9 +134,10 @@ class ArmLinks:
             held.update(dict.fromkeys(more, 0.0))
         for name in robot.joint_names:
             if name not in arm.joint_names:
+                tips = " or ".join(map(repr, robot.tip_links))
                 raise UnknownNameError(
                     f"robot: the URDF has joint {name!r} elsewhere than between "
-                    f"{robot.base_link!r} and {', '.join(robot.tip_links)}, where it has: "
+                    f"{robot.base_link!r} and {tips}, where it has: "
                     f"{', '.join(arm.joint_names)}"
                 )
         return arm

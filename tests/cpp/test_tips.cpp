@@ -17,8 +17,8 @@ using iksel::Pose;
 using iksel::Proof;
 using iksel::Result;
 using iksel::Robot;
-using iksel::SolveRequest;
 using iksel::Solver;
+using iksel::SolveRequest;
 using iksel::Status;
 using iksel::Task;
 using iksel_test::joint_text;
@@ -169,8 +169,7 @@ TEST(TipsSolver, TasksMayDifferAndLieAlongTheBase) {
 
 TEST(TipsSolver, OneTipMayLieOnTheChainOfAnother) {
   const Robot& arm = iksel_test::robot("panda");
-  const Solver solver(
-      Robot::from_urdf_string(arm.urdf(), tips_of({"panda_link4", "panda_link8"})));
+  const Solver solver(Robot::from_urdf_string(arm.urdf(), tips_of({"panda_link4", "panda_link8"})));
   EXPECT_EQ(solver.robot().dof(), 7);
   SolveRequest request;
   request.tasks = {Task::position_only(), Task::pose()};
@@ -197,8 +196,7 @@ TEST(TipsSolver, SharedJointsMayTurnFreely) {
   const std::string inside = joint_text("turn", "base", "continuous", "xyz=\"0 0 0\"") +
                              mounted(arm, "l_", "turn_link", "xyz=\"0 0.3 0\"") +
                              mounted(arm, "r_", "turn_link", "xyz=\"0 -0.3 0\"");
-  const Solver solver(
-      Robot::from_urdf_string(robot_text(inside), tips_of({"l_tool0", "r_tool0"})));
+  const Solver solver(Robot::from_urdf_string(robot_text(inside), tips_of({"l_tool0", "r_tool0"})));
   EXPECT_EQ(count_lost(solver, 100), 0) << "seed " << iksel_test::seed();
 }
 

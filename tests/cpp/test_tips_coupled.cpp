@@ -17,8 +17,8 @@ using iksel::JointVector;
 using iksel::Pose;
 using iksel::Result;
 using iksel::Robot;
-using iksel::SolveRequest;
 using iksel::Solver;
+using iksel::SolveRequest;
 
 /// Joint j of the left arm, or of the right.
 std::string left(int j) { return "l_" + iksel_test::robot("panda").joint_names()[j]; }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What one tip can, several can: solve_all, objectives, what is closest, scenes, paths, the tracker,
-// goals in the frame of another tip; judged by KDL's kinematics of each chain, and by brute force.
+// What one tip can, several can: solve_all, objectives, what is closest, scenes, paths, the
+// tracker, goals in the frame of another tip; judged by KDL's kinematics of each chain, and by
+// brute force.
 #include <gtest/gtest.h>
 
 #include <cmath>

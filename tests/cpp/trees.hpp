@@ -61,8 +61,8 @@ inline iksel::RobotOptions tips_of(const std::vector<std::string>& tip_links) {
 
 /// That robot, its tips those of the arms.
 inline iksel::Robot two_armed(const iksel::Robot& arm) {
-  return iksel::Robot::from_urdf_string(
-      two_arms_on_torso(arm), tips_of({"l_" + arm.tip_link(), "r_" + arm.tip_link()}));
+  return iksel::Robot::from_urdf_string(two_arms_on_torso(arm),
+                                        tips_of({"l_" + arm.tip_link(), "r_" + arm.tip_link()}));
 }
 
 }  // namespace iksel_test

@@ -19,16 +19,16 @@ namespace iksel {
 /// Why a solve gave no answer. Certain where Diagnosis::proof is `reach` or `closed_form`; else
 /// found by search and so likely.
 enum class Cause : std::uint8_t {
-  none,          ///< there is an answer
-  out_of_reach,  ///< the position lies beyond what the arm reaches
-  orientation,   ///< the position can be reached, but not with this rotation
-  joint_limits,  ///< answers exist, but all with joints outside their limits
-  no_branch,     ///< no joint values reach the pose, whatever the limits: known in closed form
-  rejected,      ///< answers exist, but the filter refuses each
-  singular,      ///< more work finds an answer, where the arm is close to a singularity
-  budget,        ///< more work finds an answer: the bounds on attempts or iterations are too low
-  out_of_time,   ///< more time finds an answer: the deadline is too short
-  collision,     ///< answers exist, but each collides in the scene
+  none,           ///< there is an answer
+  out_of_reach,   ///< the position lies beyond what the arm reaches
+  orientation,    ///< the position can be reached, but not with this rotation
+  joint_limits,   ///< answers exist, but all with joints outside their limits
+  no_branch,      ///< no joint values reach the pose, whatever the limits: known in closed form
+  rejected,       ///< answers exist, but the filter refuses each
+  singular,       ///< more work finds an answer, where the arm is close to a singularity
+  budget,         ///< more work finds an answer: the bounds on attempts or iterations are too low
+  out_of_time,    ///< more time finds an answer: the deadline is too short
+  collision,      ///< answers exist, but each collides in the scene
   shared_joints,  ///< each of several tips can be reached by itself, but not all at once
 };
 

@@ -21,9 +21,9 @@ class RobotModel;
 class TipsModel;
 
 /// An immutable serial chain with its limits, or the chains from one base link to several tip links
-/// (RobotOptions::tip_links), joined: a joint that lies on several of them is one degree of freedom.
-/// Copies are cheap and share the data. Safe to use from many threads at once. What is said below
-/// of the chain or the tip throws InvalidArgumentError if there are several.
+/// (RobotOptions::tip_links), joined: a joint that lies on several of them is one degree of
+/// freedom. Copies are cheap and share the data. Safe to use from many threads at once. What is
+/// said below of the chain or the tip throws InvalidArgumentError if there are several.
 class IKSEL_EXPORT Robot {
  public:
   /// Reads a URDF file. Throws UrdfError (file, XML, joint type, limits, a length or joint value

@@ -33,9 +33,10 @@ IKSEL_EXPORT CalibrationDeviation measure_calibration_deviation(const Robot& rob
                                                                 const Robot& nominal,
                                                                 std::size_t samples = 2'000);
 
-/// Solves inverse kinematics for one robot, with one tip or several. Immutable; copies share the data. Safe to use from many
-/// threads at once, and the same input gives the same bits from any of them. Solving allocates
-/// nothing on the heap as long as no more threads solve at once than the machine has cores.
+/// Solves inverse kinematics for one robot, with one tip or several. Immutable; copies share the
+/// data. Safe to use from many threads at once, and the same input gives the same bits from any of
+/// them. Solving allocates nothing on the heap as long as no more threads solve at once than the
+/// machine has cores.
 class IKSEL_EXPORT Solver {
  public:
   /// Builds a database by `options.database`, of several tips one for the chain of each. Throws
@@ -141,9 +142,9 @@ class IKSEL_EXPORT Solver {
                                                 const SolveRequest& request = {},
                                                 const std::vector<JointVector>& near = {},
                                                 int threads = 0) const;
-  /// The same over `count` targets, 4x4 matrices row by row, into arrays that the caller owns; `near` is
-  /// null, or has (count, dof) values row by row. An exception of `progress` ends the batch and
-  /// reaches the caller.
+  /// The same over `count` targets, 4x4 matrices row by row, into arrays that the caller owns;
+  /// `near` is null, or has (count, dof) values row by row. An exception of `progress` ends the
+  /// batch and reaches the caller.
   void solve_batch(const double* T_base_tip, std::size_t count, const SolveRequest& request,
                    const double* near, const BatchView& out, int threads = 0,
                    const Progress& progress = {}) const;

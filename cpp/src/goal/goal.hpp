@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What one search has to reach: a task around a target, or one for each of several tips, and the one
-// check of an answer. A full pose is a task like any other, whose error is measured faster.
+// What one search has to reach: a task around a target, or one for each of several tips, and the
+// one check of an answer. A full pose is a task like any other, whose error is measured faster.
 #pragma once
 
 #include "base/random.hpp"

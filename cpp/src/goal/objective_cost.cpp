@@ -16,8 +16,9 @@ namespace iksel {
 double manipulability(const RobotModel& model, const JointVector& q) {
   const Jacobians rows = model.jacobians(q.data());
   if (model.tip_count() > 1) {
-    const Eigen::MatrixXd gram = rows.rows() <= rows.cols() ? Eigen::MatrixXd(rows * rows.transpose())
-                                                            : rows.transpose() * rows;
+    const Eigen::MatrixXd gram = rows.rows() <= rows.cols()
+                                     ? Eigen::MatrixXd(rows * rows.transpose())
+                                     : rows.transpose() * rows;
     return std::sqrt(std::max(gram.determinant(), 0.0));
   }
   const Jacobian J = rows;

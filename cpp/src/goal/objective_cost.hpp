@@ -8,8 +8,8 @@
 
 namespace iksel {
 
-/// sqrt(det(J J^T)), or sqrt(det(J^T J)) where there are fewer joints than rows (Yoshikawa 1985); of
-/// several tips with the rows of all.
+/// sqrt(det(J J^T)), or sqrt(det(J^T J)) where there are fewer joints than rows (Yoshikawa 1985);
+/// of several tips with the rows of all.
 double manipulability(const RobotModel& model, const JointVector& q);
 
 /// For one descent: where the second derivative is not known, it is estimated from the gradients

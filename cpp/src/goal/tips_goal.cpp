@@ -11,8 +11,8 @@
 
 namespace iksel {
 
-TipsGoal::TipsGoal(const TipsModel& model, std::vector<TaskSpace> tasks,
-                   std::vector<Pose> targets, std::vector<int> in_frame_of)
+TipsGoal::TipsGoal(const TipsModel& model, std::vector<TaskSpace> tasks, std::vector<Pose> targets,
+                   std::vector<int> in_frame_of)
     : model_(model),
       tasks_(std::move(tasks)),
       targets_(std::move(targets)),

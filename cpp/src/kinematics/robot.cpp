@@ -30,9 +30,10 @@ void check_tip(const RobotModel& model, int tip) {
 RobotOptions with_one_tip(RobotOptions options) {
   if (options.tip_links.empty() && options.tcps.empty()) return options;
   if (!options.tip_link.empty() || options.tip_links.size() != 1 || options.tcps.size() > 1) {
-    throw InvalidArgumentError("tip_links: " + std::to_string(options.tip_links.size()) +
-                               " links and " + std::to_string(options.tcps.size()) +
-                               " tcps; expected a tip_link, or tip_links with as many tcps or none");
+    throw InvalidArgumentError(
+        "tip_links: " + std::to_string(options.tip_links.size()) + " links and " +
+        std::to_string(options.tcps.size()) +
+        " tcps; expected a tip_link, or tip_links with as many tcps or none");
   }
   options.tip_link = options.tip_links.front();
   if (!options.tcps.empty()) options.tcp = options.tcps.front();
@@ -125,7 +126,9 @@ Jacobian Robot::jacobian(const JointVector& q, Kinematics kinematics) const {
 std::vector<Pose> Robot::tip_poses(const JointVector& q, Kinematics kinematics) const {
   check_joints(q, dof(), "q");
   std::vector<Pose> poses;
-  for (int i = 0; i < tips(); ++i) poses.push_back(chain(i).fk(picked(q, joints_of(i)), kinematics));
+  poses.reserve(static_cast<std::size_t>(tips()));
+  for (int i = 0; i < tips(); ++i)
+    poses.push_back(chain(i).fk(picked(q, joints_of(i)), kinematics));
   return poses;
 }
 

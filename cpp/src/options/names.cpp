@@ -29,8 +29,9 @@ const char* to_string(Status status) {
 }
 
 const char* to_string(Cause cause) {
-  return name_of(cause, {"none", "out_of_reach", "orientation", "joint_limits", "no_branch",
-                         "rejected", "singular", "budget", "out_of_time", "collision", "shared_joints"});
+  return name_of(cause,
+                 {"none", "out_of_reach", "orientation", "joint_limits", "no_branch", "rejected",
+                  "singular", "budget", "out_of_time", "collision", "shared_joints"});
 }
 
 const char* to_string(StructureKind kind) {

@@ -75,9 +75,8 @@ int descend_rows(const Goal& goal, const JointCost& cost, int most, JointVector&
 }  // namespace
 
 bool converge(const Goal& goal, int most, double aim, bool wraps, JointVector& q, int& steps) {
-  return goal.tips() == nullptr
-             ? converge_rows<Goal::Linear>(goal, most, aim, wraps, q, steps)
-             : converge_rows<TipsGoal::Linear>(goal, most, aim, wraps, q, steps);
+  return goal.tips() == nullptr ? converge_rows<Goal::Linear>(goal, most, aim, wraps, q, steps)
+                                : converge_rows<TipsGoal::Linear>(goal, most, aim, wraps, q, steps);
 }
 
 int descend_self_motion(const Goal& goal, const JointCost& cost, int most, JointVector& q) {

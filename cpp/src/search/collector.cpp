@@ -24,9 +24,9 @@ constexpr int kStagnationBalanced = 28;
 /// The same after all branches in closed form. What 400 seeds find besides are no solutions of
 /// their own, but points of a curve that is one to within the tolerances (bench/README.md).
 constexpr int kStagnationEnumerated = 8;
-/// Solutions of several tips whose move is no more than so many times the least are moved along their
-/// self-motion to where it is least. With 1.1 and without a bound as many of 600 moves of two Pandas
-/// on a joint were longer than by brute force, with 1 more; it takes a third of the time.
+/// Solutions of several tips whose move is no more than so many times the least are moved along
+/// their self-motion to where it is least. With 1.1 and without a bound as many of 600 moves of two
+/// Pandas on a joint were longer than by brute force, with 1 more; it takes a third of the time.
 constexpr double kWorthDescending = 1.1;
 
 /// An image that lies no farther beyond a limit may have an answer at the limit beside it, where

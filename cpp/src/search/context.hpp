@@ -50,7 +50,8 @@ struct Workspace {
   /// Where descents to what is closest ended.
   std::vector<LocalMinimum> minima;
 
-  /// One of two ways to search of one tip: lanes, if the options, the chain and the database allow it.
+  /// One of two ways to search of one tip: lanes, if the options, the chain and the database allow
+  /// it.
   struct InLanes {
     InLanes(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
             const SolverOptions& options, const ClosedForms& closed_forms,

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "iksel/result.hpp"
-#include "kinematics/robot_model.hpp"
 #include "kinematics/joint_space.hpp"
+#include "kinematics/robot_model.hpp"
 
 namespace iksel {
 

@@ -61,10 +61,10 @@ bool ArmSearch::has_all_arms() const {
 
 Pose ArmSearch::target_of_arm(int tip, const JointVector& q) {
   const Tip& of_tip = goal_.model().tip(tip);
-  const Pose target = draws_pose_[static_cast<std::size_t>(tip)]
-                          ? Goal(of_tip.chain.model(), goal_.task(tip), goal_.target(tip))
-                                .random_pose(random_)
-                          : goal_.target_at(tip, q);
+  const Pose target =
+      draws_pose_[static_cast<std::size_t>(tip)]
+          ? Goal(of_tip.chain.model(), goal_.task(tip), goal_.target(tip)).random_pose(random_)
+          : goal_.target_at(tip, q);
   return of_tip.stem ? compose(of_tip.stem->fk(q).inverse(), target) : target;
 }
 
@@ -98,8 +98,8 @@ bool ArmSearch::try_chain(int tip, JointVector& q) {
   SolveRequest request;
   request.task = goal_.task(tip).task();
   request.seeds.push_back(picked(q, chain.joints));
-  const Result result = try_solver(solvers_[static_cast<std::size_t>(tip)].chain,
-                                   goal_.target_at(tip, q), request);
+  const Result result =
+      try_solver(solvers_[static_cast<std::size_t>(tip)].chain, goal_.target_at(tip, q), request);
   if (result.success()) {
     put(result.q, chain.joints, q);
     q = goal_.model().joints.clamp(q);

@@ -249,9 +249,8 @@ void Solver::solve_batch(const double* T_base_tip, std::size_t count, const Solv
     impl_->angles.check(q, name.c_str());
   }
   impl_->solve_rows(
-      count, [&](std::size_t i) { return to_pose(T_base_tip + 16 * i); }, request, near_of,
-      threads, [&](std::size_t row, const Result& result) { write_row(result, row, dof, out); },
-      progress);
+      count, [&](std::size_t i) { return to_pose(T_base_tip + 16 * i); }, request, near_of, threads,
+      [&](std::size_t row, const Result& result) { write_row(result, row, dof, out); }, progress);
 }
 
 }  // namespace iksel

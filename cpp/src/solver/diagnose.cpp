@@ -8,15 +8,12 @@
 #include "base/constants.hpp"
 #include "base/message_text.hpp"
 #include "base/pseudo_inverse.hpp"
-#include "iksel/error.hpp"
-#include "iksel/pose.hpp"
 #include "options/strategy.hpp"
 #include "refine/best_effort.hpp"
 #include "solver/diagnose_branches.hpp"
 #include "solver/diagnose_refusals.hpp"
 #include "solver/limit_violations.hpp"
 #include "solver/solver_impl.hpp"
-#include "solver/tips_search.hpp"
 
 namespace iksel {
 namespace {
@@ -289,18 +286,6 @@ Diagnosis Solver::Impl::diagnose(const Pose& target, const SolveRequest& request
   }
   if (!is_explained && !diagnoser.find_position()) diagnoser.measure_distance(plain.status);
   return diagnoser.diagnosis(plain.proof);
-}
-
-Diagnosis Solver::diagnose(const Pose& T_base_tip, const SolveRequest& request) const {
-  return diagnose(std::vector<Pose>{T_base_tip}, request);
-}
-
-Diagnosis Solver::diagnose(const std::vector<Pose>& T_base_tip, const SolveRequest& request) const {
-  const std::vector<Pose> targets = impl_->check_targets(T_base_tip);
-  impl_->check(request);
-  if (request.closest) throw InvalidArgumentError("closest: diagnose gives it anyway, as q");
-  return impl_->tips ? impl_->diagnose_tips(targets, request)
-                     : impl_->diagnose(targets.front(), request);
 }
 
 }  // namespace iksel

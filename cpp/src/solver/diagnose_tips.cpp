@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/message_text.hpp"
+#include "iksel/error.hpp"
 #include "refine/best_effort.hpp"
 #include "solver/diagnose_refusals.hpp"
 #include "solver/solver_impl.hpp"
@@ -32,7 +33,8 @@ SolveRequest opened(const SolveRequest& request) {
 /// What keeps tips that can be reached one by one from being reached together.
 std::string together_text(const RobotModel& model) {
   if (model.shared.empty()) {
-    return "each tip can be reached by itself, but no answer was found in which all are: give seeds, "
+    return "each tip can be reached by itself, but no answer was found in which all are: give "
+           "seeds, "
            "or leave one of them an axis free";
   }
   std::vector<std::string> names;
@@ -88,6 +90,18 @@ Diagnosis Solver::Impl::diagnose_tips(const std::vector<Pose>& targets,
     if (out.q.size() > 0) goal.measure(out.q, out.position_error, out.rotation_error);
     return out;
   });
+}
+
+Diagnosis Solver::diagnose(const Pose& T_base_tip, const SolveRequest& request) const {
+  return diagnose(std::vector<Pose>{T_base_tip}, request);
+}
+
+Diagnosis Solver::diagnose(const std::vector<Pose>& T_base_tip, const SolveRequest& request) const {
+  const std::vector<Pose> targets = impl_->check_targets(T_base_tip);
+  impl_->check(request);
+  if (request.closest) throw InvalidArgumentError("closest: diagnose gives it anyway, as q");
+  return impl_->tips ? impl_->diagnose_tips(targets, request)
+                     : impl_->diagnose(targets.front(), request);
 }
 
 }  // namespace iksel

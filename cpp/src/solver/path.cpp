@@ -80,7 +80,8 @@ PathResult Solver::Impl::solve_path(const std::vector<Pose>& targets, const Path
                           ? Layer{dof, {path.start->data(), path.start->data() + dof}, {0.0}, {0}}
                           : Layer{dof, {}, {}, {}};
   const TaskSpace of_path = task_of(path);
-  const bool is_swept = !tips && of_path.is_full_pose() && workspace.lanes && workspace.lanes->sweep;
+  const bool is_swept =
+      !tips && of_path.is_full_pose() && workspace.lanes && workspace.lanes->sweep;
 
   std::vector<Layer> layers;
   layers.reserve(count);

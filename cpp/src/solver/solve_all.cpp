@@ -260,10 +260,9 @@ Solutions Solver::solve_all(const std::vector<Pose>& T_base_tip, const SolveAllO
     throw InvalidArgumentError("order: with an objective that decides the order; leave out one");
   }
   const WorkspacePool::Lease lease(impl_->workspaces);
-  return impl_->with_goal(targets.data(), request, request.scene ? &*request.scene : nullptr,
-                          [&](const Goal& goal) {
-                            return impl_->solve_all(goal, options, request, lease.get());
-                          });
+  return impl_->with_goal(
+      targets.data(), request, request.scene ? &*request.scene : nullptr,
+      [&](const Goal& goal) { return impl_->solve_all(goal, options, request, lease.get()); });
 }
 
 }  // namespace iksel

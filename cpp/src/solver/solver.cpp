@@ -117,9 +117,9 @@ std::vector<Pose> Solver::Impl::check_targets(const std::vector<Pose>& T_base_ti
   std::vector<Pose> targets;
   for (std::size_t i = 0; i < T_base_tip.size(); ++i) {
     Pose nearest;
-    targets.push_back(tips ? to_rigid(T_base_tip[i], nearest, "poses",
-                                      static_cast<std::ptrdiff_t>(i))
-                           : to_rigid(T_base_tip[i], nearest));
+    targets.push_back(
+        tips ? to_rigid(T_base_tip[i], nearest, "poses", static_cast<std::ptrdiff_t>(i))
+             : to_rigid(T_base_tip[i], nearest));
   }
   return targets;
 }
@@ -139,8 +139,8 @@ std::vector<TaskSpace> Solver::Impl::tasks_of(const AnswerCriteria& criteria) co
   return tasks;
 }
 
-Result Solver::Impl::find_first(const Goal& goal, const SolveRequest& request,
-                                Workspace& workspace, StageTimes* times) const {
+Result Solver::Impl::find_first(const Goal& goal, const SolveRequest& request, Workspace& workspace,
+                                StageTimes* times) const {
   if (tips) return tips->find_first(goal, request, workspace);
   return iksel::find_first(options, goal, request, workspace, times);
 }
@@ -156,8 +156,8 @@ Result Solver::Impl::solve(const Pose* targets, const SolveRequest& request, Wor
   return with_goal(targets, request, scene, [&](const Goal& goal) {
     Result result = find_answer(goal, request, workspace, times);
     if (result.success() || !request.closest) return result;
-    give_closest(robot.all(), options, goal, request, to_vector(*request.closest, rotation_weight()),
-                 workspace, result);
+    give_closest(robot.all(), options, goal, request,
+                 to_vector(*request.closest, rotation_weight()), workspace, result);
     return result;
   });
 }

@@ -21,6 +21,8 @@ struct Solver::Impl {
        const Robot& nominal_in);
   /// Of several.
   Impl(const Robot& robot_in, const SolverOptions& options_in);
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
   ~Impl();
 
   /// The chain of the one tip. Throws InvalidArgumentError if there are several.

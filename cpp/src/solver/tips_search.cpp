@@ -16,16 +16,17 @@ namespace {
 
 /// Seeds that one arm has behind each value of the shared joints, of which there are others.
 constexpr int kArmAttempts = 64;
-/// Seeds around what the nearest is wanted to. Of 450 moves of two Pandas on a joint, 0.3 to 1 times
-/// the joints' ranges long, 30 were longer than by brute force without any, 15 with 64 and 8 with 128;
-/// brute force (200 restarts) missed 9.
+/// Seeds around what the nearest is wanted to. Of 450 moves of two Pandas on a joint, 0.3 to 1
+/// times the joints' ranges long, 30 were longer than by brute force without any, 15 with 64 and 8
+/// with 128; brute force (200 restarts) missed 9.
 constexpr int kNearbySeeds = 128;
 /// Iterations of a seed while little work is done.
 constexpr int kQuickIterations = 16;
 
 }  // namespace
 
-TipsSearch::TipsSearch(const TipsModel& model, const SolverOptions& options) : options_(options), steps_(low_discrepancy_steps(model.shared.size())) {
+TipsSearch::TipsSearch(const TipsModel& model, const SolverOptions& options)
+    : options_(options), steps_(low_discrepancy_steps(model.shared.size())) {
   SolverOptions of_arm = options;
   of_arm.max_attempts = std::min(options.max_attempts, kArmAttempts);
   for (const Tip& tip : model.tips) {

@@ -7,8 +7,8 @@
 namespace iksel {
 namespace {
 
-/// Values of the shared joints that are tried before all joints are iterated; and where many answers
-/// are wanted.
+/// Values of the shared joints that are tried before all joints are iterated; and where many
+/// answers are wanted.
 constexpr int kQuickValues = 16;
 constexpr int kSharedValues = 32;
 constexpr int kManyValues = 256;
@@ -35,10 +35,7 @@ int solutions_of_each(int arms) {
 
 SharedValues::SharedValues(const TipsModel& model, const std::vector<double>& steps,
                            const NearestTo* to)
-    : model_(model),
-      to_(to),
-      index_(to != nullptr ? -1 : 0),
-      steps_(steps) {}
+    : model_(model), to_(to), index_(to != nullptr ? -1 : 0), steps_(steps) {}
 
 std::pair<double, double> SharedValues::range(int joint, double best) const {
   const JointSpace& joints = model_.joints;
@@ -91,9 +88,9 @@ ArmSeeds::ArmSeeds(const Goal& goal, ArmSearch& arms, const std::vector<double>&
       to_(collector != nullptr && collector->ranks_by_move() ? &collector->nearest_to() : nullptr),
       values_(model_, steps, to_),
       left_(to_ != nullptr            ? kNearValues
-            : collector != nullptr   ? kManyValues
+            : collector != nullptr    ? kManyValues
             : effort == Effort::quick ? kQuickValues
-                                     : kSharedValues),
+                                      : kSharedValues),
       patience_(kNearPatience),
       order_(goal.tips()->order()) {
   const bool wants_many = collector != nullptr && to_ == nullptr;
@@ -170,9 +167,8 @@ void ArmSeeds::sort_out() {
   const std::size_t most = std::min(seeds_.size(), to_ != nullptr ? kNearestKept : kManyKept);
   if (to_ != nullptr) {
     const auto length = [&](const JointVector& q) { return to_->move.length(q - to_->from); };
-    std::stable_sort(seeds_.begin(), seeds_.end(), [&](const auto& a, const auto& b) {
-      return length(a) < length(b);
-    });
+    std::stable_sort(seeds_.begin(), seeds_.end(),
+                     [&](const auto& a, const auto& b) { return length(a) < length(b); });
   } else if (most > 0) {
     // Some of all: their order is that of the first arm's solutions.
     for (std::size_t i = 0; i < most; ++i) seeds_[i] = seeds_[i * seeds_.size() / most];

@@ -37,8 +37,8 @@ class SharedValues {
   const std::vector<double>& steps_;
 };
 
-/// Seeds for all joints together by little work: one chain after another is solved as a whole from a
-/// configuration at random, and the arms of the others behind it, or they stay.
+/// Seeds for all joints together by little work: one chain after another is solved as a whole from
+/// a configuration at random, and the arms of the others behind it, or they stay.
 class ChainSeeds {
  public:
   /// No more stages where `is_enough`. All must outlive this.
@@ -67,12 +67,12 @@ class ChainSeeds {
 };
 
 /// The arms solved behind one value of the shared joints after another; a stage has one value. Only
-/// where all arms could be solved are there seeds, which are answers already: one, or where many are
-/// wanted or a scene may refuse some, combinations of several solutions of each arm.
+/// where all arms could be solved are there seeds, which are answers already: one, or where many
+/// are wanted or a scene may refuse some, combinations of several solutions of each arm.
 class ArmSeeds {
  public:
-  /// `collector` gets what is found; null: the first answer is enough. With little effort values are
-  /// left at once where an arm is not solved with little. All must outlive this.
+  /// `collector` gets what is found; null: the first answer is enough. With little effort values
+  /// are left at once where an arm is not solved with little. All must outlive this.
   ArmSeeds(const Goal& goal, ArmSearch& arms, const std::vector<double>& steps, Effort effort,
            const Collector* collector, Work& work);
 
@@ -110,8 +110,8 @@ class ArmSeeds {
   double last_best_ = kInfinity;
   /// Solutions of each arm that are combined.
   int of_each_;
-  /// The tips' arms as they are solved one after the other: that which could not be solved last time
-  /// is first, unless a target is in another tip's frame.
+  /// The tips' arms as they are solved one after the other: that which could not be solved last
+  /// time is first, unless a target is in another tip's frame.
   std::vector<int> order_;
   std::size_t failed_ = 0;  ///< number in the order
   /// The last of each arm.

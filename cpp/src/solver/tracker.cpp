@@ -8,10 +8,10 @@
 #include "base/pose_check.hpp"
 #include "iksel/error.hpp"
 #include "iksel/pose.hpp"
+#include "kinematics/tips_model.hpp"
 #include "refine/closest_descent.hpp"
 #include "refine/self_motion.hpp"
 #include "search/closest.hpp"
-#include "kinematics/tips_model.hpp"
 #include "solver/solver_impl.hpp"
 
 namespace iksel {

@@ -48,7 +48,7 @@ examples:
   iksel solve ur3 --pose 0.9 0 0.3 0 0 0 --closest
   iksel solve panda --from-q 0 -0.5 0 -2 0 1.6 0.8 --preset paper --max-attempts 6
   iksel solve arm.urdf --base base_link --tip tool0 --tcp 0 0 0.1 0 0 0 --from-q 0 0 0 0
-  iksel solve torso.urdf --tip left_hand --tip right_hand --pose 0.5 0.2 1 0 0 0 --pose 0.5 -0.2 1 0 0 0
+  iksel solve torso.urdf --tip left --tip right --pose 1 1 1 0 0 0 --pose 1 -1 1 0 0 0
   iksel solve ur3 --poses poses.csv -o answers.csv
   iksel solve ur3 --poses poses.jsonl -o answers.npy --near 0 -1 1 0 1 0
   cat poses.csv | iksel solve ur3 --poses - --format jsonl
@@ -153,7 +153,7 @@ def run(arguments: argparse.Namespace) -> int:
         answer_format(arguments)  # an error comes before the work
         if robot.tips > 1:
             raise InvalidArgumentError(
-                "--poses: its rows are poses of one tip; with several, give each a --pose"
+                "--poses: its rows are poses of one tip; give each of several a --pose"
             )
         solver = make_solver(robot, arguments)
         return solve_file(solver, request, arguments, angles)

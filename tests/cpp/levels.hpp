@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <iksel/iksel.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,10 +13,22 @@ namespace iksel_test {
 /// Forces a level for as long as it lives.
 class ForcedLevel {
  public:
-  explicit ForcedLevel(const std::string& level) { ::setenv("IKSEL_SIMD", level.c_str(), 1); }
+  explicit ForcedLevel(const std::string& level) {
+    if (const char* value = std::getenv("IKSEL_SIMD")) before_ = value;
+    ::setenv("IKSEL_SIMD", level.c_str(), 1);
+  }
   ForcedLevel(const ForcedLevel&) = delete;
   ForcedLevel& operator=(const ForcedLevel&) = delete;
-  ~ForcedLevel() { ::unsetenv("IKSEL_SIMD"); }
+  ~ForcedLevel() {
+    if (before_) {
+      ::setenv("IKSEL_SIMD", before_->c_str(), 1);
+    } else {
+      ::unsetenv("IKSEL_SIMD");
+    }
+  }
+
+ private:
+  std::optional<std::string> before_;
 };
 
 /// Levels that this machine has.

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <iksel/iksel.hpp>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -252,6 +253,36 @@ TEST(Kernels, TheFirstOfTheLargestIsFound) {
     // Nothing is found of what is no number, but nothing read beyond the end either.
     const std::vector<float> none(lanes::kBlock, NAN);
     EXPECT_LT(kernels.find_largest(lanes::kBlock, none.data()), lanes::kBlock) << level;
+  }
+}
+
+/// The answer from a workspace that no less than `depth` others, which solve meanwhile, leave.
+iksel::Result solve_inside(const iksel::Solver& solver, const Pose& target, unsigned depth) {
+  if (depth == 0) return solver.solve(target);
+  iksel::Result inner;
+  iksel::SolveRequest request;
+  request.filter = [&](const double* /*q*/, std::size_t count, bool* keep) {
+    inner = solve_inside(solver, target, depth - 1);
+    std::fill_n(keep, count, true);
+  };
+  static_cast<void>(solver.solve(target, request));
+  return inner;
+}
+
+/// A solver makes workspaces when more solve at once than the machine has cores: those have the
+/// instruction set of the first, so that answers have the same bits from all of them.
+TEST(Levels, ASolverKeepsItsOwn) {
+  const Robot& robot = iksel_test::robot("panda");
+  const auto levels = iksel_test::levels();
+  const ForcedLevel first(levels.front());
+  const iksel::Solver solver(robot);
+  const iksel::Matrix q = robot.random_configurations(40, iksel_test::seed());
+  const ForcedLevel second(levels.back());
+  const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
+  for (int i = 0; i < q.rows(); ++i) {
+    const Pose target = robot.fk(q.row(i));
+    EXPECT_EQ(solve_inside(solver, target, cores).q, solver.solve(target).q)
+        << "seed " << iksel_test::seed();
   }
 }
 

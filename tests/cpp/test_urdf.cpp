@@ -296,7 +296,7 @@ TEST(Urdf, LockedPandaSolvesInLanesAndAnswersForTheWholeArm) {
   const iksel::Solver solver(locked);
   EXPECT_EQ(solver.database().options().key_scheme, iksel::KeyScheme::reduced);
   const iksel::Workspace workspace(locked.model(), locked.model(), solver.database().data(),
-                                   solver.options(), {}, nullptr);
+                                   solver.options(), {}, nullptr, iksel::lanes::choose_kernels());
   EXPECT_NE(workspace.lanes, nullptr);
 
   const Eigen::MatrixXd q = locked.random_configurations(500, iksel_test::seed());

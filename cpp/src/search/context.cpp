@@ -83,14 +83,13 @@ Workspace::OneAtATime::OneAtATime(const ChainModel& model, const ChainModel& nom
 
 Workspace::Workspace(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
                      const SolverOptions& options, const ClosedForms& closed_forms,
-                     const BranchTrials* trials)
+                     const BranchTrials* trials, const lanes::LaneKernels& kernels)
     : scheme(iksel::one_at_a_time(options.strategy)),
       given(model, scheme, data.options.pinv_cutoff),
       collected(model) {
   minima.reserve(kRandomDescents + 1);
   if (solves_in_lanes(model, data, options)) {
-    lanes = std::make_unique<InLanes>(model, nominal, data, options, closed_forms, trials,
-                                      lanes::choose_kernels());
+    lanes = std::make_unique<InLanes>(model, nominal, data, options, closed_forms, trials, kernels);
   } else {
     one_at_a_time = std::make_unique<OneAtATime>(model, nominal, data, options, scheme);
   }
@@ -122,7 +121,7 @@ WorkspacePool::WorkspacePool(const Robot& robot, const Robot& nominal, const Dat
         chain->held < 0 && &robot.model() == &nominal.model() && !chain->is_almost();
     const TaskSpace task(Task(), options.position_tolerance, options.rotation_tolerance);
     if (proves || chain->form.is_held) {
-      trials_.emplace(robot.model(), *chain, database.data(), task, lanes::choose_kernels());
+      trials_.emplace(robot.model(), *chain, database.data(), task, kernels_);
     }
   }
   fill();
@@ -146,13 +145,13 @@ std::unique_ptr<Workspace> WorkspacePool::make() const {
   if (database_ == nullptr) return std::make_unique<Workspace>(robot_.all(), options_);
   auto workspace =
       std::make_unique<Workspace>(robot_.model(), nominal_.model(), database_->data(), options_,
-                                  closed_forms_, trials_ ? &*trials_ : nullptr);
+                                  closed_forms_, trials_ ? &*trials_ : nullptr, kernels_);
   for (const InnerChain& inner : inner_chains_) {
-    workspace->lanes->inner_arms.emplace_back(robot_.model(), inner, lanes::choose_kernels());
+    workspace->lanes->inner_arms.emplace_back(robot_.model(), inner, kernels_);
   }
   if (!locked_arms_.arms.empty()) {
     workspace->lanes->ends.emplace(robot_.model(), locked_arms_, options_.position_tolerance,
-                                   options_.rotation_tolerance, lanes::choose_kernels());
+                                   options_.rotation_tolerance, kernels_);
   }
   return workspace;
 }

@@ -39,7 +39,7 @@ struct Workspace {
   /// `nominal` is the chain that the data belongs to; `closed_forms` are its own.
   Workspace(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
             const SolverOptions& options, const ClosedForms& closed_forms,
-            const BranchTrials* trials);
+            const BranchTrials* trials, const lanes::LaneKernels& kernels);
   /// Of several tips, whose chains have their own: neither in lanes nor one at a time.
   Workspace(const RobotModel& several, const SolverOptions& options);
 
@@ -139,6 +139,9 @@ class WorkspacePool {
 
  private:
   [[nodiscard]] std::unique_ptr<Workspace> make() const;
+
+  /// Of all its workspaces, whatever IKSEL_SIMD says when they are made.
+  const lanes::LaneKernels& kernels_ = lanes::choose_kernels();
 
   void fill();
 

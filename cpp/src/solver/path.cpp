@@ -14,7 +14,14 @@ namespace {
 Status search_layer(const Solver::Impl& solver, const Goal& goal, const Layer* before,
                     const PathOptions& path, PathSearch& search, Workspace& workspace,
                     Layer& layer) {
+  // Of several tips a search takes far longer than what goes on from the waypoint before.
+  constexpr std::size_t kEnoughForTips = 8;
   if (before != nullptr) search.add_continuations(goal, *before, layer);
+  if (goal.tips() != nullptr && layer.size() >= kEnoughForTips) {
+    search.screen(layer);
+    search.connect(before, layer);
+    if (layer.size() > 0) return Status::solved;
+  }
   const SolutionSet& found = workspace.collected.found;
   // Of an arm that is not redundant all, which are few but where axes line up.
   constexpr std::size_t kBranches = 64;

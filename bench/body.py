@@ -11,9 +11,6 @@ not. Answers are judged by coal with the links' own meshes.
 from __future__ import annotations
 
 import json
-import os
-import sysconfig
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -22,11 +19,13 @@ import iksel
 import iksel.exact
 import iksel.spheres
 import iksel.srdf
+from bench.robot_data import PACKAGE, VARIABLE, robots_folder
 from bench.settings import WORK
 from bench.timing import least_times, time_calls
 
 if TYPE_CHECKING:
     import argparse
+    from pathlib import Path
 
     from bench.chain import Array
 
@@ -65,13 +64,11 @@ ROBOTS = {
 
 def data_folder() -> Path:
     """Where example-robot-data has its robots."""
-    given = os.environ.get("EXAMPLE_ROBOT_DATA")
-    inside = Path("cmeel.prefix", "share", "example-robot-data", "robots")
-    folder = Path(given) if given else Path(sysconfig.get_path("purelib")) / inside
+    folder = robots_folder()
     if not folder.is_dir():
         raise SystemExit(
-            f"bench body: no folder {folder}: pip install example-robot-data, or set "
-            "EXAMPLE_ROBOT_DATA to its folder `robots`"
+            f"bench body: no folder {folder}: pip install {PACKAGE}, or set "
+            f"{VARIABLE} to its folder `robots`"
         )
     return folder
 

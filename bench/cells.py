@@ -26,6 +26,7 @@ from bench.rivals.base import UnsupportedError
 from bench.seed_makers import first_attempt
 from bench.settings import make_solver, targets_of
 from bench.timing import summary
+from bench.whole_body import cells as whole_body_cells
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -152,6 +153,14 @@ def learned(settings: Settings) -> dict[str, Any]:
     return measured(settings)
 
 
+def whole_body(settings: Settings) -> dict[str, Any]:
+    """Both hands of a robot with a torso; bench.whole_body.cells."""
+    try:
+        return whole_body_cells.measured(settings)
+    except UnsupportedError as reason:
+        return {"unsupported": str(reason)}
+
+
 ON_TARGETS: dict[str, Callable[[Arm, Targets, Settings], dict[str, Any]]] = {
     "no": answered,
     "near_branches": near_branches,
@@ -187,5 +196,6 @@ CELLS: dict[str, Callable[[Settings], dict[str, Any]]] = {
     "learned": learned,
     **{name: functools.partial(_on_targets, name) for name in ON_TARGETS},
     "path": path,
+    "whole_body": whole_body,
 }
 """The functions by the names that settings have under "cell"."""

@@ -7,6 +7,7 @@ import argparse
 import sys
 import time
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -47,8 +48,12 @@ from bench.settings import WORK
 from bench.size import FULL, QUICK, SEED
 from bench.store import Store
 from bench.view import View
+from bench.whole_body import command as whole_body_command
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+    from types import ModuleType
+
     from bench.size import Job, Size
     from bench.view import Report
 
@@ -69,6 +74,9 @@ ALONE = {
     "tips": tips,
 }
 """Commands that measure by themselves and print."""
+
+SECTIONS = {"analytic": analytic_command, "whole_body": whole_body_command}
+"""Commands whose results are kept as the report's are."""
 
 EPILOG = f"""\
 robots: {", ".join(RIVAL_ARMS)} (and, with --only robots, every built-in one)
@@ -101,9 +109,8 @@ def parser() -> argparse.ArgumentParser:
     frozen.add_argument("action", choices=["record", "compare"])
     frozen.add_argument("file", type=Path, help="where, e.g. build/frozen.json")
     _add_no(commands)
-    analytic_command.add(commands)
     learned_command.add(commands)
-    for part in ALONE.values():
+    for part in (*SECTIONS.values(), *ALONE.values()):
         part.add(commands)
     return top
 
@@ -176,11 +183,14 @@ def main(arguments: list[str] | None = None) -> int:
     if options.command == "guard":
         return guard(update=options.update)
     if options.command == "frozen":
-        action = record if options.action == "record" else compare
-        return action(options.file)
+        return (record if options.action == "record" else compare)(options.file)
     if options.command in ALONE:
         return int(ALONE[options.command].run(options))
-    others = {"no": _no, "learned": _learned, "analytic": _analytic}
+    others: dict[str, Callable[[argparse.Namespace, list[str]], int]] = {
+        "no": _no,
+        "learned": _learned,
+        **{name: partial(_section, part) for name, part in SECTIONS.items()},
+    }
     if options.command in others:
         return others[options.command](options, given)
     if options.command == "render":
@@ -206,11 +216,12 @@ def _no(options: argparse.Namespace, given: list[str]) -> int:
     return 1 if bad or report["failures"] else 0
 
 
-def _analytic(options: argparse.Namespace, given: list[str]) -> int:
+def _section(part: ModuleType, options: argparse.Namespace, given: list[str]) -> int:
+    """A section that knows its jobs and prints itself."""
     versions = installed_rivals()
-    jobs, size = analytic_command.jobs_of(options, versions)
+    jobs, size = part.jobs_of(options, versions)
     report = _measured(jobs, size, versions, given, fresh=options.fresh)
-    return 130 if report is None else analytic_command.tell(report)
+    return 130 if report is None else int(part.tell(report))
 
 
 def _learned(options: argparse.Namespace, given: list[str]) -> int:

@@ -134,6 +134,7 @@ SECONDS_PER_TARGET = {
     "all_branches": 1e-3,
     "restarts": 2e-2,
     "path": 1e-2,
+    "whole_body": 1e-3,
 }
 
 PATH_WAYPOINTS = 1_000

@@ -20,31 +20,36 @@ from bench.timing import time_calls
 
 if TYPE_CHECKING:
     import argparse
+    from collections.abc import Sequence
 
     import numpy.typing as npt
 
     from bench.chain import Array
 
 ARMS = ("ur5e", "panda", "pr2_right_arm", "valkyrie_right_arm", "xarm5", "so100")
+TorsoJoint = tuple[str, str, float, float]
+"""Name, type, and both limits [rad or m], of a joint about or along z."""
+LIFT: TorsoJoint = ("lift", "prismatic", 0.0, 0.35)
+TURN: TorsoJoint = ("turn", "revolute", -1.5, 1.5)
 LIMIT_S = 60.0
 """No solve of a row is begun after this time."""
 
 
-def torso(arm: iksel.Robot) -> str:
-    """The URDF of two arms on a torso."""
+def torso(arm: iksel.Robot, joints: Sequence[TorsoJoint] = (LIFT, TURN)) -> str:
+    """The URDF of two arms on a torso, whose joints follow one another."""
     inside = re.sub(r"<!--.*?-->|<\?.*?\?>|</?robot.*?>", "", arm.urdf, flags=re.DOTALL)
-    text = '<robot name="torso"><link name="base"/><link name="lifted"/>'
-    text += '<link name="chest"/>'
-    for name, kind, parent, child, lower, upper in (
-        ("lift", "prismatic", "base", "lifted", 0.0, 0.35),
-        ("turn", "revolute", "lifted", "chest", -1.5, 1.5),
-    ):
-        text += f"""<joint name="{name}" type="{kind}"><parent link="{parent}"/>
+    text = '<robot name="torso"><link name="base"/>'
+    parent = "base"
+    for name, kind, lower, upper in joints:
+        child = name + "_link"
+        text += f"""<link name="{child}"/>
+            <joint name="{name}" type="{kind}"><parent link="{parent}"/>
             <child link="{child}"/><axis xyz="0 0 1"/>
             <limit lower="{lower}" upper="{upper}" effort="1" velocity="1"/></joint>"""
+        parent = child
     for side, y, roll in (("l_", 0.2, -0.8), ("r_", -0.2, 0.8)):
         text += re.sub(r'(name|link|joint)="', rf'\1="{side}', inside)
-        text += f"""<joint name="{side}mount" type="fixed"><parent link="chest"/>
+        text += f"""<joint name="{side}mount" type="fixed"><parent link="{parent}"/>
             <child link="{side}{arm.link_names[0]}"/>
             <origin xyz="0 {y} 0.2" rpy="{roll} 0 0"/></joint>"""
     return text + "</robot>"

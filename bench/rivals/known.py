@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import iksel
 from bench.rivals.eaik import Eaik
@@ -54,29 +54,31 @@ class Iksel(Enumerator):
         }
 
 
-class EaikBranches(Enumerator):
-    """EAIK, which has all branches only."""
+class Branches(Enumerator):
+    """A solver known from the other benchmarks, which has all branches only."""
 
+    known: ClassVar[type[Eaik | IkGeo]]
+    keeps_limits = False
+
+    def ways(self, arm: Arm) -> dict[str, Request]:
+        """All."""
+        known = self.known(arm)
+        return {"every": Request(known.prepare, known.call, known.answers)}
+
+
+class EaikBranches(Branches):
+    """EAIK."""
+
+    known = Eaik
     name = Eaik.name
     distribution = Eaik.distribution
     settings = Eaik.settings
-    keeps_limits = False
-
-    def ways(self, arm: Arm) -> dict[str, Request]:
-        """All."""
-        known = Eaik(arm)
-        return {"every": Request(known.prepare, known.call, known.answers)}
 
 
-class IkGeoBranches(Enumerator):
-    """IK-Geo, which has all branches only."""
+class IkGeoBranches(Branches):
+    """IK-Geo."""
 
+    known = IkGeo
     name = IkGeo.name
     distribution = IkGeo.distribution
     settings = IkGeo.settings
-    keeps_limits = False
-
-    def ways(self, arm: Arm) -> dict[str, Request]:
-        """All."""
-        known = IkGeo(arm)
-        return {"every": Request(known.prepare, known.call, known.answers)}

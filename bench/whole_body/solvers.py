@@ -15,6 +15,13 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 import iksel
+from bench.rivals.frame_tasks import (
+    DAMPING,
+    SETTINGS,
+    FrameTasks,
+    MinkTasks,
+    PinkTasks,
+)
 from bench.whole_body.robots import TOLERANCE
 
 if TYPE_CHECKING:
@@ -24,9 +31,6 @@ if TYPE_CHECKING:
 STARTS = 40
 STEPS = 30
 """Of each start: 50 and 100 take longer on talos, two_pandas, pr2 and g1."""
-DAMPING = 1e-2
-"""Levenberg-Marquardt damping of pink's and mink's tasks, and of our own loop. Of 0 and
-1e-4 to 1, with 15 and 25 targets of these robots, none is faster on most."""
 CLOSE = TOLERANCE / 2.0
 """Where a loop ends: the largest component of the errors [m, rad]."""
 SOME_STARTS = 1_000
@@ -171,105 +175,37 @@ def _step(jacobian: Array, error: Array) -> Array:
     return np.asarray(jacobian.T @ np.linalg.solve(gram, error))
 
 
-class Pink(Loop):
-    """pink on Pinocchio."""
+class OfFrameTasks(Loop):
+    """A loop of steps that a package solves for."""
 
-    settings = (
-        f"a frame task of costs 1 at each hand, lm_damping {DAMPING:g}, steps of 1 s "
-        "under the joint limits, QP by daqp"
-    )
+    settings = f"a frame task of costs 1 at each hand, {SETTINGS}"
+    of_package: ClassVar[type[FrameTasks]]
 
     def make(self, body: Body) -> list[str]:
         """The model of the chains' URDF."""
-        self._pin = pin = importlib.import_module("pinocchio")
-        self._pink = pink = importlib.import_module("pink")
-        self._model = pin.buildModelFromXML(body.urdf)
-        self._data = self._model.createData()
-        limits = importlib.import_module("pink.limits")
-        self._limits = [limits.ConfigurationLimit(self._model, 1.0)]
-        self._tasks = [
-            pink.tasks.FrameTask(tip, 1.0, 1.0, DAMPING) for tip in body.robot.tip_links
-        ]
-        return list(self._model.names)[1:]
+        self._tasks = self.of_package(body.urdf, body.robot.tip_links)
+        return self._tasks.joints
 
     def prepare(self, poses: Array) -> Any:
-        """As SE3."""
-        return [self._pin.SE3(pose[:3, :3], pose[:3, 3]) for pose in poses]
+        """As the package has them."""
+        return self._tasks.targets(poses)
 
     def descend(self, target: Any, q: Array) -> Array | None:
         """solve_ik and integrate, repeated."""
-        pink, tasks = self._pink, self._tasks
-        configuration = pink.Configuration(self._model, self._data, q)
-        for task, pose in zip(tasks, target, strict=True):
-            task.set_target(pose)
-        for _ in range(STEPS):
-            if all(
-                np.abs(task.compute_error(configuration)).max() < CLOSE
-                for task in tasks
-            ):
-                return np.asarray(configuration.q)
-            try:
-                v = pink.solve_ik(
-                    configuration,
-                    tasks,
-                    1.0,
-                    "daqp",
-                    limits=self._limits,
-                    safety_break=False,
-                )
-            except pink.exceptions.NoSolutionFound:
-                return None
-            configuration.integrate_inplace(v, 1.0)
-        return None
+        found: Array | None = self._tasks.descend(target, q, STEPS, CLOSE)
+        return found
 
 
-class Mink(Loop):
+class Pink(OfFrameTasks):
+    """pink on Pinocchio."""
+
+    of_package = PinkTasks
+
+
+class Mink(OfFrameTasks):
     """mink on MuJoCo."""
 
-    settings = Pink.settings
-
-    def make(self, body: Body) -> list[str]:
-        """MuJoCo's model of the chains' URDF, with some mass: it asks for that."""
-        mujoco = importlib.import_module("mujoco")
-        self._mink = mink = importlib.import_module("mink")
-        compiler = (
-            '<mujoco><compiler fusestatic="false" boundmass="1" boundinertia="1"/>'
-            "</mujoco>"
-        )
-        text = body.urdf.replace("</robot>", f"{compiler}</robot>")
-        self._model = model = mujoco.MjModel.from_xml_string(text)
-        self._limits = [mink.ConfigurationLimit(model, gain=1.0)]
-        self._tasks = [
-            mink.FrameTask(tip, "body", 1.0, 1.0, lm_damping=DAMPING)
-            for tip in body.robot.tip_links
-        ]
-        self._configuration = mink.Configuration(model)
-        return [model.joint(i).name for i in range(model.njnt)]
-
-    def prepare(self, poses: Array) -> Any:
-        """As its SE3."""
-        return [self._mink.SE3.from_matrix(pose) for pose in poses]
-
-    def descend(self, target: Any, q: Array) -> Array | None:
-        """solve_ik and integrate, repeated."""
-        mink, tasks, configuration = self._mink, self._tasks, self._configuration
-        configuration.update(q)
-        for task, pose in zip(tasks, target, strict=True):
-            task.set_target(pose)
-        for _ in range(STEPS):
-            if all(
-                np.abs(task.compute_error(configuration)).max() < CLOSE
-                for task in tasks
-            ):
-                return np.asarray(configuration.q)
-            try:
-                v = mink.solve_ik(
-                    configuration, tasks, 1.0, "daqp", limits=self._limits
-                )
-            except mink.exceptions.NoSolutionFound:
-                return None
-            configuration.integrate_inplace(v, 1.0)
-        return None
+    of_package = MinkTasks
 
 
 SOLVERS: dict[str, type[Solver]] = {

@@ -29,6 +29,14 @@ inline Filter in_turn(const Filter& filter, std::mutex& turn) {
   };
 }
 
+/// The same of all that a request has.
+inline SolveRequest in_turn(const SolveRequest& request, std::mutex& turn) {
+  SolveRequest locked = request;
+  locked.filter = in_turn(request.filter, turn);
+  locked.exact = in_turn(request.exact, turn);
+  return locked;
+}
+
 class Screen {
  public:
   /// `criteria` must outlive this.

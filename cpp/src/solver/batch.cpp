@@ -66,9 +66,7 @@ class Batch {
     const bool is_screened = screens_answers(request_) && !std::isfinite(request_.deadline);
     const std::size_t chunk = plain || is_screened ? kMost : kFew;
     std::mutex turn;
-    SolveRequest locked = request_;
-    locked.filter = in_turn(request_.filter, turn);
-    locked.exact = in_turn(request_.exact, turn);
+    const SolveRequest locked = in_turn(request_, turn);
     const auto make_worker = [&] {
       return [&, own = locked, lease = std::make_shared<WorkspacePool::Lease>(solver_.workspaces)](
                  std::size_t begin, std::size_t end) mutable {

@@ -45,9 +45,7 @@ void solve_rows_of_tips(const Solver::Impl& solver, std::size_t count, const Pos
     static_cast<void>(poses(row));
   }
   std::mutex turn;
-  SolveRequest locked = request;
-  locked.filter = in_turn(request.filter, turn);
-  locked.exact = in_turn(request.exact, turn);
+  const SolveRequest locked = in_turn(request, turn);
   const auto make_worker = [&] {
     return [&, own = locked, lease = std::make_shared<WorkspacePool::Lease>(solver.workspaces)](
                std::size_t begin, std::size_t end) mutable {

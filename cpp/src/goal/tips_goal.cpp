@@ -59,27 +59,28 @@ Pose TipsGoal::seen_pose(int tip, const JointVector& q) const {
   return frame < 0 ? pose_of(tip, q) : pose_of(frame, q).inverse() * pose_of(tip, q);
 }
 
-Pose TipsGoal::seen_pose(int tip, const JointVector& q, JacobianMatrix& J) const {
-  const auto add = [&](int of, Pose& pose, double sign, const auto& change) {
-    const auto& [chain, joints] = model_.tip(of).chain;
-    Jacobian of_chain;
-    chain.model().fk_jacobian(picked(q, joints).data(), pose, of_chain);
-    for (std::size_t j = 0; j < joints.size(); ++j) {
-      J.col(joints[j]) += sign * change(Vector6(of_chain.col(static_cast<Eigen::Index>(j))));
-    }
-  };
-  J.setZero(6, model_.dof);
+Pose TipsGoal::pose_of(int tip, const JointVector& q, JacobianMatrix& J) const {
+  const auto& [chain, joints] = model_.tip(tip).chain;
   Pose pose;
-  add(tip, pose, 1, [](const Vector6& twist) { return twist; });
+  Jacobian of_chain;
+  chain.model().fk_jacobian(picked(q, joints).data(), pose, of_chain);
+  J.setZero(6, model_.dof);
+  put_columns(of_chain, joints, J);
+  return pose;
+}
+
+Pose TipsGoal::seen_pose(int tip, const JointVector& q, JacobianMatrix& J) const {
+  const Pose pose = pose_of(tip, q, J);
   const int frame = frame_of(tip);
   if (frame < 0) return pose;
-  // What the other tip's twist does to this one's place as seen from there; then in its axes.
-  const Eigen::Vector3d lever = pose.translation() - pose_of(frame, q).translation();
-  Pose from;
-  add(frame, from, -1, [&](Vector6 twist) {
-    twist.head<3>() += twist.tail<3>().cross(lever);
-    return twist;
-  });
+  // What the other tip's twists do to this one's place as seen from there; then in its axes.
+  JacobianMatrix of_frame;
+  const Pose from = pose_of(frame, q, of_frame);
+  const Eigen::Vector3d lever = pose.translation() - from.translation();
+  for (Eigen::Index j = 0; j < J.cols(); ++j) {
+    of_frame.col(j).head<3>() += of_frame.col(j).tail<3>().cross(lever);
+  }
+  J -= of_frame;
   const Eigen::Matrix3d to_frame = from.linear().transpose();
   J.topRows<3>() = to_frame * J.topRows<3>();
   J.bottomRows<3>() = to_frame * J.bottomRows<3>();

@@ -52,6 +52,8 @@ class TipsGoal {
   [[nodiscard]] Pose pose_of(int tip, const JointVector& q) const {
     return model_.tip(tip).chain.fk(q);
   }
+  /// The same, and its Jacobian over all joints.
+  Pose pose_of(int tip, const JointVector& q, JacobianMatrix& J) const;
   /// The pose that the tip's target is compared with.
   [[nodiscard]] Pose seen_pose(int tip, const JointVector& q) const;
   /// The same, and its Jacobian over all joints, in the axes of the frame that it is seen from.

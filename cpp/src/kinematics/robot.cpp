@@ -134,14 +134,10 @@ std::vector<Pose> Robot::tip_poses(const JointVector& q, Kinematics kinematics) 
 
 Matrix Robot::tip_jacobians(const JointVector& q, Kinematics kinematics) const {
   check_joints(q, dof(), "q");
-  if (kinematics == Kinematics::kernel) return model_->jacobians(q.data());
   Matrix all = Matrix::Zero(6 * tips(), dof());
   for (int i = 0; i < tips(); ++i) {
     const std::vector<int>& joints = joints_of(i);
-    const Jacobian J = chain(i).jacobian(picked(q, joints), kinematics);
-    for (std::size_t j = 0; j < joints.size(); ++j) {
-      all.block<6, 1>(6 * i, joints[j]) = J.col(static_cast<Eigen::Index>(j));
-    }
+    put_columns(chain(i).jacobian(picked(q, joints), kinematics), joints, all.middleRows<6>(6 * i));
   }
   return all;
 }

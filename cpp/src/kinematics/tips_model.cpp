@@ -78,9 +78,7 @@ Jacobians TipsModel::jacobians(const double* q) const {
   for (int i = 0; i < tip_count(); ++i) {
     const ChainPart& chain = tip(i).chain;
     chain.model().fk_jacobian(picked(all, chain.joints).data(), J);
-    for (std::size_t j = 0; j < chain.joints.size(); ++j) {
-      out.block<6, 1>(6 * i, chain.joints[j]) = J.col(static_cast<Eigen::Index>(j));
-    }
+    put_columns(J, chain.joints, out.middleRows<6>(6 * i));
   }
   return out;
 }

@@ -34,6 +34,14 @@ inline void put(const JointVector& values, const std::vector<int>& joints, Joint
   }
 }
 
+/// The columns of a chain's Jacobian, put where its joints stand.
+template <typename Rows>
+void put_columns(const Jacobian& of_chain, const std::vector<int>& joints, Rows&& rows) {
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    rows.col(joints[j]) = of_chain.col(static_cast<Eigen::Index>(j));
+  }
+}
+
 /// A part of a chain, and where its joints stand among those of the robot.
 struct ChainPart {
   Robot robot;

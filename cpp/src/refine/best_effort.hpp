@@ -10,6 +10,9 @@
 
 namespace iksel {
 
+/// Seeds of a best effort at random.
+inline constexpr int kEfforts = 24;
+
 class BestEffort {
  public:
   /// `weight` is the length that 1 rad counts [m].

@@ -68,15 +68,8 @@ Pose ArmSearch::target_of_arm(int tip, const JointVector& q) {
   return of_tip.stem ? compose(of_tip.stem->fk(q).inverse(), target) : target;
 }
 
-bool ArmSearch::solve_arm(int tip, JointVector& q) {
-  const auto i = static_cast<std::size_t>(tip);
-  const Result result = solvers_[i].arm->solve(target_of_arm(tip, q), of_arm_[i]);
-  if (result.success()) put(result.q, goal_.model().tip(tip).arm->joints, q);
-  return result.success();
-}
-
-Result ArmSearch::try_solver(const Solver& solver, const Pose& target,
-                             const SolveRequest& request) {
+Result ArmSearch::solve_quickly(const Solver& solver, const Pose& target,
+                                const SolveRequest& request) {
   const Solver::Impl& of = *solver.impl_;
   const TaskSpace task = of.task_of(request);
   const WorkspacePool::Lease lease(of.workspaces);
@@ -84,26 +77,15 @@ Result ArmSearch::try_solver(const Solver& solver, const Pose& target,
                     Effort::quick);
 }
 
-bool ArmSearch::try_arm(int tip, JointVector& q) {
+bool ArmSearch::solve_arm(int tip, Effort effort, JointVector& q) {
   const auto i = static_cast<std::size_t>(tip);
-  SolveRequest request;
-  request.task = of_arm_[i].task;
-  const Result result = try_solver(*solvers_[i].arm, target_of_arm(tip, q), request);
-  if (result.success()) put(result.q, goal_.model().tip(tip).arm->joints, q);
-  return result.success();
-}
-
-bool ArmSearch::try_chain(int tip, JointVector& q) {
-  const ChainPart& chain = goal_.model().tip(tip).chain;
-  SolveRequest request;
-  request.task = goal_.task(tip).task();
-  request.seeds.push_back(picked(q, chain.joints));
+  const Solver& arm = *solvers_[i].arm;
+  const Pose target = target_of_arm(tip, q);
+  SolveRequest bare;
+  bare.task = of_arm_[i].task;
   const Result result =
-      try_solver(solvers_[static_cast<std::size_t>(tip)].chain, goal_.target_at(tip, q), request);
-  if (result.success()) {
-    put(result.q, chain.joints, q);
-    q = goal_.model().joints.clamp(q);
-  }
+      effort == Effort::quick ? solve_quickly(arm, target, bare) : arm.solve(target, of_arm_[i]);
+  if (result.success()) put(result.q, goal_.model().tip(tip).arm->joints, q);
   return result.success();
 }
 
@@ -128,13 +110,15 @@ void ArmSearch::bring_closest(int tip, JointVector& q) {
   if (has_joints(result.status)) put(result.q, goal_.model().tip(tip).arm->joints, q);
 }
 
-Result ArmSearch::solve_chain(int tip, bool from_here, JointVector& q) {
-  const auto i = static_cast<std::size_t>(tip);
+Result ArmSearch::solve_chain(int tip, Effort effort, bool from_here, JointVector& q) {
+  const Solver& solver = solvers_[static_cast<std::size_t>(tip)].chain;
   const ChainPart& chain = goal_.model().tip(tip).chain;
   SolveRequest request;
   request.task = goal_.task(tip).task();
   if (from_here) request.seeds.push_back(picked(q, chain.joints));
-  Result result = solvers_[i].chain.solve(goal_.target_at(tip, q), request);
+  const Pose target = goal_.target_at(tip, q);
+  Result result = effort == Effort::quick ? solve_quickly(solver, target, request)
+                                          : solver.solve(target, request);
   if (result.success()) {
     put(result.q, chain.joints, q);
     q = goal_.model().joints.clamp(q);

@@ -10,6 +10,7 @@
 #include "base/random.hpp"
 #include "goal/goal.hpp"
 #include "iksel/solver.hpp"
+#include "search/search_state.hpp"
 
 namespace iksel {
 
@@ -32,10 +33,9 @@ class ArmSearch {
   /// Whether each has.
   [[nodiscard]] bool has_all_arms() const;
   /// Solves for the joints of that tip's arm, the shared ones as in q; false leaves q as it is.
-  /// Limits that arms share are left to what iterates all joints.
-  bool solve_arm(int tip, JointVector& q);
-  /// The same by little work, whatever the request: false says little.
-  bool try_arm(int tip, JointVector& q);
+  /// Limits that arms share are left to what iterates all joints. With little effort nothing is
+  /// asked of the answer but the task.
+  bool solve_arm(int tip, Effort effort, JointVector& q);
   /// The joint values of that tip's arm in as many solutions, at most; those nearest to the
   /// request's `near` first, if it has one.
   std::vector<JointVector> solve_arm(int tip, const JointVector& q, int most);
@@ -44,14 +44,12 @@ class ArmSearch {
   void bring_closest(int tip, JointVector& q);
   /// Solves for all joints of that tip's chain, other tips where q puts them; from those in q first
   /// if `from_here`. What the chain's own solver says; without success q stays as it is.
-  Result solve_chain(int tip, bool from_here, JointVector& q);
-  /// The same from q by little work.
-  bool try_chain(int tip, JointVector& q);
+  Result solve_chain(int tip, Effort effort, bool from_here, JointVector& q);
 
  private:
-  /// A solver's first answer by little work.
-  [[nodiscard]] static Result try_solver(const Solver& solver, const Pose& target,
-                                         const SolveRequest& request);
+  /// A solver's first answer by little work; of the request its task and seeds are read.
+  [[nodiscard]] static Result solve_quickly(const Solver& solver, const Pose& target,
+                                            const SolveRequest& request);
   /// Whether its task bounds axes of the frame in which its target is.
   [[nodiscard]] bool is_along_frame(int tip) const;
   /// The target as the arm's base sees it.

@@ -21,8 +21,6 @@ namespace {
 /// Work that a diagnosis may spend where a solve gave up.
 constexpr int kPatientAttempts = 512;
 constexpr int kPatientIterations = 200;
-/// Seeds of a best effort.
-constexpr int kEfforts = 24;
 
 SolverOptions generous(SolverOptions options) {
   Lanes lanes;
@@ -54,14 +52,7 @@ class Diagnoser {
         goal_(model_, task_, target),
         position_goal_(model_, position_task_, target),
         request_(request),
-        open_(request) {
-    open_.filter = open_.exact = nullptr;
-    open_.scene.reset();
-    open_.near.reset();
-    open_.objective = {};
-    open_.deadline = kInfinity;
-    open_.database_seeds = true;
-  }
+        open_(opened(request)) {}
 
   /// Whether all branches are known, of which none is an answer.
   bool explain_by_branches(Workspace& workspace) {
@@ -222,7 +213,7 @@ class Diagnoser {
 
   void explain_refusals(Status status) {
     SolveAllOptions every;
-    every.max = kPatientAttempts;
+    every.max = kMostRefused;
     const Solutions refused = patient().solve_all(goal_.target(), every, open_);
     out_.attempts += refused.attempts;
     const JointVector q = iksel::explain_refusals(request_, status, refused, out_);

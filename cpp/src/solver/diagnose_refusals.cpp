@@ -57,6 +57,17 @@ JointVector explain_collisions(const Scene& scene, const Solutions& refused, Dia
 
 }  // namespace
 
+SolveRequest opened(const SolveRequest& request) {
+  SolveRequest open = request;
+  open.filter = open.exact = nullptr;
+  open.scene.reset();
+  open.near.reset();
+  open.objective = {};
+  open.deadline = kInfinity;
+  open.database_seeds = true;
+  return open;
+}
+
 JointVector explain_refusals(const SolveRequest& request, Status status, const Solutions& refused,
                              Diagnosis& out) {
   out.refused = static_cast<int>(refused.all.size());

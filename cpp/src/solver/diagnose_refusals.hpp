@@ -11,6 +11,12 @@ inline bool is_refusal(Status status) {
   return status == Status::rejected || status == Status::in_collision;
 }
 
+/// Answers that are looked at to say what refuses them, at most.
+inline constexpr int kMostRefused = 512;
+
+/// The request without what refuses answers or prefers some.
+SolveRequest opened(const SolveRequest& request);
+
 /// Puts cause, numbers and message into `out`, for answers that were all refused with that status.
 /// Returns one of them, if there is one: where they collide, that whose deepest contact is the
 /// least deep.

@@ -15,21 +15,6 @@
 namespace iksel {
 namespace {
 
-/// Answers that are looked at to say what refuses them.
-constexpr int kMostRefused = 512;
-/// Seeds of a best effort.
-constexpr int kTipsEfforts = 24;
-
-/// The same without what refuses answers or prefers some.
-SolveRequest opened(const SolveRequest& request) {
-  SolveRequest open;
-  open.task = request.task;
-  open.tasks = request.tasks;
-  open.in_frame_of = request.in_frame_of;
-  open.seeds = request.seeds;
-  return open;
-}
-
 /// What keeps tips that can be reached one by one from being reached together.
 std::string together_text(const RobotModel& model) {
   if (model.shared.empty()) {
@@ -80,7 +65,7 @@ Diagnosis Solver::Impl::diagnose_tips(const std::vector<Pose>& targets,
       out.q = explain_refusals(request, result.status, refused, out);
     } else {
       BestEffort effort(robot.all(), goal, rotation_weight());
-      effort.from_anywhere(kTipsEfforts, options.seed);
+      effort.from_anywhere(kEfforts, options.seed);
       out.q = effort.q();
       const bool is_late = result.status == Status::out_of_time;
       out.cause = is_late ? Cause::out_of_time : Cause::shared_joints;

@@ -64,23 +64,25 @@ Proof TipsSearch::search_for(Answers& answers, const Collector* collector,
   const auto is_enough = [&] { return wants_nearest && collector->has_any(); };
   ArmSeeds quickly_behind_shared(goal, arms, steps_, Effort::quick, collector, work);
   if (search(quick_refiner, quickly_behind_shared, answers, work)) return Proof::none;
-  ChainSeeds of_chains(*goal.tips(), arms, options_.seed, work, is_enough);
-  if (search(quick_refiner, of_chains, answers, work)) return Proof::none;
-  ArmSeeds behind_shared(goal, arms, steps_, Effort::full, collector, work);
-  if (!is_enough() && search(refiner, behind_shared, answers, work)) return Proof::none;
   const auto unreachable = [&](int tip, const Result& alone) {
     answers.put_unreachable(tip, alone.status);
     return alone.proof;
   };
-  StackedSeeds stacked(*goal.tips(), arms, options_.seed, work, unreachable, is_enough);
-  if (search(refiner, stacked, answers, work)) return Proof::none;
+  ChainSeeds quickly_of_chains(*goal.tips(), arms, Effort::quick, options_.seed, work, unreachable,
+                               is_enough);
+  if (search(quick_refiner, quickly_of_chains, answers, work)) return Proof::none;
+  ArmSeeds behind_shared(goal, arms, steps_, Effort::full, collector, work);
+  if (!is_enough() && search(refiner, behind_shared, answers, work)) return Proof::none;
+  ChainSeeds of_chains(*goal.tips(), arms, Effort::full, options_.seed, work, unreachable,
+                       is_enough);
+  if (search(refiner, of_chains, answers, work)) return Proof::none;
   if (is_enough()) {
     // Between the values of the shared joints others are nearer at times.
     NearbySeeds nearby(goal.joints(), collector->nearest_to().from, options_.seed, work,
                        kNearbySeeds);
     search(refiner, nearby, answers, work);
   }
-  return stacked.proof();
+  return of_chains.proof();
 }
 
 Result TipsSearch::find_first(const Goal& goal, const SolveRequest& request,

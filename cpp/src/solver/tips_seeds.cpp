@@ -145,13 +145,14 @@ const std::vector<JointVector>& ArmSeeds::solve(int tip, const JointVector& q) {
   // Of a target in the base frame they are the same whatever the other arms do.
   if (found && goal_.tips()->frame_of(tip) < 0) return *found;
   found.emplace();
-  JointVector tried = q;
-  if (effort_ == Effort::quick && !arms_.try_arm(tip, tried)) return *found;
-  if (of_each_ == 1 && collector_ == nullptr && effort_ == Effort::quick) {
-    found->push_back(picked(tried, model_.tip(tip).arm->joints));
-  } else if (of_each_ > 1) {
+  const bool is_quick = effort_ == Effort::quick;
+  JointVector solved = q;
+  if (is_quick && !arms_.solve_arm(tip, Effort::quick, solved)) return *found;
+  // Which answer matters to those who collect.
+  const bool will_do = is_quick && collector_ == nullptr;
+  if (of_each_ > 1) {
     *found = arms_.solve_arm(tip, q, of_each_);
-  } else if (JointVector solved = q; arms_.solve_arm(tip, solved)) {
+  } else if (will_do || arms_.solve_arm(tip, Effort::full, solved)) {
     found->push_back(picked(solved, model_.tip(tip).arm->joints));
   }
   return *found;
@@ -187,39 +188,33 @@ bool ArmSeeds::is_too_far(std::size_t arms, const JointVector& q) const {
 }
 
 bool ChainSeeds::next_stage() {
-  if (index_ == kChainSeeds || is_enough_() || !work_.take()) return false;
-  q_.resize(goal_.model().dof);
-  goal_.model().joints.sample(random_, q_);
+  const bool is_quick = effort_ == Effort::quick;
+  if ((is_quick && index_ == kChainSeeds) || is_enough_() || !work_.take()) return false;
   const int lead = index_ % goal_.count();
-  is_loaded_ = arms_.try_chain(lead, q_);
-  for (const int tip : goal_.order()) {
-    if (is_loaded_ && tip != lead && arms_.has_arm(tip)) arms_.try_arm(tip, q_);
-  }
+  const bool at_random = is_quick || index_ >= goal_.count();
   ++index_;
-  return true;
-}
-
-bool StackedSeeds::next_stage() {
-  if (is_enough_() || !work_.take()) return false;
-  const int tips = goal_.count();
-  is_loaded_ = make_from_chain(index_ % tips, /*at_random=*/index_ >= tips);
-  ++index_;
-  return is_loaded_;
-}
-
-bool StackedSeeds::make_from_chain(int lead, bool at_random) {
   q_.resize(goal_.model().dof);
   goal_.model().joints.sample(random_, q_);
-  const Result of_chain = arms_.solve_chain(lead, at_random, q_);
+  const Result of_chain = arms_.solve_chain(lead, effort_, at_random, q_);
   // What is seen from another tip depends on where that is.
   if (!of_chain.success() && !at_random && goal_.frame_of(lead) < 0) {
     proof_ = unreachable_(lead, of_chain);
     return false;
   }
-  for (const int tip : goal_.order()) {
-    if (tip != lead) arms_.bring_closest(tip, q_);
-  }
+  is_loaded_ = of_chain.success() || !is_quick;
+  if (is_loaded_) bring_others(lead);
   return true;
+}
+
+void ChainSeeds::bring_others(int lead) {
+  for (const int tip : goal_.order()) {
+    if (tip == lead) continue;
+    if (effort_ == Effort::full) {
+      arms_.bring_closest(tip, q_);
+    } else if (arms_.has_arm(tip)) {
+      arms_.solve_arm(tip, effort_, q_);
+    }
+  }
 }
 
 }  // namespace iksel

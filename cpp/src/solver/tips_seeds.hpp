@@ -37,35 +37,6 @@ class SharedValues {
   const std::vector<double>& steps_;
 };
 
-/// Seeds for all joints together by little work: one chain after another is solved as a whole from
-/// a configuration at random, and the arms of the others behind it, or they stay.
-class ChainSeeds {
- public:
-  /// No more stages where `is_enough`. All must outlive this.
-  ChainSeeds(const TipsGoal& goal, ArmSearch& arms, std::uint64_t seed, Work& work,
-             const FunctionRef<bool()>& is_enough)
-      : goal_(goal), arms_(arms), random_(seed), work_(work), is_enough_(is_enough) {}
-
-  bool next_stage();
-  template <typename Refiner>
-  bool load(Refiner& refiner, int lane) {
-    if (!is_loaded_) return false;
-    is_loaded_ = false;
-    refiner.load_seed(lane, q_.data());
-    return true;
-  }
-
- private:
-  const TipsGoal& goal_;
-  ArmSearch& arms_;
-  Random random_;
-  Work& work_;
-  FunctionRef<bool()> is_enough_;
-  int index_ = 0;
-  JointVector q_;
-  bool is_loaded_ = false;
-};
-
 /// The arms solved behind one value of the shared joints after another; a stage has one value. Only
 /// where all arms could be solved are there seeds, which are answers already: one, or where many
 /// are wanted or a scene may refuse some, combinations of several solutions of each arm.
@@ -123,16 +94,19 @@ class ArmSeeds {
 /// Seeds for all joints together. One chain after another is solved as a whole, which sets the
 /// shared joints; the arms of the others are brought as close as they come behind it, or where
 /// there are none they are at random. (What ArmSeeds could solve in part is no better to begin
-/// from: of 84,000 reachable targets of seven pairs of arms none is lost either way.)
-class StackedSeeds {
+/// from: of 84,000 reachable targets of seven pairs of arms none is lost either way.) With little
+/// effort they are a few, from chains at random, and arms that are not solved at once are at random
+/// too.
+class ChainSeeds {
  public:
   /// Told about a chain that cannot be solved by itself; gives the proof of that.
   using Unreachable = FunctionRef<Proof(int tip, const Result& alone)>;
   /// No more stages where `is_enough`. All must outlive this.
-  StackedSeeds(const TipsGoal& goal, ArmSearch& arms, std::uint64_t seed, Work& work,
-               const Unreachable& unreachable, const FunctionRef<bool()>& is_enough)
+  ChainSeeds(const TipsGoal& goal, ArmSearch& arms, Effort effort, std::uint64_t seed, Work& work,
+             const Unreachable& unreachable, const FunctionRef<bool()>& is_enough)
       : goal_(goal),
         arms_(arms),
+        effort_(effort),
         random_(seed),
         work_(work),
         unreachable_(unreachable),
@@ -151,11 +125,12 @@ class StackedSeeds {
   }
 
  private:
-  /// False if the chain of that tip cannot be solved by itself.
-  bool make_from_chain(int lead, bool at_random);
+  /// Brings the other tips near behind a chain that was solved.
+  void bring_others(int lead);
 
   const TipsGoal& goal_;
   ArmSearch& arms_;
+  Effort effort_;
   Random random_;
   Work& work_;
   Unreachable unreachable_;

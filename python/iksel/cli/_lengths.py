@@ -13,7 +13,7 @@ from iksel.cli._parser import warning_line
 if TYPE_CHECKING:
     from iksel_cpp import Robot
 
-    from iksel._arrays import FloatArray
+    from iksel._base.arrays import FloatArray
 
 FARTHEST = 100.0
 """How many times the robot's reach a position in metres may be away unsuspected."""

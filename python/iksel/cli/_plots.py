@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from iksel_cpp import Status
 
-from iksel._figures import COLOURS, make_figure
-from iksel._qualities import manipulability
+from iksel._base.figures import COLOURS, make_figure
+from iksel._base.qualities import manipulability
 from iksel.cli._angles import turning
 
 if TYPE_CHECKING:
     from iksel_cpp import PathResult, Robot, Solver
 
-    from iksel._arrays import FloatArray, IntArray
+    from iksel._base.arrays import FloatArray, IntArray
     from iksel.cli._angles import Angles
 
 CELLS = 72

@@ -18,7 +18,7 @@ from iksel.cli._parser import POSE_COUNTS, parse_numbers, split_numbers
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from iksel._arrays import FloatArray
+    from iksel._base.arrays import FloatArray
     from iksel.cli._angles import Angles
 
 FILE_FORMS = """\

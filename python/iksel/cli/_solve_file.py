@@ -13,7 +13,7 @@ from typing import IO, TYPE_CHECKING, Any
 import numpy as np
 from iksel_cpp import InvalidArgumentError, Status
 
-from iksel._files import replaced
+from iksel._base.files import replaced
 from iksel.cli._answers import FORMATS
 from iksel.cli._lengths import warn_of_millimetres
 from iksel.cli._output import Progress, add_progress, print_json, print_pairs

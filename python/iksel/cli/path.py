@@ -14,7 +14,8 @@ from iksel.cli._lengths import warn_of_millimetres
 from iksel.cli._options import add_solver_options, given_database, solver_options
 from iksel.cli._output import add_json, print_json, print_pairs
 from iksel.cli._poses import FILE_FORMS, read_poses
-from iksel.cli._robot import add_robot, chain_text, load
+from iksel.cli._robot import chain_text, load
+from iksel.cli._robot_flags import add_robot
 from iksel.cli._solve_text import print_configurations
 
 if TYPE_CHECKING:
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 
     from iksel_cpp import PathResult, Robot
 
-    from iksel._arrays import FloatArray
+    from iksel._base.arrays import FloatArray
 
 EXIT_SOLVED, EXIT_NO_SOLUTION = 0, 1
 

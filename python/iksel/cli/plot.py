@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from iksel_cpp import InvalidArgumentError, Solver, Status
 
-from iksel import _extras as extras
-from iksel._figures import check_suffix, save_figure
+from iksel._base import extras
+from iksel._base.figures import check_suffix, save_figure
 from iksel.cli import _plots as plots
 from iksel.cli._angles import Angles
 from iksel.cli._lengths import warn_of_millimetres
@@ -18,7 +18,8 @@ from iksel.cli._options import add_solver_options, given_database, solver_option
 from iksel.cli._output import add_json, print_json, print_pairs
 from iksel.cli._parser import count_up_to, seed
 from iksel.cli._poses import FILE_FORMS, read_poses
-from iksel.cli._robot import add_robot, load
+from iksel.cli._robot import load
+from iksel.cli._robot_flags import add_robot
 
 if TYPE_CHECKING:
     import argparse

@@ -12,7 +12,8 @@ from iksel_cpp import Solver
 
 from iksel.cli._angles import Angles
 from iksel.cli._options import add_solver_options, given_database, solver_options
-from iksel.cli._robot import add_robot, load, of_files
+from iksel.cli._robot import load, of_files
+from iksel.cli._robot_flags import add_robot
 from iksel.view import PORT, Viewer
 
 EXAMPLES = """\

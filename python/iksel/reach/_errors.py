@@ -7,7 +7,7 @@ from typing import Any
 
 from iksel_cpp import Error
 
-from iksel import _extras
+from iksel._base import extras
 
 
 class MapError(Error):
@@ -41,4 +41,4 @@ def need(module: str) -> Any:
         MissingExtraError: It is not installed.
     """
     extra = "'iksel[reach]', with Python 3.11 or later"
-    return _extras.need(module, user="iksel.reach", extra=extra)
+    return extras.need(module, user="iksel.reach", extra=extra)

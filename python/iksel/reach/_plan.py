@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from iksel_cpp import Axis, Robot, Scene, Solver, SolverOptions, Task, TaskFrame
 
-from iksel._arrays import reject
+from iksel._base.arrays import reject
 from iksel.reach._cells import QUALITIES, array_specs, solve_cells
 from iksel.reach._grid import Grid, Orientations
 from iksel.reach._job import (
@@ -28,7 +28,7 @@ from iksel.reach._symmetry import first_axis, last_axis
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from iksel._arrays import FloatArray
+    from iksel._base.arrays import FloatArray
 
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 

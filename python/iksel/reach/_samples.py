@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from iksel_cpp import Proof, Robot, Solver, SolverOptions, Status
 
-from iksel._arrays import reject
+from iksel._base.arrays import reject
 from iksel.pose import pose_from_quaternion, quaternion_from_pose
 from iksel.reach._cells import UNKNOWN, flags
 from iksel.reach._job import Arrays, ArraySpec, Job, common_data
@@ -16,7 +16,7 @@ from iksel.reach._job import Arrays, ArraySpec, Job, common_data
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from iksel._arrays import FloatArray
+    from iksel._base.arrays import FloatArray
 
 TARGETS = ("configurations", "poses")
 MOST_SOLUTIONS = 254

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from iksel_cpp import InvalidArgumentError, JointType
 
-from iksel._arrays import reject
+from iksel._base.arrays import reject
 from iksel.pose import euler_from_pose, pose_from_euler, pose_from_quaternion
 
 if TYPE_CHECKING:
-    from iksel._arrays import FloatArray
+    from iksel._base.arrays import FloatArray
     from iksel.view.session import Session
 
 DEGREES = "degrees"

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from iksel_cpp import JointType
 
-from iksel._limits import violated_limits
-from iksel._qualities import limit_distance, manipulability
+from iksel._base.limits import violated_limits
+from iksel._base.qualities import limit_distance, manipulability
 from iksel.view._numbers import DEGREES, UNITS, Numbers
 from iksel.view.scene import RAMP
 from iksel.view.session import CHOICES

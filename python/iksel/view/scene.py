@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from iksel import _rotations as rotations
+from iksel._base import rotations
 from iksel.view._obstacles import draw_obstacles
 from iksel.view.skeleton import Placed, ball, cylinder
 from iksel.view.visuals import PLAIN, Visuals
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from iksel_cpp import Obstacle
 
-    from iksel._arrays import BoolArray, FloatArray, IntArray
+    from iksel._base.arrays import BoolArray, FloatArray, IntArray
     from iksel.view.skeleton import Skeleton
     from iksel.view.visuals import Piece
 

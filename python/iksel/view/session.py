@@ -17,15 +17,15 @@ from iksel_cpp import (
     Task,
 )
 
-from iksel._arrays import as_floats, reject
-from iksel._qualities import limit_distance, manipulability
+from iksel._base.arrays import as_floats, reject
+from iksel._base.qualities import limit_distance, manipulability
 from iksel.pose import check_pose
 
 if TYPE_CHECKING:
     import numpy.typing as npt
     from iksel_cpp import Result, Scene, SelfMotionEnd
 
-    from iksel._arrays import FloatArray
+    from iksel._base.arrays import FloatArray
     from iksel.pose import PoseLike
 
 TASKS = {

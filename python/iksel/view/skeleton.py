@@ -14,7 +14,7 @@ from iksel_cpp import JointType, LinkTree
 if TYPE_CHECKING:
     from iksel_cpp import Robot
 
-    from iksel._arrays import FloatArray, IntArray
+    from iksel._base.arrays import FloatArray, IntArray
 
 # Sizes as shares of the robot's reach: at the base, and at the TCP. Arms become thinner
 # towards their tools.

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from iksel_cpp import InvalidArgumentError, PathResult
 
-from iksel import _extras
-from iksel._arrays import as_floats, reject
+from iksel._base import extras
+from iksel._base.arrays import as_floats, reject
 from iksel.view._obstacles import corners
 from iksel.view._server import quietly, start
 from iksel.view.controls import Controls
@@ -29,9 +29,9 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     from iksel_cpp import Solver
 
-    from iksel._arrays import FloatArray
-    from iksel._packages import Packages
+    from iksel._base.arrays import FloatArray
     from iksel.description import Source
+    from iksel.formats._packages import Packages
     from iksel.pose import PoseLike
     from iksel.reach import Map
 
@@ -92,7 +92,7 @@ class Viewer:
                 what is no origin.
             UrdfError, UnknownNameError: `urdf` cannot be read.
         """
-        viser = _extras.need("viser", user="iksel.view", extra="'iksel[view]'")
+        viser = extras.need("viser", user="iksel.view", extra="'iksel[view]'")
         self.session = Session(solver, scene=scene)
         pieces, self.lost = (
             ([], [])

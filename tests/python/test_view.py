@@ -43,11 +43,12 @@ def show(made):
         viewer.close()
 
 
-def drag(viewer, pose) -> None:
-    """What viser does when the target is dragged in the browser."""
-    viewer.scene.target.position = pose[:3, 3]
-    viewer.scene.target.wxyz = iksel.quaternion_from_pose(pose)
-    for listen in viewer.scene.target._impl_aux.update_cb:
+def drag(viewer, pose, tip: int = 0) -> None:
+    """What viser does when a target is dragged in the browser."""
+    target = viewer.scene.targets[tip]
+    target.position = pose[:3, 3]
+    target.wxyz = iksel.quaternion_from_pose(pose)
+    for listen in target._impl_aux.update_cb:
         listen(None)
 
 
@@ -206,11 +207,11 @@ def test_tasks(show):
     # What each task reaches of: the pose, tilted as five joints cannot.
     drag(viewer, tilted)
     assert not viewer.session.solved
-    viewer.controls.task.value = "position only"
+    viewer.controls.tasks[0].value = "position only"
     assert viewer.session.solved
     reached = robot.fk(viewer.session.q)
     np.testing.assert_allclose(reached[:3, 3], tilted[:3, 3], atol=2e-6)
-    viewer.controls.task.value = "free spin"
+    viewer.controls.tasks[0].value = "free spin"
     drag(viewer, spun)
     assert viewer.session.solved
     reached = robot.fk(viewer.session.q)
@@ -224,8 +225,8 @@ def test_a_solver_s_own_task_is_offered(made):
     task = iksel.Task.upright()
     solver = iksel.Solver(made.robot("ur5e"), iksel.SolverOptions(task=task))
     session = view.Session(solver)
-    assert session.task_name == "the solver's"
-    assert session.task == task
+    assert session.task_names == ["the solver's"]
+    assert session.tasks["the solver's"] == task
     assert len(session.tasks) == 4
 
 
@@ -246,8 +247,8 @@ def test_self_motion_leaves_the_tool_where_it_is(show):
     assert np.ptp(elbows) > 1
     motion = session.solver.self_motion(pose, 0.02)
     np.testing.assert_array_equal(session.q, motion[len(motion) - 1].q[-1])
-    viewer.controls.task.value = "position only"
-    assert session.motion is None
+    viewer.controls.tasks[0].value = "position only"
+    assert session.arcs is None
     assert viewer.controls.motion.disabled
 
 

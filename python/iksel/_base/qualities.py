@@ -16,14 +16,16 @@ if TYPE_CHECKING:
 def manipulability(robot: Robot, q: FloatArray) -> FloatArray:
     """Yoshikawa's measure (1985) of configurations (n, dof): sqrt(det(J J^T)), (n,).
 
-    Below six joints sqrt(det(J^T J)): with any number of joints it is the product of
-    the singular values, which take several times as long to compute.
+    With fewer joints than the Jacobian has rows, six a tip, sqrt(det(J^T J)): with any
+    number of joints it is the product of the singular values, which take several times
+    as long to compute.
     """
     jacobian = robot.jacobian(q)
-    if jacobian.shape[-1] == 6:
+    rows, columns = jacobian.shape[-2:]
+    if columns == rows:
         return np.asarray(np.abs(np.linalg.det(jacobian)))
     turned = np.swapaxes(jacobian, -1, -2)
-    square = turned @ jacobian if jacobian.shape[-1] < 6 else jacobian @ turned
+    square = turned @ jacobian if columns < rows else jacobian @ turned
     return np.asarray(np.sqrt(np.maximum(np.linalg.det(square), 0.0)))
 
 

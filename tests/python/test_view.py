@@ -197,6 +197,31 @@ def test_the_branch_is_kept(show, cases):
         session.set_choice("x")
 
 
+@pytest.mark.parametrize("name", ["ur5e", "panda"])
+def test_a_tracker_goes_as_near_as_it_gets(show, name):
+    viewer = show(name)
+    session, robot = viewer.session, viewer.session.robot
+    viewer.controls.choice.value = "tracked"
+    tracker = session.solver.tracker(session.q, closest=True)
+    pose = session.target.copy()
+    statuses = set()
+    for step in range(60):
+        pose[0, 3] += 0.05 if step < 30 else -0.05
+        drag(viewer, pose)
+        expected = tracker.track(session.target, 1e3)
+        np.testing.assert_array_equal(session.q, expected.q)
+        assert session.status == expected.status
+        assert session.solved == (expected.status == iksel.Status.solved)
+        assert robot.within_limits(session.q)
+        statuses.add(session.status)
+    assert {iksel.Status.solved, iksel.Status.closest} <= statuses
+    # From elsewhere it begins anew.
+    elsewhere = robot.random_configurations(1, seed=SEED)[0]
+    viewer.show(elsewhere)
+    drag(viewer, robot.fk(elsewhere))
+    np.testing.assert_allclose(session.q, elsewhere, atol=1e-6)
+
+
 def test_tasks(show):
     viewer = show("xarm5")
     robot = viewer.session.robot

@@ -203,6 +203,35 @@ def test_every_choice_is_there_for_several(viewer, choice) -> None:
         assert np.abs(session.q - before).max() < 0.1
 
 
+def test_both_are_tracked_as_near_as_it_gets(viewer) -> None:
+    session = viewer.session
+    viewer.controls.choice.value = "tracked"
+    start, there = session.q.copy(), session.targets.copy()
+    for height in np.linspace(0, 0.05, 10):
+        pose = there[0].copy()
+        pose[2, 3] += height
+        drag(viewer, pose)
+        assert_there(viewer)
+    assert 0 < np.abs(session.q - start).max() < 1
+    for _ in range(30):
+        pose[0, 3] += 0.1
+        drag(viewer, pose)
+        assert session.robot.within_limits(session.q)
+    assert session.status == iksel.Status.closest
+    assert viewer.text.startswith("**closest** (")
+    assert "as near as it gets from here" in viewer.text
+    # It has gone after the target, by nearly as much as that went.
+    went = np.linalg.norm(session.robot.fk(session.q)[0, :3, 3] - there[0, :3, 3])
+    assert went > 0.1
+    assert session.errors()[0][0] > 1
+    before = session.q.copy()
+    viewer.controls.tasks[1].value = "position only"
+    np.testing.assert_array_equal(session.q, before)
+    assert "keeps to the solver's own task" in viewer.text
+    viewer.controls.tasks[1].value = "pose"
+    assert "keeps to the solver's own task" not in viewer.text
+
+
 def test_targets_are_typed_for_each(viewer, solver) -> None:
     fields = viewer.controls.numbers
     pose = viewer.session.targets[1].copy()

@@ -27,6 +27,13 @@ def words(diagnosis: Diagnosis) -> str:
     return f"{diagnosis.cause.name}{certain}: {diagnosis.message}"
 
 
+def not_alone(links: Sequence[str], reasons: Sequence[str]) -> str:
+    """Which tips have a reason of their own, by their links."""
+    lost = zip(links, reasons, strict=True)
+    names = ", ".join(link for link, reason in lost if reason)
+    return f"cannot be reached even by itself: {names}"
+
+
 def of_each_tip(
     solver: Solver, targets: FloatArray, tasks: Sequence[Task]
 ) -> list[str]:

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from iksel_cpp import JointType
+from iksel_cpp import JointType, Status
 
 from iksel._base.limits import violated_limits
 from iksel._base.qualities import limit_distance, manipulability
@@ -60,7 +60,8 @@ class Controls:
             "solution",
             CHOICES,
             initial_value=session.choice,
-            hint="nearest to where the robot is; of the same branch or none; any",
+            hint="nearest to where the robot is; of the same branch or none; where a "
+            "Tracker goes from there, as near as it gets; any",
         )
         self.ghosts = gui.add_checkbox(
             "all branches",
@@ -213,7 +214,8 @@ def describe(session: Session, solutions: int | None = None) -> str:
         took = "" if session.seconds is None else f" in {1e3 * session.seconds:.3f} ms"
         lines = [f"**solved**{took}"]
     else:
-        lines = [f"**no answer** ({1e3 * (session.seconds or 0):.3f} ms)"]
+        what = "closest" if session.status == Status.closest else "no answer"
+        lines = [f"**{what}** ({1e3 * (session.seconds or 0):.3f} ms)"]
         lines.append(session.reason)
     if robot.tips > 1:
         lines.append("\n".join(f"- {line}" for line in tip_lines(session)))

@@ -10,9 +10,10 @@ from iksel_cpp import InvalidArgumentError, SelfMotion, Solver, Status, Task
 
 from iksel._base.arrays import as_floats, reject
 from iksel.pose import check_pose, pose_error
+from iksel.view import _reasons as reasons
 from iksel.view._arcs import Arcs
 from iksel.view._begin import open_configuration
-from iksel.view._reasons import DEADLINE, OTHER_BRANCH, TOGETHER, of_each_tip, words
+from iksel.view._tracking import OTHER_TASKS, Tracking, words
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -28,9 +29,10 @@ TASKS = {
 }
 """What of a target has to be reached, by the name that the viewer shows."""
 OWN_TASK = "the solver's"
-CHOICES = ("nearest", "same branch", "any")
+CHOICES = ("nearest", "same branch", "tracked", "any")
 """Which of the targets' solutions is taken: that nearest to where the robot is, the one
-that an attempt from there leads to and no other, or the first that is found."""
+that an attempt from there leads to and no other, where a Tracker goes from there, if
+only as near as it gets, or the first that is found."""
 TIPS_DEADLINE = 0.2  # [s] for an answer of several tips, so that dragging goes on
 MOST_BRANCHES = 64
 SPACING = 0.02  # [rad] between the configurations of a self-motion
@@ -79,8 +81,10 @@ class Session:
         if own not in TASKS.values():
             self.tasks[OWN_TASK] = own
         name = next(name for name, task in self.tasks.items() if task == own)
-        self.task_names = [name] * self.robot.tips
+        self._own_tasks = [name] * self.robot.tips
+        self.task_names = self._own_tasks.copy()
         self.choice = CHOICES[0]
+        self._tracking = Tracking(solver, scene)
         self._arcs: Arcs | None = None
         self.show(open_configuration(solver, scene) if q is None else q)
 
@@ -166,6 +170,9 @@ class Session:
 
     def solve(self) -> None:
         """Solve for all targets at once; which solution is taken, `choice` says."""
+        if self.choice == "tracked":
+            self._track()
+            return
         started = time.perf_counter()
         result = self._search(**self._wishes())
         seconds = time.perf_counter() - started
@@ -173,28 +180,38 @@ class Session:
             self.q = result.q
             self._ended(result.status, "", seconds)
             return
-        if self.choice == "same branch" and self._has_another_branch():
-            self._ended(result.status, OTHER_BRANCH, seconds)
+        if self.choice == "same branch" and self._search():  # wherever the robot is
+            self._ended(result.status, reasons.OTHER_BRANCH, seconds)
             return
-        alone = of_each_tip(self.solver, self.targets, self._chosen())
+        alone = reasons.of_each_tip(self.solver, self.targets, self._chosen())
         if any(alone):
-            lost = zip(self.robot.tip_links, alone, strict=True)
-            names = ", ".join(link for link, reason in lost if reason)
-            reason = f"cannot be reached even by itself: {names}"
+            reason = reasons.not_alone(self.robot.tip_links, alone)
             self._ended(result.status, reason, seconds, alone)
             return
         if self.robot.tips > 1 and result.status != Status.in_collision:
-            self._ended(result.status, TOGETHER, seconds)
+            self._ended(result.status, reasons.TOGETHER, seconds)
             return
         diagnosis = self.solver.diagnose(
-            self.target, **self._given(), deadline=DEADLINE
+            self.target, **self._given(), deadline=reasons.DEADLINE
         )
         whole = diagnosis.unreachable_tip is None
         if whole and diagnosis.q_is_solution and diagnosis.q is not None:
             self.q = diagnosis.q
             self._ended(Status.solved, "", time.perf_counter() - started)
             return
-        self._ended(result.status, words(diagnosis), seconds)
+        self._ended(result.status, reasons.words(diagnosis), seconds)
+
+    def _track(self) -> None:
+        """Move on towards all targets, as far as a Tracker goes."""
+        if self.task_names != self._own_tasks:
+            self._ended(Status.not_converged, OTHER_TASKS, None)
+            return
+        started = time.perf_counter()
+        result = self._tracking.follow(self.q, self.target)
+        seconds = time.perf_counter() - started
+        if result.q is not None:
+            self.q = result.q
+        self._ended(result.status, words(result.status), seconds)
 
     def _search(self, **wishes: Any) -> Result:
         """An answer for all targets, if there is one to be found soon."""
@@ -221,10 +238,6 @@ class Session:
         if self.choice == "same branch":
             return {"seeds": self.q, "database_seeds": False}
         return {}
-
-    def _has_another_branch(self) -> bool:
-        """Whether the targets have a solution, wherever the robot is."""
-        return bool(self._search())
 
     def branches(self) -> FloatArray:
         """Solutions of the targets, (n, dof) [rad or m], the robot's own first.

@@ -74,14 +74,14 @@ def read_target(
         InvalidArgumentError: A bad pose, or not one for each tip.
     """
     poses = [angles.read_pose("--pose", pose) for pose in arguments.pose]
-    for pose, tip in zip(poses, range(robot.tips), strict=False):
-        warn_of_millimetres(robot.chain(tip), "--pose", pose)
     if len(poses) != robot.tips:
         raise InvalidArgumentError(
             f"--pose: given {len(poses)} times; expected once for each of "
             f"{', '.join(robot.tip_links)}"
         )
-    return np.stack(poses) if robot.tips > 1 else poses[0]
+    target = np.stack(poses) if robot.tips > 1 else poses[0]
+    warn_of_millimetres(robot, "--pose", target)
+    return target
 
 
 def read_request(

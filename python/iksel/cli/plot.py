@@ -13,7 +13,6 @@ from iksel._base import extras
 from iksel._base.figures import check_suffix, save_figure
 from iksel.cli import _plots as plots
 from iksel.cli._angles import Angles
-from iksel.cli._lengths import warn_of_millimetres
 from iksel.cli._options import add_solver_options, given_database, solver_options
 from iksel.cli._output import add_json, print_json, print_pairs
 from iksel.cli._parser import count_up_to, seed
@@ -148,8 +147,7 @@ def draw_branches(
 ) -> tuple[Any, dict[str, Any]]:
     """The figure of the solutions along a path, and what is in it."""
     angles = Angles(arguments)
-    poses = read_poses(arguments.poses, angles)
-    warn_of_millimetres(robot, arguments.poses, poses)
+    poses = read_poses(arguments.poses, angles, robot)
     solver = Solver(robot, solver_options(arguments), given_database(arguments))
     branches = plots.find_branches(solver, poses)
     facts = {

@@ -7,7 +7,7 @@ import sys
 import time
 from typing import TYPE_CHECKING, Any
 
-from iksel_cpp import InvalidArgumentError, Solver, Status
+from iksel_cpp import Solver, Status
 
 from iksel.cli._angles import Angles
 from iksel.cli._answers import FILE_FORMS as ANSWER_FILES
@@ -105,10 +105,6 @@ def run(arguments: argparse.Namespace) -> int:
     request = read_request(robot, arguments, angles)
     if arguments.poses is not None:
         answer_format(arguments)  # an error comes before the work
-        if robot.tips > 1:
-            raise InvalidArgumentError(
-                "--poses: its rows are poses of one tip; give each of several a --pose"
-            )
         solver = make_solver(robot, arguments)
         return solve_file(solver, request, arguments, angles)
     if arguments.pose is not None:

@@ -251,10 +251,7 @@ class Session:
 
     @property
     def arcs(self) -> Arcs | None:
-        """The self-motion at the target; None for robots and tasks without one.
-
-        That of several tips is not known by arcs.
-        """
+        """The self-motion at the one tip's target; None where it is not known."""
         if self.robot.tips > 1 or not self.tasks[self.task_names[0]].is_full_pose:
             return None
         if self._arcs is None:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from types import SimpleNamespace
 
 import numpy as np
@@ -144,6 +145,30 @@ def test_no_answer_is_waited_for(solver, monkeypatch) -> None:
     assert session.status == iksel.Status.out_of_time
     np.testing.assert_array_equal(session.q, before)
     assert session.reason.startswith("each tip can be at its target by itself, but")
+
+
+def test_answers_keep_free_of_the_scene(solver) -> None:
+    robot = solver.robot
+    links = [link for link in robot.link_names if link[:2] in ("l_", "r_")]
+    ball = (0.0, 0.0, 0.0, 0.05)
+    body = iksel.RobotSpheres({link: [ball] for link in links}, [])
+    scene = iksel.Scene(robot, body)
+    session = view.Session(solver, scene=scene)
+    before, targets = session.q.copy(), session.targets.copy()
+    assert scene.is_free(before[None]).all()
+    # What one hand has to touch is the reason, and neither chain's alone.
+    scene.add_sphere("ball", 0.1, targets[1, :3, 3])
+    targets[0, 2, 3] += 0.01
+    session.move_target(targets)
+    assert session.status == iksel.Status.in_collision
+    np.testing.assert_array_equal(session.q, before)
+    assert session.tip_reasons == ["", ""]
+    # Hand, flange and last wrist have the same ball.
+    assert re.fullmatch(r"collision: r_\w+ would touch ball", session.reason)
+    scene.remove("ball")
+    session.move_target(targets)
+    assert session.solved
+    assert scene.is_free(session.q[None]).all()
 
 
 def test_a_shared_joint_takes_both_targets_along(viewer) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from iksel_cpp import Diagnosis, Solver, Task
+    from iksel_cpp import Diagnosis, Result, Scene, Solver, Task
 
     from iksel._base.arrays import FloatArray
 
@@ -32,6 +32,19 @@ def not_alone(links: Sequence[str], reasons: Sequence[str]) -> str:
     lost = zip(links, reasons, strict=True)
     names = ", ".join(link for link, reason in lost if reason)
     return f"cannot be reached even by itself: {names}"
+
+
+def of_all_tips(scene: Scene | None, without: Result) -> str:
+    """Why there is no answer for several tips of which each can be there by itself.
+
+    Args:
+        scene: What answers keep free of.
+        without: The answer that there is without the scene.
+    """
+    contacts = scene.contacts(without.q) if scene and without.q is not None else []
+    if not contacts:
+        return TOGETHER
+    return f"collision: {contacts[0].link} would touch {contacts[0].other}"
 
 
 def of_each_tip(

@@ -188,14 +188,16 @@ class Session:
             reason = reasons.not_alone(self.robot.tip_links, alone)
             self._ended(result.status, reason, seconds, alone)
             return
-        if self.robot.tips > 1 and result.status != Status.in_collision:
-            self._ended(result.status, reasons.TOGETHER, seconds)
+        if self.robot.tips > 1:
+            wishes = {**self._wishes(), "scene": None}
+            without = self._search(**wishes) if self._scene else result
+            reason = reasons.of_all_tips(self._scene, without)
+            self._ended(result.status, reason, seconds)
             return
         diagnosis = self.solver.diagnose(
             self.target, **self._given(), deadline=reasons.DEADLINE
         )
-        whole = diagnosis.unreachable_tip is None
-        if whole and diagnosis.q_is_solution and diagnosis.q is not None:
+        if diagnosis.q_is_solution and diagnosis.q is not None:
             self.q = diagnosis.q
             self._ended(Status.solved, "", time.perf_counter() - started)
             return
@@ -215,9 +217,8 @@ class Session:
 
     def _search(self, **wishes: Any) -> Result:
         """An answer for all targets, if there is one to be found soon."""
-        return self.solver.solve(
-            self.target, **self._given(), **self._hurry(), **wishes
-        )
+        asked = {**self._given(), **self._hurry(), **wishes}
+        return self.solver.solve(self.target, **asked)
 
     def _hurry(self) -> dict[str, Any]:
         """When a search ends; that of one tip, whose end is near, by itself."""

@@ -41,10 +41,11 @@ def of_all_tips(scene: Scene | None, without: Result) -> str:
         scene: What answers keep free of.
         without: The answer that there is without the scene.
     """
-    contacts = scene.contacts(without.q) if scene and without.q is not None else []
-    if not contacts:
+    if scene is None or without.q is None:
         return TOGETHER
-    return f"collision: {contacts[0].link} would touch {contacts[0].other}"
+    for deepest in scene.contacts(without.q):
+        return f"collision: {deepest.link} would touch {deepest.other}"
+    return TOGETHER
 
 
 def of_each_tip(

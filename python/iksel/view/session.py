@@ -190,7 +190,7 @@ class Session:
             return
         if self.robot.tips > 1:
             wishes = {**self._wishes(), "scene": None}
-            without = self._search(**wishes) if self._scene else result
+            without = self._search(**wishes) if self._scene is not None else result
             reason = reasons.of_all_tips(self._scene, without)
             self._ended(result.status, reason, seconds)
             return

@@ -196,6 +196,14 @@ IK_GEO_ERRORS = {
 }
 """The same table, direct search: mean, deviation, least, quartiles 1 and 3, most."""
 
+NEWER_COMMIT = "96c863f1"
+"""Of https://github.com/wanweiwei07/one, which has the authors' newer selection."""
+
+NEWER_MS = 3.0
+"""All that it says of success or time: the title of its commit f807469 of 2026-05-13,
+"fixed ik sel issues, reduced t to 3ms", of Python, on which robot and machine is not
+said."""
+
 CVT_ATTEMPTS = (2, 6, 21)
 CVT = {
     "cvr038": (90.1, 97.7, 98.9),

@@ -45,10 +45,11 @@ def paper_cell(
 
 
 def newer_cells(robot: str, size: Size) -> list[Settings]:
-    """The paper's setting, the authors' newer one, and that in numpy."""
+    """The paper's setting, the authors' newer one, that without its pull, in numpy."""
     paper = paper_cell(robot, size, {})
     newer = {**paper, "preset": "paper2026"}
-    return [paper, newer, {**newer, "cell": "newer", "count": size.figure}]
+    free = {**newer, "overrides": {"null_space_gain": 0.0}}
+    return [paper, newer, free, {**newer, "cell": "newer", "count": size.figure}]
 
 
 def attempts_cell(robot: str, size: Size, overrides: dict[str, Any]) -> Settings:

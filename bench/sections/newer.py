@@ -21,7 +21,12 @@ if TYPE_CHECKING:
     from bench.size import Job, Size
     from bench.view import Report
 
-LABELS = ("`paper()`", "`paper(2026)`", "the same in numpy")
+LABELS = (
+    "`paper()`",
+    "`paper(2026)`",
+    "without the pull to the middle",
+    "`paper(2026)` in numpy",
+)
 
 
 def text(view: View) -> str:
@@ -34,6 +39,8 @@ def text(view: View) -> str:
         [label, *(_shown(of_robot[i]) for of_robot in results)]
         for i, label in enumerate(LABELS)
     ]
+    run = [f"{rate:.2f}; {NONE}, {n:.2f}, {NONE}" for rate, n in published.NEWER_RUN]
+    rows.append(["the authors' code, on 5,000 of the targets", *run])
     header = ["success %; mean time, attempts, steps", *HEADER]
     about = (
         "`SolverOptions.paper(2026)` is what the authors' later repository, "

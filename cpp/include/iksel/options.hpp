@@ -18,7 +18,7 @@ enum class Sampling {
   cvt,              ///< centroidal Voronoi tessellation, MacQueen updates (the paper's revision)
   low_discrepancy,  ///< additive recurrence R_d (generalised golden ratio)
   random,           ///< uniform, seeded
-  kmeans,           ///< centroids of random configurations, Lloyd's rounds (the paper's successor)
+  kmeans,           ///< centroids of random configurations, Lloyd's rounds (paper(2026))
 };
 
 /// Size of a grid, and of other samplings whose `samples` is 0 (paper, Table "KDTree sizes").

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Centroidal Voronoi tessellation by MacQueen's method (the sampling of the paper's revision), or
-// by Lloyd's over a pool of random points, k-means (that of its successor).
+// by Lloyd's over a pool of random points, k-means (that of paper(2026)).
 //
 // MacQueen draws one random point after another and moves the generator nearest to it to the mean
 // of all points it has drawn so far. Here the nearest generators are looked up for a round of draws

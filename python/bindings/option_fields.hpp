@@ -34,7 +34,12 @@ struct FieldTable<DatabaseOptions> {
               "Singular values below this part of the largest are cut off in the "
               "pseudo-inverses."),
         field("cvt_updates", &O::cvt_updates, "Updates of MacQueen's method (cvt only)."),
-        field("seed", &O::seed, "Seed of the random, cvt and low_discrepancy samplings."),
+        field("kmeans_pool", &O::kmeans_pool,
+              "Random configurations whose centroids the samples are; only read by kmeans."),
+        field("kmeans_rounds", &O::kmeans_rounds,
+              "Rounds in which each of these goes to the nearest sample, and each sample to the "
+              "mean of its own; only read by kmeans."),
+        field("seed", &O::seed, "Seed of all samplings but grid."),
         field("threads", &O::threads,
               "Threads that build; 0: one per core. The result has the same bits for any number.")};
   }
@@ -103,6 +108,12 @@ struct FieldTable<Paper> {
         field("min_step", &O::min_step,
               "An attempt ends, or that of pinv_rr restarts, when |sum of the step| is below this "
               "(dls, pinv, pinv_rr, cwpi) [rad or m]."),
+        field("limits_stop", &O::limits_stop,
+              "An attempt ends once it is within the tolerances, also outside the limits, instead "
+              "of going on (dls, pinv, pinv_rr, cwpi; the others always do)."),
+        field("null_space_gain", &O::null_space_gain,
+              "Part of the way to the middle of the limits that each step of a chain of more than "
+              "six joints makes besides, in the Jacobian's null space (dls, pinv, pinv_rr)."),
         field("limit_margin", &O::limit_margin,
               "Part of a joint's range, at each end, in which cwln and cwpi hold it back."),
         field("whole_turns", &O::whole_turns,

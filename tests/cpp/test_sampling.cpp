@@ -264,7 +264,7 @@ TEST(Build, RefusesOptionsOutOfRange) {
   EXPECT_NO_THROW(Database::build(robot, options));
   options.kmeans_pool = 0;
   EXPECT_THROW(Database::build(robot, options), iksel::InvalidArgumentError);
-  EXPECT_THROW(DatabaseOptions::paper(2024), iksel::InvalidArgumentError);
+  EXPECT_THROW((void)DatabaseOptions::paper(2024), iksel::InvalidArgumentError);
 }
 
 }  // namespace

@@ -20,7 +20,8 @@ constexpr int kBesideEnds = 16;
 /// The nearest leaf of the database. Returns whether the answers want no more.
 bool search_leaf(const FirstSearch& parts, bool is_screened, NearSeed& near, GivenSeeds& given) {
   Workspace::InLanes& lanes = *parts.workspace.lanes;
-  const bool are_known = lanes.roots || lanes.has_closed_ends();
+  const bool is_quick = parts.answers.effort() == Effort::quick;
+  const bool are_known = is_quick || lanes.roots || lanes.has_closed_ends();
   const int from_leaf = is_screened ? kBeforeSamples : are_known ? kBeforeRoots : lanes::kBlock;
   if (lanes.sweep || lanes.roots) {
     lanes.refiner.begin(parts.goal.task(), lanes.sweep ? kBeforeSweep : kBeforeBranches,

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gil.hpp"
@@ -129,10 +130,10 @@ inline std::vector<py::ssize_t> shape_for(const DoubleArray& q, std::vector<py::
 /// with the GIL released; Ctrl-C ends it.
 template <class T, class Function>
 py::array_t<T> map_joint_blocks(py::handle value, int dof, const char* name,
-                                const std::vector<py::ssize_t>& item, const Function& function) {
+                                std::vector<py::ssize_t> item, const Function& function) {
   const DoubleArray array = as_joint_rows(value, dof, name);
   const double* in = array.data();
-  py::array_t<T> out(shape_for(array, item));
+  py::array_t<T> out(shape_for(array, std::move(item)));
   T* to = out.mutable_data();
   if (array.ndim() == 1) {
     check_finite(in, dof, name);
@@ -140,12 +141,13 @@ py::array_t<T> map_joint_blocks(py::handle value, int dof, const char* name,
     return out;
   }
   const py::ssize_t rows = array.shape(0);
-  for (py::ssize_t i = 0; i < rows; ++i) check_row(in + i * dof, i, dof, name);
   constexpr py::ssize_t kBlock = 256;
   for (py::ssize_t first = 0; first < rows; first += kBlock) {
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    const py::ssize_t end = std::min(first + kBlock, rows);
     const GilRelease release;
-    function(in + first * dof, static_cast<std::size_t>(std::min(kBlock, rows - first)),
+    for (py::ssize_t i = first; i < end; ++i) check_row(in + i * dof, i, dof, name);
+    function(in + first * dof, static_cast<std::size_t>(end - first),
              to + first * (out.size() / rows));
   }
   return out;
@@ -154,15 +156,17 @@ py::array_t<T> map_joint_blocks(py::handle value, int dof, const char* name,
 /// The same with `function(const JointVector&, T* out)` for each configuration.
 template <class T = double, class Function>
 py::array_t<T> map_joints(py::handle value, int dof, const char* name,
-                          const std::vector<py::ssize_t>& item, const Function& function) {
+                          std::vector<py::ssize_t> item, const Function& function) {
   py::ssize_t size = 1;
   for (const py::ssize_t each : item) size *= each;
-  return map_joint_blocks<T>(
-      value, dof, name, item, [&](const double* q, std::size_t count, T* out) {
-        for (std::size_t i = 0; i < count; ++i, q += dof, out += size) {
-          function(JointVector(Eigen::Map<const Eigen::VectorXd>(q, dof)), out);
-        }
-      });
+  return map_joint_blocks<T>(value, dof, name, std::move(item),
+                             [&](const double* q, std::size_t count, T* out) {
+                               JointVector joints(dof);
+                               for (std::size_t i = 0; i < count; ++i, q += dof, out += size) {
+                                 joints = Eigen::Map<const Eigen::VectorXd>(q, dof);
+                                 function(joints, out);
+                               }
+                             });
 }
 
 /// What map_joints gives for a truth value.

@@ -9,16 +9,17 @@ py::array_t<double> fk(const Robot& self, const ArrayLike& q, Kinematics how) {
   const py::ssize_t tips = self.tips();
   std::vector<py::ssize_t> shape = {4, 4};
   if (tips > 1) shape.insert(shape.begin(), tips);
-  return map_joints(q, self.dof(), "q", shape, [&](const JointVector& joints, double* out) {
-    if (tips == 1) {
-      Eigen::Map<RowMajorPose>{out} = self.fk(joints, how).matrix();
-      return;
-    }
-    for (const Pose& pose : self.tip_poses(joints, how)) {
-      Eigen::Map<RowMajorPose>{out} = pose.matrix();
-      out += 16;
-    }
-  });
+  return map_joints(q, self.dof(), "q", std::move(shape),
+                    [&](const JointVector& joints, double* out) {
+                      if (tips == 1) {
+                        Eigen::Map<RowMajorPose>{out} = self.fk(joints, how).matrix();
+                        return;
+                      }
+                      for (const Pose& pose : self.tip_poses(joints, how)) {
+                        Eigen::Map<RowMajorPose>{out} = pose.matrix();
+                        out += 16;
+                      }
+                    });
 }
 
 py::array_t<double> jacobian(const Robot& self, const ArrayLike& q, Kinematics how) {

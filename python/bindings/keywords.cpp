@@ -31,13 +31,14 @@ std::string argument_doc(const char* name, std::string text) {
 
 py::handle Given::operator[](const char* name) const {
   for (std::size_t i = 0; i < keywords_.size(); ++i) {
-    if (std::strcmp(keywords_[i].field.name, name) == 0) return values_[i];
+    const auto& [field, by_default, of] = keywords_[i];
+    if (std::strcmp(field.name, name) == 0) return is_empty() ? py::handle(by_default) : values_[i];
   }
   throw std::logic_error(std::string("no keyword ") + name);
 }
 
 void Given::read_into(void* out, const std::type_info& type, int dof, const char* except) const {
-  for (std::size_t i = 0; i < keywords_.size(); ++i) {
+  for (std::size_t i = 0; i < keywords_.size() && !is_empty(); ++i) {
     const auto& [field, by_default, of] = keywords_[i];
     if (values_[i].ptr() == by_default.ptr() || *of != type) continue;
     if (std::strcmp(field.name, except) == 0) continue;

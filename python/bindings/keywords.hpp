@@ -49,12 +49,11 @@ void add_keywords(std::vector<Keyword>& all) {
 /// The keyword arguments of one call.
 class Given {
  public:
-  /// `values` are as many as keywords.
-  Given(const std::vector<Keyword>& keywords, const py::handle* values, bool is_empty)
-      : keywords_(keywords), values_(values), is_empty_(is_empty) {}
+  /// `values` are as many as keywords, or null: none is given, so that plain solving pays nothing.
+  Given(const std::vector<Keyword>& keywords, const py::handle* values)
+      : keywords_(keywords), values_(values) {}
 
-  /// Whether there are none, so that plain solving pays nothing for them.
-  [[nodiscard]] bool is_empty() const { return is_empty_; }
+  [[nodiscard]] bool is_empty() const { return values_ == nullptr; }
 
   /// The value of one of the method's keywords.
   [[nodiscard]] py::handle operator[](const char* name) const;
@@ -72,7 +71,6 @@ class Given {
 
   const std::vector<Keyword>& keywords_;
   const py::handle* values_;
-  bool is_empty_;
 };
 
 /// What a docstring says besides the keywords.
@@ -107,9 +105,12 @@ struct BoundKeywords {
       const auto given = static_cast<std::size_t>(count);
       method.function.check_self(arguments, given, ClassOf<Solver>::type);
       const Solver& self = made<Solver>(arguments[0]);
+      if (given == 2 && names == nullptr) {
+        return py::cast(F()(self, arguments[1], Given(method.keywords, nullptr))).release().ptr();
+      }
       std::array<py::handle, kMostArguments> values;
       method.function.bind(arguments + 1, given - 1, names, values.data());
-      const Given all(method.keywords, values.data() + 1, given == 2 && names == nullptr);
+      const Given all(method.keywords, values.data() + 1);
       return py::cast(F()(self, values[0], all)).release().ptr();
     });
   }

@@ -12,158 +12,133 @@ from iksel_cpp import ArcEnd, JointType
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
-    from iksel_cpp import (
-        BatchResult,
-        CoupledLimit,
-        Result,
-        Robot,
-        RobotSpheres,
-        SelfMotion,
-        SelfMotionArc,
-        SelfMotionEnd,
-        Solutions,
-    )
-
-    from iksel._arrays import FloatArray
-
 MOST_ROWS = 20
 """Rows that a table of many answers shows."""
 
 
-def number(value: float, digits: int = 5) -> str:
-    """0.0123, with at most so many significant digits."""
+def text(name: str, self: Any) -> str:
+    """What repr() shows of an object of the core's class of that name."""
+    return f"{name}({TEXTS[name](self)})"
+
+
+def page(name: str, self: Any) -> str:
+    """What notebooks show of it, a table in HTML."""
+    caption, header, rows = PAGES[name](self)
+    body = "".join(_row(cells, "td") for cells in rows)
+    return (
+        f"<table><caption>{html.escape(caption)}</caption><thead>{_row(header, 'th')}"
+        f"</thead><tbody>{body}</tbody></table>"
+    )
+
+
+def _short(value: float, digits: int = 5) -> str:
     return f"{value:.{digits}g}"
 
 
-def numbers(values: Iterable[float]) -> str:
-    """[0.3, -1.2, 1.5], rounded."""
-    return f"[{', '.join(map(number, values))}]"
+def _numbers(values: Iterable[float]) -> str:
+    return f"[{', '.join(map(_short, values))}]"
 
 
-def verdict(answer: Result | Solutions | SelfMotion) -> str:
+def _errors(result: Any) -> list[str]:
+    return [_short(x, 3) for x in (result.position_error, result.rotation_error)]
+
+
+def _verdict(answer: Any) -> str:
     """Status, and what proves that there is no answer: not_converged, proven: reach."""
     is_proven = str(answer.proof) in {"reach", "target", "closed_form"}
     proof = f", proven: {answer.proof}" if is_proven and not answer.success else ""
     return f"{answer.status}{proof}"
 
 
-def end_of(arc: SelfMotionEnd) -> str:
-    """What ends an arc: joint 3 at its upper limit."""
-    if arc.kind != ArcEnd.limit:
-        return str(arc.kind)
-    what = "joint" if arc.coupled_limit < 0 else "sum"
-    which = (arc.joint if arc.coupled_limit < 0 else arc.coupled_limit) + 1
-    return f"{what} {which} at its {'upper' if arc.at_upper else 'lower'} limit"
+def _result(s: Any) -> str:
+    position, rotation = _errors(s)
+    errors = f"position_error={position}, rotation_error={rotation}"
+    q = "" if s.q is None else f", q={_numbers(s.q)}, {errors}"
+    return f"{_verdict(s)}{q}, attempts={s.attempts}, iterations={s.iterations}"
 
 
-def arguments(limit: CoupledLimit) -> str:
-    """Those of its constructor that are not at their default."""
-    lower = "" if limit.lower == -math.inf else f", lower={limit.lower!r}"
-    upper = "" if limit.upper == math.inf else f", upper={limit.upper!r}"
-    return f"({limit.coefficients}{lower}{upper})"
+def _solutions(s: Any) -> str:
+    best = f", best q={_numbers(s[0].q)}" if len(s) else ""
+    return f"{_verdict(s)}, {len(s)} solutions{best}"
 
 
-def chain(robot: Robot) -> str:
-    """The robot's name and links."""
-    tips = f"tip_links={robot.tip_links}" if robot.tips > 1 else ""
-    tip = tips or f"tip_link='{robot.tip_link}'"
-    return f"({robot.name!r}, dof={robot.dof}, base_link='{robot.base_link}', {tip})"
+def _path(s: Any) -> str:
+    first = "" if s else f", first_unreachable={s.first_unreachable}"
+    return f"{s.status}, {len(s.q)} waypoints{first}"
 
 
-def answer(result: Result) -> str:
-    """Status, joint values and work."""
-    q = errors = ""
-    if result.q is not None:
-        position = number(result.position_error, 3)
-        rotation = number(result.rotation_error, 3)
-        q = f", q={numbers(result.q)}"
-        errors = f", position_error={position}, rotation_error={rotation}"
-    work = f"attempts={result.attempts}, iterations={result.iterations}"
-    return f"({verdict(result)}{q}{errors}, {work})"
+def _limit(s: Any) -> str:
+    lower = "" if s.lower == -math.inf else f", lower={s.lower!r}"
+    upper = "" if s.upper == math.inf else f", upper={s.upper!r}"
+    return f"{s.coefficients}{lower}{upper}"
 
 
-def ends(arc: SelfMotionArc) -> str:
-    """How an arc ends."""
-    way = f"from {end_of(arc.begin)} to {end_of(arc.end)}"
-    return "closed" if arc.is_closed else way
+def _curve(s: Any) -> str:
+    q = f", q={_short(s.q[0])}..{_short(s.q[-1])}" if len(s.q) else ""
+    return f"{s.joint!r}, {s.follows!r}, {len(s.q)} points{q}"
 
 
-def span(q: FloatArray) -> str:
-    """Where a curve begins and ends."""
-    return f", q={number(q[0])}..{number(q[-1])}" if len(q) else ""
+def _robot(s: Any) -> str:
+    tip = f"tip_links={s.tip_links}" if s.tips > 1 else f"tip_link='{s.tip_link}'"
+    return f"{s.name!r}, dof={s.dof}, base_link='{s.base_link}', {tip}"
 
 
-def count_spheres(self: RobotSpheres) -> int:
-    """All of them."""
-    return sum(map(len, self.links.values()))
+def _spheres(s: Any) -> str:
+    count = sum(map(len, s.links.values()))
+    return f"{count} on {len(s.links)} links, {len(s.pairs)} pairs"
 
 
-# What stands behind the name of the class.
+def _end(s: Any) -> str:
+    if s.kind != ArcEnd.limit:
+        return str(s.kind)
+    what, i = ("joint", s.joint) if s.coupled_limit < 0 else ("sum", s.coupled_limit)
+    return f"{what} {i + 1} at its {'upper' if s.at_upper else 'lower'} limit"
+
+
+def _arc(s: Any) -> str:
+    ends = "closed" if s.is_closed else f"from {_end(s.begin)} to {_end(s.end)}"
+    return f"{len(s)} configurations, length {_short(s.length, 3)}, {ends}"
+
+
 TEXTS: dict[str, Callable[[Any], str]] = {
-    "Robot": chain,
+    "BatchResult": lambda s: f"{s.solved} of {len(s)} solved",
+    "Contact": lambda s: f"'{s.link}', '{s.other}', depth={_short(s.depth)}",
+    "CoupledLimit": _limit,
+    "Database": lambda s: f"{s.size} samples, dof={s.dof}, {s.options!r}",
+    "Diagnosis": lambda s: f"{s.cause}: {s.message}",
+    "LinkTree": lambda s: f"{s.robot_name!r}, {len(s.links)} links, {len(s.tips)} tips",
     "LinkTreeJoint": lambda s: (
-        f"('{s.name}', {s.type}, '{s.parent_link}' -> '{s.child_link}')"
+        f"'{s.name}', {s.type}, '{s.parent_link}' -> '{s.child_link}'"
     ),
-    "LinkTree": lambda s: (
-        f"({s.robot_name!r}, {len(s.links)} links, {len(s.tips)} tips)"
-    ),
-    "CoupledLimit": arguments,
-    "MimicCurve": lambda s: (
-        f"({s.joint!r}, {s.follows!r}, {len(s.q)} points{span(s.q)})"
-    ),
-    "Structure": lambda s: f"({s.kind}: {s.description})",
-    "Database": lambda s: f"({s.size} samples, dof={s.dof}, {s.options!r})",
-    "Selector": lambda s: f"({s.database!r})",
-    "Solver": lambda s: f"({s.robot!r}, {s.options!r})",
-    "Objective": lambda s: f"({s.kind})",
-    "Tracker": lambda s: f"({s.__getstate__()['solver'].robot!r}, q={numbers(s.q)})",
-    "Contact": lambda s: f"('{s.link}', '{s.other}', depth={number(s.depth)})",
-    "Obstacle": lambda s: f"({s.shape})",
-    "RobotSpheres": lambda s: (
-        f"({count_spheres(s)} on {len(s.links)} links, {len(s.pairs)} pairs)"
-    ),
+    "MimicCurve": _curve,
+    "Objective": lambda s: str(s.kind),
+    "Obstacle": lambda s: str(s.shape),
+    "PathResult": _path,
+    "Result": _result,
+    "Robot": _robot,
+    "RobotSpheres": _spheres,
     "Scene": lambda s: (
-        f"({s.robot!r}, {len(s.obstacles)} obstacles, {len(s.attached)} attached)"
+        f"{s.robot!r}, {len(s.obstacles)} obstacles, {len(s.attached)} attached"
     ),
-    "Result": answer,
-    "Solutions": lambda s: (
-        f"({verdict(s)}, {len(s)} solutions"
-        f"{f', best q={numbers(s[0].q)}' if len(s) else ''})"
-    ),
-    "BatchResult": lambda s: f"({s.solved} of {len(s)} solved)",
-    "PathResult": lambda s: (
-        f"({s.status}, {len(s.q)} waypoints"
-        f"{'' if s else f', first_unreachable={s.first_unreachable}'})"
-    ),
-    "Diagnosis": lambda s: f"({s.cause}: {s.message})",
-    "SelfMotionEnd": lambda s: f"({end_of(s)})",
-    "SelfMotionArc": lambda s: (
-        f"({len(s)} configurations, length {number(s.length, 3)}, {ends(s)})"
-    ),
-    "SelfMotion": lambda s: f"({verdict(s)}, {len(s)} arcs)",
+    "Selector": lambda s: repr(s.database),
+    "SelfMotion": lambda s: f"{_verdict(s)}, {len(s)} arcs",
+    "SelfMotionArc": _arc,
+    "SelfMotionEnd": _end,
+    "Solutions": _solutions,
+    "Solver": lambda s: f"{s.robot!r}, {s.options!r}",
+    "Structure": lambda s: f"{s.kind}: {s.description}",
+    "Tracker": lambda s: f"{s.__getstate__()['solver'].robot!r}, q={_numbers(s.q)}",
 }
 
-
-def text(name: str, self: Any) -> str:
-    """What repr() shows of an object of the core's class of that name."""
-    return f"{name}{TEXTS[name](self)}"
+Table = tuple[str, "Sequence[str]", "Iterable[Sequence[str]]"]
 
 
-def table(caption: str, header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A small table of HTML, whatever text it is given."""
-
-    def row(cells: Sequence[str], tag: str) -> str:
-        tagged = (f"<{tag}>{html.escape(each)}</{tag}>" for each in cells)
-        return f"<tr>{''.join(tagged)}</tr>"
-
-    body = "".join(row(cells, "td") for cells in rows)
-    return (
-        f"<table><caption>{html.escape(caption)}</caption><thead>{row(header, 'th')}"
-        f"</thead><tbody>{body}</tbody></table>"
-    )
+def _row(cells: Sequence[str], tag: str) -> str:
+    tagged = (f"<{tag}>{html.escape(each)}</{tag}>" for each in cells)
+    return f"<tr>{''.join(tagged)}</tr>"
 
 
-def first_rows(answers: Solutions | BatchResult, cells: Any) -> list[list[str]]:
+def _first_rows(answers: Any, cells: Callable[[Any], list[str]]) -> list[list[str]]:
     """Cells of the first answers, and how many more there are."""
     shown = min(len(answers), MOST_ROWS)
     rows = [[str(i), *cells(answers[i])] for i in range(shown)]
@@ -171,76 +146,54 @@ def first_rows(answers: Solutions | BatchResult, cells: Any) -> list[list[str]]:
     return [*rows, [f"... and {rest} more"]] if rest else rows
 
 
-def robot_page(self: Robot) -> str:
-    """A table of the joints."""
+def _robot_table(s: Any) -> Table:
+    columns = zip(
+        s.joint_names, s.joint_types, s.lower, s.upper, s.velocity_limit, strict=True
+    )
     rows = [
-        [
-            self.joint_names[i],
-            f"{kind} {'[m]' if kind == JointType.prismatic else '[rad]'}",
-            *(
-                number(each[i])
-                for each in (self.lower, self.upper, self.velocity_limit)
-            ),
-        ]
-        for i, kind in enumerate(self.joint_types)
+        [name, f"{kind} {'[m]' if kind == JointType.prismatic else '[rad]'}"]
+        + [_short(x) for x in limits]
+        for name, kind, *limits in columns
     ]
-    caption = f"{self.name}: {self.base_link} to {', '.join(self.tip_links)}"
-    return table(caption, ["joint", "type", "lower", "upper", "velocity limit"], rows)
+    caption = f"{s.name}: {s.base_link} to {', '.join(s.tip_links)}"
+    return caption, ["joint", "type", "lower", "upper", "velocity limit"], rows
 
 
-def result_page(self: Result) -> str:
-    """A table of what it says."""
-    rows = []
-    if self.q is not None:
-        rows += [
-            ("q", numbers(self.q)),
-            ("position error [m]", number(self.position_error, 3)),
-            ("rotation error [rad]", number(self.rotation_error, 3)),
-        ]
-    rows += [] if self else [("proof", str(self.proof))]
-    rows += [("attempts", str(self.attempts)), ("iterations", str(self.iterations))]
-    return table("Result", ["status", str(self.status)], rows)
+def _result_table(s: Any) -> Table:
+    names = ("position error [m]", "rotation error [rad]")
+    q = (
+        []
+        if s.q is None
+        else [("q", _numbers(s.q)), *zip(names, _errors(s), strict=True)]
+    )
+    proof = [] if s else [("proof", str(s.proof))]
+    work = [("attempts", str(s.attempts)), ("iterations", str(s.iterations))]
+    return "Result", ["status", str(s.status)], [*q, *proof, *work]
 
 
-def batch_page(self: BatchResult) -> str:
-    """A table of the first answers."""
-
-    def cells(each: Result) -> list[str]:
-        q = ["", "", ""]
-        if each.q is not None:
-            errors = (each.position_error, each.rotation_error)
-            q = [numbers(each.q), *(number(x, 3) for x in errors)]
+def _batch_table(s: Any) -> Table:
+    def cells(each: Any) -> list[str]:
+        q = ["", "", ""] if each.q is None else [_numbers(each.q), *_errors(each)]
         proof = "" if each else str(each.proof)
         return [str(each.status), proof, *q, str(each.attempts), str(each.iterations)]
 
     header = ["", "status", "proof", "q", "position error [m]", "rotation error [rad]"]
-    caption = f"{self.solved} of {len(self)} solved"
-    return table(caption, [*header, "attempts", "iterations"], first_rows(self, cells))
+    caption = f"{s.solved} of {len(s)} solved"
+    return caption, [*header, "attempts", "iterations"], _first_rows(s, cells)
 
 
-def solutions_page(self: Solutions) -> str:
-    """A table of the first solutions."""
-
-    def cells(each: Result) -> list[str]:
-        errors = (each.position_error, each.rotation_error, each.move)
-        q = () if each.q is None else each.q
-        return [*map(number, q), *(number(x, 3) for x in errors)]
-
-    joints = [f"q[{i}]" for i in range(self.q.shape[1])]
+def _solutions_table(s: Any) -> Table:
+    joints = [f"q[{i}]" for i in range(s.q.shape[1])]
     header = ["", *joints, "position error [m]", "rotation error [rad]", "move"]
-    return table(
-        f"{len(self)} solutions, {verdict(self)}", header, first_rows(self, cells)
+    rows = _first_rows(
+        s, lambda each: [*map(_short, each.q), *_errors(each), _short(each.move, 3)]
     )
+    return f"{len(s)} solutions, {_verdict(s)}", header, rows
 
 
-PAGES: dict[str, Callable[[Any], str]] = {
-    "Robot": robot_page,
-    "Result": result_page,
-    "BatchResult": batch_page,
-    "Solutions": solutions_page,
+PAGES: dict[str, Callable[[Any], Table]] = {
+    "BatchResult": _batch_table,
+    "Result": _result_table,
+    "Robot": _robot_table,
+    "Solutions": _solutions_table,
 }
-
-
-def page(name: str, self: Any) -> str:
-    """What notebooks show."""
-    return PAGES[name](self)

@@ -160,7 +160,7 @@ py::array_t<T> map_joints(py::handle value, int dof, const char* name,
   py::ssize_t size = 1;
   for (const py::ssize_t each : item) size *= each;
   return map_joint_blocks<T>(value, dof, name, std::move(item),
-                             [&](const double* q, std::size_t count, T* out) {
+                             [&function, dof, size](const double* q, std::size_t count, T* out) {
                                JointVector joints(dof);
                                for (std::size_t i = 0; i < count; ++i, q += dof, out += size) {
                                  joints = Eigen::Map<const Eigen::VectorXd>(q, dof);

@@ -54,11 +54,13 @@ void FieldTable<PyBatchResult>::check(const B& batch) {
     throw_wrong_shape(name.c_str(), "a (" + std::to_string(n) + ",) array", array);
   }
   for (py::ssize_t i = 0; i < n; ++i) {
-    const auto require = [&](bool holds, const char* field, const char* expected) {
-      if (!holds) refuse_state(of + field, expected, "another in row " + std::to_string(i));
+    const auto require = [&](bool holds, const char* field, const char* expected, int got = -1) {
+      if (holds) return;
+      const std::string value = got < 0 ? "another" : std::to_string(got);
+      refuse_state(of + field, expected, value + " in row " + std::to_string(i));
     };
-    require(batch.status.at(i) < kStatuses, "status", "values of Status");
-    require(batch.proof.at(i) < kProofs, "proof", "values of Proof");
+    require(batch.status.at(i) < kStatuses, "status", "values of Status", batch.status.at(i));
+    require(batch.proof.at(i) < kProofs, "proof", "values of Proof", batch.proof.at(i));
     const auto status = static_cast<Status>(batch.status.at(i));
     const bool solved = status == Status::solved;
     const bool has_q = has_joints(status);

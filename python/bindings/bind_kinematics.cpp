@@ -10,7 +10,7 @@ py::array_t<double> fk(const Robot& self, const ArrayLike& q, Kinematics how) {
   std::vector<py::ssize_t> shape = {4, 4};
   if (tips > 1) shape.insert(shape.begin(), tips);
   return map_joints(q, self.dof(), "q", std::move(shape),
-                    [&](const JointVector& joints, double* out) {
+                    [&self, how, tips](const JointVector& joints, double* out) {
                       if (tips == 1) {
                         Eigen::Map<RowMajorPose>{out} = self.fk(joints, how).matrix();
                         return;
@@ -25,14 +25,15 @@ py::array_t<double> fk(const Robot& self, const ArrayLike& q, Kinematics how) {
 py::array_t<double> jacobian(const Robot& self, const ArrayLike& q, Kinematics how) {
   const int rows = 6 * self.tips();
   const int dof = self.dof();
-  return map_joints(q, dof, "q", {rows, dof}, [&](const JointVector& joints, double* out) {
-    Eigen::Map<RowMajorMatrix> all(out, rows, dof);
-    if (rows == 6) {
-      all = self.jacobian(joints, how);
-    } else {
-      all = self.tip_jacobians(joints, how);
-    }
-  });
+  return map_joints(q, dof, "q", {rows, dof},
+                    [&self, how, rows, dof](const JointVector& joints, double* out) {
+                      Eigen::Map<RowMajorMatrix> all(out, rows, dof);
+                      if (rows == 6) {
+                        all = self.jacobian(joints, how);
+                      } else {
+                        all = self.tip_jacobians(joints, how);
+                      }
+                    });
 }
 
 py::array_t<double> link_poses(const Robot& self, const ArrayLike& q,

@@ -43,7 +43,7 @@ from bench.report import (
 )
 from bench.rivals import RIVALS
 from bench.run import run_jobs
-from bench.sections import learned, no
+from bench.sections import learned, newer, no
 from bench.settings import WORK
 from bench.size import FULL, QUICK, SEED
 from bench.store import Store
@@ -75,7 +75,11 @@ ALONE = {
 }
 """Commands that measure by themselves and print."""
 
-SECTIONS = {"analytic": analytic_command, "whole_body": whole_body_command}
+SECTIONS = {
+    "analytic": analytic_command,
+    "paper2026": newer,
+    "whole_body": whole_body_command,
+}
 """Commands whose results are kept as the report's are."""
 
 EPILOG = f"""\

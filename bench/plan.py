@@ -127,6 +127,7 @@ SECONDS_PER_TARGET = {
     "ikgeo_enumeration": 1e-4,
     "first_attempt": 1e-3,
     "learned": 5e-3,
+    "newer": 1e-2,
     "no": 1e-3,
     "asked": 3e-3,
     "near_branches": 1e-3,

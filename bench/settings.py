@@ -13,6 +13,7 @@ import iksel
 from bench.arms import load_arm
 from bench.machine import fingerprint
 from bench.targets import cached_targets
+from iksel.cli._options import PRESETS
 
 if TYPE_CHECKING:
     from bench.store import Settings
@@ -27,9 +28,7 @@ DATABASE = "database."
 
 def solver_options(preset: str, overrides: dict[str, Any]) -> iksel.SolverOptions:
     """A preset with fields changed; database fields are written database.FIELD."""
-    options = (
-        iksel.SolverOptions.paper() if preset == "paper" else iksel.SolverOptions()
-    )
+    options = PRESETS[preset]()
     database = {
         name.removeprefix(DATABASE): value
         for name, value in overrides.items()
@@ -65,7 +64,7 @@ def _database(robot: str, fields: str) -> iksel.Database:
     """A database by its options as JSON; those that take long are kept in files."""
     options = iksel.DatabaseOptions(**json.loads(fields))
     arm = load_arm(robot)
-    if options.sampling != iksel.Sampling.cvt:
+    if options.sampling not in (iksel.Sampling.cvt, iksel.Sampling.kmeans):
         return iksel.Database.build(arm.robot, options)
     name = hashlib.sha256(f"{fingerprint()} {fields}".encode()).hexdigest()[:20]
     path = WORK / "databases" / f"{robot}-{name}.iksel"

@@ -44,6 +44,14 @@ def paper_cell(
     }
 
 
+def newer_cells(robot: str, size: Size) -> list[Settings]:
+    """The paper's setting, the authors' newer one, that without its pull, in numpy."""
+    paper = paper_cell(robot, size, {})
+    newer = {**paper, "preset": "paper2026"}
+    free = {**newer, "overrides": {"null_space_gain": 0.0}}
+    return [paper, newer, free, {**newer, "cell": "newer", "count": size.figure}]
+
+
 def attempts_cell(robot: str, size: Size, overrides: dict[str, Any]) -> Settings:
     """Success after each number of attempts."""
     return {**paper_cell(robot, size, overrides), "cell": "attempts"}
@@ -144,6 +152,14 @@ def artefact_rows(size: Size) -> dict[str, dict[str, Any]]:
     return {**rows, "low_discrepancy, medium": even}
 
 
+def newer_jobs(size: Size) -> list[Job]:
+    """The cells of the authors' newer selection, each robot's a job."""
+    return [
+        Job(f"paper, {short}, newer selection", "paper", newer_cells(robot, size))
+        for robot, short in PAPER_ARMS.items()
+    ]
+
+
 def paper_jobs(size: Size) -> list[Job]:
     """All jobs of the paper."""
     jobs = []
@@ -174,7 +190,7 @@ def paper_jobs(size: Size) -> list[Job]:
     rows = artefact_rows(size).values()
     artefact = [artefact_cell("ur3_wrs", size, row) for row in rows]
     jobs.append(Job("paper, grid artefact", "paper", artefact, timed=False))
-    return jobs
+    return [*jobs, *newer_jobs(size)]
 
 
 def _table_cells(

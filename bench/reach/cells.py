@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from bench.chain import Array
-    from iksel._arrays import IntArray
+    from iksel._base.arrays import IntArray
     from iksel.reach._grid import Grid
 
 CELLS = 10_000

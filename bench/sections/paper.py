@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bench.paper import plan as paper_plan
-from bench.sections import ablations, claims, comparisons, curves
+from bench.sections import ablations, claims, comparisons, curves, newer
 from bench.settings import command_line
 
 if TYPE_CHECKING:
@@ -37,5 +37,6 @@ def text(view: View) -> str:
         *curves.parts(view),
         claims.text(view),
         *comparisons.parts(view),
+        newer.text(view),
     ]
     return "\n\n".join(part for part in parts if part)

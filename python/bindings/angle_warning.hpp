@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The warning that joint values look like degrees, as iksel._angles gives it for other angles.
+// The warning that joint values look like degrees, as iksel._base.angles gives it for other angles.
 #pragma once
 
 #include <algorithm>

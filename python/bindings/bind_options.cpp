@@ -62,7 +62,7 @@ void bind_options(py::module_& m) {
   bind_enum<GrowthStop>(m);
 
   auto database = bind_keyword_class<DatabaseOptions>(m, /*writable=*/true);
-  def_static(database, "paper", "", fn<&DatabaseOptions::paper>);
+  def_static(database, "paper", "year=2025", fn<&DatabaseOptions::paper>);
   def(database, "validate", "", fn<&DatabaseOptions::validate>);
 
   // Immutable, so that nobody changes the copy that SolverOptions.strategy is.
@@ -72,7 +72,7 @@ void bind_options(py::module_& m) {
   def(paper, "validate", "", fn<&Paper::validate>);
 
   auto solver = bind_keyword_class<SolverOptions>(m, /*writable=*/true);
-  def_static(solver, "paper", "", fn<&SolverOptions::paper>);
+  def_static(solver, "paper", "year=2025", fn<&SolverOptions::paper>);
   def(solver, "validate", "", fn<&SolverOptions::validate>);
 }
 

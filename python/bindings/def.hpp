@@ -112,12 +112,12 @@ void add_properties(py::class_<Class>& cls, const char* name, Get get, More... m
   if constexpr (sizeof...(More) > 0) add_properties(cls, more...);
 }
 
-/// repr(), as iksel._show has it for the class.
+/// repr(), as iksel._base.show has it for the class.
 template <class Class>
 void def_repr(py::class_<Class>& cls) {
   def(cls, "__repr__", "", [](const Class& self) {
     const py::object object = py::cast(self, py::return_value_policy::reference);
-    return py::str(of_package("iksel._show", "text")(ClassOf<Class>::name, object));
+    return py::str(of_package("iksel._base.show", "text")(ClassOf<Class>::name, object));
   });
 }
 
@@ -126,7 +126,7 @@ template <class Class>
 void def_page(py::class_<Class>& cls) {
   def(cls, "_repr_html_", "", [](const Class& self) {
     const py::object object = py::cast(self, py::return_value_policy::reference);
-    return py::str(of_package("iksel._show", "page")(ClassOf<Class>::name, object));
+    return py::str(of_package("iksel._base.show", "page")(ClassOf<Class>::name, object));
   });
 }
 

@@ -13,8 +13,8 @@ const Field& find_field(py::handle key, const StructType& type) {
   }
   py::list known;
   for (const Field& field : type.fields) known.append(field.name);
-  throw SignatureError(
-      py::cast<std::string>(of_package("iksel._keywords", "no_field")(type.name, name, known)));
+  throw SignatureError(py::cast<std::string>(
+      of_package("iksel._base.keywords", "no_field")(type.name, name, known)));
 }
 
 /// Whether a plain value is that of a struct, or of a variant of them.

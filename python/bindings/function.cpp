@@ -140,7 +140,7 @@ void Function::refuse(std::size_t count, PyObject* keywords) const {
   }
   const py::object given =
       keywords == nullptr ? py::tuple() : py::reinterpret_borrow<py::object>(keywords);
-  throw SignatureError(py::cast<std::string>(of_package("iksel._keywords", "misfit")(
+  throw SignatureError(py::cast<std::string>(of_package("iksel._base.keywords", "misfit")(
       known, needed, positional, full_name(), count, given)));
 }
 

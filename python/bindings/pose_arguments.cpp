@@ -32,7 +32,7 @@ py::object to_matrices(py::handle value, const char* name) {
   if (py::isinstance<py::array>(value) && has_matrices(py::reinterpret_borrow<py::array>(value))) {
     return py::reinterpret_borrow<py::object>(value);
   }
-  static const py::handle function = of_package("iksel._pose_forms", "to_matrices").release();
+  static const py::handle function = of_package("iksel._base.pose_forms", "to_matrices").release();
   const py::object matrices = function(value, name);
   if (matrices.is(value)) refuse_gradients(value, name);
   return matrices;

@@ -17,7 +17,7 @@ struct PoseLike : RawArgument {
   static constexpr const char* kText = "numpy.typing.ArrayLike | object";
 };
 
-/// What iksel._pose_forms makes of what people hold: matrices (..., 4, 4), or what it is.
+/// What iksel._base.pose_forms makes of what people hold: matrices (..., 4, 4), or what it is.
 py::object to_matrices(py::handle value, const char* name);
 
 /// For what is not simply a (4, 4) array of doubles; `task` may be null.

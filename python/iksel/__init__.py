@@ -10,6 +10,18 @@
         print(result.q)
 
 A pose is a 4x4 matrix T_base_tip; lengths are metres, angles radians.
+
+To begin with:
+
+    a robot              load_robot, robot_names, Robot
+    a pose               pose_from_euler, pose_from_quaternion, as_pose
+    an answer            Solver, Result, Status
+    less than a pose     Task
+    other settings       SolverOptions
+    obstacles            Scene; the modules iksel.spheres, iksel.collision
+    much at once         the module iksel.reach
+    to look at it        the module iksel.view
+    what goes wrong      Error
 """
 
 from __future__ import annotations
@@ -17,7 +29,7 @@ from __future__ import annotations
 try:
     import iksel_cpp as _core
 except ImportError as _error:
-    from iksel._missing import explain
+    from iksel._base.missing import explain
 
     raise ImportError(explain(str(_error)), name="iksel_cpp") from _error
 
@@ -88,9 +100,9 @@ from iksel_cpp import (
     time_kdl_fk_jacobian,
 )
 
-from iksel._attach import attach
-from iksel._cmake import cmake_dir
-from iksel._manifest import RobotInfo
+from iksel._base.cmake import cmake_dir
+from iksel.formats._attach import attach
+from iksel.formats._manifest import RobotInfo
 from iksel.pose import (
     as_pose,
     check_pose,

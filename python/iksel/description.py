@@ -16,15 +16,15 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from iksel_cpp import UrdfError, mend_xml
 
-from iksel import _descriptions, _mjcf, _models, _xacro
-from iksel._manifest import manifest, urdf_text
-from iksel._urdf_xml import is_xml, read_xml
+from iksel.formats import _descriptions, _mjcf, _models, _xacro
+from iksel.formats._manifest import manifest, urdf_text
+from iksel.formats._urdf_xml import is_xml, read_xml
 
 if TYPE_CHECKING:
     import xml.etree.ElementTree as ET
     from collections.abc import Mapping
 
-    from iksel._packages import Packages
+    from iksel.formats._packages import Packages
 
 Source = Any
 """A robot in one of the forms that `read_description` lists."""

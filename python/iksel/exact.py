@@ -17,11 +17,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from iksel._arm_links import ArmLinks
-from iksel._arrays import as_floats
-from iksel._collision_shapes import import_coal
-from iksel._packages import resolve_path
-from iksel.collision import SelfCollision, read_urdf
+from iksel._base.arrays import as_floats
+from iksel.collision import SelfCollision
+from iksel.collision._arm_links import ArmLinks, read_urdf
+from iksel.collision._shapes import import_coal
+from iksel.formats._packages import resolve_path
 
 if TYPE_CHECKING:
     import os
@@ -30,8 +30,8 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     from iksel_cpp import Obstacle, Scene
 
-    from iksel._arrays import BoolArray, FloatArray
-    from iksel._collision_shapes import Placed
+    from iksel._base.arrays import BoolArray, FloatArray
+    from iksel.collision._shapes import Placed
 
 
 class _Solid(NamedTuple):

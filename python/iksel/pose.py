@@ -12,16 +12,14 @@ rotation is off by RIGID_TOLERANCE (1e-3) or less stands for the nearest rigid o
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import iksel_cpp
 import numpy as np
-from iksel_cpp import RIGID_TOLERANCE
 
-from iksel import _rotations as rotations
-from iksel._angles import warn_of_degrees
-from iksel._arrays import (
-    BoolArray,
+from iksel._base import rotations
+from iksel._base.angles import warn_of_degrees
+from iksel._base.arrays import (
     FloatArray,
     as_floats,
     broadcast_leading,
@@ -29,15 +27,30 @@ from iksel._arrays import (
     index_text,
     reject,
 )
+from iksel._base.rigid import PoseLike, check_pose, is_rigid, orthonormalized
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
+__all__ = [
+    "PoseLike",
+    "QuaternionOrder",
+    "as_pose",
+    "check_pose",
+    "euler_from_pose",
+    "is_rigid",
+    "orthonormalized",
+    "pose_error",
+    "pose_from_euler",
+    "pose_from_matrix",
+    "pose_from_quaternion",
+    "pose_from_rotation_vector",
+    "quaternion_from_pose",
+    "rotation_vector_from_pose",
+]
+
 QuaternionOrder = Literal["wxyz", "xyzw"]
 """Whether the scalar of a quaternion comes first or last."""
-
-PoseLike = Any
-"""A pose in one of the forms that `as_pose` lists."""
 
 UNIT_TOLERANCE = 1e-3
 """Largest deviation of a quaternion's norm from 1 that is normalised away."""
@@ -183,70 +196,6 @@ def euler_from_pose(pose: PoseLike) -> FloatArray:
         InvalidArgumentError: Wrong shape, not finite, or not rigid.
     """
     return rotations.euler_from_matrix(check_pose(pose)[..., :3, :3])
-
-
-def is_rigid(
-    pose: PoseLike, tolerance: float = RIGID_TOLERANCE
-) -> np.bool_ | BoolArray:
-    """Whether poses are finite and rigid: R^T R = I, det R > 0, last row 0 0 0 1.
-
-    Args:
-        pose: Matrices, (..., 4, 4); elements may be NaN or infinite.
-        tolerance: Largest element of |R^T R - I|; by default that up to which a pose is
-            accepted.
-
-    Returns:
-        One truth value per pose, of the leading shape.
-
-    Raises:
-        InvalidArgumentError: Not numbers of shape (..., 4, 4).
-    """
-    matrix = as_floats("pose", iksel_cpp.pose_matrices(pose), (4, 4), finite=False)
-    rigid: np.bool_ | BoolArray = iksel_cpp.rigid_deviation(matrix)[()] <= tolerance
-    return rigid
-
-
-def check_pose(pose: PoseLike, name: str = "pose") -> FloatArray:
-    """Give the rigid transforms that poses stand for.
-
-    A pose that is rigid to rounding (|R^T R - I| <= 1e-12) is kept bit for bit; one
-    whose rotation is off by RIGID_TOLERANCE (1e-3) or less, as when it was printed with
-    a few decimals, is projected to the nearest. Every pose that iksel is given goes
-    through this.
-
-    Args:
-        pose: T_base_tip, (..., 4, 4), or another form that `as_pose` lists.
-        name: Name of the argument, for the error message.
-
-    Returns:
-        T_base_tip as float64, (..., 4, 4).
-
-    Raises:
-        InvalidArgumentError: Wrong shape, not finite or not rigid; the message says
-            which pose and why.
-    """
-    matrix = as_floats(name, iksel_cpp.pose_matrices(pose, name), (4, 4))
-    return iksel_cpp.check_pose(matrix, name)
-
-
-def orthonormalized(pose: PoseLike) -> FloatArray:
-    """Give the rigid transforms nearest to poses, however far off they are.
-
-    For matrices that `check_pose` refuses: scaled, sheared, rounded to two decimals.
-    The rotation is the orthogonal polar factor, the nearest by the sum of squares.
-
-    Args:
-        pose: T_base_tip, (..., 4, 4), or another form that `as_pose` lists.
-
-    Returns:
-        T_base_tip, (..., 4, 4).
-
-    Raises:
-        InvalidArgumentError: Wrong shape, not finite, singular or mirrored, or a last
-            row other than (0, 0, 0, 1).
-    """
-    matrix = as_floats("pose", iksel_cpp.pose_matrices(pose), (4, 4))
-    return iksel_cpp.orthonormalized(matrix)
 
 
 def as_pose(value: PoseLike, order: QuaternionOrder | None = None) -> FloatArray:

@@ -16,11 +16,11 @@ from iksel_cpp import (
     UrdfError,
 )
 
-from iksel._descriptions import PREFIX
-from iksel._keywords import with_hints
-from iksel._manifest import RobotInfo, manifest
-from iksel._urdf_xml import is_xml
+from iksel._base.keywords import with_hints
 from iksel.description import FILE_SUFFIXES, Description, read_description
+from iksel.formats._descriptions import PREFIX
+from iksel.formats._manifest import RobotInfo, manifest
+from iksel.formats._urdf_xml import is_xml
 from iksel.pose import pose_from_euler
 from iksel.srdf import Srdf
 
@@ -30,8 +30,8 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     from iksel_cpp import CoupledLimit, MimicCurve
 
-    from iksel._packages import Packages
     from iksel.description import Source
+    from iksel.formats._packages import Packages
 
 FROM_MANIFEST = "manifest"
 """Value of `tcp` that takes the manifest's tool."""

@@ -13,7 +13,6 @@ Needs the library coal for `from_urdf`: `pip install iksel[collision]`.
 from __future__ import annotations
 
 import contextlib
-import json
 import zipfile
 import zlib
 from itertools import combinations
@@ -23,19 +22,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from iksel_cpp import InvalidArgumentError, RobotSpheres, Scene
 
-from iksel._cache_files import file_name, key_of
-from iksel._collision_shapes import (
+from iksel._base.files import check_unpacked, replaced
+from iksel.collision import SelfCollision
+from iksel.collision._arm_links import read_urdf
+from iksel.collision._cache_files import file_name, key_of
+from iksel.collision._shapes import (
     import_coal,
     is_sphere,
     mesh_of,
     read_shapes,
     spheres_around,
 )
-from iksel._files import check_unpacked, read_text, replaced
-from iksel._sphere_cover import cover
-from iksel._sphere_files import read_links, read_yaml
-from iksel._urdf_xml import read_xml
-from iksel.collision import SelfCollision, read_urdf
+from iksel.collision._sphere_cover import cover
+from iksel.collision._sphere_files import from_curobo, from_json
+from iksel.formats._urdf_xml import read_xml
 
 if TYPE_CHECKING:
     import os
@@ -43,11 +43,20 @@ if TYPE_CHECKING:
 
     from iksel_cpp import Robot
 
-    from iksel._arrays import FloatArray
-    from iksel._collision_shapes import Shape
+    from iksel._base.arrays import FloatArray
+    from iksel.collision._shapes import Shape
 
     Spheres = dict[str, FloatArray]
     Pairs = list[tuple[str, str]]
+
+__all__ = [
+    "from_curobo",
+    "from_json",
+    "from_urdf",
+    "load",
+    "save",
+    "with_pairs",
+]
 
 _FORMAT = "iksel spheres 1"
 _METHOD = "cover 5"
@@ -145,70 +154,6 @@ def from_urdf(
     if kept is not None:
         save(made, kept)
     return made
-
-
-def from_curobo(path: str | os.PathLike[str]) -> RobotSpheres:
-    """Read the spheres of a robot file of cuRobo, in YAML.
-
-    That is `collision_spheres` of a robot, a mapping or the name of a file beside it
-    (which may lie in a folder `spheres`), or that file itself; radii grow by
-    `collision_sphere_buffer`, and pairs in `self_collision_ignore` are not looked at.
-    Without such pairs, no pair is: see `with_pairs`. `self_collision_buffer` is not
-    read.
-
-    Args:
-        path: Of the file.
-
-    Raises:
-        InvalidArgumentError: It cannot be read, or is no such file.
-    """
-    path = Path(path)
-    data = read_yaml(path)
-    for key in ("robot_cfg", "kinematics"):
-        inner = data.get(key)
-        data = inner if isinstance(inner, dict) else data
-    spheres = data.get("collision_spheres")
-    if isinstance(spheres, str):
-        spheres = read_yaml(path.parent / spheres).get("collision_spheres")
-    if not isinstance(spheres, dict):
-        raise InvalidArgumentError(f"path: {str(path)!r} has no collision_spheres")
-    buffer = data.get("collision_sphere_buffer", 0.0)
-    listed = data.get("self_collision_ignore") or {}
-    try:
-        links = read_links(path, spheres, "center", float(buffer or 0.0))
-        ignored = {
-            frozenset((link, str(other)))
-            for link, others in listed.items()
-            for other in others
-        }
-    except (AttributeError, TypeError, ValueError) as error:
-        raise InvalidArgumentError(f"path: {str(path)!r}: {error}") from None
-    pairs = combinations(links, 2) if ignored else ()
-    return RobotSpheres(
-        links, [pair for pair in pairs if frozenset(pair) not in ignored]
-    )
-
-
-def from_json(path: str | os.PathLike[str]) -> RobotSpheres:
-    """Read a JSON file of spheres by link, as tools around VAMP and foam write them.
-
-    For each link a list of spheres, each with `origin` (or `center`) and `radius` [m].
-    No pair of links is looked at: see `with_pairs`.
-
-    Args:
-        path: Of the file.
-
-    Raises:
-        InvalidArgumentError: It cannot be read, or is no such file.
-    """
-    path = Path(path)
-    try:
-        data = json.loads(read_text(path))
-    except (OSError, ValueError, RecursionError) as error:
-        raise InvalidArgumentError(f"path: {error}") from None
-    if not isinstance(data, dict):
-        raise InvalidArgumentError(f"path: {str(path)!r} is no mapping of links")
-    return RobotSpheres(read_links(path, data, "origin", 0.0))
 
 
 def with_pairs(

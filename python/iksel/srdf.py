@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from iksel_cpp import LinkTree, UnknownNameError, UrdfError
 
-from iksel._urdf_xml import read_xml
+from iksel.formats._urdf_xml import read_xml
 
 if TYPE_CHECKING:
     import os
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from iksel_cpp import LinkTreeJoint, Robot
 
-    from iksel._arrays import FloatArray
+    from iksel._base.arrays import FloatArray
 
 
 class Srdf:

@@ -75,6 +75,24 @@ TEST_F(DatabaseFile, ComesBackBitForBit) {
   EXPECT_EQ(files(), 1U);
 }
 
+TEST_F(DatabaseFile, CarriesHowTheSamplesWereMade) {
+  iksel::DatabaseOptions options = iksel::DatabaseOptions::paper(2026);
+  options.samples = 50;
+  options.kmeans_pool = 777;
+  options.kmeans_rounds = 3;
+  const Database database = Database::build(iksel_test::robot("cvr038"), options);
+  const iksel::DatabaseOptions read = Database::from_bytes(database.to_bytes()).options();
+  EXPECT_EQ(read.sampling, iksel::Sampling::kmeans);
+  EXPECT_EQ(read.kmeans_pool, 777U);
+  EXPECT_EQ(read.kmeans_rounds, 3);
+  // Files of other samplings are as they were before there was this one.
+  const std::string others = make(50).to_bytes();
+  const std::size_t reserved = kHeader - sizeof(std::uint64_t) - 184;
+  EXPECT_EQ(others.substr(reserved, 184), std::string(184, '\0'));
+  EXPECT_EQ(Database::from_bytes(others).options().kmeans_pool,
+            iksel::DatabaseOptions{}.kmeans_pool);
+}
+
 TEST_F(DatabaseFile, ServesTheSameSolver) {
   const Robot& robot = iksel_test::robot("cvr038");
   iksel::SolverOptions options = iksel::SolverOptions::paper();

@@ -130,6 +130,35 @@ TEST(Steps, CwlnPullsAJointBackFromItsLimit) {
   EXPECT_LT(step[3], 0);
 }
 
+TEST(Steps, TheNullSpaceGainLeadsRedundantJointsToTheMiddle) {
+  iksel::Random random(iksel_test::seed());
+  for (const char* name : {"irb14050", "panda", "pr2_right_arm", "cvr038"}) {
+    const Robot& robot = iksel_test::robot(name);
+    const Eigen::MatrixXd q = robot.random_configurations(50, iksel_test::seed());
+    for (Eigen::Index i = 0; i < q.rows(); ++i) {
+      const JacobianMatrix J = robot.jacobian(q.row(i));
+      const Vector6 e = random_error(random);
+      const Eigen::MatrixXd inverse =
+          Eigen::MatrixXd(J).completeOrthogonalDecomposition().pseudoInverse();
+      if (inverse.norm() > 100) continue;  // nearly singular
+      iksel::Paper scheme;
+      scheme.null_space_gain = random.uniform(0.1, 1);
+      Eigen::VectorXd way = 0.5 * (robot.lower() + robot.upper()) - q.row(i).transpose();
+      for (double& each : way) each = std::isfinite(each) ? each : 0;  // turns without end
+      const Eigen::MatrixXd N =
+          Eigen::MatrixXd::Identity(robot.dof(), robot.dof()) - inverse * Eigen::MatrixXd(J);
+      Eigen::VectorXd expected = inverse * e;
+      if (robot.dof() > 6) expected += scheme.null_space_gain * (N * way);
+      for (const Iteration iteration : {Iteration::dls, Iteration::pinv, Iteration::pinv_rr}) {
+        scheme.iteration = iteration;
+        const JointVector step = iksel::inverse_step(robot.model(), q.row(i), J, e, scheme);
+        EXPECT_LT((step - expected).norm(), 1e-9 * (1 + way.norm()) * (1 + inverse.norm()))
+            << name << " seed " << iksel_test::seed();
+      }
+    }
+  }
+}
+
 TEST(Steps, LmNeverLeavesTheLimits) {
   iksel::Random random(iksel_test::seed());
   for (const std::string& name : iksel_test::paper_robots()) {
@@ -156,6 +185,7 @@ struct Rules {
   Iteration iteration;
   bool growth_stop;
   iksel::GrowthStop option;
+  bool limits_stop = false;
 };
 
 /// An attempt as its loop reads, on the same kinematics, to the bit.
@@ -171,7 +201,10 @@ bool reference_attempt(const Robot& robot, const Rules& rules, const iksel::Pape
     Vector6 e = iksel::pose_error(target, kdl.fk(q));
     const double position = e.head<3>().norm();
     const double rotation = e.tail<3>().norm();
-    if (position < 1e-4 && rotation < 1e-3 && joints.contains(q.data())) return true;
+    if (position < 1e-4 && rotation < 1e-3) {
+      if (joints.contains(q.data())) return true;
+      if (rules.limits_stop) return false;
+    }
     const bool grew = position > last_position && rotation > last_rotation;
     if ((rules.growth_stop && grew) || n == max_steps) return false;
     last_position = position;
@@ -198,6 +231,7 @@ TEST_P(Attempts, EndAsInTheReferenceImplementation) {
   iksel::Paper& paper = iksel_test::paper_of(options);
   paper.iteration = rules.iteration;
   paper.growth_stop = rules.option;
+  paper.limits_stop = rules.limits_stop;
   // Large enough to be met.
   paper.min_step = 1e-3;
   const auto kdl = robot.model().make_kdl(Pose::Identity());
@@ -230,12 +264,14 @@ TEST_P(Attempts, EndAsInTheReferenceImplementation) {
     early += !is_solved && steps < 8;
   }
   EXPECT_GT(solved, 20);
-  EXPECT_EQ(early > 0, rules.growth_stop || rules.iteration == Iteration::cwpi);
+  EXPECT_EQ(early > 0,
+            rules.growth_stop || rules.limits_stop || rules.iteration == Iteration::cwpi);
 }
 
 INSTANTIATE_TEST_SUITE_P(
     All, Attempts,
     testing::Values(Rules{Iteration::pinv, true, iksel::GrowthStop::by_scheme},
+                    Rules{Iteration::pinv, false, iksel::GrowthStop::off, true},
                     Rules{Iteration::pinv_rr, true, iksel::GrowthStop::by_scheme},
                     Rules{Iteration::pinv_rr, false, iksel::GrowthStop::off},
                     Rules{Iteration::cwpi, false, iksel::GrowthStop::by_scheme},

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <iksel/iksel.hpp>
 #include <set>
+#include <vector>
 
+#include "base/random.hpp"
 #include "robots.hpp"
 
 namespace {
@@ -60,6 +63,7 @@ DatabaseOptions small(Sampling sampling) {
   options.samples = 3000;
   options.scale = Scale::small;
   options.cvt_updates = 20'000;
+  if (sampling == Sampling::kmeans) options.kmeans_pool = 10'000;
   options.seed = 7;
   options.key_scheme = iksel::KeyScheme::full;
   return options;
@@ -101,7 +105,7 @@ TEST_P(Samplings, HaveTheSameBitsForAnyNumberOfThreads) {
 
 INSTANTIATE_TEST_SUITE_P(All, Samplings,
                          testing::Values(Sampling::grid, Sampling::cvt, Sampling::low_discrepancy,
-                                         Sampling::random));
+                                         Sampling::random, Sampling::kmeans));
 
 /// Mean distance from random configurations to the nearest sample, joints scaled to [0, 1].
 double covering(const Robot& robot, const Database& database) {
@@ -128,6 +132,82 @@ TEST(Cvt, CoversBetterThanRandomSamples) {
   EXPECT_LT(cvt, 0.97 * covering(robot, Database::build(robot, options)));
 }
 
+/// Joint values of all samples, in lexicographic order.
+std::vector<std::vector<double>> sorted_samples(const Database& database) {
+  std::vector<std::vector<double>> all;
+  for (std::size_t i = 0; i < database.size(); ++i) {
+    const iksel::JointVector q = database.q(i);
+    all.emplace_back(q.begin(), q.end());
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+/// One of Lloyd's rounds by brute force.
+std::vector<std::vector<double>> move_to_means(const std::vector<std::vector<double>>& samples,
+                                               const Eigen::MatrixXd& pool) {
+  std::vector<Eigen::VectorXd> sums(samples.size(), Eigen::VectorXd::Zero(pool.cols()));
+  std::vector<int> hits(samples.size(), 0);
+  for (Eigen::Index i = 0; i < pool.rows(); ++i) {
+    double best = 1e9;
+    std::size_t nearest = 0;
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+      const Eigen::Map<const Eigen::VectorXd> q(samples[k].data(), pool.cols());
+      const double distance = (pool.row(i).transpose() - q).squaredNorm();
+      if (distance < best) nearest = k;
+      best = std::min(best, distance);
+    }
+    sums[nearest] += pool.row(i).transpose();
+    ++hits[nearest];
+  }
+  std::vector<std::vector<double>> moved = samples;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (hits[k] == 0) continue;
+    const Eigen::VectorXd mean = sums[k] / hits[k];
+    moved[k].assign(mean.begin(), mean.end());
+  }
+  return moved;
+}
+
+TEST(Kmeans, IsLloydsByBruteForce) {
+  const Robot& robot = iksel_test::robot("irb14050");
+  DatabaseOptions options = small(Sampling::random);
+  // Few points for so many samples: some are nearest to none, and stay.
+  options.samples = 200;
+  std::vector<std::vector<double>> expected = sorted_samples(Database::build(robot, options));
+  options.sampling = Sampling::kmeans;
+  options.kmeans_pool = 400;
+  Eigen::MatrixXd pool(400, robot.dof());
+  for (Eigen::Index i = 0; i < pool.rows(); ++i) {
+    auto random = iksel::Random::stream(options.seed + 1, static_cast<std::uint64_t>(i));
+    for (int j = 0; j < robot.dof(); ++j) {
+      pool(i, j) = random.uniform(robot.lower()[j], robot.upper()[j]);
+    }
+  }
+  for (int round = 0; round < 4; ++round) {
+    options.kmeans_rounds = round;
+    const auto samples = sorted_samples(Database::build(robot, options));
+    std::vector<std::vector<double>> sorted = expected;
+    std::sort(sorted.begin(), sorted.end());
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+      for (std::size_t j = 0; j < samples[k].size(); ++j) {
+        EXPECT_NEAR(samples[k][j], sorted[k][j], 1e-12) << "round " << round;
+      }
+    }
+    expected = move_to_means(expected, pool);
+  }
+}
+
+TEST(Kmeans, LeavesLessBetweenItsSamplesThanCvt) {
+  const Robot& robot = iksel_test::robot("cvr038");
+  DatabaseOptions options = small(Sampling::kmeans);
+  options.kmeans_pool = 100'000;
+  const double kmeans = covering(robot, Database::build(robot, options));
+  DatabaseOptions others = small(Sampling::cvt);
+  others.cvt_updates = options.kmeans_pool;
+  EXPECT_LT(kmeans, covering(robot, Database::build(robot, others)));
+}
+
 TEST(Build, ReportsProgressUpToTheEnd) {
   const Robot& robot = iksel_test::robot("cvr038");
   std::size_t last = 0;
@@ -148,6 +228,18 @@ TEST(Build, ReportsProgressUpToTheEnd) {
   EXPECT_EQ(all, 3000U);
 }
 
+TEST(Build, ReportsEachLookAtAPointOfThePool) {
+  std::size_t last = 0;
+  DatabaseOptions options = small(Sampling::kmeans);
+  options.kmeans_rounds = 3;
+  Database::build(iksel_test::robot("cvr038"), options, [&](std::size_t done, std::size_t total) {
+    EXPECT_TRUE(done > last || done == 0);
+    EXPECT_EQ(total, 3 * 10'000U + 3000U);
+    last = done;
+  });
+  EXPECT_EQ(last, 33'000U);
+}
+
 TEST(Build, EndsWithTheExceptionOfItsProgress) {
   const Robot& robot = iksel_test::robot("cvr038");
   const auto cancel = [](std::size_t, std::size_t) { throw std::runtime_error("enough"); };
@@ -165,6 +257,14 @@ TEST(Build, RefusesOptionsOutOfRange) {
   options = {};
   options.rotation_weight = std::nan("");
   EXPECT_THROW(Database::build(robot, options), iksel::InvalidArgumentError);
+  options = {};
+  options.kmeans_pool = 5;  // nobody reads it
+  EXPECT_THROW(Database::build(robot, options), iksel::InvalidArgumentError);
+  options.sampling = Sampling::kmeans;
+  EXPECT_NO_THROW(Database::build(robot, options));
+  options.kmeans_pool = 0;
+  EXPECT_THROW(Database::build(robot, options), iksel::InvalidArgumentError);
+  EXPECT_THROW(DatabaseOptions::paper(2024), iksel::InvalidArgumentError);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import iksel
-from iksel._mjcf import compile_bare
+from iksel.formats._mjcf import compile_bare
 
 if TYPE_CHECKING:
     from pathlib import Path

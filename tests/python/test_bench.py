@@ -37,8 +37,10 @@ from bench.paper import plan as paper_plan
 from bench.report import merged
 from bench.rivals.axes import axes_of
 from bench.rivals.base import Run, UnsupportedError
+from bench.sections import newer as newer_section
 from bench.sections import no as no_section
 from bench.sections import paper as paper_section
+from bench.settings import solver_options
 from bench.size import FULL, QUICK, Job
 from bench.store import Store
 from bench.view import View
@@ -388,6 +390,25 @@ class TestPaper:
         met = 28 if better else 27
         assert f"{met} of 28 published rates are met" in text
         assert ("Ablation II, `cwln`, C1 is not" in text) == (better == 0.0)
+
+    def test_the_newer_selection_stands_beside_the_paper(self):
+        cells = []
+        for i, robot in enumerate(published.ROBOTS):
+            paper, newer, free, numpy = paper_plan.newer_cells(robot, QUICK)
+            rates = (80.0 + i, 90.0 + i, 95.0 + i, 90.5 + i)
+            for settings, rate in zip((paper, newer, free, numpy), rates, strict=True):
+                result = {"success_percent": rate, "mean_us": 12.3}
+                result |= {"mean_attempts": 1.5, "mean_iterations": 9.0}
+                cells.append({"settings": settings, "result": result})
+        report = {"cells": cells, "size": vars(QUICK), "missing": {}}
+        text = newer_section.text(View(report))
+        row = "| `paper(2026)` | 90.00; 12.3 µs, 1.50, 9.0 | 91.00;"
+        assert row in text
+        assert "| `paper(2026)` in numpy | 90.50;" in text
+        assert f"{published.NEWER_RUN[0][0]:.2f}; " in text.splitlines()[-1]
+        assert "--preset paper2026 " in text
+        options = solver_options("paper2026", {"database.kmeans_pool": 9})
+        assert (options.max_attempts, options.database.kmeans_pool) == (16, 9)
 
     def test_section_without_results_is_empty(self):
         report = {"cells": [], "size": vars(QUICK), "missing": {}}

@@ -521,6 +521,26 @@ def test_evaluate_with_stages_and_changes(run: Run, tmp_path: Path) -> None:
         assert word in text
 
 
+def test_evaluate_of_the_newer_selection(run: Run) -> None:
+    words = "evaluate cvr038 --preset paper2026 --targets 100 --kmeans-pool 20000"
+    report = assert_good(run(words + " --json")).json()
+    assert report["preset"] == "paper2026"
+    assert report["database_samples"] == 2048
+    assert report["overrides"] == {"database.kmeans_pool": 20_000}
+    assert report["solved"] > 90
+    shown = assert_good(run("evaluate --help")).out
+    assert "default: 2000, paper2026: 2048" in " ".join(shown.split())
+
+
+def test_build_by_kmeans(run: Run, tmp_path: Path) -> None:
+    words = "--sampling kmeans --kmeans-pool 2000 --kmeans-rounds 3 --samples 50"
+    path = tmp_path / "file"
+    assert_good(run("build", "cvr038", "-o", path, *words.split()))
+    options = iksel.Database.load(path).options
+    assert options.sampling is iksel.Sampling.kmeans
+    assert (options.kmeans_pool, options.kmeans_rounds) == (2000, 3)
+
+
 def test_evaluate_with_a_file(run: Run, tmp_path: Path) -> None:
     path = tmp_path / "file"
     run("build", "ur3", "-o", path, *FEW)

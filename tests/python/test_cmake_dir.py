@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import iksel
-from iksel import _cmake
+from iksel._base import cmake
 
 
 @pytest.fixture
@@ -17,7 +17,7 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     config = tmp_path / "lib/cmake/iksel/ikselConfig.cmake"
     config.parent.mkdir(parents=True)
     config.touch()
-    monkeypatch.setattr(_cmake, "__file__", str(tmp_path / "_cmake.py"))
+    monkeypatch.setattr(cmake, "__file__", str(tmp_path / "_base" / "cmake.py"))
     return tmp_path
 
 

@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 
 import iksel
-from iksel import _collision_proof as proof
 from iksel import collision
-from iksel._collision_shapes import Shapes
+from iksel.collision import _proof as proof
+from iksel.collision._search import PairSearch
+from iksel.collision._shapes import Shapes
 
 coal = pytest.importorskip("coal")
 
@@ -167,7 +168,7 @@ def test_what_was_found_is_kept(
         raise InterruptedError
 
     with monkeypatch.context() as patch:
-        patch.setattr(collision.PairSearch, "run", search)
+        patch.setattr(PairSearch, "run", search)
         assert find() == first
         for other in ({"margin": 0.0}, {"samples": 61}, {"seed": 1}):
             with pytest.raises(InterruptedError):

@@ -22,7 +22,7 @@ from linkage_arms import (
 from trees import two_arms_on_torso
 
 import iksel
-from iksel._limits import violated_limits
+from iksel._base.limits import violated_limits
 from iksel.reach._symmetry import turns_freely
 
 WIDE_ELBOW = (-2.4, 4.9)

@@ -24,6 +24,11 @@ SMALL = iksel.DatabaseOptions(
 )
 
 
+def small(sampling: str, **changes: int) -> iksel.DatabaseOptions:
+    pool = {"kmeans_pool": 3000} if sampling == "kmeans" else {}
+    return SMALL.replace(sampling=sampling, **pool, **changes)
+
+
 def arrays(database: iksel.Database) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """q, poses and pseudo-inverses of all samples."""
     indices = range(len(database))
@@ -47,10 +52,10 @@ def database(made) -> iksel.Database:
 
 
 @pytest.mark.parametrize("name", ["ur3", "irb14050", "gen3_6dof", "xarm5"])
-@pytest.mark.parametrize("sampling", ["cvt", "low_discrepancy", "random"])
+@pytest.mark.parametrize("sampling", ["cvt", "low_discrepancy", "random", "kmeans"])
 def test_samples_are_what_they_say(made, name: str, sampling: str) -> None:
     robot = made.robot(name)
-    database = iksel.Database.build(robot, SMALL.replace(sampling=sampling))
+    database = iksel.Database.build(robot, small(sampling))
     assert len(database) == database.size == 300
     assert database.dof == robot.dof
     assert database.chain_hash == robot.chain_hash
@@ -65,15 +70,15 @@ def test_samples_are_what_they_say(made, name: str, sampling: str) -> None:
     np.testing.assert_allclose(inverses / scale, expected / scale, rtol=0, atol=1e-9)
 
 
-@pytest.mark.parametrize("sampling", ["low_discrepancy", "cvt", "random"])
+@pytest.mark.parametrize("sampling", ["low_discrepancy", "cvt", "random", "kmeans"])
 def test_samples_spread_over_the_limits(made, sampling: str) -> None:
     robot = made.robot("cvr038")
-    options = SMALL.replace(sampling=sampling, samples=2000)
+    options = small(sampling, samples=2000)
     q = arrays(iksel.Database.build(robot, options))[0]
     part = (q - robot.lower) / (robot.upper - robot.lower)
     np.testing.assert_allclose(part.mean(axis=0), 0.5, rtol=0, atol=0.05)
     # Uniform: 1/12; the centres of Voronoi cells keep away from the border.
-    low = 0.03 if sampling == "cvt" else 0.075
+    low = 0.03 if sampling in ("cvt", "kmeans") else 0.075
     assert (part.var(axis=0) > low).all()
     assert (part.var(axis=0) < 0.092).all()
 
@@ -154,19 +159,17 @@ def test_nearest_agrees_with_brute_force(made, kind: str, weight: float) -> None
 @pytest.mark.parametrize("sampling", SAMPLINGS)
 def test_threads_change_no_bit(made, sampling: str) -> None:
     robot = made.robot("xarm5")
-    options = SMALL.replace(sampling=sampling, samples=1000)
+    options = small(sampling, samples=1000)
     one = iksel.Database.build(robot, options.replace(threads=1))
     for threads in (2, 8, 0):
         assert_same(one, iksel.Database.build(robot, options.replace(threads=threads)))
 
 
-@pytest.mark.parametrize("sampling", ["low_discrepancy", "random", "cvt"])
+@pytest.mark.parametrize("sampling", ["low_discrepancy", "random", "cvt", "kmeans"])
 def test_seeds_change_the_samples(made, sampling: str) -> None:
     robot = made.robot("ur3")
     q = [
-        arrays(
-            iksel.Database.build(robot, SMALL.replace(sampling=sampling, seed=seed))
-        )[0]
+        arrays(iksel.Database.build(robot, small(sampling, seed=seed)))[0]
         for seed in (0, 1, 1)
     ]
     assert (q[0] != q[1]).any()

@@ -73,6 +73,25 @@ def test_reference_is_complete():
     assert public - {"iksel.hpp"} <= set(headers.split())
 
 
+@pytest.mark.skipif(
+    not DOCS.is_dir(), reason="the documentation is in the repository only"
+)
+def test_what_to_begin_with_is_told_alike():
+    """The first page of the reference and help(iksel) list the same names."""
+    page = (DOCS / "api" / "python" / "index.md").read_text("utf-8")
+    rows = re.findall(r"^\| ([a-z ]+) \| (`.*?) \|", page, flags=re.MULTILINE)
+    _, _, listed = iksel.__doc__.partition("To begin with:\n")
+    modules = {"spheres", "collision", "reach", "view"}
+    told = []
+    for line in listed.strip().splitlines():
+        job, names = re.split("  +", line.strip())
+        names = re.findall(r"\w+", names.replace("iksel.", ""))
+        known = [n for n in names if n in modules | set(iksel.__all__)]
+        told.append((job, ", ".join(f"`{n}`" for n in known)))
+    assert told == rows
+    assert len(rows) > 5
+
+
 def prose(page) -> str:
     """A page without its blocks of code."""
     text = page.read_text("utf-8")

@@ -118,6 +118,102 @@ def test_answers_on_arcs_beside_a_singularity_are_found(
     assert iksel.Solver(arm.robot).solve(pose).success
 
 
+@pytest.mark.parametrize(
+    ("number", "q"),
+    [
+        (
+            81,
+            (
+                -0.9020178,
+                0.384655,
+                -0.6333913,
+                0.6084969,
+                -1.0106727,
+                0.0048061,
+                -1.3177478,
+            ),
+        ),
+        (
+            113,
+            (
+                -0.1083819,
+                -0.7274881,
+                0.5009832,
+                1.7789721,
+                0.2481618,
+                2.9529543,
+                -0.4238862,
+            ),
+        ),
+        (
+            137,
+            (
+                0.9852104,
+                -0.2635337,
+                -0.338485,
+                0.8948174,
+                -0.2604063,
+                -1.6401135,
+                -0.3753944,
+            ),
+        ),
+        (
+            1083,
+            (
+                0.3212062,
+                3.4636533,
+                -2.5077883,
+                2.4768232,
+                -1.0922553,
+                1.7249165,
+                -0.7300271,
+            ),
+        ),
+        (
+            3139,
+            (
+                0.2198372,
+                0.2665332,
+                1.3040983,
+                -1.0245016,
+                -1.5000345,
+                -0.2549847,
+                -0.4795223,
+            ),
+        ),
+        (
+            9010,
+            (
+                -0.0489098,
+                -0.1096863,
+                0.3969565,
+                -2.1087396,
+                -0.6685406,
+                0.120314,
+                1.9847685,
+            ),
+        ),
+        (
+            9021,
+            (
+                -0.0338811,
+                0.3554698,
+                1.7399907,
+                -2.6319885,
+                2.4675092,
+                0.0999678,
+                0.2092685,
+            ),
+        ),
+    ],
+)
+def test_short_arcs_of_rails_are_found(number: int, q: tuple[float, ...]) -> None:
+    """Between two places of the slide, where the wrist swings or a branch ends."""
+    arm = random_arms.random_arm("rail", number)
+    assert arm.robot.within_limits(np.array(q))
+    assert iksel.Solver(arm.robot).solve(arm.robot.fk(np.array(q))).success
+
+
 def test_small_closed_curves_of_an_almost_regular_arm_are_found() -> None:
     """At the edge of what xarm7 reaches; its regular arm does not reach as far.
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import iksel
-from iksel._missing import explain
+from iksel._base.missing import explain
 
 LOADER = "{}: cannot open shared object file: No such file or directory"
 

@@ -16,7 +16,7 @@ from test_mjcf import random_mjcf
 from urdf_text import random_tree
 
 import iksel
-from iksel._models import KNOWN
+from iksel.formats._models import KNOWN
 
 SEED = int(os.environ.get("IKSEL_TEST_SEED", "1"))
 TREES = 15

@@ -49,7 +49,7 @@ def test_repr_shows_what_differs():
 
 @pytest.mark.parametrize("cls", OPTION_CLASSES)
 def test_repr_makes_an_equal_object(cls):
-    for options in (cls(), cls.paper(), cls(**CHANGES[cls])):
+    for options in (cls(), cls.paper(), cls.paper(2026), cls(**CHANGES[cls])):
         assert eval(repr(options), vars(core)) == options
 
 
@@ -70,7 +70,7 @@ def test_strategies_are_values(cls):
 
 @pytest.mark.parametrize("cls", OPTION_CLASSES)
 def test_dict_makes_an_equal_object(cls):
-    for options in (cls(), cls.paper(), cls(**CHANGES[cls])):
+    for options in (cls(), cls.paper(), cls.paper(2026), cls(**CHANGES[cls])):
         assert cls(**options.to_dict()) == options
         for name, value in options.to_dict().items():
             if not isinstance(value, dict):
@@ -123,8 +123,12 @@ def test_every_field_makes_a_difference(cls):
         else:
             enum = type(getattr(cls(), name))
             other = next(member.name for member in enum if member.name != value)
-        # Only a full key has a choice of rotation_key.
-        base = cls(key_scheme="full") if name == "rotation_key" else cls()
+        # Only a full key has a choice of rotation_key, only kmeans a pool.
+        base = cls()
+        if name == "rotation_key":
+            base = cls(key_scheme="full")
+        elif name.startswith("kmeans"):
+            base = cls(sampling="kmeans")
         options = base.replace(**{name: other})
         assert options != base
         assert options.replace(**{name: value}) == base

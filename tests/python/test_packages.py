@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import iksel
-from iksel._packages import find_package, resolve_path
+from iksel.formats._packages import find_package, resolve_path
 
 
 def make(folder: Path, name: str | None = None) -> Path:

@@ -48,6 +48,7 @@ def test_options(protocol: int) -> None:
     for options in (
         iksel.SolverOptions(),
         iksel.SolverOptions.paper(),
+        iksel.SolverOptions.paper(2026),
         iksel.SolverOptions(
             strategy=iksel.Paper(iteration="cwpi"),
             database={"sampling": "cvt", "seed": 5},

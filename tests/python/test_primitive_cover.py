@@ -8,8 +8,8 @@ from itertools import product
 import numpy as np
 import pytest
 
-from iksel._collision_shapes import Shape, spheres_around
-from iksel._primitive_cover import cover_box, cover_cylinder
+from iksel.collision._primitive_cover import cover_box, cover_cylinder
+from iksel.collision._shapes import Shape, spheres_around
 from iksel.pose import pose_from_euler
 
 SEED = 20261124

@@ -11,7 +11,7 @@ from reach_maps import computed, random_cells
 
 import iksel
 from iksel import reach
-from iksel._qualities import limit_distance, manipulability
+from iksel._base.qualities import limit_distance, manipulability
 
 SEED = 30
 TOOL = iksel.pose_from_euler([0, 0, 0.12], [0, 0, 0.3])

@@ -114,6 +114,8 @@ def test_every_scheme_gives_answers(made, cases: int, name: str, scheme: str) ->
         ({"iteration": "cwln"}, {"pinv_cutoff": 0.1}, "'cwpi'"),
         ({"iteration": "lm"}, {"position_clamp": 0.2}, "all iterations but 'lm'"),
         ({"iteration": "lm"}, {"rotation_clamp": 0.2}, "all iterations but 'lm'"),
+        ({"iteration": "cwln"}, {"limits_stop": True}, "'cwpi'"),
+        ({"iteration": "cwpi"}, {"null_space_gain": 0.2}, "'pinv' and 'pinv_rr'"),
         ({}, {"limit_margin": 0.2}, "'cwln' and 'cwpi'"),
         ({"reselection": "none"}, {"candidates": 5}, "a re-selection"),
         (
@@ -186,6 +188,8 @@ PAPER = iksel.Paper(limit_aware=True, candidates=100, whole_turns=True)
         (PAPER, {"position_clamp": 0.01}),
         (PAPER, {"rotation_clamp": 0.01}),
         (PAPER, {"min_step": 0.1}),
+        (PAPER, {"limits_stop": True}),
+        (PAPER, {"null_space_gain": 0.2}),
         (PAPER.replace(iteration="cwln"), {"limit_margin": 0.3}),
         (PAPER.replace(iteration="pinv_rr"), {"growth_stop": "off"}),
         (PAPER.replace(iteration="cwpi"), {"growth_stop": "on"}),
@@ -219,7 +223,8 @@ def test_every_database_gives_answers(made, sampling: str, key: str) -> None:
     few = iksel.DatabaseOptions(
         samples=2000, scale="small", cvt_updates=5000, key_scheme="full"
     )
-    database = few.replace(sampling=sampling, rotation_key=key)
+    pool = {"kmeans_pool": 5000} if sampling == "kmeans" else {}
+    database = few.replace(sampling=sampling, rotation_key=key, **pool)
     solver = iksel.Solver(made.robot("cvr038"), iksel.SolverOptions(database=database))
     poses = targets(solver.robot, 50, 5)
     assert check_answers(solver, poses, solver.solve_batch(poses)) >= 0.9

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import json
 import pickle
 
 import numpy as np
@@ -11,7 +10,6 @@ import pytest
 from trees import two_armed, two_arms_on_torso
 
 import iksel
-from iksel import cli
 
 SEED = 5
 
@@ -321,37 +319,3 @@ def test_a_scene_knows_all_arms() -> None:
     assert diagnosis.cause in (iksel.Cause.none, iksel.Cause.collision)
     path = solver.solve_path(np.stack([poses[0]] * 3), start=q[free][0], scene=scene)
     assert path
-
-
-def test_the_command_line_takes_a_tip_and_a_pose_each(tmp_path, capsys) -> None:
-    path = tmp_path / "torso.urdf"
-    path.write_text(two_arms_on_torso(iksel.load_robot("ur5e")))
-    chain = [str(path), "--tip", "l_tool0", "--tip", "r_tool0"]
-
-    def answer(*line: str) -> dict:
-        assert cli.main([*line, "--json"]) == 0
-        return json.loads(capsys.readouterr().out)
-
-    q = [0.1, 0.2, 0.3, -1.2, 1.4, -1.8, -1.6, 0.2, -0.3, -1.9, -1.4, -1.3, 1.6, 0]
-    there = answer("fk", chain[0], *map(str, q), *chain[1:])
-    assert np.shape(there["pose"]) == (2, 4, 4)
-    assert there["tip_links"] == ["l_tool0", "r_tool0"]
-    poses = []
-    for position, rpy in zip(there["position"], there["rpy"], strict=True):
-        poses += ["--pose", *map(str, [*position, *rpy])]
-    solved = answer("solve", *chain, *poses)
-    robot = iksel.load_robot(path, tip_links=["l_tool0", "r_tool0"])
-    np.testing.assert_allclose(robot.fk(solved["q"]), there["pose"], atol=1e-5)
-    assert len(answer("solve", *chain, *poses, "--all")["q"]) > 8
-    info = answer("info", *chain)
-    assert info["shared_joints"] == ["lift", "turn"]
-    assert [each["tip_link"] for each in info["chains"]] == ["l_tool0", "r_tool0"]
-    assert cli.main(["solve", *chain, *poses]) == 0
-    assert "target of r_tool0" in capsys.readouterr().out
-    for line, words in (
-        ([*chain, *poses[:7]], "--pose: given 1 times; expected once for each of"),
-        ([*chain, *poses, "--tcp", "none"], "--tcp: given 1 times"),
-        ([*chain, "--poses", "x.csv", "-o", "y.csv"], "--poses: its rows are poses of"),
-    ):
-        assert cli.main(["solve", *line]) == 2
-        assert words in capsys.readouterr().err

@@ -43,11 +43,12 @@ def show(made):
         viewer.close()
 
 
-def drag(viewer, pose) -> None:
-    """What viser does when the target is dragged in the browser."""
-    viewer.scene.target.position = pose[:3, 3]
-    viewer.scene.target.wxyz = iksel.quaternion_from_pose(pose)
-    for listen in viewer.scene.target._impl_aux.update_cb:
+def drag(viewer, pose, tip: int = 0) -> None:
+    """What viser does when a target is dragged in the browser."""
+    target = viewer.scene.targets[tip]
+    target.position = pose[:3, 3]
+    target.wxyz = iksel.quaternion_from_pose(pose)
+    for listen in target._impl_aux.update_cb:
         listen(None)
 
 
@@ -196,6 +197,31 @@ def test_the_branch_is_kept(show, cases):
         session.set_choice("x")
 
 
+@pytest.mark.parametrize("name", ["ur5e", "panda"])
+def test_a_tracker_goes_as_near_as_it_gets(show, name):
+    viewer = show(name)
+    session, robot = viewer.session, viewer.session.robot
+    viewer.controls.choice.value = "tracked"
+    tracker = session.solver.tracker(session.q, closest=True)
+    pose = session.target.copy()
+    statuses = set()
+    for step in range(60):
+        pose[0, 3] += 0.05 if step < 30 else -0.05
+        drag(viewer, pose)
+        expected = tracker.track(session.target, 1e3)
+        np.testing.assert_array_equal(session.q, expected.q)
+        assert session.status == expected.status
+        assert session.solved == (expected.status == iksel.Status.solved)
+        assert robot.within_limits(session.q)
+        statuses.add(session.status)
+    assert {iksel.Status.solved, iksel.Status.closest} <= statuses
+    # From elsewhere it begins anew.
+    elsewhere = robot.random_configurations(1, seed=SEED)[0]
+    viewer.show(elsewhere)
+    drag(viewer, robot.fk(elsewhere))
+    np.testing.assert_allclose(session.q, elsewhere, atol=1e-6)
+
+
 def test_tasks(show):
     viewer = show("xarm5")
     robot = viewer.session.robot
@@ -206,11 +232,11 @@ def test_tasks(show):
     # What each task reaches of: the pose, tilted as five joints cannot.
     drag(viewer, tilted)
     assert not viewer.session.solved
-    viewer.controls.task.value = "position only"
+    viewer.controls.tasks[0].value = "position only"
     assert viewer.session.solved
     reached = robot.fk(viewer.session.q)
     np.testing.assert_allclose(reached[:3, 3], tilted[:3, 3], atol=2e-6)
-    viewer.controls.task.value = "free spin"
+    viewer.controls.tasks[0].value = "free spin"
     drag(viewer, spun)
     assert viewer.session.solved
     reached = robot.fk(viewer.session.q)
@@ -224,8 +250,8 @@ def test_a_solver_s_own_task_is_offered(made):
     task = iksel.Task.upright()
     solver = iksel.Solver(made.robot("ur5e"), iksel.SolverOptions(task=task))
     session = view.Session(solver)
-    assert session.task_name == "the solver's"
-    assert session.task == task
+    assert session.task_names == ["the solver's"]
+    assert session.tasks["the solver's"] == task
     assert len(session.tasks) == 4
 
 
@@ -246,8 +272,8 @@ def test_self_motion_leaves_the_tool_where_it_is(show):
     assert np.ptp(elbows) > 1
     motion = session.solver.self_motion(pose, 0.02)
     np.testing.assert_array_equal(session.q, motion[len(motion) - 1].q[-1])
-    viewer.controls.task.value = "position only"
-    assert session.motion is None
+    viewer.controls.tasks[0].value = "position only"
+    assert session.arcs is None
     assert viewer.controls.motion.disabled
 
 

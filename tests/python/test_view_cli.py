@@ -14,6 +14,7 @@ import reach_maps  # noqa: F401 (skips without the extra)
 from command_line import assert_bad
 from reach_maps import computed
 from test_view import free_port
+from trees import two_arms_on_torso
 
 import iksel
 from iksel import cli
@@ -52,7 +53,7 @@ def examples() -> list[str]:
     return [
         line
         for line in found
-        if (line.startswith("view") or "--browser" in line) and "arm.urdf" not in line
+        if (line.startswith("view") or "--browser" in line) and ".urdf" not in line
     ]
 
 
@@ -69,6 +70,15 @@ def test_examples_are_served_until_interrupted(line, folder):
     assert len(examples()) == 5
     if "--port" not in line:
         line += f" --port {free_port()}"
+    assert "<html" in served(line, folder)
+
+
+def test_a_robot_with_several_tips_is_served(folder, made):
+    path = folder / "torso.urdf"
+    path.write_text(two_arms_on_torso(made.robot("ur5e")))
+    tips = "--tip l_tool0 --tip r_tool0 --task position_only"
+    q = " ".join(["0.1"] * 14)
+    line = f"view torso.urdf {tips} --q {q} --port {free_port()}"
     assert "<html" in served(line, folder)
 
 
@@ -90,6 +100,10 @@ def test_what_cannot_be_shown_is_named(run, folder):
     assert_bad(run(f"view panda --map {path} {port}"), "map: it is of ur5e, .* panda")
     tool = "--tcp 0 0 0.1 0 0 0"
     assert_bad(run(f"view ur5e --map {path} {port} {tool}"), "map: its tool is another")
+    torso = folder / "two.urdf"
+    torso.write_text(two_arms_on_torso(iksel.load_robot("ur3")))
+    both = f"{torso} --tip l_tool0 --tip r_tool0 --map {path}"
+    assert_bad(run(f"view {both} {port}"), "map: it is of ur5e, .* l_tool0, r_tool0")
     assert_bad(run(f"view ur5e --map {path}x {port}"), "ur5e.zarrx")
     assert_bad(run(f"view ur5e --q 1 2 {port}"), "--q: expected 6 numbers")
     assert_bad(run("view ur5e --port 0"), "--port: 0 is not between 1 and 65535")

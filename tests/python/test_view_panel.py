@@ -51,15 +51,15 @@ def test_what_is_copied_can_be_typed(show, cases, name, unit) -> None:
     for q in robot.random_configurations(cases // 10, seed=SEED):
         viewer.show(q)
         np.testing.assert_allclose(numbers(fields.q), q * angle, rtol=1e-5, atol=1e-6)
-        q_text, pose_text = fields.q.value, fields.pose.value
+        q_text, pose_text = fields.q.value, fields.poses[0].value
         viewer.show(elsewhere)
         fields.q.value = f"[{', '.join(q_text.split())}]"
         click(viewer, fields.to_q)
         np.testing.assert_allclose(viewer.session.q, q, rtol=0, atol=3e-5)
         assert viewer.session.solved
         viewer.show(elsewhere)
-        fields.pose.value = pose_text
-        click(viewer, fields.to_pose)
+        fields.poses[0].value = pose_text
+        click(viewer, fields.to_poses[0])
         distance, turned = iksel.pose_error(viewer.session.target, robot.fk(q))
         assert distance < 1e-5
         assert turned < 3e-5
@@ -70,8 +70,8 @@ def test_a_target_is_typed_with_a_quaternion(show) -> None:
     fields, robot = viewer.controls.numbers, viewer.session.robot
     pose = robot.fk(robot.random_configurations(1, seed=SEED)[0])
     values = [*pose[:3, 3], *iksel.quaternion_from_pose(pose)]
-    fields.pose.value = " ".join(map(repr, map(float, values)))
-    click(viewer, fields.to_pose)
+    fields.poses[0].value = " ".join(map(repr, map(float, values)))
+    click(viewer, fields.to_poses[0])
     np.testing.assert_allclose(viewer.session.target, pose, rtol=0, atol=1e-12)
     assert viewer.session.solved
 
@@ -94,8 +94,8 @@ def test_what_is_no_number_moves_nothing(show, q, target, reason) -> None:
         fields.q.value = q
         click(viewer, fields.to_q)
     else:
-        fields.pose.value = target
-        click(viewer, fields.to_pose)
+        fields.poses[0].value = target
+        click(viewer, fields.to_poses[0])
     assert viewer.text.startswith(f"**not moved**: {reason}")
     np.testing.assert_array_equal(viewer.session.q, before)
 

@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 
 import iksel
-from iksel._bounds import Budget, RefusedError
-from iksel._xacro_eval import evaluate
 from iksel.description import read_description
+from iksel.formats._bounds import Budget, RefusedError
+from iksel.formats._xacro_eval import evaluate
 
 pytest.importorskip("xacro")
 

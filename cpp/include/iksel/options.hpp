@@ -18,6 +18,7 @@ enum class Sampling {
   cvt,              ///< centroidal Voronoi tessellation, MacQueen updates (the paper's revision)
   low_discrepancy,  ///< additive recurrence R_d (generalised golden ratio)
   random,           ///< uniform, seeded
+  kmeans,           ///< centroids of random configurations, Lloyd's rounds (paper(2026))
 };
 
 /// Size of a grid, and of other samplings whose `samples` is 0 (paper, Table "KDTree sizes").
@@ -59,13 +60,19 @@ struct IKSEL_EXPORT DatabaseOptions {
   double pinv_cutoff = 1e-4;
   /// Updates of MacQueen's method (cvt only).
   std::size_t cvt_updates = 1'000'000;
-  /// Seed of the random, cvt and low_discrepancy samplings.
+  /// Random configurations whose centroids the samples are; only read by kmeans.
+  std::size_t kmeans_pool = 200'000;
+  /// Rounds in which each of these goes to the nearest sample, and each sample to the mean of its
+  /// own; only read by kmeans.
+  int kmeans_rounds = 20;
+  /// Seed of all samplings but grid.
   std::uint64_t seed = 0;
   /// Threads that work; 0: one per core. The result has the same bits for any number.
   int threads = 0;
 
-  /// The paper's: grid, medium, rotation vectors, unweighted.
-  [[nodiscard]] static DatabaseOptions paper();
+  /// The paper's: grid, medium, rotation vectors, unweighted. Of 2026: 2,048 samples by kmeans.
+  /// Throws InvalidArgumentError on a year other than 2025 and 2026.
+  [[nodiscard]] static DatabaseOptions paper(int year = 2025);
   /// Throws InvalidArgumentError naming the first option out of range.
   void validate() const;
 };
@@ -156,6 +163,12 @@ struct IKSEL_EXPORT Paper {
   /// An attempt ends, or that of pinv_rr restarts, when |sum of the step| is below this (dls, pinv,
   /// pinv_rr, cwpi) [rad or m].
   double min_step = 1e-6;
+  /// An attempt ends once it is within the tolerances, also outside the limits, instead of going
+  /// on (dls, pinv, pinv_rr, cwpi; the others always do).
+  bool limits_stop = false;
+  /// Part of the way to the middle of the limits that each step of a chain of more than six joints
+  /// makes besides, as far as the pose lets it: in the Jacobian's null space (dls, pinv, pinv_rr).
+  double null_space_gain = 0;
   /// Part of a joint's range, at each end, in which cwln and cwpi hold it back.
   double limit_margin = 0.1;
 
@@ -195,8 +208,11 @@ struct IKSEL_EXPORT SolverOptions {
   Strategy strategy;
 
   /// The paper's setting: medium grid, the defaults of Paper, one re-selection, 1e-4 m and 1e-3
-  /// rad.
-  [[nodiscard]] static SolverOptions paper();
+  /// rad. Of 2026: its authors' newer one as https://github.com/wanweiwei07/one runs it at commit
+  /// 96c863f1: 2,048 samples by kmeans, of the 200 nearest the 16 best by Eq. (5) in that order,
+  /// 12 configurations each, without stops on growth and small steps, redundant joints towards the
+  /// middle of their limits. Throws InvalidArgumentError on another year.
+  [[nodiscard]] static SolverOptions paper(int year = 2025);
   /// Throws InvalidArgumentError naming the first option out of range.
   void validate() const;
 };

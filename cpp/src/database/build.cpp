@@ -103,7 +103,7 @@ class DatabaseBuilder {
 
   void build() {
     const SampleSpace space = describe();
-    updates_ = options_.sampling == Sampling::cvt ? options_.cvt_updates : 0;
+    updates_ = update_count(options_);
     report(0);
     samples_ = make_samples(space, options_, [this](std::size_t done) { report(done); });
     width_ = space.dof();

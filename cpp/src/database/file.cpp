@@ -51,7 +51,10 @@ struct Header {
   double flange_inverse[12];
   std::uint64_t payload_size;
   std::uint64_t payload_checksum;
-  unsigned char reserved[184];
+  // Zero for all samplings but kmeans.
+  std::uint64_t kmeans_pool;
+  std::uint64_t kmeans_rounds;
+  unsigned char reserved[168];
   std::uint64_t header_checksum;
 };
 static_assert(sizeof(Header) == kHeaderSize);
@@ -81,6 +84,9 @@ void for_each_number(Fields& header, Data& data, const Copy& copy) {
   copy(header.seed, data.options.seed);
   copy(header.rotation_weight, data.options.rotation_weight);
   copy(header.pinv_cutoff, data.options.pinv_cutoff);
+  if (data.options.sampling != Sampling::kmeans) return;
+  copy(header.kmeans_pool, data.options.kmeans_pool);
+  copy(header.kmeans_rounds, data.options.kmeans_rounds);
 }
 
 /// The rotation and position of a pose, column by column.

@@ -143,6 +143,12 @@ std::size_t sample_count(const SampleSpace& space, const DatabaseOptions& option
   return options.samples;
 }
 
+std::size_t update_count(const DatabaseOptions& options) {
+  if (options.sampling == Sampling::cvt) return options.cvt_updates;
+  if (options.sampling != Sampling::kmeans) return 0;
+  return options.kmeans_pool * static_cast<std::size_t>(options.kmeans_rounds);
+}
+
 std::vector<double> make_samples(const SampleSpace& space, const DatabaseOptions& options,
                                  const std::function<void(std::size_t)>& on_progress) {
   std::vector<double> samples(sample_count(space, options) * space.dof());
@@ -157,8 +163,9 @@ std::vector<double> make_samples(const SampleSpace& space, const DatabaseOptions
       fill_random(space, options.seed, samples);
       break;
     case Sampling::cvt:
+    case Sampling::kmeans:
       fill_random(space, options.seed, samples);
-      refine_by_cvt(space, options, samples, on_progress);
+      tessellate(space, options, samples, on_progress);
       break;
   }
   return samples;

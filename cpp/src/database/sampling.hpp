@@ -43,14 +43,16 @@ SampleSpace sample_space(const ChainModel& model, const Reduction* reduction);
 /// Number of samples that the options ask for; of a grid, those outside coupled limits included.
 std::size_t sample_count(const SampleSpace& space, const DatabaseOptions& options);
 
+/// Points that a tessellation is made of, each as often as it is looked at; else 0.
+std::size_t update_count(const DatabaseOptions& options);
+
 /// Joint samples, space.dof() values each, one after another. `on_progress` is called with the
-/// number of updates done (cvt only).
+/// number of updates done.
 std::vector<double> make_samples(const SampleSpace& space, const DatabaseOptions& options,
                                  const std::function<void(std::size_t)>& on_progress);
 
-/// Centroidal Voronoi tessellation of the joint limits, starting from `samples`.
-void refine_by_cvt(const SampleSpace& space, const DatabaseOptions& options,
-                   std::vector<double>& samples,
-                   const std::function<void(std::size_t)>& on_progress);
+/// Centroidal Voronoi tessellation of the joint limits by cvt or kmeans, starting from `samples`.
+void tessellate(const SampleSpace& space, const DatabaseOptions& options,
+                std::vector<double>& samples, const std::function<void(std::size_t)>& on_progress);
 
 }  // namespace iksel

@@ -38,6 +38,12 @@ void check_read(const char* name, bool is_read, const T& value, const T& standar
                              "; leave it at its default");
 }
 
+/// Throws unless there is such a setting of the paper's; whether it is the newer one.
+bool is_newer(int year) {
+  if (year == 2025 || year == 2026) return year == 2026;
+  throw InvalidArgumentError("paper: year " + std::to_string(year) + " is none of 2025, 2026");
+}
+
 void check_ranges(const Paper& paper) {
   check_range("neighbours", paper.neighbours, 1, kMostNeighbours);
   check_range("neighbour_radius", paper.neighbour_radius, 0.0, 1e6);
@@ -52,6 +58,7 @@ void check_ranges(const Paper& paper) {
   check_range("rotation_clamp", paper.rotation_clamp, 1e-6, 1e6);
   check_enum("growth_stop", paper.growth_stop, GrowthStop::off);
   check_range("min_step", paper.min_step, 0.0, 1.0);
+  check_range("null_space_gain", paper.null_space_gain, 0.0, 1.0);
   check_range("limit_margin", paper.limit_margin, 1e-6, 0.5);
   check_enum("kinematics", paper.kinematics, Kinematics::kdl);
 }
@@ -84,6 +91,9 @@ void Paper::validate() const {
   check_read("rotation_clamp", !is_lm, rotation_clamp, standard.rotation_clamp,
              "by all iterations but 'lm'");
   check_read("min_step", inverts, min_step, standard.min_step, kInverting);
+  check_read("limits_stop", inverts, limits_stop, standard.limits_stop, kInverting);
+  check_read("null_space_gain", inverts && !is_one_of(Iteration::cwpi), null_space_gain,
+             standard.null_space_gain, "by iteration 'dls', 'pinv' and 'pinv_rr'");
   check_read("limit_margin", is_one_of(Iteration::cwln, Iteration::cwpi), limit_margin,
              standard.limit_margin, "by iteration 'cwln' and 'cwpi'");
 }
@@ -103,10 +113,14 @@ Paper one_at_a_time(const Strategy& strategy) {
   return paper;
 }
 
-DatabaseOptions DatabaseOptions::paper() {
+DatabaseOptions DatabaseOptions::paper(int year) {
   DatabaseOptions options;
   options.sampling = Sampling::grid;
   options.scale = Scale::medium;
+  if (is_newer(year)) {
+    options.sampling = Sampling::kmeans;
+    options.samples = 2'048;
+  }
   options.key_scheme = KeyScheme::full;
   options.rotation_key = RotationKey::rotation_vector;
   options.rotation_weight = 1.0;
@@ -115,7 +129,7 @@ DatabaseOptions DatabaseOptions::paper() {
 }
 
 void DatabaseOptions::validate() const {
-  check_enum("sampling", sampling, Sampling::random);
+  check_enum("sampling", sampling, Sampling::kmeans);
   check_enum("scale", scale, Scale::large);
   check_enum("key_scheme", key_scheme, KeyScheme::reduced);
   check_enum("rotation_key", rotation_key, RotationKey::dual_quaternion);
@@ -128,18 +142,39 @@ void DatabaseOptions::validate() const {
   check_range("rotation_weight", rotation_weight, 0.0, 1e6);
   check_range("pinv_cutoff", pinv_cutoff, 0.0, 0.5);
   check_range<std::size_t>("cvt_updates", cvt_updates, 0, 1'000'000'000U);
+  check_range<std::size_t>("kmeans_pool", kmeans_pool, 1, 1'000'000'000U);
+  check_range("kmeans_rounds", kmeans_rounds, 0, 1'000'000);
+  const DatabaseOptions standard;
+  const bool is_kmeans = sampling == Sampling::kmeans;
+  check_read("kmeans_pool", is_kmeans, kmeans_pool, standard.kmeans_pool, "by sampling 'kmeans'");
+  check_read("kmeans_rounds", is_kmeans, kmeans_rounds, standard.kmeans_rounds,
+             "by sampling 'kmeans'");
   resolve_threads(threads);
 }
 
-SolverOptions SolverOptions::paper() {
+SolverOptions SolverOptions::paper(int year) {
   SolverOptions options;
   options.position_tolerance = 1e-4;
   options.rotation_tolerance = 1e-3;
-  options.database = DatabaseOptions::paper();
+  options.database = DatabaseOptions::paper(year);
   options.max_attempts = 2;
   // The reference implementation's "7 iterations" evaluate nine configurations, eight steps apart.
   options.max_iterations = 8;
-  options.strategy = Paper{};
+  Paper paper;
+  if (is_newer(year)) {
+    options.max_attempts = 16;
+    // Its 12 iterations end with a step that is not looked at any more.
+    options.max_iterations = 11;
+    paper.candidates = 16;
+    paper.reselection = Reselection::next;
+    paper.rotation_clamp = 0.3;
+    // It compares the error with infinity: its variable for the last one is never written.
+    paper.growth_stop = GrowthStop::off;
+    paper.min_step = 0;
+    paper.limits_stop = true;
+    paper.null_space_gain = 0.2;
+  }
+  options.strategy = paper;
   return options;
 }
 

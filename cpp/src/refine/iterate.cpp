@@ -36,10 +36,9 @@ JointVector make_step(const IterationContext& context, const JointVector& q,
   const Paper& scheme = context.scheme;
   switch (scheme.iteration) {
     case Iteration::dls:
-      return dls_step(J, e, scheme);
     case Iteration::pinv:
     case Iteration::pinv_rr:
-      return pinv_step(J, e, scheme);
+      return inverse_step(context.model, q, J, e, scheme);
     case Iteration::cwln:
       return cwln_step(context.model, q, J, e, scheme);
     case Iteration::cwpi:
@@ -128,7 +127,7 @@ Outcome iterate(const IterationContext& context, JointVector& q, int& steps) {
       if (model.joints.contains(q.data())) return Outcome::solved;
       outcome = Outcome::outside_limits;
       // Only the paper's first schemes go on from here; the others have nothing left to gain.
-      if (!stops_on_small_step(scheme.iteration)) return outcome;
+      if (scheme.limits_stop || !stops_on_small_step(scheme.iteration)) return outcome;
     }
     if (growth_stop && now.position > last_position && now.rotation > last_rotation) return outcome;
     last_position = now.position;

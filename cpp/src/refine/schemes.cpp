@@ -44,6 +44,17 @@ JointVector pinv_step(const JacobianMatrix& J, const Vector6& e, const Paper& sc
   return TruncatedSvd(J, scheme.pinv_cutoff).inverse() * e;
 }
 
+JointVector inverse_step(const ChainModel& model, const JointVector& q, const JacobianMatrix& J,
+                         const Vector6& e, const Paper& scheme) {
+  const auto step = scheme.iteration == Iteration::dls ? &dls_step : &pinv_step;
+  if (scheme.null_space_gain == 0 || model.dof <= 6) return step(J, e, scheme);
+  JointVector c = scheme.null_space_gain * (model.joints.middle() - q);
+  for (int i = 0; i < model.dof; ++i) {
+    if (!std::isfinite(model.joints.upper[i] - model.joints.lower[i])) c[i] = 0;
+  }
+  return c + step(J, e - J * c, scheme);
+}
+
 JointVector cwln_step(const ChainModel& model, const JointVector& q, const JacobianMatrix& J,
                       const Vector6& e, const Paper& scheme) {
   constexpr double kDamping = 1e-9;

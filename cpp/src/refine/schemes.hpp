@@ -14,6 +14,11 @@ JointVector dls_step(const JacobianMatrix& J, const Vector6& e, const Paper& sch
 /// pinv, pinv_rr: J^+ e.
 JointVector pinv_step(const JacobianMatrix& J, const Vector6& e, const Paper& scheme);
 
+/// Either of them, for a redundant chain c + J^+ (e - J c) with a gain: c = gain (middle of the
+/// limits - q), so that what the pose leaves open, (I - J^+ J) c, leads there.
+JointVector inverse_step(const ChainModel& model, const JointVector& q, const JacobianMatrix& J,
+                         const Vector6& e, const Paper& scheme);
+
 /// Weight of each joint in cwln and cwpi: 1 inside, falling as 3 s^2 - 2 s^3 to 0 over the margin
 /// at each end of the range, s the distance to the limit over the margin (Huang et al. 2016).
 JointVector joint_weights(const ChainModel& model, const JointVector& q, double margin);

@@ -37,6 +37,7 @@ bool Sweep::find_between(Between where) {
   nearest_.find(places_, rows_, kNear);
   least_ = kInfinity;
   close_.clear();
+  if (where == Between::all) return find_in_intervals();
   for (const LeastPlace& near : nearest_) {
     least_ = std::min(least_, near.value);
     if (where == Between::beyond_folds) {
@@ -45,6 +46,53 @@ bool Sweep::find_between(Between where) {
     }
     if (follow(near)) return true;
   }
+  return false;
+}
+
+namespace {
+
+/// Branches of which all that is asked is how far they are from being an answer.
+struct RatedBranches {
+  SweptBranches& branches;
+  double bound;  ///< what is more is not known
+  double off[SweptBranches::kCount];
+
+  template <typename Value>
+  void solve_one(int branch, const Value& value) {
+    branches.rate_one(branch, value, bound, off);
+  }
+};
+
+/// Whether of two branches that merge, and differ by one of three signs, it is the second.
+bool is_second_of_merged(int branch) {
+  return __builtin_parity(static_cast<unsigned>(branch)) != 0;
+}
+
+/// From the middle of a small closed curve, where Newton's steps lead nowhere: the arm is singular
+/// there. In a direction that is none of the arm's.
+void step_aside(std::array<double, SweptBranches::kDof>& q) {
+  constexpr double kAside = 3e-3;  // [rad or m]; of loops from 1e-3 on
+  for (std::size_t j = 0; j < q.size(); ++j) q[j] += kAside * std::cos(static_cast<double>(j));
+}
+
+}  // namespace
+
+bool Sweep::find_in_intervals() {
+  constexpr int kRounds = 4;
+  intervals_.begin(branches_);
+  for (int round = 0; round < kRounds && !intervals_.is_empty(); ++round) {
+    if (intervals_.divide([&](int lane, int branch) { return take(lane, branch); })) return true;
+  }
+  intervals_.visit([&](int branch, double value) {
+    branches_.solve_one(branch, [&](int /*lane*/) { return value; });
+    SweptJoints close{branches_.off(0), {}};
+    least_ = std::min(least_, close.value);
+    if (!miss_.is_close(close.value)) return;
+    branches_.copy_joints(0, close.q.data());
+    if (branches_.least(0) < 0 && is_second_of_merged(branch)) step_aside(close.q);
+    close_.add(close);
+  });
+  if (intervals_.is_overfull()) least_ = 0;
   return false;
 }
 
@@ -152,34 +200,6 @@ void Sweep::add_beside(const double* from, int branch, double part, std::vector<
     q.insert(q.end(), q_.begin(), q_.end());
   }
 }
-
-namespace {
-
-/// Branches of which all that is asked is how far they are from being an answer.
-struct RatedBranches {
-  SweptBranches& branches;
-  double bound;  ///< what is more is not known
-  double off[SweptBranches::kCount];
-
-  template <typename Value>
-  void solve_one(int branch, const Value& value) {
-    branches.rate_one(branch, value, bound, off);
-  }
-};
-
-/// Whether of two branches that merge, and differ by one of three signs, it is the second.
-bool is_second_of_merged(int branch) {
-  return __builtin_parity(static_cast<unsigned>(branch)) != 0;
-}
-
-/// From the middle of a small closed curve, where Newton's steps lead nowhere: the arm is singular
-/// there. In a direction that is none of the arm's.
-void step_aside(std::array<double, SweptBranches::kDof>& q) {
-  constexpr double kAside = 3e-3;  // [rad or m]; of loops from 1e-3 on
-  for (std::size_t j = 0; j < q.size(); ++j) q[j] += kAside * std::cos(static_cast<double>(j));
-}
-
-}  // namespace
 
 bool Sweep::follow(const LeastPlace& near) {
   constexpr int kRounds = 8;

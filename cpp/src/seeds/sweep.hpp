@@ -8,6 +8,7 @@
 
 #include "base/function_ref.hpp"
 #include "base/work.hpp"
+#include "seeds/branch_intervals.hpp"
 #include "seeds/swept_branches.hpp"
 
 namespace iksel {
@@ -87,12 +88,15 @@ class Sweep {
   bool take(int lane, int branch);
   /// Looks between the samples beside; true if there is an answer.
   bool follow(const LeastPlace& near);
+  /// Looks between all samples; true if there is an answer.
+  bool find_in_intervals();
 
   const JointSpace& joints_;
   // sweep_spread.cpp
   class Spread;
 
   SweptBranches branches_;
+  BranchIntervals intervals_;
   Places places_;
   NearMiss miss_;
   /// How far each branch of a sample is from being an answer [mixed units].

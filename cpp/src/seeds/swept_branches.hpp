@@ -55,6 +55,30 @@ struct BranchSpan {
   }
 };
 
+/// A branch at a value of the swept joint: how far it exists (BranchPack::least), the six other
+/// joints, and how far each is beyond its limits [rad].
+struct BranchNode {
+  double value;  ///< [rad or m]
+  double least;
+  std::array<double, 6> q, beyond;
+
+  [[nodiscard]] bool exists() const { return least >= 0; }
+};
+/// How far these go from one node to the next.
+struct BranchWay {
+  double change = 0;
+  std::array<double, 6> moves{};
+
+  BranchWay() = default;
+  BranchWay(const BranchNode& from, const BranchNode& to)
+      : change(std::abs(to.least - from.least)) {
+    for (std::size_t j = 0; j < moves.size(); ++j) {
+      const double move = std::abs(to.q[j] - from.q[j]);
+      moves[j] = std::min(move, std::abs(kTwoPi - move));
+    }
+  }
+};
+
 class SweptBranches {
  public:
   static constexpr int kCount = lanes::kWidth;
@@ -148,6 +172,8 @@ class SweptBranches {
   [[nodiscard]] const lanes::MovePack& moves() const { return moves_; }
   /// Whether there is such a branch at all: below 0 if there is none [mixed units].
   [[nodiscard]] double least(int lane) const { return last_->least[lane]; }
+  /// It all as a node.
+  [[nodiscard]] BranchNode node(int lane) const;
   /// The value of the swept joint.
   [[nodiscard]] double value(int lane) const { return last_->held[lane] - offset_; }
   /// All seven joint values, by whole turns inside the limits where they can be [rad].

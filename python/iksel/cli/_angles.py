@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from iksel_cpp import InvalidArgumentError, JointType, UnknownNameError
 
-from iksel._angles import look_like_degrees
+from iksel._base.angles import look_like_degrees
 from iksel.cli._parser import POSE_COUNTS, POSE_FORMS, parse_numbers, warning_line
 from iksel.pose import check_pose, pose_from_euler, pose_from_quaternion
 from iksel.srdf import Srdf
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from iksel_cpp import Robot
 
-    from iksel._arrays import FloatArray
+    from iksel._base.arrays import FloatArray
     from iksel.pose import QuaternionOrder
 
     Limits = tuple[FloatArray, FloatArray]

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from iksel_cpp import BatchResult
 
-    from iksel._arrays import FloatArray
+    from iksel._base.arrays import FloatArray
 
 ERRORS = ("position_error", "rotation_error")
 

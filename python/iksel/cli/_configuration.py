@@ -9,14 +9,15 @@ import numpy as np
 
 from iksel.cli._angles import Angles
 from iksel.cli._output import add_json
-from iksel.cli._robot import add_robot, load
+from iksel.cli._robot import load
+from iksel.cli._robot_flags import add_robot
 
 if TYPE_CHECKING:
     import argparse
 
     from iksel_cpp import Robot
 
-    from iksel._arrays import FloatArray
+    from iksel._base.arrays import FloatArray
 
 
 def tip_facts(robot: Robot) -> dict[str, Any]:

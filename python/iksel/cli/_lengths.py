@@ -13,7 +13,7 @@ from iksel.cli._parser import warning_line
 if TYPE_CHECKING:
     from iksel_cpp import Robot
 
-    from iksel._arrays import FloatArray
+    from iksel._base.arrays import FloatArray
 
 FARTHEST = 100.0
 """How many times the robot's reach a position in metres may be away unsuspected."""
@@ -25,25 +25,33 @@ def warn_of_millimetres(robot: Robot, flag: str, poses: FloatArray) -> bool:
     As metres they are far out of reach, and as millimetres within it.
 
     Args:
-        robot: Whose reach counts.
+        robot: Whose reach counts, of several tips that of each chain.
         flag: What the poses were given by, for the warning.
-        poses: T_base_tcp, (..., 4, 4); of NaN where there is none.
+        poses: T_base_tcp, (..., 4, 4), of k tips (..., k, 4, 4); of NaN where there is
+            none.
 
     Returns:
         Whether there was a warning.
     """
-    positions = poses[..., :3, 3].reshape(-1, 3)
-    centre, reach = robot.reach_centre, robot.reach
+    positions = poses[..., :3, 3].reshape(-1, robot.tips, 3)
+    for tip in range(robot.tips):
+        chain = robot.chain(tip)
+        found = _suspects(chain, positions[:, tip])
+        if len(found):
+            text = " ".join(f"{x:g}" for x in found[0])
+            sys.stderr.write(
+                warning_line(
+                    f"{flag}: the position {text} looks like millimetres, and is taken "
+                    f"as metres; the robot reaches {chain.reach:.3g} m"
+                )
+            )
+            return True
+    return False
+
+
+def _suspects(chain: Robot, positions: FloatArray) -> FloatArray:
+    """Which of the positions (N, 3) [m] look like millimetres, (n, 3)."""
+    centre, reach = chain.reach_centre, chain.reach
     far = np.linalg.norm(positions - centre, axis=1) > FARTHEST * reach
     near = np.linalg.norm(positions / 1000.0 - centre, axis=1) <= reach
-    suspects = positions[far & near]
-    if len(suspects) == 0:
-        return False
-    text = " ".join(f"{x:g}" for x in suspects[0])
-    sys.stderr.write(
-        warning_line(
-            f"{flag}: the position {text} looks like millimetres, and is taken as "
-            f"metres; the robot reaches {reach:.3g} m"
-        )
-    )
-    return True
+    return np.asarray(positions[far & near])

@@ -19,11 +19,15 @@ from iksel_cpp import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
 Options = DatabaseOptions | SolverOptions | Lanes | Paper
 
-PRESETS = ("default", "paper")
+PRESETS: dict[str, Callable[[], SolverOptions]] = {
+    "default": SolverOptions,
+    "paper": SolverOptions.paper,
+    "paper2026": lambda: SolverOptions.paper(2026),
+}
 STRATEGIES = {"lanes": Lanes, "paper": Paper}
 
 TASK_FORMS = (
@@ -55,7 +59,7 @@ def add_preset(parser: argparse.ArgumentParser) -> None:
     """Add --preset."""
     parser.add_argument(
         "--preset",
-        choices=PRESETS,
+        choices=list(PRESETS),
         default="default",
         help="the settings that the flags below start from (default: %(default)s)",
     )
@@ -125,8 +129,7 @@ def solver_options(arguments: argparse.Namespace) -> SolverOptions:
         raise InvalidArgumentError(
             f"{flags}: cannot be used with --database, whose file has its own settings"
         )
-    paper = arguments.preset == "paper"
-    options = SolverOptions.paper() if paper else SolverOptions()
+    options = PRESETS[arguments.preset]()
     database = options.database.replace(**changes)
     task = parse_task(arguments.task) if arguments.task else options.task
     return options.replace(
@@ -198,8 +201,7 @@ def database_options(arguments: argparse.Namespace) -> DatabaseOptions:
     Raises:
         InvalidArgumentError: A value out of range.
     """
-    paper = arguments.preset == "paper"
-    options = DatabaseOptions.paper() if paper else SolverOptions().database
+    options = PRESETS[arguments.preset]().database
     return options.replace(**_database_changes(arguments))
 
 
@@ -261,14 +263,13 @@ def _add_fields(
     renamed: Mapping[str, str],
 ) -> None:
     """A flag per field of `options`; those that are not used leave no trace."""
-    defaults = options().to_dict()
-    paper = defaults if options is Paper else options.paper().to_dict()  # type: ignore[union-attr]
-    for field, default in defaults.items():
+    presets = {name: _part(make(), options) for name, make in PRESETS.items()}
+    for field, default in options().to_dict().items():
         if isinstance(default, dict):
             continue
         note = _NOTES.get(field, "") if options is DatabaseOptions else ""
         doc = getattr(options, field).__doc__
-        text = f"{doc}{note} ({_presets(default, paper[field])})"
+        text = f"{doc}{note} ({_defaults(presets, field)})"
         group.add_argument(
             _flag(field, renamed),
             dest=prefix + field,
@@ -278,9 +279,18 @@ def _add_fields(
         )
 
 
-def _presets(default: object, paper: object) -> str:
-    same = default == paper
-    return f"default: {default}" if same else f"default: {default}, paper: {paper}"
+def _part(preset: SolverOptions, options: type[Options]) -> dict[str, Any]:
+    """The fields of a class in a preset; where it has no such strategy, its own."""
+    parts = (preset, preset.database, preset.strategy, options())
+    return next(part for part in parts if isinstance(part, options)).to_dict()
+
+
+def _defaults(presets: Mapping[str, dict[str, Any]], field: str) -> str:
+    """A field's values by preset, each where it is not that of the one before."""
+    values = {name: fields[field] for name, fields in presets.items()}
+    before = [object(), *values.values()]
+    pairs = zip(values.items(), before, strict=False)
+    return ", ".join(f"{n}: {value}" for (n, value), last in pairs if value != last)
 
 
 def _kind(options: type[Options], field: str, default: object) -> dict[str, Any]:

@@ -15,7 +15,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
-    from iksel._arrays import FloatArray
+    from iksel._base.arrays import FloatArray
 
 BAR_WIDTH = 30
 SECONDS_BETWEEN_UPDATES = 0.1

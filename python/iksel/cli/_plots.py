@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from iksel_cpp import Status
 
-from iksel._figures import COLOURS, make_figure
-from iksel._qualities import manipulability
+from iksel._base.figures import COLOURS, make_figure
+from iksel._base.qualities import manipulability
 from iksel.cli._angles import turning
 
 if TYPE_CHECKING:
     from iksel_cpp import PathResult, Robot, Solver
 
-    from iksel._arrays import FloatArray, IntArray
+    from iksel._base.arrays import FloatArray, IntArray
     from iksel.cli._angles import Angles
 
 CELLS = 72
@@ -42,7 +42,7 @@ class Branches(NamedTuple):
 
 
 def find_branches(solver: Solver, poses: FloatArray) -> Branches:
-    """All solutions of poses (N, 4, 4), and the path through them."""
+    """All solutions of poses (N, 4, 4), or of k tips (N, k, 4, 4), and a path."""
     waypoint, q, status = [], [np.empty((0, solver.robot.dof))], []
     for index, pose in enumerate(poses):
         found = solver.solve_all(pose, MOST_SOLUTIONS)
@@ -59,7 +59,7 @@ def find_branches(solver: Solver, poses: FloatArray) -> Branches:
 
 
 def workspace_figure(robot: Robot, q: FloatArray) -> Any:
-    """How many of the configurations (N, dof) put the TCP where."""
+    """How many of the configurations (N, dof) put the TCP, or one of several, where."""
 
     def share(across: FloatArray, along: FloatArray, edges: Any) -> FloatArray:
         counts = np.histogram2d(across, along, edges)[0]
@@ -70,7 +70,7 @@ def workspace_figure(robot: Robot, q: FloatArray) -> Any:
 
 def manipulability_figure(robot: Robot, q: FloatArray) -> Any:
     """The largest manipulability of the configurations (N, dof), by TCP."""
-    values = manipulability(robot, q)
+    values = np.repeat(manipulability(robot, q), robot.tips)
 
     def best(across: FloatArray, along: FloatArray, edges: Any) -> FloatArray:
         return largest_in_cells(across, along, values, edges)
@@ -142,7 +142,7 @@ def whole_turns(
 
 def _panels(robot: Robot, q: FloatArray, value: Any, label: str) -> Any:
     """Where the TCP is, from the side and from above, coloured by a value per cell."""
-    position = robot.fk(q)[:, :3, 3]
+    position = robot.fk(q)[..., :3, 3].reshape(-1, 3)
     figure = make_figure(WIDE)
     step = max(float(np.ptp(position, axis=0).max()), 1e-9) / CELLS
     for axes, (first, second, where) in zip(figure.subplots(1, 2), PANELS, strict=True):
@@ -157,8 +157,8 @@ def _panels(robot: Robot, q: FloatArray, value: Any, label: str) -> Any:
             xlabel=f"{first} [m]", ylabel=f"{second} [m]", aspect="equal", title=where
         )
     figure.suptitle(
-        f"{robot.name}: {robot.base_link} (+) to {robot.tip_link}, "
-        f"{len(position):,} configurations"
+        f"{robot.name}: {robot.base_link} (+) to {', '.join(robot.tip_links)}, "
+        f"{len(q):,} configurations"
     )
     return figure
 

@@ -8,18 +8,23 @@ import json
 import math
 import sys
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any, NamedTuple
+from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
 from iksel_cpp import InvalidArgumentError
 
-from iksel.cli._parser import POSE_COUNTS, parse_numbers, split_numbers
+from iksel.cli._columns import MOST_NAMES, Columns, form_names, read_columns
+from iksel.cli._lengths import warn_of_millimetres
+from iksel.cli._parser import POSE_COUNTS, parse_numbers
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
-    from iksel._arrays import FloatArray
+    from iksel_cpp import Robot
+
+    from iksel._base.arrays import FloatArray
     from iksel.cli._angles import Angles
+    from iksel.pose import QuaternionOrder
 
 FILE_FORMS = """\
 FILE has one pose a row; - is stdin. What it is shows in its content:
@@ -27,46 +32,17 @@ FILE has one pose a row; - is stdin. What it is shows in its content:
            commas; empty lines and those that start with # are left out. A first line of
            names, with x y z roll pitch yaw or x y z qw qx qy qz among them in any
            order, says what the columns are; others, such as times, are not read
+  several  the poses of all --tip in their order, in one form; in a line of names each
+  tips     begins with the tip's link and a point, as left_hand.x
   JSON     a line each: a list of these numbers, a 4x4 list, or {"pose": such a list}
-  .npy     an array of shape (N, 4, 4), (N, 6), (N, 7) or (N, 16)
+  .npy     an array of shape (N, 4, 4), (N, 6), (N, 7) or (N, 16), or for k tips
+           (N, k, 4, 4), (N, 6 k), (N, 7 k) or (N, 16 k)
 """
 
 LONGEST_LINE = 1 << 20
 """Bytes; a longer line is no pose, but a file of another kind."""
 
 _NPY = b"\x93NUMPY"
-_FORMS = (
-    ("x", "y", "z", "roll", "pitch", "yaw"),
-    ("x", "y", "z", "qw", "qx", "qy", "qz"),
-)
-_FORM_NAMES = " or ".join(" ".join(form) for form in _FORMS)
-
-
-class Columns(NamedTuple):
-    """Where the numbers of a pose stand in a line."""
-
-    total: int
-    """Number of all columns."""
-    chosen: list[int]
-    """Which hold a pose, in the order of one of _FORMS."""
-    separator: str | None
-    """Between columns; None: white space."""
-
-    def pick(self, where: str, line: str) -> list[float]:
-        """The numbers of a pose in a line.
-
-        Raises:
-            InvalidArgumentError: Another number of columns, or one is no number.
-        """
-        cells = line.split(self.separator)
-        if len(cells) != self.total:
-            cells = split_numbers(line)
-        if len(cells) != self.total:
-            raise InvalidArgumentError(
-                f"{where}: expected {self.total} columns, as many as the first line "
-                f"has names, got {len(cells)}"
-            )
-        return parse_numbers(where, [cells[i] for i in self.chosen])
 
 
 class PoseFile:
@@ -75,10 +51,11 @@ class PoseFile:
     Lines are read as they are asked for, so that a file may be of any length.
     """
 
-    def __init__(self, name: str, angles: Angles) -> None:
-        """Take the file's name, or -, and the unit of angles."""
+    def __init__(self, name: str, angles: Angles, tips: Sequence[str]) -> None:
+        """Take the file's name, or -, the unit of angles, and the robot's tip links."""
         self._name = name
         self._angles = angles
+        self._tips = tips
         self.done = 0
         """Bytes of lines, or rows of an array, that have been read."""
         self.total = 0
@@ -107,7 +84,7 @@ class PoseFile:
             self._file.close()
 
     def __iter__(self) -> Iterator[FloatArray | InvalidArgumentError]:
-        """The rows: poses (4, 4), and for what is no pose the reason.
+        """The rows: poses (4, 4), of k tips (k, 4, 4), and why others are none.
 
         Raises:
             InvalidArgumentError: It cannot be read, or nothing in it is a row.
@@ -139,7 +116,7 @@ class PoseFile:
             except UnicodeDecodeError as error:
                 raise self._error(f"line {index}: {error}") from None
             if text and not text.startswith("#"):
-                named = _named_columns(where, text) if first else None
+                named = read_columns(where, text, self._tips) if first else None
                 if named is not None:
                     columns = named
                 else:
@@ -156,12 +133,14 @@ class PoseFile:
                 array = np.load(self._name, mmap_mode="r", allow_pickle=False)
         except (ValueError, EOFError) as error:
             raise self._error(f"no array: {error}") from None
-        shape = array.shape
-        rows = len(shape) == 2 and shape[1] in POSE_COUNTS
-        if not (rows or (len(shape) == 3 and shape[1:] == (4, 4))):
+        tips = len(self._tips)
+        rows: list[tuple[int, ...]] = [(4, 4) if tips == 1 else (tips, 4, 4)]
+        rows += [(count * tips,) for count in POSE_COUNTS]
+        if array.shape[1:] not in rows:
+            shapes = [f"(N, {', '.join(map(str, row))})" for row in rows]
             raise self._error(
-                f"expected an array of shape (N, 4, 4), (N, 6), (N, 7) or (N, 16), "
-                f"got {shape}"
+                f"expected an array of shape {', '.join(shapes[:-1])} or {shapes[-1]}, "
+                f"got {array.shape}"
             )
         if array.dtype.kind not in "iuf":
             raise self._error(f"expected numbers, got an array of {array.dtype}")
@@ -176,8 +155,7 @@ class PoseFile:
     ) -> FloatArray | InvalidArgumentError:
         try:
             if columns is not None:
-                numbers = columns.pick(where, text)
-                return self._angles.as_pose(where, numbers, order="wxyz")
+                return self._poses(where, columns.pick(where, text), order="wxyz")
             found = _json_numbers(where, text)
             numbers = parse_numbers(where, [text]) if found is None else found
         except InvalidArgumentError as error:
@@ -188,65 +166,61 @@ class PoseFile:
         self, where: str, numbers: list[float]
     ) -> FloatArray | InvalidArgumentError:
         try:
-            return self._angles.as_pose(where, numbers)
+            return self._poses(where, numbers)
         except InvalidArgumentError as error:
-            if len(numbers) == 16 or len(numbers) <= max(map(len, _FORMS)):
+            of_each = len(numbers) / len(self._tips)
+            if of_each == 16 or of_each <= MOST_NAMES:
                 return error
             return InvalidArgumentError(
                 f"{error}; where there are further columns, a first line of names, "
-                f"{_FORM_NAMES}, says which are the pose"
+                f"{form_names(self._tips)}, says which are the pose"
             )
+
+    def _poses(
+        self, where: str, numbers: list[float], order: QuaternionOrder | None = None
+    ) -> FloatArray:
+        """The pose of the one tip, (4, 4), or of each, (k, 4, 4).
+
+        Raises:
+            InvalidArgumentError: They are something else.
+        """
+        tips = self._tips
+        if len(tips) == 1:
+            return self._angles.as_pose(where, numbers, order)
+        count, rest = divmod(len(numbers), len(tips))
+        if rest or count not in POSE_COUNTS:
+            forms = ", ".join(str(n * len(tips)) for n in POSE_COUNTS)
+            raise InvalidArgumentError(
+                f"{where}: expected a pose for each of {', '.join(tips)}, in one form: "
+                f"one of {forms} numbers; got {len(numbers)}"
+            )
+        parts = [numbers[i * count : (i + 1) * count] for i in range(len(tips))]
+        return np.stack(
+            [
+                self._angles.as_pose(f"{where}, {tip}", part, order)
+                for tip, part in zip(tips, parts, strict=True)
+            ]
+        )
 
     def _error(self, problem: str) -> InvalidArgumentError:
         return InvalidArgumentError(f"{self._name}: {problem}")
 
 
-def read_poses(name: str, angles: Angles) -> FloatArray:
-    """The poses of a file, (N, 4, 4).
+def read_poses(name: str, angles: Angles, robot: Robot) -> FloatArray:
+    """The poses of a file, (N, 4, 4), for a robot of k tips (N, k, 4, 4).
 
     Raises:
         InvalidArgumentError: It cannot be read, or a row is no pose.
     """
     poses = []
-    with PoseFile(name, angles) as rows:
+    with PoseFile(name, angles, robot.tip_links) as rows:
         for row in rows:
             if isinstance(row, InvalidArgumentError):
                 raise row
             poses.append(row)
-    return np.stack(poses)
-
-
-def _named_columns(where: str, line: str) -> Columns | None:
-    """The columns that a line of names gives; None if it is a line of a pose.
-
-    Raises:
-        InvalidArgumentError: They are names, but not those of a pose, or of two.
-    """
-    if line[0] in "[{":
-        return None
-    separator = next((mark for mark in ",;" if mark in line), None)
-    names = [word.strip(" \t\"'").lower() for word in line.split(separator)]
-    if any(map(_is_number, names)):
-        return None
-    forms = [form for form in _FORMS if set(form) <= set(names)]
-    if not forms:
-        raise InvalidArgumentError(
-            f"{where}: {_FORM_NAMES} are not among the columns {', '.join(names)}"
-        )
-    if len(forms) > 1 or any(names.count(name) > 1 for name in forms[0]):
-        raise InvalidArgumentError(
-            f"{where}: the columns {', '.join(names)} hold more than one pose"
-        )
-    chosen = [names.index(name) for name in forms[0]]
-    return Columns(len(names), chosen, separator)
-
-
-def _is_number(word: str) -> bool:
-    try:
-        float(word)
-    except ValueError:
-        return False
-    return True
+    found = np.stack(poses)
+    warn_of_millimetres(robot, name, found)
+    return found
 
 
 def _json_numbers(where: str, text: str) -> list[float] | None:

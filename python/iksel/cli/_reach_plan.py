@@ -9,7 +9,8 @@ from iksel import reach
 from iksel.cli._options import add_solver_options, solver_options
 from iksel.cli._output import add_json, print_json, print_pairs
 from iksel.cli._parser import count
-from iksel.cli._robot import add_robot, load
+from iksel.cli._robot import load
+from iksel.cli._robot_flags import add_robot
 
 if TYPE_CHECKING:
     import argparse

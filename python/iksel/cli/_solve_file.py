@@ -13,7 +13,7 @@ from typing import IO, TYPE_CHECKING, Any
 import numpy as np
 from iksel_cpp import InvalidArgumentError, Status
 
-from iksel._files import replaced
+from iksel._base.files import replaced
 from iksel.cli._answers import FORMATS
 from iksel.cli._lengths import warn_of_millimetres
 from iksel.cli._output import Progress, add_progress, print_json, print_pairs
@@ -32,8 +32,6 @@ CHUNK = 4096
 """Rows that are held at a time, unless --chunk says how many."""
 
 MOST_ROWS = 1_000_000
-
-NO_POSE = np.full((4, 4), np.nan)
 
 
 def add_poses(parser: argparse.ArgumentParser) -> None:
@@ -124,7 +122,9 @@ def solve_file(
 ) -> int:
     """Solve the poses of a file; 0 if all have an answer, else 1."""
     form = answer_format(arguments)
-    names = solver.robot.joint_names
+    robot = solver.robot
+    names = robot.joint_names
+    no_pose = np.full((4, 4) if robot.tips == 1 else (robot.tips, 4, 4), np.nan)
     on_stdout = arguments.output in (None, "-")
     counts: Counter[str] = Counter()
     warned = False
@@ -133,20 +133,19 @@ def solve_file(
         show = False  # the answers are there to be seen
     request["threads"] = arguments.threads or 0
     with (
-        PoseFile(arguments.poses, angles) as file,
+        PoseFile(arguments.poses, angles, solver.robot.tip_links) as file,
         _output(arguments.output) as output,
         Progress("solving", show=show) as progress,
     ):
         answers = FORMATS[form](output, names)
         size = arguments.chunk or CHUNK
-        for poses in _chunks(file, size, raising=arguments.on_invalid == "raise"):
-            targets = np.stack(poses)
-            warned = warned or warn_of_millimetres(
-                solver.robot, arguments.poses, targets
-            )
+        raising = arguments.on_invalid == "raise"
+        for poses in _chunks(file, size, raising=raising):
+            targets = np.stack([no_pose if pose is None else pose for pose in poses])
+            warned = warned or warn_of_millimetres(robot, arguments.poses, targets)
             batch = solver.solve_batch(targets, **request)
             counts.update(status.name for status in batch.statuses())
-            answers.write(batch, angles.show(solver.robot, batch.q))
+            answers.write(batch, angles.show(robot, batch.q))
             output.flush()
             if progress is not None and file.total:
                 progress(min(file.done, file.total), file.total)
@@ -167,7 +166,7 @@ def _output(name: str | None) -> Iterator[IO[bytes]]:
 
 
 def _chunks(file: PoseFile, size: int, *, raising: bool) -> Iterator[list[Any]]:
-    """Poses, (4, 4) of NaN for what is none, some at a time; warns of the first such.
+    """Poses, None for what is none, some at a time; warns of the first such.
 
     Raises:
         InvalidArgumentError: A row is no pose, and `raising`.
@@ -182,7 +181,7 @@ def _chunks(file: PoseFile, size: int, *, raising: bool) -> Iterator[list[Any]]:
             warned = True
             text = f"{bad[0]}; this row, and others like it, get status invalid_pose"
             sys.stderr.write(warning_line(text))
-        yield [NO_POSE if isinstance(row, Exception) else row for row in chunk]
+        yield [None if isinstance(row, Exception) else row for row in chunk]
 
 
 def _print_summary(arguments: argparse.Namespace, counts: Counter[str]) -> None:

@@ -13,7 +13,7 @@ from iksel.cli.info import pose_text
 if TYPE_CHECKING:
     from iksel_cpp import Diagnosis, Result, Robot, Solutions
 
-    from iksel._arrays import FloatArray
+    from iksel._base.arrays import FloatArray
     from iksel.cli._angles import Angles
 
 

@@ -11,7 +11,8 @@ from iksel_cpp import Database
 
 from iksel.cli._options import add_database_options, add_preset, database_options
 from iksel.cli._output import Progress, add_json, add_progress, print_json, print_pairs
-from iksel.cli._robot import add_robot, load
+from iksel.cli._robot import load
+from iksel.cli._robot_flags import add_robot
 
 if TYPE_CHECKING:
     import argparse

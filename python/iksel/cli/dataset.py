@@ -10,7 +10,8 @@ from iksel import reach
 from iksel.cli._options import add_solver_options, solver_options
 from iksel.cli._output import add_json, add_progress
 from iksel.cli._parser import count, seed
-from iksel.cli._robot import add_robot, load
+from iksel.cli._robot import load
+from iksel.cli._robot_flags import add_robot
 from iksel.cli.reach import add_engine, compute
 
 if TYPE_CHECKING:

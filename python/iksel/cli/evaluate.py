@@ -17,7 +17,8 @@ from iksel.cli._options import (
 )
 from iksel.cli._output import Progress, add_json, add_progress, print_json, print_pairs
 from iksel.cli._parser import count, seed
-from iksel.cli._robot import add_robot, load
+from iksel.cli._robot import load
+from iksel.cli._robot_flags import add_robot
 
 if TYPE_CHECKING:
     import argparse

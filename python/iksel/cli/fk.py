@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from iksel._limits import violated_limits
+from iksel._base.limits import violated_limits
 from iksel.cli._configuration import add_configuration, read_configuration
 from iksel.cli._output import numbers, print_json, print_matrix, print_pairs
 from iksel.cli._robot import chain_text
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from iksel_cpp import Robot
 
-    from iksel._arrays import FloatArray
+    from iksel._base.arrays import FloatArray
     from iksel.cli._angles import Angles
 
 EXAMPLES = """\

@@ -17,7 +17,8 @@ from iksel.cli._output import (
     print_pairs,
     print_table,
 )
-from iksel.cli._robot import add_robot, default_tip, is_built_in, load, load_tree
+from iksel.cli._robot import default_tip, is_built_in, load, load_tree
+from iksel.cli._robot_flags import add_robot
 from iksel.pose import euler_from_pose
 from iksel.robots import robot_info
 from iksel.srdf import Srdf
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 
     from iksel_cpp import CoupledLimit, LinkTree, MimicCurve, Robot
 
-    from iksel._arrays import FloatArray
+    from iksel._base.arrays import FloatArray
 
 EXAMPLES = """\
 examples:

@@ -30,7 +30,8 @@ examples:
 
 Rows are the velocity of the TCP, linear [m/s], then angular [rad/s], in the base link's
 axes; a column is for one joint at 1 rad/s or m/s, with --degrees too. --matrix prints
-nothing but the six rows, in full precision. Manipulability is the product of the
+nothing but the six rows, in full precision; of several tips one below the other.
+Manipulability is the product of the
 singular values (Yoshikawa 1985), of which some are lengths and some are not.
 
 exit status: 0 done, 2 bad input
@@ -59,13 +60,16 @@ def run(arguments: argparse.Namespace) -> int:
     robot = configuration.robot
     jacobian = robot.jacobian(configuration.q)
     values = np.linalg.svd(jacobian, compute_uv=False)
+    rows = list(ROWS)
+    if robot.tips > 1:
+        rows = [f"{row} {link}" for link in robot.tip_links for row in ROWS]
     if arguments.matrix:
         print_matrix(jacobian)
     elif arguments.json:
         print_json(
             {
                 **configuration.facts(),
-                "rows": ROWS,
+                "rows": rows,
                 "jacobian": jacobian,
                 "singular_values": values,
                 "manipulability": values.prod(),
@@ -84,7 +88,7 @@ def run(arguments: argparse.Namespace) -> int:
             ("", *robot.joint_names),
             [
                 (name, *(number(x) for x in row))
-                for name, row in zip(ROWS, jacobian.tolist(), strict=True)
+                for name, row in zip(rows, jacobian.tolist(), strict=True)
             ],
         )
     return 0

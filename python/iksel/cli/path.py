@@ -10,11 +10,11 @@ import numpy as np
 from iksel_cpp import Solver, Status
 
 from iksel.cli._angles import Angles, turning
-from iksel.cli._lengths import warn_of_millimetres
 from iksel.cli._options import add_solver_options, given_database, solver_options
 from iksel.cli._output import add_json, print_json, print_pairs
 from iksel.cli._poses import FILE_FORMS, read_poses
-from iksel.cli._robot import add_robot, chain_text, load
+from iksel.cli._robot import chain_text, load
+from iksel.cli._robot_flags import add_robot
 from iksel.cli._solve_text import print_configurations
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from iksel_cpp import PathResult, Robot
 
-    from iksel._arrays import FloatArray
+    from iksel._base.arrays import FloatArray
 
 EXIT_SOLVED, EXIT_NO_SOLUTION = 0, 1
 
@@ -47,6 +47,7 @@ EXAMPLES = f"""\
 examples:
   iksel path ur3 poses.txt --start 0.3 -1.2 1.4 -0.6 1.2 0.2 --dt 0.01
   iksel path ur3 poses.txt --json
+  iksel path torso.urdf --tip left_hand --tip right_hand poses.csv
 
 {FILE_FORMS}
 exit status: 0 solved, 1 a waypoint has no continuation, 2 bad input
@@ -63,7 +64,7 @@ def add_parser(commands: Any) -> None:
         epilog=EXAMPLES,
     )
     add_robot(parser)
-    parser.add_argument("file", metavar="FILE", help="poses, one a row")
+    parser.add_argument("file", metavar="FILE", help="poses, one a row; of each --tip")
     parser.add_argument(
         "--start",
         nargs="+",
@@ -88,8 +89,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Solve and print the path."""
     robot = load(arguments)
     angles = Angles(arguments)
-    poses = read_poses(arguments.file, angles)
-    warn_of_millimetres(robot, arguments.file, poses)
+    poses = read_poses(arguments.file, angles, robot)
     start = arguments.start and angles.read_joints("--start", arguments.start, robot)
     database = given_database(arguments)
     solver = Solver(robot, solver_options(arguments), database)
@@ -134,7 +134,7 @@ def find_haste(
 
     Args:
         solver: Of the path.
-        poses: Its waypoints, (n, 4, 4).
+        poses: Its waypoints, (n, 4, 4), of k tips (n, k, 4, 4).
         start: Where the arm is before the first; None: anywhere.
         dt: The time step that is too short [s].
 

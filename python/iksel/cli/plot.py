@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from iksel_cpp import InvalidArgumentError, Solver, Status
 
-from iksel import _extras as extras
-from iksel._figures import check_suffix, save_figure
+from iksel._base import extras
+from iksel._base.figures import check_suffix, save_figure
 from iksel.cli import _plots as plots
 from iksel.cli._angles import Angles
-from iksel.cli._lengths import warn_of_millimetres
 from iksel.cli._options import add_solver_options, given_database, solver_options
 from iksel.cli._output import add_json, print_json, print_pairs
 from iksel.cli._parser import count_up_to, seed
 from iksel.cli._poses import FILE_FORMS, read_poses
-from iksel.cli._robot import add_robot, load
+from iksel.cli._robot import load
+from iksel.cli._robot_flags import add_robot
 
 if TYPE_CHECKING:
     import argparse
@@ -147,8 +147,7 @@ def draw_branches(
 ) -> tuple[Any, dict[str, Any]]:
     """The figure of the solutions along a path, and what is in it."""
     angles = Angles(arguments)
-    poses = read_poses(arguments.poses, angles)
-    warn_of_millimetres(robot, arguments.poses, poses)
+    poses = read_poses(arguments.poses, angles, robot)
     solver = Solver(robot, solver_options(arguments), given_database(arguments))
     branches = plots.find_branches(solver, poses)
     facts = {

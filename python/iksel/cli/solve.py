@@ -7,18 +7,18 @@ import sys
 import time
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from iksel_cpp import InvalidArgumentError, Solver, Status
+from iksel_cpp import Solver, Status
 
 from iksel.cli._angles import Angles
 from iksel.cli._answers import FILE_FORMS as ANSWER_FILES
-from iksel.cli._lengths import warn_of_millimetres
 from iksel.cli._options import add_solver_options, given_database, solver_options
 from iksel.cli._output import add_json, print_json, print_pairs
 from iksel.cli._parser import POSE_FORMS, POSE_METAVAR
 from iksel.cli._poses import FILE_FORMS as POSE_FILES
-from iksel.cli._robot import add_robot, chain_text, load
+from iksel.cli._robot import chain_text, load
+from iksel.cli._robot_flags import add_robot
 from iksel.cli._solve_file import add_poses, answer_format, check_flags, solve_file
+from iksel.cli._solve_request import add_request, read_request, read_target
 from iksel.cli._solve_text import (
     diagnosis_report,
     print_configurations,
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     from iksel_cpp import Result, Robot
 
-    from iksel._arrays import FloatArray
+    from iksel._base.arrays import FloatArray
 
 EXIT_SOLVED, EXIT_NO_SOLUTION = 0, 1
 
@@ -97,52 +97,6 @@ def add_parser(commands: Any) -> None:
     parser.set_defaults(run=run)
 
 
-def add_request(parser: argparse.ArgumentParser) -> None:
-    """Add what may be asked besides the pose."""
-    parser.add_argument(
-        "--seed-q",
-        nargs="+",
-        metavar="Q",
-        help="joint values to try as a seed before the database's [rad or m]",
-    )
-    parser.add_argument(
-        "--no-database-seeds",
-        action="store_true",
-        help="try no seeds but those of --seed-q and --near",
-    )
-    parser.add_argument(
-        "--near",
-        nargs="+",
-        metavar="Q",
-        help="joint values to stay near [rad or m], or the name of a state of --srdf: "
-        "gives the solution with the smallest joint move",
-    )
-    parser.add_argument(
-        "--all",
-        action="store_true",
-        help="give every distinct solution, nearest first (with --near: to that, else "
-        "to the middle of the limits), or with --objective the best by that",
-    )
-    parser.add_argument(
-        "--objective",
-        choices=("limits", "manipulability"),
-        help="of all answers found, the one farthest from the limits, or the most "
-        "manipulable; a redundant arm is moved there along its self-motion",
-    )
-    parser.add_argument(
-        "--closest",
-        action="store_true",
-        help="if there is no solution, give the configuration inside the limits that "
-        "is nearest to one, with status closest; a radian counts reach / 4",
-    )
-    parser.add_argument(
-        "--diagnose",
-        action="store_true",
-        help="if there is no solution, search for the reason, and print it with the "
-        "best effort",
-    )
-
-
 def run(arguments: argparse.Namespace) -> int:
     """Solve and print the answer."""
     check_flags(arguments)
@@ -151,10 +105,6 @@ def run(arguments: argparse.Namespace) -> int:
     request = read_request(robot, arguments, angles)
     if arguments.poses is not None:
         answer_format(arguments)  # an error comes before the work
-        if robot.tips > 1:
-            raise InvalidArgumentError(
-                "--poses: its rows are poses of one tip; give each of several a --pose"
-            )
         solver = make_solver(robot, arguments)
         return solve_file(solver, request, arguments, angles)
     if arguments.pose is not None:
@@ -204,53 +154,6 @@ def run(arguments: argparse.Namespace) -> int:
             print_diagnosis(robot, diagnosis)
     print_hint(solver, result)
     return EXIT_SOLVED if result.success else EXIT_NO_SOLUTION
-
-
-def read_target(
-    robot: Robot, arguments: argparse.Namespace, angles: Angles
-) -> FloatArray:
-    """T_base_tip of the one tip, (4, 4), or of each, (k, 4, 4).
-
-    Raises:
-        InvalidArgumentError: A bad pose, or not one for each tip.
-    """
-    poses = [angles.read_pose("--pose", pose) for pose in arguments.pose]
-    for pose, tip in zip(poses, range(robot.tips), strict=False):
-        warn_of_millimetres(robot.chain(tip), "--pose", pose)
-    if len(poses) != robot.tips:
-        raise InvalidArgumentError(
-            f"--pose: given {len(poses)} times; expected once for each of "
-            f"{', '.join(robot.tip_links)}"
-        )
-    return np.stack(poses) if robot.tips > 1 else poses[0]
-
-
-def read_request(
-    robot: Robot, arguments: argparse.Namespace, angles: Angles
-) -> dict[str, Any]:
-    """What is asked besides the pose, as keywords of Solver.solve().
-
-    Raises:
-        InvalidArgumentError: Bad joint values, or flags that do not go together.
-    """
-    near = arguments.near and angles.read_joints("--near", arguments.near, robot)
-    seed = arguments.seed_q and angles.read_joints("--seed-q", arguments.seed_q, robot)
-    if arguments.closest and arguments.all:
-        raise InvalidArgumentError("--closest: cannot be used with --all")
-    given = {
-        "near": near,
-        "seeds": seed,
-        "objective": arguments.objective,
-        "closest": arguments.closest,
-    }
-    request: dict[str, Any] = {name: value for name, value in given.items() if value}
-    if arguments.no_database_seeds:
-        if not (near or seed):
-            raise InvalidArgumentError(
-                "--no-database-seeds: leaves nothing to try without --seed-q or --near"
-            )
-        request["database_seeds"] = False
-    return request
 
 
 def make_solver(robot: Robot, arguments: argparse.Namespace) -> Solver:

@@ -12,7 +12,8 @@ from iksel_cpp import Solver
 
 from iksel.cli._angles import Angles
 from iksel.cli._options import add_solver_options, given_database, solver_options
-from iksel.cli._robot import add_robot, load, of_files
+from iksel.cli._robot import load, of_files
+from iksel.cli._robot_flags import add_robot
 from iksel.view import PORT, Viewer
 
 EXAMPLES = """\
@@ -22,8 +23,9 @@ examples:
   iksel view arm.urdf --base base_link --tip tool0 --tcp 0 0 0.1 0 0 0
   iksel view ur5e --map ur5e.zarr
   iksel view xarm5 --task free_spin --port 9000
+  iksel view torso.urdf --tip left_hand --tip right_hand
 
-Drag the target, and the robot follows. Ctrl-C ends.
+Drag the target, or one for each --tip, and the robot follows. Ctrl-C ends.
 """
 
 

@@ -15,7 +15,7 @@ Needs the extra `pip install iksel[reach]`, and Python 3.11 or later.
 
 from __future__ import annotations
 
-from iksel._extras import MissingExtraError
+from iksel._base.extras import MissingExtraError
 from iksel.reach._cells import QUALITIES, UNKNOWN
 from iksel.reach._compare import Comparison, compare
 from iksel.reach._errors import (

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from iksel_cpp import Proof, Solver, Status
 
-from iksel._qualities import limit_distance, manipulability
+from iksel._base.qualities import limit_distance, manipulability
 from iksel.reach._job import Arrays, ArraySpec
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from iksel._arrays import FloatArray
+    from iksel._base.arrays import FloatArray
 
 UNKNOWN = 255
 """Status and proof of a cell that has not been computed."""

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from iksel_cpp import Status
 
-from iksel._arrays import reject
+from iksel._base.arrays import reject
 
 if TYPE_CHECKING:
-    from iksel._arrays import FloatArray
+    from iksel._base.arrays import FloatArray
     from iksel.reach._map import Map
 
 

@@ -3,11 +3,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from iksel_cpp import Error
 
-from iksel import _extras
+from iksel._base import extras
+from iksel._base.arrays import reject
+
+if TYPE_CHECKING:
+    from iksel_cpp import Robot
 
 
 class MapError(Error):
@@ -34,6 +38,20 @@ class WorkerError(MapError):
     """A process that computes chunks ended before its work was done."""
 
 
+def check_tips(robot: Robot) -> None:
+    """Refuse a robot with several tips.
+
+    Raises:
+        InvalidArgumentError: It has several.
+    """
+    if robot.tips > 1:
+        links = ", ".join(robot.tip_links)
+        reject(
+            "robot",
+            f"maps and data sets are of one tip, and this has {links}: choose one",
+        )
+
+
 def need(module: str) -> Any:
     """A module of the extra iksel[reach].
 
@@ -41,4 +59,4 @@ def need(module: str) -> Any:
         MissingExtraError: It is not installed.
     """
     extra = "'iksel[reach]', with Python 3.11 or later"
-    return _extras.need(module, user="iksel.reach", extra=extra)
+    return extras.need(module, user="iksel.reach", extra=extra)

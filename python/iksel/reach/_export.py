@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from iksel._arrays import reject
+from iksel._base.arrays import reject
 from iksel.pose import quaternion_from_pose
 from iksel.reach._errors import (
     IncompleteMapError,

@@ -15,7 +15,7 @@ from iksel.reach import _healpix
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from iksel._arrays import BoolArray, FloatArray, IntArray
+    from iksel._base.arrays import BoolArray, FloatArray, IntArray
 
 Triple = tuple[float, float, float]
 Z: Triple = (0.0, 0.0, 1.0)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from iksel._arrays import FloatArray, IntArray
+    from iksel._base.arrays import FloatArray, IntArray
 
 
 def count(nside: int) -> int:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from iksel._arrays import as_floats, reject
+from iksel._base.arrays import as_floats, reject
 from iksel.reach import _healpix
 from iksel.reach._grid import Grid, Positions
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     from iksel_cpp import Robot
 
-    from iksel._arrays import FloatArray
+    from iksel._base.arrays import FloatArray
 
 CHUNKS = 256
 """How many chunks a map is divided into, as long as they have a reasonable size."""

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 from iksel_cpp import BatchResult, Robot, Solver, Status
 
-from iksel._arrays import IntArray, as_floats, reject
+from iksel._base.arrays import IntArray, as_floats, reject
 from iksel.reach._errors import IncompleteMapError, PlanMismatchError, need
 from iksel.reach._grid import Grid, least_rotations, z_rotations
 from iksel.reach._plan import Plan
@@ -22,7 +22,7 @@ from iksel.reach._store import Store
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from iksel._arrays import BoolArray, FloatArray
+    from iksel._base.arrays import BoolArray, FloatArray
     from iksel.reach._job import Arrays, ArraySpec, Filter
     from iksel.reach._location import StrPath
 

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from iksel_cpp import InvalidArgumentError
 
-from iksel._figures import COLOURS, SIZE, make_figure, save_figure
+from iksel._base.figures import COLOURS, SIZE, make_figure, save_figure
 from iksel.reach._errors import MapIoError, need
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from iksel._arrays import FloatArray
+    from iksel._base.arrays import FloatArray
     from iksel.reach._location import StrPath
     from iksel.reach._map import Map
     from iksel.reach._place import Placement

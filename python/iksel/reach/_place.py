@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from iksel._arrays import FloatArray, IntArray, as_floats, reject
+from iksel._base.arrays import FloatArray, IntArray, as_floats, reject
 from iksel.reach._grid import z_rotations
 from iksel.reach._scene_data import at_base
 
 if TYPE_CHECKING:
     from iksel_cpp import Scene
 
-    from iksel._arrays import BoolArray
+    from iksel._base.arrays import BoolArray
     from iksel.reach._job import Filter
     from iksel.reach._map import Map
 

@@ -10,8 +10,9 @@ import numpy as np
 import numpy.typing as npt
 from iksel_cpp import Axis, Robot, Scene, Solver, SolverOptions, Task, TaskFrame
 
-from iksel._arrays import reject
+from iksel._base.arrays import reject
 from iksel.reach._cells import QUALITIES, array_specs, solve_cells
+from iksel.reach._errors import check_tips
 from iksel.reach._grid import Grid, Orientations
 from iksel.reach._job import (
     Arrays,
@@ -28,7 +29,7 @@ from iksel.reach._symmetry import first_axis, last_axis
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from iksel._arrays import FloatArray
+    from iksel._base.arrays import FloatArray
 
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
@@ -183,9 +184,10 @@ def plan(
         chunk_cells: Cells of a chunk, about; None: a 256th, 65,536 to 16,777,216.
 
     Raises:
-        InvalidArgumentError: An argument out of range, or qualities that the robot has
-            not; or a scene of another robot.
+        InvalidArgumentError: An argument out of range, qualities that the robot has
+            not, a scene of another robot, or a robot with several tips.
     """
+    check_tips(robot)
     symmetry = symmetry and scene is None and filter is None
     options = SolverOptions() if options is None else options
     wanted = _checked_qualities(robot, tuple(qualities), options, free_spin=free_spin)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
-from iksel._arrays import reject
+from iksel._base.arrays import reject
 from iksel.reach._errors import MapError, PlanMismatchError, WorkerError, need
 from iksel.reach._local import Pool, failure
 from iksel.reach._location import StrPath, locate

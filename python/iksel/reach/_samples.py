@@ -8,15 +8,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from iksel_cpp import Proof, Robot, Solver, SolverOptions, Status
 
-from iksel._arrays import reject
+from iksel._base.arrays import reject
 from iksel.pose import pose_from_quaternion, quaternion_from_pose
 from iksel.reach._cells import UNKNOWN, flags
+from iksel.reach._errors import check_tips
 from iksel.reach._job import Arrays, ArraySpec, Job, common_data
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from iksel._arrays import FloatArray
+    from iksel._base.arrays import FloatArray
 
 TARGETS = ("configurations", "poses")
 MOST_SOLUTIONS = 254
@@ -143,8 +144,9 @@ def plan_samples(
         options: Options of the solver; None: the default.
 
     Raises:
-        InvalidArgumentError: An argument out of range.
+        InvalidArgumentError: An argument out of range, or a robot with several tips.
     """
+    check_tips(robot)
     if samples < 1:
         reject("samples", f"{samples} is less than 1")
     if not 0 <= seed < 2**64:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from iksel_cpp import Obstacle, Robot
 
-    from iksel._arrays import FloatArray
+    from iksel._base.arrays import FloatArray
 
 
 def scene_data(scene: Scene) -> dict[str, Any]:

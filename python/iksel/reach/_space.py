@@ -11,14 +11,14 @@ import numpy as np
 import numpy.typing as npt
 from iksel_cpp import Status
 
-from iksel._arrays import as_floats, reject
+from iksel._base.arrays import as_floats, reject
 from iksel.reach._cells import UNKNOWN
 from iksel.reach._grid import Grid, z_rotations
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from iksel._arrays import FloatArray, IntArray
+    from iksel._base.arrays import FloatArray, IntArray
     from iksel.reach._job import Arrays
 
 

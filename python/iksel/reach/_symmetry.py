@@ -17,7 +17,7 @@ from iksel_cpp import JointType, Robot
 from iksel.reach._grid import least_rotations, z_rotations
 
 if TYPE_CHECKING:
-    from iksel._arrays import FloatArray
+    from iksel._base.arrays import FloatArray
 
 SAMPLES = 16
 SEED = 1

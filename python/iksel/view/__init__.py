@@ -13,7 +13,7 @@ Needs the extra `pip install iksel[view]`; only making a Viewer imports it.
 
 from __future__ import annotations
 
-from iksel._extras import MissingExtraError
+from iksel._base.extras import MissingExtraError
 from iksel.view.session import TASKS, Session
 from iksel.view.viewer import PORT, Viewer
 

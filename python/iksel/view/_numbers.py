@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from iksel_cpp import InvalidArgumentError, JointType
 
-from iksel._arrays import reject
+from iksel._base.arrays import reject
 from iksel.pose import euler_from_pose, pose_from_euler, pose_from_quaternion
 
 if TYPE_CHECKING:
-    from iksel._arrays import FloatArray
+    from iksel_cpp import Robot
+
+    from iksel._base.arrays import FloatArray
     from iksel.view.session import Session
 
 DEGREES = "degrees"
@@ -22,7 +24,7 @@ _DIGITS = 6
 
 
 class Numbers:
-    """Two fields of text, and a button for each that moves the robot there."""
+    """Fields of text, and a button for each that moves the robot there."""
 
     def __init__(self, gui: Any, session: Session) -> None:
         """Take viser's GUI and what is shown."""
@@ -37,26 +39,30 @@ class Numbers:
             hint="values of all joints, in the unit of the sliders",
         )
         self.to_q = gui.add_button("move to q")
-        self.pose = gui.add_text(
-            "target",
-            "",
-            multiline=True,
-            hint="x y z [m] roll pitch yaw, or x y z and a quaternion w x y z",
-        )
-        self.to_pose = gui.add_button("move to target")
+        self.poses = []
+        self.to_poses = []
+        for name in target_names(robot):
+            field = gui.add_text(
+                name,
+                "",
+                multiline=True,
+                hint="x y z [m] roll pitch yaw, or x y z and a quaternion w x y z",
+            )
+            self.poses.append(field)
+            self.to_poses.append(gui.add_button(f"move to {name}"))
 
     @property
     def buttons(self) -> list[Any]:
         """What moves the robot."""
-        return [self.to_q, self.to_pose]
+        return [self.to_q, *self.to_poses]
 
     def draw(self, *, degrees: bool) -> None:
-        """Show where the robot and the target are."""
+        """Show where the robot and the targets are."""
         self._degrees = degrees
-        pose = self._session.target
         self.q.value = _words(self._session.q * self._scales())
-        angles = np.array(euler_from_pose(pose)) * self._angle()
-        self.pose.value = _words([*pose[:3, 3], *angles])
+        for field, pose in zip(self.poses, self._session.targets, strict=True):
+            angles = np.array(euler_from_pose(pose)) * self._angle()
+            field.value = _words([*pose[:3, 3], *angles])
 
     def apply(self, button: Any) -> None:
         """Move the robot to what is in the field of a button.
@@ -68,7 +74,8 @@ class Numbers:
             q = _read("q", self.q.value, (self._session.robot.dof,))
             self._session.show(q / self._scales())
             return
-        values = _read("target", self.pose.value, (6, 7))
+        tip = self.to_poses.index(button)
+        values = _read("target", self.poses[tip].value, (6, 7))
         if len(values) == 6:
             pose = pose_from_euler(values[:3], values[3:] / self._angle())
         else:
@@ -76,7 +83,7 @@ class Numbers:
             if norm < 0.9 or norm > 1.1:
                 reject("target", f"a quaternion has length 1, this {norm:.3g}")
             pose = pose_from_quaternion(values[:3], values[3:] / norm)
-        self._session.move_target(pose)
+        self._session.move_target(pose, tip)
 
     def _angle(self) -> float:
         """What an angle [rad] is multiplied by to be shown."""
@@ -84,6 +91,13 @@ class Numbers:
 
     def _scales(self) -> FloatArray:
         return np.where(self._turns, self._angle(), 1.0)
+
+
+def target_names(robot: Robot) -> list[str]:
+    """What the target of each tip is called; one needs no name."""
+    if robot.tips == 1:
+        return ["target"]
+    return [f"target of {link}" for link in robot.tip_links]
 
 
 def _words(values: Any) -> str:

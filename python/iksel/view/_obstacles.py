@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from iksel import _rotations as rotations
+from iksel._base import rotations
 from iksel.view.skeleton import ball, cylinder, turned
 
 if TYPE_CHECKING:
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from iksel_cpp import Obstacle
 
-    from iksel._arrays import FloatArray, IntArray
+    from iksel._base.arrays import FloatArray, IntArray
 
 COLOUR = (196, 160, 110)
 OPACITY = 0.6

@@ -15,7 +15,7 @@ from urllib.parse import urlsplit
 
 from iksel_cpp import InvalidArgumentError
 
-from iksel._arrays import reject
+from iksel._base.arrays import reject
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

@@ -6,16 +6,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from iksel_cpp import JointType
+from iksel_cpp import JointType, Status
 
-from iksel._limits import violated_limits
-from iksel._qualities import limit_distance, manipulability
+from iksel._base.limits import violated_limits
+from iksel._base.qualities import limit_distance, manipulability
 from iksel.view._numbers import DEGREES, UNITS, Numbers
 from iksel.view.scene import RAMP
 from iksel.view.session import CHOICES
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from iksel.view.session import Session
 
@@ -49,19 +49,27 @@ class Controls:
 
     def _add_switches(self, gui: Any) -> None:
         session = self._session
-        names = list(session.tasks)
-        self.task = gui.add_dropdown("task", names, initial_value=session.task_name)
+        of = [""] if session.robot.tips == 1 else session.robot.tip_links
+        self.tasks = [
+            gui.add_dropdown(
+                f"task {link}".strip(), list(session.tasks), initial_value=name
+            )
+            for link, name in zip(of, session.task_names, strict=True)
+        ]
         self.choice = gui.add_dropdown(
             "solution",
             CHOICES,
             initial_value=session.choice,
-            hint="nearest to where the robot is; of the same branch or none; any",
+            hint="nearest to where the robot is; of the same branch or none; where a "
+            "Tracker goes from there, as near as it gets; any",
         )
         self.ghosts = gui.add_checkbox(
-            "all branches", initial_value=False, hint="show all solutions as ghosts"
+            "all branches",
+            initial_value=False,
+            hint="show all solutions, or a spread of them, as ghosts",
         )
         self.motion: Any = None
-        if session.motion is not None:
+        if session.arcs is not None:
             self.motion = gui.add_slider(
                 "self-motion", min=0.0, max=1.0, step=10.0**-DECIMALS, initial_value=0.0
             )
@@ -138,7 +146,7 @@ class Controls:
     def inputs(self) -> list[Any]:
         """Everything that can be set, but the sliders."""
         return [
-            self.task,
+            *self.tasks,
             self.choice,
             self.ghosts,
             self.meshes,
@@ -155,22 +163,35 @@ class Controls:
         for button in self.numbers.buttons:
             button.on_click(lambda event: listen(event.target))
 
-    def draw(self, source: Any = None, solutions: int | None = None) -> None:
+    def apply(self, handle: Any) -> None:
+        """Do to the session what a handle that has been changed says."""
+        session = self._session
+        if handle is self.choice:
+            session.set_choice(handle.value)
+        elif handle in self.tasks:
+            session.set_task(handle.value, self.tasks.index(handle))
+        elif handle is self.motion:
+            session.slide(handle.value)
+        elif handle in self.joints:
+            joint = self.joints.index(handle)
+            session.move_joint(joint, self.joint_value(joint))
+
+    def draw(self, held: Sequence[Any] = (), solutions: int | None = None) -> None:
         """Show where the robot is, and how it got there.
 
         Args:
-            source: The handle that a user is just moving, which is left as it is.
+            held: The handles that a user is just moving, which are left as they are.
             solutions: How many the target has; None: not asked.
         """
         self.text.content = describe(self._session, solutions) + self.note
         shown = self._values() * self._scales
         for slider, value in zip(self.joints, shown, strict=True):
-            if slider is not source:
+            if slider not in held:
                 slider.value = float(value)
         self.numbers.draw(degrees=self.unit.value == DEGREES)
         if self.motion:
-            self.motion.disabled = not self._session.motion
-            if self.motion is not source:
+            self.motion.disabled = not self._session.arcs
+            if self.motion not in held:
                 self.motion.value = self._session.share
 
     def _values(self) -> np.ndarray[Any, Any]:
@@ -193,15 +214,38 @@ def describe(session: Session, solutions: int | None = None) -> str:
         took = "" if session.seconds is None else f" in {1e3 * session.seconds:.3f} ms"
         lines = [f"**solved**{took}"]
     else:
-        lines = [f"**no answer** ({1e3 * (session.seconds or 0):.3f} ms)"]
+        what = "closest" if session.status == Status.closest else "no answer"
+        lines = [f"**{what}** ({1e3 * (session.seconds or 0):.3f} ms)"]
         lines.append(session.reason)
+    if robot.tips > 1:
+        lines.append("\n".join(f"- {line}" for line in tip_lines(session)))
     if solutions is not None:
         lines.append(f"solutions: {solutions}")
     lines.append(f"manipulability: {manipulability(robot, q)[0]:.4g}")
     lines.append(nearest_limit(session))
-    if session.motion is not None:
-        lines.append(f"self-motion: {session.arc}")
+    if session.arcs is not None:
+        lines.append(f"self-motion: {session.arcs.words(session.q)}")
+    elif robot.tips > 1:
+        lines.append("self-motion: shown of robots with one tip only")
     return "\n\n".join(lines)
+
+
+def tip_lines(session: Session) -> list[str]:
+    """Of each tip whether it is at its target, else how far away, and why alone."""
+    lines = []
+    for link, task, distance, angle, reason in zip(
+        session.robot.tip_links,
+        session.task_names,
+        *session.errors(),
+        session.tip_reasons,
+        strict=True,
+    ):
+        state = f"{1e3 * distance:.1f} mm"
+        if session.tasks[task].is_full_pose:
+            state += f", {np.rad2deg(angle):.1f}°"
+        state = "at its target" if session.solved else f"{state} away"
+        lines.append(f"**{link}**: {state}" + (f"; {reason}" if reason else ""))
+    return lines
 
 
 def nearest_limit(session: Session) -> str:

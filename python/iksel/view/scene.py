@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws a robot, ghosts of its other solutions, a target and a map by viser."""
+"""Draws a robot, ghosts of its other solutions, its targets and a map by viser."""
 
 from __future__ import annotations
 
@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from iksel import _rotations as rotations
+from iksel._base import rotations
 from iksel.view._obstacles import draw_obstacles
 from iksel.view.skeleton import Placed, ball, cylinder
 from iksel.view.visuals import PLAIN, Visuals
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from iksel_cpp import Obstacle
 
-    from iksel._arrays import BoolArray, FloatArray, IntArray
+    from iksel._base.arrays import BoolArray, FloatArray, IntArray
     from iksel.view.skeleton import Skeleton
     from iksel.view.visuals import Piece
 
@@ -84,7 +84,7 @@ class Scene:
         """Take viser's scene, the links to draw, and what these look like."""
         self._scene = scene
         self._skeleton = skeleton
-        reach = skeleton.robot.reach
+        reach = skeleton.reach
         scene.set_up_direction("+z")
         # Without a graphics card a frame takes twice as long with shadows.
         scene.configure_default_lights(cast_shadow=False)
@@ -100,19 +100,29 @@ class Scene:
         self._ghost_balls = Copies(scene, "/ghosts/frames", ball(8), **ghost)
         self.obstacles: list[Any] = []
         self._map = Copies(scene, "/map", ball(6), lod="auto")
-        self.target = scene.add_transform_controls(
-            "/target", scale=TARGET * reach, line_width=4.0, depth_test=False
-        )
+        tips = skeleton.robot.tip_links
+        # Two hands are nearer to each other than one's handles may be large.
+        size = TARGET * reach / np.sqrt(len(tips))
+        self.targets = [
+            scene.add_transform_controls(
+                f"/target/{tip}", scale=size, line_width=4.0, depth_test=False
+            )
+            for tip in range(len(tips))
+        ]
+        self.names = [
+            scene.add_label(f"/names/{tip}", link)
+            for tip, link in enumerate(tips if len(tips) > 1 else ())
+        ]
 
     def add_obstacles(self, obstacles: Mapping[str, Obstacle]) -> None:
         """Show obstacles, by name."""
-        reach = self._skeleton.robot.reach
+        reach = self._skeleton.reach
         self.obstacles += draw_obstacles(self._scene, obstacles, reach)
 
     @property
     def ghosts(self) -> int:
         """Number of ghosts that are shown."""
-        return self._ghost_balls.count // (self._skeleton.bars + 1)
+        return self._ghost_balls.count // self._skeleton.frames
 
     @property
     def map_balls(self) -> int:
@@ -153,17 +163,22 @@ class Scene:
         self._ghosts.draw(self._skeleton.cylinders(q), np.array(GHOST))
         self._ghost_balls.draw(self._skeleton.balls(q), np.array(GHOST))
 
-    def draw_target(self, pose: FloatArray) -> None:
-        """Put the target at T_base_tcp, (4, 4)."""
-        self.target.position = pose[:3, 3]
-        self.target.wxyz = rotations.quaternion_from_matrix(pose[:3, :3])
+    def draw_targets(self, poses: FloatArray, held: Sequence[Any] = ()) -> None:
+        """Put the targets at T_base_tcp, (tips, 4, 4), but those that users hold."""
+        for target, pose in zip(self.targets, poses, strict=True):
+            if target not in held:
+                target.position = pose[:3, 3]
+                target.wxyz = rotations.quaternion_from_matrix(pose[:3, :3])
+        for name, pose in zip(self.names, poses, strict=False):
+            name.position = pose[:3, 3]
 
-    def target_pose(self) -> FloatArray:
-        """Where the target has been dragged to, T_base_tcp, (4, 4)."""
-        wxyz = np.asarray(self.target.wxyz, float)
+    def target_pose(self, tip: int = 0) -> FloatArray:
+        """Where a tip's target has been dragged to, T_base_tcp, (4, 4)."""
+        target = self.targets[tip]
+        wxyz = np.asarray(target.wxyz, float)
         pose = np.eye(4)
         pose[:3, :3] = rotations.from_quaternion(wxyz / np.linalg.norm(wxyz))
-        pose[:3, 3] = self.target.position
+        pose[:3, 3] = target.position
         return pose
 
     def draw_map(self, points: FloatArray, shares: FloatArray, spacing: float) -> None:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Clean links of a robot: balls at its frames, bars between them, drums at its joints.
 
-Made of the chain alone, so every robot has them, with or without mesh files.
+Made of the chains alone, so every robot has them, with or without mesh files.
 """
 
 from __future__ import annotations
@@ -12,9 +12,11 @@ import numpy as np
 from iksel_cpp import JointType, LinkTree
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from iksel_cpp import Robot
 
-    from iksel._arrays import FloatArray, IntArray
+    from iksel._base.arrays import FloatArray, IntArray
 
 # Sizes as shares of the robot's reach: at the base, and at the TCP. Arms become thinner
 # towards their tools.
@@ -37,20 +39,40 @@ class Placed(NamedTuple):
 
 
 class Skeleton:
-    """The links of a robot's chain, from its base link to its TCP."""
+    """The links of a robot's chains, from its base link to its TCPs.
+
+    Attributes:
+        robot: The robot.
+        links: Names of the links, parents first: those of the first tip's chain, then
+            those that only the second's has, and so on.
+        reach: How far the farthest of the tips reaches [m].
+        centre: Of where they reach, in the base frame, (3,) [m].
+    """
 
     def __init__(self, robot: Robot) -> None:
         self.robot = robot
+        arms = [robot.chain(tip) for tip in range(robot.tips)]
+        self.reach = max(arm.reach for arm in arms)
+        self.centre = np.mean([arm.reach_centre for arm in arms], axis=0)
         joints = {j.child_link: j for j in LinkTree.from_urdf(robot.urdf).joints}
-        links = [robot.tip_link]
-        while links[-1] != robot.base_link:
-            links.append(joints[links[-1]].parent_link)
-        self.links = links[::-1]
+        parent = {link: joint.parent_link for link, joint in joints.items()}
+        chains = [_chain(parent, robot.base_link, tip) for tip in robot.tip_links]
+        self.links = list(dict.fromkeys(link for chain in chains for link in chain))
+        # Each frame but the base's, also the TCPs', has a bar that begins at another's.
+        starts = [self.links.index(parent[link]) for link in self.links[1:]]
+        self._starts = starts + [self.links.index(tip) for tip in robot.tip_links]
+        self._shares = _shares(self.links, chains)
         self._index = [robot.link_names.index(name) for name in self.links]
         moved = {joint.name: link for link, joint in joints.items()}
         names = [moved[name] for name in robot.joint_names]
         self._moved = [self.links.index(name) for name in names]
         self._slides = [kind == JointType.prismatic for kind in robot.joint_types]
+        # Of each joint the first tip that it moves.
+        of_tips = [set(robot.joints_of(tip)) for tip in range(robot.tips)]
+        self._tip = [
+            next(tip for tip, moving in enumerate(of_tips) if joint in moving)
+            for joint in range(robot.dof)
+        ]
 
     @property
     def moved(self) -> list[str]:
@@ -58,14 +80,20 @@ class Skeleton:
         return [self.links[i] for i in self._moved]
 
     @property
+    def frames(self) -> int:
+        """Number of frames of one robot: its links' and its TCPs'."""
+        return len(self.links) + self.robot.tips
+
+    @property
     def bars(self) -> int:
         """Number of bars of one robot, each from one frame to the next."""
-        return len(self.links)
+        return self.frames - 1
 
     def points(self, q: FloatArray) -> FloatArray:
-        """Origins of the links' frames and the TCP, (n, links + 1, 3), for (n, dof)."""
+        """Origins of the links' frames and the TCPs, (n, frames, 3), for (n, dof)."""
         poses = self.robot.link_poses(q)[:, self._index]
-        return np.concatenate([poses[..., :3, 3], self.robot.fk(q)[:, None, :3, 3]], 1)
+        tips = self.robot.fk(q).reshape(len(q), -1, 4, 4)
+        return np.concatenate([poses[..., :3, 3], tips[..., :3, 3]], 1)
 
     def balls(self, q: FloatArray) -> Placed:
         """Unit balls at the frames of configurations (n, dof)."""
@@ -78,7 +106,7 @@ class Skeleton:
     def cylinders(self, q: FloatArray) -> Placed:
         """Unit cylinders (along z): for each configuration the bars, then the drums."""
         points = self.points(q)
-        starts, ends = points[:, :-1], points[:, 1:]
+        starts, ends = points[:, self._starts], points[:, 1:]
         lengths = np.maximum(np.linalg.norm(ends - starts, axis=-1), LEAST)
         radii = np.broadcast_to(self._sizes(BAR)[1:], lengths.shape)
         bars = np.stack([radii, radii, lengths], axis=-1)
@@ -94,15 +122,36 @@ class Skeleton:
         )
 
     def _sizes(self, ends: FloatArray) -> FloatArray:
-        """Sizes at the frames of the links and the TCP, (links + 1,) [m]."""
-        shares = np.linspace(ends[0], ends[1], len(self.links) + 1)
-        return np.asarray(self.robot.reach * shares)
+        """Sizes at the frames of the links and the TCPs, (frames,) [m]."""
+        sizes = ends[0] + self._shares * (ends[1] - ends[0])
+        return np.asarray(self.reach * sizes)
 
     def _axes(self, q: FloatArray) -> FloatArray:
         """Directions along which joints turn or slide, (n, dof, 3)."""
-        jacobian = np.swapaxes(self.robot.jacobian(q), -1, -2)
+        jacobian = self.robot.jacobian(q).reshape(len(q), self.robot.tips, 6, -1)
+        jacobian = jacobian[:, self._tip, :, np.arange(self.robot.dof)].swapaxes(0, 1)
         slides = np.array(self._slides)[:, None]
-        return np.where(slides, jacobian[..., :3], jacobian[..., 3:])
+        return np.asarray(np.where(slides, jacobian[..., :3], jacobian[..., 3:]))
+
+
+def _chain(parent: Mapping[str, str], base: str, tip: str) -> list[str]:
+    """The links from one to another that hangs on it, both included."""
+    links = [tip]
+    while links[-1] != base:
+        links.append(parent[links[-1]])
+    return links[::-1]
+
+
+def _shares(links: list[str], chains: list[list[str]]) -> FloatArray:
+    """How far along its chain each link's frame is, 0 at the base; then 1 of each TCP.
+
+    A link of several chains is as far as it is along the longest.
+    """
+    shares = dict.fromkeys(links, 1.0)
+    for chain in chains:
+        for i, link in enumerate(chain):
+            shares[link] = min(shares[link], i / len(chain))
+    return np.array([*shares.values(), *[1.0] * len(chains)])
 
 
 def turns_of_z(directions: FloatArray) -> FloatArray:

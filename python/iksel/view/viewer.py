@@ -11,10 +11,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from iksel_cpp import InvalidArgumentError, PathResult
 
-from iksel import _extras
-from iksel._arrays import as_floats, reject
+from iksel._base import extras
+from iksel._base.arrays import as_floats, reject
+from iksel.view._camera import look_at
+from iksel.view._maps import check_map
 from iksel.view._obstacles import corners
-from iksel.view._server import quietly, start
+from iksel.view._page import Page
+from iksel.view._server import start
 from iksel.view.controls import Controls
 from iksel.view.scene import Scene
 from iksel.view.session import Session
@@ -23,36 +26,28 @@ from iksel.view.visuals import read_pieces
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
-    from types import TracebackType
 
     import iksel_cpp
     import numpy.typing as npt
     from iksel_cpp import Solver
 
-    from iksel._arrays import FloatArray
-    from iksel._packages import Packages
+    from iksel._base.arrays import FloatArray
     from iksel.description import Source
+    from iksel.formats._packages import Packages
     from iksel.pose import PoseLike
     from iksel.reach import Map
 
 PORT = 8080
 """Where a viewer is served unless another port is given."""
-VIEW_FROM = np.array([0.75, -1.0, 0.45])
-"""Direction from the robot to the camera."""
-FIELD_OF_VIEW = np.deg2rad(40.0)
-"""From the upper edge of the picture to the lower; narrow, so that the robot's
-proportions are little changed by perspective."""
-FARTHEST_IN_VIEW = 2.0
-"""How far from the robot the picture goes at first for a map or obstacles [reaches]."""
 LIMIT_MARGIN = 1e-3  # [rad or m]; a joint that near to a limit is shown as at it
 
 
-class Viewer:
+class Viewer(Page):
     """A robot in the browser, served until close() or the end of the program.
 
-    The robot follows a target that is dragged in the browser or moved by
-    move_target(); sliders turn its joints. Every method may be called from any thread.
-    Pages of other sites are refused, but for `origins`.
+    The robot follows a target, or one for each of its tips, that is dragged in the
+    browser or moved by move_target(); sliders turn its joints. Every method may be
+    called from any thread. Pages of other sites are refused, but for `origins`.
     """
 
     def __init__(
@@ -92,7 +87,7 @@ class Viewer:
                 what is no origin.
             UrdfError, UnknownNameError: `urdf` cannot be read.
         """
-        viser = _extras.need("viser", user="iksel.view", extra="'iksel[view]'")
+        viser = extras.need("viser", user="iksel.view", extra="'iksel[view]'")
         self.session = Session(solver, scene=scene)
         pieces, self.lost = (
             ([], [])
@@ -101,16 +96,14 @@ class Viewer:
         )
         self._lock = threading.RLock()
         self._drawing = False
-        self._dragged = False
+        self._dragged: set[int] = set()
         self._map: Map | None = None
-        self._closed = threading.Event()
-        self._server = start(viser, host, port, origins)
-        self.host = host
+        super().__init__(start(viser, host, port, origins), host)
         robot = solver.robot
         self._server.gui.set_panel_label(f"iksel: {robot.name}")
-        skeleton = Skeleton(robot)
-        self.scene = Scene(self._server.scene, skeleton, pieces)
-        self._body = skeleton.points(self.session.q[None])[0]
+        self._skeleton = Skeleton(robot)
+        self.scene = Scene(self._server.scene, self._skeleton, pieces)
+        self._body = self._skeleton.points(self.session.q[None])[0]
         obstacles = {} if scene is None else scene.obstacles
         self.scene.add_obstacles(obstacles)
         self._look_at(corners(obstacles))
@@ -122,35 +115,9 @@ class Viewer:
             some = f"not shown of the meshes: {len(self.lost)}, such as {self.lost[0]}"
             self.controls.note = f"\n\n{some}"
         self.controls.on_change(self._changed)
-        self.scene.target.on_update(lambda _event: self._drag())
+        for tip, target in enumerate(self.scene.targets):
+            target.on_update(lambda _event, tip=tip: self._drag(tip))
         self._draw()
-
-    def __enter__(self) -> Viewer:  # noqa: PYI034 (Self needs Python 3.11)
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
-
-    @property
-    def port(self) -> int:
-        """Where it is served."""
-        return int(self._server.get_port())
-
-    @property
-    def url(self) -> str:
-        """What to open in a browser."""
-        everywhere = self.host in ("0.0.0.0", "127.0.0.1")  # noqa: S104 (only asked)
-        host = "localhost" if everywhere else self.host
-        return f"http://{host}:{self.port}"
-
-    def _repr_html_(self) -> str:
-        """The page inside a notebook."""
-        return f'<iframe src="{self.url}" width="100%" height="600"></iframe>'
 
     @property
     def text(self) -> str:
@@ -158,7 +125,7 @@ class Viewer:
         return str(self.controls.text.content)
 
     def show(self, q: npt.ArrayLike) -> Viewer:
-        """Put the robot at joint values (dof,) [rad or m], and the target at its TCP.
+        """Put the robot at joint values (dof,) [rad or m], and the targets at its TCPs.
 
         Returns:
             The viewer.
@@ -171,17 +138,22 @@ class Viewer:
             self._draw()
         return self
 
-    def move_target(self, pose: PoseLike) -> Viewer:
+    def move_target(self, pose: PoseLike, tip: int | None = None) -> Viewer:
         """Move the target to T_base_tcp, (4, 4) [m], as if it were dragged there.
+
+        Args:
+            pose: Of the one tip or of `tip`; else of all, (tips, 4, 4).
+            tip: Of a robot with several, whose target alone is moved, counted from 0.
 
         Returns:
             The viewer; `session` and `text` say what came of it.
 
         Raises:
-            InvalidArgumentError: Another shape, not finite or not rigid.
+            InvalidArgumentError: Another shape, not finite or not rigid; or no such
+                tip.
         """
         with self._lock:
-            self.session.move_target(pose)
+            self.session.move_target(pose, tip)
             self._draw()
         return self
 
@@ -214,7 +186,8 @@ class Viewer:
     def show_map(self, reach_map: Map) -> Viewer:
         """Show a reachability map as a layer of coloured balls.
 
-        Red ones are reached with few of the orientations, blue ones with all.
+        Red ones are reached with few of the orientations, blue ones with all. Of a
+        robot with several tips it is of one of them.
 
         Returns:
             The viewer.
@@ -222,17 +195,7 @@ class Viewer:
         Raises:
             InvalidArgumentError: The map is of another robot, or of another tool.
         """
-        mine, its = self.session.robot, reach_map.robot
-        if mine.chain_hash != its.chain_hash:
-            raise InvalidArgumentError(
-                f"map: it is of {its.name}, {its.base_link} -> {its.tip_link}, and the "
-                f"viewer shows {mine.name}, {mine.base_link} -> {mine.tip_link}"
-            )
-        if not np.allclose(mine.tcp, its.tcp, rtol=0, atol=1e-9):
-            raise InvalidArgumentError(
-                "map: its tool is another than the robot's; load the robot with the "
-                f"map's tcp, which is at {its.tcp[:3, 3]} in the tip link's frame"
-            )
+        check_map(self.session.robot, reach_map)
         with self._lock:
             self._map = reach_map
             axes, _ = reach_map.box()
@@ -242,57 +205,43 @@ class Viewer:
             self._draw_map()
         return self
 
-    def wait(self) -> None:
-        """Serve until close(), from another thread, or Ctrl-C."""
-        with contextlib.suppress(KeyboardInterrupt):
-            self._closed.wait()
-
-    def close(self) -> None:
-        """Stop to serve."""
-        if not self._closed.is_set():
-            self._closed.set()
-            with quietly():
-                self._server.stop()
-
-    def _drag(self) -> None:
-        """The target is being dragged: follow to where it is by now.
+    def _drag(self, tip: int) -> None:
+        """A tip's target is being dragged: follow to where all are by now.
 
         Events come faster than answers are drawn, so of those that wait for the lock
         only the first finds something to do.
         """
-        self._dragged = True
+        self._dragged.add(tip)
         with self._lock:
-            if self._dragged and not self._closed.is_set():
-                self._dragged = False
-                self.session.move_target(self.scene.target_pose())
-                self._draw(self.scene.target)
+            if not self._dragged or self._closed.is_set():
+                return
+            dragged, self._dragged = self._dragged, set()
+            session, scene = self.session, self.scene
+            poses = session.targets.copy()
+            for one in dragged:
+                poses[one] = scene.target_pose(one)
+            session.move_target(poses if len(poses) > 1 else poses[0])
+            self._draw(*(scene.targets[one] for one in dragged))
 
     def _changed(self, handle: Any) -> None:
         """A switch or slider has been changed, unless by _draw() itself."""
         with self._lock:
             if self._drawing or self._closed.is_set():
                 return
-            controls, session = self.controls, self.session
-            if handle is controls.choice:
-                session.set_choice(handle.value)
-            elif handle is controls.task:
-                session.set_task(handle.value)
-            elif handle is controls.motion:
-                session.slide(handle.value)
-            elif handle in controls.joints:
-                joint = controls.joints.index(handle)
-                session.move_joint(joint, controls.joint_value(joint))
-            elif handle in controls.numbers.buttons:
+            controls = self.controls
+            if handle in controls.numbers.buttons:
                 self._typed(handle)
                 return
-            elif handle is controls.unit:
+            if handle in controls.of_map:
+                self._draw_map()
+                return
+            if handle is controls.unit:
                 with self._silently():
                     controls.set_unit()
             elif handle is controls.meshes:
                 self.scene.dress(dressed=bool(handle.value))
-            elif handle is not controls.ghosts:
-                self._draw_map()
-                return
+            else:
+                controls.apply(handle)
             self._draw(handle)
 
     def _typed(self, button: Any) -> None:
@@ -306,22 +255,11 @@ class Viewer:
 
     def _look_at(self, others: FloatArray) -> None:
         """Have the camera see the robot and other points (n, 3), and little else."""
-        robot, camera = self.session.robot, self._server.initial_camera
-        away = np.linalg.norm(others - robot.reach_centre, axis=-1)
-        near = others[away < FARTHEST_IN_VIEW * robot.reach]
-        points = np.concatenate([self._body, near])
-        lowest, highest = points.min(axis=0), points.max(axis=0)
-        centre = (lowest + highest) / 2
-        # The target's handles stick out.
-        radius = np.linalg.norm(points - centre, axis=1).max() + 0.12 * robot.reach
-        distance = radius / np.sin(FIELD_OF_VIEW / 2)
-        direction = VIEW_FROM / np.linalg.norm(VIEW_FROM)
-        camera.fov = float(FIELD_OF_VIEW)
-        camera.position = centre + distance * direction
-        camera.look_at = centre
+        camera = self._server.initial_camera
+        look_at(camera, self._skeleton, self._body, others)
 
-    def _draw(self, source: Any = None) -> None:
-        """Draw everything but the map, and the handle that a user is just moving."""
+    def _draw(self, *held: Any) -> None:
+        """Draw everything but the map, and the handles that a user is just moving."""
         session = self.session
         robot, q = session.robot, session.q
         near = np.minimum(q - robot.lower, robot.upper - q) < LIMIT_MARGIN
@@ -330,9 +268,8 @@ class Viewer:
             asked = self.controls.ghosts.value
             ghosts = session.branches() if asked else q[None][:0]
             self.scene.draw_ghosts(ghosts)
-            if source is not self.scene.target:
-                self.scene.draw_target(session.target)
-            self.controls.draw(source, len(ghosts) if asked else None)
+            self.scene.draw_targets(session.targets, held)
+            self.controls.draw(held, len(ghosts) if asked else None)
         self._server.flush()  # viser would wait for 1/60 s for more to send
 
     def _draw_map(self) -> None:

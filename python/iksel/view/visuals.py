@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from iksel_cpp import UnknownNameError, UrdfError
 
-from iksel import _extras
-from iksel import _rotations as rotations
-from iksel._mesh_files import check_mesh_file
-from iksel._packages import resolve_path
-from iksel._urdf_xml import GEOMETRIES, read_numbers, read_origin, read_xml
+from iksel._base import extras, rotations
 from iksel.description import read_description
+from iksel.formats._mesh_files import check_mesh_file
+from iksel.formats._packages import resolve_path
+from iksel.formats._urdf_xml import GEOMETRIES, read_numbers, read_origin, read_xml
 
 if TYPE_CHECKING:
     import xml.etree.ElementTree as ET
@@ -22,9 +21,9 @@ if TYPE_CHECKING:
 
     from iksel_cpp import Robot
 
-    from iksel._arrays import FloatArray, IntArray
-    from iksel._packages import Packages
+    from iksel._base.arrays import FloatArray, IntArray
     from iksel.description import Source
+    from iksel.formats._packages import Packages
 
 Colour = tuple[int, int, int]
 PLAIN: Colour = (175, 182, 192)
@@ -169,7 +168,7 @@ def _own_colour(mesh: Any) -> Colour | None:
 
 
 def _trimesh() -> Any:
-    return _extras.need("trimesh", user="iksel.view", extra="'iksel[view]'")
+    return extras.need("trimesh", user="iksel.view", extra="'iksel[view]'")
 
 
 class Visuals:

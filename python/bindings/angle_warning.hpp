@@ -2,8 +2,6 @@
 // The warning that joint values look like degrees, as iksel._base.angles gives it for other angles.
 #pragma once
 
-#include <pybind11/pybind11.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "iksel/robot.hpp"
 #include "python_types.hpp"
 
 namespace iksel::python {

@@ -4,22 +4,15 @@
 // says which argument it was, what it got and what it expected.
 #pragma once
 
-#include <pybind11/numpy.h>
-#include <pybind11/pybind11.h>
-
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gil.hpp"
-#include "iksel/error.hpp"
-#include "iksel/types.hpp"
-#include "progress.hpp"
-#include "python_types.hpp"
-#include "results.hpp"
 
 namespace iksel::python {
 
@@ -132,68 +125,54 @@ inline std::vector<py::ssize_t> shape_for(const DoubleArray& q, std::vector<py::
   return item;
 }
 
-/// Applies `function(const JointVector&, T* out)` to a (dof,) array, giving an array of shape
-/// `item`, or to every row of an (N, dof) array, giving (N, *item) with the GIL released; Ctrl-C
-/// ends it.
-template <class T = double, class Function>
-py::array_t<T> map_joints(py::handle value, int dof, const char* name,
-                          const std::vector<py::ssize_t>& item, const Function& function) {
+/// Applies `function(const double* q, std::size_t count, T* out)` to a (dof,) array, giving an
+/// array of shape `item`, or to the rows of an (N, dof) array, many at a time, giving (N, *item)
+/// with the GIL released; Ctrl-C ends it.
+template <class T, class Function>
+py::array_t<T> map_joint_blocks(py::handle value, int dof, const char* name,
+                                std::vector<py::ssize_t> item, const Function& function) {
   const DoubleArray array = as_joint_rows(value, dof, name);
   const double* in = array.data();
-  py::array_t<T> out(shape_for(array, item));
+  py::array_t<T> out(shape_for(array, std::move(item)));
   T* to = out.mutable_data();
-  if (array.ndim() == 1) {
-    check_finite(in, dof, name);
-    function(JointVector(Eigen::Map<const Eigen::VectorXd>(in, dof)), to);
-    return out;
-  }
-  const py::ssize_t rows = array.shape(0);
-  const py::ssize_t item_size = rows == 0 ? 0 : out.size() / rows;
-  {
-    const GilRelease release;
-    JointVector q(dof);
-    InterruptCheck check_interrupt;
-    for (py::ssize_t row = 0; row < rows; ++row, in += dof, to += item_size) {
-      check_interrupt();
-      check_row(in, row, dof, name);
-      q = Eigen::Map<const Eigen::VectorXd>(in, dof);
-      function(q, to);
-    }
-  }
-  return out;
-}
-
-/// What map_joints gives for a truth value.
-inline BoolOrArray to_bool_or_array(const py::array_t<bool>& values) {
-  return BoolOrArray(values.ndim() == 0 ? py::object(py::bool_(*values.data()))
-                                        : py::object(values));
-}
-
-/// As map_joints, but applies `function(const double* q, std::size_t count, double* out)` to many
-/// rows at a time.
-template <class Function>
-py::array_t<double> map_joint_blocks(py::handle value, int dof, const char* name,
-                                     const std::vector<py::ssize_t>& item,
-                                     const Function& function) {
-  const DoubleArray array = as_joint_rows(value, dof, name);
-  const double* in = array.data();
-  py::array_t<double> out(shape_for(array, item));
-  double* to = out.mutable_data();
   if (array.ndim() == 1) {
     check_finite(in, dof, name);
     function(in, 1, to);
     return out;
   }
   const py::ssize_t rows = array.shape(0);
-  for (py::ssize_t i = 0; i < rows; ++i) check_row(in + i * dof, i, dof, name);
   constexpr py::ssize_t kBlock = 256;
   for (py::ssize_t first = 0; first < rows; first += kBlock) {
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    const py::ssize_t end = std::min(first + kBlock, rows);
     const GilRelease release;
-    function(in + first * dof, static_cast<std::size_t>(std::min(kBlock, rows - first)),
+    for (py::ssize_t i = first; i < end; ++i) check_row(in + i * dof, i, dof, name);
+    function(in + first * dof, static_cast<std::size_t>(end - first),
              to + first * (out.size() / rows));
   }
   return out;
+}
+
+/// The same with `function(const JointVector&, T* out)` for each configuration.
+template <class T = double, class Function>
+py::array_t<T> map_joints(py::handle value, int dof, const char* name,
+                          std::vector<py::ssize_t> item, const Function& function) {
+  py::ssize_t size = 1;
+  for (const py::ssize_t each : item) size *= each;
+  return map_joint_blocks<T>(value, dof, name, std::move(item),
+                             [&function, dof, size](const double* q, std::size_t count, T* out) {
+                               JointVector joints(dof);
+                               for (std::size_t i = 0; i < count; ++i, q += dof, out += size) {
+                                 joints = Eigen::Map<const Eigen::VectorXd>(q, dof);
+                                 function(joints, out);
+                               }
+                             });
+}
+
+/// What map_joints gives for a truth value.
+inline BoolOrArray to_bool_or_array(const py::array_t<bool>& values) {
+  return BoolOrArray(values.ndim() == 0 ? py::object(py::bool_(*values.data()))
+                                        : py::object(values));
 }
 
 /// A (4, 4) array of its own.
@@ -222,6 +201,15 @@ inline py::array_t<double> to_array(const Matrix& matrix) {
     const Eigen::Index count = std::min(kBlock, matrix.rows() - first);
     rows.middleRows(first, count) = matrix.middleRows(first, count);
   }
+  return array;
+}
+
+/// (rows, dof) of joint values.
+template <class Rows, class Get>
+py::array_t<double> stack_joints(const Rows& rows, int dof, const Get& get) {
+  py::array_t<double> array({static_cast<py::ssize_t>(rows.size()), py::ssize_t{dof}});
+  double* out = array.mutable_data();
+  for (const auto& row : rows) out = std::copy_n(get(row).data(), dof, out);
   return array;
 }
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Arrays and containers as fields, and what a pickle may have in numbers.
+// Arrays and containers as fields and arguments, and what a pickle may have in numbers.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -10,6 +9,7 @@
 
 #include "array_checks.hpp"
 #include "fields.hpp"
+#include "pose_arguments.hpp"
 #include "sequence_of.hpp"
 
 namespace iksel::python {
@@ -49,24 +49,20 @@ inline JointVector as_any_joints(py::handle value, const char* name) {
   return as_joints(array, static_cast<int>(array.shape(0)), name);
 }
 
-/// (n,) joint values; none of them are None.
+/// (dof,) joint values, of any arm if that is not known; none of them are None.
 template <>
 struct FromPython<JointVector> {
   static std::string text() { return "numpy.typing.ArrayLike | None"; }
-  static JointVector convert(py::handle value, const char* name) {
-    return value.is_none() ? JointVector() : as_any_joints(value, name);
+  static JointVector convert(py::handle value, const char* name, int dof) {
+    if (value.is_none()) return {};
+    return dof < 0 ? as_any_joints(value, name) : as_joints(value, dof, name);
   }
-};
-template <>
-struct ResultType<JointVector> : ResultType<OptionalArray> {};
-template <>
-struct ValueOf<JointVector> : PlainValue<JointVector, ValueOf<JointVector>> {
-  static py::object to_plain(const JointVector& value) {
-    return value.size() == 0 ? py::object(py::none()) : to_array(value);
+  static OptionalArray show(const JointVector& value) {
+    return OptionalArray(value.size() == 0 ? py::object(py::none()) : to_array(value));
   }
 };
 
-/// (n,) numbers.
+/// (N,) numbers.
 template <>
 struct FromPython<std::vector<double>> {
   static std::string text() { return ArrayLike::kText; }
@@ -75,44 +71,49 @@ struct FromPython<std::vector<double>> {
     if (array.ndim() != 1) throw_wrong_shape(name, "an (N,) array", array);
     return {array.data(), array.data() + array.size()};
   }
-};
-template <>
-struct ResultType<std::vector<double>> : ResultType<py::array_t<double>> {};
-template <>
-struct ValueOf<std::vector<double>>
-    : PlainValue<std::vector<double>, ValueOf<std::vector<double>>> {
-  static py::object to_plain(const std::vector<double>& value) { return to_array(value); }
+  static py::array_t<double> show(const std::vector<double>& value) { return to_array(value); }
 };
 
-/// (n, dof) joint values.
+/// (n, dof) joint values; where the arm is known (dof,) too, those of one configuration.
 template <>
 struct FromPython<std::vector<JointVector>> {
   static std::string text() { return ArrayLike::kText; }
-  static std::vector<JointVector> convert(py::handle value, const char* name) {
+  static std::vector<JointVector> convert(py::handle value, const char* name, int dof) {
     const DoubleArray array = as_doubles(value, name);
-    if (array.ndim() != 2 || array.shape(1) > kMaxDof) {
-      throw_wrong_shape(name, "an (n, dof) array", array);
+    if (array.ndim() == 1 && array.shape(0) == dof) return {as_joints(array, dof, name)};
+    const bool fits =
+        array.ndim() == 2 && (dof < 0 ? array.shape(1) <= kMaxDof : array.shape(1) == dof);
+    if (!fits) {
+      const std::string n = std::to_string(dof);
+      throw_wrong_shape(
+          name, dof < 0 ? "an (n, dof) array" : "a (" + n + ",) or (N, " + n + ") array", array);
     }
-    const auto dof = static_cast<int>(array.shape(1));
+    const auto joints = static_cast<int>(array.shape(1));
     std::vector<JointVector> rows;
+    rows.reserve(static_cast<std::size_t>(array.shape(0)));
     for (py::ssize_t i = 0; i < array.shape(0); ++i) {
-      check_row(array.data(i), i, dof, name);
-      rows.emplace_back(Eigen::Map<const Eigen::VectorXd>(array.data(i), dof));
+      check_row(array.data(i), i, joints, name);
+      rows.emplace_back(Eigen::Map<const Eigen::VectorXd>(array.data(i), joints));
     }
     return rows;
   }
+  static py::array_t<double> show(const std::vector<JointVector>& rows) {
+    return stack_joints(
+        rows, rows.empty() ? 0 : static_cast<int>(rows.front().size()),
+        [](const JointVector& q) -> const auto& { return q; });
+  }
 };
+
 template <>
-struct ResultType<std::vector<JointVector>> : ResultType<py::array_t<double>> {};
-template <>
-struct ValueOf<std::vector<JointVector>>
-    : PlainValue<std::vector<JointVector>, ValueOf<std::vector<JointVector>>> {
-  static py::object to_plain(const std::vector<JointVector>& value) {
-    const auto dof = static_cast<py::ssize_t>(value.empty() ? 0 : value.front().size());
-    py::array_t<double> array({static_cast<py::ssize_t>(value.size()), dof});
-    double* out = array.mutable_data();
-    for (const JointVector& q : value) out = std::copy_n(q.data(), dof, out);
-    return array;
+struct FromPython<Eigen::Vector3d> {
+  static std::string text() { return ArrayLike::kText; }
+  static Eigen::Vector3d convert(py::handle value, const char* name) {
+    const DoubleArray array = as_doubles(value, name);
+    if (array.ndim() != 1 || array.shape(0) != 3) throw_wrong_shape(name, "a (3,) array", array);
+    return {array.at(0), array.at(1), array.at(2)};
+  }
+  static py::array_t<double> show(const Eigen::Vector3d& value) {
+    return to_array(JointVector(value));
   }
 };
 
@@ -129,6 +130,7 @@ struct FromPython<py::array_t<T>> {
         py::reinterpret_borrow<py::object>(value));
   }
 };
+
 /// Objects of a class with fields.
 template <class T>
 struct FromPython<std::vector<T>, std::enable_if_t<HasFields<T>::value>> : FromSequence<T> {};

@@ -1,17 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
-#include <cstdint>
-#include <filesystem>
-#include <optional>
-#include <string>
-
-#include "array_checks.hpp"
 #include "bindings.hpp"
-#include "gil.hpp"
-#include "iksel/database.hpp"
-#include "option_fields.hpp"
-#include "pose_arguments.hpp"
-#include "progress.hpp"
 
 namespace iksel::python {
 
@@ -47,10 +35,10 @@ Database from_bytes(const py::bytes& content) {
   return without_gil([&] { return Database::from_bytes(copy); });
 }
 
-/// What `get` gives of the sample.
-template <class Get>
-py::array_t<double> of_sample(const Database& self, std::size_t i, const Get& get) {
-  if (i < self.size()) return to_array(get(i));
+/// What `kGet` gives of the sample.
+template <auto kGet>
+py::array_t<double> of_sample(const Database& self, std::size_t i) {
+  if (i < self.size()) return to_array((self.*kGet)(i));
   throw InvalidArgumentError("i: expected a sample from 0 to " + std::to_string(self.size() - 1) +
                              ", got " + std::to_string(i));
 }
@@ -63,27 +51,10 @@ py::array_t<std::int64_t> nearest(const Database& self, const Pose& T_base_tip, 
 }
 
 void bind_samples(py::class_<Database>& cls) {
-  def(
-      cls, "q", "i",
-      [](const Database& self, std::size_t i) {
-        return of_sample(self, i, [&](std::size_t k) { return self.q(k); });
-      },
-      "Joint values of sample i [rad or m], (dof,).");
-  def(
-      cls, "pose", "i",
-      [](const Database& self, std::size_t i) {
-        return of_sample(self, i, [&](std::size_t k) { return self.pose(k); });
-      },
-      "T_base_tip of sample i, of the tip link without the TCP, (4, 4).");
-  def(
-      cls, "pseudo_inverse", "i",
-      [](const Database& self, std::size_t i) {
-        return of_sample(self, i, [&](std::size_t k) { return self.pseudo_inverse(k); });
-      },
-      "J^+ of sample i, as in Eq. (4) of the paper, (dof, 6).");
-  def(cls, "nearest", "pose, k", fn<&nearest>,
-      "Indices of the k samples whose keys are nearest to that of a (4, 4) pose of the tip "
-      "link, nearest first; Eq. (2) of the paper.");
+  def(cls, "q", "i", fn<&of_sample<&Database::q>>);
+  def(cls, "pose", "i", fn<&of_sample<&Database::pose>>);
+  def(cls, "pseudo_inverse", "i", fn<&of_sample<&Database::pseudo_inverse>>);
+  def(cls, "nearest", "pose, k", fn<&nearest>);
 }
 
 void bind_files(py::class_<Database>& cls) {
@@ -111,7 +82,7 @@ Removes files named iksel-*.tmp in the same folder that saves which were killed 
 
 Raises:
     DatabaseIoError: the file cannot be written; an old one is untouched.)");
-  def(cls, "to_bytes", "", fn<&to_bytes>, "The content of a file, for sending.");
+  def(cls, "to_bytes", "", fn<&to_bytes>);
   def_static(cls, "from_bytes", "content", fn<&from_bytes>,
              "The database that `to_bytes` wrote. Raises as `load`.");
 }
@@ -119,10 +90,7 @@ Raises:
 }  // namespace
 
 void bind_database(py::module_& m) {
-  auto cls = bind_class<Database>(m, "Database",
-                                  "An immutable set of samples (q_i, x_i, J_i^+) of a robot under "
-                                  "a KD-tree. Safe to use from many threads at once.",
-                                  "Database.build(robot) or Database.load(path)");
+  auto cls = bind_class<Database>(m, "Database", "Database.build(robot) or Database.load(path)");
   def_static(cls, "build", "robot, options=DatabaseOptions(), progress=None", fn<&build>,
              R"(Samples the joint limits and computes pose, Jacobian and pseudo-inverse.
 
@@ -136,26 +104,15 @@ Raises:
     InvalidArgumentError: an option out of range.
     DatabaseError: more samples than fit.)");
   bind_files(cls);
-  add_property(
-      cls, "options", [](const Database& self) { return self.options(); },
-      "A copy of the options it was built with.");
-  add_property(cls, "size", &Database::size, "Number of samples.");
+  add_property(cls, "options", [](const Database& self) { return self.options(); });
+  add_property(cls, "size", &Database::size);
   def(cls, "__len__", "", fn<&Database::size>);
-  add_property(cls, "dof", &Database::dof, "Degrees of freedom of its robot.");
-  add_property(cls, "key_dimension", &Database::key_dimension, "Dimension of the KD-tree's key.");
-  add_property(
-      cls, "nbytes", &Database::bytes,
-      "Bytes of all that it holds: samples, keys and pseudo-inverses, the trees over them, "
-      "and the copies that are laid out for the lanes. Bytes of a mapped file are among "
-      "them.");
-  add_property(cls, "chain_hash", &Database::chain_hash,
-               "Robot.chain_hash of the robot it belongs to.");
+  add_properties(cls, "dof", &Database::dof, "key_dimension", &Database::key_dimension);
+  add_property(cls, "nbytes", &Database::bytes, header_text("Database.bytes"));
+  add_property(cls, "chain_hash", &Database::chain_hash);
   bind_samples(cls);
 
-  def(cls, "__repr__", "", [](const Database& self) {
-    return "Database(" + std::to_string(self.size()) +
-           " samples, dof=" + std::to_string(self.dof()) + ", " + to_repr(self.options()) + ")";
-  });
+  def_repr(cls);
   def_copies(cls);
   def(cls, "__getstate__", "", [](const Database& self) { return to_bytes(self); });
   def_init(

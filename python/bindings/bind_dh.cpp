@@ -1,17 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "angle_warning.hpp"
-#include "array_checks.hpp"
 #include "bindings.hpp"
-#include "def.hpp"
-#include "iksel/dh.hpp"
-#include "iksel/pose.hpp"
-#include "iksel/robot.hpp"
-#include "pose_arguments.hpp"
-#include "sequence_of.hpp"
 
 namespace iksel::python {
 
@@ -20,13 +9,8 @@ template <>
 struct FromPython<std::vector<JointType>> {
   static std::string text() { return "collections.abc.Sequence[iksel_cpp.JointType | str]"; }
   static std::vector<JointType> convert(py::handle value, const char* name) {
-    return read_sequence(value, name, "a sequence of joint types", from_python<JointType>);
+    return read_sequence<JointType>(value, name, "a list of joint types");
   }
-};
-
-struct JointNames : RawArgument {
-  using RawArgument::RawArgument;
-  static constexpr const char* kText = "collections.abc.Sequence[str]";
 };
 
 namespace {
@@ -66,7 +50,7 @@ void set_angles(const ArrayLike& value, const char* name, double DhJoint::*field
 Robot from_dh(const ArrayLike& a, const ArrayLike& alpha, const ArrayLike& d, const Column& theta,
               DhConvention convention, const std::optional<std::vector<JointType>>& types,
               const Column& lower, const Column& upper, const Column& velocity,
-              const std::optional<JointNames>& names, const std::optional<Pose>& base,
+              const std::optional<Names>& names, const std::optional<Pose>& base,
               const std::optional<Pose>& tcp, const std::string& name) {
   DhTable table;
   const DoubleArray first = as_doubles(a, "a");
@@ -80,10 +64,8 @@ Robot from_dh(const ArrayLike& a, const ArrayLike& alpha, const ArrayLike& d, co
     for (std::size_t i = 0; i < rows.size(); ++i) rows[i].type = (*types)[i];
   }
   if (names) {
-    const auto given =
-        read_sequence(*names, "names", "a sequence of joint names", from_python<std::string>);
-    check_rows(given.size(), rows.size(), "names");
-    for (std::size_t i = 0; i < rows.size(); ++i) rows[i].name = given[i];
+    check_rows(names->size(), rows.size(), "names");
+    for (std::size_t i = 0; i < rows.size(); ++i) rows[i].name = (*names)[i];
   }
   set_column(a, "a", &DhJoint::a, rows);
   set_angles(alpha, "alpha", &DhJoint::alpha, rows, false);

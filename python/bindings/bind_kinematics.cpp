@@ -1,25 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <optional>
-
-#include "array_checks.hpp"
 #include "bindings.hpp"
-#include "enums.hpp"
-#include "iksel/robot.hpp"
-#include "joint_values.hpp"
-#include "pose_arguments.hpp"
 
 namespace iksel::python {
 
 namespace {
 
 py::array_t<double> fk(const Robot& self, const ArrayLike& q, Kinematics how) {
-  if (self.tips() == 1) {
-    return map_joints(q, self.dof(), "q", {4, 4}, [&](const JointVector& joints, double* out) {
-      Eigen::Map<RowMajorPose>{out} = self.fk(joints, how).matrix();
-    });
-  }
-  return map_joints(q, self.dof(), "q", {self.tips(), 4, 4},
-                    [&](const JointVector& joints, double* out) {
+  const py::ssize_t tips = self.tips();
+  std::vector<py::ssize_t> shape = {4, 4};
+  if (tips > 1) shape.insert(shape.begin(), tips);
+  return map_joints(q, self.dof(), "q", std::move(shape),
+                    [&self, how, tips](const JointVector& joints, double* out) {
+                      if (tips == 1) {
+                        Eigen::Map<RowMajorPose>{out} = self.fk(joints, how).matrix();
+                        return;
+                      }
                       for (const Pose& pose : self.tip_poses(joints, how)) {
                         Eigen::Map<RowMajorPose>{out} = pose.matrix();
                         out += 16;
@@ -28,26 +23,27 @@ py::array_t<double> fk(const Robot& self, const ArrayLike& q, Kinematics how) {
 }
 
 py::array_t<double> jacobian(const Robot& self, const ArrayLike& q, Kinematics how) {
-  const int dof = self.dof();
-  if (self.tips() == 1) {
-    return map_joints(q, dof, "q", {6, dof}, [&](const JointVector& joints, double* out) {
-      Eigen::Map<RowMajorMatrix>(out, 6, dof) = self.jacobian(joints, how);
-    });
-  }
   const int rows = 6 * self.tips();
-  return map_joints(q, dof, "q", {rows, dof}, [&](const JointVector& joints, double* out) {
-    Eigen::Map<RowMajorMatrix>(out, rows, dof) = self.tip_jacobians(joints, how);
-  });
+  const int dof = self.dof();
+  return map_joints(q, dof, "q", {rows, dof},
+                    [&self, how, rows, dof](const JointVector& joints, double* out) {
+                      Eigen::Map<RowMajorMatrix> all(out, rows, dof);
+                      if (rows == 6) {
+                        all = self.jacobian(joints, how);
+                      } else {
+                        all = self.tip_jacobians(joints, how);
+                      }
+                    });
 }
 
 py::array_t<double> link_poses(const Robot& self, const ArrayLike& q,
                                const std::optional<JointValues>& other_joints) {
   const JointValues others = other_joints.value_or(JointValues());
   const auto links = static_cast<py::ssize_t>(self.link_names().size());
-  return map_joint_blocks(q, self.dof(), "q", {links, 4, 4},
-                          [&](const double* rows, std::size_t count, double* out) {
-                            self.link_poses(rows, count, others, out);
-                          });
+  return map_joint_blocks<double>(q, self.dof(), "q", {links, 4, 4},
+                                  [&](const double* rows, std::size_t count, double* out) {
+                                    self.link_poses(rows, count, others, out);
+                                  });
 }
 
 py::array_t<double> inverse_jacobian(const Robot& self, const ArrayLike& q, double damping) {

@@ -1,14 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "iksel/mimic_curve.hpp"
-
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include "array_fields.hpp"
 #include "bindings.hpp"
-#include "html.hpp"
 
 namespace iksel::python {
 
@@ -17,6 +8,11 @@ struct NumberFunction : RawArgument {
   using RawArgument::RawArgument;
   static constexpr const char* kText =
       "collections.abc.Callable[[float], typing.SupportsFloat | typing.SupportsIndex]";
+};
+
+template <>
+struct FieldTable<MimicCurve> : HeaderTable<MimicCurve> {
+  static std::vector<Field> fields() { return HeaderFields<MimicCurve>().hide({"slopes"}).all(); }
 };
 
 namespace {
@@ -47,34 +43,14 @@ MimicCurve sample_curve(const std::string& joint, const std::string& follows, do
                              });
 }
 
-std::string curve_repr(const MimicCurve& self) {
-  std::string text = "MimicCurve(" + repr_text(py::str(self.joint)) + ", " +
-                     repr_text(py::str(self.follows)) + ", " + std::to_string(self.q.size()) +
-                     " points";
-  if (!self.q.empty()) {
-    text += ", q=" + short_number(self.q.front()) + ".." + short_number(self.q.back());
-  }
-  return text + ")";
-}
-
 OptionalArray slopes_of(const MimicCurve& self) {
   return OptionalArray(self.slopes.empty() ? py::object(py::none()) : to_array(self.slopes));
-}
-
-py::dict curve_state(const MimicCurve& self) {
-  return py::dict("joint"_a = self.joint, "follows"_a = self.follows, "q"_a = to_array(self.q),
-                  "values"_a = to_array(self.values), "slopes"_a = slopes_of(self));
 }
 
 }  // namespace
 
 void bind_mimic_curve(py::module_& m) {
-  auto cls = bind_class<MimicCurve>(
-      m, "MimicCurve",
-      "A joint that follows another by a smooth curve, as a four-bar linkage or a cylinder beside "
-      "a hinge makes it. It takes the place of the joint's mimic tag, which knows straight lines "
-      "only. Between the points lies a cubic in each gap (Hermite's); the joint that is followed "
-      "stays between the first point and the last.");
+  auto cls = bind_fields<MimicCurve>(m, nullptr);
   def_init(cls, "joint, follows, q, values, slopes=None", fn<&make_curve>,
            R"(Args:
     joint: name of the joint that follows.
@@ -101,19 +77,9 @@ Args:
 Raises:
     InvalidArgumentError: 8,192 gaps are not enough, as where slope is not function's derivative;
         or a function gives no finite number.)");
-  add_property(cls, "joint", &MimicCurve::joint, "Name of the joint that follows.");
-  add_property(cls, "follows", &MimicCurve::follows, "Name of the joint that is followed.");
-  add_property(
-      cls, "q", [](const MimicCurve& self) { return to_array(self.q); },
-      "Values of the joint that is followed [rad or m], (N,).");
-  add_property(
-      cls, "values", [](const MimicCurve& self) { return to_array(self.values); },
-      "Value of `joint` at each [rad or m], (N,).");
-  add_property(cls, "slopes", &slopes_of,
-               "Derivative of `values` by q at each, (N,); None: those of a cubic spline.");
-  def(cls, "__repr__", "", fn<&curve_repr>);
+  add_property(cls, "slopes", &slopes_of);
+  def_repr(cls);
   def_equal(cls);
-  def_pickle(cls, fn<&curve_state>, "joint, follows, q, values, slopes", fn<&make_curve>);
 }
 
 }  // namespace iksel::python

@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <memory>
-#include <optional>
-#include <string>
-
-#include "array_fields.hpp"
-#include "iksel/pose.hpp"
-#include "obstacle_fields.hpp"
-#include "scene_arguments.hpp"
+#include "bindings.hpp"
+#include "scene_types.hpp"
 
 namespace iksel::python {
 
@@ -34,29 +28,19 @@ std::string add_doc(const char* summary, const char* arguments) {
   return std::string(summary) + kAddDoc + arguments + kPlaceDoc;
 }
 
-void add_sphere(Scene& self, const std::string& name, double radius, const Place& pose,
-                double margin) {
-  self.set(name, Obstacle::sphere(radius, pose, margin));
-}
+template <class T>
+using WithPlace = std::conditional_t<std::is_same_v<T, Pose>, Place, T>;
 
-void add_box(Scene& self, const std::string& name, const Eigen::Vector3d& size, const Place& pose,
-             double margin) {
-  self.set(name, Obstacle::box(size, pose, margin));
-}
-
-void add_capsule(Scene& self, const std::string& name, double radius, double length,
-                 const Place& pose, double margin) {
-  self.set(name, Obstacle::capsule(radius, length, pose, margin));
-}
-
-void add_cylinder(Scene& self, const std::string& name, double radius, double length,
-                  const Place& pose, double margin) {
-  self.set(name, Obstacle::cylinder(radius, length, pose, margin));
-}
-
-void add_half_space(Scene& self, const std::string& name, const Place& pose, double margin) {
-  self.set(name, Obstacle::half_space(pose, margin));
-}
+/// A method that adds what kMake gives.
+template <auto kMake>
+struct Add;
+template <class... A, Obstacle (*kMake)(A...)>
+struct Add<kMake> {
+  void operator()(Scene& self, const std::string& name,
+                  const WithPlace<Plain<A>>&... arguments) const {
+    self.set(name, kMake(arguments...));
+  }
+};
 
 void add_points(Scene& self, const std::string& name, const PointCloud& points, double radius,
                 const std::optional<Place>& pose, double margin) {
@@ -67,18 +51,18 @@ void add_points(Scene& self, const std::string& name, const PointCloud& points, 
 }  // namespace
 
 void bind_obstacles(py::class_<Scene>& cls) {
-  def(cls, "add_sphere", "name, radius, pose, margin=0.0", fn<&add_sphere>,
+  def(cls, "add_sphere", "name, radius, pose, margin=0.0", Add<&Obstacle::sphere>(),
       add_doc("Adds a ball around the origin of its frame.", "    radius: above 0 [m].\n"));
-  def(cls, "add_box", "name, size, pose, margin=0.0", fn<&add_box>,
+  def(cls, "add_box", "name, size, pose, margin=0.0", Add<&Obstacle::box>(),
       add_doc("Adds a box centred at the origin of its frame.",
               "    size: edges along the axes of its frame, (3,) [m].\n"));
-  def(cls, "add_capsule", "name, radius, length, pose, margin=0.0", fn<&add_capsule>,
+  def(cls, "add_capsule", "name, radius, length, pose, margin=0.0", Add<&Obstacle::capsule>(),
       add_doc("Adds all that is near a segment on the z axis of its frame, centred at the origin.",
               "    radius: how near, above 0 [m].\n    length: of the segment, 0 or more [m].\n"));
-  def(cls, "add_cylinder", "name, radius, length, pose, margin=0.0", fn<&add_cylinder>,
+  def(cls, "add_cylinder", "name, radius, length, pose, margin=0.0", Add<&Obstacle::cylinder>(),
       add_doc("Adds a cylinder around the z axis of its frame, centred at the origin.",
               "    radius: above 0 [m].\n    length: above 0 [m].\n"));
-  def(cls, "add_half_space", "name, pose, margin=0.0", fn<&add_half_space>,
+  def(cls, "add_half_space", "name, pose, margin=0.0", Add<&Obstacle::half_space>(),
       add_doc("Adds all that is below the plane z = 0 of its frame.", ""));
   def(cls, "add_points", "name, points, radius, pose=None, margin=0.0", fn<&add_points>,
       add_doc("Adds a ball around each point of a cloud.",
@@ -88,8 +72,7 @@ void bind_obstacles(py::class_<Scene>& cls) {
 
 void bind_obstacle(py::module_& m) {
   auto cls = bind_fields<Obstacle>(m, "Scene.obstacles");
-  def(cls, "__repr__", "",
-      [](const Obstacle& self) { return "Obstacle(" + std::string(to_string(self.shape)) + ")"; });
+  def_repr(cls);
 }
 
 }  // namespace iksel::python

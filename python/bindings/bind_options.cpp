@@ -1,18 +1,54 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bindings.hpp"
-#include "option_fields.hpp"
 
 namespace iksel::python {
 
 namespace {
 
-template <class Options>
-void def_validate(py::class_<Options>& cls) {
-  def(cls, "validate", "", fn<&Options::validate>,
-      "Raises InvalidArgumentError naming the first option out of range.");
+constexpr const char* kNameKey = "name";
+constexpr const char* kLanes = "lanes";
+constexpr const char* kPaper = "paper";
+
+Strategy by_name(const std::string& text, const char* name) {
+  if (text == kLanes) return Lanes{};
+  if (text == kPaper) return Paper{};
+  throw InvalidArgumentError(std::string(name) + ": no strategy '" + text +
+                             "'; there are: " + kLanes + ", " + kPaper);
 }
 
 }  // namespace
+
+Strategy FromPython<Strategy>::convert(py::handle value, const char* name) {
+  if (is_a<Lanes>(value)) return made<Lanes>(value);
+  if (is_a<Paper>(value)) return made<Paper>(value);
+  if (py::isinstance<py::str>(value)) return by_name(py::cast<std::string>(value), name);
+  if (!py::hasattr(value, "keys")) {
+    throw_wrong_type(name, "Lanes, Paper, their name, or a mapping of it and fields", value);
+  }
+  py::dict fields(py::reinterpret_borrow<py::object>(value));
+  if (!fields.contains(kNameKey) || !py::isinstance<py::str>(fields[kNameKey])) {
+    throw InvalidArgumentError(std::string(name) + ": a mapping needs '" + kNameKey + "', " +
+                               kLanes + " or " + kPaper);
+  }
+  fields = fields.attr("copy")();
+  Strategy out = by_name(py::cast<std::string>(fields.attr("pop")(kNameKey)), name);
+  std::visit([&](auto& each) { assign(&each, struct_type<Plain<decltype(each)>>(), fields); }, out);
+  return out;
+}
+
+py::object ValueOf<Strategy>::get(const Strategy& value, py::handle /*owner*/) {
+  return std::visit([](const auto& each) { return py::cast(each); }, value);
+}
+
+py::object ValueOf<Strategy>::to_plain(const Strategy& value) {
+  py::dict out;
+  out[kNameKey] = std::holds_alternative<Lanes>(value) ? kLanes : kPaper;
+  const auto to_fields = [](const auto& each) {
+    return to_dict(&each, struct_type<Plain<decltype(each)>>());
+  };
+  out.attr("update")(std::visit(to_fields, value));
+  return out;
+}
 
 void bind_options(py::module_& m) {
   bind_enum<Sampling>(m);
@@ -26,26 +62,18 @@ void bind_options(py::module_& m) {
   bind_enum<GrowthStop>(m);
 
   auto database = bind_keyword_class<DatabaseOptions>(m, /*writable=*/true);
-  def_static(database, "paper", "year=2025", fn<&DatabaseOptions::paper>,
-             "The paper's: grid, medium, rotation vectors, unweighted. Of 2026: 2,048 samples by "
-             "kmeans. Raises InvalidArgumentError on another year.");
-  def_validate(database);
+  def_static(database, "paper", "year=2025", fn<&DatabaseOptions::paper>);
+  def(database, "validate", "", fn<&DatabaseOptions::validate>);
 
   // Immutable, so that nobody changes the copy that SolverOptions.strategy is.
   auto lanes = bind_keyword_class<Lanes>(m, /*writable=*/false);
-  def_validate(lanes);
+  def(lanes, "validate", "", fn<&Lanes::validate>);
   auto paper = bind_keyword_class<Paper>(m, /*writable=*/false);
-  def(paper, "validate", "", fn<&Paper::validate>,
-      "Raises InvalidArgumentError naming the first option that is out of range, or that is set "
-      "though nothing reads it.");
+  def(paper, "validate", "", fn<&Paper::validate>);
 
   auto solver = bind_keyword_class<SolverOptions>(m, /*writable=*/true);
-  def_static(solver, "paper", "year=2025", fn<&SolverOptions::paper>,
-             "The paper's setting: medium grid, the defaults of Paper, one re-selection, 1e-4 m "
-             "and 1e-3 rad. Of 2026: its authors' newer one, as their repository "
-             "wanweiwei07/one runs it at commit 96c863f1. Raises InvalidArgumentError on another "
-             "year.");
-  def_validate(solver);
+  def_static(solver, "paper", "year=2025", fn<&SolverOptions::paper>);
+  def(solver, "validate", "", fn<&SolverOptions::validate>);
 }
 
 }  // namespace iksel::python

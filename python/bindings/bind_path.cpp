@@ -1,19 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cstddef>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "angle_warning.hpp"
-#include "array_fields.hpp"
 #include "bindings.hpp"
-#include "gil.hpp"
-#include "html.hpp"
-#include "iksel/path.hpp"
-#include "iksel/tracker.hpp"
-#include "pose_arguments.hpp"
-#include "progress.hpp"
-#include "py_result.hpp"
 #include "request_keywords.hpp"
 
 namespace iksel::python {
@@ -29,25 +16,14 @@ struct PyPath : PathResult {
 };
 
 template <>
-struct FieldTable<PyPath> {
+struct FieldTable<PyPath> : HeaderTable<PyPath, PathResult> {
   using P = PyPath;
-  static constexpr const char* kName = "PathResult";
-  static constexpr const char* kDoc =
-      "Joint values along a path; true if there are any for every waypoint.";
   static std::vector<Field> fields() {
-    return {
-        field<P>("status", &P::status,
-                 "`solved`, or why waypoint `first_unreachable` has none: `too_fast` if it has "
-                 "solutions, but no joint path leads there in time."),
-        field<P>("q", &P::q, nullptr),
-        field<P>("dof", &P::dof, nullptr),
-        field<P>("first_unreachable", &P::first_unreachable, nullptr),
-        field<&is_length, P>("largest_step", &P::largest_step,
-                             "The farthest that a joint moves from one waypoint to the next [rad "
-                             "or m]."),
-        field<P>("largest_step_joint", &P::largest_step_joint, nullptr),
-        field<P>("largest_step_waypoint", &P::largest_step_waypoint, nullptr),
-        field<&is_length, P>("move", &P::move, "Sum of the joint moves.")};
+    return HeaderFields<P, PathResult>()
+        .hide({"q", "first_unreachable", "largest_step_joint", "largest_step_waypoint"})
+        .check<&is_length>({"largest_step", "move"})
+        .add("dof", &P::dof)
+        .all();
   }
   static void check(const P& self) {
     const std::string of = "pickled PathResult, ";
@@ -80,38 +56,24 @@ PyPath solve_path(const Solver& self, py::handle poses, const Given& given) {
   return {without_gil([&] { return self.solve_path(targets, options); }), dof};
 }
 
-std::string path_repr(const PyPath& self) {
-  std::string text = std::string("PathResult(") + enum_name(self.status) + ", " +
-                     std::to_string(self.q.size()) + " waypoints";
-  if (!self.success()) text += ", first_unreachable=" + std::to_string(self.first_unreachable);
-  return text + ")";
-}
-
 void bind_path_result(py::module_& m) {
   auto cls = bind_fields<PyPath>(m, "Solver.solve_path");
-  add_property(
-      cls, "success", [](const PyPath& self) { return self.success(); },
-      "Whether there is a configuration for every waypoint.");
-  add_property(cls, "q", &PyPath::rows,
-               "Joint values [rad or m], (N, dof); unless solved, of the waypoints before that.");
-  add_property(
-      cls, "first_unreachable",
-      [](const PyPath& self) { return optional_index(self.first_unreachable); },
-      "Index of the first waypoint that has no continuation; None if solved.");
-  add_property(
-      cls, "largest_step_joint",
-      [](const PyPath& self) { return optional_index(self.largest_step_joint); },
-      "Index of the joint that does; None if there is no step.");
-  add_property(
-      cls, "largest_step_waypoint",
-      [](const PyPath& self) { return optional_index(self.largest_step_waypoint); },
-      "Index of the waypoint where that step ends; None if there is no step.");
+  add_property(cls, "success", [](const PyPath& self) { return self.success(); });
+  add_property(cls, "q", &PyPath::rows);
+  add_property(cls, "first_unreachable",
+               [](const PyPath& self) { return optional_index(self.first_unreachable); });
+  add_property(cls, "largest_step_joint",
+               [](const PyPath& self) { return optional_index(self.largest_step_joint); });
+  add_property(cls, "largest_step_waypoint",
+               [](const PyPath& self) { return optional_index(self.largest_step_waypoint); });
   def(cls, "__bool__", "", [](const PyPath& self) { return self.success(); });
-  def(cls, "__repr__", "", fn<&path_repr>);
+  def_repr(cls);
 }
 
-Tracker make_tracker(const Solver& solver, const ArrayLike& start, const ClosestLike& closest) {
-  return Tracker(solver, as_joints(start, solver.robot().dof(), "start"), as_closest(closest));
+using Closest = std::optional<PoseWeights>;
+
+Tracker make_tracker(const Solver& solver, const ArrayLike& start, const Closest& closest) {
+  return Tracker(solver, as_joints(start, solver.robot().dof(), "start"), closest);
 }
 
 PyResult track(Tracker& self, const PoseLike& pose, double dt, const std::optional<Scene>& scene) {
@@ -122,28 +84,15 @@ PyResult track(Tracker& self, const PoseLike& pose, double dt, const std::option
   return PyResult(self.track(as_targets(self.solver(), pose, {}), dt, in));
 }
 
-/// What `closest` was asked for with.
-py::object weights_of(const Tracker& tracker) {
-  const auto& weights = tracker.closest();
-  if (!weights) return py::none();
-  if (!weights->rotation) return py::bool_(true);
-  JointVector six(6);
-  for (int i = 0; i < 3; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    six[i] = weights->position[k];
-    six[3 + i] = (*weights->rotation)[k];
-  }
-  return to_array(six);
-}
-
 py::dict tracker_state(const Tracker& self) {
   const auto& [last, speed] = self.stream();
   return py::dict("solver"_a = self.solver(), "q"_a = to_array(self.q()),
-                  "closest"_a = weights_of(self), "reached"_a = to_array(self.reached()),
-                  "last"_a = to_stack(last), "speed"_a = speed);
+                  "closest"_a = FromPython<Closest>::show(self.closest()),
+                  "reached"_a = to_array(self.reached()), "last"_a = to_stack(last),
+                  "speed"_a = speed);
 }
 
-Tracker tracker_from_state(const Solver& solver, const ArrayLike& q, const ClosestLike& closest,
+Tracker tracker_from_state(const Solver& solver, const ArrayLike& q, const Closest& closest,
                            const ArrayLike& reached, const PoseLike& last, double speed) {
   const int dof = solver.robot().dof();
   TargetStream stream;
@@ -151,18 +100,15 @@ Tracker tracker_from_state(const Solver& solver, const ArrayLike& q, const Close
     stream.last.emplace_back(each);
   }
   stream.speed = speed;
-  return Tracker(solver, as_joints(q, dof, "pickled Tracker, q"), as_closest(closest),
+  return Tracker(solver, as_joints(q, dof, "pickled Tracker, q"), closest,
                  as_joints(reached, dof, "pickled Tracker, reached"), stream);
 }
 
 void bind_tracker(py::module_& m) {
-  auto tracker = bind_class<Tracker>(
-      m, "Tracker",
-      "Follows a stream of poses: each answer continues from the last, within the velocity limits. "
-      "Not to be used from two threads at once.");
+  auto tracker = bind_class<Tracker>(m, "Tracker");
   def_init(
       tracker, "solver, start, *, closest=None",
-      [](const Solver& solver, const ArrayLike& start, const ClosestLike& closest) {
+      [](const Solver& solver, const ArrayLike& start, const Closest& closest) {
         return make_tracker(solver, start, closest);
       },
       R"(Begins where the arm is.
@@ -196,17 +142,9 @@ Returns:
 Raises:
     InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, dt not above 0, or a
         scene of another chain.)");
-  add_property(
-      tracker, "q", [](const Tracker& self) { return to_array(self.q()); },
-      "Where the arm is now, (dof,) [rad or m]; once inside the limits, always inside.");
-  add_property(
-      tracker, "reached", [](const Tracker& self) { return to_array(self.reached()); },
-      "Where it was when it last reached its pose, or began, (dof,) [rad or m].");
-  def(tracker, "__repr__", "", [](const Tracker& self) {
-    const JointVector& q = self.q();
-    return "Tracker(" + repr_text(py::cast(self.solver().robot())) +
-           ", q=" + short_numbers(q.data(), static_cast<std::size_t>(q.size())) + ")";
-  });
+  add_property(tracker, "q", [](const Tracker& self) { return to_array(self.q()); });
+  add_property(tracker, "reached", [](const Tracker& self) { return to_array(self.reached()); });
+  def_repr(tracker);
   def_pickle(tracker, fn<&tracker_state>, "solver, q, closest, reached, last, speed",
              fn<&tracker_from_state>);
 }
@@ -215,7 +153,7 @@ Raises:
 
 void bind_path(py::module_& m, py::class_<Solver>& cls) {
   bind_path_result(m);
-  def_method(
+  def_method<PathOptions>(
       cls,
       {"solve_path",
        "Joint values along a path of poses, by a choice among the solutions of all waypoints.\n\n"
@@ -226,7 +164,7 @@ void bind_path(py::module_& m, py::class_<Solver>& cls) {
        "(N, k, 4, 4).",
        R"(Raises:
     InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, a number out of range.)"},
-      path_keywords(), 1,
+      1,
       {"start", "dt", "weights", "norm", "scene", "exact", "filter", "candidates", "task", "tasks",
        "in_frame_of"},
       fn<&solve_path>);

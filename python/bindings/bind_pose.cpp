@@ -1,16 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Poses by themselves: what counts as one, and how far two are apart.
-#include <algorithm>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "bindings.hpp"
-#include "def.hpp"
-#include "iksel/pose.hpp"
-#include "iksel/robot.hpp"
-#include "pose_arguments.hpp"
-#include "progress.hpp"
 
 namespace iksel::python {
 
@@ -119,44 +109,14 @@ DoubleArray orthonormal(const PoseLike& pose) {
 
 void bind_pose(py::module_& m) {
   m.attr("RIGID_TOLERANCE") = kRigidTolerance;
-  def(m, "pose_error", "target, pose", fn<&pose_errors>,
-      "[p_target - p; rotvec(R_target R^T)] of two (4, 4) poses [m, rad], (6,); or of each pair "
-      "from two (..., 4, 4) arrays, (..., 6).");
-  def(m, "check_pose", "pose, name='pose'", fn<&checked>,
-      R"(The rigid transforms that poses stand for.
-
-A pose that is rigid to rounding (|R^T R - I| <= 1e-12) is kept bit for bit; one whose rotation is
-off by RIGID_TOLERANCE (1e-3) or less, as when it was printed with a few decimals, is projected to
-the nearest. Every pose that is given to this module goes through this.
-
-Args:
-    pose: T_base_tip, (..., 4, 4) or (..., 3, 4) [m], or what else as_pose of iksel lists.
-    name: name of the argument, for the error message.
-
-Returns:
-    (..., 4, 4).
-
-Raises:
-    InvalidArgumentError: wrong shape, not finite, or not rigid; the message says which and why.)");
-  def(m, "orthonormalized", "pose", fn<&orthonormal>,
-      R"(The rigid transforms nearest to poses, however far off their rotations are.
-
-The rotation is the orthogonal polar factor: the nearest to the given matrix, by the sum of squares.
-
-Args:
-    pose: (..., 4, 4) or (..., 3, 4) [m]: scaled, sheared or rounded.
-
-Returns:
-    (..., 4, 4).
-
-Raises:
-    InvalidArgumentError: not finite, singular or mirrored, or a last row other than 0 0 0 1.)");
+  // What users see of these are the functions of iksel.pose.
+  def(m, "pose_error", "target, pose", fn<&pose_errors>);
+  def(m, "check_pose", "pose, name='pose'", fn<&checked>);
+  def(m, "orthonormalized", "pose", fn<&orthonormal>);
+  def(m, "rigid_deviation", "pose", fn<&rigid_deviations>);
   def(m, "pose_matrices", "pose, name='pose'", fn<&pose_matrices>,
       "Poses in one of the forms that as_pose of iksel lists as matrices (..., 4, 4), not checked; "
       "what is none of them as it is.");
-  def(m, "rigid_deviation", "pose", fn<&rigid_deviations>,
-      "Largest element of |R^T R - I| of each pose (..., 4, 4), (...); infinite if it is not "
-      "finite, mirrored, or not 0 0 0 1 in its last row.");
 }
 
 }  // namespace iksel::python

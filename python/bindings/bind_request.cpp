@@ -1,17 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "bindings.hpp"
-#include "gil.hpp"
-#include "html.hpp"
-#include "iksel/diagnosis.hpp"
-#include "iksel/solver.hpp"
-#include "pose_arguments.hpp"
+#include "py_batch.hpp"
 #include "request_keywords.hpp"
-#include "result_fields.hpp"
 
 namespace iksel::python {
 
@@ -47,39 +37,20 @@ struct FromPython<std::vector<Result>> {
     const auto all = FromSequence<PyResult>::convert(value, name);
     return {all.begin(), all.end()};
   }
-};
-template <>
-struct ResultType<std::vector<Result>> : ResultType<std::vector<PyResult>> {};
-template <>
-struct ValueOf<std::vector<Result>> {
-  static py::object get(const std::vector<Result>& value, py::handle /*owner*/) {
-    return to_plain(value);
-  }
-  static py::object to_plain(const std::vector<Result>& value) {
-    py::list all;
-    for (const Result& each : value) all.append(PyResult(each));
-    return all;
+  static std::vector<PyResult> show(const std::vector<Result>& all) {
+    return {all.begin(), all.end()};
   }
 };
 
 template <>
-struct FieldTable<PySolutions> {
+struct FieldTable<PySolutions> : HeaderTable<PySolutions, Solutions> {
   using S = PySolutions;
-  static constexpr const char* kName = "Solutions";
-  static constexpr const char* kDoc =
-      "The distinct solutions for one target, best first; true if there are any. Indexing gives a "
-      "Result.";
   static std::vector<Field> fields() {
-    return {
-        field<S>("status", &S::status, "`solved`, or why there is none."),
-        field<S>("proof", &S::proof,
-                 "How it is known that there is certainly no solution or, of a set that is not "
-                 "empty, that "
-                 "there are certainly no more; if it is not, `none` or `answer`."),
-        field<S>("all", &S::all, nullptr),
-        field<S>("dof", &S::dof, nullptr),
-        field<&is_count, S>("attempts", &S::attempts, "Seeds tried."),
-        field<&is_count, S>("iterations", &S::iterations, "Iteration steps over all attempts.")};
+    return HeaderFields<S, Solutions>()
+        .hide({"all"})
+        .check<&is_count>({"attempts", "iterations"})
+        .add("dof", &S::dof)
+        .all();
   }
   static void check(const S& self) {
     const std::string of = "pickled Solutions, ";
@@ -129,43 +100,10 @@ Diagnosis diagnose(const Solver& self, py::handle pose, const Given& given) {
   return without_gil([&] { return self.diagnose(targets, request); });
 }
 
-std::string solutions_repr(const PySolutions& self) {
-  const auto& all = self.all;
-  std::string best;
-  if (!all.empty()) {
-    const JointVector& q = all.front().q;
-    best = ", best q=" + short_numbers(q.data(), static_cast<std::size_t>(q.size()));
-  }
-  return "Solutions(" + status_text(self.status, self.proof) + ", " + std::to_string(all.size()) +
-         " solutions" + best + ")";
-}
-
-std::string solutions_html(const PySolutions& self) {
-  const auto& all = self.all;
-  std::vector<std::string> header = {""};
-  for (int i = 0; i < self.dof; ++i) header.push_back("q[" + std::to_string(i) + "]");
-  header.insert(header.end(), {"position error [m]", "rotation error [rad]", "move"});
-  HtmlTable table(
-      std::to_string(all.size()) + " solutions, " + status_text(self.status, self.proof), header);
-  const std::size_t shown = std::min(all.size(), HtmlTable::kMostRows);
-  for (std::size_t i = 0; i < shown; ++i) {
-    std::vector<std::string> cells = {std::to_string(i)};
-    for (const double q : all[i].q) cells.push_back(short_number(q));
-    for (const double x : {all[i].position_error, all[i].rotation_error, all[i].move}) {
-      cells.push_back(short_number(x, 3));
-    }
-    table.add_row(cells);
-  }
-  table.add_rest(all.size() - shown);
-  return table.text();
-}
-
 void bind_solutions(py::module_& m) {
   using S = PySolutions;
   auto cls = bind_fields<S>(m, "Solver.solve_all");
-  add_property(
-      cls, "success", [](const S& self) { return self.success(); },
-      "Whether there is at least one.");
+  add_property(cls, "success", [](const S& self) { return self.success(); });
   add_property(
       cls, "proven", [](const S& self) { return is_proven(self.proof); },
       "Whether these are certainly all: `proof` is `reach`, `closed_form` or `target`.");
@@ -182,52 +120,54 @@ void bind_solutions(py::module_& m) {
   def(cls, "__getitem__", "i", fn<&S::row>);
   def_iter<PyResult>(cls);
   def(cls, "__bool__", "", [](const S& self) { return self.success(); });
-  def(cls, "__repr__", "", fn<&solutions_repr>);
-  def(cls, "_repr_html_", "", fn<&solutions_html>);
+  def_repr(cls);
+  def_page(cls);
 }
 
 }  // namespace
 
 void bind_requests(py::module_& m, py::class_<Solver>& cls) {
   bind_solutions(m);
-  def_method(cls,
-             {"solve",
-              "Joint values that put the TCP (the tip link's frame, if there is no tool) at a "
-              "pose, or the "
-              "TCP of each tip at its own.",
-              "pose",
-              "T_base_tip [m]: (4, 4) or (3, 4); a pair (position, rotation) with a (3, 3) "
-              "matrix or a scipy Rotation; an object with as_matrix(), .homogeneous or .A "
-              "(scipy, Pinocchio, spatialmath); (3,) if the task leaves the rotation free. One "
-              "that is rounded stands for the nearest rigid one (see check_pose), by which the "
-              "errors are measured. Of several tips, (k, 4, 4) or k of these.",
-              R"(Returns:
+  def_method<SolveRequest>(
+      cls,
+      {"solve",
+       "Joint values that put the TCP (the tip link's frame, if there is no tool) at a "
+       "pose, or the "
+       "TCP of each tip at its own.",
+       "pose",
+       "T_base_tip [m]: (4, 4) or (3, 4); a pair (position, rotation) with a (3, 3) "
+       "matrix or a scipy Rotation; an object with as_matrix(), .homogeneous or .A "
+       "(scipy, Pinocchio, spatialmath); (3,) if the task leaves the rotation free. One "
+       "that is rounded stands for the nearest rigid one (see check_pose), by which the "
+       "errors are measured. Of several tips, (k, 4, 4) or k of these.",
+       R"(Returns:
     A Result. A pose that cannot be solved is no error but a status, and `proof` says how certain
     that is.
 
 Raises:
     InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, a number that is not
         finite or out of range.)"},
-             request_keywords(), 0,
-             {"near", "weights", "norm", "seeds", "database_seeds", "scene", "exact", "filter",
-              "deadline", "task", "objective", "closest", "tasks", "in_frame_of"},
-             fn<&solve>);
-  def_method(cls,
-             {"solve_all",
-              "Every distinct solution that is found: all branches (there certainly are no "
-              "others where `proven` says so), or a spread for a redundant arm.",
-              "pose", "T_base_tip [m], as in solve.",
-              R"(Returns:
+      0,
+      {"near", "weights", "norm", "seeds", "database_seeds", "scene", "exact", "filter", "deadline",
+       "task", "objective", "closest", "tasks", "in_frame_of"},
+      fn<&solve>);
+  def_method<SolveAllOptions, SolveRequest>(
+      cls,
+      {"solve_all",
+       "Every distinct solution that is found: all branches (there certainly are no "
+       "others where `proven` says so), or a spread for a redundant arm.",
+       "pose", "T_base_tip [m], as in solve.",
+       R"(Returns:
     Solutions; empty, with a status that says why, if there is none.
 
 Raises:
     InvalidArgumentError: as solve.)"},
-             solve_all_keywords(), 1,
-             {"max", "min_distance", "whole_turns", "order", "near", "weights", "norm", "seeds",
-              "database_seeds", "scene", "exact", "filter", "deadline", "task", "objective",
-              "tasks", "in_frame_of"},
-             fn<&solve_all>);
-  def_method(
+      1,
+      {"max", "min_distance", "whole_turns", "order", "near", "weights", "norm", "seeds",
+       "database_seeds", "scene", "exact", "filter", "deadline", "task", "objective", "tasks",
+       "in_frame_of"},
+      fn<&solve_all>);
+  def_method<SolveRequest>(
       cls,
       {"diagnose",
        "Why solve() with the same arguments gives no answer, and the best that can be done.\n\n"
@@ -238,8 +178,7 @@ Raises:
 
 Raises:
     InvalidArgumentError: as solve.)"},
-      request_keywords(), 0,
-      {"scene", "exact", "filter", "deadline", "task", "tasks", "in_frame_of"}, fn<&diagnose>);
+      0, {"scene", "exact", "filter", "deadline", "task", "tasks", "in_frame_of"}, fn<&diagnose>);
 }
 
 }  // namespace iksel::python

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
-#include <string>
-#include <vector>
-
 #include "bindings.hpp"
-#include "html.hpp"
-#include "result_fields.hpp"
+#include "py_batch.hpp"
 
 namespace iksel::python {
 
@@ -30,6 +25,20 @@ PyBatchResult PyBatchResult::rows(py::handle index) const {
       take(attempts), take(iterations), take(move),   take(proof)};
 }
 
+std::vector<Field> FieldTable<PyBatchResult>::fields() {
+  return HeaderFields<B, void>()
+      .add("q", &B::q, header_text("BatchView.q"))
+      .add("success", &B::success, "Whether each target is solved, (n,).")
+      .add("status", &B::status, header_text("BatchView.status"))
+      .add("proof", &B::proof, header_text("BatchView.proof"))
+      .add("position_error", &B::position_error, header_text("BatchView.position_error"))
+      .add("rotation_error", &B::rotation_error, header_text("BatchView.rotation_error"))
+      .add("attempts", &B::attempts, header_text("BatchView.attempts"))
+      .add("iterations", &B::iterations, header_text("BatchView.iterations"))
+      .add("move", &B::move, header_text("BatchView.move"))
+      .all();
+}
+
 void FieldTable<PyBatchResult>::check(const B& batch) {
   constexpr auto kStatuses = std::size(EnumTable<Status>::kValues);
   constexpr auto kProofs = std::size(EnumTable<Proof>::kValues);
@@ -37,94 +46,37 @@ void FieldTable<PyBatchResult>::check(const B& batch) {
   if (n < 0 || batch.q.shape(1) > kMaxDof) {
     throw_wrong_shape("pickled BatchResult, q", "an (n, dof) array", batch.q);
   }
-  const auto is_column = [&](const char* name, const py::array& array) {
-    if (array.ndim() == 1 && array.shape(0) == n) return;
-    throw_wrong_shape(name, "a (" + std::to_string(n) + ",) array", array);
-  };
-  is_column("pickled BatchResult, success", batch.success);
-  is_column("pickled BatchResult, status", batch.status);
-  is_column("pickled BatchResult, proof", batch.proof);
-  is_column("pickled BatchResult, position_error", batch.position_error);
-  is_column("pickled BatchResult, rotation_error", batch.rotation_error);
-  is_column("pickled BatchResult, attempts", batch.attempts);
-  is_column("pickled BatchResult, iterations", batch.iterations);
-  is_column("pickled BatchResult, move", batch.move);
-  for (py::ssize_t i = 0; i < batch.size(); ++i) {
-    const std::string row = "row " + std::to_string(i);
-    if (batch.status.at(i) >= kStatuses) {
-      refuse_state("pickled BatchResult, status", "values of Status",
-                   std::to_string(batch.status.at(i)) + " in " + row);
-    }
-    if (batch.proof.at(i) >= kProofs) {
-      refuse_state("pickled BatchResult, proof", "values of Proof",
-                   std::to_string(batch.proof.at(i)) + " in " + row);
-    }
+  const std::string of = "pickled BatchResult, ";
+  for (const Field& column : struct_type<B>().fields) {
+    const auto& array = as<py::array>(column.of(&batch));
+    if (&array == &batch.q || (array.ndim() == 1 && array.shape(0) == n)) continue;
+    const std::string name = of + column.name;
+    throw_wrong_shape(name.c_str(), "a (" + std::to_string(n) + ",) array", array);
+  }
+  for (py::ssize_t i = 0; i < n; ++i) {
+    const auto require = [&](bool holds, const char* field, const char* expected, int got = -1) {
+      if (holds) return;
+      const std::string value = got < 0 ? "another" : std::to_string(got);
+      refuse_state(of + field, expected, value + " in row " + std::to_string(i));
+    };
+    require(batch.status.at(i) < kStatuses, "status", "values of Status", batch.status.at(i));
+    require(batch.proof.at(i) < kProofs, "proof", "values of Proof", batch.proof.at(i));
     const auto status = static_cast<Status>(batch.status.at(i));
     const bool solved = status == Status::solved;
     const bool has_q = has_joints(status);
-    if (batch.success.at(i) != solved)
-      refuse_state("pickled BatchResult, success", "the same as status says", row);
-    if (solved != (static_cast<Proof>(batch.proof.at(i)) == Proof::answer)) {
-      refuse_state("pickled BatchResult, proof", "answer where solved, and only there", row);
-    }
-    if (has_q && !(batch.position_error.at(i) >= 0 && batch.rotation_error.at(i) >= 0)) {
-      refuse_state("pickled BatchResult, errors", "0 or more where there is a q", row);
-    }
-    if (has_q)
-      check_finite(batch.q.data(i), static_cast<int>(batch.q.shape(1)),
-                   "pickled BatchResult, q, " + row);
-    if (batch.attempts.at(i) < 0 || batch.iterations.at(i) < 0) {
-      refuse_state("pickled BatchResult, attempts and iterations", "counts", row);
-    }
+    const bool has_answer = static_cast<Proof>(batch.proof.at(i)) == Proof::answer;
+    require(batch.success.at(i) == solved, "success", "the same as status says");
+    require(solved == has_answer, "proof", "answer where solved, and only there");
+    require(!has_q || (batch.position_error.at(i) >= 0 && batch.rotation_error.at(i) >= 0),
+            "errors", "0 or more where there is a q");
+    require(batch.attempts.at(i) >= 0 && batch.iterations.at(i) >= 0, "attempts and iterations",
+            "counts");
+    const auto dof = static_cast<int>(batch.q.shape(1));
+    if (has_q) check_finite(batch.q.data(i), dof, of + "q, row " + std::to_string(i));
   }
 }
 
 namespace {
-
-std::string result_repr(const PyResult& self) {
-  const Result& r = self;
-  std::string text = "Result(" + status_text(r.status, r.proof);
-  if (has_joints(r.status)) {
-    text += ", q=" + short_numbers(r.q.data(), static_cast<std::size_t>(r.q.size())) +
-            ", position_error=" + short_number(r.position_error, 3) +
-            ", rotation_error=" + short_number(r.rotation_error, 3);
-  }
-  return text + ", attempts=" + std::to_string(r.attempts) +
-         ", iterations=" + std::to_string(r.iterations) + ")";
-}
-
-std::string result_html(const PyResult& self) {
-  const Result& r = self;
-  HtmlTable table("Result", {"status", enum_name(r.status)});
-  if (has_joints(r.status)) {
-    table.add_row({"q", short_numbers(r.q.data(), static_cast<std::size_t>(r.q.size()))});
-    table.add_row({"position error [m]", short_number(r.position_error, 3)});
-    table.add_row({"rotation error [rad]", short_number(r.rotation_error, 3)});
-  }
-  if (!r.success()) table.add_row({"proof", enum_name(r.proof)});
-  table.add_row({"attempts", std::to_string(r.attempts)});
-  table.add_row({"iterations", std::to_string(r.iterations)});
-  return table.text();
-}
-
-std::string batch_html(const PyBatchResult& self) {
-  const auto text = [](double x) { return short_number(x, 3); };
-  HtmlTable table(std::to_string(self.solved()) + " of " + std::to_string(self.size()) + " solved",
-                  {"", "status", "proof", "q", "position error [m]", "rotation error [rad]",
-                   "attempts", "iterations"});
-  const auto rows = static_cast<std::size_t>(self.size());
-  const std::size_t shown = std::min(rows, HtmlTable::kMostRows);
-  for (std::size_t i = 0; i < shown; ++i) {
-    const Result r = self.row(static_cast<py::ssize_t>(i));
-    const bool has_q = has_joints(r.status);
-    table.add_row({std::to_string(i), enum_name(r.status), r.success() ? "" : enum_name(r.proof),
-                   has_q ? short_numbers(r.q.data(), static_cast<std::size_t>(r.q.size())) : "",
-                   has_q ? text(r.position_error) : "", has_q ? text(r.rotation_error) : "",
-                   std::to_string(r.attempts), std::to_string(r.iterations)});
-  }
-  table.add_rest(rows - shown);
-  return table.text();
-}
 
 std::vector<Status> batch_statuses(const PyBatchResult& self) {
   std::vector<Status> statuses;
@@ -133,11 +85,6 @@ std::vector<Status> batch_statuses(const PyBatchResult& self) {
     statuses.push_back(static_cast<Status>(self.status.at(i)));
   }
   return statuses;
-}
-
-std::string batch_repr(const PyBatchResult& self) {
-  return "BatchResult(" + std::to_string(self.solved()) + " of " + std::to_string(self.size()) +
-         " solved)";
 }
 
 bool refuse_truth(const PyBatchResult& self) {
@@ -153,27 +100,15 @@ py::object row_or_rows(const PyBatchResult& self, const py::object& i) {
 
 void bind_single(py::module_& m) {
   auto cls = bind_fields<PyResult>(m, "Solver.solve");
+  add_property(cls, "success", [](const PyResult& self) { return self.success(); });
+  add_property(cls, "unreachable_tip",
+               [](const PyResult& self) { return optional_index(self.unreachable_tip); });
   add_property(
-      cls, "success", [](const PyResult& self) { return self.success(); },
-      "Whether q reaches the target within both tolerances and lies inside the limits.");
-  add_property(
-      cls, "unreachable_tip",
-      [](const PyResult& self) { return optional_index(self.unreachable_tip); },
-      "Of a failure with several tips: one whose target its chain cannot reach by itself, as far "
-      "as "
-      "a search can tell, and status and proof are that chain's; None: each can, or none was "
-      "looked "
-      "at.");
-  add_property(
-      cls, "proven", [](const PyResult& self) { return is_proven(self.proof); },
-      "Whether there is certainly no answer: `proof` is `reach`, `closed_form` or `target`.");
-  add_property(
-      cls, "q", &PyResult::joints,
-      "Joint values [rad or m], (dof,), read-only; None unless solved, or closest, for those who "
-      "ask for it.");
+      cls, "proven", [](const PyResult& self) { return is_proven(self.proof); }, kProven);
+  add_property(cls, "q", &PyResult::joints);
   def(cls, "__bool__", "", [](const PyResult& self) { return self.success(); });
-  def(cls, "__repr__", "", fn<&result_repr>);
-  def(cls, "_repr_html_", "", fn<&result_html>);
+  def_repr(cls);
+  def_page(cls);
 }
 
 void bind_batch(py::module_& m) {
@@ -189,8 +124,8 @@ void bind_batch(py::module_& m) {
                "iksel_cpp.BatchResult"});
   def_iter<PyResult>(cls);
   def(cls, "__bool__", "", fn<&refuse_truth>);
-  def(cls, "__repr__", "", fn<&batch_repr>);
-  def(cls, "_repr_html_", "", fn<&batch_html>);
+  def_repr(cls);
+  def_page(cls);
 }
 
 }  // namespace

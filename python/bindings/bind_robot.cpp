@@ -1,27 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cstdint>
-#include <filesystem>
-#include <optional>
 #include <random>
-#include <string>
-#include <vector>
 
-#include "array_checks.hpp"
 #include "bindings.hpp"
-#include "enums.hpp"
-#include "gil.hpp"
-#include "html.hpp"
-#include "iksel/pose.hpp"
-#include "iksel/robot.hpp"
-#include "iksel/structure.hpp"
-#include "pose_arguments.hpp"
-#include "progress.hpp"
-#include "property.hpp"
-#include "robot_arguments.hpp"
-#include "sequence_of.hpp"
 #include "urdf_source.hpp"
 
 namespace iksel::python {
+
+/// Lower and upper.
+using Limits = std::pair<double, double>;
+
+template <>
+struct FromPython<Limits> {
+  static std::string text() { return ArrayLike::kText; }
+  static Limits convert(py::handle value, const char* name) {
+    const DoubleArray array = as_doubles(value, name);
+    if (array.ndim() != 1 || array.shape(0) != 2) {
+      throw_wrong_shape(name, "two numbers, (lower, upper)", array);
+    }
+    return {array.at(0), array.at(1)};
+  }
+};
+
+template <>
+struct FromPython<std::vector<CoupledLimit>> : FromSequence<CoupledLimit> {};
+template <>
+struct FromPython<std::vector<MimicCurve>> : FromSequence<MimicCurve> {};
 
 namespace {
 
@@ -45,8 +48,8 @@ Robot from_urdf(const UrdfSource& path_or_xml, const std::optional<std::string>&
                 const std::optional<JointValues>& locked_joints, bool soft_limits,
                 const std::optional<Limits>& default_limits,
                 const std::vector<CoupledLimit>& coupled_limits,
-                const std::vector<MimicCurve>& mimic_curves,
-                const std::optional<LinkNames>& tip_links, const std::optional<PoseLike>& tcps) {
+                const std::vector<MimicCurve>& mimic_curves, const std::optional<Names>& tip_links,
+                const std::optional<PoseLike>& tcps) {
   RobotOptions options;
   if (base_link) options.base_link = *base_link;
   if (tip_link) options.tip_link = *tip_link;
@@ -57,8 +60,7 @@ Robot from_urdf(const UrdfSource& path_or_xml, const std::optional<std::string>&
   options.coupled_limits = coupled_limits;
   options.mimic_curves = mimic_curves;
   if (tip_links) {
-    options.tip_links =
-        read_sequence(*tip_links, "tip_links", "a list of link names", from_python<std::string>);
+    options.tip_links = *tip_links;
     if (options.tip_links.empty()) {
       throw InvalidArgumentError("tip_links: expected one link or more, got none");
     }
@@ -72,17 +74,6 @@ Robot from_urdf(const UrdfSource& path_or_xml, const std::optional<std::string>&
 constexpr const char* kFromUrdf =
     "path_or_xml, base_link=None, tip_link=None, tcp=None, locked_joints=None, soft_limits=False, "
     "default_limits=None, coupled_limits=(), mimic_curves=(), tip_links=None, tcps=None";
-
-/// "tip_link='tool0'", or the links of several.
-std::string tip_text(const Robot& self) {
-  if (self.tips() == 1) return "tip_link='" + self.tip_link() + "'";
-  return "tip_links=" + repr_text(py::cast(self.tip_links()));
-}
-
-std::string robot_repr(const Robot& self) {
-  return "Robot(" + repr_text(py::str(self.name())) + ", dof=" + std::to_string(self.dof()) +
-         ", base_link='" + self.base_link() + "', " + tip_text(self) + ")";
-}
 
 /// The arguments of from_urdf that make the same robot.
 py::dict robot_state(const Robot& self) {
@@ -100,113 +91,51 @@ py::dict robot_state(const Robot& self) {
                   "tcps"_a = has_one_tip ? none : py::object(to_stack(options.tcps)));
 }
 
-/// A table of the joints.
-std::string robot_html(const Robot& self) {
-  std::string tips;
-  for (const std::string& link : self.tip_links()) tips += (tips.empty() ? "" : ", ") + link;
-  HtmlTable table(self.name() + ": " + self.base_link() + " to " + tips,
-                  {"joint", "type", "lower", "upper", "velocity limit"});
-  for (int i = 0; i < self.dof(); ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    const JointType type = self.joint_types()[k];
-    const std::string unit = type == JointType::prismatic ? " [m]" : " [rad]";
-    table.add_row({self.joint_names()[k], enum_name(type) + unit, short_number(self.lower()[i]),
-                   short_number(self.upper()[i]), short_number(self.velocity_limit()[i])});
-  }
-  return table.text();
-}
-
 /// A read-only property over one of the robot's joint vectors, without a copy.
-void def_joint_vector(py::class_<Robot>& cls, const char* name,
-                      const JointVector& (Robot::*get)() const, const char* doc) {
-  add_property(
-      cls, name,
-      [get](const Robot& self) {
-        return read_only_view((self.*get)(), py::cast(self, py::return_value_policy::reference));
-      },
-      doc);
+void add_vector(py::class_<Robot>& cls, const char* name,
+                const JointVector& (Robot::*get)() const) {
+  add_property(cls, name, [get](const Robot& self) {
+    return read_only_view((self.*get)(), py::cast(self, py::return_value_policy::reference));
+  });
 }
 
-void bind_chain(py::class_<Robot>& cls) {
-  add_property(cls, "name", &Robot::name, "Name in the URDF.");
-  add_property(cls, "base_link", &Robot::base_link, "Link the poses are relative to.");
-  add_property(cls, "tip_link", &Robot::tip_link,
-               "Link whose pose is solved for, of a robot with one tip.");
-  add_property(cls, "link_names", &Robot::link_names,
-               "Names of all links of the URDF, the chain's and others, depth first "
-               "from the root.");
-  add_property(cls, "urdf", &Robot::urdf,
-               "The URDF text this robot was made of, as every XML reader takes it.");
+/// What the robot was made with.
+template <class T>
+void add_option(py::class_<Robot>& cls, const char* name, T RobotOptions::*option) {
   add_property(
-      cls, "locked_joints", [](const Robot& self) { return self.options().locked_joints; },
-      "Joints held at a value [rad or m], by name.");
-  add_property(
-      cls, "soft_limits", [](const Robot& self) { return self.options().soft_limits; },
-      "Whether the limits are narrowed to the safety controller's.");
-  add_property(
-      cls, "default_limits", [](const Robot& self) { return self.options().default_limits; },
-      "Lower and upper limit of joints that the URDF gives none [rad or m], or None.");
-  add_property(
-      cls, "coupled_limits", [](const Robot& self) { return self.options().coupled_limits; },
-      "Limits of sums of joint values, beside those of each joint.");
-  add_property(
-      cls, "mimic_curves", [](const Robot& self) { return self.options().mimic_curves; },
-      "How joints follow others where that is no straight line.");
-  add_property(
-      cls, "tcp", [](const Robot& self) { return to_array(self.tcp()); },
-      "T_tip_tcp, the tool centre point in the tip link's frame, (4, 4).");
-  add_property(cls, "dof", &Robot::dof, "Degrees of freedom.");
-  add_property(cls, "joint_names", &Robot::joint_names,
-               "Names of the degrees of freedom, base to tip; of several tips those of the first "
-               "chain, then those that only the second has, and so on.");
-  add_property(cls, "joint_types", &Robot::joint_types,
-               "How each degree of freedom moves, base to tip.");
-  def_joint_vector(cls, "lower", &Robot::lower,
-                   "Lower position limits [rad or m], (dof,); -inf for continuous joints.");
-  def_joint_vector(cls, "upper", &Robot::upper,
-                   "Upper position limits [rad or m], (dof,); inf for continuous joints.");
-  def_joint_vector(cls, "velocity_limit", &Robot::velocity_limit,
-                   "Velocity limits [rad/s or m/s], (dof,); inf where the URDF has none.");
-  def_joint_vector(cls, "soft_lower", &Robot::soft_lower,
-                   "Lower limits of the safety controller [rad or m], (dof,); `lower` where the "
-                   "URDF has none.");
-  def_joint_vector(cls, "soft_upper", &Robot::soft_upper,
-                   "Upper limits of the safety controller [rad or m], (dof,); `upper` where the "
-                   "URDF has none.");
-  add_property(cls, "reach", &Robot::reach,
-               "No pose farther than this from `reach_centre` can be reached [m].");
-  add_property(
-      cls, "reach_centre",
-      [](const Robot& self) { return to_array(JointVector(self.reach_centre())); },
-      "A point on the first joint's axis, in the base frame [m], (3,).");
+      cls, name, [option](const Robot& self) -> T { return self.options().*option; },
+      header_text(std::string("RobotOptions.") + name));
+}
+
+py::array_t<double> tools_of(const Robot& self) {
+  std::vector<Pose> tools;
+  for (int i = 0; i < self.tips(); ++i) tools.push_back(self.chain(i).tcp());
+  return to_stack(tools);
+}
+
+void bind_properties(py::class_<Robot>& cls) {
+  add_properties(cls, "name", &Robot::name, "base_link", &Robot::base_link, "tip_link",
+                 &Robot::tip_link, "link_names", &Robot::link_names, "urdf", &Robot::urdf);
+  add_option(cls, "locked_joints", &RobotOptions::locked_joints);
+  add_option(cls, "soft_limits", &RobotOptions::soft_limits);
+  add_option(cls, "default_limits", &RobotOptions::default_limits);
+  add_option(cls, "coupled_limits", &RobotOptions::coupled_limits);
+  add_option(cls, "mimic_curves", &RobotOptions::mimic_curves);
+  add_properties(cls, "tcp", &Robot::tcp, "dof", &Robot::dof, "joint_names", &Robot::joint_names,
+                 "joint_types", &Robot::joint_types);
+  add_vector(cls, "lower", &Robot::lower);
+  add_vector(cls, "upper", &Robot::upper);
+  add_vector(cls, "velocity_limit", &Robot::velocity_limit);
+  add_vector(cls, "soft_lower", &Robot::soft_lower);
+  add_vector(cls, "soft_upper", &Robot::soft_upper);
+  add_properties(cls, "reach", &Robot::reach, "reach_centre", &Robot::reach_centre);
   add_property(
       cls, "structure", [](const Robot& self) { return find_structure(self); },
       "How the axes lie, and whether that gives all solutions of a pose in closed form.");
-  add_property(cls, "chain_hash", &Robot::chain_hash,
-               "Hash of the chain up to the tip link: equal for chains that may share a database.");
-}
-
-void bind_tips(py::class_<Robot>& cls) {
-  add_property(cls, "tips", &Robot::tips, "Number of tips.");
-  add_property(cls, "tip_links", &Robot::tip_links, "Links whose poses are solved for.");
-  add_property(
-      cls, "tcps",
-      [](const Robot& self) {
-        std::vector<Pose> tools;
-        for (int i = 0; i < self.tips(); ++i) tools.push_back(self.chain(i).tcp());
-        return to_stack(tools);
-      },
-      "T_tip_tcp of each tip, (k, 4, 4).");
-  add_property(cls, "shared_joints", &Robot::shared_joints,
-               "Indices of the joints that move more than one tip, ascending.");
-  def(
-      cls, "chain", "tip", [](const Robot& self, int tip) { return self.chain(tip); },
-      "The chain to one tip by itself; tips count from 0.\n\nRaises:\n"
-      "    InvalidArgumentError: no such tip.");
-  def(
-      cls, "joints_of", "tip", [](const Robot& self, int tip) { return self.joints_of(tip); },
-      "Where the joints of that chain stand among all: its joint values are q[joints_of(tip)]."
-      "\n\nRaises:\n    InvalidArgumentError: no such tip.");
+  add_properties(cls, "chain_hash", &Robot::chain_hash, "tips", &Robot::tips, "tip_links",
+                 &Robot::tip_links);
+  add_property(cls, "tcps", &tools_of, "T_tip_tcp of each tip, (k, 4, 4).");
+  add_property(cls, "shared_joints", &Robot::shared_joints);
 }
 
 void bind_from_urdf(py::class_<Robot>& cls) {
@@ -258,20 +187,14 @@ void bind_robot(py::module_& m) {
   bind_enum<JointType>(m);
   bind_enum<Kinematics>(m);
 
-  auto cls = bind_class<Robot>(m, "Robot",
-                               "An immutable serial chain between two links of a URDF, or the "
-                               "chains from one link to several tips, with their limits. Safe to "
-                               "use from many threads at once. What is about one tip raises "
-                               "InvalidArgumentError where there are several.",
-                               "iksel.load_robot(name) or Robot.from_urdf(path_or_xml)");
+  auto cls =
+      bind_class<Robot>(m, "Robot", "iksel.load_robot(name) or Robot.from_urdf(path_or_xml)");
   bind_from_urdf(cls);
   bind_dh(m, cls);
-  bind_chain(cls);
-  bind_tips(cls);
-  def(
-      cls, "with_tcp", "tcp", [](const Robot& self, const Pose& tcp) { return self.with_tcp(tcp); },
-      "The same chain with another tool T_tip_tcp, (4, 4). Databases built for one serve the "
-      "other.");
+  bind_properties(cls);
+  def(cls, "chain", "tip", [](const Robot& self, int tip) { return self.chain(tip); });
+  def(cls, "joints_of", "tip", fn<&Robot::joints_of>);
+  def(cls, "with_tcp", "tcp", fn<&Robot::with_tcp>);
   bind_kinematics(cls);
   def(cls, "within_limits", "q", fn<&within_limits>,
       "Whether q [rad or m], (dof,), lies inside the position limits; of (N, dof) values each, "
@@ -279,8 +202,8 @@ void bind_robot(py::module_& m) {
   def(cls, "random_configurations", "n, seed=None", fn<&random_configurations>,
       "n configurations uniform inside the limits (continuous joints in [-pi, pi)), (n, dof). The "
       "same seed gives the same numbers everywhere; None: other numbers in each call.");
-  def(cls, "__repr__", "", fn<&robot_repr>);
-  def(cls, "_repr_html_", "", fn<&robot_html>);
+  def_repr(cls);
+  def_page(cls);
   def_copies(cls);
   def_pickle(cls, fn<&robot_state>, without_defaults(kFromUrdf), fn<&from_urdf>);
 }

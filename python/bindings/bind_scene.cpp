@@ -1,15 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <map>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include "html.hpp"
-#include "iksel/scene.hpp"
-#include "joint_values.hpp"
-#include "obstacle_fields.hpp"
-#include "scene_arguments.hpp"
+#include "bindings.hpp"
+#include "scene_types.hpp"
 
 namespace iksel::python {
 
@@ -21,13 +12,10 @@ void move_obstacle(Scene& self, const std::string& name, const Place& pose) {
 
 void remove_thing(Scene& self, const std::string& name) { self.remove(name); }
 
-void attach(Scene& self, const std::string& name, const std::string& link, const ArrayLike& spheres,
-            const std::optional<Names>& may_touch) {
-  AttachedObject object;
-  object.link = link;
-  object.spheres = as_spheres(spheres, "spheres");
-  if (may_touch) object.may_touch = as_names(*may_touch, "may_touch");
-  self.attach(name, object);
+void attach(Scene& self, const std::string& name, const std::string& link,
+            const std::vector<Sphere>& spheres,
+            const std::optional<Iterable<std::string>>& may_touch) {
+  self.attach(name, {link, spheres, may_touch.value_or(Iterable<std::string>())});
 }
 
 void bind_changes(py::class_<Scene>& cls) {
@@ -78,64 +66,35 @@ std::vector<Contact> contacts(const Scene& self, const ArrayLike& q) {
   return self.contacts(as_joints(q, self.robot().dof(), "q"));
 }
 
-std::map<std::string, std::string> carriers_of(const Scene& self) {
-  std::map<std::string, std::string> links;
-  for (const auto& [name, object] : self.attached()) links[name] = object.link;
-  return links;
-}
-
-std::map<std::string, py::array_t<double>> spheres_of_attached(const Scene& self) {
-  std::map<std::string, py::array_t<double>> spheres;
-  for (const auto& [name, object] : self.attached()) spheres[name] = sphere_rows(object.spheres);
-  return spheres;
-}
-
-std::map<std::string, std::vector<std::string>> touchable_by_attached(const Scene& self) {
-  std::map<std::string, std::vector<std::string>> names;
-  for (const auto& [name, object] : self.attached()) names[name] = object.may_touch;
-  return names;
+/// A function of a scene: by the names of its attached objects what `get` gives of each.
+template <class Get>
+auto of_attached(const Get& get) {
+  return [get](const Scene& self) {
+    std::map<std::string, Plain<decltype(get(AttachedObject()))>> all;
+    for (const auto& [name, object] : self.attached()) all[name] = get(object);
+    return all;
+  };
 }
 
 py::dict scene_state(const Scene& self) {
-  py::dict state;
-  state["robot"] = self.robot();
-  state["spheres"] = self.spheres();
-  state["other_joints"] = self.other_joints();
-  state["obstacles"] = self.obstacles();
   py::dict attached;
   for (const auto& [name, object] : self.attached()) {
-    attached[name.c_str()] =
-        py::make_tuple(object.link, sphere_rows(object.spheres), object.may_touch);
+    attached[py::str(name)] = to_dict(&object, struct_type<AttachedObject>());
   }
-  state["attached"] = attached;
-  return state;
+  return py::dict("robot"_a = self.robot(), "spheres"_a = self.spheres(),
+                  "other_joints"_a = self.other_joints(), "obstacles"_a = self.obstacles(),
+                  "attached"_a = attached);
 }
 
 Scene scene_from_state(const Robot& robot, const RobotSpheres& spheres,
-                       const JointValues& other_joints, const py::object& obstacles,
-                       const py::object& attached) {
+                       const JointValues& other_joints,
+                       const std::map<std::string, Obstacle>& obstacles,
+                       const std::map<std::string, AttachedObject>& attached) {
   Scene scene(robot, spheres, other_joints);
-  const char* name_of_obstacles = "pickled Scene, obstacles";
-  for (const auto& [name, obstacle] : copy_of_dict(obstacles, name_of_obstacles)) {
-    if (!is_a<Obstacle>(obstacle)) throw_wrong_type(name_of_obstacles, "Obstacles", obstacle);
-    scene.set(from_python<std::string>(name, name_of_obstacles), made<Obstacle>(obstacle));
-  }
-  const char* name_of_attached = "pickled Scene, attached";
+  for (const auto& [name, obstacle] : obstacles) scene.set(name, obstacle);
   // What objects may touch may be an object that comes later.
-  std::vector<std::pair<std::string, AttachedObject>> all;
-  for (const auto& [name, parts] : copy_of_dict(attached, name_of_attached)) {
-    if (!py::isinstance<py::tuple>(parts) || py::len(parts) != 3) {
-      throw_wrong_type(name_of_attached, "tuples of 3", parts);
-    }
-    const auto three = py::reinterpret_borrow<py::tuple>(parts);
-    AttachedObject object;
-    object.link = from_python<std::string>(three[0], name_of_attached);
-    object.spheres = as_spheres(three[1], name_of_attached);
-    scene.attach(from_python<std::string>(name, name_of_attached), object);
-    object.may_touch = as_names(three[2], name_of_attached);
-    all.emplace_back(from_python<std::string>(name, name_of_attached), object);
-  }
-  for (const auto& [name, object] : all) scene.attach(name, object);
+  for (const auto& [name, object] : attached) scene.attach(name, {object.link, object.spheres, {}});
+  for (const auto& [name, object] : attached) scene.attach(name, object);
   return scene;
 }
 
@@ -144,16 +103,9 @@ Scene scene_from_state(const Robot& robot, const RobotSpheres& spheres,
 void bind_scene(py::module_& m) {
   bind_robot_spheres(m);
   auto contact = bind_fields<Contact>(m, "Scene.contacts");
-  def(contact, "__repr__", "", [](const Contact& self) {
-    return "Contact('" + self.link + "', '" + self.other + "', depth=" + short_number(self.depth) +
-           ")";
-  });
+  def_repr(contact);
   bind_obstacle(m);
-  auto cls = bind_class<Scene>(
-      m, "Scene",
-      "A robot's body and what it may not touch: obstacles, objects that it carries, itself.\n\n"
-      "A value: a copy does not see what is done to another, and a solve takes it as it is then. "
-      "Links that no joint of the arm moves are not held against obstacles.");
+  auto cls = bind_class<Scene>(m, "Scene");
   def_init(cls, "robot, spheres, other_joints=None", fn<&make_scene>,
            R"(Begins with the robot alone.
 
@@ -167,18 +119,17 @@ Args:
 Raises:
     InvalidArgumentError: no spheres, or a base link that the arm's joints move.
     UnknownNameError: the URDF lacks a link of the spheres, or a joint.)");
-  add_property(cls, "robot", &Scene::robot, "The robot.");
-  add_property(cls, "spheres", &Scene::spheres, "Its body.");
-  add_property(cls, "other_joints", &Scene::other_joints,
-               "Values of joints that are not the arm's [rad or m], by name.");
-  add_property(cls, "obstacles", &Scene::obstacles, "The obstacles by name.");
-  add_property(cls, "attached", &carriers_of,
+  add_properties(cls, "robot", &Scene::robot, "spheres", &Scene::spheres, "other_joints",
+                 &Scene::other_joints, "obstacles", &Scene::obstacles);
+  add_property(cls, "attached", of_attached(std::mem_fn(&AttachedObject::link)),
                "Names of the attached objects, and the links that carry them.");
   add_property(
-      cls, "attached_spheres", &spheres_of_attached,
+      cls, "attached_spheres", of_attached([](const AttachedObject& each) {
+        return FromPython<std::vector<Sphere>>::show(each.spheres);
+      }),
       "Of each attached object its spheres, (N, 4), rows of centre in the link's frame and "
       "radius [m].");
-  add_property(cls, "may_touch", &touchable_by_attached,
+  add_property(cls, "may_touch", of_attached(std::mem_fn(&AttachedObject::may_touch)),
                "Of each attached object the links and other objects that it may touch.");
   bind_obstacles(cls);
   bind_changes(cls);
@@ -188,11 +139,7 @@ Raises:
       "What touches at q, (dof,) [rad or m], the deepest first: of each link and each thing that "
       "it touches, where they overlap most.");
   def_copies(cls);
-  def(cls, "__repr__", "", [](const Scene& self) {
-    return "Scene(" + repr_text(py::cast(self.robot())) + ", " +
-           std::to_string(self.obstacles().size()) + " obstacles, " +
-           std::to_string(self.attached().size()) + " attached)";
-  });
+  def_repr(cls);
   def_pickle(cls, fn<&scene_state>, "robot, spheres, other_joints, obstacles, attached",
              fn<&scene_from_state>);
 }

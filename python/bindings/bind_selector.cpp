@@ -1,26 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "iksel/selector.hpp"
-
-#include <algorithm>
-#include <cstdint>
-#include <optional>
-#include <string>
-#include <tuple>
-#include <vector>
-
-#include "array_checks.hpp"
 #include "bindings.hpp"
-#include "option_fields.hpp"
-#include "pose_arguments.hpp"
-#include "property.hpp"
-#include "sequence_of.hpp"
 
 namespace iksel::python {
 
-/// A sequence of sample numbers.
-struct SamplesLike : RawArgument {
-  using RawArgument::RawArgument;
-  static constexpr const char* kText = "collections.abc.Sequence[int]";
+template <>
+struct FromPython<std::vector<std::size_t>> {
+  static std::string text() { return "collections.abc.Sequence[int]"; }
+  static std::vector<std::size_t> convert(py::handle value, const char* name) {
+    return read_sequence<std::size_t>(value, name, "a sequence of ints");
+  }
 };
 
 namespace {
@@ -32,11 +20,9 @@ CandidateArrays to_arrays(const Candidates& candidates, int dof) {
   const auto n = static_cast<py::ssize_t>(candidates.indices.size());
   py::array_t<std::int64_t> indices(n);
   std::copy(candidates.indices.begin(), candidates.indices.end(), indices.mutable_data());
-  Doubles q({n, static_cast<py::ssize_t>(dof)});
-  double* out = q.mutable_data();
-  for (const JointVector& each : candidates.q) out = std::copy_n(each.data(), dof, out);
-  return {indices, Doubles(n, candidates.distances.data()),
-          Doubles(n, candidates.adjustments.data()), q};
+  return {indices, to_array(candidates.distances), to_array(candidates.adjustments),
+          stack_joints(
+              candidates.q, dof, [](const JointVector& q) -> const auto& { return q; })};
 }
 
 CandidateArrays candidates(Selector& self, const Pose& T_base_tip,
@@ -60,19 +46,10 @@ py::dict selector_state(const Selector& self) {
   return py::dict("database"_a = self.database(), "scheme"_a = self.scheme());
 }
 
-std::optional<std::size_t> next(Selector& self, const SamplesLike& failed) {
-  return self.next(read_sequence(
-      failed, "failed", "a sequence of ints",
-      [](const py::object& item, const char* at) { return from_python<std::size_t>(item, at); }));
-}
-
 }  // namespace
 
 void bind_selector(py::module_& m) {
-  auto cls = bind_class<Selector>(
-      m, "Selector",
-      "Selects seeds of a database for one target after the other, as the paper does and a Solver "
-      "with the strategy Paper: query, rank, re-select. Not to be used from two threads at once.");
+  auto cls = bind_class<Selector>(m, "Selector");
   def_init(cls, "database, scheme=Paper()", fn<&make_selector>,
            R"(Takes a database with a full key, as DatabaseOptions.paper() describes it.
 
@@ -104,7 +81,9 @@ Raises:
 
 Raises:
     InvalidArgumentError: there was no pose yet.)");
-  def(cls, "next", "failed=()", fn<&next>,
+  def(
+      cls, "next", "failed=()",
+      [](Selector& self, const std::vector<std::size_t>& failed) { return self.next(failed); },
       R"(The sample to be tried after those that failed.
 
 Args:
@@ -117,11 +96,8 @@ Returns:
 
 Raises:
     InvalidArgumentError: an index that is no candidate or comes twice, or there was no pose yet.)");
-  add_property(cls, "database", &Selector::database, "Where the seeds come from.");
-  add_property(cls, "scheme", &Selector::scheme, "How they are selected.");
-  def(cls, "__repr__", "", [](const Selector& self) {
-    return "Selector(" + repr_text(py::cast(self.database())) + ")";
-  });
+  add_properties(cls, "database", &Selector::database, "scheme", &Selector::scheme);
+  def_repr(cls);
   def_pickle(cls, fn<&selector_state>, "database, scheme", fn<&make_selector>);
 }
 

@@ -1,24 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
-#include <array>
-#include <limits>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "angle_warning.hpp"
-#include "array_checks.hpp"
 #include "bindings.hpp"
-#include "gil.hpp"
-#include "iksel/solver.hpp"
-#include "option_fields.hpp"
-#include "pose_arguments.hpp"
-#include "progress.hpp"
 #include "py_batch.hpp"
 #include "request_keywords.hpp"
 
 namespace iksel::python {
+
+/// What solve_batch takes besides a request.
+struct BatchOptions {
+  int threads = 0;
+};
+
+template <>
+struct Members<BatchOptions> {
+  template <class Use>
+  static void visit(const Use& use) {
+    use("DatabaseOptions.threads", &BatchOptions::threads);
+  }
+};
 
 namespace {
 
@@ -63,23 +62,11 @@ std::optional<DoubleArray> as_near(py::handle value, py::ssize_t n, const Robot&
   return array;
 }
 
-/// What solve_batch takes besides a request.
-struct BatchOptions {
-  int threads = 0;
-};
-
-std::vector<Keyword> batch_keywords() {
-  std::vector<Keyword> all = {
-      keyword<BatchOptions>("threads", &BatchOptions::threads, "0: one per core.")};
-  for (const Keyword& each : request_keywords()) all.push_back(each);
-  return all;
-}
-
 PyBatchResult solve_batch(const Solver& self, py::handle poses, const Given& given) {
   const int joints = self.robot().dof();
   SolveRequest request = read_request(self, given, /*except=*/"near");
   const DoubleArray targets = as_rows(self, poses, request);
-  const auto options = given.read<BatchOptions>(joints);
+  const int threads = given.read<BatchOptions>(joints).threads;
   const py::ssize_t n = targets.shape(0) / self.robot().tips();
   const py::ssize_t dof = joints;
   const auto nears = as_near(given["near"], n, self.robot(), request);
@@ -100,7 +87,7 @@ PyBatchResult solve_batch(const Solver& self, py::handle poses, const Given& giv
   {
     const GilRelease release;
     self.solve_batch(in, static_cast<std::size_t>(n), request, nears ? nears->data() : nullptr,
-                     view, options.threads, interruptible());
+                     view, threads, interruptible());
     std::transform(view.status, view.status + n, success, [](std::uint8_t status) {
       return static_cast<Status>(status) == Status::solved;
     });
@@ -150,9 +137,7 @@ Raises:
 }
 
 void bind_properties(py::class_<Solver>& cls) {
-  add_property(cls, "nominal", &Solver::nominal,
-               "The chain that the database was built for: the robot itself, unless "
-               "that is a calibrated one.");
+  add_property(cls, "nominal", &Solver::nominal);
   add_property(
       cls, "calibration_deviation",
       [](const Solver& self) {
@@ -160,22 +145,14 @@ void bind_properties(py::class_<Solver>& cls) {
         return std::make_pair(deviation.position, deviation.rotation);
       },
       "The largest difference between the robot's tip link and `nominal`'s at the same joint "
-      "values over "
-      "2000 configurations: (position [m], rotation [rad]).");
-  add_property(cls, "robot", &Solver::robot, "The robot it solves for.");
-  add_property(
-      cls, "options", [](const Solver& self) { return self.options(); }, "A copy of its options.");
-  add_property(
-      cls, "database", &Solver::database,
-      "The database it selects seeds from; of several tips each chain_solver has its own.");
-  def(
-      cls, "chain_solver", "tip",
-      [](const Solver& self, int tip) { return self.chain_solver(tip); },
-      "The Solver of one tip's chain by itself; tips count from 0.\n\nRaises:\n"
-      "    InvalidArgumentError: no such tip.");
-  add_property(cls, "work_bound", &Solver::work_bound,
-               "Most iteration steps that one solve without given seeds can spend, "
-               "over all its seeds: max_attempts * max_iterations.");
+      "values "
+      "over 2000 configurations: (position [m], rotation [rad]).");
+  add_property(cls, "robot", &Solver::robot);
+  add_property(cls, "options", [](const Solver& self) { return self.options(); });
+  add_property(cls, "database", &Solver::database);
+  def(cls, "chain_solver", "tip",
+      [](const Solver& self, int tip) { return self.chain_solver(tip); });
+  add_property(cls, "work_bound", &Solver::work_bound);
   add_property(
       cls, "task_hint",
       [](const Solver& self) {
@@ -187,7 +164,7 @@ void bind_properties(py::class_<Solver>& cls) {
 }
 
 void bind_batch(py::class_<Solver>& cls) {
-  def_method(
+  def_method<BatchOptions, SolveRequest>(
       cls,
       {"solve_batch",
        R"(Solves many targets with the GIL released; row i belongs to target i.
@@ -202,7 +179,7 @@ target's solutions, within the same tolerances. The request holds for each targe
        R"(Raises:
     InvalidArgumentError: wrong shape or dtype, a bad argument, or with on_invalid_pose="raise"
         a bad pose.)"},
-      batch_keywords(), 1,
+      1,
       {"threads", "near", "weights", "norm", "seeds", "database_seeds", "scene", "exact", "filter",
        "deadline", "task", "objective", "closest", "on_invalid_pose", "tasks", "in_frame_of"},
       fn<&solve_batch>);
@@ -214,18 +191,14 @@ void bind_solver(py::module_& m) {
   bind_enum<MoveNorm>(m);
   bind_enum<SolutionOrder>(m);
 
-  auto cls = bind_class<Solver>(m, "Solver",
-                                "Solves inverse kinematics for one robot. Immutable, safe to use "
-                                "from many threads at once; the same input gives the same bits.");
+  auto cls = bind_class<Solver>(m, "Solver");
   bind_construction(cls);
   bind_properties(cls);
   bind_requests(m, cls);
   bind_path(m, cls);
   bind_self_motion(m, cls);
   bind_batch(cls);
-  def(cls, "__repr__", "", [](const Solver& self) {
-    return "Solver(" + repr_text(py::cast(self.robot())) + ", " + to_repr(self.options()) + ")";
-  });
+  def_repr(cls);
   def_copies(cls);
   def_pickle(cls, fn<&solver_state>, "robot, options, database, nominal", fn<&solver_from_state>);
 }

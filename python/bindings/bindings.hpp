@@ -1,44 +1,47 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One function per bound noun; module.cpp calls them in order.
+// One function per bound noun; module.cpp calls them in order. And what all files that bind use.
 #pragma once
 
-#include <pybind11/pybind11.h>
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
-namespace iksel {
-class Robot;
-class Solver;
-}  // namespace iksel
+#include "array_fields.hpp"
+#include "option_fields.hpp"
+#include "py_result.hpp"
 
 namespace iksel::python {
 
-void bind_errors(pybind11::module_& m);
-void bind_link_tree(pybind11::module_& m);
-void bind_pose(pybind11::module_& m);
+void bind_errors(py::module_& m);
+void bind_link_tree(py::module_& m);
+void bind_pose(py::module_& m);
 /// To come before the robot, one of whose properties it is.
-void bind_structure(pybind11::module_& m);
-void bind_coupled_limit(pybind11::module_& m);
-void bind_mimic_curve(pybind11::module_& m);
-void bind_robot(pybind11::module_& m);
+void bind_structure(py::module_& m);
+void bind_coupled_limit(py::module_& m);
+void bind_mimic_curve(py::module_& m);
+void bind_robot(py::module_& m);
 /// Robot.from_dh.
-void bind_dh(pybind11::module_& m, pybind11::class_<Robot>& robot);
+void bind_dh(py::module_& m, py::class_<Robot>& robot);
 /// The methods of Robot that compute poses and Jacobians.
-void bind_kinematics(pybind11::class_<Robot>& robot);
+void bind_kinematics(py::class_<Robot>& robot);
 /// To come before the options, one of which is a task.
-void bind_task(pybind11::module_& m);
-void bind_options(pybind11::module_& m);
-void bind_database(pybind11::module_& m);
+void bind_task(py::module_& m);
+void bind_options(py::module_& m);
+void bind_database(py::module_& m);
 /// To come before the diagnosis, which names contacts.
-void bind_scene(pybind11::module_& m);
-void bind_objective(pybind11::module_& m);
-void bind_diagnosis(pybind11::module_& m);
-void bind_result(pybind11::module_& m);
-void bind_solver(pybind11::module_& m);
+void bind_scene(py::module_& m);
+void bind_objective(py::module_& m);
+void bind_diagnosis(py::module_& m);
+void bind_result(py::module_& m);
+void bind_solver(py::module_& m);
 /// The methods of Solver that take a request's keywords.
-void bind_requests(pybind11::module_& m, pybind11::class_<Solver>& solver);
-void bind_path(pybind11::module_& m, pybind11::class_<Solver>& solver);
-void bind_self_motion(pybind11::module_& m, pybind11::class_<Solver>& solver);
+void bind_requests(py::module_& m, py::class_<Solver>& solver);
+void bind_path(py::module_& m, py::class_<Solver>& solver);
+void bind_self_motion(py::module_& m, py::class_<Solver>& solver);
 /// To come after the robot, diagnosis and solver, which they are made of.
-void bind_evaluation(pybind11::module_& m);
-void bind_selector(pybind11::module_& m);
+void bind_evaluation(py::module_& m);
+void bind_selector(py::module_& m);
 
 }  // namespace iksel::python

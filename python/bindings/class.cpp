@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "class.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <map>
+#include <stdexcept>
 
 namespace iksel::python {
 
@@ -53,6 +56,16 @@ std::string describe(py::handle value) {
   const std::string own = "iksel_cpp.";
   if (type.rfind(own, 0) == 0) type.erase(0, own.size());
   return text + " (" + type + ")";
+}
+
+const char* header_text(const std::string& key) {
+  const auto* found =
+      std::lower_bound(std::begin(kHeaderTexts), std::end(kHeaderTexts), key,
+                       [](const HeaderText& each, const std::string& of) { return each.key < of; });
+  if (found == std::end(kHeaderTexts) || found->key != key) {
+    throw std::logic_error("no header says what " + key + " is");
+  }
+  return found->text;
 }
 
 py::custom_type_setup guard(const char* how) {

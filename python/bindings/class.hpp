@@ -6,11 +6,12 @@
 
 #include <pybind11/pybind11.h>
 
+#include <exception>
 #include <memory>
 #include <string>
 #include <utility>
 
-#include "iksel/error.hpp"
+#include "enums.hpp"
 
 namespace iksel::python {
 
@@ -25,6 +26,32 @@ class SignatureError : public InvalidArgumentError {
 
 /// "'abc' (str)", for messages.
 std::string describe(py::handle value);
+
+/// Sets Python's error to that class which stands for the exception's.
+void set_error(const std::exception& error);
+
+/// What function() returns; null, with Python's error set, if it throws.
+template <class Function>
+PyObject* or_error(const Function& function) {
+  try {
+    return function();
+  } catch (py::error_already_set& error) {
+    error.restore();
+  } catch (const py::builtin_exception& error) {
+    error.set_error();
+  } catch (const std::exception& error) {
+    set_error(error);
+  }
+  return nullptr;
+}
+
+/// A function of the package iksel: of what is only for people to read, and what need not be fast.
+inline py::object of_package(const char* module, const char* name) {
+  return py::module_::import(module).attr(name);
+}
+
+/// What the core's headers say about "Class", "Class.member" or "function".
+const char* header_text(const std::string& key);
 
 /// The Python class of T.
 template <class T>
@@ -68,11 +95,11 @@ void construct(py::handle self, T&& value) {
   set_made(self.ptr());
 }
 
-/// Without a constructor, but for `how`.
+/// Without a constructor, but for `how`; with the header's text, or another.
 template <class T>
-py::class_<T> bind_class(py::module_& m, const char* name, const char* doc,
-                         const char* how = nullptr) {
-  py::class_<T> cls(m, name, doc, guard(how));
+py::class_<T> bind_class(py::module_& m, const char* name, const char* how = nullptr,
+                         const char* doc = nullptr) {
+  py::class_<T> cls(m, name, doc == nullptr ? header_text(name) : doc, guard(how));
   ClassOf<T>::type = reinterpret_cast<PyTypeObject*>(cls.ptr());
   ClassOf<T>::name = name;
   // pybind11's constructor is kept apart, behind one that reads arguments as all functions do.

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How functions of C++ become functions, methods and constructors of Python.
+// How functions of C++ become functions, methods, constructors and properties of Python. What is
+// defined without a text, and does not begin with an underscore, has that of the core's header.
 #pragma once
 
-#include <pybind11/pybind11.h>
-
 #include <cstddef>
+#include <functional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "function.hpp"
@@ -15,7 +16,7 @@ namespace iksel::python {
 /// A function of the module.
 template <class F>
 void def(py::module_& m, const char* name, const std::string& line, const F& body,
-         const std::string& text) {
+         const std::string& text = "") {
   using B = Bound<F, 0>;
   const std::string result = type_text<typename B::Result>();
   add_function(m, B::describe(body, name, "", line, "", result, text), &B::call_function);
@@ -23,7 +24,7 @@ void def(py::module_& m, const char* name, const std::string& line, const F& bod
 
 template <class Class, class F>
 void def_static(py::class_<Class>& cls, const char* name, const std::string& line, const F& body,
-                const std::string& text) {
+                const std::string& text = "") {
   using B = Bound<F, 0>;
   const std::string result = type_text<typename B::Result>();
   add_static_method(cls, B::describe(body, name, ClassOf<Class>::name, line, "", result, text),
@@ -82,6 +83,50 @@ template <class Class>
 void def_equal(py::class_<Class>& cls) {
   def(cls, "__eq__", "other", [](const Class& self, const py::object& other) {
     return is_a<Class>(other) && self == made<Class>(other);
+  });
+}
+
+using Getter = std::function<py::object(py::handle)>;
+using Setter = std::function<void(py::handle, py::handle)>;
+
+/// With the types that stubs show; without `set` nobody may set it.
+void set_property(const py::object& cls, const char* name, const std::string& type, Getter get,
+                  const char* doc, const std::string& given_type = "", Setter set = nullptr);
+
+/// A read-only property. `get`: a function of the object, a method or a member.
+template <class Class, class Get>
+void add_property(py::class_<Class>& cls, const char* name, Get get, const char* doc = nullptr) {
+  using Result = std::invoke_result_t<Get, Class&>;
+  set_property(
+      cls, name, type_text<Result>(),
+      [get](py::handle self) {
+        return to_python<Result>(std::invoke(get, made<Class>(self)), self);
+      },
+      doc == nullptr ? header_text(ClassOf<Class>::name + "." + name) : doc);
+}
+
+/// Several, each by its name and `get`, with the header's texts.
+template <class Class, class Get, class... More>
+void add_properties(py::class_<Class>& cls, const char* name, Get get, More... more) {
+  add_property(cls, name, get);
+  if constexpr (sizeof...(More) > 0) add_properties(cls, more...);
+}
+
+/// repr(), as iksel._base.show has it for the class.
+template <class Class>
+void def_repr(py::class_<Class>& cls) {
+  def(cls, "__repr__", "", [](const Class& self) {
+    const py::object object = py::cast(self, py::return_value_policy::reference);
+    return py::str(of_package("iksel._base.show", "text")(ClassOf<Class>::name, object));
+  });
+}
+
+/// What notebooks show.
+template <class Class>
+void def_page(py::class_<Class>& cls) {
+  def(cls, "_repr_html_", "", [](const Class& self) {
+    const py::object object = py::cast(self, py::return_value_policy::reference);
+    return py::str(of_package("iksel._base.show", "page")(ClassOf<Class>::name, object));
   });
 }
 

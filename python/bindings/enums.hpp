@@ -1,24 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The C++ enums as Python enums: one table of names per enum, from which the Python class, the
-// parsing of names and the error messages follow. scripts/enum_tables.py makes the tables of the
-// core's headers.
+// What scripts/header_tables.py finds in the core's headers: structs, texts and enums, which become
+// Python enums by one table of names each, from which parsing and error messages follow too.
 #pragma once
 
 #include <pybind11/native_enum.h>
 #include <pybind11/pybind11.h>
 
 #include <string>
+#include <string_view>
 #include <type_traits>
 
-#include "iksel/dh.hpp"
-#include "iksel/diagnosis.hpp"
-#include "iksel/objective.hpp"
-#include "iksel/options.hpp"
-#include "iksel/request.hpp"
-#include "iksel/result.hpp"
-#include "iksel/robot.hpp"
-#include "iksel/self_motion.hpp"
-#include "iksel/structure.hpp"
+#include "iksel/iksel.hpp"
 
 namespace iksel::python {
 
@@ -31,13 +23,23 @@ struct EnumValue {
   const char* doc;
 };
 
-/// For every bound enum: kName, kDoc, kValues.
+/// For every enum: kName, kDoc, kValues.
 template <class E>
 struct EnumTable;
 
+/// For every struct: kName, and visit(use), which calls use("Struct.member", &Struct::member) for
+/// each, those of its base first.
+template <class Struct>
+struct Members;
+
+struct HeaderText {
+  std::string_view key;  ///< "Class", "Class.member" or "function"
+  const char* text;
+};
+
 }  // namespace iksel::python
 
-#include "enum_tables.hpp"
+#include "header_tables.hpp"
 
 namespace iksel::python {
 
@@ -71,6 +73,14 @@ inline void show_names(const py::object& cls) {
       },
       py::name("__format__"), py::is_method(cls));
 }
+
+/// Whether values are known to Python by an enum, and not by their names only.
+template <class E>
+struct HasPythonEnum : std::true_type {};
+template <>  // `raise` could not be written
+struct HasPythonEnum<OnInvalidPose> : std::false_type {};
+template <>
+struct HasPythonEnum<Obstacle::Shape> : std::false_type {};
 
 /// The Python enum.
 template <class E>

@@ -1,26 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fields.hpp"
 
-#include <utility>
-
-#include "did_you_mean.hpp"
-
 namespace iksel::python {
 
 namespace {
-
-[[noreturn]] void throw_no_field(const std::string& name, const StructType& type) {
-  std::vector<std::string> names;
-  std::string possible;
-  for (const Field& field : type.fields) {
-    names.emplace_back(field.name);
-    possible += (possible.empty() ? "" : ", ") + std::string(field.name);
-  }
-  const std::string hint = type.hint == nullptr ? "" : type.hint(name);
-  throw SignatureError(std::string(type.name) + ": no field '" + name + "'" +
-                       (hint.empty() ? did_you_mean(name, names) : hint) +
-                       "; possible: " + possible);
-}
 
 const Field& find_field(py::handle key, const StructType& type) {
   if (!py::isinstance<py::str>(key)) throw SignatureError("field names are strings");
@@ -28,7 +11,10 @@ const Field& find_field(py::handle key, const StructType& type) {
   for (const Field& field : type.fields) {
     if (name == field.name) return field;
   }
-  throw_no_field(name, type);
+  py::list known;
+  for (const Field& field : type.fields) known.append(field.name);
+  throw SignatureError(py::cast<std::string>(
+      of_package("iksel._base.keywords", "no_field")(type.name, name, known)));
 }
 
 /// Whether a plain value is that of a struct, or of a variant of them.
@@ -58,7 +44,7 @@ py::dict to_dict(const void* self, const StructType& type) {
 void assign(void* self, const StructType& type, const py::dict& changes) {
   for (const auto& [key, value] : changes) {
     const Field& field = find_field(key, type);
-    field.type->set(field.of(self), value, field.name);
+    field.type->set(field.of(self), value, field.name, -1);
   }
 }
 
@@ -68,7 +54,7 @@ void assign_state(void* self, const StructType& type, py::handle state) {
   for (const auto& [key, value] : values) {
     const Field& field = find_field(key, type);
     const std::string name = of + ", " + field.name;
-    field.type->set(field.of(self), value, name.c_str());
+    field.type->set(field.of(self), value, name.c_str(), -1);
     if (field.check != nullptr) field.check(field.of(self), name);
   }
   if (values.size() != type.fields.size()) {
@@ -106,7 +92,7 @@ void add_attributes(const py::object& cls, const StructType& type, bool writable
     Setter set;
     if (writable) {
       set = [&type, &field](py::handle self, py::handle value) {
-        field.type->set(field.of(type.unwrap(self)), value, field.name);
+        field.type->set(field.of(type.unwrap(self)), value, field.name, -1);
       };
     }
     set_property(

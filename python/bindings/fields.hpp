@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Structs as Python classes, made of one table of fields each: constructor, attributes, repr,
-// equality, dict and pickle all follow from the table, and every default is read from the C++
-// struct.
+// equality, dict and pickle all follow from the table, every default is read from the C++ struct,
+// and names and texts are those of the core's headers.
 #pragma once
 
-#include <pybind11/pybind11.h>
-
 #include <cstddef>
+#include <cstring>
+#include <initializer_list>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
-#include "def.hpp"
-#include "property.hpp"
 #include "value_type.hpp"
 
 namespace iksel::python {
@@ -39,14 +38,74 @@ struct StructType {
   const void* defaults;
   /// What a Python object holds. Throws SignatureError about one of another class.
   void* (*unwrap)(py::handle self);
-  /// What else to say about a name that is no field; may be null.
-  std::string (*hint)(const std::string& name);
 };
 
-/// Specialised for every struct: kName, kDoc, fields() as a vector of Field; if need be hint(), as
-/// above, and check(), which throws InvalidArgumentError about fields that do not fit each other.
+template <class T>
+T argument_of(void (*check)(T, const std::string&));
+
+/// The fields of a struct as its header, or that of its base `Declared`, has them; of
+/// void none.
+template <class Struct, class Declared = Struct>
+class HeaderFields {
+ public:
+  HeaderFields() {
+    if constexpr (!std::is_void_v<Declared>) {
+      Members<Declared>::visit([this](const char* key, auto member) {
+        add(std::strchr(key, '.') + 1, member, header_text(key));
+      });
+    }
+  }
+
+  /// One that the header has not; no attribute without a text.
+  template <class Base, class T>
+  HeaderFields& add(const char* name, T Base::*member, const char* doc = nullptr) {
+    all_.push_back({name, doc, offset_of<Struct, T>(member), &value_type<T>()});
+    return *this;
+  }
+
+  /// Those that are part of the pickle, and no attributes.
+  HeaderFields& hide(std::initializer_list<const char*> names) {
+    for (const char* name : names) at(name).doc = nullptr;
+    return *this;
+  }
+
+  /// Those whose values in a pickle are looked at by kCheck(value, name).
+  template <auto kCheck>
+  HeaderFields& check(std::initializer_list<const char*> names) {
+    using T = decltype(argument_of(kCheck));
+    for (const char* name : names) {
+      if (at(name).type != &value_type<T>()) throw std::logic_error(name);
+      at(name).check = [](const void* value, const std::string& of) { kCheck(as<T>(value), of); };
+    }
+    return *this;
+  }
+
+  const std::vector<Field>& all() const { return all_; }
+
+ private:
+  Field& at(const char* name) {
+    for (Field& each : all_) {
+      if (std::strcmp(each.name, name) == 0) return each;
+    }
+    throw std::logic_error(name);
+  }
+
+  std::vector<Field> all_;
+};
+
+/// Specialised for every struct that is bound by its fields, as derived from HeaderTable; if need
+/// be with other fields() and check(), which throws InvalidArgumentError about
+/// fields that do not fit each other.
 template <class Struct>
 struct FieldTable;
+
+template <class Struct, class Declared = Struct>
+struct HeaderTable {
+  static constexpr const char* kName = Members<Declared>::kName;
+  static const char* doc() { return header_text(Members<Declared>::kName); }
+  static std::vector<Field> fields() { return HeaderFields<Struct, Declared>().all(); }
+  static void check(const Struct& /*self*/) {}
+};
 
 template <class T, class = void>
 struct HasFields : std::false_type {};
@@ -59,45 +118,11 @@ template <class T>
 struct CanValidate<T, std::void_t<decltype(std::declval<const T&>().validate())>> : std::true_type {
 };
 
-template <class T, class = void>
-struct HasCheck : std::false_type {};
-template <class T>
-struct HasCheck<T, std::void_t<decltype(&FieldTable<T>::check)>> : std::true_type {};
-
-template <class T, class = void>
-struct HasHint : std::false_type {};
-template <class T>
-struct HasHint<T, std::void_t<decltype(&FieldTable<T>::hint)>> : std::true_type {};
-
-template <class Struct>
-auto hint_of() -> std::string (*)(const std::string&) {
-  if constexpr (HasHint<Struct>::value) {
-    return &FieldTable<Struct>::hint;
-  } else {
-    return nullptr;
-  }
-}
-
 /// Throws InvalidArgumentError naming the first field out of range.
 template <class Struct>
 void check_struct(const Struct& self) {
   if constexpr (CanValidate<Struct>::value) self.validate();
-  if constexpr (HasCheck<Struct>::value) FieldTable<Struct>::check(self);
-}
-
-/// Of a member that `Struct` has from its base, that is said.
-template <class Struct = void, class Base, class T>
-Field field(const char* name, T Base::*member, const char* doc) {
-  using Owner = std::conditional_t<std::is_void_v<Struct>, Base, Struct>;
-  return {name, doc, offset_of<Owner, T>(member), &value_type<T>()};
-}
-
-/// One whose value in a pickle is looked at by kCheck(value, name).
-template <auto kCheck, class Struct = void, class Base, class T>
-Field field(const char* name, T Base::*member, const char* doc) {
-  Field made = field<Struct>(name, member, doc);
-  made.check = [](const void* value, const std::string& of) { kCheck(as<T>(value), of); };
-  return made;
+  FieldTable<Struct>::check(self);
 }
 
 template <class Struct>
@@ -105,11 +130,10 @@ const StructType& struct_type() {
   using Table = FieldTable<Struct>;
   static const StructType type{
       Table::kName,
-      Table::kDoc,
+      Table::doc(),
       Table::fields(),
       &defaults_of<Struct>(),
       [](py::handle self) -> void* { return &made<Struct>(self); },
-      hint_of<Struct>(),
   };
   return type;
 }
@@ -135,8 +159,9 @@ void read_struct(void* self, const StructType& type, py::handle value, const cha
 template <class Struct>
 struct FromPython<Struct, std::enable_if_t<HasFields<Struct>::value>> {
   static std::string text() {
-    return std::string("iksel_cpp.") + FieldTable<Struct>::kName +
-           " | collections.abc.Mapping[str, object]";
+    const bool has_class = ClassOf<Struct>::type != nullptr;
+    return (has_class ? "iksel_cpp." + ClassOf<Struct>::name + " | " : "") +
+           "collections.abc.Mapping[str, object]";
   }
   static Struct convert(py::handle value, const char* name) {
     if (is_a<Struct>(value)) return made<Struct>(value);
@@ -179,7 +204,7 @@ Struct from_state(const py::object& state) {
 template <class Struct>
 py::class_<Struct> bind_fields(py::module_& m, const char* how, bool writable = false) {
   const StructType& type = struct_type<Struct>();
-  auto cls = bind_class<Struct>(m, type.name, type.doc, how);
+  auto cls = bind_class<Struct>(m, type.name, how, type.doc);
   add_attributes(cls, type, writable);
   def(cls, "__getstate__", "",
       [](const Struct& self) { return to_dict(&self, struct_type<Struct>()); });

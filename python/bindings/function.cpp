@@ -2,6 +2,7 @@
 #include "function.hpp"
 
 #include <pybind11/eval.h>
+#include <pybind11/stl.h>
 
 #include <algorithm>
 #include <limits>
@@ -123,6 +124,30 @@ Keywords Function::bind_keywords(PyObject* const* arguments, std::size_t count,
   for (Py_ssize_t k = 0; k < named; ++k)
     all[PyTuple_GET_ITEM(keywords, k)] = py::handle(arguments[k]);
   return all;
+}
+
+std::string Function::full_name() const {
+  if (name == "__init__") return owner;
+  return owner.empty() ? name : owner + "." + name;
+}
+
+void Function::refuse(std::size_t count, PyObject* keywords) const {
+  py::list known;
+  py::list needed;
+  for (const Parameter& each : parameters) {
+    known.append(each.name);
+    if (!each.by_default) needed.append(each.name);
+  }
+  const py::object given =
+      keywords == nullptr ? py::tuple() : py::reinterpret_borrow<py::object>(keywords);
+  throw SignatureError(py::cast<std::string>(of_package("iksel._base.keywords", "misfit")(
+      known, needed, positional, full_name(), count, given)));
+}
+
+void Function::check_self(PyObject* const* arguments, std::size_t count, PyTypeObject* type) const {
+  if (count > 0 && PyObject_TypeCheck(arguments[0], type) != 0) return;
+  if (count == 0) throw SignatureError(full_name() + "() needs 'self', a " + owner);
+  throw SignatureError(full_name() + "() is of a " + owner + ", not of " + describe(arguments[0]));
 }
 
 void add_function(py::module_& m, Function& function, FastCall call) {

@@ -4,8 +4,6 @@
 // each keyword; those that do not fit are looked at once more, for a sentence about it.
 #pragma once
 
-#include <pybind11/pybind11.h>
-
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -16,10 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "class.hpp"
-#include "errors.hpp"
 #include "python_types.hpp"
-#include "results.hpp"
 
 namespace iksel::python {
 
@@ -218,11 +213,14 @@ struct Bound {
     if (!function.name.empty()) throw std::logic_error(function.name + " is bound already");
     function.name = name;
     function.owner = owner;
+    const std::string scope = owner.empty() ? "" : owner + ".";
     if constexpr (takes_any_keyword()) {
       function.doc = text;
     } else {
       function.add_parameters(line, types(Numbers()));
-      function.doc = docstring(function, self, result, text);
+      const bool says_header = text.empty() && name[0] != '_';
+      function.doc =
+          docstring(function, self, result, says_header ? header_text(scope + name) : text);
     }
     return function;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The interpreter's lock, and what becomes of threads at its end.
+// The interpreter's lock, what becomes of threads at its end, and Ctrl-C in long work.
 //
 // Before 3.14, Python ends a thread that asks for the lock while the interpreter ends by
 // pthread_exit, which unwinds its stack like an exception that may not be caught: in a destructor,
@@ -8,15 +8,15 @@
 #pragma once
 
 #include <cxxabi.h>
-#include <pybind11/pybind11.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <optional>
 #include <utility>
 
-namespace iksel::python {
+#include "python_types.hpp"
 
-namespace py = pybind11;
+namespace iksel::python {
 
 /// function(), which asks for the lock; does not return if Python ends this thread, or has ended:
 /// it would give the thread a state made of what is no more there.
@@ -75,5 +75,48 @@ py::object call_python(const py::handle& callable, Arguments&&... arguments) {
   if (result == nullptr) throw py::error_already_set();
   return py::reinterpret_steal<py::object>(result);
 }
+
+/// Checked by make_progress.
+struct ProgressCallable : RawArgument {
+  using RawArgument::RawArgument;
+  static constexpr const char* kText = "collections.abc.Callable[[int, int], object]";
+};
+
+/// Calls `callable(done, total)` if there is one, and lets Ctrl-C end the work in any case. To be
+/// called without the GIL; an exception passes through the work to the caller. The callable must
+/// outlive the returned function.
+inline Progress make_progress(const std::optional<ProgressCallable>& callable) {
+  if (callable) check_callable(*callable, "progress");
+  return [&callable](std::size_t done, std::size_t total) {
+    const GilAcquire acquire;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    if (callable) call_python(*callable, done, total);
+  };
+}
+
+/// Lets Ctrl-C end the work.
+inline Progress interruptible() {
+  static const std::optional<ProgressCallable> no_callable;
+  return make_progress(no_callable);
+}
+
+/// Lets Ctrl-C end a loop that runs without the GIL: to be called in each round.
+class InterruptCheck {
+ public:
+  void operator()() {
+    // Asking for the time, and for the GIL, costs more than a round.
+    constexpr int kRounds = 64;
+    if (++rounds_ % kRounds != 0) return;
+    const auto now = std::chrono::steady_clock::now();
+    if (now < next_) return;
+    next_ = now + std::chrono::milliseconds(30);
+    const GilAcquire acquire;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+  }
+
+ private:
+  int rounds_ = 0;
+  std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now();
+};
 
 }  // namespace iksel::python

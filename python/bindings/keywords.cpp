@@ -2,23 +2,20 @@
 #include "keywords.hpp"
 
 #include <algorithm>
-#include <cstring>
+#include <cctype>
 #include <sstream>
-#include <stdexcept>
 
 namespace iksel::python {
 
 namespace {
 
-const void* default_of(const Keyword& keyword) {
-  return static_cast<const char*>(keyword.defaults) + keyword.offset;
-}
-
-/// "    name: text", in lines of at most 100 columns.
-std::string argument_doc(const char* name, const char* text) {
+/// "    name: text", in lines of at most 100 columns; a sentence's first word begins small.
+std::string argument_doc(const char* name, std::string text) {
   constexpr std::size_t kWidth = 100;
   std::string lines;
   std::string line = std::string("    ") + name + ":";
+  if (std::islower(text[1]) != 0 || text[1] == ' ')
+    text[0] = static_cast<char>(std::tolower(text[0]));
   std::istringstream words(text);
   for (std::string word; words >> word;) {
     if (line.size() + 1 + word.size() > kWidth) {
@@ -34,17 +31,18 @@ std::string argument_doc(const char* name, const char* text) {
 
 py::handle Given::operator[](const char* name) const {
   for (std::size_t i = 0; i < keywords_.size(); ++i) {
-    if (std::strcmp(keywords_[i].name, name) == 0) return values_[i];
+    const auto& [field, by_default, of] = keywords_[i];
+    if (std::strcmp(field.name, name) == 0) return is_empty() ? py::handle(by_default) : values_[i];
   }
   throw std::logic_error(std::string("no keyword ") + name);
 }
 
 void Given::read_into(void* out, const std::type_info& type, int dof, const char* except) const {
-  for (std::size_t i = 0; i < keywords_.size(); ++i) {
-    const Keyword& keyword = keywords_[i];
-    if (values_[i].ptr() == parameters_[i + 1].by_default.ptr() || *keyword.of != type) continue;
-    if (std::strcmp(keyword.name, except) == 0) continue;
-    keyword.type->set(static_cast<char*>(out) + keyword.offset, values_[i], keyword.name, dof);
+  for (std::size_t i = 0; i < keywords_.size() && !is_empty(); ++i) {
+    const auto& [field, by_default, of] = keywords_[i];
+    if (values_[i].ptr() == by_default.ptr() || *of != type) continue;
+    if (std::strcmp(field.name, except) == 0) continue;
+    field.type->set(field.of(out), values_[i], field.name, dof);
   }
 }
 
@@ -59,14 +57,15 @@ void KeywordMethod::describe(const MethodText& text, const std::string& result,
   doc += argument_doc(text.pose, text.pose_doc);
   for (const char* name : names) {
     const auto keyword = std::find_if(known.begin(), known.end(), [&](const Keyword& each) {
-      return std::strcmp(each.name, name) == 0;
+      return std::strcmp(each.field.name, name) == 0;
     });
     if (keyword == known.end()) throw std::logic_error(std::string("no keyword ") + name);
-    const py::object value = keyword->type->shown(default_of(*keyword));
-    const std::string type = keyword->type->text + (value.is_none() ? " | None" : "");
-    function.parameters.push_back(new_parameter(name, type, value));
+    const py::object& value = keyword->by_default;
+    const std::string& type = keyword->field.type->argument;
+    function.parameters.push_back(
+        new_parameter(name, value.is_none() ? or_none(type) : type, value));
     keywords.push_back(*keyword);
-    doc += argument_doc(name, keyword->doc);
+    doc += argument_doc(name, keyword->field.doc);
   }
   if (function.parameters.size() > kMostArguments) throw std::logic_error("too many keywords");
   function.doc = docstring(function, "Solver", result, doc + "\n" + text.rest);

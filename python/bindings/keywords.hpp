@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Methods of Solver whose keywords are fields of structs: what a keyword means, its type and its
-// default stand once, in the table of its struct, and each method lists those that it takes.
+// default stand once, in the header of its struct, and each method lists those that it takes.
 #pragma once
-
-#include <pybind11/pybind11.h>
 
 #include <array>
 #include <cmath>
@@ -12,28 +10,14 @@
 #include <typeinfo>
 #include <vector>
 
-#include "function.hpp"
-#include "iksel/solver.hpp"
-#include "value_type.hpp"
+#include "fields.hpp"
 
 namespace iksel::python {
 
-/// What a method does with arguments of one type.
-struct ArgumentType {
-  std::string text;  ///< in signatures, without None
-  /// Throws InvalidArgumentError that names the culprit; `dof` is the arm's.
-  void (*set)(void* value, py::handle given, const char* name, int dof);
-  /// A default as Python shows it; None where it means that nothing is asked for.
-  py::object (*shown)(const void* value);
-};
-
-/// Specialised for what has to know the arm, or is read in another way.
-template <class T, class Enable = void>
-struct ArgumentOf {
-  static std::string text() { return FromPython<T>::text(); }
-  static T read(py::handle given, const char* name, int /*dof*/) {
-    return from_python<T>(given, name);
-  }
+struct Keyword {
+  Field field;
+  py::object by_default;  ///< as Python shows it; None: nothing is asked for
+  const std::type_info* of;
 };
 
 template <class T>
@@ -48,45 +32,28 @@ py::object shown_default(const T& value) {
   }
 }
 
-template <class T>
-const ArgumentType& argument_type() {
-  using A = ArgumentOf<T>;
-  static const ArgumentType type{
-      A::text(),
-      [](void* value, py::handle given, const char* name, int dof) {
-        *static_cast<T*>(value) = A::read(given, name, dof);
-      },
-      [](const void* value) { return shown_default(as<T>(value)); },
-  };
-  return type;
-}
-
-struct Keyword {
-  const char* name;
-  const char* doc;
-  std::size_t offset;  ///< of the member in its struct
-  const ArgumentType* type;
-  const std::type_info* of;
-  const void* defaults;
-};
-
-/// The member may be one of a base of the struct.
-template <class Struct, class Base, class T>
-Keyword keyword(const char* name, T Base::*member, const char* doc) {
-  const auto own = static_cast<T Struct::*>(member);
-  return {name, doc, offset_of(own), &argument_type<T>(), &typeid(Struct), &defaults_of<Struct>()};
+/// Adds the fields of a struct, as its header has them.
+template <class Struct>
+void add_keywords(std::vector<Keyword>& all) {
+  Members<Struct>::visit([&](const char* key, auto member) {
+    using T = Plain<decltype(defaults_of<Struct>().*member)>;
+    if constexpr (!std::is_same_v<T, Progress>) {
+      const std::size_t offset = offset_of<Struct, T>(member);
+      all.push_back({{std::strchr(key, '.') + 1, header_text(key), offset, &value_type<T>()},
+                     shown_default(defaults_of<Struct>().*member),
+                     &typeid(Struct)});
+    }
+  });
 }
 
 /// The keyword arguments of one call.
 class Given {
  public:
-  /// `values` are as many as keywords.
-  Given(const std::vector<Keyword>& keywords, const std::vector<Parameter>& parameters,
-        const py::handle* values, bool is_empty)
-      : keywords_(keywords), parameters_(parameters), values_(values), is_empty_(is_empty) {}
+  /// `values` are as many as keywords, or null: none is given, so that plain solving pays nothing.
+  Given(const std::vector<Keyword>& keywords, const py::handle* values)
+      : keywords_(keywords), values_(values) {}
 
-  /// Whether there are none, so that plain solving pays nothing for them.
-  [[nodiscard]] bool is_empty() const { return is_empty_; }
+  [[nodiscard]] bool is_empty() const { return values_ == nullptr; }
 
   /// The value of one of the method's keywords.
   [[nodiscard]] py::handle operator[](const char* name) const;
@@ -103,9 +70,7 @@ class Given {
   void read_into(void* out, const std::type_info& type, int dof, const char* except) const;
 
   const std::vector<Keyword>& keywords_;
-  const std::vector<Parameter>& parameters_;  ///< the pose, then the keywords
   const py::handle* values_;
-  bool is_empty_;
 };
 
 /// What a docstring says besides the keywords.
@@ -140,23 +105,26 @@ struct BoundKeywords {
       const auto given = static_cast<std::size_t>(count);
       method.function.check_self(arguments, given, ClassOf<Solver>::type);
       const Solver& self = made<Solver>(arguments[0]);
+      if (given == 2 && names == nullptr) {
+        return py::cast(F()(self, arguments[1], Given(method.keywords, nullptr))).release().ptr();
+      }
       std::array<py::handle, kMostArguments> values;
       method.function.bind(arguments + 1, given - 1, names, values.data());
-      const Given all(method.keywords, method.function.parameters, values.data() + 1,
-                      given == 2 && names == nullptr);
+      const Given all(method.keywords, values.data() + 1);
       return py::cast(F()(self, values[0], all)).release().ptr();
     });
   }
 };
 
-/// A method of a pose, or of poses, and the keywords named, the first few by position too. Its body
-/// is a function of the solver, the pose and what is Given.
-template <class F>
-void def_method(py::class_<Solver>& cls, const MethodText& text, const std::vector<Keyword>& known,
-                std::size_t positional, const std::vector<const char*>& names, F /*body*/) {
-  using Result = typename CallType<F>::Result;
+/// A method of a pose, or of poses, and the keywords named, which are fields of `Structs`; the
+/// first few by position too. Its body is a function of the solver, the pose and what is Given.
+template <class... Structs, class F>
+void def_method(py::class_<Solver>& cls, const MethodText& text, std::size_t positional,
+                const std::vector<const char*>& names, F /*body*/) {
+  std::vector<Keyword> known;
+  (add_keywords<Structs>(known), ...);
   KeywordMethod& method = BoundKeywords<F>::method;
-  method.describe(text, type_text<Result>(), known, names, positional);
+  method.describe(text, type_text<typename CallType<F>::Result>(), known, names, positional);
   add_method(cls, method.function, &BoundKeywords<F>::call);
 }
 

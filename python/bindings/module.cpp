@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <pybind11/stl.h>
-
 #include "bindings.hpp"
-#include "did_you_mean.hpp"
-#include "iksel/version.hpp"
 
 PYBIND11_MODULE(iksel_cpp, m) {
   m.doc() = R"(IKSel: inverse kinematics from precomputed seeds.
@@ -13,8 +9,10 @@ homogeneous matrix; lengths are metres, angles radians. A twist is [linear; angu
 the TCP. The method is that of "IKSel: Selecting Good Seed Joint Values for Fast Numerical Inverse
 Kinematics Iterations" (Yuan, Wan, Harada, 2025), called the paper below.)";
   m.attr("__version__") = iksel::kVersion;
-  m.def("_did_you_mean", &iksel::python::did_you_mean, pybind11::arg("name"),
-        pybind11::arg("known"), "The hint at a mistyped name for functions that are Python's.");
+  iksel::python::def(
+      m, "_describe", "value",
+      [](const pybind11::object& value) { return iksel::python::describe(value); },
+      "A value as messages show it.");
   iksel::python::bind_errors(m);
   iksel::python::bind_link_tree(m);
   iksel::python::bind_structure(m);

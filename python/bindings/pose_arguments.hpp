@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "array_checks.hpp"
-#include "iksel/task.hpp"
 #include "python_types.hpp"
 
 namespace iksel::python {
@@ -18,11 +17,7 @@ struct PoseLike : RawArgument {
   static constexpr const char* kText = "numpy.typing.ArrayLike | object";
 };
 
-/// `value` as matrices (..., 4, 4), if it is a pose or several: (..., 3, 4) matrices; a pair
-/// (position, rotation), (..., 3) and (..., 3, 3) or an object with as_matrix(); an object with
-/// as_matrix(), .homogeneous or .A; a message with named fields, as ROS has them; a list of such.
-/// Else what it is. Throws InvalidArgumentError about a quaternion, whose order is not known, or
-/// which is none, and about tensors that require gradients.
+/// What iksel._base.pose_forms makes of what people hold: matrices (..., 4, 4), or what it is.
 py::object to_matrices(py::handle value, const char* name);
 
 /// For what is not simply a (4, 4) array of doubles; `task` may be null.
@@ -47,6 +42,7 @@ template <>
 struct FromPython<Pose> {
   static std::string text() { return PoseLike::kText; }
   static Pose convert(py::handle value, const char* name) { return as_pose(value, name); }
+  static py::array_t<double> show(const Pose& value) { return to_array(value); }
 };
 
 /// Poses as an (N, 4, 4) array, or positions (N, 3) as above.

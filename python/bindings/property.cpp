@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "property.hpp"
+#include "def.hpp"
 
 #include <memory>
 #include <string>
 #include <utility>
-
-#include "errors.hpp"
 
 namespace iksel::python {
 

@@ -2,16 +2,11 @@
 // The answers of a batch as Python sees them.
 #pragma once
 
-#include <pybind11/numpy.h>
-#include <pybind11/pybind11.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <string>
 
-#include "iksel/result.hpp"
 #include "py_result.hpp"
-#include "python_types.hpp"
 
 namespace iksel::python {
 
@@ -69,6 +64,16 @@ struct PyBatchResult {
 
   /// Copies of the rows that numpy's indexing takes.
   [[nodiscard]] PyBatchResult rows(py::handle index) const;
+};
+
+template <>
+struct FieldTable<PyBatchResult> {
+  using B = PyBatchResult;
+  static constexpr const char* kName = "BatchResult";
+  static const char* doc() { return header_text("BatchView"); }
+  static std::vector<Field> fields();
+  /// Statuses and proofs that there are, and numbers where there are answers.
+  static void check(const B& self);
 };
 
 }  // namespace iksel::python

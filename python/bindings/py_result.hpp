@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A Result as Python sees it.
+// A Result, and what results have in common, as Python sees them.
 #pragma once
-
-#include <pybind11/numpy.h>
-#include <pybind11/pybind11.h>
 
 #include <algorithm>
 #include <string>
 #include <utility>
 
-#include "array_checks.hpp"
-#include "def.hpp"
-#include "enums.hpp"
-#include "iksel/result.hpp"
+#include "array_fields.hpp"
 
 namespace iksel::python {
 
@@ -47,23 +41,8 @@ inline bool is_proven(Proof proof) {
   return false;
 }
 
-/// "not_converged, proven: closed_form".
-inline std::string status_text(Status status, Proof proof) {
-  std::string text = enum_name(status);
-  if (status != Status::solved && is_proven(proof)) {
-    text += std::string(", proven: ") + enum_name(proof);
-  }
-  return text;
-}
-
-/// (rows, dof) of joint values.
-template <class Rows, class Get>
-py::array_t<double> stack_joints(const Rows& rows, int dof, const Get& get) {
-  py::array_t<double> array({static_cast<py::ssize_t>(rows.size()), py::ssize_t{dof}});
-  double* out = array.mutable_data();
-  for (const auto& row : rows) out = std::copy_n(get(row).data(), dof, out);
-  return array;
-}
+constexpr const char* kProven =
+    "Whether there is certainly no answer: `proof` is `reach`, `closed_form` or `target`.";
 
 /// What __iter__ gives of that which has __getitem__ of an int.
 template <class Item>
@@ -81,5 +60,30 @@ void def_iter(py::class_<Class>& cls) {
     return RowIterator<Item>(py::reinterpret_steal<py::object>(PySeqIter_New(object.ptr())));
   });
 }
+
+template <>
+struct FieldTable<PyResult> : HeaderTable<PyResult, Result> {
+  static std::vector<Field> fields() {
+    return HeaderFields<PyResult, Result>()
+        .hide({"q", "unreachable_tip"})
+        .check<&may_be_length>({"position_error", "rotation_error", "move"})
+        .check<&is_count>({"attempts", "iterations"})
+        .check<&is_index<kMaxTips>>({"unreachable_tip"})
+        .all();
+  }
+  static void check(const PyResult& self) {
+    const std::string of = "pickled Result, ";
+    const bool has_q = has_joints(self.status);
+    if (has_q != (self.q.size() > 0)) {
+      refuse_state(of + "q", has_q ? "joint values" : "None, as it is not solved", "another");
+    }
+    if (has_q && !(self.position_error >= 0 && self.rotation_error >= 0)) {
+      refuse_state(of + "errors", "0 or more where there is a q", "NaN");
+    }
+    if (self.success() != (self.proof == Proof::answer)) {
+      refuse_state(of + "proof", "answer where solved, and only there", enum_name(self.proof));
+    }
+  }
+};
 
 }  // namespace iksel::python

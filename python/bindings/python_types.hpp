@@ -8,6 +8,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <array>
 #include <filesystem>
 #include <limits>
 #include <optional>
@@ -15,9 +16,7 @@
 #include <type_traits>
 
 #include "class.hpp"
-#include "enums.hpp"
-#include "iksel/error.hpp"
-#include "iksel/solver.hpp"
+#include "results.hpp"
 
 namespace iksel::python {
 
@@ -57,13 +56,24 @@ inline std::filesystem::path as_path(py::handle value, const char* name) {
 }
 
 /// Specialised for all that is an argument: text() is its type in signatures; convert() throws
-/// InvalidArgumentError naming the argument.
-template <class T, class Enable = void>
+/// InvalidArgumentError naming the argument, and may take the number of the arm's joints, -1 where
+/// that is not known. With show(), what Python gets for such a value.
+template <class T, class Enable>
 struct FromPython;
 
+template <class T, class = void>
+struct KnowsArm : std::false_type {};
 template <class T>
-decltype(auto) from_python(py::handle value, const char* name) {
-  return FromPython<T>::convert(value, name);
+struct KnowsArm<T, std::void_t<decltype(FromPython<T>::convert(py::handle(), "", -1))>>
+    : std::true_type {};
+
+template <class T>
+decltype(auto) from_python(py::handle value, const char* name, int dof = -1) {
+  if constexpr (KnowsArm<T>::value) {
+    return FromPython<T>::convert(value, name, dof);
+  } else {
+    return FromPython<T>::convert(value, name);
+  }
 }
 
 /// An argument that a function reads by itself; those derived from it say its type.
@@ -106,13 +116,21 @@ struct FromPython<py::bytes> {
   }
 };
 
+/// A type, or None.
+inline std::string or_none(const std::string& type) {
+  const std::string none = " | None";
+  const bool has_none =
+      type.size() > none.size() && type.compare(type.size() - none.size(), none.size(), none) == 0;
+  return has_none ? type : type + none;
+}
+
 /// What is None is not given.
 template <class T>
 struct FromPython<std::optional<T>> {
-  static std::string text() { return FromPython<T>::text() + " | None"; }
-  static std::optional<T> convert(py::handle value, const char* name) {
+  static std::string text() { return or_none(FromPython<T>::text()); }
+  static std::optional<T> convert(py::handle value, const char* name, int dof) {
     if (value.is_none()) return std::nullopt;
-    return from_python<T>(value, name);
+    return from_python<T>(value, name, dof);
   }
 };
 
@@ -181,39 +199,30 @@ struct FromPython<T, std::enable_if_t<std::is_integral_v<T>>> {
   }
 };
 
-/// A bound class; those with fields are taken as mappings too, see fields.hpp.
+/// What makes objects of a bound class that is an argument; those with fields are taken as mappings
+/// too, see fields.hpp.
 template <class T>
-struct IsBoundClass : std::false_type {};
+constexpr const char* kExpected = nullptr;
 template <>
-struct IsBoundClass<Robot> : std::true_type {
-  static constexpr const char* kExpected =
-      "a Robot, which iksel.load_robot(name) or Robot.from_urdf(path_or_xml) makes";
-};
+inline constexpr const char* kExpected<Robot> =
+    "a Robot, which iksel.load_robot(name) or Robot.from_urdf(path_or_xml) makes";
 template <>
-struct IsBoundClass<Database> : std::true_type {
-  static constexpr const char* kExpected =
-      "a Database, which Database.build(robot) or Database.load(path) makes";
-};
+inline constexpr const char* kExpected<Database> =
+    "a Database, which Database.build(robot) or Database.load(path) makes";
 template <>
-struct IsBoundClass<RobotSpheres> : std::true_type {
-  static constexpr const char* kExpected = "RobotSpheres, which iksel.spheres makes";
-};
+inline constexpr const char* kExpected<RobotSpheres> = "RobotSpheres, which iksel.spheres makes";
 template <>
-struct IsBoundClass<Scene> : std::true_type {
-  static constexpr const char* kExpected =
-      "a Scene, which Scene(robot, spheres) makes; iksel.spheres makes the spheres";
-};
+inline constexpr const char* kExpected<Scene> =
+    "a Scene, which Scene(robot, spheres) makes; iksel.spheres makes the spheres";
 template <>
-struct IsBoundClass<Solver> : std::true_type {
-  static constexpr const char* kExpected = "a Solver, which Solver(robot) makes";
-};
+inline constexpr const char* kExpected<Solver> = "a Solver, which Solver(robot) makes";
 
 template <class T>
-struct FromPython<T, std::enable_if_t<IsBoundClass<T>::value>> {
+struct FromPython<T, std::enable_if_t<(kExpected<T> != nullptr)>> {
   static std::string text() { return "iksel_cpp." + ClassOf<T>::name; }
   static const T& convert(py::handle value, const char* name) {
     if (is_a<T>(value)) return made<T>(value);
-    throw SignatureError(std::string(name) + ": expected " + IsBoundClass<T>::kExpected + ", got " +
+    throw SignatureError(std::string(name) + ": expected " + kExpected<T> + ", got " +
                          describe(value));
   }
 };
@@ -222,11 +231,15 @@ struct FromPython<T, std::enable_if_t<IsBoundClass<T>::value>> {
 template <class T>
 struct FromPython<T, std::enable_if_t<std::is_enum_v<T>>> {
   static std::string text() {
-    // No Python enum, where `raise` could not be written.
-    if constexpr (std::is_same_v<T, OnInvalidPose>)
-      return "typing.Literal['status', 'raise']";
-    else
+    if constexpr (HasPythonEnum<T>::value) {
       return std::string("iksel_cpp.") + EnumTable<T>::kName + " | str";
+    } else {
+      std::string names;
+      for (const auto& each : EnumTable<T>::kValues) {
+        names += (names.empty() ? "'" : ", '") + std::string(each.name) + "'";
+      }
+      return "typing.Literal[" + names + "]";
+    }
   }
   static T convert(py::handle value, const char* name) {
     if (py::isinstance<py::str>(value)) {
@@ -234,11 +247,30 @@ struct FromPython<T, std::enable_if_t<std::is_enum_v<T>>> {
       for (const auto& entry : EnumTable<T>::kValues) {
         if (given == entry.name) return entry.value;
       }
-    } else if constexpr (!std::is_same_v<T, OnInvalidPose>) {
+    } else if constexpr (HasPythonEnum<T>::value) {
       if (py::isinstance(value, enum_class<T>())) return py::cast<T>(value);
     }
     throw_wrong_type(name, "one of " + enum_names<T>(), value);
   }
+};
+
+/// A sequence of N numbers; Python gets a tuple, which is a copy, so that nobody takes it for the
+/// struct's own.
+template <std::size_t N>
+struct FromPython<std::array<double, N>> {
+  static std::string text() { return "collections.abc.Sequence[float]"; }
+  static std::array<double, N> convert(py::handle value, const char* name) {
+    const std::string expected = std::to_string(N) + " numbers";
+    if (!py::isinstance<py::sequence>(value) && !py::hasattr(value, "__array__")) {
+      throw_wrong_type(name, expected, value);
+    }
+    const py::list items(py::reinterpret_borrow<py::object>(value));
+    if (items.size() != N) throw_wrong_type(name, expected, value);
+    std::array<double, N> out{};
+    for (std::size_t i = 0; i < N; ++i) out[i] = from_python<double>(items[i], name);
+    return out;
+  }
+  static py::tuple show(const std::array<double, N>& value) { return py::tuple(py::cast(value)); }
 };
 
 }  // namespace iksel::python

@@ -1,35 +1,52 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The keywords of Solver's methods, as iksel/request.hpp and iksel/path.hpp declare them.
+// What the keywords of Solver's methods take.
 #pragma once
 
 #include <optional>
 #include <vector>
 
-#include "iksel/request.hpp"
-#include "iksel/solver.hpp"
+#include "array_fields.hpp"
+#include "callables.hpp"
 #include "keywords.hpp"
+#include "option_fields.hpp"
 
 namespace iksel::python {
 
-/// Of SolveRequest.
-std::vector<Keyword> request_keywords();
-/// Of SolveAllOptions and SolveRequest.
-std::vector<Keyword> solve_all_keywords();
-/// Of PathOptions.
-std::vector<Keyword> path_keywords();
+/// What `closest` asks for: None, a bool, or six weights.
+template <>
+struct FromPython<std::optional<PoseWeights>> {
+  static std::string text() { return "bool | numpy.typing.ArrayLike | None"; }
+  static std::optional<PoseWeights> convert(py::handle value, const char* name);
+  static py::object show(const std::optional<PoseWeights>& weights);
+};
+
+template <>
+struct FromPython<std::vector<Task>> {
+  static std::string text() {
+    return "collections.abc.Sequence[Task | collections.abc.Mapping[str, object]]";
+  }
+  static std::vector<Task> convert(py::handle value, const char* name) {
+    return read_sequence<Task>(value, name, "a list of Tasks, one for each tip");
+  }
+};
+
+/// Numbers of tips; None is -1.
+template <>
+struct FromPython<std::vector<int>> {
+  static std::string text() { return "collections.abc.Sequence[int | None]"; }
+  static std::vector<int> convert(py::handle value, const char* name) {
+    std::vector<int> frames;
+    for (const auto& frame : read_sequence<std::optional<int>>(
+             value, name, "a list of numbers of tips or None, one for each tip")) {
+      frames.push_back(frame.value_or(-1));
+    }
+    return frames;
+  }
+};
 
 /// The request that keywords ask for, but for the field `except`; warns of angles that look like
 /// degrees.
 SolveRequest read_request(const Solver& solver, const Given& given, const char* except = "");
-
-/// What `closest` may be: see as_closest.
-struct ClosestLike : RawArgument {
-  using RawArgument::RawArgument;
-  static constexpr const char* kText = "bool | numpy.typing.ArrayLike | None";
-};
-
-/// What `closest` asks for: None, a bool, or six weights.
-std::optional<PoseWeights> as_closest(py::handle given);
 
 /// The task of a request, or else the solver's.
 inline const Task& task_of(const Solver& solver, const AnswerCriteria& criteria) {

@@ -22,6 +22,22 @@
 
 namespace iksel::python {
 
+template <class T, class Enable = void>
+struct FromPython;
+
+/// What Python gets as show(value) of FromPython.
+template <class T, class = void>
+struct IsShown : std::false_type {};
+template <class T>
+struct IsShown<T, std::void_t<decltype(FromPython<T>::show(std::declval<const T&>()))>>
+    : std::true_type {};
+
+template <class T>
+using Plain = std::remove_cv_t<std::remove_reference_t<T>>;
+
+template <class... T>
+std::string type_text();
+
 /// A result whose type is said by those derived from it.
 struct RawResult : py::object {
   explicit RawResult(py::object value) : py::object(std::move(value)) {}
@@ -54,7 +70,9 @@ struct BoolOrArray : RawResult {
 template <class T>
 struct ResultType {
   static std::string text() {
-    if constexpr (std::is_void_v<T>)
+    if constexpr (IsShown<T>::value)
+      return type_text<decltype(FromPython<T>::show(std::declval<const T&>()))>();
+    else if constexpr (std::is_void_v<T>)
       return "None";
     else if constexpr (std::is_same_v<T, bool>)
       return "bool";
@@ -63,7 +81,7 @@ struct ResultType {
     else if constexpr (std::is_floating_point_v<T>)
       return "float";
     else if constexpr (std::is_enum_v<T>)
-      return std::string("iksel_cpp.") + EnumTable<T>::kName;
+      return HasPythonEnum<T>::value ? std::string("iksel_cpp.") + EnumTable<T>::kName : "str";
     else if constexpr (std::is_base_of_v<RawResult, T>)
       return T::kText;
     else if constexpr (std::is_same_v<T, py::object>)
@@ -72,15 +90,14 @@ struct ResultType {
       return "dict[str, object]";
     else if constexpr (std::is_same_v<T, py::bytes>)
       return "bytes";
+    else if constexpr (std::is_same_v<T, py::str>)
+      return "str";
     else if constexpr (std::is_convertible_v<T, std::string>)
       return "str";
     else
       return "iksel_cpp." + ClassOf<T>::name;
   }
 };
-
-template <class T>
-using Plain = std::remove_cv_t<std::remove_reference_t<T>>;
 
 template <class... T>
 std::string type_text() {
@@ -98,7 +115,13 @@ struct ResultType<py::array_t<T, Flags>> {
 };
 template <class T>
 struct ResultType<std::vector<T>> {
-  static std::string text() { return "list[" + type_text<T>() + "]"; }
+  static std::string text() {
+    if constexpr (IsShown<std::vector<T>>::value) {
+      return type_text<decltype(FromPython<std::vector<T>>::show({}))>();
+    } else {
+      return "list[" + type_text<T>() + "]";
+    }
+  }
 };
 template <class T>
 struct ResultType<std::optional<T>> {
@@ -128,7 +151,9 @@ struct ResultType<std::tuple<T...>> {
 /// A part of `owner`, which it keeps alive, or a value.
 template <class T>
 py::object to_python(T&& value, py::handle owner) {
-  if constexpr (std::is_base_of_v<py::object, Plain<T>>) {
+  if constexpr (IsShown<Plain<T>>::value) {
+    return to_python(FromPython<Plain<T>>::show(value), owner);
+  } else if constexpr (std::is_base_of_v<py::object, Plain<T>>) {
     return std::forward<T>(value);
   } else if constexpr (std::is_lvalue_reference_v<T>) {
     return py::cast(value, py::return_value_policy::reference_internal, owner);

@@ -25,17 +25,17 @@ class Error(Exception):
     """
 class UrdfError(Error):
     """
-    A URDF that cannot be read, parsed or turned into a chain; `available` is a tuple of all the names there were to choose from, where it is about a name.
+    A URDF that cannot be read, parsed or turned into a chain. `available` is a tuple of all the names there were to choose from, where it is about a name.
     """
     available: tuple[str, ...]
 class UnknownNameError(UrdfError):
     """
-    A link or joint name that the URDF does not have; `available` has those it has.
+    A link or joint name that the URDF does not have. `available` has those it has.
     """
     available: tuple[str, ...]
 class InvalidArgumentError(Error, ValueError):
     """
-    An argument of the wrong type, shape or value: a pose that is not rigid, a non-finite number, an option out of range.
+    An argument of the wrong size or value: a pose that is not rigid, a non-finite number, a q of the wrong length, an option out of range.
     """
 class SignatureError(InvalidArgumentError, TypeError):
     """
@@ -47,7 +47,7 @@ class DatabaseError(Error):
     """
 class DatabaseIoError(DatabaseError):
     """
-    A database file that cannot be opened, read or written.
+    A database file that cannot be opened, read or written (no such file, full disk, no permission).
     """
 class DatabaseCorruptError(DatabaseError):
     """
@@ -81,11 +81,11 @@ class LinkTreeJoint:
     @property
     def type(self) -> str:
         """
-        'revolute', 'fixed', ...
+        "revolute", "fixed", ...
         """
 class LinkTree:
     """
-    The links of a URDF and the joints between them, depth first from the root; str() draws the tree.
+    The tree of a URDF's links, depth first from the root. str() draws the tree.
     """
     @staticmethod
     def from_urdf(path_or_xml: str | bytes | os.PathLike[str], link: str | None = None) -> LinkTree:
@@ -106,7 +106,7 @@ class LinkTree:
     @property
     def joints(self) -> list[LinkTreeJoint]:
         """
-        All joints.
+        Each leads to the next link.
         """
     @property
     def links(self) -> list[str]:
@@ -176,7 +176,7 @@ class CoupledLimit:
     @property
     def coefficients(self) -> dict[str, float]:
         """
-        Coefficients by joint name.
+        Coefficients by joint name; not 0. Joints between base and tip, mimic and locked ones too, but none that turns without limits.
         """
     @property
     def lower(self) -> float:
@@ -186,11 +186,13 @@ class CoupledLimit:
     @property
     def upper(self) -> float:
         """
-        Largest value of the sum [rad or m].
+        Largest value [rad or m]; one of the two may be infinite.
         """
 class MimicCurve:
     """
-    A joint that follows another by a smooth curve, as a four-bar linkage or a cylinder beside a hinge makes it. It takes the place of the joint's mimic tag, which knows straight lines only. Between the points lies a cubic in each gap (Hermite's); the joint that is followed stays between the first point and the last.
+    A joint that follows another by a smooth curve, as a four-bar linkage or a cylinder beside a hinge makes it. It takes the place of the joint's mimic tag, which knows straight lines only.
+
+    Between the points lies a cubic in each gap (Hermite's); the joint that is followed stays between the first point and the last.
     """
     __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
     @staticmethod
@@ -231,7 +233,7 @@ class MimicCurve:
     @property
     def follows(self) -> str:
         """
-        Name of the joint that is followed.
+        Name of the joint that is followed; it follows none itself.
         """
     @property
     def joint(self) -> str:
@@ -241,17 +243,17 @@ class MimicCurve:
     @property
     def q(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Values of the joint that is followed [rad or m], (N,).
+        Values of the joint that is followed [rad or m], (n,), two or more, each above the one before.
         """
     @property
     def slopes(self) -> numpy.typing.NDArray[numpy.float64] | None:
         """
-        Derivative of `values` by q at each, (N,); None: those of a cubic spline.
+        Derivative of `values` by q at each, (n,). None: those of the cubic spline through the points, whose second derivative has no steps.
         """
     @property
     def values(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Value of `joint` at each [rad or m], (N,).
+        Value of `joint` at each [rad or m], (n,).
         """
 class JointType(enum.Enum):
     """
@@ -276,7 +278,7 @@ class Kinematics(enum.Enum):
         ...
 class Robot:
     """
-    An immutable serial chain between two links of a URDF, or the chains from one link to several tips, with their limits. Safe to use from many threads at once. What is about one tip raises InvalidArgumentError where there are several.
+    An immutable serial chain with its limits, or the chains from one base link to several tip links (RobotOptions.tip_links), joined: a joint that lies on several of them is one degree of freedom. Copies are cheap and share the data. Safe to use from many threads at once. What is about one tip raises InvalidArgumentError where there are several.
     """
     @staticmethod
     def from_dh(a: numpy.typing.ArrayLike, alpha: numpy.typing.ArrayLike, d: numpy.typing.ArrayLike, theta: numpy.typing.ArrayLike | None = None, *, convention: DhConvention | str = 'standard', types: collections.abc.Sequence[JointType | str] | None = None, lower: numpy.typing.ArrayLike | None = None, upper: numpy.typing.ArrayLike | None = None, velocity: numpy.typing.ArrayLike | None = None, names: collections.abc.Sequence[str] | None = None, base: numpy.typing.ArrayLike | typing.Any | None = None, tcp: numpy.typing.ArrayLike | typing.Any | None = None, name: str = 'dh') -> Robot:
@@ -350,10 +352,7 @@ class Robot:
         ...
     def chain(self, tip: int) -> Robot:
         """
-        The chain to one tip by itself; tips count from 0.
-
-        Raises:
-            InvalidArgumentError: no such tip.
+        The chain to one tip by itself; tips count from 0. Raises InvalidArgumentError if there is no such tip.
         """
     def fk(self, q: numpy.typing.ArrayLike, kinematics: Kinematics | str = 'kernel') -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -402,10 +401,7 @@ class Robot:
         """
     def joints_of(self, tip: int) -> list[int]:
         """
-        Where the joints of that chain stand among all: its joint values are q[joints_of(tip)].
-
-        Raises:
-            InvalidArgumentError: no such tip.
+        Where that chain's joints stand among all: its joint values are q[joints_of(tip)]. Raises as chain.
         """
     def link_poses(self, q: numpy.typing.ArrayLike, *, other_joints: collections.abc.Mapping[str, float] | None = None) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -434,7 +430,7 @@ class Robot:
         """
     def with_tcp(self, tcp: numpy.typing.ArrayLike | typing.Any) -> Robot:
         """
-        The same chain with another tool T_tip_tcp, (4, 4). Databases built for one serve the other.
+        The same chain with another tool T_tip_tcp; databases built for one serve the other.
         """
     def within_limits(self, q: numpy.typing.ArrayLike) -> bool | typing.Any:
         """
@@ -448,7 +444,7 @@ class Robot:
     @property
     def chain_hash(self) -> int:
         """
-        Hash of the chain up to the tip link: equal for chains that may share a database.
+        Hash over the structure and numbers of the chain up to the tip link: equal for chains that may share a database. The TCP and names are not part of it.
         """
     @property
     def coupled_limits(self) -> list[CoupledLimit]:
@@ -458,7 +454,7 @@ class Robot:
     @property
     def default_limits(self) -> tuple[float, float] | None:
         """
-        Lower and upper limit of joints that the URDF gives none [rad or m], or None.
+        Lower and upper limit [rad or m] of revolute and prismatic joints whose limits the URDF leaves out or has as 0, 0; none: such a joint is an error. A mimic joint of that kind has no limits beside those of the joint that it follows.
         """
     @property
     def dof(self) -> int:
@@ -483,17 +479,17 @@ class Robot:
     @property
     def locked_joints(self) -> dict[str, float]:
         """
-        Joints held at a value [rad or m], by name.
+        Joints held at a value [rad or m], by name; they are no degrees of freedom.
         """
     @property
     def lower(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Lower position limits [rad or m], (dof,); -inf for continuous joints.
+        Position limits [rad or m], (dof,), both inside; -inf and inf for continuous joints.
         """
     @property
     def mimic_curves(self) -> list[MimicCurve]:
         """
-        How joints follow others where that is no straight line.
+        How joints follow others where that is no straight line, one for each that does; in the place of their mimic tags.
         """
     @property
     def name(self) -> str:
@@ -503,7 +499,7 @@ class Robot:
     @property
     def reach(self) -> float:
         """
-        No pose farther than this from `reach_centre` can be reached [m].
+        No pose whose origin lies farther than this from `reach_centre` can be reached [m].
         """
     @property
     def reach_centre(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -518,17 +514,17 @@ class Robot:
     @property
     def soft_limits(self) -> bool:
         """
-        Whether the limits are narrowed to the safety controller's.
+        Whether the position limits are narrowed to the URDF's safety_controller where there is one.
         """
     @property
     def soft_lower(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Lower limits of the safety controller [rad or m], (dof,); `lower` where the URDF has none.
+        Limits of the safety controller [rad or m], (dof,); the position limits where the URDF has none.
         """
     @property
     def soft_upper(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Upper limits of the safety controller [rad or m], (dof,); `upper` where the URDF has none.
+        Limits of the safety controller [rad or m], (dof,); the position limits where the URDF has none.
         """
     @property
     def structure(self) -> Structure:
@@ -538,7 +534,7 @@ class Robot:
     @property
     def tcp(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        T_tip_tcp, the tool centre point in the tip link's frame, (4, 4).
+        T_tip_tcp, (4, 4), the tool centre point in the tip link's frame.
         """
     @property
     def tcps(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -563,12 +559,12 @@ class Robot:
     @property
     def upper(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Upper position limits [rad or m], (dof,); inf for continuous joints.
+        Position limits [rad or m], (dof,), both inside; -inf and inf for continuous joints.
         """
     @property
     def urdf(self) -> str:
         """
-        The URDF text this robot was made of, as every XML reader takes it.
+        The URDF text this robot was made of, as mend_xml gives it, without trees of links that the chain is not in.
         """
     @property
     def velocity_limit(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -608,20 +604,14 @@ class Axis(enum.Enum):
         ...
 class Task:
     """
-    What of a pose has to be reached: a box around the target for the deviation of the TCP, along the axes of `frame`. Zero width asks for an axis exactly, infinite width leaves it free. The rotation's deviation is a rotation vector where its three widths are equal, else swing and twist about the axis whose width is unlike the other two's. An answer lies at most the solver's tolerances outside of the box. Immutable.
+    What of a pose has to be reached: a box around the target for the deviation of the TCP, along the axes of `frame`. Zero width asks for the axis exactly, infinite width leaves it free.
+
+    The deviation of a TCP at (R, p) from a target (R_t, p_t) has six parts. Position: p - p_t [m]. Rotation: that of E = R R_t^T [rad] (in tool axes E = R_t^T R), as the rotation vector of E where the three widths are equal, else as swing and twist, E = swing * twist about the axis whose width is unlike the other two's (of three, the wider odd one). So with a free spin the swing is the angle by which the tool's axis points elsewhere, whatever the spin. An answer lies at most SolverOptions.position_tolerance and .rotation_tolerance outside of the box, both as norms over their three axes, and inside it along axes wider than two tolerances. Immutable.
     """
     @staticmethod
     def box(position: collections.abc.Sequence[float], rotation: collections.abc.Sequence[float], frame: TaskFrame | str = 'tool') -> Task:
         """
-        Symmetric tolerances about the target.
-
-        Args:
-            position: half widths along x, y, z [m]; inf leaves an axis free.
-            rotation: half widths about x, y, z [rad]; pi or more leaves an axis free.
-            frame: whose axes these are.
-
-        Raises:
-            InvalidArgumentError: a half width that is negative or not a number.
+        Symmetric tolerances about the target: half widths along x, y, z [m], where inf leaves an axis free, and about x, y, z [rad], where pi or more does. Raises InvalidArgumentError about one that is negative or not a number.
         """
     @staticmethod
     def free_spin(axis: Axis | str = 'z') -> Task:
@@ -631,7 +621,7 @@ class Task:
     @staticmethod
     def planar(normal: Axis | str = 'z') -> Task:
         """
-        The position in the plane that `normal` of the base is normal to, and the angle about it; three axes are left free. For arms that move in a plane.
+        The position in the plane through the base that `normal` is normal to, and the angle about `normal`; three axes are left free. For arms that move in a plane.
         """
     @staticmethod
     def pose() -> Task:
@@ -657,11 +647,11 @@ class Task:
         Fields that are not given keep their default.
 
         Args:
-            frame: Whose axes the bounds lie along.
-            position_lower: Lower bounds of the position's deviation along x, y, z [m]; -inf: none.
-            position_upper: Upper bounds of the position's deviation along x, y, z [m]; inf: none.
-            rotation_lower: Lower bounds of the rotation's deviation about x, y, z [rad], from -pi, or -inf.
-            rotation_upper: Upper bounds of the rotation's deviation about x, y, z [rad], up to pi, or inf.
+            frame: Axes that the tolerances of a task lie along.
+            position_lower: Bounds of the position's deviation along x, y, z [m]; infinite: none.
+            position_upper: Bounds of the position's deviation along x, y, z [m]; infinite: none.
+            rotation_lower: Bounds of the rotation's deviation about x, y, z [rad], in -pi .. pi, or both infinite: none.
+            rotation_upper: Bounds of the rotation's deviation about x, y, z [rad], in -pi .. pi, or both infinite: none.
 
         Raises:
             SignatureError: a keyword that is no field.
@@ -674,11 +664,11 @@ class Task:
         A copy in which the given fields have another value.
 
         Args:
-            frame: Whose axes the bounds lie along.
-            position_lower: Lower bounds of the position's deviation along x, y, z [m]; -inf: none.
-            position_upper: Upper bounds of the position's deviation along x, y, z [m]; inf: none.
-            rotation_lower: Lower bounds of the rotation's deviation about x, y, z [rad], from -pi, or -inf.
-            rotation_upper: Upper bounds of the rotation's deviation about x, y, z [rad], up to pi, or inf.
+            frame: Axes that the tolerances of a task lie along.
+            position_lower: Bounds of the position's deviation along x, y, z [m]; infinite: none.
+            position_upper: Bounds of the position's deviation along x, y, z [m]; infinite: none.
+            rotation_lower: Bounds of the rotation's deviation about x, y, z [rad], in -pi .. pi, or both infinite: none.
+            rotation_upper: Bounds of the rotation's deviation about x, y, z [rad], in -pi .. pi, or both infinite: none.
 
         Raises:
             SignatureError: a keyword that is no field.
@@ -696,7 +686,7 @@ class Task:
     @property
     def frame(self) -> TaskFrame:
         """
-        Whose axes the bounds lie along.
+        Axes that the tolerances of a task lie along.
         """
     @property
     def is_full_pose(self) -> bool:
@@ -706,22 +696,22 @@ class Task:
     @property
     def position_lower(self) -> tuple[float, float, float]:
         """
-        Lower bounds of the position's deviation along x, y, z [m]; -inf: none.
+        Bounds of the position's deviation along x, y, z [m]; infinite: none.
         """
     @property
     def position_upper(self) -> tuple[float, float, float]:
         """
-        Upper bounds of the position's deviation along x, y, z [m]; inf: none.
+        Bounds of the position's deviation along x, y, z [m]; infinite: none.
         """
     @property
     def rotation_lower(self) -> tuple[float, float, float]:
         """
-        Lower bounds of the rotation's deviation about x, y, z [rad], from -pi, or -inf.
+        Bounds of the rotation's deviation about x, y, z [rad], in -pi .. pi, or both infinite: none.
         """
     @property
     def rotation_upper(self) -> tuple[float, float, float]:
         """
-        Upper bounds of the rotation's deviation about x, y, z [rad], up to pi, or inf.
+        Bounds of the rotation's deviation about x, y, z [rad], in -pi .. pi, or both infinite: none.
         """
 class Sampling(enum.Enum):
     """
@@ -729,7 +719,6 @@ class Sampling(enum.Enum):
     """
     cvt = 1
     grid = 0
-    kmeans = 4
     low_discrepancy = 2
     random = 3
     def __format__(self, arg0: str) -> str:
@@ -832,13 +821,13 @@ class DatabaseOptions:
     """
     __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
     @staticmethod
-    def paper(year: int = 2025) -> DatabaseOptions:
+    def paper() -> DatabaseOptions:
         """
-        The paper's: grid, medium, rotation vectors, unweighted. Of 2026: 2,048 samples by kmeans. Raises InvalidArgumentError on another year.
+        The paper's: grid, medium, rotation vectors, unweighted.
         """
     def __eq__(self, other: object) -> bool:
         ...
-    def __init__(self, *, sampling: Sampling | str = 'low_discrepancy', scale: Scale | str = 'medium', samples: int = 2000, key_scheme: KeyScheme | str = 'reduced', rotation_key: RotationKey | str = 'rotation_vector', rotation_weight: float = 0.0, pinv_cutoff: float = 0.0001, cvt_updates: int = 1000000, kmeans_pool: int = 200000, kmeans_rounds: int = 20, seed: int = 0, threads: int = 0) -> None:
+    def __init__(self, *, sampling: Sampling | str = 'low_discrepancy', scale: Scale | str = 'medium', samples: int = 2000, key_scheme: KeyScheme | str = 'reduced', rotation_key: RotationKey | str = 'rotation_vector', rotation_weight: float = 0.0, pinv_cutoff: float = 0.0001, cvt_updates: int = 1000000, seed: int = 0, threads: int = 0) -> None:
         """
         Fields that are not given keep their default.
 
@@ -851,10 +840,8 @@ class DatabaseOptions:
             rotation_weight: Length that one unit of the key's rotation part counts as in the tree's distance [m]; 0: a quarter of the reach.
             pinv_cutoff: Singular values below this part of the largest are cut off in the pseudo-inverses.
             cvt_updates: Updates of MacQueen's method (cvt only).
-            kmeans_pool: Random configurations whose centroids the samples are; only read by kmeans.
-            kmeans_rounds: Rounds in which each of these goes to the nearest sample, and each sample to the mean of its own; only read by kmeans.
-            seed: Seed of all samplings but grid.
-            threads: Threads that build; 0: one per core. The result has the same bits for any number.
+            seed: Seed of the random, cvt and low_discrepancy samplings.
+            threads: Threads that work; 0: one per core. The result has the same bits for any number.
 
         Raises:
             SignatureError: a keyword that is no field.
@@ -862,7 +849,7 @@ class DatabaseOptions:
         """
     def __repr__(self) -> str:
         ...
-    def replace(self, *, sampling: Sampling | str = ..., scale: Scale | str = ..., samples: int = ..., key_scheme: KeyScheme | str = ..., rotation_key: RotationKey | str = ..., rotation_weight: float = ..., pinv_cutoff: float = ..., cvt_updates: int = ..., kmeans_pool: int = ..., kmeans_rounds: int = ..., seed: int = ..., threads: int = ...) -> DatabaseOptions:
+    def replace(self, *, sampling: Sampling | str = ..., scale: Scale | str = ..., samples: int = ..., key_scheme: KeyScheme | str = ..., rotation_key: RotationKey | str = ..., rotation_weight: float = ..., pinv_cutoff: float = ..., cvt_updates: int = ..., seed: int = ..., threads: int = ...) -> DatabaseOptions:
         """
         A copy in which the given fields have another value.
 
@@ -875,10 +862,8 @@ class DatabaseOptions:
             rotation_weight: Length that one unit of the key's rotation part counts as in the tree's distance [m]; 0: a quarter of the reach.
             pinv_cutoff: Singular values below this part of the largest are cut off in the pseudo-inverses.
             cvt_updates: Updates of MacQueen's method (cvt only).
-            kmeans_pool: Random configurations whose centroids the samples are; only read by kmeans.
-            kmeans_rounds: Rounds in which each of these goes to the nearest sample, and each sample to the mean of its own; only read by kmeans.
-            seed: Seed of all samplings but grid.
-            threads: Threads that build; 0: one per core. The result has the same bits for any number.
+            seed: Seed of the random, cvt and low_discrepancy samplings.
+            threads: Threads that work; 0: one per core. The result has the same bits for any number.
 
         Raises:
             SignatureError: a keyword that is no field.
@@ -907,22 +892,6 @@ class DatabaseOptions:
         """
     @key_scheme.setter
     def key_scheme(self, value: KeyScheme | str) -> None:
-        ...
-    @property
-    def kmeans_pool(self) -> int:
-        """
-        Random configurations whose centroids the samples are; only read by kmeans.
-        """
-    @kmeans_pool.setter
-    def kmeans_pool(self, value: int) -> None:
-        ...
-    @property
-    def kmeans_rounds(self) -> int:
-        """
-        Rounds in which each of these goes to the nearest sample, and each sample to the mean of its own; only read by kmeans.
-        """
-    @kmeans_rounds.setter
-    def kmeans_rounds(self, value: int) -> None:
         ...
     @property
     def pinv_cutoff(self) -> float:
@@ -975,7 +944,7 @@ class DatabaseOptions:
     @property
     def seed(self) -> int:
         """
-        Seed of all samplings but grid.
+        Seed of the random, cvt and low_discrepancy samplings.
         """
     @seed.setter
     def seed(self, value: int) -> None:
@@ -983,14 +952,14 @@ class DatabaseOptions:
     @property
     def threads(self) -> int:
         """
-        Threads that build; 0: one per core. The result has the same bits for any number.
+        Threads that work; 0: one per core. The result has the same bits for any number.
         """
     @threads.setter
     def threads(self, value: int) -> None:
         ...
 class Lanes:
     """
-    The recommended strategy: seeds in SIMD lanes, many at once, by Levenberg-Marquardt with the limits inside the step; for an arm with a closed form (Robot.structure) seeds come from that first. Over a database with a full key, and for chains with mimic joints, the same scheme takes one seed at a time.
+    Seeds in SIMD lanes, many at once, by Levenberg-Marquardt with the limits inside the step: the recommended strategy. Where the chain has a closed form (Robot.structure), seeds come from that first. Over a database with a full key, and for chains with mimic joints, which lanes cannot solve, the same scheme takes one seed at a time.
     """
     __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
     def __eq__(self, other: object) -> bool:
@@ -1001,7 +970,7 @@ class Lanes:
 
         Args:
             neighbours: Samples nearest to the target that are all tried, before the better half of the others and seeds at random.
-            damping: Factor on |e|^2, which is added to the diagonal of J J^T.
+            damping: Factor on |e|^2, which is added to the diagonal of J J^T [mixed units].
 
         Raises:
             SignatureError: a keyword that is no field.
@@ -1015,7 +984,7 @@ class Lanes:
 
         Args:
             neighbours: Samples nearest to the target that are all tried, before the better half of the others and seeds at random.
-            damping: Factor on |e|^2, which is added to the diagonal of J J^T.
+            damping: Factor on |e|^2, which is added to the diagonal of J J^T [mixed units].
 
         Raises:
             SignatureError: a keyword that is no field.
@@ -1032,7 +1001,7 @@ class Lanes:
     @property
     def damping(self) -> float:
         """
-        Factor on |e|^2, which is added to the diagonal of J J^T.
+        Factor on |e|^2, which is added to the diagonal of J J^T [mixed units].
         """
     @property
     def neighbours(self) -> int:
@@ -1041,35 +1010,33 @@ class Lanes:
         """
 class Paper:
     """
-    The pipeline of the paper: query, rank, iterate, re-select, one seed at a time. The defaults are the paper's. Enums may be given by name, as in iteration='dls'. A field that the chosen scheme does not read has to be at its default.
+    The pipeline of the paper: query, rank, iterate, re-select, one seed at a time. The defaults are the paper's: k = 200, Eq. (5) of the paper, best 20, farthest first, DLS, KDL's kinematics. Enums may be given by name, as in iteration='dls'. A field that the chosen scheme does not read has to be at its default.
     """
     __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
     def __eq__(self, other: object) -> bool:
         ...
-    def __init__(self, *, neighbours: int = 200, neighbour_radius: float = 0.0, ranking: Ranking | str = 'joint_adjustment', rotation_difference: RotationDifference | str = 'rotation_vector', limit_aware: bool = False, candidates: int = 20, reselection: Reselection | str = 'farthest', iteration: Iteration | str = 'dls', damping: float = 0.0, pinv_cutoff: float = 0.0001, position_clamp: float = 0.1, rotation_clamp: float = 0.3141592653589793, growth_stop: GrowthStop | str = 'by_scheme', min_step: float = 1e-06, limits_stop: bool = False, null_space_gain: float = 0.0, limit_margin: float = 0.1, whole_turns: bool = False, kinematics: Kinematics | str = 'kdl') -> None:
+    def __init__(self, *, neighbours: int = 200, neighbour_radius: float = 0.0, ranking: Ranking | str = 'joint_adjustment', rotation_difference: RotationDifference | str = 'rotation_vector', limit_aware: bool = False, candidates: int = 20, reselection: Reselection | str = 'farthest', iteration: Iteration | str = 'dls', damping: float = 0.0, pinv_cutoff: float = 0.0001, position_clamp: float = 0.1, rotation_clamp: float = 0.3141592653589793, growth_stop: GrowthStop | str = 'by_scheme', min_step: float = 1e-06, limit_margin: float = 0.1, whole_turns: bool = False, kinematics: Kinematics | str = 'kdl') -> None:
         """
         Fields that are not given keep their default.
 
         Args:
             neighbours: Neighbours asked from the KD-tree (k).
-            neighbour_radius: Samples whose key is farther than this from the target's are no seeds: the root of the threshold of Eq. (3), in metres with rotations weighted by the database's rotation_weight. 0: no threshold.
-            ranking: How the neighbours are put in order.
-            rotation_difference: The rotation part of x_target - x_i in Eq. (4); read where seeds are ranked by Eq. (5) or limit-aware.
+            neighbour_radius: Samples whose key is farther than this from the target's are no seeds: the root of the threshold of Eq. (3) of the paper, in metres with rotations weighted by the database's rotation_weight. 0: no threshold.
+            ranking: How the neighbours of a target are put in order.
+            rotation_difference: The rotation part of x_target - x_i in Eq. (4) of the paper; read where seeds are ranked by Eq. (5) of the paper or limit-aware.
             limit_aware: Rank candidates whose predicted q + J^+ e leaves the limits behind all others.
-            candidates: Best candidates kept after ranking; read unless re-selection is 'none'.
+            candidates: Best candidates kept after ranking; read unless re-selection is `none`.
             reselection: Which seed follows a failed one.
-            iteration: Scheme of numerical iteration.
-            damping: dls: added to J J^T; 0: truncated least squares. lm: factor on |e|^2. Read by these two.
+            iteration: One scheme of numerical iteration (paper, Table II).
+            damping: dls: added to J J^T [mixed units]; 0: truncated least squares. lm: factor on |e|^2. Read by these two.
             pinv_cutoff: Singular values below this part of the largest are cut off (dls, pinv, pinv_rr, cwpi).
-            position_clamp: The position error fed to one step is shortened to at most this [m]; by all but lm.
-            rotation_clamp: The rotation error fed to one step is shortened to at most this [rad]; by all but lm.
+            position_clamp: The error fed to one step is shortened to at most this: position [m] and rotation [rad]. Read by all but lm.
+            rotation_clamp: The error fed to one step is shortened to at most this: position [m] and rotation [rad]. Read by all but lm.
             growth_stop: Whether an attempt is given up when both errors have grown.
             min_step: An attempt ends, or that of pinv_rr restarts, when |sum of the step| is below this (dls, pinv, pinv_rr, cwpi) [rad or m].
-            limits_stop: An attempt ends once it is within the tolerances, also outside the limits, instead of going on (dls, pinv, pinv_rr, cwpi; the others always do).
-            null_space_gain: Part of the way to the middle of the limits that each step of a chain of more than six joints makes besides, in the Jacobian's null space (dls, pinv, pinv_rr).
             limit_margin: Part of a joint's range, at each end, in which cwln and cwpi hold it back.
             whole_turns: Bring joints with a range of more than 2 pi inside their limits by whole turns.
-            kinematics: What computes FK and Jacobians.
+            kinematics: What computes FK and Jacobians of the iterations. The kernel agrees to 1e-12, and is faster.
 
         Raises:
             SignatureError: a keyword that is no field.
@@ -1077,30 +1044,28 @@ class Paper:
         """
     def __repr__(self) -> str:
         ...
-    def replace(self, *, neighbours: int = ..., neighbour_radius: float = ..., ranking: Ranking | str = ..., rotation_difference: RotationDifference | str = ..., limit_aware: bool = ..., candidates: int = ..., reselection: Reselection | str = ..., iteration: Iteration | str = ..., damping: float = ..., pinv_cutoff: float = ..., position_clamp: float = ..., rotation_clamp: float = ..., growth_stop: GrowthStop | str = ..., min_step: float = ..., limits_stop: bool = ..., null_space_gain: float = ..., limit_margin: float = ..., whole_turns: bool = ..., kinematics: Kinematics | str = ...) -> Paper:
+    def replace(self, *, neighbours: int = ..., neighbour_radius: float = ..., ranking: Ranking | str = ..., rotation_difference: RotationDifference | str = ..., limit_aware: bool = ..., candidates: int = ..., reselection: Reselection | str = ..., iteration: Iteration | str = ..., damping: float = ..., pinv_cutoff: float = ..., position_clamp: float = ..., rotation_clamp: float = ..., growth_stop: GrowthStop | str = ..., min_step: float = ..., limit_margin: float = ..., whole_turns: bool = ..., kinematics: Kinematics | str = ...) -> Paper:
         """
         A copy in which the given fields have another value.
 
         Args:
             neighbours: Neighbours asked from the KD-tree (k).
-            neighbour_radius: Samples whose key is farther than this from the target's are no seeds: the root of the threshold of Eq. (3), in metres with rotations weighted by the database's rotation_weight. 0: no threshold.
-            ranking: How the neighbours are put in order.
-            rotation_difference: The rotation part of x_target - x_i in Eq. (4); read where seeds are ranked by Eq. (5) or limit-aware.
+            neighbour_radius: Samples whose key is farther than this from the target's are no seeds: the root of the threshold of Eq. (3) of the paper, in metres with rotations weighted by the database's rotation_weight. 0: no threshold.
+            ranking: How the neighbours of a target are put in order.
+            rotation_difference: The rotation part of x_target - x_i in Eq. (4) of the paper; read where seeds are ranked by Eq. (5) of the paper or limit-aware.
             limit_aware: Rank candidates whose predicted q + J^+ e leaves the limits behind all others.
-            candidates: Best candidates kept after ranking; read unless re-selection is 'none'.
+            candidates: Best candidates kept after ranking; read unless re-selection is `none`.
             reselection: Which seed follows a failed one.
-            iteration: Scheme of numerical iteration.
-            damping: dls: added to J J^T; 0: truncated least squares. lm: factor on |e|^2. Read by these two.
+            iteration: One scheme of numerical iteration (paper, Table II).
+            damping: dls: added to J J^T [mixed units]; 0: truncated least squares. lm: factor on |e|^2. Read by these two.
             pinv_cutoff: Singular values below this part of the largest are cut off (dls, pinv, pinv_rr, cwpi).
-            position_clamp: The position error fed to one step is shortened to at most this [m]; by all but lm.
-            rotation_clamp: The rotation error fed to one step is shortened to at most this [rad]; by all but lm.
+            position_clamp: The error fed to one step is shortened to at most this: position [m] and rotation [rad]. Read by all but lm.
+            rotation_clamp: The error fed to one step is shortened to at most this: position [m] and rotation [rad]. Read by all but lm.
             growth_stop: Whether an attempt is given up when both errors have grown.
             min_step: An attempt ends, or that of pinv_rr restarts, when |sum of the step| is below this (dls, pinv, pinv_rr, cwpi) [rad or m].
-            limits_stop: An attempt ends once it is within the tolerances, also outside the limits, instead of going on (dls, pinv, pinv_rr, cwpi; the others always do).
-            null_space_gain: Part of the way to the middle of the limits that each step of a chain of more than six joints makes besides, in the Jacobian's null space (dls, pinv, pinv_rr).
             limit_margin: Part of a joint's range, at each end, in which cwln and cwpi hold it back.
             whole_turns: Bring joints with a range of more than 2 pi inside their limits by whole turns.
-            kinematics: What computes FK and Jacobians.
+            kinematics: What computes FK and Jacobians of the iterations. The kernel agrees to 1e-12, and is faster.
 
         Raises:
             SignatureError: a keyword that is no field.
@@ -1112,17 +1077,17 @@ class Paper:
         """
     def validate(self) -> None:
         """
-        Raises InvalidArgumentError naming the first option that is out of range, or that is set though nothing reads it.
+        Raises InvalidArgumentError naming the first option that is out of range, or that differs from its default though nothing reads it.
         """
     @property
     def candidates(self) -> int:
         """
-        Best candidates kept after ranking; read unless re-selection is 'none'.
+        Best candidates kept after ranking; read unless re-selection is `none`.
         """
     @property
     def damping(self) -> float:
         """
-        dls: added to J J^T; 0: truncated least squares. lm: factor on |e|^2. Read by these two.
+        dls: added to J J^T [mixed units]; 0: truncated least squares. lm: factor on |e|^2. Read by these two.
         """
     @property
     def growth_stop(self) -> GrowthStop:
@@ -1132,12 +1097,12 @@ class Paper:
     @property
     def iteration(self) -> Iteration:
         """
-        Scheme of numerical iteration.
+        One scheme of numerical iteration (paper, Table II).
         """
     @property
     def kinematics(self) -> Kinematics:
         """
-        What computes FK and Jacobians.
+        What computes FK and Jacobians of the iterations. The kernel agrees to 1e-12, and is faster.
         """
     @property
     def limit_aware(self) -> bool:
@@ -1150,11 +1115,6 @@ class Paper:
         Part of a joint's range, at each end, in which cwln and cwpi hold it back.
         """
     @property
-    def limits_stop(self) -> bool:
-        """
-        An attempt ends once it is within the tolerances, also outside the limits, instead of going on (dls, pinv, pinv_rr, cwpi; the others always do).
-        """
-    @property
     def min_step(self) -> float:
         """
         An attempt ends, or that of pinv_rr restarts, when |sum of the step| is below this (dls, pinv, pinv_rr, cwpi) [rad or m].
@@ -1162,17 +1122,12 @@ class Paper:
     @property
     def neighbour_radius(self) -> float:
         """
-        Samples whose key is farther than this from the target's are no seeds: the root of the threshold of Eq. (3), in metres with rotations weighted by the database's rotation_weight. 0: no threshold.
+        Samples whose key is farther than this from the target's are no seeds: the root of the threshold of Eq. (3) of the paper, in metres with rotations weighted by the database's rotation_weight. 0: no threshold.
         """
     @property
     def neighbours(self) -> int:
         """
         Neighbours asked from the KD-tree (k).
-        """
-    @property
-    def null_space_gain(self) -> float:
-        """
-        Part of the way to the middle of the limits that each step of a chain of more than six joints makes besides, in the Jacobian's null space (dls, pinv, pinv_rr).
         """
     @property
     def pinv_cutoff(self) -> float:
@@ -1182,12 +1137,12 @@ class Paper:
     @property
     def position_clamp(self) -> float:
         """
-        The position error fed to one step is shortened to at most this [m]; by all but lm.
+        The error fed to one step is shortened to at most this: position [m] and rotation [rad]. Read by all but lm.
         """
     @property
     def ranking(self) -> Ranking:
         """
-        How the neighbours are put in order.
+        How the neighbours of a target are put in order.
         """
     @property
     def reselection(self) -> Reselection:
@@ -1197,12 +1152,12 @@ class Paper:
     @property
     def rotation_clamp(self) -> float:
         """
-        The rotation error fed to one step is shortened to at most this [rad]; by all but lm.
+        The error fed to one step is shortened to at most this: position [m] and rotation [rad]. Read by all but lm.
         """
     @property
     def rotation_difference(self) -> RotationDifference:
         """
-        The rotation part of x_target - x_i in Eq. (4); read where seeds are ranked by Eq. (5) or limit-aware.
+        The rotation part of x_target - x_i in Eq. (4) of the paper; read where seeds are ranked by Eq. (5) of the paper or limit-aware.
         """
     @property
     def whole_turns(self) -> bool:
@@ -1211,13 +1166,13 @@ class Paper:
         """
 class SolverOptions:
     """
-    All settings of a Solver. SolverOptions() is the recommended preset, SolverOptions.paper() the paper. What only one strategy reads is a field of that: SolverOptions(strategy=Paper(iteration='dls')).
+    All settings of a Solver. SolverOptions() is the recommended preset, SolverOptions.paper() the paper. What only one strategy reads is a field of that. As in SolverOptions(strategy=Paper(iteration='dls')).
     """
     __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
     @staticmethod
-    def paper(year: int = 2025) -> SolverOptions:
+    def paper() -> SolverOptions:
         """
-        The paper's setting: medium grid, the defaults of Paper, one re-selection, 1e-4 m and 1e-3 rad. Of 2026: its authors' newer one, as their repository wanweiwei07/one runs it at commit 96c863f1. Raises InvalidArgumentError on another year.
+        The paper's setting: medium grid, the defaults of Paper, one re-selection, 1e-4 m and 1e-3 rad.
         """
     def __eq__(self, other: object) -> bool:
         ...
@@ -1229,7 +1184,7 @@ class SolverOptions:
             position_tolerance: An answer's position is at most this far from the target's [m].
             rotation_tolerance: An answer's rotation vector error is at most this long [rad].
             task: What of a pose has to be reached: all of it, or a box with free axes.
-            max_attempts: Seeds tried at most: 1 + the number of re-selections. Given seeds come on top.
+            max_attempts: Seeds tried at most: 1 + the number of re-selections (#ReA). Given seeds come on top.
             max_iterations: Steps per attempt at most.
             seed: Seed of random restarts.
             database: Database that a solver builds for itself when it is given none.
@@ -1249,7 +1204,7 @@ class SolverOptions:
             position_tolerance: An answer's position is at most this far from the target's [m].
             rotation_tolerance: An answer's rotation vector error is at most this long [rad].
             task: What of a pose has to be reached: all of it, or a box with free axes.
-            max_attempts: Seeds tried at most: 1 + the number of re-selections. Given seeds come on top.
+            max_attempts: Seeds tried at most: 1 + the number of re-selections (#ReA). Given seeds come on top.
             max_iterations: Steps per attempt at most.
             seed: Seed of random restarts.
             database: Database that a solver builds for itself when it is given none.
@@ -1278,7 +1233,7 @@ class SolverOptions:
     @property
     def max_attempts(self) -> int:
         """
-        Seeds tried at most: 1 + the number of re-selections. Given seeds come on top.
+        Seeds tried at most: 1 + the number of re-selections (#ReA). Given seeds come on top.
         """
     @max_attempts.setter
     def max_attempts(self, value: int) -> None:
@@ -1333,7 +1288,7 @@ class SolverOptions:
         ...
 class Database:
     """
-    An immutable set of samples (q_i, x_i, J_i^+) of a robot under a KD-tree. Safe to use from many threads at once.
+    An immutable set of samples (q_i, x_i, J_i^+); copies are cheap and share the data. Safe to use from many threads at once.
     """
     @staticmethod
     def build(robot: Robot, options: DatabaseOptions | collections.abc.Mapping[str, typing.Any] = ..., progress: collections.abc.Callable[[int, int], typing.Any] | None = None) -> Database:
@@ -1385,11 +1340,11 @@ class Database:
         ...
     def nearest(self, pose: numpy.typing.ArrayLike | typing.Any, k: int) -> numpy.typing.NDArray[numpy.int64]:
         """
-        Indices of the k samples whose keys are nearest to that of a (4, 4) pose of the tip link, nearest first; Eq. (2) of the paper.
+        Indices of the k samples whose keys are nearest to that of T_base_tip (of the tip link), nearest first; Eq. (2) of the paper.
         """
     def pose(self, i: int) -> numpy.typing.NDArray[numpy.float64]:
         """
-        T_base_tip of sample i, of the tip link without the TCP, (4, 4).
+        T_base_tip of sample i, (4, 4), of the tip link without the TCP.
         """
     def pseudo_inverse(self, i: int) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -1410,7 +1365,7 @@ class Database:
         """
     def to_bytes(self) -> bytes:
         """
-        The content of a file, for sending.
+        The content of a file, for pickling and sending.
         """
     @property
     def chain_hash(self) -> int:
@@ -1435,7 +1390,7 @@ class Database:
     @property
     def options(self) -> DatabaseOptions:
         """
-        A copy of the options it was built with.
+        Options it was built with (`threads` as given then).
         """
     @property
     def size(self) -> int:
@@ -1444,7 +1399,7 @@ class Database:
         """
 class RobotSpheres:
     """
-    Spheres that cover the links of a robot, and which links may not touch each other; made by iksel.spheres.
+    Spheres that cover the links of a robot, and which links may not touch each other. Spheres that cover a link may refuse a configuration that is free, but never pass a contact.
     """
     def __init__(self, links: collections.abc.Mapping[str, numpy.typing.ArrayLike], pairs: collections.abc.Iterable[tuple[str, str]] | None = None) -> None:
         """
@@ -1506,7 +1461,7 @@ class Obstacle:
     @property
     def length(self) -> float:
         """
-        capsule: of its segment; cylinder [m].
+        capsule: of the segment; cylinder [m].
         """
     @property
     def margin(self) -> float:
@@ -1516,7 +1471,7 @@ class Obstacle:
     @property
     def points(self) -> numpy.typing.NDArray[numpy.float64] | None:
         """
-        In the obstacle's frame, (N, 3) [m]; None of others.
+        In the obstacle's frame [m], (n, 3). None of other shapes.
         """
     @property
     def pose(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -1531,18 +1486,18 @@ class Obstacle:
     @property
     def shape(self) -> str:
         """
-        'sphere', 'box', 'capsule', 'cylinder', 'half_space' or 'points'.
+        What it is: sphere, box, capsule, cylinder, half_space or points.
         """
     @property
     def size(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        box: edges, (3,) [m].
+        box: edges [m], (3,).
         """
 class Scene:
     """
-    A robot's body and what it may not touch: obstacles, objects that it carries, itself.
+    A robot's body and what it may not touch. A value: copies share what neither of them changes, and one does not see what is done to another. Safe to use from many threads at once as long as none changes it.
 
-    A value: a copy does not see what is done to another, and a solve takes it as it is then. Links that no joint of the arm moves are not held against obstacles.
+    The arm is where its spheres are, so that what is free has no contact as long as they cover it. Links that no joint of the arm moves are not held against obstacles, which stand as still.
     """
     def __copy__(self) -> Scene:
         ...
@@ -1745,7 +1700,7 @@ class ObjectiveKind(enum.Enum):
         ...
 class Objective:
     """
-    What an answer is to be good at besides reaching the target: a cost of joint values, the smaller the better. Of all answers found the cheapest is taken; where the arm is free to move (more joints than fixed axes) the best are first moved along their self-motion to a local minimum of the cost. Immutable.
+    A cost of joint values, the smaller the better. Among all answers found the cheapest is taken; where the task leaves the arm free to move (more joints than fixed axes) the best are first moved along their self-motion to a local minimum of the cost. Immutable.
     """
     @staticmethod
     def custom(cost: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any], gradient: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None) -> Objective:
@@ -1755,7 +1710,7 @@ class Objective:
     @staticmethod
     def far_from_limits() -> Objective:
         """
-        Far from the limits: sum 1/4 (1/x_i + 1/(1 - x_i)), x_i in 0 .. 1 the place between them (Zghal, Dubey and Euler 1990).
+        Far from the limits: sum 1/4 (1/x_i + 1/(1 - x_i)), x_i in 0 .. 1 the place between them; joints without limits do not count (Zghal, Dubey and Euler 1990).
         """
     @staticmethod
     def most_manipulable() -> Objective:
@@ -1765,12 +1720,12 @@ class Objective:
     @staticmethod
     def near_posture(posture: numpy.typing.ArrayLike, weights: numpy.typing.ArrayLike | None = None) -> Objective:
         """
-        Near joint values (dof,) [rad or m], inside the limits or not: 1/2 sum (w_i (q_i - posture_i))^2, weights (dof,), >= 0; None: all 1.
+        Near joint values [rad or m], inside the limits or not: 1/2 sum (w_i (q_i - posture_i))^2, weights >= 0, or all 1. Both are (dof,).
         """
     @staticmethod
     def preferred(robot: Robot, values: collections.abc.Mapping[str, float], weights: collections.abc.Mapping[str, float] | None = None) -> Objective:
         """
-        Some joints, as a rail or a turntable, at a value where that is possible, else as near to it as may be: near_posture with weights of these joints only. Values by joint name [rad or m], and weights, > 0, of those that are to have another than 1. Between answers that are equally good `near` decides, or else the middle of the limits.
+        Some joints, as a rail or a turntable, at a value where that is possible, else as near to it as may be: near_posture with weights of these joints only. Values by joint [rad or m], and weights, > 0, of those that are to have another than 1. Between answers that are equally good the request's `near` decides, or else the middle of the limits. Raises UnknownNameError naming a joint that the robot does not have, InvalidArgumentError a number that is no good.
         """
     def __repr__(self) -> str:
         ...
@@ -1814,7 +1769,7 @@ class Proof(enum.IntEnum):
 @typing.type_check_only
 class _Result:
     """
-    Answer to one target, true if it is one. Everything in it is measured on the returned q.
+    Answer to one target, or to one of each tip. Everything in it is measured on the returned q, not predicted; errors are the largest of all tips. True if it is one.
     """
     def __repr__(self) -> str:
         ...
@@ -1823,12 +1778,12 @@ class _Result:
     @property
     def attempts(self) -> int:
         """
-        Seeds tried.
+        Seeds tried; of several tips, values of the joints that they share among them.
         """
     @property
     def cost(self) -> float:
         """
-        Cost of q by the objective; NaN without one.
+        Cost of q by the request's objective; NaN unless solved with one.
         """
     @property
     def iterations(self) -> int:
@@ -1838,12 +1793,12 @@ class _Result:
     @property
     def move(self) -> float:
         """
-        Length of the move from `near`, by its norm and weights; NaN without one.
+        Length of the move from `near` to q, by the request's norm and weights; NaN without a q or a `near`.
         """
     @property
     def position_error(self) -> float:
         """
-        Distance to the target [m]; NaN without a q.
+        |p_target - p(q)| [m], or what of it a task does not allow; NaN unless there is a q.
         """
     @property
     def proof(self) -> Proof:
@@ -1858,7 +1813,7 @@ class _Result:
     @property
     def rotation_error(self) -> float:
         """
-        Length of the rotation vector to the target [rad]; NaN without a q.
+        |rotvec(R_target R(q)^T)| [rad], or what of it a task does not allow; NaN unless there is a q.
         """
     @property
     def status(self) -> Status:
@@ -1875,7 +1830,7 @@ class _Solved(_Result):
     @property
     def q(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Joint values [rad or m], (dof,), read-only; None unless solved, or closest, for those who ask for it.
+        Joint values [rad or m], (dof,); None unless solved, so that no other q can be taken for an answer, or `closest`, which is given to those only who ask for it. Read-only.
         """
     @property
     def success(self) -> typing.Literal[True]:
@@ -1889,7 +1844,7 @@ class _Unsolved(_Result):
     @property
     def q(self) -> None:
         """
-        Joint values [rad or m], (dof,), read-only; None unless solved, or closest, for those who ask for it.
+        Joint values [rad or m], (dof,); None unless solved, so that no other q can be taken for an answer, or `closest`, which is given to those only who ask for it. Read-only.
         """
     @property
     def success(self) -> typing.Literal[False]:
@@ -1926,37 +1881,37 @@ class BatchResult:
     @property
     def attempts(self) -> numpy.typing.NDArray[numpy.int32]:
         """
-        Seeds tried, (N,).
+        Seeds tried, (n,).
         """
     @property
     def iterations(self) -> numpy.typing.NDArray[numpy.int32]:
         """
-        Iteration steps over all attempts, (N,).
+        Iteration steps over all attempts, (n,).
         """
     @property
     def move(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Lengths of the moves from `near`, (N,); NaN where not solved or without one.
+        Lengths of the moves from `near`, (n,); NaN where not solved or without one.
         """
     @property
     def position_error(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Distances to the targets [m], (N,); NaN where not solved.
+        Distances to the targets [m], (n,); NaN where not solved.
         """
     @property
     def proof(self) -> numpy.typing.NDArray[numpy.uint8]:
         """
-        Values of Proof, (N,); that of `answer` where solved.
+        Values of Proof, (n,); that of `answer` where solved.
         """
     @property
     def q(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Joint values [rad or m], (N, dof); NaN where not solved.
+        Joint values [rad or m], (n, dof); NaN where not solved.
         """
     @property
     def rotation_error(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Lengths of the rotation vectors to the targets [rad], (N,); NaN where not solved.
+        Lengths of the rotation vectors to the targets [rad], (n,); NaN where not solved.
         """
     @property
     def solved(self) -> int:
@@ -1966,12 +1921,12 @@ class BatchResult:
     @property
     def status(self) -> numpy.typing.NDArray[numpy.uint8]:
         """
-        Values of Status, (N,).
+        Values of Status, (n,).
         """
     @property
     def success(self) -> numpy.typing.NDArray[numpy.bool_]:
         """
-        Whether each target is solved, (N,).
+        Whether each target is solved, (n,).
         """
 class Cause(enum.Enum):
     """
@@ -1994,7 +1949,7 @@ class Cause(enum.Enum):
         ...
 class Diagnosis:
     """
-    What Solver.diagnose found; true if q_is_solution. Numbers that do not belong to the cause are NaN.
+    What Solver.diagnose found. Numbers that do not belong to the cause are NaN. True if q_is_solution.
     """
     def __bool__(self) -> bool:
         ...
@@ -2013,7 +1968,7 @@ class Diagnosis:
     @property
     def branch(self) -> numpy.typing.NDArray[numpy.float64] | None:
         """
-        joint_limits: that answer, which reaches the target outside the limits, (dof,) [rad or m]; None otherwise.
+        joint_limits: that answer, which reaches the target outside the limits [rad or m], (dof,). None: another cause.
         """
     @property
     def cause(self) -> Cause:
@@ -2023,7 +1978,7 @@ class Diagnosis:
     @property
     def contacts(self) -> list[Contact]:
         """
-        collision: what touches at q, the answer that collides least, the deepest first; empty otherwise.
+        collision: what touches at `q`, the answer that collides least, the deepest first; else empty.
         """
     @property
     def coupled_limit(self) -> int:
@@ -2038,7 +1993,7 @@ class Diagnosis:
     @property
     def least_singular_value(self) -> float:
         """
-        Least singular value of the Jacobian at q [mixed units]: small where it is close to a singularity.
+        Least singular value of the Jacobian at `q` [mixed units]: small where it is close to a singularity.
         """
     @property
     def limit_violation(self) -> float:
@@ -2053,12 +2008,12 @@ class Diagnosis:
     @property
     def position_error(self) -> float:
         """
-        Position error of q [m].
+        Errors of q outside of the task's box: position [m] and rotation [rad].
         """
     @property
     def proof(self) -> Proof:
         """
-        How certain it is that there is no answer, as Result.proof; `answer` if there is one.
+        As Result.proof of a solve: `answer` if there is one, else that there is none.
         """
     @property
     def proven(self) -> bool:
@@ -2068,7 +2023,7 @@ class Diagnosis:
     @property
     def q(self) -> numpy.typing.NDArray[numpy.float64] | None:
         """
-        Best effort inside the limits, (dof,) [rad or m]. NO SOLUTION unless q_is_solution.
+        Best effort inside the limits [rad or m], (dof,). NO SOLUTION unless q_is_solution, as where `cause` is none, singular, budget or out_of_time.
         """
     @property
     def q_is_solution(self) -> bool:
@@ -2083,7 +2038,7 @@ class Diagnosis:
     @property
     def rotation_error(self) -> float:
         """
-        Rotation error of q [rad].
+        Errors of q outside of the task's box: position [m] and rotation [rad].
         """
     @property
     def rotation_gap(self) -> float:
@@ -2118,7 +2073,7 @@ class SolutionOrder(enum.Enum):
         ...
 class Solver:
     """
-    Solves inverse kinematics for one robot. Immutable, safe to use from many threads at once; the same input gives the same bits.
+    Solves inverse kinematics for one robot, with one tip or several. Immutable; copies share the data. Safe to use from many threads at once, and the same input gives the same bits from any of them. Solving allocates nothing on the heap as long as no more threads solve at once than the machine has cores.
     """
     def __copy__(self) -> Solver:
         ...
@@ -2146,10 +2101,7 @@ class Solver:
         ...
     def chain_solver(self, tip: int) -> Solver:
         """
-        The Solver of one tip's chain by itself; tips count from 0.
-
-        Raises:
-            InvalidArgumentError: no such tip.
+        The solver of one tip's chain by itself; tips count from 0. Raises InvalidArgumentError if there is no such tip.
         """
     def diagnose(self, pose: numpy.typing.ArrayLike | typing.Any, *, scene: Scene | None = None, exact: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, tasks: collections.abc.Sequence[Task | collections.abc.Mapping[str, typing.Any]] | None = None, in_frame_of: collections.abc.Sequence[int | None] | None = None) -> Diagnosis:
         """
@@ -2159,23 +2111,26 @@ class Solver:
 
         Args:
             pose: T_base_tip [m], as in solve.
-            scene: what answers may not collide with; of a robot with the same chains. The search continues
-                within its bounds while all collide.
-            exact: a second opinion on the scene, an iksel.exact.ExactCollision of it: called with
-                candidates (n, dof) that collide by the scene's spheres, returns n truth values, which of
-                them are free all the same.
-            filter: called with candidates (n, dof), each at the pose, inside the limits and free in the
-                scene; returns n truth values. The search continues within its bounds while all are refused.
-                In a batch it is asked about the first answers of up to 256 targets at once, along a path
-                about one waypoint's.
-            deadline: wall-clock time after which the search for a target ends [s]; checked between its
-                stages.
-            task: what of the pose has to be reached, of several tips of each; None: what the solver's
-                options say.
-            tasks: of several tips, a Task for each in the place of `task`.
+            scene: what answers may not collide with, as it is when the solve begins; of a robot with the
+                same chains. The search continues within its bounds while all collide. The moves between
+                waypoints of a path are not looked at.
+            exact: a second opinion, which is asked about what collides in the scene by its spheres: what
+                this keeps is free. Where nothing is free by spheres, it is asked about what a search finds
+                within its bounds. Only with a scene. None: the spheres decide. Called with candidates (n,
+                dof), returns n truth values, which of them are free: an iksel.exact.ExactCollision.
+            filter: refuses candidates, of those that do not collide. The search continues within its bounds
+                while all are refused. Of a batch it is asked about the first answers of up to 256 targets
+                at once, of a path about one waypoint's. None: takes all. Called with candidates (n, dof),
+                each at the pose and inside the limits, returns n truth values.
+            deadline: wall-clock time after which no new stage of the search begins [s], above 0. What was
+                found by then is judged. The one option under which the same input may give different
+                answers.
+            task: what of the pose has to be reached, of several tips of each; what is not given here is as
+                the solver's options say.
+            tasks: of several tips, one for each in the place of `task`. None: `task` holds for all.
             in_frame_of: of several tips, for each the number of the tip in whose frame, that of its TCP,
-                its pose is given; None: in the base frame. So two hands keep what they carry between them.
-                No tip may follow itself by way of others.
+                its pose is given; None: in the base frame, as all are if this is empty. So two hands keep
+                what they carry between them. No tip may follow itself by way of others.
 
         Returns:
             A Diagnosis; its cause is `none` if there is an answer.
@@ -2213,46 +2168,55 @@ class Solver:
                 spatialmath); (3,) if the task leaves the rotation free. One that is rounded stands for the
                 nearest rigid one (see check_pose), by which the errors are measured. Of several tips, (k,
                 4, 4) or k of these.
-            near: configuration to stay near, (dof,) [rad or m], for a batch also (N, dof), one for each
-                target; may lie outside the limits. The answer is the one with the smallest joint move of
-                all that are found, whole turns considered; a redundant arm's is moved along its self-motion
-                to where the move is smallest. Angles here, in `seeds` and in a posture that are too large
-                for a double to tell poses apart to a tenth of the tolerances are refused: 1.5e8 rad for an
-                arm of six joints and 1 m at the default tolerances, never less than 100 rad.
-            weights: factor on each joint's part of a move, (dof,), >= 0; None: all 1.
+            near: configuration to stay near [rad or m], (dof,), typically where the arm is. May lie outside
+                the limits, as measured joint values do. The answer is then the one with the smallest move
+                of all that are found within the bounds on work, whole turns considered; a redundant arm's
+                is moved along its self-motion to a local minimum of the move. Angles here, in `seeds` and
+                the objective's posture are refused where their rounding alone could move the TCP by a tenth
+                of the tolerances: beyond 2^53 / 10 min(rotation_tolerance, position_tolerance / reach) /
+                (number of joints that turn), 1.5e8 rad for an arm of six joints with 1 m of reach at the
+                default tolerances; up to 100 rad always pass. Of a batch one for all targets, or (N, dof),
+                one for each.
+            weights: factor on each joint's part of a move, (dof,), >= 0 and not all 0 (so that radians and
+                metres can be compared); None: all 1.
             norm: how a move is measured.
-            seeds: joint values to iterate from, (dof,) or (N, dof) [rad or m]; may lie outside the limits.
-                They are ranked as the database's seeds, and tried before them: up to max_attempts, and as
-                many of the database's on top.
+            seeds: joint values of any origin to iterate from [rad or m], (n, dof), inside the limits or
+                not. They are ranked and iterated as the database's own, and come before those; re-selection
+                is among the best Paper.candidates of them, and SolverOptions.max_attempts bounds how many
+                are tried, and how many of the database's after them. Ranking n takes time n log n, ends at
+                the deadline, and up to 1,024 need no memory. One may be (dof,).
             database_seeds: whether other seeds follow the given ones: the database's, random ones, and
-                those that a closed form gives.
-            scene: what answers may not collide with; of a robot with the same chains. The search continues
-                within its bounds while all collide.
-            exact: a second opinion on the scene, an iksel.exact.ExactCollision of it: called with
-                candidates (n, dof) that collide by the scene's spheres, returns n truth values, which of
-                them are free all the same.
-            filter: called with candidates (n, dof), each at the pose, inside the limits and free in the
-                scene; returns n truth values. The search continues within its bounds while all are refused.
-                In a batch it is asked about the first answers of up to 256 targets at once, along a path
-                about one waypoint's.
-            deadline: wall-clock time after which the search for a target ends [s]; checked between its
-                stages.
-            task: what of the pose has to be reached, of several tips of each; None: what the solver's
-                options say.
-            objective: what the answer is to be good at besides: an Objective, 'limits', 'manipulability',
-                or a function of joint values (dof,) that returns a cost. Comes before `near`. Of the
-                answers found, the cheapest; a redundant arm's is moved along its self-motion to a local
-                minimum.
-            closest: what a target without an answer gets, with Status.closest: the configuration inside the
-                limits that is nearest to it, the best of the local minima that a bounded search comes to.
-                True: a metre counts 1, a radian as the database weighs rotations, by default a quarter of
-                the arm's reach in metres. Or six weights, of position [1/m] and rotation [1/rad] along the
-                axes of the task. Of equally near ones the nearest to `near`. Takes some 100 us on top,
-                whatever the deadline; a scene and a filter refuse it too.
-            tasks: of several tips, a Task for each in the place of `task`.
+                those that a closed form gives (Robot.structure).
+            scene: what answers may not collide with, as it is when the solve begins; of a robot with the
+                same chains. The search continues within its bounds while all collide. The moves between
+                waypoints of a path are not looked at.
+            exact: a second opinion, which is asked about what collides in the scene by its spheres: what
+                this keeps is free. Where nothing is free by spheres, it is asked about what a search finds
+                within its bounds. Only with a scene. None: the spheres decide. Called with candidates (n,
+                dof), returns n truth values, which of them are free: an iksel.exact.ExactCollision.
+            filter: refuses candidates, of those that do not collide. The search continues within its bounds
+                while all are refused. Of a batch it is asked about the first answers of up to 256 targets
+                at once, of a path about one waypoint's. None: takes all. Called with candidates (n, dof),
+                each at the pose and inside the limits, returns n truth values.
+            deadline: wall-clock time after which no new stage of the search begins [s], above 0. What was
+                found by then is judged. The one option under which the same input may give different
+                answers.
+            task: what of the pose has to be reached, of several tips of each; what is not given here is as
+                the solver's options say.
+            objective: what the answer is to be good at besides; comes before `near`, which then only
+                measures the move, and chooses among periodic images that cost the same. An Objective,
+                'limits', 'manipulability', or a function of joint values (dof,) that returns a cost.
+            closest: of solve and solve_batch: what a target without an answer gets, with Status.closest, is
+                the configuration inside the limits that is nearest to it by these weights; of equally near
+                ones the nearest to `near`. It is the best of the local minima that a bounded search comes
+                to, some 100 us on top of the search for an answer, whatever the deadline. The scene and the
+                filter refuse it too; the objective has no say. None: it gets nothing. True: a metre counts
+                1, a radian as the database weighs rotations; or six weights, of position [1/m] and rotation
+                [1/rad] along the axes of the task.
+            tasks: of several tips, one for each in the place of `task`. None: `task` holds for all.
             in_frame_of: of several tips, for each the number of the tip in whose frame, that of its TCP,
-                its pose is given; None: in the base frame. So two hands keep what they carry between them.
-                No tip may follow itself by way of others.
+                its pose is given; None: in the base frame, as all are if this is empty. So two hands keep
+                what they carry between them. No tip may follow itself by way of others.
 
         Returns:
             A Result. A pose that cannot be solved is no error but a status, and `proof` says how certain
@@ -2269,44 +2233,55 @@ class Solver:
         Args:
             pose: T_base_tip [m], as in solve.
             max: solutions given at most.
-            min_distance: solutions that differ by less in every joint are one [rad or m].
-            whole_turns: whether periodic images inside the limits count as solutions of their own;
-                otherwise each comes once, at the image nearest to `near` or to the middle of the limits.
-            order: what comes first; left alone where there is an objective, which decides it then.
-            near: configuration to stay near, (dof,) [rad or m], for a batch also (N, dof), one for each
-                target; may lie outside the limits. The answer is the one with the smallest joint move of
-                all that are found, whole turns considered; a redundant arm's is moved along its self-motion
-                to where the move is smallest. Angles here, in `seeds` and in a posture that are too large
-                for a double to tell poses apart to a tenth of the tolerances are refused: 1.5e8 rad for an
-                arm of six joints and 1 m at the default tolerances, never less than 100 rad.
-            weights: factor on each joint's part of a move, (dof,), >= 0; None: all 1.
+            min_distance: solutions that differ by less than this in every joint are one [rad or m]; a
+                redundant arm's, which come in families, are spread at least this far.
+            whole_turns: whether periodic images inside the limits count as solutions of their own.
+                Otherwise each is given once: at the image nearest to `near`, or else to the middle of the
+                limits.
+            order: what comes first. Left at `move` where the request has an objective: solutions then come
+                in the order of that.
+            near: configuration to stay near [rad or m], (dof,), typically where the arm is. May lie outside
+                the limits, as measured joint values do. The answer is then the one with the smallest move
+                of all that are found within the bounds on work, whole turns considered; a redundant arm's
+                is moved along its self-motion to a local minimum of the move. Angles here, in `seeds` and
+                the objective's posture are refused where their rounding alone could move the TCP by a tenth
+                of the tolerances: beyond 2^53 / 10 min(rotation_tolerance, position_tolerance / reach) /
+                (number of joints that turn), 1.5e8 rad for an arm of six joints with 1 m of reach at the
+                default tolerances; up to 100 rad always pass. Of a batch one for all targets, or (N, dof),
+                one for each.
+            weights: factor on each joint's part of a move, (dof,), >= 0 and not all 0 (so that radians and
+                metres can be compared); None: all 1.
             norm: how a move is measured.
-            seeds: joint values to iterate from, (dof,) or (N, dof) [rad or m]; may lie outside the limits.
-                They are ranked as the database's seeds, and tried before them: up to max_attempts, and as
-                many of the database's on top.
+            seeds: joint values of any origin to iterate from [rad or m], (n, dof), inside the limits or
+                not. They are ranked and iterated as the database's own, and come before those; re-selection
+                is among the best Paper.candidates of them, and SolverOptions.max_attempts bounds how many
+                are tried, and how many of the database's after them. Ranking n takes time n log n, ends at
+                the deadline, and up to 1,024 need no memory. One may be (dof,).
             database_seeds: whether other seeds follow the given ones: the database's, random ones, and
-                those that a closed form gives.
-            scene: what answers may not collide with; of a robot with the same chains. The search continues
-                within its bounds while all collide.
-            exact: a second opinion on the scene, an iksel.exact.ExactCollision of it: called with
-                candidates (n, dof) that collide by the scene's spheres, returns n truth values, which of
-                them are free all the same.
-            filter: called with candidates (n, dof), each at the pose, inside the limits and free in the
-                scene; returns n truth values. The search continues within its bounds while all are refused.
-                In a batch it is asked about the first answers of up to 256 targets at once, along a path
-                about one waypoint's.
-            deadline: wall-clock time after which the search for a target ends [s]; checked between its
-                stages.
-            task: what of the pose has to be reached, of several tips of each; None: what the solver's
-                options say.
-            objective: what the answer is to be good at besides: an Objective, 'limits', 'manipulability',
-                or a function of joint values (dof,) that returns a cost. Comes before `near`. Of the
-                answers found, the cheapest; a redundant arm's is moved along its self-motion to a local
-                minimum.
-            tasks: of several tips, a Task for each in the place of `task`.
+                those that a closed form gives (Robot.structure).
+            scene: what answers may not collide with, as it is when the solve begins; of a robot with the
+                same chains. The search continues within its bounds while all collide. The moves between
+                waypoints of a path are not looked at.
+            exact: a second opinion, which is asked about what collides in the scene by its spheres: what
+                this keeps is free. Where nothing is free by spheres, it is asked about what a search finds
+                within its bounds. Only with a scene. None: the spheres decide. Called with candidates (n,
+                dof), returns n truth values, which of them are free: an iksel.exact.ExactCollision.
+            filter: refuses candidates, of those that do not collide. The search continues within its bounds
+                while all are refused. Of a batch it is asked about the first answers of up to 256 targets
+                at once, of a path about one waypoint's. None: takes all. Called with candidates (n, dof),
+                each at the pose and inside the limits, returns n truth values.
+            deadline: wall-clock time after which no new stage of the search begins [s], above 0. What was
+                found by then is judged. The one option under which the same input may give different
+                answers.
+            task: what of the pose has to be reached, of several tips of each; what is not given here is as
+                the solver's options say.
+            objective: what the answer is to be good at besides; comes before `near`, which then only
+                measures the move, and chooses among periodic images that cost the same. An Objective,
+                'limits', 'manipulability', or a function of joint values (dof,) that returns a cost.
+            tasks: of several tips, one for each in the place of `task`. None: `task` holds for all.
             in_frame_of: of several tips, for each the number of the tip in whose frame, that of its TCP,
-                its pose is given; None: in the base frame. So two hands keep what they carry between them.
-                No tip may follow itself by way of others.
+                its pose is given; None: in the base frame, as all are if this is empty. So two hands keep
+                what they carry between them. No tip may follow itself by way of others.
 
         Returns:
             Solutions; empty, with a status that says why, if there is none.
@@ -2326,49 +2301,59 @@ class Solver:
 
         Args:
             poses: T_base_tip, (N, 4, 4) [m], or others as in solve. Doubles in C order are read in place.
-            threads: 0: one per core.
-            near: configuration to stay near, (dof,) [rad or m], for a batch also (N, dof), one for each
-                target; may lie outside the limits. The answer is the one with the smallest joint move of
-                all that are found, whole turns considered; a redundant arm's is moved along its self-motion
-                to where the move is smallest. Angles here, in `seeds` and in a posture that are too large
-                for a double to tell poses apart to a tenth of the tolerances are refused: 1.5e8 rad for an
-                arm of six joints and 1 m at the default tolerances, never less than 100 rad.
-            weights: factor on each joint's part of a move, (dof,), >= 0; None: all 1.
+            threads: threads that work; 0: one per core. The result has the same bits for any number.
+            near: configuration to stay near [rad or m], (dof,), typically where the arm is. May lie outside
+                the limits, as measured joint values do. The answer is then the one with the smallest move
+                of all that are found within the bounds on work, whole turns considered; a redundant arm's
+                is moved along its self-motion to a local minimum of the move. Angles here, in `seeds` and
+                the objective's posture are refused where their rounding alone could move the TCP by a tenth
+                of the tolerances: beyond 2^53 / 10 min(rotation_tolerance, position_tolerance / reach) /
+                (number of joints that turn), 1.5e8 rad for an arm of six joints with 1 m of reach at the
+                default tolerances; up to 100 rad always pass. Of a batch one for all targets, or (N, dof),
+                one for each.
+            weights: factor on each joint's part of a move, (dof,), >= 0 and not all 0 (so that radians and
+                metres can be compared); None: all 1.
             norm: how a move is measured.
-            seeds: joint values to iterate from, (dof,) or (N, dof) [rad or m]; may lie outside the limits.
-                They are ranked as the database's seeds, and tried before them: up to max_attempts, and as
-                many of the database's on top.
+            seeds: joint values of any origin to iterate from [rad or m], (n, dof), inside the limits or
+                not. They are ranked and iterated as the database's own, and come before those; re-selection
+                is among the best Paper.candidates of them, and SolverOptions.max_attempts bounds how many
+                are tried, and how many of the database's after them. Ranking n takes time n log n, ends at
+                the deadline, and up to 1,024 need no memory. One may be (dof,).
             database_seeds: whether other seeds follow the given ones: the database's, random ones, and
-                those that a closed form gives.
-            scene: what answers may not collide with; of a robot with the same chains. The search continues
-                within its bounds while all collide.
-            exact: a second opinion on the scene, an iksel.exact.ExactCollision of it: called with
-                candidates (n, dof) that collide by the scene's spheres, returns n truth values, which of
-                them are free all the same.
-            filter: called with candidates (n, dof), each at the pose, inside the limits and free in the
-                scene; returns n truth values. The search continues within its bounds while all are refused.
-                In a batch it is asked about the first answers of up to 256 targets at once, along a path
-                about one waypoint's.
-            deadline: wall-clock time after which the search for a target ends [s]; checked between its
-                stages.
-            task: what of the pose has to be reached, of several tips of each; None: what the solver's
-                options say.
-            objective: what the answer is to be good at besides: an Objective, 'limits', 'manipulability',
-                or a function of joint values (dof,) that returns a cost. Comes before `near`. Of the
-                answers found, the cheapest; a redundant arm's is moved along its self-motion to a local
-                minimum.
-            closest: what a target without an answer gets, with Status.closest: the configuration inside the
-                limits that is nearest to it, the best of the local minima that a bounded search comes to.
-                True: a metre counts 1, a radian as the database weighs rotations, by default a quarter of
-                the arm's reach in metres. Or six weights, of position [1/m] and rotation [1/rad] along the
-                axes of the task. Of equally near ones the nearest to `near`. Takes some 100 us on top,
-                whatever the deadline; a scene and a filter refuse it too.
-            on_invalid_pose: what a row does that is no pose (see check_pose): "status", Status.invalid_pose
-                for it and NaN for its q; "raise", an error that names the first, and none is solved.
-            tasks: of several tips, a Task for each in the place of `task`.
+                those that a closed form gives (Robot.structure).
+            scene: what answers may not collide with, as it is when the solve begins; of a robot with the
+                same chains. The search continues within its bounds while all collide. The moves between
+                waypoints of a path are not looked at.
+            exact: a second opinion, which is asked about what collides in the scene by its spheres: what
+                this keeps is free. Where nothing is free by spheres, it is asked about what a search finds
+                within its bounds. Only with a scene. None: the spheres decide. Called with candidates (n,
+                dof), returns n truth values, which of them are free: an iksel.exact.ExactCollision.
+            filter: refuses candidates, of those that do not collide. The search continues within its bounds
+                while all are refused. Of a batch it is asked about the first answers of up to 256 targets
+                at once, of a path about one waypoint's. None: takes all. Called with candidates (n, dof),
+                each at the pose and inside the limits, returns n truth values.
+            deadline: wall-clock time after which no new stage of the search begins [s], above 0. What was
+                found by then is judged. The one option under which the same input may give different
+                answers.
+            task: what of the pose has to be reached, of several tips of each; what is not given here is as
+                the solver's options say.
+            objective: what the answer is to be good at besides; comes before `near`, which then only
+                measures the move, and chooses among periodic images that cost the same. An Objective,
+                'limits', 'manipulability', or a function of joint values (dof,) that returns a cost.
+            closest: of solve and solve_batch: what a target without an answer gets, with Status.closest, is
+                the configuration inside the limits that is nearest to it by these weights; of equally near
+                ones the nearest to `near`. It is the best of the local minima that a bounded search comes
+                to, some 100 us on top of the search for an answer, whatever the deadline. The scene and the
+                filter refuse it too; the objective has no say. None: it gets nothing. True: a metre counts
+                1, a radian as the database weighs rotations; or six weights, of position [1/m] and rotation
+                [1/rad] along the axes of the task.
+            on_invalid_pose: what solve_batch does about a target that is no pose (check_pose); others
+                always raise. 'status': Status.invalid_pose in its row, and NaN for its q; 'raise': an error
+                that names the first, and none is solved.
+            tasks: of several tips, one for each in the place of `task`. None: `task` holds for all.
             in_frame_of: of several tips, for each the number of the tip in whose frame, that of its TCP,
-                its pose is given; None: in the base frame. So two hands keep what they carry between them.
-                No tip may follow itself by way of others.
+                its pose is given; None: in the base frame, as all are if this is empty. So two hands keep
+                what they carry between them. No tip may follow itself by way of others.
 
         Raises:
             InvalidArgumentError: wrong shape or dtype, a bad argument, or with on_invalid_pose="raise"
@@ -2383,28 +2368,32 @@ class Solver:
         Args:
             poses: T_base_tip of each waypoint, (N, 4, 4) [m], or others as in solve; of several tips (N, k,
                 4, 4).
-            start: where the arm is one time step before the first waypoint, (dof,) [rad or m]; None: the
-                path may begin anywhere, and of its periodic images the one that begins nearest to the
-                middle of the limits is taken.
-            dt: time from one waypoint to the next [s], in which no joint moves farther than its velocity
-                limit allows; 0: speeds are not limited.
-            weights: factor on each joint's part of a move, (dof,), >= 0; None: all 1.
+            start: where the arm is one time step before the first waypoint [rad or m], (dof,); may lie
+                outside the limits. None: the path may begin anywhere; of its periodic images, the one that
+                begins nearest to the middle of the limits is taken.
+            dt: time from one waypoint to the next [s]: no joint then moves farther than its velocity limit
+                allows. 0: speeds are not limited.
+            weights: factor on each joint's part of a move, (dof,), >= 0 and not all 0 (so that radians and
+                metres can be compared); None: all 1.
             norm: how a move is measured.
-            scene: what waypoints may not collide with; the moves between them are not looked at.
-            exact: a second opinion on the scene, an iksel.exact.ExactCollision of it: called with
-                candidates (n, dof) that collide by the scene's spheres, returns n truth values, which of
-                them are free all the same.
-            filter: called with candidates (n, dof), each at the pose, inside the limits and free in the
-                scene; returns n truth values. The search continues within its bounds while all are refused.
-                In a batch it is asked about the first answers of up to 256 targets at once, along a path
-                about one waypoint's.
+            scene: what answers may not collide with, as it is when the solve begins; of a robot with the
+                same chains. The search continues within its bounds while all collide. The moves between
+                waypoints of a path are not looked at.
+            exact: a second opinion, which is asked about what collides in the scene by its spheres: what
+                this keeps is free. Where nothing is free by spheres, it is asked about what a search finds
+                within its bounds. Only with a scene. None: the spheres decide. Called with candidates (n,
+                dof), returns n truth values, which of them are free: an iksel.exact.ExactCollision.
+            filter: refuses candidates, of those that do not collide. The search continues within its bounds
+                while all are refused. Of a batch it is asked about the first answers of up to 256 targets
+                at once, of a path about one waypoint's. None: takes all. Called with candidates (n, dof),
+                each at the pose and inside the limits, returns n truth values.
             candidates: candidates kept per waypoint at most.
-            task: what of the pose has to be reached, of several tips of each; None: what the solver's
-                options say.
-            tasks: of several tips, a Task for each in the place of `task`.
+            task: what of the pose has to be reached, of several tips of each; what is not given here is as
+                the solver's options say.
+            tasks: of several tips, one for each in the place of `task`. None: `task` holds for all.
             in_frame_of: of several tips, for each the number of the tip in whose frame, that of its TCP,
-                its pose is given; None: in the base frame. So two hands keep what they carry between them.
-                No tip may follow itself by way of others.
+                its pose is given; None: in the base frame, as all are if this is empty. So two hands keep
+                what they carry between them. No tip may follow itself by way of others.
 
         Raises:
             InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, a number out of range.
@@ -2421,7 +2410,7 @@ class Solver:
     @property
     def database(self) -> Database:
         """
-        The database it selects seeds from; of several tips each chain_solver has its own.
+        The database it selects seeds from. Of several tips each chain_solver has its own: raises InvalidArgumentError.
         """
     @property
     def nominal(self) -> Robot:
@@ -2431,7 +2420,7 @@ class Solver:
     @property
     def options(self) -> SolverOptions:
         """
-        A copy of its options.
+        Its options.
         """
     @property
     def robot(self) -> Robot:
@@ -2446,11 +2435,11 @@ class Solver:
     @property
     def work_bound(self) -> int:
         """
-        Most iteration steps that one solve without given seeds can spend, over all its seeds: max_attempts * max_iterations.
+        Most iteration steps that one solve without given seeds can spend, over all its seeds: max_attempts * max_iterations. A step of a whole pack of lanes counts once in Result.iterations, so that solves in lanes stay below this by the number of lanes.
         """
 class Solutions:
     """
-    The distinct solutions for one target, best first; true if there are any. Indexing gives a Result.
+    The distinct solutions for one target, best first. True if there are any. Indexing gives a Result.
     """
     def __bool__(self) -> bool:
         ...
@@ -2492,7 +2481,7 @@ class Solutions:
     @property
     def proof(self) -> Proof:
         """
-        How it is known that there is certainly no solution or, of a set that is not empty, that there are certainly no more; if it is not, `none` or `answer`.
+        Of an empty set, whether there is certainly no solution; of another, whether there are certainly no more (all of them were found in closed form), or `answer` if that is not known.
         """
     @property
     def proven(self) -> bool:
@@ -2512,7 +2501,7 @@ class Solutions:
     @property
     def status(self) -> Status:
         """
-        `solved`, or why there is none.
+        `solved` if there is at least one; else why there is none.
         """
     @property
     def success(self) -> bool:
@@ -2521,7 +2510,7 @@ class Solutions:
         """
 class PathResult:
     """
-    Joint values along a path; true if there are any for every waypoint.
+    Joint values along a path. True if there are any for every waypoint.
     """
     def __bool__(self) -> bool:
         ...
@@ -2530,12 +2519,12 @@ class PathResult:
     @property
     def first_unreachable(self) -> int | None:
         """
-        Index of the first waypoint that has no continuation; None if solved.
+        Index of the first waypoint that has no continuation; None if the path is solved.
         """
     @property
     def largest_step(self) -> float:
         """
-        The farthest that a joint moves from one waypoint to the next [rad or m].
+        The farthest that a joint moves between two waypoints (or start and the first) [rad or m].
         """
     @property
     def largest_step_joint(self) -> int | None:
@@ -2550,17 +2539,17 @@ class PathResult:
     @property
     def move(self) -> float:
         """
-        Sum of the joint moves.
+        Sum of the moves.
         """
     @property
     def q(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Joint values [rad or m], (N, dof); unless solved, of the waypoints before that.
+        One configuration per waypoint [rad or m], (n, dof); if there is none for one, of those before it.
         """
     @property
     def status(self) -> Status:
         """
-        `solved`, or why waypoint `first_unreachable` has none: `too_fast` if it has solutions, but no joint path leads there in time.
+        `solved` if there is a configuration for every waypoint. Else why there is none for waypoint `first_unreachable`: too_fast if it has solutions, but no joint path leads there in time.
         """
     @property
     def success(self) -> bool:
@@ -2569,7 +2558,7 @@ class PathResult:
         """
 class Tracker:
     """
-    Follows a stream of poses: each answer continues from the last, within the velocity limits. Not to be used from two threads at once.
+    Follows a stream of poses: each answer continues from the last, within the velocity limits. Not to be used from two threads at once; allocates nothing after construction.
     """
     def __init__(self, solver: Solver, start: numpy.typing.ArrayLike, *, closest: bool | numpy.typing.ArrayLike | None = None) -> None:
         """
@@ -2612,12 +2601,12 @@ class Tracker:
     @property
     def q(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Where the arm is now, (dof,) [rad or m]; once inside the limits, always inside.
+        Where the arm is now [rad or m], (dof,); once inside the limits, always inside.
         """
     @property
     def reached(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Where it was when it last reached its pose, or began, (dof,) [rad or m].
+        Where the arm was when it last reached its pose, or began; from the edge of the workspace it comes back on that side [rad or m], (dof,).
         """
 class ArcEnd(enum.Enum):
     """
@@ -2632,7 +2621,7 @@ class ArcEnd(enum.Enum):
         ...
 class SelfMotionEnd:
     """
-    One end of an arc of a self-motion.
+    One end of an arc.
     """
     def __repr__(self) -> str:
         ...
@@ -2658,7 +2647,7 @@ class SelfMotionEnd:
         """
 class SelfMotionArc:
     """
-    A connected piece of a self-motion inside the limits.
+    A connected piece of the self-motion inside the limits.
     """
     def __iter__(self) -> collections.abc.Iterator[numpy.typing.NDArray[numpy.float64]]:
         ...
@@ -2674,7 +2663,7 @@ class SelfMotionArc:
     @property
     def elbow(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        The elbow's angle at each about the line from shoulder to wrist, (n,) [rad]: 0 on the side where the first axis points to, NaN where shoulder and wrist lie on that axis. Empty unless three axes meet in a shoulder and three in a wrist.
+        The elbow's angle at each, about the line from shoulder to wrist, 0 where the elbow lies in the plane of that line and the first axis, on the axis' side [rad], (n,); empty unless three axes meet in a shoulder and three in a wrist. NaN where shoulder and wrist lie on the first axis.
         """
     @property
     def end(self) -> SelfMotionEnd:
@@ -2689,16 +2678,16 @@ class SelfMotionArc:
     @property
     def length(self) -> float:
         """
-        Sum of the joint moves along it [rad].
+        Sum of the moves along it, each the root of the sum of squares [rad].
         """
     @property
     def q(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Configurations along it, (n, dof) [rad], its ends included; each reaches the pose. A closed arc does not repeat the first.
+        Configurations along it, its ends included [rad], (n, dof); each reaches the pose within the tolerances and lies inside the limits. A closed arc does not repeat the first. From one to the next no joint moves farther than asked, but where it has to turn round by a whole turn to stay inside its limits.
         """
 class SelfMotion:
     """
-    The arcs of a pose's self-motion, the longest first; true if there are any. Indexing gives a SelfMotionArc.
+    What Solver.self_motion found. The arcs, the longest first; true if there are any. Indexing gives a SelfMotionArc.
     """
     def __bool__(self) -> bool:
         ...
@@ -2713,12 +2702,12 @@ class SelfMotion:
     @property
     def proof(self) -> Proof:
         """
-        `answer` if there is an arc; else how certain it is that there is none.
+        `answer` if there is an arc; else how certain it is that there is no solution.
         """
     @property
     def status(self) -> Status:
         """
-        `solved`, or why there is none.
+        `solved` if there is an arc; else why there is none.
         """
     @property
     def success(self) -> bool:
@@ -2727,7 +2716,7 @@ class SelfMotion:
         """
 class Evaluation:
     """
-    Outcome of `evaluate`. Times include failures.
+    Outcome of `evaluate`. Times are per solve call, failures included [us].
     """
     __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
     def __eq__(self, other: object) -> bool:
@@ -2741,7 +2730,7 @@ class Evaluation:
     @property
     def false_success(self) -> int:
         """
-        Results that say success and are none, by KDL's FK and the limits; always 0.
+        Results that say success and are none, by KDL's FK and the limits. Always to be 0.
         """
     @property
     def iterate_us(self) -> float:
@@ -2751,7 +2740,7 @@ class Evaluation:
     @property
     def kdl_fk_jac_us(self) -> float:
         """
-        Mean time of one KDL FK plus one KDL Jacobian on the same robot [us].
+        Mean time of one KDL forward kinematics plus one KDL Jacobian on the same robot [us].
         """
     @property
     def max_iterations(self) -> int:
@@ -2845,7 +2834,7 @@ class Evaluation:
         """
 class Selector:
     """
-    Selects seeds of a database for one target after the other, as the paper does and a Solver with the strategy Paper: query, rank, re-select. Not to be used from two threads at once.
+    Selects seeds for one target after the other, as a solver with the strategy Paper does. Not to be used from two threads at once.
     """
     def __init__(self, database: Database, scheme: Paper | collections.abc.Mapping[str, typing.Any] = ...) -> None:
         """
@@ -2911,27 +2900,13 @@ class Selector:
         """
         How they are selected.
         """
-def _did_you_mean(name: str, known: collections.abc.Sequence[str]) -> str:
+def _describe(value: typing.Any) -> str:
     """
-    The hint at a mistyped name for functions that are Python's.
+    A value as messages show it.
     """
 def check_pose(pose: numpy.typing.ArrayLike | typing.Any, name: str = 'pose') -> numpy.typing.NDArray[numpy.float64]:
     """
-    The rigid transforms that poses stand for.
-
-    A pose that is rigid to rounding (|R^T R - I| <= 1e-12) is kept bit for bit; one whose rotation is
-    off by RIGID_TOLERANCE (1e-3) or less, as when it was printed with a few decimals, is projected to
-    the nearest. Every pose that is given to this module goes through this.
-
-    Args:
-        pose: T_base_tip, (..., 4, 4) or (..., 3, 4) [m], or what else as_pose of iksel lists.
-        name: name of the argument, for the error message.
-
-    Returns:
-        (..., 4, 4).
-
-    Raises:
-        InvalidArgumentError: wrong shape, not finite, or not rigid; the message says which and why.
+    The rigid transform that `pose` stands for: itself, bit for bit, if it is one to rounding (|R^T R - I| <= 1e-12), else the nearest, by polar decomposition. Raises InvalidArgumentError if it is not finite, its rotation is off by more than RIGID_TOLERANCE or mirrored, or its last row is not 0 0 0 1; `name` names the culprit in the message. Every pose that comes into the library goes through this.
     """
 def evaluate(solver: Solver, targets: int, seed: int, stages: bool = False, progress: collections.abc.Callable[[int, int], typing.Any] | None = None, *, touched: int = 0) -> Evaluation:
     """
@@ -2957,36 +2932,19 @@ def grid_counts(dof: int, scale: Scale | str) -> list[int]:
     """
 def mend_xml(data: bytes, link: str = '') -> str:
     """
-    The text of an XML file (URDF, SRDF, MJCF) as every XML reader takes it.
+    The text of an XML file (URDF, SRDF, MJCF) as every XML reader takes it, and Robot.urdf() gives it: UTF-8, with what people and exporters get wrong mended where it is clear what is meant.
 
-    It is UTF-8, with what people and exporters get wrong mended where it is clear what is meant; a DOCTYPE,
-    comments and a default namespace are left out, and quat_xyzw of URDF 1.1 becomes rpy.
+    Out of UTF-16 and UTF-32 becomes UTF-8. A DOCTYPE, whose entities are not expanded, comments, processing instructions and a default namespace are left out; prefixes that nothing binds are bound; an & that begins no entity stands for itself. `quat_xyzw`, which a URDF may have from version 1.1 on, becomes `rpy`. Of a URDF whose links hang in several trees, the one of `link` is left; all, where no link is given.
 
-    Args:
-        data: the bytes of the file.
-        link: of a URDF whose links hang in several trees, the one of this link is left.
-
-    Raises:
-        UrdfError: it is not clear what is meant; the message says the line.
+    Raises UrdfError, which says the line, where it is not clear what is meant.
     """
 def orthonormalized(pose: numpy.typing.ArrayLike | typing.Any) -> numpy.typing.NDArray[numpy.float64]:
     """
-    The rigid transforms nearest to poses, however far off their rotations are.
-
-    The rotation is the orthogonal polar factor: the nearest to the given matrix, by the sum of squares.
-
-    Args:
-        pose: (..., 4, 4) or (..., 3, 4) [m]: scaled, sheared or rounded.
-
-    Returns:
-        (..., 4, 4).
-
-    Raises:
-        InvalidArgumentError: not finite, singular or mirrored, or a last row other than 0 0 0 1.
+    The rigid transform nearest to `pose`, however far off its rotation is: scaled, sheared or rounded to two decimals. Raises InvalidArgumentError if it is not finite, singular or mirrored, or its last row is not 0 0 0 1.
     """
 def pose_error(target: numpy.typing.ArrayLike | typing.Any, pose: numpy.typing.ArrayLike | typing.Any) -> numpy.typing.NDArray[numpy.float64]:
     """
-    [p_target - p; rotvec(R_target R^T)] of two (4, 4) poses [m, rad], (6,); or of each pair from two (..., 4, 4) arrays, (..., 6).
+    The rotation vector and position differences of two poses: [p_target - p; rotvec(R_target R^T)].
     """
 def pose_matrices(pose: numpy.typing.ArrayLike | typing.Any, name: str = 'pose') -> typing.Any:
     """
@@ -2994,16 +2952,11 @@ def pose_matrices(pose: numpy.typing.ArrayLike | typing.Any, name: str = 'pose')
     """
 def rigid_deviation(pose: numpy.typing.ArrayLike | typing.Any) -> numpy.typing.NDArray[numpy.float64]:
     """
-    Largest element of |R^T R - I| of each pose (..., 4, 4), (...); infinite if it is not finite, mirrored, or not 0 0 0 1 in its last row.
+    Largest element of |R^T R - I|; infinite if `pose` is not finite, mirrored, or not 0 0 0 1 in its last row.
     """
 def simd_level() -> str:
     """
-    The instruction set whose lanes solve on this machine.
-
-    avx512, avx2, sse2, neon or scalar; the environment variable IKSEL_SIMD forces one.
-
-    Raises:
-        InvalidArgumentError: IKSEL_SIMD asks for one that is not to be had.
+    The instruction set whose lanes solve on this machine: avx512, avx2, sse2, neon or scalar. The environment variable IKSEL_SIMD forces one. Raises InvalidArgumentError if it is not to be had.
     """
 def time_kdl_fk_jacobian(robot: Robot) -> float:
     """

@@ -13,12 +13,12 @@ namespace iksel {
 /// A limit that joints share, as a parallel linkage or a cable makes it:
 /// lower <= sum of coefficient * joint value <= upper.
 struct CoupledLimit {
-  /// By joint name; not 0. Joints between base and tip, mimic and locked ones too, but none that
-  /// turns without limits.
+  /// Coefficients by joint name; not 0. Joints between base and tip, mimic and locked ones too, but
+  /// none that turns without limits.
   std::map<std::string, double> coefficients;
-  /// [rad or m]; one of them may be infinite.
-  double lower = -std::numeric_limits<double>::infinity();
-  double upper = std::numeric_limits<double>::infinity();
+  double lower = -std::numeric_limits<double>::infinity();  ///< least value of the sum [rad or m]
+  double upper = std::numeric_limits<double>::infinity();   ///< largest value [rad or m]; one of
+                                                            ///< the two may be infinite
 };
 
 inline bool operator==(const CoupledLimit& a, const CoupledLimit& b) {

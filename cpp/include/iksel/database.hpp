@@ -50,7 +50,9 @@ class IKSEL_EXPORT Database {
 
   /// Options it was built with (`threads` as given then).
   [[nodiscard]] const DatabaseOptions& options() const;
+  /// Number of samples.
   [[nodiscard]] std::size_t size() const;
+  /// Degrees of freedom of its robot.
   [[nodiscard]] int dof() const;
   /// Dimension of the KD-tree's key.
   [[nodiscard]] int key_dimension() const;
@@ -60,13 +62,15 @@ class IKSEL_EXPORT Database {
   /// Robot::chain_hash of the robot it belongs to.
   [[nodiscard]] std::uint64_t chain_hash() const;
 
-  /// Sample i: joint values [rad or m], T_base_tip of the tip link, pseudo-inverse (dof x 6).
+  /// Joint values of sample i [rad or m].
   [[nodiscard]] JointVector q(std::size_t i) const;
+  /// T_base_tip of sample i, of the tip link without the TCP.
   [[nodiscard]] Pose pose(std::size_t i) const;
+  /// J^+ of sample i, as in Eq. (4), (dof, 6).
   [[nodiscard]] Matrix pseudo_inverse(std::size_t i) const;
 
   /// Indices of the k samples whose keys are nearest to that of T_base_tip (of the tip link),
-  /// nearest first.
+  /// nearest first; Eq. (2).
   [[nodiscard]] std::vector<std::size_t> nearest(const Pose& T_base_tip, std::size_t k) const;
 
   /// For the library itself.

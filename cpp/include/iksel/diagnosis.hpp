@@ -37,6 +37,7 @@ IKSEL_EXPORT const char* to_string(Cause cause);
 
 /// What Solver::diagnose found. Numbers that do not belong to the cause are NaN.
 struct Diagnosis {
+  /// Why there is no answer; `none` if there is one.
   Cause cause = Cause::none;
   /// What is wrong and what to do about it, in a sentence.
   std::string message;
@@ -51,26 +52,28 @@ struct Diagnosis {
   double beyond_reach = std::numeric_limits<double>::quiet_NaN();
   /// orientation: least rotation error that was reached with the position held [rad].
   double rotation_gap = std::numeric_limits<double>::quiet_NaN();
-  /// joint_limits: the joint that lies farthest outside its limits in the answer that violates
-  /// them least. no_branch: the joint of which there is no angle. -1 otherwise.
+  /// joint_limits: index of the joint that lies farthest outside its limits in the answer that
+  /// violates them least. no_branch: of the joint of which there is no angle. -1 otherwise.
   int joint = -1;
-  /// joint_limits: the coupled limit that lies farthest outside, if that is farther than any joint:
-  /// its index in RobotOptions::coupled_limits; `joint` is -1 then. -1 otherwise.
+  /// joint_limits: index of the coupled limit that lies farthest outside, if that is farther than
+  /// any joint; `joint` is -1 then. -1 otherwise.
   int coupled_limit = -1;
-  /// By how much that joint, or the sum of the coupled limit, lies outside [rad or m].
+  /// joint_limits: by how much that joint, or the sum of the coupled limit, lies outside [rad or
+  /// m].
   double limit_violation = std::numeric_limits<double>::quiet_NaN();
-  /// joint_limits: that answer, which reaches the target outside the limits [rad or m]; else empty.
+  /// joint_limits: that answer, which reaches the target outside the limits [rad or m]. Empty:
+  /// another cause.
   JointVector branch;
   /// rejected, collision: how many answers the filter or the scene refused.
   int refused = 0;
-  /// collision: what touches at `q`, the answer that collides least, the deepest first.
+  /// collision: what touches at `q`, the answer that collides least, the deepest first; else empty.
   std::vector<Contact> contacts;
   /// Least singular value of the Jacobian at `q` [mixed units]: small where it is close to a
   /// singularity.
   double least_singular_value = std::numeric_limits<double>::quiet_NaN();
 
-  /// Best effort inside the limits: an answer if `cause` is none, singular, budget or out_of_time,
-  /// and otherwise NO SOLUTION.
+  /// Best effort inside the limits [rad or m]. NO SOLUTION unless q_is_solution, as where `cause`
+  /// is none, singular, budget or out_of_time.
   JointVector q;
   /// Errors of q outside of the task's box: position [m] and rotation [rad].
   double position_error = std::numeric_limits<double>::quiet_NaN();
@@ -79,7 +82,7 @@ struct Diagnosis {
   /// and the filter.
   bool q_is_solution = false;
 
-  /// Of several tips: the first that cannot be reached by itself, whose chain the numbers above are
+  /// Of several tips: the first that cannot be reached by itself, whose chain the numbers are
   /// about, and q has that chain's joints; -1: each can.
   int unreachable_tip = -1;
 };

@@ -12,22 +12,31 @@ namespace iksel {
 
 /// Outcome of `evaluate`. Times are per solve call, failures included [us].
 struct Evaluation {
-  std::size_t targets = 0;
-  std::uint64_t seed = 0;
-  std::size_t solved = 0;
+  std::size_t targets = 0;  ///< targets tried
+  std::uint64_t seed = 0;   ///< seed of the targets
+  std::size_t solved = 0;   ///< targets solved
   /// Results that say success and are none, by KDL's FK and the limits. Always to be 0.
   std::size_t false_success = 0;
-  double success_percent = 0;
-  double mean_us = 0, std_us = 0, min_us = 0, max_us = 0, median_us = 0, p99_us = 0, p999_us = 0;
-  double mean_attempts = 0, mean_iterations = 0;
-  /// Most iterations that a solve took, to be compared with Solver::work_bound().
+  double success_percent = 0;  ///< 100 solved / targets
+  double mean_us = 0;          ///< mean time per solve [us]
+  double std_us = 0;           ///< standard deviation of the time [us]
+  double min_us = 0;           ///< shortest time [us]
+  double max_us = 0;           ///< longest time [us]
+  double median_us = 0;        ///< median time [us]
+  double p99_us = 0;           ///< 99th percentile of the time [us]
+  double p999_us = 0;          ///< 99.9th percentile of the time [us]
+  double mean_attempts = 0;    ///< mean number of seeds tried
+  double mean_iterations = 0;  ///< mean number of iteration steps
+  /// Most iteration steps that a solve took; Solver::work_bound is the bound.
   int max_iterations = 0;
   /// Mean time of one KDL forward kinematics plus one KDL Jacobian on the same robot [us].
   double kdl_fk_jac_us = 0;
   /// mean_us / kdl_fk_jac_us: how speed is compared between machines.
   double ratio = 0;
-  /// Mean time per stage [us], from a second pass over the same targets; zero unless asked for.
-  double query_us = 0, rank_us = 0, iterate_us = 0, reselect_us = 0;
+  double query_us = 0;     ///< mean time of the KD-tree query [us]; 0 unless asked for
+  double rank_us = 0;      ///< mean time of the ranking [us]; 0 unless asked for
+  double iterate_us = 0;   ///< mean time of the iterations [us]; 0 unless asked for
+  double reselect_us = 0;  ///< mean time of the re-selections [us]; 0 unless asked for
 };
 
 /// Most bytes of other memory that `evaluate` touches between solves.

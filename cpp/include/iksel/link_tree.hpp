@@ -12,17 +12,17 @@ namespace iksel {
 
 /// One joint of a URDF.
 struct LinkTreeJoint {
-  std::string name;
-  std::string type;  ///< "revolute", "fixed", ...
-  std::string parent_link;
-  std::string child_link;
+  std::string name;         ///< its name
+  std::string type;         ///< "revolute", "fixed", ...
+  std::string parent_link;  ///< the link that it is on
+  std::string child_link;   ///< the link that it carries
 };
 
 /// The tree of a URDF's links, depth first from the root.
 struct IKSEL_EXPORT LinkTree {
-  std::string robot_name;
-  std::vector<std::string> links;
-  std::vector<LinkTreeJoint> joints;
+  std::string robot_name;             ///< name in the URDF
+  std::vector<std::string> links;     ///< names of all links, the root first
+  std::vector<LinkTreeJoint> joints;  ///< each leads to the next link
   /// Links without children, and how many joints move each of them: the tips to choose from.
   struct Tip {
     std::string link;

@@ -17,8 +17,8 @@ namespace iksel {
 /// Between the points lies a cubic in each gap (Hermite's); the joint that is followed stays
 /// between the first point and the last.
 struct MimicCurve {
-  std::string joint;    ///< that follows
-  std::string follows;  ///< joint that is followed; follows none itself
+  std::string joint;    ///< name of the joint that follows
+  std::string follows;  ///< name of the joint that is followed; it follows none itself
   /// Values of the joint that is followed [rad or m], two or more, each above the one before.
   std::vector<double> q;
   /// Value of `joint` at each [rad or m].

@@ -24,6 +24,7 @@ struct IKSEL_EXPORT Objective {
     custom,          ///< the caller's
   };
 
+  /// What it counts.
   Kind kind = Kind::none;
   /// posture: where the joints are to be [rad or m], inside the limits or not, and the weight of
   /// each, >= 0; no weights: all 1.
@@ -36,7 +37,8 @@ struct IKSEL_EXPORT Objective {
   std::function<double(const JointVector& q)> cost;
   std::function<JointVector(const JointVector& q)> gradient;
 
-  /// Near a posture.
+  /// Near joint values [rad or m], inside the limits or not: 1/2 sum (w_i (q_i - posture_i))^2,
+  /// weights >= 0, or all 1.
   [[nodiscard]] static Objective near_posture(const JointVector& posture,
                                               const JointVector& weights = {});
   /// Some joints, as a rail or a turntable, at a value where that is possible, else as near to it
@@ -47,9 +49,10 @@ struct IKSEL_EXPORT Objective {
   [[nodiscard]] static Objective preferred(const Robot& robot,
                                            const std::map<std::string, double>& values,
                                            const std::map<std::string, double>& weights = {});
-  /// Far from the limits; joints without limits do not count (Zghal, Dubey and Euler 1990).
+  /// Far from the limits: sum 1/4 (1/x_i + 1/(1 - x_i)), x_i in 0 .. 1 the place between them;
+  /// joints without limits do not count (Zghal, Dubey and Euler 1990).
   [[nodiscard]] static Objective far_from_limits();
-  /// Far from singularities.
+  /// Far from singularities: -sqrt(det(J J^T)) (Yoshikawa 1985); of J^T J with fewer than 6 joints.
   [[nodiscard]] static Objective most_manipulable();
   /// What the caller says.
   [[nodiscard]] static Objective custom(

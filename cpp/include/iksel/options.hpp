@@ -43,14 +43,15 @@ enum class RotationKey {
 
 /// How a database is built.
 struct IKSEL_EXPORT DatabaseOptions {
+  /// How the samples are spread over the limits.
   Sampling sampling = Sampling::low_discrepancy;
   /// Counts of a grid; for the other samplings only if `samples` is 0.
   Scale scale = Scale::medium;
   /// Number of samples unless `sampling` is grid; 0 takes the grid's count at `scale`.
   std::size_t samples = 2'000;
-  /// A chain with mimic joints has a full key whatever is asked for.
+  /// What of a pose the key holds; a chain with mimic joints has a full key always.
   KeyScheme key_scheme = KeyScheme::reduced;
-  /// Only for the full key.
+  /// How a full key writes a rotation.
   RotationKey rotation_key = RotationKey::rotation_vector;
   /// Length that one unit of the key's rotation part counts as in the tree's distance [m]; 0: a
   /// quarter of the reach.
@@ -59,13 +60,14 @@ struct IKSEL_EXPORT DatabaseOptions {
   double pinv_cutoff = 1e-4;
   /// Updates of MacQueen's method (cvt only).
   std::size_t cvt_updates = 1'000'000;
-  /// Random configurations whose centroids the samples are, and rounds in which each goes to the
-  /// nearest sample and each sample to the mean of its own. Only read by kmeans.
+  /// Random configurations whose centroids the samples are; only read by kmeans.
   std::size_t kmeans_pool = 200'000;
+  /// Rounds in which each of these goes to the nearest sample, and each sample to the mean of its
+  /// own; only read by kmeans.
   int kmeans_rounds = 20;
   /// Seed of all samplings but grid.
   std::uint64_t seed = 0;
-  /// Threads that build; 0: one per core. The result has the same bits for any number.
+  /// Threads that work; 0: one per core. The result has the same bits for any number.
   int threads = 0;
 
   /// The paper's: grid, medium, rotation vectors, unweighted. Of 2026: 2,048 samples by kmeans.
@@ -138,7 +140,8 @@ struct IKSEL_EXPORT Paper {
   /// no threshold.
   double neighbour_radius = 0;
   Ranking ranking = Ranking::joint_adjustment;
-  /// Read where seeds are ranked by Eq. (5) or limit-aware.
+  /// The rotation part of x_target - x_i in Eq. (4); read where seeds are ranked by Eq. (5) or
+  /// limit-aware.
   RotationDifference rotation_difference = RotationDifference::rotation_vector;
   /// Rank candidates whose predicted q + J^+ e leaves the limits behind all others.
   bool limit_aware = false;
@@ -181,7 +184,8 @@ struct IKSEL_EXPORT Paper {
 
 using Strategy = std::variant<Lanes, Paper>;
 
-/// All settings of a Solver. `SolverOptions{}` is the recommended preset, `paper()` the paper.
+/// All settings of a Solver. SolverOptions() is the recommended preset, SolverOptions::paper() the
+/// paper. What only one strategy reads is a field of that.
 struct IKSEL_EXPORT SolverOptions {
   /// An answer's position is at most this far from the target's [m].
   double position_tolerance = 1e-6;
@@ -200,7 +204,7 @@ struct IKSEL_EXPORT SolverOptions {
   /// Database that a solver builds for itself when it is given none.
   DatabaseOptions database;
 
-  /// How seeds are selected and iterated.
+  /// How seeds are selected and iterated: Lanes or Paper.
   Strategy strategy;
 
   /// The paper's setting: medium grid, the defaults of Paper, one re-selection, 1e-4 m and 1e-3

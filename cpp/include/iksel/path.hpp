@@ -21,12 +21,14 @@ struct PathResult {
   std::ptrdiff_t first_unreachable = -1;
   /// The farthest that a joint moves between two waypoints (or start and the first) [rad or m].
   double largest_step = 0;
-  /// Which joint does, and on the way to which waypoint; -1 if there is no step.
+  /// Index of the joint that does; -1 if there is no step.
   int largest_step_joint = -1;
+  /// Index of the waypoint where that step ends; -1 if there is no step.
   std::ptrdiff_t largest_step_waypoint = -1;
   /// Sum of the moves.
   double move = 0;
 
+  /// Whether there is a configuration for every waypoint.
   [[nodiscard]] bool success() const { return status == Status::solved; }
 };
 

@@ -54,27 +54,30 @@ struct IKSEL_EXPORT AnswerCriteria {
   /// Factor on each joint's part of a move, >= 0 and not all 0 (so that radians and metres can be
   /// compared); empty: all 1.
   JointVector weights;
+  /// How a move is measured.
   MoveNorm norm = MoveNorm::two;
 
-  /// What answers may not collide with. As it is when the solve begins. Of a robot with the same
-  /// chains.
+  /// What answers may not collide with, as it is when the solve begins; of a robot with the same
+  /// chains. The search continues within its bounds while all collide. The moves between waypoints
+  /// of a path are not looked at.
   std::optional<Scene> scene;
   /// A second opinion, which is asked about what collides in the scene by its spheres: what this
   /// keeps is free. Where nothing is free by spheres, it is asked about what a search finds within
   /// its bounds. Only with a scene. Empty: the spheres decide.
   Filter exact;
-  /// Refuses candidates, of those that do not collide; the search then continues within its bounds.
-  /// Empty: takes all.
+  /// Refuses candidates, of those that do not collide. The search continues within its bounds while
+  /// all are refused. Of a batch it is asked about the first answers of up to 256 targets at once,
+  /// of a path about one waypoint's. Empty: takes all.
   Filter filter;
 
   /// What of the pose has to be reached, of several tips of each; what is not given here is as the
   /// solver's options say.
   std::optional<Task> task;
-  /// Of several tips, one for each in the place of `task`; or empty.
+  /// Of several tips, one for each in the place of `task`. Empty: `task` holds for all.
   std::vector<Task> tasks;
-  /// Of several tips, for each the number of the tip in whose frame its pose is given, that of its
-  /// TCP; -1: in the base frame. Empty: all are. So two hands keep what they carry between them. No
-  /// tip may follow itself by way of others.
+  /// Of several tips, for each the number of the tip in whose frame, that of its TCP, its pose is
+  /// given; -1: in the base frame, as all are if this is empty. So two hands keep what they carry
+  /// between them. No tip may follow itself by way of others.
   std::vector<int> in_frame_of;
 
   /// Throws InvalidArgumentError naming the first field that does not fit `dof` joints and so many
@@ -83,15 +86,10 @@ struct IKSEL_EXPORT AnswerCriteria {
 };
 
 /// What is asked of an answer besides reaching the pose. The defaults ask for nothing.
-///
-/// Angles of `near`, `seeds` and the objective's posture are refused where their rounding alone
-/// could move the TCP by a tenth of the tolerances: beyond 2^53 / 10 min(rotation_tolerance,
-/// position_tolerance / reach) / (number of joints that turn), 1.5e8 rad for an arm of six joints
-/// with 1 m of reach at the default tolerances; up to 100 rad always pass.
 struct IKSEL_EXPORT SolveRequest : AnswerCriteria {
-  /// Seeds of any origin, each with dof joint values [rad or m], inside the limits or not. They are
+  /// Joint values of any origin to iterate from [rad or m], inside the limits or not. They are
   /// ranked and iterated as the database's own, and come before those; re-selection is among the
-  /// best SolverOptions::candidates of them, and SolverOptions::max_attempts bounds how many are
+  /// best Paper::candidates of them, and SolverOptions::max_attempts bounds how many are
   /// tried, and how many of the database's after them. Ranking n takes time n log n, ends at the
   /// deadline, and up to 1,024 need no memory.
   std::vector<JointVector> seeds;
@@ -99,10 +97,14 @@ struct IKSEL_EXPORT SolveRequest : AnswerCriteria {
   /// closed form gives (find_structure).
   bool database_seeds = true;
 
-  /// Configuration to stay near, typically where the arm is. May lie outside the limits, as
-  /// measured joint values do. The answer is then the one with the smallest move of all that are
-  /// found within the bounds on work; a redundant arm's is moved along its self-motion to a local
-  /// minimum of the move.
+  /// Configuration to stay near [rad or m], typically where the arm is. May lie outside the limits,
+  /// as measured joint values do. The answer is then the one with the smallest move of all that are
+  /// found within the bounds on work, whole turns considered; a redundant arm's is moved along its
+  /// self-motion to a local minimum of the move. Angles here, in `seeds` and the objective's
+  /// posture are refused where their rounding alone could move the TCP by a tenth of the
+  /// tolerances: beyond 2^53 / 10 min(rotation_tolerance, position_tolerance / reach) / (number of
+  /// joints that turn), 1.5e8 rad for an arm of six joints with 1 m of reach at the default
+  /// tolerances; up to 100 rad always pass.
   std::optional<JointVector> near;
   /// Wall-clock time after which no new stage of the search begins [s], above 0. What was found by
   /// then is judged. The one option under which the same input may give different answers.
@@ -119,7 +121,7 @@ struct IKSEL_EXPORT SolveRequest : AnswerCriteria {
   /// filter refuse it too; the objective has no say. Empty: it gets nothing.
   std::optional<PoseWeights> closest;
 
-  /// Of solve_batch; solve, solve_all and diagnose always throw.
+  /// What solve_batch does about a target that is no pose (check_pose); others always throw.
   OnInvalidPose on_invalid_pose = OnInvalidPose::status;
 
   /// Whether anything is asked for; weights, norm and on_invalid_pose alone ask for nothing.
@@ -145,7 +147,8 @@ struct IKSEL_EXPORT SolveAllOptions {
   /// Whether periodic images inside the limits count as solutions of their own. Otherwise each is
   /// given once: at the image nearest to `near`, or else to the middle of the limits.
   bool whole_turns = false;
-  /// Left at `move` where the request has an objective: solutions then come in the order of that.
+  /// What comes first. Left at `move` where the request has an objective: solutions then come in
+  /// the order of that.
   SolutionOrder order = SolutionOrder::move;
 
   /// Throws InvalidArgumentError naming the first option out of range.
@@ -156,9 +159,9 @@ struct IKSEL_EXPORT SolveAllOptions {
 /// moves is taken, each measured by the weights and the norm. The scene is not held against the
 /// moves between waypoints.
 struct IKSEL_EXPORT PathOptions : AnswerCriteria {
-  /// Where the arm is one time step before the first waypoint; may lie outside the limits. Empty:
-  /// the path may begin anywhere; of its periodic images, the one that begins nearest to the
-  /// middle of the limits is taken.
+  /// Where the arm is one time step before the first waypoint [rad or m]; may lie outside the
+  /// limits. Empty: the path may begin anywhere; of its periodic images, the one that begins
+  /// nearest to the middle of the limits is taken.
   std::optional<JointVector> start;
   /// Time from one waypoint to the next [s]: no joint then moves farther than its velocity limit
   /// allows. 0: speeds are not limited.

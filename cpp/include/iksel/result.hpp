@@ -56,6 +56,7 @@ IKSEL_EXPORT const char* to_string(Proof proof);
 /// Answer to one target, or to one of each tip. Everything in it is measured on the returned q, not
 /// predicted; errors are the largest of all tips.
 struct Result {
+  /// Why the solve ended.
   Status status = Status::not_converged;
   /// `answer` of a success; of a failure, how certain it is that there is no answer.
   Proof proof = Proof::none;
@@ -79,6 +80,7 @@ struct Result {
   /// search can tell, and status and proof are that chain's; -1: each can, or none was looked at.
   int unreachable_tip = -1;
 
+  /// Whether q reaches the target within both tolerances and lies inside the limits.
   [[nodiscard]] bool success() const { return status == Status::solved; }
 };
 
@@ -91,9 +93,10 @@ struct Solutions {
   Proof proof = Proof::none;
   /// Each is a success by itself; `attempts` and `iterations` are those of the whole search.
   std::vector<Result> all;
-  int attempts = 0;
-  int iterations = 0;
+  int attempts = 0;    ///< seeds tried
+  int iterations = 0;  ///< iteration steps over all attempts
 
+  /// Whether there is at least one.
   [[nodiscard]] bool success() const { return status == Status::solved; }
 };
 
@@ -105,16 +108,19 @@ struct StageTimes {
   double reselect = 0;
 };
 
-/// Answers to many targets as arrays; row i belongs to target i. The pointers are the caller's.
+/// Answers to many targets as arrays; row i belongs to target i. The pointers are the caller's;
+/// null for those that are not wanted of the last two.
 struct BatchView {
-  double* q;               ///< (n, dof) row by row; NaN where not solved
-  std::uint8_t* status;    ///< (n) values of Status
-  double* position_error;  ///< (n) [m]; NaN where not solved
-  double* rotation_error;  ///< (n) [rad]; NaN where not solved
-  std::int32_t* attempts;
-  std::int32_t* iterations;
-  double* move = nullptr;  ///< (n); NaN where not solved or without a `near`; null: not wanted
-  std::uint8_t* proof = nullptr;  ///< (n) values of Proof; null: not wanted
+  double* q;                 ///< joint values [rad or m], (n, dof); NaN where not solved
+  std::uint8_t* status;      ///< values of Status, (n,)
+  double* position_error;    ///< distances to the targets [m], (n,); NaN where not solved
+  double* rotation_error;    ///< lengths of the rotation vectors to the targets [rad], (n,); NaN
+                             ///< where not solved
+  std::int32_t* attempts;    ///< seeds tried, (n,)
+  std::int32_t* iterations;  ///< iteration steps over all attempts, (n,)
+  double* move = nullptr;    ///< lengths of the moves from `near`, (n,); NaN where not solved or
+                             ///< without one
+  std::uint8_t* proof = nullptr;  ///< values of Proof, (n,); that of `answer` where solved
 };
 
 }  // namespace iksel

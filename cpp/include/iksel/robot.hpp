@@ -23,7 +23,7 @@ class TipsModel;
 /// An immutable serial chain with its limits, or the chains from one base link to several tip links
 /// (RobotOptions::tip_links), joined: a joint that lies on several of them is one degree of
 /// freedom. Copies are cheap and share the data. Safe to use from many threads at once. What is
-/// said below of the chain or the tip throws InvalidArgumentError if there are several.
+/// about one tip throws InvalidArgumentError where there are several.
 class IKSEL_EXPORT Robot {
  public:
   /// Reads a URDF file. Throws UrdfError (file, XML, joint type, limits, a length or joint value
@@ -45,39 +45,48 @@ class IKSEL_EXPORT Robot {
   /// the other.
   [[nodiscard]] Robot without_limits() const;
 
+  /// Name in the URDF.
   [[nodiscard]] const std::string& name() const;
+  /// Link the poses are relative to.
   [[nodiscard]] const std::string& base_link() const;
+  /// Link whose pose is solved for, of a robot with one tip.
   [[nodiscard]] const std::string& tip_link() const;
   /// The URDF text this robot was made of, as mend_xml gives it, without trees of links that the
-  /// chain is not in; and the options, base and tip link filled in.
+  /// chain is not in.
   [[nodiscard]] const std::string& urdf() const;
+  /// What it was made with, base and tip link filled in.
   [[nodiscard]] const RobotOptions& options() const;
   /// Names of all links of the URDF, the chain's and others, depth first from the root.
   [[nodiscard]] const std::vector<std::string>& link_names() const;
-  /// T_tip_tcp.
+  /// T_tip_tcp, the tool centre point in the tip link's frame.
   [[nodiscard]] Pose tcp() const;
 
-  /// Number of tips, 1 to kMaxTips, and their links.
+  /// Number of tips.
   [[nodiscard]] int tips() const;
+  /// Links whose poses are solved for, 1 to kMaxTips.
   [[nodiscard]] const std::vector<std::string>& tip_links() const;
-  /// The chain to one tip by itself; `tip` counts from 0. Throws InvalidArgumentError, as the next.
+  /// The chain to one tip by itself; tips count from 0. Throws InvalidArgumentError if there is no
+  /// such tip.
   [[nodiscard]] const Robot& chain(int tip) const;
-  /// Where that chain's joints stand among all: chain joint j has the value q[joints_of(tip)[j]].
+  /// Where that chain's joints stand among all: its joint values are q[joints_of(tip)]. Throws as
+  /// chain.
   [[nodiscard]] const std::vector<int>& joints_of(int tip) const;
-  /// The joints that move more than one tip, ascending.
+  /// Indices of the joints that move more than one tip, ascending.
   [[nodiscard]] const std::vector<int>& shared_joints() const;
 
-  /// Degrees of freedom, 1 to kMaxDof. The vectors below have that length, base to tip; of several
-  /// chains the joints of the first, then those that only the second has, and so on.
+  /// Degrees of freedom, 1 to kMaxDof.
   [[nodiscard]] int dof() const;
+  /// Names of the degrees of freedom, base to tip; of several tips those of the first chain, then
+  /// those that only the second has, and so on.
   [[nodiscard]] const std::vector<std::string>& joint_names() const;
+  /// How each degree of freedom moves, base to tip.
   [[nodiscard]] const std::vector<JointType>& joint_types() const;
-  /// Position limits [rad or m], both inside; infinite for continuous joints.
+  /// Position limits [rad or m], both inside; -inf and inf for continuous joints.
   [[nodiscard]] const JointVector& lower() const;
   [[nodiscard]] const JointVector& upper() const;
-  /// Velocity limits [rad/s or m/s]; infinite where the URDF has none.
+  /// Velocity limits [rad/s or m/s]; inf where the URDF has none.
   [[nodiscard]] const JointVector& velocity_limit() const;
-  /// Limits of the safety controller; the position limits where the URDF has none.
+  /// Limits of the safety controller [rad or m]; the position limits where the URDF has none.
   [[nodiscard]] const JointVector& soft_lower() const;
   [[nodiscard]] const JointVector& soft_upper() const;
   [[nodiscard]] bool within_limits(const JointVector& q) const;

@@ -31,9 +31,9 @@ struct RobotOptions {
   std::vector<std::string> tip_links;
   /// In the place of tcp: T_tip_tcp of each of the tip_links, or empty: none has a tool.
   std::vector<StoredPose> tcps;
-  /// Joints held at a value [rad or m]; they are no degrees of freedom.
+  /// Joints held at a value [rad or m], by name; they are no degrees of freedom.
   std::map<std::string, double> locked_joints;
-  /// Narrow the position limits to the URDF's safety_controller soft limits where there are any.
+  /// Whether the position limits are narrowed to the URDF's safety_controller where there is one.
   bool soft_limits = false;
   /// Lower and upper limit [rad or m] of revolute and prismatic joints whose limits the URDF leaves
   /// out or has as 0, 0; none: such a joint is an error. A mimic joint of that kind has no limits

@@ -18,7 +18,7 @@ namespace iksel {
 /// Points in rows, (N, 3) [m].
 using PointCloud = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor | Eigen::DontAlign>;
 
-/// A shape at a pose; made by the functions below.
+/// A shape at a pose, as a Scene holds it.
 struct IKSEL_EXPORT Obstacle {
   enum class Shape {
     sphere,      ///< around the origin of its frame
@@ -28,11 +28,12 @@ struct IKSEL_EXPORT Obstacle {
     half_space,  ///< all below the plane z = 0
     points,      ///< a ball around each point
   };
+  /// What it is: sphere, box, capsule, cylinder, half_space or points.
   Shape shape = Shape::sphere;
   double radius = 0;                               ///< sphere, capsule, cylinder, points [m]
   double length = 0;                               ///< capsule: of the segment; cylinder [m]
   Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< box: edges [m]
-  std::shared_ptr<const PointCloud> points;        ///< in the obstacle's frame
+  std::shared_ptr<const PointCloud> points;        ///< in the obstacle's frame [m]
   /// T_base_obstacle.
   StoredPose pose = StoredPose::Identity();
   /// The arm keeps this far away [m].
@@ -67,9 +68,9 @@ struct IKSEL_EXPORT AttachedObject {
 
 /// Two things that touch.
 struct Contact {
-  std::string link;   ///< link or attached object
-  std::string other;  ///< obstacle, link or attached object
-  bool is_obstacle;   ///< what `other` is
+  std::string link;   ///< a link of the robot or an attached object
+  std::string other;  ///< what it touches: an obstacle, a link or an attached object
+  bool is_obstacle;   ///< whether `other` is an obstacle
   double depth;       ///< how far they would have to part, margins included [m]; 0 or more
 };
 
@@ -87,10 +88,13 @@ class IKSEL_EXPORT Scene {
   Scene(const Robot& robot, const RobotSpheres& spheres,
         const std::map<std::string, double>& other_joints = {});
 
+  /// The robot.
   [[nodiscard]] const Robot& robot() const;
+  /// Its body.
   [[nodiscard]] const RobotSpheres& spheres() const;
+  /// Values of joints that are not the arm's [rad or m], by name.
   [[nodiscard]] const std::map<std::string, double>& other_joints() const;
-  /// By name.
+  /// The obstacles by name.
   [[nodiscard]] const std::map<std::string, Obstacle>& obstacles() const;
   [[nodiscard]] const std::map<std::string, AttachedObject>& attached() const;
 

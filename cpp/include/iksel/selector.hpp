@@ -53,7 +53,9 @@ class IKSEL_EXPORT Selector {
   /// an index that is none of these or comes twice, and if there was no target.
   [[nodiscard]] std::optional<std::size_t> next(const std::vector<std::size_t>& failed);
 
+  /// Where the seeds come from.
   [[nodiscard]] const Database& database() const;
+  /// How they are selected.
   [[nodiscard]] const Paper& scheme() const;
 
  private:

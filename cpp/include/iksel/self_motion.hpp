@@ -23,12 +23,13 @@ IKSEL_EXPORT const char* to_string(ArcEnd end);
 
 /// One end of an arc.
 struct SelfMotionEnd {
+  /// What ends the arc there.
   ArcEnd kind = ArcEnd::closed;
-  /// The joint that is at its limit, and whether at the upper one; -1 unless `limit`.
+  /// Index of the joint that is at its limit; -1 unless `limit`.
   int joint = -1;
+  /// Whether it is at the upper one of its limits.
   bool at_upper = false;
-  /// The coupled limit that is reached, if it is not a joint's own: its index in
-  /// RobotOptions::coupled_limits; else -1.
+  /// Index of the coupled limit that is reached, if it is not a joint's own; else -1.
   int coupled_limit = -1;
 };
 
@@ -45,8 +46,10 @@ struct SelfMotionArc {
   std::vector<double> elbow;
   /// Sum of the moves along it, each the root of the sum of squares [rad].
   double length = 0;
-  SelfMotionEnd begin, end;
+  SelfMotionEnd begin;  ///< what ends it before its first configuration
+  SelfMotionEnd end;    ///< what ends it behind its last configuration
 
+  /// Whether the last configuration leads on to the first.
   [[nodiscard]] bool is_closed() const { return begin.kind == ArcEnd::closed; }
 };
 
@@ -60,6 +63,7 @@ struct SelfMotion {
   /// count nothing, and each configuration is given at one of its images.
   std::vector<SelfMotionArc> arcs;
 
+  /// Whether there is at least one arc.
   [[nodiscard]] bool success() const { return status == Status::solved; }
 };
 

@@ -62,11 +62,15 @@ class IKSEL_EXPORT Solver {
   /// of industrial arms find.
   static constexpr CalibrationDeviation kMaxCalibrationDeviation{0.05, 0.1};
 
+  /// The robot it solves for.
   [[nodiscard]] const Robot& robot() const;
+  /// Its options.
   [[nodiscard]] const SolverOptions& options() const;
-  /// Of several tips each chain_solver has its own: throws InvalidArgumentError.
+  /// The database it selects seeds from. Of several tips each chain_solver has its own: throws
+  /// InvalidArgumentError.
   [[nodiscard]] const Database& database() const;
-  /// The solver of one tip's chain by itself. Throws InvalidArgumentError if there is no such tip.
+  /// The solver of one tip's chain by itself; tips count from 0. Throws InvalidArgumentError if
+  /// there is no such tip.
   [[nodiscard]] const Solver& chain_solver(int tip) const;
   /// The chain that the database was built for: the robot itself, unless that is a calibrated one.
   [[nodiscard]] const Robot& nominal() const;

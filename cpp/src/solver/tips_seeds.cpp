@@ -9,7 +9,7 @@ namespace {
 
 /// Values of the shared joints that are tried before all joints are iterated, with little work and
 /// with all; and where many answers are wanted. Of 16, 48, 96 and 256 tried with little, two Pandas
-/// took 15.0, 13.3, 12.1 and 12.4 us in the mean (python -m bench whole_body --robots two_pandas).
+/// took 15.0, 13.3, 12.1 and 12.4 us in the mean (python -m bench whole_body two_pandas).
 constexpr int kQuickValues = 96;
 constexpr int kSharedValues = 32;
 constexpr int kManyValues = 256;

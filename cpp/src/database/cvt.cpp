@@ -18,7 +18,7 @@
 namespace iksel {
 namespace {
 
-/// A random point inside the limits, scaled; what is coupled is convex, and so means stay inside.
+/// A random point inside the limits, scaled; they are convex, and so means stay inside.
 void draw_point(const SampleSpace& space, const std::vector<double>& scale, Random& random,
                 double* point) {
   double q[kMaxDof];

@@ -23,6 +23,13 @@ std::string unit_of(const JointSpace& joints, const Limit& limit) {
   return joints.is_slide(static_cast<int>(first - c.begin())) ? " m" : " rad";
 }
 
+/// " at 3.3 rad, 0.2 rad beyond its upper limit"
+std::string place_text(const Limit& limit, double value, const std::string& unit) {
+  return " at " + number_text(value, kShownDigits) + unit + ", " +
+         number_text(limit.beyond(value), kShownDigits) + unit + " beyond its " +
+         (value > limit.upper ? "upper" : "lower") + " limit";
+}
+
 }  // namespace
 
 double worst_violation(const JointSpace& joints, const JointVector& q) {
@@ -63,15 +70,12 @@ std::string list_violations(const ChainModel& model, const JointVector& q) {
   });
   std::string list;
   for (const Limit& limit : outside) {
-    const double value = limit.value(q.data());
-    const std::string unit = unit_of(model.joints, limit);
     const bool is_first = list.empty();
-    list += is_first           ? name_of(model, limit) + " would have to be"
-            : limit.joint >= 0 ? ", '" + model.joints.name(limit.joint) + "'"
-                               : ", " + name_of(model, limit);
-    list += " at " + number_text(value, kShownDigits) + unit + ", " +
-            number_text(beyond(limit), kShownDigits) + unit + " beyond its " +
-            (value > limit.upper ? "upper" : "lower") + " limit";
+    if (!is_first) list += ", ";
+    list += limit.joint < 0 || is_first ? name_of(model, limit)
+                                        : "'" + model.joints.name(limit.joint) + "'";
+    if (is_first) list += " would have to be";
+    list += place_text(limit, limit.value(q.data()), unit_of(model.joints, limit));
   }
   return list;
 }

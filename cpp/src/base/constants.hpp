@@ -11,7 +11,7 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Joints of an arm whose solutions of a pose are a curve: one more than the pose fixes.
 inline constexpr int kCurveJoints = 7;
-/// Most images that the joints in coupled limits may have together.
-inline constexpr int kMostCoupledImages = 64;
+/// Most images that the joints in limited sums may have together.
+inline constexpr int kMostImagesInSums = 64;
 
 }  // namespace iksel

@@ -86,7 +86,7 @@ class Tessellation {
   }
 
  private:
-  /// A random point inside the limits, scaled; what is coupled is convex, and so means stay inside.
+  /// A random point inside the limits, scaled; they are convex, and so means stay inside.
   void draw_point(Random& random, double* point) const {
     double q[kMaxDof];
     space_.draw_inside(q, [&] {

@@ -111,28 +111,23 @@ SampleSpace sample_space(const ChainModel& model, const Reduction* reduction) {
     const bool slides = model.joints.is_slide(j);
     space.unit.push_back(slides ? std::max(model.reach, 1e-9) : 1.0);
   }
-  for (const CoupledRow& row : model.joints.coupled) {
-    SampleSpace::Coupled coupled{{}, row.lower, row.upper};
-    for (int j = 0; j < model.dof; ++j) {
+  for (Limit row : model.joints.sums) {
+    const JointVector c = row.c;
+    row.c.resize(static_cast<Eigen::Index>(space.dof()));
+    for (int j = 0, kept = 0; j < model.dof; ++j) {
       if (reduction == nullptr || !reduction->leaves_out(j)) {
-        coupled.c.push_back(row.c[j]);
-      } else if (row.c[j] != 0) {
-        const double a = row.c[j] * model.joints.lower[j];
-        const double b = row.c[j] * model.joints.upper[j];
-        coupled.lower -= std::max(a, b);
-        coupled.upper -= std::min(a, b);
+        row.c[kept++] = c[j];
+      } else if (c[j] != 0) {
+        // What is left out adds anything between its limits.
+        const double a = c[j] * model.joints.lower[j];
+        const double b = c[j] * model.joints.upper[j];
+        row.lower -= std::max(a, b);
+        row.upper -= std::min(a, b);
       }
     }
-    space.coupled.push_back(std::move(coupled));
+    space.sums.push_back(row);
   }
   return space;
-}
-
-bool SampleSpace::holds(const double* sample) const {
-  return std::all_of(coupled.begin(), coupled.end(), [&](const Coupled& limit) {
-    const double sum = std::inner_product(limit.c.begin(), limit.c.end(), sample, 0.0);
-    return sum >= limit.lower && sum <= limit.upper;
-  });
 }
 
 std::size_t sample_count(const SampleSpace& space, const DatabaseOptions& options) {

@@ -16,23 +16,17 @@ struct SampleSpace {
   std::vector<double> lower, upper;
   /// Length in the joint's own unit that counts as 1 rad between samples.
   std::vector<double> unit;
-  /// Coupled limits over these joints, with what those left out may add; a sum each.
-  struct Coupled {
-    std::vector<double> c;
-    double lower, upper;
-  };
-  std::vector<Coupled> coupled;
+  /// Over these joints.
+  std::vector<Limit> sums;
 
-  /// Whether no coupled limit is violated.
-  [[nodiscard]] bool holds(const double* sample) const;
   [[nodiscard]] std::size_t dof() const { return lower.size(); }
-  /// Draws a sample by draw(), again where it violates a coupled limit, though not without end.
+  /// Draws a sample by draw(), again where a sum is outside its limits, though not without end.
   template <typename Draw>
   void draw_inside(const double* sample, const Draw& draw) const {
     constexpr int kMostDraws = 1000;
     for (int i = 0; i < kMostDraws; ++i) {
       draw();
-      if (holds(sample)) return;
+      if (contain(sums, sample)) return;
     }
   }
 };
@@ -40,7 +34,7 @@ struct SampleSpace {
 /// All joints, or those that `reduction` does not leave out.
 SampleSpace sample_space(const ChainModel& model, const Reduction* reduction);
 
-/// Number of samples that the options ask for; of a grid, those outside coupled limits included.
+/// Number of samples that the options ask for; of a grid, those whose sums are outside included.
 std::size_t sample_count(const SampleSpace& space, const DatabaseOptions& options);
 
 /// Points that a tessellation is made of, each as often as it is looked at; else 0.

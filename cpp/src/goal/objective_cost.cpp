@@ -68,25 +68,21 @@ struct Repulsion {
 
 double ObjectiveCost::of_limits(const JointVector& q, JointVector* gradient,
                                 JointVector* curvature) const {
-  // Joints without limits have a little, so that they do not drift.
   if (gradient != nullptr) gradient->setZero(model_.dof);
-  if (curvature != nullptr) curvature->setConstant(model_.dof, 1e-6);
+  if (curvature != nullptr) curvature->setZero(model_.dof);
   double sum = 0;
-  for (int j = 0; j < model_.dof; ++j) {
-    const double range = model_.joints.upper[j] - model_.joints.lower[j];
-    if (!(std::isfinite(range) && range > 0)) continue;
-    const Repulsion at(q[j] - model_.joints.lower[j], range);
+  model_.joints.visit_limits([&](const Limit& limit) {
+    const double range = limit.upper - limit.lower;
+    if (!(std::isfinite(range) && range > 0)) return;
+    const Repulsion at(limit.value(q.data()) - limit.lower, range);
     sum += at.cost;
-    if (gradient != nullptr) (*gradient)[j] = at.slope;
-    if (curvature != nullptr) (*curvature)[j] = at.curvature;
-  }
-  for (const CoupledRow& row : model_.joints.coupled) {
-    const Repulsion at(row.sum(q.data()) - row.lower, row.upper - row.lower);
-    sum += at.cost;
-    if (gradient != nullptr) *gradient += at.slope * row.c;
+    const JointVector c = limit.row(model_.dof);
+    if (gradient != nullptr) *gradient += at.slope * c;
     // c c^T is no more than its rows' sums of sizes on the diagonal.
-    if (curvature != nullptr) *curvature += at.curvature * row.size * row.c.cwiseAbs();
-  }
+    if (curvature != nullptr) *curvature += at.curvature * limit.size * c.cwiseAbs();
+  });
+  // Joints without limits have a little, so that they do not drift.
+  if (curvature != nullptr) *curvature = (curvature->array() == 0).select(1e-6, *curvature);
   return sum;
 }
 

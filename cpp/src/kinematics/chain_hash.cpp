@@ -33,7 +33,7 @@ std::uint64_t ChainModel::compute_hash() const {
     hasher.add(joints.lower[i]);
     hasher.add(joints.upper[i]);
   }
-  for (const CoupledRow& row : joints.coupled) {
+  for (const Limit& row : joints.sums) {
     for (int i = 0; i < dof; ++i) hasher.add(row.c[i]);
     hasher.add(row.lower);
     hasher.add(row.upper);

@@ -131,9 +131,9 @@ std::shared_ptr<const ChainModel> ChainModel::without_limits() const {
   auto copy = std::make_shared<ChainModel>(*this);
   JointSpace& wide = copy->joints;
   copy->options.coupled_limits.clear();
-  wide.coupled.clear();
-  wide.coupled_turning.clear();
-  wide.coupled_images.clear();
+  wide.sums.clear();
+  wide.turning.clear();
+  wide.images.clear();
   for (int i = 0; i < dof; ++i) {
     // A curve is known between its ends only.
     if (moves_by_a_curve(*this, i)) continue;

@@ -56,8 +56,7 @@ std::vector<std::string> names_in(const ChainSpec& spec) {
 
 /// Adds a joint's part of a sum; returns what of it does not change.
 double add_joint(const CoupledLimit& limit, std::size_t index, const std::string& name,
-                 double coefficient, const ChainSpec& spec, const JointSpace& joints,
-                 CoupledRow& row) {
+                 double coefficient, const ChainSpec& spec, const JointSpace& joints, Limit& row) {
   const auto joint =
       std::find_if(spec.joints.begin(), spec.joints.end(),
                    [&](const ChainJoint& each) { return each.name == name && each.has_value(); });
@@ -90,7 +89,7 @@ double add_joint(const CoupledLimit& limit, std::size_t index, const std::string
 
 /// Narrows a row's ends to where the joints let its sum go.
 void narrow_to_joints(const CoupledLimit& limit, std::size_t index, const JointSpace& joints,
-                      CoupledRow& row) {
+                      Limit& row) {
   double least = 0;
   double most = 0;
   double numbers = 0;
@@ -117,30 +116,30 @@ void narrow_to_joints(const CoupledLimit& limit, std::size_t index, const JointS
 
 /// The images of the joints in coupled limits together.
 void add_images(JointSpace& joints) {
-  joints.coupled_images = {JointVector::Zero(joints.dof())};
+  joints.images = {JointVector::Zero(joints.dof())};
   for (int j = 0; j < joints.dof(); ++j) {
-    const bool is_coupled = std::any_of(joints.coupled.begin(), joints.coupled.end(),
-                                        [j](const CoupledRow& row) { return row.c[j] != 0; });
+    const bool is_coupled = std::any_of(joints.sums.begin(), joints.sums.end(),
+                                        [j](const Limit& row) { return row.c[j] != 0; });
     if (!is_coupled || !joints.is_periodic(j)) continue;
-    joints.coupled_turning.push_back(j);
+    joints.turning.push_back(j);
     // From the image nearest to the middle of the limits so many to both sides.
     const double half = 0.5 * (joints.upper[j] - joints.lower[j]);
     const double turns = std::floor(half / kTwoPi + 0.5);
-    const auto before = static_cast<double>(joints.coupled_images.size());
-    if (before * (2 * turns + 1) > kMostCoupledImages) {
+    const auto before = static_cast<double>(joints.images.size());
+    if (before * (2 * turns + 1) > kMostImagesInSums) {
       throw InvalidArgumentError(
           "coupled_limits: joint '" + joints.name(j) + "' has " + number_text(2 * turns + 1) +
           " whole turns inside its limits, and those of coupled joints together more than " +
-          std::to_string(kMostCoupledImages) + ": narrow them");
+          std::to_string(kMostImagesInSums) + ": narrow them");
     }
     std::vector<JointVector> images;
-    for (const JointVector& image : joints.coupled_images) {
+    for (const JointVector& image : joints.images) {
       for (double turn = -turns; turn <= turns; ++turn) {
         images.push_back(image);
         images.back()[j] = turn;
       }
     }
-    joints.coupled_images = std::move(images);
+    joints.images = std::move(images);
   }
 }
 
@@ -156,7 +155,7 @@ bool find_interior(JointSpace& joints) {
       if (joints.type(j) == JointType::continuous) continue;
       narrowed(joints.lower[j], joints.upper[j], part, narrow.lower[j], narrow.upper[j]);
     }
-    for (CoupledRow& row : narrow.coupled) {
+    for (Limit& row : narrow.sums) {
       narrowed(row.lower, row.upper, part, row.lower, row.upper);
     }
     joints.interior = narrow.clamp(narrow.interior);
@@ -189,8 +188,8 @@ void add_coupled_limits(const std::vector<CoupledLimit>& limits, const ChainSpec
   for (std::size_t i = 0; i < limits.size(); ++i) {
     const CoupledLimit& limit = limits[i];
     check_numbers(limit, i);
-    CoupledRow row;
-    row.given = static_cast<int>(i);
+    Limit row;
+    row.coupled_limit = static_cast<int>(i);
     row.c.setZero(joints.dof());
     double constant = 0;
     for (const auto& [name, coefficient] : limit.coefficients) {
@@ -204,9 +203,9 @@ void add_coupled_limits(const std::vector<CoupledLimit>& limits, const ChainSpec
       refuse(limit, i, "its joints are held so that the sum is " + number_text(constant));
     }
     narrow_to_joints(limit, i, joints, row);
-    joints.coupled.push_back(std::move(row));
+    joints.sums.push_back(std::move(row));
   }
-  if (joints.coupled.empty()) return;
+  if (joints.sums.empty()) return;
   add_images(joints);
   joints.interior = joints.middle();
   if (find_interior(joints)) return;

@@ -6,38 +6,45 @@
 namespace iksel {
 
 JointSpace::JointSpace(int dof)
-    : names(static_cast<std::size_t>(dof)),
+    : LimitSet(dof),
+      names(static_cast<std::size_t>(dof)),
       types(static_cast<std::size_t>(dof)),
-      lower(dof),
-      upper(dof),
       velocity(dof) {}
 
-bool JointSpace::contains(const double* q) const {
-  for (int j = 0; j < dof(); ++j) {
-    // Written so that NaN is outside.
-    if (!(q[j] >= lower[j] && q[j] <= upper[j])) return false;
+namespace {
+
+/// Calls visit(q, beyond) with q at each combination of images of the joints that turn in sums, and
+/// how far sums, by what a joint would have to move, and these joints lie outside there.
+template <typename Visit>
+void visit_images(const JointSpace& joints, const JointVector& from, const Visit& visit) {
+  const JointVector middle = joints.middle();
+  JointVector q = from;
+  for (const JointVector& turns : joints.images) {
+    double beyond = -kInfinity;
+    for (const int j : joints.turning) {
+      q[j] = from[j] + kTwoPi * (std::round((middle[j] - from[j]) / kTwoPi) + turns[j]);
+      beyond = std::max({beyond, joints.lower[j] - q[j], q[j] - joints.upper[j]});
+    }
+    for (const Limit& sum : joints.sums) {
+      beyond = std::max(beyond, sum.beyond(sum.value(q.data())) / sum.size);
+    }
+    visit(q, beyond);
   }
-  return coupled.empty() || holds_coupled(q);
 }
+
+}  // namespace
 
 bool JointSpace::leaves(const double* q, const double* step) const {
-  for (int j = 0; j < dof(); ++j) {
-    const double end = q[j] + step[j];
-    if ((end < lower[j] || end > upper[j]) && !is_periodic(j)) return true;
-  }
-  if (coupled.empty()) return false;
   JointVector end(dof());
-  for (int j = 0; j < dof(); ++j) end[j] = q[j] + step[j];
-  return beyond_coupled(end.data()) > 0;
-}
-
-JointVector JointSpace::middle() const {
-  JointVector middle(dof());
   for (int j = 0; j < dof(); ++j) {
-    const double m = (lower[j] + upper[j]) / 2;
-    middle[j] = std::isfinite(m) ? m : 0.0;
+    end[j] = q[j] + step[j];
+    if ((end[j] < lower[j] || end[j] > upper[j]) && !is_periodic(j)) return true;
   }
-  return middle;
+  if (sums.empty()) return false;
+  bool leaves = true;
+  visit_images(*this, end,
+               [&](const JointVector& /*at*/, double beyond) { leaves = leaves && beyond > 0; });
+  return leaves;
 }
 
 JointVector JointSpace::turned_to_middle(JointVector q) const {
@@ -46,6 +53,20 @@ JointVector JointSpace::turned_to_middle(JointVector q) const {
     if (!is_slide(j)) q[j] += kTwoPi * std::round((to[j] - q[j]) / kTwoPi);
   }
   return q;
+}
+
+void JointSpace::choose_images(double slack, const Length& length, JointVector& q) const {
+  const JointVector from = q;
+  double least_beyond = kInfinity;
+  double shortest = kInfinity;
+  visit_images(*this, from, [&](const JointVector& at, double beyond) {
+    const double outside = beyond > slack ? beyond : 0.0;
+    const double way = length(at);
+    if (outside > least_beyond || (outside == least_beyond && way >= shortest)) return;
+    least_beyond = outside;
+    shortest = way;
+    q = at;
+  });
 }
 
 void JointSpace::wrap(double* q) const {
@@ -62,11 +83,11 @@ void JointSpace::wrap(double* q) const {
       if (wrapped >= lower[j]) q[j] = wrapped;
     }
   }
-  if (coupled_turning.empty() || holds_coupled(q)) return;
+  if (turning.empty() || contains_sums(q)) return;
   JointVector image = Eigen::Map<const Eigen::VectorXd>(q, dof());
   const JointVector from = image;
-  turn_coupled(
-      0, /*takes_any=*/true, [&](const JointVector& at) { return (at - from).norm(); }, image);
+  choose_images(
+      0, [&](const JointVector& at) { return (at - from).norm(); }, image);
   for (int j = 0; j < dof(); ++j) q[j] = image[j];
 }
 
@@ -79,7 +100,7 @@ bool JointSpace::wrap_nearest(const JointVector& near, double slack, const Lengt
                               JointVector& q) const {
   bool held = false;
   for (int j = 0; j < dof(); ++j) {
-    if (!is_periodic(j) || has_coupled_images(j)) continue;
+    if (!is_periodic(j) || turns_in_sum(j)) continue;
     const double low = lower[j] - slack;
     const double high = upper[j] + slack;
     double value = q[j];
@@ -91,28 +112,26 @@ bool JointSpace::wrap_nearest(const JointVector& near, double slack, const Lengt
     q[j] = std::min(std::max(value, lower[j]), upper[j]);
     held = held || q[j] != value;
   }
-  if (coupled_turning.empty()) return held;
-  turn_coupled(
-      slack, /*takes_any=*/false, [&](const JointVector& at) { return length(at - near); }, q);
-  const JointVector inside = contains(q.data()) ? q : clamp(q);
-  held = held || inside != q;
-  q = inside;
-  return held;
+  if (turning.empty()) return held;
+  choose_images(
+      slack, [&](const JointVector& at) { return length(at - near); }, q);
+  const JointVector image = q;
+  q = clamp(image);
+  return held || q != image;
 }
 
 void JointSpace::first_image(JointVector& q) const {
   lowest_image(q);
-  // Of the combinations, the first that holds what is coupled.
-  if (!coupled_turning.empty() && !holds_coupled(q.data())) next_image(q);
+  // Of the combinations, the first that holds the sums.
+  if (!contains_sums(q.data())) next_image(q);
 }
 
 bool JointSpace::next_image(JointVector& q) const {
-  if (coupled_turning.empty()) return next_combination(q);
   while (next_combination(q)) {
-    if (holds_coupled(q.data())) return true;
+    if (contains_sums(q.data())) return true;
   }
-  if (!holds_coupled(q.data())) {
-    while (next_combination(q) && !holds_coupled(q.data())) {
+  if (!contains_sums(q.data())) {
+    while (next_combination(q) && !contains_sums(q.data())) {
     }
   }
   return false;
@@ -147,6 +166,35 @@ JointVector JointSpace::longest_moves(double dt) const {
   // A little more, so that a joint may run at its limit in spite of rounding.
   constexpr double kSlack = 1e-9;
   return velocity * (dt * (1 + kSlack));
+}
+
+JointVector JointSpace::draw(Random& random) const {
+  constexpr int kDraws = 1000;
+  JointVector q(dof());
+  for (int draw = 0; draw <= kDraws; ++draw) {
+    for (int j = 0; j < dof(); ++j) q[j] = random.uniform(sample_lower(j), sample_upper(j));
+    if (sums.empty() || contains_sums(q.data())) return q;
+  }
+  // Where so little of the box lies inside: from there one joint after the other, uniform between
+  // where the others let it be (Gibbs sampling).
+  constexpr int kSweeps = 32;
+  q = interior;
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    for (int j = 0; j < dof(); ++j) {
+      double low = sample_lower(j);
+      double high = sample_upper(j);
+      for (const Limit& row : sums) {
+        if (row.c[j] == 0) continue;
+        const double others = row.value(q.data()) - row.c[j] * q[j];
+        const double a = (row.held_at(false) - others) / row.c[j];
+        const double b = (row.held_at(true) - others) / row.c[j];
+        low = std::max(low, std::min(a, b));
+        high = std::min(high, std::max(a, b));
+      }
+      if (low < high) q[j] = random.uniform(low, high);
+    }
+  }
+  return q;
 }
 
 Matrix JointSpace::samples(std::size_t n, std::uint64_t seed, const Progress& progress) const {

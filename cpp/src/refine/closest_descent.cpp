@@ -11,28 +11,22 @@ namespace {
 /// Longest step of a joint [rad or m].
 constexpr double kLongestDescent = 0.5;
 
-/// Leaves out joints that stand at a limit and would go beyond.
+/// Leaves out what would leave limits that q stands at.
 void hold_at_limits(const JointSpace& joints, const JointVector& q, JointVector& gradient,
                     SquareMatrix& H) {
-  JointVector free = JointVector::Ones(q.size());
+  const ActiveLimits at = joints.active(q, -gradient, [](int /*joint*/) { return true; });
   for (Eigen::Index j = 0; j < q.size(); ++j) {
-    const bool leaves = (q[j] <= joints.lower[j] && gradient[j] > 0) ||
-                        (q[j] >= joints.upper[j] && gradient[j] < 0);
-    if (!leaves) continue;
+    if (at.free[j] != 0) continue;
     gradient[j] = 0;
     H.row(j).setZero();
     H.col(j).setZero();
     H(j, j) = 1;
-    free[j] = 0;
   }
-  if (!joints.coupled.empty()) {
-    // The same for directions across coupled limits.
-    const CoupledNormals N = joints.coupled_normals(q, -gradient, free);
-    const SquareMatrix across = N * N.transpose();
-    const SquareMatrix along = SquareMatrix::Identity(q.size(), q.size()) - across;
-    gradient = JointVector(along * gradient);
-    H = SquareMatrix(along * H * along + across);
-  }
+  if (at.across.cols() == 0) return;
+  const SquareMatrix across = at.across * at.across.transpose();
+  const SquareMatrix along = SquareMatrix::Identity(q.size(), q.size()) - across;
+  gradient = JointVector(along * gradient);
+  H = SquareMatrix(along * H * along + across);
 }
 
 /// The step -H^-1 g inside the limits: joints that it would take beyond go to their limits, and the

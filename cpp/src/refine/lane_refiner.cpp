@@ -107,9 +107,9 @@ void LaneRefiner::load_seed(int lane, const double* q) {
   });
 }
 
-void LaneRefiner::hold_coupled(int lane) {
+void LaneRefiner::hold_sums(int lane) {
   JointVector seed = q(lane);
-  if (joints_.holds_coupled(seed.data())) return;
+  if (joints_.contains_sums(seed.data())) return;
   joints_.wrap(seed.data());
   seed = joints_.clamp(seed);
   for (int j = 0; j < chain_.n; ++j) pack_.q[j][lane] = seed[j];

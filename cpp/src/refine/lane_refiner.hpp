@@ -48,7 +48,7 @@ class LaneRefiner {
   template <typename Value>
   void load(int lane, const Value& value) {
     for (int j = 0; j < chain_.n; ++j) pack_.q[j][lane] = value(j);
-    if (chain_.coupled_rows > 0) hold_coupled(lane);
+    if (chain_.sums > 0) hold_sums(lane);
     there_ &= ~(1U << static_cast<unsigned>(lane));  // of a search that ended before advance()
     pack_.error2[lane] = kInfinity;                  // not measured yet
     age_[lane] = 0;
@@ -107,8 +107,8 @@ class LaneRefiner {
   }
 
  private:
-  /// Holds a lane's seed to the coupled limits, at images that violate them least.
-  void hold_coupled(int lane);
+  /// Brings a lane's seed inside the limits, by whole turns and along sums.
+  void hold_sums(int lane);
   /// Writes the rows of a task's target, each by write(row, value).
   template <typename Write>
   void make_rows(const Pose& T_base_tcp, const Write& write) const;

@@ -13,7 +13,7 @@
 namespace iksel {
 
 /// The step that makes a cost least to second order (gradient g, diagonal second derivative H)
-/// inside the bounds of a goal's rows, the joint limits and the coupled ones A q: min 1/2 s^T H s +
+/// inside the bounds of a goal's rows, those of sums A q and the joint limits: min 1/2 s^T H s +
 /// g^T s under lower <= [J s; A s; s] <= upper. By the primal active-set method (Nocedal and
 /// Wright: "Numerical Optimization", 2006, section 16.5), whose steps are solved for in the rows of
 /// J and A only. `kRows`: 6, or dynamic.
@@ -26,7 +26,7 @@ class LeastCostStep {
                 const JointVector& gradient, const JointVector& curvature)
       : gradient_(gradient), curvature_(curvature), dof_(joints.dof()) {
     const auto of_goal = static_cast<int>(at.J.rows());
-    rows_ = of_goal + static_cast<int>(joints.coupled.size());
+    rows_ = of_goal + static_cast<int>(joints.sums.size());
     J_.resize(rows_, dof_);
     row_lower_.resize(rows_);
     row_upper_.resize(rows_);
@@ -34,11 +34,11 @@ class LeastCostStep {
     row_lower_.head(of_goal) = at.lower - at.deviation;
     row_upper_.head(of_goal) = at.upper - at.deviation;
     for (int i = of_goal; i < rows_; ++i) {
-      const CoupledRow& row = joints.coupled[static_cast<std::size_t>(i - of_goal)];
-      const double sum = row.sum(q.data());
+      const Limit& row = joints.sums[static_cast<std::size_t>(i - of_goal)];
+      const double sum = row.value(q.data());
       J_.row(i) = row.c.transpose();
-      row_lower_[i] = row.lower + row.rounding - sum;
-      row_upper_[i] = row.upper - row.rounding - sum;
+      row_lower_[i] = row.held_at(false) - sum;
+      row_upper_[i] = row.held_at(true) - sum;
     }
     lower_ = joints.lower - q;
     upper_ = joints.upper - q;
@@ -169,7 +169,7 @@ JointVector least_cost_step(const JointSpace& joints, const JointVector& q, cons
                             const JointVector& gradient, const JointVector& curvature) {
   if constexpr (Linear::kRows != Eigen::Dynamic) {
     using Step = LeastCostStep<Linear::kRows, Linear::kMostRows>;
-    if (joints.coupled.empty()) return Step(joints, q, at, gradient, curvature).solve();
+    if (joints.sums.empty()) return Step(joints, q, at, gradient, curvature).solve();
   }
   constexpr int kMost = Linear::kMostRows + kMaxCoupledLimits;
   return LeastCostStep<Eigen::Dynamic, kMost>(joints, q, at, gradient, curvature).solve();

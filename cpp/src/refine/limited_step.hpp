@@ -31,36 +31,31 @@ JointVector damped_solve(const Matrix& J, double lambda, const Vector& e) {
   return factors.solve(gradient);
 }
 
-/// J^T (J J^T + damping I)^-1 e, with the columns of joints that stand at a limit and would leave
-/// it set to zero, and the step cut off at the limits. `wraps`: joints that turn on and on are
-/// brought inside at the end, and are not held.
+/// J^T (J J^T + damping I)^-1 e, without what would leave limits that q stands at, and the step cut
+/// off at the limits. `wraps`: joints that turn on and on are brought inside at the end, and are
+/// not held.
 template <typename Matrix, typename Vector>
 JointVector lm_step(const JointSpace& joints, const JointVector& q, const Matrix& J,
                     const Vector& e, double damping, bool wraps) {
+  const auto is_held = [&](int i) { return !(wraps && joints.winds(i)); };
+  JointVector pull(joints.dof());
+  for (int i = 0; i < joints.dof(); ++i) pull[i] = J.col(i).dot(e);
+  const ActiveLimits at = joints.active(q, pull, is_held);
   Matrix active = J;
-  JointVector free = JointVector::Ones(joints.dof());
   for (int i = 0; i < joints.dof(); ++i) {
-    if (wraps && joints.winds(i)) continue;
-    const double gradient = J.col(i).dot(e);
-    if ((q[i] <= joints.lower[i] && gradient < 0) || (q[i] >= joints.upper[i] && gradient > 0)) {
-      active.col(i).setZero();
-      free[i] = 0;
-    }
+    if (at.free[i] == 0) active.col(i).setZero();
   }
-  if (!joints.coupled.empty()) {
-    const CoupledNormals N = joints.coupled_normals(q, active.transpose() * e, free);
-    active -= Matrix((active * N) * N.transpose());
-  }
+  if (at.across.cols() > 0) active -= Matrix((active * at.across) * at.across.transpose());
   // The floor keeps the solve regular where the error is zero in double precision.
   JointVector step = damped_solve(active, damping + 1e-18, e);
   for (int i = 0; i < joints.dof(); ++i) {
-    if (wraps && joints.winds(i)) continue;
+    if (!is_held(i)) continue;
     const double goal = std::min(std::max(q[i] + step[i], joints.lower[i]), joints.upper[i]);
     step[i] = goal - q[i];
   }
-  if (joints.coupled.empty()) return step;
+  if (joints.sums.empty()) return step;
   JointVector end = q + step;
-  joints.hold_coupled(end);
+  joints.hold_sums(end);
   return end - q;
 }
 

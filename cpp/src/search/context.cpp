@@ -5,7 +5,6 @@
 #include <thread>
 
 #include "options/strategy.hpp"
-#include "structure/coupled_form.hpp"
 
 namespace iksel {
 
@@ -20,12 +19,12 @@ bool solves_in_lanes(const ChainModel& model, const DatabaseData& data,
 /// Those of the nominal chain that tell which solutions lie inside the model's limits.
 ClosedForms closed_forms_of(const ChainModel& model, const ChainModel& nominal) {
   ClosedForms forms = ClosedForms::of(nominal);
-  if (forms.pose && !suits_coupled_limits(model, *forms.pose)) forms.pose.reset();
-  if (forms.residual && !suits_coupled_limits(model, *forms.residual)) forms.residual.reset();
-  forms.tasks.erase(
-      std::remove_if(forms.tasks.begin(), forms.tasks.end(),
-                     [&](const auto& form) { return !suits_coupled_limits(model, form.second); }),
-      forms.tasks.end());
+  const auto tells = [&](const ClosedFormChain& form) { return form.tells_inside(model.joints); };
+  if (forms.pose && !tells(*forms.pose)) forms.pose.reset();
+  if (forms.residual && !tells(*forms.residual)) forms.residual.reset();
+  forms.tasks.erase(std::remove_if(forms.tasks.begin(), forms.tasks.end(),
+                                   [&](const auto& form) { return !tells(form.second); }),
+                    forms.tasks.end());
   return forms;
 }
 

@@ -90,7 +90,7 @@ class Curve {
   void mark_samples(const Joints& from, const Joints& to);
   void finish(Walk& walk, const SelfMotionEnd& end);
   [[nodiscard]] bool is_on_arc(const Joints& q) const;
-  /// Goes on at another image, if coupled limits hold there.
+  /// Goes on at another image, if that lies inside the limits.
   bool turn_round(Walk& walk, int lane, const Joints& next);
   /// Ends a walk at a limit.
   void leave(Walk& walk, const Joints& q, const SelfMotionEnd& at);

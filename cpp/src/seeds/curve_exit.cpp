@@ -56,24 +56,24 @@ void CurveWalker::look_at_limit(const Limit& limit, const Step& step, Exit& firs
   constexpr int kHalvings = 40;
   /// What a cubic may be off by [rad or m].
   constexpr double kDoubtful = 2e-3;
-  const Cubic value{limit.value(step.from.q), step.way * limit.value(step.from.tangent),
-                    limit.value(step.to.q), step.way * limit.value(step.to.tangent)};
+  const Cubic value{limit.value(step.from.q.data()),
+                    step.way * limit.value(step.from.tangent.data()), limit.value(step.to.q.data()),
+                    step.way * limit.value(step.to.tangent.data())};
   // Far from it, nothing is to be looked for between.
   const double room = std::min({value.from - limit.lower, limit.upper - value.from,
                                 value.to - limit.lower, limit.upper - value.to});
   if (room > 0.5 * (std::abs(value.slope_from) + std::abs(value.slope_to))) return;
-  const auto beyond = [&](double at) { return std::max(limit.lower - at, at - limit.upper); };
   std::array<double, 2> turns{};
   const int count = value.turns(turns);
   for (int i = 0; i <= count; ++i) {
     double outside = i < count ? turns[static_cast<std::size_t>(i)] : 1;
     const double at = value(outside);
-    if (beyond(at) <= kAtLimit) continue;
-    const bool is_doubtful = beyond(at) < kDoubtful;
+    if (limit.beyond(at) <= kAtLimit) continue;
+    const bool is_doubtful = limit.beyond(at) < kDoubtful;
     if (is_doubtful) {
       Place on_curve{step.at(outside), {}};
       correct(on_curve);
-      if (beyond(limit.value(on_curve.q)) <= kAtLimit) continue;
+      if (limit.beyond(limit.value(on_curve.q.data())) <= kAtLimit) continue;
     }
     const bool at_upper = at > limit.upper;
     double inside = i > 0 ? turns[static_cast<std::size_t>(i - 1)] : 0;
@@ -83,8 +83,7 @@ void CurveWalker::look_at_limit(const Limit& limit, const Step& step, Exit& firs
       (is_out ? outside : inside) = middle;
     }
     if (inside >= first.part) return;
-    first = {inside, limit.at, &limit};
-    first.at.at_upper = at_upper;
+    first = {inside, {ArcEnd::limit, limit.joint, at_upper, limit.coupled_limit}, &limit};
     return;
   }
 }
@@ -97,9 +96,9 @@ CurveWalker::Place CurveWalker::leave(const Step& step, const Exit& exit) {
   const double value = exit.at.at_upper ? exit.limit->upper : exit.limit->lower;
   for (int round = 0; round < kRounds; ++round) {
     orient(&at, 1);
-    const double slope = exit.limit->value(at.tangent);
+    const double slope = exit.limit->value(at.tangent.data());
     if (!(std::abs(slope) > kAlong)) break;
-    const double way = (value - exit.limit->value(at.q)) / slope;
+    const double way = (value - exit.limit->value(at.q.data())) / slope;
     for (std::size_t j = 0; j < kDof; ++j) at.q[j] += way * at.tangent[j];
   }
   return at;

@@ -183,10 +183,8 @@ bool Curve::is_on_arc(const Joints& q) const {
 }
 
 bool Curve::turn_round(Walk& walk, int lane, const Joints& next) {
-  if (joints_.coupled_turning.empty()) return false;
   Joints image = next;
-  joints_.wrap(image.data());
-  if (!walker_.is_inside(image)) return false;
+  if (!joints_.wrap_sums(image.data()) || !walker_.is_inside(image)) return false;
   walker_.turn_to(lane, image);
   walk.q.push_back(image);
   return true;

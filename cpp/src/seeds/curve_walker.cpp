@@ -22,16 +22,9 @@ CurveWalker::Place CurveWalker::Place::reversed() const {
 
 CurveWalker::CurveWalker(const ChainModel& model, const lanes::LaneKernels& kernels)
     : chain_(make_lane_chain(model)), kernels_(kernels) {
-  const JointSpace& joints = model.joints;
-  for (int j = 0; j < kDof; ++j) {
-    if (joints.is_periodic(j)) continue;
-    limits_.push_back({{ArcEnd::limit, j}, nullptr, joints.lower[j], joints.upper[j]});
-  }
-  for (const CoupledRow& row : joints.coupled) {
-    SelfMotionEnd at{ArcEnd::limit};
-    at.coupled_limit = row.given;
-    limits_.push_back({at, &row, row.lower, row.upper});
-  }
+  model.joints.visit_limits([&](const Limit& limit) {
+    if (limit.joint < 0 || !model.joints.is_periodic(limit.joint)) limits_.push_back(limit);
+  });
 }
 
 void CurveWalker::set_target(const Pose& Y, double longest) {
@@ -43,7 +36,7 @@ void CurveWalker::set_target(const Pose& Y, double longest) {
 
 bool CurveWalker::is_inside(const Joints& q) const {
   return std::all_of(limits_.begin(), limits_.end(), [&](const Limit& limit) {
-    const double at = limit.value(q);
+    const double at = limit.value(q.data());
     return at >= limit.lower - kAtLimit && at <= limit.upper + kAtLimit;
   });
 }

@@ -32,16 +32,6 @@ class CurveWalker {
 
     [[nodiscard]] Joints at(double part) const;
   };
-  /// A limit of a joint, or of several together.
-  struct Limit {
-    SelfMotionEnd at;       ///< but for the side
-    const CoupledRow* row;  ///< null: a joint's
-    double lower, upper;
-
-    [[nodiscard]] double value(const Joints& q) const {
-      return row != nullptr ? row->sum(q.data()) : q[static_cast<std::size_t>(at.joint)];
-    }
-  };
   /// A configuration between two of a step, where it leaves a limit.
   struct Exit {
     double part;  ///< of the way; above 1: it does not

@@ -60,7 +60,7 @@ void Enumeration::copy_joints(int lane, double* q) const {
     if (!chain_.turns_freely(j) || model_.joints.type(j) == JointType::continuous) continue;
     q[j] = std::clamp(q[j], model_.joints.lower[j], model_.joints.upper[j]);
   }
-  if (!model_.joints.coupled_turning.empty()) model_.joints.wrap(q);
+  model_.joints.wrap_sums(q);
 }
 
 void Enumeration::take(const Pose& Y, int lane, bool wants_all) {

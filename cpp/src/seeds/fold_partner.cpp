@@ -76,7 +76,7 @@ FoldPartner find_fold_partner(const Jacobian& J, const JointVector& q, double ne
 }
 
 bool jacobian_signs_cancel(const ChainModel& model) {
-  if (model.dof != 6 || !model.joints.coupled.empty()) return false;
+  if (model.dof != 6 || !model.joints.sums.empty()) return false;
   for (int j = 0; j < model.dof; ++j) {
     if (!model.joints.is_periodic(j)) return false;
   }

@@ -79,7 +79,7 @@ MoveBounds::Reach MoveBounds::between(const BranchPoint& a, const BranchPoint& b
   // From here on it is not known which way round [rad].
   constexpr double kEitherWay = 2.5;
   // Sums of joints are not looked at one by one.
-  bool meets_limit = form_.coupled != nullptr && (a.off > 0) != (b.off > 0);
+  bool meets_limit = form_.sums != nullptr && (a.off > 0) != (b.off > 0);
   Norm norm(form_);
   for (std::size_t i = 0; i < a.q.size(); ++i) {
     const double turn = this->turn(i, a.q[i], b.q[i]);

@@ -82,9 +82,9 @@ void SweptBranches::measure_moves_from(const JointVector& near, const JointMove&
     form.has_images[i] = joints_.is_periodic(j);
     form.lower[i] = joints_.lower[j] + form.margin + offset;
     form.upper[i] = joints_.upper[j] - form.margin + offset;
-    form.turns_coupled[i] = joints_.has_coupled_images(j);
+    form.turns_in_sum[i] = joints_.turns_in_sum(j);
   }
-  form.coupled = joints_.coupled_turning.empty() ? nullptr : chain_.form.coupled;
+  form.sums = joints_.turning.empty() ? nullptr : chain_.form.sums;
 }
 
 void SweptBranches::rate(double bound, Row* rows) {

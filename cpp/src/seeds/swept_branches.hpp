@@ -184,7 +184,7 @@ class SweptBranches {
     if (turns_ && swept > upper_) swept -= kTwoPi;
     q[chain_.held] = swept;
     chain_.copy_joints(others, lane, q);
-    if (!joints_.coupled_turning.empty()) joints_.wrap(q);
+    joints_.wrap_sums(q);
   }
 
   /// The same of a point.

@@ -8,7 +8,7 @@
 
 #include "simd/branch_arm.hpp"
 #include "simd/branch_swept.hpp"
-#include "simd/coupled_kernel.hpp"
+#include "simd/limit_kernel.hpp"
 
 namespace iksel::lanes {
 
@@ -99,15 +99,6 @@ IKSEL_INLINE void solve_three_parallel(const ClosedForm& form, const BranchTarge
   is_enough(form, 3, out);
 }
 
-/// How far joint values lie outside of coupled limits.
-template <typename T>
-T beyond_coupled(const ClosedForm& form, int first, const T (&of_six)[6], const BranchPack& pack) {
-  T q[7];
-  for (int j = 0; j < 6; ++j) q[j] = of_six[j];
-  q[6] = form.is_held ? Lanes<T>::load(pack.held + first) : T(0.0);
-  return beyond_coupled(*form.coupled, q);
-}
-
 /// The joint values, and how far they are outside of their limits.
 template <typename T, typename Q>
 IKSEL_INLINE void store_branch(const ClosedForm& form, const Branch<T, Q>& branch, int first,
@@ -119,8 +110,8 @@ IKSEL_INLINE void store_branch(const ClosedForm& form, const Branch<T, Q>& branc
     beyond = max(beyond, beyond_limits(form, j, value[j]));
     Lanes<T>::store(value[j], pack.q[j] + first);
   }
-  if (form.coupled != nullptr) beyond = max(beyond, beyond_coupled(form, first, value, pack));
-  Lanes<T>::store(beyond, pack.beyond + first);
+  const T held = Lanes<T>::load(pack.held + first);
+  Lanes<T>::store(beyond_with_sums(form, beyond, value, held), pack.beyond + first);
   Lanes<T>::store(branch.quality.least, pack.least + first);
   Lanes<T>::store(branch.quality.error(form.error), pack.error + first);
 }
@@ -130,8 +121,9 @@ IKSEL_INLINE void store_branch(const ClosedForm& form, Branch<T, Certainty<T>>& 
   Certainty<T>& quality = branch.quality;
   if (!quality.is_over()) {
     for (int j = 0; j < 6; ++j) Lanes<T>::store(quality.value[j], pack.q[j] + first);
-    if (form.coupled != nullptr) {
-      quality.take_beyond(beyond_coupled(form, first, quality.value, pack));
+    if (form.sums != nullptr) {
+      const T held = Lanes<T>::load(pack.held + first);
+      quality.take_beyond(beyond_with_sums(form, T(-1e30), quality.value, held));
     }
   }
   Lanes<T>::store(max(quality.beyond, T(0.0)), pack.beyond + first);

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "base/constants.hpp"
 #include "simd/lane_types.hpp"
 
 namespace iksel::lanes {
@@ -38,6 +39,22 @@ struct LimitArc {
   double reach_c, reach_s;
 };
 
+/// Limits of sums of six joint values, as a closed form counts them, and the held angle. Scaled
+/// so that the sizes of a row's coefficients add up to 1: angles that are off by e take a sum off
+/// by no more.
+struct SumForm {
+  int rows;
+  double coefficient[kMostSums][7];
+  double lower[kMostSums], upper[kMostSums];
+  /// Joints whose whole turns count; the middle of their limits and half their range [rad]; and
+  /// their images together: what each adds to those nearest to the middle [rad].
+  int turning;
+  int joint[7];
+  double middle[7], reach[7];
+  int images;
+  double turned[kMostImagesInSums][7];
+};
+
 /// Six joints where their angles are zero, in product-of-exponentials form. Lengths are in units of
 /// the chain's reach.
 struct ClosedForm {
@@ -67,7 +84,7 @@ struct ClosedForm {
   Turned elbow;         ///< p23 . R(h3) p34
   Turned shoulder;      ///< of parallel_12, h1 . R(h3) p34
   Turned wrist;         ///< h4 . R(h5) h6; of three_parallel, h2 . R(h5) h6
-  const CoupledForm* coupled;  ///< null: no joint values are limited together
+  const SumForm* sums;  ///< null: none is limited
 };
 
 /// Poses, and a branch of each, lane by lane. Rows of the target: columns X, Y and Z of R_06 E,
@@ -82,7 +99,7 @@ struct BranchPack {
   alignas(64) double sign[3][kWidth];
   /// Of the six joints [rad], by whole turns inside the limits where they can be.
   alignas(64) double q[6][kWidth];
-  /// How far one of them lies outside of them, or of coupled ones, 0 or less if none does [rad].
+  /// How far one of them lies outside of them, or a sum does, 0 or less if none does [rad].
   alignas(64) double beyond[kWidth];
   /// Subproblems have solutions where a difference of squares is not below 0. The least of these;
   /// and at best and at worst for targets within ClosedForm::error: there is no branch where the
@@ -120,9 +137,9 @@ struct MoveForm {
   double lower[7], upper[7];
   double margin;
   bool takes_largest;  ///< else the root of the squares' sum
-  /// Of ClosedForm, if images change coupled sums; these joints are then in `turns_coupled`.
-  const CoupledForm* coupled;
-  bool turns_coupled[7];
+  /// Of ClosedForm, if images change sums; these joints are then in `turns_in_sum`.
+  const SumForm* sums;
+  bool turns_in_sum[7];
 };
 
 /// How far branches are away, lane by lane.

@@ -11,10 +11,10 @@
 //   s_ij = z_i . z_j trace M - z_i . M z_j.
 #pragma once
 
-#include "simd/coupled_kernel.hpp"
 #include "simd/lane_frames.hpp"
 #include "simd/lane_types.hpp"
 #include "simd/lane_vector.hpp"
+#include "simd/limit_kernel.hpp"
 
 namespace iksel::lanes {
 
@@ -225,7 +225,7 @@ void approach_of(const LaneChainOf<float>& chain, const ClosestTarget& target, i
         q[j] = select(better, q[j] + step[j], best_q[j]);
         if (joint.limited) q[j] = min(max(q[j], T(joint.lower)), T(joint.upper));
       }
-      if (chain.coupled_rows > 0) hold_coupled(chain, q);
+      if (chain.sums > 0) hold_sums(chain, q);
     }
     for (int j = 0; j < n; ++j) Lanes<T>::store(best_q[j], seeds + j * kBlock + first);
     Lanes<T>::store(best, remainder + first);

@@ -5,7 +5,7 @@
 
 namespace iksel {
 
-static_assert(lanes::kMostCoupled == kMaxCoupledLimits);
+static_assert(lanes::kMostSums == kMaxCoupledLimits);
 
 bool is_simple(const ChainModel& model) {
   if (model.kernel.joints.size() != static_cast<std::size_t>(model.dof)) return false;
@@ -39,17 +39,17 @@ lanes::LaneChainOf<Number> make_chain(const ChainModel& model) {
     const double upper = continuous ? kPi + 1e-9 : model.joints.upper[j];
     to.lower = number(lower);
     to.upper = number(upper);
-    // Whole turns of a joint in a coupled limit change its sum.
-    to.limited = from.prismatic || (!continuous && upper - lower < 2 * kPi) ||
-                 model.joints.has_coupled_images(j);
+    // Whole turns of a joint may change a sum that is limited.
+    to.limited =
+        from.prismatic || (!continuous && upper - lower < 2 * kPi) || model.joints.turns_in_sum(j);
   }
-  for (const CoupledRow& from : model.joints.coupled) {
+  for (const Limit& from : model.joints.sums) {
     // Beside a bound by less than this a lane stands at it; held to it, it does.
     constexpr Number kBeside = sizeof(Number) == sizeof(float) ? Number(1e-5) : Number(1e-9);
-    lanes::LaneCoupledOf<Number>& to = chain.coupled[chain.coupled_rows++];
+    lanes::LaneSumOf<Number>& to = chain.sum[chain.sums++];
     for (int j = 0; j < chain.n; ++j) to.c[j] = number(from.c[j]);
-    to.lower = number(from.lower + from.rounding);
-    to.upper = number(from.upper - from.rounding);
+    to.lower = number(from.held_at(false));
+    to.upper = number(from.held_at(true));
     to.low = to.lower + kBeside * number(from.size);
     to.high = to.upper - kBeside * number(from.size);
     to.least_norm2 = number(1e-12 * from.c.squaredNorm());

@@ -5,12 +5,12 @@
 
 #include "simd/branch_kernel.hpp"
 #include "simd/closest_kernel.hpp"
-#include "simd/coupled_kernel.hpp"
 #include "simd/curve_kernel.hpp"
 #include "simd/lane_frames.hpp"
 #include "simd/lane_goal.hpp"
 #include "simd/lane_math.hpp"
 #include "simd/lane_types.hpp"
+#include "simd/limit_kernel.hpp"
 #include "simd/loop_kernel.hpp"
 #include "simd/move_kernel.hpp"
 #include "simd/nearest_kernel.hpp"
@@ -22,8 +22,8 @@
 
 namespace iksel::lanes {
 
-/// From origins and axes to the columns of the goal's Jacobian; those of joints that stand at a
-/// limit and would leave it are zero.
+/// From origins and axes to the columns of the goal's Jacobian, without what would leave limits
+/// that a lane stands at.
 template <typename T, typename Goal>
 IKSEL_INLINE void make_columns(const LaneChainOf<NumberOf<T>>& chain, const T* q, const Goal& goal,
                                const LaneFrame<T>& f, const T (&e)[6], T (*J)[6]) {
@@ -46,6 +46,10 @@ IKSEL_INLINE void make_columns(const LaneChainOf<NumberOf<T>>& chain, const T* q
       }
     }
   }
+  if (chain.sums > 0) {
+    const T error[6] = {e[0], e[1], e[2], e[3], e[4], e[5]};  // so that e stays in registers
+    hold_columns(chain, q, error, J);
+  }
 }
 
 /// Adds J^T y to q, held to the limits; returns the squared length of the step.
@@ -64,6 +68,7 @@ IKSEL_INLINE T move_joints(const LaneChainOf<NumberOf<T>>& chain, const T (*J)[6
     const auto& joint = chain.joint[j];
     if (joint.limited) q[j] = min(max(q[j], T(joint.lower)), T(joint.upper));
   }
+  if (chain.sums > 0) hold_sums(chain, q);
   return dq2;
 }
 
@@ -86,10 +91,6 @@ IKSEL_INLINE PackResult iterate(const LaneChainOf<NumberOf<T>>& chain, const Lan
     const T er2 = e[3] * e[3] + e[4] * e[4] + e[5] * e[5];
     const T e2 = ep2 + er2;
     make_columns(chain, q, goal, frame, e, J);
-    if (chain.coupled_rows > 0) {
-      const T error[6] = {e[0], e[1], e[2], e[3], e[4], e[5]};  // so that e stays in registers
-      project_columns(chain, q, error, J);
-    }
     // dq = J^T (J J^T + lambda I)^-1 e.
     T A[6][6];
     multiply_rows<0, 3>(n, J, A);
@@ -103,7 +104,6 @@ IKSEL_INLINE PackResult iterate(const LaneChainOf<NumberOf<T>>& chain, const Lan
         (ep2 + er2 * T(options.lever2) <= T(options.position2)) & (er2 <= T(options.rotation2));
     for (T& part : step) part = select(there, T(0.0), part);
     const T dq2 = move_joints(chain, J, step, q);
-    if (chain.coupled_rows > 0) hold_coupled(chain, q);
 
     // Steps shrink quadratically: after a short one the error needs no look.
     const unsigned done =

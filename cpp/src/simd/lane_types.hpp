@@ -5,11 +5,11 @@
 
 #include <cstddef>
 
-#include "simd/coupled_types.hpp"
-
 namespace iksel::lanes {
 
 inline constexpr int kMaxJoints = 32;
+/// Most sums of joint values that are limited.
+inline constexpr int kMostSums = 8;
 /// Most lanes of a pack.
 inline constexpr int kWidth = 8;
 /// Samples that a leaf or a stage of neighbours hands over at a time; a multiple of every pack's
@@ -32,7 +32,7 @@ using LaneJoint = LaneJointOf<double>;
 
 /// A limit of a sum of joint values: lower <= c . q <= upper.
 template <typename Number>
-struct LaneCoupledOf {
+struct LaneSumOf {
   Number c[kMaxJoints];
   Number lower, upper;  ///< what is held to it is held to these
   Number low, high;     ///< from these on it stands at it
@@ -44,8 +44,8 @@ template <typename Number>
 struct LaneChainOf {
   int n;
   LaneJointOf<Number> joint[kMaxJoints];
-  int coupled_rows;
-  LaneCoupledOf<Number> coupled[kMostCoupled];
+  int sums;
+  LaneSumOf<Number> sum[kMostSums];
 };
 using LaneChain = LaneChainOf<double>;
 

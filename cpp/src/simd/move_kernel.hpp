@@ -3,9 +3,7 @@
 // answers: a branch in each lane.
 #pragma once
 
-#include "simd/branch_types.hpp"
-#include "simd/coupled_kernel.hpp"
-#include "simd/lane_math.hpp"
+#include "simd/limit_kernel.hpp"
 
 namespace iksel::lanes {
 
@@ -52,31 +50,31 @@ IKSEL_INLINE void add_inside_move(const MoveForm& form, int j, const T& q, T& in
     const T outside = max(T(form.lower[j]) - q, q - T(form.upper[j]));
     image = select(max(abs(turns), outside * T(0.25 / form.margin)) > T(0.5), moved, d);
   }
-  if (!form.turns_coupled[j]) add_way(form, j, image, inside);
+  if (!form.turns_in_sum[j]) add_way(form, j, image, inside);
 }
 
-/// Adds to `inside` what the joints whose images change coupled sums move by: of these images,
+/// Adds to `inside` what the joints whose images change limited sums move by: of these images,
 /// together, the least move inside of the limits. As far as the margin they are outside.
 template <typename T>
-[[gnu::noinline]] void add_coupled_move(const MoveForm& form, const T (&q)[7], T& inside) {
-  const CoupledForm& coupled = *form.coupled;
+[[gnu::noinline]] void add_sums_move(const MoveForm& form, const T (&q)[7], T& inside) {
+  const SumForm& sums = *form.sums;
   T least = T(1e30);
-  T way = T(0.0);
-  for (int i = 0; i < coupled.images; ++i) {
-    T sum = T(0.0);
-    for (int k = 0; k < coupled.turning; ++k) {
-      const int j = coupled.joint[k];
-      const T value = image_of(coupled, j, i, q);
-      const T d = abs(value - T(form.from[j])) * T(form.weight[j]);
-      sum = form.takes_largest ? max(sum, d) : sum + d * d;
+  T way = inside;
+  for (int i = 0; i < sums.images; ++i) {
+    T at[7];
+    turn_to_image(sums, i, q, at);
+    T sum = inside;
+    for (int k = 0; k < sums.turning; ++k) {
+      const int j = sums.joint[k];
+      add_way(form, j, at[j] - T(form.from[j]), sum);
     }
     // Outside counts more than any move.
-    const T outside = max(beyond_at_image(coupled, i, q) + T(form.margin), T(0.0));
+    const T outside = max(beyond_at(sums, at) + T(form.margin), T(0.0));
     const T cost = sum + select(outside > T(0.0), (outside + T(1.0)) * T(1e9), T(0.0));
     way = select(cost < least, sum, way);
     least = min(least, cost);
   }
-  inside = form.takes_largest ? max(inside, way) : inside + way;
+  inside = way;
 }
 
 /// What six joints and the held one move by, inside the limits.
@@ -84,7 +82,7 @@ template <typename T>
 IKSEL_INLINE T inside_move(const MoveForm& form, const T (&q)[7]) {
   T inside(0.0);
   for (int j = 0; j < 7; ++j) add_inside_move(form, j, q[j], inside);
-  if (form.coupled != nullptr) add_coupled_move(form, q, inside);
+  if (form.sums != nullptr) add_sums_move(form, q, inside);
   return inside;
 }
 

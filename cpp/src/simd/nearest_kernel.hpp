@@ -79,7 +79,7 @@ void measure_branches(const ClosedForm& form, const MoveForm& move, const Branch
         T beyond = found.beyond;
         T inside(kFarAway * kFarAway);
         if (!found.is_over) {
-          if (form.coupled != nullptr) beyond = max(beyond, beyond_coupled(*form.coupled, q));
+          beyond = beyond_with_sums(form, beyond, found.q, held);
           inside = inside_move(move, q);
         }
         Lanes<T>::store(found.least, row.least + first);

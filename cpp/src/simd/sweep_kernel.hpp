@@ -76,14 +76,13 @@ IKSEL_INLINE bool is_enough(const ClosedForm& form, int j, Branch<T, Prospect<T>
 template <typename T>
 using RatedBranch = Branch<T, Prospect<T>>;
 
-/// Adds to how far a branch is off what its joints together are beyond their coupled limits.
+/// Adds to how far a branch is off what sums of its joints are beyond their limits.
 template <typename T>
-IKSEL_INLINE void add_coupled(const ClosedForm& form, const T& held, RatedBranch<T>& branch) {
-  if (form.coupled == nullptr || branch.quality.is_over) return;
-  T q[7];
+IKSEL_INLINE void add_sums(const ClosedForm& form, const T& held, RatedBranch<T>& branch) {
+  if (form.sums == nullptr || branch.quality.is_over) return;
+  T q[6];
   for (int j = 0; j < 6; ++j) q[j] = joint_value(form, j, branch.q[j]);
-  q[6] = held;
-  branch.quality.beyond = max(branch.quality.beyond, beyond_coupled(*form.coupled, q));
+  branch.quality.beyond = beyond_with_sums(form, branch.quality.beyond, q, held);
 }
 
 /// The target at the held joint's values in the lanes from `first` on.
@@ -135,7 +134,7 @@ IKSEL_INLINE void rate_signs(const ClosedForm& form, const BranchTarget<T>& targ
   solve_signs(
       form, target, sign, last,
       prospect, [&](int i, RatedBranch<T>& branch) __attribute__((always_inline)) {
-        add_coupled(form, held, branch);
+        add_sums(form, held, branch);
         Lanes<T>::store(branch.quality.off(), off[i]);
       });
 }

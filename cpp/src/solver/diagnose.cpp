@@ -116,7 +116,7 @@ class Diagnoser {
     double least = kInfinity;
     for (const Result& answer : answers.all) {
       JointVector branch = model_.joints.turned_to_middle(answer.q);
-      if (!model_.joints.coupled_turning.empty()) model_.joints.wrap(branch.data());
+      model_.joints.wrap_sums(branch.data());
       effort.from(branch);
       if (is_answer(model_.joints.clamp(branch))) return true;
       const double violation = worst_violation(model_.joints, branch);

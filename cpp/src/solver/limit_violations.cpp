@@ -2,7 +2,6 @@
 #include "solver/limit_violations.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <vector>
 
 #include "base/message_text.hpp"
@@ -10,93 +9,73 @@
 namespace iksel {
 namespace {
 
-/// "at 3.3 rad, 0.2 rad beyond its upper limit"
-std::string place_text(double value, double outside, bool is_upper, const std::string& unit) {
+/// "joint 'a'", or "the sum a + b".
+std::string name_of(const ChainModel& model, const Limit& limit) {
+  if (limit.joint >= 0) return "joint '" + model.joints.name(limit.joint) + "'";
+  const auto given = static_cast<std::size_t>(limit.coupled_limit);
+  return "the sum " + to_string(model.options.coupled_limits[given]);
+}
+
+/// That of the first joint in the limit.
+std::string unit_of(const JointSpace& joints, const Limit& limit) {
+  const JointVector c = limit.row(joints.dof());
+  const auto first = std::find_if(c.begin(), c.end(), [](double each) { return each != 0; });
+  return joints.is_slide(static_cast<int>(first - c.begin())) ? " m" : " rad";
+}
+
+/// " at 3.3 rad, 0.2 rad beyond its upper limit"
+std::string place_text(const Limit& limit, double value, const std::string& unit) {
   return " at " + number_text(value, kShownDigits) + unit + ", " +
-         number_text(outside, kShownDigits) + unit + " beyond its " +
-         (is_upper ? "upper" : "lower") + " limit";
-}
-
-std::string unit_of(const JointSpace& joints, int joint) {
-  return joints.is_slide(joint) ? " m" : " rad";
-}
-
-/// That of the first joint in the sum.
-std::string unit_of(const JointSpace& joints, const CoupledRow& row) {
-  int first = 0;
-  while (row.c[first] == 0) ++first;
-  return unit_of(joints, first);
-}
-
-const CoupledLimit& given(const ChainModel& model, int index) {
-  return model.options.coupled_limits[static_cast<std::size_t>(index)];
+         number_text(limit.beyond(value), kShownDigits) + unit + " beyond its " +
+         (value > limit.upper ? "upper" : "lower") + " limit";
 }
 
 }  // namespace
 
 double worst_violation(const JointSpace& joints, const JointVector& q) {
-  double worst = joints.violations(q).maxCoeff();
-  for (const CoupledRow& row : joints.coupled) {
-    worst = std::max(worst, row.beyond(row.sum(q.data())));
-  }
+  double worst = 0;
+  joints.visit_limits([&](const Limit& limit) {
+    worst = std::max(worst, limit.beyond(limit.value(q.data())) / limit.size);
+  });
   return worst;
 }
 
 void set_violation(const JointSpace& joints, const JointVector& q, Diagnosis& out) {
-  out.limit_violation = joints.violations(q).maxCoeff(&out.joint);
-  out.coupled_limit = -1;
-  double worst = out.limit_violation;
-  for (const CoupledRow& row : joints.coupled) {
-    const double beyond = row.beyond(row.sum(q.data()));
-    if (beyond <= worst) continue;
-    worst = beyond;
-    out.joint = -1;
-    out.coupled_limit = row.given;
-    out.limit_violation = beyond * row.size;
-  }
+  double worst = -kInfinity;
+  joints.visit_limits([&](const Limit& limit) {
+    const double beyond = std::max(limit.beyond(limit.value(q.data())), 0.0);
+    if (beyond / limit.size <= worst) return;
+    worst = beyond / limit.size;
+    out.joint = limit.joint;
+    out.coupled_limit = limit.coupled_limit;
+    out.limit_violation = beyond;
+  });
 }
 
 std::string describe_violation(const ChainModel& model, const Diagnosis& diagnosis) {
-  const JointSpace& joints = model.joints;
-  std::string who;
-  std::string unit;
-  if (diagnosis.coupled_limit < 0) {
-    who = "joint '" + joints.name(diagnosis.joint) + "'";
-    unit = unit_of(joints, diagnosis.joint);
-  } else {
-    who = "the sum " + to_string(given(model, diagnosis.coupled_limit));
-    const auto row =
-        std::find_if(joints.coupled.begin(), joints.coupled.end(),
-                     [&](const CoupledRow& each) { return each.given == diagnosis.coupled_limit; });
-    unit = unit_of(joints, *row);
-  }
-  return who + " would have to go beyond by " +
-         number_text(diagnosis.limit_violation, kShownDigits) + unit;
+  const Limit limit = model.joints.limit(diagnosis.joint, diagnosis.coupled_limit);
+  return name_of(model, limit) + " would have to go beyond by " +
+         number_text(diagnosis.limit_violation, kShownDigits) + unit_of(model.joints, limit);
 }
 
 std::string list_violations(const ChainModel& model, const JointVector& q) {
-  const JointSpace& joints = model.joints;
-  const JointVector outside = joints.violations(q);
-  std::vector<int> order(static_cast<std::size_t>(model.dof));
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](int a, int b) { return outside[a] > outside[b]; });
+  const auto beyond = [&](const Limit& limit) { return limit.beyond(limit.value(q.data())); };
+  std::vector<Limit> outside;
+  model.joints.visit_limits([&](const Limit& limit) {
+    if (beyond(limit) > 0) outside.push_back(limit);
+  });
+  std::stable_sort(outside.begin(), outside.end(), [&](const Limit& a, const Limit& b) {
+    const bool is_same_kind = (a.joint < 0) == (b.joint < 0);
+    return is_same_kind ? beyond(a) > beyond(b) : b.joint < 0;
+  });
   std::string list;
-  const auto add = [&](const std::string& kind, const std::string& name, const std::string& place) {
-    const std::string would = list.empty() ? " would have to be" : "";
-    list += (list.empty() ? "" : ", ") + kind + name + would + place;
-  };
-  for (const int j : order) {
-    if (!(outside[j] > 0)) break;
-    add(list.empty() ? "joint " : "", "'" + joints.name(j) + "'",
-        place_text(q[j], outside[j], q[j] > joints.upper[j], unit_of(joints, j)));
-  }
-  for (const CoupledRow& row : joints.coupled) {
-    const double sum = row.sum(q.data());
-    const double beyond = std::max(row.lower - sum, sum - row.upper);
-    if (!(beyond > 0)) continue;
-    add("the sum ", to_string(given(model, row.given)),
-        place_text(sum, beyond, sum > row.upper, unit_of(joints, row)));
+  for (const Limit& limit : outside) {
+    const bool is_first = list.empty();
+    if (!is_first) list += ", ";
+    list += limit.joint < 0 || is_first ? name_of(model, limit)
+                                        : "'" + model.joints.name(limit.joint) + "'";
+    if (is_first) list += " would have to be";
+    list += place_text(limit, limit.value(q.data()), unit_of(model.joints, limit));
   }
   return list;
 }

@@ -18,60 +18,42 @@
 namespace iksel {
 namespace {
 
-/// Moves q on the goal to where a coupled limit is reached; where that fails, it stays.
-void hold_to_coupled_limit(const ChainModel& model, const Goal& goal, const SelfMotionEnd& end,
-                           JointVector& q) {
-  constexpr int kSteps = 4;
-  const std::vector<CoupledRow>& rows = model.joints.coupled;
-  const auto row = std::find_if(rows.begin(), rows.end(), [&](const CoupledRow& each) {
-    return each.given == end.coupled_limit;
-  });
-  const double bound = end.at_upper ? row->upper - row->rounding : row->lower + row->rounding;
-  JointVector held = q;
-  for (int step = 0; step < kSteps; ++step) {
-    Pose pose;
-    Jacobian of_pose;
-    model.fk_jacobian(held.data(), pose, of_pose);
-    Eigen::Matrix<double, SweptBranches::kDof, SweptBranches::kDof> J;
-    J.topRows<6>() = of_pose;
-    J.row(6) = row->c.transpose();
-    Eigen::Matrix<double, SweptBranches::kDof, 1> missing;
-    missing << pose_error(goal.target(), pose), bound - row->sum(held.data());
-    const JointVector move = J.partialPivLu().solve(missing);
-    if (!move.allFinite()) return;
-    held = model.joints.clamp(held + move);
-  }
-  constexpr double kAtLimit = 1e-9;
-  if (goal.is_solution(held) && std::abs(row->sum(held.data()) - bound) < kAtLimit) q = held;
-}
-
-/// Holds a joint to its limit, and moves the six others to the goal; where that fails, q stays.
+/// Holds q to the limit that an arc ends at, by a joint that follows the six others, which go to
+/// the goal; where that fails, q stays.
 void hold_to_limit(const ChainModel& model, const Goal& goal, const SelfMotionEnd& end,
                    JointVector& q) {
   constexpr int kSteps = 4;
   if (end.kind != ArcEnd::limit) return;
-  if (end.coupled_limit >= 0) {
-    hold_to_coupled_limit(model, goal, end, q);
-    return;
-  }
+  const Limit limit = model.joints.limit(end.joint, end.coupled_limit);
+  int follows = 0;
+  const JointVector row = limit.row(model.dof);
+  row.cwiseAbs().maxCoeff(&follows);
+  const JointVector c = row / row[follows];
   JointVector held = q;
-  held[end.joint] = end.at_upper ? model.joints.upper[end.joint] : model.joints.lower[end.joint];
-  for (int step = 0; step < kSteps && !goal.is_solution(held); ++step) {
+  const auto follow = [&] {
+    held[follows] = 0;
+    held[follows] = (limit.held_at(end.at_upper) - limit.value(held.data())) / row[follows];
+    return goal.is_solution(held);
+  };
+  for (int step = 0; !follow(); ++step) {
+    if (step == kSteps) return;
     Pose pose;
     Jacobian of_pose;
     model.fk_jacobian(held.data(), pose, of_pose);
     Matrix6 J;
-    for (int j = 0, k = 0; j < model.dof; ++j) {
-      if (j != end.joint) J.col(k++) = of_pose.col(j);
+    const auto column = [&](int j) { return j < follows ? j : j - 1; };
+    for (int j = 0; j < model.dof; ++j) {
+      if (j == follows) continue;
+      J.col(column(j)) = of_pose.col(j) - c[j] * of_pose.col(follows);
     }
     const Vector6 move = J.partialPivLu().solve(pose_error(goal.target(), pose));
     if (!move.allFinite()) return;
-    for (int j = 0, k = 0; j < model.dof; ++j) {
-      if (j != end.joint) held[j] += move[k++];
+    for (int j = 0; j < model.dof; ++j) {
+      if (j != follows) held[j] += move[column(j)];
     }
     held = model.joints.clamp(held);
   }
-  if (goal.is_solution(held)) q = held;
+  q = held;
 }
 
 /// The arc through what was refined of its points, `first` the first of them.

@@ -35,20 +35,15 @@ bool cheaper(const Image& a, const Image& b) {
                                       b.q.data() + b.q.size());
 }
 
-/// Smallest distance from a limit, relative to the range of the joint, or of what is coupled;
-/// joints without limits have none.
+/// Smallest distance from a limit, relative to the range; joints without limits have none.
 double limit_distance(const RobotModel& model, const JointVector& q) {
   double least = 0.5;
-  for (int j = 0; j < model.dof; ++j) {
-    const double range = model.joints.upper[j] - model.joints.lower[j];
-    if (!std::isfinite(range) || range <= 0) continue;
-    least = std::min(least,
-                     std::min(q[j] - model.joints.lower[j], model.joints.upper[j] - q[j]) / range);
-  }
-  for (const CoupledRow& row : model.joints.coupled) {
-    const double sum = row.sum(q.data());
-    least = std::min(least, std::min(sum - row.lower, row.upper - sum) / (row.upper - row.lower));
-  }
+  model.joints.visit_limits([&](const Limit& limit) {
+    const double range = limit.upper - limit.lower;
+    if (!std::isfinite(range) || range <= 0) return;
+    const double value = limit.value(q.data());
+    least = std::min(least, std::min(value - limit.lower, limit.upper - value) / range);
+  });
   return least;
 }
 

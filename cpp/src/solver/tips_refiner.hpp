@@ -17,7 +17,7 @@ class TipsRefiner {
   void load_seed(int /*lane*/, const double* q) {
     q_ = Eigen::Map<const Eigen::VectorXd>(q, goal_.joints().dof());
     // Each chain was solved without what it shares with others.
-    if (!goal_.joints().coupled.empty()) q_ = goal_.joints().clamp(q_);
+    if (!goal_.joints().sums.empty()) q_ = goal_.joints().clamp(q_);
   }
   /// An attempt from beginning to end. Returns the steps.
   int advance(unsigned /*busy*/) {

@@ -53,11 +53,10 @@ std::pair<double, double> SharedValues::range(int joint, double best) const {
   return {lower, std::max(lower, std::min(near + reach, upper))};
 }
 
-void SharedValues::hold_coupled(JointVector& q) const {
+void SharedValues::hold_stems(JointVector& q) const {
   for (const Tip& tip : model_.tips) {
     if (!tip.stem) continue;
     const auto& [stem, joints] = *tip.stem;
-    if (stem.options().coupled_limits.empty()) continue;
     put(stem.model().joints.clamp(picked(q, joints)), joints, q);
   }
 }
@@ -73,7 +72,7 @@ void SharedValues::next(double best, JointVector& q) {
       const double x = 0.5 + index_ * steps_[j];
       q[model_.shared[j]] = lower + (upper - lower) * (x - std::floor(x));
     }
-    hold_coupled(q);
+    hold_stems(q);
   }
   ++index_;
 }

@@ -26,8 +26,8 @@ class SharedValues {
   void next(double best, JointVector& q);
 
  private:
-  /// Moves the shared joints inside the coupled limits that are of these alone.
-  void hold_coupled(JointVector& q) const;
+  /// Moves the shared joints inside all limits that are of these alone.
+  void hold_stems(JointVector& q) const;
   /// What of a joint's range is of use.
   [[nodiscard]] std::pair<double, double> range(int joint, double best) const;
 

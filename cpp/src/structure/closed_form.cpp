@@ -9,7 +9,6 @@
 #include "simd/lane_chain.hpp"
 #include "structure/axis_pattern.hpp"
 #include "structure/completed_axes.hpp"
-#include "structure/coupled_form.hpp"
 #include "structure/find_loop.hpp"
 #include "structure/known_solutions.hpp"
 
@@ -138,8 +137,49 @@ void ClosedFormChain::use_limits(const ChainModel& model) {
     }
     form.arc[i] = limit_arc(form.middle[i] + form.offset[i], form.reach[i]);
   }
-  coupled = make_coupled_form(model, *this);
-  form.coupled = coupled.get();
+  use_sums(model);
+}
+
+void ClosedFormChain::use_sums(const ChainModel& model) {
+  const JointSpace& limits = model.joints;
+  sums.reset();
+  form.sums = nullptr;
+  if (limits.sums.empty()) return;
+  auto of = std::make_shared<lanes::SumForm>();
+  for (const Limit& sum : limits.sums) {
+    of->lower[of->rows] = sum.lower / sum.size;
+    of->upper[of->rows++] = sum.upper / sum.size;
+  }
+  of->images = static_cast<int>(limits.images.size());
+  for (int i = 0; i <= kSix; ++i) {
+    const int j = i < kSix ? joints[i] : (form.is_held ? held : dof);
+    if (j >= dof) continue;
+    // What the held angle is more than its joint's value.
+    const double offset = i < kSix ? 0 : model.kernel.joints[static_cast<std::size_t>(j)].offset;
+    for (std::size_t r = 0; r < limits.sums.size(); ++r) {
+      of->coefficient[r][i] = limits.sums[r].c[j] / limits.sums[r].size;
+      of->lower[r] += of->coefficient[r][i] * offset;
+      of->upper[r] += of->coefficient[r][i] * offset;
+    }
+    if (!limits.turns_in_sum(j)) continue;
+    of->joint[of->turning++] = i;
+    of->middle[i] = 0.5 * (limits.lower[j] + limits.upper[j]) + offset;
+    of->reach[i] = 0.5 * (limits.upper[j] - limits.lower[j]);
+    for (std::size_t k = 0; k < limits.images.size(); ++k) {
+      of->turned[k][i] = kTwoPi * limits.images[k][j];
+    }
+  }
+  sums = of;
+  form.sums = sums.get();
+}
+
+bool ClosedFormChain::tells_inside(const LimitSet& limits) const {
+  return std::none_of(limits.sums.begin(), limits.sums.end(), [&](const Limit& sum) {
+    for (int j = 0; j < limits.dof(); ++j) {
+      if (sum.c[j] != 0 && turns_freely(j)) return true;
+    }
+    return false;
+  });
 }
 
 namespace {

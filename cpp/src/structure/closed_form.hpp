@@ -39,8 +39,8 @@ struct ClosedFormChain {
   lanes::ClosedForm form{};
   /// Of the closure `loop`, of which the form has but the limits.
   std::shared_ptr<const LoopEquations> loop;
-  /// What form.coupled points at.
-  std::shared_ptr<const lanes::CoupledForm> coupled;
+  /// What form.sums points at.
+  std::shared_ptr<const lanes::SumForm> sums;
   double unit = 0;           ///< [m]
   double deviation = 0;      ///< of axes from where the form has them [rad, units]
   Eigen::Vector3d first;     ///< the point on axis 1 [m]
@@ -54,6 +54,9 @@ struct ClosedFormChain {
   void set_target(const Pose& Y, lanes::BranchPack& pack) const;
   void set_target(const Pose& Y, int lane, lanes::BranchPack& pack) const;
   [[nodiscard]] bool turns_freely(int joint) const { return (free >> joint & 1U) != 0; }
+  /// Whether branches tell which solutions lie inside limits: not where a joint turns as it likes
+  /// in a sum.
+  [[nodiscard]] bool tells_inside(const LimitSet& limits) const;
   /// Whether the axes lie only nearly as the form has them.
   [[nodiscard]] bool is_almost() const { return deviation > 12 * kStructureTolerance; }
   /// Whether there are axes besides the chain's joints.
@@ -64,6 +67,7 @@ struct ClosedFormChain {
   void copy_joints(const double (&of_six)[6][lanes::kWidth], int lane, double* q) const;
 
  private:
+  void use_sums(const ChainModel& model);
   /// The rows of a target, each by write(row, value).
   template <typename Write>
   void make_rows(const Pose& Y, const Write& write) const;

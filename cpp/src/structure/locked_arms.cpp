@@ -33,7 +33,7 @@ LockedArms LockedArms::of(const ChainModel& whole) {
   LockedArms found;
   const JointSpace& joints = whole.joints;
   if (whole.dof != kCurveJoints || !is_simple(whole)) return found;
-  found.are_all = joints.coupled.empty();
+  found.are_all = joints.sums.empty();
   for (int j = 0; j < kCurveJoints; ++j) {
     if (joints.type(j) == JointType::continuous || !takes_part_in_self_motion(whole, j)) continue;
     for (const bool is_upper : {false, true}) {

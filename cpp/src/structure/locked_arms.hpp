@@ -26,7 +26,7 @@ struct LockedArm {
 struct LockedArms {
   std::vector<LockedArm> arms;
   /// Whether these are all: each joint with limits can be solved for with that joint locked, and no
-  /// limits are coupled.
+  /// sum is limited.
   bool are_all = false;
   /// Whether the elbow goes round, and all are solved exactly in closed form: whether there are
   /// solutions is then known in closed form, by these and the crossing.

@@ -2,30 +2,28 @@
 // Limits of sums of joint values, in lanes: how far branches lie outside, and steps along them.
 #pragma once
 
-#include "simd/coupled_types.hpp"
+#include "simd/branch_types.hpp"
 #include "simd/lane_math.hpp"
-#include "simd/lane_types.hpp"
 
 namespace iksel::lanes {
 
-/// The value of a joint whose whole turns count, at an image; `q` as in beyond_coupled.
+/// Joint values at an image: whole turns of joints for which they count.
 template <typename T>
-IKSEL_INLINE T image_of(const CoupledForm& form, int j, int image, const T (&q)[7]) {
-  const T value = j == 6 ? q[6] - T(form.held_offset) : q[j];
-  const T turns = nearest_integer((T(form.middle[j]) - value) * T(0.15915494309189533577));
-  return value + turns * T(6.28318530717958647693) + T(form.turned[image][j]);
+IKSEL_INLINE void turn_to_image(const SumForm& form, int image, const T (&q)[7], T (&at)[7]) {
+  for (int j = 0; j < 7; ++j) at[j] = q[j];
+  for (int k = 0; k < form.turning; ++k) {
+    const int j = form.joint[k];
+    const T turns = nearest_integer((T(form.middle[j]) - q[j]) * T(0.15915494309189533577));
+    at[j] = q[j] + turns * T(6.28318530717958647693) + T(form.turned[image][j]);
+  }
 }
 
-/// How far the sum that is farthest lies outside, or a joint whose whole turns count, at an image.
+/// How far the sum that is farthest lies outside there, or a joint whose whole turns count.
 template <typename T>
-IKSEL_INLINE T beyond_at_image(const CoupledForm& form, int image, const T (&q)[7]) {
-  T at[7];
-  for (int j = 0; j < 7; ++j) at[j] = q[j];
-  at[6] = at[6] - T(form.held_offset);
+IKSEL_INLINE T beyond_at(const SumForm& form, const T (&at)[7]) {
   T beyond = T(-1e30);
   for (int k = 0; k < form.turning; ++k) {
     const int j = form.joint[k];
-    at[j] = image_of(form, j, image, q);
     beyond = max(beyond, abs(at[j] - T(form.middle[j])) - T(form.reach[j]));
   }
   for (int r = 0; r < form.rows; ++r) {
@@ -39,30 +37,43 @@ IKSEL_INLINE T beyond_at_image(const CoupledForm& form, int image, const T (&q)[
 /// The same at the image where that is least, 0 or less if no sum lies outside. `q`: six joint
 /// values, and the held angle [rad].
 template <typename T>
-[[gnu::noinline]] T beyond_coupled(const CoupledForm& form, const T (&q)[7]) {
-  T least = beyond_at_image(form, 0, q);
-  for (int i = 1; i < form.images; ++i) least = min(least, beyond_at_image(form, i, q));
+[[gnu::noinline]] T beyond_sums(const SumForm& form, const T (&q)[7]) {
+  T least = T(1e30);
+  for (int i = 0; i < form.images; ++i) {
+    T at[7];
+    turn_to_image(form, i, q, at);
+    least = min(least, beyond_at(form, at));
+  }
   return least;
+}
+
+/// The same of a form: it, or `beyond` if that is more or no sum is limited.
+template <typename T>
+IKSEL_INLINE T beyond_with_sums(const ClosedForm& form, const T& beyond, const T (&of_six)[6],
+                                const T& held) {
+  if (form.sums == nullptr) return beyond;
+  const T q[7] = {of_six[0], of_six[1], of_six[2], of_six[3], of_six[4], of_six[5], held};
+  return max(beyond, beyond_sums(*form.sums, q));
 }
 
 /// The sum that a row of a chain bounds.
 template <typename T>
-IKSEL_INLINE T coupled_sum(const LaneChainOf<NumberOf<T>>& chain, int row, const T* q) {
+IKSEL_INLINE T sum_of(const LaneChainOf<NumberOf<T>>& chain, int row, const T* q) {
   T sum = T(0.0);
-  for (int j = 0; j < chain.n; ++j) sum = sum + T(chain.coupled[row].c[j]) * q[j];
+  for (int j = 0; j < chain.n; ++j) sum = sum + T(chain.sum[row].c[j]) * q[j];
   return sum;
 }
 
-/// Moves the lanes that violate coupled limits along these into them, as far as the joints' own
-/// limits let them.
+/// Moves the lanes whose sums are outside along these inside, as far as the joints' own limits let
+/// them.
 template <typename T>
-[[gnu::noinline]] void hold_coupled(const LaneChainOf<NumberOf<T>>& chain, T* q) {
+[[gnu::noinline]] void hold_sums(const LaneChainOf<NumberOf<T>>& chain, T* q) {
   // After one the joints that were in the way stand at their limits.
   constexpr int kRounds = 3;
   for (int round = 0; round < kRounds; ++round) {
-    for (int r = 0; r < chain.coupled_rows; ++r) {
-      const auto& row = chain.coupled[r];
-      const T sum = coupled_sum(chain, r, q);
+    for (int r = 0; r < chain.sums; ++r) {
+      const auto& row = chain.sum[r];
+      const T sum = sum_of(chain, r, q);
       const T excess = max(sum - T(row.upper), T(0.0)) + min(sum - T(row.lower), T(0.0));
       if (!any(abs(excess) > T(0.0))) continue;
       T free[kMaxJoints];
@@ -85,15 +96,15 @@ template <typename T>
   }
 }
 
-/// Takes out of the columns of J, in lanes at coupled limits which the error e pulls at, what would
-/// leave them: steps J^T y then go along these.
+/// Takes out of the columns of J, in lanes whose sums are at limits which the error e pulls at,
+/// what would leave them: steps J^T y then go along these.
 template <typename T>
-[[gnu::noinline]] void project_columns(const LaneChainOf<NumberOf<T>>& chain, const T* q,
-                                       const T (&e)[6], T (*J)[6]) {
-  T normal[kMostCoupled][kMaxJoints];
-  for (int r = 0; r < chain.coupled_rows; ++r) {
-    const auto& row = chain.coupled[r];
-    const T sum = coupled_sum(chain, r, q);
+[[gnu::noinline]] void hold_columns(const LaneChainOf<NumberOf<T>>& chain, const T* q,
+                                    const T (&e)[6], T (*J)[6]) {
+  T normal[kMostSums][kMaxJoints];
+  for (int r = 0; r < chain.sums; ++r) {
+    const auto& row = chain.sum[r];
+    const T sum = sum_of(chain, r, q);
     const auto low = sum <= T(row.low);
     const auto high = sum >= T(row.high);
     for (int j = 0; j < chain.n; ++j) normal[r][j] = T(0.0);

@@ -719,6 +719,7 @@ class Sampling(enum.Enum):
     """
     cvt = 1
     grid = 0
+    kmeans = 4
     low_discrepancy = 2
     random = 3
     def __format__(self, arg0: str) -> str:
@@ -821,13 +822,13 @@ class DatabaseOptions:
     """
     __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
     @staticmethod
-    def paper() -> DatabaseOptions:
+    def paper(year: int = 2025) -> DatabaseOptions:
         """
-        The paper's: grid, medium, rotation vectors, unweighted.
+        The paper's: grid, medium, rotation vectors, unweighted. Of 2026: 2,048 samples by kmeans. Raises InvalidArgumentError on a year other than 2025 and 2026.
         """
     def __eq__(self, other: object) -> bool:
         ...
-    def __init__(self, *, sampling: Sampling | str = 'low_discrepancy', scale: Scale | str = 'medium', samples: int = 2000, key_scheme: KeyScheme | str = 'reduced', rotation_key: RotationKey | str = 'rotation_vector', rotation_weight: float = 0.0, pinv_cutoff: float = 0.0001, cvt_updates: int = 1000000, seed: int = 0, threads: int = 0) -> None:
+    def __init__(self, *, sampling: Sampling | str = 'low_discrepancy', scale: Scale | str = 'medium', samples: int = 2000, key_scheme: KeyScheme | str = 'reduced', rotation_key: RotationKey | str = 'rotation_vector', rotation_weight: float = 0.0, pinv_cutoff: float = 0.0001, cvt_updates: int = 1000000, kmeans_pool: int = 200000, kmeans_rounds: int = 20, seed: int = 0, threads: int = 0) -> None:
         """
         Fields that are not given keep their default.
 
@@ -840,7 +841,9 @@ class DatabaseOptions:
             rotation_weight: Length that one unit of the key's rotation part counts as in the tree's distance [m]; 0: a quarter of the reach.
             pinv_cutoff: Singular values below this part of the largest are cut off in the pseudo-inverses.
             cvt_updates: Updates of MacQueen's method (cvt only).
-            seed: Seed of the random, cvt and low_discrepancy samplings.
+            kmeans_pool: Random configurations whose centroids the samples are; only read by kmeans.
+            kmeans_rounds: Rounds in which each of these goes to the nearest sample, and each sample to the mean of its own; only read by kmeans.
+            seed: Seed of all samplings but grid.
             threads: Threads that work; 0: one per core. The result has the same bits for any number.
 
         Raises:
@@ -849,7 +852,7 @@ class DatabaseOptions:
         """
     def __repr__(self) -> str:
         ...
-    def replace(self, *, sampling: Sampling | str = ..., scale: Scale | str = ..., samples: int = ..., key_scheme: KeyScheme | str = ..., rotation_key: RotationKey | str = ..., rotation_weight: float = ..., pinv_cutoff: float = ..., cvt_updates: int = ..., seed: int = ..., threads: int = ...) -> DatabaseOptions:
+    def replace(self, *, sampling: Sampling | str = ..., scale: Scale | str = ..., samples: int = ..., key_scheme: KeyScheme | str = ..., rotation_key: RotationKey | str = ..., rotation_weight: float = ..., pinv_cutoff: float = ..., cvt_updates: int = ..., kmeans_pool: int = ..., kmeans_rounds: int = ..., seed: int = ..., threads: int = ...) -> DatabaseOptions:
         """
         A copy in which the given fields have another value.
 
@@ -862,7 +865,9 @@ class DatabaseOptions:
             rotation_weight: Length that one unit of the key's rotation part counts as in the tree's distance [m]; 0: a quarter of the reach.
             pinv_cutoff: Singular values below this part of the largest are cut off in the pseudo-inverses.
             cvt_updates: Updates of MacQueen's method (cvt only).
-            seed: Seed of the random, cvt and low_discrepancy samplings.
+            kmeans_pool: Random configurations whose centroids the samples are; only read by kmeans.
+            kmeans_rounds: Rounds in which each of these goes to the nearest sample, and each sample to the mean of its own; only read by kmeans.
+            seed: Seed of all samplings but grid.
             threads: Threads that work; 0: one per core. The result has the same bits for any number.
 
         Raises:
@@ -892,6 +897,22 @@ class DatabaseOptions:
         """
     @key_scheme.setter
     def key_scheme(self, value: KeyScheme | str) -> None:
+        ...
+    @property
+    def kmeans_pool(self) -> int:
+        """
+        Random configurations whose centroids the samples are; only read by kmeans.
+        """
+    @kmeans_pool.setter
+    def kmeans_pool(self, value: int) -> None:
+        ...
+    @property
+    def kmeans_rounds(self) -> int:
+        """
+        Rounds in which each of these goes to the nearest sample, and each sample to the mean of its own; only read by kmeans.
+        """
+    @kmeans_rounds.setter
+    def kmeans_rounds(self, value: int) -> None:
         ...
     @property
     def pinv_cutoff(self) -> float:
@@ -944,7 +965,7 @@ class DatabaseOptions:
     @property
     def seed(self) -> int:
         """
-        Seed of the random, cvt and low_discrepancy samplings.
+        Seed of all samplings but grid.
         """
     @seed.setter
     def seed(self, value: int) -> None:
@@ -1015,7 +1036,7 @@ class Paper:
     __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
     def __eq__(self, other: object) -> bool:
         ...
-    def __init__(self, *, neighbours: int = 200, neighbour_radius: float = 0.0, ranking: Ranking | str = 'joint_adjustment', rotation_difference: RotationDifference | str = 'rotation_vector', limit_aware: bool = False, candidates: int = 20, reselection: Reselection | str = 'farthest', iteration: Iteration | str = 'dls', damping: float = 0.0, pinv_cutoff: float = 0.0001, position_clamp: float = 0.1, rotation_clamp: float = 0.3141592653589793, growth_stop: GrowthStop | str = 'by_scheme', min_step: float = 1e-06, limit_margin: float = 0.1, whole_turns: bool = False, kinematics: Kinematics | str = 'kdl') -> None:
+    def __init__(self, *, neighbours: int = 200, neighbour_radius: float = 0.0, ranking: Ranking | str = 'joint_adjustment', rotation_difference: RotationDifference | str = 'rotation_vector', limit_aware: bool = False, candidates: int = 20, reselection: Reselection | str = 'farthest', iteration: Iteration | str = 'dls', damping: float = 0.0, pinv_cutoff: float = 0.0001, position_clamp: float = 0.1, rotation_clamp: float = 0.3141592653589793, growth_stop: GrowthStop | str = 'by_scheme', min_step: float = 1e-06, limits_stop: bool = False, null_space_gain: float = 0.0, limit_margin: float = 0.1, whole_turns: bool = False, kinematics: Kinematics | str = 'kdl') -> None:
         """
         Fields that are not given keep their default.
 
@@ -1034,6 +1055,8 @@ class Paper:
             rotation_clamp: The error fed to one step is shortened to at most this: position [m] and rotation [rad]. Read by all but lm.
             growth_stop: Whether an attempt is given up when both errors have grown.
             min_step: An attempt ends, or that of pinv_rr restarts, when |sum of the step| is below this (dls, pinv, pinv_rr, cwpi) [rad or m].
+            limits_stop: An attempt ends once it is within the tolerances, also outside the limits, instead of going on (dls, pinv, pinv_rr, cwpi; the others always do).
+            null_space_gain: Part of the way to the middle of the limits that each step of a chain of more than six joints makes besides, as far as the pose lets it: in the Jacobian's null space (dls, pinv, pinv_rr).
             limit_margin: Part of a joint's range, at each end, in which cwln and cwpi hold it back.
             whole_turns: Bring joints with a range of more than 2 pi inside their limits by whole turns.
             kinematics: What computes FK and Jacobians of the iterations. The kernel agrees to 1e-12, and is faster.
@@ -1044,7 +1067,7 @@ class Paper:
         """
     def __repr__(self) -> str:
         ...
-    def replace(self, *, neighbours: int = ..., neighbour_radius: float = ..., ranking: Ranking | str = ..., rotation_difference: RotationDifference | str = ..., limit_aware: bool = ..., candidates: int = ..., reselection: Reselection | str = ..., iteration: Iteration | str = ..., damping: float = ..., pinv_cutoff: float = ..., position_clamp: float = ..., rotation_clamp: float = ..., growth_stop: GrowthStop | str = ..., min_step: float = ..., limit_margin: float = ..., whole_turns: bool = ..., kinematics: Kinematics | str = ...) -> Paper:
+    def replace(self, *, neighbours: int = ..., neighbour_radius: float = ..., ranking: Ranking | str = ..., rotation_difference: RotationDifference | str = ..., limit_aware: bool = ..., candidates: int = ..., reselection: Reselection | str = ..., iteration: Iteration | str = ..., damping: float = ..., pinv_cutoff: float = ..., position_clamp: float = ..., rotation_clamp: float = ..., growth_stop: GrowthStop | str = ..., min_step: float = ..., limits_stop: bool = ..., null_space_gain: float = ..., limit_margin: float = ..., whole_turns: bool = ..., kinematics: Kinematics | str = ...) -> Paper:
         """
         A copy in which the given fields have another value.
 
@@ -1063,6 +1086,8 @@ class Paper:
             rotation_clamp: The error fed to one step is shortened to at most this: position [m] and rotation [rad]. Read by all but lm.
             growth_stop: Whether an attempt is given up when both errors have grown.
             min_step: An attempt ends, or that of pinv_rr restarts, when |sum of the step| is below this (dls, pinv, pinv_rr, cwpi) [rad or m].
+            limits_stop: An attempt ends once it is within the tolerances, also outside the limits, instead of going on (dls, pinv, pinv_rr, cwpi; the others always do).
+            null_space_gain: Part of the way to the middle of the limits that each step of a chain of more than six joints makes besides, as far as the pose lets it: in the Jacobian's null space (dls, pinv, pinv_rr).
             limit_margin: Part of a joint's range, at each end, in which cwln and cwpi hold it back.
             whole_turns: Bring joints with a range of more than 2 pi inside their limits by whole turns.
             kinematics: What computes FK and Jacobians of the iterations. The kernel agrees to 1e-12, and is faster.
@@ -1115,6 +1140,11 @@ class Paper:
         Part of a joint's range, at each end, in which cwln and cwpi hold it back.
         """
     @property
+    def limits_stop(self) -> bool:
+        """
+        An attempt ends once it is within the tolerances, also outside the limits, instead of going on (dls, pinv, pinv_rr, cwpi; the others always do).
+        """
+    @property
     def min_step(self) -> float:
         """
         An attempt ends, or that of pinv_rr restarts, when |sum of the step| is below this (dls, pinv, pinv_rr, cwpi) [rad or m].
@@ -1128,6 +1158,11 @@ class Paper:
     def neighbours(self) -> int:
         """
         Neighbours asked from the KD-tree (k).
+        """
+    @property
+    def null_space_gain(self) -> float:
+        """
+        Part of the way to the middle of the limits that each step of a chain of more than six joints makes besides, as far as the pose lets it: in the Jacobian's null space (dls, pinv, pinv_rr).
         """
     @property
     def pinv_cutoff(self) -> float:
@@ -1170,9 +1205,9 @@ class SolverOptions:
     """
     __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
     @staticmethod
-    def paper() -> SolverOptions:
+    def paper(year: int = 2025) -> SolverOptions:
         """
-        The paper's setting: medium grid, the defaults of Paper, one re-selection, 1e-4 m and 1e-3 rad.
+        The paper's setting: medium grid, the defaults of Paper, one re-selection, 1e-4 m and 1e-3 rad. Of 2026: its authors' newer one as https://github.com/wanweiwei07/one runs it at commit 96c863f1: 2,048 samples by kmeans, of the 200 nearest the 16 best by Eq. (5) of the paper in that order, 12 configurations each, without stops on growth and small steps, redundant joints towards the middle of their limits. Raises InvalidArgumentError on another year.
         """
     def __eq__(self, other: object) -> bool:
         ...

@@ -21,6 +21,7 @@ from bench.ikgeo.cells import enumerated, packaged, searched
 from bench.no import answered
 from bench.paper import newer
 from bench.paper.artefact import singular_first
+from bench.random_builds import measured as random_builds
 from bench.requests import near_moves, path
 from bench.rivals import RIVALS
 from bench.rivals.base import UnsupportedError
@@ -198,6 +199,7 @@ CELLS: dict[str, Callable[[Settings], dict[str, Any]]] = {
     "newer": newer.measured,
     **{name: functools.partial(_on_targets, name) for name in ON_TARGETS},
     "path": path,
+    "random_arms": random_builds,
     "whole_body": whole_body,
 }
 """The functions by the names that settings have under "cell"."""

@@ -99,10 +99,17 @@ def reached(arm: Arm, kind: str, count: int, seed: int) -> dict[str, Any]:
     return row
 
 
-def lost_of_random(arm: Arm, count: int, seed: int) -> dict[str, int]:
-    """How many of so many uniform targets a batch loses, and what contradicts it."""
-    solver = iksel.Solver(arm.robot)
-    row = dict.fromkeys(("targets", "lost", "proven", *WAYS, "false"), 0)
+def lost_of_random(
+    arm: Arm, count: int, seed: int, solver: iksel.Solver | None = None
+) -> dict[str, int]:
+    """How many of so many uniform targets a batch loses, and what contradicts it.
+
+    Of `proven` noes `swept` ones are those by a sweep. The solver is the arm's, made if
+    none is given.
+    """
+    if solver is None:
+        solver = iksel.Solver(arm.robot)
+    row = dict.fromkeys(("targets", "lost", "proven", "swept", *WAYS, "false"), 0)
     tolerance = TOLERANCE + ROUNDING
     for first in range(0, count, CHUNK):
         n = min(CHUNK, count - first)
@@ -121,6 +128,7 @@ def lost_of_random(arm: Arm, count: int, seed: int) -> dict[str, int]:
         for i in np.flatnonzero(~batch.success):
             row["lost"] += 1
             row["proven"] += int(batch.proof[i] != int(iksel.Proof.none))
+            row["swept"] += int(batch.proof[i] == int(iksel.Proof.sweep))
             row["solve"] += solver.solve(poses[i]).success
             row["near"] += solver.solve(poses[i], near=q[i]).success
             row["solve_all"] += bool(len(solver.solve_all(poses[i])))

@@ -100,9 +100,10 @@ def run(args: argparse.Namespace) -> int:
             solver = iksel.Solver(arm.robot)
             drawn = poses_and_starts(arm.robot, args.poses, args.seed + i, args.beside)
             for pose, start in zip(*drawn, strict=True):
-                move = solver.solve(pose, near=start).move
+                near = solver.solve(pose, near=start)
+                least = along_arcs(solver, pose, start)
                 count += 1
-                longer += move > along_arcs(solver, pose, start) + LONGER
+                longer += not (near.success and near.move <= least + LONGER)
         bad += longer
         line = {"build": build, "seed": args.seed, "arms": args.arms, "moves": count}
         line |= {"beside": args.beside, "longer": longer, "simd": iksel.simd_level()}

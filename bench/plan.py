@@ -16,6 +16,7 @@ from bench.arms import RIVAL_ARMS
 from bench.learned.plan import learned_jobs
 from bench.paper.plan import paper_jobs
 from bench.paper.seeding import seeding_jobs
+from bench.random_builds import random_jobs
 from bench.rivals import ENUMERATORS, RIVALS
 from bench.size import SEED, Job, Size
 
@@ -31,6 +32,7 @@ SECTIONS = (
     "rivals",
     "no",
     "analytic",
+    "random",
     "robots",
     "requests",
 )
@@ -58,6 +60,7 @@ def plan(
         *_rival_jobs(size),
         *no_jobs(size),
         *analytic_jobs(size),
+        *random_jobs(size),
         _robots_job(size),
         *_request_jobs(size),
     ]
@@ -135,6 +138,7 @@ SECONDS_PER_TARGET = {
     "all_branches": 1e-3,
     "restarts": 2e-2,
     "path": 1e-2,
+    "random_arms": 0.1,
     "whole_body": 1e-3,
 }
 

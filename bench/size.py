@@ -49,6 +49,18 @@ class Size:
     """Targets of each kind for solvers that enumerate."""
     analytic_s: float = 1.0
     """Time after which none of them is begun any more, in each way to ask [s]."""
+    random_arms: int = 100
+    """Random arms of each build."""
+    random_targets: int = 5_000
+    """Reachable targets of each, in a batch."""
+    random_asked: int = 100
+    """Targets of each that are asked one by one, as many of each kind."""
+    random_brute: int = 5
+    """Noes of each that brute force looks for an answer of, and moves beside it."""
+    random_s: float = 12.0
+    """Time after which no further arm of a build is begun [s]."""
+    random_seed: int = 20_000
+    """Seed of a build's first arm: constants were chosen with lower ones in view."""
 
 
 FULL = Size(
@@ -89,6 +101,10 @@ QUICK = Size(
     no_slow=10,
     analytic=20,
     analytic_s=0.2,
+    random_arms=3,
+    random_targets=500,
+    random_asked=40,
+    random_brute=2,
 )
 
 

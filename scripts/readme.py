@@ -46,6 +46,8 @@ def robots() -> str:
 
 
 OURS = "IKSel"
+SEED = 1
+"""Of the rivals' targets: `SEED` of bench/size.py."""
 ANALYTIC = ("EAIK", "IK-Geo")
 UNREACHED = "any_rotation"
 """The targets of which many have no answer."""
@@ -98,11 +100,11 @@ def results() -> str:
     count = next(iter(cells.values()))[OURS]["count"]
     conditions = (
         f"{count:,} targets per robot (fewer for the slower solvers), uniform in the "
-        "joint limits; one pose at a time from Python (KDL's and SLSQP's from C++); "
-        "every answer checked to 1e-5 m, 1e-5 rad and the limits; failures included in "
-        f"the times; {machine(report, 'rivals')} *no*: mean time to say that a pose "
-        "has no answer, then the fastest numerical solver's and an analytic one's; "
-        "measured as [below](#when-there-is-no-answer)."
+        f"joint limits, seed {SEED}; one pose at a time from Python (KDL's and "
+        "SLSQP's from C++); every answer checked to 1e-5 m, 1e-5 rad and the limits; "
+        f"failures included in the times; {machine(report, 'rivals')} *no*: mean time "
+        "to say that a pose has no answer, then the fastest numerical solver's and an "
+        "analytic one's; measured as [below](#when-there-is-no-answer)."
     )
     plot = "![Share of targets solved over time](bench/plots/success_over_time.svg)"
     return "\n".join([plot, "", *rows, "", conditions])
@@ -226,25 +228,52 @@ def two_times(times: list[float] | None) -> str:
 def no_conditions(report: dict[str, Any], found: dict[str, dict[str, Result]]) -> str:
     """How the noes were measured."""
     size = report["size"]
-    solved, count = (
-        sum(
-            solvers[OURS][what]
-            for solvers in by_solver(report, "no", "uniform").values()
-            if OURS in solvers
-        )
-        for what in ("yes", "count")
-    )
-    disproved = sum(
-        result["disproved"] for solvers in found.values() for result in solvers.values()
-    )
+    reachable = [
+        solvers[OURS]
+        for solvers in by_solver(report, "no", "uniform").values()
+        if OURS in solvers
+    ]
+    solved, count = (sum(one[what] for one in reachable) for what in ("yes", "count"))
+    every = [one for solvers in found.values() for one in solvers.values()]
+    proven = sum(one.get("proven", 0) for one in every)
+    disproved = sum(one["disproved"] for one in every)
     return (
         f"{size['no']:,} targets per robot ({size['no_slow']:,} for numerical "
         f"rivals), seed {size['no_seed']}, tolerances of 1e-6 m and 1e-6 rad, one "
         "thread, from Python (KDL's own solvers from C++), the least time of three of "
         f"each call; `solve_all` and `near` over all targets, or over a tenth of them "
         f"where there is no closed form; {machine(report, 'no')} Of {count:,} targets "
-        f"that can be reached {solved:,} were solved; proofs refuted by another "
-        f"solver's answer: {disproved}."
+        f"that can be reached, uniform in the limits of these {len(reachable)} robots, "
+        f"seed {size['no_seed']}, {solved:,} were solved; of the {proven:,} proofs in "
+        f"the table another solver's answer refutes {disproved}." + random_arms(report)
+    )
+
+
+def random_arms(report: dict[str, Any]) -> str:
+    """The same on arms that no constant was chosen by, in a sentence."""
+    cells = [
+        entry["result"]
+        for entry in report["cells"]
+        if entry["settings"]["cell"] == "random_arms"
+    ]
+    if not cells:
+        return ""
+    total = {
+        what: sum(cell[what] for cell in cells)
+        for what in (
+            *("arms", "targets", "lost", "false", "noes", "proven", "swept"),
+            *("tried", "refuted", "moves", "longer"),
+        )
+    }
+    return (
+        f" On {total['arms']:,} arms drawn at random, of {len(cells)} builds, seeds "
+        f"from {report['size']['random_seed']:,}, which no constant was chosen by: of "
+        f"{total['targets']:,} targets that can be reached {total['lost']:,} were not "
+        f"solved, and {total['false']:,} answers were false; of {total['noes']:,} noes "
+        f"{total['proven']:,} were proven, {total['swept']:,} swept, and of "
+        f"{total['tried']:,} tried {total['refuted']:,} proofs were refuted; of "
+        f"{total['moves']:,} moves with `near` {total['longer']:,} were longer than "
+        "brute force's. `python -m bench random` prints these build by build."
     )
 
 

@@ -135,11 +135,18 @@ def _found_by_others(view: View) -> str:
         if (cell := view.get(plan.no_cell(robot, name, kind, view.size)))
         if cell["only"]
     ]
-    if not found:
-        return (
-            "No solver has an answer within 1e-6 m and 1e-6 rad where IKSel has none."
-        )
-    return "Answers where IKSel has none: " + "; ".join(found) + "."
+    counts = [
+        cell["count"]
+        for robot in view.robots("no")
+        for kind in plan.NO_KINDS
+        if (cell := view.get(plan.no_cell(robot, OURS, kind, view.size)))
+    ]
+    about = (
+        f"Answers within 1e-6 m and 1e-6 rad where IKSel has none, of {sum(counts):,} "
+        f"targets of both kinds on {len(view.robots('no'))} robots, seed "
+        f"{view.size.no_seed} (slow solvers: the first of them)"
+    )
+    return f"{about}: {'; '.join(found) or 'none'}."
 
 
 def _certain(view: View) -> str:
@@ -237,7 +244,7 @@ def _smallest(cell: dict[str, Any]) -> str:
 def _verdicts(view: View) -> list[str]:
     """The aims in closed form, each with what it missed by."""
     lines: list[str] = []
-    compared = False
+    compared: dict[str, int] = {}
     for robot in view.robots("all_branches"):
         for kind in plan.NO_KINDS:
             where = f"`{robot}`, {KIND_WORDS[kind]}"
@@ -247,7 +254,7 @@ def _verdicts(view: View) -> list[str]:
             )
             if every is None or near is None or "same" not in every:
                 continue
-            compared = True
+            compared[robot] = compared.get(robot, 0) + every["count"]
             times = every["mean_us"] / every["rival_mean_us"]
             if times > TIMES_OF_RIVAL:
                 lines.append(
@@ -266,6 +273,8 @@ def _verdicts(view: View) -> list[str]:
     aims = (
         f"In closed form the aims are `solve_all` in {plan.BRANCH_RIVAL}'s time and "
         f"with all its branches, and `near` in {NEAR_US:.0f} µs and with the smallest "
-        "move"
+        f"move. On {sum(compared.values()):,} targets of "
+        f"{', '.join(f'`{robot}`' for robot in compared)}, half of them reachable, "
+        f"half with random rotations, seed {view.size.no_seed}"
     )
-    return [f"{aims}: {'missed by ' + '; '.join(lines) if lines else 'all hold'}."]
+    return [f"{aims}, {'missed by ' + '; '.join(lines) if lines else 'all hold'}."]

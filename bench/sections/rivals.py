@@ -10,6 +10,7 @@ from bench.check import POSITION_TOLERANCE, ROTATION_TOLERANCE
 from bench.markdown import NONE, microseconds, percent, table
 from bench.plan import BATCH_THREADS, BATCHES, batch_cell, rival_cell, rival_count
 from bench.rivals import RIVALS
+from bench.size import SEED
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -71,11 +72,11 @@ def _conditions(view: View) -> str:
         if rival_count(view.size, name, "uniform") != counts["uniform"]
     )
     return (
-        f"{counts['uniform']:,} targets per robot uniform in the joint limits, seed 1 "
-        f"({shares}), the same for all; one after another in one process per solver, "
-        "on one thread where the solver lets us choose; times are of each call, "
-        "failures included, and from Python unless the table of settings says C++. "
-        "An answer is right if bench's own forward kinematics is within "
+        f"{counts['uniform']:,} targets per robot uniform in the joint limits, seed "
+        f"{SEED} ({shares}), the same for all; one after another in one process per "
+        "solver, on one thread where the solver lets us choose; times are of each "
+        "call, failures included, and from Python unless the table of settings says "
+        "C++. An answer is right if bench's own forward kinematics is within "
         f"{POSITION_TOLERANCE:g} m and {ROTATION_TOLERANCE:g} rad of the target and "
         "it lies inside the limits (of an analytic solver's branches, one has to "
         "be). Solvers that need a start all get the same random one. Their "
@@ -150,8 +151,8 @@ def _verdicts(view: View) -> list[str]:
         below = sorted(key for key, f in numerical.items() if f < TIMES_FASTER)
         lines.append(
             f"Against numerical rivals IKSel is at least {least:.1f} times faster in "
-            f"the mean ({name} on `{robot}` comes closest); {TIMES_FASTER:.0f} times "
-            "was the aim"
+            f"the mean ({name} on `{robot}` comes closest), on these robots and "
+            f"targets; {TIMES_FASTER:.0f} times was the aim"
             + (
                 ", missed against "
                 + ", ".join(
@@ -180,33 +181,42 @@ def _verdicts(view: View) -> list[str]:
 
 
 def _enough(view: View, kind: str) -> str:
-    worst, where = 100.0, ""
+    worst, where, counts = 100.0, "", []
     for robot in RIVAL_ARMS:
         cell = view.get(rival_cell(robot, OURS, kind, view.size))
         if cell is not None:
             value = 100.0 * cell["right"] / cell["count"]
+            counts.append(cell["count"])
             if value <= worst:
                 worst, where = value, robot
     if not where:
         return ""
     word = "holds" if worst >= ENOUGH_PERCENT else "is missed"
     return (
-        f"IKSel's least is {worst:.3f} % (`{where}`): the aim of {ENOUGH_PERCENT} % "
+        f"IKSel's least of {len(counts)} robots with {max(counts):,} targets each, "
+        f"seed {SEED}, is {worst:.3f} % (`{where}`): the aim of {ENOUGH_PERCENT} % "
         f"{word}."
     )
 
 
 def _unreachable_claims(view: View) -> str:
     claims = []
+    least, most = 0, 0
     for name in RIVALS:
         found = [
             view.get(rival_cell(robot, name, "unreachable", view.size))
             for robot in RIVAL_ARMS
         ]
+        counts = [cell["count"] for cell in found if cell is not None]
+        least = min([*counts, least] if least else counts, default=0)
+        most = max([*counts, most])
         total = sum(cell["claimed"] for cell in found if cell is not None)
         if total:
             claims.append(f"{name} ({total})")
-    targets = "Targets farther from the first joint than the arm is long. "
+    targets = (
+        f"Targets farther from the first joint than the arm is long, {least:,} to "
+        f"{most:,} a solver and robot, seed {SEED}. "
+    )
     if not claims:
         return targets + "No solver claimed an answer."
     return targets + f"Answers claimed all the same: {', '.join(claims)}."

@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Arms drawn at random as text, and the command for it."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from bench import random_arms
+from bench.markdown import NONE, microseconds, percent, table
+from bench.moves import LONGER
+from bench.random_builds import RESTARTS, random_cell, random_jobs
+from bench.size import FULL, QUICK
+from bench.view import View
+
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Collection
+
+    from bench.size import Job, Size
+    from bench.view import Report
+
+SUMMED = (
+    *("arms", "targets", "lost", "false", "noes", "proven", "swept"),
+    *("tried", "found", "refuted", "moves", "longer"),
+)
+HEADER = (
+    *("build", "arms", "targets", "lost", "false", "no: all", "proven %", "by sweep %"),
+    *("of some, answered by restarts", "refuted proofs", "yes µs", "no µs"),
+    *("`near`: moves", "longer"),
+)
+
+
+def text(view: View) -> str:
+    """The whole section; empty where there are no results."""
+    cells = found(view)
+    if not cells:
+        return ""
+    rows = [[f"`{build}`", *_columns(cell)] for build, cell in cells.items()]
+    total: dict[str, Any] = {
+        what: sum(cell[what] for cell in cells.values()) for what in SUMMED
+    }
+    rows.append(["all", *_columns({**total, "yes_us": None, "no_us": None})])
+    parts = [
+        "## Arms drawn at random",
+        _conditions(view),
+        table(HEADER, rows),
+        *_culprits(cells),
+    ]
+    return "\n\n".join(parts)
+
+
+def found(view: View) -> dict[str, dict[str, Any]]:
+    """The results by build."""
+    cells = {
+        build: view.get(random_cell(build, view.size)) for build in random_arms.BUILDS
+    }
+    return {build: cell for build, cell in cells.items() if cell is not None}
+
+
+def _conditions(view: View) -> str:
+    size = view.size
+    return (
+        f"No constant was chosen by these: up to {size.random_arms} arms of each build "
+        f"(`bench/random_arms.py`), seeds from {size.random_seed:,}; none is begun "
+        f"after {size.random_s:g} s of a build. Of each arm "
+        f"{size.random_targets:,} poses of configurations uniform inside the limits in "
+        f"a batch, {size.random_asked:,} others one by one, and {size.random_asked:,} "
+        "reachable positions with rotations at random; default options, tolerances of "
+        "1e-6 m and 1e-6 rad, one thread, from Python; answers judged by bench's own "
+        "forward kinematics. *yes*: mean time of the reachable that are solved, *no* "
+        "of the random rotations that are not, over all arms, the least of three of "
+        f"each. Up to {size.random_brute} noes of each arm are asked again from "
+        f"{RESTARTS} random seeds, and {size.random_brute} moves from any "
+        "configuration are held against brute force: the configuration that the pose "
+        "is of, all of `solve_all`, and the self-motion from end to end, or, where it "
+        f"is none, the restarts. *longer*: by more than {LONGER:g} rad (of a slide m). "
+        "*Refuted*: proven noes that have an answer. Made by itself: `python -m bench "
+        "random`."
+    )
+
+
+def _columns(cell: dict[str, Any]) -> list[str]:
+    noes = cell["noes"]
+    return [
+        *(f"{cell[what]:,}" for what in ("arms", "targets", "lost", "false", "noes")),
+        *(percent(cell[what], noes, 1) if noes else NONE for what in PROOFS),
+        f"{cell['found']:,} of {cell['tried']:,}",
+        f"{cell['refuted']:,}",
+        microseconds(cell["yes_us"]),
+        microseconds(cell["no_us"]),
+        f"{cell['moves']:,}",
+        f"{cell['longer']:,}",
+    ]
+
+
+PROOFS = ("proven", "swept")
+
+
+def _culprits(cells: dict[str, dict[str, Any]]) -> list[str]:
+    """The arms where a count is not 0, to look at them again."""
+    lines = [
+        f"- `{build}`, {what}: "
+        + ", ".join(f"{count} on seed {seed}" for seed, count in seeds)
+        for build, cell in cells.items()
+        for what, seeds in cell["culprits"].items()
+    ]
+    return ["\n".join(["Where:", "", *lines])] if lines else []
+
+
+def wrong(view: View) -> list[str]:
+    """What must never be: answers and proofs that are wrong."""
+    return [
+        f"{build}: {cell[what]} {words}"
+        for build, cell in found(view).items()
+        for what, words in (("false", "false answers"), ("refuted", "refuted proofs"))
+        if cell[what]
+    ]
+
+
+def add(commands: Any) -> None:
+    """The command `random`."""
+    command = commands.add_parser(
+        "random",
+        help="success, noes, proofs and moves on arms drawn at random, printed",
+        description="The report's section on random arms of each build. Results are "
+        "kept as the report's are.",
+    )
+    command.add_argument(
+        "builds",
+        nargs="*",
+        default=list(random_arms.BUILDS),
+        metavar="BUILD",
+        help=" ".join(random_arms.BUILDS),
+    )
+    command.add_argument("--quick", action="store_true", help="fewer arms and targets")
+    command.add_argument("--arms", type=int, metavar="N", help="of each build")
+    command.add_argument(
+        "--targets", type=int, metavar="N", help="of each arm, in a batch"
+    )
+    command.add_argument(
+        "--seconds",
+        type=float,
+        metavar="S",
+        help="begin no further arm of a build after this time",
+    )
+    command.add_argument("--seed", type=int, default=FULL.random_seed)
+    command.add_argument(
+        "--fresh", action="store_true", help="measure again what was measured before"
+    )
+
+
+def jobs_of(
+    options: argparse.Namespace,
+    installed: Collection[str],  # noqa: ARG001
+) -> tuple[list[Job], Size]:
+    """What is to be measured, and how much."""
+    size = QUICK if options.quick else FULL
+    size = replace(
+        size,
+        random_arms=options.arms or size.random_arms,
+        random_targets=options.targets or size.random_targets,
+        random_s=options.seconds or size.random_s,
+        random_seed=options.seed,
+    )
+    return random_jobs(size, options.builds), size
+
+
+def tell(report: Report) -> int:
+    """Print the section; the exit status is 1 if IKSel is wrong or something failed."""
+    view = View(report)
+    sys.stdout.write(text(view) + "\n")
+    bad = wrong(view)
+    for line in bad:
+        sys.stdout.write(f"WRONG: {line}\n")
+    return 1 if bad or report["failures"] else 0

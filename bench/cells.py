@@ -27,6 +27,9 @@ from bench.rivals import RIVALS
 from bench.rivals.base import UnsupportedError
 from bench.seed_makers import first_attempt
 from bench.settings import make_solver, targets_of
+from bench.tails.beside import beside, threads
+from bench.tails.fresh import fresh
+from bench.tails.slowest import calls
 from bench.timing import summary
 from bench.whole_body import cells as whole_body_cells
 
@@ -200,6 +203,10 @@ CELLS: dict[str, Callable[[Settings], dict[str, Any]]] = {
     **{name: functools.partial(_on_targets, name) for name in ON_TARGETS},
     "path": path,
     "random_arms": random_builds,
+    "tail_calls": calls,
+    "tail_beside": beside,
+    "tail_threads": threads,
+    "tail_fresh": fresh,
     "whole_body": whole_body,
 }
 """The functions by the names that settings have under "cell"."""

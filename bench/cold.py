@@ -41,14 +41,24 @@ def from_python(
 ) -> float:
     """The median time of a call after other memory was touched [us]."""
     lines = other[::LINE]
-    times = []
-    for argument in arguments:
-        lines += 1
+    times = times_after(call, arguments, lambda: np.add(lines, 1, out=lines))
+    return float(np.median(times)) / 1e3
+
+
+def times_after(
+    call: Callable[[Any], object],
+    arguments: Sequence[Any],
+    before: Callable[[], object],
+) -> npt.NDArray[np.int64]:
+    """The times of calls, before each of which something else is done [ns]."""
+    times = np.zeros(len(arguments), dtype=np.int64)
+    for i, argument in enumerate(arguments):
+        before()
         time.perf_counter_ns()
         begin = time.perf_counter_ns()
         call(argument)
-        times.append(time.perf_counter_ns() - begin)
-    return float(np.median(times)) / 1e3
+        times[i] = time.perf_counter_ns() - begin
+    return times
 
 
 def measure(name: str, args: argparse.Namespace) -> dict[str, Any]:

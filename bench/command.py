@@ -43,7 +43,7 @@ from bench.report import (
 )
 from bench.rivals import RIVALS
 from bench.run import run_jobs
-from bench.sections import learned, newer, no, random_builds
+from bench.sections import learned, newer, no, random_builds, tails
 from bench.settings import WORK
 from bench.size import FULL, QUICK, SEED
 from bench.store import Store
@@ -79,6 +79,7 @@ SECTIONS = {
     "analytic": analytic_command,
     "paper2026": newer,
     "random": random_builds,
+    "tails": tails,
     "whole_body": whole_body_command,
 }
 """Commands whose results are kept as the report's are."""

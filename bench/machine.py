@@ -31,6 +31,8 @@ MEASURING = (
     "moves.py",
     "random_arms.py",
     "random_builds.py",
+    "cold.py",
+    "tails/*.py",
     "learned/data.py",
     "learned/diffusion.py",
     "learned/evaluate.py",

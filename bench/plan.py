@@ -19,6 +19,7 @@ from bench.paper.seeding import seeding_jobs
 from bench.random_builds import random_jobs
 from bench.rivals import ENUMERATORS, RIVALS
 from bench.size import SEED, Job, Size
+from bench.tails.plan import tail_jobs
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -33,6 +34,7 @@ SECTIONS = (
     "no",
     "analytic",
     "random",
+    "tails",
     "robots",
     "requests",
 )
@@ -61,6 +63,7 @@ def plan(
         *no_jobs(size),
         *analytic_jobs(size),
         *random_jobs(size),
+        *tail_jobs(size),
         _robots_job(size),
         *_request_jobs(size),
     ]
@@ -139,6 +142,10 @@ SECONDS_PER_TARGET = {
     "restarts": 2e-2,
     "path": 1e-2,
     "random_arms": 0.1,
+    "tail_calls": 6e-6,
+    "tail_beside": 1e-2,
+    "tail_threads": 3e-5,
+    "tail_fresh": 0.5,
     "whole_body": 1e-3,
 }
 

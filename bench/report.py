@@ -24,6 +24,7 @@ from bench.sections import (
     rivals,
     robots,
     seed_makers,
+    tails,
 )
 from bench.store import write_json
 from bench.view import View
@@ -141,6 +142,7 @@ def render(report: Report, folder: Path) -> None:
             no.text(view),
             analytic.text(view),
             random_builds.text(view),
+            tails.text(view),
             paper.text(view),
             ikgeo.text(view),
             learned.text(view),

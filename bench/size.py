@@ -49,6 +49,14 @@ class Size:
     """Targets of each kind for solvers that enumerate."""
     analytic_s: float = 1.0
     """Time after which none of them is begun any more, in each way to ask [s]."""
+    tail_calls: int = 1_000_000
+    """Reachable targets whose single calls are looked at one by one."""
+    tail_noes: int = 100_000
+    """The same with random rotations, and beside another thread."""
+    tail_beside: int = 200
+    """Calls that each follow other work."""
+    tail_s: float = 1.0
+    """Time after which none is begun beside another thread [s]."""
     random_arms: int = 100
     """Random arms of each build."""
     random_targets: int = 5_000
@@ -101,6 +109,10 @@ QUICK = Size(
     no_slow=10,
     analytic=20,
     analytic_s=0.2,
+    tail_calls=5_000,
+    tail_noes=500,
+    tail_beside=20,
+    tail_s=0.1,
     random_arms=3,
     random_targets=500,
     random_asked=40,

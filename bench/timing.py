@@ -73,6 +73,18 @@ def least_times(runs: Sequence[npt.NDArray[np.int64]]) -> npt.NDArray[np.int64]:
     return np.asarray(np.min([times[:count] for times in runs], axis=0))
 
 
+def tail(times_ns: npt.NDArray[np.int64]) -> dict[str, float]:
+    """Mean, median and what is slowest [us]."""
+    us = times_ns / 1e3
+    return {
+        "mean_us": float(us.mean()),
+        "median_us": float(np.median(us)),
+        "p99_us": float(np.quantile(us, 0.99)),
+        "p999_us": float(np.quantile(us, 0.999)),
+        "max_us": float(us.max()),
+    }
+
+
 def summary(times_ns: npt.NDArray[Any]) -> dict[str, Any]:
     """Mean, deviation and quantiles [us], failures included."""
     us = np.asarray(times_ns, dtype=float) / 1e3

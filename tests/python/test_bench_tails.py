@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What means hide: causes of slow calls, other work, first calls. No times."""
+
+from __future__ import annotations
+
+import threading
+import time
+
+import numpy as np
+import pytest
+
+pytest.importorskip("bench", reason="the benchmarks are in the repository only")
+
+from bench import cold, command
+from bench.cells import CELLS
+from bench.sections import tails as section
+from bench.size import FULL, QUICK
+from bench.tails import beside, fresh, slowest
+from bench.tails.plan import (
+    KINDS,
+    TEN,
+    beside_cell,
+    calls_cell,
+    fresh_cell,
+    tail_jobs,
+    threads_cell,
+)
+from bench.view import View
+
+QUANTILES = ("median_us", "p99_us", "p999_us", "max_us")
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_least_times_are_not_longer(kind, monkeypatch):
+    monkeypatch.setattr(slowest, "CHUNK", 100)
+    cell = slowest.calls(calls_cell("ur3", kind, QUICK) | {"count": 250})
+    assert cell["again"] == 3 * slowest.LEAST
+    for times in (cell["came"], cell["least"]):
+        values = [times[of] for of in QUANTILES]
+        assert values == sorted(values)
+    assert cell["least"]["max_us"] <= cell["came"]["max_us"]
+    assert cell["slowest"][0]["us"] == cell["came"]["max_us"]
+    assert len(cell["slowest"]) == len(cell["slowest_again"]) == slowest.SHOWN
+
+
+def test_the_machine_and_the_target_are_told_apart(monkeypatch):
+    """One call is slow once, another one each time."""
+    monkeypatch.setattr(slowest, "AGAIN", 2)
+    hard, unlucky = 7, 11
+    state = {"poses": None, "slept": False}
+    make, solver_of = slowest.make_targets, slowest.iksel.Solver
+
+    def targets(*arguments):
+        made = make(*arguments)
+        state["poses"] = made.poses
+        return made
+
+    class Odd:
+        def __init__(self, robot):
+            self.solver = solver_of(robot)
+
+        def solve(self, pose):
+            number = int(np.argmax((state["poses"] == pose).all(axis=(1, 2))))
+            if number == unlucky and not state["slept"]:
+                state["slept"] = True
+                time.sleep(0.2)
+            elif number == hard:
+                time.sleep(0.1)
+            return self.solver.solve(pose)
+
+    monkeypatch.setattr(slowest, "make_targets", targets)
+    monkeypatch.setattr(slowest.iksel, "Solver", Odd)
+    monkeypatch.setattr(slowest, "_stages", lambda *_: [0.0, 0.0, 0.0])
+    # The first calls warm up; the one that is slow once is not among those.
+    monkeypatch.setattr("bench.timing.WARM_UP", 2)
+    cell = slowest.calls(calls_cell("ur3", KINDS[0], QUICK) | {"count": 40})
+    first, second = cell["slowest"][:2]
+    assert (first["where"][1], second["where"][1]) == (unlucky, hard)
+    assert "by the machine; yes" in section._call(first)
+    assert "by the target; yes" in section._call(second)
+    assert cell["slowest_again"][0]["where"][1] == hard
+
+
+def test_other_work_comes_before_each_call_and_is_not_timed():
+    order = []
+    times = cold.times_after(
+        order.append, [1, 2], lambda: (order.append(0), time.sleep(0.05))
+    )
+    assert order == [0, 1, 0, 2]
+    assert len(times) == 2
+    assert times.max() < 0.05e9
+
+
+def test_beside_and_threads_have_all_conditions(monkeypatch):
+    monkeypatch.setattr(beside, "TOUCHED_MB", 1)
+    cell = beside_cell("ur3", QUICK)
+    assert len(cell["others"]) == 9
+    assert cell["robot"] not in cell["others"]
+    assert set(beside.beside(cell)) == set(beside.CONDITIONS)
+    before = threading.active_count()
+    row = beside.threads(threads_cell("ur3", QUICK))
+    assert threading.active_count() == before
+    assert set(row) == set(beside.THREADS)
+    assert row["alone"]["others"] == 0
+    assert row["single"]["others"] > 0
+
+
+def test_a_new_process_measures_itself():
+    row = fresh.fresh(fresh_cell("ur3") | {"count": 1})
+    assert row["import_ms"] > 0
+    assert row["solver_ms"] > 0
+    assert row["first_us"] > 0
+    assert row["database_mb"] > 0
+    assert row["process_mb"] >= row["solver_mb"] >= 0
+
+
+def test_the_command_prints_the_section(capsys, monkeypatch, tmp_path):
+    monkeypatch.setattr(command, "WORK", tmp_path)
+    assert command.main(["tails", "ur3", "--quick", "--calls", "200"]) == 0
+    told = capsys.readouterr().out
+    assert "| `ur3`, reachable, 200 |" in told
+    assert "| `ur3`, random rotations, 500 |" in told
+    assert told.count("\n| `ur3` |") == 3
+    for title in ("slowest calls", "caches", "busy thread", "first answer"):
+        assert title in told
+
+
+def test_every_robot_is_planned():
+    jobs = tail_jobs(FULL)
+    cells = [cell for job in jobs for cell in job.cells]
+    assert {cell["cell"] for cell in cells} <= set(CELLS)
+    assert max(cell["count"] for cell in cells) == 1_000_000
+    assert {c["robot"] for c in cells if c["cell"] == "tail_fresh"} >= set(TEN)
+    assert section.text(View({"size": vars(QUICK), "cells": []})) == ""

@@ -98,7 +98,8 @@ def _slowest(view: View) -> list[str]:
         "query / seeds / iterate",
     ]
     note = (
-        f"The slowest {100 * SLOWEST:g} % of the calls are called {AGAIN} times again; "
+        f"The slowest {100 * SLOWEST:g} % of the calls are called {AGAIN} times again, "
+        "and those that then are the slowest; "
         "*of the targets*: with the least time of each, so without interruptions, "
         "other work and data that left the caches. *Slow by the machine*: of these "
         f"calls those that took more than {OTHERS:g} times their least. Stages: means "

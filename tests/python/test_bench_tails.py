@@ -34,7 +34,7 @@ QUANTILES = ("median_us", "p99_us", "p999_us", "max_us")
 def test_least_times_are_not_longer(kind, monkeypatch):
     monkeypatch.setattr(slowest, "CHUNK", 100)
     cell = slowest.calls(calls_cell("ur3", kind, QUICK) | {"count": 250})
-    assert cell["again"] == 3 * slowest.LEAST
+    assert cell["again"] >= 3 * slowest.LEAST
     for times in (cell["came"], cell["least"]):
         values = [times[of] for of in QUANTILES]
         assert values == sorted(values)

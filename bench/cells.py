@@ -19,7 +19,7 @@ from bench.branches import all_branches, near_branches, restarts
 from bench.check import judge, right
 from bench.ikgeo.cells import enumerated, packaged, searched
 from bench.no import answered
-from bench.paper import newer
+from bench.paper import newer, paired
 from bench.paper.artefact import singular_first
 from bench.requests import near_moves, path
 from bench.rivals import RIVALS
@@ -196,6 +196,8 @@ CELLS: dict[str, Callable[[Settings], dict[str, Any]]] = {
     "artefact": artefact,
     "learned": learned,
     "newer": newer.measured,
+    "paired": paired.paired,
+    "tree_file": paired.tree_file,
     **{name: functools.partial(_on_targets, name) for name in ON_TARGETS},
     "path": path,
     "whole_body": whole_body,

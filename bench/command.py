@@ -33,6 +33,7 @@ from bench.frozen import compare, record
 from bench.guard import guard
 from bench.learned import command as learned_command
 from bench.machine import fingerprint, stale
+from bench.paper import command as text_command
 from bench.report import (
     collect,
     installed_rivals,
@@ -78,6 +79,7 @@ ALONE = {
 SECTIONS = {
     "analytic": analytic_command,
     "paper2026": newer,
+    "text": text_command,
     "whole_body": whole_body_command,
 }
 """Commands whose results are kept as the report's are."""

@@ -36,6 +36,8 @@ MEASURING = (
     "learned/models.py",
     "learned/weights/*.npz",
     "paper/artefact.py",
+    "paper/newer.py",
+    "paper/paired.py",
     "requests.py",
     "seed_makers.py",
     "tips.py",

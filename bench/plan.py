@@ -14,6 +14,7 @@ import iksel
 from bench.analytic.plan import analytic_jobs
 from bench.arms import RIVAL_ARMS
 from bench.learned.plan import learned_jobs
+from bench.paper.choices import choice_jobs
 from bench.paper.plan import paper_jobs
 from bench.paper.seeding import seeding_jobs
 from bench.rivals import ENUMERATORS, RIVALS
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 
 SECTIONS = (
     "paper",
+    "text",
     "learned",
     "seeds",
     "rivals",
@@ -53,6 +55,7 @@ def plan(
     """
     jobs = [
         *paper_jobs(size),
+        *choice_jobs(size),
         *learned_jobs(size),
         *seeding_jobs(size),
         *_rival_jobs(size),
@@ -128,6 +131,8 @@ SECONDS_PER_TARGET = {
     "first_attempt": 1e-3,
     "learned": 5e-3,
     "newer": 1e-2,
+    "paired": 2e-4,
+    "tree_file": 1e-4,
     "no": 1e-3,
     "asked": 3e-3,
     "near_branches": 1e-3,

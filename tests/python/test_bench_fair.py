@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Laws of what makes the report fair: bounds, claims, provenance. No times."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+pytest.importorskip("bench", reason="the benchmarks are in the repository only")
+
+from bench import bounds
+from bench.paper import choices, published
+from bench.paper.paired import paired, rotation_vectors
+from bench.sections import choices as choices_section
+from bench.size import QUICK
+from bench.view import View
+
+SEED = 5
+
+
+def report_of(cells):
+    """A report of pairs of settings and results."""
+    return {
+        "cells": [{"settings": s, "result": r} for s, r in cells],
+        "size": vars(QUICK),
+        "missing": {},
+        "versions": {},
+    }
+
+
+class TestBounds:
+    @pytest.mark.parametrize("part", [0, 1, 7, 90, 99, 100])
+    def test_as_likely_as_said(self, part):
+        """At the bound as many successes, or more, come up in 5 %: summed by hand."""
+        share = bounds.at_least(part, 100)
+        more = sum(
+            math.comb(100, k) * share**k * (1 - share) ** (100 - k)
+            for k in range(part, 101)
+        )
+        assert more == pytest.approx(0.05 if part else 1.0, abs=1e-9)
+
+    def test_rule_of_three(self):
+        for count in (100, 10_000, 1_000_000):
+            assert bounds.at_least(count, count) == pytest.approx(0.05 ** (1 / count))
+            assert 1 - bounds.at_least(count, count) < 3 / count
+
+    def test_a_difference_covers_the_truth(self):
+        """Of 2,000 draws about 95 % of the intervals have the true difference."""
+        random = np.random.default_rng(SEED)
+        count, rates = 1_000, (0.05, 0.02, 0.93)
+        won, lost, _ = random.multinomial(count, rates, 2_000).T
+        covered = [
+            abs(100 * (w - x) / count - 3.0) <= bounds.paired_points(w, x, count)
+            for w, x in zip(won, lost, strict=True)
+        ]
+        assert np.mean(covered) == pytest.approx(0.95, abs=0.02)
+
+    def test_verdicts(self):
+        assert bounds.verdict(1.0, 0.9) == "holds"
+        assert bounds.verdict(1.0, 1.1) == "undecided"
+        assert bounds.verdict(-1.0, 0.9) == "does not hold"
+        assert bounds.paired_points(0, 0, 1_000) > 0
+
+
+class TestChoices:
+    def test_one_setting_beside_another(self):
+        """Targets that only one solves add up, and the same setting has none."""
+        size = QUICK.__class__(**{**vars(QUICK), "paper": 200})
+        few = {"max_iterations": 4}
+        cell = paired(choices.paired_cell("cvr038", size, {}, few))
+        assert cell["solved"] - cell["against_solved"] == cell["won"] - cell["lost"]
+        assert cell["won"] > 0
+        same = paired(choices.paired_cell("cvr038", size, few, few))
+        assert (same["won"], same["lost"]) == (0, 0)
+        assert same["solved"] == cell["against_solved"]
+
+    def test_rotation_vectors(self):
+        random = np.random.default_rng(SEED)
+        axis = random.normal(size=(50, 3))
+        axis /= np.linalg.norm(axis, axis=1, keepdims=True)
+        angle = random.uniform(0.0, np.pi, 50)
+        angle[:5] = [0.0, 1e-8, np.pi, np.pi, np.pi]
+        cross = np.cross(np.eye(3)[None], axis[:, None])
+        turns = np.eye(3) + np.sin(angle)[:, None, None] * cross
+        turns = turns + (1 - np.cos(angle))[:, None, None] * (cross @ cross)
+        found = rotation_vectors(turns)
+        expected = angle[:, None] * axis
+        # Either of the two vectors of a half turn.
+        either = np.minimum(
+            np.abs(found - expected).max(axis=1), np.abs(found + expected).max(axis=1)
+        )
+        half = angle > np.pi - 1e-6
+        assert np.abs(found - expected)[~half].max() < 1e-7
+        assert either.max() < 1e-7
+
+    def test_rows_say_what_holds(self):
+        """Re-selection among 10 solves more, among 200 less; of UR3 it is not known."""
+        cells = []
+        (choice,) = [c for c in choices.CHOICES if "best 20" in c.says]
+        for robot in published.ROBOTS:
+            for label, other in choice.others.items():
+                won, lost = {"10": (100, 140), "200": (90, 10)}.get(label, (9, 9))
+                if robot == "ur3_wrs":
+                    won, lost = 10, 10
+                result = {"count": 1_000, "solved": 870, "won": won, "lost": lost}
+                result["against_solved"] = 870 - won + lost
+                settings = choices.paired_cell(robot, QUICK, choice.chosen, other)
+                cells.append((settings, result))
+        text = choices_section.text(View(report_of(cells)))
+        rows = {
+            line.split("|")[1].strip(): line
+            for line in text.splitlines()
+            if "|" in line
+        }
+        assert "87.00 (87.59)" in rows[f"**{choice.says}**: {choice.chosen_label}"]
+        assert rows["10"].endswith("| does not hold on C0, C1, IRB; undecided on UR3 |")
+        assert rows["200"].endswith("| holds on C0, C1, IRB; undecided on UR3 |")
+        assert rows["50"].endswith("| undecided |")
+
+    def test_times_have_their_stages(self):
+        """Large is slower than medium by its query, as the row says."""
+        claim = choices.TIMES[0]
+        (medium,) = claim.slower.values()
+        cells = []
+        for robot in published.ROBOTS:
+            for overrides, query in ((claim.faster[1], 30.0), (medium, 20.0)):
+                result = {"mean_us": 80.0 + query, "std_us": 50.0, "targets": 10_000}
+                result |= {"query_us": query, "rank_us": 40.0, "iterate_us": 40.0}
+                settings = choices.staged_cell(robot, QUICK, overrides)
+                cells.append((settings, {**result, "reselect_us": 0.0}))
+        text = choices_section.text(View(report_of(cells)))
+        (row,) = [x for x in text.splitlines() if x.startswith("| medium less large")]
+        assert "\N{MINUS SIGN}10.0 ± 1.4: query \N{MINUS SIGN}10.0, rank +0.0" in row
+        assert row.endswith("| does not hold |")
+
+    def test_every_choice_is_another_setting(self):
+        for robot in ("cvr038", "irb14050"):
+            for cell in choices.choice_cells(robot, QUICK):
+                assert cell["overrides"] != cell["against"]
+        assert choices_section.text(View(report_of([]))) == ""

@@ -61,7 +61,7 @@ def plan(
         *_rival_jobs(size),
         *no_jobs(size),
         *analytic_jobs(size),
-        _robots_job(size),
+        *_robots_jobs(size),
         *_request_jobs(size),
     ]
     return _ordered([_kept(job, robots, only, rivals) for job in jobs])
@@ -205,6 +205,25 @@ def batch_cell(robot: str, name: str, threads: int, size: Size) -> Settings:
     return {**cell, "cell": "batch", "rival": name, "threads": threads}
 
 
+def every_cell(robot: str, size: Size) -> Settings:
+    """All branches of many poses, pose by pose: beside EAIK's batches."""
+    return {**batch_cell(robot, "IKSel", 1, size), "every": True}
+
+
+BESIDE_LEVEL = "avx2"
+"""The SIMD level of the rows beside those of AVX-512: what most processors have."""
+
+
+def other_level() -> str | None:
+    """BESIDE_LEVEL where the rows are of AVX-512."""
+    return BESIDE_LEVEL if iksel.simd_level() == "avx512" else None
+
+
+def at_level(cell: Settings, level: str) -> Settings:
+    """A cell of IKSel's, measured in a process whose SIMD level is another."""
+    return {**cell, "simd": level}
+
+
 BATCHES = (("ur3_wrs", "EAIK"), *((robot, "IKSel") for robot in RIVAL_ARMS))
 """Robots and solvers of the batches."""
 
@@ -229,7 +248,16 @@ def _rival_jobs(size: Size) -> list[Job]:
         for robot, name in BATCHES
         for threads in BATCH_THREADS
     ]
-    return [*jobs, Job("batches", "rivals", batches)]
+    batches.append(every_cell(BATCHES[0][0], size))
+    jobs.append(Job("batches", "rivals", batches))
+    if level := other_level():
+        cells = [
+            at_level(rival_cell(robot, "IKSel", kind, size), level)
+            for robot in RIVAL_ARMS
+            for kind in size.rivals
+        ]
+        jobs.append(Job(f"IKSel, {level}", "rivals", cells))
+    return jobs
 
 
 NO_KINDS = ("uniform", "any_rotation")
@@ -251,7 +279,7 @@ NO_RIVALS = (
     "Robotics Toolbox",
     "OptIK",
     "TRAC-IK (pytracik)",
-    "Pinocchio",
+    "Pinocchio, Python loop",
     "KDL LMA",
     "KDL NR_JL",
 )
@@ -309,9 +337,13 @@ def robot_cell(robot: str, size: Size) -> Settings:
     }
 
 
-def _robots_job(size: Size) -> Job:
+def _robots_jobs(size: Size) -> list[Job]:
     cells = [robot_cell(robot, size) for robot in all_robots()]
-    return Job("every robot", "robots", cells)
+    jobs = [Job("every robot", "robots", cells)]
+    if level := other_level():
+        others = [at_level(cell, level) for cell in cells]
+        jobs.append(Job(f"every robot, {level}", "robots", others))
+    return jobs
 
 
 RESTART_ARMS = ("cvr038", "cvrb1213")

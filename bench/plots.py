@@ -38,7 +38,7 @@ COLOURS = {
     "Robotics Toolbox": "#1f77b4",
     "OptIK": "#2ca02c",
     "TRAC-IK (pytracik)": "#ff7f0e",
-    "Pinocchio": "#9467bd",
+    "Pinocchio, Python loop": "#9467bd",
     "TRAC-IK style": "#bcbd22",
     "KDL Newton + restarts": "#17becf",
     "SLSQP + restarts": "#8c564b",

@@ -28,6 +28,7 @@ from bench import (
     no,
     plan,
     random_arms,
+    report_command,
     run,
     targets,
 )
@@ -481,7 +482,7 @@ class TestNo:
         assert cell["no_us"] == cell["yes_us"] == [1.0, 1.0]
 
     def test_the_command_prints_the_section(self, capsys, monkeypatch, tmp_path):
-        monkeypatch.setattr(command, "WORK", tmp_path)
+        monkeypatch.setattr(report_command, "WORK", tmp_path)
         words = ["no", "ur3", "--targets", "20", "--solvers", "IKSel"]
         assert command.main(words) == 0
         told = capsys.readouterr().out

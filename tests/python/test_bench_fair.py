@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 import math
+import subprocess
 
 import numpy as np
 import pytest
 
 pytest.importorskip("bench", reason="the benchmarks are in the repository only")
 
-from bench import bounds
+from bench import bounds, command, machine, provenance, report
 from bench.paper import choices, published
 from bench.paper.paired import paired, rotation_vectors
 from bench.sections import choices as choices_section
@@ -140,3 +141,64 @@ class TestChoices:
             for cell in choices.choice_cells(robot, QUICK):
                 assert cell["overrides"] != cell["against"]
         assert choices_section.text(View(report_of([]))) == ""
+
+
+@pytest.fixture
+def checkout(tmp_path, monkeypatch):
+    """A repository of one C++ file, one text that no figure needs, and a commit."""
+    (tmp_path / "cpp").mkdir()
+    (tmp_path / "cpp" / "a.cpp").write_text("1")
+    (tmp_path / "notes.md").write_text("1")
+
+    def commit():
+        for words in (["init", "-q"], ["add", "-A"], ["commit", "-qm", "x"]):
+            who = ["-c", "user.name=a", "-c", "user.email=a@b"]
+            subprocess.run(["git", "-C", str(tmp_path), *who, *words], check=True)
+        return machine.commit()
+
+    monkeypatch.setattr(machine, "ROOT", tmp_path)
+    return tmp_path, commit
+
+
+class TestProvenance:
+    def test_clean(self, checkout):
+        folder, commit = checkout
+        facts = {"commit": commit(), "stale": False}
+        assert provenance.doubts(facts) == []
+        # What no figure needs may change, what figures are made of may not.
+        (folder / "notes.md").write_text("2")
+        assert provenance.doubts(facts) == []
+        (folder / "cpp" / "a.cpp").write_text("2")
+        (reason,) = provenance.doubts(facts)
+        assert reason.startswith("changed since its commit")
+        assert reason.endswith("cpp/a.cpp")
+
+    def test_dirty_trees_are_told(self, checkout):
+        folder, commit = checkout
+        assert not commit().endswith("+")
+        (folder / "cpp" / "new.cpp").write_text("1")
+        assert machine.commit().endswith("+")
+
+    @pytest.mark.parametrize(
+        ("facts", "reason"),
+        [
+            ({"commit": "unknown"}, "unknown commit"),
+            ({}, "unknown commit"),
+            ({"commit": "HEAD+"}, "differs from its commit HEAD"),
+            ({"commit": "HEAD", "stale": True}, "older than its sources"),
+            ({"commit": "0123456789"}, "not in this repository"),
+        ],
+    )
+    def test_what_is_refused(self, checkout, facts, reason):
+        _, commit = checkout
+        commit()
+        part = {"machine": {"commit": "HEAD"}, "parts": {"no": {"machine": facts}}}
+        with pytest.raises(provenance.ProvenanceError, match=f"section no: .*{reason}"):
+            provenance.check(part)
+
+    def test_render_writes_nothing(self, tmp_path, capsys):
+        made = {"machine": {"commit": "unknown"}, "cells": []}
+        report.save_report(made, tmp_path)
+        assert command.main(["render", "-o", str(tmp_path)]) == 2
+        assert "made at an unknown commit" in capsys.readouterr().err
+        assert not (tmp_path / "RESULTS.md").exists()

@@ -107,7 +107,9 @@ def _percent(cell: dict[str, Any], what: str) -> float:
 
 def _alike(ours: float, theirs: float, count: int) -> str:
     """Whether two rates, each of its own targets, can be of one setting."""
-    bound = float(np.hypot(rate_points(ours, count), rate_points(theirs, 10_000)))
+    bound = float(
+        np.hypot(rate_points(ours, count), rate_points(theirs, published.TARGETS))
+    )
     return HOLDS if abs(ours - theirs) <= bound else FAILS
 
 

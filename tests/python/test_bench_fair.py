@@ -3,22 +3,41 @@
 
 from __future__ import annotations
 
+import importlib.util
 import math
 import subprocess
+from dataclasses import replace
+from pathlib import Path
+from threading import Event
 
 import numpy as np
 import pytest
 
 pytest.importorskip("bench", reason="the benchmarks are in the repository only")
 
-from bench import bounds, command, machine, provenance, report
-from bench.paper import choices, published
+from bench import bounds, cells, command, machine, plan, provenance, report, run
+from bench.arms import load_arm
+from bench.paper import choices, claims, published
+from bench.paper.bounds import margin
 from bench.paper.paired import paired, rotation_vectors
+from bench.rivals import RIVALS
 from bench.sections import choices as choices_section
-from bench.size import QUICK
+from bench.sections import cut_offs
+from bench.sections import rivals as rivals_section
+from bench.settings import targets_of
+from bench.size import QUICK, Job
+from bench.store import Store
+from bench.timing import summary
 from bench.view import View
 
+import iksel
+
 SEED = 5
+ROOT = Path(__file__).resolve().parents[2]
+
+spec = importlib.util.spec_from_file_location("readme", ROOT / "scripts" / "readme.py")
+readme = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(readme)
 
 
 def report_of(cells):
@@ -141,6 +160,94 @@ class TestChoices:
             for cell in choices.choice_cells(robot, QUICK):
                 assert cell["overrides"] != cell["against"]
         assert choices_section.text(View(report_of([]))) == ""
+
+    def test_margins_of_drawn_rows(self):
+        """A difference of two rates has the interval that its variance gives."""
+        rows = {"worse": 70.0, "better": 73.0}
+
+        def look(label, i):
+            del i
+            return claims.Row(rows[label], 1.0, 0.5, 2.0, 1_000)
+
+        claim = claims.Claim("", "points", lambda f: f.gain("worse", "better"))
+        found = margin(claim, look, 0)
+        wide = 1.96 * 100 * np.sqrt((0.7 * 0.3 + 0.73 * 0.27) / 1_000)
+        assert found.value == pytest.approx(3.0)
+        assert found.high - found.low == pytest.approx(2 * wide, rel=0.2)
+
+
+class TestFair:
+    def test_a_solver_that_gives_nothing(self):
+        """Not 0 %: of IK-Geo that says what the package does."""
+        times = {"mean_us": 1.0, "p99_us": 1.0}
+        cells = []
+        for name, claimed in (("IK-Geo", 0), ("KDL LMA", 50)):
+            settings = plan.rival_cell("cvr038", name, "uniform", QUICK)
+            result = {"count": 100, "right": 0, "claimed": claimed, "false_claims": 0}
+            cells.append((settings, result | times))
+        every = report_of(cells)
+        every["versions"] = dict.fromkeys(RIVALS, "1")
+        text = rivals_section.text(View(every))
+        assert "| IK-Geo | returns nothing |" in text
+        assert "| KDL LMA | 0.00 |" in text
+
+    def test_the_least_cut_off(self):
+        """Of 1,000 calls of 1 to 1,000 us it is 999; without that many, none."""
+        times = np.arange(1.0, 1_001.0) * 1e3
+        cell = {"count": 1_000, "right": 1_000}
+        cell["right_quantiles_us"] = summary(times)["quantiles_us"]
+        assert cut_offs.enough(cell) == "999"
+        assert cut_offs.enough(cell | {"right": 998}).startswith("never (99.80")
+
+    def test_all_branches_beside_all(self):
+        """The batch of all branches has those of solve_all, and no fewer."""
+        size = replace(QUICK, batch=20)
+        cell = cells.batch(plan.every_cell("ur3_wrs", size))
+        solver = iksel.Solver(load_arm("ur3_wrs").robot)
+        poses = targets_of(plan.every_cell("ur3_wrs", size)).poses
+        assert cell["branches"] == sum(len(solver.solve_all(pose)) for pose in poses)
+        assert cell["right"] == 20
+
+    def test_another_level_has_a_process_of_its_own(self, tmp_path):
+        seen = []
+
+        def fake(command, *, env, **_):
+            seen.append(env.get("IKSEL_SIMD"))
+            return subprocess.CompletedProcess(command, 0)
+
+        cell = plan.rival_cell("ur3_wrs", "IKSel", "uniform", QUICK)
+        store = Store(tmp_path, "a")
+        with pytest.MonkeyPatch.context() as patch:
+            patch.delenv("IKSEL_SIMD", raising=False)
+            patch.setattr(run.subprocess, "run", fake)
+            for some in (cell, plan.at_level(cell, "avx2")):
+                run.run_job(Job("x", "rivals", [some]), store, tmp_path, Event())
+        assert seen == [None, "avx2"]
+
+
+class TestReadme:
+    FOUND = {"EAIK": {"right": 1, "mean_us": 5.42}}  # noqa: RUF012 - never changed
+
+    def test_not_measured_is_not_none(self):
+        assert readme.enumerating({}, None) == "not measured"
+        assert readme.enumerating(self.FOUND, None) == "EAIK 5.4 µs (all)"
+
+    def test_the_fastest_that_enumerates(self):
+        def figures(mean, missed=0):
+            return {"us": [mean, mean], "missed": missed, "count": 1_000}
+
+        asked = {
+            "IKSel": {"one": figures(1.0)},
+            "pink": {"one": figures(0.5)},
+            "frankik": {"one": figures(2.0, 1_000)},
+            "ssik": {"one": figures(130.0), "every": figures(90.0)},
+            "EAIK": {"every": figures(140.0)},
+        }
+        assert readme.enumerating({}, asked) == "ssik 130 µs"
+        asked["EAIK"] = {"every": figures(4.5, 3)}
+        expected = "EAIK 4.50 µs (all, misses 3 of 1,000)"
+        assert readme.enumerating({}, asked) == expected
+        assert readme.enumerating(self.FOUND, {}) == "none of those asked"
 
 
 @pytest.fixture

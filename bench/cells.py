@@ -19,7 +19,7 @@ from bench.branches import all_branches, judged, near_branches, restarts
 from bench.check import judge, right
 from bench.ikgeo.cells import enumerated, packaged, searched
 from bench.no import answered
-from bench.paper import newer, paired
+from bench.paper import newer, paired, seeds_shown
 from bench.paper.artefact import singular_first
 from bench.requests import near_moves, path
 from bench.rivals import RIVALS
@@ -214,6 +214,7 @@ CELLS: dict[str, Callable[[Settings], dict[str, Any]]] = {
     "learned": learned,
     "newer": newer.measured,
     "paired": paired.paired,
+    "seeds_shown": seeds_shown.measured,
     "tree_file": paired.tree_file,
     **{name: functools.partial(_on_targets, name) for name in ON_TARGETS},
     "path": path,

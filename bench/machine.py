@@ -38,6 +38,7 @@ MEASURING = (
     "paper/artefact.py",
     "paper/newer.py",
     "paper/paired.py",
+    "paper/seeds_shown.py",
     "requests.py",
     "seed_makers.py",
     "tips.py",
@@ -47,6 +48,7 @@ MEASURING = (
     "ikgeo/*.py",
     "rivals/*.py",
     "cpp/baselines/*",
+    "cpp/pinocchio/*",
     "*.urdf",
 )
 """Files of bench/ that a figure depends on; the others only choose and show."""

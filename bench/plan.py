@@ -132,6 +132,7 @@ SECONDS_PER_TARGET = {
     "learned": 5e-3,
     "newer": 1e-2,
     "paired": 2e-4,
+    "seeds_shown": 1e-3,
     "tree_file": 1e-4,
     "no": 1e-3,
     "asked": 3e-3,
@@ -280,6 +281,7 @@ NO_RIVALS = (
     "OptIK",
     "TRAC-IK (pytracik)",
     "Pinocchio, Python loop",
+    "Pinocchio, C++ loop",
     "KDL LMA",
     "KDL NR_JL",
 )

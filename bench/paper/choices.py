@@ -146,6 +146,11 @@ def tree_cell(robot: str, scale: str, size: Size) -> Settings:
     return {**cell, "cell": "tree_file"}
 
 
+def shown_cell(size: Size) -> Settings:
+    """The figures 1 to 3, of C0."""
+    return {**paper_cell("cvr038", size, {}, size.figure), "cell": "seeds_shown"}
+
+
 def choice_cells(robot: str, size: Size) -> list[Settings]:
     """All cells of CHOICES on a robot."""
     cells = [
@@ -159,7 +164,7 @@ def choice_cells(robot: str, size: Size) -> list[Settings]:
 
 def choice_jobs(size: Size) -> list[Job]:
     """Success with no regard to time, then times alone."""
-    jobs = []
+    jobs = [Job("text, figures 1 to 3", "text", [shown_cell(size)], timed=False)]
     for robot, short in PAPER_ARMS.items():
         name = f"text, {short}"
         cells = choice_cells(robot, size)

@@ -18,6 +18,7 @@ from bench.paper.choices import (
     Choice,
     Slower,
     paired_cell,
+    shown_cell,
     staged_cell,
     tree_cell,
 )
@@ -40,8 +41,8 @@ HOLDS, FAILS, OPEN = "holds", "does not hold", "undecided"
 
 def text(view: View) -> str:
     """The whole section; empty where there are no results."""
-    parts = [_choices(view), _distances(view), _files(view), _times(view)]
-    found = [part for part in parts if part]
+    makers = (_choices, _distances, _files, _times, _figures)
+    found = [part for make in makers if (part := make(view))]
     if not found:
         return ""
     conditions = (
@@ -53,6 +54,20 @@ def text(view: View) -> str:
         "`python -m bench text` makes this section alone."
     )
     return "\n\n".join(["### The text, choice by choice", conditions, *found])
+
+
+def _figures(view: View) -> str:
+    """The figures that are pictures of seeds."""
+    if view.get(shown_cell(view.size)) is None:
+        return ""
+    what = (
+        "Figures 1 to 3, of the database and the first targets of C0 that show what "
+        "the captions say: the nearest seed leads away and that of the least "
+        "adjustment arrives; the first seed ends outside a limit and the one selected "
+        "again arrives; the order of three attempts among the candidates."
+    )
+    plots = [f"![Figure {n}](plots/paper_figure_{n}.svg)" for n in (1, 2, 3)]
+    return "\n\n".join([what, *plots])
 
 
 def _choices(view: View) -> str:

@@ -15,9 +15,19 @@ import pytest
 
 pytest.importorskip("bench", reason="the benchmarks are in the repository only")
 
-from bench import bounds, cells, command, machine, plan, provenance, report, run
+from bench import (
+    bounds,
+    cells,
+    command,
+    machine,
+    plan,
+    plots,
+    provenance,
+    report,
+    run,
+)
 from bench.arms import load_arm
-from bench.paper import choices, claims, published
+from bench.paper import choices, claims, published, seeds_shown
 from bench.paper.bounds import margin
 from bench.paper.paired import paired, rotation_vectors
 from bench.rivals import RIVALS
@@ -309,3 +319,36 @@ class TestProvenance:
         assert command.main(["render", "-o", str(tmp_path)]) == 2
         assert "made at an unknown commit" in capsys.readouterr().err
         assert not (tmp_path / "RESULTS.md").exists()
+
+
+class TestFigures:
+    def test_seeds_as_the_captions_say(self, tmp_path):
+        settings = choices.shown_cell(QUICK)
+        shown = seeds_shown.measured(settings)
+        errors = {name: shown["first"][name]["errors"] for name in ("nearest", "least")}
+        # The nearest leads away; the other arrives within four steps.
+        assert errors["nearest"][1] > errors["nearest"][0]
+        assert errors["nearest"][0] < errors["least"][0] or len(errors["least"]) > 1
+        assert len(errors["least"]) <= 5
+        assert errors["least"][-1] < 1e-4
+        lower, upper = np.array(shown["lower"]), np.array(shown["upper"])
+        ends = [np.array(path[-1]) for path in shown["second"]["attempts"]]
+        inside = [bool(((q >= lower) & (q <= upper)).all()) for q in ends]
+        assert inside == [False, True]
+        attempts = shown["third"]["attempts"]
+        assert attempts[0] == 0
+        assert max(attempts) < 20
+        view = View(report_of([(settings, shown)]))
+        drawn = plots.draw_all(view, tmp_path) if has_matplotlib() else []
+        assert len(drawn) in (0, 3)
+        assert "paper_figure_3.svg" in choices_section.text(view)
+
+    def test_outlines_end_at_the_tip(self):
+        arm = load_arm("panda")
+        q = arm.robot.random_configurations(1, SEED)[0]
+        points = np.array(seeds_shown.outline(arm.chain, q))
+        assert np.abs(points[-1] - arm.chain.fk(q[None])[0, :3, 3]).max() < 1e-12
+
+
+def has_matplotlib():
+    return importlib.util.find_spec("matplotlib") is not None

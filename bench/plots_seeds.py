@@ -52,8 +52,8 @@ def figure_1(view: View, plt: Any) -> Any:
     for axes in (a, b):
         _arm(axes, shown["arm"], color="black", lw=1.2, ls="--")
     a.set_ylabel("height [m]")
-    _side(a, "a solution (dashed), seeds near the target")
-    _side(b, "the two seeds, and two steps from each")
+    _side(a, "seeds near a solution (dashed)")
+    _side(b, "two steps from two of them")
     c.set_title("distance after each step [m]")
     c.set_xlabel("steps, without scaling")
     c.legend(frameon=False)

@@ -24,6 +24,7 @@ from bench import (
     plots,
     provenance,
     report,
+    report_command,
     run,
 )
 from bench.arms import load_arm
@@ -352,3 +353,15 @@ class TestFigures:
 
 def has_matplotlib():
     return importlib.util.find_spec("matplotlib") is not None
+
+
+class TestCommand:
+    def test_prints_the_claims(self, capsys, monkeypatch, tmp_path):
+        monkeypatch.setattr(report_command, "WORK", tmp_path)
+        for name in ("CHOICES", "TIMES", "ABLATION_1_SCALES"):
+            monkeypatch.setattr(choices, name, getattr(choices, name)[:1])
+        assert command.main(["text", "cvr038", "--targets", "20"]) == 0
+        told = capsys.readouterr().out
+        assert "20 targets per robot" in told
+        assert "| **no scaling coefficient is needed**: without |" in told
+        assert "| medium less large |" in told

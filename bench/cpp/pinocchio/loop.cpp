@@ -4,6 +4,7 @@
 // The damped loop of bench/rivals/pinocchio.py in C++ over the same library: what its users get who
 // do not stay in Python. Reads what bench/cpp/baselines/problem.hpp describes, writes what its
 // main.cpp does. bench/rivals/pinocchio_cpp.py compiles it with the headers of the wheel `pin`.
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -104,7 +105,8 @@ class Loop {
     for (int start = 0; start < kStarts; ++start) {
       if (search(target, q)) return true;
       for (Eigen::Index i = 0; i < q.size(); ++i) {
-        q(i) = std::uniform_real_distribution<double>(problem_.lower(i), problem_.upper(i))(random_);
+        q(i) =
+            std::uniform_real_distribution<double>(problem_.lower(i), problem_.upper(i))(random_);
       }
     }
     return false;
@@ -113,12 +115,13 @@ class Loop {
  private:
   bool search(const pin::SE3& target, Eigen::VectorXd& q) {
     for (int iteration = 0; iteration < kIterations; ++iteration) {
-      jacobian_.setZero();
-      pin::computeFrameJacobian(problem_.model, data_, q, problem_.tip, jacobian_);
+      pin::computeJointJacobians(problem_.model, data_, q);
       pin::updateFramePlacement(problem_.model, data_, problem_.tip);
       const pin::SE3 error = data_.oMf[problem_.tip].actInv(target);
       const Eigen::Matrix<double, 6, 1> twist = pin::log6(error).toVector();
       if (twist.cwiseAbs().maxCoeff() < kTolerance / 2) return wrap(q);
+      jacobian_.setZero();
+      pin::getFrameJacobian(problem_.model, data_, problem_.tip, pin::LOCAL, jacobian_);
       Matrix6 log_jacobian;
       pin::Jlog6(error.inverse(), log_jacobian);
       const Matrix6x j = log_jacobian * jacobian_;

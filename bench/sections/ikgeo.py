@@ -212,16 +212,17 @@ def _package(view: View) -> str:
                 rows.append([head, *[NONE] * (len(PACKAGE_HEADER) - 1), why])
                 continue
             counts = ("count", "empty", "panics", "least_squares")
-            rows.append(
-                [
-                    head,
-                    *(f"{cell[name]:,}" for name in counts),
-                    percent(cell["direct"], cell["count"]),
-                    percent(cell["right"], cell["count"]),
-                    percent(cell["seeded"], cell["count"]),
-                    _ms(cell["mean_us"]),
+            nothing = cell["empty"] + cell["panics"] == cell["count"]
+            rates = (
+                ["returns nothing"] * 3
+                if nothing
+                else [
+                    percent(cell[name], cell["count"])
+                    for name in ("direct", "right", "seeded")
                 ]
             )
+            figures = [f"{cell[name]:,}" for name in counts]
+            rows.append([head, *figures, *rates, _ms(cell["mean_us"])])
     text = (
         "What the package ik-geo from PyPI did, with every one of its families that "
         f"fits the arm; no pose is begun after {PACKAGE_LIMIT_S:g} s."

@@ -15,11 +15,11 @@ import numpy as np
 import iksel
 from bench.analytic.cells import asked
 from bench.arms import load_arm
-from bench.branches import all_branches, near_branches, restarts
+from bench.branches import all_branches, judged, near_branches, restarts
 from bench.check import judge, right
 from bench.ikgeo.cells import enumerated, packaged, searched
 from bench.no import answered
-from bench.paper import newer
+from bench.paper import newer, paired, seeds_shown
 from bench.paper.artefact import singular_first
 from bench.random_builds import measured as random_builds
 from bench.requests import near_moves, path
@@ -34,9 +34,10 @@ from bench.timing import summary
 from bench.whole_body import cells as whole_body_cells
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from bench.arms import Arm
+    from bench.chain import Array
     from bench.rivals.base import Rival
     from bench.store import Settings
     from bench.targets import Targets
@@ -112,33 +113,49 @@ def _rival(robot: str, name: str) -> Rival:
 
 
 def batch(settings: Settings) -> dict[str, Any]:
-    """Many poses in one call: time per pose, best of three."""
+    """Many poses in one call: time per pose, best of three.
+
+    With "every" all branches of each: IKSel has no such call, so it is asked pose by
+    pose, on one thread. EAIK has no other.
+    """
     arm = load_arm(settings["robot"])
     goals = targets_of(settings)
     threads = settings["threads"]
+    solver = iksel.Solver(arm.robot)
+    call: Callable[[], Any]
     if settings["rival"] == "EAIK":
         eaik: Any = _rival(settings["robot"], "EAIK")
         poses = np.array([eaik.prepare(pose, None)[0] for pose in goals.poses])
         call = functools.partial(eaik.batch, poses, threads)
+    elif settings.get("every"):
+        call = functools.partial(_each, solver.solve_all, list(goals.poses))
     else:
-        solver = iksel.Solver(arm.robot)
         call = functools.partial(solver.solve_batch, goals.poses, threads=threads)
-    call()
+    returned: Any = call()
     times = []
     for _ in range(3):
         begin = time.perf_counter_ns()
         returned = call()
         times.append(time.perf_counter_ns() - begin)
+    result = {"count": len(goals), "us_per_pose": min(times) / 1e3 / len(goals)}
+    if settings["rival"] != "EAIK" and not settings.get("every"):
+        solved = int(right(arm.chain, goals.poses, returned.q).sum())
+        return {**result, "right": solved}
     if settings["rival"] == "EAIK":
         answers = [eaik.answers(solution) for solution in returned]
-        solved = int(judge(arm.chain, goals.poses, answers).right.sum())
     else:
-        solved = int(right(arm.chain, goals.poses, returned.q).sum())
+        answers = [list(solution.q) for solution in returned]
+    inside = judged(arm.chain, goals.poses, answers).right
     return {
-        "count": len(goals),
-        "right": solved,
-        "us_per_pose": min(times) / 1e3 / len(goals),
+        **result,
+        "right": int(judge(arm.chain, goals.poses, answers).right.sum()),
+        "branches": sum(map(len, inside)),
     }
+
+
+def _each(call: Callable[..., Any], poses: Sequence[Array]) -> list[Any]:
+    """A call on every pose."""
+    return [call(pose) for pose in poses]
 
 
 def artefact(settings: Settings) -> dict[str, Any]:
@@ -200,6 +217,9 @@ CELLS: dict[str, Callable[[Settings], dict[str, Any]]] = {
     "artefact": artefact,
     "learned": learned,
     "newer": newer.measured,
+    "paired": paired.paired,
+    "seeds_shown": seeds_shown.measured,
+    "tree_file": paired.tree_file,
     **{name: functools.partial(_on_targets, name) for name in ON_TARGETS},
     "path": path,
     "random_arms": random_builds,

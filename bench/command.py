@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import argparse
 import sys
-import time
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -23,30 +22,21 @@ from bench import (
     lost,
     moves,
     plan,
+    report_command,
     scene,
     tips,
 )
 from bench.analytic import command as analytic_command
 from bench.arguments import add_robots
-from bench.arms import RIVAL_ARMS
 from bench.frozen import compare, record
 from bench.guard import guard
 from bench.learned import command as learned_command
-from bench.machine import fingerprint, stale
-from bench.report import (
-    collect,
-    installed_rivals,
-    load_report,
-    merged,
-    render,
-    save_report,
-)
-from bench.rivals import RIVALS
-from bench.run import run_jobs
+from bench.paper import command as text_command
+from bench.provenance import ProvenanceError
+from bench.report import installed_rivals, load_report
+from bench.report_command import BENCH, make, measured, render_again
 from bench.sections import learned, newer, no, random_builds, tails
-from bench.settings import WORK
 from bench.size import FULL, QUICK, SEED
-from bench.store import Store
 from bench.view import View
 from bench.whole_body import command as whole_body_command
 
@@ -54,10 +44,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from types import ModuleType
 
-    from bench.size import Job, Size
-    from bench.view import Report
-
-BENCH = Path(__file__).resolve().parent
 
 ALONE = {
     "beside": beside,
@@ -80,24 +66,17 @@ SECTIONS = {
     "paper2026": newer,
     "random": random_builds,
     "tails": tails,
+    "text": text_command,
     "whole_body": whole_body_command,
 }
 """Commands whose results are kept as the report's are."""
-
-EPILOG = f"""\
-robots: {", ".join(RIVAL_ARMS)} (and, with --only robots, every built-in one)
-solvers: {", ".join(repr(name) for name in RIVALS)}
-
-An interrupted report goes on where it was when it is started again: results are kept
-in build/bench by what was measured, on what and with what.
-"""
 
 
 def parser() -> argparse.ArgumentParser:
     """The commands and their options."""
     top = argparse.ArgumentParser(prog="python -m bench", description=__doc__)
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    _add_report(commands)
+    report_command.add(commands)
     again = commands.add_parser("render", help="write the text and plots again")
     again.add_argument("-o", "--output", type=Path, default=BENCH, metavar="FOLDER")
     check = commands.add_parser(
@@ -119,44 +98,6 @@ def parser() -> argparse.ArgumentParser:
     for part in (*SECTIONS.values(), *ALONE.values()):
         part.add(commands)
     return top
-
-
-def _add_report(commands: Any) -> None:
-    report = commands.add_parser(
-        "report",
-        help="measure everything and write the report",
-        epilog=EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    report.add_argument(
-        "--quick", action="store_true", help="fewer targets: a few minutes"
-    )
-    report.add_argument(
-        "--robots", nargs="+", metavar="ROBOT", help="only these robots"
-    )
-    report.add_argument(
-        "--only",
-        nargs="+",
-        metavar="PART",
-        choices=[*plan.SECTIONS, *RIVALS],
-        help=f"only these sections ({', '.join(plan.SECTIONS)}) or solvers",
-    )
-    report.add_argument(
-        "-o",
-        "--output",
-        type=Path,
-        metavar="FOLDER",
-        help="where RESULTS.md, results/ and plots/ go (default: bench, or build/bench/"
-        "quick for a quick or partial report)",
-    )
-    report.add_argument(
-        "--fresh", action="store_true", help="measure again what was measured before"
-    )
-    report.add_argument(
-        "--keep",
-        action="store_true",
-        help="with --only and -o: keep what the folder's report has besides",
-    )
 
 
 def _add_no(commands: Any) -> None:
@@ -186,6 +127,14 @@ def main(arguments: list[str] | None = None) -> int:
     """Run one command; the exit status."""
     given = sys.argv[1:] if arguments is None else arguments
     options = parser().parse_args(given)
+    try:
+        return _run(options, given)
+    except ProvenanceError as error:
+        sys.stderr.write(f"bench: not rendered: {error}\n")
+        return 2
+
+
+def _run(options: argparse.Namespace, given: list[str]) -> int:
     if options.command == "guard":
         return guard(update=options.update)
     if options.command == "frozen":
@@ -200,9 +149,8 @@ def main(arguments: list[str] | None = None) -> int:
     if options.command in others:
         return others[options.command](options, given)
     if options.command == "render":
-        render(load_report(options.output), options.output)
-        return 0
-    return _report(options, given)
+        return render_again(options.output)
+    return make(options, given)
 
 
 def _no(options: argparse.Namespace, given: list[str]) -> int:
@@ -211,7 +159,7 @@ def _no(options: argparse.Namespace, given: list[str]) -> int:
     versions = installed_rivals()
     wanted = [name for name in versions if name in (options.solvers or plan.NO_RIVALS)]
     jobs = plan.no_plan(size, options.robots, wanted)
-    report = _measured(jobs, size, versions, given, fresh=options.fresh)
+    report = measured(jobs, size, versions, given, fresh=options.fresh)
     if report is None:
         return 130
     view = View(report)
@@ -226,7 +174,7 @@ def _section(part: ModuleType, options: argparse.Namespace, given: list[str]) ->
     """A section that knows its jobs and prints itself."""
     versions = installed_rivals()
     jobs, size = part.jobs_of(options, versions)
-    report = _measured(jobs, size, versions, given, fresh=options.fresh)
+    report = measured(jobs, size, versions, given, fresh=options.fresh)
     return 130 if report is None else int(part.tell(report))
 
 
@@ -241,65 +189,8 @@ def _learned(options: argparse.Namespace, given: list[str]) -> int:
     if not jobs:
         sys.stderr.write("bench: no learned models for these robots\n")
         return 2
-    report = _measured(jobs, size, {}, given, fresh=options.fresh)
+    report = measured(jobs, size, {}, given, fresh=options.fresh)
     if report is None:
         return 130
     sys.stdout.write(learned.text(View(report)) + "\n")
     return 1 if report["failures"] else 0
-
-
-def _report(options: argparse.Namespace, given: list[str]) -> int:
-    size = QUICK if options.quick else FULL
-    versions = installed_rivals()
-    jobs = plan.plan(size, options.robots, options.only, versions)
-    if not jobs:
-        sys.stderr.write("bench: nothing to do for these robots and parts\n")
-        return 2
-    output = options.output
-    if output is None:
-        whole = not (options.quick or options.robots or options.only)
-        output = BENCH if whole else WORK / "quick"
-    report = _measured(jobs, size, versions, given, fresh=options.fresh)
-    if report is None:
-        return 130
-    if options.keep:
-        every = plan.plan(size, None, None)
-        sections = [part for part in plan.SECTIONS if part in (options.only or ())]
-        report = merged(load_report(output), report, every, sections)
-    save_report(report, output)
-    render(report, output)
-    sys.stderr.write(f"wrote {output / 'RESULTS.md'}\n")
-    return 1 if report["failures"] else 0
-
-
-def _measured(
-    jobs: list[Job],
-    size: Size,
-    versions: dict[str, str],
-    given: list[str],
-    *,
-    fresh: bool,
-) -> Report | None:
-    """What the jobs gave, failures told; None if interrupted."""
-    store = Store(WORK / "cells", fingerprint(), versions)
-    if fresh:
-        for job in jobs:
-            for cell in job.cells:
-                store.forget(cell)
-    if stale():
-        sys.stderr.write(
-            "bench: cpp/ or python/ has changed since this iksel was installed\n"
-        )
-    begin = time.monotonic()
-    try:
-        failures = run_jobs(jobs, store, WORK)
-    except KeyboardInterrupt:
-        sys.stderr.write("bench: interrupted; the same command goes on from here\n")
-        return None
-    command = " ".join(["python -m bench", *given])
-    seconds = time.monotonic() - begin
-    report = collect(jobs, store, size, command=command, seconds=seconds)
-    report["failures"] = failures
-    for name, reason in failures.items():
-        sys.stderr.write(f"bench: {name}: {reason}\n")
-    return report

@@ -42,6 +42,9 @@ MEASURING = (
     "learned/models.py",
     "learned/weights/*.npz",
     "paper/artefact.py",
+    "paper/newer.py",
+    "paper/paired.py",
+    "paper/seeds_shown.py",
     "requests.py",
     "seed_makers.py",
     "tips.py",
@@ -51,6 +54,7 @@ MEASURING = (
     "ikgeo/*.py",
     "rivals/*.py",
     "cpp/baselines/*",
+    "cpp/pinocchio/*",
     "*.urdf",
 )
 """Files of bench/ that a figure depends on; the others only choose and show."""
@@ -90,23 +94,34 @@ def cpu_name() -> str:
     return platform.machine()
 
 
+UNKNOWN = "unknown"
+"""The commit where there is no repository."""
+
+
 def commit() -> str:
-    """The checkout's commit; with a + if files outside bench/ differ from it."""
-    revision = _git("rev-parse", "--short=10", "HEAD")
+    """The checkout's commit; with a + if files differ from it that a figure needs.
+
+    Of bench/ these are the measuring ones: what a report writes is no difference.
+    """
+    revision = git("rev-parse", "--short=10", "HEAD")
     if not revision:
-        return "unknown"
-    changed = _git("status", "--porcelain", "--untracked-files=no", "--", ":!bench")
+        return UNKNOWN
+    measuring = [f":(glob)bench/{pattern}" for pattern in MEASURING]
+    changed = git(
+        "status", "--porcelain", "--untracked-files=no", "--", ":!bench", ":!README.md"
+    ) or git("status", "--porcelain", "--", "cpp", "python", *measuring)
     return revision + ("+" if changed else "")
 
 
 def stale() -> bool:
     """Whether cpp/ or python/ have changed since the installed core was built."""
-    changed = _git("log", "-1", "--format=%ct", "--", "cpp", "python")
+    changed = git("log", "-1", "--format=%ct", "--", "cpp", "python")
     built = Path(iksel_cpp.__file__).stat().st_mtime
     return bool(changed) and float(changed) > built
 
 
-def _git(*arguments: str) -> str:
+def git(*arguments: str) -> str:
+    """What a git command says of the checkout; "" where it fails."""
     command = ["git", "-C", str(ROOT), *arguments]
     try:
         done = subprocess.run(command, check=False, capture_output=True, text=True)

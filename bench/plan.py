@@ -14,6 +14,7 @@ import iksel
 from bench.analytic.plan import analytic_jobs
 from bench.arms import RIVAL_ARMS
 from bench.learned.plan import learned_jobs
+from bench.paper.choices import choice_jobs
 from bench.paper.plan import paper_jobs
 from bench.paper.seeding import seeding_jobs
 from bench.random_builds import random_jobs
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
 
 SECTIONS = (
     "paper",
+    "text",
     "learned",
     "seeds",
     "rivals",
@@ -57,6 +59,7 @@ def plan(
     """
     jobs = [
         *paper_jobs(size),
+        *choice_jobs(size),
         *learned_jobs(size),
         *seeding_jobs(size),
         *_rival_jobs(size),
@@ -64,7 +67,7 @@ def plan(
         *analytic_jobs(size),
         *random_jobs(size),
         *tail_jobs(size),
-        _robots_job(size),
+        *_robots_jobs(size),
         *_request_jobs(size),
     ]
     return _ordered([_kept(job, robots, only, rivals) for job in jobs])
@@ -134,6 +137,9 @@ SECONDS_PER_TARGET = {
     "first_attempt": 1e-3,
     "learned": 5e-3,
     "newer": 1e-2,
+    "paired": 2e-4,
+    "seeds_shown": 1e-3,
+    "tree_file": 1e-4,
     "no": 1e-3,
     "asked": 3e-3,
     "near_branches": 1e-3,
@@ -211,6 +217,25 @@ def batch_cell(robot: str, name: str, threads: int, size: Size) -> Settings:
     return {**cell, "cell": "batch", "rival": name, "threads": threads}
 
 
+def every_cell(robot: str, size: Size) -> Settings:
+    """All branches of many poses, pose by pose: beside EAIK's batches."""
+    return {**batch_cell(robot, "IKSel", 1, size), "every": True}
+
+
+BESIDE_LEVEL = "avx2"
+"""The SIMD level of the rows beside those of AVX-512: what most processors have."""
+
+
+def other_level() -> str | None:
+    """BESIDE_LEVEL where the rows are of AVX-512."""
+    return BESIDE_LEVEL if iksel.simd_level() == "avx512" else None
+
+
+def at_level(cell: Settings, level: str) -> Settings:
+    """A cell of IKSel's, measured in a process whose SIMD level is another."""
+    return {**cell, "simd": level}
+
+
 BATCHES = (("ur3_wrs", "EAIK"), *((robot, "IKSel") for robot in RIVAL_ARMS))
 """Robots and solvers of the batches."""
 
@@ -235,7 +260,16 @@ def _rival_jobs(size: Size) -> list[Job]:
         for robot, name in BATCHES
         for threads in BATCH_THREADS
     ]
-    return [*jobs, Job("batches", "rivals", batches)]
+    batches.append(every_cell(BATCHES[0][0], size))
+    jobs.append(Job("batches", "rivals", batches))
+    if level := other_level():
+        cells = [
+            at_level(rival_cell(robot, "IKSel", kind, size), level)
+            for robot in RIVAL_ARMS
+            for kind in size.rivals
+        ]
+        jobs.append(Job(f"IKSel, {level}", "rivals", cells))
+    return jobs
 
 
 NO_KINDS = ("uniform", "any_rotation")
@@ -257,7 +291,8 @@ NO_RIVALS = (
     "Robotics Toolbox",
     "OptIK",
     "TRAC-IK (pytracik)",
-    "Pinocchio",
+    "Pinocchio, Python loop",
+    "Pinocchio, C++ loop",
     "KDL LMA",
     "KDL NR_JL",
 )
@@ -315,9 +350,13 @@ def robot_cell(robot: str, size: Size) -> Settings:
     }
 
 
-def _robots_job(size: Size) -> Job:
+def _robots_jobs(size: Size) -> list[Job]:
     cells = [robot_cell(robot, size) for robot in all_robots()]
-    return Job("every robot", "robots", cells)
+    jobs = [Job("every robot", "robots", cells)]
+    if level := other_level():
+        others = [at_level(cell, level) for cell in cells]
+        jobs.append(Job(f"every robot, {level}", "robots", others))
+    return jobs
 
 
 RESTART_ARMS = ("cvr038", "cvrb1213")

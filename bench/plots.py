@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from bench import plan
+from bench import plan, plots_seeds
 from bench.arms import PAPER_ARMS, RIVAL_ARMS
 from bench.paper import plan as paper_plan
 from bench.paper.published import ROBOTS
@@ -38,7 +38,8 @@ COLOURS = {
     "Robotics Toolbox": "#1f77b4",
     "OptIK": "#2ca02c",
     "TRAC-IK (pytracik)": "#ff7f0e",
-    "Pinocchio": "#9467bd",
+    "Pinocchio, Python loop": "#9467bd",
+    "Pinocchio, C++ loop": "#5b3a8c",
     "TRAC-IK style": "#bcbd22",
     "KDL Newton + restarts": "#17becf",
     "SLSQP + restarts": "#8c564b",
@@ -72,6 +73,9 @@ def draw_all(view: View, folder: Path) -> list[str]:
         for name, draw in (
             ("success_over_time", _success_over_time),
             ("latency", _latency),
+            ("paper_figure_1", plots_seeds.figure_1),
+            ("paper_figure_2", plots_seeds.figure_2),
+            ("paper_figure_3", plots_seeds.figure_3),
             ("paper_attempts", _paper_attempts),
             ("paper_times", _paper_times),
         ):

@@ -9,7 +9,7 @@ import json
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
-from bench import machine
+from bench import machine, provenance
 from bench.plots import draw_all
 from bench.rivals import ENUMERATORS, RIVALS
 from bench.rivals.base import UnsupportedError
@@ -168,6 +168,9 @@ def _head(report: Report) -> str:
     lines = [_made(report)]
     for section, part in report.get("parts", {}).items():
         lines.append(f"Section `{section}`: {_made(part)}")
+    doubts = provenance.doubts(report["machine"])
+    if doubts:
+        lines.insert(0, f"**Not to be published**: {'; '.join(doubts)}.")
     title = "# Results\n\nGenerated; nothing in here is written by hand."
     return "\n\n".join([title, *lines])
 
@@ -175,7 +178,7 @@ def _head(report: Report) -> str:
 def _made(part: dict[str, Any]) -> str:
     """How a report, or a section that was measured by itself, was made."""
     facts = part["machine"]
-    made = (
+    return (
         f"Made by `{part['command']}` in {part['seconds']} s (results that were "
         f"there already not counted), with IKSel {facts['iksel']} (lanes: "
         f"{facts['simd']}) at commit {facts['commit']}, Python {facts['python']}, "
@@ -183,9 +186,6 @@ def _made(part: dict[str, Any]) -> str:
         f"{facts['system']}{machine.load_text(facts)}. Times move from machine to "
         "machine; what is compared here was timed in the same run."
     )
-    if facts.get("stale"):
-        made += " The sources have changed since this IKSel was built and installed."
-    return made
 
 
 def _tail(report: Report) -> str:

@@ -144,6 +144,9 @@ def _run_worker(cells: list[Settings], store: Store, log: Path) -> str:
         "OPENBLAS_NUM_THREADS": "1",
         "RUST_BACKTRACE": "0",
     }
+    # The cells of a job are all of one level.
+    if level := cells[0].get("simd"):
+        environment["IKSEL_SIMD"] = level
     limit_s = max(cell.get("hang_s", LIMIT_S) for cell in cells)
     with log.open("w", encoding="utf-8") as output:
         try:

@@ -49,6 +49,8 @@ OURS = "IKSel"
 SEED = 1
 """Of the rivals' targets: `SEED` of bench/size.py."""
 ANALYTIC = ("EAIK", "IK-Geo")
+LOOPS = ("pink", "mink")
+"""Of the solvers that `python -m bench analytic` asks those that do not enumerate."""
 UNREACHED = "any_rotation"
 """The targets of which many have no answer."""
 NONE = "\N{EN DASH}"
@@ -68,7 +70,9 @@ def by_solver(report: dict[str, Any], cell: str, kind: str) -> dict[str, Result]
     found: dict[str, dict[str, Result]] = {}
     for entry in report["cells"]:
         settings, result = entry["settings"], entry["result"]
-        if settings["cell"] == cell and settings["kind"] == kind:
+        of_kind = settings["cell"] == cell and settings.get("kind") == kind
+        # Rows at another SIMD level stand beside those of the report only.
+        if of_kind and "simd" not in settings:
             by_name = found.setdefault(settings["robot"], {})
             if "unsupported" not in result:
                 by_name[settings.get("rival", OURS)] = result
@@ -91,10 +95,12 @@ def results() -> str:
     report = load_report()
     cells = by_solver(report, "rival", "uniform")
     noes = by_solver(report, "no", UNREACHED)
+    asked = by_solver(report, "asked", "uniform")
     header = "| robot | success | mean | p99 | next fastest numerical solver | analytic"
     rows = [f"{header} | no |", "|---|---|---|---|---|---|---|"]
     rows += [
-        f"| `{robot}` | {beside(found)} | {a_no(noes.get(robot, {}))} |"
+        f"| `{robot}` | {beside(found)} | {enumerating(found, asked.get(robot))} "
+        f"| {a_no(noes.get(robot, {}))} |"
         for robot, found in cells.items()
     ]
     count = next(iter(cells.values()))[OURS]["count"]
@@ -102,9 +108,11 @@ def results() -> str:
         f"{count:,} targets per robot (fewer for the slower solvers), uniform in the "
         f"joint limits, seed {SEED}; one pose at a time from Python (KDL's and "
         "SLSQP's from C++); every answer checked to 1e-5 m, 1e-5 rad and the limits; "
-        f"failures included in the times; {machine(report, 'rivals')} *no*: mean time "
-        "to say that a pose has no answer, then the fastest numerical solver's and an "
-        "analytic one's; measured as [below](#when-there-is-no-answer)."
+        f"failures included in the times; {machine(report, 'rivals')} *analytic*: the "
+        "fastest solver that enumerates, for one answer or, where it says so, all "
+        "branches. *no*: mean time to say that a pose has no answer, then the fastest "
+        "numerical solver's, which is the cut-off that it was given, and an analytic "
+        "one's; measured as [below](#when-there-is-no-answer)."
     )
     plot = "![Share of targets solved over time](bench/plots/success_over_time.svg)"
     return "\n".join([plot, "", *rows, "", conditions])
@@ -114,16 +122,44 @@ def beside(found: dict[str, Result]) -> str:
     """One robot's row."""
     ours = found[OURS]
     name, mean = fastest(found)
-    analytic = ", ".join(
-        f"{solver} {found[solver]['mean_us']:.1f} µs"
-        for solver in ANALYTIC
-        if found.get(solver, {}).get("right")
-    )
     return (
         f"{100.0 * ours['right'] / ours['count']:.3f} % | {ours['mean_us']:.2f} µs "
         f"| {ours['p99_us']:.2f} µs "
-        f"| {name} {mean:.0f} µs, {mean / ours['mean_us']:.0f} times "
-        f"| {analytic or 'none'}"
+        f"| {name} {mean:.0f} µs, {mean / ours['mean_us']:.0f} times"
+    )
+
+
+def enumerating(found: dict[str, Result], asked: dict[str, Result] | None) -> str:
+    """The fastest of the solvers that `python -m bench analytic` asks.
+
+    Without its results what the section on rivals has of such solvers.
+
+    Args:
+        found: The robot's results of cells "rival".
+        asked: Those of cells "asked"; None: not measured.
+    """
+    if asked is None:
+        known = [
+            f"{name} {found[name]['mean_us']:.1f} µs (all)"
+            for name in ANALYTIC
+            if found.get(name, {}).get("right")
+        ]
+        return ", ".join(known) or "not measured"
+    rows = {}
+    for name, result in asked.items():
+        figures = result.get("one") or result.get("every")
+        if name.startswith(OURS) or name in LOOPS or not figures or not figures["us"]:
+            continue
+        if figures["missed"] < figures["count"]:
+            rows[name] = figures
+    if not rows:
+        return "none of those asked"
+    name = min(rows, key=lambda solver: float(rows[solver]["us"][0]))
+    missed, count = rows[name]["missed"], rows[name]["count"]
+    notes = [] if asked[name].get("one") else ["all"]
+    notes += [f"misses {missed:,} of {count:,}"] if missed else []
+    return f"{name} {microseconds(rows[name]['us'][0])} µs" + (
+        f" ({', '.join(notes)})" if notes else ""
     )
 
 
@@ -242,7 +278,8 @@ def no_conditions(report: dict[str, Any], found: dict[str, dict[str, Result]]) -
         f"rivals), seed {size['no_seed']}, tolerances of 1e-6 m and 1e-6 rad, one "
         "thread, from Python (KDL's own solvers from C++), the least time of three of "
         f"each call; `solve_all` and `near` over all targets, or over a tenth of them "
-        f"where there is no closed form; {machine(report, 'no')} Of {count:,} targets "
+        "where there is no closed form; a numerical rival's no is the cut-off that it "
+        f"was given; {machine(report, 'no')} Of {count:,} targets "
         f"that can be reached, uniform in the limits of these {len(reachable)} robots, "
         f"seed {size['no_seed']}, {solved:,} were solved; of the {proven:,} proofs in "
         f"the table another solver's answer refutes {disproved}." + random_arms(report)

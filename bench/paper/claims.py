@@ -49,14 +49,18 @@ class Row:
     success: float
     """Percent."""
     mean: float
+    std: float
     most: float
     """Times, in one unit for all rows."""
+    count: int
+    """Targets."""
 
 
 def published_row(label: str, i: int) -> Row:
     """A row of the paper for robot i."""
     row = PUBLISHED[label]
-    return Row(row.success[i], row.times[i].mean, row.times[i].most)
+    times = row.times[i]
+    return Row(row.success[i], times.mean, times.std, times.most, published.TARGETS)
 
 
 class Figures:

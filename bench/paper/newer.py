@@ -67,7 +67,7 @@ class NewerSelection:
             poses, jacobians = self.chain.fk_jacobian(q[None])
             pose, jacobian = poses[0], jacobians[0]
             position = target[:3, 3] - pose[:3, 3]
-            rotation = _rotation_vector(target[:3, :3] @ pose[:3, :3].T)
+            rotation = rotation_vector(target[:3, :3] @ pose[:3, :3].T)
             far, turned = np.linalg.norm(position), np.linalg.norm(rotation)
             if far <= 1e-4 and turned <= 1e-3:
                 return (q if self.chain.within_limits(q[None])[0] else None), step
@@ -105,7 +105,7 @@ def measured(settings: Settings) -> dict[str, Any]:
     }
 
 
-def _rotation_vector(R: Array) -> Array:  # noqa: N803
+def rotation_vector(R: Array) -> Array:  # noqa: N803
     """Of a rotation matrix; turns of exactly pi are not met at random."""
     sine = 0.5 * np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]])
     length = np.linalg.norm(sine)
@@ -115,4 +115,4 @@ def _rotation_vector(R: Array) -> Array:  # noqa: N803
 
 def _feature(pose: Array) -> Array:
     """[position; rotation vector]."""
-    return np.concatenate([pose[:3, 3], _rotation_vector(pose[:3, :3])])
+    return np.concatenate([pose[:3, 3], rotation_vector(pose[:3, :3])])

@@ -191,7 +191,7 @@ def paper_jobs(size: Size) -> list[Job]:
     rows = artefact_rows(size).values()
     artefact = [artefact_cell("ur3_wrs", size, row) for row in rows]
     jobs.append(Job("paper, grid artefact", "paper", artefact, timed=False))
-    # The setting beside the newer one is a cell of the tables.
+    # The paper's own row is one of the tables'.
     newer = [replace(job, cells=job.cells[1:]) for job in newer_jobs(size)]
     return [*jobs, *newer]
 

@@ -14,6 +14,9 @@ from typing import NamedTuple
 
 ROBOTS = ("cvr038", "cvrb1213", "ur3_wrs", "irb14050")
 
+TARGETS = 10_000
+"""Of each row."""
+
 Four = tuple[float, float, float, float]
 
 

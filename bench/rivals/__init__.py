@@ -18,6 +18,7 @@ from bench.rivals.loops import Mink, Pink
 from bench.rivals.optik import OptIk
 from bench.rivals.opw import Opw
 from bench.rivals.pinocchio import Pinocchio
+from bench.rivals.pinocchio_cpp import PinocchioCpp
 from bench.rivals.py_ikgeo import PyIkGeo
 from bench.rivals.robotics_toolbox import RoboticsToolbox
 from bench.rivals.ssik import Ssik, SsikWithoutRescue
@@ -38,6 +39,7 @@ RIVALS: dict[str, type[Rival]] = {
         OptIk,
         TracIk,
         Pinocchio,
+        PinocchioCpp,
         Race,
         Newton,
         Slsqp,

@@ -15,6 +15,8 @@ import numpy as np
 from bench.rivals.base import Rival, Run, UnsupportedError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from bench.arms import Arm
     from bench.targets import Targets
 
@@ -76,6 +78,23 @@ def _row(values: np.ndarray) -> str:
     return " ".join(f"{value:.17g}" for value in values)
 
 
+def run_program(
+    arm: Arm, targets: Targets, command: Sequence[str], options: Sequence[str] = ()
+) -> Run:
+    """What a program answers that gets a problem's file and one for its answers."""
+    with tempfile.TemporaryDirectory() as folder:
+        problem, answers = Path(folder) / "problem", Path(folder) / "answers"
+        write_problem(problem, arm, targets)
+        subprocess.run([*command, str(problem), str(answers), *options], check=True)
+        table = np.loadtxt(answers, ndmin=2)
+    solved = table[:, 0] != 0
+    q = table[:, 2:]
+    return Run(
+        table[:, 1].astype(np.int64),
+        [[row] if yes else [] for yes, row in zip(solved, q, strict=True)],
+    )
+
+
 class Baseline(Rival):
     """One solver of the program."""
 
@@ -100,17 +119,8 @@ class Baseline(Rival):
 
     def run(self, targets: Targets) -> Run:
         """Run the program once over all targets."""
-        with tempfile.TemporaryDirectory() as folder:
-            problem, answers = Path(folder) / "problem", Path(folder) / "answers"
-            write_problem(problem, self._arm, targets)
-            command = [str(PROGRAM), self.solver, str(problem), str(answers)]
-            subprocess.run([*command, *self.options], check=True)
-            table = np.loadtxt(answers, ndmin=2)
-        solved = table[:, 0] != 0
-        q = table[:, 2:]
-        return Run(
-            table[:, 1].astype(np.int64),
-            [[row] if yes else [] for yes, row in zip(solved, q, strict=True)],
+        return run_program(
+            self._arm, targets, [str(PROGRAM), self.solver], self.options
         )
 
 

@@ -23,7 +23,7 @@ DAMPING = 1e-6
 class Pinocchio(PythonRival):
     """Pinocchio has no solver of its own; this is the loop that its users write."""
 
-    name = "Pinocchio"
+    name = "Pinocchio, Python loop"
     distribution = "pin"
     settings = (
         f"own damped loop in Python, damping {DAMPING:g}, {ITERATIONS} iterations, "

@@ -15,6 +15,10 @@ if TYPE_CHECKING:
     from bench.chain import Array
 
 
+K = 0.1
+"""Of Chan's damping: 10 to 20 % faster here than 0.01."""
+
+
 class RoboticsToolbox(PythonRival):
     """Levenberg-Marquardt with Chan's damping and random restarts."""
 
@@ -22,7 +26,7 @@ class RoboticsToolbox(PythonRival):
     distribution = "roboticstoolbox-python"
     # Its default tolerance, 1e-6, is of half the squared error: 1.4 mm.
     settings = (
-        "ik_LM, Chan, k 0.01, tol 1e-12 (of half the squared error), 30 iterations, "
+        f"ik_LM, Chan, k {K:g}, tol 1e-12 (of half the squared error), 30 iterations, "
         "100 searches, random start"
     )
 
@@ -41,7 +45,7 @@ class RoboticsToolbox(PythonRival):
 
     def prepare(self, pose: Array, start: Array) -> tuple[Any, ...]:
         """As it is."""
-        return (pose, start, 30, 100, 1e-12, None, True, 0.01, "chan")
+        return (pose, start, 30, 100, 1e-12, None, True, K, "chan")
 
     def call(self, *arguments: Any) -> Any:
         """Solve."""

@@ -9,8 +9,10 @@ import numpy as np
 
 from bench import plan
 from bench.arms import PAPER_ARMS
+from bench.bounds import rate_points
 from bench.markdown import NONE, signed, table
 from bench.paper import plan as paper_plan
+from bench.paper.bounds import Margin, margin
 from bench.paper.claims import (
     ALL,
     C0,
@@ -20,13 +22,12 @@ from bench.paper.claims import (
     UR3,
     AbsentError,
     Claim,
-    Figures,
     Row,
     longer,
     published_row,
     spread,
 )
-from bench.paper.published import ROBOTS
+from bench.paper.published import ROBOTS, TARGETS
 from bench.sections.curves import curve
 
 if TYPE_CHECKING:
@@ -39,7 +40,7 @@ BETWEEN = range(1, 19)
 tried."""
 
 
-Margins = list[float | None]
+Margins = list[Margin | None]
 
 
 def text(view: View) -> str:
@@ -61,9 +62,11 @@ def text(view: View) -> str:
         [
             "### What the text says, tested",
             (
-                "By how much each claim holds (below 0: does not), here and, in "
-                "brackets, by the paper's own numbers where it gives them; times as "
-                "the longer over the shorter, less 1."
+                "By how much each claim holds (below 0: does not) [and an interval of "
+                "95 %], here and, in round brackets, by the paper's own numbers where "
+                "it gives them; times as the longer over the shorter, less 1. It "
+                "*holds* where the whole interval is above 0, is *undecided* where 0 "
+                "is in it. The figures' times and the footnote have no interval."
             ),
             table([str(name) for name in header], rows),
         ]
@@ -76,7 +79,13 @@ def _ours(view: View) -> Callable[[str, int], Row]:
         cell = view.get(settings)
         if cell is None:
             raise AbsentError(label)
-        return Row(cell["success_percent"], cell["mean_us"], cell["max_us"])
+        return Row(
+            success=cell["success_percent"],
+            mean=cell["mean_us"],
+            std=cell["std_us"],
+            most=cell["max_us"],
+            count=view.size.paper,
+        )
 
     return look
 
@@ -86,7 +95,7 @@ def _margins(claim: Claim, look: Callable[[str, int], Row]) -> Margins:
     for i in ALL:
         try:
             shown = i in claim.robots
-            found.append(claim.margin(Figures(look, i)) if shown else None)
+            found.append(margin(claim, look, i) if shown else None)
         except AbsentError:
             found.append(None)
     return found
@@ -95,23 +104,33 @@ def _margins(claim: Claim, look: Callable[[str, int], Row]) -> Margins:
 def _line(what: str, unit: str, ours: Margins, theirs: Margins) -> list[str]:
     shown = []
     for mine, other in zip(ours, theirs, strict=True):
-        beside = "" if other is None else f" ({signed(other)})"
-        shown.append(NONE if mine is None else signed(mine) + beside)
+        beside = "" if other is None else f" ({signed(other.value)})"
+        shown.append(NONE if mine is None else _shown(mine) + beside)
     return [f"{what} [{unit}]", *shown, _verdict(ours), _verdict(theirs)]
 
 
+def _shown(found: Margin) -> str:
+    if found.low == found.high:
+        return signed(found.value)
+    return f"{signed(found.value)} [{signed(found.low)}, {signed(found.high)}]"
+
+
 def _verdict(margins: Margins) -> str:
-    known = [margin for margin in margins if margin is not None]
+    known = {
+        PAPER_ARMS[robot]: found
+        for robot, found in zip(ROBOTS, margins, strict=True)
+        if found is not None
+    }
     if not known:
         return NONE
-    bad = [
-        PAPER_ARMS[robot]
-        for robot, margin in zip(ROBOTS, margins, strict=True)
-        if margin is not None and margin <= 0
-    ]
-    if not bad:
-        return "holds"
-    return "does not hold" if len(bad) == len(known) else f"not on {', '.join(bad)}"
+    bad = [name for name, found in known.items() if found.high <= 0]
+    unclear = [name for name, found in known.items() if found.low <= 0 < found.high]
+    if len(bad) == len(known):
+        return "does not hold"
+    parts = [f"not on {', '.join(bad)}"] if bad else []
+    if unclear:
+        parts.append(f"undecided on {', '.join(unclear)}")
+    return "; ".join(parts) or "holds"
 
 
 def _beyond_the_tables(view: View) -> list[tuple[str, str, Margins, Margins]]:
@@ -119,6 +138,7 @@ def _beyond_the_tables(view: View) -> list[tuple[str, str, Margins, Margins]]:
     farthest, in_order, nearest = paper_plan.SELECTIONS
     absent: Margins = [None] * 4
     found = []
+    margins: Margins
     for sampling in ("grid", "cvt"):
         for other in (in_order, nearest):
             what = f"figure, {sampling}: farthest is above {other} at each #ReA to 18"
@@ -141,7 +161,11 @@ def _beyond_the_tables(view: View) -> list[tuple[str, str, Margins, Margins]]:
     found.append((what, "points", [_alike(view, robot) for robot in ROBOTS], absent))
     what = "comparison: more is solved than by TRAC-IK (here: TRAC-IK style, 5 ms)"
     theirs: Margins = [
-        PUBLISHED["beside TRAC-IK"].success[i] - PUBLISHED["TRAC-IK"].success[i]
+        _points(
+            PUBLISHED["beside TRAC-IK"].success[i],
+            PUBLISHED["TRAC-IK"].success[i],
+            TARGETS,
+        )
         for i in ALL
     ]
     found.append((what, "points", [_trac_ik(view, i) for i in ALL], theirs))
@@ -150,21 +174,36 @@ def _beyond_the_tables(view: View) -> list[tuple[str, str, Margins, Margins]]:
 
 def _above(
     view: View, robot: str, sampling: str, selection: str, other: str
-) -> float | None:
+) -> Margin | None:
     ours, theirs = (curve(view, robot, sampling, s) for s in (selection, other))
     if ours is None or theirs is None:
         return None
-    return min(ours[rea] - theirs[rea] for rea in BETWEEN)
+    rea = min(BETWEEN, key=lambda rea: ours[rea] - theirs[rea])
+    return _points(ours[rea], theirs[rea], view.size.paper)
 
 
-def _late(view: View, robot: str, selection: str, other: str) -> float | None:
+def _late(view: View, robot: str, selection: str, other: str) -> Margin | None:
     ours, theirs = (curve(view, robot, "grid", s) for s in (selection, other))
-    return None if ours is None or theirs is None else ours[5] - theirs[20]
+    if ours is None or theirs is None:
+        return None
+    return _points(ours[5], theirs[20], view.size.paper)
+
+
+def _points(ours: float, theirs: float, count: int) -> Margin:
+    """The difference of two rates, as if each had targets of its own."""
+    value = ours - theirs
+    bound = float(np.hypot(rate_points(ours, count), rate_points(theirs, count)))
+    return Margin(value, value - bound, value + bound)
+
+
+def _sure(value: float) -> Margin:
+    """A margin without an interval."""
+    return Margin(value, value, value)
 
 
 def _saved(
     view: View, robot: str, selection: str, other: str, name: str
-) -> float | None:
+) -> Margin | None:
     parts = []
     for rea in view.size.figure_attempts:
         ours, theirs = (
@@ -173,10 +212,10 @@ def _saved(
         )
         if ours is not None and theirs is not None:
             parts.append(longer(ours[name], theirs[name]))
-    return float(np.mean(parts)) if parts else None
+    return _sure(float(np.mean(parts))) if parts else None
 
 
-def _alike(view: View, robot: str) -> float | None:
+def _alike(view: View, robot: str) -> Margin | None:
     cells = [
         view.get(
             paper_plan.attempts_cell(robot, view.size, {"database.rotation_key": key})
@@ -189,13 +228,15 @@ def _alike(view: View, robot: str) -> float | None:
         return None
     mean = float(np.mean(rates))
     deviation = np.sqrt(2.0 * mean * (1.0 - mean) / counts[0])
-    return float(100.0 * (1.96 * deviation - spread(rates)))
+    return _sure(float(100.0 * (1.96 * deviation - spread(rates))))
 
 
-def _trac_ik(view: View, i: int) -> float | None:
+def _trac_ik(view: View, i: int) -> Margin | None:
     cell = view.get(plan.rival_cell(ROBOTS[i], "TRAC-IK style", "uniform", view.size))
     try:
         ours = _ours(view)("beside TRAC-IK", i).success
     except AbsentError:
         return None
-    return None if cell is None else ours - 100.0 * cell["right"] / cell["count"]
+    if cell is None:
+        return None
+    return _points(ours, 100.0 * cell["right"] / cell["count"], cell["count"])

@@ -6,6 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from bench.arms import PAPER_ARMS
+from bench.bounds import rate_points
 from bench.ikgeo.cells import PACKAGE_LIMIT_S
 from bench.markdown import NONE, percent, signed, table
 from bench.paper import published, seeding
@@ -137,8 +138,11 @@ def _verdict(view: View) -> str:
         for how, name in (("direct", "direct"), ("as seed", "seeded")):
             ours = 100.0 * cell[name] / cell["count"]
             difference = ours - published.IK_GEO[how][robot][0]
-            found.append(f"{PAPER_ARMS[robot]} {how} {signed(difference)}")
-            far.append(abs(difference))
+            bound = rate_points(ours, cell["count"])
+            found.append(
+                f"{PAPER_ARMS[robot]} {how} {signed(difference)} ± {bound:.2f}"
+            )
+            far.append(abs(difference) + bound)
     if not found:
         return ""
     word = "holds" if max(far) <= POINTS else "missed"
@@ -208,16 +212,17 @@ def _package(view: View) -> str:
                 rows.append([head, *[NONE] * (len(PACKAGE_HEADER) - 1), why])
                 continue
             counts = ("count", "empty", "panics", "least_squares")
-            rows.append(
-                [
-                    head,
-                    *(f"{cell[name]:,}" for name in counts),
-                    percent(cell["direct"], cell["count"]),
-                    percent(cell["right"], cell["count"]),
-                    percent(cell["seeded"], cell["count"]),
-                    _ms(cell["mean_us"]),
+            nothing = cell["empty"] + cell["panics"] == cell["count"]
+            rates = (
+                ["returns nothing"] * 3
+                if nothing
+                else [
+                    percent(cell[name], cell["count"])
+                    for name in ("direct", "right", "seeded")
                 ]
             )
+            figures = [f"{cell[name]:,}" for name in counts]
+            rows.append([head, *figures, *rates, _ms(cell["mean_us"])])
     text = (
         "What the package ik-geo from PyPI did, with every one of its families that "
         f"fits the arm; no pose is begun after {PACKAGE_LIMIT_S:g} s."

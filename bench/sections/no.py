@@ -10,6 +10,7 @@ from bench.check import POSITION_TOLERANCE, ROTATION_TOLERANCE
 from bench.machine import load_text
 from bench.markdown import NONE, microseconds, percent, table
 from bench.rivals import RIVALS
+from bench.sections import cut_offs
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -32,8 +33,9 @@ def text(view: View) -> str:
     parts = [
         "## No answer, every answer, the nearest",
         _conditions(view),
-        "### Random rotations: mean (median) of a no in µs",
+        "### Random rotations: mean (median) of a no, or of giving up, in µs",
         _by_solver(view, lambda cell: _time(cell["no_us"])),
+        cut_offs.text(view),
         "### The same targets: mean (median) of a yes in µs",
         _by_solver(view, lambda cell: _time(cell["yes_us"])),
         "### The same targets: answered rightly, in percent",

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bench.paper import plan as paper_plan
-from bench.sections import ablations, claims, comparisons, curves, newer
+from bench.sections import ablations, choices, claims, comparisons, curves, newer
 from bench.settings import command_line
 
 if TYPE_CHECKING:
@@ -36,6 +36,7 @@ def text(view: View) -> str:
         *ablations.parts(view),
         *curves.parts(view),
         claims.text(view),
+        choices.text(view),
         *comparisons.parts(view),
         newer.text(view),
     ]

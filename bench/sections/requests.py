@@ -6,6 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from bench import branches, plan
+from bench.bounds import at_least, share_text
 from bench.markdown import microseconds, percent, table
 
 if TYPE_CHECKING:
@@ -29,9 +30,16 @@ def text(view: View) -> str:
     return "\n\n".join(["## Moves, restarts, paths", conditions, *parts])
 
 
-def _verdict(part: float, whole: float, enough: float) -> str:
-    word = "holds" if 100.0 * part >= enough * whole else "missed"
-    return f"{percent(part, whole)} ({enough} aimed at: {word})"
+def _verdict(part: int, whole: int, enough: float) -> str:
+    word = (
+        "holds"
+        if 100.0 * at_least(part, whole) >= enough
+        else "not refuted"
+        if 100.0 * part >= enough * whole
+        else "missed"
+    )
+    proven = share_text(part, whole)
+    return f"{percent(part, whole)} ({proven}; {enough} aimed at: {word})"
 
 
 def _moves(view: View) -> list[str]:

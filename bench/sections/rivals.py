@@ -6,10 +6,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from bench.arms import RIVAL_ARMS
+from bench.bounds import at_least, share_text
 from bench.check import POSITION_TOLERANCE, ROTATION_TOLERANCE
 from bench.markdown import NONE, microseconds, percent, table
-from bench.plan import BATCH_THREADS, BATCHES, batch_cell, rival_cell, rival_count
+from bench.plan import (
+    BESIDE_LEVEL,
+    at_level,
+    rival_cell,
+    rival_count,
+)
 from bench.rivals import RIVALS
+from bench.sections import batches
 from bench.size import SEED
 
 if TYPE_CHECKING:
@@ -51,13 +58,12 @@ def text(view: View) -> str:
         if kind == "lines":
             continue
         parts.append(_enough(view, kind))
-    parts += []
     parts += [
         "### Out of reach: mean (p99) in µs until a solver says so",
         _times(view, "unreachable"),
         _unreachable_claims(view),
         "### In batches",
-        _batches(view),
+        batches.text(view),
         "### Versions and settings",
         _settings(view),
     ]
@@ -90,13 +96,16 @@ def _cells(
 ) -> list[list[str]]:
     rows = []
     for name in RIVALS:
-        found = [
-            view.get(rival_cell(robot, name, kind, view.size)) for robot in RIVAL_ARMS
-        ]
-        if any(found):
-            rows.append(
-                [name, *(NONE if cell is None else show(cell) for cell in found)]
-            )
+        settings = [rival_cell(robot, name, kind, view.size) for robot in RIVAL_ARMS]
+        labelled = {name: settings}
+        if name == OURS:
+            others = [at_level(cell, BESIDE_LEVEL) for cell in settings]
+            labelled[f"{OURS}, {BESIDE_LEVEL}"] = others
+        for label, cells in labelled.items():
+            found = [view.get(cell) for cell in cells]
+            if any(found):
+                shown = (NONE if cell is None else show(cell) for cell in found)
+                rows.append([label, *shown])
     return rows
 
 
@@ -113,7 +122,7 @@ def _times(view: View, kind: str) -> str:
 
 def _rights(view: View, kind: str) -> str:
     def show(cell: dict[str, Any]) -> str:
-        right = percent(cell["right"], cell["count"])
+        right = _share(cell)
         false = cell["false_claims"]
         return right + (f" ({false} false)" if false else "")
 
@@ -121,9 +130,16 @@ def _rights(view: View, kind: str) -> str:
     return table(_header("solver"), _cells(view, kind, show)) + "\n\n" + note
 
 
+def _share(cell: dict[str, Any]) -> str:
+    """Right answers in percent; of a solver that gives none, that it does."""
+    if not cell["claimed"]:
+        return "returns nothing"
+    return percent(cell["right"], cell["count"])
+
+
 def _rights_and_times(view: View, kind: str) -> str:
     def show(cell: dict[str, Any]) -> str:
-        right = percent(cell["right"], cell["count"])
+        right = _share(cell)
         false = f" ({cell['false_claims']} false)" if cell["false_claims"] else ""
         return f"{right}{false}; {microseconds(cell['mean_us'])}"
 
@@ -173,15 +189,16 @@ def _verdicts(view: View) -> list[str]:
                 continue
             word = "below" if factor > 1.0 else "above"
             lines.append(
-                f"{OURS} on `{robot}`, one pose at a time from Python: "
+                f"{OURS} on `{robot}`, one answer at a time from Python: "
                 f"{microseconds(ours['mean_us'])} µs, {word} {name}'s "
-                f"{microseconds(theirs['mean_us'])} µs."
+                f"{microseconds(theirs['mean_us'])} µs for all branches; all with all "
+                "are compared under *Every answer*."
             )
     return lines
 
 
 def _enough(view: View, kind: str) -> str:
-    worst, where, counts = 100.0, "", []
+    worst, where, part, whole, counts = 100.0, "", 0, 1, []
     for robot in RIVAL_ARMS:
         cell = view.get(rival_cell(robot, OURS, kind, view.size))
         if cell is not None:
@@ -189,13 +206,21 @@ def _enough(view: View, kind: str) -> str:
             counts.append(cell["count"])
             if value <= worst:
                 worst, where = value, robot
+                part, whole = cell["right"], cell["count"]
     if not where:
         return ""
-    word = "holds" if worst >= ENOUGH_PERCENT else "is missed"
+    proven = 100.0 * at_least(part, whole)
+    word = (
+        "holds"
+        if proven >= ENOUGH_PERCENT
+        else "is not refuted, but so few targets cannot prove it"
+        if worst >= ENOUGH_PERCENT
+        else "is missed"
+    )
     return (
         f"IKSel's least of {len(counts)} robots with {max(counts):,} targets each, "
-        f"seed {SEED}, is {worst:.3f} % (`{where}`): the aim of {ENOUGH_PERCENT} % "
-        f"{word}."
+        f"seed {SEED}, is {worst:.3f} % of {whole:,} (`{where}`), "
+        f"{share_text(part, whole)}: the aim of {ENOUGH_PERCENT} % {word}."
     )
 
 
@@ -220,46 +245,6 @@ def _unreachable_claims(view: View) -> str:
     if not claims:
         return targets + "No solver claimed an answer."
     return targets + f"Answers claimed all the same: {', '.join(claims)}."
-
-
-def _batches(view: View) -> str:
-    rows = []
-    for robot, name in BATCHES:
-        cells = [
-            view.get(batch_cell(robot, name, threads, view.size))
-            for threads in BATCH_THREADS
-        ]
-        if any(cells):
-            rows.append(
-                [
-                    f"{name} on `{robot}`",
-                    *(
-                        NONE if cell is None else microseconds(cell["us_per_pose"])
-                        for cell in cells
-                    ),
-                    *(
-                        percent(cell["right"], cell["count"])
-                        for cell in cells[:1]
-                        if cell is not None
-                    ),
-                ]
-            )
-    header = [f"µs per pose, {view.size.batch:,} poses"]
-    header += [f"{threads} thread" + "s" * (threads > 1) for threads in BATCH_THREADS]
-    return "\n\n".join([table([*header, "right %"], rows), *_batch_verdict(view)])
-
-
-def _batch_verdict(view: View) -> list[str]:
-    robot, name = BATCHES[0]
-    ours, theirs = (
-        view.get(batch_cell(robot, solver, BATCH_THREADS[0], view.size))
-        for solver in (OURS, name)
-    )
-    if ours is None or theirs is None:
-        return []
-    factor = theirs["us_per_pose"] / ours["us_per_pose"]
-    where = f"{OURS} on `{robot}` in batches, one thread"
-    return [f"{where}: {factor:.1f} times as fast as {name}."]
 
 
 def _settings(view: View) -> str:

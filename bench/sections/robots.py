@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from bench.markdown import microseconds, table
-from bench.plan import all_robots, robot_cell
+from bench.markdown import NONE, microseconds, table
+from bench.plan import BESIDE_LEVEL, all_robots, at_level, robot_cell
 
 if TYPE_CHECKING:
     from bench.view import View
@@ -28,6 +28,7 @@ def text(view: View) -> str:
                     microseconds(cell[name])
                     for name in ("mean_us", "median_us", "p99_us", "max_us")
                 ),
+                _beside(view, robot),
                 f"{cell['ratio']:.2f}",
                 " / ".join(
                     f"{cell[name]:.2f}"
@@ -45,6 +46,7 @@ def text(view: View) -> str:
         "median",
         "p99",
         "max",
+        f"mean, {BESIDE_LEVEL}",
         "ratio",
         "query / seeds / iterate",
     ]
@@ -56,3 +58,9 @@ def text(view: View) -> str:
     )
     title = "## Every robot, default preset"
     return f"{title}\n\n{conditions}\n\n{table(header, rows)}"
+
+
+def _beside(view: View, robot: str) -> str:
+    """The mean at the other SIMD level."""
+    cell = view.get(at_level(robot_cell(robot, view.size), BESIDE_LEVEL))
+    return NONE if cell is None else microseconds(cell["mean_us"])

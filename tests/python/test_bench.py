@@ -28,6 +28,7 @@ from bench import (
     no,
     plan,
     random_arms,
+    report_command,
     run,
     targets,
 )
@@ -365,7 +366,7 @@ class TestPaper:
         for text, expected in by_hand.items():
             np.testing.assert_allclose(margins[text], expected, rtol=0, atol=1e-9)
 
-    @pytest.mark.parametrize("better", [0.0, 5.0])
+    @pytest.mark.parametrize("better", [0.0, 10.0])
     def test_claims_by_measured_rows(self, better):
         """Rows as published, but CWLN on C1, which is or is not the best by that."""
         cells = []
@@ -373,7 +374,7 @@ class TestPaper:
             for i, robot in enumerate(published.ROBOTS):
                 rate = row.success[i]
                 if (label, robot) == ("cwln", "cvrb1213"):
-                    rate = 84.0 + better
+                    rate = 80.0 + better
                 settings = paper_plan.paper_cell(
                     robot, QUICK, paper_plan.ABLATION_2_ROWS[label]
                 )
@@ -384,8 +385,8 @@ class TestPaper:
         text = paper_section.text(View(report))
         (line,) = [x for x in text.splitlines() if "II: CWLN solves most" in x]
         assert ("not on C1" in line) == (better == 0.0)
-        assert f"{84.0 + better - 86.75:+.2f}".replace("-", "\N{MINUS SIGN}") in line
-        # The row "dls" is one of the other tables, too. 84 is farther than 4 points
+        assert f"{80.0 + better - 86.75:+.2f}".replace("-", "\N{MINUS SIGN}") in line
+        # The row "dls" is one of the other tables, too. 80 is farther than 4 points
         # from the published 88.95.
         met = 28 if better else 27
         assert f"{met} of 28 published rates are met" in text
@@ -481,7 +482,7 @@ class TestNo:
         assert cell["no_us"] == cell["yes_us"] == [1.0, 1.0]
 
     def test_the_command_prints_the_section(self, capsys, monkeypatch, tmp_path):
-        monkeypatch.setattr(command, "WORK", tmp_path)
+        monkeypatch.setattr(report_command, "WORK", tmp_path)
         words = ["no", "ur3", "--targets", "20", "--solvers", "IKSel"]
         assert command.main(words) == 0
         told = capsys.readouterr().out

@@ -11,7 +11,7 @@ import pytest
 
 pytest.importorskip("bench", reason="the benchmarks are in the repository only")
 
-from bench import command, run
+from bench import command, report_command, run
 from bench.analytic import cells
 from bench.analytic.plan import KINDS, analytic_jobs, arms, asked_cell, job_name
 from bench.arms import BENCH_ARMS, load_arm
@@ -216,7 +216,7 @@ class TestCells:
 
 class TestCommand:
     def test_prints_one_table(self, capsys, monkeypatch, tmp_path):
-        monkeypatch.setattr(command, "WORK", tmp_path)
+        monkeypatch.setattr(report_command, "WORK", tmp_path)
         words = ["analytic", "ur3", "--quick", "--solvers", "IKSel"]
         assert command.main(words) == 0
         told = capsys.readouterr().out

@@ -10,7 +10,7 @@ import iksel
 
 pytest.importorskip("bench", reason="the benchmarks are in the repository only")
 
-from bench import cells, command
+from bench import cells, command, report_command
 from bench.report import installed_rivals
 from bench.rivals.base import UnsupportedError
 from bench.robot_data import VARIABLE
@@ -169,7 +169,7 @@ class TestLoops:
 
 class TestCommand:
     def test_prints_one_table(self, capsys, monkeypatch, tmp_path):
-        monkeypatch.setattr(command, "WORK", tmp_path)
+        monkeypatch.setattr(report_command, "WORK", tmp_path)
         words = ["whole_body", "two_pandas", "--targets", "20", "--solvers", "IKSel"]
         assert command.main(words) == 0
         told = capsys.readouterr().out

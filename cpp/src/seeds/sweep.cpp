@@ -37,7 +37,6 @@ bool Sweep::find_between(Between where) {
   nearest_.find(places_, rows_, kNear);
   least_ = kInfinity;
   close_.clear();
-  if (where == Between::all) return find_in_intervals();
   for (const LeastPlace& near : nearest_) {
     least_ = std::min(least_, near.value);
     if (where == Between::beyond_folds) {
@@ -46,7 +45,7 @@ bool Sweep::find_between(Between where) {
     }
     if (follow(near)) return true;
   }
-  return false;
+  return where == Between::all && find_in_intervals();
 }
 
 namespace {

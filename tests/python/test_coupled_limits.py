@@ -234,9 +234,10 @@ def test_arcs_end_at_coupled_limits() -> None:
         assert is_inside(robot, points).all(), f"seed 10, target {i}"
         whole = open_solver("iiwa").self_motion(target, spacing=0.02)
         expected = np.concatenate([arc.q for arc in whole])
-        expected = expected[is_inside(robot, expected, -1e-3)]
-        away = np.abs(expected[:, None] - points[None]).max(axis=2).min(axis=1)
-        assert away.max(initial=0) < 0.05, f"seed 10, target {i}"
+        # Each fifth, 0.1 rad apart: all of them take half a minute.
+        for q_expected in expected[is_inside(robot, expected, -1e-3)][::5]:
+            away = np.abs(points - q_expected).max(axis=1).min()
+            assert away < 0.05, f"seed 10, target {i}"
         for arc in motion:
             for end, at in [(arc.begin, arc.q[0]), (arc.end, arc.q[-1])]:
                 if end.coupled_limit < 0:

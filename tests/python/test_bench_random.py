@@ -10,7 +10,7 @@ import iksel
 
 pytest.importorskip("bench", reason="the benchmarks are in the repository only")
 
-from bench import command, random_builds
+from bench import command, random_builds, report_command
 from bench.random_arms import BUILDS, random_arm
 from bench.random_builds import BAD, measured, random_cell, random_jobs, shortest_known
 from bench.sections import random_builds as section
@@ -61,7 +61,7 @@ def test_brute_force_knows_where_the_pose_is_from(build):
 
 
 def test_the_command_prints_the_section(capsys, monkeypatch, tmp_path):
-    monkeypatch.setattr(command, "WORK", tmp_path)
+    monkeypatch.setattr(report_command, "WORK", tmp_path)
     words = ["random", "srs", "--quick", "--arms", "1", "--targets", "50"]
     assert command.main(words) == 0
     told = capsys.readouterr().out

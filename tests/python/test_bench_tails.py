@@ -11,7 +11,7 @@ import pytest
 
 pytest.importorskip("bench", reason="the benchmarks are in the repository only")
 
-from bench import cold, command
+from bench import cold, command, report_command
 from bench.cells import CELLS
 from bench.sections import tails as section
 from bench.size import FULL, QUICK
@@ -115,7 +115,7 @@ def test_a_new_process_measures_itself():
 
 
 def test_the_command_prints_the_section(capsys, monkeypatch, tmp_path):
-    monkeypatch.setattr(command, "WORK", tmp_path)
+    monkeypatch.setattr(report_command, "WORK", tmp_path)
     assert command.main(["tails", "ur3", "--quick", "--calls", "200"]) == 0
     told = capsys.readouterr().out
     assert "| `ur3`, reachable, 200 |" in told

@@ -19,3 +19,15 @@ def add_robots(command: argparse.ArgumentParser, default: Sequence[str]) -> None
         default=default,
         help=f"default: {' '.join(default)}",
     )
+
+
+def add_quick(command: argparse.ArgumentParser, what: str = "fewer targets") -> None:
+    """Whether less is measured, and what."""
+    command.add_argument("--quick", action="store_true", help=what)
+
+
+def add_fresh(command: argparse.ArgumentParser) -> None:
+    """Whether kept results do not count."""
+    command.add_argument(
+        "--fresh", action="store_true", help="measure again what was measured before"
+    )

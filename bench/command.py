@@ -27,7 +27,7 @@ from bench import (
     tips,
 )
 from bench.analytic import command as analytic_command
-from bench.arguments import add_robots
+from bench.arguments import add_fresh, add_quick, add_robots
 from bench.frozen import compare, record
 from bench.guard import guard
 from bench.learned import command as learned_command
@@ -108,7 +108,7 @@ def _add_no(commands: Any) -> None:
         "right, and all answers and the nearest. Results are kept as the report's are.",
     )
     add_robots(noes, plan.NO_ARMS)
-    noes.add_argument("--quick", action="store_true", help="fewer targets")
+    add_quick(noes)
     noes.add_argument(
         "--solvers",
         nargs="+",
@@ -118,9 +118,7 @@ def _add_no(commands: Any) -> None:
     )
     noes.add_argument("--targets", type=int, help="of each kind, for the fast solvers")
     noes.add_argument("--seed", type=int, default=SEED)
-    noes.add_argument(
-        "--fresh", action="store_true", help="measure again what was measured before"
-    )
+    add_fresh(noes)
 
 
 def main(arguments: list[str] | None = None) -> int:

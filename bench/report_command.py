@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from bench import plan
+from bench.arguments import add_fresh, add_quick
 from bench.arms import RIVAL_ARMS
 from bench.machine import facts, fingerprint, stale
 from bench.provenance import check
@@ -52,9 +53,7 @@ def add(commands: Any) -> None:
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    report.add_argument(
-        "--quick", action="store_true", help="fewer targets: a few minutes"
-    )
+    add_quick(report, "fewer targets: a few minutes")
     report.add_argument(
         "--robots", nargs="+", metavar="ROBOT", help="only these robots"
     )
@@ -73,9 +72,7 @@ def add(commands: Any) -> None:
         help="where RESULTS.md, results/ and plots/ go (default: bench, or build/bench/"
         "quick for a quick or partial report)",
     )
-    report.add_argument(
-        "--fresh", action="store_true", help="measure again what was measured before"
-    )
+    add_fresh(report)
     report.add_argument(
         "--keep",
         action="store_true",

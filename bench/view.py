@@ -4,11 +4,14 @@
 from __future__ import annotations
 
 import json
+import sys
 from typing import TYPE_CHECKING, Any
 
 from bench.size import Size
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from bench.store import Settings
 
 Report = dict[str, Any]
@@ -55,6 +58,13 @@ class View:
         """The robots that cells of that kind were measured on, in the plan's order."""
         settings = [entry["settings"] for entry in self.report["cells"]]
         return list(dict.fromkeys(s["robot"] for s in settings if s["cell"] == cell))
+
+
+def tell_section(text: str, *, wrong: Iterable[str] = (), failed: bool) -> int:
+    """Print a section, and what is wrong; the exit status is 1 if anything is."""
+    bad = [f"WRONG: {line}\n" for line in wrong]
+    sys.stdout.writelines([text + "\n", *bad])
+    return 1 if bad or failed else 0
 
 
 def _key(settings: Settings) -> str:

@@ -3,17 +3,16 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from bench import plan
 from bench.analytic.plan import arms
-from bench.arguments import add_robots
+from bench.arguments import add_fresh, add_quick, add_robots
 from bench.rivals import ENUMERATORS
 from bench.sections import analytic
 from bench.size import FULL, QUICK, SEED
-from bench.view import View
+from bench.view import View, tell_section
 
 if TYPE_CHECKING:
     import argparse
@@ -34,7 +33,7 @@ def add(commands: Any) -> None:
         "answer wrongly. Results are kept as the report's are.",
     )
     add_robots(command, arms())
-    command.add_argument("--quick", action="store_true", help="fewer targets")
+    add_quick(command)
     command.add_argument(
         "--solvers",
         nargs="+",
@@ -44,9 +43,7 @@ def add(commands: Any) -> None:
     )
     command.add_argument("--targets", type=int, help="of each kind")
     command.add_argument("--seed", type=int, default=SEED)
-    command.add_argument(
-        "--fresh", action="store_true", help="measure again what was measured before"
-    )
+    add_fresh(command)
 
 
 def jobs_of(
@@ -64,10 +61,6 @@ def jobs_of(
 def tell(report: Report) -> int:
     """Print the section; the exit status is 1 if IKSel is wrong or fails."""
     view = View(report)
-    sys.stdout.write(analytic.text(view) + "\n")
-    bad = analytic.wrong(view)
-    for line in bad:
-        sys.stdout.write(f"WRONG: {line}\n")
     # What ends a rival's process is a row of the table.
     ended = any(key.startswith(f"{analytic.OURS} asked") for key in report["failures"])
-    return 1 if bad or ended else 0
+    return tell_section(analytic.text(view), wrong=analytic.wrong(view), failed=ended)

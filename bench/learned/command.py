@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from bench.arguments import add_fresh, add_quick
 from bench.arms import PAPER_ARMS
 from bench.learned.plan import MODELS
 
@@ -32,10 +33,8 @@ def add(commands: Any) -> None:
     evaluate.add_argument(
         "--models", nargs="+", choices=MODELS, default=MODELS, help="only these"
     )
-    evaluate.add_argument("--quick", action="store_true", help="half the targets")
-    evaluate.add_argument(
-        "--fresh", action="store_true", help="measure again what was measured before"
-    )
+    add_quick(evaluate, "half the targets")
+    add_fresh(evaluate)
     actions.add_parser("table", help="print the section of the report that is there")
 
 

@@ -3,16 +3,15 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from bench.arguments import add_robots
+from bench.arguments import add_fresh, add_quick, add_robots
 from bench.paper.choices import choice_jobs
 from bench.paper.published import ROBOTS
 from bench.sections import choices
 from bench.size import FULL, QUICK
-from bench.view import View
+from bench.view import View, tell_section
 
 if TYPE_CHECKING:
     import argparse
@@ -32,11 +31,9 @@ def add(commands: Any) -> None:
         "Results are kept as the report's are.",
     )
     add_robots(command, ROBOTS)
-    command.add_argument("--quick", action="store_true", help="fewer targets")
+    add_quick(command)
     command.add_argument("--targets", type=int, help="of each row")
-    command.add_argument(
-        "--fresh", action="store_true", help="measure again what was measured before"
-    )
+    add_fresh(command)
 
 
 def jobs_of(
@@ -55,5 +52,4 @@ def jobs_of(
 
 def tell(report: Report) -> int:
     """Print the section; the exit status is 1 if a measurement failed."""
-    sys.stdout.write(choices.text(View(report)) + "\n")
-    return 1 if report["failures"] else 0
+    return tell_section(choices.text(View(report)), failed=bool(report["failures"]))

@@ -3,16 +3,16 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from bench.arguments import add_fresh, add_quick
 from bench.markdown import NONE, microseconds, table
 from bench.paper import plan, published
 from bench.sections.ablations import HEADER, ROBOTS
 from bench.settings import command_line
 from bench.size import FULL, QUICK
-from bench.view import View
+from bench.view import View, tell_section
 
 if TYPE_CHECKING:
     import argparse
@@ -77,11 +77,9 @@ def add(commands: Any) -> None:
         description="Success, time, attempts and steps of both on the paper's robots. "
         "Results are kept as the report's are.",
     )
-    command.add_argument("--quick", action="store_true", help="fewer targets")
+    add_quick(command)
     command.add_argument("--targets", type=int, help="of each robot")
-    command.add_argument(
-        "--fresh", action="store_true", help="measure again what was measured before"
-    )
+    add_fresh(command)
 
 
 def jobs_of(
@@ -96,5 +94,4 @@ def jobs_of(
 
 def tell(report: Report) -> int:
     """Print the section; the exit status is 1 if something failed."""
-    sys.stdout.write(text(View(report)) + "\n")
-    return 1 if report["failures"] else 0
+    return tell_section(text(View(report)), failed=bool(report["failures"]))

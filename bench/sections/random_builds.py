@@ -3,16 +3,16 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from bench import random_arms
+from bench.arguments import add_fresh, add_quick
 from bench.markdown import NONE, microseconds, percent, table
 from bench.moves import LONGER
 from bench.random_builds import RESTARTS, random_cell, random_jobs
 from bench.size import FULL, QUICK
-from bench.view import View
+from bench.view import View, tell_section
 
 if TYPE_CHECKING:
     import argparse
@@ -134,7 +134,7 @@ def add(commands: Any) -> None:
         metavar="BUILD",
         help=" ".join(random_arms.BUILDS),
     )
-    command.add_argument("--quick", action="store_true", help="fewer arms and targets")
+    add_quick(command, "fewer arms and targets")
     command.add_argument("--arms", type=int, metavar="N", help="of each build")
     command.add_argument(
         "--targets", type=int, metavar="N", help="of each arm, in a batch"
@@ -146,9 +146,7 @@ def add(commands: Any) -> None:
         help="begin no further arm of a build after this time",
     )
     command.add_argument("--seed", type=int, default=FULL.random_seed)
-    command.add_argument(
-        "--fresh", action="store_true", help="measure again what was measured before"
-    )
+    add_fresh(command)
 
 
 def jobs_of(
@@ -170,8 +168,5 @@ def jobs_of(
 def tell(report: Report) -> int:
     """Print the section; the exit status is 1 if IKSel is wrong or something failed."""
     view = View(report)
-    sys.stdout.write(text(view) + "\n")
-    bad = wrong(view)
-    for line in bad:
-        sys.stdout.write(f"WRONG: {line}\n")
-    return 1 if bad or report["failures"] else 0
+    failed = bool(report["failures"])
+    return tell_section(text(view), wrong=wrong(view), failed=failed)

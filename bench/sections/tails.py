@@ -3,12 +3,11 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from bench.arguments import add_robots
+from bench.arguments import add_fresh, add_quick, add_robots
 from bench.arms import RIVAL_ARMS
 from bench.machine import load_text
 from bench.markdown import NONE, microseconds, percent, table
@@ -24,7 +23,7 @@ from bench.tails.plan import (
     threads_cell,
 )
 from bench.tails.slowest import AGAIN, OTHERS, SLOWEST
-from bench.view import View
+from bench.view import View, tell_section
 
 if TYPE_CHECKING:
     import argparse
@@ -231,11 +230,9 @@ def add(commands: Any) -> None:
         "report's are.",
     )
     add_robots(command, RIVAL_ARMS)
-    command.add_argument("--quick", action="store_true", help="fewer calls")
+    add_quick(command, "fewer calls")
     command.add_argument("--calls", type=int, metavar="N", help="of reachable targets")
-    command.add_argument(
-        "--fresh", action="store_true", help="measure again what was measured before"
-    )
+    add_fresh(command)
 
 
 def jobs_of(
@@ -251,5 +248,4 @@ def jobs_of(
 
 def tell(report: Report) -> int:
     """Print the section; the exit status is 1 if something failed."""
-    sys.stdout.write(text(View(report)) + "\n")
-    return 1 if report["failures"] else 0
+    return tell_section(text(View(report)), failed=bool(report["failures"]))

@@ -3,10 +3,11 @@
 
 from __future__ import annotations
 
-import sys
 from typing import TYPE_CHECKING, Any
 
+from bench.arguments import add_fresh, add_quick
 from bench.size import FULL, QUICK, SEED, Job
+from bench.view import tell_section
 from bench.whole_body import table
 from bench.whole_body.robots import ROBOTS, file_key, targets_of
 from bench.whole_body.solvers import SOLVERS
@@ -63,14 +64,8 @@ def add(commands: Any) -> None:
         help=f"no call of a loop is begun after so many seconds (default {LIMIT_S:g}; "
         f"IKSel: {OURS_S:g})",
     )
-    command.add_argument(
-        "--quick",
-        action="store_true",
-        help=f"{QUICK_TARGETS} targets, {QUICK_S:g} s for each loop",
-    )
-    command.add_argument(
-        "--fresh", action="store_true", help="measure again what was measured before"
-    )
+    add_quick(command, f"{QUICK_TARGETS} targets, {QUICK_S:g} s for each loop")
+    add_fresh(command)
 
 
 def jobs_of(
@@ -109,10 +104,6 @@ def cell_of(robot: str, name: str, options: argparse.Namespace) -> Settings:
 
 def tell(report: Report) -> int:
     """Print the table; the exit status is 1 if IKSel is wrong or ends."""
-    sys.stdout.write(table.text(report) + "\n")
-    bad = table.wrong(report)
-    for line in bad:
-        sys.stdout.write(f"WRONG: {line}\n")
     # What ends a rival's process is a row of the table.
     ended = any(key.startswith(f"{table.OURS} on") for key in report["failures"])
-    return 1 if bad or ended else 0
+    return tell_section(table.text(report), wrong=table.wrong(report), failed=ended)

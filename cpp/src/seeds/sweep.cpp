@@ -48,53 +48,6 @@ bool Sweep::find_between(Between where) {
   return where == Between::all && find_in_intervals();
 }
 
-namespace {
-
-/// Branches of which all that is asked is how far they are from being an answer.
-struct RatedBranches {
-  SweptBranches& branches;
-  double bound;  ///< what is more is not known
-  double off[SweptBranches::kCount];
-
-  template <typename Value>
-  void solve_one(int branch, const Value& value) {
-    branches.rate_one(branch, value, bound, off);
-  }
-};
-
-/// Whether of two branches that merge, and differ by one of three signs, it is the second.
-bool is_second_of_merged(int branch) {
-  return __builtin_parity(static_cast<unsigned>(branch)) != 0;
-}
-
-/// From the middle of a small closed curve, where Newton's steps lead nowhere: the arm is singular
-/// there. In a direction that is none of the arm's.
-void step_aside(std::array<double, SweptBranches::kDof>& q) {
-  constexpr double kAside = 3e-3;  // [rad or m]; of loops from 1e-3 on
-  for (std::size_t j = 0; j < q.size(); ++j) q[j] += kAside * std::cos(static_cast<double>(j));
-}
-
-}  // namespace
-
-bool Sweep::find_in_intervals() {
-  constexpr int kRounds = 4;
-  intervals_.begin(branches_);
-  for (int round = 0; round < kRounds && !intervals_.is_empty(); ++round) {
-    if (intervals_.divide([&](int lane, int branch) { return take(lane, branch); })) return true;
-  }
-  intervals_.visit([&](int branch, double value) {
-    branches_.solve_one(branch, [&](int /*lane*/) { return value; });
-    SweptJoints close{branches_.off(0), {}};
-    least_ = std::min(least_, close.value);
-    if (!miss_.is_close(close.value)) return;
-    branches_.copy_joints(0, close.q.data());
-    if (branches_.least(0) < 0 && is_second_of_merged(branch)) step_aside(close.q);
-    close_.add(close);
-  });
-  if (intervals_.is_overfull()) least_ = 0;
-  return false;
-}
-
 void Sweep::visit_nearest(std::size_t most, FunctionRef<void(const JointVector&)> visit) {
   JointVector q(SweptBranches::kDof);
   for (const LeastPlace& near : nearest_) {
@@ -200,6 +153,58 @@ void Sweep::add_beside(const double* from, int branch, double part, std::vector<
   }
 }
 
+namespace {
+
+/// Branches of which all that is asked is how far they are from being an answer.
+struct RatedBranches {
+  SweptBranches& branches;
+  double bound;  ///< what is more is not known
+  double off[SweptBranches::kCount];
+
+  template <typename Value>
+  void solve_one(int branch, const Value& value) {
+    branches.rate_one(branch, value, bound, off);
+  }
+};
+
+/// Whether of two branches that merge, and differ by one of three signs, it is the second.
+bool is_second_of_merged(int branch) {
+  return __builtin_parity(static_cast<unsigned>(branch)) != 0;
+}
+
+/// From the middle of a small closed curve, where Newton's steps lead nowhere: the arm is singular
+/// there. In a direction that is none of the arm's.
+void step_aside(std::array<double, SweptBranches::kDof>& q) {
+  constexpr double kAside = 3e-3;  // [rad or m]; of loops from 1e-3 on
+  for (std::size_t j = 0; j < q.size(); ++j) q[j] += kAside * std::cos(static_cast<double>(j));
+}
+
+}  // namespace
+
+bool Sweep::find_in_intervals() {
+  // Measured by what measures BranchIntervals' own.
+  constexpr int kRounds = 4;
+  intervals_.begin(branches_);
+  for (int round = 0; round < kRounds && !intervals_.is_empty(); ++round) {
+    if (intervals_.divide([&](int lane, int branch) { return take(lane, branch); })) return true;
+  }
+  intervals_.visit([&](int branch, double value) {
+    branches_.solve_one(branch, [&](int /*lane*/) { return value; });
+    least_ = std::min(least_, branches_.off(0));
+    keep_if_close(branch, branches_.off(0));
+  });
+  if (intervals_.is_overfull()) least_ = 0;
+  return false;
+}
+
+void Sweep::keep_if_close(int branch, double off) {
+  if (!miss_.is_close(off)) return;
+  SweptJoints close{off, {}};
+  branches_.copy_joints(0, close.q.data());
+  if (branches_.least(0) < 0 && is_second_of_merged(branch)) step_aside(close.q);
+  close_.add(close);
+}
+
 bool Sweep::follow(const LeastPlace& near) {
   constexpr int kRounds = 8;
   // Of 4,491 answers found so, of five arms, none was farther off after one round, two and three
@@ -222,10 +227,7 @@ bool Sweep::follow(const LeastPlace& near) {
   if (!miss_.is_close(least)) return false;
   branches_.solve_one(near.branch, [&](int /*lane*/) { return value(best_at); });
   if (least <= 0 && take(0, near.branch)) return true;
-  SweptJoints best{least, {}};
-  branches_.copy_joints(0, best.q.data());
-  if (branches_.least(0) < 0 && is_second_of_merged(near.branch)) step_aside(best.q);
-  close_.add(best);
+  keep_if_close(near.branch, least);
   return false;
 }
 

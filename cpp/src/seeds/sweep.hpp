@@ -90,6 +90,8 @@ class Sweep {
   bool follow(const LeastPlace& near);
   /// Looks between all samples; true if there is an answer.
   bool find_in_intervals();
+  /// Keeps what was solved last in lane 0, if it comes close to an answer.
+  void keep_if_close(int branch, double off);
 
   const JointSpace& joints_;
   // sweep_spread.cpp

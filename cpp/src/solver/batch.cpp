@@ -13,7 +13,6 @@
 #include "search/batch_stream.hpp"
 #include "seeds/leaf_lanes.hpp"
 #include "solver/batch_targets.hpp"
-#include "solver/batch_tips.hpp"
 #include "solver/solver_impl.hpp"
 #include "solver/tips_search.hpp"
 
@@ -60,10 +59,13 @@ class Batch {
 
   template <typename OnProgress>
   void run(int threads, const OnProgress& on_progress) const {
-    const bool plain = !request_.has_requirements() && (count_ == 0 || near_(0) == nullptr);
+    const bool one_tip = solver_.tips == nullptr;
+    const bool plain =
+        one_tip && !request_.has_requirements() && (count_ == 0 || near_(0) == nullptr);
     // Few at a time keep all threads busy; many are for the lanes and the filter.
     constexpr std::size_t kFew = 8;
-    const bool is_screened = screens_answers(request_) && !std::isfinite(request_.deadline);
+    const bool is_screened =
+        one_tip && screens_answers(request_) && !std::isfinite(request_.deadline);
     const std::size_t chunk = plain || is_screened ? kMost : kFew;
     std::mutex turn;
     const SolveRequest locked = in_turn(request_, turn);
@@ -75,7 +77,7 @@ class Batch {
         } else if (is_screened) {
           solve_screened(begin, end, own, lease->get());
         } else {
-          // With a deadline every target has one search only.
+          // With a deadline, or several tips, every target has one search only.
           for (std::size_t i = begin; i < end; ++i) on_result_(i, solve_one(i, own, lease->get()));
         }
       };
@@ -133,6 +135,7 @@ class Batch {
     if (const double* values = near_(i)) {
       request.near = JointVector(Eigen::Map<const Eigen::VectorXd>(values, solver_.robot.dof()));
     }
+    if (solver_.tips) return solver_.solve(target_.of_tips(i), request, workspace, nullptr);
     const Pose& target = target_(i);
     return solver_.solve(&target, request, workspace, nullptr);
   }
@@ -190,11 +193,7 @@ template <typename PoseAt, typename Near, typename OnRow>
 void Solver::Impl::solve_rows(std::size_t count, const PoseAt& pose_at, const SolveRequest& request,
                               const Near& near_of, int threads, const OnRow& on_row,
                               const Progress& progress) const {
-  if (tips) {
-    solve_rows_of_tips(*this, count, pose_at, request, near_of, threads, on_row, progress);
-    return;
-  }
-  const BatchTargets<PoseAt> targets(count, pose_at, request.on_invalid_pose);
+  const BatchTargets<PoseAt> targets(count, robot.tips(), pose_at, request.on_invalid_pose);
   for (const std::size_t row : targets.invalid_rows()) on_row(row, no_pose());
   const auto on_result = [&](std::size_t i, const Result& result) {
     on_row(targets.row_of(i), result);

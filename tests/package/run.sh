@@ -77,11 +77,12 @@ other_programs "$work/static"
 "$root/tests/package/readme.sh" "$work/static"
 "${PYTHON:-python3}" "$root/tests/package/docs.py" "$work/static"
 
-# With Eigen's assertions on; the rest is left out to build faster. Installed as Debian does, in a folder
-# with the name of the machine.
+# With Eigen's assertions on; the rest is left out to build faster, of two sources. Installed as Debian does,
+# in a folder with the name of the machine.
 build_outside package/add_subdirectory subdirectory -DIKSEL_SOURCE_DIR="$root" \
   -DIKSEL_INSTALL=ON -DBUILD_SHARED_LIBS=ON -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG= \
-  -DIKSEL_SIMD_LEVELS= -DCMAKE_INSTALL_LIBDIR="lib/$("${CXX:-c++}" -print-multiarch)"
+  -DIKSEL_SIMD_LEVELS= -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=38 \
+  -DCMAKE_INSTALL_LIBDIR="lib/$("${CXX:-c++}" -print-multiarch)"
 ./subdirectory/consumer
 echo "add_subdirectory works"
 run cmake -S package/add_subdirectory -B untouched -DIKSEL_SOURCE_DIR="$root"

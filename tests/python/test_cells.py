@@ -158,7 +158,7 @@ class TestRail:
         solver = iksel.Solver(cell)
         arm = iksel.Solver(iksel.load_robot("ur5e", tcp=None))
         places = np.linspace(0, 3, 601)
-        q = cell.random_configurations(200, seed=4)
+        q = cell.random_configurations(100, seed=4)
         poses = cell.fk(q)
         poses[:, :3, :3] = np.roll(poses[:, :3, :3], 1, axis=0)
         noes = 0

@@ -237,7 +237,7 @@ def test_pairs_that_are_proven_apart_are(margin) -> None:
             text, robot, margin=margin, samples=0, keep=[pair]
         )
         grid = np.meshgrid(
-            *(np.linspace(*ends, 41) for ends in ends_of(robot)), indexing="ij"
+            *(np.linspace(*ends, 31) for ends in ends_of(robot)), indexing="ij"
         )
         q = np.stack(grid, axis=-1).reshape(-1, 2)
         touches = [all_pairs.colliding_links(one) == pair for one in q]

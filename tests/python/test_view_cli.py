@@ -25,15 +25,16 @@ pytest.importorskip("viser", reason="pip install iksel[view]")
 def served(line: str, folder) -> str:
     """What a command serves at the address that it prints, until it is interrupted."""
     command = [sys.executable, "-m", "iksel", *shlex.split(line)]
+    # A shell's background job, as CI may be, would pass on that it ignores Ctrl-C.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
     process = subprocess.Popen(
         command,
         cwd=folder,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
-        # A shell's background job, as CI may be, passes on that it ignores Ctrl-C.
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # noqa: PLW1509
     )
+    signal.signal(signal.SIGINT, before)
     try:
         said = process.stdout.readline()
         assert said.endswith(" (Ctrl-C ends)\n"), process.stderr.read()

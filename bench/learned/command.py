@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from bench.arguments import add_fresh, add_quick
 from bench.arms import PAPER_ARMS
-from bench.learned.plan import MODELS
+from bench.learned.plan import LABELS, MODELS
 
 if TYPE_CHECKING:
     import argparse
@@ -42,8 +42,9 @@ def _add_train(actions: Any) -> None:
     train = actions.add_parser(
         "train",
         help="train one model for one robot and write its weights",
-        description="Writes bench/learned/weights. The state is kept in build/bench: "
-        "interrupted, the same command goes on; with more minutes it goes on longer.",
+        description="Writes bench/learned/weights, or build/bench/learned with other "
+        "labels than the report's. The state is kept in build/bench: interrupted, the "
+        "same command goes on; with more minutes it goes on longer.",
     )
     train.add_argument("robot", choices=PAPER_ARMS)
     train.add_argument("model", choices=MODELS)
@@ -52,6 +53,13 @@ def _add_train(actions: Any) -> None:
         type=float,
         default=45.0,
         help="in all, of CPU time on one thread (default: %(default)s)",
+    )
+    train.add_argument(
+        "--labels",
+        choices=LABELS,
+        default=LABELS[0],
+        help="of a pose: the answer nearest to the middle of the limits, or the "
+        "configuration that the pose was drawn by (default: %(default)s)",
     )
     train.add_argument("--seed", type=int, default=1)
     train.add_argument(
@@ -68,6 +76,7 @@ def train(options: argparse.Namespace) -> int:
         options.model,
         options.minutes,
         options.seed,
+        labels=options.labels,
         fresh=options.fresh,
     )
     print(facts)

@@ -7,7 +7,8 @@ is an answer of the solver: of all that reach the pose, the one nearest to the m
 the limits. So it is a function of the pose, with jumps only where two answers are
 equally near, and has no whole turns in it. Of an arm with seven joints that answer may
 lie on a limit, up to which the self-motion was followed, and a seed beside it then ends
-outside; there the label is the answer that is farthest from all limits.
+outside; there the label is the answer that is farthest from all limits. The paper's own
+labels, "drawn", are there to compare: a model learns all configurations of a pose then.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ import numpy as np
 
 import iksel
 from bench.arms import load_arm
+from bench.learned.plan import LABELS
 from bench.settings import WORK
 from bench.size import SEED
 
@@ -74,11 +76,13 @@ def scaling_of(x: Floats, q: Floats) -> Scaling:
     return Scaling(x.mean(axis=0), np.maximum(x_std, 1e-3), q.mean(axis=0), q_std)
 
 
-def labelled(robot: str, count: int, seed: int) -> tuple[Floats, Floats]:
+def labelled(
+    robot: str, count: int, seed: int, kind: str = LABELS[0]
+) -> tuple[Floats, Floats]:
     """labelled_now, made once and kept in build/bench."""
-    path: Path = WORK / "learned" / f"{robot}-{count}-{seed}.npz"
+    path: Path = WORK / "learned" / f"{robot}-{kind}-{count}-{seed}.npz"
     if not path.exists():
-        x, q = labelled_now(load_arm(robot), count, seed)
+        x, q = labelled_now(load_arm(robot), count, seed, kind)
         path.parent.mkdir(parents=True, exist_ok=True)
         part = path.with_suffix(".part.npz")
         np.savez(part, x=x, q=q)
@@ -87,13 +91,16 @@ def labelled(robot: str, count: int, seed: int) -> tuple[Floats, Floats]:
         return file["x"], file["q"]
 
 
-def labelled_now(arm: Arm, count: int, seed: int) -> tuple[Floats, Floats]:
+def labelled_now(
+    arm: Arm, count: int, seed: int, kind: str = LABELS[0]
+) -> tuple[Floats, Floats]:
     """Features, (N, FEATURES), and labels [rad], (N, dof), of so many random poses.
 
     The few poses that the solver has no answer for are left out.
     """
-    poses = arm.robot.fk(arm.robot.random_configurations(count, seed))
-    q = labels(arm, poses)
+    drawn = arm.robot.random_configurations(count, seed)
+    poses = arm.robot.fk(drawn)
+    q = drawn if kind == "drawn" else labels(arm, poses)
     known = np.isfinite(q).all(axis=1)
     return features(poses[known]), q[known].astype(np.float32)
 

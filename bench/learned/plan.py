@@ -8,12 +8,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bench.arms import PAPER_ARMS
+from bench.settings import WORK
 from bench.size import SEED, Job, Size
 
 if TYPE_CHECKING:
     from bench.store import Settings
 
 MODELS = ("mdn", "flow", "diffusion")
+LABELS = ("nearest", "drawn")
+"""Of a pose: the solver's answer nearest to the middle of the limits, which is what the
+report's models learn; the configuration that the pose was drawn by."""
 
 WEIGHTS = Path(__file__).resolve().parent / "weights"
 
@@ -21,9 +25,14 @@ TARGETS = 2_000
 """As many as in the paper's table."""
 
 
-def weights_path(robot: str, model: str) -> Path:
-    """Where a model's committed weights are; its curve is beside them, as .csv."""
-    return WEIGHTS / f"{robot}_{model}.npz"
+def weights_path(robot: str, model: str, labels: str = LABELS[0]) -> Path:
+    """Where a model's weights are; its curve is beside them, as .csv.
+
+    Those of other labels than the report's are not committed.
+    """
+    if labels == LABELS[0]:
+        return WEIGHTS / f"{robot}_{model}.npz"
+    return WORK / "learned" / f"{robot}_{model}_{labels}.npz"
 
 
 def learned_cell(robot: str, model: str, size: Size) -> Settings:

@@ -25,7 +25,7 @@ import optax
 from bench.learned.data import TRAIN_SEED, Scaling, labelled, scaling_of
 from bench.learned.evaluate import seeds_solved
 from bench.learned.models import Facts, make_model, parameters, save_weights
-from bench.learned.plan import weights_path
+from bench.learned.plan import LABELS, weights_path
 from bench.settings import WORK
 
 if TYPE_CHECKING:
@@ -114,9 +114,9 @@ def mean_model(state: State) -> Any:
     return eqx.combine(state.mean, eqx.filter(state.model, eqx.is_array, inverse=True))
 
 
-def checkpoint_path(robot: str, name: str) -> Path:
+def checkpoint_path(robot: str, name: str, labels: str = LABELS[0]) -> Path:
     """Where a training's state is kept."""
-    return WORK / "learned" / f"{robot}_{name}.npz"
+    return WORK / "learned" / f"{robot}_{name}_{labels}.state.npz"
 
 
 @dataclass
@@ -137,6 +137,7 @@ class Training:
     total: int = 0
     """Steps that these are."""
     curve: list[dict[str, float]] = field(default_factory=list)
+    labels: str = LABELS[0]
 
     @property
     def title(self) -> str:
@@ -203,10 +204,12 @@ PROGRESS = ("seconds", "minutes", "total", "curve")
 """Of a Training, what a checkpoint has beside the state."""
 
 
-def begin_training(robot: str, model: str, seed: int, samples: int) -> Training:
+def begin_training(
+    robot: str, model: str, seed: int, samples: int, labels: str = LABELS[0]
+) -> Training:
     """From random weights."""
     say(f"{robot} {model}: {samples:,} labels, made now unless they are there")
-    x, q = labelled(robot, samples, TRAIN_SEED)
+    x, q = labelled(robot, samples, TRAIN_SEED, labels)
     scaling = scaling_of(x, q)
     return Training(
         robot,
@@ -216,6 +219,7 @@ def begin_training(robot: str, model: str, seed: int, samples: int) -> Training:
         jnp.asarray((x - scaling.x_mean) / scaling.x_std),
         jnp.asarray((q - scaling.q_mean) / scaling.q_std),
         first_state(robot, model, q.shape[1], seed),
+        labels=labels,
     )
 
 
@@ -227,13 +231,14 @@ def train(
     *,
     fresh: bool = False,
     samples: int = SAMPLES,
+    labels: str = LABELS[0],
 ) -> Facts:
     """Train up to so many minutes in all, and write weights and curve.
 
     Goes on from what an earlier call left in build/bench, unless it is to be fresh.
     """
-    training = begin_training(robot, model, seed, samples)
-    path = checkpoint_path(robot, model)
+    training = begin_training(robot, model, seed, samples, labels)
+    path = checkpoint_path(robot, model, labels)
     if path.exists() and not fresh:
         training.load(path)
         say(f"{training.title}: goes on from step {training.step:,}")
@@ -267,7 +272,7 @@ def _write(training: Training) -> Facts:
         seed=training.seed,
         parameters=parameters(mean),
     )
-    path = weights_path(training.robot, training.model)
+    path = weights_path(training.robot, training.model, training.labels)
     save_weights(path, mean, training.scaling, facts)
     with path.with_suffix(".csv").open("w", encoding="utf-8", newline="") as file:
         writer = csv.DictWriter(file, training.curve[0], lineterminator="\n")

@@ -64,6 +64,14 @@ class TestLabels:
         read = data.labelled("ur3_wrs", 20, SEED)
         assert all(np.array_equal(*pair) for pair in zip(made, read, strict=True))
 
+    def test_drawn_ones_are_other_configurations_of_the_same_poses(self):
+        arm = load_arm("ur3_wrs")
+        features, q = data.labelled_now(arm, 200, SEED, "drawn")
+        assert np.abs(data.features(arm.robot.fk(q)) - features).max() < 1e-6
+        same, nearest = data.labelled_now(arm, 200, SEED)
+        assert np.array_equal(features, same)
+        assert np.mean(np.abs(q - nearest).max(axis=1) > 1e-3) > 0.5
+
     def test_scaling_goes_there_and_back(self):
         features, q = data.labelled_now(load_arm("ur3_wrs"), 200, SEED)
         scaling = data.scaling_of(features, q)
@@ -224,6 +232,13 @@ class TestTraining:
             first.steps,
             longer.steps,
         ]
+
+    def test_other_labels_leave_the_committed_weights(self, tmp_path, monkeypatch):
+        monkeypatch.setattr(plan, "WEIGHTS", tmp_path / "committed")
+        monkeypatch.setattr(plan, "WORK", tmp_path)
+        train.train("cvr038", "mdn", 1e-3, SEED, samples=500, labels="drawn")
+        assert (tmp_path / "learned" / "cvr038_mdn_drawn.npz").exists()
+        assert not (tmp_path / "committed").exists()
 
     def test_rate(self):
         total = jnp.asarray(10_000)

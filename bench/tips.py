@@ -48,7 +48,7 @@ def torso(arm: iksel.Robot, joints: Sequence[TorsoJoint] = (LIFT, TURN)) -> str:
             <limit lower="{lower}" upper="{upper}" effort="1" velocity="1"/></joint>"""
         parent = child
     for side, y, roll in (("l_", 0.2, -0.8), ("r_", -0.2, 0.8)):
-        text += re.sub(r'(name|link|joint)="', rf'\1="{side}', inside)
+        text += re.sub(r'\b(name|link|joint)="', rf'\1="{side}', inside)
         text += f"""<joint name="{side}mount" type="fixed"><parent link="{parent}"/>
             <child link="{side}{arm.link_names[0]}"/>
             <origin xyz="0 {y} 0.2" rpy="{roll} 0 0"/></joint>"""

@@ -90,7 +90,8 @@ class ExactCollision:
             mesh.set("filename", str(name.absolute()))
         links = ArmLinks(root, scene.robot, other_joints or {})
         pairs = _pairs_of(scene, links)
-        bodies = [*scene.spheres.links, *scene.attached]
+        # Links without spheres belong to no pair of the scene's.
+        bodies = dict.fromkeys([*scene.spheres.links, *scene.attached, *links.links])
         self._self = SelfCollision(
             ET.tostring(root, encoding="unicode"),
             scene.robot,

@@ -59,7 +59,7 @@ __all__ = [
 ]
 
 _FORMAT = "iksel spheres 1"
-_METHOD = "cover 5"
+_METHOD = "cover 6"
 """To be changed with how spheres are made."""
 PART_OF_BOX = 1 / 10
 """Of max_error, which spheres may stick out of a box: it takes few."""

@@ -92,6 +92,19 @@ def test_a_second_opinion_finds_what_spheres_refuse(arm, spheres) -> None:
         solver.solve(targets[0], scene=scene, exact=True)
 
 
+def test_links_without_spheres_are_not_looked_at(arm, spheres) -> None:
+    pair = spheres.pairs[0]
+    alone = iksel.RobotSpheres({link: spheres.links[link] for link in pair}, [pair])
+    ignored = [other for other in spheres.pairs if other != pair]
+    geometry = iksel.collision.SelfCollision(URDF, arm, ignore=ignored, samples=500)
+    assert geometry.pairs == [pair]
+    exact = iksel.exact.ExactCollision(iksel.Scene(arm, alone), URDF)
+    q = arm.random_configurations(500, seed=SEED)
+    free = exact.geometry_is_free(q)
+    np.testing.assert_array_equal(free, geometry(q))
+    assert not free.all()
+
+
 def test_attached_objects_count_by_their_spheres(arm, spheres) -> None:
     """Of objects alone, coal finds what spheres find."""
     rng = np.random.default_rng(SEED)

@@ -8,8 +8,11 @@ import pickle
 import numpy as np
 import pytest
 from trees import two_armed, two_arms_on_torso
+from tubes import URDF
 
 import iksel
+import iksel.exact
+import iksel.spheres
 
 SEED = 5
 
@@ -232,16 +235,46 @@ def test_what_is_wrong_is_named(solver, targets) -> None:
             call()
 
 
-def test_one_tip_is_the_chain() -> None:
-    arm = iksel.load_robot("ur5e")
-    one = iksel.Robot.from_urdf(arm.urdf, tip_links=[arm.tip_link])
+@pytest.mark.parametrize("name", ["ur5e", "panda", "cvr038"])
+def test_one_tip_is_the_chain(name) -> None:
+    """Of every call, to the last bit."""
+    arm = iksel.load_robot(name)
+    one = iksel.Robot.from_urdf(
+        arm.urdf, base_link=arm.base_link, tip_links=[arm.tip_link], tcps=[arm.tcp]
+    )
     assert one.tip_links == [arm.tip_link] == [one.tip_link]
     assert one.tips == 1
     assert one.shared_joints == []
-    poses = arm.fk(arm.random_configurations(20, SEED))
-    np.testing.assert_array_equal(
-        iksel.Solver(one).solve_batch(poses).q, iksel.Solver(arm).solve_batch(poses).q
-    )
+    q = arm.random_configurations(20, SEED)
+    poses = arm.fk(q)
+    np.testing.assert_array_equal(one.fk(q), poses)
+    np.testing.assert_array_equal(one.jacobian(q), arm.jacobian(q))
+    there = poses[0] @ iksel.pose_from_euler([0, 0, 1e-3], [0, 0, 0])
+    away = q[::-1]
+    line = np.stack([poses[0], there])
+    far = poses[0].copy()
+    far[0, 3] += 3.0
+
+    def asked(robot: iksel.Robot) -> list[np.ndarray]:
+        solver = iksel.Solver(robot)
+        tracker = solver.tracker(q[0])
+        tracker.track(there, 0.01)
+        return [
+            solver.solve_batch(poses).q,
+            solver.solve_batch(poses, near=away).q,
+            solver.solve_batch(poses, task=iksel.Task.free_spin()).q,
+            np.array([solver.solve(pose).q for pose in poses]),
+            np.array([solver.solve(poses[i], near=away[i]).q for i in range(20)]),
+            solver.solve(poses[1], objective="limits").q,
+            solver.solve(far, closest=True).q,
+            *(np.array(solver.solve_all(pose).q) for pose in poses[:5]),
+            np.array(solver.solve_path(line, start=q[0]).q),
+            np.array(tracker.q),
+        ]
+
+    for ours, theirs in zip(asked(one), asked(arm), strict=True):
+        assert len(ours)
+        np.testing.assert_array_equal(ours, theirs)
 
 
 def test_what_one_tip_can_several_can(solver, targets) -> None:
@@ -278,6 +311,32 @@ def test_hands_keep_what_they_carry(solver, targets) -> None:
         solver.solve(targets[0], in_frame_of=[1, 0])
 
 
+@pytest.mark.parametrize("name", ["ur5e", "panda"])
+def test_hands_carry_to_the_tolerance(name) -> None:
+    """At each of 200 waypoints; between them by the square of a step, or less."""
+    robot = two_armed(iksel.load_robot(name))
+    solver = iksel.Solver(robot)
+    q = 0.5 * robot.random_configurations(1, SEED)[0]
+    q = np.clip(q, robot.lower, robot.upper)
+    left, right = robot.fk(q)
+    between = np.linalg.inv(left) @ right
+    path = np.stack([np.stack([left, between])] * 200)
+    path[:, 0, 2, 3] += 0.05 * np.sin(np.linspace(0, np.pi, 200))
+    moved = solver.solve_path(path, start=q, in_frame_of=[None, 0])
+    assert moved, moved.first_unreachable
+
+    def apart(values: np.ndarray) -> float:
+        seen = np.linalg.inv(robot.fk(values)[:, 0]) @ robot.fk(values)[:, 1]
+        turn = seen[:, :3, :3] @ between[:3, :3].T
+        sine = np.linalg.norm(turn - turn.transpose(0, 2, 1), axis=(1, 2)) / np.sqrt(8)
+        position = np.linalg.norm(seen[:, :3, 3] - between[:3, 3], axis=1)
+        return max(position.max(), sine.max())
+
+    assert apart(moved.q) <= 1e-6
+    assert moved.largest_step < 0.05
+    assert apart((moved.q[1:] + moved.q[:-1]) / 2) <= moved.largest_step**2
+
+
 def test_a_tracker_and_its_pickle_follow_both_hands(solver) -> None:
     robot = solver.robot
     q = robot.random_configurations(1, SEED)[0]
@@ -290,6 +349,23 @@ def test_a_tracker_and_its_pickle_follow_both_hands(solver) -> None:
     again = pickle.loads(pickle.dumps(tracker))
     np.testing.assert_array_equal(again.q, tracker.q)
     assert again.track(aim, 0.05).status == tracker.track(aim, 0.05).status
+
+
+def test_answers_keep_the_arms_apart_by_their_geometry() -> None:
+    """Coal judges, by cylinders; what is known to be free is found."""
+    pytest.importorskip("coal")
+    arm = iksel.Robot.from_urdf(URDF, base_link="l0", tip_link="l6")
+    urdf, robot = two_arms_on_torso(arm), two_armed(arm)
+    spheres = iksel.spheres.from_urdf(urdf, robot, max_error=0.2, samples=300)
+    assert any(a[0] != b[0] for a, b in spheres.pairs)
+    scene = iksel.Scene(robot, spheres)
+    exact = iksel.exact.ExactCollision(scene, urdf)
+    q = robot.random_configurations(100, SEED)
+    known = np.asarray(scene.is_free(q))
+    assert 10 < known.sum() < 100
+    batch = iksel.Solver(robot).solve_batch(robot.fk(q), scene=scene)
+    assert batch.success[known].all()
+    assert exact.geometry_is_free(batch.q[batch.success]).all()
 
 
 def test_a_scene_knows_all_arms() -> None:

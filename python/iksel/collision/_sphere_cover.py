@@ -9,6 +9,7 @@ at most.
 
 from __future__ import annotations
 
+import heapq
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -63,10 +64,9 @@ def cover(meshes: Sequence[Mesh], balls: FloatArray, max_error: float) -> FloatA
     centres = np.concatenate([centres, at_surface])
     radius = np.append(depth, np.zeros(len(at_surface))) + max_error
     chosen, left = _choose(centres, radius - gap, samples)
+    filled = _fill(left, max_error - gap)  # what no candidate reaches
     spheres = [balls, np.column_stack([centres[chosen], radius[chosen]])]
-    while len(left):  # which no candidate reaches
-        spheres.append(np.append(left[0], max_error)[None])
-        left = left[np.linalg.norm(left - left[0], axis=1) > max_error - gap]
+    spheres.append(np.column_stack([filled, np.full(len(filled), max_error)]))
     return np.concatenate(spheres)
 
 
@@ -169,28 +169,56 @@ def _choose(
 ) -> tuple[IntArray, FloatArray]:
     """Choose balls that hold samples, each time the one that holds most of those left.
 
+    What a ball holds of those left only becomes less, so that it is counted again only
+    where it could still be the most.
+
     Returns:
         Indices of the balls, and the samples that are in none, (n, 3).
     """
-    squares = (samples**2).sum(axis=1)
-    step = max(1, _CHUNK // len(samples))
-    holds = np.concatenate(
-        [
-            squares - 2 * c @ samples.T + (c**2).sum(axis=1, keepdims=True)
-            <= (r**2)[:, None]
-            for c, r in zip(
-                np.split(centres, range(step, len(centres), step)),
-                np.split(radii, range(step, len(radii), step)),
-                strict=True,
-            )
-        ]
-    )
-    chosen: list[int] = []
+    sorted_samples = _Sorted(samples)
+    holds = [sorted_samples.within(*ball) for ball in zip(centres, radii, strict=True)]
     left = np.ones(len(samples), dtype=bool)
-    gains = holds.sum(axis=1)
-    while (best := int(gains.argmax())) >= 0 and gains[best] > 0:
-        chosen.append(best)
-        new = holds[best] & left
-        left &= ~new
-        gains -= holds[:, new].sum(axis=1)
+    chosen: list[int] = []
+    counted = np.zeros(len(holds), dtype=int)  # how many were chosen by then
+    heap = [(-len(held), ball) for ball, held in enumerate(holds)]
+    heapq.heapify(heap)
+    while heap and heap[0][0] < 0:
+        gain, ball = heap[0]
+        if counted[ball] < len(chosen):
+            gain = -np.count_nonzero(left[holds[ball]])
+            counted[ball] = len(chosen)
+            heapq.heapreplace(heap, (gain, ball))
+            continue
+        heapq.heappop(heap)
+        chosen.append(ball)
+        left[holds[ball]] = False
     return np.array(chosen, dtype=int), samples[left]
+
+
+def _fill(samples: FloatArray, radius: float) -> FloatArray:
+    """Some of the samples, so that each is within a radius of one of them."""
+    sorted_samples = _Sorted(samples)
+    left = np.ones(len(samples), dtype=bool)
+    centres = []
+    for sample, centre in enumerate(samples):
+        if left[sample]:
+            centres.append(centre)
+            left[sorted_samples.within(centre, radius)] = False
+    return np.array(centres).reshape(-1, 3)
+
+
+class _Sorted:
+    """Points by their x, so that those near a place are soon found."""
+
+    def __init__(self, points: FloatArray) -> None:
+        self._order = np.argsort(points[:, 0], kind="stable").astype(np.int32)
+        self._points = points[self._order]
+        self._x = np.ascontiguousarray(self._points[:, 0])
+
+    def within(self, centre: FloatArray, radius: float) -> IntArray:
+        """Indices of the points within a radius."""
+        first, last = np.searchsorted(self._x, [centre[0] - radius, centre[0] + radius])
+        away = self._points[first:last] - centre
+        held = np.einsum("ij,ij->i", away, away) <= radius**2
+        found: IntArray = self._order[first:last][held]
+        return found

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What both hands are asked for beside the first answer, and its judges."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import iksel
+
+pytest.importorskip("bench", reason="the benchmarks are in the repository only")
+
+from bench import command
+from bench.robot_data import robots_folder
+from bench.tips import changed
+from bench.whole_body import carried
+from bench.whole_body.brute import Brute
+from bench.whole_body.free import both, load_meshes
+from bench.whole_body.nearest import nearest
+from bench.whole_body.robots import load_body
+
+SEED = 3
+
+
+@pytest.fixture(scope="module")
+def pandas():
+    return load_body("two_pandas")
+
+
+class TestBruteForce:
+    def test_finds_what_is_known(self, pandas):
+        """A configuration at the target is an answer; the least move is no longer."""
+        brute = Brute(pandas)
+        q = pandas.random_configurations(5, SEED)
+        near = changed(pandas.robot, q, 0.1, SEED)
+        for poses, here, there in zip(pandas.fk(q), near, q, strict=True):
+            least = brute.least_move(poses, here, SEED)
+            assert 0 < least <= np.linalg.norm(here - there)
+
+    def test_is_beside_no_shorter_move(self, pandas):
+        """Answers drawn at random, slid, are not nearer than before they were."""
+        brute = Brute(pandas)
+        poses = pandas.fk(pandas.random_configurations(1, SEED))[0]
+        near = pandas.random_configurations(1, SEED + 1)[0]
+        found = np.array(iksel.Solver(pandas.robot).solve_all(poses, 20).q)
+        slid = brute.slid(poses, near, found)
+        assert pandas.right(np.repeat(poses[None], len(slid), axis=0), slid).all()
+        before, after = (np.linalg.norm(some - near, axis=1) for some in (found, slid))
+        assert np.all(after <= before + 1e-6)
+        # What is locally least stays so.
+        again = np.linalg.norm(brute.slid(poses, near, slid) - near, axis=1)
+        assert np.median(after - again) < 1e-3
+
+    def test_finds_nothing_where_nothing_is(self, pandas):
+        poses = pandas.fk(pandas.random_configurations(1, SEED))[0]
+        poses[0, 0, 3] += 9.0
+        near = pandas.random_configurations(1, SEED)[0]
+        assert Brute(pandas).least_move(poses, near, SEED) == np.inf
+
+    def test_near_beside_it(self, pandas):
+        row = nearest(pandas, "beside", 4, SEED)
+        assert (row["cases"], row["none"], row["wrong"], row["longer"]) == (4, 0, 0, 0)
+
+
+class TestCarried:
+    def test_hands_stay_where_they_hold_the_box(self, pandas):
+        row = carried.carried(pandas, 4, SEED)
+        assert row["wrong"] == 0
+        assert row["ended"] < row["paths"] == 4
+        assert max(row["apart"]) <= 1e-6
+        assert not row["lost"]
+
+    def test_paths_begin_and_end_at_the_grasp(self, pandas):
+        hands = pandas.fk(pandas.random_configurations(1, SEED))[0]
+        path = carried.box_path(hands)
+        between = np.linalg.inv(hands[0]) @ hands[1]
+        np.testing.assert_allclose(path[[0, -1], 0], hands[[0, 0]], atol=1e-12)
+        assert np.array_equal(path[:, 1], np.repeat(between[None], len(path), axis=0))
+        raised = path[len(path) // 2, 0, :3, 3] - hands[0, :3, 3]
+        assert raised == pytest.approx([carried.SIDEWAYS, 0, carried.UP], rel=1e-3)
+
+    def test_what_comes_apart_is_told(self, pandas):
+        q = pandas.random_configurations(1, SEED)
+        left, right = pandas.fk(q)[0]
+        between = np.linalg.inv(left) @ right
+        assert max(carried.apart(pandas, q, between)) < 1e-12
+        q[0, pandas.columns[1][-1]] += 0.01
+        assert carried.apart(pandas, q, between)[1] == pytest.approx(0.01)
+
+
+class TestFree:
+    def test_what_an_arm_may_touch_both_may(self):
+        text = both('<robot><disable_collisions link1="a" link2="b"/></robot>')
+        for side in ("l_", "r_"):
+            assert f'link1="{side}a" link2="{side}b"' in text
+        assert text.count("disable_collisions") == 2
+
+    def test_names_of_files_stay(self):
+        if not robots_folder().is_dir():
+            pytest.skip("example-robot-data is not installed")
+        robot = load_meshes("two_pandas")
+        assert 'filename="package://example-robot-data' in robot.urdf
+        assert robot.body.robot.tip_links == ["l_panda_link8", "r_panda_link8"]
+
+
+class TestCommand:
+    def test_prints_tables(self, capsys):
+        words = ["hands", "two_pandas", "--near", "2", "--free", "0", "--paths", "1"]
+        assert command.main(words) == 0
+        told = capsys.readouterr().out
+        assert "| two_pandas, beside | 2 | 0 | 0 | 0 |" in told
+        assert "A box carried along 200 waypoints" in told
+
+    def test_unknown_robots_are_named(self):
+        with pytest.raises(SystemExit, match="no nobody; has two_pandas"):
+            command.main(["hands", "nobody"])

@@ -120,7 +120,12 @@ class SweptBranches {
   /// Solves one branch at value(lane) in each lane [rad].
   template <typename Value>
   void solve_one(int branch, const Value& value) {
-    hold_one(branch, value);
+    solve_each([=](int /*lane*/) { return branch; }, value);
+  }
+  /// Solves branch(lane) at value(lane) in each lane [rad].
+  template <typename Branch, typename Value>
+  void solve_each(const Branch& branch, const Value& value) {
+    hold_each(branch, value);
     find_branches(one_);
     measure_moves();
   }
@@ -205,8 +210,14 @@ class SweptBranches {
   void bound_slide();
   template <typename Value>
   void hold_one(int branch, const Value& value) {
-    for (int s = 0; s < 3; ++s) std::fill_n(one_.sign[s], kCount, all_.sign[s][branch]);
-    for (int lane = 0; lane < kCount; ++lane) one_.held[lane] = value(lane) + offset_;
+    hold_each([=](int /*lane*/) { return branch; }, value);
+  }
+  template <typename Branch, typename Value>
+  void hold_each(const Branch& branch, const Value& value) {
+    for (int lane = 0; lane < kCount; ++lane) {
+      for (int s = 0; s < 3; ++s) one_.sign[s][lane] = all_.sign[s][branch(lane)];
+      one_.held[lane] = value(lane) + offset_;
+    }
   }
   /// Of which moves are then measured, if they are.
   void find_branches(lanes::BranchPack& pack);
@@ -257,6 +268,13 @@ class NearMiss {
   double close_;
 };
 
+/// The least of all branches.
+inline double least_of(const SweptBranches::Row& row) {
+  double least = row[0];
+  for (const double value : row) least = std::min(least, value);
+  return least;
+}
+
 /// Seven joint values, and how far they are from what was looked for.
 struct SweptJoints {
   double value;
@@ -285,6 +303,7 @@ class LeastPlaces : public Least<LeastPlace, kMost> {
     this->clear();
     for (int place = 0; place < places.count; ++place) {
       const SweptBranches::Row& here = row(place);
+      if (least_of(here) > bound) continue;
       const SweptBranches::Row& before = row(place - 1);
       const SweptBranches::Row& behind = row(place + 1);
       for (std::size_t i = 0; i < here.size(); ++i) {

@@ -2,10 +2,10 @@
 // The determinant that is 0 where a loop of six joints closes (structure/loop_equations.hpp), for
 // angles of one of them.
 //
-// The six equations are linear in 1, cos, sin of angle d, and of angle e: with c and s the cosine and
-// sine of d / 2 each is A0 c^2 + A1 c s + A2 s^2, linear in 1, cos(e) and sin(e). Multiplied by c and
-// by s they are twelve, linear and homogeneous in the products of c^3, c^2 s, c s^2 and s^3 with
-// those three:
+// The six equations are linear in 1, cos, sin of angle d, and of angle e: with c and s the cosine
+// and sine of d / 2 each is A0 c^2 + A1 c s + A2 s^2, linear in 1, cos(e) and sin(e). Multiplied by
+// c and by s they are twelve, linear and homogeneous in the products of c^3, c^2 s, c s^2 and s^3
+// with those three:
 //   | A0  A1  A2  0  |
 //   | 0   A0  A1  A2 |
 // Each half alone has three of the products, and leaves three equations in the six between.

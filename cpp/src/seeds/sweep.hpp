@@ -9,6 +9,7 @@
 #include "base/function_ref.hpp"
 #include "base/work.hpp"
 #include "seeds/branch_intervals.hpp"
+#include "seeds/least_places.hpp"
 #include "seeds/swept_branches.hpp"
 
 namespace iksel {

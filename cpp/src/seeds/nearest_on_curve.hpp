@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "goal/joint_move.hpp"
+#include "seeds/least_places.hpp"
 #include "seeds/move_bounds.hpp"
 #include "seeds/swept_branches.hpp"
 

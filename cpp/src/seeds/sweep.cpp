@@ -39,6 +39,7 @@ bool Sweep::find_between(Between where) {
   close_.clear();
   for (const LeastPlace& near : nearest_) {
     least_ = std::min(least_, near.value);
+    if (is_left_to_another(near)) continue;
     if (where == Between::beyond_folds) {
       branches_.solve_all(places_.value(near.place));
       if (branches_.least(near.branch) >= 0) continue;
@@ -60,7 +61,7 @@ void Sweep::visit_nearest(std::size_t most, FunctionRef<void(const JointVector&)
 
 bool Sweep::take_answer(int place) {
   const SweptBranches::Row& off = rows_[static_cast<std::size_t>(place)];
-  if (*std::min_element(off.begin(), off.end()) > 0) return false;
+  if (least_of(off) > 0) return false;
   branches_.solve_all(places_.value(place));
   for (int branch = 0; branch < kBranches; ++branch) {
     if (off[static_cast<std::size_t>(branch)] <= 0 && take(branch, branch)) return true;
@@ -98,7 +99,7 @@ void Sweep::add_samples(int first, int stride, std::vector<double>& q,
     const SweptBranches::Row& off = rows[lane_of_row];
     const int place = place_of(i);
     rows_[static_cast<std::size_t>(place)] = off;
-    if (*std::min_element(off.begin(), off.end()) > 0) continue;
+    if (least_of(off) > 0) continue;
     branches_.solve_all(places_.value(place));
     for (int lane = 0; lane < kBranches; ++lane) {
       if (branches_.off(lane) > 0) continue;
@@ -191,18 +192,26 @@ bool Sweep::find_in_intervals() {
   intervals_.visit([&](int branch, double value) {
     branches_.solve_one(branch, [&](int /*lane*/) { return value; });
     least_ = std::min(least_, branches_.off(0));
-    keep_if_close(branch, branches_.off(0));
+    keep_if_close(branches_.off(0), branches_.least(0) < 0 && is_second_of_merged(branch));
   });
   if (intervals_.is_overfull()) least_ = 0;
   return false;
 }
 
-void Sweep::keep_if_close(int branch, double off) {
+void Sweep::keep_if_close(double off, bool is_aside) {
   if (!miss_.is_close(off)) return;
   SweptJoints close{off, {}};
   branches_.copy_joints(0, close.q.data());
-  if (branches_.least(0) < 0 && is_second_of_merged(branch)) step_aside(close.q);
+  if (is_aside) step_aside(close.q);
   close_.add(close);
+}
+
+bool Sweep::is_left_to_another(const LeastPlace& near) const {
+  if (!is_second_of_merged(near.branch)) return false;
+  return std::any_of(nearest_.begin(), nearest_.end(), [&](const LeastPlace& other) {
+    return other.place == near.place && other.value == near.value &&
+           !is_second_of_merged(other.branch);
+  });
 }
 
 bool Sweep::follow(const LeastPlace& near) {
@@ -227,7 +236,8 @@ bool Sweep::follow(const LeastPlace& near) {
   if (!miss_.is_close(least)) return false;
   branches_.solve_one(near.branch, [&](int /*lane*/) { return value(best_at); });
   if (least <= 0 && take(0, near.branch)) return true;
-  keep_if_close(near.branch, least);
+  keep_if_close(least, /*is_aside=*/false);
+  if (branches_.least(0) < 0) keep_if_close(least, /*is_aside=*/true);
   return false;
 }
 

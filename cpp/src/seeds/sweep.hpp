@@ -9,6 +9,7 @@
 #include "base/function_ref.hpp"
 #include "base/work.hpp"
 #include "seeds/branch_intervals.hpp"
+#include "seeds/least_places.hpp"
 #include "seeds/swept_branches.hpp"
 
 namespace iksel {
@@ -90,8 +91,12 @@ class Sweep {
   bool follow(const LeastPlace& near);
   /// Looks between all samples; true if there is an answer.
   bool find_in_intervals();
-  /// Keeps what was solved last in lane 0, if it comes close to an answer.
-  void keep_if_close(int branch, double off);
+  /// Whether a branch has merged there with one that is followed, too: a closed curve that lies
+  /// beside is of both.
+  [[nodiscard]] bool is_left_to_another(const LeastPlace& near) const;
+  /// Keeps what was solved last in lane 0, or what lies aside of it, if it comes close to an
+  /// answer.
+  void keep_if_close(double off, bool is_aside);
 
   const JointSpace& joints_;
   // sweep_spread.cpp

@@ -46,20 +46,16 @@ class Sweep::Spread {
     return inside;
   }
 
-  /// Adds both ends of each run, places between them, so many for each sample, and some on the way
-  /// to the samples beside.
-  void add_places(double each) {
+  /// Adds both ends of each run, places between them, so many for each sample, and one on the way
+  /// to either sample beside.
+  void add_runs(double each) {
     for (const Run& run : runs_) {
       const int steps = static_cast<int>(std::ceil(each * (run.last - run.first)));
       const double step = steps > 0 ? static_cast<double>(run.last - run.first) / steps : 0;
-      // As many as make the lanes full.
-      const int beyond = 1 + (kBranches - (steps + 3) % kBranches) % kBranches / 2;
-      const auto at = [&](int i) {
-        if (i < 0) return run.first + static_cast<double>(i) / beyond;
-        if (i > steps) return run.last + static_cast<double>(i - steps) / beyond;
-        return run.first + step * i;
-      };
-      add(run.branch, -beyond, steps + beyond, at);
+      add(run.branch, steps + 3, [&](int i) {
+        if (i == 0) return run.first - 0.5;
+        return i > steps + 1 ? run.last + 0.5 : run.first + step * (i - 1);
+      });
     }
   }
 
@@ -69,19 +65,22 @@ class Sweep::Spread {
     sweep_.visit_between([&](const double* q, int branch) {
       q_.insert(q_.end(), q, q + kDof);
       const double place = (q[sweep_.joint()] - places.lower) / places.step;
-      add(branch, 0, kBranches - 1, [&](int i) { return place - 0.5 + i / (kBranches - 1.0); });
+      add(branch, kBranches, [&](int i) { return place - 0.5 + i / (kBranches - 1.0); });
     });
   }
 
-  /// Adds places in gaps: beside singular poses joints move far between two samples.
-  void fill_gaps() {
+  /// Solves what was added, and places in gaps: beside singular poses joints move far between two
+  /// samples.
+  void solve() {
     constexpr int kRounds = 3;
+    solve_places();
     for (int round = 0; round < kRounds && !gaps_.empty(); ++round) {
       for (const Gap& gap : std::exchange(gaps_, {})) {
         // With its ends, from which the next may still be far.
         const double step = (gap.to - gap.from) / (kBranches - 1);
-        add(gap.branch, 0, kBranches - 1, [&](int i) { return gap.from + step * i; });
+        add(gap.branch, kBranches, [&](int i) { return gap.from + step * i; });
       }
+      solve_places();
     }
   }
 
@@ -108,30 +107,49 @@ class Sweep::Spread {
     double from, to;
   };
 
-  /// Adds a branch at the samples `at(i)`, and between such, where it is inside the limits; and
-  /// what is beside that and far from it to the gaps.
+  /// A place of a branch, which may lie between samples.
+  struct Spot {
+    int branch;
+    double place;
+    bool is_first;  ///< not behind the one before
+  };
+
+  /// Adds so many places of a branch, one behind the other.
   template <typename At>
-  void add(int branch, int first, int last, const At& at) {
+  void add(int branch, int count, const At& at) {
+    for (int i = 0; i < count; ++i) spots_.push_back({branch, at(i), i == 0});
+  }
+  /// Keeps those places that are inside the limits; and what is beside such and far from it as
+  /// gaps.
+  void solve_places() {
     std::array<double, kDof> before{};
     bool was_inside = false;
-    for (int i = first; i <= last; i += kBranches) {
-      sweep_.branches_.solve_one(branch, [&](int lane) {
-        const double place = at(std::min(i + lane, last));
-        return sweep_.branches_.clamp(sweep_.places_.lower + sweep_.places_.step * place);
-      });
-      for (int lane = 0; lane < std::min(kBranches, last + 1 - i); ++lane) {
-        std::array<double, kDof> here{};
-        sweep_.branches_.copy_joints(lane, here.data());
+    for (std::size_t i = 0; i < spots_.size(); i += kBranches) {
+      const std::size_t lanes = std::min<std::size_t>(kBranches, spots_.size() - i);
+      const auto spot = [&](int lane) -> const Spot& {
+        return spots_[i + std::min(static_cast<std::size_t>(lane), lanes - 1)];
+      };
+      sweep_.branches_.solve_each(
+          [&](int lane) { return spot(lane).branch; },
+          [&](int lane) {
+            return sweep_.branches_.clamp(sweep_.places_.lower +
+                                          sweep_.places_.step * spot(lane).place);
+          });
+      for (int lane = 0; lane < static_cast<int>(lanes); ++lane) {
+        const Spot& here = spot(lane);
+        std::array<double, kDof> q{};
+        sweep_.branches_.copy_joints(lane, q.data());
         const bool is_inside = sweep_.branches_.off(lane) <= 0;
-        if (is_inside) q_.insert(q_.end(), here.begin(), here.end());
-        const Gap gap{branch, at(i + lane - 1), at(i + lane)};
-        if (i + lane > first && (was_inside || is_inside) && is_wide(gap, before, here)) {
-          gaps_.push_back(gap);
+        if (is_inside) q_.insert(q_.end(), q.begin(), q.end());
+        if (!here.is_first && (was_inside || is_inside)) {
+          const Gap gap{here.branch, (&here - 1)->place, here.place};
+          if (is_wide(gap, before, q)) gaps_.push_back(gap);
         }
-        before = here;
+        before = q;
         was_inside = is_inside;
       }
     }
+    spots_.clear();
   }
   [[nodiscard]] bool is_wide(const Gap& gap, const std::array<double, kDof>& from,
                              const std::array<double, kDof>& to) const {
@@ -145,6 +163,7 @@ class Sweep::Spread {
   const JointSpace& joints_;
   std::vector<double>& q_;
   std::vector<Run> runs_;
+  std::vector<Spot> spots_;
   std::vector<Gap> gaps_;
 };
 
@@ -157,9 +176,9 @@ void Sweep::find_spread(const Pose& Y, std::size_t count, double least, std::vec
   int inside = spread.find_runs(samples);
   if (samples < kSamples && 2 * inside < places) inside = spread.find_runs(kSamples);
   if (inside == 0) return;
-  spread.add_places(static_cast<double>(places) / inside);
+  spread.add_runs(static_cast<double>(places) / inside);
   spread.add_between();
-  spread.fill_gaps();
+  spread.solve();
   spread.thin_out(count, least);
 }
 

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "base/constants.hpp"
-#include "base/least.hpp"
 #include "base/sincos.hpp"
 #include "goal/joint_move.hpp"
 #include "kinematics/chain_model.hpp"
@@ -120,7 +119,12 @@ class SweptBranches {
   /// Solves one branch at value(lane) in each lane [rad].
   template <typename Value>
   void solve_one(int branch, const Value& value) {
-    hold_one(branch, value);
+    solve_each([=](int /*lane*/) { return branch; }, value);
+  }
+  /// Solves branch(lane) at value(lane) in each lane [rad].
+  template <typename Branch, typename Value>
+  void solve_each(const Branch& branch, const Value& value) {
+    hold_each(branch, value);
     find_branches(one_);
     measure_moves();
   }
@@ -205,8 +209,14 @@ class SweptBranches {
   void bound_slide();
   template <typename Value>
   void hold_one(int branch, const Value& value) {
-    for (int s = 0; s < 3; ++s) std::fill_n(one_.sign[s], kCount, all_.sign[s][branch]);
-    for (int lane = 0; lane < kCount; ++lane) one_.held[lane] = value(lane) + offset_;
+    hold_each([=](int /*lane*/) { return branch; }, value);
+  }
+  template <typename Branch, typename Value>
+  void hold_each(const Branch& branch, const Value& value) {
+    for (int lane = 0; lane < kCount; ++lane) {
+      for (int s = 0; s < 3; ++s) one_.sign[s][lane] = all_.sign[s][branch(lane)];
+      one_.held[lane] = value(lane) + offset_;
+    }
   }
   /// Of which moves are then measured, if they are.
   void find_branches(lanes::BranchPack& pack);
@@ -261,39 +271,6 @@ class NearMiss {
 struct SweptJoints {
   double value;
   std::array<double, SweptBranches::kDof> q;
-};
-
-/// Where a branch has a value that is less than at the places beside.
-struct LeastPlace {
-  double value;
-  int place, branch;
-};
-
-/// The least of these, at most so many.
-template <std::size_t kMost>
-class LeastPlaces : public Least<LeastPlace, kMost> {
- public:
-  /// Of values at all places, of every branch; only those up to `bound`, and above `beyond`.
-  void find(const Places& places, const std::vector<SweptBranches::Row>& rows, double bound,
-            double beyond = -kInfinity) {
-    static constexpr SweptBranches::Row kNone{kInfinity, kInfinity, kInfinity, kInfinity,
-                                              kInfinity, kInfinity, kInfinity, kInfinity};
-    const auto row = [&](int place) -> const SweptBranches::Row& {
-      const int at = places.find(place);
-      return at < 0 ? kNone : rows[static_cast<std::size_t>(at)];
-    };
-    this->clear();
-    for (int place = 0; place < places.count; ++place) {
-      const SweptBranches::Row& here = row(place);
-      const SweptBranches::Row& before = row(place - 1);
-      const SweptBranches::Row& behind = row(place + 1);
-      for (std::size_t i = 0; i < here.size(); ++i) {
-        // Of conditions one by one few could be foreseen.
-        const double least = std::min(bound, std::min(before[i], behind[i]));
-        if (here[i] <= least && here[i] > beyond) this->add({here[i], place, static_cast<int>(i)});
-      }
-    }
-  }
 };
 
 }  // namespace iksel

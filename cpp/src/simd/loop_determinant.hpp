@@ -2,9 +2,13 @@
 // The determinant that is 0 where a loop of six joints closes (structure/loop_equations.hpp), for
 // angles of one of them.
 //
-// The six equations are linear in 1, cos, sin of angle d, and of angle e. Multiplied by cos(d / 2)
-// and by sin(d / 2) they are twelve, linear and homogeneous in the twelve products of cos(d / 2),
-// sin(d / 2), cos(3 d / 2) and sin(3 d / 2) with 1, cos(e) and sin(e).
+// The six equations are linear in 1, cos, sin of angle d, and of angle e: with c and s the cosine
+// and sine of d / 2 each is A0 c^2 + A1 c s + A2 s^2, linear in 1, cos(e) and sin(e). Multiplied by
+// c and by s they are twelve, linear and homogeneous in the products of c^3, c^2 s, c s^2 and s^3
+// with those three:
+//   | A0  A1  A2  0  |
+//   | 0   A0  A1  A2 |
+// Each half alone has three of the products, and leaves three equations in the six between.
 #pragma once
 
 #include <utility>
@@ -14,41 +18,45 @@
 
 namespace iksel::lanes {
 
-inline constexpr int kProducts = 12;
+/// The equations, and the products that both halves have; three more are one half's own.
+inline constexpr int kEquations = 6;
+inline constexpr int kOwn = 3;
 
-/// By columns: the first index is a product's.
+/// So many columns of six equations: the first index is a product's.
+template <typename T, int kColumns>
+using Columns = T[kColumns][kEquations];
+
+/// The equations times c, of c^3, c^2 s and c s^2; those times s, of s^3, c^2 s and c s^2; and what
+/// these leave of the products between.
 template <typename T>
-using Products = T[kProducts][kProducts];
+struct Products {
+  Columns<T, kOwn + kEquations> half[2];
+  Columns<T, kEquations> rest;
+};
 
 template <typename T>
 IKSEL_INLINE void fill_products(const LoopTarget& target, const Angle<T>& angle, Products<T>& m) {
-  const T half = T(0.5);
-  for (int i = 0; i < 6; ++i) {
+  for (int i = 0; i < kEquations; ++i) {
     for (int j = 0; j < 3; ++j) {
       const auto at = [&](int d) __attribute__((always_inline)) {
         return T(target.equation[0][i][d][j]) + angle.c * T(target.equation[1][i][d][j]) +
                angle.s * T(target.equation[2][i][d][j]);
       };
       const T one = at(0);
-      const T c = half * at(1);
-      const T s = half * at(2);
-      m[j][i] = one + c;
-      m[3 + j][i] = s;
-      m[6 + j][i] = c;
-      m[9 + j][i] = s;
-      m[j][6 + i] = s;
-      m[3 + j][6 + i] = one - c;
-      m[6 + j][6 + i] = T(0.0) - s;
-      m[9 + j][6 + i] = c;
+      const T cosine = at(1);
+      const T sine = at(2);
+      m.half[0][j][i] = m.half[1][3 + j][i] = one + cosine;
+      m.half[0][3 + j][i] = m.half[1][6 + j][i] = sine + sine;
+      m.half[0][6 + j][i] = m.half[1][j][i] = one - cosine;
     }
   }
 }
 
 /// Householder's reflection that leaves nothing below the diagonal of column k. What is reflected
 /// stays in registers: its length is known to the compiler.
-template <int k, typename T>
-IKSEL_INLINE void reflect(Products<T>& m, T& product) {
-  constexpr int kRows = kProducts - k;
+template <int k, typename T, int kColumns>
+IKSEL_INLINE void reflect(Columns<T, kColumns>& m, T& product) {
+  constexpr int kRows = kEquations - k;
   const T* own = m[k] + k;
   T square = T(0.0);
   for (int i = 0; i < kRows; ++i) square = square + own[i] * own[i];
@@ -56,7 +64,7 @@ IKSEL_INLINE void reflect(Products<T>& m, T& product) {
   const T diagonal = select(own[0] > T(0.0), T(0.0) - norm, norm);
   const T inverse = T(1.0) / max(square + norm * abs(own[0]), T(1e-200));
   m[k][k] = own[0] - diagonal;
-  for (int j = k + 1; j < kProducts; ++j) {
+  for (int j = k + 1; j < kColumns; ++j) {
     T column[kRows];
     T share = T(0.0);
     for (int i = 0; i < kRows; ++i) {
@@ -70,23 +78,40 @@ IKSEL_INLINE void reflect(Products<T>& m, T& product) {
   product = product * diagonal;
 }
 
-/// Several at once, whose roots and quotients do not wait for each other: each by an odd number of
-/// reflections. Returns the products of the diagonals.
-template <typename T, int kCount, int... k>
+/// Both halves and their rest, of several at once, whose roots and quotients do not wait for each
+/// other: each by an odd number of reflections. Returns the products of the diagonals.
+template <typename T, int kCount, int... own, int... k>
 IKSEL_INLINE void make_triangular(Products<T> (&m)[kCount], T (&products)[kCount],
-                                  std::integer_sequence<int, k...> /*columns*/) {
+                                  std::integer_sequence<int, own...> /*own columns*/,
+                                  std::integer_sequence<int, k...> /*the others*/) {
   for (T& product : products) product = T(1.0);
-  const auto reflect_all = [&](auto column) __attribute__((always_inline)) {
-    for (int i = 0; i < kCount; ++i) reflect<decltype(column)::value>(m[i], products[i]);
+  const auto reflect_halves = [&](auto column) __attribute__((always_inline)) {
+    for (int i = 0; i < kCount; ++i) {
+      for (auto& half : m[i].half) reflect<decltype(column)::value>(half, products[i]);
+    }
   };
-  (reflect_all(std::integral_constant<int, k>{}), ...);
+  (reflect_halves(std::integral_constant<int, own>{}), ...);
   for (int i = 0; i < kCount; ++i) {
-    products[i] = products[i] * m[i][kProducts - 1][kProducts - 1];
+    for (int j = 0; j < kEquations; ++j) {
+      for (int row = 0; row < kEquations; ++row) {
+        m[i].rest[j][row] = m[i].half[row / kOwn][kOwn + j][kOwn + row % kOwn];
+      }
+    }
+  }
+  const auto reflect_rest = [&](auto column) __attribute__((always_inline)) {
+    for (int i = 0; i < kCount; ++i) {
+      reflect<decltype(column)::value>(m[i].rest, products[i]);
+    }
+  };
+  (reflect_rest(std::integral_constant<int, k>{}), ...);
+  for (int i = 0; i < kCount; ++i) {
+    products[i] = products[i] * m[i].rest[kEquations - 1][kEquations - 1];
   }
 }
 template <typename T, int kCount>
 IKSEL_INLINE void make_triangular(Products<T> (&m)[kCount], T (&products)[kCount]) {
-  make_triangular(m, products, std::make_integer_sequence<int, kProducts - 1>{});
+  make_triangular(m, products, std::make_integer_sequence<int, kOwn>{},
+                  std::make_integer_sequence<int, kEquations - 1>{});
 }
 
 /// At so many packs of angles.

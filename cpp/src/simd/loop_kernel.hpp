@@ -7,9 +7,28 @@
 
 namespace iksel::lanes {
 
-/// What a triangular matrix takes to nearly 0, by two steps of inverse iteration.
+inline constexpr int kProducts = 2 * kEquations;
+
+/// What triangular ones take to nearly 0, by two steps of inverse iteration: the products with c^3,
+/// s^3, c^2 s and c s^2.
 template <typename T>
-IKSEL_INLINE void find_null_vector(const Products<T>& m, T (&x)[kProducts]) {
+IKSEL_INLINE void find_null_vector(const Products<T>& products, T (&x)[kProducts]) {
+  // As one triangular matrix, by columns.
+  T m[kProducts][kProducts];
+  for (int i = 0; i < kOwn; ++i) {
+    for (int k = 0; k < kOwn; ++k) {
+      m[k][i] = products.half[0][k][i];
+      m[kOwn + k][i] = T(0.0);
+      m[kOwn + k][kOwn + i] = products.half[1][k][i];
+    }
+    for (int k = kOwn; k < kOwn + kEquations; ++k) {
+      m[kOwn + k][i] = products.half[0][k][i];
+      m[kOwn + k][kOwn + i] = products.half[1][k][i];
+    }
+  }
+  for (int k = 0; k < kEquations; ++k) {
+    for (int i = 0; i <= k; ++i) m[kEquations + k][kEquations + i] = products.rest[k][i];
+  }
   T inverse[kProducts];
   for (int k = 0; k < kProducts; ++k) {
     const T size = max(abs(m[k][k]), T(1e-16) * abs(m[0][0]) + T(1e-200));
@@ -45,11 +64,10 @@ IKSEL_INLINE void read_products(const T (&x)[kProducts], Branch<T, Definiteness<
   const auto of_d = [&](int k) __attribute__((always_inline)) {
     return x[3 * k] + out.q[2].c * x[3 * k + 1] + out.q[2].s * x[3 * k + 2];
   };
-  const T c1 = of_d(0);
-  const T s1 = of_d(1);
-  const T c3 = of_d(2);
-  const T s3 = of_d(3);
-  out.q[1] = normalized(c3 * c1 + s3 * s1, s3 * c1 - c3 * s1, out.quality);
+  // c^3 + c s^2 = c, s^3 + c^2 s = s.
+  const T half_c = of_d(0) + of_d(3);
+  const T half_s = of_d(1) + of_d(2);
+  out.q[1] = normalized(half_c * half_c - half_s * half_s, T(2.0) * half_c * half_s, out.quality);
 }
 
 /// A point, and directions, that move together.

@@ -298,8 +298,8 @@ def test_near_is_no_longer_than_along_the_arcs(
 def test_near_goes_through_what_swings_where_the_wrist_is_straight() -> None:
     """There two joints turn against each other while all others stand still.
 
-    Without what is between samples, a quarter of the moves are longer; where it is
-    refined from all but a singularity, one of 30.
+    Without what is between samples, a quarter of the moves are longer; where joints
+    that turned round stay beyond their limits, one of 30.
     """
     robot = iksel.load_robot("iiwa14")
     solver = iksel.Solver(robot)
@@ -313,7 +313,7 @@ def test_near_goes_through_what_swings_where_the_wrist_is_straight() -> None:
     ]
     known = np.linalg.norm(near - straight, axis=1)
     longer = np.flatnonzero(found > known + laws.LONGER)
-    assert longer.size <= 0.05 * ARC_POSES, f"seed {SEED}: {longer}"
+    assert longer.size <= 0.015 * ARC_POSES, f"seed {SEED}: {longer}"
 
 
 def test_the_judge_finds_what_is_broken() -> None:

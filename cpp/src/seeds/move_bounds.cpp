@@ -95,8 +95,18 @@ BranchPoint MoveBounds::nearest_on_swing(const BranchPoint& from, Joints turns) 
   for (double& one : turns) {
     if (std::abs(one) > kStill) one -= std::copysign(kTwoPi, one);
   }
-  const BranchPoint around = nearest_on_line(from.q, turns);
-  return around.inside < nearest.inside ? around : nearest;
+  BranchPoint around = nearest_on_line(from.q, turns);
+  if (!(around.inside < nearest.inside)) around = nearest;
+  // By whole turns inside the limits, as branches are.
+  for (std::size_t i = 0; i < turns.size(); ++i) {
+    double& q = around.q[i];
+    if (form_.turns[i] && q > form_.upper[i]) {
+      q -= kTwoPi * std::ceil((q - form_.upper[i]) / kTwoPi);
+    } else if (form_.turns[i] && q < form_.lower[i]) {
+      q += kTwoPi * std::ceil((form_.lower[i] - q) / kTwoPi);
+    }
+  }
+  return around;
 }
 
 BranchPoint MoveBounds::nearest_on_line(const Joints& from, const Joints& turns) const {

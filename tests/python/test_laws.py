@@ -280,6 +280,8 @@ def test_no_answer_lies_off_the_arcs(build: str) -> None:
         *(("shoulder_offset", 1032, 158), ("shoulder_offset", 1025, 67)),
         *(("shoulder_elbow_offset", 1023, i) for i in (16, 40)),
         *(("shoulder_elbow_offset", 5039, 101), ("shoulder_elbow_offset", 5023, 17)),
+        # Branches that are equally far from being by the joints known so far.
+        ("right_angles_7", 20300, 29),
         # At a fold itself.
         *(("srs", 1012, 177), ("wrist_offset", 1021, 2), ("wrist_offset", 1021, 166)),
     ],

@@ -69,9 +69,10 @@ void NearestOnCurve::visit_gaps(const Places& places_of) {
     auto end = missing.begin();
     for (int branch = 0; branch < kCount; ++branch) {
       if ((places[static_cast<std::size_t>(branch)] >> place & 1U) == 0) continue;
-      const double far = least(place, branch) + least(place - 1, branch);
-      if (std::find(missing.begin(), end, far) != end) continue;
-      if (!look_before(place, branch)) *end++ = far;
+      const double a = least(place - 1, branch);
+      const double b = least(place, branch);
+      if (std::find(missing.begin(), end, a + b) != end) continue;
+      if (!look_before(place, branch) && std::max(a, b) < 0) *end++ = a + b;
     }
   }
 }

@@ -274,6 +274,14 @@ def test_no_answer_lies_off_the_arcs(build: str) -> None:
         *(("srs", 1025, 31), ("elbow_offset", 1021, 131), ("wrist_offset", 1020, 167)),
         # All of the loop lies between two samples.
         *(("wrist_offset", 1023, 133), ("shoulder_elbow_offset", 1004, 66)),
+        *(("shoulder_elbow_offset", 5015, 37), ("shoulder_elbow_offset", 1037, 21)),
+        # Between a sample and a fold beside which the wrist is all but straight.
+        *(("srs", 1025, 64), ("elbow_offset", 1021, 179)),
+        *(("shoulder_offset", 1032, 158), ("shoulder_offset", 1025, 67)),
+        *(("shoulder_elbow_offset", 1023, i) for i in (16, 40)),
+        *(("shoulder_elbow_offset", 5039, 101), ("shoulder_elbow_offset", 5023, 17)),
+        # Branches that are equally far from being by the joints known so far.
+        ("right_angles_7", 20300, 29),
         # At a fold itself.
         *(("srs", 1012, 177), ("wrist_offset", 1021, 2), ("wrist_offset", 1021, 166)),
     ],
@@ -292,7 +300,8 @@ def test_near_is_no_longer_than_along_the_arcs(
 def test_near_goes_through_what_swings_where_the_wrist_is_straight() -> None:
     """There two joints turn against each other while all others stand still.
 
-    Without what is between samples, a quarter of the moves are longer.
+    Without what is between samples, a quarter of the moves are longer; where joints
+    that turned round stay beyond their limits, one of 30.
     """
     robot = iksel.load_robot("iiwa14")
     solver = iksel.Solver(robot)
@@ -306,7 +315,7 @@ def test_near_goes_through_what_swings_where_the_wrist_is_straight() -> None:
     ]
     known = np.linalg.norm(near - straight, axis=1)
     longer = np.flatnonzero(found > known + laws.LONGER)
-    assert longer.size < 0.08 * ARC_POSES, f"seed {SEED}: {longer}"
+    assert longer.size <= 0.015 * ARC_POSES, f"seed {SEED}: {longer}"
 
 
 def test_the_judge_finds_what_is_broken() -> None:

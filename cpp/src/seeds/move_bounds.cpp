@@ -2,57 +2,117 @@
 #include "seeds/move_bounds.hpp"
 
 namespace iksel {
+namespace {
+
+/// What is shorter by less is not looked for [rad].
+constexpr double kGain = 1e-3;
+/// Of what turns so far it is not known which way round [rad].
+constexpr double kEitherWay = 2.5;
+
+}  // namespace
+
+template <typename Beyond>
+MoveBounds::Reach MoveBounds::between(const BranchPoint& a, const BranchPoint& b,
+                                      const Beyond& beyond, double best) const {
+  // Sums of joints are not looked at one by one.
+  bool meets_limit = form_.sums != nullptr && (a.off > 0) != (b.off > 0);
+  Norm norm(form_);
+  for (std::size_t i = 0; i < a.q.size(); ++i) {
+    const double turn = this->turn(i, a.q[i], b.q[i]);
+    if (std::isnan(turn)) continue;
+    const bool is_either_way = form_.turns[i] && std::abs(turn) > kEitherWay;
+    const double around = is_either_way ? kPi : beyond(i, std::abs(turn));
+    const Reach one = reach(i, a.q[i] + std::min(turn, 0.0) - around,
+                            a.q[i] + std::max(turn, 0.0) + around, form_.margin);
+    norm.add(i, one.move);
+    if (!norm.is_below(best)) return {kInfinity, false};
+    meets_limit = meets_limit || one.meets_limit;
+  }
+  return {norm.value(), meets_limit};
+}
+
+MoveBounds::Reach MoveBounds::between(const BranchPoint& a, const BranchPoint& b, const Way& way,
+                                      double best) const {
+  // Joints may turn so much beyond both points, as a part of what they turn between them, and of
+  // what the one does that turns most.
+  constexpr double kBeyond = 0.25;
+  constexpr double kBend = 0.05;
+  const double bend = kBend * way.largest;
+  return between(
+      a, b, [=](std::size_t, double turn) { return kBeyond * turn + bend; }, best);
+}
 
 bool MoveBounds::may_hide_shorter(const BranchPoint& a, const BranchPoint& b, const Way& way,
                                   double usual, double best) const {
   constexpr double kWide = 0.7;     // [rad]
   constexpr double kFinest = 1e-5;  // [rad]
-  // What is shorter by less is not looked for [rad].
-  constexpr double kGain = 1e-3;
   const bool is_wide = way.largest > std::max(kWide, usual);
-  if (!is_wide && !way.leaves_limits) {
-    if (!a.is_blocked() && !b.is_blocked()) return false;
-    // As long as the images stay the same, the moves change no more than that.
-    const bool changes = std::abs(a.inside - b.inside) > kCurved * way.move;
-    if (a.off <= 0 && b.off <= 0 && !changes) return false;
-  }
-  if (way.largest < kFinest || !may_be_shorter(a, b, way, best - kGain)) return false;
-  const Reach between = this->between(a, b, 0);
-  return (is_wide || between.meets_limit) && between.move < best - kGain;
+  const bool changes_images = way.leaves_limits || a.is_blocked() || b.is_blocked();
+  if (way.largest < kFinest || !(is_wide || changes_images)) return false;
+  // Where joints turn far, what is shortest may be far from both points.
+  if (!is_wide && !may_be_shorter(a, b, way, best - kGain)) return false;
+  const Reach between = this->between(a, b, way, best - kGain);
+  return (is_wide || between.meets_limit) && between.move < kInfinity;
 }
 
-bool MoveBounds::may_be_shorter(const BranchPoint& a, const BranchPoint& b, double slack,
-                                double best) const {
-  Way way = this->way(a, b);
-  way.move += slack;
-  way.largest += slack;
-  return may_be_shorter(a, b, way, best) && between(a, b, slack).move < best;
+bool MoveBounds::may_be_shorter(const Gap& gap, double best) const {
+  // A joint turns so many times as far beyond two points as from one point to the next
+  // (python -m bench moves).
+  constexpr double kDetour = 1;
+  const auto& [before, a, b, behind] = gap;
+  const auto most = [&](const auto& change) {
+    double largest = change(a, b);
+    if (before != nullptr) largest = std::max(largest, change(*before, a));
+    if (behind != nullptr) largest = std::max(largest, change(b, *behind));
+    return largest;
+  };
+  const double rise = most([](const BranchPoint& from, const BranchPoint& to) {
+    return std::abs(to.least - from.least);
+  });
+  if (!may_be_between(a.least, b.least, rise)) return false;
+  // What joints a loop opens to, its ends do not tell.
+  if (!a.exists() && !b.exists()) return true;
+  // Where it ends, joints turn as the root of how far it exists.
+  const double at_end = std::sqrt(rise);
+  const auto beyond = [&](std::size_t i, double /*turn*/) {
+    const double turned = most([&](const BranchPoint& from, const BranchPoint& to) {
+      const double one = std::abs(turn(i, from.q[i], to.q[i]));
+      return std::isnan(one) ? 0.0 : one;
+    });
+    return kDetour * turned + at_end;
+  };
+  return between(a, b, beyond, best - kGain).move < kInfinity;
 }
 
-double MoveBounds::inside_move(const std::array<double, 7>& q) const {
+double MoveBounds::inside_move(const Joints& q) const {
   Norm norm(form_);
   for (std::size_t i = 0; i < q.size(); ++i) norm.add(i, reach(i, q[i], q[i], 0).move);
   return norm.value();
 }
 
-BranchPoint MoveBounds::nearest_between(const BranchPoint& a, const BranchPoint& b) const {
-  // What turns by less does not take part in the swing [rad].
-  constexpr double kStill = 0.1;
-  std::array<double, 7> turns{};
-  for (std::size_t i = 0; i < turns.size(); ++i) turns[i] = turn(i, a.q[i], b.q[i]);
-  const BranchPoint nearest = nearest_on_line(a.q, turns);
+BranchPoint MoveBounds::nearest_on_swing(const BranchPoint& from, Joints turns) const {
+  const BranchPoint nearest = nearest_on_line(from.q, turns);
   for (double& one : turns) {
     if (std::abs(one) > kStill) one -= std::copysign(kTwoPi, one);
   }
-  const BranchPoint around = nearest_on_line(a.q, turns);
-  return around.inside < nearest.inside ? around : nearest;
+  BranchPoint around = nearest_on_line(from.q, turns);
+  if (!(around.inside < nearest.inside)) around = nearest;
+  // By whole turns inside the limits, as branches are.
+  for (std::size_t i = 0; i < turns.size(); ++i) {
+    double& q = around.q[i];
+    if (form_.turns[i] && q > form_.upper[i]) {
+      q -= kTwoPi * std::ceil((q - form_.upper[i]) / kTwoPi);
+    } else if (form_.turns[i] && q < form_.lower[i]) {
+      q += kTwoPi * std::ceil((form_.lower[i] - q) / kTwoPi);
+    }
+  }
+  return around;
 }
 
-BranchPoint MoveBounds::nearest_on_line(const std::array<double, 7>& from,
-                                        const std::array<double, 7>& turns) const {
+BranchPoint MoveBounds::nearest_on_line(const Joints& from, const Joints& turns) const {
   constexpr int kSteps = 64;
   constexpr int kRounds = 3;
-  BranchPoint best{from, 0, kInfinity, 0};
+  BranchPoint best{from, 0, 0, kInfinity, 0};
   double middle = 0.5;
   double width = 0.5;
   for (int round = 0; round < kRounds; ++round) {
@@ -60,7 +120,7 @@ BranchPoint MoveBounds::nearest_on_line(const std::array<double, 7>& from,
     width = (std::min(middle + width, 1.0) - first) / kSteps;
     for (int step = 0; step <= kSteps; ++step) {
       const double part = first + width * step;
-      std::array<double, 7> q = from;
+      Joints q = from;
       for (std::size_t i = 0; i < q.size(); ++i) q[i] += part * turns[i];
       const double move = inside_move(q);
       if (move >= best.inside) continue;
@@ -70,29 +130,6 @@ BranchPoint MoveBounds::nearest_on_line(const std::array<double, 7>& from,
     }
   }
   return best;
-}
-
-MoveBounds::Reach MoveBounds::between(const BranchPoint& a, const BranchPoint& b,
-                                      double slack) const {
-  // Joints may turn so much beyond both points, as a part of what they turn from one to the other.
-  constexpr double kBeyond = 0.25;
-  // From here on it is not known which way round [rad].
-  constexpr double kEitherWay = 2.5;
-  // Sums of joints are not looked at one by one.
-  bool meets_limit = form_.sums != nullptr && (a.off > 0) != (b.off > 0);
-  Norm norm(form_);
-  for (std::size_t i = 0; i < a.q.size(); ++i) {
-    const double turn = this->turn(i, a.q[i], b.q[i]);
-    if (std::isnan(turn)) continue;
-    const bool is_either_way = form_.turns[i] && std::abs(turn) > kEitherWay;
-    const double around = is_either_way ? kPi : kBeyond * std::abs(turn) + slack;
-    const Reach one = reach(i, a.q[i] + std::min(turn, 0.0) - around,
-                            a.q[i] + std::max(turn, 0.0) + around, form_.margin);
-    if (one.move == kInfinity) return {kInfinity, false};
-    norm.add(i, one.move);
-    meets_limit = meets_limit || one.meets_limit;
-  }
-  return {norm.value(), meets_limit};
 }
 
 MoveBounds::Reach MoveBounds::reach(std::size_t joint, double low, double high,

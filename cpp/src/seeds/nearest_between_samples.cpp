@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is near may lie between samples: where the wrist is all but straight, other joints turn a
-// lot from one sample to the next; and where a joint meets a limit, the nearest image is another
-// one from there on.
+// lot from one sample to the next; where a joint meets a limit, the nearest image is another one
+// from there on; and where a branch ends, as it merges with another and the curve turns back,
+// joints change as the root of the swept one. A loop has two such ends, maybe all of it between
+// samples.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -11,26 +13,67 @@
 
 namespace iksel {
 
-void NearestOnCurve::look_between_samples(int branch) {
-  const auto i = static_cast<std::size_t>(branch);
-  const std::uint64_t here = exist_[i];
-  const std::uint64_t any = here | far_[i];
-  const std::uint64_t within = here | within_[i];
-  for (std::uint64_t both =
-           any & behind(any) & (within | behind(within)) & ~behind(find_staying(branch));
-       both != 0; both &= both - 1) {
-    look_before(__builtin_ctzll(both), branch);
+void NearestOnCurve::look_between_samples() {
+  // What is found where branches exist bounds what is looked for where they end.
+  visit_gaps([&](std::size_t i) {
+    const std::uint64_t any = exist_[i] | far_[i];
+    const std::uint64_t within = exist_[i] | within_[i];
+    return any & behind(any) & (within | behind(within)) &
+           ~behind(find_staying(static_cast<int>(i)));
+  });
+  visit_gaps([&](std::size_t i) {
+    const std::uint64_t any = exist_[i] | far_[i];
+    return (any & behind(none_[i])) | (none_[i] & behind(any));
+  });
+  visit_gaps([&](std::size_t i) { return find_loops(static_cast<int>(i)); });
+}
+
+std::uint64_t NearestOnCurve::find_loops(int branch) const {
+  // How far it is from being at the samples, at two before and one behind.
+  std::array<double, kSamples + 3> far;
+  for (int place = 0; place < kSamples; ++place) {
+    const SamplePack& pack = packs_[static_cast<std::size_t>(place / kCount)];
+    far[static_cast<std::size_t>(place + 2)] =
+        pack.is_solved ? pack.branch[branch].least[place % kCount] : lanes::kUnknown;
   }
-  for (std::uint64_t firsts = here & ~behind(here); firsts != 0; firsts &= firsts - 1) {
-    const int first = __builtin_ctzll(firsts);
-    int last = first;
-    double least = least_move(places_.value(first));
-    while (exists(last + 1, branch)) {
-      ++last;
-      least = std::min(least, least_move(places_.value(last)));
+  far[0] = places_.turns ? far[kSamples] : lanes::kUnknown;
+  far[1] = places_.turns ? far[kSamples + 1] : lanes::kUnknown;
+  far[kSamples + 2] = places_.turns ? far[2] : lanes::kUnknown;
+
+  const std::uint64_t none = none_[static_cast<std::size_t>(branch)];
+  std::uint64_t loops = 0;
+  for (std::uint64_t both = none & behind(none); both != 0; both &= both - 1) {
+    const double* at = &far[static_cast<std::size_t>(__builtin_ctzll(both))];
+    const double a = at[1];
+    const double b = at[2];
+    // It comes nearest to being at the one or the other.
+    if (a < b ? at[3] > b : at[0] > a) continue;
+    double rise = std::abs(b - a);
+    if (a - at[0] > rise) rise = a - at[0];
+    if (b - at[3] > rise) rise = b - at[3];
+    if (MoveBounds::may_be_between(a, b, rise)) loops |= both & (~both + 1);
+  }
+  return loops;
+}
+
+template <typename Places>
+void NearestOnCurve::visit_gaps(const Places& places_of) {
+  std::array<std::uint64_t, kCount> places;
+  std::uint64_t all = 0;
+  for (std::size_t i = 0; i < kCount; ++i) all |= places[i] = places_of(i);
+  for (; all != 0; all &= all - 1) {
+    const int place = __builtin_ctzll(all);
+    // How far they are from being, where branches were looked for and are not: those that differ in
+    // what there is none of are equally far.
+    std::array<double, kCount> missing{};
+    auto end = missing.begin();
+    for (int branch = 0; branch < kCount; ++branch) {
+      if ((places[static_cast<std::size_t>(branch)] >> place & 1U) == 0) continue;
+      const double a = least(place - 1, branch);
+      const double b = least(place, branch);
+      if (std::find(missing.begin(), end, a + b) != end) continue;
+      if (!look_before(place, branch) && std::max(a, b) < 0) *end++ = a + b;
     }
-    if (least - margin_of_step() > best()) continue;
-    look_into_span(branch, first, last);
   }
 }
 
@@ -56,31 +99,35 @@ std::uint64_t NearestOnCurve::find_staying(int branch) const {
   return all;
 }
 
-void NearestOnCurve::look_before(int place, int branch) {
+bool NearestOnCurve::look_before(int place, int branch) {
+  const double value = places_.value(place);
+  if (least_move(value) - margin_of_step() > best() || !may_hide_shorter(place, branch))
+    return true;
+  return look_into({branch, value - places_.step, value}, kDeepest);
+}
+
+bool NearestOnCurve::may_hide_shorter(int place, int branch) const {
   // How much more than the swept one other joints turn from one sample to the next.
   constexpr double kSteeper = 4;
   const Sample before = sample(place - 1, branch);
   const Sample here = sample(place, branch);
-  const bool is_far = before.is_far() || here.is_far();
-  if (is_far && std::min(before.loose(), here.loose()) - kFarther >= best()) return;
   const BranchPoint a = point(before);
   const BranchPoint b = point(here);
-  const bool may_be =
-      is_far ? bounds().may_be_shorter(a, b, 0, best())
-             : bounds().may_hide_shorter(a, b, bounds().way(a, b), kSteeper * places_.step, best());
-  if (!may_be) return;
-  const double value = places_.value(place);
-  look_into({branch, value - places_.step, value, false, false}, kDeepest);
+  if (!a.exists() || !b.exists()) {
+    std::array<BranchPoint, 2> beside;
+    const auto known = [&](int at, std::size_t i) {
+      return is_known(at) ? &(beside[i] = point(sample(at, branch))) : nullptr;
+    };
+    return bounds().may_be_shorter({known(place - 2, 0), a, b, known(place + 1, 1)}, best());
+  }
+  if (before.is_far() || here.is_far()) return bounds().joints_may_be_shorter(a, b, best());
+  return bounds().may_hide_shorter(a, b, bounds().way(a, b), kSteeper * places_.step, best());
 }
 
-NearestOnCurve::Ends NearestOnCurve::look_into(const BranchSpan& span, int depth) {
-  constexpr double kSpacing = 1.0 / (kCount - 1);
-  const auto part = [](std::size_t i) { return kSpacing * static_cast<double>(i); };
-  branches_.solve_one(span.branch, [&](int lane) { return span.value(kSpacing * lane); });
+bool NearestOnCurve::look_into(const BranchSpan& span, int depth) {
+  branches_.solve_one(span.branch, [&](int lane) { return span.value(lane); });
   std::array<BranchPoint, kCount> nodes;
-  for (int lane = 0; lane < kCount; ++lane) {
-    nodes[static_cast<std::size_t>(lane)] = branches_.point(lane);
-  }
+  for (std::size_t i = 0; i < nodes.size(); ++i) nodes[i] = branches_.point(static_cast<int>(i));
   // From each node to the next.
   std::array<MoveBounds::Way, kCount - 1> ways;
   for (std::size_t i = 0; i < ways.size(); ++i) ways[i] = bounds().way(nodes[i], nodes[i + 1]);
@@ -92,24 +139,30 @@ NearestOnCurve::Ends NearestOnCurve::look_into(const BranchSpan& span, int depth
     const MoveBounds::Way& behind = ways[std::min(i, ways.size() - 1)];
     const MoveBounds::Way widest{std::max(before.move, behind.move),
                                  std::max(before.largest, behind.largest)};
-    if (may_lead_to_shorter(cost(nodes[i]), widest)) follow(span, part(i), kSpacing, widest);
+    if (may_lead_to_shorter(cost(nodes[i]), widest)) follow(span, static_cast<int>(i), widest);
   }
+  bool any =
+      std::any_of(nodes.begin(), nodes.end(), [](const auto& node) { return node.exists(); });
   for (std::size_t i = 0; i < ways.size(); ++i) {
-    if (!bounds().may_hide_shorter(nodes[i], nodes[i + 1], ways[i], 0, best())) continue;
-    if (depth == 0) {
-      add_swing(nodes[i], nodes[i + 1]);
+    const BranchPoint& a = nodes[i];
+    const BranchPoint& b = nodes[i + 1];
+    const bool exists = a.exists() && b.exists();
+    const bool may_hide =
+        exists ? bounds().may_hide_shorter(a, b, ways[i], 0, best())
+               : bounds().may_be_shorter({i > 0 ? &nodes[i - 1] : nullptr, a, b,
+                                          i + 2 < nodes.size() ? &nodes[i + 2] : nullptr},
+                                         best());
+    if (!may_hide) continue;
+    if (ways[i].is_swing()) {
+      add_swing(a, b);
       continue;
     }
-    if (spans_left_ == 0) break;
+    if (depth == 0 || spans_left_ == 0) continue;
     --spans_left_;
-    look_into({span.branch, span.value(part(i)), span.value(part(i + 1)), false, false}, depth - 1);
+    const int lane = static_cast<int>(i);
+    any |= look_into({span.branch, span.value(lane), span.value(lane + 1)}, depth - 1);
   }
-  const auto gets_shorter = [&](const BranchPoint& end, const BranchPoint& before,
-                                const MoveBounds::Way& way) {
-    return cost(end) <= cost(before) && may_lead_to_shorter(cost(end), way);
-  };
-  return {gets_shorter(nodes.front(), nodes[1], ways.front()),
-          gets_shorter(nodes.back(), nodes[kCount - 2], ways.back())};
+  return any;
 }
 
 bool NearestOnCurve::may_lead_to_shorter(double cost, const MoveBounds::Way& way) const {
@@ -120,19 +173,20 @@ bool NearestOnCurve::may_lead_to_shorter(double cost, const MoveBounds::Way& way
 }
 
 void NearestOnCurve::add_swing(const BranchPoint& a, const BranchPoint& b) {
-  const BranchPoint nearest = bounds().nearest_between(a, b);
+  const BranchPoint nearest = bounds().nearest_on_swing(a, branches_.turns(a, b));
   if (!(nearest.inside < best())) return;
   SweptJoints found{nearest.inside, {}};
   branches_.copy_joints(nearest, found.q.data());
   found_.add(found);
 }
 
-void NearestOnCurve::follow(const BranchSpan& span, double part, double width,
-                            const MoveBounds::Way& way) {
+void NearestOnCurve::follow(const BranchSpan& span, int node, const MoveBounds::Way& way) {
   SweptJoints best{kInfinity, {}};
-  const auto value = [&](double p) { return span.value(std::min(std::max(p, 0.0), 1.0)); };
+  const auto value = [&](double v) { return std::min(std::max(v, span.lower), span.upper); };
   const auto take = [&](int lane, double) { branches_.copy_joints(lane, best.q.data()); };
-  const Bracket bracket{span.branch, part, width, kNarrowings, kFinest * width, !takes_largest_};
+  const double width = span.spacing();
+  const Bracket bracket{span.branch, span.value(node), width,
+                        kNarrowings, kFinest * width,  !takes_largest_};
   best.value = minimize(
       branches_, bracket, value, [&](int lane) { return cost(lane); }, kRefused, take,
       [&](double so_far, int round) {

@@ -41,9 +41,7 @@ void NearestOnCurve::find(const Pose& Y, const JointVector& near, const JointMov
   for (const LeastPlace& least : least_) {
     if (may_be_shorter(least)) follow(least);
   }
-  for (int branch = 0; branch < SweptBranches::kCount; ++branch) look_between_samples(branch);
-  look_beyond_folds();
-  look_for_loops();
+  look_between_samples();
 }
 
 bool NearestOnCurve::prefers_staying(const JointMove& move) const {
@@ -76,7 +74,6 @@ void NearestOnCurve::look_around() {
   far_.fill(0);
   none_.fill(0);
   within_.fill(0);
-  rising_.fill(0);
   double best = std::min(known_move_, kRefused);
   const double from = near_[static_cast<std::size_t>(branches_.joint())] - places_.lower;
   const double start = places_.turns ? from - kTwoPi * std::floor(from / kTwoPi) : from;
@@ -111,10 +108,7 @@ double NearestOnCurve::solve_pack(int pack, double best) {
   for (std::size_t branch = 0; branch < kCount; ++branch) {
     const lanes::BranchRow& row = samples.branch[branch];
     within_[branch] |= row.within << first;
-    rising_[branch] |= std::uint64_t{1} << first;
     for (int i = 0; i < kCount; ++i) {
-      if (i > 0 && row.least[i] >= row.least[i - 1])
-        rising_[branch] |= std::uint64_t{1} << (first + i);
       const Sample at{row, i, 0};
       const std::uint64_t bit = std::uint64_t{1} << (first + i);
       if (at.is_none()) {

@@ -43,8 +43,6 @@ class NearestOnCurve {
   static constexpr int kSamples = 64;
   static constexpr int kPacks = kSamples / lanes::kWidth;
   static constexpr std::size_t kMost = 8;
-  /// Samples of a short span.
-  static constexpr int kShort = 3;
   /// What is no answer counts more than any move, and the more the farther it is from one.
   static constexpr double kRefused = 1e9;
   /// The move to where the curve ends may be so much shorter than at the sample before.
@@ -143,53 +141,28 @@ class NearestOnCurve {
   [[nodiscard]] BranchPoint point(const Sample& sample) const {
     return branches_.point(sample.value, sample.row, sample.lane);
   }
-  [[nodiscard]] bool exists(int place, int branch) const {
-    const int at = places_.find(place);
-    return at >= 0 && (exist_[static_cast<std::size_t>(branch)] >> at & 1U) != 0;
-  }
-  /// Below 0 if it is not.
   [[nodiscard]] double least(int place, int branch) const {
     const Sample at = sample(place, branch);
     return at.row.least[at.lane];
   }
-  [[nodiscard]] bool is_none(int place, int branch) const {
-    return is_known(place) && sample(place, branch).is_none();
+  [[nodiscard]] bool exists(int place, int branch) const {
+    const int at = places_.find(place);
+    return at >= 0 && (exist_[static_cast<std::size_t>(branch)] >> at & 1U) != 0;
   }
   /// Whether there may be a shorter move than the best so far beside a sample.
   [[nodiscard]] bool may_be_shorter(const LeastPlace& least) const;
   void follow(const LeastPlace& least);
   /// Finds the samples at which a branch costs less than at those beside.
   void find_least_places();
-  void look_between_samples(int branch);
-  /// Between a sample and the one before.
-  void look_before(int place, int branch);
-  /// From its first sample to its last.
-  void look_into_span(int branch, int first, int last);
-  void look_into_short_span(int branch, int first, int last);
-  /// Where branches that are far at a sample fold between that and the one beside it.
-  void look_beyond_folds();
-  /// The same of one sample, on one side of it.
-  void look_beyond(int end, int side);
-  /// From `inside`, where a branch exists, to its fold, which is narrowed further where it is worth
-  /// it.
-  void look_into_fold(int branch, double inside, SweptBranches::Fold& fold);
-  /// Narrows the way from `inside`, a point of a branch, to its fold; whether there may be a
-  /// shorter move than the best so far on it.
-  bool narrow_where_shorter(int branch, const BranchPoint& inside, SweptBranches::Fold& fold);
-  /// Where branches are at none of three samples, but come nearest to being at the middle one: they
-  /// may be beside it, from fold to fold.
-  void look_for_loops();
-  /// The same of one branch and middle sample; whether it is.
-  bool look_for_loop(int place, int branch);
-  /// Whether two branches are equally far from being at a sample and those beside.
-  [[nodiscard]] bool are_as_far(int place, int branch, int other) const;
-  /// From three values of how near a branch is to being, whether it may be between them.
-  [[nodiscard]] static bool may_be_between(double before, double here, double behind) {
-    // It falls faster and faster away from where the branch is: nowhere does it rise by more than
-    // beside the highest of three, and by half as much again where two subproblems are in turn.
-    return here >= before && here >= behind &&
-           here + MoveBounds::kCurved * (here - std::min(before, behind)) >= 0;
-  }
+  void look_between_samples();
+  /// Looks before those places of each branch, given as bits by places_of(branch).
+  template <typename Places>
+  void visit_gaps(const Places& places_of);
+  /// Between a sample and the one before; false if the branch was looked for there and is not.
+  bool look_before(int place, int branch);
+  /// Whether there may be a shorter move than the best so far there that the samples do not tell
+  /// of.
+  [[nodiscard]] bool may_hide_shorter(int place, int branch) const;
   /// Bits of the places before these, or behind.
   [[nodiscard]] std::uint64_t before(std::uint64_t places) const {
     return places >> 1 | (places_.turns ? places << (kSamples - 1) : 0);
@@ -197,30 +170,28 @@ class NearestOnCurve {
   [[nodiscard]] std::uint64_t behind(std::uint64_t places) const {
     return places << 1 | (places_.turns ? places >> (kSamples - 1) : 0);
   }
+  /// The samples between which and those before a branch that is at neither may be, as bits.
+  [[nodiscard]] std::uint64_t find_loops(int branch) const;
   /// The samples from which to the next a joint stays beyond the same limit, as bits.
   [[nodiscard]] std::uint64_t find_staying(int branch) const;
-  /// Whether a joint lies beyond the same limit in two branches at a sample.
-  [[nodiscard]] bool are_beyond(int place, int branch, int other) const;
-  /// Where a branch ends between a sample and the one on that side of it.
-  [[nodiscard]] SweptBranches::Fold fold_beside(int branch, int end, int side) const;
-  /// Whether there may be a shorter move than the best so far on a span of few samples, and where
-  /// it folds at its ends.
-  [[nodiscard]] bool short_span_may_be_shorter(int branch, int first, int last) const;
-  /// The same where branches fold between a sample and the one on that side of it.
-  [[nodiscard]] bool fold_may_be_shorter(int branch, int end, int side) const;
   /// Whether a search that came so far after some rounds need not go on.
   [[nodiscard]] bool is_hopeless(double so_far, int round) const;
-  /// Whether moves may get shorter beyond the ends of a span.
-  struct Ends {
-    bool below, above;
+  /// Values of the swept joint between which a branch is looked into, at kCount nodes.
+  struct BranchSpan {
+    int branch;
+    double lower, upper;  ///< [rad or m]
+
+    [[nodiscard]] double spacing() const { return (upper - lower) / (kCount - 1); }
+    [[nodiscard]] double value(int node) const { return lower + spacing() * node; }
   };
-  /// Looks for the least moves in a span, over kCount nodes, and between these where there may be
+  /// Looks for the least moves in a span, at its nodes, and between these where there may be
   /// shorter ones that they do not tell of, down to so many levels.
-  Ends look_into(const BranchSpan& span, int depth);
-  /// Adds the nearest between two points at all but the same value of the swept joint.
+  bool look_into(const BranchSpan& span, int depth);
+  /// Adds the nearest between two points between which joints swing.
   void add_swing(const BranchPoint& a, const BranchPoint& b);
-  /// Looks for the least move around a part of a span, up to `width` and `way` to both sides.
-  void follow(const BranchSpan& span, double part, double width, const MoveBounds::Way& way);
+  /// Looks for the least move around a node of a span, as far as those beside it, which are up to
+  /// `way` away.
+  void follow(const BranchSpan& span, int node, const MoveBounds::Way& way);
   /// Whether there may be a shorter move than the best so far such a way around one of that cost.
   [[nodiscard]] bool may_lead_to_shorter(double cost, const MoveBounds::Way& way) const;
 
@@ -233,9 +204,8 @@ class NearestOnCurve {
   /// The samples at which all joints of a branch are known, at which it is far, and at which it is
   /// not, as bits.
   std::array<std::uint64_t, kCount> exist_{}, far_{}, none_{};
-  /// Those at which by the joints known it may be near enough, and at which it is not, but comes
-  /// nearer to being than at the sample before.
-  std::array<std::uint64_t, kCount> within_{}, rising_{};
+  /// Those at which by the joints known it may be near enough.
+  std::array<std::uint64_t, kCount> within_{};
   double known_move_ = 0;
   bool takes_largest_ = false;
   int spans_left_ = 0;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "seeds/swept_branches.hpp"
 
-#include <iterator>
+#include <utility>
+
+#include "base/angle.hpp"
 
 namespace iksel {
 
@@ -104,77 +106,33 @@ void SweptBranches::measure_moves() {
   if (measures_moves_) kernels_.measure_moves(move_form_, *last_, moves_);
 }
 
-void SweptBranches::narrow(int branch, int rounds, Fold& fold) {
-  for (int round = 0; round < rounds; ++round) {
-    const double step = (fold.outside - fold.inside) / (kCount + 1);
-    const double from = fold.inside;
-    const auto value = [&](int lane) { return from + step * (lane + 1); };
-    hold_one(branch, value);
-    find_branches(one_);
-    for (int lane = 0; lane < kCount; ++lane) {
-      if (least(lane) < 0) {
-        fold.outside = value(lane);
-        fold.least_outside = least(lane);
-        break;
-      }
-      // What was before may not be known.
-      const bool is_known = fold.least_inside > 0;
-      fold.before = is_known ? fold.inside : value(lane);
-      fold.least_before = fold.least_inside;
-      fold.inside = value(lane);
-      fold.least_inside = least(lane);
-    }
+MoveBounds::Joints SweptBranches::turns(const BranchPoint& from, const BranchPoint& to) const {
+  const lanes::ClosedForm& form = chain_.form;
+  // Along the chain: the swept joint, which is a point's last, comes first.
+  const auto index = [](int i) { return static_cast<std::size_t>(i < 0 ? kDof - 1 : i); };
+  MoveBounds::Joints turns{};
+  int swings[kDof];
+  int count = 0;
+  for (int i = -1; i < kDof - 1; ++i) {
+    const std::size_t at = index(i);
+    const double d = to.q[at] - from.q[at];
+    turns[at] = move_form_.turns[at] ? without_turns(d) : d;
+    if (std::abs(turns[at]) > MoveBounds::kStill) swings[count++] = i;
   }
-}
-
-SweptBranches::Loop SweptBranches::find_loop(int branch, double lower, double upper,
-                                             double least_lower, double least_upper) {
-  constexpr int kRounds = 9;
-  for (int round = 0; round < kRounds; ++round) {
-    const double step = (upper - lower) / (kCount + 1);
-    const double from = lower;
-    hold_one(branch, [&](int lane) { return from + step * (lane + 1); });
-    find_branches(one_);
-    int best = 0;
-    for (int lane = 1; lane < kCount; ++lane) {
-      if (least(lane) > least(best)) best = lane;
-    }
-    const double here = least(best);
-    if (here >= 0) {
-      int first = best;
-      int last = best;
-      while (first > 0 && least(first - 1) >= 0) --first;
-      while (last < kCount - 1 && least(last + 1) >= 0) ++last;
-      return {value(best), from + step * first, from + step * (last + 2)};
-    }
-    if (best > 0) least_lower = least(best - 1);
-    if (best < kCount - 1) least_upper = least(best + 1);
-    // It rises by no more than beside the highest, and by half as much again where two subproblems
-    // are in turn.
-    if (here + MoveBounds::kCurved * (here - std::min(least_lower, least_upper)) < 0) break;
-    lower = from + step * best;
-    upper = from + step * (best + 2);
+  if (count != 2) return turns;
+  // Half a turn of one is half a turn of the other either way round, but for their axes.
+  const auto [first, second] = std::pair(swings[0], swings[1]);
+  const Eigen::Vector3d held(form.held_axis);
+  Eigen::Vector3d axis(form.h[second]);
+  for (int i = second - 1; i > first; --i) {
+    const double angle = from.q[index(i)] + form.offset[i];
+    axis = Eigen::AngleAxisd(angle, Eigen::Vector3d(form.h[i])) * axis;
   }
-  return {kInfinity, lower, upper};
-}
-
-double SweptBranches::Fold::end() const {
-  // Where the parabola through the three values is 0; from where the line through the last two is.
-  const double range = outside - inside;
-  const double slope = (least_outside - least_inside) / range;
-  const double straight = -least_inside / slope;
-  if (before == inside) return inside + straight;
-  const double slope_before = (least_inside - least_before) / (inside - before);
-  const double bend = (slope - slope_before) / (outside - before);
-  double way = straight;
-  for (int step = 0; step < 2; ++step) {
-    const double value = least_inside + way * (slope + bend * (way - range));
-    const double steep = slope + bend * (2 * way - range);
-    // A parabola that does not fall all the way says nothing.
-    if (!(steep * range < 0)) return inside + straight;
-    way = std::min(std::max((way - value / steep) / range, 0.0), 1.0) * range;
-  }
-  return inside + way;
+  const bool are_same = axis.dot(first < 0 ? held : Eigen::Vector3d(form.h[first])) > 0;
+  const double against = are_same ? -turns[index(first)] : turns[index(first)];
+  double& other = turns[index(second)];
+  other = against + without_turns(other - against);
+  return turns;
 }
 
 }  // namespace iksel

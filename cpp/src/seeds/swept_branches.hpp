@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "base/constants.hpp"
-#include "base/sincos.hpp"
 #include "goal/joint_move.hpp"
 #include "kinematics/chain_model.hpp"
 #include "seeds/move_bounds.hpp"
@@ -31,26 +30,6 @@ struct Places {
     if (turns && place < 0) return find(place + count);
     if (turns && place >= count) return find(place - count);
     return place < 0 || place >= count ? -1 : place;
-  }
-};
-
-/// Values of the swept joint for which a branch exists, without others between.
-struct BranchSpan {
-  int branch;
-  double lower, upper;  ///< [rad or m]
-  /// Whether the branch merges with another there, and the curve turns back.
-  bool folds_below, folds_above;
-
-  /// The value at a part of the way, 0 to 1, in which the other joints change evenly: beside a fold
-  /// they change as the root of the swept one.
-  [[nodiscard]] double value(double part) const {
-    const double range = upper - lower;
-    if (!folds_below && !folds_above) return lower + range * part;
-    double sine = 0;
-    double cosine = 0;
-    sincos((folds_below && folds_above ? kPi : 0.5 * kPi) * part, sine, cosine);
-    if (!folds_below) return lower + range * sine;
-    return lower + range * (folds_above ? 0.5 : 1.0) * (1 - cosine);
   }
 };
 
@@ -135,36 +114,21 @@ class SweptBranches {
     kernels_.rate_branch(chain_.form, one_, bound, off);
   }
 
-  /// Values of the swept joint on both sides of a branch's end, and how far it exists there; of the
-  /// value inside that was the one before, too, if that is another.
-  struct Fold {
-    double inside, outside;
-    double least_inside = 0, least_outside = -1;
-    double before = inside, least_before = 0;
-
-    /// About where it ends: off by the cube of the way between inside and outside.
-    [[nodiscard]] double end() const;
-  };
-  /// Narrows the way between `inside`, where a branch exists, and `outside`, where it does not, to
-  /// a ninth in each round.
-  void narrow(int branch, int rounds, Fold& fold);
-  /// Values between two, at which a branch does not exist and is so far from it: one at which it
-  /// does, and around it two at which it does not; that one infinite if there seems to be none.
-  struct Loop {
-    double inside, below, above;
-  };
-  Loop find_loop(int branch, double lower, double upper, double least_lower, double least_upper);
   /// From now on, the moves from `near` are measured to all that is solved [rad].
   void measure_moves_from(const JointVector& near, const JointMove& move);
   [[nodiscard]] const lanes::MoveForm& move_form() const { return move_form_; }
   /// What was measured of a branch at a value of the swept joint.
   [[nodiscard]] BranchPoint point(double swept, const lanes::BranchRow& row, int lane) const {
-    return make_point(swept + offset_, row.q, row.moves, lane);
+    return make_point(swept + offset_, row.q, row.least[lane], row.moves, lane);
   }
   /// The same of what was solved last.
   [[nodiscard]] BranchPoint point(int lane) const {
-    return make_point(last_->held[lane], last_->q, moves_, lane);
+    return make_point(last_->held[lane], last_->q, last_->least[lane], moves_, lane);
   }
+
+  /// How far joints turn from one point to another; those that swing, about axes that are in line,
+  /// against each other [rad or m].
+  [[nodiscard]] MoveBounds::Joints turns(const BranchPoint& from, const BranchPoint& to) const;
 
   // What the last of these found in a lane.
 
@@ -223,8 +187,10 @@ class SweptBranches {
   void measure_moves();
   void rate(double bound, Row* rows);
   [[nodiscard]] static BranchPoint make_point(double held, const double (&q)[6][kCount],
-                                              const lanes::MovePack& moves, int lane) {
+                                              double least, const lanes::MovePack& moves,
+                                              int lane) {
     return {{q[0][lane], q[1][lane], q[2][lane], q[3][lane], q[4][lane], q[5][lane], held},
+            least,
             moves.loose[lane],
             moves.inside[lane],
             moves.off[lane]};

@@ -16,7 +16,13 @@ Status search_layer(const Solver::Impl& solver, const Goal& goal, const Layer* b
                     Layer& layer) {
   // Of several tips a search takes far longer than what goes on from the waypoint before.
   constexpr std::size_t kEnoughForTips = 8;
-  if (before != nullptr) search.add_continuations(goal, *before, layer);
+  if (before != nullptr && !search.add_continuations(goal, *before, layer) && goal.is_redundant()) {
+    // Another way on from the cheapest, past what its iteration met, may be short.
+    SolveRequest nearest = search.request();
+    nearest.near = before->at(0);
+    const Result result = solver.find_answer(goal, nearest, workspace, nullptr);
+    if (result.success()) layer.add(result.q);
+  }
   if (goal.tips() != nullptr && layer.size() >= kEnoughForTips) {
     search.screen(layer);
     search.connect(before, layer);

@@ -38,12 +38,14 @@ class PathSearch {
 
   [[nodiscard]] const SolveRequest& request() const { return request_; }
 
-  /// What the candidates of the layer before lead to at the next waypoint.
-  void add_continuations(const Goal& goal, const Layer& before, Layer& layer) const {
+  /// What the candidates of the layer before lead to at the next waypoint. Returns whether the
+  /// cheapest of them leads anywhere.
+  bool add_continuations(const Goal& goal, const Layer& before, Layer& layer) const {
     // Images of a configuration lead to images: only one of them is iterated.
     constexpr double kCopy = 1e-11;
     std::vector<JointVector> origins;
     std::vector<JointVector> moves;
+    bool leads_on = false;
     for (std::size_t i = 0; i < before.size(); ++i) {
       const JointVector from = before.at(i);
       std::size_t same = 0;
@@ -57,8 +59,11 @@ class PathSearch {
         moves.emplace_back(q - from);
       }
       const JointVector q = from + moves[same];
-      if (model_.joints.contains(q.data())) layer.add(q);
+      if (!model_.joints.contains(q.data())) continue;
+      layer.add(q);
+      leads_on = leads_on || i == 0;
     }
+    return leads_on;
   }
 
   /// The same for an arm that is swept, all candidates at once in lanes, and if asked for with them

@@ -109,7 +109,6 @@ bool ArmSeeds::next_stage() {
   }
   if (left_ == 0 || patience_ == 0 || !work_.take()) return false;
   --left_;
-  if (last_best_ < kInfinity) --patience_;
   JointVector q = model_.joints.middle();
   values_.next(last_best_, q);
   solutions_.assign(order_.size(), std::nullopt);
@@ -121,6 +120,7 @@ bool ArmSeeds::next_stage() {
     std::rotate(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(failed_),
                 order_.end());
   }
+  if (last_best_ < kInfinity && !seeds_.empty()) --patience_;
   sort_out();
   return true;
 }

@@ -39,15 +39,15 @@ class Size:
     """Targets of the requests."""
     restarts: int = 1_000
     """Targets that are restarted a thousand times each."""
-    no: int = 10_000
+    no: int = 5_000
     """Targets of each kind for the noes, and what goes with them."""
-    no_slow: int = 100
+    no_slow: int = 50
     """The same for slow solvers, which may take a tenth of a second for a no."""
     no_seed: int = SEED
     """Their seed."""
-    analytic: int = 1_000
+    analytic: int = 500
     """Targets of each kind for solvers that enumerate."""
-    analytic_s: float = 1.0
+    analytic_s: float = 0.5
     """Time after which none of them is begun any more, in each way to ask [s]."""
     tail_calls: int = 1_000_000
     """Reachable targets whose single calls are looked at one by one."""
@@ -77,11 +77,11 @@ FULL = Size(
     figure_attempts=tuple(range(1, 21)),
     cvt_scales=("small", "medium"),
     rivals={
-        "uniform": 2_000,
-        "near_limits": 1_000,
-        "near_singular": 1_000,
-        "lines": 1_000,
-        "unreachable": 100,
+        "uniform": 1_000,
+        "near_limits": 500,
+        "near_singular": 500,
+        "lines": 500,
+        "unreachable": 50,
     },
     robots=100_000,
     batch=10_000,

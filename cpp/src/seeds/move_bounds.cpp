@@ -5,7 +5,7 @@ namespace iksel {
 namespace {
 
 /// What is shorter by less is not looked for [rad].
-constexpr double kGain = 1e-3;
+constexpr double kTooLittle = 1e-3;
 /// Of what turns so far it is not known which way round [rad].
 constexpr double kEitherWay = 2.5;
 
@@ -50,20 +50,18 @@ bool MoveBounds::may_hide_shorter(const BranchPoint& a, const BranchPoint& b, co
   const bool changes_images = way.leaves_limits || a.is_blocked() || b.is_blocked();
   if (way.largest < kFinest || !(is_wide || changes_images)) return false;
   // Where joints turn far, what is shortest may be far from both points.
-  if (!is_wide && !may_be_shorter(a, b, way, best - kGain)) return false;
-  const Reach between = this->between(a, b, way, best - kGain);
+  if (!is_wide && !may_be_shorter(a, b, way, best - kTooLittle)) return false;
+  const Reach between = this->between(a, b, way, best - kTooLittle);
   return (is_wide || between.meets_limit) && between.move < kInfinity;
 }
 
 bool MoveBounds::may_be_shorter(const Gap& gap, double best) const {
-  // A joint turns so many times as far beyond two points as from one point to the next
-  // (python -m bench moves).
-  constexpr double kDetour = 1;
-  const auto& [before, a, b, behind] = gap;
+  const BranchPoint& a = gap.a;
+  const BranchPoint& b = gap.b;
   const auto most = [&](const auto& change) {
     double largest = change(a, b);
-    if (before != nullptr) largest = std::max(largest, change(*before, a));
-    if (behind != nullptr) largest = std::max(largest, change(b, *behind));
+    if (gap.before != nullptr) largest = std::max(largest, change(*gap.before, a));
+    if (gap.behind != nullptr) largest = std::max(largest, change(b, *gap.behind));
     return largest;
   };
   const double rise = most([](const BranchPoint& from, const BranchPoint& to) {
@@ -72,16 +70,17 @@ bool MoveBounds::may_be_shorter(const Gap& gap, double best) const {
   if (!may_be_between(a.least, b.least, rise)) return false;
   // What joints a loop opens to, its ends do not tell.
   if (!a.exists() && !b.exists()) return true;
-  // Where it ends, joints turn as the root of how far it exists.
+  // A joint turns as far beyond two points as from one point to the next (python -m bench moves),
+  // and where the branch ends as the root of how far that exists.
   const double at_end = std::sqrt(rise);
   const auto beyond = [&](std::size_t i, double /*turn*/) {
     const double turned = most([&](const BranchPoint& from, const BranchPoint& to) {
       const double one = std::abs(turn(i, from.q[i], to.q[i]));
       return std::isnan(one) ? 0.0 : one;
     });
-    return kDetour * turned + at_end;
+    return turned + at_end;
   };
-  return between(a, b, beyond, best - kGain).move < kInfinity;
+  return between(a, b, beyond, best - kTooLittle).move < kInfinity;
 }
 
 double MoveBounds::inside_move(const Joints& q) const {

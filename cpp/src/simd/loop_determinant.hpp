@@ -20,7 +20,7 @@ namespace iksel::lanes {
 
 /// The equations, and the products that both halves have; three more are one half's own.
 inline constexpr int kEquations = 6;
-inline constexpr int kOwn = 3;
+inline constexpr int kAlone = 3;
 
 /// So many columns of six equations: the first index is a product's.
 template <typename T, int kColumns>
@@ -30,7 +30,7 @@ using Columns = T[kColumns][kEquations];
 /// these leave of the products between.
 template <typename T>
 struct Products {
-  Columns<T, kOwn + kEquations> half[2];
+  Columns<T, kAlone + kEquations> half[2];
   Columns<T, kEquations> rest;
 };
 
@@ -94,7 +94,7 @@ IKSEL_INLINE void make_triangular(Products<T> (&m)[kCount], T (&products)[kCount
   for (int i = 0; i < kCount; ++i) {
     for (int j = 0; j < kEquations; ++j) {
       for (int row = 0; row < kEquations; ++row) {
-        m[i].rest[j][row] = m[i].half[row / kOwn][kOwn + j][kOwn + row % kOwn];
+        m[i].rest[j][row] = m[i].half[row / kAlone][kAlone + j][kAlone + row % kAlone];
       }
     }
   }
@@ -110,7 +110,7 @@ IKSEL_INLINE void make_triangular(Products<T> (&m)[kCount], T (&products)[kCount
 }
 template <typename T, int kCount>
 IKSEL_INLINE void make_triangular(Products<T> (&m)[kCount], T (&products)[kCount]) {
-  make_triangular(m, products, std::make_integer_sequence<int, kOwn>{},
+  make_triangular(m, products, std::make_integer_sequence<int, kAlone>{},
                   std::make_integer_sequence<int, kEquations - 1>{});
 }
 

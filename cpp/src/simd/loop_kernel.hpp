@@ -15,15 +15,15 @@ template <typename T>
 IKSEL_INLINE void find_null_vector(const Products<T>& products, T (&x)[kProducts]) {
   // As one triangular matrix, by columns.
   T m[kProducts][kProducts];
-  for (int i = 0; i < kOwn; ++i) {
-    for (int k = 0; k < kOwn; ++k) {
+  for (int i = 0; i < kAlone; ++i) {
+    for (int k = 0; k < kAlone; ++k) {
       m[k][i] = products.half[0][k][i];
-      m[kOwn + k][i] = T(0.0);
-      m[kOwn + k][kOwn + i] = products.half[1][k][i];
+      m[kAlone + k][i] = T(0.0);
+      m[kAlone + k][kAlone + i] = products.half[1][k][i];
     }
-    for (int k = kOwn; k < kOwn + kEquations; ++k) {
-      m[kOwn + k][i] = products.half[0][k][i];
-      m[kOwn + k][kOwn + i] = products.half[1][k][i];
+    for (int k = kAlone; k < kAlone + kEquations; ++k) {
+      m[kAlone + k][i] = products.half[0][k][i];
+      m[kAlone + k][kAlone + i] = products.half[1][k][i];
     }
   }
   for (int k = 0; k < kEquations; ++k) {

@@ -214,6 +214,86 @@ def test_short_arcs_of_rails_are_found(number: int, q: tuple[float, ...]) -> Non
     assert iksel.Solver(arm.robot).solve(arm.robot.fk(np.array(q))).success
 
 
+@pytest.mark.parametrize(
+    ("number", "q"),
+    [
+        (
+            52002,
+            (
+                -1.80730438122,
+                0.317124954228,
+                0.523959586544,
+                2.575892339536,
+                -2.727977860159,
+                0.311416550396,
+            ),
+        ),
+        (
+            52002,
+            (
+                0.279734282942,
+                0.052257758337,
+                0.599570489255,
+                2.43863206603,
+                -0.768459323744,
+                1.67529445246,
+            ),
+        ),
+        (
+            52005,
+            (
+                0.176817078975,
+                0.949227148576,
+                0.892375247212,
+                0.604945390922,
+                0.744874530835,
+                0.845668409708,
+            ),
+        ),
+        (
+            52005,
+            (
+                -1.472888033258,
+                0.98149413875,
+                0.04312858075,
+                0.442391988251,
+                -0.310016067757,
+                1.208473985317,
+            ),
+        ),
+        (
+            52023,
+            (
+                -0.858074936287,
+                -1.897086158274,
+                2.575521329237,
+                1.323468335426,
+                -2.137155222665,
+                0.356994680052,
+            ),
+        ),
+        (
+            52049,
+            (
+                -0.476901495223,
+                -0.851845389933,
+                -0.368895395087,
+                1.401886820085,
+                1.702123997971,
+                -0.154356546904,
+            ),
+        ),
+    ],
+)
+def test_solutions_of_branches_that_only_just_are_are_found(
+    number: int, q: tuple[float, ...]
+) -> None:
+    """Six joints of which one is swept: joints turn far with what a root is off."""
+    arm = random_arms.random_arm("offset_wrist", number)
+    assert arm.robot.within_limits(np.array(q))
+    assert iksel.Solver(arm.robot).solve(arm.robot.fk(np.array(q))).success
+
+
 def test_small_closed_curves_of_an_almost_regular_arm_are_found() -> None:
     """At the edge of what xarm7 reaches; its regular arm does not reach as far.
 

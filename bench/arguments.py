@@ -10,15 +10,26 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 
-def add_robots(command: argparse.ArgumentParser, default: Sequence[str]) -> None:
-    """Which robots."""
+def add_robots(
+    command: argparse.ArgumentParser, default: Sequence[str], note: str = ""
+) -> None:
+    """Which robots; a note on them ends the help."""
     command.add_argument(
         "robots",
         nargs="*",
         metavar="ROBOT",
         default=default,
-        help=f"default: {' '.join(default)}",
+        help=f"default: {' '.join(default)}{note}",
     )
+
+
+def check_robots(command: str, asked: Sequence[str], known: Sequence[str]) -> None:
+    """Raise SystemExit, which says what there is, if a command has not all of them."""
+    unknown = sorted(set(asked) - set(known))
+    if unknown:
+        raise SystemExit(
+            f"bench {command}: no {', '.join(unknown)}; has {', '.join(known)}"
+        )
 
 
 def add_quick(command: argparse.ArgumentParser, what: str = "fewer targets") -> None:

@@ -19,6 +19,7 @@ import iksel
 import iksel.exact
 import iksel.spheres
 import iksel.srdf
+from bench.arguments import add_robots, check_robots
 from bench.robot_data import PACKAGE, VARIABLE, robots_folder
 from bench.settings import WORK
 from bench.timing import least_times, time_calls
@@ -136,9 +137,7 @@ def add(commands: Any) -> None:
     command = commands.add_parser(
         "body", help="arms kept out of their own robots", description=__doc__
     )
-    command.add_argument(
-        "robots", nargs="*", metavar="ROBOT", default=tuple(ROBOTS), help="default: all"
-    )
+    add_robots(command, tuple(ROBOTS))
     command.add_argument("--targets", type=int, default=1_000, metavar="N")
     command.add_argument("--seed", type=int, default=0)
     command.add_argument("--max-error", type=float, default=0.02, metavar="M")
@@ -146,11 +145,7 @@ def add(commands: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Measure, and print JSON."""
-    unknown = sorted(set(args.robots) - set(ROBOTS))
-    if unknown:
-        raise SystemExit(
-            f"bench body: no {', '.join(unknown)}; has {', '.join(ROBOTS)}"
-        )
+    check_robots("body", args.robots, tuple(ROBOTS))
     rows: dict[str, Any] = {"simd": iksel.simd_level()}
     rows |= {name: measured(name, args) for name in args.robots}
     print(json.dumps(rows, indent=2))

@@ -12,6 +12,7 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 import iksel
+from bench.arguments import add_robots, check_robots
 from bench.branches import SAME_MOVE
 from bench.markdown import microseconds, table
 from bench.rivals.base import UnsupportedError
@@ -35,14 +36,8 @@ def add(commands: Any) -> None:
         help="both hands: near beside brute force, free of the body, carrying a box",
         description=__doc__,
     )
-    command.add_argument(
-        "robots",
-        nargs="*",
-        metavar="ROBOT",
-        default=ROBOTS,
-        help=f"default: {' '.join(ROBOTS)}; pr2, and the meshes of both, are those of "
-        "example-robot-data",
-    )
+    of_meshes = "; pr2, and the meshes of both, are those of example-robot-data"
+    add_robots(command, ROBOTS, of_meshes)
     command.add_argument(
         "--near", type=int, default=300, metavar="N", help="moves of each start"
     )
@@ -56,11 +51,7 @@ def add(commands: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Measure, and print tables; 1 if an answer is none."""
-    unknown = sorted(set(args.robots) - set(ROBOTS))
-    if unknown:
-        raise SystemExit(
-            f"bench hands: no {', '.join(unknown)}; has {', '.join(ROBOTS)}"
-        )
+    check_robots("hands", args.robots, ROBOTS)
     made: dict[str, Rows] = {"near": {}, "free": {}, "paths": {}}
     for name in args.robots:
         try:

@@ -13,6 +13,8 @@ if TYPE_CHECKING:
     from bench.view import View
 
 BAD, GOOD, CALM = "#c1121f", "#1f77b4", "0.75"
+BEST = 20
+"""Candidates among which the paper selects again."""
 
 
 def _cell(view: View, name: str) -> dict[str, Any] | None:
@@ -34,15 +36,22 @@ def _side(axes: Any, title: str) -> None:
     axes.set_xlabel("from the base's axis [m]")
 
 
+def _beside_candidates(plt: Any, shown: dict[str, Any], width: float) -> Any:
+    """A figure and its three axes, of which the first has all candidates."""
+    figure, axes = plt.subplots(1, 3, figsize=(10, 3.2), layout="constrained")
+    for points in shown["candidates"]:
+        _arm(axes[0], points, color=CALM, lw=width)
+    axes[0].set_ylabel("height [m]")
+    return figure, axes
+
+
 def figure_1(view: View, plt: Any) -> Any:
     """The nearest sample and that of the least adjustment."""
     cell = _cell(view, "first")
     if cell is None:
         return None
     shown = cell["first"]
-    figure, (a, b, c) = plt.subplots(1, 3, figsize=(10, 3.2), layout="constrained")
-    for points in shown["candidates"]:
-        _arm(a, points, color=CALM, lw=0.7)
+    figure, (a, b, c) = _beside_candidates(plt, shown, 0.7)
     for axes, name, colour in ((b, "nearest", BAD), (b, "least", GOOD)):
         _arm(a, shown[name]["path"][0], color=colour, lw=1.6)
         for step, points in enumerate(shown[name]["path"][:3]):
@@ -51,7 +60,6 @@ def figure_1(view: View, plt: Any) -> Any:
         c.semilogy(shown[name]["errors"], "-o", ms=3, color=colour, label=label[name])
     for axes in (a, b):
         _arm(axes, shown["arm"], color="black", lw=1.2, ls="--")
-    a.set_ylabel("height [m]")
     _side(a, "seeds near a solution (dashed)")
     _side(b, "two steps from two of them")
     c.set_title("distance after each step [m]")
@@ -66,13 +74,10 @@ def figure_2(view: View, plt: Any) -> Any:
     if cell is None:
         return None
     shown = cell["second"]
-    figure, (a, b, c) = plt.subplots(1, 3, figsize=(10, 3.2), layout="constrained")
-    for points in shown["candidates"]:
-        _arm(a, points, color=CALM, lw=0.3)
+    figure, (a, b, c) = _beside_candidates(plt, shown, 0.3)
     for points, colour in zip(shown["outlines"], (BAD, GOOD), strict=True):
         _arm(a, points, color=colour, lw=1.6)
     _arm(a, shown["arm"], color="black", lw=1.2, ls="--")
-    a.set_ylabel("height [m]")
     _side(a, f"{len(shown['candidates'])} candidates")
     lower, upper = np.array(cell["lower"]), np.array(cell["upper"])
     titles = ("the first seed ends outside a limit", "the one selected again arrives")
@@ -124,7 +129,3 @@ def figure_3(view: View, plt: Any) -> Any:
     b.set_title("joint space, the plane of largest spread [rad]")
     a.set_title("attempts 1 to 3, the last arrives")
     return figure
-
-
-BEST = 20
-"""Candidates among which the paper selects again."""

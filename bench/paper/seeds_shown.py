@@ -121,21 +121,23 @@ def _first(
 
 def _attempts(
     chain: Chain, selector: iksel.Selector, target: Array, most: int
-) -> list[tuple[int, list[Array], bool]]:
-    """Samples in the order of re-selection, their iterations, whether they arrive."""
+) -> list[tuple[int, list[Array]]]:
+    """Samples in the order of re-selection, and their iterations.
+
+    Empty unless the last of `most` arrives, and none before it.
+    """
     failed: list[int] = []
-    tried: list[tuple[int, list[Array], bool]] = []
+    tried: list[tuple[int, list[Array]]] = []
     while len(tried) < most:
         index = selector.next(failed)
         if index is None:
             break
         path, _ = descend(chain, np.array(selector.database.q(index)), target)
-        done = arrives(chain, path[-1], target)
-        tried.append((index, path, done))
-        if done:
+        tried.append((index, path))
+        if arrives(chain, path[-1], target):
             break
         failed.append(index)
-    return tried
+    return tried if len(tried) == most > len(failed) else []
 
 
 def _second(
@@ -144,16 +146,16 @@ def _second(
     """The first seed converges outside the limits, the second arrives."""
     _, _, _, q = selector.candidates(target)
     tried = _attempts(chain, selector, target, 2)
-    if len(tried) < 2 or not tried[1][2]:
+    if not tried:
         return None
-    _, path, _ = tried[0]
+    _, path = tried[0]
     pose = chain.fk(path[-1][None])[0]
     if np.linalg.norm(pose[:3, 3] - target[:3, 3]) > POSITION:
         return None
     return {
         "candidates": [outline(chain, each) for each in q],
-        "attempts": [np.array(steps).tolist() for _, steps, _ in tried],
-        "outlines": [outline(chain, steps[0]) for _, steps, _ in tried],
+        "attempts": [np.array(steps).tolist() for _, steps in tried],
+        "outlines": [outline(chain, steps[0]) for _, steps in tried],
     }
 
 
@@ -163,9 +165,9 @@ def _third(
     """Three attempts, the last of which arrives."""
     indices, distances, adjustments, q = selector.candidates(target)
     tried = _attempts(chain, selector, target, 3)
-    if len(tried) < 3 or not tried[2][2]:
+    if not tried:
         return None
-    places = [int(np.flatnonzero(indices == index)[0]) for index, _, _ in tried]
+    places = [int(np.flatnonzero(indices == index)[0]) for index, _ in tried]
     return {
         "distances": distances.tolist(),
         "adjustments": adjustments.tolist(),

@@ -106,7 +106,8 @@ void bind_solutions(py::module_& m) {
   add_property(cls, "success", [](const S& self) { return self.success(); });
   add_property(
       cls, "proven", [](const S& self) { return is_proven(self.proof); },
-      "Whether these are certainly all: `proof` is `reach`, `closed_form` or `target`.");
+      "Whether these are certainly all: `proof` is `reach`, `closed_form`, `intervals` or "
+      "`target`.");
   add_property(cls, "q", &S::q, "Joint values [rad or m], (n, dof).");
   add_property(cls, "position_error", &S::column<&Result::position_error>,
                "Distances to the target [m], (n,).");
@@ -149,7 +150,7 @@ Raises:
         finite or out of range.)"},
       0,
       {"near", "weights", "norm", "seeds", "database_seeds", "scene", "exact", "filter", "deadline",
-       "task", "objective", "closest", "tasks", "in_frame_of"},
+       "task", "objective", "closest", "prove", "tasks", "in_frame_of"},
       fn<&solve>);
   def_method<SolveAllOptions, SolveRequest>(
       cls,
@@ -164,8 +165,8 @@ Raises:
     InvalidArgumentError: as solve.)"},
       1,
       {"max", "min_distance", "whole_turns", "order", "near", "weights", "norm", "seeds",
-       "database_seeds", "scene", "exact", "filter", "deadline", "task", "objective", "tasks",
-       "in_frame_of"},
+       "database_seeds", "scene", "exact", "filter", "deadline", "task", "objective", "prove",
+       "tasks", "in_frame_of"},
       fn<&solve_all>);
   def_method<SolveRequest>(
       cls,

@@ -181,7 +181,8 @@ target's solutions, within the same tolerances. The request holds for each targe
         a bad pose.)"},
       1,
       {"threads", "near", "weights", "norm", "seeds", "database_seeds", "scene", "exact", "filter",
-       "deadline", "task", "objective", "closest", "on_invalid_pose", "tasks", "in_frame_of"},
+       "deadline", "task", "objective", "closest", "prove", "on_invalid_pose", "tasks",
+       "in_frame_of"},
       fn<&solve_batch>);
 }
 

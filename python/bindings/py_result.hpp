@@ -32,6 +32,7 @@ inline bool is_proven(Proof proof) {
     case Proof::reach:
     case Proof::target:
     case Proof::closed_form:
+    case Proof::intervals:
       return true;
     case Proof::sweep:
     case Proof::none:
@@ -42,7 +43,8 @@ inline bool is_proven(Proof proof) {
 }
 
 constexpr const char* kProven =
-    "Whether there is certainly no answer: `proof` is `reach`, `closed_form` or `target`.";
+    "Whether there is certainly no answer: `proof` is `reach`, `closed_form`, `intervals` or "
+    "`target`.";
 
 /// What __iter__ gives of that which has __getitem__ of an int.
 template <class Item>

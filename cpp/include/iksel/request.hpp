@@ -121,6 +121,10 @@ struct IKSEL_EXPORT SolveRequest : AnswerCriteria {
   /// filter refuse it too; the objective has no say. Empty: it gets nothing.
   std::optional<PoseWeights> closest;
 
+  /// Whether a no is to be proven where that takes longer than to find it: by Proof::intervals
+  /// instead of Proof::sweep, of six joints some 10 us each. Seven prove it anyway, where it can be.
+  bool prove = false;
+
   /// What solve_batch does about a target that is no pose (check_pose); others always throw.
   OnInvalidPose on_invalid_pose = OnInvalidPose::status;
 

@@ -42,6 +42,8 @@ enum class Proof : std::uint8_t {
   reach,        ///< the target lies farther away than the links are long together
   closed_form,  ///< all branches are known (find_structure), and no other lies inside the limits;
                 ///< of seven joints, all ends of curves of solutions, and there are none inside
+  intervals,  ///< each branch was enclosed by interval arithmetic over the whole range of a joint,
+              ///< for every pose within the tolerances, and none lies inside the limits
   sweep,   ///< not proven: a joint was swept over its range (find_structure), and no other branch
            ///< came inside the limits at its values or beside them
   target,  ///< what the target itself places touches something in the scene: the tip, with what is

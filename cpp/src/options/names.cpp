@@ -20,7 +20,7 @@ const char* name_of(Enum value, const char* const (&names)[kCount]) {
 }  // namespace
 
 const char* to_string(Proof proof) {
-  return name_of(proof, {"none", "reach", "closed_form", "sweep", "target", "answer"});
+  return name_of(proof, {"none", "reach", "closed_form", "intervals", "sweep", "target", "answer"});
 }
 
 const char* to_string(Status status) {

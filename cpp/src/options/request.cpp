@@ -39,7 +39,8 @@ void PoseWeights::validate() const {
 
 bool SolveRequest::has_requirements() const {
   return !seeds.empty() || !database_seeds || near || scene || filter || objective.is_set() ||
-         task || !tasks.empty() || !in_frame_of.empty() || std::isfinite(deadline) || closest;
+         task || !tasks.empty() || !in_frame_of.empty() || std::isfinite(deadline) || closest ||
+         prove;
 }
 
 void AnswerCriteria::validate(int dof, int tips) const {

@@ -53,6 +53,11 @@ Workspace::InLanes::InLanes(const ChainModel& model, const ChainModel& nominal,
                   kernels);
   }
   const auto& closed_form = closed_forms.pose;
+  const bool has_held = closed_form && closed_form->held >= 0;
+  const auto& enclosed = has_held ? closed_form : closed_forms.residual;
+  if (is_nominal && enclosed && !enclosed->loop) {
+    enclosure.emplace(model, *enclosed, position, rotation, kernels);
+  }
   if (!closed_form) return;
   if (closed_form->held < 0) {
     branches.emplace(model, *closed_form, is_nominal, position, rotation, kernels);

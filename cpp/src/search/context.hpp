@@ -17,6 +17,7 @@
 #include "refine/scheme_refiner.hpp"
 #include "search/collector.hpp"
 #include "seeds/arc_ends.hpp"
+#include "seeds/branch_enclosure.hpp"
 #include "seeds/branch_lanes.hpp"
 #include "seeds/closest_screen.hpp"
 #include "seeds/curve.hpp"
@@ -69,9 +70,17 @@ struct Workspace {
     }
     /// Whether the ends of a self-motion tell in closed form if there is a solution.
     [[nodiscard]] bool has_closed_ends() const { return ends && ends->are_closed(); }
-    /// Whether a self-motion has no configuration inside the limits, for the same.
-    Proof find_none(const Pose& T_base_tcp, const Pose& Y) {
+    /// Whether branches enclosed over the range of a joint prove that there is no answer.
+    bool proves_none(const Pose& Y) { return enclosure && enclosure->rules_out(Y); }
+    /// What proves that a self-motion has no configuration inside the limits, for the same.
+    Proof prove_none(const Pose& T_base_tcp, const Pose& Y) {
       if (ends && ends->rules_out(T_base_tcp)) return Proof::closed_form;
+      return proves_none(Y) ? Proof::intervals : Proof::none;
+    }
+    /// Whether it has none, as far as can be told.
+    Proof find_none(const Pose& T_base_tcp, const Pose& Y) {
+      const Proof proof = prove_none(T_base_tcp, Y);
+      if (proof != Proof::none) return proof;
       return !sweep->find(Y) && sweep->is_none() ? Proof::sweep : Proof::none;
     }
     /// All branches of a goal of that task; null if it cannot be solved in closed form at once.
@@ -83,6 +92,8 @@ struct Workspace {
     std::optional<BranchLanes> branch_lanes;
     std::optional<Sweep> sweep;
     std::optional<RootSweep> roots;
+    /// What proves that such a chain has no answer, if it is the nominal one.
+    std::optional<BranchEnclosure> enclosure;
     std::optional<NearestOnCurve> nearest_on_curve;
     std::optional<Curve> curve;
     std::optional<ArcEnds> ends;

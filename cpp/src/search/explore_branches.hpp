@@ -21,16 +21,20 @@ Explored explore_branches(const Parts& parts, Branches& branches, Proof kind, Ne
   if (parts.refine(seeds, Width::narrow)) return Explored::done();
   if (branches.may_be_singular()) answers.converge_from_near();
   // Branches of which none could be refined to the tolerances prove nothing.
+  bool is_through = false;
   if (enumerated.is_certain()) {
-    if (enumerated.is_empty()) return Explored::done(kind);
-    if (answers.has_any() && !branches.has_families()) return Explored::done(kind);
+    is_through = enumerated.is_empty() || (answers.has_any() && !branches.has_families());
   } else {
     const bool is_satisfied_inside =
         !answers.has_any() &&
         parts.move_inside(branches.size(), [&](int i) { return branches.q(i); });
-    const bool is_all = enumerated.is_certain_but_for_limits() && !branches.has_families();
-    if (is_satisfied_inside || is_all) return Explored::done();
+    if (is_satisfied_inside) return Explored::done();
+    is_through = enumerated.is_certain_but_for_limits() && !branches.has_families();
   }
+  if (parts.request.prove && !answers.has_any() && parts.workspace.lanes->proves_none(Y)) {
+    return Explored::done(Proof::intervals);
+  }
+  if (is_through) return Explored::done(enumerated.is_certain() ? kind : Proof::none);
   if (kind == Proof::sweep) {
     parts.work.leave(kBesideRoots);
   } else if (enumerated.has_all() && !answers.wants_more()) {

@@ -51,9 +51,10 @@ Explored find_any_or_none(const AllSearch& parts, const Pose& Y) {
   Sweep& sweep = *lanes.sweep;
   bool is_found = sweep.find_at_samples(Y);
   if (!is_found) {
-    if (lanes.ends && lanes.ends->rules_out(parts.goal.target())) {
+    const Proof none = lanes.prove_none(parts.goal.target(), Y);
+    if (none != Proof::none) {
       parts.clock.lap(&StageTimes::query);
-      return Explored::done(Proof::closed_form);
+      return Explored::done(none);
     }
     is_found = sweep.find_between(Sweep::Between::all);
   }

@@ -81,6 +81,10 @@ Explored explore_curve(const FirstSearch& parts, const Pose& Y) {
   SweptSeeds swept(*lanes.sweep, Y, parts.work, parts.clock);
   const auto is_satisfied = [&] { return search(lanes.refiner, swept, parts.answers, parts.work); };
   if (is_satisfied()) return Explored::done();
+  if (lanes.proves_none(Y)) {
+    parts.clock.lap(&StageTimes::query);
+    return Explored::done(Proof::intervals);
+  }
   if (lanes.ends && !are_closed) {
     const Explored ends = explore_ends(parts);
     if (ends.is_done) {

@@ -80,8 +80,7 @@ IKSEL_INLINE void solve_three_parallel(const ClosedForm& form, const BranchTarge
   // R_6^T in the basis.
   const T r0 = c * b0 + s * b1;
   const T r1 = c * b1 - s * b0;
-  const Vec<T> ahead{r0 * X.x + r1 * Y.x + b2 * Z.x, r0 * X.y + r1 * Y.y + b2 * Z.y,
-                     r0 * X.z + r1 * Y.z + b2 * Z.z};
+  const Vec<T> ahead = add(add(scaled(r0, X), r1, Y), b2, Z);
   const Angle<T> all = angle_between(h, e, ahead, quality);
   const Vec<T> reach =
       add(behind_base(form, out.q[0], w), T(-1.0), turned(h, all, constant<T>(form.p[3])));
@@ -222,7 +221,9 @@ void find_branches(const ClosedForm& form, BranchPack& pack) {
     if (form.closure == Closure::three_parallel) {
       solve_three_parallel(form, target, sign.of, branch);
     } else if (form.closure == Closure::sweep_4 || form.closure == Closure::sweep_6) {
-      solve_sweep(form, target, held, sign.of, branch, pack.residual + first);
+      T residual;
+      solve_residual(form, target, held, sign.of, branch, residual);
+      Lanes<T>::store(residual, pack.residual + first);
     } else {
       place_wrist(form, target.w, sign.of, branch);
       turn_wrist(form, behind_arm(form, target, branch), sign.of[2], branch);

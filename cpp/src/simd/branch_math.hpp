@@ -16,6 +16,12 @@ struct Angle {
   T s = T(0.0);
 };
 
+/// The same of what was calculated: as it is, unless T knows that it is no more than 1.
+template <typename T>
+IKSEL_INLINE Angle<T> angle_of(const T& c, const T& s) {
+  return {c, s};
+}
+
 /// R(k, t) v, or R(k, -t) v.
 template <typename T>
 IKSEL_INLINE Vec<T> turned(const Vec<T>& k, const Angle<T>& t, const Vec<T>& v) {
@@ -150,7 +156,7 @@ IKSEL_INLINE Angle<T> solve_angle(const T& a, const T& b, const T& rest, const T
   const T inverse = T(1.0) / max(r2, T(1e-30));
   const T cosine = rest * inverse;
   const T sine = sign * root * inverse;
-  return {a * cosine - b * sine, b * cosine + a * sine};
+  return angle_of(a * cosine - b * sine, b * cosine + a * sine);
 }
 
 /// One of the two angles with x . R(k, t) y = rest.
@@ -162,7 +168,8 @@ IKSEL_INLINE Angle<T> solve_angle(const Turned& turned, const T& rest, const T& 
   quality.take_root(square, abs(left), root);
   const T cosine = left * T(turned.inverse);
   const T sine = sign * root * T(turned.inverse);
-  return {T(turned.a) * cosine - T(turned.b) * sine, T(turned.b) * cosine + T(turned.a) * sine};
+  return angle_of(T(turned.a) * cosine - T(turned.b) * sine,
+                  T(turned.b) * cosine + T(turned.a) * sine);
 }
 
 /// The angle with cosine c and sine s times the product of two lengths, mostly equal ones.
@@ -173,7 +180,7 @@ IKSEL_INLINE Angle<T> normalized(const T& c, const T& s, Q& quality) {
   quality.divide_by_product(size);
   const auto none = size2 < T(1e-56);
   const T inverse = T(1.0) / size;
-  return {select(none, T(1.0), c * inverse), select(none, T(0.0), s * inverse)};
+  return angle_of(select(none, T(1.0), c * inverse), select(none, T(0.0), s * inverse));
 }
 
 /// The angle about k that takes u to v.
@@ -195,9 +202,7 @@ IKSEL_INLINE Vec<T> solve_common(const Vec<T>& k1, const Vec<T>& k2, double c, c
   // No less than the length, of 1 at most.
   quality.take_root(square, min(length2 + T(0.25), T(1.0)), root);
   const T gamma = sign * root * T(__builtin_sqrt(1.0 / (1.0 - c * c)));
-  const Vec<T> plane{alpha * k1.x + beta * k2.x, alpha * k1.y + beta * k2.y,
-                     alpha * k1.z + beta * k2.z};
-  return add(plane, gamma, cross(k1, k2));
+  return add(add(scaled(alpha, k1), beta, k2), gamma, cross(k1, k2));
 }
 
 }  // namespace iksel::lanes

@@ -7,20 +7,23 @@
 namespace iksel::lanes {
 
 /// Joints 1 to 3, of which 2 and 3 are parallel, bring the end of a forearm, as it is with joint 3
-/// at zero, to w.
+/// at zero, to w. Whether that is enough.
 template <typename T, typename Q>
-IKSEL_INLINE void place_forearm(const ClosedForm& form, const Vec<T>& forearm, const Vec<T>& w,
+IKSEL_INLINE bool place_forearm(const ClosedForm& form, const Vec<T>& forearm, const Vec<T>& w,
                                 const T (&sign)[3], Branch<T, Q>& out) {
   const Vec<T> h2 = constant<T>(form.h[1]);
   const Vec<T> h3 = constant<T>(form.h[2]);
   const Vec<T> p23 = constant<T>(form.p[1]);
   out.q[0] = turn_base(form, h2, w, T(form.rest) + dot(h2, forearm), sign[0], out.quality);
+  if (is_enough(form, 0, out)) return true;
   const Vec<T> v = behind_base(form, out.q[0], w);
   const T axial = dot(h3, p23) * dot(h3, forearm);
   const T rest = T(0.5) * (dot(v, v) - dot(p23, p23) - dot(forearm, forearm));
   out.q[2] = solve_angle(dot(p23, forearm) - axial, dot(p23, cross(h3, forearm)), rest - axial,
                          sign[1], out.quality);
+  if (is_enough(form, 2, out)) return true;
   out.q[1] = angle_between(h2, add(p23, T(1.0), turned(h3, out.q[2], forearm)), v, out.quality);
+  return is_enough(form, 1, out);
 }
 
 /// All six joints for an angle of joint 4, by the way that it leaves to where axes 5 and 6 meet.
@@ -32,8 +35,9 @@ IKSEL_INLINE void solve_sweep_4(const ClosedForm& form, const BranchTarget<T>& t
   const Vec<T> h6 = constant<T>(form.h[5]);
   const Vec<T> forearm = add(turned(constant<T>(form.h[3]), q4, constant<T>(form.p[3])), T(1.0),
                              constant<T>(form.p[2]));
-  place_forearm(form, forearm, target.w, sign, out);
   out.q[3] = q4;
+  if (is_enough(form, 3, out)) return;
+  if (place_forearm(form, forearm, target.w, sign, out)) return;
   const auto before = [&](const Vec<T>& v) __attribute__((always_inline)) {
     return turned_back(constant<T>(form.h[3]), q4, before_wrist(form, out, v));
   };
@@ -61,8 +65,8 @@ IKSEL_INLINE void solve_sweep_6(const ClosedForm& form, const BranchTarget<T>& t
                dot(h6, v), target.Z);
   };
   const Vec<T> w = add(target.w, T(-1.0), ahead(constant<T>(form.p[4])));
-  place_forearm(form, constant<T>(form.p[2]), w, sign, out);
   out.q[5] = q6;
+  if (place_forearm(form, constant<T>(form.p[2]), w, sign, out)) return;
   const Vec<T> axis = before_wrist(form, out, ahead(h5));
   residual = dot(h4, axis) - T(form.along45);
   out.q[3] = angle_between(h4, h5, axis, out.quality);
@@ -72,17 +76,16 @@ IKSEL_INLINE void solve_sweep_6(const ClosedForm& form, const BranchTarget<T>& t
 
 /// The one or the other of them.
 template <typename T, typename Q>
-IKSEL_INLINE void solve_sweep(const ClosedForm& form, const BranchTarget<T>& target, const T& angle,
-                              const T (&sign)[3], Branch<T, Q>& out, double* residuals) {
+IKSEL_INLINE void solve_residual(const ClosedForm& form, const BranchTarget<T>& target,
+                                 const T& angle, const T (&sign)[3], Branch<T, Q>& out,
+                                 T& residual) {
   Angle<T> t;
   sincos(angle, t.s, t.c);
-  T residual;
   if (form.closure == Closure::sweep_4) {
     solve_sweep_4(form, target, t, sign, out, residual);
   } else {
     solve_sweep_6(form, target, t, sign, out, residual);
   }
-  Lanes<T>::store(residual, residuals);
 }
 
 }  // namespace iksel::lanes

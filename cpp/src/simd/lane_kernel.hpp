@@ -6,6 +6,7 @@
 #include "simd/branch_kernel.hpp"
 #include "simd/closest_kernel.hpp"
 #include "simd/curve_kernel.hpp"
+#include "simd/enclosure_kernel.hpp"
 #include "simd/lane_frames.hpp"
 #include "simd/lane_goal.hpp"
 #include "simd/lane_math.hpp"
@@ -156,6 +157,7 @@ constexpr LaneKernels make_kernels(const char* name) {
           measure_regularity<Wide>,
           rate_branches<Wide>,
           rate_branch<Wide>,
+          enclose_branches<Wide>,
           measure_moves<Wide>,
           measure_branches<Wide>,
           find_residuals<Wide>,

@@ -267,7 +267,9 @@ class Diagnoser {
 
 Diagnosis Solver::Impl::diagnose(const Pose& target, const SolveRequest& request) const {
   const WorkspacePool::Lease lease(workspaces);
-  const Result plain = solve(&target, request, lease.get(), nullptr);
+  SolveRequest proving = request;
+  proving.prove = true;
+  const Result plain = solve(&target, proving, lease.get(), nullptr);
   Diagnoser diagnoser(*this, target, request);
   if (plain.success()) return diagnoser.of_answer(plain);
   bool is_explained = plain.proof == Proof::closed_form && !is_refusal(plain.status) &&

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "seeds/branch_enclosure.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace iksel {
+namespace {
+
+using lanes::Closure;
+using lanes::kWidth;
+
+/// Pieces to begin with.
+constexpr int kPieces = 4 * kWidth;
+/// Pieces that are halved so often are beside something that the tolerances do not tell apart.
+constexpr double kShortest = 1e-7;
+/// Pieces overlap by this part, so that rounding leaves no gap between them.
+constexpr double kOverlap = 1e-12;
+/// What axes that lie off where the form has them may do to the target, by their deviation, which
+/// counts each twice: it turns what is behind it to and fro, and moves it by as much at a lever of 1.
+constexpr double kAxesOff = 2;
+
+}  // namespace
+
+BranchEnclosure::BranchEnclosure(const ChainModel& model, const ClosedFormChain& chain,
+                                 double position_tolerance, double rotation_tolerance,
+                                 const lanes::LaneKernels& kernels)
+    : chain_(chain), kernels_(kernels) {
+  chain_.use_limits(model);
+  const double offset = model.kernel.joints[static_cast<std::size_t>(chain.held)].offset;
+  lower_ = model.joints.sample_lower(chain.held) + offset;
+  upper_ = model.joints.sample_upper(chain.held) + offset;
+  const double lever = chain.tail.norm() + to_pose(model.kernel.tip).translation().norm() +
+                       (chain.reversed ? model.reach_of_tcp() : 0.0);
+  const double tolerance = std::max({(position_tolerance + lever * rotation_tolerance) / chain.unit,
+                                     rotation_tolerance, 1e-9});
+  chain_.form.error =
+      tolerance + kAxesOff * chain.deviation * std::max(1.0, model.reach / chain.unit);
+}
+
+bool BranchEnclosure::rules_out(const Pose& Y) {
+  chain_.set_target(Y, target_);
+  for (int arm = 0; arm < 4; ++arm) {
+    if (!rules_out({branch_sign(arm, 0), branch_sign(arm, 1)})) return false;
+  }
+  return true;
+}
+
+bool BranchEnclosure::rules_out(const double (&sign)[2]) {
+  const double part = 0.5 * (upper_ - lower_) / kPieces;
+  open_.clear();
+  for (int i = 0; i < kPieces; ++i) {
+    open_.push_back({lower_ + (2 * i + 1) * part, part, {true, true}});
+  }
+  while (!open_.empty()) {
+    const std::size_t count = std::min<std::size_t>(open_.size(), kWidth);
+    const std::size_t first = open_.size() - count;
+    double middle[kWidth], half[kWidth], room[2][kWidth];
+    for (std::size_t lane = 0; lane < kWidth; ++lane) {
+      const Piece& piece = open_[first + std::min(lane, count - 1)];
+      middle[lane] = piece.middle;
+      half[lane] = piece.half * (1 + kOverlap);
+    }
+    kernels_.enclose_branches(chain_.form, target_, sign, middle, half, room);
+    std::array<Piece, kWidth> left;
+    std::size_t size = 0;
+    for (std::size_t lane = 0; lane < count; ++lane) {
+      Piece piece = open_[first + lane];
+      for (std::size_t i = 0; i < 2; ++i) piece.with[i] = piece.with[i] && !(room[i][lane] < 0);
+      if (piece.with[0] || piece.with[1]) left[size++] = piece;
+    }
+    open_.resize(first);
+    for (std::size_t i = 0; i < size; ++i) {
+      const Piece& piece = left[i];
+      const double quarter = 0.5 * piece.half;
+      if (quarter < kShortest) return false;
+      open_.push_back({piece.middle - quarter, quarter, piece.with});
+      open_.push_back({piece.middle + quarter, quarter, piece.with});
+    }
+  }
+  return true;
+}
+
+}  // namespace iksel

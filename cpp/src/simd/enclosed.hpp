@@ -136,6 +136,31 @@ IKSEL_INLINE Angle<Enclosed<T>> angle_of(const Enclosed<T>& c, const Enclosed<T>
   return {select(c.reach() < T(1.0), c, any), select(s.reach() < T(1.0), s, any)};
 }
 
+/// The direction of (c, s): errors count only across it.
+template <typename T, typename Q>
+IKSEL_APART Angle<Enclosed<T>> normalized(const Enclosed<T>& c, const Enclosed<T>& s,
+                                          Q& /*quality*/) {
+  const auto size = [](const T& x, const T& y) { return sqrt(x * x + y * y); };
+  const T at_zero = max(size(c.value(), s.value()), T(1e-30));
+  const T inverse = T(1.0) / at_zero;
+  // The least size for any x; where all may be 0, no bound comes out below 1.
+  const T least = max(at_zero - size(c.slope(), s.slope()), T(1e-30));
+  const T short_of_it = T(1.0) / least;
+  const T turn = c.value() * s.slope() - s.value() * c.slope();
+  // Of the straight way that value and slope are, the angle's first and second derivative, at most;
+  // and the angle that the error is seen under, whose sine it is at most.
+  const T first = abs(turn) * short_of_it * short_of_it;
+  const T second = T(2.0) * first * size(c.slope(), s.slope()) * short_of_it;
+  const T sine = size(c.radius(), s.radius()) * short_of_it;
+  const T angle = sine * (T(1.0) + T(0.6) * sine * sine);
+  const T radius = select(sine < T(1.0), angle + T(0.5) * (first * first + second), T(1e30));
+  const T speed = turn * inverse * inverse;
+  const T cosine = c.value() * inverse;
+  const T side = s.value() * inverse;
+  return angle_of(Enclosed<T>::rounded(cosine, T(0.0) - speed * side, radius, abs(speed)),
+                  Enclosed<T>::rounded(side, speed * cosine, radius, abs(speed)));
+}
+
 template <typename T>
 IKSEL_INLINE T length(const Vec<T>& v) {
   return sqrt(dot(v, v));

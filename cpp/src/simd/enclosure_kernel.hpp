@@ -16,7 +16,6 @@ struct Presence {
   /// No lane's may be inside.
   bool is_over = false;
 
-  IKSEL_INLINE void divide_by_product(const Enclosed<T>& /*product*/) {}
   IKSEL_INLINE void take_root(const Enclosed<T>& square, const Enclosed<T>& /*near*/,
                               const Enclosed<T>& /*root*/) {
     take(square.upper());

@@ -25,6 +25,7 @@ import numpy as np
 
 import iksel
 from bench import random_arms
+from bench.arguments import add_count, add_names, add_seed
 from bench.check import right
 
 if TYPE_CHECKING:
@@ -186,21 +187,15 @@ def add(commands: Any) -> None:
         help="laws that every arm has to keep, on arms drawn at random",
         description=__doc__.splitlines()[0],
     )
-    command.add_argument(
-        "builds",
-        nargs="*",
-        default=random_arms.BUILDS,
-        metavar="BUILD",
-        help=f"{' '.join(random_arms.BUILDS)}, or a built-in robot",
-    )
-    command.add_argument("--arms", type=int, default=200, metavar="N", help="a build")
-    command.add_argument("--poses", type=int, default=100, metavar="N", help="an arm")
+    add_names(command, "builds", random_arms.BUILDS, "; or built-in robots")
+    add_count(command, "--arms", 200, "random arms of each build")
+    add_count(command, "--poses", 100, "poses of each arm")
     command.add_argument(
         "--written",
         metavar="HOW",
         help="numbers of the files: 4 for four decimals, 1e-6 for off by up to that",
     )
-    command.add_argument("--seed", type=int, default=1)
+    add_seed(command)
 
 
 def run(args: argparse.Namespace) -> int:

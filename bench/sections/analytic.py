@@ -100,7 +100,7 @@ def _conditions(view: View) -> str:
         "solvers get the first of them only. An answer is right within "
         f"{POSITION_TOLERANCE:g} m and {ROTATION_TOLERANCE:g} rad by bench's own "
         "forward kinematics, and inside the limits. One thread; each call from Python; "
-        "a process for each solver and arm; ways to ask in turns, of each call the "
+        "a process for each solver; ways to ask in turns, of each call the "
         f"least time of three. SIMD level {facts['simd']} (IKSel's), {facts['cpu']}, "
         f"{facts['cores']} cores{load_text(facts)}."
     )
@@ -128,9 +128,7 @@ def _rows(view: View) -> list[list[str]]:
 def _failure(view: View, robot: str, name: str) -> str:
     """What ended a solver's process, in short."""
     for kind in KINDS:
-        reason = view.report["failures"].get(
-            f"{job_name(robot, name)}, {robot}, {kind}"
-        )
+        reason = view.report["failures"].get(f"{job_name(name)}, {robot}, {kind}")
         if reason:
             return str(reason).split(":", maxsplit=1)[0]
     return ""

@@ -5,10 +5,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from bench import plan
 from bench.markdown import NONE, microseconds, percent, table
 from bench.paper import plan as paper_plan
 from bench.paper import published
+from bench.plans.rivals import rival_cell
 from bench.sections.ablations import HEADER, ROBOTS, TIMES, beside, timed
 
 if TYPE_CHECKING:
@@ -57,8 +57,7 @@ def _trac_ik(view: View) -> list[str]:
     rivals = []
     for name in ("TRAC-IK style", "TRAC-IK (pytracik)"):
         cells = [
-            view.get(plan.rival_cell(robot, name, "uniform", view.size))
-            for robot in ROBOTS
+            view.get(rival_cell(robot, name, "uniform", view.size)) for robot in ROBOTS
         ]
         if any(cells):
             rivals.append([name, *map(_trac_cell, cells)])

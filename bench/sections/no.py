@@ -5,10 +5,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from bench import branches, plan
+from bench import branches
 from bench.check import POSITION_TOLERANCE, ROTATION_TOLERANCE
 from bench.machine import load_text
 from bench.markdown import NONE, microseconds, percent, table
+from bench.plans import no as plan
 from bench.rivals import RIVALS
 from bench.sections import cut_offs
 

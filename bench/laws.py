@@ -167,8 +167,10 @@ def writing(text: str | None, seed: int) -> Callable[[float], str]:
     if text is None:
         return repr
     if text.isdigit():
-        return random_arms.rounded(int(text))
-    return random_arms.off_by(float(text), seed)
+        return lambda value: f"{value:.{text}f}"
+    size = float(text)
+    random = np.random.default_rng(seed)
+    return lambda value: repr(value + float(random.uniform(-size, size)))
 
 
 def arms(name: str, count: int, written: str | None, seed: int) -> Iterator[Arm]:

@@ -17,7 +17,7 @@ from bench.arms import load_arm
 from bench.branches import ROUNDING, TOLERANCE, nearest_turns
 from bench.check import judge, right
 from bench.rivals import RIVALS
-from bench.timing import least_times
+from bench.timing import least_times, mean_median
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -60,8 +60,8 @@ def answered(arm: Arm, goals: Targets, settings: Settings) -> dict[str, Any]:
         "missed": int(np.count_nonzero(~verdict.right & (solved | known))),
         "only": int(np.count_nonzero(exact & ~solved)),
         "disproved": int(np.count_nonzero(proven & (exact | known))),
-        "yes_us": _mean_median(times[verdict.claimed]),
-        "no_us": _mean_median(times[~verdict.claimed]),
+        "yes_us": mean_median(times[verdict.claimed]),
+        "no_us": mean_median(times[~verdict.claimed]),
     }
     if settings["rival"] == "IKSel":
         result |= _proofs(arm, ours) | {"unit_us": _unit(arm.name)}
@@ -128,10 +128,3 @@ def _unit(robot: str) -> float:
     """The least of a few: other work only adds to it, and makes no ratio smaller."""
     model = load_arm(robot).robot
     return min(iksel.time_kdl_fk_jacobian(model) for _ in range(UNIT_RUNS))
-
-
-def _mean_median(times_ns: npt.NDArray[np.int64]) -> list[float] | None:
-    """Both [us]; None of no times."""
-    if len(times_ns) == 0:
-        return None
-    return [float(times_ns.mean()) / 1e3, float(np.median(times_ns)) / 1e3]

@@ -7,7 +7,6 @@ one process.
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -23,6 +22,7 @@ from bench.plans.robots import robots_jobs
 from bench.plans.shared import target_cell
 from bench.random_builds import random_jobs
 from bench.size import Job
+from bench.store import key_of
 from bench.tails.plan import tail_jobs
 
 if TYPE_CHECKING:
@@ -79,7 +79,7 @@ def chosen(
     kept = []
     for job in jobs:
         cells = {
-            json.dumps(cell, sort_keys=True): cell
+            key_of(cell): cell
             for cell in job.cells
             if (robots is None or cell["robot"] in robots)
             and (only is None or job.section in only or cell.get("rival") in only)

@@ -73,6 +73,13 @@ def least_times(runs: Sequence[npt.NDArray[np.int64]]) -> npt.NDArray[np.int64]:
     return np.asarray(np.min([times[:count] for times in runs], axis=0))
 
 
+def mean_median(times_ns: npt.NDArray[np.int64]) -> list[float] | None:
+    """Both [us]; None of no times."""
+    if len(times_ns) == 0:
+        return None
+    return [float(times_ns.mean()) / 1e3, float(np.median(times_ns)) / 1e3]
+
+
 def tail(times_ns: npt.NDArray[np.int64]) -> dict[str, float]:
     """Mean, median and what is slowest [us]."""
     us = times_ns / 1e3

@@ -17,6 +17,7 @@ import numpy as np
 import iksel
 from bench.arms import load_arm
 from bench.settings import make_solver
+from bench.store import key_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -29,7 +30,7 @@ def paired(settings: Settings) -> dict[str, Any]:
     """Targets that the settings solve, those "against" them, and only one of both."""
     alone = {name: value for name, value in settings.items() if name != "against"}
     ours, others = (
-        _solved(json.dumps({**alone, "overrides": overrides}, sort_keys=True))
+        _solved(key_of({**alone, "overrides": overrides}))
         for overrides in (settings["overrides"], settings["against"])
     )
     return {
@@ -42,12 +43,12 @@ def paired(settings: Settings) -> dict[str, Any]:
 
 
 @functools.cache
-def _solved(settings_json: str) -> npt.NDArray[np.bool_]:
+def _solved(key: str) -> npt.NDArray[np.bool_]:
     """Which targets of iksel.evaluate, to the last bit, are solved.
 
     A choice stands beside many others: a job solves its targets once.
     """
-    settings: Settings = json.loads(settings_json)
+    settings: Settings = json.loads(key)
     solver = make_solver(settings)
     robot = load_arm(settings["robot"]).robot
     q = robot.random_configurations(settings["count"], settings["seed"])

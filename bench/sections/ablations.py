@@ -84,7 +84,9 @@ def _ablation(view: View, title: str, rows: Rows) -> list[str]:
         if not any(cells):
             continue
         success.append([label, *(beside(cell, row, i) for i, cell in enumerate(cells))])
-        times.append([label, *(_time(cell, row, i) for i, cell in enumerate(cells))])
+        times.append(
+            [label, *(timed_row(cell, row, i) for i, cell in enumerate(cells))]
+        )
     if not success:
         return []
     return [
@@ -109,7 +111,8 @@ def beside(cell: dict[str, Any] | None, row: published.Row | None, i: int) -> st
 TIMES = "mean ± std [min, max], here in µs; published in ms"
 
 
-def _time(cell: dict[str, Any] | None, row: published.Row | None, i: int) -> str:
+def timed_row(cell: dict[str, Any] | None, row: published.Row | None, i: int) -> str:
+    """A cell's times beside the published ones of robot i."""
     return NONE if cell is None else timed(cell, None if row is None else row.times[i])
 
 

@@ -33,6 +33,7 @@ from bench import (
     targets,
 )
 from bench.arms import load_arm
+from bench.learned.plan import learned_cell
 from bench.paper import claims, published
 from bench.paper import plan as paper_plan
 from bench.plans import no as no_plan
@@ -265,6 +266,17 @@ class TestPlan:
             cells = [json.dumps(c, sort_keys=True) for job in jobs for c in job.cells]
             repeated = {cell for cell in cells if cells.count(cell) > 1}
             assert not repeated
+
+    def test_what_two_sections_show_is_in_each_of_them(self):
+        staged = paper_plan.paper_cell("cvr038", QUICK, {})
+        learned = learned_cell("cvr038", "mdn", QUICK)
+        for cell, sections in (
+            (staged, ("paper", "text")),
+            (learned, ("learned", "seeds")),
+        ):
+            for section in sections:
+                jobs = plan.plan(QUICK, only=[section])
+                assert cell in [each for job in jobs for each in job.cells]
 
     def test_untimed_jobs_first(self):
         timed = [job.timed for job in plan.plan(QUICK)]

@@ -3,24 +3,33 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
+
+
+def add_names(
+    command: argparse.ArgumentParser, what: str, default: Iterable[str], note: str = ""
+) -> None:
+    """Which robots, builds or the like; a note on them ends the help."""
+    known = tuple(default)
+    command.add_argument(
+        what,
+        nargs="*",
+        metavar=what.removesuffix("s").upper(),
+        default=known,
+        help=f"default: {' '.join(known)}{note}",
+    )
 
 
 def add_robots(
-    command: argparse.ArgumentParser, default: Sequence[str], note: str = ""
+    command: argparse.ArgumentParser, default: Iterable[str], note: str = ""
 ) -> None:
-    """Which robots; a note on them ends the help."""
-    command.add_argument(
-        "robots",
-        nargs="*",
-        metavar="ROBOT",
-        default=default,
-        help=f"default: {' '.join(default)}{note}",
-    )
+    """Which robots."""
+    add_names(command, "robots", default, note)
 
 
 def check_robots(command: str, asked: Sequence[str], known: Sequence[str]) -> None:
@@ -32,13 +41,45 @@ def check_robots(command: str, asked: Sequence[str], known: Sequence[str]) -> No
         )
 
 
-def add_quick(command: argparse.ArgumentParser, what: str = "fewer targets") -> None:
-    """Whether less is measured, and what."""
-    command.add_argument("--quick", action="store_true", help=what)
+def add_count(
+    command: argparse.ArgumentParser, flag: str, default: int | None, what: str
+) -> None:
+    """How many of something; without a default the report's number is meant."""
+    shown = "as in the report" if default is None else f"{default:,}"
+    command.add_argument(
+        flag, type=int, default=default, metavar="N", help=f"{what} (default: {shown})"
+    )
 
 
-def add_fresh(command: argparse.ArgumentParser) -> None:
-    """Whether kept results do not count."""
+def add_seed(command: argparse.ArgumentParser, default: int = 1) -> None:
+    """The seed of all that is drawn at random."""
+    command.add_argument(
+        "--seed", type=int, default=default, metavar="N", help="default: %(default)s"
+    )
+
+
+def add_max_error(command: argparse.ArgumentParser, default: float) -> None:
+    """How closely spheres cover meshes."""
+    command.add_argument(
+        "--max-error",
+        type=float,
+        default=default,
+        metavar="M",
+        help="by which spheres may stand out of what they cover (default: %(default)s)",
+    )
+
+
+def add_kept(command: argparse.ArgumentParser, quick: str = "fewer targets") -> None:
+    """What commands take whose results are kept as the report's are."""
+    command.add_argument("--quick", action="store_true", help=quick)
     command.add_argument(
         "--fresh", action="store_true", help="measure again what was measured before"
     )
+
+
+def add_before_and_after(command: argparse.ArgumentParser, example: str) -> None:
+    """Whether to record or to compare, and with which file."""
+    command.add_argument(
+        "action", choices=["record", "compare"], help="before a change, after it"
+    )
+    command.add_argument("file", type=Path, metavar="FILE", help=f"e.g. {example}")

@@ -53,6 +53,11 @@ def load_arm(name: str) -> Arm:
     """A built-in robot by name, with the manifest's tool, or one of BENCH_ARMS."""
     file = BENCH_ARMS.get(name)
     robot = iksel.load_robot(name) if file is None else iksel.Robot.from_urdf(file)
+    return arm_of(name, robot)
+
+
+def arm_of(name: str, robot: iksel.Robot) -> Arm:
+    """A robot with its judge, and as rivals get it."""
     chain = chain_from_urdf(robot.urdf, robot.base_link, robot.tip_link, robot.tcp)
     return Arm(name, robot, chain, chain_urdf(robot), robot.base_link)
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import iksel
-from bench.arguments import add_robots
+from bench.arguments import add_count, add_robots, add_seed
 from bench.arms import load_arm
 from bench.timing import least_times, time_calls
 
@@ -93,8 +93,8 @@ def add(commands: Any) -> None:
         description=__doc__.splitlines()[0],
     )
     add_robots(command, ROBOTS)
-    command.add_argument("--poses", type=int, default=2000, metavar="N")
-    command.add_argument("--seed", type=int, default=1)
+    add_count(command, "--poses", 2000, "poses")
+    add_seed(command)
 
 
 def run(args: argparse.Namespace) -> int:

@@ -19,7 +19,7 @@ import iksel
 import iksel.exact
 import iksel.spheres
 import iksel.srdf
-from bench.arguments import add_robots, check_robots
+from bench.arguments import add_count, add_max_error, add_robots, add_seed, check_robots
 from bench.robot_data import PACKAGE, VARIABLE, robots_folder
 from bench.settings import WORK
 from bench.timing import least_times, time_calls
@@ -138,9 +138,9 @@ def add(commands: Any) -> None:
         "body", help="arms kept out of their own robots", description=__doc__
     )
     add_robots(command, tuple(ROBOTS))
-    command.add_argument("--targets", type=int, default=1_000, metavar="N")
-    command.add_argument("--seed", type=int, default=0)
-    command.add_argument("--max-error", type=float, default=0.02, metavar="M")
+    add_count(command, "--targets", 1_000, "targets")
+    add_seed(command, 0)
+    add_max_error(command, 0.02)
 
 
 def run(args: argparse.Namespace) -> int:

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import iksel
-from bench.arguments import add_robots
+from bench.arguments import add_count, add_robots, add_seed
 from bench.arms import load_arm
 from bench.machine import fingerprint
 from bench.settings import WORK
@@ -137,9 +137,9 @@ def add(commands: Any) -> None:
         description=__doc__,
     )
     add_robots(command, ROBOTS)
-    command.add_argument("--targets", type=int, default=2_000, metavar="N")
-    command.add_argument("--restarts", type=int, default=10_000, metavar="N")
-    command.add_argument("--seed", type=int, default=0)
+    add_count(command, "--targets", 2_000, "targets")
+    add_count(command, "--restarts", 10_000, "random seeds of brute force")
+    add_seed(command, 0)
     command.add_argument(
         "--weights",
         nargs=6,

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import iksel
-from bench.arguments import add_robots
+from bench.arguments import add_count, add_robots, add_seed
 from bench.machine import facts
 
 if TYPE_CHECKING:
@@ -103,9 +103,9 @@ def add(commands: Any) -> None:
         metavar="MB",
         help="other memory between solves (%(default)s)",
     )
-    command.add_argument("--targets", type=int, default=200, metavar="N")
-    command.add_argument("--rounds", type=int, default=5, metavar="N")
-    command.add_argument("--seed", type=int, default=1)
+    add_count(command, "--targets", 200, "targets")
+    add_count(command, "--rounds", 5, "rounds")
+    add_seed(command)
 
 
 def run(args: argparse.Namespace) -> int:

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import iksel
+from bench.arguments import add_count, add_seed
 
 if TYPE_CHECKING:
     import argparse
@@ -91,8 +92,8 @@ def add(commands: Any) -> None:
     command = commands.add_parser(
         "coupled", help="coupled limits: what is missed, time", description=__doc__
     )
-    command.add_argument("--targets", type=int, default=100_000, metavar="N")
-    command.add_argument("--seed", type=int, default=1)
+    add_count(command, "--targets", 100_000, "targets")
+    add_seed(command)
 
 
 def run(args: argparse.Namespace) -> int:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import iksel
+from bench.arguments import add_count, add_names, add_seed
 from bench.chain import chain_from_urdf
 from bench.check import POSITION_TOLERANCE, ROTATION_TOLERANCE, rotation_distance
 from bench.timing import time_calls
@@ -150,18 +151,12 @@ def add(commands: Any) -> None:
     command = commands.add_parser(
         "dual", help="two arms as one chain; rails and turntables", description=__doc__
     )
-    command.add_argument(
-        "arms", nargs="*", default=list(ARMS), metavar="ARM", help=f"default: {ARMS}"
+    add_names(command, "arms", ARMS)
+    add_count(command, "--targets", 100_000, "targets")
+    add_count(
+        command, "--preferred", 10_000, "targets for arms on a rail or at a turntable"
     )
-    command.add_argument("--targets", type=int, default=100_000, metavar="N")
-    command.add_argument(
-        "--preferred",
-        type=int,
-        default=10_000,
-        metavar="N",
-        help="targets for arms on a rail or at a turntable",
-    )
-    command.add_argument("--seed", type=int, default=1)
+    add_seed(command)
 
 
 def run(args: argparse.Namespace) -> int:

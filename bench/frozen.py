@@ -19,9 +19,11 @@ import iksel_cpp
 import numpy as np
 
 import iksel
+from bench.arguments import add_before_and_after
 from bench.store import write_json
 
 if TYPE_CHECKING:
+    import argparse
     from collections.abc import Callable, Iterable, Iterator
     from pathlib import Path
 
@@ -70,6 +72,22 @@ class Digest:
             f"{self._hash.hexdigest()[:16]} solved {self.solved} "
             f"attempts {self.attempts} iterations {self.iterations}"
         )
+
+
+def add(commands: Any) -> None:
+    """The command `frozen`."""
+    command = commands.add_parser(
+        "frozen",
+        help="compare the bits of every call's answers before and after a change",
+        description="Records what every public call answers, on every built-in robot, "
+        "at both presets and every SIMD level of this machine, or compares with that.",
+    )
+    add_before_and_after(command, "build/frozen.json")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Record or compare; the exit status."""
+    return (record if args.action == "record" else compare)(args.file)
 
 
 def compare(path: Path) -> int:

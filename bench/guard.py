@@ -29,6 +29,7 @@ from bench.targets import make_targets
 from bench.timing import time_calls
 
 if TYPE_CHECKING:
+    import argparse
     from collections.abc import Callable
 
     from bench.arms import Arm
@@ -75,9 +76,21 @@ LEVELS = ("scalar", "sse2", "neon", "avx2", "avx512")
 """Instruction sets; the committed ratios are of one of them."""
 
 
-def guard(*, update: bool) -> int:
+def add(commands: Any) -> None:
+    """The command `guard`."""
+    command = commands.add_parser(
+        "guard",
+        help="compare speed and success with bench/guard.json",
+        description=__doc__,
+    )
+    command.add_argument(
+        "--update", action="store_true", help="write bench/guard.json instead"
+    )
+
+
+def run(args: argparse.Namespace) -> int:
     """Compare, or write what to compare with; the exit status."""
-    if update:
+    if args.update:
         rows = [_measured(row) for row in ROWS]
         write_json(PATH, {"machine": facts(), "rows": rows}, indent=1)
         sys.stdout.write(f"wrote {PATH}\n")

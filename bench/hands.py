@@ -12,7 +12,7 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 import iksel
-from bench.arguments import add_robots, check_robots
+from bench.arguments import add_count, add_max_error, add_robots, add_seed, check_robots
 from bench.branches import SAME_MOVE
 from bench.markdown import microseconds, table
 from bench.rivals.base import UnsupportedError
@@ -38,15 +38,11 @@ def add(commands: Any) -> None:
     )
     of_meshes = "; pr2, and the meshes of both, are those of example-robot-data"
     add_robots(command, ROBOTS, of_meshes)
-    command.add_argument(
-        "--near", type=int, default=300, metavar="N", help="moves of each start"
-    )
-    command.add_argument(
-        "--free", type=int, default=10_000, metavar="N", help="targets beside bodies"
-    )
-    command.add_argument("--paths", type=int, default=40, metavar="N")
-    command.add_argument("--max-error", type=float, default=0.02, metavar="M")
-    command.add_argument("--seed", type=int, default=1)
+    add_count(command, "--near", 300, "moves of each start")
+    add_count(command, "--free", 10_000, "targets beside bodies")
+    add_count(command, "--paths", 40, "paths")
+    add_max_error(command, 0.02)
+    add_seed(command)
 
 
 def run(args: argparse.Namespace) -> int:

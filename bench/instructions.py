@@ -15,11 +15,10 @@ import shutil
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import iksel
-from bench.arguments import add_robots
+from bench.arguments import add_before_and_after, add_robots
 from bench.store import write_json
 
 if TYPE_CHECKING:
@@ -45,8 +44,7 @@ def add(commands: Any) -> None:
         "compares with that: exit status 1 if any takes more than 2 % more. Needs "
         "valgrind; 8 minutes on 2 cores.",
     )
-    parser.add_argument("action", choices=["record", "compare"])
-    parser.add_argument("file", type=Path, help="where, e.g. build/instructions.json")
+    add_before_and_after(parser, "build/instructions.json")
     add_robots(parser, ROBOTS)
 
 

@@ -25,6 +25,7 @@ import numpy as np
 
 import iksel
 from bench import random_arms
+from bench.arguments import add_count, add_names, add_seed
 from bench.check import right
 
 if TYPE_CHECKING:
@@ -166,8 +167,10 @@ def writing(text: str | None, seed: int) -> Callable[[float], str]:
     if text is None:
         return repr
     if text.isdigit():
-        return random_arms.rounded(int(text))
-    return random_arms.off_by(float(text), seed)
+        return lambda value: f"{value:.{text}f}"
+    size = float(text)
+    random = np.random.default_rng(seed)
+    return lambda value: repr(value + float(random.uniform(-size, size)))
 
 
 def arms(name: str, count: int, written: str | None, seed: int) -> Iterator[Arm]:
@@ -186,21 +189,15 @@ def add(commands: Any) -> None:
         help="laws that every arm has to keep, on arms drawn at random",
         description=__doc__.splitlines()[0],
     )
-    command.add_argument(
-        "builds",
-        nargs="*",
-        default=random_arms.BUILDS,
-        metavar="BUILD",
-        help=f"{' '.join(random_arms.BUILDS)}, or a built-in robot",
-    )
-    command.add_argument("--arms", type=int, default=200, metavar="N", help="a build")
-    command.add_argument("--poses", type=int, default=100, metavar="N", help="an arm")
+    add_names(command, "builds", random_arms.BUILDS, "; or built-in robots")
+    add_count(command, "--arms", 200, "random arms of each build")
+    add_count(command, "--poses", 100, "poses of each arm")
     command.add_argument(
         "--written",
         metavar="HOW",
         help="numbers of the files: 4 for four decimals, 1e-6 for off by up to that",
     )
-    command.add_argument("--seed", type=int, default=1)
+    add_seed(command)
 
 
 def run(args: argparse.Namespace) -> int:

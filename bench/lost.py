@@ -21,7 +21,7 @@ import numpy as np
 
 import iksel
 from bench import random_arms
-from bench.arguments import add_robots
+from bench.arguments import add_count, add_robots, add_seed
 from bench.arms import load_arm
 from bench.branches import (
     ROUNDING,
@@ -185,28 +185,19 @@ def add(commands: Any) -> None:
         description=__doc__,
     )
     add_robots(command, ROBOTS)
-    command.add_argument(
-        "--targets", type=int, default=1_000_000, metavar="N", help="uniform ones"
+    add_count(command, "--targets", 1_000_000, "uniform targets")
+    add_count(
+        command, "--hard", 100_000, "targets at limits, and as many near singularities"
     )
-    command.add_argument(
-        "--hard",
-        type=int,
-        default=100_000,
-        metavar="N",
-        help="targets at limits, and as many near singularities",
-    )
-    command.add_argument(
+    add_count(
+        command,
         "--poses",
-        type=int,
-        default=0,
-        metavar="N",
-        help="poses whose branches are compared with those of restarts; only of arms "
+        0,
+        "poses whose branches are compared with those of restarts; only of arms "
         "of which no joint is redundant",
     )
-    command.add_argument("--restarts", type=int, default=10_000, metavar="N")
-    command.add_argument(
-        "--random", type=int, default=0, metavar="N", help="random arms of each build"
-    )
+    add_count(command, "--restarts", 10_000, "random seeds of brute force")
+    add_count(command, "--random", 0, "random arms of each build")
     command.add_argument(
         "--builds",
         nargs="*",
@@ -214,7 +205,7 @@ def add(commands: Any) -> None:
         metavar="BUILD",
         help=f"of random arms: {' '.join(random_arms.BUILDS)}",
     )
-    command.add_argument("--seed", type=int, default=1)
+    add_seed(command)
 
 
 def run(args: argparse.Namespace) -> int:

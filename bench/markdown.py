@@ -41,3 +41,10 @@ def percent(part: float, whole: float, digits: int = 2) -> str:
 def signed(value: float, digits: int = 2) -> str:
     """A difference with its sign."""
     return f"{value:+.{digits}f}".replace("-", "\N{MINUS SIGN}")
+
+
+def mean_median(times: list[float] | None) -> str:
+    """Two times as a cell of a table; NONE of none."""
+    if times is None:
+        return NONE
+    return f"{microseconds(times[0])} ({microseconds(times[1])})"

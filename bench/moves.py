@@ -14,6 +14,7 @@ import numpy as np
 
 import iksel
 from bench import random_arms
+from bench.arguments import add_count, add_names, add_seed
 from bench.laws import arms
 
 if TYPE_CHECKING:
@@ -75,18 +76,16 @@ def add(commands: Any) -> None:
         help="whether near of seven joints is nearest, on arms drawn at random",
         description=__doc__.splitlines()[0],
     )
-    command.add_argument(
-        "builds", nargs="*", default=BUILDS, metavar="BUILD", help=" ".join(BUILDS)
-    )
-    command.add_argument("--arms", type=int, default=40, metavar="N", help="a build")
-    command.add_argument("--poses", type=int, default=200, metavar="N", help="an arm")
+    add_names(command, "builds", BUILDS)
+    add_count(command, "--arms", 40, "random arms of each build")
+    add_count(command, "--poses", 200, "poses of each arm")
     command.add_argument(
         "--beside",
         type=float,
         metavar="RAD",
         help="start so far from an answer, else from any configuration",
     )
-    command.add_argument("--seed", type=int, default=1000)
+    add_seed(command, 1000)
 
 
 def run(args: argparse.Namespace) -> int:

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from bench import plan, plots_seeds
+from bench import plots_seeds
 from bench.arms import PAPER_ARMS, RIVAL_ARMS
 from bench.paper import plan as paper_plan
 from bench.paper.published import ROBOTS
+from bench.plans.rivals import rival_cell
 from bench.rivals import RIVALS
 from bench.sections.curves import curve
 from bench.timing import QUANTILES
@@ -96,7 +97,7 @@ def _measured(view: View, kind: str) -> dict[str, dict[str, Any]]:
     found: dict[str, dict[str, Any]] = {}
     for robot in RIVAL_ARMS:
         for name in RIVALS:
-            cell = view.get(plan.rival_cell(robot, name, kind, view.size))
+            cell = view.get(rival_cell(robot, name, kind, view.size))
             if cell is not None and cell["right"] > 0:
                 found.setdefault(robot, {})[name] = cell
     return found

@@ -16,11 +16,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import iksel
-from bench.arms import Arm, chain_urdf
-from bench.chain import chain_from_urdf
+from bench.arms import arm_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from bench.arms import Arm
 
 RIGHT = np.pi / 2
 
@@ -261,17 +262,6 @@ def _three(values: np.ndarray) -> tuple[float, float, float]:
     return float(values[0]), float(values[1]), float(values[2])
 
 
-def rounded(decimals: int) -> Callable[[float], str]:
-    """Writes numbers with so many decimals."""
-    return lambda value: f"{value:.{decimals}f}"
-
-
-def off_by(size: float, seed: int) -> Callable[[float], str]:
-    """Writes numbers that are off by up to a size, each anew."""
-    random = np.random.default_rng(seed)
-    return lambda value: repr(value + float(random.uniform(-size, size)))
-
-
 def with_numbers(urdf: str, write: Callable[[float], str]) -> str:
     """A URDF's text with the numbers of all origins written anew."""
 
@@ -285,13 +275,6 @@ def with_numbers(urdf: str, write: Callable[[float], str]) -> str:
     return re.sub(r"<origin\b[^>]*>", origin, urdf)
 
 
-def arm_from_urdf(name: str, urdf: str, base: str, tip: str) -> Arm:
-    """The arm of a URDF text, with its judge."""
-    robot = iksel.Robot.from_urdf(urdf, base, tip)
-    chain = chain_from_urdf(robot.urdf, base, tip, robot.tcp)
-    return Arm(name, robot, chain, chain_urdf(robot), base)
-
-
 def random_arm(build: str, seed: int, write: Callable[[float], str] = repr) -> Arm:
     """The random arm of that build and seed, as its numbers are written.
 
@@ -299,7 +282,7 @@ def random_arm(build: str, seed: int, write: Callable[[float], str] = repr) -> A
         KeyError: No such build.
     """
     urdf = sketch(build, seed).urdf(write)
-    return arm_from_urdf(f"{build}-{seed}", urdf, "l0", "tip")
+    return arm_of(f"{build}-{seed}", iksel.Robot.from_urdf(urdf, "l0", "tip"))
 
 
 def written_anew(name: str, write: Callable[[float], str]) -> Arm:
@@ -307,5 +290,4 @@ def written_anew(name: str, write: Callable[[float], str]) -> Arm:
     robot = iksel.load_robot(name)
     urdf = with_numbers(robot.urdf, write)
     anew = iksel.Robot.from_urdf(urdf, robot.base_link, robot.tip_link, tcp=robot.tcp)
-    chain = chain_from_urdf(anew.urdf, anew.base_link, anew.tip_link, anew.tcp)
-    return Arm(name, anew, chain, chain_urdf(anew), anew.base_link)
+    return arm_of(name, anew)

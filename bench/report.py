@@ -26,7 +26,7 @@ from bench.sections import (
     seed_makers,
     tails,
 )
-from bench.store import write_json
+from bench.store import key_of, write_json
 from bench.view import View
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     from bench.rivals.base import Rival
     from bench.size import Job, Size
-    from bench.store import Settings, Store
+    from bench.store import Store
     from bench.view import Report
 
 PLOTTED = "uniform"
@@ -54,7 +54,7 @@ def collect(
         for settings in job.cells:
             result = store.load(settings)
             if result is not None and settings["cell"] != "targets":
-                key = _key(settings)
+                key = key_of(settings)
                 if settings.get("kind", PLOTTED) != PLOTTED:
                     result = _without_quantiles(result)
                 cells[key] = {"settings": settings, "result": _rounded(result)}
@@ -81,8 +81,8 @@ def merged(
         wanted: The jobs of a whole report: cells that are of none are left out.
         sections: Which ones.
     """
-    cells = {_key(cell["settings"]): cell for cell in [*old["cells"], *new["cells"]]}
-    keys = [_key(cell) for job in wanted for cell in job.cells]
+    cells = {key_of(cell["settings"]): cell for cell in [*old["cells"], *new["cells"]]}
+    keys = [key_of(cell) for job in wanted for cell in job.cells]
     part = {name: new[name] for name in ("machine", "command", "seconds")}
     return {
         **old,
@@ -194,10 +194,6 @@ def _tail(report: Report) -> str:
         return ""
     lines = [f"- {name}: {reason}" for name, reason in failures.items()]
     return "\n".join(["## Failed", "", *lines])
-
-
-def _key(settings: Settings) -> str:
-    return json.dumps(settings, sort_keys=True)
 
 
 def _without_quantiles(result: dict[str, Any]) -> dict[str, Any]:

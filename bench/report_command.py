@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from bench import plan
-from bench.arguments import add_fresh, add_quick
+from bench.arguments import add_kept
 from bench.arms import RIVAL_ARMS
 from bench.machine import facts, fingerprint, stale
 from bench.provenance import check
@@ -53,7 +53,6 @@ def add(commands: Any) -> None:
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    add_quick(report, "fewer targets: a few minutes")
     report.add_argument(
         "--robots", nargs="+", metavar="ROBOT", help="only these robots"
     )
@@ -72,11 +71,26 @@ def add(commands: Any) -> None:
         help="where RESULTS.md, results/ and plots/ go (default: bench, or build/bench/"
         "quick for a quick or partial report)",
     )
-    add_fresh(report)
+    add_kept(report, "fewer targets: a few minutes")
     report.add_argument(
         "--keep",
         action="store_true",
         help="with --only and -o: keep what the folder's report has besides",
+    )
+
+
+def add_render(commands: Any) -> None:
+    """The arguments of `render`."""
+    render_ = commands.add_parser(
+        "render", help="write the text and plots of a report again"
+    )
+    render_.add_argument(
+        "-o",
+        "--output",
+        type=Path,
+        default=BENCH,
+        metavar="FOLDER",
+        help="the report's (default: bench)",
     )
 
 
@@ -110,7 +124,7 @@ def make(options: argparse.Namespace, given: list[str]) -> int:
     if report is None:
         return 130
     if options.keep:
-        every = plan.plan(size, None, None)
+        every = plan.plan(size)
         sections = [part for part in plan.SECTIONS if part in (options.only or ())]
         report = merged(load_report(output), report, every, sections)
     save_report(report, output)

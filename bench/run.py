@@ -1,77 +1,27 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs the jobs of a plan in worker processes, with a progress bar."""
+"""Runs the jobs of a plan in worker processes."""
 
 from __future__ import annotations
 
 import json
 import os
-import subprocess
 import sys
 import threading
-import time
 from concurrent.futures import ThreadPoolExecutor
-from typing import TYPE_CHECKING, TextIO
+from subprocess import PIPE, STDOUT, Popen, TimeoutExpired
+from typing import TYPE_CHECKING
 
 from bench.machine import ROOT
-from bench.plan import seconds
+from bench.progress import Bar
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from typing_extensions import Self
-
     from bench.size import Job
     from bench.store import Settings, Store
 
-BAR_WIDTH = 24
 LIMIT_S = 900.0
-"""A worker that takes longer is ended [s], unless its cells say "hang_s"."""
-
-
-class Bar:
-    """One line on stderr: how far, how long, what now."""
-
-    def __init__(self, cells: list[Settings], store: Store, stream: TextIO) -> None:
-        """A bar over cells, of which the store has some already."""
-        self._missing = [cell for cell in cells if not store.has(cell)]
-        self._total = max(sum(map(seconds, self._missing)), 1e-9)
-        self._store = store
-        self._stream = stream
-        self._begin = time.monotonic()
-        self._what = ""
-        self._end = threading.Event()
-        self._thread = threading.Thread(target=self._watch, daemon=True)
-
-    def __enter__(self) -> Self:
-        """Begin to watch the store."""
-        self._thread.start()
-        return self
-
-    def __exit__(self, *exception: object) -> None:
-        """Draw the bar for the last time."""
-        self._end.set()
-        self._thread.join()
-        self._draw()
-        if self._stream.isatty():
-            self._stream.write("\n")
-
-    def say(self, what: str) -> None:
-        """What is being measured now."""
-        self._what = what
-
-    def _watch(self) -> None:
-        while not self._end.wait(1.0 if self._stream.isatty() else 15.0):
-            self._draw()
-
-    def _draw(self) -> None:
-        left = [cell for cell in self._missing if not self._store.has(cell)]
-        part = 1.0 - sum(map(seconds, left)) / self._total
-        bar = "#" * int(part * BAR_WIDTH)
-        passed = time.monotonic() - self._begin
-        line = f"[{bar:<{BAR_WIDTH}}] {part:4.0%} {passed:5.0f} s  {self._what}"
-        before, after = ("\r\033[K", "") if self._stream.isatty() else ("", "\n")
-        self._stream.write(f"{before}{line[:100]}{after}")
-        self._stream.flush()
+"""A worker that takes longer for a cell is ended [s], unless its cells say "hang_s"."""
 
 
 def run_jobs(jobs: list[Job], store: Store, folder: Path) -> dict[str, str]:
@@ -148,20 +98,44 @@ def _run_worker(cells: list[Settings], store: Store, log: Path) -> str:
     if level := cells[0].get("simd"):
         environment["IKSEL_SIMD"] = level
     limit_s = max(cell.get("hang_s", LIMIT_S) for cell in cells)
-    with log.open("w", encoding="utf-8") as output:
-        try:
-            done = subprocess.run(
-                [sys.executable, "-m", "bench.worker"],
-                input=json.dumps(task),
-                text=True,
-                check=False,
-                stdout=output,
-                stderr=subprocess.STDOUT,
-                env=environment,
-                timeout=limit_s,
-                cwd=ROOT,
-            )
-        except subprocess.TimeoutExpired:
+    with (
+        log.open("w", encoding="utf-8") as output,
+        Popen(
+            [sys.executable, "-m", "bench.worker"],
+            stdin=PIPE,
+            stdout=output,
+            stderr=STDOUT,
+            text=True,
+            env=environment,
+            cwd=ROOT,
+        ) as worker,
+    ):
+        if not _ends(worker, json.dumps(task), cells, store, limit_s):
             return f"ended after {limit_s:.0f} s"
     tail = log.read_text(encoding="utf-8", errors="replace").strip().splitlines()
-    return f"exit status {done.returncode}: {tail[-1] if tail else 'no output'}"
+    return f"exit status {worker.returncode}: {tail[-1] if tail else 'no output'}"
+
+
+def _ends(
+    worker: Popen[str],
+    task: str,
+    cells: list[Settings],
+    store: Store,
+    limit_s: float,
+) -> bool:
+    """Whether a worker ends by itself; one that saves nothing for so long is killed."""
+    given: str | None = task
+    saved = -1
+    try:
+        while sum(map(store.has, cells)) > saved:
+            saved = sum(map(store.has, cells))
+            try:
+                worker.communicate(given, timeout=limit_s)
+            except TimeoutExpired:
+                given = None
+            else:
+                return True
+    finally:
+        # Also where Ctrl-C ends the wait.
+        worker.kill()
+    return False

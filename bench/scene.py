@@ -21,6 +21,7 @@ import numpy as np
 import iksel
 import iksel.exact
 import iksel.spheres
+from bench.arguments import add_count, add_max_error, add_seed
 from bench.timing import time_calls
 
 if TYPE_CHECKING:
@@ -189,20 +190,12 @@ def add(commands: Any) -> None:
     command = commands.add_parser(
         "scene", help="solves in scenes, judged by coal", description=__doc__
     )
-    command.add_argument("--targets", type=int, default=10_000, metavar="N")
-    command.add_argument("--seed", type=int, default=0)
-    command.add_argument("--max-error", type=float, default=0.002, metavar="M")
-    command.add_argument(
-        "--filtered",
-        type=int,
-        default=200,
-        metavar="N",
-        help="targets with a coal filter",
-    )
-    command.add_argument(
-        "--missed", type=int, default=50, metavar="N", help=f"targets for {RESTARTS}"
-    )
-    command.add_argument("--restarts", type=int, default=1_000, metavar="N")
+    add_count(command, "--targets", 10_000, "targets")
+    add_seed(command, 0)
+    add_max_error(command, 0.002)
+    add_count(command, "--filtered", 200, "targets with a coal filter")
+    add_count(command, "--missed", 50, f"targets for {RESTARTS}")
+    add_count(command, "--restarts", 1_000, "random restarts of each of these")
     command.add_argument("--only", metavar="SCENE", help="one scene")
 
 

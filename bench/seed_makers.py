@@ -8,7 +8,6 @@ iterates, and nothing follows. What selects from a database does so inside the s
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -18,7 +17,6 @@ import numpy as np
 import iksel
 from bench.check import right
 from bench.ikgeo.search import Search
-from bench.rivals.base import UnsupportedError
 from bench.timing import time_calls
 
 if TYPE_CHECKING:
@@ -57,6 +55,16 @@ class Selection:
     language: str = "C++"
 
 
+@dataclass(frozen=True)
+class Learned:
+    """A trained model: what its own section measures has the same targets."""
+
+    model: str
+    output: str
+    """Which of its outputs: "first" or "best"."""
+    language: str = "JAX"
+
+
 def _uniform(arm: Arm) -> SeedMaker:
     random = np.random.default_rng(0)
     lower, upper = arm.robot.lower, arm.robot.upper
@@ -68,26 +76,12 @@ def _uniform(arm: Arm) -> SeedMaker:
     return make
 
 
-def _learned(model: str, count: int) -> Callable[[Arm], SeedMaker]:
-    """The outputs of a trained model, nearest to the pose first."""
-
-    def make(arm: Arm) -> SeedMaker:
-        try:
-            module = importlib.import_module("bench.learned.evaluate")
-        except ImportError as error:
-            raise UnsupportedError(f"not measured: no {error.name}") from None
-        maker: SeedMaker = module.seed_maker(arm, model, count)
-        return maker
-
-    return make
-
-
 PAPER = iksel.DatabaseOptions.paper()
 REDUCED = iksel.DatabaseOptions()
 AWARE = {"limit_aware": True, "rotation_difference": "geodesic"}
 """As the default preset ranks: what would leave the limits comes last."""
 
-MAKERS: dict[str, Maker | Selection] = {
+MAKERS: dict[str, Maker | Selection | Learned] = {
     "random": Maker("numpy", _uniform),
     "paper's database, nearest, Eq. (2)": Selection(PAPER, {"ranking": "nearest"}),
     "paper's database, Eq. (5)": Selection(PAPER, {}),
@@ -95,11 +89,11 @@ MAKERS: dict[str, Maker | Selection] = {
     "reduced database, Eq. (5)": Selection(REDUCED, {}),
     "reduced database, Eq. (5), limits": Selection(REDUCED, AWARE),
     "IK-Geo, 36 values of q4": Maker("numpy", lambda arm: Search(arm, 36, "lower end")),
-    "MDN": Maker("JAX", _learned("mdn", 1)),
-    "flow, first": Maker("JAX", _learned("flow", 1)),
-    "flow, best of 32": Maker("JAX", _learned("flow", 32)),
-    "diffusion, first": Maker("JAX", _learned("diffusion", 1)),
-    "diffusion, best of 32": Maker("JAX", _learned("diffusion", 32)),
+    "MDN": Learned("mdn", "first"),
+    "flow, first": Learned("flow", "first"),
+    "flow, best of 32": Learned("flow", "best"),
+    "diffusion, first": Learned("diffusion", "first"),
+    "diffusion, best of 32": Learned("diffusion", "best"),
 }
 """All of them by name, in the order of the table."""
 

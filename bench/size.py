@@ -33,8 +33,6 @@ class Size:
     """Poses in a batch."""
     artefact: int
     """Queries looked at for singular samples."""
-    share: float = 10.0
-    """Largest share that a solver may have."""
     requests: int = 10_000
     """Targets of the requests."""
     restarts: int = 1_000
@@ -47,7 +45,7 @@ class Size:
     """Their seed."""
     analytic: int = 500
     """Targets of each kind for solvers that enumerate."""
-    analytic_s: float = 0.5
+    analytic_s: float = 0.25
     """Time after which none of them is begun any more, in each way to ask [s]."""
     tail_calls: int = 1_000_000
     """Reachable targets whose single calls are looked at one by one."""
@@ -74,14 +72,14 @@ class Size:
 FULL = Size(
     paper=10_000,
     figure=2_000,
-    figure_attempts=tuple(range(1, 21)),
+    figure_attempts=(1, 2, 3, 5, 7, 10, 15, 20),
     cvt_scales=("small", "medium"),
     rivals={
         "uniform": 1_000,
         "near_limits": 500,
         "near_singular": 500,
         "lines": 500,
-        "unreachable": 50,
+        "unreachable": 20,
     },
     robots=100_000,
     batch=10_000,

@@ -14,6 +14,11 @@ Settings = dict[str, Any]
 """What is measured in one cell of a table: plain data, "cell" names the function."""
 
 
+def key_of(settings: Settings) -> str:
+    """Settings as text: the same for the same cell."""
+    return json.dumps(settings, sort_keys=True)
+
+
 class Store:
     """One file per cell in a folder."""
 

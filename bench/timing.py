@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
 WARM_UP = 20
 """Calls before the first timed one."""
-WARM_PART = 0.2
-"""Part of the time limit that they may take."""
+WARM_PART, WARM_S = 0.2, 0.2
+"""Part of the time limit that they may take, and time [s]: of slow calls a few do."""
 
 QUANTILES = np.concatenate(
     [np.linspace(0.0, 0.98, 50), [0.99, 0.995, 0.998, 0.999, 0.9995, 0.9999, 1.0]]
@@ -39,7 +39,7 @@ def time_calls(
         The times [ns] and what was returned. Garbage collection waits meanwhile.
     """
     clock = time.perf_counter_ns
-    warm = clock() + int(limit_s * WARM_PART * 1e9)
+    warm = clock() + int(min(limit_s * WARM_PART, WARM_S) * 1e9)
     for values in arguments[:WARM_UP]:
         call(*values)
         if clock() > warm:
@@ -71,6 +71,13 @@ def least_times(runs: Sequence[npt.NDArray[np.int64]]) -> npt.NDArray[np.int64]:
     """
     count = min(map(len, runs))
     return np.asarray(np.min([times[:count] for times in runs], axis=0))
+
+
+def mean_median(times_ns: npt.NDArray[np.int64]) -> list[float] | None:
+    """Both [us]; None of no times."""
+    if len(times_ns) == 0:
+        return None
+    return [float(times_ns.mean()) / 1e3, float(np.median(times_ns)) / 1e3]
 
 
 def tail(times_ns: npt.NDArray[np.int64]) -> dict[str, float]:

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import iksel
+from bench.arguments import add_count, add_seed
 from bench.timing import time_calls
 
 if TYPE_CHECKING:
@@ -104,14 +105,12 @@ def add(commands: Any) -> None:
     command = commands.add_parser(
         "tips", help="two arms on a torso, both tips at once", description=__doc__
     )
-    command.add_argument("--targets", type=int, default=10_000, metavar="N")
-    command.add_argument(
-        "--near", type=int, default=1_000, metavar="N", help="of them with near"
-    )
+    add_count(command, "--targets", 10_000, "targets")
+    add_count(command, "--near", 1_000, "of these with near")
     command.add_argument(
         "--part", type=float, default=0.1, help="of each joint's range (%(default)s)"
     )
-    command.add_argument("--seed", type=int, default=0)
+    add_seed(command, 0)
     command.add_argument("--only", metavar="ARM", choices=ARMS, help="one arm")
 
 

@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from typing import TYPE_CHECKING, Any
 
 from bench.size import Size
+from bench.store import key_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -31,17 +31,17 @@ class View:
         }
         self.size = Size(**fields)
         self._results = {
-            _key(cell["settings"]): cell["result"] for cell in report["cells"]
+            key_of(cell["settings"]): cell["result"] for cell in report["cells"]
         }
 
     def get(self, settings: Settings) -> dict[str, Any] | None:
         """The result of a cell; None where it was not measured or cannot be."""
-        result = self._results.get(_key(settings))
+        result = self._results.get(key_of(settings))
         return None if result is None or "unsupported" in result else result
 
     def why_not(self, settings: Settings) -> str:
         """Why a cell has no result."""
-        result = self._results.get(_key(settings))
+        result = self._results.get(key_of(settings))
         return "not measured" if result is None else result.get("unsupported", "")
 
     def has_any(self, cell: str) -> bool:
@@ -65,7 +65,3 @@ def tell_section(text: str, *, wrong: Iterable[str] = (), failed: bool) -> int:
     bad = [f"WRONG: {line}\n" for line in wrong]
     sys.stdout.writelines([text + "\n", *bad])
     return 1 if bad or failed else 0
-
-
-def _key(settings: Settings) -> str:
-    return json.dumps(settings, sort_keys=True)

@@ -276,13 +276,14 @@ def no_conditions(report: dict[str, Any], found: dict[str, dict[str, Result]]) -
     return (
         f"{size['no']:,} targets per robot ({size['no_slow']:,} for numerical "
         f"rivals), seed {size['no_seed']}, tolerances of 1e-6 m and 1e-6 rad, one "
-        "thread, from Python (KDL's own solvers from C++), the least time of three of "
-        f"each call; `solve_all` and `near` over all targets, or over a tenth of them "
-        "where there is no closed form; a numerical rival's no is the cut-off that it "
-        f"was given; {machine(report, 'no')} Of {count:,} targets "
-        f"that can be reached, uniform in the limits of these {len(reachable)} robots, "
-        f"seed {size['no_seed']}, {solved:,} were solved; of the {proven:,} proofs in "
-        f"the table another solver's answer refutes {disproved}." + random_arms(report)
+        "thread, from Python (KDL's own solvers from C++), of each call the least time "
+        "of three where that does not take long; `solve_all` and `near` over all "
+        "targets, or over a tenth of them where there is no closed form; a numerical "
+        f"rival's no is the cut-off that it was given; {machine(report, 'no')} "
+        f"Of {count:,} targets that can be reached, uniform in the limits of these "
+        f"{len(reachable)} robots, seed {size['no_seed']}, {solved:,} were solved; "
+        f"of the {proven:,} proofs in the table another solver's answer refutes "
+        f"{disproved}." + random_arms(report)
     )
 
 

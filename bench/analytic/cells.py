@@ -25,7 +25,7 @@ from bench.check import (
 )
 from bench.rivals import ENUMERATORS
 from bench.rivals.enumerator import WAYS
-from bench.timing import least_times
+from bench.timing import least_times, mean_median
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -132,17 +132,10 @@ def _figures(given: Given) -> dict[str, Any]:
     """Of reachable targets: each without a right answer is missed."""
     return {
         "count": len(given.times),
-        "us": _mean_median(given.times),
+        "us": mean_median(given.times),
         "missed": sum(not len(q) for q in given.right),
         "wrong": given.wrong,
     }
-
-
-def _mean_median(times: npt.NDArray[np.int64]) -> list[float] | None:
-    """Both [us]; None of no times."""
-    if len(times) == 0:
-        return None
-    return [float(times.mean()) / 1e3, float(np.median(times)) / 1e3]
 
 
 def _branches(
@@ -182,7 +175,7 @@ def _noes(solver: iksel.Solver, goals: Targets, given: Given) -> dict[str, Any]:
     return {
         "count": len(yes),
         "noes": int(np.count_nonzero(~yes & ~ours)),
-        "us": _mean_median(given.times[~yes & ~ours]),
+        "us": mean_median(given.times[~yes & ~ours]),
         "missed": int(np.count_nonzero(~yes & ours)),
         "only": int(np.count_nonzero(yes & ~ours)),
         "wrong": given.wrong,

@@ -6,12 +6,12 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from bench import plan
-from bench.analytic.plan import arms
-from bench.arguments import add_fresh, add_quick, add_robots
+from bench.analytic.plan import analytic_jobs, arms, job_name
+from bench.arguments import add_count, add_kept, add_robots, add_seed
+from bench.plan import chosen
 from bench.rivals import ENUMERATORS
 from bench.sections import analytic
-from bench.size import FULL, QUICK, SEED
+from bench.size import FULL, QUICK
 from bench.view import View, tell_section
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ def add(commands: Any) -> None:
         "answer wrongly. Results are kept as the report's are.",
     )
     add_robots(command, arms())
-    add_quick(command)
+    add_kept(command)
     command.add_argument(
         "--solvers",
         nargs="+",
@@ -41,9 +41,8 @@ def add(commands: Any) -> None:
         choices=list(ENUMERATORS),
         help=f"only these ({names})",
     )
-    command.add_argument("--targets", type=int, help="of each kind")
-    command.add_argument("--seed", type=int, default=SEED)
-    add_fresh(command)
+    add_count(command, "--targets", None, "targets of each kind")
+    add_seed(command)
 
 
 def jobs_of(
@@ -53,14 +52,15 @@ def jobs_of(
     size = QUICK if options.quick else FULL
     count = options.targets or size.analytic
     size = replace(size, analytic=count, no_seed=options.seed)
-    chosen = options.solvers or list(ENUMERATORS)
-    wanted = [name for name in chosen if name in installed]
-    return plan.analytic_plan(size, options.robots, wanted), size
+    wanted = [name for name in options.solvers or ENUMERATORS if name in installed]
+    return chosen(analytic_jobs(size, options.robots), rivals=wanted), size
 
 
 def tell(report: Report) -> int:
     """Print the section; the exit status is 1 if IKSel is wrong or fails."""
     view = View(report)
     # What ends a rival's process is a row of the table.
-    ended = any(key.startswith(f"{analytic.OURS} asked") for key in report["failures"])
+    ended = any(
+        key.startswith(f"{job_name(analytic.OURS)},") for key in report["failures"]
+    )
     return tell_section(analytic.text(view), wrong=analytic.wrong(view), failed=ended)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 KINDS = ("uniform", "any_rotation")
 """Targets that can all be reached, and targets of which many cannot."""
 HANG_S = 300.0
-"""A solver that takes longer for an arm is ended [s]."""
+"""A solver that takes longer for a cell is ended [s]."""
 BUILDING = ("ssik", "ssik, no rescue")
 """Solvers that first build something for an arm, which takes minutes: they get what all
 workers do."""
@@ -45,18 +45,18 @@ def asked_cell(robot: str, name: str, kind: str, size: Size) -> Settings:
 
 
 def analytic_jobs(size: Size, robots: Collection[str] | None = None) -> list[Job]:
-    """A process for each solver and arm: what one does there, no other feels."""
+    """A process for each solver: what ends one, no other feels."""
+    wanted = arms() if robots is None else robots
     return [
         Job(
-            job_name(robot, name),
+            job_name(name),
             "analytic",
-            [asked_cell(robot, name, kind, size) for kind in KINDS],
+            [asked_cell(robot, name, kind, size) for robot in wanted for kind in KINDS],
         )
-        for robot in (arms() if robots is None else robots)
         for name in ENUMERATORS
     ]
 
 
-def job_name(robot: str, name: str) -> str:
+def job_name(name: str) -> str:
     """How progress and failures call a job."""
-    return f"{name} asked on {robot}"
+    return f"{name} asked"

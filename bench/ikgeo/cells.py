@@ -26,10 +26,8 @@ if TYPE_CHECKING:
 
     Times = npt.NDArray[np.int64]
 
-LIMIT_S = 300.0
-"""No further call is timed after this [s]."""
-PACKAGE_LIMIT_S = 10.0
-"""The same for the package, whose search may take a tenth of a second."""
+LIMIT_S = 5.0
+"""No further call is timed after this [s]: a search may take a tenth of a second."""
 MANY = 64
 """Candidates that are iterated from at most, one after another until one arrives."""
 
@@ -48,7 +46,7 @@ def packaged(arm: Arm, goals: Targets, settings: Settings) -> dict[str, Any]:
     asked = [
         package.prepare(*each) for each in zip(goals.poses, goals.starts, strict=True)
     ]
-    times, returned = time_calls(package.call, asked, PACKAGE_LIMIT_S)
+    times, returned = time_calls(package.call, asked, LIMIT_S)
     # Its branches are given without regard to limits.
     branches = [np.array(package.answers(value)) for value in returned]
     found = [q[arm.chain.within_limits(q)] if len(q) else q for q in branches]

@@ -1,83 +1,51 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The arguments of python -m bench learned."""
+"""The command `learned`."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from bench.arguments import add_fresh, add_quick
+from bench.arguments import add_kept, add_robots
 from bench.arms import PAPER_ARMS
-from bench.learned.plan import LABELS, MODELS
+from bench.learned.plan import MODELS, learned_jobs
+from bench.plan import chosen
+from bench.sections import learned
+from bench.size import FULL, QUICK
+from bench.view import View, tell_section
 
 if TYPE_CHECKING:
     import argparse
+    from collections.abc import Collection
+
+    from bench.size import Job, Size
+    from bench.view import Report
 
 
 def add(commands: Any) -> None:
-    """Add the command to those of the benchmarks."""
-    learned = commands.add_parser(
+    """Its arguments."""
+    command = commands.add_parser(
         "learned",
-        help="train the learned seeds, or measure the committed ones",
-        description="Seeds from models that are learned: a mixture density network, a "
-        "normalizing flow, a diffusion. Needs jax, optax and equinox (the extra "
-        "bench-learned).",
+        help="the report's section on learned seeds, printed",
+        description="Seeds from the committed weights of models that are learned: a "
+        "mixture density network, a normalizing flow, a diffusion. Needs jax and "
+        "equinox (the extra bench-learned). Results are kept as the report's are.",
     )
-    actions = learned.add_subparsers(dest="action", required=True, metavar="ACTION")
-    _add_train(actions)
-    evaluate = actions.add_parser(
-        "evaluate", help="measure the committed weights and print the section"
-    )
-    evaluate.add_argument(
-        "robots", nargs="*", metavar="ROBOT", help=f"of {', '.join(PAPER_ARMS)}"
-    )
-    evaluate.add_argument(
+    add_robots(command, PAPER_ARMS)
+    command.add_argument(
         "--models", nargs="+", choices=MODELS, default=MODELS, help="only these"
     )
-    add_quick(evaluate, "half the targets")
-    add_fresh(evaluate)
-    actions.add_parser("table", help="print the section of the report that is there")
+    add_kept(command, "half the targets")
 
 
-def _add_train(actions: Any) -> None:
-    train = actions.add_parser(
-        "train",
-        help="train one model for one robot and write its weights",
-        description="Writes bench/learned/weights, or build/bench/learned with other "
-        "labels than the report's. The state is kept in build/bench: interrupted, the "
-        "same command goes on; with more minutes it goes on longer.",
-    )
-    train.add_argument("robot", choices=PAPER_ARMS)
-    train.add_argument("model", choices=MODELS)
-    train.add_argument(
-        "--minutes",
-        type=float,
-        default=45.0,
-        help="in all, of CPU time on one thread (default: %(default)s)",
-    )
-    train.add_argument(
-        "--labels",
-        choices=LABELS,
-        default=LABELS[0],
-        help="of a pose: the answer nearest to the middle of the limits, or the "
-        "configuration that the pose was drawn by (default: %(default)s)",
-    )
-    train.add_argument("--seed", type=int, default=1)
-    train.add_argument(
-        "--fresh", action="store_true", help="begin again, from random weights"
-    )
+def jobs_of(
+    options: argparse.Namespace,
+    installed: Collection[str],  # noqa: ARG001
+) -> tuple[list[Job], Size]:
+    """What is to be measured, and how much."""
+    size = QUICK if options.quick else FULL
+    return chosen(learned_jobs(size, options.models), options.robots), size
 
 
-def train(options: argparse.Namespace) -> int:
-    """Train as asked; the exit status."""
-    from bench.learned.train import train as run  # noqa: PLC0415 - needs jax
-
-    facts = run(
-        options.robot,
-        options.model,
-        options.minutes,
-        options.seed,
-        labels=options.labels,
-        fresh=options.fresh,
-    )
-    print(facts)
-    return 0
+def tell(report: Report) -> int:
+    """Print the section; the exit status is 1 if something failed."""
+    return tell_section(learned.text(View(report)), failed=bool(report["failures"]))

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import csv
 import functools
-import itertools
 from typing import TYPE_CHECKING, Any
 
 import equinox as eqx
@@ -20,12 +19,10 @@ from bench.arms import load_arm
 from bench.check import errors, right
 from bench.learned.models import load_weights
 from bench.learned.plan import weights_path
-from bench.rivals.base import UnsupportedError
 from bench.settings import make_solver, targets_of
 from bench.timing import time_calls
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from pathlib import Path
 
     import numpy.typing as npt
@@ -156,21 +153,6 @@ def _one_by_one(arm: Arm, model: Any, scaling: Scaling, count: int) -> Any:
     return call
 
 
-def seed_maker(arm: Arm, model: str, count: int) -> Callable[[Array], Array]:
-    """A function of a pose, (4, 4), to the best of so many outputs, (1, dof) [rad].
-
-    Raises:
-        UnsupportedError: The model was not trained for the arm.
-    """
-    path = weights_path(arm.name, model)
-    if not path.exists():
-        raise UnsupportedError(f"no {path.name}: not trained")
-    weights, scaling, _ = load_weights(path)
-    call = _one_by_one(arm, weights, scaling, count)
-    number = itertools.count()
-    return lambda pose: call(pose, np.uint32(next(number)))[None]
-
-
 def _as_seeds(
     arm: Arm, poses: Array, call: Any, *, direct: bool = False
 ) -> dict[str, Any]:
@@ -193,6 +175,7 @@ def _as_seeds(
     figures = {
         "right": int(right(arm.chain, poses, q, *tolerances).sum()),
         "most_attempts": max(result.attempts for result in results),
+        "iterations": float(np.mean([result.iterations for result in results])),
         "output_us": float(output_ns.mean()) / 1e3,
         "solve_us": float(solve_ns.mean()) / 1e3,
     }

@@ -12,6 +12,8 @@ from bench.settings import WORK
 from bench.size import SEED, Job, Size
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from bench.store import Settings
 
 MODELS = ("mdn", "flow", "diffusion")
@@ -50,7 +52,7 @@ def learned_cell(robot: str, model: str, size: Size) -> Settings:
     }
 
 
-def learned_jobs(size: Size) -> list[Job]:
+def learned_jobs(size: Size, models: Collection[str] = MODELS) -> list[Job]:
     """One job for each model."""
     return [
         Job(
@@ -58,5 +60,5 @@ def learned_jobs(size: Size) -> list[Job]:
             "learned",
             [learned_cell(robot, model, size) for robot in PAPER_ARMS],
         )
-        for model in MODELS
+        for model in models
     ]

@@ -11,7 +11,9 @@ from bench.paper.plan import (
     ABLATION_1_SCALES,
     ABLATION_2_ROWS,
     ABLATION_3_ROWS,
+    STAGED,
     paper_cell,
+    preset_cell,
     sampling_of,
 )
 from bench.size import Job, Size
@@ -132,23 +134,17 @@ def paired_cell(
     robot: str, size: Size, ours: Overrides, against: Overrides
 ) -> Settings:
     """Two settings on the same targets."""
-    return {**paper_cell(robot, size, ours), "cell": "paired", "against": against}
-
-
-def staged_cell(robot: str, size: Size, overrides: Overrides) -> Settings:
-    """A row's times, those of its stages too."""
-    return {**paper_cell(robot, size, overrides), "stages": True}
+    return {**preset_cell(robot, ours, size.paper, "paired"), "against": against}
 
 
 def tree_cell(robot: str, scale: str, size: Size) -> Settings:
     """The pickled tree of a database's keys."""
-    cell = paper_cell(robot, size, sampling_of("grid", scale))
-    return {**cell, "cell": "tree_file"}
+    return preset_cell(robot, sampling_of("grid", scale), size.paper, "tree_file")
 
 
 def shown_cell(size: Size) -> Settings:
     """The figures 1 to 3, of C0."""
-    return {**paper_cell("cvr038", size, {}, size.figure), "cell": "seeds_shown"}
+    return preset_cell("cvr038", {}, size.figure, "seeds_shown")
 
 
 def choice_cells(robot: str, size: Size) -> list[Settings]:
@@ -159,7 +155,7 @@ def choice_cells(robot: str, size: Size) -> list[Settings]:
         for other in choice.others.values()
     ]
     cells += [paired_cell(robot, size, radius, {}) for radius in DISTANCES.values()]
-    return _once(cells)
+    return [cell for i, cell in enumerate(cells) if cell not in cells[:i]]
 
 
 def choice_jobs(size: Size) -> list[Job]:
@@ -169,17 +165,7 @@ def choice_jobs(size: Size) -> list[Job]:
         name = f"text, {short}"
         cells = choice_cells(robot, size)
         cells += [tree_cell(robot, scale, size) for scale in ABLATION_1_SCALES]
-        timed = _once(
-            [
-                staged_cell(robot, size, overrides)
-                for claim in TIMES
-                for overrides in (claim.faster[1], *claim.slower.values())
-            ]
-        )
+        timed = [paper_cell(robot, size, overrides) for overrides in STAGED]
         jobs.append(Job(f"{name}, choices", "text", cells, timed=False))
         jobs.append(Job(f"{name}, stages", "text", timed))
     return jobs
-
-
-def _once(cells: list[Settings]) -> list[Settings]:
-    return [cell for i, cell in enumerate(cells) if cell not in cells[:i]]

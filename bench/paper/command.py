@@ -6,9 +6,10 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from bench.arguments import add_fresh, add_quick, add_robots
+from bench.arguments import add_count, add_kept, add_robots
 from bench.paper.choices import choice_jobs
 from bench.paper.published import ROBOTS
+from bench.plan import chosen
 from bench.sections import choices
 from bench.size import FULL, QUICK
 from bench.view import View, tell_section
@@ -31,9 +32,8 @@ def add(commands: Any) -> None:
         "Results are kept as the report's are.",
     )
     add_robots(command, ROBOTS)
-    add_quick(command)
-    command.add_argument("--targets", type=int, help="of each row")
-    add_fresh(command)
+    add_kept(command)
+    add_count(command, "--targets", None, "targets of each row")
 
 
 def jobs_of(
@@ -43,11 +43,7 @@ def jobs_of(
     del installed
     size = QUICK if options.quick else FULL
     size = replace(size, paper=options.targets or size.paper)
-    jobs = [
-        replace(job, cells=[c for c in job.cells if c["robot"] in options.robots])
-        for job in choice_jobs(size)
-    ]
-    return [job for job in jobs if job.cells], size
+    return chosen(choice_jobs(size), options.robots), size
 
 
 def tell(report: Report) -> int:

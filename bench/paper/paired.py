@@ -6,7 +6,9 @@ Both settings get the same targets, so what counts is the targets that only one 
 
 from __future__ import annotations
 
+import functools
 import importlib
+import json
 import pickle
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +17,7 @@ import numpy as np
 import iksel
 from bench.arms import load_arm
 from bench.settings import make_solver
+from bench.store import key_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -25,8 +28,11 @@ if TYPE_CHECKING:
 
 def paired(settings: Settings) -> dict[str, Any]:
     """Targets that the settings solve, those "against" them, and only one of both."""
-    ours = _solved(settings)
-    others = _solved({**settings, "overrides": settings["against"]})
+    alone = {name: value for name, value in settings.items() if name != "against"}
+    ours, others = (
+        _solved(key_of({**alone, "overrides": overrides}))
+        for overrides in (settings["overrides"], settings["against"])
+    )
     return {
         "count": len(ours),
         "solved": int(ours.sum()),
@@ -36,8 +42,13 @@ def paired(settings: Settings) -> dict[str, Any]:
     }
 
 
-def _solved(settings: Settings) -> npt.NDArray[np.bool_]:
-    """Which targets of iksel.evaluate, to the last bit, are solved."""
+@functools.cache
+def _solved(key: str) -> npt.NDArray[np.bool_]:
+    """Which targets of iksel.evaluate, to the last bit, are solved.
+
+    A choice stands beside many others: a job solves its targets once.
+    """
+    settings: Settings = json.loads(key)
     solver = make_solver(settings)
     robot = load_arm(settings["robot"]).robot
     q = robot.random_configurations(settings["count"], settings["seed"])

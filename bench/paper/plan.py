@@ -31,31 +31,38 @@ ROTATION_KEYS = (
 )
 
 
-def paper_cell(
-    robot: str, size: Size, overrides: dict[str, Any], count: int | None = None
+def preset_cell(
+    robot: str, overrides: dict[str, Any], count: int, cell: str = "evaluate"
 ) -> Settings:
-    """The paper preset with some options changed, by iksel.evaluate."""
+    """The paper preset with some options changed, by default by iksel.evaluate."""
     return {
-        "cell": "evaluate",
+        "cell": cell,
         "robot": robot,
         "preset": "paper",
         "overrides": overrides,
-        "count": size.paper if count is None else count,
+        "count": count,
         "seed": SEED,
     }
+
+
+def paper_cell(robot: str, size: Size, overrides: dict[str, Any]) -> Settings:
+    """A row of the paper's tables; of those in STAGED the time of each stage too."""
+    cell = preset_cell(robot, overrides, size.paper)
+    return {**cell, "stages": True} if overrides in STAGED else cell
 
 
 def newer_cells(robot: str, size: Size) -> list[Settings]:
     """The paper's setting, the authors' newer one, that without its pull, in numpy."""
     paper = paper_cell(robot, size, {})
-    newer = {**paper, "preset": "paper2026"}
+    newer = {**preset_cell(robot, {}, size.paper), "preset": "paper2026"}
     free = {**newer, "overrides": {"null_space_gain": 0.0}}
-    return [paper, newer, free, {**newer, "cell": "newer", "count": size.figure}]
+    numpy = {**newer, "cell": "newer", "count": size.paper // 10}
+    return [paper, newer, free, numpy]
 
 
 def attempts_cell(robot: str, size: Size, overrides: dict[str, Any]) -> Settings:
     """Success after each number of attempts."""
-    return {**paper_cell(robot, size, overrides), "cell": "attempts"}
+    return preset_cell(robot, overrides, size.paper, "attempts")
 
 
 def curve_cell(
@@ -126,6 +133,13 @@ ABLATION_3_ROWS: dict[str, dict[str, Any]] = {
     "#ReA 20": {"max_attempts": 21},
 }
 
+STAGED = (
+    sampling_of("grid", "large"),
+    *(ABLATION_2_ROWS[name] for name in ("dls", "pinv", "pinv_rr", "cwln", "cwpi")),
+    ABLATION_3_ROWS["Eq. (2)"],
+)
+"""Rows whose times the text compares; the first scheme is the preset's."""
+
 KINEMATICS_ROWS: dict[str, dict[str, Any]] = {
     "KDL": {},
     "kernel": {"kinematics": "kernel"},
@@ -133,15 +147,29 @@ KINEMATICS_ROWS: dict[str, dict[str, Any]] = {
 """What computes forward kinematics and Jacobians: as in the paper KDL, or IKSel."""
 
 
+OTHER_ROWS = (UNSORTED, UNSORTED_STOPPED, KINEMATICS_ROWS["kernel"])
+"""What stands beside the tables."""
+
+
+def table_rows(sampling: str, scales: tuple[str, ...]) -> dict[str, dict[str, Any]]:
+    """The rows of the three ablations with one sampling, by table and label."""
+    rows = {f"I {scale}": sampling_of(sampling, scale) for scale in scales}
+    if "medium" in scales:
+        base = sampling_of(sampling)
+        for number, of_table in (("II", ABLATION_2_ROWS), ("III", ABLATION_3_ROWS)):
+            rows |= {f"{number} {name}": base | row for name, row in of_table.items()}
+    return rows
+
+
 def figure_cell(robot: str, size: Size, selection: str, rea: int) -> Settings:
     """Mean and deviation of the time at one #ReA."""
     changes = {**SELECTIONS[selection], "max_attempts": rea + 1}
-    return paper_cell(robot, size, changes, size.figure)
+    return preset_cell(robot, changes, size.figure)
 
 
 def artefact_cell(robot: str, size: Size, overrides: dict[str, Any]) -> Settings:
     """Singular samples that rank first."""
-    return {**paper_cell(robot, size, overrides, size.artefact), "cell": "artefact"}
+    return preset_cell(robot, overrides, size.artefact, "artefact")
 
 
 def artefact_rows(size: Size) -> dict[str, dict[str, Any]]:
@@ -165,49 +193,38 @@ def paper_jobs(size: Size) -> list[Job]:
     """All jobs of the paper."""
     jobs = []
     for robot, short in PAPER_ARMS.items():
-        for sampling in ("grid", "cvt"):
-            scales = ABLATION_1_SCALES if sampling == "grid" else size.cvt_scales
-            cells = _table_cells(robot, size, sampling, scales)
-            curves = [cell for cell in cells if cell["cell"] == "attempts"]
-            timed = [cell for cell in cells if cell["cell"] != "attempts"]
-            name = f"paper, {short}, {sampling}"
-            if sampling == "grid":
-                others = (UNSORTED, UNSORTED_STOPPED, KINEMATICS_ROWS["kernel"])
-                timed += [paper_cell(robot, size, row) for row in others]
-            jobs.append(Job(f"{name}, curves", "paper", curves, timed=False))
-            jobs.append(Job(name, "paper", timed))
-        figure = [
+        name = f"paper, {short}"
+        success = _success_cells(robot, size)
+        rows = [*table_rows("grid", ABLATION_1_SCALES).values(), *OTHER_ROWS]
+        tables = [paper_cell(robot, size, row) for row in rows]
+        figures = [
             figure_cell(robot, size, selection, rea)
             for selection in SELECTIONS
             for rea in size.figure_attempts
         ]
-        jobs.append(Job(f"paper, {short}, figures", "paper", figure))
-        keys = [
-            attempts_cell(robot, size, {"database.rotation_key": key})
-            for key in ROTATION_KEYS
+        jobs += [
+            Job(f"{name}, success", "paper", success, timed=False),
+            Job(f"{name}, tables", "paper", tables),
+            Job(f"{name}, figures", "paper", figures),
         ]
-        name = f"paper, {short}, rotation keys"
-        jobs.append(Job(name, "paper", keys, timed=False))
-    rows = artefact_rows(size).values()
-    artefact = [artefact_cell("ur3_wrs", size, row) for row in rows]
+    artefacts = artefact_rows(size).values()
+    artefact = [artefact_cell("ur3_wrs", size, row) for row in artefacts]
     jobs.append(Job("paper, grid artefact", "paper", artefact, timed=False))
     # The paper's own row is one of the tables'.
     newer = [replace(job, cells=job.cells[1:]) for job in newer_jobs(size)]
     return [*jobs, *newer]
 
 
-def _table_cells(
-    robot: str, size: Size, sampling: str, scales: tuple[str, ...]
-) -> list[Settings]:
-    """The cells of the three ablations with one sampling, each once."""
-    cells = [paper_cell(robot, size, sampling_of(sampling, scale)) for scale in scales]
-    if "medium" in scales:
-        base = sampling_of(sampling)
-        rows = [*ABLATION_2_ROWS.values(), *ABLATION_3_ROWS.values()]
-        cells += [paper_cell(robot, size, {**base, **row}) for row in rows]
-        cells += [curve_cell(robot, size, base, name) for name in SELECTIONS]
-        cells.append(ceiling_cell(robot, size, base))
-        cwln = {**base, **ABLATION_2_ROWS["cwln"]}
-        cells.append(attempts_cell(robot, size, cwln))
-    # One option changed from the preset may be none: rows of two tables are one cell.
-    return [cell for i, cell in enumerate(cells) if cell not in cells[:i]]
+def _success_cells(robot: str, size: Size) -> list[Settings]:
+    """All that is told of without times."""
+    cells = []
+    for sampling, scales in (("grid", ABLATION_1_SCALES), ("cvt", size.cvt_scales)):
+        if "medium" in scales:
+            base = sampling_of(sampling)
+            cells += [curve_cell(robot, size, base, name) for name in SELECTIONS]
+            cells.append(ceiling_cell(robot, size, base))
+    cells.append(attempts_cell(robot, size, ABLATION_2_ROWS["cwln"]))
+    rows = table_rows("cvt", size.cvt_scales).values()
+    cells += [attempts_cell(robot, size, row) for row in rows]
+    keys = [{"database.rotation_key": key} for key in ROTATION_KEYS]
+    return cells + [attempts_cell(robot, size, key) for key in keys]

@@ -3,10 +3,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from bench.arms import PAPER_ARMS
-from bench.seed_makers import MAKERS
+from bench.learned.plan import learned_cell, learned_jobs
+from bench.seed_makers import MAKERS, Learned
 from bench.size import SEED, Job, Size
 
 if TYPE_CHECKING:
@@ -68,6 +70,9 @@ def enumeration_cell(robot: str, size: Size) -> Settings:
 
 def maker_cell(robot: str, name: str, size: Size) -> Settings:
     """One of MAKERS."""
+    maker = MAKERS[name]
+    if isinstance(maker, Learned):
+        return learned_cell(robot, maker.model, size)
     return {**seeding_cell("first_attempt", robot, size), "maker": name}
 
 
@@ -88,10 +93,12 @@ def seeding_jobs(size: Size) -> list[Job]:
             "seeds",
             [maker_cell(robot, name, size) for robot in PAPER_ARMS],
         )
-        for name in MAKERS
+        for name, maker in MAKERS.items()
+        if not isinstance(maker, Learned)
     ]
     return [
         Job("IK-Geo, search", "seeds", search),
         Job("IK-Geo, package", "seeds", package),
         *makers,
+        *(replace(job, section="seeds") for job in learned_jobs(size)),
     ]

@@ -42,7 +42,7 @@ class IkGeo(PythonRival):
     distribution = "ik-geo"
     settings = "the family that fits, all branches; limits are not its business"
     keeps_limits = False
-    limit_s = 3.0
+    limit_s = 1.0
 
     def __init__(self, arm: Arm, name: str | None = None) -> None:
         """Take a family by its name in the package; None: choose one."""

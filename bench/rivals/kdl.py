@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import functools
 import os
 import shutil
 import subprocess
@@ -28,8 +29,9 @@ PROGRAM = BUILD / "baselines"
 PACKAGES = ("orocos-kdl", "nlopt", "eigen3")
 
 
+@functools.cache
 def build() -> None:
-    """Build the program, if anything changed.
+    """Build the program, if anything changed, once in a process.
 
     Raises:
         UnsupportedError: It cannot be built here.

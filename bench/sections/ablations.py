@@ -84,7 +84,9 @@ def _ablation(view: View, title: str, rows: Rows) -> list[str]:
         if not any(cells):
             continue
         success.append([label, *(beside(cell, row, i) for i, cell in enumerate(cells))])
-        times.append([label, *(_time(cell, row, i) for i, cell in enumerate(cells))])
+        times.append(
+            [label, *(timed_row(cell, row, i) for i, cell in enumerate(cells))]
+        )
     if not success:
         return []
     return [
@@ -109,7 +111,8 @@ def beside(cell: dict[str, Any] | None, row: published.Row | None, i: int) -> st
 TIMES = "mean ± std [min, max], here in µs; published in ms"
 
 
-def _time(cell: dict[str, Any] | None, row: published.Row | None, i: int) -> str:
+def timed_row(cell: dict[str, Any] | None, row: published.Row | None, i: int) -> str:
+    """A cell's times beside the published ones of robot i."""
     return NONE if cell is None else timed(cell, None if row is None else row.times[i])
 
 
@@ -258,21 +261,19 @@ def _cwln_outside(view: View) -> str:
     )
 
 
+def _solved(cell: dict[str, Any] | None) -> str:
+    return NONE if cell is None else percent(cell["solved"][-1], cell["count"])
+
+
 def _cvt(view: View) -> list[str]:
-    scales = view.size.cvt_scales
-    changes = {f"I {scale}": paper_plan.sampling_of("cvt", scale) for scale in scales}
-    if "medium" in scales:
-        base = paper_plan.sampling_of("cvt")
-        changes |= {f"II {label}": {**base, **row} for label, row, _ in rows_2()}
-        changes |= {f"III {label}": {**base, **row} for label, row, _ in rows_3()}
     rows = []
-    for label, overrides in changes.items():
+    for label, row in paper_plan.table_rows("cvt", view.size.cvt_scales).items():
         cells = [
-            view.get(paper_plan.paper_cell(robot, view.size, overrides))
+            view.get(paper_plan.attempts_cell(robot, view.size, row))
             for robot in ROBOTS
         ]
         if any(cells):
-            rows.append([label, *(beside(cell, None, 0) for cell in cells)])
+            rows.append([label, *map(_solved, cells)])
     if not rows:
         return []
     return [

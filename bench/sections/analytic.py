@@ -9,7 +9,7 @@ from bench.analytic.plan import KINDS, asked_cell, job_name
 from bench.branches import NOISE, SAME_MOVE
 from bench.check import POSITION_TOLERANCE, ROTATION_TOLERANCE
 from bench.machine import load_text
-from bench.markdown import NONE, microseconds, table
+from bench.markdown import NONE, mean_median, table
 from bench.rivals import ENUMERATORS
 from bench.rivals.enumerator import WAYS
 
@@ -100,7 +100,7 @@ def _conditions(view: View) -> str:
         "solvers get the first of them only. An answer is right within "
         f"{POSITION_TOLERANCE:g} m and {ROTATION_TOLERANCE:g} rad by bench's own "
         "forward kinematics, and inside the limits. One thread; each call from Python; "
-        "a process for each solver and arm; ways to ask in turns, of each call the "
+        "a process for each solver; ways to ask in turns, of each call the "
         f"least time of three. SIMD level {facts['simd']} (IKSel's), {facts['cpu']}, "
         f"{facts['cores']} cores{load_text(facts)}."
     )
@@ -128,9 +128,7 @@ def _rows(view: View) -> list[list[str]]:
 def _failure(view: View, robot: str, name: str) -> str:
     """What ended a solver's process, in short."""
     for kind in KINDS:
-        reason = view.report["failures"].get(
-            f"{job_name(robot, name)}, {robot}, {kind}"
-        )
+        reason = view.report["failures"].get(f"{job_name(name)}, {robot}, {kind}")
         if reason:
             return str(reason).split(":", maxsplit=1)[0]
     return ""
@@ -146,27 +144,22 @@ def _row(reached: dict[str, Any], turned: dict[str, Any], failure: str) -> list[
     ways = {**reached, **({"no": turned} if turned else {})}
     return [
         f"ended: {failure}" if failure else targets,
-        as_all if one is None else _time(one),
-        NONE if every is None else _time(every),
+        as_all if one is None else mean_median(one["us"]),
+        NONE if every is None else mean_median(every["us"]),
         NONE if every is None else _branches(every),
-        NONE if nearest is None else _time(nearest) + _noted(nearest, "longer"),
+        NONE
+        if nearest is None
+        else mean_median(nearest["us"]) + _noted(nearest, "longer"),
         _no(turned) if turned else NONE,
         _counted(ways, "missed"),
         _counted(ways, "wrong"),
     ]
 
 
-def _time(figures: dict[str, Any]) -> str:
-    if figures["us"] is None:
-        return NONE
-    mean, median = figures["us"]
-    return f"{microseconds(mean)} ({microseconds(median)})"
-
-
 def _no(turned: dict[str, Any]) -> str:
     """With how many it is the mean of, where these are few."""
     few = 0 < turned["noes"] < FEW
-    return _time(turned) + (f" of {turned['noes']}" if few else "")
+    return mean_median(turned["us"]) + (f" of {turned['noes']}" if few else "")
 
 
 def _noted(figures: dict[str, Any], what: str) -> str:

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from bench.markdown import NONE, microseconds, percent, table
-from bench.plan import BATCH_THREADS, BATCHES, batch_cell, every_cell
+from bench.plans.rivals import BATCH_THREADS, BATCHES, batch_cell, every_cell
 
 if TYPE_CHECKING:
     from bench.view import View

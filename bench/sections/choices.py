@@ -19,9 +19,9 @@ from bench.paper.choices import (
     Slower,
     paired_cell,
     shown_cell,
-    staged_cell,
     tree_cell,
 )
+from bench.paper.plan import paper_cell
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -269,7 +269,7 @@ def _time_rows(view: View, claim: Slower) -> list[list[str]]:
 
 
 def _staged(view: View, overrides: dict[str, Any]) -> list[dict[str, Any] | None]:
-    return [view.get(staged_cell(robot, view.size, overrides)) for robot in ROBOTS]
+    return [view.get(paper_cell(robot, view.size, overrides)) for robot in ROBOTS]
 
 
 def _bound(cell: dict[str, Any]) -> float:

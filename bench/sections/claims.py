@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bench import plan
 from bench.arms import PAPER_ARMS
 from bench.bounds import rate_points
 from bench.markdown import NONE, signed, table
@@ -28,6 +27,7 @@ from bench.paper.claims import (
     spread,
 )
 from bench.paper.published import ROBOTS, TARGETS
+from bench.plans.rivals import rival_cell
 from bench.sections.curves import curve
 
 if TYPE_CHECKING:
@@ -232,7 +232,7 @@ def _alike(view: View, robot: str) -> Margin | None:
 
 
 def _trac_ik(view: View, i: int) -> Margin | None:
-    cell = view.get(plan.rival_cell(ROBOTS[i], "TRAC-IK style", "uniform", view.size))
+    cell = view.get(rival_cell(ROBOTS[i], "TRAC-IK style", "uniform", view.size))
     try:
         ours = _ours(view)("beside TRAC-IK", i).success
     except AbsentError:

@@ -5,11 +5,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from bench import plan
 from bench.markdown import NONE, microseconds, percent, table
 from bench.paper import plan as paper_plan
 from bench.paper import published
-from bench.sections.ablations import HEADER, ROBOTS, TIMES, beside, timed
+from bench.plans.rivals import rival_cell
+from bench.sections.ablations import HEADER, ROBOTS, TIMES, beside, timed_row
 
 if TYPE_CHECKING:
     from bench.view import View
@@ -38,7 +38,7 @@ def _trac_ik(view: View) -> list[str]:
         if any(cells):
             shown = row or published.TRAC_IK
             rows.append([label, *(beside(c, shown, i) for i, c in enumerate(cells))])
-            times.append([label, *(_timed(c, row, i) for i, c in enumerate(cells))])
+            times.append([label, *(timed_row(c, row, i) for i, c in enumerate(cells))])
     parts = ["### The comparison with TRAC-IK"]
     if rows:
         log = " / ".join(f"{value:.2f}" for value in published.TRAC_IK_LOG)
@@ -57,8 +57,7 @@ def _trac_ik(view: View) -> list[str]:
     rivals = []
     for name in ("TRAC-IK style", "TRAC-IK (pytracik)"):
         cells = [
-            view.get(plan.rival_cell(robot, name, "uniform", view.size))
-            for robot in ROBOTS
+            view.get(rival_cell(robot, name, "uniform", view.size)) for robot in ROBOTS
         ]
         if any(cells):
             rivals.append([name, *map(_trac_cell, cells)])
@@ -71,10 +70,6 @@ def _trac_ik(view: View) -> list[str]:
             table(["success %", *HEADER], rivals),
         ]
     return parts if len(parts) > 1 else []
-
-
-def _timed(cell: dict[str, Any] | None, row: published.Row | None, i: int) -> str:
-    return NONE if cell is None else timed(cell, row.times[i] if row else None)
 
 
 def _trac_cell(cell: dict[str, Any] | None) -> str:

@@ -7,15 +7,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from bench import plan
 from bench.arms import RIVAL_ARMS
 from bench.markdown import NONE, microseconds, percent, table
+from bench.plans.no import BRANCH_RIVAL, NO_KINDS, NO_RIVALS
+from bench.plans.rivals import rival_cell
 from bench.timing import QUANTILES
 
 if TYPE_CHECKING:
     from bench.view import View
 
-PROVING = ("IKSel", plan.BRANCH_RIVAL)
+PROVING = ("IKSel", BRANCH_RIVAL)
 """Solvers whose no is none of these."""
 ENOUGH = 0.999
 """Part of the reachable targets that a cut-off is to leave solved."""
@@ -24,9 +25,9 @@ ENOUGH = 0.999
 def text(view: View) -> str:
     """What a numerical rival's no is, and the least cut-off that would do."""
     rows = []
-    for name in plan.NO_RIVALS:
+    for name in NO_RIVALS:
         cells = [
-            view.get(plan.rival_cell(robot, name, plan.NO_KINDS[0], view.size))
+            view.get(rival_cell(robot, name, NO_KINDS[0], view.size))
             for robot in RIVAL_ARMS
         ]
         if any(cells) and name not in PROVING:

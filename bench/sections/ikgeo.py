@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from bench.arms import PAPER_ARMS
 from bench.bounds import rate_points
-from bench.ikgeo.cells import PACKAGE_LIMIT_S
+from bench.ikgeo.cells import LIMIT_S
 from bench.markdown import NONE, percent, signed, table
 from bench.paper import published, seeding
 
@@ -19,6 +19,7 @@ POINTS = 2.0
 """By which the rows may differ from the published ones."""
 
 HEADER = [
+    "targets",
     "candidates a target",
     "direct %",
     "position error, mm",
@@ -47,9 +48,10 @@ def text(view: View) -> str:
     tables = [_table(view, robot) for robot in seeding.IK_GEO_ARMS]
     if not any(tables):
         return ""
+    most = seeding.seeding_cell("", "", view.size)["count"]
     conditions = (
-        f"{seeding.seeding_cell('', '', view.size)['count']:,} targets per robot, "
-        "uniform in the limits, seed 1. *Direct*: some candidate lies inside the "
+        f"Up to {most:,} targets per robot, uniform in the limits, seed 1; none is "
+        f"begun after {LIMIT_S:g} s. *Direct*: some candidate lies inside the "
         "limits, as the paper counts. Errors are of all candidates: mean, standard "
         "deviation, least, quartiles 1 and 3, most. *As seed*: the paper's iteration "
         "from the candidates, one after another until one arrives, at the paper's "
@@ -93,6 +95,7 @@ def _published(robot: str) -> list[str]:
     errors = published.IK_GEO_ERRORS[robot]
     return [
         NONE,
+        NONE,
         f"{direct[0]:.2f}",
         *(_listed(errors[name]) for name in ("position_mm", "rotation_deg")),
         f"{direct[1]:.2f}",
@@ -106,6 +109,7 @@ def _columns(cell: dict[str, Any]) -> list[str]:
     seeded = "seeded" in cell
     spreads = [cell[name] for name in ("position_mm", "rotation_deg")]
     return [
+        f"{cell['count']:,}",
         f"{cell['candidates'] / cell['count']:.2f}",
         percent(cell["direct"], cell["count"]),
         *(NONE if each is None else _listed(each.values()) for each in spreads),
@@ -225,6 +229,6 @@ def _package(view: View) -> str:
             rows.append([head, *figures, *rates, _ms(cell["mean_us"])])
     text = (
         "What the package ik-geo from PyPI did, with every one of its families that "
-        f"fits the arm; no pose is begun after {PACKAGE_LIMIT_S:g} s."
+        "fits the arm."
     )
     return "\n\n".join([text, table(["", *PACKAGE_HEADER], rows)])

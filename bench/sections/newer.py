@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from bench.arguments import add_fresh, add_quick
+from bench.arguments import add_count, add_kept
 from bench.markdown import NONE, microseconds, table
 from bench.paper import plan, published
 from bench.sections.ablations import HEADER, ROBOTS
@@ -39,6 +39,7 @@ def text(view: View) -> str:
         [label, *(_shown(of_robot[i]) for of_robot in results)]
         for i, label in enumerate(LABELS)
     ]
+    numpy = cells[0][3]["count"]
     run = [f"{rate:.2f}; {NONE}, {n:.2f}, {NONE}" for rate, n in published.NEWER_RUN]
     rows.append(["the authors' code, on 5,000 of the targets", *run])
     header = ["success %; mean time, attempts, steps", *HEADER]
@@ -52,7 +53,7 @@ def text(view: View) -> str:
         "to give up when the error grows, but never writes the variable that it "
         "compares with; so there is no such stop. It tests its tolerances at the "
         "flange, and `paper(2026)` at the TCP. The row in numpy is written from that "
-        f"description (`bench/paper/newer.py`), over {view.size.figure:,} targets. The "
+        f"description (`bench/paper/newer.py`), over {numpy:,} targets. The "
         "repository states no rate, and as time "
         f"{published.NEWER_MS:.0f} ms in Python. One row by itself: "
         f"`{command_line(cells[0][1])}`; this table: `python -m bench paper2026`."
@@ -77,9 +78,8 @@ def add(commands: Any) -> None:
         description="Success, time, attempts and steps of both on the paper's robots. "
         "Results are kept as the report's are.",
     )
-    add_quick(command)
-    command.add_argument("--targets", type=int, help="of each robot")
-    add_fresh(command)
+    add_kept(command)
+    add_count(command, "--targets", None, "targets of each robot")
 
 
 def jobs_of(

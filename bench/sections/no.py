@@ -5,10 +5,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from bench import branches, plan
+from bench import branches
 from bench.check import POSITION_TOLERANCE, ROTATION_TOLERANCE
 from bench.machine import load_text
-from bench.markdown import NONE, microseconds, percent, table
+from bench.markdown import NONE, mean_median, microseconds, percent, table
+from bench.plans import no as plan
 from bench.rivals import RIVALS
 from bench.sections import cut_offs
 
@@ -34,10 +35,10 @@ def text(view: View) -> str:
         "## No answer, every answer, the nearest",
         _conditions(view),
         "### Random rotations: mean (median) of a no, or of giving up, in µs",
-        _by_solver(view, lambda cell: _time(cell["no_us"])),
+        _by_solver(view, lambda cell: mean_median(cell["no_us"])),
         cut_offs.text(view),
         "### The same targets: mean (median) of a yes in µs",
-        _by_solver(view, lambda cell: _time(cell["yes_us"])),
+        _by_solver(view, lambda cell: mean_median(cell["yes_us"])),
         "### The same targets: answered rightly, in percent",
         _by_solver(view, _rightly),
         RIGHTLY,
@@ -98,12 +99,6 @@ def _machine(view: View) -> str:
         f"SIMD level {facts['simd']}, {facts['cpu']}, {facts['cores']} cores"
         f"{load_text(facts)}."
     )
-
-
-def _time(times: list[float] | None) -> str:
-    if times is None:
-        return NONE
-    return f"{microseconds(times[0])} ({microseconds(times[1])})"
 
 
 def _rightly(cell: dict[str, Any]) -> str:

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from bench import random_arms
-from bench.arguments import add_fresh, add_quick
+from bench.arguments import add_count, add_kept, add_names, add_seed
 from bench.markdown import NONE, microseconds, percent, table
 from bench.moves import LONGER
 from bench.random_builds import RESTARTS, random_cell, random_jobs
@@ -127,26 +127,17 @@ def add(commands: Any) -> None:
         description="The report's section on random arms of each build. Results are "
         "kept as the report's are.",
     )
-    command.add_argument(
-        "builds",
-        nargs="*",
-        default=list(random_arms.BUILDS),
-        metavar="BUILD",
-        help=" ".join(random_arms.BUILDS),
-    )
-    add_quick(command, "fewer arms and targets")
-    command.add_argument("--arms", type=int, metavar="N", help="of each build")
-    command.add_argument(
-        "--targets", type=int, metavar="N", help="of each arm, in a batch"
-    )
+    add_names(command, "builds", random_arms.BUILDS)
+    add_kept(command, "fewer arms and targets")
+    add_count(command, "--arms", None, "arms of each build")
+    add_count(command, "--targets", None, "targets of each arm, in a batch")
     command.add_argument(
         "--seconds",
         type=float,
         metavar="S",
         help="begin no further arm of a build after this time",
     )
-    command.add_argument("--seed", type=int, default=FULL.random_seed)
-    add_fresh(command)
+    add_seed(command, FULL.random_seed)
 
 
 def jobs_of(

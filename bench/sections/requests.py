@@ -5,9 +5,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from bench import branches, plan
+from bench import branches
 from bench.bounds import at_least, share_text
 from bench.markdown import microseconds, percent, table
+from bench.plans import requests as plan
 
 if TYPE_CHECKING:
     from bench.view import View
@@ -62,14 +63,16 @@ def _moves(view: View) -> list[str]:
             rows.append([f"`{robot}`, {solver}", *_move_columns(cell, moves, mean)])
     if not rows:
         return []
-    header = ["largest joint move, rad", "right %", "median", "p99", "mean µs"]
-    return ["### Moves of redundant arms from the same seed", table(header, rows)]
+    header = ["largest joint move, rad", "targets", "right %", "median", "p99"]
+    title = "### Moves of redundant arms from the same seed"
+    return [title, table([*header, "mean µs"], rows)]
 
 
 def _move_columns(
     cell: dict[str, Any], moves: dict[str, Any], mean: float
 ) -> list[str]:
     return [
+        f"{cell['count']:,}",
         percent(moves["right"], cell["count"]),
         f"{moves['median_largest']:.4f}",
         f"{moves['p99_largest']:.4f}",

@@ -9,12 +9,8 @@ from bench.arms import RIVAL_ARMS
 from bench.bounds import at_least, share_text
 from bench.check import POSITION_TOLERANCE, ROTATION_TOLERANCE
 from bench.markdown import NONE, microseconds, percent, table
-from bench.plan import (
-    BESIDE_LEVEL,
-    at_level,
-    rival_cell,
-    rival_count,
-)
+from bench.plans.rivals import rival_cell, rival_count
+from bench.plans.shared import BESIDE_LEVEL, at_level
 from bench.rivals import RIVALS
 from bench.sections import batches
 from bench.size import SEED

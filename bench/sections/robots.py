@@ -6,7 +6,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from bench.markdown import NONE, microseconds, table
-from bench.plan import BESIDE_LEVEL, all_robots, at_level, robot_cell
+from bench.plans.robots import all_robots, robot_cell
+from bench.plans.shared import BESIDE_LEVEL, at_level
 
 if TYPE_CHECKING:
     from bench.view import View

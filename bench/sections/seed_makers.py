@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from bench.arms import PAPER_ARMS
 from bench.markdown import NONE, microseconds, percent, signed, table
 from bench.paper import seeding
-from bench.seed_makers import MAKERS
+from bench.seed_makers import MAKERS, Learned
 
 if TYPE_CHECKING:
     from bench.view import View
@@ -55,11 +55,11 @@ def text(view: View) -> str:
 
 
 def _row(view: View, robot: str, name: str) -> list[str]:
-    settings = seeding.maker_cell(robot, name, view.size)
-    cell = view.get(settings)
+    cell = _measured(view, robot, name)
     head = [f"{PAPER_ARMS[robot]}, {name}", MAKERS[name].language]
     if cell is None:
-        return [*head, *[NONE] * (len(HEADER) - 2), view.why_not(settings)]
+        why = view.why_not(seeding.maker_cell(robot, name, view.size))
+        return [*head, *[NONE] * (len(HEADER) - 2), why]
     return [
         *head,
         f"{cell['seeds']:.3g}",
@@ -69,6 +69,17 @@ def _row(view: View, robot: str, name: str) -> list[str]:
         f"{cell['count'] - cell['right']:,}",
         f"{cell['without_seed']:,}",
     ]
+
+
+def _measured(view: View, robot: str, name: str) -> dict[str, Any] | None:
+    """What a maker's first seeds were worth on a robot; None: not measured."""
+    cell = view.get(seeding.maker_cell(robot, name, view.size))
+    maker = MAKERS[name]
+    if cell is None or not isinstance(maker, Learned):
+        return cell
+    figures = cell[maker.output]
+    given = {"count": cell["count"], "seeds": 1.0, "without_seed": 0}
+    return {**figures, **given, "seeds_us": figures["output_us"]}
 
 
 class Mean(NamedTuple):
@@ -87,7 +98,7 @@ def means(view: View) -> dict[str, Mean]:
         cells: dict[str, dict[str, Any]] = {
             robot: cell
             for robot in PAPER_ARMS
-            if (cell := view.get(seeding.maker_cell(robot, name, view.size)))
+            if (cell := _measured(view, robot, name))
         }
         if cells:
             found[name] = Mean(

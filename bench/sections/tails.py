@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from bench.arguments import add_fresh, add_quick, add_robots
+from bench.arguments import add_count, add_kept, add_robots
 from bench.arms import RIVAL_ARMS
 from bench.machine import load_text
 from bench.markdown import NONE, microseconds, percent, table
@@ -230,9 +230,8 @@ def add(commands: Any) -> None:
         "report's are.",
     )
     add_robots(command, RIVAL_ARMS)
-    add_quick(command, "fewer calls")
-    command.add_argument("--calls", type=int, metavar="N", help="of reachable targets")
-    add_fresh(command)
+    add_kept(command, "fewer calls")
+    add_count(command, "--calls", None, "calls at reachable targets")
 
 
 def jobs_of(

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from bench.arguments import add_fresh, add_quick
-from bench.size import FULL, QUICK, SEED, Job
+from bench.arguments import add_kept, add_robots, add_seed, check_robots
+from bench.size import FULL, QUICK, Job
 from bench.view import tell_section
 from bench.whole_body import table
 from bench.whole_body.robots import ROBOTS, file_key, targets_of
@@ -37,13 +37,7 @@ def add(commands: Any) -> None:
         "mink. Most robots are those of example-robot-data, from PyPI. Results are "
         "kept as the report's are.",
     )
-    command.add_argument(
-        "robots",
-        nargs="*",
-        metavar="ROBOT",
-        default=tuple(ROBOTS),
-        help=f"default: {' '.join(ROBOTS)}",
-    )
+    add_robots(command, ROBOTS)
     command.add_argument(
         "--solvers",
         nargs="+",
@@ -56,7 +50,7 @@ def add(commands: Any) -> None:
     command.add_argument(
         "--targets", type=int, metavar="N", help=f"of each robot (default: {counts})"
     )
-    command.add_argument("--seed", type=int, default=SEED)
+    add_seed(command)
     command.add_argument(
         "--limit",
         type=float,
@@ -64,19 +58,14 @@ def add(commands: Any) -> None:
         help=f"no call of a loop is begun after so many seconds (default {LIMIT_S:g}; "
         f"IKSel: {OURS_S:g})",
     )
-    add_quick(command, f"{QUICK_TARGETS} targets, {QUICK_S:g} s for each loop")
-    add_fresh(command)
+    add_kept(command, f"{QUICK_TARGETS} targets, {QUICK_S:g} s for each loop")
 
 
 def jobs_of(
     options: argparse.Namespace, installed: Collection[str]
 ) -> tuple[list[Job], Size]:
     """A process for each solver and robot: what one does there, no other feels."""
-    unknown = sorted(set(options.robots) - set(ROBOTS))
-    if unknown:
-        raise SystemExit(
-            f"bench whole_body: no {', '.join(unknown)}; has {', '.join(ROBOTS)}"
-        )
+    check_robots("whole_body", options.robots, tuple(ROBOTS))
     jobs = [
         Job(table.job_name(robot, name), "whole_body", [cell_of(robot, name, options)])
         for robot in options.robots

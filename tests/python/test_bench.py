@@ -33,14 +33,18 @@ from bench import (
     targets,
 )
 from bench.arms import load_arm
+from bench.learned.plan import learned_cell
 from bench.paper import claims, published
 from bench.paper import plan as paper_plan
+from bench.plans import no as no_plan
+from bench.plans.robots import robot_cell
 from bench.report import merged
 from bench.rivals.axes import axes_of
 from bench.rivals.base import Run, UnsupportedError
 from bench.sections import newer as newer_section
 from bench.sections import no as no_section
 from bench.sections import paper as paper_section
+from bench.sections.choices import STAGES
 from bench.settings import solver_options
 from bench.size import FULL, QUICK, Job
 from bench.store import Store
@@ -258,13 +262,24 @@ class TestStore:
 class TestPlan:
     def test_every_cell_once(self):
         for size in (QUICK, FULL):
-            jobs = plan.plan(size, None, None)
+            jobs = plan.plan(size)
             cells = [json.dumps(c, sort_keys=True) for job in jobs for c in job.cells]
             repeated = {cell for cell in cells if cells.count(cell) > 1}
             assert not repeated
 
+    def test_what_two_sections_show_is_in_each_of_them(self):
+        staged = paper_plan.paper_cell("cvr038", QUICK, {})
+        learned = learned_cell("cvr038", "mdn", QUICK)
+        for cell, sections in (
+            (staged, ("paper", "text")),
+            (learned, ("learned", "seeds")),
+        ):
+            for section in sections:
+                jobs = plan.plan(QUICK, only=[section])
+                assert cell in [each for job in jobs for each in job.cells]
+
     def test_untimed_jobs_first(self):
-        timed = [job.timed for job in plan.plan(QUICK, None, None)]
+        timed = [job.timed for job in plan.plan(QUICK)]
         assert timed == sorted(timed)
 
     def test_only_and_robots(self):
@@ -274,14 +289,14 @@ class TestPlan:
         assert {cell["robot"] for cell in cells} == {"ur3_wrs"}
 
     def test_rivals_that_are_not_there_are_left_out(self):
-        jobs = plan.plan(QUICK, None, None, ["IKSel", "EAIK"])
+        jobs = plan.plan(QUICK, rivals=["IKSel", "EAIK"])
         cells = [cell for job in jobs for cell in job.cells]
         assert {cell.get("rival", "EAIK") for cell in cells} == {"IKSel", "EAIK"}
 
     def test_worker_measures_a_cell(self, tmp_path):
         """One real cell through a real process."""
         size = QUICK
-        cell = {**plan.robot_cell("ur3", size), "count": 20, "stages": False}
+        cell = {**robot_cell("ur3", size), "count": 20, "stages": False}
         store = Store(tmp_path / "cells", "a")
         assert run.run_jobs([Job("one", "robots", [cell])], store, tmp_path) == {}
         result = store.load(cell)
@@ -378,8 +393,9 @@ class TestPaper:
                 settings = paper_plan.paper_cell(
                     robot, QUICK, paper_plan.ABLATION_2_ROWS[label]
                 )
-                times = {"mean_us": 1.0, "std_us": 1.0, "min_us": 1.0, "max_us": 1.0}
-                result = {"success_percent": rate, **times}
+                names = ("mean", "std", "min", "max", *STAGES)
+                times = {f"{name.removesuffix('_us')}_us": 1.0 for name in names}
+                result = {"success_percent": rate, "targets": 1_000, **times}
                 cells.append({"settings": settings, "result": result})
         report = {"cells": cells, "size": vars(QUICK), "missing": {}}
         text = paper_section.text(View(report))
@@ -453,7 +469,7 @@ class TestNo:
     @pytest.mark.parametrize("name", ["ur3", "panda", "irb14050"])
     def test_each_target_counts_once(self, name):
         arm = load_arm(name)
-        for kind in plan.NO_KINDS:
+        for kind in no_plan.NO_KINDS:
             goals = targets.make_targets(arm, kind, COUNT, SEED)
             cell = no.answered(arm, goals, {"rival": "IKSel", "seed": SEED})
             counts = [cell[w] for w in ("yes", "proven", "swept", "searched")]
@@ -490,9 +506,9 @@ class TestNo:
         assert "| `ur3`, random rotations | closed form |" in told
 
     def test_wrong_proofs_and_answers_are_told(self):
-        wanted = plan.no_cell("ur3", "IKSel", "uniform", QUICK)
+        wanted = no_plan.no_cell("ur3", "IKSel", "uniform", QUICK)
         cell = {"disproved": 1, "false": 2}
-        every = plan.branch_cell("all_branches", "ur3", "uniform", QUICK)
+        every = no_plan.branch_cell("all_branches", "ur3", "uniform", QUICK)
         cells = [
             {"settings": wanted, "result": cell},
             {"settings": every, "result": {"wrong": 3}},
@@ -532,7 +548,7 @@ class TestBranches:
     @pytest.mark.parametrize("name", ["ur3", "cvr038"])
     def test_nearest_of_all(self, name):
         arm = load_arm(name)
-        for kind in plan.NO_KINDS:
+        for kind in no_plan.NO_KINDS:
             goals = targets.make_targets(arm, kind, COUNT, SEED)
             near = branches.near_branches(arm, goals, {"seed": SEED})
             every = branches.all_branches(arm, goals, {"seed": SEED})

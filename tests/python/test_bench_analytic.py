@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import itertools
 import subprocess
 import time
 
@@ -227,7 +228,8 @@ class TestCommand:
     def test_every_arm_and_solver_is_planned(self):
         jobs = analytic_jobs(FULL)
         assert len({job.name for job in jobs}) == len(jobs)
-        assert len(jobs) == len(arms()) * len(ENUMERATORS)
+        asked = [(cell["rival"], cell["robot"]) for job in jobs for cell in job.cells]
+        assert set(asked) == set(itertools.product(ENUMERATORS, arms()))
         assert set(BENCH_ARMS) <= set(arms())
 
     def test_what_ends_or_is_absent_is_a_row(self):
@@ -237,7 +239,7 @@ class TestCommand:
 
         figures = {"count": 20, "us": [2.0, 1.5], "missed": 0, "wrong": 0}
         refused = "6R only; ur3 is none"
-        ended = f"{job_name('ur3', 'ikdh')}, ur3, {KINDS[0]}"
+        ended = f"{job_name('ikdh')}, ur3, {KINDS[0]}"
         view = View(
             {
                 "size": vars(QUICK),
@@ -266,21 +268,40 @@ class TestCommand:
         assert told == "2.00 (1.50)" + shown
 
     def test_what_hangs_is_ended(self, monkeypatch, tmp_path):
-        """Each cell with its own time, and the next one is tried."""
-        given = []
-
-        def hang(*_, timeout, **__):
-            given.append(timeout)
-            raise subprocess.TimeoutExpired("worker", timeout)
-
-        monkeypatch.setattr(run.subprocess, "run", hang)
+        """Each cell has its own time, and after one that hangs the next is tried."""
         cells_ = [
-            {**asked_cell("ur3", "ikdh", kind, QUICK), "hang_s": 5.0} for kind in KINDS
+            {**asked_cell(robot, "ikdh", kind, QUICK), "hang_s": 5.0}
+            for robot in ("ur3", "panda")
+            for kind in KINDS
         ]
         store = Store(tmp_path / "cells", "a")
+        waits = []
+
+        class Hangs:
+            """Saves the first two cells, one in each wait, and no other."""
+
+            def __init__(self, *_, **__):
+                pass
+
+            def __enter__(self):
+                return self
+
+            def __exit__(self, *_):
+                pass
+
+            def communicate(self, _, timeout):
+                if len(waits) < 2:
+                    store.save(cells_[len(waits)], {"made": "now"})
+                waits.append(timeout)
+                raise subprocess.TimeoutExpired("worker", timeout)
+
+            def kill(self):
+                pass
+
+        monkeypatch.setattr(run, "Popen", Hangs)
         failures = run.run_jobs([Job("it", "analytic", cells_)], store, tmp_path)
-        assert given == [5.0, 5.0]
-        assert set(failures.values()) == {"ended after 5 s"}
+        assert waits == [5.0] * 4
+        assert failures == {f"it, panda, {kind}": "ended after 5 s" for kind in KINDS}
 
 
 def test_warming_up_does_not_take_long():

@@ -20,7 +20,6 @@ from bench import (
     cells,
     command,
     machine,
-    plan,
     plots,
     provenance,
     report,
@@ -29,8 +28,11 @@ from bench import (
 )
 from bench.arms import load_arm
 from bench.paper import choices, claims, published, seeds_shown
+from bench.paper import plan as paper_plan
 from bench.paper.bounds import margin
 from bench.paper.paired import paired, rotation_vectors
+from bench.plans import rivals
+from bench.plans.shared import at_level
 from bench.rivals import RIVALS
 from bench.sections import choices as choices_section
 from bench.sections import cut_offs
@@ -159,7 +161,8 @@ class TestChoices:
             for overrides, query in ((claim.faster[1], 30.0), (medium, 20.0)):
                 result = {"mean_us": 80.0 + query, "std_us": 50.0, "targets": 10_000}
                 result |= {"query_us": query, "rank_us": 40.0, "iterate_us": 40.0}
-                settings = choices.staged_cell(robot, QUICK, overrides)
+                settings = paper_plan.paper_cell(robot, QUICK, overrides)
+                assert settings["stages"]
                 cells.append((settings, {**result, "reselect_us": 0.0}))
         text = choices_section.text(View(report_of(cells)))
         (row,) = [x for x in text.splitlines() if x.startswith("| medium less large")]
@@ -193,7 +196,7 @@ class TestFair:
         times = {"mean_us": 1.0, "p99_us": 1.0}
         cells = []
         for name, claimed in (("IK-Geo", 0), ("KDL LMA", 50)):
-            settings = plan.rival_cell("cvr038", name, "uniform", QUICK)
+            settings = rivals.rival_cell("cvr038", name, "uniform", QUICK)
             result = {"count": 100, "right": 0, "claimed": claimed, "false_claims": 0}
             cells.append((settings, result | times))
         every = report_of(cells)
@@ -213,25 +216,25 @@ class TestFair:
     def test_all_branches_beside_all(self):
         """The batch of all branches has those of solve_all, and no fewer."""
         size = replace(QUICK, batch=20)
-        cell = cells.batch(plan.every_cell("ur3_wrs", size))
+        cell = cells.batch(rivals.every_cell("ur3_wrs", size))
         solver = iksel.Solver(load_arm("ur3_wrs").robot)
-        poses = targets_of(plan.every_cell("ur3_wrs", size)).poses
+        poses = targets_of(rivals.every_cell("ur3_wrs", size)).poses
         assert cell["branches"] == sum(len(solver.solve_all(pose)) for pose in poses)
         assert cell["right"] == 20
 
     def test_another_level_has_a_process_of_its_own(self, tmp_path):
         seen = []
 
-        def fake(command, *, env, **_):
+        def fake(_, *, env, **__):
             seen.append(env.get("IKSEL_SIMD"))
-            return subprocess.CompletedProcess(command, 0)
+            return subprocess.Popen(["true"], stdin=subprocess.PIPE, text=True)
 
-        cell = plan.rival_cell("ur3_wrs", "IKSel", "uniform", QUICK)
+        cell = rivals.rival_cell("ur3_wrs", "IKSel", "uniform", QUICK)
         store = Store(tmp_path, "a")
         with pytest.MonkeyPatch.context() as patch:
             patch.delenv("IKSEL_SIMD", raising=False)
-            patch.setattr(run.subprocess, "run", fake)
-            for some in (cell, plan.at_level(cell, "avx2")):
+            patch.setattr(run, "Popen", fake)
+            for some in (cell, at_level(cell, "avx2")):
                 run.run_job(Job("x", "rivals", [some]), store, tmp_path, Event())
         assert seen == [None, "avx2"]
 

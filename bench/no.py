@@ -17,7 +17,7 @@ from bench.arms import load_arm
 from bench.branches import ROUNDING, TOLERANCE, nearest_turns
 from bench.check import judge, right
 from bench.rivals import RIVALS
-from bench.timing import least_times, mean_median
+from bench.timing import least_times, mean_median, time_calls
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 
 PASSES = 3
 """Runs of a solver through all targets; of each the least time counts."""
+NO_LIMIT_S = 2.0
+"""No call that asks for a proof is begun after this time of a pass [s]."""
 SHORT_S = 1.0
 """A solver whose first run takes longer gets no second one [s]."""
 UNIT_RUNS = 20
@@ -46,7 +48,7 @@ def answered(arm: Arm, goals: Targets, settings: Settings) -> dict[str, Any]:
     claims = given if rival.keeps_limits else [_inside(arm.chain, q) for q in given]
     verdict = judge(arm.chain, goals.poses, claims)
     solver = iksel.Solver(arm.robot)
-    ours = [solver.solve(pose) for pose in goals.poses]
+    ours = [solver.solve(pose, prove=True) for pose in goals.poses]
     solved = _solved(arm.chain, goals, ours)
     known = np.isfinite(goals.witnesses).all(axis=1)
     # At the tolerances of the default preset: what is right to the judge alone would be
@@ -65,6 +67,8 @@ def answered(arm: Arm, goals: Targets, settings: Settings) -> dict[str, Any]:
     }
     if settings["rival"] == "IKSel":
         result |= _proofs(arm, ours) | {"unit_us": _unit(arm.name)}
+        noes = [pose for pose, given in zip(goals.poses, ours, strict=True) if not given]
+        result["proven_us"] = mean_median(_time_proofs(solver, noes))
     return result
 
 
@@ -86,6 +90,13 @@ def _inside(chain: Chain, branches: Sequence[Array]) -> list[Array]:
         return []
     turned = nearest_turns(chain, np.array(branches), chain.middle())
     return list(turned[np.isfinite(turned).all(axis=1)])
+
+
+def _time_proofs(solver: iksel.Solver, noes: list[Array]) -> npt.NDArray[np.int64]:
+    """Least times of calls that ask for a proof [ns]."""
+    prove = functools.partial(solver.solve, prove=True)
+    calls = [(pose,) for pose in noes]
+    return least_times([time_calls(prove, calls, NO_LIMIT_S)[0] for _ in range(PASSES)])
 
 
 def _exact(

@@ -226,18 +226,19 @@ def noes() -> str:
         return "Not measured: `python -m bench report --only no`."
     header = (
         "| robot | structure | solved | no: proven | by sweep | searched | yes | no"
+        " | no, proven"
     )
     theirs = f"| {ANALYTIC[0]}'s no | fastest numerical no"
     rows = [
         f"{header} {theirs} | `solve_all` | `near` | KDL |",
-        "|---|---|" + "---:|" * 11,
+        "|---|---|" + "---:|" * 12,
     ]
     for robot, solvers in found.items():
         ours = solvers.get(OURS)
         if ours is None:
             continue
         counts = (ours[what] for what in ("yes", "proven", "swept", "searched"))
-        times = (two_times(ours[what]) for what in ("yes_us", "no_us"))
+        times = (two_times(ours[what]) for what in ("yes_us", "no_us", "proven_us"))
         rest = (
             microseconds(cells.get(robot, {}).get(OURS, {}).get("mean_us"))
             for cells in (every, near)
@@ -275,7 +276,8 @@ def no_conditions(report: dict[str, Any], found: dict[str, dict[str, Result]]) -
     disproved = sum(one["disproved"] for one in every)
     return (
         f"{size['no']:,} targets per robot ({size['no_slow']:,} for numerical "
-        f"rivals), seed {size['no_seed']}, tolerances of 1e-6 m and 1e-6 rad, one "
+        f"rivals), seed {size['no_seed']}, *no, proven*: with `prove=True`, by which the "
+        "proofs are counted, too; tolerances of 1e-6 m and 1e-6 rad, one "
         "thread, from Python (KDL's own solvers from C++), of each call the least time "
         "of three where that does not take long; `solve_all` and `near` over all "
         "targets, or over a tenth of them where there is no closed form; a numerical "

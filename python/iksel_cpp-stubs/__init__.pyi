@@ -1791,12 +1791,13 @@ class Proof(enum.IntEnum):
     """
     What makes sure of what a result says: of one without an answer that there is none, of a set of solutions that there are no others.
     """
-    answer = 5
+    answer = 6
     closed_form = 2
+    intervals = 3
     none = 0
     reach = 1
-    sweep = 3
-    target = 4
+    sweep = 4
+    target = 5
     def __format__(self, arg0: str) -> str:
         ...
     def __str__(self) -> str:
@@ -1843,7 +1844,7 @@ class _Result:
     @property
     def proven(self) -> bool:
         """
-        Whether there is certainly no answer: `proof` is `reach`, `closed_form` or `target`.
+        Whether there is certainly no answer: `proof` is `reach`, `closed_form`, `intervals` or `target`.
         """
     @property
     def rotation_error(self) -> float:
@@ -2053,7 +2054,7 @@ class Diagnosis:
     @property
     def proven(self) -> bool:
         """
-        Whether there is certainly no answer: `proof` is `reach`, `closed_form` or `target`.
+        Whether there is certainly no answer: `proof` is `reach`, `closed_form`, `intervals` or `target`.
         """
     @property
     def q(self) -> numpy.typing.NDArray[numpy.float64] | None:
@@ -2193,7 +2194,7 @@ class Solver:
             InvalidArgumentError: a robot of another structure, a task with free axes, another strategy than
                 Lanes, a spacing out of range; else as solve.
         """
-    def solve(self, pose: numpy.typing.ArrayLike | typing.Any, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, scene: Scene | None = None, exact: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None, closest: bool | numpy.typing.ArrayLike | None = None, tasks: collections.abc.Sequence[Task | collections.abc.Mapping[str, typing.Any]] | None = None, in_frame_of: collections.abc.Sequence[int | None] | None = None) -> Result:
+    def solve(self, pose: numpy.typing.ArrayLike | typing.Any, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, scene: Scene | None = None, exact: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None, closest: bool | numpy.typing.ArrayLike | None = None, prove: bool = False, tasks: collections.abc.Sequence[Task | collections.abc.Mapping[str, typing.Any]] | None = None, in_frame_of: collections.abc.Sequence[int | None] | None = None) -> Result:
         """
         Joint values that put the TCP (the tip link's frame, if there is no tool) at a pose, or the TCP of each tip at its own.
 
@@ -2248,6 +2249,9 @@ class Solver:
                 filter refuse it too; the objective has no say. None: it gets nothing. True: a metre counts
                 1, a radian as the database weighs rotations; or six weights, of position [1/m] and rotation
                 [1/rad] along the axes of the task.
+            prove: whether a no is to be proven where that takes longer than to find it: by Proof.intervals
+                instead of Proof.sweep, of six joints in some 20 us. Of seven, and by diagnose, it is proven
+                anyway, where it can be.
             tasks: of several tips, one for each in the place of `task`. None: `task` holds for all.
             in_frame_of: of several tips, for each the number of the tip in whose frame, that of its TCP,
                 its pose is given; None: in the base frame, as all are if this is empty. So two hands keep
@@ -2261,7 +2265,7 @@ class Solver:
             InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, a number that is not
                 finite or out of range.
         """
-    def solve_all(self, pose: numpy.typing.ArrayLike | typing.Any, max: int = 64, *, min_distance: float = 0.01, whole_turns: bool = False, order: SolutionOrder | str = 'move', near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, scene: Scene | None = None, exact: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None, tasks: collections.abc.Sequence[Task | collections.abc.Mapping[str, typing.Any]] | None = None, in_frame_of: collections.abc.Sequence[int | None] | None = None) -> Solutions:
+    def solve_all(self, pose: numpy.typing.ArrayLike | typing.Any, max: int = 64, *, min_distance: float = 0.01, whole_turns: bool = False, order: SolutionOrder | str = 'move', near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, scene: Scene | None = None, exact: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None, prove: bool = False, tasks: collections.abc.Sequence[Task | collections.abc.Mapping[str, typing.Any]] | None = None, in_frame_of: collections.abc.Sequence[int | None] | None = None) -> Solutions:
         """
         Every distinct solution that is found: all branches (there certainly are no others where `proven` says so), or a spread for a redundant arm.
 
@@ -2313,6 +2317,9 @@ class Solver:
             objective: what the answer is to be good at besides; comes before `near`, which then only
                 measures the move, and chooses among periodic images that cost the same. An Objective,
                 'limits', 'manipulability', or a function of joint values (dof,) that returns a cost.
+            prove: whether a no is to be proven where that takes longer than to find it: by Proof.intervals
+                instead of Proof.sweep, of six joints in some 20 us. Of seven, and by diagnose, it is proven
+                anyway, where it can be.
             tasks: of several tips, one for each in the place of `task`. None: `task` holds for all.
             in_frame_of: of several tips, for each the number of the tip in whose frame, that of its TCP,
                 its pose is given; None: in the base frame, as all are if this is empty. So two hands keep
@@ -2324,7 +2331,7 @@ class Solver:
         Raises:
             InvalidArgumentError: as solve.
         """
-    def solve_batch(self, poses: numpy.typing.ArrayLike | typing.Any, threads: int = 0, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, scene: Scene | None = None, exact: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None, closest: bool | numpy.typing.ArrayLike | None = None, on_invalid_pose: typing.Literal['status', 'raise'] = 'status', tasks: collections.abc.Sequence[Task | collections.abc.Mapping[str, typing.Any]] | None = None, in_frame_of: collections.abc.Sequence[int | None] | None = None) -> BatchResult:
+    def solve_batch(self, poses: numpy.typing.ArrayLike | typing.Any, threads: int = 0, *, near: numpy.typing.ArrayLike | None = None, weights: numpy.typing.ArrayLike | None = None, norm: MoveNorm | str = 'two', seeds: numpy.typing.ArrayLike | None = None, database_seeds: bool = True, scene: Scene | None = None, exact: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, filter: collections.abc.Callable[[numpy.typing.NDArray[numpy.float64]], typing.Any] | None = None, deadline: float | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None, closest: bool | numpy.typing.ArrayLike | None = None, prove: bool = False, on_invalid_pose: typing.Literal['status', 'raise'] = 'status', tasks: collections.abc.Sequence[Task | collections.abc.Mapping[str, typing.Any]] | None = None, in_frame_of: collections.abc.Sequence[int | None] | None = None) -> BatchResult:
         """
         Solves many targets with the GIL released; row i belongs to target i.
 
@@ -2382,6 +2389,9 @@ class Solver:
                 filter refuse it too; the objective has no say. None: it gets nothing. True: a metre counts
                 1, a radian as the database weighs rotations; or six weights, of position [1/m] and rotation
                 [1/rad] along the axes of the task.
+            prove: whether a no is to be proven where that takes longer than to find it: by Proof.intervals
+                instead of Proof.sweep, of six joints in some 20 us. Of seven, and by diagnose, it is proven
+                anyway, where it can be.
             on_invalid_pose: what solve_batch does about a target that is no pose (check_pose); others
                 always raise. 'status': Status.invalid_pose in its row, and NaN for its q; 'raise': an error
                 that names the first, and none is solved.
@@ -2521,7 +2531,7 @@ class Solutions:
     @property
     def proven(self) -> bool:
         """
-        Whether these are certainly all: `proof` is `reach`, `closed_form` or `target`.
+        Whether these are certainly all: `proof` is `reach`, `closed_form`, `intervals` or `target`.
         """
     @property
     def q(self) -> numpy.typing.NDArray[numpy.float64]:

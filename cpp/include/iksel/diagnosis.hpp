@@ -16,8 +16,9 @@
 
 namespace iksel {
 
-/// Why a solve gave no answer. Certain where Diagnosis::proof is `reach` or `closed_form`; else
-/// found by search and so likely.
+/// Why a solve gave no answer. That there is no answer is certain where Diagnosis::proof is
+/// `reach`, `closed_form` or `intervals`; why, where it is one of the first two, else found by
+/// search and so likely.
 enum class Cause : std::uint8_t {
   none,           ///< there is an answer
   out_of_reach,   ///< the position lies beyond what the arm reaches

@@ -58,6 +58,12 @@ def add_request(parser: argparse.ArgumentParser) -> None:
         "is nearest to one, with status closest; a radian counts reach / 4",
     )
     parser.add_argument(
+        "--prove",
+        action="store_true",
+        help="prove that there is no solution even where that takes longer than to "
+        "find none: of six joints that are swept, some 20 us",
+    )
+    parser.add_argument(
         "--diagnose",
         action="store_true",
         help="if there is no solution, search for the reason, and print it with the "
@@ -101,6 +107,7 @@ def read_request(
         "seeds": seed,
         "objective": arguments.objective,
         "closest": arguments.closest,
+        "prove": arguments.prove,
     }
     request: dict[str, Any] = {name: value for name, value in given.items() if value}
     if arguments.no_database_seeds:

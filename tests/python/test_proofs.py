@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Noes that are proven, on arms drawn at random: nobody refutes them."""
+
+from __future__ import annotations
+
+import os
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+import iksel
+
+pytest.importorskip("bench", reason="the benchmarks are in the repository only")
+
+from bench import random_arms
+
+SEED = int(os.environ.get("IKSEL_TEST_SEED", "7"))
+ARMS = 4
+
+SWEPT = ["offset_wrist", *(set(random_arms.SEVEN) - {"right_angles_7"})]
+
+
+def some_at_limits(robot: iksel.Robot, count: int, seed: int) -> npt.NDArray[np.float64]:
+    """Configurations of which half have a joint or two at a limit."""
+    random = np.random.default_rng(seed)
+    q = robot.random_configurations(count, seed)
+    for row in q[::2]:
+        for j in random.integers(0, robot.dof, 2):
+            limit = (robot.lower, robot.upper)[random.integers(2)][j]
+            if np.isfinite(limit):
+                row[j] = limit
+    return q
+
+
+@pytest.mark.parametrize("build", sorted(SWEPT))
+def test_what_is_reachable_is_never_proven_away(build: str) -> None:
+    for number in range(SEED, SEED + ARMS):
+        robot = random_arms.random_arm(build, number).robot
+        q = some_at_limits(robot, 300, number)
+        batch = iksel.Solver(robot).solve_batch(robot.fk(q), prove=True)
+        proven = ~batch.success & (batch.proof == int(iksel.Proof.intervals))
+        assert not proven.any(), f"{build} {number}: {q[proven][0]!r}"
+
+
+@pytest.mark.parametrize("build", ["offset_wrist", "wrist_offset", "shoulder_offset"])
+def test_most_noes_are_proven_and_restarts_find_nothing(build: str) -> None:
+    noes = proven = 0
+    for number in range(SEED, SEED + ARMS):
+        robot = random_arms.random_arm(build, number).robot
+        solver = iksel.Solver(robot)
+        poses = robot.fk(robot.random_configurations(60, number))
+        poses[:, :3, :3] = poses[::-1, :3, :3].copy()
+        batch = solver.solve_batch(poses, prove=True)
+        alone = [solver.solve(pose, prove=True).proof for pose in poses]
+        assert [iksel.Proof(int(proof)) for proof in batch.proof] == alone
+        for pose in poses[~batch.success]:
+            result = solver.solve(pose, prove=True)
+            noes += 1
+            proven += result.proven
+            assert solver.diagnose(pose).proven == result.proven
+            if result.proven and noes % 8 == 0:
+                seeds = robot.random_configurations(100, number)
+                assert not solver.solve(pose, seeds=seeds, database_seeds=False)
+    assert noes > 20
+    assert proven >= 0.8 * noes, f"{proven} of {noes}"

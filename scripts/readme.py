@@ -238,7 +238,9 @@ def noes() -> str:
         if ours is None:
             continue
         counts = (ours[what] for what in ("yes", "proven", "swept", "searched"))
-        times = (two_times(ours[what]) for what in ("yes_us", "no_us", "proven_us"))
+        times = (
+            two_times(ours.get(what)) for what in ("yes_us", "no_us", "proven_us")
+        )
         rest = (
             microseconds(cells.get(robot, {}).get(OURS, {}).get("mean_us"))
             for cells in (every, near)

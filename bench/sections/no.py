@@ -155,7 +155,7 @@ def _certain(view: View) -> str:
                 continue
             unit = cell["unit_us"]
             no = cell["no_us"]
-            proof = cell["proven_us"]
+            proof = cell.get("proven_us")
             counts = ("yes", "proven", "swept", "searched", "most_iterations")
             rows.append(
                 [

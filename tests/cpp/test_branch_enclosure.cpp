@@ -81,9 +81,9 @@ TEST(EnclosedNumbers, HoldWhateverIsWithinTheirErrors) {
       const Known next = combine(known, draw(x, dice), dice);
       if (!(next.enclosure.reach() < 1e6)) break;
       known = next;
-      ASSERT_TRUE(known.holds()) << static_cast<double>(known.number) << " in " << known.enclosure.lower() << " .. "
-                                 << known.enclosure.upper() << ", case " << i << ", seed "
-                                 << iksel_test::seed();
+      ASSERT_TRUE(known.holds()) << static_cast<double>(known.number) << " in "
+                                 << known.enclosure.lower() << " .. " << known.enclosure.upper()
+                                 << ", case " << i << ", seed " << iksel_test::seed();
     }
     narrow += known.enclosure.reach() < 1e-3;
   }
@@ -145,8 +145,8 @@ TEST_P(Enclosures, NearlyEachNoIsProvenAndNobodyRefutesIt) {
     ++noes;
     EXPECT_EQ(solver().solve_batch({target}, proving)[0].proof, result.proof);
     EXPECT_EQ(solver().diagnose(target).proof, result.proof);
-    const bool is_proven = result.proof == Proof::intervals ||
-                           result.proof == Proof::closed_form || result.proof == Proof::reach;
+    const bool is_proven = result.proof == Proof::intervals || result.proof == Proof::closed_form ||
+                           result.proof == Proof::reach;
     proven += is_proven;
     if (!is_proven || noes > 20) continue;
     EXPECT_TRUE(solver().solve_all(target).all.empty());

@@ -17,7 +17,8 @@ constexpr double kShortest = 1e-7;
 /// Pieces overlap by this part, so that rounding leaves no gap between them.
 constexpr double kOverlap = 1e-12;
 /// What axes that lie off where the form has them may do to the target, by their deviation, which
-/// counts each twice: it turns what is behind it to and fro, and moves it by as much at a lever of 1.
+/// counts each twice: it turns what is behind it to and fro, and moves it by as much at a lever
+/// of 1.
 constexpr double kAxesOff = 2;
 
 }  // namespace
@@ -32,8 +33,8 @@ BranchEnclosure::BranchEnclosure(const ChainModel& model, const ClosedFormChain&
   upper_ = model.joints.sample_upper(chain.held) + offset;
   const double lever = chain.tail.norm() + to_pose(model.kernel.tip).translation().norm() +
                        (chain.reversed ? model.reach_of_tcp() : 0.0);
-  const double tolerance = std::max({(position_tolerance + lever * rotation_tolerance) / chain.unit,
-                                     rotation_tolerance, 1e-9});
+  const double tolerance = std::max(
+      {(position_tolerance + lever * rotation_tolerance) / chain.unit, rotation_tolerance, 1e-9});
   chain_.form.error =
       tolerance + kAxesOff * chain.deviation * std::max(1.0, model.reach / chain.unit);
 }

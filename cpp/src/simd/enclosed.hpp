@@ -25,9 +25,7 @@ class Enclosed {
   [[nodiscard]] IKSEL_INLINE const T& slope() const { return slope_; }
   [[nodiscard]] IKSEL_INLINE const T& radius() const { return radius_; }
   /// How far from there it may be.
-  [[nodiscard]] IKSEL_INLINE T reach() const {
-    return rounded(abs(slope_) + radius_, abs(value_));
-  }
+  [[nodiscard]] IKSEL_INLINE T reach() const { return rounded(abs(slope_) + radius_, abs(value_)); }
   [[nodiscard]] IKSEL_INLINE T lower() const { return value_ - reach(); }
   [[nodiscard]] IKSEL_INLINE T upper() const { return value_ + reach(); }
 
@@ -225,10 +223,10 @@ IKSEL_APART Vec<Enclosed<T>> cross(const Vec<Enclosed<T>>& a, const Vec<Enclosed
   const auto spread = [](const Vec<T>& u, const Vec<T>& v) {
     return Vec<T>{u.y * v.z + u.z * v.y, u.z * v.x + u.x * v.z, u.x * v.y + u.y * v.x};
   };
-  const Vec<T> by_errors = sum(spread(sum(a.each_size(), a.radii), b.radii),
-                               spread(a.radii, b.each_size()));
-  return {sum(cross(a.value, b.value), half),
-          sum(cross(a.value, b.slope), cross(a.slope, b.value)), sum(sizes(half), by_errors),
+  const Vec<T> by_errors =
+      sum(spread(sum(a.each_size(), a.radii), b.radii), spread(a.radii, b.each_size()));
+  return {sum(cross(a.value, b.value), half), sum(cross(a.value, b.slope), cross(a.slope, b.value)),
+          sum(sizes(half), by_errors),
           length(half) + size_a * b.radius + (size_b + b.radius) * a.radius, size_a * size_b};
 }
 template <typename T>

@@ -14,8 +14,8 @@ using FirstSearch = SearchParts<FirstAnswer>;
 using AllSearch = SearchParts<Collector>;
 
 /// Near, given seeds and all branches. `kind`: the proof that branches give.
-template <typename Parts, typename Branches>
-Explored explore_branches(const Parts& parts, Branches& branches, Proof kind, NearSeed& near,
+template <typename Parts>
+Explored explore_branches(const Parts& parts, BranchList& branches, Proof kind, RowSeeds& near,
                           GivenSeeds& given, const Pose& Y);
 
 // On the self-motion of seven joints of which one can be swept.
@@ -35,7 +35,7 @@ Explored explore_held(const AllSearch& parts);
 
 /// For a full pose: the families that the arm has, and then the database. The proof that there are
 /// no answers but those found.
-Proof search_pose(const FirstSearch& parts, NearSeed& near, GivenSeeds& given, const Pose& Y);
-Proof search_pose(const AllSearch& parts, NearSeed& near, GivenSeeds& given, const Pose& Y);
+Proof search_pose(const FirstSearch& parts, RowSeeds& near, GivenSeeds& given, const Pose& Y);
+Proof search_pose(const AllSearch& parts, RowSeeds& near, GivenSeeds& given, const Pose& Y);
 
 }  // namespace iksel

@@ -11,8 +11,8 @@ namespace iksel {
 inline constexpr int kBesideBranches = 48;
 inline constexpr int kBesideRoots = 96;
 
-template <typename Parts, typename Branches>
-Explored explore_branches(const Parts& parts, Branches& branches, Proof kind, NearSeed& near,
+template <typename Parts>
+Explored explore_branches(const Parts& parts, BranchList& branches, Proof kind, RowSeeds& near,
                           GivenSeeds& given, const Pose& Y) {
   auto& answers = parts.answers;
   EnumeratedSeeds enumerated(branches, Y, answers.wants_more(), parts.work, parts.clock);

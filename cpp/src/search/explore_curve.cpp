@@ -72,7 +72,7 @@ Explored explore_nearest(const AllSearch& parts, const Pose& Y) {
   NearestOnCurve& curve = *lanes.nearest_on_curve;
   const auto& [near, move] = answers.nearest_to();
   const bool stays = curve.prefers_staying(move);
-  NearSeed first(stays ? nullptr : &near, parts.work);
+  RowSeeds first(stays ? nullptr : &near, parts.work);
   search(lanes.refiner, first, answers, parts.work);
   // Any answer bounds the others as well, and where there is none, what looks for any is sooner
   // through.

@@ -13,7 +13,7 @@ template <typename Parts>
 bool search_by_scheme(const Parts& parts) {
   auto& [refiner, selection, task_samples] = *parts.workspace.one_at_a_time;
   const auto should_continue = [&] { return parts.answers.should_continue(); };
-  NearSeed near = parts.near_seed();
+  RowSeeds near = parts.near_seed();
   GivenSeeds given = parts.given_seeds(1, should_continue);
   Random random(parts.options.seed);
   refiner.begin(parts.goal, random);
@@ -38,7 +38,7 @@ Proof search_in_lanes(const Parts& parts) {
   const Goal& goal = parts.goal;
   Workspace::InLanes& lanes = *parts.workspace.lanes;
   const auto should_continue = [&] { return parts.answers.should_continue(); };
-  NearSeed near = parts.near_seed();
+  RowSeeds near = parts.near_seed();
   GivenSeeds given = parts.given_seeds(lanes::kBlock, should_continue);
   lanes.refiner.begin(goal.task(), kFirst, Width::narrow);
   const Pose Y = lanes.query.reduce(goal.target());
@@ -49,7 +49,7 @@ Proof search_in_lanes(const Parts& parts) {
   }
   Enumeration* branches = lanes.branches_of(goal.task());
   if (branches != nullptr && parts.request.database_seeds) {
-    NearSeed none(nullptr, parts.work);
+    RowSeeds none(nullptr, parts.work);
     const auto explored = explore_branches(parts, *branches, Proof::closed_form, none, given, Y);
     if (explored.is_done) return explored.proof;
   }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // All answers to a full pose that are wanted, in lanes.
 #include "search/explore_branches.hpp"
-#include "seeds/nearby_seeds.hpp"
 #include "seeds/spread_seeds.hpp"
 
 namespace iksel {
@@ -15,8 +14,7 @@ bool search_widely(const AllSearch& parts) {
   lanes.refiner.begin(parts.goal.task(), kAll, Width::wide);
   if (parts.model.dof > kCurveJoints && answers.ranks_by_move() &&
       !parts.request.objective.is_set()) {
-    NearbySeeds nearby(parts.model.joints, answers.nearest_to().from, parts.options.seed,
-                       parts.work);
+    NearbySeeds nearby(answers.nearest_to().from, parts.options.seed, parts.work);
     if (search(lanes.refiner, nearby, answers, parts.work)) return true;
   }
   SpreadSeeds spread(lanes.query, parts.model.joints, parts.options.seed, answers, parts.work);
@@ -27,7 +25,7 @@ bool search_widely(const AllSearch& parts) {
 
 }  // namespace
 
-Proof search_pose(const AllSearch& parts, NearSeed& near, GivenSeeds& given, const Pose& Y) {
+Proof search_pose(const AllSearch& parts, RowSeeds& near, GivenSeeds& given, const Pose& Y) {
   Workspace::InLanes& lanes = *parts.workspace.lanes;
   Collector& answers = parts.answers;
   if (!parts.request.database_seeds) {

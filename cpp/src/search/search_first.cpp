@@ -19,7 +19,7 @@ constexpr int kBesideSweep = 192;
 constexpr int kBesideEnds = 16;
 
 /// The nearest leaf of the database. Returns whether the answers want no more.
-bool search_leaf(const FirstSearch& parts, bool is_screened, NearSeed& near, GivenSeeds& given) {
+bool search_leaf(const FirstSearch& parts, bool is_screened, RowSeeds& near, GivenSeeds& given) {
   Workspace::InLanes& lanes = *parts.workspace.lanes;
   const bool is_quick = parts.answers.effort() == Effort::quick;
   const bool are_known = is_quick || lanes.roots || lanes.has_closed_ends();
@@ -34,7 +34,7 @@ bool search_leaf(const FirstSearch& parts, bool is_screened, NearSeed& near, Giv
 
 }  // namespace
 
-Proof search_pose(const FirstSearch& parts, NearSeed& near, GivenSeeds& given, const Pose& Y) {
+Proof search_pose(const FirstSearch& parts, RowSeeds& near, GivenSeeds& given, const Pose& Y) {
   Workspace::InLanes& lanes = *parts.workspace.lanes;
   const bool is_screened = parts.goal.scene() != nullptr && lanes.sweep;
   if (search_leaf(parts, is_screened, near, given)) return Proof::none;

@@ -40,7 +40,7 @@ struct SearchParts {
   Work& work;
   StageClock& clock;
 
-  [[nodiscard]] NearSeed near_seed() const {
+  [[nodiscard]] RowSeeds near_seed() const {
     return {request.near ? &*request.near : nullptr, work};
   }
   [[nodiscard]] GivenSeeds given_seeds(int per_stage, FunctionRef<bool()> should_continue) const {
@@ -52,7 +52,7 @@ struct SearchParts {
 
   /// From what the request gives, and then from other sources, if they are asked for.
   template <typename Refiner, typename... Others>
-  bool run(Refiner& refiner, NearSeed& near, GivenSeeds& given, Others&... others) const {
+  bool run(Refiner& refiner, RowSeeds& near, GivenSeeds& given, Others&... others) const {
     SeedSequence seeds(request.database_seeds ? 2 + sizeof...(others) : 2, near, given, others...);
     return search(refiner, seeds, answers, work);
   }

@@ -57,7 +57,7 @@ bool ArcEnds::find_crossings(std::size_t side, const Pose& T_base_tcp) {
   if (side == 1) value += kPi;
   if (joints_.type(0) != JointType::continuous) {
     value += kTwoPi * std::ceil((lower - value) / kTwoPi);
-    count_ = 0;
+    solutions_ = nullptr;
     if (value > upper) return true;
     value = std::min(std::max(value, joints_.lower[0]), joints_.upper[0]);
   }
@@ -71,38 +71,30 @@ bool ArcEnds::find_crossings(std::size_t side, const Pose& T_base_tcp) {
 bool ArcEnds::rules_out(const Pose& T_base_tcp) {
   if (!are_closed()) return false;
   for (std::size_t i = 0; i < places(); ++i) {
-    if (!find(i, T_base_tcp) || count_ > 0) return false;
+    if (!find(i, T_base_tcp) || count() > 0) return false;
   }
   return true;
 }
 
 bool ArcEnds::solve(End& end, const Pose& T_base_tcp) {
-  last_ = &end;
+  joint_ = end.arm->joint;
   const Pose Y = end.base_inverse * T_base_tcp * end.tip_inverse;
-  bool is_certain = false;
-  if (end.branches) {
-    end.branches->find(Y, /*wants_all=*/true);
-    by_roots_ = false;
-    count_ = end.branches->size();
-    is_certain = end.branches->is_certain_but_for_limits();
-  }
-  if (!is_certain && end.roots) {
-    end.roots->find(Y, /*wants_all=*/false);
-    by_roots_ = true;
-    count_ = end.roots->size();
-    is_certain = end.roots->is_certain_but_for_limits();
-  }
-  return is_certain;
+  const auto find = [&](BranchList& solutions, bool wants_all) {
+    solutions.find(Y, wants_all);
+    solutions_ = &solutions;
+    return solutions.is_certain_but_for_limits();
+  };
+  const bool is_certain = end.branches && find(*end.branches, /*wants_all=*/true);
+  return is_certain || (end.roots && find(*end.roots, /*wants_all=*/false));
 }
 
 const double* ArcEnds::keep(int k) {
-  const double* others = by_roots_ ? last_->roots->q(k) : last_->branches->q(k);
-  const int joint = last_->arm->joint;
+  const double* others = solutions_->q(k);
   if (kept_.size() < kept_.capacity()) kept_.emplace_back();
   double* q = kept_.back().data();
-  std::copy_n(others, joint, q);
-  q[joint] = locked_;
-  std::copy_n(others + joint, 6 - joint, q + joint + 1);
+  std::copy_n(others, joint_, q);
+  q[joint_] = locked_;
+  std::copy_n(others + joint_, 6 - joint_, q + joint_ + 1);
   return q;
 }
 

@@ -38,7 +38,7 @@ class ArcEnds {
   [[nodiscard]] bool are_closed() const { return are_closed_; }
   /// Whether that is so.
   bool rules_out(const Pose& T_base_tcp);
-  [[nodiscard]] int count() const { return count_; }
+  [[nodiscard]] int count() const { return solutions_ != nullptr ? solutions_->size() : 0; }
   /// The k-th solution of the last find(), seven joint values [rad or m]; kept until begin().
   const double* keep(int k);
   /// Forgets what is kept.
@@ -71,10 +71,10 @@ class ArcEnds {
   bool are_all_;
   bool are_closed_;
   std::optional<Crossing> crossing_;
-  const End* last_ = nullptr;
-  double locked_ = 0;  ///< where the last one's joint is [rad or m]
-  bool by_roots_ = false;
-  int count_ = 0;
+  // Of the last find().
+  const BranchList* solutions_ = nullptr;
+  int joint_ = 0;      ///< that is locked
+  double locked_ = 0;  ///< and where [rad or m]
   std::vector<std::array<double, 7>> kept_;
 };
 

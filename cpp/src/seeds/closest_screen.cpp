@@ -124,13 +124,11 @@ int ClosestScreen::load_seeds(LaneQuery& query) {
     }
     ++packs;
   };
-  lanes::SeedPack& near = query.packs[0];
-  query.prepare_leaf(near);
+  const lanes::SeedPack& near = query.packs[0];
+  query.prepare_leaf();
   load([&](int j) { return near.q[j]; });
-  if (query.measure_blocks() > 0) {
-    query.prepare_blocks(0, 1, &near);
-    load([&](int j) { return near.q[j]; });
-  }
+  query.begin_blocks();
+  if (query.next_blocks(1) > 0) load([&](int j) { return near.q[j]; });
   for (int i = 0; i < kRandomPacks; ++i) {
     load([&](int j) { return row(random_, i, j); });
   }

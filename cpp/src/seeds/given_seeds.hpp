@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Seeds that come with a request: the configuration to stay near, and those given, best first. They
-// come on top of max_attempts, which bounds how many of those given are tried.
+// Seeds that a request gives, best first. They come on top of max_attempts, which bounds how many
+// of them are tried.
 #pragma once
 
 #include <algorithm>
@@ -12,28 +12,6 @@
 #include "seeds/seed_ranking.hpp"
 
 namespace iksel {
-
-class NearSeed {
- public:
-  /// `near` may be null.
-  NearSeed(const JointVector* near, Work& work) : near_(near), work_(work) {}
-
-  [[nodiscard]] bool next_stage() const { return near_ != nullptr && !loaded_; }
-
-  template <typename Refiner>
-  bool load(Refiner& refiner, int lane) {
-    if (loaded_) return false;
-    loaded_ = true;
-    work_.take_on_top();
-    refiner.load_seed(lane, near_->data());
-    return true;
-  }
-
- private:
-  const JointVector* near_;
-  Work& work_;
-  bool loaded_ = false;
-};
 
 class GivenSeeds {
  public:

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Seeds that are there already, row by row: along the arcs of a self-motion, or where a path comes
-// from.
+// Seeds that are there already, row by row: along the arcs of a self-motion, where a path comes
+// from, or the one configuration to stay near.
 #pragma once
 
 #include <array>
 #include <cstddef>
 
 #include "base/work.hpp"
+#include "iksel/types.hpp"
 #include "simd/lane_types.hpp"
 
 namespace iksel {
@@ -17,8 +18,11 @@ class RowSeeds {
   /// (`are_answers`), or only a seed. They come on top of those that `work` allows.
   RowSeeds(const double* q, std::size_t count, std::size_t dof, bool are_answers, Work& work)
       : q_(q), count_(count), dof_(dof), are_answers_(are_answers), work_(work) {}
+  /// A seed that may be null: there is none then.
+  RowSeeds(const JointVector* q, Work& work)
+      : RowSeeds(q != nullptr ? q->data() : nullptr, q != nullptr ? 1 : 0, 0, false, work) {}
 
-  bool next_stage() { return next_ < count_; }
+  [[nodiscard]] bool next_stage() const { return next_ < count_; }
 
   template <typename Refiner>
   bool load(Refiner& refiner, int lane) {

@@ -43,13 +43,8 @@ void SeedScreen::copy(int place, double* q) const {
 ScreenedSeeds::ScreenedSeeds(LaneQuery& query, SeedScreen& screen, const Pose& Y,
                              const JointSpace& joints, std::uint64_t seed, Work& work,
                              StageClock& clock)
-    : query_(query),
-      screen_(screen),
-      joints_(joints),
-      random_(seed),
-      work_(work),
-      clock_(clock),
-      blocks_(query.measure_blocks()) {
+    : query_(query), screen_(screen), joints_(joints), random_(seed), work_(work), clock_(clock) {
+  query_.begin_blocks();
   screen_.begin(Y);
 }
 
@@ -64,17 +59,13 @@ bool ScreenedSeeds::next_stage() {
 }
 
 bool ScreenedSeeds::take_block() {
-  if (next_block_ == blocks_) return false;
+  if (left_ == 0) left_ = query_.next_blocks(kBlocksAtOnce);
+  if (left_ == 0) return false;
   // Worse seeds of blocks farther away seldom lead anywhere else than the better ones.
-  last_rank_ = next_block_ < query_.near_blocks() ? lanes::kBlock : lanes::kBlock / 2;
+  const std::size_t number = query_.blocks_given() - left_--;
+  last_rank_ = number < query_.near_blocks() ? lanes::kBlock : lanes::kBlock / 2;
   rank_ = 0;
-  const std::size_t at = next_block_ % kBlocksAtOnce;
-  if (at == 0) {
-    const auto count = std::min<std::size_t>(kBlocksAtOnce, blocks_ - next_block_);
-    query_.prepare_blocks(next_block_, count, query_.packs);
-  }
-  block_ = &query_.packs[at];
-  ++next_block_;
+  block_ = &query_.packs[number % kBlocksAtOnce];
   return true;
 }
 

@@ -84,11 +84,10 @@ class ScreenedSeeds {
   Random random_;
   Work& work_;
   StageClock& clock_;
-  std::size_t blocks_;
-  std::size_t next_block_ = 0;
   const lanes::SeedPack* block_ = nullptr;
-  int rank_ = 0;       ///< of the next seed in the block
-  int last_rank_ = 0;  ///< and how many of it are tried
+  std::size_t left_ = 0;  ///< blocks that the query has made seeds of
+  int rank_ = 0;          ///< of the next seed in the block
+  int last_rank_ = 0;     ///< and how many of it are tried
   double near_[kPacks * lanes::kBlock][lanes::kMaxJoints];
   int count_ = 0;
   int next_ = 0;

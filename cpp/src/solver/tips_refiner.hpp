@@ -19,6 +19,7 @@ class TipsRefiner {
     // Each chain was solved without what it shares with others.
     if (!goal_.joints().sums.empty()) q_ = goal_.joints().clamp(q_);
   }
+  void load_answer(int lane, const double* q) { load_seed(lane, q); }
   /// An attempt from beginning to end. Returns the steps.
   int advance(unsigned /*busy*/) {
     int steps = 0;

@@ -6,7 +6,8 @@
 #include "base/low_discrepancy.hpp"
 #include "search/first_answer.hpp"
 #include "seeds/given_seeds.hpp"
-#include "seeds/nearby_seeds.hpp"
+#include "seeds/random_seeds.hpp"
+#include "seeds/row_seeds.hpp"
 #include "seeds/seed_sequence.hpp"
 #include "solver/tips_refiner.hpp"
 #include "solver/tips_seeds.hpp"
@@ -54,7 +55,7 @@ Proof TipsSearch::search_for(Answers& answers, const Collector* collector,
   TipsRefiner quick_refiner(goal, std::min(options_.max_iterations, kQuickIterations));
   TipsRefiner refiner(goal, options_.max_iterations);
   const auto should_continue = [&] { return answers.should_continue(); };
-  NearSeed near(request.near ? &*request.near : nullptr, work);
+  RowSeeds near(request.near ? &*request.near : nullptr, work);
   GivenSeeds given(workspace.given, goal, request.seeds, options_.max_attempts, 1, should_continue,
                    work);
   SeedSequence given_ones(2, near, given);
@@ -78,8 +79,7 @@ Proof TipsSearch::search_for(Answers& answers, const Collector* collector,
   if (search(refiner, of_chains, answers, work)) return Proof::none;
   if (is_enough()) {
     // Between the values of the shared joints others are nearer at times.
-    NearbySeeds nearby(goal.joints(), collector->nearest_to().from, options_.seed, work,
-                       kNearbySeeds);
+    NearbySeeds nearby(collector->nearest_to().from, options_.seed, work, kNearbySeeds);
     search(refiner, nearby, answers, work);
   }
   return of_chains.proof();

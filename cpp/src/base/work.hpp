@@ -16,7 +16,7 @@ class Work {
   explicit Work(int max_attempts) : left_(max_attempts) {}
 
   [[nodiscard]] bool has_left() const { return left_ > 0; }
-  /// Counts a seed; false if there may be no more.
+  // Each counts a seed; false if there may be no more.
   bool take() {
     if (left_ <= 0) return false;
     --left_;
@@ -25,7 +25,12 @@ class Work {
   }
   /// From now on, so many seeds at most.
   void leave(int most) { left_ = std::min(left_, most); }
-  void take_on_top() { ++attempts; }
+  bool take_on_top() {
+    ++attempts;
+    return true;
+  }
+  /// One that was counted before.
+  bool take_counted() { return true; }
   /// Counts a guess at a solution by another one, which is no seed.
   void take_guess() { ++guesses_; }
   [[nodiscard]] int all_attempts() const { return attempts + guesses_; }

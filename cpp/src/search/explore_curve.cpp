@@ -10,7 +10,7 @@ namespace {
 /// By what was sampled of it, answers or all but.
 void refine_samples(const AllSearch& parts, bool are_answers) {
   const std::vector<double>& q = parts.workspace.lanes->samples.q;
-  parts.refine_rows(q.data(), q.size() / SweptBranches::kDof, are_answers, Width::wide);
+  parts.refine_rows(q.data(), q.size() / kCurveJoints, are_answers, Width::wide);
 }
 
 /// Solutions all over it.
@@ -25,7 +25,7 @@ Explored explore_spread(const AllSearch& parts, const Pose& Y) {
   lanes.sweep->find_spread(Y, wanted, least, q);
   parts.clock.lap(&StageTimes::query);
   std::vector<double> few;
-  if (q.size() < wanted * SweptBranches::kDof) {
+  if (q.size() < wanted * kCurveJoints) {
     few.swap(q);
   } else {
     refine_samples(parts, /*are_answers=*/true);

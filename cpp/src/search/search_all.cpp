@@ -59,12 +59,12 @@ Proof search_pose(const AllSearch& parts, RowSeeds& near, GivenSeeds& given, con
 }
 
 Explored explore_held(const AllSearch& parts) {
-  for (InnerArm& inner : parts.workspace.lanes->inner_arms) {
-    if (!inner.can_hold(parts.answers.nearest_to())) continue;
-    const bool found = inner.find(parts.goal.target(), parts.answers.nearest_to());
+  for (Held& held : parts.workspace.lanes->held) {
+    if (!held.can_hold(parts.answers.nearest_to())) continue;
+    const bool found = held.find(parts.goal.target(), parts.answers.nearest_to());
     parts.clock.lap(&StageTimes::query);
     if (!found) continue;
-    parts.refine_rows(inner.q().data(), 1, /*are_answers=*/true, Width::narrow);
+    parts.refine_rows(held.q().data(), 1, /*are_answers=*/true, Width::narrow);
     if (!parts.answers.has_any()) continue;
     parts.answers.settle(true);
     return Explored::done();

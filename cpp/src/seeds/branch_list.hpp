@@ -6,8 +6,8 @@
 #include <array>
 #include <cstddef>
 
-#include "base/work.hpp"
-#include "iksel/types.hpp"
+#include "base/constants.hpp"
+#include "seeds/row_seeds.hpp"
 
 namespace iksel {
 
@@ -35,11 +35,12 @@ class BranchList {
   [[nodiscard]] bool has_families() const { return has_families_; }
 
  protected:
-  using Joints = std::array<double, 6>;
+  using Joints = std::array<double, kPoseJoints>;
   static constexpr int kRoom = 96;
 
   ~BranchList() = default;
 
+  /// Where the next one is written to.
   [[nodiscard]] Joints& next() { return q_[static_cast<std::size_t>(size_)]; }
 
   std::array<Joints, kRoom> q_{};
@@ -53,29 +54,23 @@ class BranchList {
 };
 
 /// These as a source of seeds.
-class EnumeratedSeeds {
+class EnumeratedSeeds : public RowSeeds {
  public:
   EnumeratedSeeds(BranchList& branches, const Pose& Y, bool wants_all, Work& work,
                   StageClock& clock)
-      : branches_(branches), Y_(Y), wants_all_(wants_all), work_(work), clock_(clock) {}
+      : RowSeeds(work, &Work::take),
+        branches_(branches),
+        Y_(Y),
+        wants_all_(wants_all),
+        clock_(clock) {}
 
   bool next_stage() {
     if (done_ || !work_.has_left()) return false;
     done_ = true;
     branches_.find(Y_, wants_all_);
+    give(branches_.q(0), static_cast<std::size_t>(branches_.size()), kPoseJoints,
+         branches_.are_answers());
     clock_.lap(&StageTimes::query);
-    return true;
-  }
-
-  template <typename Refiner>
-  bool load(Refiner& refiner, int lane) {
-    if (next_ == branches_.size() || !work_.take()) return false;
-    const double* q = branches_.q(next_++);
-    if (branches_.are_answers()) {
-      refiner.load_answer(lane, q);
-    } else {
-      refiner.load_seed(lane, q);
-    }
     return true;
   }
 
@@ -91,15 +86,13 @@ class EnumeratedSeeds {
   [[nodiscard]] bool is_empty() const { return branches_.size() == 0; }
 
  private:
-  [[nodiscard]] bool was_tried() const { return done_ && next_ == branches_.size(); }
+  [[nodiscard]] bool was_tried() const { return done_ && is_through(); }
 
   BranchList& branches_;
   const Pose& Y_;
   bool wants_all_;
-  Work& work_;
   StageClock& clock_;
   bool done_ = false;
-  int next_ = 0;
 };
 
 }  // namespace iksel

@@ -22,7 +22,7 @@ FreeSamples::FreeSamples(Sweep& sweep, const Scene& scene, const Pose& Y, Memory
   to_.overlaps.clear();
   to_.ends.clear();
   to_.between.clear();
-  to_.clearance.assign(Sweep::kSamples * kPack, kInfinity);
+  to_.clearance.assign(Sweep::kSamples * SweptBranches::kCount, kInfinity);
   sweep_.set_target(Y);
 }
 
@@ -78,7 +78,7 @@ const FreeSamples::Between* FreeSamples::next_between() {
     has_between_ = true;
     sweep_.visit_between([&](const double* q, int branch) {
       Between& between = to_.between.emplace_back();
-      std::copy_n(q, kDof, between.q.begin());
+      std::copy_n(q, kCurveJoints, between.q.begin());
       between.branch = branch;
     });
   }
@@ -133,7 +133,7 @@ const FreeSamples::End* FreeSamples::next_end() {
 }
 
 void FreeSamples::screen_pack() {
-  const std::size_t count = std::min(kPack, rows() - at_);
+  const std::size_t count = std::min<std::size_t>(SweptBranches::kCount, rows() - at_);
   for (std::size_t i = at_; i < at_ + count; ++i) {
     const double above = scene_.data().find_clearance(row(i), look_);
     if (above > 0) {
@@ -144,10 +144,10 @@ void FreeSamples::screen_pack() {
       overlap.sample = to_.samples[i];
       overlap.number = static_cast<int>(to_.overlaps.size());
       clearance(overlap.sample.place, overlap.sample.branch) = above;
-      std::copy_n(row(i), kDof, overlap.q.begin());
+      std::copy_n(row(i), kCurveJoints, overlap.q.begin());
     } else if (beside_ && above > beside_->clearance) {
       beside_->clearance = above;
-      std::copy_n(row(i), kDof, beside_->q.begin());
+      std::copy_n(row(i), kCurveJoints, beside_->q.begin());
     }
   }
   at_ += count;
@@ -156,13 +156,11 @@ void FreeSamples::screen_pack() {
 bool find_nearest_free(const std::vector<Curve::Arc>& arcs, const Scene& scene,
                        const JointSpace& joints, const JointVector& near, const JointMove& move,
                        std::size_t most, std::vector<double>& q) {
-  constexpr std::size_t kPack = SweptBranches::kCount;
-  constexpr std::size_t kDof = SweptBranches::kDof;
   // Nearest first, so that the scene looks at few.
   std::vector<std::pair<double, JointVector>> points;
   for (const Curve::Arc& arc : arcs) {
     for (const Curve::Joints& on_arc : arc.q) {
-      JointVector point = Eigen::Map<const Eigen::VectorXd>(on_arc.data(), kDof);
+      JointVector point = Eigen::Map<const Eigen::VectorXd>(on_arc.data(), kCurveJoints);
       joints.wrap_nearest(near, 0, point);
       points.emplace_back(move.length(point - near), std::move(point));
     }
@@ -170,18 +168,19 @@ bool find_nearest_free(const std::vector<Curve::Arc>& arcs, const Scene& scene,
   std::sort(points.begin(), points.end(),
             [](const auto& a, const auto& b) { return a.first < b.first; });
   q.clear();
-  for (std::size_t i = 0; i < points.size() && q.size() < most * kDof; i += kPack) {
-    const std::size_t count = std::min(kPack, points.size() - i);
-    std::array<double, kPack * kDof> rows{};
+  for (std::size_t i = 0; i < points.size() && q.size() < most * kCurveJoints;
+       i += SweptBranches::kCount) {
+    const std::size_t count = std::min<std::size_t>(SweptBranches::kCount, points.size() - i);
+    std::array<double, SweptBranches::kCount * kCurveJoints> rows{};
     for (std::size_t k = 0; k < count; ++k) {
-      std::copy_n(points[i + k].second.data(), kDof, &rows[k * kDof]);
+      std::copy_n(points[i + k].second.data(), kCurveJoints, &rows[k * kCurveJoints]);
     }
-    std::array<bool, kPack> free{};
+    std::array<bool, SweptBranches::kCount> free{};
     scene.find_free(rows.data(), count, free.data());
     for (std::size_t k = 0; k < count; ++k) {
       if (!free[k]) continue;
-      const double* row = &rows[k * kDof];
-      q.insert(q.end(), row, row + kDof);
+      const double* row = &rows[k * kCurveJoints];
+      q.insert(q.end(), row, row + kCurveJoints);
     }
   }
   return !points.empty();

@@ -21,11 +21,11 @@ class FreeSamples {
     double clearance;  ///< scene_types.hpp
     int number;        ///< in the order in which they were found
     Sweep::Sample sample;
-    std::array<double, SweptBranches::kDof> q;
+    std::array<double, kCurveJoints> q;
   };
   /// Where a branch is inside the limits between two samples, but at neither.
   struct Between {
-    std::array<double, SweptBranches::kDof> q;
+    std::array<double, kCurveJoints> q;
     int branch;
   };
   /// A sample beside which a branch leaves the limits, or ends.
@@ -64,11 +64,8 @@ class FreeSamples {
   [[nodiscard]] bool has_any() const { return has_any_; }
 
  private:
-  static constexpr std::size_t kDof = SweptBranches::kDof;
-  static constexpr std::size_t kPack = SweptBranches::kCount;
-
-  [[nodiscard]] std::size_t rows() const { return to_.q.size() / kDof; }
-  [[nodiscard]] const double* row(std::size_t i) const { return &to_.q[i * kDof]; }
+  [[nodiscard]] std::size_t rows() const { return to_.q.size() / kCurveJoints; }
+  [[nodiscard]] const double* row(std::size_t i) const { return &to_.q[i * kCurveJoints]; }
   /// Makes rows of the next part; false if there are no more.
   bool add_rows();
   /// The same where no sample is free.
@@ -83,8 +80,8 @@ class FreeSamples {
   /// The next end of a branch; null if there are no more.
   const End* next_end();
   [[nodiscard]] double& clearance(int place, int branch) const {
-    return to_
-        .clearance[static_cast<std::size_t>(place) * kPack + static_cast<std::size_t>(branch)];
+    return to_.clearance[static_cast<std::size_t>(place) * SweptBranches::kCount +
+                         static_cast<std::size_t>(branch)];
   }
   [[nodiscard]] bool exists(int place, int branch) const {
     return clearance(place, branch) < kInfinity;
@@ -108,7 +105,7 @@ class FreeSamples {
   bool has_between_ = false;
   std::size_t between_ = 0;  ///< of these, those that were looked at
   bool has_any_ = false;
-  std::array<std::size_t, kPack> free_{};
+  std::array<std::size_t, SweptBranches::kCount> free_{};
   std::size_t free_count_ = 0;
   std::size_t next_ = 0;
 };

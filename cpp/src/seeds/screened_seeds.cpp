@@ -43,7 +43,12 @@ void SeedScreen::copy(int place, double* q) const {
 ScreenedSeeds::ScreenedSeeds(LaneQuery& query, SeedScreen& screen, const Pose& Y,
                              const JointSpace& joints, std::uint64_t seed, Work& work,
                              StageClock& clock)
-    : query_(query), screen_(screen), joints_(joints), random_(seed), work_(work), clock_(clock) {
+    : RowSeeds(work, &Work::take_counted),
+      query_(query),
+      screen_(screen),
+      joints_(joints),
+      random_(seed),
+      clock_(clock) {
   query_.begin_blocks();
   screen_.begin(Y);
 }
@@ -51,9 +56,9 @@ ScreenedSeeds::ScreenedSeeds(LaneQuery& query, SeedScreen& screen, const Pose& Y
 bool ScreenedSeeds::next_stage() {
   clock_.lap(&StageTimes::iterate);
   if (!work_.has_left()) return false;
-  next_ = 0;
-  count_ = 0;
+  near_count_ = 0;
   for (int pack = 0; pack < kPacks && work_.has_left(); ++pack) screen_one_pack();
+  give(near_[0], near_count_, lanes::kMaxJoints, /*are_answers=*/false);
   clock_.lap(&StageTimes::rank);
   return true;
 }
@@ -83,7 +88,7 @@ void ScreenedSeeds::screen_one_pack() {
   work_.iterations += screen_.run();
   for (int place = 0; place < lanes::kBlock; ++place) {
     if ((screen_.near() >> static_cast<unsigned>(place) & 1U) != 0) {
-      screen_.copy(place, near_[count_++]);
+      screen_.copy(place, near_[near_count_++]);
     }
   }
 }

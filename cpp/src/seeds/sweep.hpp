@@ -75,8 +75,7 @@ class Sweep {
   [[nodiscard]] bool is_none() const { return miss_.rules_out_answers(least_); }
 
  private:
-  static constexpr int kBranches = SweptBranches::kCount;
-  static constexpr int kPacks = kSamples / kBranches;
+  static constexpr int kPacks = kSamples / SweptBranches::kCount;
   /// Branches that are followed between samples, at most. With 16, of which merged ones take four
   /// each or eight, one of 4.8 million reachable targets was lost.
   static constexpr std::size_t kFollowed = 32;
@@ -112,7 +111,7 @@ class Sweep {
   LeastPlaces<kFollowed> nearest_;
   Least<SweptJoints, kFollowed> close_;
   double least_ = 0;  ///< how far the nearest branch was from being an answer
-  std::array<double, SweptBranches::kDof> q_{};
+  std::array<double, kCurveJoints> q_{};
   int branch_ = 0;
 };
 

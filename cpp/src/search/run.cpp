@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "search/run.hpp"
 
-#include "search/explore_branches.hpp"
+#include "search/explore.hpp"
 #include "seeds/allowed_seeds.hpp"
 #include "seeds/selected_seeds.hpp"
 

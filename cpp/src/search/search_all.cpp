@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // All answers to a full pose that are wanted, in lanes.
-#include "search/explore_branches.hpp"
+#include "search/explore.hpp"
 #include "seeds/spread_seeds.hpp"
 
 namespace iksel {

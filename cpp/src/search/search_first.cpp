@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A first answer to a full pose, in lanes.
-#include "search/explore_branches.hpp"
+#include "search/explore.hpp"
 #include "seeds/leaf_seeds.hpp"
 
 namespace iksel {

@@ -66,7 +66,7 @@ class Batch {
     constexpr std::size_t kFew = 8;
     const bool is_screened =
         one_tip && screens_answers(request_) && !std::isfinite(request_.deadline);
-    const std::size_t chunk = plain || is_screened ? TargetList::kMost : kFew;
+    const std::size_t chunk = plain || is_screened ? kMost : kFew;
     std::mutex turn;
     const SolveRequest locked = in_turn(request_, turn);
     const auto make_worker = [&] {
@@ -86,12 +86,15 @@ class Batch {
   }
 
  private:
+  /// Targets of a part at most.
+  static constexpr std::size_t kMost = 256;
+
   /// For a request that asks for nothing: the answer for a target does not depend on the others.
   template <typename Tell>
   void solve_plain(std::size_t first, std::size_t last, Workspace& workspace,
                    const Tell& tell) const {
     TargetList left;
-    for (std::size_t i = first; i < last; ++i) left.add(i);
+    for (std::size_t i = first; i < last; ++i) left.push_back(i);
     if (workspace.lanes) left = solve_in_lanes(left, *workspace.lanes, tell);
     const SolveRequest none;
     for (const std::size_t i : left) {
@@ -159,7 +162,7 @@ class Batch {
     for (const Result& answer : answers) {
       candidates.insert(candidates.end(), answer.q.data(), answer.q.data() + answer.q.size());
     }
-    std::array<bool, TargetList::kMost> keep{};
+    std::array<bool, kMost> keep{};
     const std::size_t count = candidates.size() / static_cast<std::size_t>(solver_.robot.dof());
     Screen screen(request, solver_.robot.dof());
     if (count > 0) screen.apply(candidates.data(), count, keep.data());

@@ -23,7 +23,7 @@ template <typename Parts>
 Explored explore_branches(const Parts& parts, BranchList& branches, Proof kind, RowSeeds& near,
                           GivenSeeds& given, const Pose& Y) {
   auto& answers = parts.answers;
-  EnumeratedSeeds enumerated(branches, Y, answers.wants_more(), parts.work, parts.clock);
+  EnumeratedSeeds enumerated(branches, Y, answers.wants_more(), parts.work);
   SeedSequence seeds(3, near, given, enumerated);
   answers.look_for_partners(false);
   if (parts.refine(seeds, Width::narrow)) return Explored::done();
@@ -60,7 +60,7 @@ Explored explore_curve(const AllSearch& parts, const Pose& Y);
 /// By the ends of its arcs alone.
 template <typename Parts>
 Explored explore_ends(const Parts& parts) {
-  EndSeeds ends(*parts.workspace.lanes->ends, parts.goal.target(), parts.work, parts.clock);
+  EndSeeds ends(*parts.workspace.lanes->ends, parts.goal.target(), parts.work);
   if (parts.refine(ends, Width::narrow) || parts.answers.has_any()) return Explored::done();
   const bool is_satisfied = parts.move_inside(ends.count(), [&](int i) { return ends.q(i); });
   if (is_satisfied || parts.answers.has_any()) return Explored::done();

@@ -23,7 +23,7 @@ Explored explore_spread(const AllSearch& parts, const Pose& Y) {
   const auto wanted = static_cast<std::size_t>(answers.spread());
   const double least = 1.01 * answers.min_distance();
   lanes.sweep->find_spread(Y, wanted, least, q);
-  parts.clock.lap(&StageTimes::query);
+  parts.work.lap(&StageTimes::query);
   std::vector<double> few;
   if (q.size() < wanted * kCurveJoints) {
     few.swap(q);
@@ -34,7 +34,7 @@ Explored explore_spread(const AllSearch& parts, const Pose& Y) {
   lanes.find_arcs(parts.goal.target(), Y, kStraight);
   // Where branches meet, some are the same.
   lanes.curve->spread(wanted + wanted / 4 + 8, least, q);
-  parts.clock.lap(&StageTimes::query);
+  parts.work.lap(&StageTimes::query);
   refine_samples(parts, /*are_answers=*/false);
   if (!few.empty() && answers.count() < wanted) {
     q.swap(few);
@@ -52,12 +52,12 @@ Explored find_any_or_none(const AllSearch& parts, const Pose& Y) {
   bool is_found = sweep.find_at_samples(Y);
   if (!is_found) {
     if (lanes.ends && lanes.ends->rules_out(parts.goal.target())) {
-      parts.clock.lap(&StageTimes::query);
+      parts.work.lap(&StageTimes::query);
       return Explored::done(Proof::closed_form);
     }
     is_found = sweep.find_between(Sweep::Between::all);
   }
-  parts.clock.lap(&StageTimes::query);
+  parts.work.lap(&StageTimes::query);
   if (!is_found) return sweep.is_none() ? Explored::done(Proof::sweep) : Explored::doubtful();
   parts.refine_rows(sweep.q(), 1, /*are_answers=*/true, Width::narrow);
   return Explored::doubtful();
@@ -82,7 +82,7 @@ Explored explore_nearest(const AllSearch& parts, const Pose& Y) {
   if (!stays) {
     if (const Explored none = find_any(); none.is_done) return none;
   }
-  NearestOnCurveSeeds nearest(curve, Y, near, move, answers, parts.work, parts.clock);
+  NearestOnCurveSeeds nearest(curve, Y, near, move, answers, parts.work);
   parts.refine(nearest, Width::narrow);
   answers.settle(curve.is_settled() && nearest.has_led_to_answer());
   if (stays) {
@@ -102,7 +102,7 @@ Explored explore_nearest_free(const AllSearch& parts, const Pose& Y) {
   const auto& [near, move] = parts.answers.nearest_to();
   const bool has_any =
       find_nearest_free(arcs, *parts.request.scene, parts.model.joints, near, move, kMost, q);
-  parts.clock.lap(&StageTimes::query);
+  parts.work.lap(&StageTimes::query);
   if (!has_any) return Explored::doubtful();
   refine_samples(parts, /*are_answers=*/false);
   if (!q.empty()) return Explored::done();

@@ -18,15 +18,14 @@ bool search_by_scheme(const Parts& parts) {
   Random random(parts.options.seed);
   refiner.begin(parts.goal, random);
   if (parts.goal.is_full_pose()) {
-    SelectedSeeds selected(selection, parts.goal.tip_target(), parts.work, parts.clock);
+    SelectedSeeds selected(selection, parts.goal.tip_target(), parts.work);
     parts.run(refiner, near, given, selected);
   } else {
     task_samples.begin(parts.answers.wants_more() ? TaskSamples::kMany : TaskSamples::kFew);
-    AllowedSeeds allowed(task_samples, parts.model.joints, parts.goal, random, parts.work,
-                         parts.clock);
+    AllowedSeeds allowed(task_samples, parts.model.joints, parts.goal, random, parts.work);
     parts.run(refiner, near, given, allowed);
   }
-  parts.clock.lap(&StageTimes::iterate);
+  parts.work.lap(&StageTimes::iterate);
   return refiner.has_left_limits();
 }
 
@@ -55,14 +54,14 @@ Proof search_in_lanes(const Parts& parts) {
   }
   if (goal.is_full_pose()) {
     lanes.query.set_target(Y);
-    parts.clock.lap(&StageTimes::query);
+    parts.work.lap(&StageTimes::query);
     return search_pose(parts, near, given, Y);
   }
-  parts.clock.lap(&StageTimes::query);
+  parts.work.lap(&StageTimes::query);
   Random random(parts.options.seed);
-  AllowedSeeds allowed(lanes.query, parts.model.joints, goal, random, parts.work, parts.clock);
+  AllowedSeeds allowed(lanes.query, parts.model.joints, goal, random, parts.work);
   parts.run(lanes.refiner, near, given, allowed);
-  parts.clock.lap(&StageTimes::iterate);
+  parts.work.lap(&StageTimes::iterate);
   return Proof::none;
 }
 
@@ -74,10 +73,8 @@ Proof search_for(const SolverOptions& options, Answers& answers, Workspace& work
     answers.put_out_of_reach();
     return Proof::reach;
   }
-  StageClock clock(times);
-  const Goal& goal = answers.goal();
-  const SearchParts<Answers> parts{goal.model(), options, goal,         answers.request(),
-                                   workspace,    answers, answers.work, clock};
+  answers.work.begin_laps(times);
+  const SearchParts<Answers> parts{options, workspace, answers};
   if (workspace.lanes) return search_in_lanes(parts);
   if (search_by_scheme(parts)) answers.leave_limits();
   return Proof::none;

@@ -19,7 +19,7 @@ bool search_widely(const AllSearch& parts) {
   }
   SpreadSeeds spread(lanes.query, parts.model.joints, parts.options.seed, answers, parts.work);
   const bool is_satisfied = search(lanes.refiner, spread, answers, parts.work);
-  parts.clock.lap(&StageTimes::iterate);
+  parts.work.lap(&StageTimes::iterate);
   return is_satisfied;
 }
 
@@ -62,7 +62,7 @@ Explored explore_held(const AllSearch& parts) {
   for (Held& held : parts.workspace.lanes->held) {
     if (!held.can_hold(parts.answers.nearest_to())) continue;
     const bool found = held.find(parts.goal.target(), parts.answers.nearest_to());
-    parts.clock.lap(&StageTimes::query);
+    parts.work.lap(&StageTimes::query);
     if (!found) continue;
     parts.refine_rows(held.q().data(), 1, /*are_answers=*/true, Width::narrow);
     if (!parts.answers.has_any()) continue;

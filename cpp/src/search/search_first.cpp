@@ -28,7 +28,7 @@ bool search_leaf(const FirstSearch& parts, bool is_screened, RowSeeds& near, Giv
     lanes.refiner.begin(parts.goal.task(), lanes.sweep ? kBeforeSweep : kBeforeBranches,
                         Width::narrow);
   }
-  LeafSeeds leaf(lanes.query, from_leaf, parts.work, parts.clock);
+  LeafSeeds leaf(lanes.query, from_leaf, parts.work);
   return parts.run(lanes.refiner, near, given, leaf);
 }
 
@@ -52,9 +52,9 @@ Proof search_pose(const FirstSearch& parts, RowSeeds& near, GivenSeeds& given, c
   }
   lanes.refiner.begin(parts.goal.task(), kScreened, Width::wide);
   ScreenedSeeds screened(lanes.query, lanes.screen, Y, parts.model.joints, parts.options.seed,
-                         parts.work, parts.clock);
+                         parts.work);
   search(lanes.refiner, screened, parts.answers, parts.work);
-  parts.clock.lap(&StageTimes::iterate);
+  parts.work.lap(&StageTimes::iterate);
   return Proof::none;
 }
 
@@ -65,7 +65,7 @@ Explored explore_free_curve(const FirstSearch& parts, const Pose& Y) {
     parts.answers.refuse();
     return Explored::done(Proof::target);
   }
-  FreeSamples samples(*lanes.sweep, *parts.goal.scene(), Y, lanes.samples, parts.work, parts.clock);
+  FreeSamples samples(*lanes.sweep, *parts.goal.scene(), Y, lanes.samples, parts.work);
   if (parts.refine(samples, Width::narrow)) return Explored::done();
   if (!samples.has_any()) return Explored::doubtful();
   parts.answers.refuse();
@@ -78,7 +78,7 @@ Explored explore_curve(const FirstSearch& parts, const Pose& Y) {
   if (are_closed) {
     if (const Explored ends = explore_ends(parts); ends.is_done) return ends;
   }
-  SweptSeeds swept(*lanes.sweep, Y, parts.work, parts.clock);
+  SweptSeeds swept(*lanes.sweep, Y, parts.work);
   const auto is_satisfied = [&] { return search(lanes.refiner, swept, parts.answers, parts.work); };
   if (is_satisfied()) return Explored::done();
   if (lanes.ends && !are_closed) {

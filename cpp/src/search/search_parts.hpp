@@ -31,14 +31,13 @@ struct Explored {
 
 template <typename Answers>
 struct SearchParts {
-  const ChainModel& model;
   const SolverOptions& options;
-  const Goal& goal;
-  const SolveRequest& request;
   Workspace& workspace;
   Answers& answers;
-  Work& work;
-  StageClock& clock;
+  const Goal& goal = answers.goal();
+  const ChainModel& model = goal.model();
+  const SolveRequest& request = answers.request();
+  Work& work = answers.work;
 
   [[nodiscard]] RowSeeds near_seed() const {
     return {request.near ? &*request.near : nullptr, work};
@@ -63,7 +62,7 @@ struct SearchParts {
     refiner.begin(goal.task(), kNearAnswer, width);
     const bool is_satisfied = search(refiner, seeds, answers, work);
     refiner.begin(goal.task(), kFirst, Width::narrow);
-    clock.lap(&StageTimes::iterate);
+    work.lap(&StageTimes::iterate);
     return is_satisfied;
   }
   /// The same of rows of joint values.
@@ -82,7 +81,7 @@ struct SearchParts {
       if (!move_inside_limits(model, goal, q)) continue;
       is_satisfied = answers.offer(0, q) == Verdict::stop;
     }
-    clock.lap(&StageTimes::iterate);
+    work.lap(&StageTimes::iterate);
     return is_satisfied;
   }
 };

@@ -17,16 +17,11 @@ template <typename Samples>
 class AllowedSeeds {
  public:
   AllowedSeeds(Samples& samples, const JointSpace& joints, const Goal& goal, Random& random,
-               Work& work, StageClock& clock)
-      : samples_(samples),
-        joints_(joints),
-        goal_(goal),
-        random_(random),
-        work_(work),
-        clock_(clock) {}
+               Work& work)
+      : samples_(samples), joints_(joints), goal_(goal), random_(random), work_(work) {}
 
   bool next_stage() {
-    clock_.lap(&StageTimes::iterate);
+    work_.lap(&StageTimes::iterate);
     if (!work_.has_left()) return false;
     at_random_ = stage_ % 4 == 3;
     rank_ = 0;
@@ -37,7 +32,7 @@ class AllowedSeeds {
       at_random_ = !samples_.find(goal_, pose, is_first);
     }
     ++stage_;
-    clock_.lap(&StageTimes::query);
+    work_.lap(&StageTimes::query);
     return true;
   }
 
@@ -59,7 +54,6 @@ class AllowedSeeds {
   const Goal& goal_;
   Random& random_;
   Work& work_;
-  StageClock& clock_;
   int stage_ = 0;
   bool at_random_ = false;
   int rank_ = 0;

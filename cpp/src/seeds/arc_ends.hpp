@@ -72,11 +72,10 @@ class ArcEnds {
 /// These as a source of seeds, a place a stage.
 class EndSeeds : public RowSeeds {
  public:
-  EndSeeds(ArcEnds& ends, const Pose& T_base_tcp, Work& work, StageClock& clock)
+  EndSeeds(ArcEnds& ends, const Pose& T_base_tcp, Work& work)
       : RowSeeds(work, &Work::take_on_top),
         ends_(ends),
         target_(T_base_tcp),
-        clock_(clock),
         certain_(ends.are_all()) {
     ends_.begin();
   }
@@ -87,7 +86,7 @@ class EndSeeds : public RowSeeds {
     if (!ends_.find(place_++, target_)) certain_ = false;
     give(q(0) + before * kCurveJoints, static_cast<std::size_t>(count()) - before, kCurveJoints,
          /*are_answers=*/false);
-    clock_.lap(&StageTimes::query);
+    work_.lap(&StageTimes::query);
     return true;
   }
 
@@ -104,7 +103,6 @@ class EndSeeds : public RowSeeds {
 
   ArcEnds& ends_;
   const Pose& target_;
-  StageClock& clock_;
   bool certain_;
   std::size_t place_ = 0;
 };

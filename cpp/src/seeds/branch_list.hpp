@@ -56,13 +56,8 @@ class BranchList {
 /// These as a source of seeds.
 class EnumeratedSeeds : public RowSeeds {
  public:
-  EnumeratedSeeds(BranchList& branches, const Pose& Y, bool wants_all, Work& work,
-                  StageClock& clock)
-      : RowSeeds(work, &Work::take),
-        branches_(branches),
-        Y_(Y),
-        wants_all_(wants_all),
-        clock_(clock) {}
+  EnumeratedSeeds(BranchList& branches, const Pose& Y, bool wants_all, Work& work)
+      : RowSeeds(work, &Work::take), branches_(branches), Y_(Y), wants_all_(wants_all) {}
 
   bool next_stage() {
     if (done_ || !work_.has_left()) return false;
@@ -70,7 +65,7 @@ class EnumeratedSeeds : public RowSeeds {
     branches_.find(Y_, wants_all_);
     give(branches_.q(0), static_cast<std::size_t>(branches_.size()), kPoseJoints,
          branches_.are_answers());
-    clock_.lap(&StageTimes::query);
+    work_.lap(&StageTimes::query);
     return true;
   }
 
@@ -91,7 +86,6 @@ class EnumeratedSeeds : public RowSeeds {
   BranchList& branches_;
   const Pose& Y_;
   bool wants_all_;
-  StageClock& clock_;
   bool done_ = false;
 };
 

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "base/constants.hpp"
 #include "simd/lane_chain.hpp"
 
 namespace iksel {
@@ -189,8 +189,8 @@ void ClosestScreen::find(const Goal& goal, const Vector6& weights, LaneQuery& qu
       add_target(goal.random_pose(random), goal, counts);
     }
   }
-  constexpr float kNone = std::numeric_limits<float>::infinity();
-  seeds_.assign(static_cast<std::size_t>(packs * lanes::kBlock), {kNone, 0, 0});
+  seeds_.assign(static_cast<std::size_t>(packs * lanes::kBlock),
+                {static_cast<float>(kInfinity), 0, 0});
   int iterations = kFirstIterations;
   for (const ScreenRound& round : kScreenRounds) {
     move(packs, iterations);

@@ -15,8 +15,8 @@ constexpr std::size_t kMostPeaks = 24;
 }  // namespace
 
 FreeSamples::FreeSamples(Sweep& sweep, const Scene& scene, const Pose& Y, Memory& memory,
-                         Work& work, StageClock& clock)
-    : sweep_(sweep), scene_(scene), to_(memory), work_(work), clock_(clock) {
+                         Work& work)
+    : sweep_(sweep), scene_(scene), to_(memory), work_(work) {
   look_.is_target_clear = true;
   to_.q.clear();
   to_.samples.clear();
@@ -30,7 +30,7 @@ bool FreeSamples::next_stage() {
   free_count_ = 0;
   next_ = 0;
   while (free_count_ == 0 && (at_ < rows() || add_rows())) screen_pack();
-  clock_.lap(&StageTimes::query);
+  work_.lap(&StageTimes::query);
   return free_count_ > 0;
 }
 

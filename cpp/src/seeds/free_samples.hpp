@@ -39,8 +39,7 @@ class FreeSamples {
   };
 
   /// All must outlive this. Nothing may touch that is where it is in all solutions.
-  FreeSamples(Sweep& sweep, const Scene& scene, const Pose& Y, Memory& memory, Work& work,
-              StageClock& clock);
+  FreeSamples(Sweep& sweep, const Scene& scene, const Pose& Y, Memory& memory, Work& work);
 
   /// The samples of the sweep, those far from each other first; where none is free, between the
   /// samples beside those that overlap least; towards where branches leave the limits; and where
@@ -83,7 +82,6 @@ class FreeSamples {
   SceneLook look_;
   Memory& to_;
   Work& work_;
-  StageClock& clock_;
   std::size_t at_ = 0;      ///< row to be looked at next
   int part_ = 0;            ///< of the samples
   std::size_t place_ = 0;   ///< that is looked beside next

@@ -15,15 +15,14 @@ namespace iksel {
 class LeafSeeds {
  public:
   /// `most`: of the best of them.
-  LeafSeeds(LaneQuery& query, int most, Work& work, StageClock& clock)
-      : query_(query), most_(most), work_(work), clock_(clock) {}
+  LeafSeeds(LaneQuery& query, int most, Work& work) : query_(query), most_(most), work_(work) {}
 
   bool next_stage() {
-    clock_.lap(&StageTimes::iterate);
+    work_.lap(&StageTimes::iterate);
     if (done_) return false;
     done_ = true;
     query_.prepare_leaf();
-    clock_.lap(&StageTimes::rank);
+    work_.lap(&StageTimes::rank);
     return true;
   }
 
@@ -38,7 +37,6 @@ class LeafSeeds {
   LaneQuery& query_;
   int most_;
   Work& work_;
-  StageClock& clock_;
   bool done_ = false;
   int rank_ = 0;
 };

@@ -41,25 +41,23 @@ void SeedScreen::copy(int place, double* q) const {
 }
 
 ScreenedSeeds::ScreenedSeeds(LaneQuery& query, SeedScreen& screen, const Pose& Y,
-                             const JointSpace& joints, std::uint64_t seed, Work& work,
-                             StageClock& clock)
+                             const JointSpace& joints, std::uint64_t seed, Work& work)
     : RowSeeds(work, &Work::take_counted),
       query_(query),
       screen_(screen),
       joints_(joints),
-      random_(seed),
-      clock_(clock) {
+      random_(seed) {
   query_.begin_blocks();
   screen_.begin(Y);
 }
 
 bool ScreenedSeeds::next_stage() {
-  clock_.lap(&StageTimes::iterate);
+  work_.lap(&StageTimes::iterate);
   if (!work_.has_left()) return false;
   near_count_ = 0;
   for (int pack = 0; pack < kPacks && work_.has_left(); ++pack) screen_one_pack();
   give(near_[0], near_count_, lanes::kMaxJoints, /*are_answers=*/false);
-  clock_.lap(&StageTimes::rank);
+  work_.lap(&StageTimes::rank);
   return true;
 }
 

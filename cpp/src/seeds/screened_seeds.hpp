@@ -58,7 +58,7 @@ class ScreenedSeeds : public RowSeeds {
  public:
   /// Seeds of both kinds count as attempts when they are screened.
   ScreenedSeeds(LaneQuery& query, SeedScreen& screen, const Pose& Y, const JointSpace& joints,
-                std::uint64_t seed, Work& work, StageClock& clock);
+                std::uint64_t seed, Work& work);
 
   /// Screens some.
   bool next_stage();
@@ -75,7 +75,6 @@ class ScreenedSeeds : public RowSeeds {
   SeedScreen& screen_;
   const JointSpace& joints_;
   Random random_;
-  StageClock& clock_;
   const lanes::SeedPack* block_ = nullptr;
   std::size_t left_ = 0;  ///< blocks that the query has made seeds of
   int rank_ = 0;          ///< of the next seed in the block

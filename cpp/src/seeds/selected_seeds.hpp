@@ -9,31 +9,27 @@ namespace iksel {
 
 class SelectedSeeds : public RowSeeds {
  public:
-  SelectedSeeds(Selection& selection, const Pose& tip_target, Work& work, StageClock& clock)
-      : RowSeeds(work, &Work::take),
-        selection_(selection),
-        tip_target_(tip_target),
-        clock_(clock) {}
+  SelectedSeeds(Selection& selection, const Pose& tip_target, Work& work)
+      : RowSeeds(work, &Work::take), selection_(selection), tip_target_(tip_target) {}
 
   bool next_stage() {
-    clock_.lap(&StageTimes::iterate);
+    work_.lap(&StageTimes::iterate);
     if (!ranked_) {
       ranked_ = true;
       selection_.query(tip_target_);
-      clock_.lap(&StageTimes::query);
+      work_.lap(&StageTimes::query);
       selection_.rank();
-      clock_.lap(&StageTimes::rank);
+      work_.lap(&StageTimes::rank);
     }
     const double* seed = work_.has_left() ? selection_.next_seed() : nullptr;
     give(seed, seed != nullptr ? 1 : 0, 0, /*are_answers=*/false);
-    clock_.lap(&StageTimes::reselect);
+    work_.lap(&StageTimes::reselect);
     return seed != nullptr;
   }
 
  private:
   Selection& selection_;
   Pose tip_target_;
-  StageClock& clock_;
   bool ranked_ = false;
 };
 

@@ -119,8 +119,7 @@ class Sweep {
 /// between samples, and then what comes close to one.
 class SweptSeeds {
  public:
-  SweptSeeds(Sweep& sweep, const Pose& Y, Work& work, StageClock& clock)
-      : sweep_(sweep), Y_(Y), work_(work), clock_(clock) {}
+  SweptSeeds(Sweep& sweep, const Pose& Y, Work& work) : sweep_(sweep), Y_(Y), work_(work) {}
 
   bool next_stage() {
     if (!work_.has_left() || found_ || next_part_ == Part::none) return false;
@@ -128,7 +127,7 @@ class SweptSeeds {
     next_part_ = Part::none;
     if (part_ == Part::samples) found_ = sweep_.find_at_samples(Y_);
     if (part_ == Part::between) found_ = sweep_.find_between(where_);
-    clock_.lap(&StageTimes::query);
+    work_.lap(&StageTimes::query);
     return true;
   }
 
@@ -160,7 +159,6 @@ class SweptSeeds {
   Sweep& sweep_;
   const Pose& Y_;
   Work& work_;
-  StageClock& clock_;
   Part part_ = Part::none;
   Part next_part_ = Part::samples;
   Sweep::Between where_ = Sweep::Between::all;

@@ -3,7 +3,6 @@
 
 #include "search/explore.hpp"
 #include "seeds/allowed_seeds.hpp"
-#include "seeds/selected_seeds.hpp"
 
 namespace iksel {
 namespace {

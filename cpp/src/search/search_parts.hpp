@@ -12,7 +12,6 @@
 #include "search/patience.hpp"
 #include "search/search.hpp"
 #include "seeds/beyond_limits.hpp"
-#include "seeds/given_seeds.hpp"
 #include "seeds/row_seeds.hpp"
 #include "seeds/seed_sequence.hpp"
 

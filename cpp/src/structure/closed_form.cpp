@@ -18,8 +18,7 @@ namespace {
 using Eigen::Vector3d;
 using lanes::Closure;
 
-/// How far an axis that is locked may be off zero without being outside: what rounding leaves
-/// [rad].
+/// How far a locked axis may be off zero without being outside: what rounding leaves [rad].
 constexpr double kLocked = 1e-9;
 
 /// x . R(k, t) y.
@@ -271,10 +270,10 @@ std::optional<ClosedFormChain> find_closed_form(const ChainModel& model, const T
         look_at(model, completed, Sought::closure, kStructureTolerance, task.is_full_pose());
     if (chain) return chain;
   }
-  if (!task.is_full_pose() || (model.dof != kPoseJoints && model.dof != kCurveJoints))
-    return std::nullopt;
+  const bool is_six = model.dof == kPoseJoints;
+  if (!task.is_full_pose() || !(is_six || model.dof == kCurveJoints)) return std::nullopt;
   return look_at(model, {ScrewAxes::of(model)}, Sought::closure,
-                 model.dof == kPoseJoints ? kAlmostTolerance : kSweptTolerance);
+                 is_six ? kAlmostTolerance : kSweptTolerance);
 }
 
 std::optional<ClosedFormChain> find_residual(const ChainModel& model) {

@@ -31,7 +31,9 @@ class BatchStream {
         seeds_(seeds),
         targets_(targets),
         target_(target),
-        on_result_(on_result) {}
+        on_result_(on_result) {
+    left_.reserve(targets.size());
+  }
 
   /// Targets that are left to be solved otherwise.
   [[nodiscard]] const TargetList& left() const { return left_; }

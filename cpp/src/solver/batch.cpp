@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <numeric>
 #include <string>
+#include <utility>
 
 #include "base/message_text.hpp"
 #include "base/parallel.hpp"
@@ -93,9 +95,9 @@ class Batch {
   template <typename Tell>
   void solve_plain(std::size_t first, std::size_t last, Workspace& workspace,
                    const Tell& tell) const {
-    TargetList left;
-    for (std::size_t i = first; i < last; ++i) left.push_back(i);
-    if (workspace.lanes) left = solve_in_lanes(left, *workspace.lanes, tell);
+    TargetList left(last - first);
+    std::iota(left.begin(), left.end(), first);
+    if (workspace.lanes) left = solve_in_lanes(std::move(left), *workspace.lanes, tell);
     const SolveRequest none;
     for (const std::size_t i : left) {
       const Pose& target = target_(i);
@@ -106,10 +108,8 @@ class Batch {
 
   /// In closed form where there is one; of six joints nothing is left then but what is in doubt.
   template <typename Tell>
-  TargetList solve_in_lanes(const TargetList& targets, Workspace::InLanes& lanes,
-                            const Tell& tell) const {
+  TargetList solve_in_lanes(TargetList left, Workspace::InLanes& lanes, const Tell& tell) const {
     const TaskSpace& task = solver_.task;
-    TargetList left = targets;
     if (lanes.branch_lanes && task.is_full_pose()) {
       BranchLanes& branches = *lanes.branch_lanes;
       left = stream(left, lanes.query, branches, branches, tell);

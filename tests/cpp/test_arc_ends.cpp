@@ -41,13 +41,12 @@ class Ends {
   iksel::ArcEnds* operator->() { return &ends_; }
   /// How many there are, and whether these are certainly all.
   int count(const Pose& target, bool& is_certain) {
-    int count = 0;
+    ends_.begin();
     is_certain = true;
     for (std::size_t i = 0; i < ends_.size(); ++i) {
       is_certain = ends_.find(i, target) && is_certain;
-      count += ends_.count();
     }
-    return count;
+    return ends_.count();
   }
 
  private:
@@ -80,10 +79,11 @@ TEST(ArcEnds, ClosedCurvesCrossThePlaneOfTheElbow) {
     int crossings = 0;
     for (const std::size_t side : {0, 1}) {
       // Where it cannot be told, some are counted that are none.
+      ends->begin();
       const bool is_known = ends->find(ends->size() + side, target);
       crossings += ends->count();
       for (int k = 0; is_known && k < ends->count(); ++k) {
-        judge.expect_solution(target, Eigen::Map<const Eigen::VectorXd>(ends->keep(k), 7));
+        judge.expect_solution(target, Eigen::Map<const Eigen::VectorXd>(ends->q(k), 7));
       }
     }
     EXPECT_GT(crossings, 0) << "seed " << iksel_test::seed();

@@ -9,8 +9,10 @@ inline constexpr double kPi = 3.14159265358979323846;
 inline constexpr double kTwoPi = 2.0 * kPi;
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// Joints that a pose fixes.
+inline constexpr int kPoseJoints = 6;
 /// Joints of an arm whose solutions of a pose are a curve: one more than the pose fixes.
-inline constexpr int kCurveJoints = 7;
+inline constexpr int kCurveJoints = kPoseJoints + 1;
 /// Most images that the joints in limited sums may have together.
 inline constexpr int kMostImagesInSums = 64;
 

@@ -10,13 +10,13 @@
 namespace iksel {
 
 /// Seeds and iterations so far. Of seeds from the database and at random there are `max_attempts`
-/// at most; others come on top.
+/// at most; others come on top. Time is only taken if there is somebody to tell.
 class Work {
  public:
   explicit Work(int max_attempts) : left_(max_attempts) {}
 
   [[nodiscard]] bool has_left() const { return left_ > 0; }
-  /// Counts a seed; false if there may be no more.
+  // Each counts a seed; false if there may be no more.
   bool take() {
     if (left_ <= 0) return false;
     --left_;
@@ -25,17 +25,37 @@ class Work {
   }
   /// From now on, so many seeds at most.
   void leave(int most) { left_ = std::min(left_, most); }
-  void take_on_top() { ++attempts; }
+  bool take_on_top() {
+    ++attempts;
+    return true;
+  }
+  /// One that was counted before.
+  bool take_counted() { return true; }
   /// Counts a guess at a solution by another one, which is no seed.
   void take_guess() { ++guesses_; }
   [[nodiscard]] int all_attempts() const { return attempts + guesses_; }
+
+  /// From now on, the time between laps is added to the stages of a solve; `times` may be null.
+  void begin_laps(StageTimes* times) {
+    times_ = times;
+    if (times_ != nullptr) last_ = Clock::now();
+  }
+  void lap(double StageTimes::*stage) {
+    if (times_ == nullptr) return;
+    const auto now = Clock::now();
+    times_->*stage += std::chrono::duration<double, std::nano>(now - last_).count();
+    last_ = now;
+  }
 
   int attempts = 0;  ///< without guesses
   int iterations = 0;
 
  private:
+  using Clock = std::chrono::steady_clock;
   int left_;
   int guesses_ = 0;
+  StageTimes* times_ = nullptr;
+  Clock::time_point last_;
 };
 
 /// A wall-clock deadline; asks the clock only if there is one.
@@ -54,26 +74,6 @@ class Deadline {
   using Clock = std::chrono::steady_clock;
   bool set_;
   Clock::time_point end_;
-};
-
-/// Adds the time between laps to the stages of a solve; does nothing if there is nobody to tell.
-class StageClock {
- public:
-  explicit StageClock(StageTimes* times) : times_(times) {
-    if (times_ != nullptr) last_ = Clock::now();
-  }
-
-  void lap(double StageTimes::*stage) {
-    if (times_ == nullptr) return;
-    const auto now = Clock::now();
-    times_->*stage += std::chrono::duration<double, std::nano>(now - last_).count();
-    last_ = now;
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  StageTimes* times_;
-  Clock::time_point last_;
 };
 
 }  // namespace iksel

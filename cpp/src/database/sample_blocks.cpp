@@ -79,15 +79,14 @@ void write_to_block(const DatabaseData& data, std::size_t index, int entry, floa
 SampleBlocks::SampleBlocks(const DatabaseData& data)
     : block_size_(static_cast<std::size_t>(lanes::block_rows(data.dof) * lanes::kBlock)),
       size_((data.size + lanes::kBlock - 1) / lanes::kBlock) {
-  constexpr auto kBlock = static_cast<std::size_t>(lanes::kBlock);
   const auto dim = static_cast<std::size_t>(data.key_dim);
   blocks_.resize(size_ * block_size_);
   middles_.resize(dim * size_);
   for (std::size_t block = 0; block < size_; ++block) {
     // Neighbours in the tree's order are near each other.
-    const std::size_t first = block * kBlock;
-    const std::size_t count = std::min(kBlock, data.size - first);
-    for (std::size_t entry = 0; entry < kBlock; ++entry) {
+    const std::size_t first = block * lanes::kBlock;
+    const std::size_t count = std::min<std::size_t>(lanes::kBlock, data.size - first);
+    for (std::size_t entry = 0; entry < lanes::kBlock; ++entry) {
       write_to_block(data, first + entry % count, static_cast<int>(entry),
                      &blocks_[block * block_size_]);
     }

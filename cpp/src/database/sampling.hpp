@@ -23,7 +23,6 @@ struct SampleSpace {
   /// Draws a sample by draw(), again where a sum is outside its limits, though not without end.
   template <typename Draw>
   void draw_inside(const double* sample, const Draw& draw) const {
-    constexpr int kMostDraws = 1000;
     for (int i = 0; i < kMostDraws; ++i) {
       draw();
       if (contain(sums, sample)) return;

@@ -15,6 +15,9 @@
 
 namespace iksel {
 
+/// Squared error that counts as far off while a seed is iterated [mixed units].
+inline constexpr double kFarOff2 = 1e-4;
+
 /// A task as the iterations use it.
 class TaskSpace {
  public:

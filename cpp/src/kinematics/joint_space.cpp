@@ -169,9 +169,8 @@ JointVector JointSpace::longest_moves(double dt) const {
 }
 
 JointVector JointSpace::draw(Random& random) const {
-  constexpr int kDraws = 1000;
   JointVector q(dof());
-  for (int draw = 0; draw <= kDraws; ++draw) {
+  for (int draw = 0; draw <= kMostDraws; ++draw) {
     for (int j = 0; j < dof(); ++j) q[j] = random.uniform(sample_lower(j), sample_upper(j));
     if (sums.empty() || contains_sums(q.data())) return q;
   }

@@ -37,6 +37,9 @@ struct Limit {
 /// Whether all values lie inside.
 bool contain(const std::vector<Limit>& limits, const double* q);
 
+/// So often a configuration is drawn again whose sums are outside.
+inline constexpr int kMostDraws = 1000;
+
 /// The limits that a configuration stands at and is led beyond.
 struct ActiveLimits {
   JointVector free;  ///< of each joint 0 if its own is one of them, else 1

@@ -12,13 +12,11 @@
 namespace iksel {
 namespace {
 
-constexpr double kFree = kInfinity;
-
 std::size_t index(Axis axis) { return static_cast<std::size_t>(axis); }
 
 void set_free(std::array<double, 3>& lower, std::array<double, 3>& upper, std::size_t axis) {
-  lower[axis] = -kFree;
-  upper[axis] = kFree;
+  lower[axis] = -kInfinity;
+  upper[axis] = kInfinity;
 }
 
 [[noreturn]] void reject(const char* what, std::size_t axis, double lower, double upper,
@@ -70,7 +68,7 @@ Task Task::box(const std::array<double, 3>& position, const std::array<double, 3
   task.rotation_upper = rotation;
   for (std::size_t i = 0; i < 3; ++i) {
     // Half a turn either way is every angle there is.
-    if (rotation[i] >= kPi) task.rotation_upper[i] = kFree;
+    if (rotation[i] >= kPi) task.rotation_upper[i] = kInfinity;
     task.position_lower[i] = -task.position_upper[i];
     task.rotation_lower[i] = -task.rotation_upper[i];
   }
@@ -100,11 +98,11 @@ void Task::validate() const {
   }
   for (std::size_t i = 0; i < 3; ++i) {
     // Written so that NaN fails.
-    if (!(position_lower[i] <= position_upper[i]) || position_lower[i] == kFree ||
-        position_upper[i] == -kFree) {
+    if (!(position_lower[i] <= position_upper[i]) || position_lower[i] == kInfinity ||
+        position_upper[i] == -kInfinity) {
       reject("position", i, position_lower[i], position_upper[i], "an interval, lower to upper");
     }
-    const bool free = rotation_lower[i] == -kFree && rotation_upper[i] == kFree;
+    const bool free = rotation_lower[i] == -kInfinity && rotation_upper[i] == kInfinity;
     if (!free && !(rotation_lower[i] <= rotation_upper[i] && rotation_lower[i] >= -kPi &&
                    rotation_upper[i] <= kPi)) {
       reject("rotation", i, rotation_lower[i], rotation_upper[i],

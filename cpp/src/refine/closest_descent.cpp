@@ -136,8 +136,6 @@ bool leave_saddle(const RobotModel& model, const Remainder& remainder, const Slo
 double descend_to_closest(const RobotModel& model, const Remainder& remainder, int most,
                           JointVector& q, int& steps, double best) {
   constexpr double kSettled = 1e-9;
-  /// So many more steps that are worth as much as the last must be enough to come below `best`.
-  constexpr double kHopeful = 30;
   JointVector gradient(model.dof);
   JointVector diagonal(model.dof);
   SquareMatrix H;
@@ -160,7 +158,7 @@ double descend_to_closest(const RobotModel& model, const Remainder& remainder, i
       look();
     }
     ++steps;
-    if (taken > 0 && value - kHopeful * (before - value) > best) return value;
+    if (taken > 0 && value - kHopefulSteps * (before - value) > best) return value;
   }
   return value;
 }

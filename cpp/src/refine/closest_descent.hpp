@@ -7,6 +7,9 @@
 
 namespace iksel {
 
+/// So many more steps that gain as much as the last must be enough to come below the best so far.
+inline constexpr double kHopefulSteps = 30;
+
 /// Moves q, inside the limits, to a local minimum in at most `most` steps, by Newton's method with
 /// the limits as an active set (Bertsekas: "Projected Newton methods", SIAM J. Control and
 /// Optimization 20, 1982) and damped as Levenberg-Marquardt. Given up where it will most likely not

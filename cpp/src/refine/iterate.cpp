@@ -109,8 +109,6 @@ JointVector adjust(const IterationContext& context, const JointVector& q, const 
 }  // namespace
 
 Outcome iterate(const IterationContext& context, JointVector& q, int& steps) {
-  /// Squared error that counts as far off [mixed units].
-  constexpr double kFarOff2 = 1e-4;
   const ChainModel& model = context.model;
   const Paper& scheme = context.scheme;
   const TaskSpace& task = context.goal.task();

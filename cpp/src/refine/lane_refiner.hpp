@@ -114,8 +114,6 @@ class LaneRefiner {
   void make_rows(const Pose& T_base_tcp, const Write& write) const;
   void make_task(const TaskSpace& task);
 
-  /// Squared error that counts as far off [mixed units].
-  static constexpr double kFarOff2 = 1e-4;
   static constexpr int kNever = 1 << 30;
 
   const lanes::LaneKernels& kernels_;

@@ -21,6 +21,7 @@ class SchemeRefiner {
   void load_seed(int /*lane*/, const double* q) {
     q_ = Eigen::Map<const Eigen::VectorXd>(q, model_.dof);
   }
+  void load_answer(int lane, const double* q) { load_seed(lane, q); }
 
   /// An attempt from beginning to end. Returns the steps.
   int advance(unsigned busy);

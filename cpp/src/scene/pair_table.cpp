@@ -7,10 +7,9 @@
 namespace iksel {
 
 void PairTable::add(const lanes::ScenePair& pair) {
-  constexpr int kWidth = lanes::kWidth;
   const auto block_of = [&](int one, int other) {
     return std::find_if(blocks_.begin(), blocks_.end(), [&](const lanes::ScenePairBlock& block) {
-      return block.one == one && block.first == other / kWidth * kWidth;
+      return block.one == one && block.first == other / lanes::kWidth * lanes::kWidth;
     });
   };
   // Either link can be the one that others are held against: few blocks are few to look at.
@@ -22,7 +21,7 @@ void PairTable::add(const lanes::ScenePair& pair) {
     block = block_of(one, other);
   }
   if (block == blocks_.end()) {
-    blocks_.push_back({one, other / kWidth * kWidth, 0, {}});
+    blocks_.push_back({one, other / lanes::kWidth * lanes::kWidth, 0, {}});
     block = blocks_.end() - 1;
   }
   const int lane = other - block->first;

@@ -4,13 +4,16 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "goal/goal.hpp"
 #include "search/search.hpp"
-#include "search/target_list.hpp"
 #include "seeds/lane_query.hpp"
 
 namespace iksel {
+
+/// Numbers of the targets of a part of a batch: those that a stage is to solve, or has left.
+using TargetList = std::vector<std::size_t>;
 
 /// `Seeds` are LeafLanes, or BranchLanes, which refine by themselves; `target(i)` gives T_base_tcp
 /// of target i; `on_result(i, result)` is told of each that was solved, or is proven to have no
@@ -28,7 +31,9 @@ class BatchStream {
         seeds_(seeds),
         targets_(targets),
         target_(target),
-        on_result_(on_result) {}
+        on_result_(on_result) {
+    left_.reserve(targets.size());
+  }
 
   /// Targets that are left to be solved otherwise.
   [[nodiscard]] const TargetList& left() const { return left_; }
@@ -52,7 +57,7 @@ class BatchStream {
       in.iterations = 0;
       const Goal goal(model_, task_, in.target);
       if (goal.is_out_of_reach()) {
-        left_.add(in.index);
+        left_.push_back(in.index);
         continue;
       }
       in.is_open = true;
@@ -99,7 +104,7 @@ class BatchStream {
     Result none;
     none.proof = seeds_.proof(lane);
     if (none.proof == Proof::none) {
-      left_.add(in.index);
+      left_.push_back(in.index);
     } else {
       on_result_(in.index, none);
     }

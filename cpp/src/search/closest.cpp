@@ -18,8 +18,6 @@ namespace {
 /// best; where there is no screen, at random.
 constexpr int kScreenedDescents = 4;
 constexpr float kHopeful = 1.5F;
-/// So many times what a seed gained last must be enough for it to come below the best.
-constexpr float kFurther = 30;
 /// Where less is left, the arm almost reaches the target: more are followed, of single precision's
 /// rounding as many as it leaves open, and what the sweep of a joint found nearest [rad^2].
 constexpr float kAlmost = 3e-4F;
@@ -106,7 +104,8 @@ void descend_from_screen(const RobotModel& model, const Goal& goal, const Vector
   int count = 0;
   for (int i = 0; i < ClosestScreen::size() && count < most; ++i) {
     if (screen.remainder(i) > kHopeful * screen.remainder(0) + kRounding) break;
-    const float expected = screen.remainder(i) - kFurther * screen.gained(i);
+    const float expected =
+        screen.remainder(i) - static_cast<float>(kHopefulSteps) * screen.gained(i);
     if (minima.only_best_counts() && expected > screen.remainder(0) + kRounding) continue;
     const JointVector seed = screen.q(i);
     const bool is_known = std::any_of(tried, tried + count, [&](const JointVector& other) {

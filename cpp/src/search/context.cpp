@@ -116,7 +116,7 @@ WorkspacePool::WorkspacePool(const Robot& robot, const Robot& nominal, const Dat
       solves_in_lanes_(iksel::solves_in_lanes(robot.model(), database.data(), options)),
       damaged_(database.data().storage.damaged) {
   if (solves_in_lanes_ && &robot.model() == &nominal.model()) {
-    inner_chains_ = InnerChain::of(robot.model());
+    held_arms_ = Held::arms_of(robot.model());
   }
   const auto& chain = closed_forms_.pose;
   if (solves_in_lanes_ && has_arcs()) locked_arms_ = LockedArms::of(robot.model());
@@ -150,8 +150,8 @@ std::unique_ptr<Workspace> WorkspacePool::make() const {
   auto workspace =
       std::make_unique<Workspace>(robot_.model(), nominal_.model(), database_->data(), options_,
                                   closed_forms_, trials_ ? &*trials_ : nullptr, kernels_);
-  for (const InnerChain& inner : inner_chains_) {
-    workspace->lanes->inner_arms.emplace_back(robot_.model(), inner, kernels_);
+  for (const Held::Arm& arm : held_arms_) {
+    workspace->lanes->held.emplace_back(robot_.model(), arm, kernels_);
   }
   if (!locked_arms_.arms.empty()) {
     workspace->lanes->ends.emplace(robot_.model(), locked_arms_, options_.position_tolerance,

@@ -23,7 +23,7 @@
 #include "seeds/curve.hpp"
 #include "seeds/enumeration.hpp"
 #include "seeds/free_samples.hpp"
-#include "seeds/inner_arm.hpp"
+#include "seeds/held.hpp"
 #include "seeds/lane_query.hpp"
 #include "seeds/nearest_on_curve.hpp"
 #include "seeds/root_sweep.hpp"
@@ -98,7 +98,7 @@ struct Workspace {
     std::optional<Curve> curve;
     std::optional<ArcEnds> ends;
     /// Of longer chains.
-    std::vector<InnerArm> inner_arms;
+    std::vector<Held> held;
     /// Configurations of a self-motion that a scene is to look at.
     FreeSamples::Memory samples;
   };
@@ -161,7 +161,7 @@ class WorkspacePool {
   const Database* database_;  ///< null: of several tips
   const SolverOptions& options_;
   ClosedForms closed_forms_;
-  std::vector<InnerChain> inner_chains_;
+  std::vector<Held::Arm> held_arms_;
   LockedArms locked_arms_;
   bool solves_in_lanes_ = false;
   std::optional<BranchTrials> trials_;

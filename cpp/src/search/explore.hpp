@@ -13,10 +13,45 @@ namespace iksel {
 using FirstSearch = SearchParts<FirstAnswer>;
 using AllSearch = SearchParts<Collector>;
 
+/// Seeds after all branches, or all roots of a sweep, led nowhere: double ones, or just outside a
+/// limit, or beside a singularity (python -m bench lost --targets 0 --hard 1000000).
+inline constexpr int kBesideBranches = 48;
+inline constexpr int kBesideRoots = 96;
+
 /// Near, given seeds and all branches. `kind`: the proof that branches give.
-template <typename Parts, typename Branches>
-Explored explore_branches(const Parts& parts, Branches& branches, Proof kind, NearSeed& near,
-                          GivenSeeds& given, const Pose& Y);
+template <typename Parts>
+Explored explore_branches(const Parts& parts, BranchList& branches, Proof kind, RowSeeds& near,
+                          GivenSeeds& given, const Pose& Y) {
+  auto& answers = parts.answers;
+  EnumeratedSeeds enumerated(branches, Y, answers.wants_more(), parts.work);
+  SeedSequence seeds(3, near, given, enumerated);
+  answers.look_for_partners(false);
+  if (parts.refine(seeds, Width::narrow)) return Explored::done();
+  if (branches.may_be_singular()) answers.converge_from_near();
+  // Branches of which none could be refined to the tolerances prove nothing.
+  bool is_through = false;
+  if (enumerated.is_certain()) {
+    is_through = enumerated.is_empty() || (answers.has_any() && !branches.has_families());
+  } else {
+    const bool is_satisfied_inside =
+        !answers.has_any() &&
+        parts.move_inside(branches.size(), [&](int i) { return branches.q(i); });
+    if (is_satisfied_inside) return Explored::done();
+    is_through = enumerated.is_certain_but_for_limits() && !branches.has_families();
+  }
+  if (parts.request.prove && !answers.has_any() && parts.workspace.lanes->proves_none(Y)) {
+    return Explored::done(Proof::intervals);
+  }
+  if (is_through) return Explored::done(enumerated.is_certain() ? kind : Proof::none);
+  if (kind == Proof::sweep) {
+    parts.work.leave(kBesideRoots);
+  } else if (enumerated.has_all() && !answers.wants_more()) {
+    parts.work.leave(kBesideBranches);
+  }
+  answers.look_for_partners(true);
+  if (enumerated.has_all()) answers.set_all_branches_tried();
+  return Explored::doubtful();
+}
 
 // On the self-motion of seven joints of which one can be swept.
 
@@ -28,14 +63,21 @@ Explored explore_free_curve(const FirstSearch& parts, const Pose& Y);
 Explored explore_curve(const AllSearch& parts, const Pose& Y);
 /// By the ends of its arcs alone.
 template <typename Parts>
-Explored explore_ends(const Parts& parts);
+Explored explore_ends(const Parts& parts) {
+  EndSeeds ends(*parts.workspace.lanes->ends, parts.goal.target(), parts.work);
+  if (parts.refine(ends, Width::narrow) || parts.answers.has_any()) return Explored::done();
+  const bool is_satisfied = parts.move_inside(ends.count(), [&](int i) { return ends.q(i); });
+  if (is_satisfied || parts.answers.has_any()) return Explored::done();
+  if (ends.is_none()) return Explored::done(Proof::closed_form);
+  return ends.is_certain() ? Explored::done(Proof::sweep) : Explored::doubtful();
+}
 
 /// Of longer chains, while all that is preferred stays where it is.
 Explored explore_held(const AllSearch& parts);
 
 /// For a full pose: the families that the arm has, and then the database. The proof that there are
 /// no answers but those found.
-Proof search_pose(const FirstSearch& parts, NearSeed& near, GivenSeeds& given, const Pose& Y);
-Proof search_pose(const AllSearch& parts, NearSeed& near, GivenSeeds& given, const Pose& Y);
+Proof search_pose(const FirstSearch& parts, RowSeeds& near, GivenSeeds& given, const Pose& Y);
+Proof search_pose(const AllSearch& parts, RowSeeds& near, GivenSeeds& given, const Pose& Y);
 
 }  // namespace iksel

@@ -10,7 +10,7 @@ namespace {
 /// By what was sampled of it, answers or all but.
 void refine_samples(const AllSearch& parts, bool are_answers) {
   const std::vector<double>& q = parts.workspace.lanes->samples.q;
-  parts.refine_rows(q.data(), q.size() / SweptBranches::kDof, are_answers, Width::wide);
+  parts.refine_rows(q.data(), q.size() / kCurveJoints, are_answers, Width::wide);
 }
 
 /// Solutions all over it.
@@ -23,9 +23,9 @@ Explored explore_spread(const AllSearch& parts, const Pose& Y) {
   const auto wanted = static_cast<std::size_t>(answers.spread());
   const double least = 1.01 * answers.min_distance();
   lanes.sweep->find_spread(Y, wanted, least, q);
-  parts.clock.lap(&StageTimes::query);
+  parts.work.lap(&StageTimes::query);
   std::vector<double> few;
-  if (q.size() < wanted * SweptBranches::kDof) {
+  if (q.size() < wanted * kCurveJoints) {
     few.swap(q);
   } else {
     refine_samples(parts, /*are_answers=*/true);
@@ -34,7 +34,7 @@ Explored explore_spread(const AllSearch& parts, const Pose& Y) {
   lanes.find_arcs(parts.goal.target(), Y, kStraight);
   // Where branches meet, some are the same.
   lanes.curve->spread(wanted + wanted / 4 + 8, least, q);
-  parts.clock.lap(&StageTimes::query);
+  parts.work.lap(&StageTimes::query);
   refine_samples(parts, /*are_answers=*/false);
   if (!few.empty() && answers.count() < wanted) {
     q.swap(few);
@@ -53,12 +53,12 @@ Explored find_any_or_none(const AllSearch& parts, const Pose& Y) {
   if (!is_found) {
     const Proof none = lanes.prove_none(parts.goal.target(), Y);
     if (none != Proof::none) {
-      parts.clock.lap(&StageTimes::query);
+      parts.work.lap(&StageTimes::query);
       return Explored::done(none);
     }
     is_found = sweep.find_between(Sweep::Between::all);
   }
-  parts.clock.lap(&StageTimes::query);
+  parts.work.lap(&StageTimes::query);
   if (!is_found) return sweep.is_none() ? Explored::done(Proof::sweep) : Explored::doubtful();
   parts.refine_rows(sweep.q(), 1, /*are_answers=*/true, Width::narrow);
   return Explored::doubtful();
@@ -73,7 +73,7 @@ Explored explore_nearest(const AllSearch& parts, const Pose& Y) {
   NearestOnCurve& curve = *lanes.nearest_on_curve;
   const auto& [near, move] = answers.nearest_to();
   const bool stays = curve.prefers_staying(move);
-  NearSeed first(stays ? nullptr : &near, parts.work);
+  RowSeeds first(stays ? nullptr : &near, parts.work);
   search(lanes.refiner, first, answers, parts.work);
   // Any answer bounds the others as well, and where there is none, what looks for any is sooner
   // through.
@@ -83,7 +83,7 @@ Explored explore_nearest(const AllSearch& parts, const Pose& Y) {
   if (!stays) {
     if (const Explored none = find_any(); none.is_done) return none;
   }
-  NearestOnCurveSeeds nearest(curve, Y, near, move, answers, parts.work, parts.clock);
+  NearestOnCurveSeeds nearest(curve, Y, near, move, answers, parts.work);
   parts.refine(nearest, Width::narrow);
   answers.settle(curve.is_settled() && nearest.has_led_to_answer());
   if (stays) {
@@ -103,7 +103,7 @@ Explored explore_nearest_free(const AllSearch& parts, const Pose& Y) {
   const auto& [near, move] = parts.answers.nearest_to();
   const bool has_any =
       find_nearest_free(arcs, *parts.request.scene, parts.model.joints, near, move, kMost, q);
-  parts.clock.lap(&StageTimes::query);
+  parts.work.lap(&StageTimes::query);
   if (!has_any) return Explored::doubtful();
   refine_samples(parts, /*are_answers=*/false);
   if (!q.empty()) return Explored::done();

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "search/run.hpp"
 
-#include "search/explore_branches.hpp"
+#include "search/explore.hpp"
 #include "seeds/allowed_seeds.hpp"
-#include "seeds/selected_seeds.hpp"
 
 namespace iksel {
 namespace {
@@ -13,20 +12,19 @@ template <typename Parts>
 bool search_by_scheme(const Parts& parts) {
   auto& [refiner, selection, task_samples] = *parts.workspace.one_at_a_time;
   const auto should_continue = [&] { return parts.answers.should_continue(); };
-  NearSeed near = parts.near_seed();
+  RowSeeds near = parts.near_seed();
   GivenSeeds given = parts.given_seeds(1, should_continue);
   Random random(parts.options.seed);
   refiner.begin(parts.goal, random);
   if (parts.goal.is_full_pose()) {
-    SelectedSeeds selected(selection, parts.goal.tip_target(), parts.work, parts.clock);
+    SelectedSeeds selected(selection, parts.goal.tip_target(), parts.work);
     parts.run(refiner, near, given, selected);
   } else {
     task_samples.begin(parts.answers.wants_more() ? TaskSamples::kMany : TaskSamples::kFew);
-    AllowedSeeds allowed(task_samples, parts.model.joints, parts.goal, random, parts.work,
-                         parts.clock);
+    AllowedSeeds allowed(task_samples, parts.model.joints, parts.goal, random, parts.work);
     parts.run(refiner, near, given, allowed);
   }
-  parts.clock.lap(&StageTimes::iterate);
+  parts.work.lap(&StageTimes::iterate);
   return refiner.has_left_limits();
 }
 
@@ -38,7 +36,7 @@ Proof search_in_lanes(const Parts& parts) {
   const Goal& goal = parts.goal;
   Workspace::InLanes& lanes = *parts.workspace.lanes;
   const auto should_continue = [&] { return parts.answers.should_continue(); };
-  NearSeed near = parts.near_seed();
+  RowSeeds near = parts.near_seed();
   GivenSeeds given = parts.given_seeds(lanes::kBlock, should_continue);
   lanes.refiner.begin(goal.task(), kFirst, Width::narrow);
   const Pose Y = lanes.query.reduce(goal.target());
@@ -49,20 +47,20 @@ Proof search_in_lanes(const Parts& parts) {
   }
   Enumeration* branches = lanes.branches_of(goal.task());
   if (branches != nullptr && parts.request.database_seeds) {
-    NearSeed none(nullptr, parts.work);
+    RowSeeds none(nullptr, parts.work);
     const auto explored = explore_branches(parts, *branches, Proof::closed_form, none, given, Y);
     if (explored.is_done) return explored.proof;
   }
   if (goal.is_full_pose()) {
     lanes.query.set_target(Y);
-    parts.clock.lap(&StageTimes::query);
+    parts.work.lap(&StageTimes::query);
     return search_pose(parts, near, given, Y);
   }
-  parts.clock.lap(&StageTimes::query);
+  parts.work.lap(&StageTimes::query);
   Random random(parts.options.seed);
-  AllowedSeeds allowed(lanes.query, parts.model.joints, goal, random, parts.work, parts.clock);
+  AllowedSeeds allowed(lanes.query, parts.model.joints, goal, random, parts.work);
   parts.run(lanes.refiner, near, given, allowed);
-  parts.clock.lap(&StageTimes::iterate);
+  parts.work.lap(&StageTimes::iterate);
   return Proof::none;
 }
 
@@ -74,10 +72,8 @@ Proof search_for(const SolverOptions& options, Answers& answers, Workspace& work
     answers.put_out_of_reach();
     return Proof::reach;
   }
-  StageClock clock(times);
-  const Goal& goal = answers.goal();
-  const SearchParts<Answers> parts{goal.model(), options, goal,         answers.request(),
-                                   workspace,    answers, answers.work, clock};
+  answers.work.begin_laps(times);
+  const SearchParts<Answers> parts{options, workspace, answers};
   if (workspace.lanes) return search_in_lanes(parts);
   if (search_by_scheme(parts)) answers.leave_limits();
   return Proof::none;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // All answers to a full pose that are wanted, in lanes.
-#include "search/explore_branches.hpp"
-#include "seeds/nearby_seeds.hpp"
+#include "search/explore.hpp"
 #include "seeds/spread_seeds.hpp"
 
 namespace iksel {
@@ -15,19 +14,18 @@ bool search_widely(const AllSearch& parts) {
   lanes.refiner.begin(parts.goal.task(), kAll, Width::wide);
   if (parts.model.dof > kCurveJoints && answers.ranks_by_move() &&
       !parts.request.objective.is_set()) {
-    NearbySeeds nearby(parts.model.joints, answers.nearest_to().from, parts.options.seed,
-                       parts.work);
+    NearbySeeds nearby(answers.nearest_to().from, parts.options.seed, parts.work);
     if (search(lanes.refiner, nearby, answers, parts.work)) return true;
   }
   SpreadSeeds spread(lanes.query, parts.model.joints, parts.options.seed, answers, parts.work);
   const bool is_satisfied = search(lanes.refiner, spread, answers, parts.work);
-  parts.clock.lap(&StageTimes::iterate);
+  parts.work.lap(&StageTimes::iterate);
   return is_satisfied;
 }
 
 }  // namespace
 
-Proof search_pose(const AllSearch& parts, NearSeed& near, GivenSeeds& given, const Pose& Y) {
+Proof search_pose(const AllSearch& parts, RowSeeds& near, GivenSeeds& given, const Pose& Y) {
   Workspace::InLanes& lanes = *parts.workspace.lanes;
   Collector& answers = parts.answers;
   if (!parts.request.database_seeds) {
@@ -61,12 +59,12 @@ Proof search_pose(const AllSearch& parts, NearSeed& near, GivenSeeds& given, con
 }
 
 Explored explore_held(const AllSearch& parts) {
-  for (InnerArm& inner : parts.workspace.lanes->inner_arms) {
-    if (!inner.can_hold(parts.answers.nearest_to())) continue;
-    const bool found = inner.find(parts.goal.target(), parts.answers.nearest_to());
-    parts.clock.lap(&StageTimes::query);
+  for (Held& held : parts.workspace.lanes->held) {
+    if (!held.can_hold(parts.answers.nearest_to())) continue;
+    const bool found = held.find(parts.goal.target(), parts.answers.nearest_to());
+    parts.work.lap(&StageTimes::query);
     if (!found) continue;
-    parts.refine_rows(inner.q().data(), 1, /*are_answers=*/true, Width::narrow);
+    parts.refine_rows(held.q().data(), 1, /*are_answers=*/true, Width::narrow);
     if (!parts.answers.has_any()) continue;
     parts.answers.settle(true);
     return Explored::done();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A first answer to a full pose, in lanes.
-#include "search/explore_branches.hpp"
+#include "search/explore.hpp"
 #include "seeds/leaf_seeds.hpp"
 
 namespace iksel {
@@ -19,7 +19,7 @@ constexpr int kBesideSweep = 192;
 constexpr int kBesideEnds = 16;
 
 /// The nearest leaf of the database. Returns whether the answers want no more.
-bool search_leaf(const FirstSearch& parts, bool is_screened, NearSeed& near, GivenSeeds& given) {
+bool search_leaf(const FirstSearch& parts, bool is_screened, RowSeeds& near, GivenSeeds& given) {
   Workspace::InLanes& lanes = *parts.workspace.lanes;
   const bool is_quick = parts.answers.effort() == Effort::quick;
   const bool are_known = is_quick || lanes.roots || lanes.has_closed_ends();
@@ -28,13 +28,13 @@ bool search_leaf(const FirstSearch& parts, bool is_screened, NearSeed& near, Giv
     lanes.refiner.begin(parts.goal.task(), lanes.sweep ? kBeforeSweep : kBeforeBranches,
                         Width::narrow);
   }
-  LeafSeeds leaf(lanes.query, from_leaf, parts.work, parts.clock);
+  LeafSeeds leaf(lanes.query, from_leaf, parts.work);
   return parts.run(lanes.refiner, near, given, leaf);
 }
 
 }  // namespace
 
-Proof search_pose(const FirstSearch& parts, NearSeed& near, GivenSeeds& given, const Pose& Y) {
+Proof search_pose(const FirstSearch& parts, RowSeeds& near, GivenSeeds& given, const Pose& Y) {
   Workspace::InLanes& lanes = *parts.workspace.lanes;
   const bool is_screened = parts.goal.scene() != nullptr && lanes.sweep;
   if (search_leaf(parts, is_screened, near, given)) return Proof::none;
@@ -52,9 +52,9 @@ Proof search_pose(const FirstSearch& parts, NearSeed& near, GivenSeeds& given, c
   }
   lanes.refiner.begin(parts.goal.task(), kScreened, Width::wide);
   ScreenedSeeds screened(lanes.query, lanes.screen, Y, parts.model.joints, parts.options.seed,
-                         parts.work, parts.clock);
+                         parts.work);
   search(lanes.refiner, screened, parts.answers, parts.work);
-  parts.clock.lap(&StageTimes::iterate);
+  parts.work.lap(&StageTimes::iterate);
   return Proof::none;
 }
 
@@ -65,7 +65,7 @@ Explored explore_free_curve(const FirstSearch& parts, const Pose& Y) {
     parts.answers.refuse();
     return Explored::done(Proof::target);
   }
-  FreeSamples samples(*lanes.sweep, *parts.goal.scene(), Y, lanes.samples, parts.work, parts.clock);
+  FreeSamples samples(*lanes.sweep, *parts.goal.scene(), Y, lanes.samples, parts.work);
   if (parts.refine(samples, Width::narrow)) return Explored::done();
   if (!samples.has_any()) return Explored::doubtful();
   parts.answers.refuse();
@@ -78,11 +78,11 @@ Explored explore_curve(const FirstSearch& parts, const Pose& Y) {
   if (are_closed) {
     if (const Explored ends = explore_ends(parts); ends.is_done) return ends;
   }
-  SweptSeeds swept(*lanes.sweep, Y, parts.work, parts.clock);
+  SweptSeeds swept(*lanes.sweep, Y, parts.work);
   const auto is_satisfied = [&] { return search(lanes.refiner, swept, parts.answers, parts.work); };
   if (is_satisfied()) return Explored::done();
   if (lanes.proves_none(Y)) {
-    parts.clock.lap(&StageTimes::query);
+    parts.work.lap(&StageTimes::query);
     return Explored::done(Proof::intervals);
   }
   if (lanes.ends && !are_closed) {

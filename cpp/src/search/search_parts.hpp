@@ -12,7 +12,6 @@
 #include "search/patience.hpp"
 #include "search/search.hpp"
 #include "seeds/beyond_limits.hpp"
-#include "seeds/given_seeds.hpp"
 #include "seeds/row_seeds.hpp"
 #include "seeds/seed_sequence.hpp"
 
@@ -31,16 +30,15 @@ struct Explored {
 
 template <typename Answers>
 struct SearchParts {
-  const ChainModel& model;
   const SolverOptions& options;
-  const Goal& goal;
-  const SolveRequest& request;
   Workspace& workspace;
   Answers& answers;
-  Work& work;
-  StageClock& clock;
+  const Goal& goal = answers.goal();
+  const ChainModel& model = goal.model();
+  const SolveRequest& request = answers.request();
+  Work& work = answers.work;
 
-  [[nodiscard]] NearSeed near_seed() const {
+  [[nodiscard]] RowSeeds near_seed() const {
     return {request.near ? &*request.near : nullptr, work};
   }
   [[nodiscard]] GivenSeeds given_seeds(int per_stage, FunctionRef<bool()> should_continue) const {
@@ -52,7 +50,7 @@ struct SearchParts {
 
   /// From what the request gives, and then from other sources, if they are asked for.
   template <typename Refiner, typename... Others>
-  bool run(Refiner& refiner, NearSeed& near, GivenSeeds& given, Others&... others) const {
+  bool run(Refiner& refiner, RowSeeds& near, GivenSeeds& given, Others&... others) const {
     SeedSequence seeds(request.database_seeds ? 2 + sizeof...(others) : 2, near, given, others...);
     return search(refiner, seeds, answers, work);
   }
@@ -63,7 +61,7 @@ struct SearchParts {
     refiner.begin(goal.task(), kNearAnswer, width);
     const bool is_satisfied = search(refiner, seeds, answers, work);
     refiner.begin(goal.task(), kFirst, Width::narrow);
-    clock.lap(&StageTimes::iterate);
+    work.lap(&StageTimes::iterate);
     return is_satisfied;
   }
   /// The same of rows of joint values.
@@ -82,7 +80,7 @@ struct SearchParts {
       if (!move_inside_limits(model, goal, q)) continue;
       is_satisfied = answers.offer(0, q) == Verdict::stop;
     }
-    clock.lap(&StageTimes::iterate);
+    work.lap(&StageTimes::iterate);
     return is_satisfied;
   }
 };

@@ -11,33 +11,28 @@
 namespace iksel {
 
 /// `Samples` (lane_query.hpp, task_samples.hpp) has kPerPose, how many seeds a pose is good for;
-/// find_first(goal), for the nearest pose; find_next(goal, pose), for others; both are false where
-/// all near to it were tried; and load_found(rank, refiner, lane).
+/// find(goal, pose, is_first), false where all near to it were tried; and load(rank, refiner,
+/// lane).
 template <typename Samples>
 class AllowedSeeds {
  public:
   AllowedSeeds(Samples& samples, const JointSpace& joints, const Goal& goal, Random& random,
-               Work& work, StageClock& clock)
-      : samples_(samples),
-        joints_(joints),
-        goal_(goal),
-        random_(random),
-        work_(work),
-        clock_(clock) {}
+               Work& work)
+      : samples_(samples), joints_(joints), goal_(goal), random_(random), work_(work) {}
 
   bool next_stage() {
-    clock_.lap(&StageTimes::iterate);
+    work_.lap(&StageTimes::iterate);
     if (!work_.has_left()) return false;
     at_random_ = stage_ % 4 == 3;
     rank_ = 0;
-    if (stage_ == 0) {
-      at_random_ = !samples_.find_first(goal_);
-    } else if (!at_random_) {
+    if (!at_random_) {
+      const bool is_first = stage_ == 0;
       // Some poses have the same samples: a spin about the last joint is not in a reduced key.
-      at_random_ = !samples_.find_next(goal_, goal_.random_pose(random_));
+      const Pose pose = is_first ? goal_.nearest_pose() : goal_.random_pose(random_);
+      at_random_ = !samples_.find(goal_, pose, is_first);
     }
     ++stage_;
-    clock_.lap(&StageTimes::query);
+    work_.lap(&StageTimes::query);
     return true;
   }
 
@@ -48,7 +43,7 @@ class AllowedSeeds {
     if (at_random_) {
       load_random(joints_, random_, refiner, lane);
     } else {
-      samples_.load_found(rank, refiner, lane);
+      samples_.load(rank, refiner, lane);
     }
     return true;
   }
@@ -59,7 +54,6 @@ class AllowedSeeds {
   const Goal& goal_;
   Random& random_;
   Work& work_;
-  StageClock& clock_;
   int stage_ = 0;
   bool at_random_ = false;
   int rank_ = 0;

@@ -29,9 +29,9 @@ ArcEnds::ArcEnds(const ChainModel& whole, const LockedArms& arms, double positio
     return end;
   };
   ends_.reserve(arms.arms.size());
-  // Memory is taken here, and none while solving; the last of more gives way.
-  constexpr std::size_t kKept = 128;
-  kept_.reserve(kKept);
+  // Memory is taken here, and as a rule none while solving.
+  constexpr std::size_t kRoom = 128;
+  found_.reserve(kRoom * kCurveJoints);
   for (const LockedArm& arm : arms.arms) ends_.push_back(make_end(arm));
   if (arms.crossing) {
     const Pose base = to_pose(whole.kernel.base);
@@ -42,8 +42,7 @@ ArcEnds::ArcEnds(const ChainModel& whole, const LockedArms& arms, double positio
 
 bool ArcEnds::find(std::size_t i, const Pose& T_base_tcp) {
   if (i >= size()) return find_crossings(i - size(), T_base_tcp);
-  locked_ = ends_[i].arm->value;
-  return solve(ends_[i], T_base_tcp);
+  return solve(ends_[i], ends_[i].arm->value, T_base_tcp);
 }
 
 bool ArcEnds::find_crossings(std::size_t side, const Pose& T_base_tcp) {
@@ -57,53 +56,42 @@ bool ArcEnds::find_crossings(std::size_t side, const Pose& T_base_tcp) {
   if (side == 1) value += kPi;
   if (joints_.type(0) != JointType::continuous) {
     value += kTwoPi * std::ceil((lower - value) / kTwoPi);
-    count_ = 0;
     if (value > upper) return true;
     value = std::min(std::max(value, joints_.lower[0]), joints_.upper[0]);
   }
-  locked_ = value;
   // With the first joint locked elsewhere, the target turns instead.
   const double turn = crossing.first.arm->value - value;
   const Eigen::AngleAxisd back(turn, Eigen::Vector3d::UnitZ());
-  return solve(crossing_->first, crossing.base * (back * from_first));
+  return solve(crossing_->first, value, crossing.base * (back * from_first));
 }
 
 bool ArcEnds::rules_out(const Pose& T_base_tcp) {
   if (!are_closed()) return false;
+  begin();
   for (std::size_t i = 0; i < places(); ++i) {
-    if (!find(i, T_base_tcp) || count_ > 0) return false;
+    if (!find(i, T_base_tcp) || count() > 0) return false;
   }
   return true;
 }
 
-bool ArcEnds::solve(End& end, const Pose& T_base_tcp) {
-  last_ = &end;
+bool ArcEnds::solve(End& end, double locked, const Pose& T_base_tcp) {
   const Pose Y = end.base_inverse * T_base_tcp * end.tip_inverse;
-  bool is_certain = false;
-  if (end.branches) {
-    end.branches->find(Y, /*wants_all=*/true);
-    by_roots_ = false;
-    count_ = end.branches->size();
-    is_certain = end.branches->is_certain_but_for_limits();
+  const auto find = [&](BranchList& solutions, bool wants_all) {
+    solutions.find(Y, wants_all);
+    return solutions.is_certain_but_for_limits();
+  };
+  const bool by_branches = end.branches && find(*end.branches, /*wants_all=*/true);
+  const bool by_roots = !by_branches && end.roots && find(*end.roots, /*wants_all=*/false);
+  const BranchList& solutions = end.roots && !by_branches
+                                    ? static_cast<const BranchList&>(*end.roots)
+                                    : static_cast<const BranchList&>(*end.branches);
+  for (int k = 0; k < solutions.size(); ++k) {
+    const double* others = solutions.q(k);
+    found_.insert(found_.end(), others, others + end.arm->joint);
+    found_.push_back(locked);
+    found_.insert(found_.end(), others + end.arm->joint, others + kPoseJoints);
   }
-  if (!is_certain && end.roots) {
-    end.roots->find(Y, /*wants_all=*/false);
-    by_roots_ = true;
-    count_ = end.roots->size();
-    is_certain = end.roots->is_certain_but_for_limits();
-  }
-  return is_certain;
-}
-
-const double* ArcEnds::keep(int k) {
-  const double* others = by_roots_ ? last_->roots->q(k) : last_->branches->q(k);
-  const int joint = last_->arm->joint;
-  if (kept_.size() < kept_.capacity()) kept_.emplace_back();
-  double* q = kept_.back().data();
-  std::copy_n(others, joint, q);
-  q[joint] = locked_;
-  std::copy_n(others + joint, 6 - joint, q + joint + 1);
-  return q;
+  return by_branches || by_roots;
 }
 
 }  // namespace iksel

@@ -3,11 +3,9 @@
 // at a limit, and there the six others solve the pose with that joint locked.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <vector>
 
-#include "base/work.hpp"
 #include "iksel/self_motion.hpp"
 #include "seeds/enumeration.hpp"
 #include "seeds/root_sweep.hpp"
@@ -30,23 +28,19 @@ class ArcEnds {
   /// The ends, and where closed curves cross the plane of the elbow, on either side of the first
   /// axis.
   [[nodiscard]] std::size_t places() const { return size() + (crossing_ ? 2 : 0); }
-  /// Solves the target with the i-th arm, or for the crossings of a side: a number of joint values,
-  /// inside the limits or so near to them that it cannot be told. False if there may be others.
+  /// Solves the target with the i-th arm, or for the crossings of a side: adds what is inside the
+  /// limits, or so near to them that it cannot be told. False if there may be others.
   bool find(std::size_t i, const Pose& T_base_tcp);
   /// Whether it can be told in closed form that no curve of solutions lies inside the limits: none
   /// goes through one of the places.
   [[nodiscard]] bool are_closed() const { return are_closed_; }
   /// Whether that is so.
   bool rules_out(const Pose& T_base_tcp);
-  [[nodiscard]] int count() const { return count_; }
-  /// The k-th solution of the last find(), seven joint values [rad or m]; kept until begin().
-  const double* keep(int k);
-  /// Forgets what is kept.
-  void begin() { kept_.clear(); }
-  [[nodiscard]] int kept() const { return static_cast<int>(kept_.size()); }
-  [[nodiscard]] const double* kept(int i) const {
-    return kept_[static_cast<std::size_t>(i)].data();
-  }
+  /// Forgets what was added.
+  void begin() { found_.clear(); }
+  [[nodiscard]] int count() const { return static_cast<int>(found_.size() / kCurveJoints); }
+  /// Seven joint values [rad or m].
+  [[nodiscard]] const double* q(int i) const { return found_.data() + kCurveJoints * i; }
   /// Whether each end that a joint's limit could make is looked for.
   [[nodiscard]] bool are_all() const { return are_all_; }
 
@@ -64,61 +58,53 @@ class ArcEnds {
   };
 
   bool find_crossings(std::size_t side, const Pose& T_base_tcp);
-  bool solve(End& end, const Pose& T_base_tcp);
+  /// With the end's joint locked at a value [rad or m].
+  bool solve(End& end, double locked, const Pose& T_base_tcp);
 
   const JointSpace& joints_;
   std::vector<End> ends_;
   bool are_all_;
   bool are_closed_;
   std::optional<Crossing> crossing_;
-  const End* last_ = nullptr;
-  double locked_ = 0;  ///< where the last one's joint is [rad or m]
-  bool by_roots_ = false;
-  int count_ = 0;
-  std::vector<std::array<double, 7>> kept_;
+  std::vector<double> found_;
 };
 
 /// These as a source of seeds, a place a stage.
-class EndSeeds {
+class EndSeeds : public RowSeeds {
  public:
-  EndSeeds(ArcEnds& ends, const Pose& T_base_tcp, Work& work, StageClock& clock)
-      : ends_(ends), target_(T_base_tcp), work_(work), clock_(clock), certain_(ends.are_all()) {
+  EndSeeds(ArcEnds& ends, const Pose& T_base_tcp, Work& work)
+      : RowSeeds(work, &Work::take_on_top),
+        ends_(ends),
+        target_(T_base_tcp),
+        certain_(ends.are_all()) {
     ends_.begin();
   }
 
   bool next_stage() {
-    if (is_through()) return false;
+    if (were_all_tried()) return false;
+    const auto before = static_cast<std::size_t>(count());
     if (!ends_.find(place_++, target_)) certain_ = false;
-    next_ = 0;
-    clock_.lap(&StageTimes::query);
+    give(q(0) + before * kCurveJoints, static_cast<std::size_t>(count()) - before, kCurveJoints,
+         /*are_answers=*/false);
+    work_.lap(&StageTimes::query);
     return true;
   }
 
-  template <typename Refiner>
-  bool load(Refiner& refiner, int lane) {
-    if (next_ == ends_.count()) return false;
-    work_.take_on_top();
-    refiner.load_seed(lane, ends_.keep(next_++));
-    return true;
-  }
-  /// Those that were tried, seven joint values each [rad or m].
-  [[nodiscard]] int count() const { return ends_.kept(); }
-  [[nodiscard]] const double* q(int i) const { return ends_.kept(i); }
+  /// Those of all stages, seven joint values each [rad or m].
+  [[nodiscard]] int count() const { return ends_.count(); }
+  [[nodiscard]] const double* q(int i) const { return ends_.q(i); }
   /// Whether no arc has an end but these, and each was tried.
-  [[nodiscard]] bool is_certain() const { return certain_ && is_through(); }
+  [[nodiscard]] bool is_certain() const { return certain_ && were_all_tried(); }
   /// Whether there certainly is no solution.
   [[nodiscard]] bool is_none() const { return is_certain() && ends_.are_closed() && count() == 0; }
 
  private:
-  [[nodiscard]] bool is_through() const { return place_ == ends_.places(); }
+  [[nodiscard]] bool were_all_tried() const { return place_ == ends_.places(); }
 
   ArcEnds& ends_;
   const Pose& target_;
-  Work& work_;
-  StageClock& clock_;
   bool certain_;
   std::size_t place_ = 0;
-  int next_ = 0;
 };
 
 }  // namespace iksel

@@ -35,11 +35,11 @@ void BranchIntervals::begin(SweptBranches& branches) {
   is_overfull_ = false;
   const Places places = branches.places(kPlaces);
   const int last = places.turns ? places.count : places.count - 1;
-  for (int branch = 0; branch < kLanes; ++branch) {
-    for (int first = 0; first <= last; first += kLanes) {
+  for (int branch = 0; branch < SweptBranches::kCount; ++branch) {
+    for (int first = 0; first <= last; first += SweptBranches::kCount) {
       branches.solve_one(branch,
                          [&](int lane) { return places.value(std::min(first + lane, last)); });
-      for (int lane = 0; lane < kLanes && first + lane <= last; ++lane) {
+      for (int lane = 0; lane < SweptBranches::kCount && first + lane <= last; ++lane) {
         nodes_[static_cast<std::size_t>(first + lane)] = branches.node(lane);
       }
     }
@@ -53,15 +53,15 @@ bool BranchIntervals::divide(FunctionRef<bool(int, int)> take) {
   intervals_.clear();
   for (const auto& [branch, lower, upper] : divided_) {
     const double from = lower.value;
-    const double step = (upper.value - from) / (kLanes + 1);
+    const double step = (upper.value - from) / (SweptBranches::kCount + 1);
     branches_->solve_one(branch, [=](int lane) { return from + step * (lane + 1); });
     nodes_[0] = lower;
-    for (int lane = 0; lane < kLanes; ++lane) {
+    for (int lane = 0; lane < SweptBranches::kCount; ++lane) {
       if (branches_->off(lane) <= 0 && take(lane, branch)) return true;
       nodes_[static_cast<std::size_t>(lane) + 1] = branches_->node(lane);
     }
-    nodes_[kLanes + 1] = upper;
-    add(branch, kLanes + 1);
+    nodes_[SweptBranches::kCount + 1] = upper;
+    add(branch, SweptBranches::kCount + 1);
   }
   return false;
 }

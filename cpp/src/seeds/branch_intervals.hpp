@@ -33,7 +33,6 @@ class BranchIntervals {
   }
 
  private:
-  static constexpr int kLanes = SweptBranches::kCount;
   /// Values of the swept joint to begin with, evenly over its range.
   static constexpr int kPlaces = 32;
   /// More are left out.

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "base/constants.hpp"
 #include "simd/lane_chain.hpp"
 
 namespace iksel {
@@ -124,13 +124,11 @@ int ClosestScreen::load_seeds(LaneQuery& query) {
     }
     ++packs;
   };
-  lanes::SeedPack& near = query.packs[0];
-  query.prepare_leaf(near);
+  const lanes::SeedPack& near = query.packs[0];
+  query.prepare_leaf();
   load([&](int j) { return near.q[j]; });
-  if (query.measure_blocks() > 0) {
-    query.prepare_blocks(0, 1, &near);
-    load([&](int j) { return near.q[j]; });
-  }
+  query.begin_blocks();
+  if (query.next_blocks(1) > 0) load([&](int j) { return near.q[j]; });
   for (int i = 0; i < kRandomPacks; ++i) {
     load([&](int j) { return row(random_, i, j); });
   }
@@ -191,8 +189,8 @@ void ClosestScreen::find(const Goal& goal, const Vector6& weights, LaneQuery& qu
       add_target(goal.random_pose(random), goal, counts);
     }
   }
-  constexpr float kNone = std::numeric_limits<float>::infinity();
-  seeds_.assign(static_cast<std::size_t>(packs * lanes::kBlock), {kNone, 0, 0});
+  seeds_.assign(static_cast<std::size_t>(packs * lanes::kBlock),
+                {static_cast<float>(kInfinity), 0, 0});
   int iterations = kFirstIterations;
   for (const ScreenRound& round : kScreenRounds) {
     move(packs, iterations);

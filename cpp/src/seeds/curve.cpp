@@ -39,7 +39,7 @@ void Curve::find_samples(const Pose& Y, Sweep& sweep) {
 
 Curve::Joints Curve::sample(std::size_t i) const {
   Joints q;
-  std::copy_n(&sampled_q_[i * kDof], kDof, q.begin());
+  std::copy_n(&sampled_q_[i * kCurveJoints], kCurveJoints, q.begin());
   return q;
 }
 
@@ -49,15 +49,15 @@ void Curve::find_ends(const Pose& T_base_tcp, ArcEnds& ends) {
   constexpr double kExact = 1e-5;
   /// Where a curve all but touches a limit, it is followed both ways.
   constexpr double kTouches = 1e-4;
-  ends.begin();
   places_of_ends_.clear();
   for (std::size_t i = 0; i < ends.size(); ++i) {
     const SelfMotionEnd at = ends.limit(i);
     if (joints_.is_periodic(at.joint)) continue;
+    ends.begin();
     ends.find(i, T_base_tcp);
     for (int k = 0; k < ends.count(); ++k) {
       End end{};
-      std::copy_n(ends.keep(k), kDof, end.q.begin());
+      std::copy_n(ends.q(k), kCurveJoints, end.q.begin());
       end.at = at;
       if (!walker_.is_inside(end.q)) continue;
       ends_.push_back(end);
@@ -71,7 +71,7 @@ void Curve::find_ends(const Pose& T_base_tcp, ArcEnds& ends) {
     end = ends_[i];
     end.on_curve = places_of_ends_[i];
     double moved = 0;
-    for (std::size_t j = 0; j < kDof; ++j) {
+    for (std::size_t j = 0; j < kCurveJoints; ++j) {
       moved = std::max(moved, std::abs(end.on_curve.q[j] - end.q[j]));
     }
     // Written so that NaN is no end.
@@ -104,7 +104,7 @@ void Curve::spread(std::size_t count, double least, std::vector<double>& q) cons
       double at = left;
       for (; at <= way; at += step) {
         Joints between = a;
-        for (int j = 0; j < kDof; ++j) {
+        for (int j = 0; j < kCurveJoints; ++j) {
           const auto k = static_cast<std::size_t>(j);
           between[k] += at / way * joints_.difference(j, a[k], b[k]);
         }

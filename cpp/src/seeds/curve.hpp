@@ -20,7 +20,6 @@ namespace iksel {
 
 class Curve {
  public:
-  static constexpr int kDof = CurveWalker::kDof;
   using Joints = CurveWalker::Joints;
   struct Arc {
     std::vector<Joints> q;

@@ -40,7 +40,7 @@ struct Cubic {
 
 CurveWalker::Joints CurveWalker::Step::at(double part) const {
   Joints q;
-  for (std::size_t j = 0; j < kDof; ++j) {
+  for (std::size_t j = 0; j < kCurveJoints; ++j) {
     q[j] = Cubic{from.q[j], way * from.tangent[j], to.q[j], way * to.tangent[j]}(part);
   }
   return q;
@@ -99,7 +99,7 @@ CurveWalker::Place CurveWalker::leave(const Step& step, const Exit& exit) {
     const double slope = exit.limit->value(at.tangent.data());
     if (!(std::abs(slope) > kAlong)) break;
     const double way = (value - exit.limit->value(at.q.data())) / slope;
-    for (std::size_t j = 0; j < kDof; ++j) at.q[j] += way * at.tangent[j];
+    for (std::size_t j = 0; j < kCurveJoints; ++j) at.q[j] += way * at.tangent[j];
   }
   return at;
 }

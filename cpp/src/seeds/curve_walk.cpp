@@ -32,7 +32,7 @@ void Curve::follow_from_samples(Sweep& sweep) {
   }
   sweep.visit_between([&](const double* q, int /*branch*/) {
     Joints between;
-    std::copy_n(q, kDof, between.begin());
+    std::copy_n(q, kCurveJoints, between.begin());
     follow_both_ways(between);
   });
 }
@@ -113,7 +113,7 @@ bool Curve::advance(Walk& walk, int lane, const Step& step) {
 
 Curve::Beside Curve::beside(const Joints& from, const Joints& to, const Joints& q) const {
   Beside found{};
-  for (int j = 0; j < kDof; ++j) {
+  for (int j = 0; j < kCurveJoints; ++j) {
     const auto i = static_cast<std::size_t>(j);
     const double step = joints_.difference(j, from[i], to[i]);
     const double off = joints_.difference(j, from[i], q[i]);
@@ -142,13 +142,13 @@ void Curve::mark_samples(const Joints& from, const Joints& to) {
     if (place < 0) continue;
     const double part = begin == end ? 0 : (i - begin) / (end - begin);
     Joints q;
-    for (std::size_t j = 0; j < kDof; ++j) q[j] = from[j] + part * (to[j] - from[j]);
+    for (std::size_t j = 0; j < kCurveJoints; ++j) q[j] = from[j] + part * (to[j] - from[j]);
     std::size_t found = samples_.size();
     double nearest = kSame;
     const auto at = static_cast<std::size_t>(place);
     for (std::size_t k = first_sample_[at]; k < first_sample_[at + 1]; ++k) {
       if (is_known_[k]) continue;
-      const double away = joints_.distance(&sampled_q_[k * kDof], q, nearest);
+      const double away = joints_.distance(&sampled_q_[k * kCurveJoints], q, nearest);
       if (away >= nearest) continue;
       nearest = away;
       found = k;

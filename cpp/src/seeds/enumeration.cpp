@@ -36,6 +36,8 @@ Enumeration::Enumeration(const ChainModel& model, const ClosedFormChain& chain, 
                                      rotation_tolerance, kStructureTolerance});
   chain_.form.error = kMargin * (tolerance + chain.deviation);
   are_answers_ = is_nominal && !chain.is_almost();
+  has_families_ = chain_.has_families();
+  has_all_ = is_nominal && !has_families_;
 }
 
 void Enumeration::solve(const Pose& Y) {
@@ -65,7 +67,7 @@ void Enumeration::copy_joints(int lane, double* q) const {
 
 void Enumeration::take(const Pose& Y, int lane, bool wants_all) {
   if (is_ruled_out(pack_, lane)) return;
-  std::array<double, 6>& q = q_[static_cast<std::size_t>(size_)];
+  Joints& q = next();
   copy_joints(lane, q.data());
   const double beyond = pack_.beyond[lane];
   double bound = pack_.error[lane];
@@ -87,9 +89,9 @@ void Enumeration::take(const Pose& Y, int lane, bool wants_all) {
   ++size_;
 }
 
-bool Enumeration::has_taken(const std::array<double, 6>& q) const {
+bool Enumeration::has_taken(const Joints& q) const {
   constexpr double kSame = 1e-12;
-  const auto is_same = [&](const std::array<double, 6>& other) {
+  const auto is_same = [&](const Joints& other) {
     return std::equal(q.begin(), q.begin() + model_.dof, other.begin(),
                       [](double a, double b) { return std::abs(a - b) < kSame; });
   };

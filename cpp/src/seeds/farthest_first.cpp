@@ -20,13 +20,12 @@ void fill_per_turn(const JointSpace& joints, float* per_turn) {
 
 std::vector<std::size_t> farthest_first(const JointSpace& joints, const double* q, std::size_t all,
                                         std::size_t count, double least) {
-  constexpr auto kBlock = static_cast<std::size_t>(lanes::kBlock);
   const auto dof = static_cast<std::size_t>(joints.dof());
-  const std::size_t blocks = (all + kBlock - 1) / kBlock;
+  const std::size_t blocks = (all + lanes::kBlock - 1) / lanes::kBlock;
   // Whole turns are left out, which single precision would take for more than they are.
-  std::vector<float> columns(blocks * dof * kBlock);
+  std::vector<float> columns(blocks * dof * lanes::kBlock);
   const auto at = [&](std::size_t i, std::size_t j) -> float& {
-    return columns[(i / kBlock * dof + j) * kBlock + i % kBlock];
+    return columns[(i / lanes::kBlock * dof + j) * lanes::kBlock + i % lanes::kBlock];
   };
   for (std::size_t i = 0; i < all; ++i) {
     for (std::size_t j = 0; j < dof; ++j, ++q) {
@@ -34,7 +33,7 @@ std::vector<std::size_t> farthest_first(const JointSpace& joints, const double* 
     }
   }
   // Those that are there not, or were taken, are never the farthest.
-  std::vector<float> nearest(blocks * kBlock, -1);
+  std::vector<float> nearest(blocks * lanes::kBlock, -1);
   std::fill_n(nearest.begin(), all, std::numeric_limits<float>::max());
   float per_turn[lanes::kMaxJoints];
   fill_per_turn(joints, per_turn);
@@ -49,7 +48,7 @@ std::vector<std::size_t> farthest_first(const JointSpace& joints, const double* 
     nearest[last] = -1;
     for (std::size_t j = 0; j < dof; ++j) from[j] = at(last, j);
     kernels.add_known(joints.dof(), per_turn, from, columns.data(), static_cast<int>(blocks),
-                      static_cast<std::ptrdiff_t>(dof * kBlock), nearest.data());
+                      static_cast<std::ptrdiff_t>(dof * lanes::kBlock), nearest.data());
     last = static_cast<std::size_t>(
         kernels.find_largest(static_cast<int>(nearest.size()), nearest.data()));
     if (nearest[last] < static_cast<float>(least)) break;

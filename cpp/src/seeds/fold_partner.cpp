@@ -3,14 +3,13 @@
 
 #include <cmath>
 
+#include "base/constants.hpp"
 #include "base/pseudo_inverse.hpp"
 #include "base/symmetric.hpp"
 #include "kinematics/joint_space.hpp"
 
 namespace iksel {
 namespace {
-
-constexpr int kAxes = 6;
 
 /// How the twist J v changes in unit time while the joints move at the rates v: a joint's axis and
 /// origin turn with the joints before it, and the TCP moves past it with those behind. A variable
@@ -39,28 +38,28 @@ FoldPartner find_fold_partner(const Jacobian& J, const JointVector& q, double ne
   const auto dof = static_cast<int>(J.cols());
 
   // Joints that are not there are of no consequence: they have zeros, and ones on the diagonal.
-  double columns[kAxes][kAxes] = {};
+  double columns[kPoseJoints][kPoseJoints] = {};
   for (int j = 0; j < dof; ++j) {
-    for (int i = 0; i < kAxes; ++i) columns[j][i] = J(i, j);
+    for (int i = 0; i < kPoseJoints; ++i) columns[j][i] = J(i, j);
   }
-  double A[kAxes][kAxes];
+  double A[kPoseJoints][kPoseJoints];
   double trace = 0;
-  for (int j = 0; j < kAxes; ++j) {
+  for (int j = 0; j < kPoseJoints; ++j) {
 #pragma GCC unroll 6
     for (int k = 0; k <= j; ++k) {
       A[j][k] = 0;
-      for (int i = 0; i < kAxes; ++i) A[j][k] += columns[j][i] * columns[k][i];
+      for (int i = 0; i < kPoseJoints; ++i) A[j][k] += columns[j][i] * columns[k][i];
     }
     trace += A[j][j];
   }
-  if (dof == kAxes) result.jacobian_sign = determinant(columns) < 0 ? -1 : 1;
-  for (int j = dof; j < kAxes; ++j) A[j][j] = 1;
+  if (dof == kPoseJoints) result.jacobian_sign = determinant(columns) < 0 ? -1 : 1;
+  for (int j = dof; j < kPoseJoints; ++j) A[j][j] = 1;
   const SymmetricFactors<double> factors(A, 1e-12 * trace);
   // Inverse iteration, which goes to the direction of the least singular value; the start is of no
   // symmetry that an arm may have.
-  double start[kAxes] = {};
+  double start[kPoseJoints] = {};
   for (int j = 0; j < dof; ++j) start[j] = 1 + 0.13 * j;
-  double next[kAxes];
+  double next[kPoseJoints];
   factors.solve(start, next);
   factors.solve(next, start);
   factors.solve(start, next);

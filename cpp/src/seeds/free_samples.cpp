@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "seeds/free_samples.hpp"
 
+#include <iterator>
 #include <utility>
 
 namespace iksel {
@@ -14,15 +15,14 @@ constexpr std::size_t kMostPeaks = 24;
 }  // namespace
 
 FreeSamples::FreeSamples(Sweep& sweep, const Scene& scene, const Pose& Y, Memory& memory,
-                         Work& work, StageClock& clock)
-    : sweep_(sweep), scene_(scene), to_(memory), work_(work), clock_(clock) {
+                         Work& work)
+    : sweep_(sweep), scene_(scene), to_(memory), work_(work) {
   look_.is_target_clear = true;
   to_.q.clear();
   to_.samples.clear();
   to_.overlaps.clear();
-  to_.ends.clear();
-  to_.between.clear();
-  to_.clearance.assign(Sweep::kSamples * kPack, kInfinity);
+  to_.places.clear();
+  to_.clearance.assign(Sweep::kSamples * SweptBranches::kCount, kInfinity);
   sweep_.set_target(Y);
 }
 
@@ -30,7 +30,7 @@ bool FreeSamples::next_stage() {
   free_count_ = 0;
   next_ = 0;
   while (free_count_ == 0 && (at_ < rows() || add_rows())) screen_pack();
-  clock_.lap(&StageTimes::query);
+  work_.lap(&StageTimes::query);
   return free_count_ > 0;
 }
 
@@ -54,38 +54,44 @@ bool FreeSamples::add_rows() {
 bool FreeSamples::add_rows_between() {
   if (beside_) {
     // Once more, more closely.
-    const Overlap least = *beside_;
+    const Place least = *beside_;
     beside_.reset();
     sweep_.add_beside(least.q.data(), least.sample.branch, Sweep::kSpacingBeside, to_.q);
     return true;
   }
-  if (const Overlap* peak = next_peak()) {
-    beside_ = *peak;
-    sweep_.add_beside(peak->q.data(), peak->sample.branch, 1.0, to_.q);
-  } else if (const End* end = next_end()) {
-    sweep_.add_end(end->inside, end->up, to_.q);
-  } else if (const Between* short_arc = next_between()) {
-    to_.q.assign(short_arc->q.begin(), short_arc->q.end());
-    sweep_.add_beside(short_arc->q.data(), short_arc->branch, 1.0, to_.q);
-  } else {
-    return false;
+  const Place* place = next_place();
+  if (place == nullptr) return false;
+  if (place->kind == Place::Kind::lower_end || place->kind == Place::Kind::upper_end) {
+    sweep_.add_end(place->sample, place->kind == Place::Kind::upper_end, to_.q);
+    return true;
   }
+  if (place->kind == Place::Kind::overlap) {
+    beside_ = *place;
+  } else {
+    to_.q.assign(place->q.begin(), place->q.end());
+  }
+  sweep_.add_beside(place->q.data(), place->sample.branch, 1.0, to_.q);
   return true;
 }
 
-const FreeSamples::Between* FreeSamples::next_between() {
-  if (!has_between_) {
+const FreeSamples::Place* FreeSamples::next_place() {
+  if (!has_peaks_) {
+    has_peaks_ = true;
+    find_peaks_and_ends();
+  }
+  if (place_ == to_.places.size() && !has_between_) {
     has_between_ = true;
     sweep_.visit_between([&](const double* q, int branch) {
-      Between& between = to_.between.emplace_back();
-      std::copy_n(q, kDof, between.q.begin());
-      between.branch = branch;
+      Place& between = to_.places.emplace_back();
+      between.kind = Place::Kind::between;
+      between.sample.branch = branch;
+      std::copy_n(q, kCurveJoints, between.q.begin());
     });
   }
-  return between_ < to_.between.size() ? &to_.between[between_++] : nullptr;
+  return place_ < to_.places.size() ? &to_.places[place_++] : nullptr;
 }
 
-bool FreeSamples::is_peak(const Overlap& overlap) const {
+bool FreeSamples::is_peak(const Place& overlap) const {
   /// So many times as fast as from one sample to the next what overlaps may part between them.
   constexpr double kFaster = 3;
   const auto [place, branch] = overlap.sample;
@@ -103,51 +109,41 @@ bool FreeSamples::is_peak(const Overlap& overlap) const {
   return overlap.clearance + kFaster * slope >= 0;
 }
 
-const FreeSamples::Overlap* FreeSamples::next_peak() {
-  auto& all = to_.overlaps;
-  if (!has_peaks_) {
-    has_peaks_ = true;
-    find_ends();
-    all.erase(
-        std::remove_if(all.begin(), all.end(), [&](const Overlap& each) { return !is_peak(each); }),
-        all.end());
-    std::sort(all.begin(), all.end(), [](const Overlap& a, const Overlap& b) {
-      return a.clearance > b.clearance || (a.clearance == b.clearance && a.number < b.number);
-    });
-  }
-  return peak_ < std::min(kMostPeaks, all.size()) ? &all[peak_++] : nullptr;
-}
-
-void FreeSamples::find_ends() {
-  for (const Overlap& each : to_.overlaps) {
+void FreeSamples::find_peaks_and_ends() {
+  auto& places = to_.places;
+  std::copy_if(to_.overlaps.begin(), to_.overlaps.end(), std::back_inserter(places),
+               [&](const Place& each) { return is_peak(each); });
+  std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
+    return a.clearance > b.clearance || (a.clearance == b.clearance && a.number < b.number);
+  });
+  places.resize(std::min(kMostPeaks, places.size()));
+  for (const Place& each : to_.overlaps) {
     const auto [place, branch] = each.sample;
     for (const bool up : {false, true}) {
       const int at = sweep_.places().find(up ? place + 1 : place - 1);
-      if (at >= 0 && !exists(at, branch)) to_.ends.push_back({each.sample, up});
+      if (at < 0 || exists(at, branch)) continue;
+      places.push_back({up ? Place::Kind::upper_end : Place::Kind::lower_end, each.sample, {}});
     }
   }
 }
 
-const FreeSamples::End* FreeSamples::next_end() {
-  return end_ < to_.ends.size() ? &to_.ends[end_++] : nullptr;
-}
-
 void FreeSamples::screen_pack() {
-  const std::size_t count = std::min(kPack, rows() - at_);
+  const std::size_t count = std::min<std::size_t>(SweptBranches::kCount, rows() - at_);
   for (std::size_t i = at_; i < at_ + count; ++i) {
     const double above = scene_.data().find_clearance(row(i), look_);
     if (above > 0) {
       free_[free_count_++] = i;
     } else if (i < to_.samples.size()) {
-      Overlap& overlap = to_.overlaps.emplace_back();
+      Place& overlap = to_.overlaps.emplace_back();
+      overlap.kind = Place::Kind::overlap;
       overlap.clearance = above;
       overlap.sample = to_.samples[i];
       overlap.number = static_cast<int>(to_.overlaps.size());
       clearance(overlap.sample.place, overlap.sample.branch) = above;
-      std::copy_n(row(i), kDof, overlap.q.begin());
+      std::copy_n(row(i), kCurveJoints, overlap.q.begin());
     } else if (beside_ && above > beside_->clearance) {
       beside_->clearance = above;
-      std::copy_n(row(i), kDof, beside_->q.begin());
+      std::copy_n(row(i), kCurveJoints, beside_->q.begin());
     }
   }
   at_ += count;
@@ -156,13 +152,11 @@ void FreeSamples::screen_pack() {
 bool find_nearest_free(const std::vector<Curve::Arc>& arcs, const Scene& scene,
                        const JointSpace& joints, const JointVector& near, const JointMove& move,
                        std::size_t most, std::vector<double>& q) {
-  constexpr std::size_t kPack = SweptBranches::kCount;
-  constexpr std::size_t kDof = SweptBranches::kDof;
   // Nearest first, so that the scene looks at few.
   std::vector<std::pair<double, JointVector>> points;
   for (const Curve::Arc& arc : arcs) {
     for (const Curve::Joints& on_arc : arc.q) {
-      JointVector point = Eigen::Map<const Eigen::VectorXd>(on_arc.data(), kDof);
+      JointVector point = Eigen::Map<const Eigen::VectorXd>(on_arc.data(), kCurveJoints);
       joints.wrap_nearest(near, 0, point);
       points.emplace_back(move.length(point - near), std::move(point));
     }
@@ -170,18 +164,19 @@ bool find_nearest_free(const std::vector<Curve::Arc>& arcs, const Scene& scene,
   std::sort(points.begin(), points.end(),
             [](const auto& a, const auto& b) { return a.first < b.first; });
   q.clear();
-  for (std::size_t i = 0; i < points.size() && q.size() < most * kDof; i += kPack) {
-    const std::size_t count = std::min(kPack, points.size() - i);
-    std::array<double, kPack * kDof> rows{};
+  for (std::size_t i = 0; i < points.size() && q.size() < most * kCurveJoints;
+       i += SweptBranches::kCount) {
+    const std::size_t count = std::min<std::size_t>(SweptBranches::kCount, points.size() - i);
+    std::array<double, SweptBranches::kCount * kCurveJoints> rows{};
     for (std::size_t k = 0; k < count; ++k) {
-      std::copy_n(points[i + k].second.data(), kDof, &rows[k * kDof]);
+      std::copy_n(points[i + k].second.data(), kCurveJoints, &rows[k * kCurveJoints]);
     }
-    std::array<bool, kPack> free{};
+    std::array<bool, SweptBranches::kCount> free{};
     scene.find_free(rows.data(), count, free.data());
     for (std::size_t k = 0; k < count; ++k) {
       if (!free[k]) continue;
-      const double* row = &rows[k * kDof];
-      q.insert(q.end(), row, row + kDof);
+      const double* row = &rows[k * kCurveJoints];
+      q.insert(q.end(), row, row + kCurveJoints);
     }
   }
   return !points.empty();

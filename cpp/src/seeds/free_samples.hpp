@@ -16,22 +16,14 @@ namespace iksel {
 
 class FreeSamples {
  public:
-  /// A sample that is not free.
-  struct Overlap {
-    double clearance;  ///< scene_types.hpp
-    int number;        ///< in the order in which they were found
+  /// A place of a branch that is not free, or beside which it is looked.
+  struct Place {
+    enum class Kind { overlap, lower_end, upper_end, between };
+    Kind kind;
     Sweep::Sample sample;
-    std::array<double, SweptBranches::kDof> q;
-  };
-  /// Where a branch is inside the limits between two samples, but at neither.
-  struct Between {
-    std::array<double, SweptBranches::kDof> q;
-    int branch;
-  };
-  /// A sample beside which a branch leaves the limits, or ends.
-  struct End {
-    Sweep::Sample inside;
-    bool up;
+    std::array<double, kCurveJoints> q;
+    double clearance = 0;  ///< of an overlap (scene_types.hpp)
+    int number = 0;        ///< and in the order in which they were found
   };
   /// What it writes to.
   struct Memory {
@@ -39,14 +31,15 @@ class FreeSamples {
     std::vector<Sweep::Sample> samples;
     /// Of each sample of each branch; infinite: there is none, or it is free.
     std::vector<double> clearance;
-    std::vector<Overlap> overlaps;
-    std::vector<End> ends;
-    std::vector<Between> between;
+    std::vector<Place> overlaps;
+    /// Where it is looked between samples: beside overlaps that are less than those beside them,
+    /// the least first; where a branch leaves the limits, or ends; and where it is inside the
+    /// limits between two samples, but at neither.
+    std::vector<Place> places;
   };
 
   /// All must outlive this. Nothing may touch that is where it is in all solutions.
-  FreeSamples(Sweep& sweep, const Scene& scene, const Pose& Y, Memory& memory, Work& work,
-              StageClock& clock);
+  FreeSamples(Sweep& sweep, const Scene& scene, const Pose& Y, Memory& memory, Work& work);
 
   /// The samples of the sweep, those far from each other first; where none is free, between the
   /// samples beside those that overlap least; towards where branches leave the limits; and where
@@ -64,27 +57,19 @@ class FreeSamples {
   [[nodiscard]] bool has_any() const { return has_any_; }
 
  private:
-  static constexpr std::size_t kDof = SweptBranches::kDof;
-  static constexpr std::size_t kPack = SweptBranches::kCount;
-
-  [[nodiscard]] std::size_t rows() const { return to_.q.size() / kDof; }
-  [[nodiscard]] const double* row(std::size_t i) const { return &to_.q[i * kDof]; }
+  [[nodiscard]] std::size_t rows() const { return to_.q.size() / kCurveJoints; }
+  [[nodiscard]] const double* row(std::size_t i) const { return &to_.q[i * kCurveJoints]; }
   /// Makes rows of the next part; false if there are no more.
   bool add_rows();
   /// The same where no sample is free.
   bool add_rows_between();
-  /// The next branch between samples; null if there are no more.
-  const Between* next_between();
-  /// The next of the samples that overlap less than those beside them, those that do least first;
-  /// null if there are no more.
-  const Overlap* next_peak();
-  [[nodiscard]] bool is_peak(const Overlap& overlap) const;
-  void find_ends();
-  /// The next end of a branch; null if there are no more.
-  const End* next_end();
+  /// The next place; null if there are no more.
+  const Place* next_place();
+  [[nodiscard]] bool is_peak(const Place& overlap) const;
+  void find_peaks_and_ends();
   [[nodiscard]] double& clearance(int place, int branch) const {
-    return to_
-        .clearance[static_cast<std::size_t>(place) * kPack + static_cast<std::size_t>(branch)];
+    return to_.clearance[static_cast<std::size_t>(place) * SweptBranches::kCount +
+                         static_cast<std::size_t>(branch)];
   }
   [[nodiscard]] bool exists(int place, int branch) const {
     return clearance(place, branch) < kInfinity;
@@ -97,18 +82,15 @@ class FreeSamples {
   SceneLook look_;
   Memory& to_;
   Work& work_;
-  StageClock& clock_;
   std::size_t at_ = 0;      ///< row to be looked at next
   int part_ = 0;            ///< of the samples
-  bool has_peaks_ = false;  ///< whether the overlaps are only these
-  std::size_t peak_ = 0;    ///< of these, those that were looked beside
-  /// What overlaps least of the last peak and what is beside it.
-  std::optional<Overlap> beside_;
-  std::size_t end_ = 0;
+  std::size_t place_ = 0;   ///< that is looked beside next
+  bool has_peaks_ = false;  ///< whether these are among the places
   bool has_between_ = false;
-  std::size_t between_ = 0;  ///< of these, those that were looked at
+  /// What overlaps least of the last peak and what is beside it.
+  std::optional<Place> beside_;
   bool has_any_ = false;
-  std::array<std::size_t, kPack> free_{};
+  std::array<std::size_t, SweptBranches::kCount> free_{};
   std::size_t free_count_ = 0;
   std::size_t next_ = 0;
 };

@@ -26,36 +26,36 @@ void LaneQuery::set_target(const Pose& Y) {
   seed_target_ = make_seed_target(Y);
 }
 
-std::size_t LaneQuery::measure_blocks() {
-  const SampleBlocks& blocks = data_.blocks;
-  blocks.measure(key_, block_distance2_.data());
-  for (std::size_t block = 0; block < blocks.size(); ++block) {
+void LaneQuery::begin_blocks() {
+  data_.blocks.measure(key_, block_distance2_.data());
+  for (std::size_t block = 0; block < block_order_.size(); ++block) {
     // Squares are not negative, and so in the order of their bits; of equals the first.
     std::uint32_t bits = 0;
     std::memcpy(&bits, &block_distance2_[block], sizeof bits);
     block_order_[block] = std::uint64_t{bits} << 32U | block;
   }
-  return blocks.size();
+  blocks_given_ = 0;
 }
 
-void LaneQuery::prepare_blocks(std::size_t first, std::size_t count, lanes::SeedPack* seeds) {
-  const auto begin = block_order_.begin() + static_cast<std::ptrdiff_t>(first);
+std::size_t LaneQuery::next_blocks(std::size_t most) {
+  const std::size_t count = std::min(most, block_order_.size() - blocks_given_);
+  const auto begin = block_order_.begin() + static_cast<std::ptrdiff_t>(blocks_given_);
   std::partial_sort(begin, begin + static_cast<std::ptrdiff_t>(count), block_order_.end());
   for (std::size_t i = 0; i < count; ++i) {
-    const auto block = static_cast<std::uint32_t>(block_order_[first + i]);
-    prepare(data_.blocks.block(block), seeds[i]);
+    const auto block = static_cast<std::uint32_t>(block_order_[blocks_given_ + i]);
+    prepare(data_.blocks.block(block), packs[i]);
   }
+  blocks_given_ += count;
+  return count;
 }
 
-bool LaneQuery::find_first(const Goal& goal) {
-  set_target(reduce(goal.nearest_pose()));
-  prepare_leaf(packs[0]);
-  is_tried_.assign(is_tried_.size(), false);
-  return true;
-}
-
-bool LaneQuery::find_next(const Goal& /*goal*/, const Pose& allowed) {
+bool LaneQuery::find(const Goal& /*goal*/, const Pose& allowed, bool is_first) {
   set_target(reduce(allowed));
+  if (is_first) {
+    prepare_leaf();
+    is_tried_.assign(is_tried_.size(), false);
+    return true;
+  }
   data_.blocks.measure(key_, block_distance2_.data());
   const std::size_t blocks = block_distance2_.size();
   std::size_t nearest = blocks;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One target asked of a reduced database, and the memory that its seeds for the lanes need.
+// One target asked of a reduced database: a cursor over its samples, and the memory that their
+// seeds for the lanes need.
 #pragma once
 
 #include <cstddef>
@@ -16,13 +17,6 @@
 
 namespace iksel {
 
-/// Starts a lane at the seed of that rank.
-template <typename Refiner>
-void load_ranked(const lanes::SeedPack& seeds, int rank, Refiner& refiner, int lane) {
-  const int entry = seeds.order[rank];
-  refiner.load(lane, [&](int j) { return static_cast<double>(seeds.q[j][entry]); });
-}
-
 class LaneQuery {
  public:
   /// `nominal` is the chain that the data belongs to; `model` may differ from it a little. Of the
@@ -37,28 +31,28 @@ class LaneQuery {
   /// What seeds are asked for from now on.
   void set_target(const Pose& Y);
 
-  /// The samples of the leaf that the target falls into, as seeds.
-  void prepare_leaf(lanes::SeedPack& seeds) const { prepare(data_.leaves.block(key_), seeds); }
+  /// The samples of the leaf that the target falls into, as the seeds of packs[0].
+  void prepare_leaf() { prepare(data_.leaves.block(key_), packs[0]); }
 
-  /// The blocks of samples, nearest first: to come before prepare_blocks. Returns how many there
-  /// are.
-  std::size_t measure_blocks();
-  /// Of those, how many the neighbours that are asked for fill.
+  /// Goes before all blocks of samples, the nearest first.
+  void begin_blocks();
+  /// The next blocks, at most `most`, as the seeds of packs[0] and following. Returns how many.
+  std::size_t next_blocks(std::size_t most);
+  /// Blocks that were given, and how many the neighbours that are asked for fill.
+  [[nodiscard]] std::size_t blocks_given() const { return blocks_given_; }
   [[nodiscard]] std::size_t near_blocks() const { return near_blocks_; }
-  /// Those with the ranks `first` to `first` + count - 1, which have to be asked for in turn, each
-  /// with its seeds in packs[i].
-  void prepare_blocks(std::size_t first, std::size_t count, lanes::SeedPack* packs);
 
   /// For AllowedSeeds: a leaf, and then the nearest block of samples that was not taken yet.
   static constexpr int kPerPose = lanes::kBlock;
-  bool find_first(const Goal& goal);
-  bool find_next(const Goal& goal, const Pose& allowed);
+  bool find(const Goal& goal, const Pose& allowed, bool is_first);
+  /// Starts a lane at the seed of packs[0] of that rank.
   template <typename Refiner>
-  void load_found(int rank, Refiner& refiner, int lane) const {
-    load_ranked(packs[0], rank, refiner, lane);
+  void load(int rank, Refiner& refiner, int lane) const {
+    const int entry = packs[0].order[rank];
+    refiner.load(lane, [&](int j) { return static_cast<double>(packs[0].q[j][entry]); });
   }
 
-  /// Where sources keep their seeds.
+  /// The seeds.
   lanes::SeedPack packs[kBlocksAtOnce] = {};
   FarthestFirstQueue queue;
 
@@ -74,6 +68,7 @@ class LaneQuery {
   lanes::SeedTarget seed_target_{};
   double key_[kMaxKeyDimension] = {};
   std::size_t near_blocks_;
+  std::size_t blocks_given_ = 0;
   std::vector<float> block_distance2_;
   std::vector<std::uint64_t> block_order_;  ///< squared distance, and the block
   std::vector<bool> is_tried_;              ///< of each block

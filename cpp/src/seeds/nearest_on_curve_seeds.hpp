@@ -16,22 +16,21 @@ template <typename Known>
 class NearestOnCurveSeeds {
  public:
   NearestOnCurveSeeds(NearestOnCurve& curve, const Pose& Y, const JointVector& near,
-                      const JointMove& move, const Known& known, Work& work, StageClock& clock)
+                      const JointMove& move, const Known& known, Work& work)
       : curve_(curve),
         Y_(Y),
         near_(near),
         move_(move),
         known_(known),
         known_before_(known.least_move()),
-        work_(work),
-        clock_(clock) {}
+        work_(work) {}
 
   bool next_stage() {
     if (has_led_to_answer() || !work_.has_left()) return false;
     if (!done_) {
       done_ = true;
       curve_.find(Y_, near_, move_, known_before_);
-      clock_.lap(&StageTimes::query);
+      work_.lap(&StageTimes::query);
       end_ = std::min<std::size_t>(curve_.size(), 1);
     } else {
       end_ = curve_.size();
@@ -62,7 +61,6 @@ class NearestOnCurveSeeds {
   const Known& known_;
   double known_before_;
   Work& work_;
-  StageClock& clock_;
   bool done_ = false;
   std::size_t next_ = 0;
   std::size_t end_ = 0;

@@ -9,8 +9,7 @@
 namespace iksel {
 namespace {
 
-constexpr int kBlock = lanes::kWidth;
-constexpr int round_up(int n) { return (n + kBlock - 1) / kBlock * kBlock; }
+constexpr int round_up(int n) { return (n + lanes::kWidth - 1) / lanes::kWidth * lanes::kWidth; }
 
 }  // namespace
 
@@ -79,19 +78,18 @@ double RootFinder::faintest() const {
 
 void RootFinder::look_closer(const Residual& residual, double left, double length, int depth) {
   constexpr int kDeepest = 3;
-  constexpr int kInside = kBlock;
-  constexpr int kAngles = kBefore + kInside + kAfter + 1;
-  static_assert(kAngles % kBlock == 0);
-  const double step = length / kInside;
+  constexpr int kAngles = kBefore + lanes::kWidth + kAfter + 1;
+  static_assert(kAngles % lanes::kWidth == 0);
+  const double step = length / lanes::kWidth;
   std::array<double, kAngles> angles;
   std::array<double, kAngles> values;
   for (std::size_t i = 0; i < kAngles; ++i) {
     angles[i] = left + step * (static_cast<double>(i) - kBefore);
   }
   residual(angles.data(), kAngles, values.data());
-  std::array<double, kInside> counts;
-  kernels_.count_roots(values.data() + kBefore, kInside, /*apart=*/0, counts.data());
-  for (std::size_t i = 0; i < kInside; ++i) {
+  std::array<double, lanes::kWidth> counts;
+  kernels_.count_roots(values.data() + kBefore, lanes::kWidth, /*apart=*/0, counts.data());
+  for (std::size_t i = 0; i < lanes::kWidth; ++i) {
     if (counts[i] == 0) continue;
     const double* at = values.data() + kBefore + i;
     const double here = angles[kBefore + i];
@@ -105,7 +103,7 @@ void RootFinder::look_closer(const Residual& residual, double left, double lengt
   }
   // Where it turns above 0 or below: of the parabola through three values, the one in the middle
   // the least.
-  for (std::size_t i = kBefore; i <= kBefore + kInside; ++i) {
+  for (std::size_t i = kBefore; i <= kBefore + lanes::kWidth; ++i) {
     const double slope = 0.5 * (values[i + 1] - values[i - 1]);
     const double bend = values[i + 1] - 2 * values[i] + values[i - 1];
     if ((bend < 0) == (values[i] < 0) && std::abs(slope) <= 0.5 * std::abs(bend)) {
@@ -136,14 +134,14 @@ void RootFinder::add(double angle, bool is_vague, double apart) {
 
 void RootFinder::polish(const Residual& residual) {
   constexpr int kPolishRounds = 40;
-  for (std::size_t first = 0; first < brackets_size_; first += kBlock) {
-    const std::size_t n = std::min<std::size_t>(kBlock, brackets_size_ - first);
-    std::array<double, kBlock> angles{};
-    std::array<double, kBlock> values{};
+  for (std::size_t first = 0; first < brackets_size_; first += lanes::kWidth) {
+    const std::size_t n = std::min<std::size_t>(lanes::kWidth, brackets_size_ - first);
+    std::array<double, lanes::kWidth> angles{};
+    std::array<double, lanes::kWidth> values{};
     bool is_there = false;
     for (int round = 0; round < kPolishRounds && !is_there; ++round) {
       for (std::size_t i = 0; i < n; ++i) angles[i] = brackets_[first + i].next(precision_);
-      residual(angles.data(), kBlock, values.data());
+      residual(angles.data(), lanes::kWidth, values.data());
       is_there = true;
       for (std::size_t i = 0; i < n; ++i) {
         brackets_[first + i].narrow(angles[i], values[i]);

@@ -71,7 +71,6 @@ RootSweep::RootSweep(const ChainModel& model, const ClosedFormChain& chain, bool
       chain_(chain),
       kernels_(kernels),
       tolerance_(tolerance),
-      are_answers_(is_nominal && chain.deviation <= kShare * tolerance),
       concludes_(concludes_from_branches(is_nominal, tolerance)),
       vague_(2 * std::sqrt(tolerance + chain.deviation)),
       farther_(2 * std::sqrt(tolerance + kFartherApart * kFartherApart * chain.deviation)),
@@ -82,6 +81,7 @@ RootSweep::RootSweep(const ChainModel& model, const ClosedFormChain& chain, bool
                       chain.loop ? 0.0 : kFaint * vague_ * vague_,
                       std::max(kPrecision, kShare * chain.deviation), kernels)),
       polynomial_(kernels) {
+  are_answers_ = is_nominal && chain.deviation <= kShare * tolerance;
   chain_.use_limits(model);
   chain_.form.error = tolerance;
   for (int lane = 0; lane < lanes::kWidth; ++lane) pack_.sign[2][lane] = 1;
@@ -175,11 +175,11 @@ void RootSweep::take(const Pose& Y, const RootFinder::Root& root, int lane) {
   const bool is_sure = is_closed && !is_free && !only_just_is;
   const bool is_far = beyond > std::max(slack, kFarBeyond);
   if (is_far && is_sure) return;
-  if (size_ == kMost) {
+  if (size_ == kRoom) {
     certain_ = false;
     return;
   }
-  double* q = q_[static_cast<std::size_t>(size_)].data();
+  double* q = next().data();
   chain_.copy_joints(pack_.q, lane, q);
   if (beyond > 0) {
     const Pose T_base_tcp = to_pose(model_.kernel.base) * Y * to_pose(model_.kernel.tip);

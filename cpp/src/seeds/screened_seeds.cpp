@@ -41,40 +41,34 @@ void SeedScreen::copy(int place, double* q) const {
 }
 
 ScreenedSeeds::ScreenedSeeds(LaneQuery& query, SeedScreen& screen, const Pose& Y,
-                             const JointSpace& joints, std::uint64_t seed, Work& work,
-                             StageClock& clock)
-    : query_(query),
+                             const JointSpace& joints, std::uint64_t seed, Work& work)
+    : RowSeeds(work, &Work::take_counted),
+      query_(query),
       screen_(screen),
       joints_(joints),
-      random_(seed),
-      work_(work),
-      clock_(clock),
-      blocks_(query.measure_blocks()) {
+      random_(seed) {
+  query_.begin_blocks();
   screen_.begin(Y);
 }
 
 bool ScreenedSeeds::next_stage() {
-  clock_.lap(&StageTimes::iterate);
+  work_.lap(&StageTimes::iterate);
   if (!work_.has_left()) return false;
-  next_ = 0;
-  count_ = 0;
+  near_count_ = 0;
   for (int pack = 0; pack < kPacks && work_.has_left(); ++pack) screen_one_pack();
-  clock_.lap(&StageTimes::rank);
+  give(near_[0], near_count_, lanes::kMaxJoints, /*are_answers=*/false);
+  work_.lap(&StageTimes::rank);
   return true;
 }
 
 bool ScreenedSeeds::take_block() {
-  if (next_block_ == blocks_) return false;
+  if (left_ == 0) left_ = query_.next_blocks(kBlocksAtOnce);
+  if (left_ == 0) return false;
   // Worse seeds of blocks farther away seldom lead anywhere else than the better ones.
-  last_rank_ = next_block_ < query_.near_blocks() ? lanes::kBlock : lanes::kBlock / 2;
+  const std::size_t number = query_.blocks_given() - left_--;
+  last_rank_ = number < query_.near_blocks() ? lanes::kBlock : lanes::kBlock / 2;
   rank_ = 0;
-  const std::size_t at = next_block_ % kBlocksAtOnce;
-  if (at == 0) {
-    const auto count = std::min<std::size_t>(kBlocksAtOnce, blocks_ - next_block_);
-    query_.prepare_blocks(next_block_, count, query_.packs);
-  }
-  block_ = &query_.packs[at];
-  ++next_block_;
+  block_ = &query_.packs[number % kBlocksAtOnce];
   return true;
 }
 
@@ -92,7 +86,7 @@ void ScreenedSeeds::screen_one_pack() {
   work_.iterations += screen_.run();
   for (int place = 0; place < lanes::kBlock; ++place) {
     if ((screen_.near() >> static_cast<unsigned>(place) & 1U) != 0) {
-      screen_.copy(place, near_[count_++]);
+      screen_.copy(place, near_[near_count_++]);
     }
   }
 }

@@ -8,10 +8,10 @@
 #include <cstdint>
 
 #include "base/random.hpp"
-#include "base/work.hpp"
 #include "iksel/options.hpp"
 #include "kinematics/chain_model.hpp"
 #include "seeds/lane_query.hpp"
+#include "seeds/row_seeds.hpp"
 #include "simd/kernels.hpp"
 
 namespace iksel {
@@ -54,21 +54,14 @@ class SeedScreen {
   unsigned near_ = 0;
 };
 
-class ScreenedSeeds {
+class ScreenedSeeds : public RowSeeds {
  public:
   /// Seeds of both kinds count as attempts when they are screened.
   ScreenedSeeds(LaneQuery& query, SeedScreen& screen, const Pose& Y, const JointSpace& joints,
-                std::uint64_t seed, Work& work, StageClock& clock);
+                std::uint64_t seed, Work& work);
 
   /// Screens some.
   bool next_stage();
-
-  template <typename Refiner>
-  bool load(Refiner& refiner, int lane) {
-    if (next_ == count_) return false;
-    refiner.load_seed(lane, near_[next_++]);
-    return true;
-  }
 
  private:
   /// Packs of a stage: what is near of these fills the lanes.
@@ -82,16 +75,12 @@ class ScreenedSeeds {
   SeedScreen& screen_;
   const JointSpace& joints_;
   Random random_;
-  Work& work_;
-  StageClock& clock_;
-  std::size_t blocks_;
-  std::size_t next_block_ = 0;
   const lanes::SeedPack* block_ = nullptr;
-  int rank_ = 0;       ///< of the next seed in the block
-  int last_rank_ = 0;  ///< and how many of it are tried
+  std::size_t left_ = 0;  ///< blocks that the query has made seeds of
+  int rank_ = 0;          ///< of the next seed in the block
+  int last_rank_ = 0;     ///< and how many of it are tried
   double near_[kPacks * lanes::kBlock][lanes::kMaxJoints];
-  int count_ = 0;
-  int next_ = 0;
+  std::size_t near_count_ = 0;
 };
 
 }  // namespace iksel

@@ -21,26 +21,23 @@ class SpreadSeeds {
  public:
   SpreadSeeds(LaneQuery& query, const JointSpace& joints, std::uint64_t seed, const Known& known,
               Work& work)
-      : query_(query),
-        known_(known),
-        work_(work),
-        random_(joints, seed, work, kBlocksAtOnce * lanes::kBlock),
-        blocks_(query.near_blocks()) {
-    query.measure_blocks();
+      : query_(query), joints_(joints), known_(known), work_(work), random_(seed) {
+    query.begin_blocks();
   }
 
   bool next_stage() {
     if (!work_.has_left()) return false;
-    at_random_ = done_ == blocks_;
-    if (at_random_) return random_.next_stage();
+    left_ = kBlocksAtOnce * lanes::kBlock;
+    const std::size_t given = query_.blocks_given();
+    at_random_ = given == query_.near_blocks();
+    if (at_random_) return true;
     // One alone at first where any answer will do: it may have one.
-    const std::size_t most = done_ == 0 && !known_.wants_more() ? 1 : kBlocksAtOnce;
-    const std::size_t count = std::min(most, blocks_ - done_);
-    query_.prepare_blocks(done_, count, query_.packs);
-    done_ += count;
-    query_.queue.reset(query_.packs, static_cast<int>(count));
+    const std::size_t most = given == 0 && !known_.wants_more() ? 1 : kBlocksAtOnce;
+    const auto count =
+        static_cast<int>(query_.next_blocks(std::min(most, query_.near_blocks() - given)));
+    query_.queue.reset(query_.packs, count);
     added_ = 0;
-    left_ = static_cast<int>(count) * lanes::kBlock;
+    left_ = count * lanes::kBlock;
     return true;
   }
 
@@ -54,9 +51,12 @@ class SpreadSeeds {
       return true;
     }
     while (!known_.is_complete()) {
-      if (at_random_) return random_.load(refiner, lane);
       if (left_ == 0 || !work_.take()) return false;
       --left_;
+      if (at_random_) {
+        load_random(joints_, random_, refiner, lane);
+        return true;
+      }
       for (; added_ < known_.known(); ++added_) query_.queue.add_known(known_.solution(added_));
       float distance = 0;
       const int k = query_.queue.pop(distance);
@@ -69,11 +69,10 @@ class SpreadSeeds {
 
  private:
   LaneQuery& query_;
+  const JointSpace& joints_;
   const Known& known_;
   Work& work_;
-  RandomSeeds random_;
-  std::size_t blocks_;
-  std::size_t done_ = 0;
+  Random random_;
   std::size_t added_ = 0;
   int left_ = 0;
   bool at_random_ = false;

@@ -23,10 +23,10 @@ bool Sweep::find_at_samples(const Pose& Y) {
     // Far from each other first, so that an answer is soon found.
     constexpr int kStride = 5;
     static_assert(std::gcd(kStride, kPacks) == 1, "each pack once");
-    const int first = pack * kStride % kPacks * kBranches;
+    const int first = pack * kStride % kPacks * SweptBranches::kCount;
     SweptBranches::Row* rows = &rows_[static_cast<std::size_t>(first)];
     branches_.rate([&](int i) { return places_.value(first + i); }, kNear, rows);
-    for (int i = 0; i < kBranches; ++i) {
+    for (int i = 0; i < SweptBranches::kCount; ++i) {
       if (take_answer(first + i)) return true;
     }
   }
@@ -50,7 +50,7 @@ bool Sweep::find_between(Between where) {
 }
 
 void Sweep::visit_nearest(std::size_t most, FunctionRef<void(const JointVector&)> visit) {
-  JointVector q(SweptBranches::kDof);
+  JointVector q(kCurveJoints);
   for (const LeastPlace& near : nearest_) {
     if (most-- == 0) return;
     branches_.solve_all(places_.value(near.place));
@@ -63,7 +63,7 @@ bool Sweep::take_answer(int place) {
   const SweptBranches::Row& off = rows_[static_cast<std::size_t>(place)];
   if (least_of(off) > 0) return false;
   branches_.solve_all(places_.value(place));
-  for (int branch = 0; branch < kBranches; ++branch) {
+  for (int branch = 0; branch < SweptBranches::kCount; ++branch) {
     if (off[static_cast<std::size_t>(branch)] <= 0 && take(branch, branch)) return true;
   }
   return false;
@@ -89,9 +89,9 @@ void Sweep::add_samples(int first, int stride, std::vector<double>& q,
                         std::vector<Sample>& samples) {
   // Eight places are rated in the time in which two or three are solved.
   const int count = (kSamples - first + stride - 1) / stride;
-  SweptBranches::Row rows[kBranches];
+  SweptBranches::Row rows[SweptBranches::kCount];
   for (int i = 0; i < count; ++i) {
-    const int lane_of_row = i % kBranches;
+    const int lane_of_row = i % SweptBranches::kCount;
     const auto place_of = [&](int k) { return first + stride * std::min(k, count - 1); };
     if (lane_of_row == 0) {
       branches_.rate([&](int k) { return places_.value(place_of(i + k)); }, kNear, rows);
@@ -101,7 +101,7 @@ void Sweep::add_samples(int first, int stride, std::vector<double>& q,
     rows_[static_cast<std::size_t>(place)] = off;
     if (least_of(off) > 0) continue;
     branches_.solve_all(places_.value(place));
-    for (int lane = 0; lane < kBranches; ++lane) {
+    for (int lane = 0; lane < SweptBranches::kCount; ++lane) {
       if (branches_.off(lane) > 0) continue;
       branches_.copy_joints(lane, q_.data());
       q.insert(q.end(), q_.begin(), q_.end());
@@ -115,11 +115,11 @@ void Sweep::add_end(const Sample& inside, bool up, std::vector<double>& q) {
   double from = places_.value(inside.place);
   double to = from + (up ? places_.step : -places_.step);
   for (int round = 0; round < kRounds; ++round) {
-    const double step = (to - from) / (kBranches + 1);
+    const double step = (to - from) / (SweptBranches::kCount + 1);
     const auto value = [&](int lane) { return branches_.clamp(from + step * (lane + 1)); };
     branches_.solve_one(inside.branch, value);
     int count = 0;
-    while (count < kBranches && branches_.off(count) <= 0) ++count;
+    while (count < SweptBranches::kCount && branches_.off(count) <= 0) ++count;
     if (count > 0) {
       branches_.copy_joints(count - 1, q_.data());
       q.insert(q.end(), q_.begin(), q_.end());
@@ -140,14 +140,14 @@ void Sweep::visit_between(FunctionRef<void(const double* q, int branch)> visit) 
 
 void Sweep::add_beside(const double* from, int branch, double part, std::vector<double>& q) {
   // Without the middle and the ends, which are samples.
-  constexpr double kHalf = (kBranches + 2) / 2.0;
+  constexpr double kHalf = (SweptBranches::kCount + 2) / 2.0;
   const double middle = from[branches_.joint()];
   const double spacing = part * kSpacingBeside * places_.step;
   branches_.solve_one(branch, [&](int lane) {
-    const int place = lane < kBranches / 2 ? lane + 1 : lane + 2;
+    const int place = lane < SweptBranches::kCount / 2 ? lane + 1 : lane + 2;
     return branches_.clamp(middle + spacing * (place - kHalf));
   });
-  for (int lane = 0; lane < kBranches; ++lane) {
+  for (int lane = 0; lane < SweptBranches::kCount; ++lane) {
     if (branches_.off(lane) > 0) continue;
     branches_.copy_joints(lane, q_.data());
     q.insert(q.end(), q_.begin(), q_.end());
@@ -175,7 +175,7 @@ bool is_second_of_merged(int branch) {
 
 /// From the middle of a small closed curve, where Newton's steps lead nowhere: the arm is singular
 /// there. In a direction that is none of the arm's.
-void step_aside(std::array<double, SweptBranches::kDof>& q) {
+void step_aside(std::array<double, kCurveJoints>& q) {
   constexpr double kAside = 3e-3;  // [rad or m]; of loops from 1e-3 on
   for (std::size_t j = 0; j < q.size(); ++j) q[j] += kAside * std::cos(static_cast<double>(j));
 }

@@ -75,8 +75,7 @@ class Sweep {
   [[nodiscard]] bool is_none() const { return miss_.rules_out_answers(least_); }
 
  private:
-  static constexpr int kBranches = SweptBranches::kCount;
-  static constexpr int kPacks = kSamples / kBranches;
+  static constexpr int kPacks = kSamples / SweptBranches::kCount;
   /// Branches that are followed between samples, at most. With 16, of which merged ones take four
   /// each or eight, one of 4.8 million reachable targets was lost.
   static constexpr std::size_t kFollowed = 32;
@@ -112,7 +111,7 @@ class Sweep {
   LeastPlaces<kFollowed> nearest_;
   Least<SweptJoints, kFollowed> close_;
   double least_ = 0;  ///< how far the nearest branch was from being an answer
-  std::array<double, SweptBranches::kDof> q_{};
+  std::array<double, kCurveJoints> q_{};
   int branch_ = 0;
 };
 
@@ -120,8 +119,7 @@ class Sweep {
 /// between samples, and then what comes close to one.
 class SweptSeeds {
  public:
-  SweptSeeds(Sweep& sweep, const Pose& Y, Work& work, StageClock& clock)
-      : sweep_(sweep), Y_(Y), work_(work), clock_(clock) {}
+  SweptSeeds(Sweep& sweep, const Pose& Y, Work& work) : sweep_(sweep), Y_(Y), work_(work) {}
 
   bool next_stage() {
     if (!work_.has_left() || found_ || next_part_ == Part::none) return false;
@@ -129,7 +127,7 @@ class SweptSeeds {
     next_part_ = Part::none;
     if (part_ == Part::samples) found_ = sweep_.find_at_samples(Y_);
     if (part_ == Part::between) found_ = sweep_.find_between(where_);
-    clock_.lap(&StageTimes::query);
+    work_.lap(&StageTimes::query);
     return true;
   }
 
@@ -161,7 +159,6 @@ class SweptSeeds {
   Sweep& sweep_;
   const Pose& Y_;
   Work& work_;
-  StageClock& clock_;
   Part part_ = Part::none;
   Part next_part_ = Part::samples;
   Sweep::Between where_ = Sweep::Between::all;

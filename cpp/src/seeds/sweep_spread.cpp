@@ -9,12 +9,6 @@
 #include "seeds/sweep.hpp"
 
 namespace iksel {
-namespace {
-
-constexpr std::size_t kDof = SweptBranches::kDof;
-
-}  // namespace
-
 class Sweep::Spread {
  public:
   Spread(Sweep& sweep, const JointSpace& joints, std::vector<double>& q)
@@ -26,13 +20,13 @@ class Sweep::Spread {
   int find_runs(int samples) {
     const Places places = sweep_.branches_.places(samples);
     sweep_.places_ = places;
-    for (int i = 0; i < samples; i += kBranches) {
+    for (int i = 0; i < samples; i += SweptBranches::kCount) {
       sweep_.branches_.rate([&](int k) { return places.value(i + k); }, kNear,
                             &sweep_.rows_[static_cast<std::size_t>(i)]);
     }
     runs_.clear();
     int inside = 0;
-    for (int branch = 0; branch < kBranches; ++branch) {
+    for (int branch = 0; branch < SweptBranches::kCount; ++branch) {
       bool goes_on = false;
       for (int i = 0; i < samples; ++i) {
         const SweptBranches::Row& row = sweep_.rows_[static_cast<std::size_t>(i)];
@@ -63,9 +57,10 @@ class Sweep::Spread {
   void add_between() {
     const Places& places = sweep_.places_;
     sweep_.visit_between([&](const double* q, int branch) {
-      q_.insert(q_.end(), q, q + kDof);
+      q_.insert(q_.end(), q, q + kCurveJoints);
       const double place = (q[sweep_.joint()] - places.lower) / places.step;
-      add(branch, kBranches, [&](int i) { return place - 0.5 + i / (kBranches - 1.0); });
+      add(branch, SweptBranches::kCount,
+          [&](int i) { return place - 0.5 + i / (SweptBranches::kCount - 1.0); });
     });
   }
 
@@ -77,8 +72,8 @@ class Sweep::Spread {
     for (int round = 0; round < kRounds && !gaps_.empty(); ++round) {
       for (const Gap& gap : std::exchange(gaps_, {})) {
         // With its ends, from which the next may still be far.
-        const double step = (gap.to - gap.from) / (kBranches - 1);
-        add(gap.branch, kBranches, [&](int i) { return gap.from + step * i; });
+        const double step = (gap.to - gap.from) / (SweptBranches::kCount - 1);
+        add(gap.branch, SweptBranches::kCount, [&](int i) { return gap.from + step * i; });
       }
       solve_places();
     }
@@ -87,11 +82,11 @@ class Sweep::Spread {
   /// Keeps `count` that are far from each other, and no nearer than `least`.
   void thin_out(std::size_t count, double least) {
     const std::vector<std::size_t> chosen =
-        farthest_first(joints_, q_.data(), q_.size() / kDof, count, least);
+        farthest_first(joints_, q_.data(), q_.size() / kCurveJoints, count, least);
     std::vector<double> kept;
-    kept.reserve(count * kDof);
+    kept.reserve(count * kCurveJoints);
     for (const std::size_t i : chosen) {
-      kept.insert(kept.end(), &q_[i * kDof], &q_[i * kDof] + kDof);
+      kept.insert(kept.end(), &q_[i * kCurveJoints], &q_[i * kCurveJoints] + kCurveJoints);
     }
     q_ = std::move(kept);
   }
@@ -122,10 +117,10 @@ class Sweep::Spread {
   /// Keeps those places that are inside the limits; and what is beside such and far from it as
   /// gaps.
   void solve_places() {
-    std::array<double, kDof> before{};
+    std::array<double, kCurveJoints> before{};
     bool was_inside = false;
-    for (std::size_t i = 0; i < spots_.size(); i += kBranches) {
-      const std::size_t lanes = std::min<std::size_t>(kBranches, spots_.size() - i);
+    for (std::size_t i = 0; i < spots_.size(); i += SweptBranches::kCount) {
+      const std::size_t lanes = std::min<std::size_t>(SweptBranches::kCount, spots_.size() - i);
       const auto spot = [&](int lane) -> const Spot& {
         return spots_[i + std::min(static_cast<std::size_t>(lane), lanes - 1)];
       };
@@ -137,7 +132,7 @@ class Sweep::Spread {
           });
       for (int lane = 0; lane < static_cast<int>(lanes); ++lane) {
         const Spot& here = spot(lane);
-        std::array<double, kDof> q{};
+        std::array<double, kCurveJoints> q{};
         sweep_.branches_.copy_joints(lane, q.data());
         const bool is_inside = sweep_.branches_.off(lane) <= 0;
         if (is_inside) q_.insert(q_.end(), q.begin(), q.end());
@@ -151,8 +146,8 @@ class Sweep::Spread {
     }
     spots_.clear();
   }
-  [[nodiscard]] bool is_wide(const Gap& gap, const std::array<double, kDof>& from,
-                             const std::array<double, kDof>& to) const {
+  [[nodiscard]] bool is_wide(const Gap& gap, const std::array<double, kCurveJoints>& from,
+                             const std::array<double, kCurveJoints>& to) const {
     constexpr double kWide = 0.7;  // [rad or m]
     constexpr double kSteep = 4;   // as against the swept joint
     const double wide = std::max(kWide, kSteep * sweep_.places_.step * (gap.to - gap.from));

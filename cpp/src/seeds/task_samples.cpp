@@ -18,7 +18,7 @@ void TaskSamples::begin(std::size_t neighbours) {
   tried_.clear();
 }
 
-bool TaskSamples::find_next(const Goal& goal, const Pose& allowed) {
+bool TaskSamples::find(const Goal& goal, const Pose& allowed, bool /*is_first*/) {
   const std::size_t count =
       selection_.nearest_seeds(allowed * Pose(model_.tcp_inverse), neighbours_ + tried_.size());
   found_ = count;

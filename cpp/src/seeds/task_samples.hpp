@@ -23,10 +23,9 @@ class TaskSamples {
 
   /// Before a search.
   void begin(std::size_t neighbours);
-  bool find_first(const Goal& goal) { return find_next(goal, goal.nearest_pose()); }
-  bool find_next(const Goal& goal, const Pose& allowed);
+  bool find(const Goal& goal, const Pose& allowed, bool is_first);
   template <typename Refiner>
-  void load_found(int /*rank*/, Refiner& refiner, int lane) const {
+  void load(int /*rank*/, Refiner& refiner, int lane) const {
     refiner.load_seed(lane, selection_.nearest_seed(found_));
   }
 

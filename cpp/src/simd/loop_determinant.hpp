@@ -18,8 +18,7 @@
 
 namespace iksel::lanes {
 
-/// The equations, and the products that both halves have; three more are one half's own.
-inline constexpr int kEquations = 6;
+/// As many products as equations are in both halves; so many more are one half's own.
 inline constexpr int kAlone = 3;
 
 /// So many columns of six equations: the first index is a product's.

@@ -6,6 +6,9 @@
 
 namespace iksel::lanes {
 
+/// What a loop that closes has to satisfy.
+inline constexpr int kEquations = 6;
+
 /// Six joints in the order of the loop, from the one that is swept on: c, d, e, f, a, b. Axes lie
 /// as they do where all angles are zero; lengths are in units of the reach.
 struct LoopForm {
@@ -27,7 +30,7 @@ struct LoopTarget {
   double t[3];     ///< [units]
   /// By what is constant, goes by the cosine of an angle, and by its sine: of c, of d and of e.
   /// equation[c][i][d][e] is of the i-th.
-  double equation[3][6][3][3];
+  double equation[3][kEquations][3][3];
 };
 
 /// a[k] cos(k t) + b[k] sin(k t) for all k, added up.

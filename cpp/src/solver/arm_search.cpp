@@ -68,25 +68,27 @@ Pose ArmSearch::target_of_arm(int tip, const JointVector& q) {
   return of_tip.stem ? compose(of_tip.stem->fk(q).inverse(), target) : target;
 }
 
-Result ArmSearch::solve_quickly(const Solver& solver, const Pose& target,
-                                const SolveRequest& request) {
-  const Solver::Impl& of = *solver.impl_;
-  const TaskSpace task = of.task_of(request);
-  const WorkspacePool::Lease lease(of.workspaces);
-  return find_first(of.options, Goal(of.model(), task, target), request, lease.get(), nullptr,
-                    Effort::quick);
+Result ArmSearch::solve(const Solver& solver, const ChainPart& part, const Pose& target,
+                        const SolveRequest& request, Effort effort, JointVector& q) {
+  const auto solve_quickly = [&] {
+    const Solver::Impl& of = *solver.impl_;
+    const TaskSpace task = of.task_of(request);
+    const WorkspacePool::Lease lease(of.workspaces);
+    return find_first(of.options, Goal(of.model(), task, target), request, lease.get(), nullptr,
+                      effort);
+  };
+  const Result result = effort == Effort::quick ? solve_quickly() : solver.solve(target, request);
+  if (has_joints(result.status)) put(result.q, part.joints, q);
+  return result;
 }
 
 bool ArmSearch::solve_arm(int tip, Effort effort, JointVector& q) {
   const auto i = static_cast<std::size_t>(tip);
-  const Solver& arm = *solvers_[i].arm;
-  const Pose target = target_of_arm(tip, q);
   SolveRequest bare;
   bare.task = of_arm_[i].task;
-  const Result result =
-      effort == Effort::quick ? solve_quickly(arm, target, bare) : arm.solve(target, of_arm_[i]);
-  if (result.success()) put(result.q, goal_.model().tip(tip).arm->joints, q);
-  return result.success();
+  return solve(*solvers_[i].arm, *goal_.model().tip(tip).arm, target_of_arm(tip, q),
+               effort == Effort::quick ? bare : of_arm_[i], effort, q)
+      .success();
 }
 
 std::vector<JointVector> ArmSearch::solve_arm(int tip, const JointVector& q, int most) {
@@ -104,25 +106,20 @@ std::vector<JointVector> ArmSearch::solve_arm(int tip, const JointVector& q, int
 void ArmSearch::bring_closest(int tip, JointVector& q) {
   const auto i = static_cast<std::size_t>(tip);
   if (!solvers_[i].arm) return;
-  of_arm_[i].closest.emplace();
-  const Result result = solvers_[i].arm->solve(target_of_arm(tip, q), of_arm_[i]);
-  of_arm_[i].closest.reset();
-  if (has_joints(result.status)) put(result.q, goal_.model().tip(tip).arm->joints, q);
+  SolveRequest request = of_arm_[i];
+  request.closest.emplace();
+  solve(*solvers_[i].arm, *goal_.model().tip(tip).arm, target_of_arm(tip, q), request, Effort::full,
+        q);
 }
 
 Result ArmSearch::solve_chain(int tip, Effort effort, bool from_here, JointVector& q) {
-  const Solver& solver = solvers_[static_cast<std::size_t>(tip)].chain;
   const ChainPart& chain = goal_.model().tip(tip).chain;
   SolveRequest request;
   request.task = goal_.task(tip).task();
   if (from_here) request.seeds.push_back(picked(q, chain.joints));
-  const Pose target = goal_.target_at(tip, q);
-  Result result = effort == Effort::quick ? solve_quickly(solver, target, request)
-                                          : solver.solve(target, request);
-  if (result.success()) {
-    put(result.q, chain.joints, q);
-    q = goal_.model().joints.clamp(q);
-  }
+  const Result result = solve(solvers_[static_cast<std::size_t>(tip)].chain, chain,
+                              goal_.target_at(tip, q), request, effort, q);
+  if (result.success()) q = goal_.model().joints.clamp(q);
   return result;
 }
 

@@ -47,9 +47,10 @@ class ArmSearch {
   Result solve_chain(int tip, Effort effort, bool from_here, JointVector& q);
 
  private:
-  /// A solver's first answer by little work; of the request its task and seeds are read.
-  [[nodiscard]] static Result solve_quickly(const Solver& solver, const Pose& target,
-                                            const SolveRequest& request);
+  /// What a part's solver says; q gets the part's joints, if it says any. With little effort its
+  /// task and seeds are read of the request.
+  static Result solve(const Solver& solver, const ChainPart& part, const Pose& target,
+                      const SolveRequest& request, Effort effort, JointVector& q);
   /// Whether its task bounds axes of the frame in which its target is.
   [[nodiscard]] bool is_along_frame(int tip) const;
   /// The target as the arm's base sees it.

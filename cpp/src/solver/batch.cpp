@@ -4,14 +4,16 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <numeric>
 #include <string>
+#include <utility>
 
 #include "base/message_text.hpp"
 #include "base/parallel.hpp"
 #include "goal/screen.hpp"
 #include "iksel/error.hpp"
 #include "search/batch_stream.hpp"
-#include "seeds/leaf_lanes.hpp"
+#include "seeds/leaf_seeds.hpp"
 #include "solver/batch_targets.hpp"
 #include "solver/solver_impl.hpp"
 #include "solver/tips_search.hpp"
@@ -86,15 +88,16 @@ class Batch {
   }
 
  private:
-  static constexpr std::size_t kMost = TargetList::kMost;
+  /// Targets of a part at most.
+  static constexpr std::size_t kMost = 256;
 
   /// For a request that asks for nothing: the answer for a target does not depend on the others.
   template <typename Tell>
   void solve_plain(std::size_t first, std::size_t last, Workspace& workspace,
                    const Tell& tell) const {
-    TargetList left;
-    for (std::size_t i = first; i < last; ++i) left.add(i);
-    if (workspace.lanes) left = solve_in_lanes(left, *workspace.lanes, tell);
+    TargetList left(last - first);
+    std::iota(left.begin(), left.end(), first);
+    if (workspace.lanes) left = solve_in_lanes(std::move(left), *workspace.lanes, tell);
     const SolveRequest none;
     for (const std::size_t i : left) {
       const Pose& target = target_(i);
@@ -105,10 +108,8 @@ class Batch {
 
   /// In closed form where there is one; of six joints nothing is left then but what is in doubt.
   template <typename Tell>
-  TargetList solve_in_lanes(const TargetList& targets, Workspace::InLanes& lanes,
-                            const Tell& tell) const {
+  TargetList solve_in_lanes(TargetList left, Workspace::InLanes& lanes, const Tell& tell) const {
     const TaskSpace& task = solver_.task;
-    TargetList left = targets;
     if (lanes.branch_lanes && task.is_full_pose()) {
       BranchLanes& branches = *lanes.branch_lanes;
       left = stream(left, lanes.query, branches, branches, tell);

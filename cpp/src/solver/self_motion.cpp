@@ -130,7 +130,7 @@ SelfMotion Solver::Impl::self_motion(const Pose& target, double spacing,
   std::vector<Curve::Joints> points;
   for (const auto& arc : arcs) points.insert(points.end(), arc.q.begin(), arc.q.end());
   Work work(options.max_attempts);
-  RowSeeds seeds(points.empty() ? nullptr : points[0].data(), points.size(), SweptBranches::kDof,
+  RowSeeds seeds(points.empty() ? nullptr : points[0].data(), points.size(), kCurveJoints,
                  /*are_answers=*/true, work);
   const RowAnswers answers =
       refine_rows(seeds, model().joints, goal, Y, kNearAnswer, lanes.refiner, work);

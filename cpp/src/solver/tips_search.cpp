@@ -4,11 +4,10 @@
 #include <algorithm>
 
 #include "base/low_discrepancy.hpp"
+#include "refine/self_motion.hpp"
 #include "search/first_answer.hpp"
-#include "seeds/given_seeds.hpp"
-#include "seeds/nearby_seeds.hpp"
-#include "seeds/seed_sequence.hpp"
-#include "solver/tips_refiner.hpp"
+#include "search/search_parts.hpp"
+#include "seeds/random_seeds.hpp"
 #include "solver/tips_seeds.hpp"
 
 namespace iksel {
@@ -22,6 +21,41 @@ constexpr int kArmAttempts = 64;
 constexpr int kNearbySeeds = 128;
 /// Iterations of a seed while little work is done.
 constexpr int kQuickIterations = 16;
+
+/// All joints of several chains brought to all targets at once: the errors of all tips are rows of
+/// one goal. One seed at a time; the interface is that of search.hpp.
+class TipsRefiner {
+ public:
+  /// `goal` must outlive this.
+  TipsRefiner(const Goal& goal, int max_iterations)
+      : goal_(goal), max_iterations_(max_iterations) {}
+
+  [[nodiscard]] int width() const { return 1; }
+  void load_seed(int /*lane*/, const double* q) {
+    q_ = Eigen::Map<const Eigen::VectorXd>(q, goal_.joints().dof());
+    // Each chain was solved without what it shares with others.
+    if (!goal_.joints().sums.empty()) q_ = goal_.joints().clamp(q_);
+  }
+  void load_answer(int lane, const double* q) { load_seed(lane, q); }
+  /// An attempt from beginning to end. Returns the steps.
+  int advance(unsigned /*busy*/) {
+    int steps = 0;
+    has_arrived_ = converge(goal_, max_iterations_, /*aim=*/1, /*wraps=*/true, q_, steps);
+    return steps;
+  }
+  [[nodiscard]] bool has_arrived(int /*lane*/) const { return has_arrived_; }
+  [[nodiscard]] bool is_spent(int /*lane*/) const { return true; }
+  static bool stays(int /*lane*/) { return false; }
+  [[nodiscard]] bool is_to_be_looked_at(int /*lane*/) const { return false; }
+  [[nodiscard]] const JointVector& at(int /*lane*/) const { return q_; }
+  [[nodiscard]] const JointVector& q(int /*lane*/) const { return q_; }
+
+ private:
+  const Goal& goal_;
+  int max_iterations_;
+  JointVector q_;
+  bool has_arrived_ = false;
+};
 
 }  // namespace
 
@@ -51,38 +85,38 @@ Proof TipsSearch::search_for(Answers& answers, const Collector* collector,
     return Proof::reach;
   }
   ArmSearch arms(*goal.tips(), solvers_, request, options_.seed);
-  TipsRefiner quick_refiner(goal, std::min(options_.max_iterations, kQuickIterations));
   TipsRefiner refiner(goal, options_.max_iterations);
   const auto should_continue = [&] { return answers.should_continue(); };
-  NearSeed near(request.near ? &*request.near : nullptr, work);
-  GivenSeeds given(workspace.given, goal, request.seeds, options_.max_attempts, 1, should_continue,
-                   work);
-  SeedSequence given_ones(2, near, given);
-  if (search(refiner, given_ones, answers, work) || !request.database_seeds) return Proof::none;
+  const SearchParts<Answers> parts{options_, workspace, answers};
+  RowSeeds near = parts.near_seed();
+  GivenSeeds given = parts.given_seeds(1, should_continue);
+  if (parts.run(refiner, near, given) || !request.database_seeds) return Proof::none;
   const bool wants_nearest = collector != nullptr && collector->ranks_by_move();
   // Where the nearest is wanted, one is enough to look around.
   const auto is_enough = [&] { return wants_nearest && collector->has_any(); };
-  ArmSeeds quickly_behind_shared(goal, arms, steps_, Effort::quick, collector, work);
-  if (search(quick_refiner, quickly_behind_shared, answers, work)) return Proof::none;
   const auto unreachable = [&](int tip, const Result& alone) {
     answers.put_unreachable(tip, alone.status);
     return alone.proof;
   };
-  ChainSeeds quickly_of_chains(*goal.tips(), arms, Effort::quick, options_.seed, work, unreachable,
-                               is_enough);
-  if (search(quick_refiner, quickly_of_chains, answers, work)) return Proof::none;
-  ArmSeeds behind_shared(goal, arms, steps_, Effort::full, collector, work);
-  if (!is_enough() && search(refiner, behind_shared, answers, work)) return Proof::none;
-  ChainSeeds of_chains(*goal.tips(), arms, Effort::full, options_.seed, work, unreachable,
-                       is_enough);
-  if (search(refiner, of_chains, answers, work)) return Proof::none;
+  Proof proof = Proof::none;
+  for (const Effort effort : {Effort::quick, Effort::full}) {
+    const bool is_quick = effort == Effort::quick;
+    const int most = options_.max_iterations;
+    TipsRefiner steps(goal, is_quick ? std::min(most, kQuickIterations) : most);
+    ArmSeeds behind_shared(goal, arms, steps_, effort, collector, work);
+    if (is_quick || !is_enough()) {
+      if (search(steps, behind_shared, answers, work)) return Proof::none;
+    }
+    ChainSeeds of_chains(*goal.tips(), arms, effort, options_.seed, work, unreachable, is_enough);
+    if (search(steps, of_chains, answers, work)) return Proof::none;
+    proof = of_chains.proof();
+  }
   if (is_enough()) {
     // Between the values of the shared joints others are nearer at times.
-    NearbySeeds nearby(goal.joints(), collector->nearest_to().from, options_.seed, work,
-                       kNearbySeeds);
+    NearbySeeds nearby(collector->nearest_to().from, options_.seed, work, kNearbySeeds);
     search(refiner, nearby, answers, work);
   }
-  return of_chains.proof();
+  return proof;
 }
 
 Result TipsSearch::find_first(const Goal& goal, const SolveRequest& request,

@@ -201,8 +201,9 @@ bool ChainSeeds::next_stage() {
     proof_ = unreachable_(lead, of_chain);
     return false;
   }
-  is_loaded_ = of_chain.success() || !is_quick;
-  if (is_loaded_) bring_others(lead);
+  const bool is_of_use = of_chain.success() || !is_quick;
+  if (is_of_use) bring_others(lead);
+  give(q_.data(), is_of_use ? 1 : 0, 0, /*are_answers=*/false);
   return true;
 }
 

@@ -7,9 +7,9 @@
 
 #include "base/constants.hpp"
 #include "base/function_ref.hpp"
-#include "base/work.hpp"
 #include "search/collector.hpp"
 #include "search/first_answer.hpp"
+#include "seeds/row_seeds.hpp"
 #include "solver/arm_search.hpp"
 
 namespace iksel {
@@ -97,18 +97,18 @@ class ArmSeeds {
 /// from: of 84,000 reachable targets of seven pairs of arms none is lost either way.) With little
 /// effort they are a few, from chains at random, and arms that are not solved at once are at random
 /// too.
-class ChainSeeds {
+class ChainSeeds : public RowSeeds {
  public:
   /// Told about a chain that cannot be solved by itself; gives the proof of that.
   using Unreachable = FunctionRef<Proof(int tip, const Result& alone)>;
   /// No more stages where `is_enough`. All must outlive this.
   ChainSeeds(const TipsGoal& goal, ArmSearch& arms, Effort effort, std::uint64_t seed, Work& work,
              const Unreachable& unreachable, const FunctionRef<bool()>& is_enough)
-      : goal_(goal),
+      : RowSeeds(work, &Work::take_counted),
+        goal_(goal),
         arms_(arms),
         effort_(effort),
         random_(seed),
-        work_(work),
         unreachable_(unreachable),
         is_enough_(is_enough) {}
 
@@ -116,13 +116,6 @@ class ChainSeeds {
   [[nodiscard]] Proof proof() const { return proof_; }
 
   bool next_stage();
-  template <typename Refiner>
-  bool load(Refiner& refiner, int lane) {
-    if (!is_loaded_) return false;
-    is_loaded_ = false;
-    refiner.load_seed(lane, q_.data());
-    return true;
-  }
 
  private:
   /// Brings the other tips near behind a chain that was solved.
@@ -132,13 +125,11 @@ class ChainSeeds {
   ArmSearch& arms_;
   Effort effort_;
   Random random_;
-  Work& work_;
   Unreachable unreachable_;
   FunctionRef<bool()> is_enough_;
   Proof proof_ = Proof::none;
   int index_ = 0;
   JointVector q_;
-  bool is_loaded_ = false;
 };
 
 }  // namespace iksel

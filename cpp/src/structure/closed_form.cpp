@@ -18,9 +18,7 @@ namespace {
 using Eigen::Vector3d;
 using lanes::Closure;
 
-constexpr int kSix = 6;
-/// How far an axis that is locked may be off zero without being outside: what rounding leaves
-/// [rad].
+/// How far a locked axis may be off zero without being outside: what rounding leaves [rad].
 constexpr double kLocked = 1e-9;
 
 /// x . R(k, t) y.
@@ -46,7 +44,7 @@ lanes::ClosedForm make_form(Closure closure, const ScrewAxes& axes, double unit)
   const auto side_of = [&](std::size_t j) { return h[j].dot(h[1]) < 0 ? -1.0 : 1.0; };
   lanes::ClosedForm form{};
   form.closure = closure;
-  for (std::size_t j = 0; j < kSix; ++j) copy_vector(h[j], form.h[j]);
+  for (std::size_t j = 0; j < kPoseJoints; ++j) copy_vector(h[j], form.h[j]);
   for (std::size_t j = 0; j < 5; ++j) copy_vector(way(j), form.p[j]);
   const Vector3d e1 = h[5].unitOrthogonal();
   copy_vector(e1, form.basis[0]);
@@ -109,7 +107,7 @@ void ClosedFormChain::set_target(const Pose& Y, int lane, lanes::BranchPack& pac
 
 void ClosedFormChain::copy_joints(const double (&of_six)[6][lanes::kWidth], int lane,
                                   double* q) const {
-  for (int i = 0; i < kSix; ++i) {
+  for (int i = 0; i < kPoseJoints; ++i) {
     if (joints[i] < dof) q[joints[i]] = of_six[i][lane];
   }
 }
@@ -123,7 +121,7 @@ lanes::BranchPack all_branches() {
 }
 
 void ClosedFormChain::use_limits(const ChainModel& model) {
-  for (int i = 0; i < kSix; ++i) {
+  for (int i = 0; i < kPoseJoints; ++i) {
     const int j = joints[i];
     if (j >= dof || turns_freely(j)) {
       form.offset[i] = 0;
@@ -151,11 +149,12 @@ void ClosedFormChain::use_sums(const ChainModel& model) {
     of->upper[of->rows++] = sum.upper / sum.size;
   }
   of->images = static_cast<int>(limits.images.size());
-  for (int i = 0; i <= kSix; ++i) {
-    const int j = i < kSix ? joints[i] : (form.is_held ? held : dof);
+  for (int i = 0; i <= kPoseJoints; ++i) {
+    const int j = i < kPoseJoints ? joints[i] : (form.is_held ? held : dof);
     if (j >= dof) continue;
     // What the held angle is more than its joint's value.
-    const double offset = i < kSix ? 0 : model.kernel.joints[static_cast<std::size_t>(j)].offset;
+    const double offset =
+        i < kPoseJoints ? 0 : model.kernel.joints[static_cast<std::size_t>(j)].offset;
     for (std::size_t r = 0; r < limits.sums.size(); ++r) {
       of->coefficient[r][i] = limits.sums[r].c[j] / limits.sums[r].size;
       of->lower[r] += of->coefficient[r][i] * offset;
@@ -201,7 +200,7 @@ std::optional<ClosedFormChain> look_from(const ChainModel& model, const Complete
   ScrewAxes axes = reversed ? completed.axes.reversed() : completed.axes;
   ClosedFormChain chain;
   const int count = static_cast<int>(axes.h.size());
-  const int before = count - kSix;
+  const int before = count - kPoseJoints;
   const auto joint = [&](int i) { return reversed ? count - 1 - i : i; };
   const Vector3d held_axis = axes.h.front();
   const Vector3d held_point = axes.p.front();
@@ -219,7 +218,7 @@ std::optional<ClosedFormChain> look_from(const ChainModel& model, const Complete
   const bool has_residual = sought == Sought::residual;
   const auto closure = has_residual ? pattern.find_sweep() : pattern.find_closure();
   if (!closure) return std::nullopt;
-  for (int i = 0; i < kSix; ++i) chain.joints[i] = joint(before + i);
+  for (int i = 0; i < kPoseJoints; ++i) chain.joints[i] = joint(before + i);
   if (has_residual) {
     const bool is_4 = *closure == Closure::sweep_4;
     chain.held = chain.joints[is_4 ? 3 : 5];
@@ -259,7 +258,7 @@ bool can_be_closed(const ChainModel& model) {
   return is_simple(model) &&
          std::count_if(joints.begin(), joints.end(), [](const KernelJoint& joint) {
            return joint.prismatic;
-         }) <= (model.dof == kSix + 1 ? 1 : 0);
+         }) <= (model.dof == kCurveJoints ? 1 : 0);
 }
 
 }  // namespace
@@ -271,13 +270,14 @@ std::optional<ClosedFormChain> find_closed_form(const ChainModel& model, const T
         look_at(model, completed, Sought::closure, kStructureTolerance, task.is_full_pose());
     if (chain) return chain;
   }
-  if (!task.is_full_pose() || (model.dof != kSix && model.dof != kSix + 1)) return std::nullopt;
+  const bool is_six = model.dof == kPoseJoints;
+  if (!task.is_full_pose() || !(is_six || model.dof == kCurveJoints)) return std::nullopt;
   return look_at(model, {ScrewAxes::of(model)}, Sought::closure,
-                 model.dof == kSix ? kAlmostTolerance : kSweptTolerance);
+                 is_six ? kAlmostTolerance : kSweptTolerance);
 }
 
 std::optional<ClosedFormChain> find_residual(const ChainModel& model) {
-  if (model.dof != kSix || !can_be_closed(model) || is_singular_everywhere(model)) {
+  if (model.dof != kPoseJoints || !can_be_closed(model) || is_singular_everywhere(model)) {
     return std::nullopt;
   }
   const CompletedAxes axes{ScrewAxes::of(model)};

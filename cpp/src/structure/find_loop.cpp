@@ -12,12 +12,10 @@
 namespace iksel {
 namespace {
 
-constexpr int kJointsOfLoop = 6;
-
 /// The last joint's frame at these angles.
-Pose end_at(const ScrewAxes& axes, const double (&angles)[kJointsOfLoop]) {
+Pose end_at(const ScrewAxes& axes, const double (&angles)[kPoseJoints]) {
   Pose pose = axes.end;
-  for (std::size_t j = kJointsOfLoop; j-- > 0;) {
+  for (std::size_t j = kPoseJoints; j-- > 0;) {
     const Eigen::AngleAxisd turn(angles[j], axes.h[j]);
     pose = Eigen::Translation3d(axes.p[j]) * turn * Eigen::Translation3d(-axes.p[j]) * pose;
   }
@@ -36,7 +34,7 @@ double tell_apart(const LoopEquations& loop, const ScrewAxes& axes, int swept) {
   Random random(kSeed);
   double sum = 0;
   for (int i = 0; i < kSolutions; ++i) {
-    double angles[kJointsOfLoop];
+    double angles[kPoseJoints];
     for (double& angle : angles) angle = random.uniform(-kPi, kPi);
     lanes::LoopTarget target;
     loop.set_target(end_at(axes, angles), target);
@@ -64,11 +62,11 @@ std::optional<ClosedFormChain> find_loop(const ChainModel& model) {
       if (!(apart > best)) continue;
       best = apart;
       ClosedFormChain& chain = found.emplace();
-      for (int i = 0; i < kJointsOfLoop; ++i) {
-        const int joint = (swept + i) % kJointsOfLoop;
-        chain.joints[i] = reversed ? kJointsOfLoop - 1 - joint : joint;
+      for (int i = 0; i < kPoseJoints; ++i) {
+        const int joint = (swept + i) % kPoseJoints;
+        chain.joints[i] = reversed ? kPoseJoints - 1 - joint : joint;
       }
-      chain.dof = kJointsOfLoop;
+      chain.dof = kPoseJoints;
       chain.held = chain.joints[0];
       chain.reversed = reversed;
       chain.form.closure = lanes::Closure::loop;

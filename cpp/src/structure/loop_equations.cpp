@@ -15,7 +15,6 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr int kAngles = 3;
-constexpr int kEquations = 6;
 constexpr int kInvariant = 14;
 
 double node(int i) { return kTwoPi / kAngles * i; }
@@ -87,10 +86,9 @@ lanes::LoopForm::Rest rest_of(const AxisPattern& pattern, std::size_t first) {
 LoopEquations::LoopEquations(const ScrewAxes& axes, double unit, int swept)
     : unit_(unit), end_(axes.end), kernels_(&lanes::choose_kernels()) {
   end_.translation() /= unit;
-  constexpr int kLoopJoints = 6;
-  form_.before = (kLoopJoints - swept) % kLoopJoints;
-  for (int i = 0; i < kLoopJoints; ++i) {
-    const auto joint = static_cast<std::size_t>((swept + i) % kLoopJoints);
+  form_.before = (kPoseJoints - swept) % kPoseJoints;
+  for (int i = 0; i < kPoseJoints; ++i) {
+    const auto joint = static_cast<std::size_t>((swept + i) % kPoseJoints);
     const Vector3d p = axes.p[joint] / unit;
     for (int k = 0; k < 3; ++k) {
       form_.h[i][k] = axes.h[joint][k];
@@ -98,7 +96,7 @@ LoopEquations::LoopEquations(const ScrewAxes& axes, double unit, int swept)
     }
   }
   // The target does not stand between these.
-  const auto last_three = static_cast<std::size_t>((swept + 3) % kLoopJoints);
+  const auto last_three = static_cast<std::size_t>((swept + 3) % kPoseJoints);
   form_.rest = rest_of(AxisPattern(axes, unit, kStructureTolerance), last_three);
   const Vector3d across = Vector3d(form_.h[3]).unitOrthogonal();
   for (int k = 0; k < 3; ++k) form_.across[k] = across[k];
@@ -108,8 +106,8 @@ LoopEquations::LoopEquations(const ScrewAxes& axes, double unit, int swept)
   for (int k = 0; k < n; ++k) {
     for (int row = 0; row < kCoefficients / n; ++row) {
       // The three angles' harmonics as one number of base 3, and the equation between them.
-      const int of = row / kEquations * n + k;
-      const int place = of / 9 * 9 * kEquations + row % kEquations * 9 + of % 9;
+      const int of = row / lanes::kEquations * n + k;
+      const int place = of / 9 * 9 * lanes::kEquations + row % lanes::kEquations * 9 + of % 9;
       place_[static_cast<std::size_t>(kCoefficients / n * k + row)] =
           static_cast<unsigned char>(place);
     }
@@ -161,26 +159,26 @@ void LoopEquations::make_equations() {
     }
   }
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(products.rightCols<8>(), Eigen::ComputeFullU);
-  const Eigen::Matrix<double, kEquations, kInvariant> left =
-      svd.matrixU().rightCols<kEquations>().transpose();
+  const Eigen::Matrix<double, lanes::kEquations, kInvariant> left =
+      svd.matrixU().rightCols<lanes::kEquations>().transpose();
   const int count = power_of_three(form_.before);
-  const int rows = kEquations * count;
+  const int rows = lanes::kEquations * count;
   equations_.setZero((rows + lanes::kWidth - 1) / lanes::kWidth * lanes::kWidth, kFeatures);
   for (int i = 0; i < count; ++i) {
     Pose turn = Pose::Identity();
     for (int j = form_.before - 1, rest = i; j >= 0; --j, rest /= kAngles) {
       turn = motion(j, node(rest % kAngles)) * turn;
     }
-    const Eigen::Matrix<double, kEquations, kInvariant + 1> at = left * moved(turn);
+    const Eigen::Matrix<double, lanes::kEquations, kInvariant + 1> at = left * moved(turn);
     for (int k = 0; k < count; ++k) {
       double share = 1;
       for (int j = 0, a = i, b = k; j < form_.before; ++j, a /= kAngles, b /= kAngles) {
         share *= F(b % kAngles, a % kAngles);
       }
-      equations_.block<kEquations, kInvariant + 1>(kEquations * k, 0) += share * at;
+      equations_.block<lanes::kEquations, kInvariant + 1>(lanes::kEquations * k, 0) += share * at;
     }
   }
-  equations_.block<kEquations, 1>(0, kInvariant) -= left * products.col(0);
+  equations_.block<lanes::kEquations, 1>(0, kInvariant) -= left * products.col(0);
 }
 
 void LoopEquations::set_target(const Pose& Y, lanes::LoopTarget& target) const {

@@ -21,7 +21,6 @@ LoopPolynomial::LoopPolynomial(const lanes::LaneKernels& kernels) : kernels_(ker
 }
 
 void LoopPolynomial::find(const lanes::LoopTarget& target) {
-  constexpr int kDegree = lanes::TrigonometricPolynomial::kDegree;
   std::array<double, kSamples> values;
   kernels_.find_determinants(target, angles_.data(), kSamples, values.data());
   const Harmonics harmonics = by_harmonics_.lazyProduct(
@@ -31,7 +30,7 @@ void LoopPolynomial::find(const lanes::LoopTarget& target) {
   for (int k = 0; k < kHarmonics; ++k) {
     const double a = harmonics[2 * k];
     const double b = harmonics[2 * k + 1];
-    if (k > kDegree) {
+    if (k > lanes::TrigonometricPolynomial::kDegree) {
       noise_ = std::max({noise_, std::abs(a), std::abs(b)});
       continue;
     }

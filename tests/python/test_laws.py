@@ -16,7 +16,7 @@ import iksel
 
 pytest.importorskip("bench", reason="the benchmarks are in the repository only")
 
-from bench import laws, moves, random_arms
+from bench import laws, moves, random_arms, random_builds
 
 SEED = int(os.environ.get("IKSEL_TEST_SEED", "7"))
 ARMS = 2
@@ -375,6 +375,31 @@ def test_near_is_no_longer_than_along_the_arcs(
     shortest = moves.along_arcs(solver, poses[pose], starts[pose])
     found = solver.solve(poses[pose], near=starts[pose])
     assert found.move < shortest + moves.LONGER
+
+
+@pytest.mark.parametrize(
+    ("number", "move"),
+    [
+        # On an arc of the self-motion that no seed came to.
+        *((20037, 1), (20047, 3), (20050, 4), (20071, 4), (20095, 2)),
+        # A whole turn more of joints about one axis.
+        *((20005, 1), (20016, 1)),
+        # The last of many families.
+        *((20010, 3), (20088, 2)),
+    ],
+)
+def test_near_of_searched_arms_is_no_longer_than_brute_force(
+    number: int, move: int
+) -> None:
+    arm = random_arms.random_arm("right_angles_7", number)
+    seed = number + 2 * random_builds.APART
+    known = arm.robot.random_configurations(move + 1, seed)[move]
+    start = arm.robot.random_configurations(move + 1, seed + random_builds.APART)[move]
+    pose = arm.robot.fk(known)
+    solver = iksel.Solver(arm.robot)
+    found = solver.solve(pose, near=start)
+    least = random_builds.shortest_known(arm, solver, (known, pose), start, seed)
+    assert found.move < least + moves.LONGER
 
 
 def test_near_goes_through_what_swings_where_the_wrist_is_straight() -> None:

@@ -69,6 +69,9 @@ class Collector : public SearchState {
   void look_for_partners(bool look);
   /// Says that all branches in closed form were tried: what is left lies around those in doubt.
   void set_all_branches_tried() { has_all_branches_ = true; }
+  /// Says that the nearest is looked for on families of solutions that are no curves.
+  void set_surfaces() { are_surfaces_ = true; }
+  [[nodiscard]] bool are_surfaces() const { return are_surfaces_; }
   /// Looks for an answer that is reached from `near`: of a family of them, where the arm is
   /// singular, the one beside it need not be among the branches.
   void converge_from_near();
@@ -162,6 +165,7 @@ class Collector : public SearchState {
   bool looks_for_partners_ = true;
   bool signs_cancel_;
   bool has_all_branches_ = false;
+  bool are_surfaces_ = false;
   bool has_converged_ = false;  ///< from `near`
   bool is_settled_ = false;
   bool is_out_of_time_ = false;

@@ -132,9 +132,8 @@ Explored explore_nearest_free(const AllSearch& parts, const Pose& Y) {
 }  // namespace
 
 void explore_families(const AllSearch& parts, const Pose& Y) {
-  /// Of what was found, so many are moved to where they are nearest: with 4, 4 of 100 moves of ten
-  /// joints are longer than by 200 restarts, with 8 2, with 16 none (python -m bench random
-  /// right_angles_7).
+  /// Of what was found, so many are moved to where they are nearest: with 4, 4 of 100 moves of
+  /// synthetic10 are longer than from 200 seeds, with 8 2, with 16 none.
   constexpr std::size_t kDescents = 16;
   Collector& answers = parts.answers;
   if (parts.workspace.lanes->curve && explore_arcs(parts, Y)) {

@@ -53,12 +53,11 @@ Proof search_pose(const AllSearch& parts, NearSeed& near, GivenSeeds& given, con
     if (curve.is_done) return curve.proof;
   }
   if (answers.wants_nearest() && explore_held(parts).is_done) return Proof::none;
+  const bool wants_nearest = parts.goal.is_redundant() && answers.wants_nearest();
+  if (wants_nearest && !lanes.curve) answers.set_surfaces();
   answers.converge_from_near();
   const bool is_satisfied = parts.run(lanes.refiner, near, given) || search_widely(parts);
-  if (!lanes.sweep && parts.goal.is_redundant() && answers.wants_nearest() &&
-      !answers.is_out_of_time()) {
-    explore_families(parts, Y);
-  }
+  if (wants_nearest && !lanes.sweep && !answers.is_out_of_time()) explore_families(parts, Y);
   if (is_satisfied) return Proof::none;
   if (lanes.ends && !has_asked_ends && !answers.has_any()) explore_ends(parts);
   return Proof::none;

@@ -283,6 +283,18 @@ def test_short_arcs_of_rails_are_found(number: int, q: tuple[float, ...]) -> Non
                 -0.154356546904,
             ),
         ),
+        # The residual tells nothing: the joints of such a branch may have any angles.
+        (
+            52084,
+            (
+                0.7637064433931451,
+                -5.015926209793425,
+                2.278218093205349,
+                1.9124404652674851,
+                -0.4780331220848607,
+                1.0718071758191545,
+            ),
+        ),
     ],
 )
 def test_solutions_of_branches_that_only_just_are_are_found(
@@ -292,6 +304,22 @@ def test_solutions_of_branches_that_only_just_are_are_found(
     arm = random_arms.random_arm("offset_wrist", number)
     assert arm.robot.within_limits(np.array(q))
     assert iksel.Solver(arm.robot).solve(arm.robot.fk(np.array(q))).success
+
+
+def test_solutions_where_rounding_hides_many_roots_are_found() -> None:
+    """The determinant of the loop is flat at 0, and by rounding nowhere 0."""
+    arm = random_arms.random_arm("right_angles_6", 53029)
+    q = np.array(
+        [
+            0.4046385227332546,
+            0.218166698040271,
+            -1.734341162523211,
+            0.6691373824119664,
+            -1.560349128744608,
+            -0.779291976307823,
+        ]
+    )
+    assert iksel.Solver(arm.robot).solve(arm.robot.fk(q)).success
 
 
 def test_small_closed_curves_of_an_almost_regular_arm_are_found() -> None:

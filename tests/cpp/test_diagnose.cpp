@@ -185,7 +185,9 @@ TEST(Diagnose, FindsAReasonForWhateverFails) {
       Pose target = robot.fk(q.row(2 * i));
       target.linear() = robot.fk(q.row(2 * i + 1)).linear();
       target.translation() *= 1 + 0.5 * std::sin(i);
-      const iksel::Result result = solver.solve(target);
+      iksel::SolveRequest proving;
+      proving.prove = true;
+      const iksel::Result result = solver.solve(target, proving);
       const Diagnosis diagnosis = solver.diagnose(target);
       EXPECT_EQ(diagnosis.cause == Cause::none, result.success()) << name << ", case " << i;
       EXPECT_EQ(diagnosis.proof, result.proof) << name << ", case " << i;

@@ -91,6 +91,30 @@ TEST(Near, MayLieOutsideTheLimits) {
   }
 }
 
+TEST(Near, OfSevenJointsThatAreSearchedIsNoLongerThanFromAnySeed) {
+  for (const char* name : {"baxter_right", "irb14050"}) {
+    const Solver& solver = iksel_test::solver(name);
+    const Robot& robot = solver.robot();
+    const int n = iksel_test::cases(60);
+    const Eigen::MatrixXd q = robot.random_configurations(n, iksel_test::seed());
+    const Eigen::MatrixXd from = robot.random_configurations(n, iksel_test::seed() + 1);
+    const Eigen::MatrixXd seeds = robot.random_configurations(100, iksel_test::seed() + 2);
+    for (int i = 0; i < n; ++i) {
+      SolveRequest request;
+      request.near = JointVector(from.row(i).transpose());
+      const Pose target = robot.fk(q.row(i));
+      const double move = solver.solve(target, request).move;
+      request.database_seeds = false;
+      for (Eigen::Index k = 0; k < seeds.rows(); ++k) {
+        request.seeds = {seeds.row(k).transpose()};
+        const Result result = solver.solve(target, request);
+        if (!result.success()) continue;
+        ASSERT_LE(move, result.move + 0.01) << name << ", pose " << i;
+      }
+    }
+  }
+}
+
 TEST(Near, RedundantArmHasSlidToALocalMinimum) {
   for (const char* name : {"panda", "iiwa14"}) {
     const Solver& solver = iksel_test::solver(name);

@@ -198,8 +198,8 @@ TEST_P(SweptChains, EveryLevelFindsTheSameRoots) {
       iksel_test::cases(5), 0, [](const Robot& robot, const ClosedFormChain& chain, Dice&) {
         const Pose Y = iksel_test::reduced(robot, robot.fk(JointVector::Constant(6, 0.7)));
         const auto roots = [&] {
-          RootFinder finder(0, kTwoPi, 1e-3, 0, 5e-10, lanes::choose_kernels());
-          finder.find(Residual(chain, Y));
+          RootFinder finder(0, kTwoPi, 1e-3, 5e-10, lanes::choose_kernels());
+          finder.find(Residual(chain, Y), 0);
           return finder;
         };
         const RootFinder reference = roots();

@@ -16,7 +16,7 @@ import iksel
 
 pytest.importorskip("bench", reason="the benchmarks are in the repository only")
 
-from bench import laws, moves, random_arms
+from bench import laws, moves, random_arms, random_builds
 
 SEED = int(os.environ.get("IKSEL_TEST_SEED", "7"))
 ARMS = 2
@@ -283,6 +283,18 @@ def test_short_arcs_of_rails_are_found(number: int, q: tuple[float, ...]) -> Non
                 -0.154356546904,
             ),
         ),
+        # The residual tells nothing: the joints of such a branch may have any angles.
+        (
+            52084,
+            (
+                0.7637064433931451,
+                -5.015926209793425,
+                2.278218093205349,
+                1.9124404652674851,
+                -0.4780331220848607,
+                1.0718071758191545,
+            ),
+        ),
     ],
 )
 def test_solutions_of_branches_that_only_just_are_are_found(
@@ -292,6 +304,22 @@ def test_solutions_of_branches_that_only_just_are_are_found(
     arm = random_arms.random_arm("offset_wrist", number)
     assert arm.robot.within_limits(np.array(q))
     assert iksel.Solver(arm.robot).solve(arm.robot.fk(np.array(q))).success
+
+
+def test_solutions_where_rounding_hides_many_roots_are_found() -> None:
+    """The determinant of the loop is flat at 0, and by rounding nowhere 0."""
+    arm = random_arms.random_arm("right_angles_6", 53029)
+    q = np.array(
+        [
+            0.4046385227332546,
+            0.218166698040271,
+            -1.734341162523211,
+            0.6691373824119664,
+            -1.560349128744608,
+            -0.779291976307823,
+        ]
+    )
+    assert iksel.Solver(arm.robot).solve(arm.robot.fk(q)).success
 
 
 def test_small_closed_curves_of_an_almost_regular_arm_are_found() -> None:
@@ -375,6 +403,31 @@ def test_near_is_no_longer_than_along_the_arcs(
     shortest = moves.along_arcs(solver, poses[pose], starts[pose])
     found = solver.solve(poses[pose], near=starts[pose])
     assert found.move < shortest + moves.LONGER
+
+
+@pytest.mark.parametrize(
+    ("number", "move"),
+    [
+        # On an arc of the self-motion that no seed came to.
+        *((20037, 1), (20047, 3), (20050, 4), (20071, 4), (20095, 2)),
+        # A whole turn more of joints about one axis.
+        *((20005, 1), (20016, 1)),
+        # The last of many families.
+        *((20010, 3), (20088, 2)),
+    ],
+)
+def test_near_of_searched_arms_is_no_longer_than_brute_force(
+    number: int, move: int
+) -> None:
+    arm = random_arms.random_arm("right_angles_7", number)
+    seed = number + 2 * random_builds.APART
+    known = arm.robot.random_configurations(move + 1, seed)[move]
+    start = arm.robot.random_configurations(move + 1, seed + random_builds.APART)[move]
+    pose = arm.robot.fk(known)
+    solver = iksel.Solver(arm.robot)
+    found = solver.solve(pose, near=start)
+    least = random_builds.shortest_known(arm, solver, (known, pose), start, seed)
+    assert found.move < least + moves.LONGER
 
 
 def test_near_goes_through_what_swings_where_the_wrist_is_straight() -> None:

@@ -42,7 +42,8 @@ struct Diagnosis {
   Cause cause = Cause::none;
   /// What is wrong and what to do about it, in a sentence.
   std::string message;
-  /// As Result::proof of a solve: `answer` if there is one, else that there is none.
+  /// As Result::proof of a solve with SolveRequest::prove: `answer` if there is one, else that
+  /// there is none.
   Proof proof = Proof::none;
   /// Seeds that were tried to find the cause; 0 where `proof` is `closed_form`: the branches say
   /// it.

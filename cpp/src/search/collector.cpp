@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "search/collector.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "base/constants.hpp"
@@ -53,6 +54,8 @@ Collector::Collector(const RobotModel& model, const Goal& goal, const SolveReque
       found_(memory.found),
       partners_(memory.partners),
       nearest_to_(find_nearest_to(model.dof, request)),
+      coaxial_(wants_nearest() && memory.coaxial && memory.coaxial->has_any() ? &*memory.coaxial
+                                                                              : nullptr),
       images_near_(wanted_images(model.joints, request, nearest_to_)),
       // What a filter has been asked about stays as it is.
       counts_moves_(nearest_to_ && !screens_answers(request)),
@@ -77,6 +80,7 @@ Verdict Collector::offer(int /*lane*/, JointVector& q) {
   answer.status = Status::solved;
   answer.q = q;
   wrap_near(images_near_, answer);
+  share_turns(answer);
   const bool may_be_nearer = goal_.tips() != nullptr && ranks_by_move() &&
                              move_of(answer.q) < kWorthDescending * least_move();
   if (!keep(answer)) return Verdict::next;
@@ -119,6 +123,22 @@ void Collector::converge_from_near() {
   if (converge(goal_, kStepsToNext, q)) offer(0, q);
 }
 
+void Collector::descend_from(JointVector q) {
+  if (!converge(goal_, kStepsToNext, q)) return;
+  work.iterations += descend_to_near(goal_, nearest_to_->move, nearest_to_->from, q);
+  offer(0, q);
+}
+
+void Collector::descend_from_nearest(std::size_t most) {
+  std::vector<std::pair<double, JointVector>> nearest;
+  for (std::size_t i = 0; i < found_.size(); ++i) nearest.emplace_back(move_to(i), found_.at(i));
+  const std::size_t count = std::min(most, nearest.size());
+  std::partial_sort(nearest.begin(), nearest.begin() + static_cast<std::ptrdiff_t>(count),
+                    nearest.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (std::size_t i = 0; i < count; ++i) descend_from(nearest[i].second);
+  settle(count > 0);
+}
+
 void Collector::wrap_near(const JointVector& near, Result& answer) const {
   const auto length = [&](const JointVector& d) {
     return nearest_to_ ? nearest_to_->move.length(d) : JointMove(model_.dof, request_).length(d);
@@ -146,6 +166,14 @@ void Collector::wrap_near(const JointVector& near, Result& answer) const {
   }
   wrap(0);
   goal_.check(image, answer);
+}
+
+void Collector::share_turns(Result& answer) const {
+  if (coaxial_ == nullptr) return;
+  JointVector q = answer.q;
+  coaxial_->bring_nearest(nearest_to_->from, nearest_to_->move, q);
+  Result shared = answer;
+  if (goal_.check(q, shared)) answer = shared;
 }
 
 void Collector::look_for_partners(bool look) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/function_ref.hpp"
+#include "goal/coaxial_joints.hpp"
 #include "goal/joint_move.hpp"
 #include "goal/screen.hpp"
 #include "search/search.hpp"
@@ -28,6 +29,8 @@ struct CollectorMemory {
   std::vector<JointVector> partners;
   /// Room for that many; there are fewer solutions that come in pairs.
   static constexpr std::size_t kPartners = 64;
+  /// Of one tip.
+  std::optional<CoaxialJoints> coaxial;
 };
 
 class Collector : public SearchState {
@@ -66,9 +69,17 @@ class Collector : public SearchState {
   void look_for_partners(bool look);
   /// Says that all branches in closed form were tried: what is left lies around those in doubt.
   void set_all_branches_tried() { has_all_branches_ = true; }
+  /// Says that the nearest is looked for on families of solutions that are no curves.
+  void set_surfaces() { are_surfaces_ = true; }
+  [[nodiscard]] bool are_surfaces() const { return are_surfaces_; }
   /// Looks for an answer that is reached from `near`: of a family of them, where the arm is
   /// singular, the one beside it need not be among the branches.
   void converge_from_near();
+  /// Looks for the answer beside q to which the move is least.
+  void descend_from(JointVector q);
+  /// The same from those that are nearest of what was found, so many at most; what is nearest then
+  /// is settled.
+  void descend_from_nearest(std::size_t most);
   /// Whether a solution may be one of a family: the arm is redundant, or singular there, or almost.
   [[nodiscard]] bool is_singular(const JointVector& q) const;
   /// Whether more than the first answer is wanted.
@@ -131,6 +142,8 @@ class Collector : public SearchState {
   [[nodiscard]] double move_to(std::size_t i) const { return move_of(found_.at(i)); }
   /// Brings a success to the image nearest to `near`, where it still is one.
   void wrap_near(const JointVector& near, Result& answer) const;
+  /// Brings a success to the nearest that joints about one axis make of it.
+  void share_turns(Result& answer) const;
   void look_for_partner(const Jacobian& J, const JointVector& q);
   /// Adds a success to what was found; false if it was known.
   bool keep(const Result& answer);
@@ -144,6 +157,7 @@ class Collector : public SearchState {
   SolutionSet& found_;
   std::vector<JointVector>& partners_;
   std::optional<NearestTo> nearest_to_;
+  const CoaxialJoints* coaxial_;  ///< null: there are none, or they stay as they are
   /// Solutions are brought to their images nearest to this.
   JointVector images_near_;
   bool counts_moves_;
@@ -151,6 +165,7 @@ class Collector : public SearchState {
   bool looks_for_partners_ = true;
   bool signs_cancel_;
   bool has_all_branches_ = false;
+  bool are_surfaces_ = false;
   bool has_converged_ = false;  ///< from `near`
   bool is_settled_ = false;
   bool is_out_of_time_ = false;

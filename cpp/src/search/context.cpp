@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "options/strategy.hpp"
+#include "structure/known_solutions.hpp"
 
 namespace iksel {
 
@@ -92,6 +93,7 @@ Workspace::Workspace(const ChainModel& model, const ChainModel& nominal, const D
       given(model, scheme, data.options.pinv_cutoff),
       collected(model) {
   minima.reserve(kRandomDescents + 1);
+  collected.coaxial.emplace(model);
   if (solves_in_lanes(model, data, options)) {
     lanes = std::make_unique<InLanes>(model, nominal, data, options, closed_forms, trials, kernels);
   } else {
@@ -119,7 +121,9 @@ WorkspacePool::WorkspacePool(const Robot& robot, const Robot& nominal, const Dat
     held_arms_ = Held::arms_of(robot.model());
   }
   const auto& chain = closed_forms_.pose;
-  if (solves_in_lanes_ && has_arcs()) locked_arms_ = LockedArms::of(robot.model());
+  has_curve_ = solves_in_lanes_ && !chain && robot.dof() == kCurveJoints &&
+               !is_singular_everywhere(robot.model());
+  if (solves_in_lanes_ && (has_arcs() || has_curve_)) locked_arms_ = LockedArms::of(robot.model());
   if (solves_in_lanes_ && chain && !chain->is_completed()) {
     const bool proves =
         chain->held < 0 && &robot.model() == &nominal.model() && !chain->is_almost();
@@ -153,6 +157,7 @@ std::unique_ptr<Workspace> WorkspacePool::make() const {
   for (const Held::Arm& arm : held_arms_) {
     workspace->lanes->held.emplace_back(robot_.model(), arm, kernels_);
   }
+  if (has_curve_) workspace->lanes->curve.emplace(robot_.model(), kernels_);
   if (!locked_arms_.arms.empty()) {
     workspace->lanes->ends.emplace(robot_.model(), locked_arms_, options_.position_tolerance,
                                    options_.rotation_tolerance, kernels_);

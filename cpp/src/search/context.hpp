@@ -68,6 +68,12 @@ struct Workspace {
       curve->find(T_base_tcp, Y, ends ? &*ends : nullptr, *sweep, spacing);
       return curve->arcs();
     }
+    /// The same where no joint is swept: what is known of it are its ends and so many solutions.
+    const std::vector<Curve::Arc>& find_arcs(const Pose& T_base_tcp, const Pose& Y, double spacing,
+                                             const double* known, std::size_t count) {
+      curve->find(T_base_tcp, Y, ends ? &*ends : nullptr, known, count, spacing);
+      return curve->arcs();
+    }
     /// Whether the ends of a self-motion tell in closed form if there is a solution.
     [[nodiscard]] bool has_closed_ends() const { return ends && ends->are_closed(); }
     /// Whether branches enclosed over the range of a joint prove that there is no answer.
@@ -165,6 +171,8 @@ class WorkspacePool {
   LockedArms locked_arms_;
   bool solves_in_lanes_ = false;
   std::optional<BranchTrials> trials_;
+  /// Whether seven joints of which none can be swept have a self-motion that is a curve.
+  bool has_curve_ = false;
   /// As Storage::damaged of the database.
   const std::atomic<bool>* damaged_ = nullptr;
   /// Those that lie idle; a null is a place to put one back. More solves at once than places make

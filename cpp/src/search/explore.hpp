@@ -61,6 +61,10 @@ Explored explore_curve(const FirstSearch& parts, const Pose& Y);
 Explored explore_free_curve(const FirstSearch& parts, const Pose& Y);
 /// For what the Collector wants, if that can be had there: the nearest, or a spread.
 Explored explore_curve(const AllSearch& parts, const Pose& Y);
+/// Of more than six joints of which none can be swept, for the nearest of the families of solutions
+/// that have ends or that what was found belongs to: curves of seven joints, of more dimensions
+/// else.
+void explore_families(const AllSearch& parts, const Pose& Y);
 /// By the ends of its arcs alone.
 template <typename Parts>
 Explored explore_ends(const Parts& parts) {

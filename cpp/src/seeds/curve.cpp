@@ -5,19 +5,47 @@
 #include <cmath>
 
 namespace iksel {
+namespace {
+
+/// Curves are straight enough for longer steps, but limits between would be passed over [rad].
+constexpr double kLongest = 0.25;
+
+}  // namespace
 
 void Curve::find(const Pose& T_base_tcp, const Pose& Y, ArcEnds* ends, Sweep& sweep,
                  double spacing) {
-  /// Curves are straight enough for longer steps, but limits between would be passed over [rad].
-  constexpr double kLongest = 0.25;
-  arcs_.clear();
-  ends_.clear();
+  spacing_ = kInfinity;
   // What the way back to the curve adds to a step is a twentieth of it at most.
-  walker_.set_target(Y, std::min(0.95 * spacing, kLongest));
+  begin(Y, 0.95 * spacing);
   find_samples(Y, sweep);
   if (ends != nullptr) find_ends(T_base_tcp, *ends);
   follow_from_ends();
   follow_from_samples(sweep);
+  finish_arcs(spacing);
+}
+
+void Curve::find(const Pose& T_base_tcp, const Pose& Y, ArcEnds* ends, const double* known,
+                 std::size_t count, double spacing) {
+  spacing_ = spacing;
+  begin(Y, kLongest);
+  if (ends != nullptr) find_ends(T_base_tcp, *ends);
+  follow_from_ends();
+  for (std::size_t i = 0; i < count; ++i) {
+    Joints from;
+    std::copy_n(known + i * kCurveJoints, kCurveJoints, from.begin());
+    follow_both_ways(from);
+  }
+  finish_arcs(spacing);
+}
+
+void Curve::begin(const Pose& Y, double longest_step) {
+  arcs_.clear();
+  ends_.clear();
+  samples_.clear();
+  walker_.set_target(Y, std::min(longest_step, kLongest));
+}
+
+void Curve::finish_arcs(double spacing) {
   drop_points();
   for (Arc& arc : arcs_) thin_out(arc, spacing);
 }
@@ -25,7 +53,6 @@ void Curve::find(const Pose& T_base_tcp, const Pose& Y, ArcEnds* ends, Sweep& sw
 void Curve::find_samples(const Pose& Y, Sweep& sweep) {
   swept_ = sweep.joint();
   places_ = &sweep.places();
-  samples_.clear();
   sampled_q_.clear();
   sweep.set_target(Y);
   sweep.add_samples(0, 1, sampled_q_, samples_);

@@ -4,7 +4,8 @@
 // An arc ends where a joint is at a limit (arc_ends.hpp). The tangent is oriented
 // (curve_kernel.hpp): at one of an arc's ends it leads inside, at the other outside. From the first
 // the arc is followed to the second. Curves that meet no limit are followed from samples of the
-// swept joint that lie on none of these arcs; so are arcs whose ends are not known. How long steps
+// swept joint, or else from solutions, that lie on none of these arcs; so are arcs whose ends are
+// not known. How long steps
 // are and what counts as the same is measured on random arms by tests/python/test_laws.py,
 // test_no_answer_lies_off_the_arcs.
 #pragma once
@@ -35,6 +36,10 @@ class Curve {
   /// Finds the arcs for a target, Y as in reduction.hpp; with points so near to each other that no
   /// joint moves farther than `spacing` between them [rad]. `ends` may be null.
   void find(const Pose& T_base_tcp, const Pose& Y, ArcEnds* ends, Sweep& sweep, double spacing);
+  /// The same where no joint can be swept: the arcs that have an end, and those through
+  /// configurations that are known, seven joint values each.
+  void find(const Pose& T_base_tcp, const Pose& Y, ArcEnds* ends, const double* known,
+            std::size_t count, double spacing);
   [[nodiscard]] const std::vector<Arc>& arcs() const { return arcs_; }
   /// About so many places evenly along these arcs, on straight lines between their points, and both
   /// ends of each; no nearer to each other along the arc than `least` [rad]. Seven joint values
@@ -65,6 +70,8 @@ class Curve {
   };
   class Walks;
 
+  void begin(const Pose& Y, double longest_step);
+  void finish_arcs(double spacing);
   void find_samples(const Pose& Y, Sweep& sweep);
   void find_ends(const Pose& T_base_tcp, ArcEnds& ends);
   [[nodiscard]] Joints sample(std::size_t i) const;
@@ -77,6 +84,8 @@ class Curve {
   /// From between two ends, or on a curve without any, unless that is known.
   void follow_both_ways(const Joints& from);
   void follow(std::vector<Walk>& walks);
+  /// Adds points of a step, up to a part of it, where points are to be nearer than steps are long.
+  void add_between(Walk& walk, const Step& step, double end) const;
   /// Takes a further configuration. False if the walk ends there.
   bool advance(Walk& walk, int lane, const Step& step);
   /// How q lies beside the straight way between two configurations: along it, and its distance from
@@ -85,7 +94,9 @@ class Curve {
     double along, way2, rest2;
   };
   [[nodiscard]] Beside beside(const Joints& from, const Joints& to, const Joints& q) const;
-  [[nodiscard]] bool is_closed(const Walk& walk, const Joints& next) const;
+  /// Whether a walk comes back to where it began between its last point and the next: at that part
+  /// of the way, else 0.
+  [[nodiscard]] double closes_at(const Walk& walk, const Joints& next) const;
   void mark_samples(const Joints& from, const Joints& to);
   void finish(Walk& walk, const SelfMotionEnd& end);
   [[nodiscard]] bool is_on_arc(const Joints& q) const;
@@ -100,6 +111,7 @@ class Curve {
 
   const JointSpace& joints_;
   CurveWalker walker_;
+  double spacing_ = kInfinity;  ///< of points, if they are nearer than steps are long
 
   // Of the last search.
   std::vector<End> ends_;

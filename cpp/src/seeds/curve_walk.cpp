@@ -87,6 +87,11 @@ void Curve::follow(std::vector<Walk>& walks) {
   walker_.follow(in_lanes);
 }
 
+void Curve::add_between(Walk& walk, const Step& step, double end) const {
+  const double count = std::ceil(end * step.way / spacing_);
+  for (double i = 1; i < count; ++i) walk.q.push_back(step.at(i / count * end));
+}
+
 bool Curve::advance(Walk& walk, int lane, const Step& step) {
   constexpr double kLongestArc = 20 * kTwoPi;
   const Joints& last = step.from.q;
@@ -96,17 +101,21 @@ bool Curve::advance(Walk& walk, int lane, const Step& step) {
     if (turn_round(walk, lane, next)) return true;
     const Joints q = step.at(exit.part);
     mark_samples(last, q);
+    add_between(walk, step, exit.part);
     leave(walk, q, exit.at);
     return false;
   }
   mark_samples(last, next);
-  if (is_closed(walk, next)) {
+  if (const double part = closes_at(walk, next); part > 0) {
+    add_between(walk, step, part);
     walk.begin = {};
     finish(walk, {});
     return false;
   }
+  add_between(walk, step, 1);
   walk.q.push_back(next);
-  if (static_cast<double>(walk.q.size()) < 1000 + kLongestArc / walker_.longest()) return true;
+  const double spacing = std::min(walker_.longest(), spacing_);
+  if (static_cast<double>(walk.q.size()) < 1000 + kLongestArc / spacing) return true;
   finish(walk, {ArcEnd::fold});
   return false;
 }
@@ -124,15 +133,17 @@ Curve::Beside Curve::beside(const Joints& from, const Joints& to, const Joints& 
   return found;
 }
 
-bool Curve::is_closed(const Walk& walk, const Joints& next) const {
-  if (walk.begin.kind == ArcEnd::limit || walk.q.size() < 3) return false;
+double Curve::closes_at(const Walk& walk, const Joints& next) const {
+  if (walk.begin.kind == ArcEnd::limit || walk.q.size() < 3) return 0;
   constexpr double kBeside2 = 0.04;
   const auto [along, way2, rest2] = beside(walk.q.back(), next, walk.q.front());
-  return along > 0 && along <= way2 && rest2 - along * along / way2 < kBeside2 * way2;
+  const bool closes = along > 0 && along <= way2 && rest2 - along * along / way2 < kBeside2 * way2;
+  return closes ? along / way2 : 0;
 }
 
 void Curve::mark_samples(const Joints& from, const Joints& to) {
   constexpr double kSame = 0.1;
+  if (samples_.empty()) return;
   const auto swept = static_cast<std::size_t>(swept_);
   const double begin = (from[swept] - places_->lower) / places_->step;
   const double end = (to[swept] - places_->lower) / places_->step;
@@ -172,8 +183,11 @@ void Curve::finish(Walk& walk, const SelfMotionEnd& end) {
 
 bool Curve::is_on_arc(const Joints& q) const {
   constexpr double kBeside2 = 1e-3;
+  /// What is farther from where a step begins is not beside it [rad and m].
+  const double far = 1.2 * std::min(walker_.longest(), spacing_) + 0.1;
   for (const Arc& arc : arcs_) {
     for (std::size_t i = 1; i < arc.q.size(); ++i) {
+      if (joints_.distance(arc.q[i - 1], q, far) >= far) continue;
       const auto [along, way2, rest2] = beside(arc.q[i - 1], arc.q[i], q);
       const double part = std::min(std::max(along, 0.0), way2);
       if (rest2 - (2 * along - part) * part / std::max(way2, 1e-12) < kBeside2) return true;

@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "simd/lane_chain.hpp"
+
 namespace iksel {
 
 std::vector<Held::Arm> Held::arms_of(const ChainModel& whole) {

@@ -13,12 +13,11 @@ constexpr int round_up(int n) { return (n + lanes::kWidth - 1) / lanes::kWidth *
 
 }  // namespace
 
-RootFinder::RootFinder(double lower, double range, double vague, double faint, double precision,
+RootFinder::RootFinder(double lower, double range, double vague, double precision,
                        const lanes::LaneKernels& kernels)
     : kernels_(kernels),
       turns_(range >= kTwoPi),
       vague_(vague),
-      faint_(faint),
       precision_(precision),
       step_(std::min(range, kTwoPi) / kCells),
       angles_(static_cast<std::size_t>(round_up(kBefore + kCells + kAfter))),
@@ -28,7 +27,7 @@ RootFinder::RootFinder(double lower, double range, double vague, double faint, d
   }
 }
 
-void RootFinder::find(const Residual& residual) {
+void RootFinder::find(const Residual& residual, double faint) {
   size_ = 0;
   brackets_size_ = 0;
   is_complete_ = true;
@@ -51,18 +50,17 @@ void RootFinder::find(const Residual& residual) {
     }
   }
   polish(residual);
-  if (faint_ > 0) add_faint();
+  add_faint(faint);
 }
 
-void RootFinder::add_faint() {
+void RootFinder::add_faint(double most) {
   // Mostly there are none, which is soon known.
   int faint = 0;
-  for (int i = 0; i < kCells; ++i) faint += std::abs(values_[kBefore + i]) <= faint_ ? 1 : 0;
+  for (int i = 0; i < kCells; ++i) faint += std::abs(values_[kBefore + i]) <= most ? 1 : 0;
   if (faint == 0) return;
   for (std::size_t i = kBefore; i < kBefore + kCells && size_ < kMost; ++i) {
     const double here = std::abs(values_[i]);
-    if (here > faint_ || here > std::abs(values_[i - 1]) || here > std::abs(values_[i + 1]))
-      continue;
+    if (here > most || here > std::abs(values_[i - 1]) || here > std::abs(values_[i + 1])) continue;
     const bool crosses = values_[i - 1] * values_[i] <= 0 || values_[i] * values_[i + 1] <= 0;
     if (!crosses) roots_[size_++] = {angles_[i], true, 0, true};
   }

@@ -29,14 +29,15 @@ class RootFinder {
   };
 
   /// From `lower` on, over `range`, which is all if it is a whole turn or more [rad]. Where the
-  /// residual turns and its two roots are at most `vague` away, real or not [rad], or it is at most
-  /// `faint` there, a root is vague. Others are found to within `precision` [rad].
-  RootFinder(double lower, double range, double vague, double faint, double precision,
+  /// residual turns and its two roots are at most `vague` away, real or not [rad], a root is vague.
+  /// Others are found to within `precision` [rad].
+  RootFinder(double lower, double range, double vague, double precision,
              const lanes::LaneKernels& kernels);
 
   /// Writes the residuals of `n` angles, a multiple of kWidth.
   using Residual = FunctionRef<void(const double* angles, int n, double* residuals)>;
-  void find(const Residual& residual);
+  /// Where it turns and is at most `faint`, there is a vague root too.
+  void find(const Residual& residual, double faint);
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] const Root& operator[](std::size_t i) const { return roots_[i]; }
   /// Of the larger of the residuals at both ends of a cell, the least.
@@ -67,14 +68,13 @@ class RootFinder {
   void add_bracket(double left, double length, const double* value);
   void add(double angle, bool is_vague, double apart = 0);
   /// Adds where the residual turns, but hardly differs from 0.
-  void add_faint();
+  void add_faint(double most);
   /// Narrows all brackets.
   void polish(const Residual& residual);
 
   const lanes::LaneKernels& kernels_;
   bool turns_;
   double vague_;
-  double faint_;
   double precision_;
   double step_;
   std::vector<double> angles_, values_;  ///< with those before and after

@@ -34,8 +34,8 @@ constexpr double kFaint = 0.001;
 /// offset_wrist).
 constexpr double kSteeper = 16;
 
-/// Where neighbouring values of a loop's determinant are less than so many times its noise, there
-/// may be roots or none.
+/// Where neighbouring values of a loop's determinant are less than so many times its noise, or one
+/// is at which it turns, there may be roots or none.
 constexpr double kAboveNoise = 30;
 /// By how much a loop may stay open at a root of its determinant, which is known but to its noise.
 constexpr double kOpen = 0.02;
@@ -54,13 +54,13 @@ constexpr double kDelicate = 1e-3;
 constexpr double kPrecision = 5e-10;
 constexpr double kShare = 0.1;
 
-RootFinder make_finder(const ChainModel& model, int joint, double vague, double faint,
-                       double precision, const lanes::LaneKernels& kernels) {
+RootFinder make_finder(const ChainModel& model, int joint, double vague, double precision,
+                       const lanes::LaneKernels& kernels) {
   constexpr double kBeyond = 0.05;
   const double offset = model.kernel.joints[static_cast<std::size_t>(joint)].offset;
   const double lower = model.joints.sample_lower(joint) - kBeyond;
   const double upper = model.joints.sample_upper(joint) + kBeyond;
-  return {lower + offset, upper - lower, vague, faint, precision, kernels};
+  return {lower + offset, upper - lower, vague, precision, kernels};
 }
 
 }  // namespace
@@ -78,7 +78,6 @@ RootSweep::RootSweep(const ChainModel& model, const ClosedFormChain& chain, bool
       roots_(
           make_finder(model, chain.held,
                       2 * std::sqrt(tolerance + kFarthestApart * kFarthestApart * chain.deviation),
-                      chain.loop ? 0.0 : kFaint * vague_ * vague_,
                       std::max(kPrecision, kShare * chain.deviation), kernels)),
       polynomial_(kernels) {
   are_answers_ = is_nominal && chain.deviation <= kShare * tolerance;
@@ -91,19 +90,22 @@ bool RootSweep::find_product_roots(const Pose& Y) {
   chain_.set_target(Y, pack_);
   const lanes::ResidualForm form = make_residual(chain_, pack_);
   double least_divisor = kInfinity;
-  roots_.find([&](const double* angles, int n, double* residuals) {
+  const auto residual = [&](const double* angles, int n, double* residuals) {
     least_divisor = std::min(least_divisor, kernels_.find_residuals(form, angles, n, residuals));
-  });
+  };
+  roots_.find(residual, kFaint * vague_ * vague_);
   return least_divisor > vague_divisor_;
 }
 
 bool RootSweep::find_loop_roots(const Pose& Y) {
   chain_.loop->set_target(chain_.reversed ? Y.inverse() : Y, loop_);
   polynomial_.find(loop_);
-  roots_.find([&](const double* angles, int n, double* values) {
+  const auto determinant = [&](const double* angles, int n, double* values) {
     kernels_.evaluate_polynomial(polynomial_.get(), angles, n, values);
-  });
-  return roots_.faintest() > kAboveNoise * polynomial_.noise();
+  };
+  const double faint = kAboveNoise * polynomial_.noise();
+  roots_.find(determinant, faint);
+  return roots_.faintest() > faint;
 }
 
 void RootSweep::find(const Pose& Y, bool wants_all) {
@@ -161,8 +163,10 @@ void RootSweep::take(const Pose& Y, const RootFinder::Root& root, int lane) {
   if (chain_.loop && is_vague) certain_ = false;
   if (!(pack_.least[lane] > -slack)) return;
   // Of a product that hardly differs from 0, only branches that all but meet tell of roots.
-  if (root.is_faint && !(std::abs(pack_.least[lane]) < vague_ * vague_)) return;
-  if (!(std::abs(pack_.residual[lane]) < most)) {
+  if (!chain_.loop && root.is_faint && !(std::abs(pack_.least[lane]) < vague_ * vague_)) return;
+  // Nor does the residual tell where such a branch may have any angles.
+  const bool tells = !(only_just_is && pack_.error[lane] > kFreely);
+  if (tells && !(std::abs(pack_.residual[lane]) < most)) {
     if (chain_.loop) certain_ = false;
     return;
   }

@@ -153,7 +153,7 @@ class TestRail:
         assert structure.kind is iksel.StructureKind.swept
         assert "each place of slide 1" in structure.description
 
-    def test_a_no_is_told_by_the_sweep(self) -> None:
+    def test_a_no_is_proven(self) -> None:
         cell = on_rail("ur5e")
         solver = iksel.Solver(cell)
         arm = iksel.Solver(iksel.load_robot("ur5e", tcp=None))
@@ -169,7 +169,7 @@ class TestRail:
                 continue
             noes += 1
             assert not arm.solve_batch(inner).success.any(), i
-            assert result.proof is iksel.Proof.sweep
+            assert result.proof is iksel.Proof.intervals
         assert noes > 0
 
     def test_its_self_motion_reaches_the_pose_all_along(self) -> None:

@@ -64,3 +64,15 @@ def test_most_noes_are_proven_and_restarts_find_nothing(build: str) -> None:
                 assert not solver.solve(pose, seeds=seeds, database_seeds=False)
     assert noes > 20
     assert proven >= 0.8 * noes, f"{proven} of {noes}"
+
+
+@pytest.mark.parametrize("name", ["cvr038", "xarm6", "panda", "ur5e"])
+def test_what_only_the_whole_pose_denies_is_not_denied_to_a_task(name: str) -> None:
+    robot = iksel.load_robot(name)
+    solver = iksel.Solver(robot)
+    random = np.random.default_rng(SEED)
+    for pose in robot.fk(robot.random_configurations(100, SEED)):
+        c, s = np.cos(angle := random.uniform(-3, 3)), np.sin(angle)
+        pose[:3, :3] = pose[:3, :3] @ [[c, -s, 0], [s, c, 0], [0, 0, 1]]
+        result = solver.solve(pose, task=iksel.Task.free_spin("z"), prove=True)
+        assert result, result.proof

@@ -39,7 +39,9 @@ Explored explore_branches(const Parts& parts, BranchList& branches, Proof kind, 
     if (is_satisfied_inside) return Explored::done();
     is_through = enumerated.is_certain_but_for_limits() && !branches.has_families();
   }
-  if (parts.request.prove && !answers.has_any() && parts.workspace.lanes->proves_none(Y)) {
+  // Of full poses, as the roots are.
+  if (kind == Proof::sweep && parts.request.prove && !answers.has_any() &&
+      parts.workspace.lanes->proves_none(Y)) {
     return Explored::done(Proof::intervals);
   }
   if (is_through) return Explored::done(enumerated.is_certain() ? kind : Proof::none);

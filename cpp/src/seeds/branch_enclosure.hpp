@@ -39,6 +39,7 @@ class BranchEnclosure {
   double lower_, upper_;  ///< of the held joint, as the form counts it
   lanes::BranchPack target_{};
   std::vector<Piece> open_;
+  int packs_left_ = 0;
 };
 
 }  // namespace iksel

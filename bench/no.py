@@ -67,7 +67,9 @@ def answered(arm: Arm, goals: Targets, settings: Settings) -> dict[str, Any]:
     }
     if settings["rival"] == "IKSel":
         result |= _proofs(arm, ours) | {"unit_us": _unit(arm.name)}
-        noes = [pose for pose, given in zip(goals.poses, ours, strict=True) if not given]
+        noes = [
+            pose for pose, given in zip(goals.poses, ours, strict=True) if not given
+        ]
         result["proven_us"] = mean_median(_time_proofs(solver, noes))
     return result
 

@@ -238,9 +238,7 @@ def noes() -> str:
         if ours is None:
             continue
         counts = (ours[what] for what in ("yes", "proven", "swept", "searched"))
-        times = (
-            two_times(ours.get(what)) for what in ("yes_us", "no_us", "proven_us")
-        )
+        times = (two_times(ours.get(what)) for what in ("yes_us", "no_us", "proven_us"))
         rest = (
             microseconds(cells.get(robot, {}).get(OURS, {}).get("mean_us"))
             for cells in (every, near)
@@ -278,8 +276,8 @@ def no_conditions(report: dict[str, Any], found: dict[str, dict[str, Result]]) -
     disproved = sum(one["disproved"] for one in every)
     return (
         f"{size['no']:,} targets per robot ({size['no_slow']:,} for numerical "
-        f"rivals), seed {size['no_seed']}, *no, proven*: with `prove=True`, by which the "
-        "proofs are counted, too; tolerances of 1e-6 m and 1e-6 rad, one "
+        f"rivals), seed {size['no_seed']}, *no, proven*: with `prove=True`, by which "
+        "the proofs are counted, too; tolerances of 1e-6 m and 1e-6 rad, one "
         "thread, from Python (KDL's own solvers from C++), of each call the least time "
         "of three where that does not take long; `solve_all` and `near` over all "
         "targets, or over a tenth of them where there is no closed form; a numerical "

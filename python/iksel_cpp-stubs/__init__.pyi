@@ -2049,7 +2049,7 @@ class Diagnosis:
     @property
     def proof(self) -> Proof:
         """
-        As Result.proof of a solve: `answer` if there is one, else that there is none.
+        As Result.proof of a solve with SolveRequest.prove: `answer` if there is one, else that there is none.
         """
     @property
     def proven(self) -> bool:

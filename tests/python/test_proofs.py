@@ -21,7 +21,9 @@ ARMS = 4
 SWEPT = ["offset_wrist", *(set(random_arms.SEVEN) - {"right_angles_7"})]
 
 
-def some_at_limits(robot: iksel.Robot, count: int, seed: int) -> npt.NDArray[np.float64]:
+def some_at_limits(
+    robot: iksel.Robot, count: int, seed: int
+) -> npt.NDArray[np.float64]:
     """Configurations of which half have a joint or two at a limit."""
     random = np.random.default_rng(seed)
     q = robot.random_configurations(count, seed)

@@ -13,14 +13,14 @@ using lanes::kWidth;
 /// Pieces to begin with.
 constexpr int kPieces = 4 * kWidth;
 /// Pieces that are halved so often are beside something that the tolerances do not tell apart.
-constexpr double kShortest = 1e-7;
+constexpr double kLeastPiece = 1e-7;
 /// Packs of pieces, after which it is given up, some 0.5 ms. Nine of ten noes take 16 to 40, of
 /// arms on rails up to 68; what is proven of random arms: python -m bench random.
 constexpr int kMostPacks = 512;
 /// Pieces overlap by this part, so that rounding leaves no gap between them.
 constexpr double kOverlap = 1e-12;
 /// What axes that lie off where the form has them may do to the target, by their deviation, which
-/// counts each twice: it turns what is behind it to and fro, and moves it by as much at a lever
+/// counts each twice: it turns what is behind it back and forth, and moves it by as much at a lever
 /// of 1.
 constexpr double kAxesOff = 2;
 
@@ -79,7 +79,7 @@ bool BranchEnclosure::rules_out(const double (&sign)[2]) {
     for (std::size_t i = 0; i < size; ++i) {
       const Piece& piece = left[i];
       const double quarter = 0.5 * piece.half;
-      if (quarter < kShortest) return false;
+      if (quarter < kLeastPiece) return false;
       open_.push_back({piece.middle - quarter, quarter, piece.with});
       open_.push_back({piece.middle + quarter, quarter, piece.with});
     }

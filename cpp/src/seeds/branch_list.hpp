@@ -13,6 +13,7 @@ namespace iksel {
 
 class BranchList {
  public:
+  virtual ~BranchList() = default;
   /// Finds the solutions of a full pose that lie inside the limits, or so near to them that it
   /// cannot be told. Y as in reduction.hpp. `wants_all`: else any of them will do.
   virtual void find(const Pose& Y, bool wants_all) = 0;
@@ -37,8 +38,6 @@ class BranchList {
  protected:
   using Joints = std::array<double, kPoseJoints>;
   static constexpr int kRoom = 96;
-
-  ~BranchList() = default;
 
   /// Where the next one is written to.
   [[nodiscard]] Joints& next() { return q_[static_cast<std::size_t>(size_)]; }

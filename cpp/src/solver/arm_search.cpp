@@ -77,7 +77,7 @@ Result ArmSearch::solve(const Solver& solver, const ChainPart& part, const Pose&
     return find_first(of.options, Goal(of.model(), task, target), request, lease.get(), nullptr,
                       effort);
   };
-  const Result result = effort == Effort::quick ? solve_quickly() : solver.solve(target, request);
+  Result result = effort == Effort::quick ? solve_quickly() : solver.solve(target, request);
   if (has_joints(result.status)) put(result.q, part.joints, q);
   return result;
 }
@@ -117,8 +117,8 @@ Result ArmSearch::solve_chain(int tip, Effort effort, bool from_here, JointVecto
   SolveRequest request;
   request.task = goal_.task(tip).task();
   if (from_here) request.seeds.push_back(picked(q, chain.joints));
-  const Result result = solve(solvers_[static_cast<std::size_t>(tip)].chain, chain,
-                              goal_.target_at(tip, q), request, effort, q);
+  Result result = solve(solvers_[static_cast<std::size_t>(tip)].chain, chain,
+                        goal_.target_at(tip, q), request, effort, q);
   if (result.success()) q = goal_.model().joints.clamp(q);
   return result;
 }

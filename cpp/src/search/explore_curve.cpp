@@ -58,7 +58,7 @@ Explored find_any_or_none(const AllSearch& parts, const Pose& Y) {
       parts.work.lap(&StageTimes::query);
       return Explored::done(none);
     }
-    is_found = sweep.find_between(Sweep::Between::all);
+    is_found = sweep.find_between();
   }
   parts.work.lap(&StageTimes::query);
   if (!is_found) return sweep.is_none() ? Explored::done(Proof::sweep) : Explored::doubtful();

@@ -85,23 +85,17 @@ Explored explore_curve(const FirstSearch& parts, const Pose& Y) {
     parts.work.lap(&StageTimes::query);
     return Explored::done(Proof::intervals);
   }
-  if (lanes.ends && !are_closed) {
-    const Explored ends = explore_ends(parts);
-    if (ends.is_done) {
-      if (ends.proof == Proof::none) return ends;
-      // No curve of solutions crosses a limit: one inside is closed, and between two samples.
-      swept.look_between(Sweep::Between::beyond_folds);
-      if (is_satisfied()) return Explored::done();
-      swept.give_close();
-      return is_satisfied() ? Explored::done() : ends;
-    }
-  }
-  swept.look_between(Sweep::Between::all);
+  swept.look_between();
   if (is_satisfied()) return Explored::done();
   const bool knows_all_ends = lanes.ends && lanes.ends->are_all();
   if (!knows_all_ends && swept.is_none()) return Explored::done(Proof::sweep);
+  Explored rest = Explored::doubtful();
+  if (lanes.ends && !are_closed) {
+    rest = explore_ends(parts);
+    if (rest.is_done && rest.proof == Proof::none) return rest;
+  }
   swept.give_close();
-  return is_satisfied() ? Explored::done() : Explored::doubtful();
+  return is_satisfied() ? Explored::done() : rest;
 }
 
 }  // namespace iksel

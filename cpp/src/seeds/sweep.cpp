@@ -33,20 +33,16 @@ bool Sweep::find_at_samples(const Pose& Y) {
   return false;
 }
 
-bool Sweep::find_between(Between where) {
+bool Sweep::find_between() {
   nearest_.find(places_, rows_, kNear);
   least_ = kInfinity;
   close_.clear();
   for (const LeastPlace& near : nearest_) {
     least_ = std::min(least_, near.value);
     if (is_left_to_another(near)) continue;
-    if (where == Between::beyond_folds) {
-      branches_.solve_all(places_.value(near.place));
-      if (branches_.least(near.branch) >= 0) continue;
-    }
     if (follow(near)) return true;
   }
-  return where == Between::all && find_in_intervals();
+  return find_in_intervals();
 }
 
 void Sweep::visit_nearest(std::size_t most, FunctionRef<void(const JointVector&)> visit) {

@@ -26,14 +26,11 @@ class Sweep {
 
   /// Looks for an answer to Y (reduction.hpp): at the samples, and where branches come near to one,
   /// between them. True if there is one.
-  bool find(const Pose& Y) { return find_at_samples(Y) || find_between(Between::all); }
+  bool find(const Pose& Y) { return find_at_samples(Y) || find_between(); }
   /// The first part of it.
   bool find_at_samples(const Pose& Y);
-  /// Where it is looked between samples: wherever a branch comes near to an answer, or only where
-  /// none exists at the sample, so that a closed curve of answers may lie beside it.
-  enum class Between { all, beyond_folds };
-  /// The second part.
-  bool find_between(Between where);
+  /// The second part: wherever a branch comes near to an answer.
+  bool find_between();
   /// Adds the branches inside the limits at every `stride`-th sample from `first` on, seven joint
   /// values each [rad].
   void add_samples(const Pose& Y, int first, int stride, std::vector<double>& q);
@@ -126,7 +123,7 @@ class SweptSeeds {
     part_ = next_part_;
     next_part_ = Part::none;
     if (part_ == Part::samples) found_ = sweep_.find_at_samples(Y_);
-    if (part_ == Part::between) found_ = sweep_.find_between(where_);
+    if (part_ == Part::between) found_ = sweep_.find_between();
     work_.lap(&StageTimes::query);
     return true;
   }
@@ -144,10 +141,7 @@ class SweptSeeds {
     return true;
   }
   /// Next, it is looked between samples.
-  void look_between(Sweep::Between where) {
-    next_part_ = Part::between;
-    where_ = where;
-  }
+  void look_between() { next_part_ = Part::between; }
   /// Next, what was found to come close to an answer is given.
   void give_close() { next_part_ = Part::close; }
   /// Whether there is no answer, once all between the samples was looked at.
@@ -161,7 +155,6 @@ class SweptSeeds {
   Work& work_;
   Part part_ = Part::none;
   Part next_part_ = Part::samples;
-  Sweep::Between where_ = Sweep::Between::all;
   bool found_ = false;
   std::size_t next_ = 0;
 };

@@ -85,6 +85,10 @@ Explored explore_curve(const FirstSearch& parts, const Pose& Y) {
     parts.work.lap(&StageTimes::query);
     return Explored::done(Proof::intervals);
   }
+  if (lanes.enclosure) {
+    RowSeeds doubt(lanes.enclosure->doubt(), parts.work);
+    if (search(lanes.refiner, doubt, parts.answers, parts.work)) return Explored::done();
+  }
   swept.look_between();
   if (is_satisfied()) return Explored::done();
   const bool knows_all_ends = lanes.ends && lanes.ends->are_all();

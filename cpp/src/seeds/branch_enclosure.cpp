@@ -29,11 +29,14 @@ constexpr double kAxesOff = 2;
 BranchEnclosure::BranchEnclosure(const ChainModel& model, const ClosedFormChain& chain,
                                  double position_tolerance, double rotation_tolerance,
                                  const lanes::LaneKernels& kernels)
-    : chain_(chain), kernels_(kernels) {
+    : joints_(model.joints),
+      chain_(chain),
+      kernels_(kernels),
+      offset_(model.kernel.joints[static_cast<std::size_t>(chain.held)].offset),
+      lower_(model.joints.sample_lower(chain.held) + offset_),
+      upper_(model.joints.sample_upper(chain.held) + offset_),
+      doubt_(JointVector::Zero(model.dof)) {
   chain_.use_limits(model);
-  const double offset = model.kernel.joints[static_cast<std::size_t>(chain.held)].offset;
-  lower_ = model.joints.sample_lower(chain.held) + offset;
-  upper_ = model.joints.sample_upper(chain.held) + offset;
   const double lever = chain.tail.norm() + to_pose(model.kernel.tip).translation().norm() +
                        (chain.reversed ? model.reach_of_tcp() : 0.0);
   const double tolerance = std::max(
@@ -45,6 +48,7 @@ BranchEnclosure::BranchEnclosure(const ChainModel& model, const ClosedFormChain&
 bool BranchEnclosure::rules_out(const Pose& Y) {
   chain_.set_target(Y, target_);
   packs_left_ = kMostPacks;
+  has_doubt_ = false;
   for (int arm = 0; arm < 4; ++arm) {
     if (!rules_out({branch_sign(arm, 0), branch_sign(arm, 1)})) return false;
   }
@@ -79,12 +83,26 @@ bool BranchEnclosure::rules_out(const double (&sign)[2]) {
     for (std::size_t i = 0; i < size; ++i) {
       const Piece& piece = left[i];
       const double quarter = 0.5 * piece.half;
-      if (quarter < kLeastPiece) return false;
+      if (quarter < kLeastPiece) {
+        keep_doubt(sign, piece);
+        return false;
+      }
       open_.push_back({piece.middle - quarter, quarter, piece.with});
       open_.push_back({piece.middle + quarter, quarter, piece.with});
     }
   }
   return true;
+}
+
+void BranchEnclosure::keep_doubt(const double (&sign)[2], const Piece& piece) {
+  const double signs[3] = {sign[0], sign[1], piece.with[0] ? 1.0 : -1.0};
+  for (int s = 0; s < 3; ++s) std::fill_n(target_.sign[s], kWidth, signs[s]);
+  std::fill_n(target_.held, kWidth, piece.middle);
+  kernels_.find_branches(chain_.form, target_);
+  chain_.copy_joints(target_.q, 0, doubt_.data());
+  doubt_[chain_.held] = piece.middle - offset_;
+  doubt_ = joints_.clamp(doubt_);
+  has_doubt_ = true;
 }
 
 }  // namespace iksel

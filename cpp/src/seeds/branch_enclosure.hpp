@@ -23,6 +23,8 @@ class BranchEnclosure {
   /// Whether no configuration inside the limits is within the tolerances of Y (reduction.hpp).
   /// False says nothing.
   bool rules_out(const Pose& Y);
+  /// Where that came to a piece so short that it says false: a configuration there. Null: nowhere.
+  [[nodiscard]] const JointVector* doubt() const { return has_doubt_ ? &doubt_ : nullptr; }
 
  private:
   /// Values of the held joint, as the form counts it [rad or m]: middle +- half; and which of the
@@ -33,13 +35,18 @@ class BranchEnclosure {
   };
   /// The same of branches of two signs.
   bool rules_out(const double (&sign)[2]);
+  void keep_doubt(const double (&sign)[2], const Piece& piece);
 
+  const JointSpace& joints_;
   ClosedFormChain chain_;
   const lanes::LaneKernels& kernels_;
+  double offset_;         ///< what the form counts the held joint more
   double lower_, upper_;  ///< of the held joint, as the form counts it
   lanes::BranchPack target_{};
   std::vector<Piece> open_;
   int packs_left_ = 0;
+  JointVector doubt_;
+  bool has_doubt_ = false;
 };
 
 }  // namespace iksel

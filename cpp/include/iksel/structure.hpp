@@ -31,8 +31,8 @@ struct Structure {
 /// That of a robot. Of three to five joints, which reach but some poses, a closed form tells which.
 /// For a closed form, axes are taken to be parallel, or to meet, up to 1e-9 rad, or 1e-9 of the
 /// robot's reach: what is left of a rounded pi; up to 2e-4 nearly so, and what is found is refined.
-/// For a sweep up to 2e-5, a pi of four decimals: it proves nothing, but where a spherical shoulder
-/// and a spherical wrist have an elbow between them. Six joints that turn are swept however their
+/// For a sweep up to 2e-5, a pi of four decimals: a no of it is proven by the ends of the
+/// self-motion or by intervals (Proof), where it is. Six joints that turn are swept however their
 /// axes lie, but where several solutions share each angle of every joint that could be swept.
 [[nodiscard]] IKSEL_EXPORT Structure find_structure(const Robot& robot);
 

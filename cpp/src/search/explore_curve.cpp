@@ -136,13 +136,13 @@ void explore_families(const AllSearch& parts, const Pose& Y) {
   /// Of what was found, so many are moved to where they are nearest: with 4, 5 of 2,820 moves of
   /// arms whose self-motions are no curves are longer than brute force, with 16 none (python -m
   /// bench random right_angles_7).
-  constexpr std::size_t kDescents = 16;
+  constexpr std::size_t kDescentsToNearest = 16;
   Collector& answers = parts.answers;
   if (parts.workspace.lanes->curve && explore_arcs(parts, Y)) {
     answers.settle(true);
     return;
   }
-  answers.descend_from_nearest(kDescents);
+  answers.descend_from_nearest(kDescentsToNearest);
   parts.work.lap(&StageTimes::iterate);
 }
 

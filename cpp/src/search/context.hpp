@@ -77,11 +77,11 @@ struct Workspace {
     /// Whether the ends of a self-motion tell in closed form if there is a solution.
     [[nodiscard]] bool has_closed_ends() const { return ends && ends->are_closed(); }
     /// Whether branches enclosed over the range of a joint prove that there is no answer.
-    bool proves_none(const Pose& Y) { return enclosure && enclosure->rules_out(Y); }
+    bool intervals_rule_out(const Pose& Y) { return enclosure && enclosure->rules_out(Y); }
     /// What proves that a self-motion has no configuration inside the limits, for the same.
     Proof prove_none(const Pose& T_base_tcp, const Pose& Y) {
       if (ends && ends->rules_out(T_base_tcp)) return Proof::closed_form;
-      return proves_none(Y) ? Proof::intervals : Proof::none;
+      return intervals_rule_out(Y) ? Proof::intervals : Proof::none;
     }
     /// Whether it has none, as far as can be told.
     Proof find_none(const Pose& T_base_tcp, const Pose& Y) {

@@ -41,7 +41,7 @@ Explored explore_branches(const Parts& parts, BranchList& branches, Proof kind, 
   }
   // Of full poses, as the roots are.
   if (kind == Proof::sweep && parts.request.prove && !answers.has_any() &&
-      parts.workspace.lanes->proves_none(Y)) {
+      parts.workspace.lanes->intervals_rule_out(Y)) {
     return Explored::done(Proof::intervals);
   }
   if (is_through) return Explored::done(enumerated.is_certain() ? kind : Proof::none);

@@ -53,8 +53,8 @@ Proof search_pose(const AllSearch& parts, RowSeeds& near, GivenSeeds& given, con
   if (answers.wants_nearest() && explore_held(parts).is_done) return Proof::none;
   // Of more than seven joints it takes four times as long, and finds shorter moves for 2 to 4 of
   // 100 far ones: left as it is.
-  const bool wants_nearest = parts.model.dof == SweptBranches::kDof && parts.goal.is_redundant() &&
-                             answers.wants_nearest();
+  const bool wants_nearest =
+      parts.model.dof == kCurveJoints && parts.goal.is_redundant() && answers.wants_nearest();
   if (wants_nearest && !lanes.curve) answers.set_surfaces();
   answers.converge_from_near();
   const bool is_satisfied = parts.run(lanes.refiner, near, given) || search_widely(parts);

@@ -81,7 +81,7 @@ Explored explore_curve(const FirstSearch& parts, const Pose& Y) {
   SweptSeeds swept(*lanes.sweep, Y, parts.work);
   const auto is_satisfied = [&] { return search(lanes.refiner, swept, parts.answers, parts.work); };
   if (is_satisfied()) return Explored::done();
-  if (lanes.proves_none(Y)) {
+  if (lanes.intervals_rule_out(Y)) {
     parts.work.lap(&StageTimes::query);
     return Explored::done(Proof::intervals);
   }

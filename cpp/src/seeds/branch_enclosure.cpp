@@ -2,12 +2,10 @@
 #include "seeds/branch_enclosure.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace iksel {
 namespace {
 
-using lanes::Closure;
 using lanes::kWidth;
 
 /// Pieces to begin with.
@@ -37,12 +35,11 @@ BranchEnclosure::BranchEnclosure(const ChainModel& model, const ClosedFormChain&
       upper_(model.joints.sample_upper(chain.held) + offset_),
       doubt_(JointVector::Zero(model.dof)) {
   chain_.use_limits(model);
-  const double lever = chain.tail.norm() + to_pose(model.kernel.tip).translation().norm() +
-                       (chain.reversed ? model.reach_of_tcp() : 0.0);
-  const double tolerance = std::max(
-      {(position_tolerance + lever * rotation_tolerance) / chain.unit, rotation_tolerance, 1e-9});
-  chain_.form.error =
-      tolerance + kAxesOff * chain.deviation * std::max(1.0, model.reach / chain.unit);
+  chain_.form.error = chain.tolerance_of_target(model, position_tolerance, rotation_tolerance) +
+                      kAxesOff * chain.deviation * std::max(1.0, model.reach / chain.unit);
+  // Memory is taken here, and none while solving: a piece is halved less than so often.
+  constexpr std::size_t kHalvings = 32;
+  open_.reserve(kPieces + kHalvings * kWidth);
 }
 
 bool BranchEnclosure::rules_out(const Pose& Y) {

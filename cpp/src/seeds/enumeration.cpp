@@ -28,13 +28,9 @@ Enumeration::Enumeration(const ChainModel& model, const ClosedFormChain& chain, 
       position_tolerance_(position_tolerance),
       rotation_tolerance_(rotation_tolerance) {
   chain_.use_limits(model);
-  // A rotation moves what the form sees of a target by the tool's length, and seen from the other
-  // end by the arm's.
-  const double lever = chain.tail.norm() + to_pose(model.kernel.tip).translation().norm() +
-                       (chain.reversed ? model.reach_of_tcp() : 0.0);
-  const double tolerance = std::max({(position_tolerance + lever * rotation_tolerance) / chain.unit,
-                                     rotation_tolerance, kStructureTolerance});
-  chain_.form.error = kMargin * (tolerance + chain.deviation);
+  chain_.form.error =
+      kMargin *
+      (chain.tolerance_of_target(model, position_tolerance, rotation_tolerance) + chain.deviation);
   are_answers_ = is_nominal && !chain.is_almost();
   has_families_ = chain_.has_families();
   has_all_ = is_nominal && !has_families_;

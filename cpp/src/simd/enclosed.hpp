@@ -50,10 +50,6 @@ class Enclosed {
   friend IKSEL_INLINE Enclosed operator/(const Enclosed& a, const Enclosed& b) {
     return a * b.inverse();
   }
-  /// The lanes where it is so for certain.
-  friend IKSEL_INLINE auto operator<(const Enclosed& a, const Enclosed& b) {
-    return a.upper() < b.lower();
-  }
   template <typename Mask>
   friend IKSEL_INLINE Enclosed select(const Mask& mask, const Enclosed& a, const Enclosed& b) {
     return {select(mask, a.value_, b.value_), select(mask, a.slope_, b.slope_),

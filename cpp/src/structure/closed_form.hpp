@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -57,6 +58,16 @@ struct ClosedFormChain {
   /// Whether branches tell which solutions lie inside limits: not where a joint turns as it likes
   /// in a sum.
   [[nodiscard]] bool tells_inside(const LimitSet& limits) const;
+  /// By how much the form's target may be off within the tolerances of a pose [m, rad] [rad,
+  /// units].
+  [[nodiscard]] double tolerance_of_target(const ChainModel& model, double position,
+                                           double rotation) const {
+    // A rotation moves what the form sees of a target by the tool's length, and seen from the other
+    // end by the arm's.
+    const double lever = tail.norm() + to_pose(model.kernel.tip).translation().norm() +
+                         (reversed ? model.reach_of_tcp() : 0.0);
+    return std::max({(position + lever * rotation) / unit, rotation, kStructureTolerance});
+  }
   /// Whether the axes lie only nearly as the form has them.
   [[nodiscard]] bool is_almost() const { return deviation > 12 * kStructureTolerance; }
   /// Whether there are axes besides the chain's joints.

@@ -47,20 +47,14 @@ Explored explore_spread(const AllSearch& parts, const Pose& Y) {
   return proof != Proof::none ? Explored::done(proof) : Explored::doubtful();
 }
 
-/// Any solution, as soon as can be; done if there certainly is none.
+/// Any solution, where samples showed none; done if there certainly is none.
 Explored find_any_or_none(const AllSearch& parts, const Pose& Y) {
   Workspace::InLanes& lanes = *parts.workspace.lanes;
   Sweep& sweep = *lanes.sweep;
-  bool is_found = sweep.find_at_samples(Y);
-  if (!is_found) {
-    const Proof none = lanes.prove_none(parts.goal.target(), Y);
-    if (none != Proof::none) {
-      parts.work.lap(&StageTimes::query);
-      return Explored::done(none);
-    }
-    is_found = sweep.find_between();
-  }
+  const Proof none = lanes.prove_none(parts.goal.target(), Y);
+  const bool is_found = none == Proof::none && sweep.find(Y);
   parts.work.lap(&StageTimes::query);
+  if (none != Proof::none) return Explored::done(none);
   if (!is_found) return sweep.is_none() ? Explored::done(Proof::sweep) : Explored::doubtful();
   parts.refine_rows(sweep.q(), 1, /*are_answers=*/true, Width::narrow);
   return Explored::doubtful();
@@ -77,21 +71,17 @@ Explored explore_nearest(const AllSearch& parts, const Pose& Y) {
   const bool stays = curve.prefers_staying(move);
   RowSeeds first(stays ? nullptr : &near, parts.work);
   search(lanes.refiner, first, answers, parts.work);
-  // Any answer bounds the others as well, and where there is none, what looks for any is sooner
-  // through.
-  const auto find_any = [&] {
-    return answers.has_any() ? Explored::doubtful() : find_any_or_none(parts, Y);
-  };
-  if (!stays) {
-    if (const Explored none = find_any(); none.is_done) return none;
+  const bool is_seen = curve.find_at_samples(Y, near, move, answers.least_move());
+  parts.work.lap(&StageTimes::query);
+  // Where there is none, what looks for any is sooner through than what looks between samples.
+  if (!is_seen && !answers.has_any()) {
+    if (const Explored none = find_any_or_none(parts, Y); none.is_done) return none;
   }
-  NearestOnCurveSeeds nearest(curve, Y, near, move, answers, parts.work);
+  NearestOnCurveSeeds nearest(curve, answers, parts.work);
   parts.refine(nearest, Width::narrow);
   answers.settle(curve.is_settled() && nearest.has_led_to_answer());
-  if (stays) {
-    if (const Explored none = find_any(); none.is_done) return none;
-  }
-  return answers.has_any() ? Explored::done() : Explored::doubtful();
+  if (answers.has_any()) return Explored::done();
+  return is_seen ? find_any_or_none(parts, Y) : Explored::doubtful();
 }
 
 /// The solution nearest to it on the arcs that have ends, or that what was found lies on. Returns

@@ -70,6 +70,8 @@ void bind_self_motion(py::module_& m, py::class_<Solver>& solver) {
   bind_arc(m);
   auto cls = bind_fields<M>(m, "Solver.self_motion");
   add_property(cls, "success", &M::success);
+  add_property(
+      cls, "proven", [](const M& self) { return is_proven(self.proof); }, kProven);
   def(cls, "__len__", "", [](const M& self) { return self.arcs.size(); });
   def(cls, "__getitem__", "i", fn<&arc_at>);
   def_iter<SelfMotionArc>(cls);

@@ -2750,6 +2750,11 @@ class SelfMotion:
         `answer` if there is an arc; else how certain it is that there is no solution.
         """
     @property
+    def proven(self) -> bool:
+        """
+        Whether there is certainly no answer: `proof` is `reach`, `closed_form`, `intervals` or `target`.
+        """
+    @property
     def status(self) -> Status:
         """
         `solved` if there is an arc; else why there is none.

@@ -81,6 +81,7 @@ def test_out_of_reach_and_indices(solver) -> None:
     assert len(none) == 0
     assert none.status is iksel.Status.out_of_reach
     assert none.proof is iksel.Proof.reach
+    assert none.proven
     with pytest.raises(IndexError):
         none[0]
 

@@ -45,8 +45,7 @@ def _errors(result: Any) -> list[str]:
 
 def _verdict(answer: Any) -> str:
     """Status, and what proves that there is no answer: not_converged, proven: reach."""
-    is_proven = str(answer.proof) in {"reach", "target", "closed_form", "intervals"}
-    proof = f", proven: {answer.proof}" if is_proven and not answer.success else ""
+    proof = f", proven: {answer.proof}" if answer.proven and not answer.success else ""
     return f"{answer.status}{proof}"
 
 

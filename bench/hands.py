@@ -20,12 +20,15 @@ from bench.whole_body.brute import RESTARTS, VALUES
 from bench.whole_body.carried import JUMP, WAYPOINTS, carried
 from bench.whole_body.free import free
 from bench.whole_body.nearest import STARTS, nearest
+from bench.whole_body.pairs import nearest_of_pairs
 from bench.whole_body.robots import load_body
 
 if TYPE_CHECKING:
     import argparse
 
 ROBOTS = ("two_pandas", "pr2")
+PAIRS = "pairs"
+"""Of random arms, of which the moves are looked at only."""
 Rows = dict[str, dict[str, Any]]
 
 
@@ -37,7 +40,7 @@ def add(commands: Any) -> None:
         description=__doc__,
     )
     of_meshes = "; pr2, and the meshes of both, are those of example-robot-data"
-    add_robots(command, ROBOTS, of_meshes)
+    add_robots(command, ROBOTS, f"; {PAIRS}: of random arms, moves only{of_meshes}")
     add_count(command, "--near", 300, "moves of each start")
     add_count(command, "--free", 10_000, "targets beside bodies")
     add_count(command, "--paths", 40, "paths")
@@ -47,7 +50,7 @@ def add(commands: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Measure, and print tables; 1 if an answer is none."""
-    check_robots("hands", args.robots, ROBOTS)
+    check_robots("hands", args.robots, (*ROBOTS, PAIRS))
     made: dict[str, Rows] = {"near": {}, "free": {}, "paths": {}}
     for name in args.robots:
         try:
@@ -64,6 +67,11 @@ def run(args: argparse.Namespace) -> int:
 
 def _measure(name: str, args: argparse.Namespace, made: dict[str, Rows]) -> None:
     """All that is asked for of a robot; what needs its meshes comes last."""
+    if name == PAIRS:
+        for start in STARTS if args.near else ():
+            row = nearest_of_pairs(start, args.near, args.seed)
+            made["near"][f"{name}, {start}"] = row
+        return
     body = load_body(name)
     for start in STARTS if args.near else ():
         row = nearest(body, start, args.near, args.seed)

@@ -11,6 +11,8 @@ import iksel
 pytest.importorskip("bench", reason="the benchmarks are in the repository only")
 
 from bench import command
+from bench.chain import chain_from_urdf
+from bench.moves import APART
 from bench.robot_data import robots_folder
 from bench.tips import changed
 from bench.whole_body import carried
@@ -60,6 +62,31 @@ class TestBruteForce:
     def test_near_beside_it(self, pandas):
         row = nearest(pandas, "beside", 4, SEED)
         assert (row["cases"], row["none"], row["wrong"], row["longer"]) == (4, 0, 0, 0)
+
+
+class TestNear:
+    @pytest.mark.parametrize(
+        ("case", "turn"),
+        [(23, -1.0702), (47, -0.8783), (243, -0.6265), (251, 0.0714), (301, 1.145)],
+    )
+    def test_is_no_farther_than_both_arms_behind_the_joint(self, pandas, case, turn):
+        """Answers of both arms that exist together for a short way of the joint."""
+        count = 302
+        poses = pandas.fk(pandas.random_configurations(count, 0))[case]
+        near = pandas.random_configurations(count, APART)[case]
+        move = [turn - near[pandas.robot.shared_joints[0]]]
+        for i, tip in enumerate(pandas.robot.tip_links):
+            base = chain_from_urdf(pandas.urdf, "base", "turn_link", np.eye(4))
+            arm = iksel.Robot.from_urdf(
+                pandas.urdf.encode(), base_link="turn_link", tip_link=tip
+            )
+            behind = np.linalg.inv(base.fk(np.array([[turn]]))[0]) @ poses[i]
+            own = near[np.setdiff1d(pandas.columns[i], pandas.robot.shared_joints)]
+            result = iksel.Solver(arm).solve(behind, near=own)
+            assert result.success
+            move.append(result.move)
+        result = iksel.Solver(pandas.robot).solve(poses, near=near)
+        assert result.move <= np.linalg.norm(move) + 1e-6
 
 
 class TestCarried:

@@ -38,6 +38,8 @@ bool AnswerSelector::is_satisfied(const Collector& search) {
   screen_new();
   if (first_kept_ == found_.size()) return false;
   if (!ranks_) return true;
+  // Of several tips there are as many seeds as the nearest needs.
+  if (goal_.tips() != nullptr && search.wants_nearest()) return false;
   if (goal_.is_redundant()) {
     return search.work.attempts >= (search.are_surfaces() ? kSeedsOfSurfaces : kRedundantSeeds);
   }

@@ -58,6 +58,10 @@ class Collector : public SearchState {
   [[nodiscard]] bool knows(const Q& q) const {
     return basin_radius_ > 0 && found_.is_near_known(q, basin_radius_);
   }
+  /// Whether one of those that were found lies nearer to q than `radius` in every joint.
+  [[nodiscard]] bool has_beside(const JointVector& q, double radius) const {
+    return found_.is_near_known(q, radius);
+  }
   [[nodiscard]] bool should_continue();
 
   /// The next predicted partner, if there is one.

@@ -59,6 +59,17 @@ bool ArmSearch::has_all_arms() const {
   return true;
 }
 
+bool ArmSearch::knows_nearest() const {
+  for (int i = 0; i < goal_.count(); ++i) {
+    const StructureKind kind = solvers_[static_cast<std::size_t>(i)].of_arm;
+    if (!has_arm(i) || goal_.frame_of(i) >= 0 || kind == StructureKind::searched ||
+        !goal_.task(i).task().is_full_pose()) {
+      return false;
+    }
+  }
+  return true;
+}
+
 Pose ArmSearch::target_of_arm(int tip, const JointVector& q) {
   const Tip& of_tip = goal_.model().tip(tip);
   const Pose target =

@@ -10,6 +10,7 @@
 #include "base/random.hpp"
 #include "goal/goal.hpp"
 #include "iksel/solver.hpp"
+#include "iksel/structure.hpp"
 #include "search/search_state.hpp"
 
 namespace iksel {
@@ -18,6 +19,7 @@ namespace iksel {
 struct TipSolvers {
   Solver chain;
   std::optional<Solver> arm;
+  StructureKind of_arm = StructureKind::searched;
 };
 
 class ArmSearch {
@@ -32,6 +34,8 @@ class ArmSearch {
   [[nodiscard]] bool has_arm(int tip) const;
   /// Whether each has.
   [[nodiscard]] bool has_all_arms() const;
+  /// Whether each arm's nearest is known by the structure of the arm, wherever the others are.
+  [[nodiscard]] bool knows_nearest() const;
   /// Solves for the joints of that tip's arm, the shared ones as in q; false leaves q as it is.
   /// Limits that arms share are left to what iterates all joints. With little effort nothing is
   /// asked of the answer but the task.

@@ -15,9 +15,7 @@ namespace {
 
 /// Seeds that one arm has behind each value of the shared joints, of which there are others.
 constexpr int kArmAttempts = 64;
-/// Seeds around what the nearest is wanted to. Of 450 moves of two Pandas on a joint, 0.3 to 1
-/// times the joints' ranges long, 30 were longer than by brute force without any, 15 with 64 and 8
-/// with 128; brute force (200 restarts) missed 9.
+/// Seeds around what the nearest is wanted to, where it is not known by the arms' nearest.
 constexpr int kNearbySeeds = 128;
 /// Iterations of a seed while little work is done.
 constexpr int kQuickIterations = 16;
@@ -66,6 +64,7 @@ TipsSearch::TipsSearch(const TipsModel& model, const SolverOptions& options)
   for (const Tip& tip : model.tips) {
     TipSolvers& of_tip = solvers_.emplace_back(TipSolvers{Solver(tip.chain.robot, options), {}});
     if (!tip.arm) continue;
+    of_tip.of_arm = find_structure(tip.arm->robot).kind;
     if (tip.stem) {
       of_tip.arm.emplace(tip.arm->robot, of_arm);
     } else {
@@ -111,8 +110,7 @@ Proof TipsSearch::search_for(Answers& answers, const Collector* collector,
     if (search(steps, of_chains, answers, work)) return Proof::none;
     proof = of_chains.proof();
   }
-  if (is_enough()) {
-    // Between the values of the shared joints others are nearer at times.
+  if (is_enough() && !ArmSeeds::knows_nearest(arms, collector)) {
     NearbySeeds nearby(collector->nearest_to().from, options_.seed, work, kNearbySeeds);
     search(refiner, nearby, answers, work);
   }

@@ -13,9 +13,11 @@ namespace {
 constexpr int kQuickValues = 96;
 constexpr int kSharedValues = 32;
 constexpr int kManyValues = 256;
-/// Values at which the nearest is looked for, at most, and after the last that gave a nearer one.
-constexpr int kNearValues = 48;
-constexpr int kNearPatience = 16;
+/// Values at which the nearest is looked for where it may be anywhere within the limits, if the
+/// arms' nearest are known. Of 1,500 moves of random pairs of arms on a joint, from anywhere, 13
+/// were longer than by 1,500 values with 192, 10 with 256 and 7 with 384, before kWorthwhile; with
+/// it 5 with 224 and 4 with 256 (moves as of python -m bench hands pairs).
+constexpr int kNearValues = 256;
 /// Seeds of one chain each, after the first values.
 constexpr int kChainSeeds = 24;
 /// Combinations of the arms' solutions behind one value, at most.
@@ -24,6 +26,12 @@ constexpr int kCombinations = 256;
 /// are: the others lie behind other values.
 constexpr std::size_t kNearestKept = 4;
 constexpr std::size_t kManyKept = 16;
+
+/// What is so many times as far as the nearest so far may lead to a nearer one beside it. With 1.02
+/// and 1.1 as many of those moves were longer.
+constexpr double kWorthwhile = 1.02;
+/// Beside a solution that is nearer in every joint another leads to the same [rad or m].
+constexpr double kJump = 0.2;
 
 /// How many solutions of each of so many arms give kCombinations.
 int solutions_of_each(int arms) {
@@ -34,9 +42,13 @@ int solutions_of_each(int arms) {
 
 }  // namespace
 
-SharedValues::SharedValues(const TipsModel& model, const std::vector<double>& steps,
+SharedValues::SharedValues(const TipsModel& model, const std::vector<double>& steps, int most,
                            const NearestTo* to)
-    : model_(model), to_(to), index_(to != nullptr ? -1 : 0), steps_(steps) {}
+    : model_(model),
+      to_(to),
+      most_(most),
+      index_(to != nullptr && most > 1 ? -1 - 2 * static_cast<int>(model.shared.size()) : 0),
+      steps_(steps) {}
 
 std::pair<double, double> SharedValues::range(int joint, double best) const {
   const JointSpace& joints = model_.joints;
@@ -61,20 +73,23 @@ void SharedValues::hold_stems(JointVector& q) const {
   }
 }
 
-void SharedValues::next(double best, JointVector& q) {
-  if (index_ < 0) {
-    for (const int joint : model_.shared) q[joint] = to_->from[joint];
-    q = model_.joints.clamp(q);
-  } else {
-    for (std::size_t j = 0; j < model_.shared.size(); ++j) {
-      const auto [lower, upper] = range(model_.shared[j], best);
-      // The first is the middle.
-      const double x = 0.5 + index_ * steps_[j];
-      q[model_.shared[j]] = lower + (upper - lower) * (x - std::floor(x));
-    }
-    hold_stems(q);
+bool SharedValues::next(double best, JointVector& q) {
+  const int count = static_cast<int>(model_.shared.size());
+  double part = 1;  // of all values
+  for (int j = 0; j < count; ++j) {
+    const int joint = model_.shared[static_cast<std::size_t>(j)];
+    const auto [lower, upper] = range(joint, best);
+    const auto [lowest, uppermost] = range(joint, kInfinity);
+    if (uppermost > lowest) part *= (upper - lower) / (uppermost - lowest);
+    // The first is the middle.
+    const double x = 0.5 + index_ * steps_[static_cast<std::size_t>(j)];
+    if (index_ >= 0) q[joint] = lower + (upper - lower) * (x - std::floor(x));
+    if (index_ < 0 && (-index_ - 1) / 2 == j) q[joint] = index_ % 2 == 0 ? lower : upper;
   }
+  if (index_ >= most_ * part) return false;
+  hold_stems(q);
   ++index_;
+  return true;
 }
 
 ArmSeeds::ArmSeeds(const Goal& goal, ArmSearch& arms, const std::vector<double>& steps,
@@ -86,32 +101,35 @@ ArmSeeds::ArmSeeds(const Goal& goal, ArmSearch& arms, const std::vector<double>&
       collector_(collector),
       work_(work),
       to_(collector != nullptr && collector->ranks_by_move() ? &collector->nearest_to() : nullptr),
-      values_(model_, steps, to_),
-      left_(to_ != nullptr            ? kNearValues
-            : collector != nullptr    ? kManyValues
-            : effort == Effort::quick ? kQuickValues
-                                      : kSharedValues),
-      patience_(kNearPatience),
+      knows_nearest_(knows_nearest(arms, collector)),
+      values_(model_, steps,
+              model_.shared.empty()                       ? 1
+              : to_ == nullptr && collector != nullptr    ? kManyValues
+              : knows_nearest_                            ? kNearValues
+              : to_ == nullptr && effort == Effort::quick ? kQuickValues
+                                                          : kSharedValues,
+              to_),
       order_(goal.tips()->order()) {
   const bool wants_many = collector != nullptr && to_ == nullptr;
   of_each_ = wants_many || goal.scene() != nullptr ? solutions_of_each(model_.tip_count()) : 1;
-  if (model_.shared.empty()) left_ = 1;
-  if (!arms.has_all_arms()) left_ = 0;
 }
 
 bool ArmSeeds::next_stage() {
   seeds_.clear();
   next_ = 0;
+  if (!arms_.has_all_arms() || !work_.has_left()) return false;
+  JointVector q = to_ != nullptr ? to_->from : model_.joints.middle();
   const double best = to_ != nullptr ? collector_->least_move() : kInfinity;
   if (best < last_best_) {
+    // Behind its own values there may be a nearer one.
     last_best_ = best;
-    patience_ = kNearPatience;
+    q = Eigen::Map<const Eigen::VectorXd>(collector_->solution(collector_->nearest()), q.size());
+  } else if (!values_.next(last_best_, q)) {
+    return false;
   }
-  if (left_ == 0 || patience_ == 0 || !work_.take()) return false;
-  --left_;
-  JointVector q = model_.joints.middle();
-  values_.next(last_best_, q);
-  solutions_.assign(order_.size(), std::nullopt);
+  work_.take();
+  if (!knows_nearest_) behind_.clear();
+  behind_.push_back({q, std::vector<std::optional<std::vector<JointVector>>>(order_.size())});
   failed_ = 0;
   extend(0, q);
   const bool are_apart = std::all_of(order_.begin(), order_.end(),
@@ -120,19 +138,22 @@ bool ArmSeeds::next_stage() {
     std::rotate(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(failed_),
                 order_.end());
   }
-  if (last_best_ < kInfinity && !seeds_.empty()) --patience_;
   sort_out();
+  if (knows_nearest_) add_between();
   return true;
 }
 
 void ArmSeeds::extend(std::size_t k, JointVector q) {
   if (is_too_far(k, q) || seeds_.size() >= kCombinations) return;
   if (k == order_.size()) {
-    seeds_.push_back(q);
+    if (!knows_nearest_ || !collector_->has_beside(q, kJump) ||
+        to_->move.length(q - to_->from) < last_best_) {
+      seeds_.push_back(q);
+    }
     return;
   }
   const int tip = order_[k];
-  const std::vector<JointVector>& solutions = solve(tip, q);
+  const std::vector<JointVector>& solutions = solve(tip, q, behind_.back());
   if (solutions.empty()) failed_ = k;
   for (const JointVector& solution : solutions) {
     put(solution, model_.tip(tip).arm->joints, q);
@@ -140,12 +161,13 @@ void ArmSeeds::extend(std::size_t k, JointVector q) {
   }
 }
 
-const std::vector<JointVector>& ArmSeeds::solve(int tip, const JointVector& q) {
-  auto& found = solutions_[static_cast<std::size_t>(tip)];
+const std::vector<JointVector>& ArmSeeds::solve(int tip, const JointVector& q, Behind& behind) {
+  auto& found = behind.arms[static_cast<std::size_t>(tip)];
   // Of a target in the base frame they are the same whatever the other arms do.
   if (found && goal_.tips()->frame_of(tip) < 0) return *found;
   found.emplace();
-  const bool is_quick = effort_ == Effort::quick;
+  // Where the nearest is known it is found, or that there is none, at once.
+  const bool is_quick = effort_ == Effort::quick && !knows_nearest_;
   JointVector solved = q;
   if (is_quick && !arms_.solve_arm(tip, Effort::quick, solved)) return *found;
   // Which answer matters to those who collect.
@@ -156,6 +178,43 @@ const std::vector<JointVector>& ArmSeeds::solve(int tip, const JointVector& q) {
     found->push_back(picked(solved, model_.tip(tip).arm->joints));
   }
   return *found;
+}
+
+void ArmSeeds::add_between() {
+  Behind& last = behind_.back();
+  for (const int joint : model_.shared) {
+    for (const int side : {-1, 1}) {
+      Behind* beside = nullptr;
+      double least = kInfinity;
+      for (Behind& other : behind_) {
+        const JointVector way = picked(other.q - last.q, model_.shared);
+        if (side * (other.q[joint] - last.q[joint]) <= 0 || !(way.norm() < least)) continue;
+        least = way.norm();
+        beside = &other;
+      }
+      if (beside == nullptr) continue;
+      for (unsigned tips = 1; tips + 1 < 1U << order_.size(); ++tips) {
+        add_mixed(last, *beside, tips);
+      }
+    }
+  }
+}
+
+void ArmSeeds::add_mixed(Behind& a, Behind& b, unsigned tips_of_b) {
+  JointVector q = 0.5 * (a.q + b.q);
+  bool jumps[2] = {};
+  for (std::size_t k = 0; k < order_.size(); ++k) {
+    const int tip = order_[k];
+    const bool is_of_b = (tips_of_b >> tip & 1U) != 0;
+    const std::vector<JointVector>& here = solve(tip, is_of_b ? b.q : a.q, is_of_b ? b : a);
+    if (here.empty()) return;
+    const auto& there = (is_of_b ? a : b).arms[static_cast<std::size_t>(tip)];
+    jumps[is_of_b] |=
+        !there || there->empty() || (here.front() - there->front()).cwiseAbs().maxCoeff() > kJump;
+    put(here.front(), model_.tip(tip).arm->joints, q);
+    if (is_too_far(k + 1, q)) return;
+  }
+  if (jumps[0] && jumps[1]) seeds_.push_back(q);
 }
 
 void ArmSeeds::sort_out() {
@@ -184,7 +243,7 @@ bool ArmSeeds::is_too_far(std::size_t arms, const JointVector& q) const {
   for (std::size_t k = 0; k < arms; ++k) {
     for (const int joint : model_.tip(order_[k]).arm->joints) moved[joint] = q[joint];
   }
-  return to_->move.length(moved - to_->from) >= last_best_;
+  return to_->move.length(moved - to_->from) >= kWorthwhile * last_best_;
 }
 
 bool ChainSeeds::next_stage() {

@@ -14,16 +14,19 @@
 
 namespace iksel {
 
-/// Values of the shared joints: those of what the nearest is wanted to, if it is, those in the
-/// middle of the limits, then spread evenly over the limits, as far as they may lead to something
-/// nearer. `steps`: low_discrepancy_steps of so many joints.
+/// Values of the shared joints spread evenly over the limits, from their middle on. Where the
+/// nearest is wanted, only as far as they may lead to something nearer, and before these the values
+/// of what it is wanted nearest to, and each joint at both ends. `steps`: low_discrepancy_steps of
+/// so many joints.
 class SharedValues {
  public:
-  /// `to` may be null. All must outlive this.
-  SharedValues(const TipsModel& model, const std::vector<double>& steps, const NearestTo* to);
+  /// `most` over the whole of the limits; `to` may be null. All must outlive this.
+  SharedValues(const TipsModel& model, const std::vector<double>& steps, int most,
+               const NearestTo* to);
 
-  /// Writes the next ones to q; `best` is the least move so far.
-  void next(double best, JointVector& q);
+  /// Writes the next ones to q, whose shared joints are those that the nearest is wanted to; false
+  /// if there are none left. `best` is the least move so far.
+  bool next(double best, JointVector& q);
 
  private:
   /// Moves the shared joints inside all limits that are of these alone.
@@ -33,6 +36,8 @@ class SharedValues {
 
   const TipsModel& model_;
   const NearestTo* to_;
+  int most_;
+  /// Negative: those before what is spread.
   int index_;
   const std::vector<double>& steps_;
 };
@@ -40,12 +45,21 @@ class SharedValues {
 /// The arms solved behind one value of the shared joints after another; a stage has one value. Only
 /// where all arms could be solved are there seeds, which are answers already: one, or where many
 /// are wanted or a scene may refuse some, combinations of several solutions of each arm.
+///
+/// Behind a value the nearest of all is the nearest of each arm. What is known of each is good for
+/// values beside it too: where one arm's nearest begins, or ends, between two values and another's
+/// as well, both are there for a short way only, or not at any value that is tried.
 class ArmSeeds {
  public:
   /// `collector` gets what is found; null: the first answer is enough. With little effort values
   /// are left at once where an arm is not solved with little. All must outlive this.
   ArmSeeds(const Goal& goal, ArmSearch& arms, const std::vector<double>& steps, Effort effort,
            const Collector* collector, Work& work);
+
+  /// Whether nothing but the nearest is wanted, and is to be found by the nearest of each arm.
+  static bool knows_nearest(const ArmSearch& arms, const Collector* collector) {
+    return collector != nullptr && collector->wants_nearest() && arms.knows_nearest();
+  }
 
   bool next_stage();
   template <typename Refiner>
@@ -56,11 +70,23 @@ class ArmSeeds {
   }
 
  private:
+  /// Values of the shared joints, as in q, and of those arms that were solved behind them the
+  /// solutions.
+  struct Behind {
+    JointVector q;
+    std::vector<std::optional<std::vector<JointVector>>> arms;
+  };
   /// Solves the arms from number `k` of the order on, with those before as in q, and adds all
   /// combinations.
   void extend(std::size_t k, JointVector q);
-  /// The joint values of a tip's arm, with those before it in the order as in q.
-  const std::vector<JointVector>& solve(int tip, const JointVector& q);
+  /// The joint values of a tip's arm, with the others as in q.
+  const std::vector<JointVector>& solve(int tip, const JointVector& q, Behind& behind);
+  /// Adds what lies between the last values and those beside: of each joint the nearest below, and
+  /// above.
+  void add_between();
+  /// Adds the arms behind `a`, but of tips whose bits are set those behind `b`, if both some of
+  /// these and some of the others jump from `a` to `b`.
+  void add_mixed(Behind& a, Behind& b, unsigned tips_of_b);
   /// Leaves those that are free, and where the nearest is wanted the nearest first.
   void sort_out();
   /// Whether the joints of q that are set so far move too far: the shared ones, and those of the
@@ -75,9 +101,9 @@ class ArmSeeds {
   Work& work_;
   /// What the nearest is wanted to; null if it is not.
   const NearestTo* to_;
+  bool knows_nearest_;
   SharedValues values_;
-  /// Values left, and those left until one has to be nearer than the best so far.
-  int left_, patience_;
+  /// The least move so far, beyond which nothing is of use.
   double last_best_ = kInfinity;
   /// Solutions of each arm that are combined.
   int of_each_;
@@ -85,8 +111,8 @@ class ArmSeeds {
   /// time is first, unless a target is in another tip's frame.
   std::vector<int> order_;
   std::size_t failed_ = 0;  ///< number in the order
-  /// The last of each arm.
-  std::vector<std::optional<std::vector<JointVector>>> solutions_;
+  /// The last values at the end; before them those that they are mixed with.
+  std::vector<Behind> behind_;
   std::vector<JointVector> seeds_;
   std::size_t next_ = 0;
 };

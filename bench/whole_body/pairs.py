@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Pairs of random arms on a random joint, so that no constant is tuned on robots."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from bench.moves import BUILDS
+from bench.random_arms import sketch
+from bench.whole_body.nearest import nearest
+from bench.whole_body.robots import body_of
+
+if TYPE_CHECKING:
+    from bench.chain import Array
+    from bench.whole_body.robots import Body
+
+EACH = 10
+"""Moves of a pair."""
+
+
+def random_pair(seed: int) -> Body:
+    """Two arms of seven joints, mounted anyhow on a joint that turns or slides."""
+    rng = np.random.default_rng([seed, 4711])
+    if rng.random() < 0.5:
+        kind, lower, upper = "revolute", -rng.uniform(0.5, 3.1), rng.uniform(0.5, 3.1)
+    else:
+        kind, lower, upper = "prismatic", 0.0, rng.uniform(0.2, 1.0)
+    axis = rng.normal(size=3)
+    text = f"""<robot name="pair"><link name="base"/><link name="torso"/>
+        <joint name="shared" type="{kind}"><parent link="base"/><child link="torso"/>
+        <axis xyz="{_words(axis / np.linalg.norm(axis))}"/>
+        <limit lower="{lower}" upper="{upper}" effort="1" velocity="1"/></joint>"""
+    for side in ("a_", "b_"):
+        build = BUILDS[rng.integers(len(BUILDS))]
+        arm = sketch(build, int(rng.integers(1_000_000))).urdf()
+        arm = re.sub(r"</?robot.*?>", "", arm)
+        text += re.sub(r'\b(name|link|joint)="', rf'\1="{side}', arm)
+        place, turn = rng.uniform(-0.3, 0.3, 3), rng.uniform(-3, 3, 3)
+        text += f"""<joint name="{side}mount" type="fixed"><parent link="torso"/>
+            <child link="{side}l0"/>
+            <origin xyz="{_words(place)}" rpy="{_words(turn)}"/></joint>"""
+    return body_of(f"pair{seed}", text + "</robot>", "base", ("a_tip", "b_tip"))
+
+
+def nearest_of_pairs(start: str, count: int, seed: int) -> dict[str, Any]:
+    """As `nearest`, `count` moves in all; they are named by how many came before."""
+    pairs = range(-(-count // EACH))
+    rows = [
+        nearest(random_pair(1000 * seed + k), start, min(EACH, count - EACH * k), seed)
+        for k in pairs
+    ]
+    sums = ("cases", "none", "wrong", "longer", "shorter")
+    return {key: sum(row[key] for row in rows) for key in sums} | {
+        "longest": max(row["longest"] for row in rows),
+        "mean_us": float(np.mean([row["mean_us"] for row in rows])),
+        "named": [EACH * k + i for k in pairs for i in rows[k]["named"]],
+    }
+
+
+def _words(values: Array) -> str:
+    return " ".join(repr(float(value)) for value in values)

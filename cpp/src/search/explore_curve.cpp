@@ -42,28 +42,7 @@ Explored explore_spread(const AllSearch& parts, const Pose& Y) {
     q.swap(few);
     refine_samples(parts, /*are_answers=*/true);
   }
-  if (answers.has_any()) return Explored::done();
-  const Proof proof = q.empty() ? lanes.find_none(parts.goal.target(), Y) : Proof::none;
-  return proof != Proof::none ? Explored::done(proof) : Explored::doubtful();
-}
-
-/// Any solution, as soon as can be; done if there certainly is none.
-Explored find_any_or_none(const AllSearch& parts, const Pose& Y) {
-  Workspace::InLanes& lanes = *parts.workspace.lanes;
-  Sweep& sweep = *lanes.sweep;
-  bool is_found = sweep.find_at_samples(Y);
-  if (!is_found) {
-    const Proof none = lanes.prove_none(parts.goal.target(), Y);
-    if (none != Proof::none) {
-      parts.work.lap(&StageTimes::query);
-      return Explored::done(none);
-    }
-    is_found = sweep.find_between();
-  }
-  parts.work.lap(&StageTimes::query);
-  if (!is_found) return sweep.is_none() ? Explored::done(Proof::sweep) : Explored::doubtful();
-  parts.refine_rows(sweep.q(), 1, /*are_answers=*/true, Width::narrow);
-  return Explored::doubtful();
+  return answers.has_any() ? Explored::done() : explore_any(parts, Y);
 }
 
 /// The solution nearest to `near`, or to the objective's posture.
@@ -79,18 +58,16 @@ Explored explore_nearest(const AllSearch& parts, const Pose& Y) {
   search(lanes.refiner, first, answers, parts.work);
   // Any answer bounds the others as well, and where there is none, what looks for any is sooner
   // through.
-  const auto find_any = [&] {
-    return answers.has_any() ? Explored::doubtful() : find_any_or_none(parts, Y);
+  Explored any;
+  const auto is_none = [&] {
+    if (!answers.has_any()) any = explore_any(parts, Y);
+    return any.is_done && !answers.has_any();
   };
-  if (!stays) {
-    if (const Explored none = find_any(); none.is_done) return none;
-  }
+  if (!stays && is_none()) return any;
   NearestOnCurveSeeds nearest(curve, Y, near, move, answers, parts.work);
   parts.refine(nearest, Width::narrow);
   answers.settle(curve.is_settled() && nearest.has_led_to_answer());
-  if (stays) {
-    if (const Explored none = find_any(); none.is_done) return none;
-  }
+  if (stays && is_none()) return any;
   return answers.has_any() ? Explored::done() : Explored::doubtful();
 }
 

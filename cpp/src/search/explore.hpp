@@ -14,7 +14,8 @@ using FirstSearch = SearchParts<FirstAnswer>;
 using AllSearch = SearchParts<Collector>;
 
 /// Seeds after all branches, or all roots of a sweep, led nowhere: double ones, or just outside a
-/// limit, or beside a singularity (python -m bench lost --targets 0 --hard 1000000).
+/// limit, or beside a singularity; and of a sweep of a chain that is only nearly the arm's, or of
+/// which an answer was refused (python -m bench lost --targets 0 --hard 1000000).
 inline constexpr int kBesideBranches = 48;
 inline constexpr int kBesideRoots = 96;
 

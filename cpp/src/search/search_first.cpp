@@ -13,10 +13,6 @@ namespace {
 constexpr int kBeforeRoots = 4;
 /// The same in a scene, where each that collides costs more than a pack of samples.
 constexpr int kBeforeSamples = 2;
-/// Seeds after a sweep of a chain that is only nearly the arm's, or of which all answers were
-/// refused.
-constexpr int kBesideSweep = 192;
-
 /// The nearest leaf of the database. Returns whether the answers want no more.
 bool search_leaf(const FirstSearch& parts, bool is_screened, RowSeeds& near, GivenSeeds& given) {
   Workspace::InLanes& lanes = *parts.workspace.lanes;
@@ -47,7 +43,7 @@ Proof search_pose(const FirstSearch& parts, RowSeeds& near, GivenSeeds& given, c
   }
   if (lanes.sweep) {
     if (const auto any = explore_any(parts, Y); any.is_done) return any.proof;
-    parts.work.leave(kBesideSweep);
+    parts.work.leave(kBesideRoots);
   }
   lanes.refiner.begin(parts.goal.task(), kScreened, Width::wide);
   ScreenedSeeds screened(lanes.query, lanes.screen, Y, parts.model.joints, parts.options.seed,

@@ -103,8 +103,6 @@ class Sweep {
   const JointSpace& joints_;
   // sweep_spread.cpp
   class Spread;
-  /// Branches of which all that is asked is how far they are from an answer (least_cost.hpp).
-  struct Rated;
 
   SweptBranches branches_;
   BranchEnclosure enclosure_;

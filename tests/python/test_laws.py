@@ -354,13 +354,19 @@ def test_no_answer_lies_off_the_arcs(build: str) -> None:
         solver = iksel.Solver(robot)
         near = robot.random_configurations(ARC_POSES, seed=SEED)
         poses = robot.fk(robot.random_configurations(ARC_POSES, seed=SEED + 1))
+        only_almost = 0
         for i, pose in enumerate(poses):
             found = solver.solve(pose, near=near[i])
+            # What only the tolerances let be an answer lies on no curve.
+            if np.abs(robot.fk(found.q) - pose).max() > 1e-7:
+                only_almost += 1
+                continue
             on_arcs = np.vstack([arc.q for arc in solver.self_motion(pose, spacing)])
             off = on_arcs - found.q
             off[:, turns] -= 2 * np.pi * np.round(off[:, turns] / (2 * np.pi))
             away = np.abs(off).max(axis=1).min()
             assert away < 2 * spacing, f"{build} {number}, seed {SEED}, pose {i}"
+        assert only_almost <= ARC_POSES / 50, f"{build} {number}, seed {SEED}"
 
 
 @pytest.mark.parametrize(

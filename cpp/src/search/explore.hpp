@@ -62,7 +62,7 @@ Explored explore_branches(const Parts& parts, BranchList& branches, Proof kind, 
 /// the samples of the sweep, and between them. Done if that is all that is wanted, or there is
 /// none.
 template <typename Parts>
-Explored explore_any(const Parts& parts, const Pose& Y) {
+Explored explore_any(const Parts& parts, const Pose& Y, bool at_samples = true) {
   Workspace::InLanes& lanes = *parts.workspace.lanes;
   Sweep& sweep = *lanes.sweep;
   Explored any;
@@ -91,7 +91,7 @@ Explored explore_any(const Parts& parts, const Pose& Y) {
     }
     if (is_none) return Explored::done(Proof::closed_form);
   }
-  const bool is_answer = sweep.find(Y);
+  const bool is_answer = (at_samples && sweep.find_at_samples(Y)) || sweep.find_between(Y);
   if (refine(sweep.found(), is_answer) || is_answer || !sweep.is_nominal()) return any;
   const Proof none = sweep.proof_of_none();
   if (none == Proof::none && move_inside(sweep.found())) return any;

@@ -42,7 +42,7 @@ Explored explore_spread(const AllSearch& parts, const Pose& Y) {
     q.swap(few);
     refine_samples(parts, /*are_answers=*/true);
   }
-  return answers.has_any() ? Explored::done() : explore_any(parts, Y);
+  return answers.has_any() ? Explored::done() : explore_any(parts, Y, /*at_samples=*/false);
 }
 
 /// The solution nearest to `near`, or to the objective's posture.
@@ -56,19 +56,18 @@ Explored explore_nearest(const AllSearch& parts, const Pose& Y) {
   const bool stays = curve.prefers_staying(move);
   RowSeeds first(stays ? nullptr : &near, parts.work);
   search(lanes.refiner, first, answers, parts.work);
-  // Any answer bounds the others as well, and where there is none, what looks for any is sooner
-  // through.
-  Explored any;
-  const auto is_none = [&] {
-    if (!answers.has_any()) any = explore_any(parts, Y);
-    return any.is_done && !answers.has_any();
-  };
-  if (!stays && is_none()) return any;
-  NearestOnCurveSeeds nearest(curve, Y, near, move, answers, parts.work);
+  const bool is_seen = curve.find_at_samples(Y, near, move, answers.least_move());
+  parts.work.lap(&StageTimes::query);
+  // Where there is none, what looks for any is sooner through than what looks between samples.
+  if (!is_seen && !answers.has_any()) {
+    const Explored any = explore_any(parts, Y, /*at_samples=*/false);
+    if (any.is_done && !answers.has_any()) return any;
+  }
+  NearestOnCurveSeeds nearest(curve, answers, parts.work);
   parts.refine(nearest, Width::narrow);
   answers.settle(curve.is_settled() && nearest.has_led_to_answer());
-  if (stays && is_none()) return any;
-  return answers.has_any() ? Explored::done() : Explored::doubtful();
+  if (answers.has_any()) return Explored::done();
+  return is_seen ? explore_any(parts, Y) : Explored::doubtful();
 }
 
 /// The solution nearest to it on the arcs that have ends, or that what was found lies on. Returns

@@ -72,7 +72,7 @@ bool MoveBounds::may_be_shorter(const Gap& gap, double best) const {
   if (!a.exists() && !b.exists()) return true;
   // A joint turns as far beyond two points as from one point to the next (python -m bench moves),
   // and where the branch ends as the root of how far that exists.
-  const double at_end = std::sqrt(rise);
+  const double at_end = std::sqrt(std::max(a.least, b.least));
   const auto beyond = [&](std::size_t i, double /*turn*/) {
     const double turned = most([&](const BranchPoint& from, const BranchPoint& to) {
       const double one = std::abs(turn(i, from.q[i], to.q[i]));

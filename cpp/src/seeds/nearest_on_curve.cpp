@@ -23,8 +23,8 @@ double NearestOnCurve::least_move(double value) const {
   return weight_[i] * std::abs(d);
 }
 
-void NearestOnCurve::find(const Pose& Y, const JointVector& near, const JointMove& move,
-                          double known) {
+bool NearestOnCurve::find_at_samples(const Pose& Y, const JointVector& near, const JointMove& move,
+                                     double known) {
   std::copy_n(near.data(), SweptBranches::kDof, near_.begin());
   std::copy_n(move.weights().data(), SweptBranches::kDof, weight_.begin());
   takes_largest_ = move.norm() == MoveNorm::max;
@@ -35,8 +35,13 @@ void NearestOnCurve::find(const Pose& Y, const JointVector& near, const JointMov
   found_.clear();
   spans_left_ = kMostSpans;
   if (prefers_staying(move)) stay();
-  if (found_.size() > 0) return;
-  look_around();
+  stays_ = found_.size() > 0;
+  return stays_ || look_around() < std::min(known, kRefused);
+}
+
+void NearestOnCurve::find_between(double known) {
+  if (stays_) return;
+  known_move_ = known;
   find_least_places();
   for (const LeastPlace& least : least_) {
     if (may_be_shorter(least)) follow(least);
@@ -68,7 +73,7 @@ void NearestOnCurve::stay() {
   }
 }
 
-void NearestOnCurve::look_around() {
+double NearestOnCurve::look_around() {
   for (SamplePack& pack : packs_) pack.is_solved = false;
   exist_.fill(0);
   far_.fill(0);
@@ -89,7 +94,7 @@ void NearestOnCurve::look_around() {
     const double to_low = low < 0 ? kInfinity : least_move(places_.value(low));
     const double to_high = high < 0 ? kInfinity : least_move(places_.value(high));
     // Beside a sample that is farther away than the best move is long, there is nothing shorter.
-    if (std::min(to_low, to_high) - margin_of_step() > best) return;
+    if (std::min(to_low, to_high) - margin_of_step() > best) return best;
     best = std::min(best, solve_pack((to_low <= to_high ? low : high) / kCount, best));
     if (to_low <= to_high) {
       below -= kCount;
@@ -97,6 +102,7 @@ void NearestOnCurve::look_around() {
       above += kCount;
     }
   }
+  return best;
 }
 
 double NearestOnCurve::solve_pack(int pack, double best) {

@@ -24,7 +24,14 @@ class NearestOnCurve {
   /// Looks for the local minima of the move from `near` to answers to Y (reduction.hpp), each at
   /// its nearest periodic image. Only as far from `near` as an answer may be nearer than those
   /// found, and than one that is known whose move is `known`; none: infinity.
-  void find(const Pose& Y, const JointVector& near, const JointMove& move, double known);
+  void find(const Pose& Y, const JointVector& near, const JointMove& move, double known) {
+    find_at_samples(Y, near, move, known);
+    find_between(known);
+  }
+  /// The first part of it; returns whether an answer was seen.
+  bool find_at_samples(const Pose& Y, const JointVector& near, const JointMove& move, double known);
+  /// The second part.
+  void find_between(double known);
   /// Whether nothing that matters is nearer than what leaves the swept joint where it is: moves of
   /// the others do but decide between such.
   [[nodiscard]] bool prefers_staying(const JointMove& move) const;
@@ -116,8 +123,9 @@ class NearestOnCurve {
   }
   /// Adds what leaves the swept joint at `near`.
   void stay();
-  /// Solves the samples from the one nearest to `near` on, as far as it may be worth it.
-  void look_around();
+  /// Solves the samples from the one nearest to `near` on, as far as it may be worth it; the
+  /// shortest move there.
+  double look_around();
   /// Solves a pack of samples, as far as their moves may be worth it beside one that is known; the
   /// shortest move there.
   double solve_pack(int pack, double best);
@@ -208,6 +216,7 @@ class NearestOnCurve {
   std::array<std::uint64_t, kCount> within_{};
   double known_move_ = 0;
   bool takes_largest_ = false;
+  bool stays_ = false;  ///< all that matters is found at one value of the swept joint
   int spans_left_ = 0;
   std::vector<SamplePack> packs_;
   LeastPlaces<2 * kMost> least_;

@@ -10,26 +10,20 @@
 
 namespace iksel {
 
-/// The nearest alone first, the others if it leads to no such answer.
+/// The nearest alone first, the others if it leads to no such answer; once the curve's samples were
+/// looked at (NearestOnCurve::find_at_samples).
 /// `Known` tells how long the shortest move found is: least_move(), infinite if there is none.
 template <typename Known>
 class NearestOnCurveSeeds {
  public:
-  NearestOnCurveSeeds(NearestOnCurve& curve, const Pose& Y, const JointVector& near,
-                      const JointMove& move, const Known& known, Work& work)
-      : curve_(curve),
-        Y_(Y),
-        near_(near),
-        move_(move),
-        known_(known),
-        known_before_(known.least_move()),
-        work_(work) {}
+  NearestOnCurveSeeds(NearestOnCurve& curve, const Known& known, Work& work)
+      : curve_(curve), known_(known), known_before_(known.least_move()), work_(work) {}
 
   bool next_stage() {
     if (has_led_to_answer() || !work_.has_left()) return false;
     if (!done_) {
       done_ = true;
-      curve_.find(Y_, near_, move_, known_before_);
+      curve_.find_between(known_before_);
       work_.lap(&StageTimes::query);
       end_ = std::min<std::size_t>(curve_.size(), 1);
     } else {
@@ -55,9 +49,6 @@ class NearestOnCurveSeeds {
 
  private:
   NearestOnCurve& curve_;
-  const Pose& Y_;
-  const JointVector& near_;
-  const JointMove& move_;
   const Known& known_;
   double known_before_;
   Work& work_;

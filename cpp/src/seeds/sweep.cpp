@@ -39,6 +39,7 @@ bool Sweep::find_at_samples(const Pose& Y) {
 }
 
 bool Sweep::find_between(const Pose& Y) {
+  set_target(Y);
   found_.clear();
   for (enclosure_.begin(Y);; enclosure_.halve()) {
     enclosure_.close();

@@ -31,7 +31,11 @@ class Sweeps : public testing::TestWithParam<const char*> {
   [[nodiscard]] const Solver& solver() const { return iksel_test::solver(GetParam()); }
   [[nodiscard]] const Robot& robot() const { return solver().robot(); }
   [[nodiscard]] Sweep make_sweep() const {
-    return {robot().model(), *iksel::find_closed_form(robot().model()), /*is_nominal=*/true, 1e-6,
+    return {robot().model(),
+            *iksel::find_closed_form(robot().model()),
+            /*is_nominal=*/true,
+            1e-6,
+            1e-6,
             iksel::lanes::choose_kernels()};
   }
   /// So many configurations with `joints` of them at one of their limits.
@@ -103,12 +107,12 @@ TEST_P(Sweeps, FindsWhatCanBeReached) {
   for (const Pose& target : targets) {
     const bool is_found = sweep.find(iksel_test::reduced(robot(), target));
     found += is_found;
-    missed += !is_found && sweep.is_none();
+    missed += !is_found && sweep.proof_of_none() != Proof::none;
     const Result result = solver().solve(target);
     ASSERT_TRUE(result.success());
     judge.expect_solution(target, result.q);
     if (!is_found) continue;
-    const JointVector q = Eigen::Map<const Eigen::Matrix<double, 7, 1>>(sweep.q());
+    const JointVector q = Eigen::Map<const Eigen::Matrix<double, 7, 1>>(sweep.found().data());
     EXPECT_LE(iksel::pose_error(target, robot().fk(q)).norm(), 1e-3);
     EXPECT_TRUE(robot().within_limits(q));
   }
@@ -130,7 +134,8 @@ TEST_P(Sweeps, WhatHasAnAnswerBetweenSamplesIsNotSaidToHaveNone) {
       const Result result = solver().solve(target);
       solved += result.success();
       missed += !result.success() && result.proof != Proof::none;
-      missed_by_sweep += !sweep.find(iksel_test::reduced(robot(), target)) && sweep.is_none();
+      missed_by_sweep +=
+          !sweep.find(iksel_test::reduced(robot(), target)) && sweep.proof_of_none() != Proof::none;
     }
     // It is no proof: some of what there is at limits beside a straight elbow is missed.
     EXPECT_LE(missed, 1 + n / 500) << joints << " at limits, seed " << iksel_test::seed();

@@ -52,19 +52,17 @@ Workspace::InLanes::InLanes(const ChainModel& model, const ChainModel& nominal,
   if (closed_forms.residual) {
     roots.emplace(model, *closed_forms.residual, is_nominal, tolerance_of(*closed_forms.residual),
                   kernels);
+    if (is_nominal && !closed_forms.residual->loop) {
+      enclosure.emplace(model, *closed_forms.residual, position, rotation, kernels);
+    }
   }
   const auto& closed_form = closed_forms.pose;
-  const bool has_held = closed_form && closed_form->held >= 0;
-  const auto& enclosed = has_held ? closed_form : closed_forms.residual;
-  if (is_nominal && enclosed && !enclosed->loop) {
-    enclosure.emplace(model, *enclosed, position, rotation, kernels);
-  }
   if (!closed_form) return;
   if (closed_form->held < 0) {
     branches.emplace(model, *closed_form, is_nominal, position, rotation, kernels);
     if (trials != nullptr) branch_lanes.emplace(model, branches->chain(), *trials, kernels);
   } else {
-    sweep.emplace(model, *closed_form, is_nominal, tolerance_of(*closed_form), kernels);
+    sweep.emplace(model, *closed_form, is_nominal, position, rotation, kernels);
     nearest_on_curve.emplace(model, *closed_form, is_nominal, kernels);
     curve.emplace(model, kernels);
     if (trials != nullptr) branch_lanes.emplace(model, *closed_form, *trials, kernels);

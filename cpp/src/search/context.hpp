@@ -74,20 +74,11 @@ struct Workspace {
       curve->find(T_base_tcp, Y, ends ? &*ends : nullptr, known, count, spacing);
       return curve->arcs();
     }
-    /// Whether the ends of a self-motion tell in closed form if there is a solution.
-    [[nodiscard]] bool has_closed_ends() const { return ends && ends->are_closed(); }
-    /// Whether branches enclosed over the range of a joint prove that there is no answer.
-    bool intervals_rule_out(const Pose& Y) { return enclosure && enclosure->rules_out(Y); }
-    /// What proves that a self-motion has no configuration inside the limits, for the same.
-    Proof prove_none(const Pose& T_base_tcp, const Pose& Y) {
-      if (ends && ends->rules_out(T_base_tcp)) return Proof::closed_form;
-      return intervals_rule_out(Y) ? Proof::intervals : Proof::none;
-    }
-    /// Whether it has none, as far as can be told.
+    /// The proof that a self-motion has no configuration inside the limits, for the same; none if
+    /// one is found between the samples, or in doubt.
     Proof find_none(const Pose& T_base_tcp, const Pose& Y) {
-      const Proof proof = prove_none(T_base_tcp, Y);
-      if (proof != Proof::none) return proof;
-      return !sweep->find(Y) && sweep->is_none() ? Proof::sweep : Proof::none;
+      if (ends && ends->rules_out(T_base_tcp)) return Proof::closed_form;
+      return sweep->find_between(Y) ? Proof::none : sweep->proof_of_none();
     }
     /// All branches of a goal of that task; null if it cannot be solved in closed form at once.
     [[nodiscard]] Enumeration* branches_of(const TaskSpace& task);
@@ -98,7 +89,7 @@ struct Workspace {
     std::optional<BranchLanes> branch_lanes;
     std::optional<Sweep> sweep;
     std::optional<RootSweep> roots;
-    /// What proves that such a chain has no answer, if it is the nominal one.
+    /// What proves that these are none, if the chain is the nominal one.
     std::optional<BranchEnclosure> enclosure;
     std::optional<NearestOnCurve> nearest_on_curve;
     std::optional<Curve> curve;

@@ -14,7 +14,8 @@ using FirstSearch = SearchParts<FirstAnswer>;
 using AllSearch = SearchParts<Collector>;
 
 /// Seeds after all branches, or all roots of a sweep, led nowhere: double ones, or just outside a
-/// limit, or beside a singularity (python -m bench lost --targets 0 --hard 1000000).
+/// limit, or beside a singularity; and of a sweep of a chain that is only nearly the arm's, or of
+/// which an answer was refused (python -m bench lost --targets 0 --hard 1000000).
 inline constexpr int kBesideBranches = 48;
 inline constexpr int kBesideRoots = 96;
 
@@ -41,7 +42,7 @@ Explored explore_branches(const Parts& parts, BranchList& branches, Proof kind, 
   }
   // Of full poses, as the roots are.
   if (kind == Proof::sweep && parts.request.prove && !answers.has_any() &&
-      parts.workspace.lanes->intervals_rule_out(Y)) {
+      parts.workspace.lanes->enclosure && parts.workspace.lanes->enclosure->rules_out(Y)) {
     return Explored::done(Proof::intervals);
   }
   if (is_through) return Explored::done(enumerated.is_certain() ? kind : Proof::none);
@@ -57,8 +58,45 @@ Explored explore_branches(const Parts& parts, BranchList& branches, Proof kind, 
 
 // On the self-motion of seven joints of which one can be swept.
 
-/// By the sweep, and where that leaves a doubt by the ends of the self-motion's arcs.
-Explored explore_curve(const FirstSearch& parts, const Pose& Y);
+/// For any solution: by the ends of its arcs, where these tell in closed form if there is one; at
+/// the samples of the sweep, and between them. Done if that is all that is wanted, or there is
+/// none.
+template <typename Parts>
+Explored explore_any(const Parts& parts, const Pose& Y, bool at_samples = true) {
+  Workspace::InLanes& lanes = *parts.workspace.lanes;
+  Sweep& sweep = *lanes.sweep;
+  Explored any;
+  const auto is_found = [&](bool is_satisfied) {
+    any.is_done = is_satisfied;
+    return is_satisfied || parts.answers.has_any();
+  };
+  const auto refine = [&](const std::vector<double>& q, bool are_answers) {
+    parts.work.lap(&StageTimes::query);
+    const std::size_t count = q.size() / kCurveJoints;
+    return is_found(parts.refine_rows(q.data(), count, are_answers, Width::narrow));
+  };
+  const auto move_inside = [&](const std::vector<double>& q) {
+    const auto count = static_cast<int>(q.size() / kCurveJoints);
+    return is_found(parts.move_inside(
+        count, [&](int i) { return &q[static_cast<std::size_t>(i) * kCurveJoints]; }));
+  };
+  if (lanes.ends && lanes.ends->are_closed()) {
+    ArcEnds& ends = *lanes.ends;
+    bool is_none = true;
+    for (std::size_t i = 0; i < ends.places(); ++i) {
+      ends.begin();
+      is_none = ends.find(i, parts.goal.target()) && ends.found().empty() && is_none;
+      if (ends.found().empty()) continue;
+      if (refine(ends.found(), /*are_answers=*/false) || move_inside(ends.found())) return any;
+    }
+    if (is_none) return Explored::done(Proof::closed_form);
+  }
+  const bool is_answer = (at_samples && sweep.find_at_samples(Y)) || sweep.find_between(Y);
+  if (refine(sweep.found(), is_answer) || is_answer || !sweep.is_nominal()) return any;
+  const Proof none = sweep.proof_of_none();
+  if (none == Proof::none && move_inside(sweep.found())) return any;
+  return Explored::done(none);
+}
 /// For one that is free in the goal's scene.
 Explored explore_free_curve(const FirstSearch& parts, const Pose& Y);
 /// For what the Collector wants, if that can be had there: the nearest, or a spread.
@@ -67,17 +105,6 @@ Explored explore_curve(const AllSearch& parts, const Pose& Y);
 /// that have ends or that what was found belongs to: curves of seven joints, of more dimensions
 /// else.
 void explore_families(const AllSearch& parts, const Pose& Y);
-/// By the ends of its arcs alone.
-template <typename Parts>
-Explored explore_ends(const Parts& parts) {
-  EndSeeds ends(*parts.workspace.lanes->ends, parts.goal.target(), parts.work);
-  if (parts.refine(ends, Width::narrow) || parts.answers.has_any()) return Explored::done();
-  const bool is_satisfied = parts.move_inside(ends.count(), [&](int i) { return ends.q(i); });
-  if (is_satisfied || parts.answers.has_any()) return Explored::done();
-  if (ends.is_none()) return Explored::done(Proof::closed_form);
-  return ends.is_certain() ? Explored::done(Proof::sweep) : Explored::doubtful();
-}
-
 /// Of longer chains, while all that is preferred stays where it is.
 Explored explore_held(const AllSearch& parts);
 

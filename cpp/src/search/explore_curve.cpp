@@ -42,22 +42,7 @@ Explored explore_spread(const AllSearch& parts, const Pose& Y) {
     q.swap(few);
     refine_samples(parts, /*are_answers=*/true);
   }
-  if (answers.has_any()) return Explored::done();
-  const Proof proof = q.empty() ? lanes.find_none(parts.goal.target(), Y) : Proof::none;
-  return proof != Proof::none ? Explored::done(proof) : Explored::doubtful();
-}
-
-/// Any solution, where samples showed none; done if there certainly is none.
-Explored find_any_or_none(const AllSearch& parts, const Pose& Y) {
-  Workspace::InLanes& lanes = *parts.workspace.lanes;
-  Sweep& sweep = *lanes.sweep;
-  const Proof none = lanes.prove_none(parts.goal.target(), Y);
-  const bool is_found = none == Proof::none && sweep.find(Y);
-  parts.work.lap(&StageTimes::query);
-  if (none != Proof::none) return Explored::done(none);
-  if (!is_found) return sweep.is_none() ? Explored::done(Proof::sweep) : Explored::doubtful();
-  parts.refine_rows(sweep.q(), 1, /*are_answers=*/true, Width::narrow);
-  return Explored::doubtful();
+  return answers.has_any() ? Explored::done() : explore_any(parts, Y, /*at_samples=*/false);
 }
 
 /// The solution nearest to `near`, or to the objective's posture.
@@ -75,13 +60,14 @@ Explored explore_nearest(const AllSearch& parts, const Pose& Y) {
   parts.work.lap(&StageTimes::query);
   // Where there is none, what looks for any is sooner through than what looks between samples.
   if (!is_seen && !answers.has_any()) {
-    if (const Explored none = find_any_or_none(parts, Y); none.is_done) return none;
+    const Explored any = explore_any(parts, Y, /*at_samples=*/false);
+    if (any.is_done && !answers.has_any()) return any;
   }
   NearestOnCurveSeeds nearest(curve, answers, parts.work);
   parts.refine(nearest, Width::narrow);
   answers.settle(curve.is_settled() && nearest.has_led_to_answer());
   if (answers.has_any()) return Explored::done();
-  return is_seen ? find_any_or_none(parts, Y) : Explored::doubtful();
+  return is_seen ? explore_any(parts, Y) : Explored::doubtful();
 }
 
 /// The solution nearest to it on the arcs that have ends, or that what was found lies on. Returns

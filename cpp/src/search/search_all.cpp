@@ -6,21 +6,19 @@
 namespace iksel {
 namespace {
 
-/// From the whole database, and before it from around what the nearest is wanted to. Returns
-/// whether the answers want no more.
-bool search_widely(const AllSearch& parts) {
+/// From the whole database, and before it from around what the nearest is wanted to.
+void search_widely(const AllSearch& parts) {
   Workspace::InLanes& lanes = *parts.workspace.lanes;
   Collector& answers = parts.answers;
   lanes.refiner.begin(parts.goal.task(), kAll, Width::wide);
   if (parts.model.dof > kCurveJoints && answers.ranks_by_move() &&
       !parts.request.objective.is_set()) {
     NearbySeeds nearby(answers.nearest_to().from, parts.options.seed, parts.work);
-    if (search(lanes.refiner, nearby, answers, parts.work)) return true;
+    if (search(lanes.refiner, nearby, answers, parts.work)) return;
   }
   SpreadSeeds spread(lanes.query, parts.model.joints, parts.options.seed, answers, parts.work);
-  const bool is_satisfied = search(lanes.refiner, spread, answers, parts.work);
+  search(lanes.refiner, spread, answers, parts.work);
   parts.work.lap(&StageTimes::iterate);
-  return is_satisfied;
 }
 
 }  // namespace
@@ -37,18 +35,8 @@ Proof search_pose(const AllSearch& parts, RowSeeds& near, GivenSeeds& given, con
     const auto roots = explore_branches(parts, *lanes.roots, Proof::sweep, near, given, Y);
     if (roots.is_done) return roots.proof;
   }
-  bool has_asked_ends = false;
   if (lanes.sweep) {
-    Explored curve = explore_curve(parts, Y);
-    // What ranks answers otherwise has looked for none there.
-    const bool has_looked =
-        answers.spread() > 0 || answers.wants_nearest() || answers.wants_nearest_free();
-    has_asked_ends = lanes.ends && has_looked && answers.status() == Status::not_converged &&
-                     curve.proof != Proof::closed_form;
-    if (has_asked_ends) {
-      if (const auto ends = explore_ends(parts); ends.is_done) curve = ends;
-    }
-    if (curve.is_done) return curve.proof;
+    if (const auto curve = explore_curve(parts, Y); curve.is_done) return curve.proof;
   }
   if (answers.wants_nearest() && explore_held(parts).is_done) return Proof::none;
   // Of more than seven joints it takes four times as long, and finds shorter moves for 2 to 4 of
@@ -57,10 +45,8 @@ Proof search_pose(const AllSearch& parts, RowSeeds& near, GivenSeeds& given, con
       parts.model.dof == kCurveJoints && parts.goal.is_redundant() && answers.wants_nearest();
   if (wants_nearest && !lanes.curve) answers.set_surfaces();
   answers.converge_from_near();
-  const bool is_satisfied = parts.run(lanes.refiner, near, given) || search_widely(parts);
+  if (!parts.run(lanes.refiner, near, given)) search_widely(parts);
   if (wants_nearest && !lanes.sweep && !answers.is_out_of_time()) explore_families(parts, Y);
-  if (is_satisfied) return Proof::none;
-  if (lanes.ends && !has_asked_ends && !answers.has_any()) explore_ends(parts);
   return Proof::none;
 }
 

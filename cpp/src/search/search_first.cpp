@@ -13,16 +13,11 @@ namespace {
 constexpr int kBeforeRoots = 4;
 /// The same in a scene, where each that collides costs more than a pack of samples.
 constexpr int kBeforeSamples = 2;
-/// Seeds after a sweep that came close to an answer, but did not find one; and after the ends of
-/// arcs did not either (python -m bench laws shoulder_offset shoulder_elbow_offset; beside panda).
-constexpr int kBesideSweep = 192;
-constexpr int kBesideEnds = 16;
-
 /// The nearest leaf of the database. Returns whether the answers want no more.
 bool search_leaf(const FirstSearch& parts, bool is_screened, RowSeeds& near, GivenSeeds& given) {
   Workspace::InLanes& lanes = *parts.workspace.lanes;
   const bool is_quick = parts.answers.effort() == Effort::quick;
-  const bool are_known = is_quick || lanes.roots || lanes.has_closed_ends();
+  const bool are_known = is_quick || lanes.roots || (lanes.ends && lanes.ends->are_closed());
   const int from_leaf = is_screened ? kBeforeSamples : are_known ? kBeforeRoots : lanes::kBlock;
   if (lanes.sweep || lanes.roots) {
     lanes.refiner.begin(parts.goal.task(), lanes.sweep ? kBeforeSweep : kBeforeBranches,
@@ -47,8 +42,8 @@ Proof search_pose(const FirstSearch& parts, RowSeeds& near, GivenSeeds& given, c
     if (roots.is_done) return roots.proof;
   }
   if (lanes.sweep) {
-    if (const auto curve = explore_curve(parts, Y); curve.is_done) return curve.proof;
-    parts.work.leave(lanes.ends ? kBesideEnds : kBesideSweep);
+    if (const auto any = explore_any(parts, Y); any.is_done) return any.proof;
+    parts.work.leave(kBesideRoots);
   }
   lanes.refiner.begin(parts.goal.task(), kScreened, Width::wide);
   ScreenedSeeds screened(lanes.query, lanes.screen, Y, parts.model.joints, parts.options.seed,
@@ -70,36 +65,6 @@ Explored explore_free_curve(const FirstSearch& parts, const Pose& Y) {
   if (!samples.has_any()) return Explored::doubtful();
   parts.answers.refuse();
   return Explored::done(Proof::sweep);
-}
-
-Explored explore_curve(const FirstSearch& parts, const Pose& Y) {
-  Workspace::InLanes& lanes = *parts.workspace.lanes;
-  const bool are_closed = lanes.has_closed_ends();
-  if (are_closed) {
-    if (const Explored ends = explore_ends(parts); ends.is_done) return ends;
-  }
-  SweptSeeds swept(*lanes.sweep, Y, parts.work);
-  const auto is_satisfied = [&] { return search(lanes.refiner, swept, parts.answers, parts.work); };
-  if (is_satisfied()) return Explored::done();
-  if (lanes.intervals_rule_out(Y)) {
-    parts.work.lap(&StageTimes::query);
-    return Explored::done(Proof::intervals);
-  }
-  if (lanes.enclosure) {
-    RowSeeds doubt(lanes.enclosure->doubt(), parts.work);
-    if (search(lanes.refiner, doubt, parts.answers, parts.work)) return Explored::done();
-  }
-  swept.look_between();
-  if (is_satisfied()) return Explored::done();
-  const bool knows_all_ends = lanes.ends && lanes.ends->are_all();
-  if (!knows_all_ends && swept.is_none()) return Explored::done(Proof::sweep);
-  Explored rest = Explored::doubtful();
-  if (lanes.ends && !are_closed) {
-    rest = explore_ends(parts);
-    if (rest.is_done && rest.proof == Proof::none) return rest;
-  }
-  swept.give_close();
-  return is_satisfied() ? Explored::done() : rest;
 }
 
 }  // namespace iksel

@@ -39,10 +39,9 @@ class ArcEnds {
   /// Forgets what was added.
   void begin() { found_.clear(); }
   [[nodiscard]] int count() const { return static_cast<int>(found_.size() / kCurveJoints); }
+  [[nodiscard]] const std::vector<double>& found() const { return found_; }
   /// Seven joint values [rad or m].
   [[nodiscard]] const double* q(int i) const { return found_.data() + kCurveJoints * i; }
-  /// Whether each end that a joint's limit could make is looked for.
-  [[nodiscard]] bool are_all() const { return are_all_; }
 
  private:
   struct End {
@@ -63,48 +62,9 @@ class ArcEnds {
 
   const JointSpace& joints_;
   std::vector<End> ends_;
-  bool are_all_;
   bool are_closed_;
   std::optional<Crossing> crossing_;
   std::vector<double> found_;
-};
-
-/// These as a source of seeds, a place a stage.
-class EndSeeds : public RowSeeds {
- public:
-  EndSeeds(ArcEnds& ends, const Pose& T_base_tcp, Work& work)
-      : RowSeeds(work, &Work::take_on_top),
-        ends_(ends),
-        target_(T_base_tcp),
-        certain_(ends.are_all()) {
-    ends_.begin();
-  }
-
-  bool next_stage() {
-    if (were_all_tried()) return false;
-    const auto before = static_cast<std::size_t>(count());
-    if (!ends_.find(place_++, target_)) certain_ = false;
-    give(q(0) + before * kCurveJoints, static_cast<std::size_t>(count()) - before, kCurveJoints,
-         /*are_answers=*/false);
-    work_.lap(&StageTimes::query);
-    return true;
-  }
-
-  /// Those of all stages, seven joint values each [rad or m].
-  [[nodiscard]] int count() const { return ends_.count(); }
-  [[nodiscard]] const double* q(int i) const { return ends_.q(i); }
-  /// Whether no arc has an end but these, and each was tried.
-  [[nodiscard]] bool is_certain() const { return certain_ && were_all_tried(); }
-  /// Whether there certainly is no solution.
-  [[nodiscard]] bool is_none() const { return is_certain() && ends_.are_closed() && count() == 0; }
-
- private:
-  [[nodiscard]] bool were_all_tried() const { return place_ == ends_.places(); }
-
-  ArcEnds& ends_;
-  const Pose& target_;
-  bool certain_;
-  std::size_t place_ = 0;
 };
 
 }  // namespace iksel

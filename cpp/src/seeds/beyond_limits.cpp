@@ -15,78 +15,6 @@ namespace {
 
 /// Farthest that joints may move for the first order to tell [rad or m].
 constexpr double kFarthestStep = 0.01;
-/// Farther than this, there is no solution beside a configuration [rad or m].
-constexpr double kNotBeside = 0.3;
-
-/// Along which a redundant arm of seven joints moves, of length 1 or 0.
-JointVector self_motion_direction(const JacobianMatrix& J, const PseudoInverse& inverse) {
-  const auto dof = static_cast<int>(J.cols());
-  JointVector best = JointVector::Zero(dof);
-  for (int k = 0; k < dof; ++k) {
-    const JointVector n = JointVector::Unit(dof, k) - inverse * J.col(k);
-    if (n.squaredNorm() > best.squaredNorm()) best = n;
-  }
-  return best.normalized();
-}
-
-/// Whether all that the tolerances allow beside q, of six joints or seven, lies outside the limits,
-/// or there is nothing beside it, as far as the first order tells. No proof: whether it is worth
-/// while to look closer.
-bool seems_beyond_limits(const ChainModel& model, const Goal& goal, const JointVector& q) {
-  constexpr double kMargin = 1.05;
-  if (model.dof != 6 && model.dof != 7) return false;
-  Pose pose;
-  Jacobian columns;
-  model.fk_jacobian(q.data(), pose, columns);
-  const JacobianMatrix J = columns;
-  if (is_almost_singular(J)) return false;
-  const PseudoInverse inverse = damped_inverse(J, 0);
-  const JointVector step = inverse * pose_error(goal.target(), pose);
-  if (step.cwiseAbs().maxCoeff() > kNotBeside) return true;
-  // A displacement within the tolerances adds no more than this to a weighted sum of joints, whose
-  // row of the inverse this is.
-  const auto reach = [&](const Eigen::Matrix<double, 1, 6>& row) {
-    return kMargin * (goal.task().position_tolerance() * row.head<3>().norm() +
-                      goal.task().rotation_tolerance() * row.tail<3>().norm());
-  };
-  // How far each is outside, less than 0 inside, and outwards of which limit.
-  JointVector beyond(model.dof);
-  JointVector outwards(model.dof);
-  for (int j = 0; j < model.dof; ++j) {
-    // Written so that NaN tells nothing.
-    if (!(std::abs(step[j]) < kFarthestStep && reach(inverse.row(j)) < kFarthestStep)) return false;
-    const double at = q[j] + step[j];
-    const double above = at - model.joints.upper[j];
-    const double below = model.joints.lower[j] - at;
-    outwards[j] = above > below ? 1 : -1;
-    beyond[j] = model.joints.is_periodic(j) ? -kInfinity : std::max(above, below);
-  }
-  if (model.dof == 6) {
-    for (int j = 0; j < 6; ++j) {
-      if (beyond[j] > reach(inverse.row(j))) return true;
-    }
-    return false;
-  }
-  const JointVector along = self_motion_direction(J, inverse).cwiseProduct(outwards);
-  // A joint that a self-motion leaves as it is, or nearly, as where it turns back before a limit.
-  for (int j = 0; j < model.dof; ++j) {
-    if (beyond[j] > reach(inverse.row(j)) + std::abs(along[j]) * kFarthestStep) return true;
-  }
-  // Of two joints that it moves outwards and inwards, the weighted sum that it leaves as it is.
-  for (int a = 0; a < model.dof; ++a) {
-    for (int b = 0; b < a; ++b) {
-      if (!(along[a] * along[b] < 0 && std::min(beyond[a], beyond[b]) > -kFarthestStep)) continue;
-      const double weight_a = std::abs(along[b]);
-      const double weight_b = std::abs(along[a]);
-      const double sum = weight_a * beyond[a] + weight_b * beyond[b];
-      if (sum > reach(weight_a * outwards[a] * inverse.row(a) +
-                      weight_b * outwards[b] * inverse.row(b))) {
-        return true;
-      }
-    }
-  }
-  return false;
-}
 
 }  // namespace
 
@@ -130,7 +58,11 @@ bool is_beyond_limits(const ChainModel& model, const Pose& T_base_tcp, JointVect
 }
 
 bool move_inside_limits(const ChainModel& model, const Goal& goal, JointVector& q) {
-  if (goal.is_full_pose() && seems_beyond_limits(model, goal, q)) return false;
+  const bool is_hopeless =
+      goal.is_full_pose() &&
+      is_beyond_limits(model, goal.target(), q, goal.task().position_tolerance(),
+                       goal.task().rotation_tolerance());
+  if (is_hopeless) return false;
   return descend_into_tolerances(model, goal, q);
 }
 

@@ -2,6 +2,7 @@
 #include "seeds/branch_enclosure.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace iksel {
 namespace {
@@ -12,9 +13,12 @@ using lanes::kWidth;
 constexpr int kPieces = 4 * kWidth;
 /// Pieces that are halved so often are beside something that the tolerances do not tell apart.
 constexpr double kLeastPiece = 1e-7;
-/// Packs of pieces, after which it is given up, some 0.5 ms. Nine of ten noes take 16 to 40, of
-/// arms on rails up to 68; what is proven of random arms: python -m bench random.
-constexpr int kMostPacks = 512;
+/// More are not halved where that closes less than a fifth of them: with half as many, ten of
+/// 22,835 proofs are lost, with twice as many none is won (python -m bench random
+/// shoulder_elbow_offset).
+constexpr std::size_t kMany = 128;
+constexpr double kMostLeft = 0.8;
+constexpr std::size_t kMostPieces = 512;
 /// Pieces overlap by this part, so that rounding leaves no gap between them.
 constexpr double kOverlap = 1e-12;
 /// What axes that lie off where the form has them may do to the target, by their deviation, which
@@ -27,79 +31,74 @@ constexpr double kAxesOff = 2;
 BranchEnclosure::BranchEnclosure(const ChainModel& model, const ClosedFormChain& chain,
                                  double position_tolerance, double rotation_tolerance,
                                  const lanes::LaneKernels& kernels)
-    : joints_(model.joints),
-      chain_(chain),
-      kernels_(kernels),
-      offset_(model.kernel.joints[static_cast<std::size_t>(chain.held)].offset),
-      lower_(model.joints.sample_lower(chain.held) + offset_),
-      upper_(model.joints.sample_upper(chain.held) + offset_),
-      doubt_(JointVector::Zero(model.dof)) {
+    : chain_(chain), kernels_(kernels) {
+  const double offset = model.kernel.joints[static_cast<std::size_t>(chain.held)].offset;
+  lower_ = model.joints.sample_lower(chain.held) + offset;
+  upper_ = model.joints.sample_upper(chain.held) + offset;
   chain_.use_limits(model);
   chain_.form.error = chain.tolerance_of_target(model, position_tolerance, rotation_tolerance) +
                       kAxesOff * chain.deviation * std::max(1.0, model.reach / chain.unit);
-  // Memory is taken here, and none while solving: a piece is halved less than so often.
-  constexpr std::size_t kHalvings = 32;
-  open_.reserve(kPieces + kHalvings * kWidth);
+  // Memory is taken here, and none while solving.
+  open_.reserve(2 * kMostPieces);
+  halves_.reserve(2 * kMostPieces);
 }
 
 bool BranchEnclosure::rules_out(const Pose& Y) {
-  chain_.set_target(Y, target_);
-  packs_left_ = kMostPacks;
-  has_doubt_ = false;
-  for (int arm = 0; arm < 4; ++arm) {
-    if (!rules_out({branch_sign(arm, 0), branch_sign(arm, 1)})) return false;
-  }
-  return true;
+  begin(Y);
+  for (close(); !is_through(); close()) halve();
+  return open_.empty();
 }
 
-bool BranchEnclosure::rules_out(const double (&sign)[2]) {
-  const double part = 0.5 * (upper_ - lower_) / kPieces;
+void BranchEnclosure::begin(const Pose& Y) {
+  chain_.set_target(Y, target_);
+  half_ = 0.5 * (upper_ - lower_) / kPieces;
   open_.clear();
-  for (int i = 0; i < kPieces; ++i) {
-    open_.push_back({lower_ + (2 * i + 1) * part, part, {true, true}});
-  }
-  while (!open_.empty()) {
-    if (packs_left_-- == 0) return false;
-    const std::size_t count = std::min<std::size_t>(open_.size(), kWidth);
-    const std::size_t first = open_.size() - count;
-    double middle[kWidth], half[kWidth], room[2][kWidth];
-    for (std::size_t lane = 0; lane < kWidth; ++lane) {
-      const Piece& piece = open_[first + std::min(lane, count - 1)];
-      middle[lane] = piece.middle;
-      half[lane] = piece.half * (1 + kOverlap);
+  for (int arm = 0; arm < 4; ++arm) {
+    for (int i = 0; i < kPieces; ++i) {
+      open_.push_back({lower_ + (2 * i + 1) * half_, arm, {true, true}});
     }
+  }
+}
+
+void BranchEnclosure::close() {
+  std::size_t left = 0;
+  std::size_t count = 0;
+  for (std::size_t first = 0; first < open_.size(); first += count) {
+    const int arm = open_[first].arm;
+    double middle[kWidth], half[kWidth], room[2][kWidth];
+    const std::size_t most = std::min<std::size_t>(kWidth, open_.size() - first);
+    for (count = 1; count < most && open_[first + count].arm == arm;) ++count;
+    for (std::size_t lane = 0; lane < kWidth; ++lane) {
+      middle[lane] = open_[first + std::min(lane, count - 1)].middle;
+    }
+    std::fill_n(half, kWidth, half_ * (1 + kOverlap));
+    const double sign[2] = {branch_sign(arm, 0), branch_sign(arm, 1)};
     kernels_.enclose_branches(chain_.form, target_, sign, middle, half, room);
-    std::array<Piece, kWidth> left;
-    std::size_t size = 0;
     for (std::size_t lane = 0; lane < count; ++lane) {
       Piece piece = open_[first + lane];
       for (std::size_t i = 0; i < 2; ++i) piece.with[i] = piece.with[i] && !(room[i][lane] < 0);
-      if (piece.with[0] || piece.with[1]) left[size++] = piece;
-    }
-    open_.resize(first);
-    for (std::size_t i = 0; i < size; ++i) {
-      const Piece& piece = left[i];
-      const double quarter = 0.5 * piece.half;
-      if (quarter < kLeastPiece) {
-        keep_doubt(sign, piece);
-        return false;
-      }
-      open_.push_back({piece.middle - quarter, quarter, piece.with});
-      open_.push_back({piece.middle + quarter, quarter, piece.with});
+      if (piece.with[0] || piece.with[1]) open_[left++] = piece;
     }
   }
-  return true;
+  helps_ =
+      static_cast<double>(left) <= kMostLeft * static_cast<double>(open_.size()) || left <= kMany;
+  open_.resize(left);
 }
 
-void BranchEnclosure::keep_doubt(const double (&sign)[2], const Piece& piece) {
-  const double signs[3] = {sign[0], sign[1], piece.with[0] ? 1.0 : -1.0};
-  for (int s = 0; s < 3; ++s) std::fill_n(target_.sign[s], kWidth, signs[s]);
-  std::fill_n(target_.held, kWidth, piece.middle);
-  kernels_.find_branches(chain_.form, target_);
-  chain_.copy_joints(target_.q, 0, doubt_.data());
-  doubt_[chain_.held] = piece.middle - offset_;
-  doubt_ = joints_.clamp(doubt_);
-  has_doubt_ = true;
+bool BranchEnclosure::is_through() const {
+  return open_.empty() || !helps_ || open_.size() > kMostPieces || half_ < kLeastPiece;
+}
+
+void BranchEnclosure::halve() {
+  half_ *= 0.5;
+  std::swap(open_, halves_);
+  open_.clear();
+  for (Piece piece : halves_) {
+    piece.middle -= half_;
+    open_.push_back(piece);
+    piece.middle += 2 * half_;
+    open_.push_back(piece);
+  }
 }
 
 }  // namespace iksel

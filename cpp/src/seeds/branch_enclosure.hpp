@@ -23,30 +23,35 @@ class BranchEnclosure {
   /// Whether no configuration inside the limits is within the tolerances of Y (reduction.hpp).
   /// False says nothing.
   bool rules_out(const Pose& Y);
-  /// Where that came to a piece so short that it says false: a configuration there. Null: nowhere.
-  [[nodiscard]] const JointVector* doubt() const { return has_doubt_ ? &doubt_ : nullptr; }
 
- private:
-  /// Values of the held joint, as the form counts it [rad or m]: middle +- half; and which of the
-  /// third signs.
+  // The same step by step: what is open are pieces of the held joint's range, all equally long,
+  // those of an arm one behind the other.
+
+  /// Values of the held joint, as the form counts it, from middle - half() to middle + half()
+  /// [rad or m]: of branches of two signs, by their number, and which of the third.
   struct Piece {
-    double middle, half;
+    double middle;
+    int arm;
     std::array<bool, 2> with;
   };
-  /// The same of branches of two signs.
-  bool rules_out(const double (&sign)[2]);
-  void keep_doubt(const double (&sign)[2], const Piece& piece);
+  /// Opens the whole range of each branch.
+  void begin(const Pose& Y);
+  /// Closes the pieces in which nothing is inside the limits.
+  void close();
+  /// Whether there is nothing open, or it would not help to halve it once more.
+  [[nodiscard]] bool is_through() const;
+  void halve();
+  [[nodiscard]] const std::vector<Piece>& open() const { return open_; }
+  [[nodiscard]] double half() const { return half_; }
 
-  const JointSpace& joints_;
+ private:
   ClosedFormChain chain_;
   const lanes::LaneKernels& kernels_;
-  double offset_;         ///< what the form counts the held joint more
   double lower_, upper_;  ///< of the held joint, as the form counts it
   lanes::BranchPack target_{};
-  std::vector<Piece> open_;
-  int packs_left_ = 0;
-  JointVector doubt_;
-  bool has_doubt_ = false;
+  std::vector<Piece> open_, halves_;
+  double half_ = 0;
+  bool helps_ = true;  ///< whether it helped to halve them
 };
 
 }  // namespace iksel

@@ -5,20 +5,25 @@
 #include <cmath>
 #include <numeric>
 
-#include "seeds/least_cost.hpp"
-
 namespace iksel {
 
 Sweep::Sweep(const ChainModel& model, const ClosedFormChain& chain, bool is_nominal,
-             double tolerance, const lanes::LaneKernels& kernels)
+             double position_tolerance, double rotation_tolerance,
+             const lanes::LaneKernels& kernels)
     : joints_(model.joints),
       branches_(model, chain, kernels),
+      enclosure_(model, chain, position_tolerance, rotation_tolerance, kernels),
       places_(branches_.places(kSamples)),
-      miss_(is_nominal, tolerance),
-      rows_(kSamples) {}
+      is_nominal_(is_nominal),
+      rows_(kSamples) {
+  const double tolerance = std::max(position_tolerance / chain.unit, rotation_tolerance);
+  if (!concludes_from_branches(is_nominal, tolerance)) return;
+  close_ = std::max(0.01, 4 * std::sqrt(2 * tolerance));
+}
 
 bool Sweep::find_at_samples(const Pose& Y) {
   set_target(Y);
+  found_.clear();
   for (int pack = 0; pack < kPacks; ++pack) {
     // Far from each other first, so that an answer is soon found.
     constexpr int kStride = 5;
@@ -33,20 +38,87 @@ bool Sweep::find_at_samples(const Pose& Y) {
   return false;
 }
 
-bool Sweep::find_between() {
-  nearest_.find(places_, rows_, kNear);
-  least_ = kInfinity;
-  close_.clear();
-  for (const LeastPlace& near : nearest_) {
-    least_ = std::min(least_, near.value);
-    if (is_left_to_another(near)) continue;
-    if (follow(near)) return true;
+bool Sweep::find_between(const Pose& Y) {
+  set_target(Y);
+  found_.clear();
+  for (enclosure_.begin(Y);; enclosure_.halve()) {
+    enclosure_.close();
+    // Longer pieces have samples in them.
+    const bool are_short = 2 * enclosure_.half() < places_.step;
+    if ((are_short || enclosure_.is_through()) && look_in_pieces()) return true;
+    if (enclosure_.is_through()) return follow_nearest();
   }
-  return find_in_intervals();
+}
+
+bool Sweep::look_in_pieces() {
+  looked_.clear();
+  for (const int last : {0, 1}) {
+    for (const BranchEnclosure::Piece& piece : enclosure_.open()) {
+      if (!piece.with[static_cast<std::size_t>(last)]) continue;
+      looked_.push_back({0, branches_.from_form(piece.middle), piece.arm + 4 * last});
+    }
+  }
+  std::size_t count = 0;
+  for (std::size_t first = 0; first < looked_.size(); first += count) {
+    const int branch = looked_[first].branch;
+    const std::size_t most = std::min<std::size_t>(SweptBranches::kCount, looked_.size() - first);
+    for (count = 1; count < most && looked_[first + count].branch == branch;) ++count;
+    const auto value = [&](int lane) {
+      return looked_[first + std::min(static_cast<std::size_t>(lane), count - 1)].at;
+    };
+    double off[SweptBranches::kCount];
+    if (rate(branch, value, off)) return true;
+    for (std::size_t lane = 0; lane < count; ++lane) looked_[first + lane].value = off[lane];
+  }
+  return false;
+}
+
+template <typename Value>
+bool Sweep::rate(int branch, const Value& value, double (&off)[SweptBranches::kCount]) {
+  // No angle is off by more.
+  constexpr double kAnyAngle = 10;
+  branches_.rate_one(branch, value, kNear, off);
+  if (*std::min_element(off, off + SweptBranches::kCount) > 0) return false;
+  branches_.solve_one(branch, value);
+  for (int lane = 0; lane < SweptBranches::kCount; ++lane) {
+    if (off[lane] > 0) continue;
+    if (take(lane)) return true;
+    off[lane] = branches_.off(lane) - kAnyAngle;
+  }
+  return false;
+}
+
+bool Sweep::follow_nearest() {
+  // As far apart as the middles of one piece and the next.
+  const double apart = 2 * enclosure_.half();
+  Least<Place, kFollowed> nearest;
+  const auto is_less = [&](std::size_t i, std::size_t j) {
+    if (j >= looked_.size() || looked_[i].branch != looked_[j].branch) return true;
+    if (std::abs(looked_[i].at - looked_[j].at) > 1.5 * apart) return true;
+    return i < j ? looked_[i].value <= looked_[j].value : looked_[i].value < looked_[j].value;
+  };
+  for (std::size_t i = 0; i < looked_.size(); ++i) {
+    if (is_less(i, i - 1) && is_less(i, i + 1)) nearest.add(looked_[i]);
+  }
+  least_ = kInfinity;
+  for (Place place : nearest) {
+    if (follow(place, apart)) return true;
+    least_ = std::min(least_, place.value);
+    branches_.solve_one(place.branch, [&](int /*lane*/) { return place.at; });
+    branches_.copy_joints(0, q_.data());
+    found_.insert(found_.end(), q_.begin(), q_.end());
+  }
+  return false;
+}
+
+Proof Sweep::proof_of_none() const {
+  if (is_nominal_ && enclosure_.open().empty()) return Proof::intervals;
+  return least_ > close_ ? Proof::sweep : Proof::none;
 }
 
 void Sweep::visit_nearest(std::size_t most, FunctionRef<void(const JointVector&)> visit) {
   JointVector q(kCurveJoints);
+  nearest_.find(places_, rows_, kNear);
   for (const LeastPlace& near : nearest_) {
     if (most-- == 0) return;
     branches_.solve_all(places_.value(near.place));
@@ -60,18 +132,18 @@ bool Sweep::take_answer(int place) {
   if (least_of(off) > 0) return false;
   branches_.solve_all(places_.value(place));
   for (int branch = 0; branch < SweptBranches::kCount; ++branch) {
-    if (off[static_cast<std::size_t>(branch)] <= 0 && take(branch, branch)) return true;
+    if (off[static_cast<std::size_t>(branch)] <= 0 && take(branch)) return true;
   }
   return false;
 }
 
-bool Sweep::take(int lane, int branch) {
+bool Sweep::take(int lane) {
   // What is rated as an answer is one but for rounding; or it is outside of limits where any angle
   // would do.
   constexpr double kRounding = 1e-9;
   if (branches_.off(lane) > kRounding) return false;
   branches_.copy_inside(lane, q_.data());
-  branch_ = branch;
+  found_.assign(q_.begin(), q_.end());
   return true;
 }
 
@@ -127,10 +199,9 @@ void Sweep::add_end(const Sample& inside, bool up, std::vector<double>& q) {
 
 void Sweep::visit_between(FunctionRef<void(const double* q, int branch)> visit) {
   nearest_.find(places_, rows_, kNear, 0);
-  least_ = kInfinity;
-  close_.clear();
   for (const LeastPlace& near : nearest_) {
-    if (follow(near)) visit(q_.data(), branch_);
+    Place place{near.value, places_.value(near.place), near.branch};
+    if (follow(place, places_.step)) visit(q_.data(), near.branch);
   }
 }
 
@@ -150,90 +221,24 @@ void Sweep::add_beside(const double* from, int branch, double part, std::vector<
   }
 }
 
-namespace {
-
-/// Branches of which all that is asked is how far they are from being an answer.
-struct RatedBranches {
-  SweptBranches& branches;
-  double bound;  ///< what is more is not known
-  double off[SweptBranches::kCount];
-
-  template <typename Value>
-  void solve_one(int branch, const Value& value) {
-    branches.rate_one(branch, value, bound, off);
-  }
-};
-
-/// Whether of two branches that merge, and differ by one of three signs, it is the second.
-bool is_second_of_merged(int branch) {
-  return __builtin_parity(static_cast<unsigned>(branch)) != 0;
-}
-
-/// From the middle of a small closed curve, where Newton's steps lead nowhere: the arm is singular
-/// there. In a direction that is none of the arm's.
-void step_aside(std::array<double, kCurveJoints>& q) {
-  constexpr double kAside = 3e-3;  // [rad or m]; of loops from 1e-3 on
-  for (std::size_t j = 0; j < q.size(); ++j) q[j] += kAside * std::cos(static_cast<double>(j));
-}
-
-}  // namespace
-
-bool Sweep::find_in_intervals() {
-  // Measured by what measures BranchIntervals' own.
-  constexpr int kRounds = 4;
-  intervals_.begin(branches_);
-  for (int round = 0; round < kRounds && !intervals_.is_empty(); ++round) {
-    if (intervals_.divide([&](int lane, int branch) { return take(lane, branch); })) return true;
-  }
-  intervals_.visit([&](int branch, double value) {
-    branches_.solve_one(branch, [&](int /*lane*/) { return value; });
-    least_ = std::min(least_, branches_.off(0));
-    keep_if_close(branches_.off(0), branches_.least(0) < 0 && is_second_of_merged(branch));
-  });
-  if (intervals_.is_overfull()) least_ = 0;
-  return false;
-}
-
-void Sweep::keep_if_close(double off, bool is_aside) {
-  if (!miss_.is_close(off)) return;
-  SweptJoints close{off, {}};
-  branches_.copy_joints(0, close.q.data());
-  if (is_aside) step_aside(close.q);
-  close_.add(close);
-}
-
-bool Sweep::is_left_to_another(const LeastPlace& near) const {
-  if (!is_second_of_merged(near.branch)) return false;
-  return std::any_of(nearest_.begin(), nearest_.end(), [&](const LeastPlace& other) {
-    return other.place == near.place && other.value == near.value &&
-           !is_second_of_merged(other.branch);
-  });
-}
-
-bool Sweep::follow(const LeastPlace& near) {
-  constexpr int kRounds = 8;
+bool Sweep::follow(Place& place, double width) {
+  constexpr double kFinest = 1e-7;
   // Of 4,491 answers found so, of five arms, none was farther off after one round, two and three
   // than 0.09, 0.03 and 0.015.
-  constexpr std::array<double, 3> kHopeless{0.2, 0.1, 0.05};
-  const auto value = [&](double place) { return branches_.clamp(place); };
-  RatedBranches rated{branches_, kHopeless.front(), {}};
-  const auto off = [&](int lane) { return rated.off[lane]; };
-  double best_at = places_.value(near.place);
-  const auto go_there = [&](int /*lane*/, double place) { best_at = place; };
-  const auto is_enough = [&](double least, int round) {
-    if (least <= 0) return true;
-    const std::size_t looked = std::min(static_cast<std::size_t>(round), kHopeless.size());
-    return looked > 0 && least > kHopeless[looked - 1];
-  };
-  const Bracket bracket{near.branch, places_.value(near.place), places_.step, kRounds, 0, false,
-                        near.value};
-  const double least = minimize(rated, bracket, value, off, kInfinity, go_there, is_enough);
-  least_ = std::min(least_, least);
-  if (!miss_.is_close(least)) return false;
-  branches_.solve_one(near.branch, [&](int /*lane*/) { return value(best_at); });
-  if (least <= 0 && take(0, near.branch)) return true;
-  keep_if_close(least, /*is_aside=*/false);
-  if (branches_.least(0) < 0) keep_if_close(least, /*is_aside=*/true);
+  constexpr std::array<double, 4> kHopeless{kInfinity, 0.2, 0.1, 0.05};
+  for (std::size_t round = 0; width > kFinest; ++round) {
+    if (place.value > kHopeless[std::min<std::size_t>(round, 3)]) break;
+    const double spacing = 2 * width / (SweptBranches::kCount + 1);
+    const double first = place.at - width + spacing;
+    const auto at = [&](auto lane) {
+      return branches_.clamp(first + spacing * static_cast<double>(lane));
+    };
+    double off[SweptBranches::kCount];
+    if (rate(place.branch, at, off)) return true;
+    const auto best = std::min_element(off, off + SweptBranches::kCount) - off;
+    if (off[best] < place.value) place = {off[best], at(best), place.branch};
+    width = spacing;
+  }
   return false;
 }
 

@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "base/function_ref.hpp"
-#include "base/work.hpp"
-#include "seeds/branch_intervals.hpp"
+#include "seeds/branch_enclosure.hpp"
 #include "seeds/least_places.hpp"
 #include "seeds/swept_branches.hpp"
 
@@ -20,22 +19,29 @@ class Sweep {
   static constexpr int kSamples = 128;
 
   /// `chain` has a joint that is held; its limits are the model's. `is_nominal`: it is the model's
-  /// own. `tolerance` is the larger of the solver's [rad, and m in units of the reach].
-  Sweep(const ChainModel& model, const ClosedFormChain& chain, bool is_nominal, double tolerance,
-        const lanes::LaneKernels& kernels);
+  /// own. Tolerances are the solver's [m, rad].
+  Sweep(const ChainModel& model, const ClosedFormChain& chain, bool is_nominal,
+        double position_tolerance, double rotation_tolerance, const lanes::LaneKernels& kernels);
 
-  /// Looks for an answer to Y (reduction.hpp): at the samples, and where branches come near to one,
-  /// between them. True if there is one.
-  bool find(const Pose& Y) { return find_at_samples(Y) || find_between(); }
+  /// Looks for an answer to Y (reduction.hpp), at the samples, and between them. True if there is
+  /// one.
+  bool find(const Pose& Y) { return find_at_samples(Y) || find_between(Y); }
   /// The first part of it.
   bool find_at_samples(const Pose& Y);
-  /// The second part: wherever a branch comes near to an answer.
-  bool find_between();
+  /// The second part: in each piece of the range that may have one.
+  bool find_between(const Pose& Y);
+  /// What was found, seven joint values each [rad or m]: an answer; if there is none, what comes
+  /// nearest to one in what is left of these pieces.
+  [[nodiscard]] const std::vector<double>& found() const { return found_; }
+  /// If there is no answer: whether that is certain.
+  [[nodiscard]] Proof proof_of_none() const;
+  /// Whether the chain is the model's own: no answer is far from what may be found.
+  [[nodiscard]] bool is_nominal() const { return is_nominal_; }
   /// Adds the branches inside the limits at every `stride`-th sample from `first` on, seven joint
   /// values each [rad].
   void add_samples(const Pose& Y, int first, int stride, std::vector<double>& q);
-  /// Where find() found none: visits the joint values of the branches that came nearest to an
-  /// answer at the samples, inside the limits or not.
+  /// Where there is no answer at the samples: visits the joint values of the branches that came
+  /// nearest to one there, inside the limits or not.
   void visit_nearest(std::size_t most, FunctionRef<void(const JointVector&)> visit);
   /// A branch at a sample of the swept joint.
   struct Sample {
@@ -63,13 +69,6 @@ class Sweep {
   void add_beside(const double* from, int branch, double part, std::vector<double>& q);
   /// How far from each other they are, as a part of that way.
   static constexpr double kSpacingBeside = 2.0 / (SweptBranches::kCount + 2);
-  /// The answer [rad].
-  [[nodiscard]] const double* q() const { return q_.data(); }
-  /// If there was none: where branches came so close to one that it might have been missed.
-  [[nodiscard]] std::size_t close_count() const { return close_.size(); }
-  [[nodiscard]] const double* close_to_answer(std::size_t i) const { return close_[i].q.data(); }
-  /// If there was none: whether none came so close to one that it might have been missed.
-  [[nodiscard]] bool is_none() const { return miss_.rules_out_answers(least_); }
 
  private:
   static constexpr int kPacks = kSamples / SweptBranches::kCount;
@@ -79,84 +78,47 @@ class Sweep {
   /// And such only as come so near to an answer at a sample [mixed units].
   static constexpr double kNear = 0.3;
 
-  /// Whether one of a sample's branches is an answer; it becomes the last one.
+  /// How far from an answer a branch is, at a value of the swept joint [mixed units; rad or m].
+  struct Place {
+    double value, at;
+    int branch;
+  };
+
+  /// Whether one of a sample's branches is an answer; it becomes what is found.
   bool take_answer(int place);
-  /// Whether what was solved last is an answer in a lane; it becomes the last one.
-  bool take(int lane, int branch);
-  /// Looks between the samples beside; true if there is an answer.
-  bool follow(const LeastPlace& near);
-  /// Looks between all samples; true if there is an answer.
-  bool find_in_intervals();
-  /// Whether a branch has merged there with one that is followed, too: a closed curve that lies
-  /// beside is of both.
-  [[nodiscard]] bool is_left_to_another(const LeastPlace& near) const;
-  /// Keeps what was solved last in lane 0, or what lies aside of it, if it comes close to an
-  /// answer.
-  void keep_if_close(double off, bool is_aside);
+  /// Whether what was solved last is an answer in a lane; it becomes what is found.
+  bool take(int lane);
+  /// Looks in the middle of each piece that is open; true if there is an answer.
+  bool look_in_pieces();
+  /// Looks closely at those that are nearer to an answer than what is beside them, and gives them;
+  /// true if there is one.
+  bool follow_nearest();
+  /// From a place to the one nearest to an answer, up to `width` away; true if there is one.
+  bool follow(Place& place, double width);
+  /// How far from an answer a branch is, at value(lane), in off[lane]: where limits say nothing, as
+  /// an angle may be any, below 0. True if one is an answer.
+  template <typename Value>
+  bool rate(int branch, const Value& value, double (&off)[SweptBranches::kCount]);
 
   const JointSpace& joints_;
   // sweep_spread.cpp
   class Spread;
 
   SweptBranches branches_;
-  BranchIntervals intervals_;
+  BranchEnclosure enclosure_;
   Places places_;
-  NearMiss miss_;
+  bool is_nominal_;
+  /// What comes so near to an answer may be one that rounding hides, or the tolerances allow:
+  /// beside a fold by their root; all, if nothing can be concluded from branches [mixed units].
+  double close_ = kInfinity;
   /// How far each branch of a sample is from being an answer [mixed units].
   std::vector<SweptBranches::Row> rows_;
   /// Where a branch comes nearer to an answer than at the samples beside.
   LeastPlaces<kFollowed> nearest_;
-  Least<SweptJoints, kFollowed> close_;
-  double least_ = 0;  ///< how far the nearest branch was from being an answer
+  std::vector<Place> looked_;
+  double least_ = 0;  ///< how far the nearest of these was from being an answer
+  std::vector<double> found_;
   std::array<double, kCurveJoints> q_{};
-  int branch_ = 0;
-};
-
-/// These as a source of seeds: an answer at a sample; where there is none, and it is asked for, one
-/// between samples, and then what comes close to one.
-class SweptSeeds {
- public:
-  SweptSeeds(Sweep& sweep, const Pose& Y, Work& work) : sweep_(sweep), Y_(Y), work_(work) {}
-
-  bool next_stage() {
-    if (!work_.has_left() || found_ || next_part_ == Part::none) return false;
-    part_ = next_part_;
-    next_part_ = Part::none;
-    if (part_ == Part::samples) found_ = sweep_.find_at_samples(Y_);
-    if (part_ == Part::between) found_ = sweep_.find_between();
-    work_.lap(&StageTimes::query);
-    return true;
-  }
-
-  template <typename Refiner>
-  bool load(Refiner& refiner, int lane) {
-    const std::size_t count = part_ == Part::close ? sweep_.close_count() : found_ ? 1 : 0;
-    if (next_ == count || !work_.take()) return false;
-    if (found_) {
-      refiner.load_answer(lane, sweep_.q());
-    } else {
-      refiner.load_seed(lane, sweep_.close_to_answer(next_));
-    }
-    ++next_;
-    return true;
-  }
-  /// Next, it is looked between samples.
-  void look_between() { next_part_ = Part::between; }
-  /// Next, what was found to come close to an answer is given.
-  void give_close() { next_part_ = Part::close; }
-  /// Whether there is no answer, once all between the samples was looked at.
-  [[nodiscard]] bool is_none() const { return !found_ && sweep_.is_none(); }
-
- private:
-  enum class Part { none, samples, between, close };
-
-  Sweep& sweep_;
-  const Pose& Y_;
-  Work& work_;
-  Part part_ = Part::none;
-  Part next_part_ = Part::samples;
-  bool found_ = false;
-  std::size_t next_ = 0;
 };
 
 }  // namespace iksel

@@ -59,16 +59,6 @@ void SweptBranches::solve_all(double value) {
   measure_moves();
 }
 
-BranchNode SweptBranches::node(int lane) const {
-  BranchNode node{value(lane), least(lane), {}, {}};
-  for (std::size_t j = 0; j < node.q.size(); ++j) {
-    node.q[j] = last_->q[j][lane];
-    const double beyond = std::abs(node.q[j] - chain_.form.middle[j]) - chain_.form.reach[j];
-    node.beyond[j] = std::max(beyond, 0.0);
-  }
-  return node;
-}
-
 void SweptBranches::measure_moves_from(const JointVector& near, const JointMove& move) {
   measures_moves_ = true;
   lanes::MoveForm& form = move_form_;

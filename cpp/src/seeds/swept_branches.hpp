@@ -33,30 +33,6 @@ struct Places {
   }
 };
 
-/// A branch at a value of the swept joint: how far it exists (BranchPack::least), the six other
-/// joints, and how far each is beyond its limits [rad].
-struct BranchNode {
-  double value;  ///< [rad or m]
-  double least;
-  std::array<double, 6> q, beyond;
-
-  [[nodiscard]] bool exists() const { return least >= 0; }
-};
-/// How far these go from one node to the next.
-struct BranchWay {
-  double change = 0;
-  std::array<double, 6> moves{};
-
-  BranchWay() = default;
-  BranchWay(const BranchNode& from, const BranchNode& to)
-      : change(std::abs(to.least - from.least)) {
-    for (std::size_t j = 0; j < moves.size(); ++j) {
-      const double move = std::abs(to.q[j] - from.q[j]);
-      moves[j] = std::min(move, std::abs(kTwoPi - move));
-    }
-  }
-};
-
 class SweptBranches {
  public:
   static constexpr int kCount = lanes::kWidth;
@@ -75,6 +51,8 @@ class SweptBranches {
   [[nodiscard]] double clamp(double value) const {
     return turns_ ? value : std::min(std::max(value, lower_), upper_);
   }
+  /// A value of it, by that which the form counts.
+  [[nodiscard]] double from_form(double value) const { return value - offset_; }
 
   /// Y as in reduction.hpp. Of a slide, the range that is swept is that from which the others may
   /// reach the target: places() depend on it.
@@ -140,8 +118,6 @@ class SweptBranches {
   [[nodiscard]] const lanes::MovePack& moves() const { return moves_; }
   /// Whether there is such a branch at all: below 0 if there is none [mixed units].
   [[nodiscard]] double least(int lane) const { return last_->least[lane]; }
-  /// It all as a node.
-  [[nodiscard]] BranchNode node(int lane) const;
   /// The value of the swept joint.
   [[nodiscard]] double value(int lane) const { return last_->held[lane] - offset_; }
   /// All seven joint values, by whole turns inside the limits where they can be [rad].
@@ -207,30 +183,6 @@ class SweptBranches {
   bool measures_moves_ = false;
   lanes::MoveForm move_form_{};
   lanes::MovePack moves_{};
-};
-
-/// What a search over branches that found no answer lets conclude.
-class NearMiss {
- public:
-  /// `is_nominal`: the branches are the model's own. `tolerance` is the larger of the solver's
-  /// [rad, and m in units of the reach].
-  NearMiss(bool is_nominal, double tolerance)
-      : concludes_(concludes_from_branches(is_nominal, tolerance)),
-        close_(std::max(0.01, 4 * std::sqrt(2 * tolerance))) {}
-
-  /// Whether something so far from being an answer may be one [mixed units].
-  [[nodiscard]] bool is_close(double off) const { return off <= close_; }
-  /// Whether no answer can have been missed. `least`: how far the nearest branch was from being one
-  /// [mixed units].
-  [[nodiscard]] bool rules_out_answers(double least) const {
-    return concludes_ && !is_close(least);
-  }
-
- private:
-  bool concludes_;
-  /// A branch that comes so near to an answer may be one that rounding hides, or the tolerances
-  /// allow: beside a fold by their root [mixed units].
-  double close_;
 };
 
 /// Seven joint values, and how far they are from what was looked for.

@@ -33,23 +33,17 @@ LockedArms LockedArms::of(const ChainModel& whole) {
   LockedArms found;
   const JointSpace& joints = whole.joints;
   if (whole.dof != kCurveJoints || !is_simple(whole)) return found;
-  found.are_all = joints.sums.empty();
+  bool are_all = joints.sums.empty();
   for (int j = 0; j < kCurveJoints; ++j) {
     if (joints.type(j) == JointType::continuous || !takes_part_in_self_motion(whole, j)) continue;
     for (const bool is_upper : {false, true}) {
       LockedArm arm = lock(whole, j, is_upper ? joints.upper[j] : joints.lower[j], is_upper);
-      if (arm.pose || arm.residual) {
-        found.arms.push_back(std::move(arm));
-      } else {
-        found.are_all = false;
-      }
+      are_all = are_all && is_exact(arm);
+      if (arm.pose || arm.residual) found.arms.push_back(std::move(arm));
     }
   }
   const auto elbow = Elbow::of(whole);
-  if (!found.are_all || !elbow || !elbow->goes_round() ||
-      !std::all_of(found.arms.begin(), found.arms.end(), is_exact)) {
-    return found;
-  }
+  if (!are_all || !elbow || !elbow->goes_round()) return found;
   found.are_closed = true;
   const auto is_endless = [&](int j) { return joints.type(j) == JointType::continuous; };
   if ((is_endless(0) || is_endless(2)) && (is_endless(4) || is_endless(6))) {

@@ -25,10 +25,8 @@ struct LockedArm {
 
 struct LockedArms {
   std::vector<LockedArm> arms;
-  /// Whether these are all: each joint with limits can be solved for with that joint locked, and no
-  /// sum is limited.
-  bool are_all = false;
-  /// Whether the elbow goes round, and all are solved exactly in closed form: whether there are
+  /// Whether the elbow goes round, no sum is limited, and each joint with limits can be locked and
+  /// is solved exactly in closed form: whether there are
   /// solutions is then known in closed form, by these and the crossing.
   bool are_closed = false;
   /// Closed curves of solutions, which have no ends, meet the plane of the elbow, and there the

@@ -50,7 +50,7 @@ bool BranchEnclosure::rules_out(const Pose& Y) {
 }
 
 void BranchEnclosure::begin(const Pose& Y) {
-  chain_.set_target(Y, target_);
+  chain_.set_target(Y, pack_);
   half_ = 0.5 * (upper_ - lower_) / kPieces;
   open_.clear();
   for (int arm = 0; arm < 4; ++arm) {
@@ -62,18 +62,15 @@ void BranchEnclosure::begin(const Pose& Y) {
 
 void BranchEnclosure::close() {
   std::size_t left = 0;
-  std::size_t count = 0;
-  for (std::size_t first = 0; first < open_.size(); first += count) {
-    const int arm = open_[first].arm;
-    double middle[kWidth], half[kWidth], room[2][kWidth];
-    const std::size_t most = std::min<std::size_t>(kWidth, open_.size() - first);
-    for (count = 1; count < most && open_[first + count].arm == arm;) ++count;
+  for (std::size_t first = 0; first < open_.size(); first += kWidth) {
+    const std::size_t count = std::min<std::size_t>(kWidth, open_.size() - first);
     for (std::size_t lane = 0; lane < kWidth; ++lane) {
-      middle[lane] = open_[first + std::min(lane, count - 1)].middle;
+      const Piece& piece = open_[first + std::min(lane, count - 1)];
+      pack_.held[lane] = piece.middle;
+      for (int i = 0; i < 2; ++i) pack_.sign[i][lane] = branch_sign(piece.arm, i);
     }
-    std::fill_n(half, kWidth, half_ * (1 + kOverlap));
-    const double sign[2] = {branch_sign(arm, 0), branch_sign(arm, 1)};
-    kernels_.enclose_branches(chain_.form, target_, sign, middle, half, room);
+    double room[2][kWidth];
+    kernels_.enclose_branches(chain_.form, pack_, half_ * (1 + kOverlap), room);
     for (std::size_t lane = 0; lane < count; ++lane) {
       Piece piece = open_[first + lane];
       for (std::size_t i = 0; i < 2; ++i) piece.with[i] = piece.with[i] && !(room[i][lane] < 0);

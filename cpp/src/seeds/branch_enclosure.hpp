@@ -48,7 +48,7 @@ class BranchEnclosure {
   ClosedFormChain chain_;
   const lanes::LaneKernels& kernels_;
   double lower_, upper_;  ///< of the held joint, as the form counts it
-  lanes::BranchPack target_{};
+  lanes::BranchPack pack_{};
   std::vector<Piece> open_, halves_;
   double half_ = 0;
   bool helps_ = true;  ///< whether it helped to halve them

@@ -71,8 +71,8 @@ IKSEL_INLINE BranchTarget<Enclosed<T>> enclosed_target(const ClosedForm& form,
 /// What may be of the branches of two signs, and of the third of both kinds.
 template <typename T>
 IKSEL_INLINE void enclose_signs(const ClosedForm& form, const BranchTarget<Enclosed<T>>& target,
-                                const Enclosed<T>& held, const double (&sign)[2], T (&room)[2]) {
-  const Enclosed<T> side[2] = {Enclosed<T>(sign[0]), Enclosed<T>(sign[1])};
+                                const Enclosed<T>& held, const Enclosed<T> (&side)[2],
+                                T (&room)[2]) {
   EnclosedBranch<T> arm;
   if (form.closure == Closure::sweep_4 || form.closure == Closure::sweep_6) {
     Enclosed<T> residual;
@@ -105,19 +105,21 @@ IKSEL_INLINE void enclose_signs(const ClosedForm& form, const BranchTarget<Enclo
   }
 }
 
-/// Ranges of the held joint in `middle` and `half`; `room` below 0 where no branch of the signs is
-/// inside the limits anywhere in a range, for any target within the form's error; for each third
-/// sign.
+/// Ranges of the held joint, pack.held +- half; `room` below 0 where no branch of a lane's first
+/// two signs is inside the limits anywhere in its range, for any target within the form's error;
+/// for each third sign.
 template <typename T>
-void enclose_branches(const ClosedForm& form, const BranchPack& pack, const double (&sign)[2],
-                      const double (&middle)[kWidth], const double (&half)[kWidth],
+void enclose_branches(const ClosedForm& form, const BranchPack& pack, double half,
                       double (&room)[2][kWidth]) {
   for (int first = 0; first < kWidth; first += Lanes<T>::kCount) {
-    const Enclosed<T> held(Lanes<T>::load(middle + first), Lanes<T>::load(half + first), T(0.0));
+    const Enclosed<T> held(Lanes<T>::load(pack.held + first), T(half), T(0.0));
     BranchTarget<Enclosed<T>> target = enclosed_target<T>(form, pack);
     if (form.is_held) hold(form, held, target);
+    const auto sign = [&](int i) {
+      return Enclosed<T>(Lanes<T>::load(pack.sign[i] + first), T(0.0), T(0.0));
+    };
     T of[2];
-    enclose_signs(form, target, held, sign, of);
+    enclose_signs(form, target, held, {sign(0), sign(1)}, of);
     for (int i = 0; i < 2; ++i) Lanes<T>::store(of[i], room[i] + first);
   }
 }

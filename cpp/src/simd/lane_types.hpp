@@ -184,11 +184,10 @@ using RateBranches = void (*)(const ClosedForm& form, const BranchPack& pack, do
 using RateBranch = void (*)(const ClosedForm& form, const BranchPack& pack, double bound,
                             double (&off)[kWidth]);
 /// Where branches of two signs, and of each third one, may be inside the limits for some target
-/// within ClosedForm::error of the pack's first: `room` below 0 where there are none in middle +-
-/// half of the held joint [rad or m] (enclosure_kernel.hpp).
-using EncloseBranches = void (*)(const ClosedForm& form, const BranchPack& pack,
-                                 const double (&sign)[2], const double (&middle)[kWidth],
-                                 const double (&half)[kWidth], double (&room)[2][kWidth]);
+/// within ClosedForm::error of the pack's first: `room` below 0 where there are none in pack.held
+/// +- half of the held joint [rad or m] (enclosure_kernel.hpp).
+using EncloseBranches = void (*)(const ClosedForm& form, const BranchPack& pack, double half,
+                                 double (&room)[2][kWidth]);
 
 struct MoveForm;
 struct MovePack;

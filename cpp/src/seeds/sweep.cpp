@@ -16,6 +16,9 @@ Sweep::Sweep(const ChainModel& model, const ClosedFormChain& chain, bool is_nomi
       places_(branches_.places(kSamples)),
       is_nominal_(is_nominal),
       rows_(kSamples) {
+  // Memory is taken here, and none while solving: two branches of each open piece are looked at.
+  looked_.reserve(2 * enclosure_.open().capacity());
+  found_.reserve(kFollowed * kCurveJoints);
   const double tolerance = std::max(position_tolerance / chain.unit, rotation_tolerance);
   if (!concludes_from_branches(is_nominal, tolerance)) return;
   close_ = std::max(0.01, 4 * std::sqrt(2 * tolerance));

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A normalizing flow over q, given the pose, in the architecture of IKFlow.
 
-15 affine coupling layers on 15 numbers: the joints, and noise as padding. A share of
-noise on the joints, which the layers are told (SoftFlow), gives the labels a density.
-Other than in IKFlow the layers see the pose through one network that they share, and
-are narrow.
+15 affine coupling blocks on 15 numbers: the joints, and noise as padding. A block
+changes one half by the other, and then the other by the one: where only one half was
+changed, first and best of 32 on C1 were 70.4 and 84.0 % after 4.2 minutes, with both
+78.4 and 86.8 % (500 poses; width 72, `python -m bench train`). A share of noise on the
+joints, which the blocks are told (SoftFlow), gives the labels a density. Other than in
+IKFlow the blocks see the pose through one network that they share, and are narrow:
+theirs have three layers of 1024 each.
 
 Sources: Dinh et al., "Density Estimation Using Real NVP", 2017; Kim et al., "SoftFlow",
 2020; Ames et al., "IKFlow", 2022.
@@ -34,33 +37,53 @@ LEAST_NOISE, MOST_NOISE = 0.005, 0.5
 """Deviation of the noise on the joints, in units of the labels' own."""
 
 
-class Coupling(eqx.Module):
-    """y = (a, b exp(s(a)) + t(a)) for x = (a, b)."""
+class Half(eqx.Module):
+    """y = x exp(s(a)) + t(a), given the other half a and the context."""
 
     network: Mlp
 
-    def __init__(self, key: jax.Array) -> None:
+    def __init__(self, kept: int, width: int, key: jax.Array) -> None:
         """Random weights."""
-        outputs = 2 * (WIDTH - KEPT)
-        self.network = Mlp(KEPT + CONTEXT, outputs, width=72, depth=2, key=key)
+        outputs = 2 * (WIDTH - kept)
+        self.network = Mlp(kept + CONTEXT, outputs, width=width, depth=2, key=key)
 
-    def _scale_shift(self, a: jax.Array, c: jax.Array) -> tuple[jax.Array, jax.Array]:
+    def scale_shift(self, a: jax.Array, c: jax.Array) -> tuple[jax.Array, jax.Array]:
+        """The logarithm of s, and t, (B, WIDTH - kept) each."""
         out = self.network(jnp.concatenate([a, c], axis=-1))
         scale, shift = jnp.split(out, 2, axis=-1)
         return LARGEST_LOG_SCALE * jnp.tanh(scale / LARGEST_LOG_SCALE), shift
 
+
+class Coupling(eqx.Module):
+    """(a, b) -> (a', b'): b by a, and then a by b'."""
+
+    first: Half
+    second: Half
+
+    def __init__(self, width: int, key: jax.Array) -> None:
+        """Random weights."""
+        keys = jax.random.split(key)
+        self.first = Half(KEPT, width, keys[0])
+        self.second = Half(WIDTH - KEPT, width, keys[1])
+
     def forward(self, x: jax.Array, c: jax.Array) -> tuple[jax.Array, jax.Array]:
         """y, (B, WIDTH), and log |det dy/dx|, (B,), given the context c."""
         a, b = x[..., :KEPT], x[..., KEPT:]
-        scale, shift = self._scale_shift(a, c)
-        y = jnp.concatenate([a, b * jnp.exp(scale) + shift], axis=-1)
-        return y, scale.sum(axis=-1)
+        scale, shift = self.first.scale_shift(a, c)
+        b = b * jnp.exp(scale) + shift
+        other, shift = self.second.scale_shift(b, c)
+        a = a * jnp.exp(other) + shift
+        y = jnp.concatenate([a, b], axis=-1)
+        return y, scale.sum(axis=-1) + other.sum(axis=-1)
 
     def inverse(self, y: jax.Array, c: jax.Array) -> jax.Array:
         """x, (B, WIDTH)."""
         a, b = y[..., :KEPT], y[..., KEPT:]
-        scale, shift = self._scale_shift(a, c)
-        return jnp.concatenate([a, (b - shift) * jnp.exp(-scale)], axis=-1)
+        scale, shift = self.second.scale_shift(b, c)
+        a = (a - shift) * jnp.exp(-scale)
+        scale, shift = self.first.scale_shift(a, c)
+        b = (b - shift) * jnp.exp(-scale)
+        return jnp.concatenate([a, b], axis=-1)
 
 
 class Flow(eqx.Module):
@@ -73,12 +96,12 @@ class Flow(eqx.Module):
     couplings: tuple[Coupling, ...]
     dof: int = eqx.field(static=True)
 
-    def __init__(self, dof: int, key: jax.Array) -> None:
-        """Random weights."""
+    def __init__(self, dof: int, key: jax.Array, width: int) -> None:
+        """Random weights; hidden layers of the blocks are so wide."""
         keys = jax.random.split(key, LAYERS + 1)
         self.dof = dof
         self.encoder = Mlp(FEATURES + 1, CONTEXT, width=160, depth=3, key=keys[0])
-        self.couplings = tuple(Coupling(each) for each in keys[1:])
+        self.couplings = tuple(Coupling(width, each) for each in keys[1:])
 
     def context(self, x: jax.Array, log_noise: jax.Array) -> jax.Array:
         """What the layers see of x, (B, FEATURES), and the noise's log, (B, 1)."""

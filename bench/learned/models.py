@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 STEPS = {"cvrb1213": 10}
 """Of the diffusion's sampling, where the paper has other than 5."""
+WIDTHS = {"cvr038": 128, "cvrb1213": 128}
+"""Of the flow's hidden layers, where they are wider than elsewhere."""
 
 
 class Model(Protocol):
@@ -63,7 +65,9 @@ def make_model(robot: str, name: str, dof: int, seed: int) -> Any:
     key = jax.random.key(seed)
     if name == "diffusion":
         return Diffusion(dof, key, STEPS.get(robot, 5))
-    return {"mdn": Mdn, "flow": Flow}[name](dof, key)
+    if name == "flow":
+        return Flow(dof, key, WIDTHS.get(robot, 72))
+    return {"mdn": Mdn}[name](dof, key)
 
 
 def parameters(model: Any) -> int:

@@ -100,7 +100,7 @@ class TestMdn:
 class TestFlow:
     @pytest.fixture
     def model(self):
-        return flow.Flow(6, jax.random.key(SEED))
+        return flow.Flow(6, jax.random.key(SEED), 24)
 
     @pytest.fixture
     def context(self, model, x):

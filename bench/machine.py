@@ -40,6 +40,7 @@ MEASURING = (
     "learned/layers.py",
     "learned/mdn.py",
     "learned/models.py",
+    "learned/plan.py",
     "learned/weights/*.npz",
     "paper/artefact.py",
     "paper/newer.py",

@@ -17,9 +17,11 @@ import numpy as np
 import iksel
 from bench.arms import load_arm
 from bench.check import errors, right
+from bench.learned.data import labels
 from bench.learned.models import load_weights
-from bench.learned.plan import weights_path
+from bench.learned.plan import BESIDE, JUMP, weights_path
 from bench.settings import make_solver, targets_of
+from bench.size import SEED
 from bench.timing import time_calls
 
 if TYPE_CHECKING:
@@ -47,9 +49,16 @@ def paper_solver(robot: str) -> iksel.Solver:
     return make_solver({"robot": robot, "preset": "paper", "overrides": overrides})
 
 
+@functools.cache
+def trying_solver(robot: str, count: int) -> iksel.Solver:
+    """The same from so many seeds in the paper's ranking, Eq. (5), until one leads."""
+    overrides = {"reselection": "next", "candidates": count, "max_attempts": count}
+    return make_solver({"robot": robot, "preset": "paper", "overrides": overrides})
+
+
 def from_seed(solver: iksel.Solver, pose: Array, q: Array) -> Any:
-    """One attempt from one seed, (dof,), and no other."""
-    return solver.solve(pose, seeds=q[None], database_seeds=False)
+    """From seeds, (dof,) or (n, dof), and no other: from one, one attempt."""
+    return solver.solve(pose, seeds=q, database_seeds=False)
 
 
 @eqx.filter_jit
@@ -82,8 +91,12 @@ def distances(reached: Array, target: Array) -> Array:
 
 
 def best(robot: iksel.Robot, q: Array, pose: Array) -> int:
-    """Which of the outputs (count, dof) reaches nearest to the pose, (4, 4)."""
-    return int(np.argmin(distances(robot.fk(q), pose)))
+    """Which of the outputs (count, dof) reaches nearest to the pose, (4, 4).
+
+    From where the iteration starts with it, which is inside the limits.
+    """
+    inside = np.clip(q, robot.lower, robot.upper)
+    return int(np.argmin(distances(robot.fk(inside), pose)))
 
 
 def solved(solver: iksel.Solver, poses: Array, q: Array) -> npt.NDArray[np.bool_]:
@@ -136,7 +149,46 @@ def measured(settings: Settings) -> dict[str, Any]:
         call = _one_by_one(arm, model, scaling, model.batch)
         result["best"] = _as_seeds(arm, poses, call)
     q = outputs(model, scaling, poses, model.batch)
+    if model.batch > 1:
+        result["why"] = why(arm, poses, q)
     return {**result, **_batch_errors(arm, poses, q)}
+
+
+def why(arm: Arm, poses: Array, q: Array) -> dict[str, float]:
+    """Percent of targets whose best of a batch, (N, count, dof), fails, and where.
+
+    The best is the one whose pose is nearest. Where the label jumps some outputs lie
+    between two answers, and near a singular configuration, where poses change least,
+    such a one may be nearer than those beside an answer.
+    """
+    label = labels(arm, poses)
+    known = np.isfinite(label).all(axis=1)
+    label, poses, q = label[known], poses[known], q[known]
+    q = np.clip(q, arm.robot.lower, arm.robot.upper)
+    chosen = [best(arm.robot, *each) for each in zip(q, poses, strict=True)]
+    seeds = q[np.arange(len(q)), chosen]
+    solver = paper_solver(arm.name)
+    good = solved(solver, poses, seeds)
+    jacobians = arm.chain.fk_jacobian(seeds)[1]
+    least = np.linalg.svd(jacobians, compute_uv=False)[:, -1]
+    singular = least <= np.quantile(least, 0.25)
+    beside = label + np.random.default_rng(SEED).normal(0.0, BESIDE, label.shape)
+    beside = np.clip(beside, arm.robot.lower, arm.robot.upper)
+    moved = np.abs(labels(arm, arm.robot.fk(beside)) - beside).max(axis=1)
+    jumps = moved > JUMP
+    trying = trying_solver(arm.name, q.shape[1])
+    tried = [from_seed(trying, *each) for each in zip(poses, q, strict=True)]
+    shares = {
+        "jumps": jumps,
+        "at_jumps": good[jumps],
+        "elsewhere": good[~jumps],
+        "singular": good[singular],
+        "regular": good[~singular],
+        "ranked": np.array([r.success and r.attempts == 1 for r in tried]),
+        "any": np.array([r.success for r in tried]),
+        "beside_label": solved(solver, poses, beside),
+    }
+    return {name: 100.0 * float(each.mean()) for name, each in shares.items()}
 
 
 def _one_by_one(arm: Arm, model: Any, scaling: Scaling, count: int) -> Any:

@@ -25,6 +25,10 @@ WEIGHTS = Path(__file__).resolve().parent / "weights"
 
 TARGETS = 2_000
 """As many as in the paper's table."""
+BESIDE = 0.05
+"""Deviation of each joint of what lies beside a label [rad]."""
+JUMP = 0.5
+"""Labels that differ by more in a joint do not lie beside each other [rad]."""
 
 
 def weights_path(robot: str, model: str, labels: str = LABELS[0]) -> Path:

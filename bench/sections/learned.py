@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from bench.arms import PAPER_ARMS
-from bench.learned.plan import MODELS, learned_cell
+from bench.learned.plan import BESIDE, JUMP, MODELS, learned_cell
 from bench.markdown import NONE, microseconds, percent, signed, table
 from bench.paper.learned import LEARNED
 
@@ -20,16 +20,17 @@ TITLES = {"mdn": "MDN", "flow": "flow (IKFlow)", "diffusion": "diffusion (IKDP)"
 
 CONDITIONS = (
     "Models trained here with JAX, each for the minutes and with the parameters that "
-    "the second table says; the authors' are not public. The label of a pose is not "
-    "any configuration that reaches it, but the solver's answer nearest to the middle "
-    "of the limits (on IRB the one farthest from all limits), so that what is learned "
-    "is a function of the pose. Targets uniform in the joint limits, none of them "
-    "learned from. *Direct*: the first output is itself an answer at 1e-4 m and 1e-3 "
-    "rad. *First*, *best of 32*: one attempt of the paper's iteration from that "
-    "output and from no other seed; the best is the one whose pose, as position in m "
-    "and quaternion, is nearest. Answers are judged by bench's own forward "
-    "kinematics. Errors: mean over a batch of 32 (of an MDN: of its one output), then "
-    "over the targets. In brackets: published, difference."
+    "the table of what they took says; the authors' are not public. The label of a "
+    "pose is not any configuration that reaches it, but the solver's answer nearest to "
+    "the middle of the limits (on IRB the one farthest from all limits), so that what "
+    "is learned is a function of the pose. Targets uniform in the joint limits, none "
+    "of them learned from. *Direct*: the first output is itself an answer at 1e-4 m "
+    "and 1e-3 rad. *First*, *best of 32*: one attempt of the paper's iteration from "
+    "that output and from no other seed; the best is the one whose pose, as position "
+    "in m and quaternion, is nearest once it is inside the limits, where the iteration "
+    "starts. Answers are judged by bench's own forward kinematics. Errors: mean over a "
+    "batch of 32 (of an MDN: of its one output), then over the targets. In brackets: "
+    "published, difference."
 )
 
 
@@ -38,7 +39,9 @@ def text(view: View) -> str:
     if not view.has_any("learned"):
         return ""
     cells = list(_cells(view))
-    tables = [_success(cells), _costs(cells), *_curves(cells)] if cells else []
+    tables = (
+        [_success(cells), *_why(cells), _costs(cells), *_curves(cells)] if cells else []
+    )
     parts = ["## Learned seeds", CONDITIONS, *tables, *_missing(view)]
     return "\n\n".join(parts)
 
@@ -98,6 +101,53 @@ def _beside(right: int, count: int, published: float) -> str:
     return f"{percent(right, count)} ({published:.2f}, {difference})"
 
 
+def _to_best(share: float, published: float) -> str:
+    """A share in percent (its difference to the published best)."""
+    return f"{share:.2f} ({signed(share - published)})"
+
+
+WHY = (
+    "Why the best of 32 fails where it does: not for want of a good seed, which *any* "
+    "of the 32 is nearly everywhere. Where the label jumps, which it must where an "
+    "answer ends at a limit or another is as near to the middle, some outputs lie "
+    "between two answers; and near a singular configuration, where poses change "
+    "least, such a one may reach nearest. *Singular*: the fourth of the targets at "
+    "which the smallest singular value of the Jacobian at the best output is least. "
+    f"*At a jump*: {BESIDE} rad beside its label (deviation of each joint) the pose "
+    f"has a label that is more than {JUMP} rad off; in brackets their share. *Eq. "
+    "(5)*: one attempt from that of the 32 which the paper's own ranking of seeds, by "
+    "joint adjustment, puts first. *Beside the label*: one attempt from there."
+)
+
+
+def _why(cells: list[Row]) -> list[str]:
+    rows = [
+        [
+            label,
+            f"{why['singular']:.2f}",
+            f"{why['regular']:.2f}",
+            f"{why['at_jumps']:.2f} ({why['jumps']:.1f})",
+            f"{why['elsewhere']:.2f}",
+            _to_best(why["ranked"], published.best),
+            f"{why['any']:.2f}",
+            f"{why['beside_label']:.2f}",
+        ]
+        for label, cell, published in cells
+        if (why := cell.get("why")) and published.best is not None
+    ]
+    header = [
+        "success %",
+        "best, singular",
+        "other",
+        "best, at a jump",
+        "elsewhere",
+        "first of 32 by Eq. (5)",
+        "any of 32",
+        "beside the label",
+    ]
+    return [WHY, table(header, rows)] if rows else []
+
+
 def _costs(cells: list[Row]) -> str:
     rows = []
     for label, cell, published in cells:
@@ -155,7 +205,8 @@ def _curves(cells: list[Row]) -> list[str]:
         (
             "What more time would bring: success of the seeds on 500 other poses while "
             "training, the running mean of the weights; whole curves are in "
-            "`bench/learned/weights/*.csv`."
+            "`bench/learned/weights/*.csv`. While these were trained, the best was "
+            "still picked by poses that may lie outside the limits."
         ),
         table(header, rows),
     ]

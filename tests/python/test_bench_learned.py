@@ -27,6 +27,16 @@ from bench.view import View
 import iksel
 
 SEED = 7
+WHY = [
+    "singular",
+    "regular",
+    "at_jumps",
+    "jumps",
+    "elsewhere",
+    "ranked",
+    "any",
+    "beside_label",
+]
 MANY = 9_000_000
 """Bytes that all committed weights may have."""
 
@@ -276,6 +286,26 @@ class TestEvaluation:
         for i, pose in enumerate(robot.fk(q)):
             assert evaluate.best(robot, q, pose) == i
 
+    def test_best_is_judged_inside_the_limits(self):
+        robot = load_arm("cvr038").robot
+        q = robot.random_configurations(1, SEED)[0]
+        turned = q + 2.0 * np.pi * np.eye(6)[0]  # outside, though at the pose
+        pair = np.stack([turned, q + 0.01])
+        assert evaluate.best(robot, pair, robot.fk(q)) == 1
+
+    def test_why(self):
+        arm = load_arm("cvr038")
+        q = arm.robot.random_configurations(100, SEED)
+        poses = arm.robot.fk(q)
+        label = data.labels(arm, poses)
+        far = np.roll(q, 1, axis=0)
+        shares = evaluate.why(arm, poses, np.stack([far, label, far[::-1]], axis=1))
+        assert 0.0 < shares.pop("jumps") < 20.0
+        assert shares.pop("beside_label") > 90.0
+        assert set(shares.values()) == {100.0}
+        shares = evaluate.why(arm, poses, np.stack([far, far[::-1]], axis=1))
+        assert shares["ranked"] <= shares["any"] < 50.0
+
 
 @pytest.mark.skipif(
     not plan.WEIGHTS.exists(), reason="weights are in the repository only"
@@ -321,6 +351,7 @@ def test_section():
         "curve": [{"minutes": 1.0, "steps": 100.0, "first": 50.0, "best": 60.0}],
         "first": figures,
         "best": figures,
+        "why": dict.fromkeys((*WHY, "beside_label"), 97.5),
         "position_mm": errors,
         "rotation_deg": errors,
     }
@@ -333,3 +364,4 @@ def test_section():
     assert "MDN, C0: no jax" in shown
     assert "| diffusion (IKDP), IRB | 0.00 | 1.0 (21.9) | 1.0 (7.3) |" in shown
     assert "50.00 (97.59, \N{MINUS SIGN}47.59)" in shown
+    assert "| 97.50 | 97.50 (97.5) | 97.50 | 97.50 (\N{MINUS SIGN}0.09) |" in shown

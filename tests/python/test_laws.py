@@ -295,6 +295,18 @@ def test_short_arcs_of_rails_are_found(number: int, q: tuple[float, ...]) -> Non
                 1.0718071758191545,
             ),
         ),
+        # Its residual is off by 0.4 at the roots of the product that are nearest.
+        (
+            777095,
+            (
+                -1.566527149857579,
+                0.9802111198572216,
+                -1.704966600167515,
+                -1.9084515727303446,
+                -0.056371727278443196,
+                0.8851602058441921,
+            ),
+        ),
     ],
 )
 def test_solutions_of_branches_that_only_just_are_are_found(

@@ -28,12 +28,6 @@ constexpr double kFarthestApart = 32;
 /// (python -m bench lost gen3_6dof --targets 0 --hard 1000000).
 constexpr double kFaint = 0.001;
 
-/// Where a branch only just is, its residual grows so many times as fast as elsewhere with what a
-/// root is off, and its joints turn far: of ten million reachable targets of 100 random arms 19 had
-/// been lost, 14 of one (python -m bench lost --random 100 --targets 100000 --seed 52000 --builds
-/// offset_wrist).
-constexpr double kSteeper = 16;
-
 /// Where neighbouring values of a loop's determinant are less than so many times its noise, or one
 /// is at which it turns, there may be roots or none.
 constexpr double kAboveNoise = 30;
@@ -149,6 +143,36 @@ bool RootSweep::has_singular() const {
   return false;
 }
 
+int RootSweep::find_crossing(double angle, int lane) {
+  constexpr int kRounds = 3;
+  crossing_ = pack_;
+  for (auto& sign : crossing_.sign) std::fill_n(sign, lanes::kWidth, double{sign[lane]});
+  int nearest = -1;
+  double step = 2 * vague_ / (lanes::kWidth - 1);
+  for (int round = 0; round < kRounds; ++round, step /= lanes::kWidth - 1) {
+    for (int i = 0; i < lanes::kWidth; ++i) {
+      crossing_.held[i] = angle + step * (i - 0.5 * (lanes::kWidth - 1));
+    }
+    kernels_.find_branches(chain_.form, crossing_);
+    const double* residual = crossing_.residual;
+    nearest = -1;
+    double away = kInfinity;
+    for (int i = 0; i + 1 < lanes::kWidth; ++i) {
+      // Beyond its ends, which may be near to each other, its residual is as there.
+      const bool exists = std::max(crossing_.least[i], crossing_.least[i + 1]) > -vague_ * vague_;
+      const double middle = crossing_.held[i] + 0.5 * step;
+      if (!exists || residual[i] * residual[i + 1] > 0 || std::abs(middle - angle) >= away)
+        continue;
+      away = std::abs(middle - angle);
+      nearest = i;
+    }
+    if (nearest < 0) return -1;
+    angle = crossing_.held[nearest] + 0.5 * step;
+  }
+  const double* residual = &crossing_.residual[nearest];
+  return std::abs(residual[1]) < std::abs(residual[0]) ? nearest + 1 : nearest;
+}
+
 void RootSweep::take(const Pose& Y, const RootFinder::Root& root, int lane) {
   const bool is_vague = root.is_vague;
   // Roots are off by what the tolerances allow, many times over; but where there are two, by its
@@ -156,8 +180,7 @@ void RootSweep::take(const Pose& Y, const RootFinder::Root& root, int lane) {
   const bool is_loose = is_vague && root.apart <= farther_;
   const double slack = is_loose ? 4 * vague_ : 25 * vague_ * vague_;
   const bool only_just_is = is_loose && std::abs(pack_.least[lane]) < vague_ * vague_;
-  const double steep = only_just_is ? kSteeper * slack : slack;
-  const double most = chain_.loop ? std::max(slack, kOpen) : steep;
+  const double most = chain_.loop ? std::max(slack, kOpen) : slack;
   // Of two solutions that all but share an angle of a loop's first joint, one or both are not
   // found.
   if (chain_.loop && is_vague) certain_ = false;
@@ -166,16 +189,20 @@ void RootSweep::take(const Pose& Y, const RootFinder::Root& root, int lane) {
   if (!chain_.loop && root.is_faint && !(std::abs(pack_.least[lane]) < vague_ * vague_)) return;
   // Nor does the residual tell where such a branch may have any angles.
   const bool tells = !(only_just_is && pack_.error[lane] > kFreely);
+  const lanes::BranchPack* at = &pack_;
   if (tells && !(std::abs(pack_.residual[lane]) < most)) {
     if (chain_.loop) certain_ = false;
-    return;
+    if (chain_.loop || !only_just_is) return;
+    lane = find_crossing(root.angle, lane);
+    if (lane < 0) return;
+    at = &crossing_;
   }
   // A loop that closes nearly may do so beside the angles of another solution.
-  const bool is_closed = !chain_.loop || std::abs(pack_.residual[lane]) < kClosed * tolerance_;
+  const bool is_closed = !chain_.loop || std::abs(at->residual[lane]) < kClosed * tolerance_;
   if (!is_closed) certain_ = false;
   // Where any angle would do, or nearly, it need not be one outside the limits.
-  const double beyond = pack_.beyond[lane];
-  const bool is_free = beyond > 0 && !(pack_.error[lane] < std::max(beyond, kFreely));
+  const double beyond = at->beyond[lane];
+  const bool is_free = beyond > 0 && !(at->error[lane] < std::max(beyond, kFreely));
   const bool is_sure = is_closed && !is_free && !only_just_is;
   const bool is_far = beyond > std::max(slack, kFarBeyond);
   if (is_far && is_sure) return;
@@ -184,7 +211,7 @@ void RootSweep::take(const Pose& Y, const RootFinder::Root& root, int lane) {
     return;
   }
   double* q = next().data();
-  chain_.copy_joints(pack_.q, lane, q);
+  chain_.copy_joints(at->q, lane, q);
   if (beyond > 0) {
     const Pose T_base_tcp = to_pose(model_.kernel.base) * Y * to_pose(model_.kernel.tip);
     if (is_closed &&
@@ -201,7 +228,7 @@ void RootSweep::take(const Pose& Y, const RootFinder::Root& root, int lane) {
     if (!is_sure) certain_ = false;
   }
   may_be_singular_ = may_be_singular_ || is_free || is_vague;
-  is_delicate_ = is_delicate_ || is_vague || !(pack_.error[lane] < kDelicate);
+  is_delicate_ = is_delicate_ || is_vague || !(at->error[lane] < kDelicate);
   ++size_;
 }
 

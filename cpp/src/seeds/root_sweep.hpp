@@ -30,6 +30,10 @@ class RootSweep final : public BranchList {
   bool find_product_roots(const Pose& Y);
   bool find_loop_roots(const Pose& Y);
   void take(const Pose& Y, const RootFinder::Root& root, int lane);
+  /// Beside a root of the product where the residual of a lane's branch is 0: where the branch only
+  /// just is, both grow as the root of what that angle is off. The lane of crossing_ that is
+  /// nearest to it, or -1.
+  int find_crossing(double angle, int lane);
   /// Whether one of these is singular, or almost.
   [[nodiscard]] bool has_singular() const;
 
@@ -45,6 +49,7 @@ class RootSweep final : public BranchList {
   LoopPolynomial polynomial_;
   lanes::LoopTarget loop_{};
   lanes::BranchPack pack_ = all_branches();
+  lanes::BranchPack crossing_{};
   bool is_at_limit_ = false;
   bool is_delicate_ = false;  ///< whether one may be singular
 };

@@ -17,7 +17,7 @@ Sweep::Sweep(const ChainModel& model, const ClosedFormChain& chain, bool is_nomi
       is_nominal_(is_nominal),
       rows_(kSamples) {
   // Memory is taken here, and none while solving: two branches of each open piece are looked at.
-  looked_.reserve(2 * enclosure_.open().capacity());
+  looked_.reserve(2 * kPlaces * enclosure_.open().capacity());
   found_.reserve(kFollowed * kCurveJoints);
   const double tolerance = std::max(position_tolerance / chain.unit, rotation_tolerance);
   if (!concludes_from_branches(is_nominal, tolerance)) return;
@@ -47,18 +47,21 @@ bool Sweep::find_between(const Pose& Y) {
   for (enclosure_.begin(Y);; enclosure_.halve()) {
     enclosure_.close();
     // Longer pieces have samples in them.
-    const bool are_short = 2 * enclosure_.half() < places_.step;
-    if ((are_short || enclosure_.is_through()) && look_in_pieces()) return true;
-    if (enclosure_.is_through()) return follow_nearest();
+    if (enclosure_.is_through()) return look_in_pieces(kPlaces) || follow_nearest();
+    if (2 * enclosure_.half() < places_.step && look_in_pieces(1)) return true;
   }
 }
 
-bool Sweep::look_in_pieces() {
+bool Sweep::look_in_pieces(int places) {
   looked_.clear();
+  apart_ = 2 * enclosure_.half() / places;
   for (const int last : {0, 1}) {
     for (const BranchEnclosure::Piece& piece : enclosure_.open()) {
       if (!piece.with[static_cast<std::size_t>(last)]) continue;
-      looked_.push_back({0, branches_.from_form(piece.middle), piece.arm + 4 * last});
+      const double first = branches_.from_form(piece.middle) - 0.5 * (places - 1) * apart_;
+      for (int i = 0; i < places; ++i) {
+        looked_.push_back({0, first + i * apart_, piece.arm + 4 * last});
+      }
     }
   }
   std::size_t count = 0;
@@ -92,12 +95,10 @@ bool Sweep::rate(int branch, const Value& value, double (&off)[SweptBranches::kC
 }
 
 bool Sweep::follow_nearest() {
-  // As far apart as the middles of one piece and the next.
-  const double apart = 2 * enclosure_.half();
   Least<Place, kFollowed> nearest;
   const auto is_less = [&](std::size_t i, std::size_t j) {
     if (j >= looked_.size() || looked_[i].branch != looked_[j].branch) return true;
-    if (std::abs(looked_[i].at - looked_[j].at) > 1.5 * apart) return true;
+    if (std::abs(looked_[i].at - looked_[j].at) > 1.5 * apart_) return true;
     return i < j ? looked_[i].value <= looked_[j].value : looked_[i].value < looked_[j].value;
   };
   for (std::size_t i = 0; i < looked_.size(); ++i) {
@@ -105,7 +106,7 @@ bool Sweep::follow_nearest() {
   }
   least_ = kInfinity;
   for (Place place : nearest) {
-    if (follow(place, apart)) return true;
+    if (follow(place, apart_)) return true;
     least_ = std::min(least_, place.value);
     branches_.solve_one(place.branch, [&](int /*lane*/) { return place.at; });
     branches_.copy_joints(0, q_.data());

@@ -78,6 +78,9 @@ class Sweep {
   /// And such only as come so near to an answer at a sample [mixed units].
   static constexpr double kNear = 0.3;
 
+  /// Places that are looked at in a piece that stays open.
+  static constexpr int kPlaces = SweptBranches::kCount;
+
   /// How far from an answer a branch is, at a value of the swept joint [mixed units; rad or m].
   struct Place {
     double value, at;
@@ -88,8 +91,8 @@ class Sweep {
   bool take_answer(int place);
   /// Whether what was solved last is an answer in a lane; it becomes what is found.
   bool take(int lane);
-  /// Looks in the middle of each piece that is open; true if there is an answer.
-  bool look_in_pieces();
+  /// Looks at so many places in each piece that is open; true if there is an answer.
+  bool look_in_pieces(int places);
   /// Looks closely at those that are nearer to an answer than what is beside them, and gives them;
   /// true if there is one.
   bool follow_nearest();
@@ -116,6 +119,7 @@ class Sweep {
   /// Where a branch comes nearer to an answer than at the samples beside.
   LeastPlaces<kFollowed> nearest_;
   std::vector<Place> looked_;
+  double apart_ = 0;  ///< how far these are from each other [rad or m]
   double least_ = 0;  ///< how far the nearest of these was from being an answer
   std::vector<double> found_;
   std::array<double, kCurveJoints> q_{};

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import threading
 import time
+import urllib.request
 
 import numpy as np
 import pytest
@@ -195,6 +196,21 @@ def test_the_branch_is_kept(show, cases):
     assert stayed > cases / 40
     with pytest.raises(iksel.InvalidArgumentError, match=r"'x' is none of nearest, s"):
         session.set_choice("x")
+
+
+def test_another_choice_looks_again_where_there_is_no_answer(show):
+    viewer = show()
+    session, choice = viewer.session, viewer.controls.choice
+    q = session.q.copy()
+    choice.value = "any"
+    np.testing.assert_array_equal(session.q, q)
+    pose = session.target.copy()
+    pose[0, 3] += 3.0
+    drag(viewer, pose)
+    choice.value = "tracked"
+    assert session.status == iksel.Status.closest
+    assert "as near as it gets" in viewer.text
+    assert np.abs(session.q - q).max() > 0.1
 
 
 @pytest.mark.parametrize("name", ["ur5e", "panda"])
@@ -421,6 +437,18 @@ def test_a_missing_extra_is_named(made, monkeypatch):
 def test_no_port_is_an_error_at_once(made, port) -> None:
     with pytest.raises(iksel.InvalidArgumentError, match="^port: "):
         view.Viewer(made.solver("ur5e"), port=port)
+
+
+def test_it_listens_at_addresses_of_ipv6(made) -> None:
+    try:
+        with socket.create_server(("::1", 0), family=socket.AF_INET6) as some:
+            port = some.getsockname()[1]
+    except OSError:
+        pytest.skip("this machine has no IPv6")
+    with view.Viewer(made.solver("ur5e"), host="::1", port=port) as viewer:
+        assert viewer.url == f"http://[::1]:{viewer.port}"
+        with urllib.request.urlopen(viewer.url, timeout=10) as page:
+            assert page.status == 200
 
 
 def test_the_last_port_taken_is_an_error(made) -> None:

@@ -108,6 +108,7 @@ def test_what_cannot_be_shown_is_named(run, folder):
     assert_bad(run(f"view ur5e --map {path}x {port}"), "ur5e.zarrx")
     assert_bad(run(f"view ur5e --q 1 2 {port}"), "--q: expected 6 numbers")
     assert_bad(run("view ur5e --port 0"), "--port: 0 is not between 1 and 65535")
+    assert_bad(run("view ur5e --port x"), "--port: x is not between 1 and 65535")
     assert_bad(run("view ur7e"), "no built-in robot 'ur7e'")
     assert_bad(run(f"view ur5e {port} --host 256.0.0.1"), "host: .*256.0.0.1")
     both = f"reach view {path} --browser --slice z=0.3 {port}"

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from command_line import assert_bad
 from test_view import free_port
+from test_view_panel import from_the_middle
 from urdf_text import joint
 
 import iksel
@@ -98,6 +99,16 @@ def test_links_move_as_link_poses_says(viewer):
             pose = robot.link_poses(q)[robot.link_names.index(name)]
             placed = iksel.pose_from_quaternion(frame.position, frame.wxyz)
             np.testing.assert_allclose(placed, pose, atol=1e-6)
+
+
+def test_the_camera_sees_what_is_beside_the_chain(path):
+    """As a head beside the arms."""
+    text = path.read_text(encoding="utf-8")
+    head = shown('<box size="0.2 0.2 0.2"/>', '<origin xyz="0 0 0.9"/>')
+    path.write_text(text.replace('<link name="base">', f'<link name="base">{head}'))
+    solver = iksel.Solver(iksel.load_robot(path))
+    with view.Viewer(solver, urdf=path, port=free_port()) as viewer:
+        assert from_the_middle(viewer, np.array([[0, 0, 1.0], [0, 0, -0.2]])).max() < 1
 
 
 def test_colours_say_what_the_bars_colours_say(viewer):

@@ -135,19 +135,24 @@ def test_it_begins_upright_and_solved(made, name) -> None:
         assert (np.abs(q) <= np.abs(other) + 1e-9)[inside].all()
 
 
+def from_the_middle(viewer, points) -> np.ndarray:
+    """How far from the middle points (n, 3) are seen; 1: at the upper edge."""
+    camera = viewer._server.initial_camera
+    forwards = camera.look_at - camera.position
+    forwards /= np.linalg.norm(forwards)
+    depth = (points - camera.position) @ forwards
+    assert (depth > 0).all()
+    aside = points - camera.position - depth[:, None] * forwards
+    return np.linalg.norm(aside, axis=1) / (depth * np.tan(camera.fov / 2))
+
+
 @pytest.mark.parametrize("name", ["ur5e", "panda", "irb120", "wx250"])
 def test_the_camera_sees_the_robot_and_little_else(show, name) -> None:
     viewer = show(name)
-    camera = viewer._server.initial_camera
-    away = camera.position - camera.look_at
-    distance = np.linalg.norm(away)
-    forwards = -away / distance
-    points = viewer.scene._balls._node.batched_positions - camera.position
-    depth = points @ forwards
-    assert (depth > 0).all()
-    aside = np.linalg.norm(points - depth[:, None] * forwards, axis=1)
-    share = aside / (depth * np.tan(camera.fov / 2))
-    assert 0.5 < share.max() < 1
+    for q in (viewer.session.q, np.zeros(viewer.session.robot.dof)):
+        viewer.show(q)
+        share = from_the_middle(viewer, viewer.scene._balls._node.batched_positions)
+        assert 0.5 < share.max() < 1
 
 
 def scene_of(robot) -> iksel.Scene:
@@ -208,3 +213,25 @@ def test_answers_keep_free_of_the_scene(show, made) -> None:
         assert scene.is_free(shown.session.q[None])[0] == is_free
         assert shown.session.solved
     assert 0 < len(viewer.session.branches()) < len(free.session.branches())
+
+
+def test_what_sliders_bring_into_collision_is_said(show, made) -> None:
+    robot = made.robot("ur5e")
+    spheres = iksel.RobotSpheres({"forearm_link": np.array([[0, 0, 0, 0.05]])}, [])
+    scene = iksel.Scene(robot, spheres)
+    viewer = show("ur5e", scene=scene)
+    elbow = robot.link_poses(viewer.session.q)[robot.link_names.index("forearm_link")]
+    assert "collision" not in viewer.text
+    scene.add_sphere("ball", 0.1, elbow[:3, 3])
+    viewer.show(viewer.session.q)
+    assert "**in collision**: forearm_link touches ball\n" in viewer.text
+
+
+@pytest.mark.parametrize("unit", ["degrees", "radians"])
+def test_sliders_show_no_zero_below_zero(show, unit) -> None:
+    viewer = show("ur5e")
+    viewer.controls.unit.value = unit
+    viewer.show(np.full(6, -1e-6))
+    for slider in viewer.controls.joints:
+        assert f"{slider.value:.{slider.precision}f}"[0] == "0"
+    np.testing.assert_array_equal(viewer.session.q, np.full(6, -1e-6))

@@ -13,6 +13,7 @@ from trees import two_armed, two_arms_on_torso
 
 import iksel
 from iksel import view
+from iksel.view._camera import VIEW_FROM
 from iksel.view._maps import check_map
 from iksel.view.skeleton import Skeleton
 
@@ -211,7 +212,7 @@ def test_branches_have_both_tips_at_their_targets(viewer) -> None:
     session, scene = viewer.session, viewer.scene
     count = len(session.branches())
     assert scene.ghosts == count > 8
-    assert f"solutions: {count}\n" in viewer.text
+    assert f"solutions: {count} or more\n" in viewer.text
     balls = scene._ghost_balls._node.batched_positions.reshape(count, -1, 3)
     tips = session.targets[None, :, :3, 3]
     np.testing.assert_allclose(balls[:, -2:], np.repeat(tips, count, 0), atol=1e-5)
@@ -356,3 +357,11 @@ def test_it_begins_free_and_upright(solver) -> None:
     assert (session.targets[:, 0, 3] > 0).all()
     jacobian = robot.jacobian(q)
     assert np.linalg.svd(jacobian, compute_uv=False).prod() > 1e-3
+
+
+@pytest.mark.parametrize("name", ["ur5e", "panda", "iiwa7"])
+def test_no_tool_is_behind_another_at_first(made, name) -> None:
+    session = view.Session(iksel.Solver(two_armed(made.robot(name))))
+    left, right = session.targets[:, :3, 3]
+    aside = np.cross(left - right, VIEW_FROM / np.linalg.norm(VIEW_FROM))
+    assert np.linalg.norm(aside) > 0.5 * session.robot.chain(0).reach

@@ -119,7 +119,6 @@ def announce(viewer: Viewer) -> None:
 
 def _port(text: str) -> int:
     """An argument that is a port."""
-    value = int(text)
-    if not 1 <= value <= 65535:
+    if not text.isdecimal() or not 1 <= int(text) <= 65535:
         raise argparse.ArgumentTypeError(f"{text} is not between 1 and 65535")
-    return value
+    return int(text)

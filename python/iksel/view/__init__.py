@@ -6,6 +6,7 @@
 
     solver = iksel.Solver(iksel.load_robot("ur5e"))
     viewer = Viewer(solver).show([0, -1.2, 1.5, -0.4, 1.6, 0])
+    print(viewer.url)
     viewer.wait()
 
 Needs the extra `pip install iksel[view]`; only making a Viewer imports it.

@@ -9,6 +9,7 @@ import numpy as np
 from iksel_cpp import JointType
 
 from iksel._base.qualities import limit_distance, manipulability
+from iksel.view._camera import VIEW_FROM
 
 if TYPE_CHECKING:
     from iksel_cpp import Scene, Solver
@@ -22,8 +23,8 @@ def open_configuration(solver: Solver, scene: Scene | None) -> FloatArray:
     """Of some random configurations one that shows the robot well.
 
     It is manipulable, far from limits, and free; no link is below the base's floor,
-    where that is possible; and the arm stands up, with its tools before it (along x)
-    and pointing down.
+    where that is possible; and the arm stands up, with its tools before it (along x),
+    pointing down and, of several, apart as the camera sees them.
     """
     robot = solver.robot
     some = robot.random_configurations(SAMPLES, seed=0)
@@ -35,7 +36,11 @@ def open_configuration(solver: Solver, scene: Scene | None) -> FloatArray:
     above = lowest >= min(0.0, lowest.max()) - 1e-9
     some, heights = some[above], heights[above]
     tools = robot.fk(some).reshape(len(some), robot.tips, 4, 4)
-    sideways = tools[..., :2, 3]
+    places = tools[..., :3, 3]
+    sideways = places[..., :2]
+    one, other = np.triu_indices(robot.tips, 1)
+    between = np.cross(places[:, one] - places[:, other], VIEW_FROM)
+    gaps = np.maximum(np.linalg.norm(between, axis=-1), 1e-9)
     away = np.maximum(np.linalg.norm(sideways, axis=-1), 1e-9)
     before = sideways[..., 0] / away
     quality = (
@@ -43,6 +48,7 @@ def open_configuration(solver: Solver, scene: Scene | None) -> FloatArray:
         * limit_distance(robot, some)
         * np.maximum(heights.mean(axis=1) - heights[:, 0].min(), 1e-9) ** 2
         * ((1.2 + before) * (1.5 - tools[..., 2, 2])).prod(axis=1)
+        * (gaps**3).prod(axis=1)
     )
     q = some[np.argmax(quality)]
     # Of joints that can turn further than once around, the least turn.

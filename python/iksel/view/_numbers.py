@@ -38,7 +38,7 @@ class Numbers:
             multiline=True,
             hint="values of all joints, in the unit of the sliders",
         )
-        self.to_q = gui.add_button("move to q")
+        self.to_q = gui.add_button("move to q", hint="and the target with the tool")
         self.poses = []
         self.to_poses = []
         for name in target_names(robot):

@@ -44,7 +44,8 @@ class Page:
     def url(self) -> str:
         """What to open in a browser."""
         everywhere = self.host in ("0.0.0.0", "127.0.0.1")  # noqa: S104 (only asked)
-        host = "localhost" if everywhere else self.host
+        named = f"[{self.host}]" if ":" in self.host else self.host
+        host = "localhost" if everywhere else named
         return f"http://{host}:{self.port}"
 
     def _repr_html_(self) -> str:

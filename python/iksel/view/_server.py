@@ -94,15 +94,16 @@ def _free_port(host: str, port: int) -> int:
         reject("port", f"expected a whole number, got {port!r}")
     if not 0 <= port <= _LAST_PORT:
         reject("port", f"{port} is not from 0 to {_LAST_PORT}")
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
     problem = "none"
     for free in range(port, min(port + MOST_PORTS, _LAST_PORT + 1)):
         try:
-            with socket.create_server((host, 0)):
+            with socket.create_server((host, 0), family=family):
                 pass
         except (OSError, UnicodeError) as reason:
             reject("host", f"cannot listen at {host!r}: {reason}")
         try:
-            with socket.create_server((host, free)):
+            with socket.create_server((host, free), family=family):
                 return free
         except OSError as reason:
             problem = str(reason)

@@ -12,7 +12,7 @@ from iksel._base.limits import violated_limits
 from iksel._base.qualities import limit_distance, manipulability
 from iksel.view._numbers import DEGREES, UNITS, Numbers
 from iksel.view.scene import RAMP
-from iksel.view.session import CHOICES
+from iksel.view.session import CHOICES, MOST_BRANCHES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -52,7 +52,10 @@ class Controls:
         of = [""] if session.robot.tips == 1 else session.robot.tip_links
         self.tasks = [
             gui.add_dropdown(
-                f"task {link}".strip(), list(session.tasks), initial_value=name
+                f"task {link}".strip(),
+                list(session.tasks),
+                initial_value=name,
+                hint="what of the target has to be reached",
             )
             for link, name in zip(of, session.task_names, strict=True)
         ]
@@ -60,18 +63,23 @@ class Controls:
             "solution",
             CHOICES,
             initial_value=session.choice,
-            hint="nearest to where the robot is; of the same branch or none; where a "
-            "Tracker goes from there, as near as it gets; any",
+            hint="nearest to where the robot is; of the same branch or none; tracked "
+            "as in a control loop, as near as it gets; any: the first that is found",
         )
         self.ghosts = gui.add_checkbox(
             "all branches",
             initial_value=False,
-            hint="show all solutions, or a spread of them, as ghosts",
+            hint=f"show all solutions, or a spread of {MOST_BRANCHES}, as ghosts",
         )
         self.motion: Any = None
         if session.arcs is not None:
             self.motion = gui.add_slider(
-                "self-motion", min=0.0, max=1.0, step=10.0**-DECIMALS, initial_value=0.0
+                "self-motion",
+                min=0.0,
+                max=1.0,
+                step=10.0**-DECIMALS,
+                initial_value=0.0,
+                hint="move the arm while its tool rests at the target",
             )
         self.meshes = gui.add_checkbox(
             "meshes",
@@ -186,8 +194,8 @@ class Controls:
         self.text.content = describe(self._session, solutions) + self.note
         shown = self._values() * self._scales
         for slider, value in zip(self.joints, shown, strict=True):
-            if slider not in held:
-                slider.value = float(value)
+            if slider not in held:  # the page would write what is next to 0 as -0.0
+                slider.value = float(value) if abs(value) > slider.step / 2 else 0.0
         self.numbers.draw(degrees=self.unit.value == DEGREES)
         if self.motion:
             self.motion.disabled = not self._session.arcs
@@ -219,8 +227,11 @@ def describe(session: Session, solutions: int | None = None) -> str:
         lines.append(session.reason)
     if robot.tips > 1:
         lines.append("\n".join(f"- {line}" for line in tip_lines(session)))
+    for deepest in session.scene.contacts(q[0])[:1] if session.scene else ():
+        lines.append(f"**in collision**: {deepest.link} touches {deepest.other}")
     if solutions is not None:
-        lines.append(f"solutions: {solutions}")
+        more = " or more" if solutions == MOST_BRANCHES else ""
+        lines.append(f"solutions: {solutions}{more}")
     lines.append(f"manipulability: {manipulability(robot, q)[0]:.4g}")
     lines.append(nearest_limit(session))
     if session.arcs is not None:

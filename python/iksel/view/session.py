@@ -34,7 +34,7 @@ CHOICES = ("nearest", "same branch", "tracked", "any")
 that an attempt from there leads to and no other, where a Tracker goes from there, if
 only as near as it gets, or the first that is found."""
 TIPS_DEADLINE = 0.2  # [s] for an answer of several tips, so that dragging goes on
-MOST_BRANCHES = 64
+MOST_BRANCHES = 16  # an arm of six joints has no more; of a spread more hide each other
 SPACING = 0.02  # [rad] between the configurations of a self-motion
 
 
@@ -74,7 +74,7 @@ class Session:
         keep free of the scene.
         """
         self.solver = solver
-        self._scene = scene
+        self.scene = scene
         self.robot = solver.robot
         self.tasks = dict(TASKS)
         own = solver.options.task
@@ -153,13 +153,12 @@ class Session:
         self._check_tip(tip)
         if name not in self.tasks:
             reject("task", f"{name!r} is none of {', '.join(self.tasks)}")
-        for i in range(self.robot.tips):
-            if tip in (None, i):
-                self.task_names[i] = name
+        for one in range(self.robot.tips) if tip is None else [tip]:
+            self.task_names[one] = name
         self.solve()
 
     def set_choice(self, name: str) -> None:
-        """Choose which solution is taken, by one of CHOICES.
+        """Choose which solution is taken, by one of CHOICES; look again if none is.
 
         Raises:
             InvalidArgumentError: No such name.
@@ -167,6 +166,8 @@ class Session:
         if name not in CHOICES:
             reject("choice", f"{name!r} is none of {', '.join(CHOICES)}")
         self.choice = name
+        if not self.solved:
+            self.solve()
 
     def solve(self) -> None:
         """Solve for all targets at once; which solution is taken, `choice` says."""
@@ -190,8 +191,8 @@ class Session:
             return
         if self.robot.tips > 1:
             wishes = {**self._wishes(), "scene": None}
-            without = self._search(**wishes) if self._scene is not None else result
-            reason = reasons.of_all_tips(self._scene, without)
+            without = self._search(**wishes) if self.scene is not None else result
+            reason = reasons.of_all_tips(self.scene, without)
             self._ended(result.status, reason, seconds)
             return
         diagnosis = self.solver.diagnose(
@@ -226,7 +227,7 @@ class Session:
 
     def _given(self) -> dict[str, Any]:
         """The tasks and the scene, as keywords of Solver's methods."""
-        return {"tasks": self._chosen(), "scene": self._scene}
+        return {"tasks": self._chosen(), "scene": self.scene}
 
     def _chosen(self) -> list[Task]:
         """The task of each tip."""

@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     from iksel_cpp import Solver
 
-    from iksel._base.arrays import FloatArray
     from iksel.description import Source
     from iksel.formats._packages import Packages
     from iksel.pose import PoseLike
@@ -103,10 +102,10 @@ class Viewer(Page):
         self._server.gui.set_panel_label(f"iksel: {robot.name}")
         self._skeleton = Skeleton(robot)
         self.scene = Scene(self._server.scene, self._skeleton, pieces)
-        self._body = self._skeleton.points(self.session.q[None])[0]
         obstacles = {} if scene is None else scene.obstacles
         self.scene.add_obstacles(obstacles)
-        self._look_at(corners(obstacles))
+        self._around = corners(obstacles)
+        self._look()
         self.controls = Controls(self._server.gui, self.session)
         if len(self.scene.visuals):
             self.controls.meshes.visible = True
@@ -135,6 +134,7 @@ class Viewer(Page):
         """
         with self._lock:
             self.session.show(q)
+            self._look()
             self._draw()
         return self
 
@@ -154,6 +154,7 @@ class Viewer(Page):
         """
         with self._lock:
             self.session.move_target(pose, tip)
+            self._look()
             self._draw()
         return self
 
@@ -199,7 +200,8 @@ class Viewer(Page):
         with self._lock:
             self._map = reach_map
             axes, _ = reach_map.box()
-            self._look_at(np.array([[axis[0], axis[-1]] for axis in axes]).T)
+            self._around = np.array([[axis[0], axis[-1]] for axis in axes]).T
+            self._look()
             for handle in self.controls.of_map:
                 handle.visible = True
             self._draw_map()
@@ -253,10 +255,12 @@ class Viewer(Page):
         else:
             self._draw()
 
-    def _look_at(self, others: FloatArray) -> None:
-        """Have the camera see the robot and other points (n, 3), and little else."""
-        camera = self._server.initial_camera
-        look_at(camera, self._skeleton, self._body, others)
+    def _look(self) -> None:
+        """Have the camera of pages from now on see the robot and what is around it."""
+        q = self.session.q
+        body = self._skeleton.points(q[None])[0]
+        others = np.concatenate([self._around, self.scene.visuals.corners(q)])
+        look_at(self._server.initial_camera, self._skeleton, body, others)
 
     def _draw(self, *held: Any) -> None:
         """Draw everything but the map, and the handles that a user is just moving."""

@@ -133,7 +133,7 @@ def _load(path: Path) -> list[Any]:
     check_mesh_file(path)
     try:
         scene = trimesh.load_scene(path)
-        return [mesh for mesh in scene.dump() if hasattr(mesh, "faces")]
+        return [mesh for mesh in scene.dump() if len(getattr(mesh, "faces", ()))]
     except Exception as error:  # noqa: BLE001 (of readers of many formats)
         reason = " ".join(str(error).split()) or type(error).__name__
         raise UrdfError(f"mesh file {str(path)!r}: {reason}") from None
@@ -200,7 +200,22 @@ class Visuals:
             for i, piece in enumerate(pieces)
             if piece.link in self._links
         ]
+        self._boxes: list[list[FloatArray]] = [[] for _ in self._links]
+        for piece, _ in self._parts:
+            edges = np.stack([piece.vertices.min(axis=0), piece.vertices.max(axis=0)])
+            box = np.stack(np.meshgrid(*edges.T), axis=-1).reshape(-1, 3)
+            self._boxes[self._links.index(piece.link)].append(box)
         self._shown: dict[str, Colour] | None = None
+
+    def corners(self, q: FloatArray) -> FloatArray:
+        """Points (n, 3) in the base frame that the pieces are between at q (dof,)."""
+        poses = self._robot.link_poses(q)[self._index]
+        found = [
+            box @ pose[:3, :3].T + pose[:3, 3]
+            for boxes, pose in zip(self._boxes, poses, strict=True)
+            for box in boxes
+        ]
+        return np.concatenate([np.empty((0, 3)), *found])
 
     def __len__(self) -> int:
         """Number of pieces."""

@@ -8,7 +8,8 @@ every answer is judged by numpy. For arms whose solutions are isolated, the bran
 solve_all beside those that random restarts of the iteration find.
 
 With --random, so many random arms of each build, and uniform targets in batches only;
-what a batch loses is asked again in every other way.
+what a batch loses is asked again in every other way. With --off, these are moved and
+turned by up to that share of the tolerances, as rounding in a file does.
 """
 
 from __future__ import annotations
@@ -99,13 +100,30 @@ def reached(arm: Arm, kind: str, count: int, seed: int) -> dict[str, Any]:
     return row
 
 
+def moved(poses: Array, off: float, seed: int) -> Array:
+    """Poses (N, 4, 4) off by a random way and angle of up to `off` [m, rad]."""
+    random = np.random.default_rng(seed)
+    ways = random.normal(size=(2, len(poses), 3))
+    ways *= random.uniform(0.0, off, (2, len(poses), 1)) / np.linalg.norm(
+        ways, axis=2, keepdims=True
+    )
+    out = poses.copy()
+    out[:, :3, 3] += ways[0]
+    out[:, :3, :3] @= iksel.pose_from_rotation_vector(np.zeros(3), ways[1])[:, :3, :3]
+    return out
+
+
 def lost_of_random(
-    arm: Arm, count: int, seed: int, solver: iksel.Solver | None = None
+    arm: Arm,
+    count: int,
+    seed: int,
+    solver: iksel.Solver | None = None,
+    off: float = 0.0,
 ) -> dict[str, int]:
     """How many of so many uniform targets a batch loses, and what contradicts it.
 
     Of `proven` noes `swept` ones are those by a sweep. The solver is the arm's, made if
-    none is given.
+    none is given. Targets are off by up to that share of the tolerances.
     """
     if solver is None:
         solver = iksel.Solver(arm.robot)
@@ -115,6 +133,8 @@ def lost_of_random(
         n = min(CHUNK, count - first)
         q = arm.robot.random_configurations(n, seed + first)
         poses = arm.robot.fk(q)
+        if off > 0.0:
+            poses = moved(poses, off * TOLERANCE, seed + first)
         batch = solver.solve_batch(poses)
         good = right(
             arm.chain,
@@ -144,7 +164,7 @@ def run_random(args: argparse.Namespace, conditions: dict[str, Any]) -> int:
         worst = 0
         for i in range(args.seed, args.seed + args.random):
             arm = random_arms.random_arm(build, i)
-            row = lost_of_random(arm, args.targets, i)
+            row = lost_of_random(arm, args.targets, i, off=args.off)
             worst = max(worst, row["lost"])
             for key, value in {"arms": 1, **row}.items():
                 total[key] = total.get(key, 0) + value
@@ -205,6 +225,14 @@ def add(commands: Any) -> None:
         metavar="BUILD",
         help=f"of random arms: {' '.join(random_arms.BUILDS)}",
     )
+    command.add_argument(
+        "--off",
+        type=float,
+        default=0.0,
+        metavar="SHARE",
+        help="of the tolerances, by which targets of random arms are off, below 1 "
+        "(default: %(default)s)",
+    )
     add_seed(command)
 
 
@@ -215,7 +243,7 @@ def run(args: argparse.Namespace) -> int:
     """
     conditions = {"simd": iksel.simd_level(), "seed": args.seed}
     if args.random > 0:
-        return run_random(args, conditions)
+        return run_random(args, {**conditions, "off": args.off})
     bad = 0
     for name in args.robots:
         arm = load_arm(name)

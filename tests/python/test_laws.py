@@ -17,6 +17,8 @@ import iksel
 pytest.importorskip("bench", reason="the benchmarks are in the repository only")
 
 from bench import laws, moves, random_arms, random_builds
+from bench.lost import moved
+from bench.targets import make_targets
 
 SEED = int(os.environ.get("IKSEL_TEST_SEED", "7"))
 ARMS = 2
@@ -316,6 +318,29 @@ def test_solutions_of_branches_that_only_just_are_are_found(
     arm = random_arms.random_arm("offset_wrist", number)
     assert arm.robot.within_limits(np.array(q))
     assert iksel.Solver(arm.robot).solve(arm.robot.fk(np.array(q))).success
+
+
+@pytest.mark.parametrize(
+    ("build", "number"),
+    [
+        ("offset_wrist", 4000),
+        ("general", 4002),
+        ("middle_sphere", 6000),
+        ("wrist_offset", 6006),
+        ("shoulder_offset", 6009),
+    ],
+)
+def test_poses_that_are_rounded_beside_a_singularity_are_reached(
+    build: str, number: int
+) -> None:
+    """By 0.7 of the tolerances: there the exact pose may have no solution at all.
+
+    Of these poses 25, 5, 8, 3 and 10 were lost. python -m bench lost --off tells more.
+    """
+    arm = random_arms.random_arm(build, number)
+    targets = make_targets(arm, "near_singular", 2000, 1)
+    poses = moved(targets.poses, 0.7e-6, 1)
+    assert iksel.Solver(arm.robot).solve_batch(poses).success.all()
 
 
 def test_solutions_where_rounding_hides_many_roots_are_found() -> None:

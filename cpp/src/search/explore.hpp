@@ -29,17 +29,14 @@ Explored explore_branches(const Parts& parts, BranchList& branches, Proof kind, 
   answers.look_for_partners(false);
   if (parts.refine(seeds, Width::narrow)) return Explored::done();
   if (branches.may_be_singular()) answers.converge_from_near();
+  const bool is_satisfied_inside =
+      !answers.has_any() &&
+      parts.move_inside(branches.size(), [&](int i) { return branches.q(i); });
+  if (is_satisfied_inside) return Explored::done();
   // Branches of which none could be refined to the tolerances prove nothing.
-  bool is_through = false;
-  if (enumerated.is_certain()) {
-    is_through = enumerated.is_empty() || (answers.has_any() && !branches.has_families());
-  } else {
-    const bool is_satisfied_inside =
-        !answers.has_any() &&
-        parts.move_inside(branches.size(), [&](int i) { return branches.q(i); });
-    if (is_satisfied_inside) return Explored::done();
-    is_through = enumerated.is_certain_but_for_limits() && !branches.has_families();
-  }
+  const bool are_known = enumerated.is_certain() ? enumerated.is_empty() || answers.has_any()
+                                                 : enumerated.is_certain_but_for_limits();
+  const bool is_through = are_known && (enumerated.is_empty() || !branches.has_families());
   // Of full poses, as the roots are.
   if (kind == Proof::sweep && parts.request.prove && !answers.has_any() &&
       parts.workspace.lanes->enclosure && parts.workspace.lanes->enclosure->rules_out(Y)) {

@@ -16,6 +16,49 @@ namespace {
 /// Farthest that joints may move for the first order to tell [rad or m].
 constexpr double kFarthestStep = 0.01;
 
+/// Joints i and j turn about one axis, by `side` 1 the same way round: brings both inside their
+/// limits by what the one turns for the other, and by whole turns, if that can be.
+void share_turn(const JointSpace& joints, int i, int j, double side, JointVector& q) {
+  const JointVector from = q;
+  double nearest = kInfinity;
+  for (const double of_i : {0.0, -kTwoPi, kTwoPi}) {
+    for (const double of_j : {0.0, -kTwoPi, kTwoPi}) {
+      const double at_i = from[i] + of_i;
+      const double at_j = from[j] + of_j;
+      const double one = side * (at_j - joints.lower[j]);
+      const double other = side * (at_j - joints.upper[j]);
+      const double least = std::max(joints.lower[i] - at_i, std::min(one, other));
+      const double most = std::min(joints.upper[i] - at_i, std::max(one, other));
+      const double turn = 0.5 * (least + most);
+      if (!(least <= most) || !(std::abs(turn) < nearest)) continue;
+      nearest = std::abs(turn);
+      q[i] = at_i + turn;
+      q[j] = at_j - side * turn;
+    }
+  }
+}
+
+/// Where axes are in line, joints share as they like what they turn about them: brings those that
+/// are beyond limits inside.
+void share_turns(const ChainModel& model, JointVector& q) {
+  /// Twists that differ by less are of one axis [m, rad].
+  constexpr double kInLine = 1e-3;
+  const JointVector violations = model.joints.violations(q);
+  if (!(violations.maxCoeff() > kFarthestStep)) return;
+  Pose pose;
+  Jacobian J;
+  model.fk_jacobian(q.data(), pose, J);
+  for (int i = 0; i < model.dof; ++i) {
+    for (int j = i + 1; j < model.dof; ++j) {
+      if (!(std::max(violations[i], violations[j]) > kFarthestStep)) continue;
+      if (model.joints.is_slide(i) || model.joints.is_slide(j)) continue;
+      const double side = J.col(i).tail<3>().dot(J.col(j).tail<3>()) > 0 ? 1 : -1;
+      if ((J.col(i) - side * J.col(j)).norm() > kInLine) continue;
+      share_turn(model.joints, i, j, side, q);
+    }
+  }
+}
+
 }  // namespace
 
 bool is_beyond_limits(const ChainModel& model, const Pose& T_base_tcp, JointVector q,
@@ -63,6 +106,7 @@ bool move_inside_limits(const ChainModel& model, const Goal& goal, JointVector& 
       is_beyond_limits(model, goal.target(), q, goal.task().position_tolerance(),
                        goal.task().rotation_tolerance());
   if (is_hopeless) return false;
+  share_turns(model, q);
   return descend_into_tolerances(model, goal, q);
 }
 

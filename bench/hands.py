@@ -20,7 +20,7 @@ from bench.whole_body.brute import RESTARTS, VALUES
 from bench.whole_body.carried import JUMP, WAYPOINTS, carried
 from bench.whole_body.free import free
 from bench.whole_body.nearest import STARTS, nearest
-from bench.whole_body.pairs import nearest_of_pairs
+from bench.whole_body.pairs import nearest_of_pairs, paths_of_pairs
 from bench.whole_body.robots import load_body
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 ROBOTS = ("two_pandas", "pr2")
 PAIRS = "pairs"
-"""Of random arms, of which the moves are looked at only."""
+"""Of random arms, of which moves and paths are looked at only."""
 Rows = dict[str, dict[str, Any]]
 
 
@@ -39,8 +39,9 @@ def add(commands: Any) -> None:
         help="both hands: near beside brute force, free of the body, carrying a box",
         description=__doc__,
     )
+    pairs = f"; {PAIRS}: of random arms, moves and paths"
     of_meshes = "; pr2, and the meshes of both, are those of example-robot-data"
-    add_robots(command, ROBOTS, f"; {PAIRS}: of random arms, moves only{of_meshes}")
+    add_robots(command, ROBOTS, pairs + of_meshes)
     add_count(command, "--near", 300, "moves of each start")
     add_count(command, "--free", 10_000, "targets beside bodies")
     add_count(command, "--paths", 40, "paths")
@@ -51,14 +52,14 @@ def add(commands: Any) -> None:
 def run(args: argparse.Namespace) -> int:
     """Measure, and print tables; 1 if an answer is none."""
     check_robots("hands", args.robots, (*ROBOTS, PAIRS))
-    made: dict[str, Rows] = {"near": {}, "free": {}, "paths": {}}
+    made: dict[str, Rows] = {"near": {}, "free": {}, "paths": {}, "known": {}}
     for name in args.robots:
         try:
             _measure(name, args, made)
         except UnsupportedError as reason:
             sys.stdout.write(f"{name}: {reason}\n\n")
     sys.stdout.write(f"Seed {args.seed}, SIMD level {iksel.simd_level()}.\n\n")
-    for tell, rows in zip((_near, _free, _paths), made.values(), strict=True):
+    for tell, rows in zip((_near, _free, _paths, _known), made.values(), strict=True):
         if rows:
             sys.stdout.write(tell(rows) + "\n\n")
     all_rows = [row for rows in made.values() for row in rows.values()]
@@ -71,6 +72,8 @@ def _measure(name: str, args: argparse.Namespace, made: dict[str, Rows]) -> None
         for start in STARTS if args.near else ():
             row = nearest_of_pairs(start, args.near, args.seed)
             made["near"][f"{name}, {start}"] = row
+        if args.paths:
+            made["known"][name] = paths_of_pairs(args.paths, args.seed)
         return
     body = load_body(name)
     for start in STARTS if args.near else ():
@@ -147,4 +150,21 @@ def _paths(rows: Rows) -> str:
         f"without a jump, which is a step above {JUMP:g} rad.\n\n"
         f"{table(head, lines)}\n\n"
         f"Jumps that `near` goes without, from waypoint to waypoint: {named}."
+    )
+
+
+def _known(rows: Rows) -> str:
+    head = ["robot", "paths", "end before", "jumps", "length to known", "s each"]
+    lines = [
+        [
+            name,
+            *(f"{row[k]:,}" for k in ("paths", "ended", "jumps")),
+            *(f"{row[k]:.3f}" for k in ("length", "s_each")),
+        ]
+        for name, row in rows.items()
+    ]
+    return (
+        f"Paths of {WAYPOINTS} waypoints along motions that are straight in joint "
+        "space, from anywhere and from their beginning: none needs to end, or to jump."
+        f"\n\n{table(head, lines)}"
     )

@@ -59,12 +59,12 @@ MORE = {
 }
 # Numbers, of which Python has none where C++ has -1.
 INDICES = {
-    "AnswerCriteria.in_frame_of",
     "Diagnosis.unreachable_tip",
     "PathResult.first_unreachable",
     "PathResult.largest_step_joint",
     "PathResult.largest_step_waypoint",
     "Result.unreachable_tip",
+    "TargetCriteria.in_frame_of",
 }
 WORDS = {
     r"\bfind_structure\b": "Robot.structure",

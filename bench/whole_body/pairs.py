@@ -4,12 +4,15 @@
 from __future__ import annotations
 
 import re
+import time
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+import iksel
 from bench.moves import BUILDS
 from bench.random_arms import sketch
+from bench.whole_body.carried import JUMP, WAYPOINTS
 from bench.whole_body.nearest import nearest
 from bench.whole_body.robots import body_of
 
@@ -58,6 +61,33 @@ def nearest_of_pairs(start: str, count: int, seed: int) -> dict[str, Any]:
         "mean_us": float(np.mean([row["mean_us"] for row in rows])),
         "named": [EACH * k + i for k in pairs for i in rows[k]["named"]],
     }
+
+
+def paths_of_pairs(count: int, seed: int) -> dict[str, Any]:
+    """Paths of known motions, straight on in joint space, one of each pair.
+
+    From anywhere, and from where the motion begins; jumps are needless, and so is
+    an end before the end.
+    """
+    row: dict[str, Any] = dict.fromkeys(("paths", "ended", "jumps", "wrong"), 0)
+    spent, length = [], []
+    for k in range(count):
+        body = random_pair(1000 * seed + k)
+        solver = iksel.Solver(body.robot)
+        begin, end = body.random_configurations(2, (seed, k))
+        q = np.linspace(begin, end, WAYPOINTS)
+        poses, step = body.fk(q), np.linalg.norm(q[1] - q[0])
+        for start in (None, q[0]):
+            begun = time.perf_counter()
+            result = solver.solve_path(poses, start=start)
+            spent.append(time.perf_counter() - begun)
+            row["paths"] += 1
+            row["ended"] += not result
+            if result:
+                row["jumps"] += result.largest_step > JUMP
+                row["wrong"] += not body.right(poses, result.q).all()
+                length.append(result.move / (step * (WAYPOINTS - 1)))
+    return row | {"length": float(np.mean(length)), "s_each": float(np.mean(spent))}
 
 
 def _words(values: Array) -> str:

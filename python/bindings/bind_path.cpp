@@ -72,28 +72,34 @@ void bind_path_result(py::module_& m) {
 
 using Closest = std::optional<PoseWeights>;
 
-Tracker make_tracker(const Solver& solver, const ArrayLike& start, const Closest& closest) {
-  return Tracker(solver, as_joints(start, solver.robot().dof(), "start"), closest);
+Tracker make_tracker(const Solver& solver, const ArrayLike& start, const Closest& closest,
+                     const std::optional<Task>& task, const std::optional<std::vector<Task>>& tasks,
+                     const std::optional<std::vector<int>>& in_frame_of) {
+  return Tracker(
+      solver, as_joints(start, solver.robot().dof(), "start"), closest,
+      {task, tasks.value_or(std::vector<Task>{}), in_frame_of.value_or(std::vector<int>{})});
 }
 
 PyResult track(Tracker& self, const PoseLike& pose, double dt, const std::optional<Scene>& scene) {
   const Scene* in = scene ? &*scene : nullptr;
-  if (self.solver().robot().tips() == 1) {
-    return PyResult(self.track(as_pose(pose, "pose"), dt, in));
-  }
-  return PyResult(self.track(as_targets(self.solver(), pose, {}), dt, in));
+  return PyResult(self.track(as_targets(self.solver(), pose, self.criteria()), dt, in));
 }
 
 py::dict tracker_state(const Tracker& self) {
   const auto& [last, speed] = self.stream();
+  const auto& [task, tasks, in_frame_of] = self.criteria();
+  py::list frames;
+  for (const int frame : in_frame_of) frames.append(optional_index(frame));
   return py::dict("solver"_a = self.solver(), "q"_a = to_array(self.q()),
                   "closest"_a = FromPython<Closest>::show(self.closest()),
                   "reached"_a = to_array(self.reached()), "last"_a = to_stack(last),
-                  "speed"_a = speed);
+                  "speed"_a = speed, "task"_a = task, "tasks"_a = tasks, "in_frame_of"_a = frames);
 }
 
 Tracker tracker_from_state(const Solver& solver, const ArrayLike& q, const Closest& closest,
-                           const ArrayLike& reached, const PoseLike& last, double speed) {
+                           const ArrayLike& reached, const PoseLike& last, double speed,
+                           const std::optional<Task>& task, const std::vector<Task>& tasks,
+                           const std::vector<int>& in_frame_of) {
   const int dof = solver.robot().dof();
   TargetStream stream;
   for (const Pose& each : to_poses(as_poses(last, "pickled Tracker, last"))) {
@@ -101,15 +107,18 @@ Tracker tracker_from_state(const Solver& solver, const ArrayLike& q, const Close
   }
   stream.speed = speed;
   return Tracker(solver, as_joints(q, dof, "pickled Tracker, q"), closest,
-                 as_joints(reached, dof, "pickled Tracker, reached"), stream);
+                 {task, tasks, in_frame_of}, as_joints(reached, dof, "pickled Tracker, reached"),
+                 stream);
 }
 
 void bind_tracker(py::module_& m) {
   auto tracker = bind_class<Tracker>(m, "Tracker");
   def_init(
-      tracker, "solver, start, *, closest=None",
-      [](const Solver& solver, const ArrayLike& start, const Closest& closest) {
-        return make_tracker(solver, start, closest);
+      tracker, "solver, start, *, closest=None, task=None, tasks=None, in_frame_of=None",
+      [](const Solver& solver, const ArrayLike& start, const Closest& closest,
+         const std::optional<Task>& task, const std::optional<std::vector<Task>>& tasks,
+         const std::optional<std::vector<int>>& in_frame_of) {
+        return make_tracker(solver, start, closest, task, tasks, in_frame_of);
       },
       R"(Begins where the arm is.
 
@@ -122,14 +131,17 @@ Args:
         with the target on the side that it left from. The tool is at most three times as fast
         as the target, both measured by the weights; a target at rest counts as fast as it last
         was.
+    task, tasks, in_frame_of: what of the poses has to be reached, and in the frame of which other
+        tip they are, as in Solver.solve.
 
 Raises:
-    InvalidArgumentError: wrong shape or dtype, or a number that is not finite.)");
+    InvalidArgumentError: wrong shape or dtype, a number that is not finite, or tasks or frames
+        that do not fit the tips.)");
   def(tracker, "track", "pose, dt, scene=None", fn<&track>,
       R"(Moves on towards a pose, by no more than each joint can in the time step.
 
 Args:
-    pose: T_base_tip [m], as in Solver.solve; one for each tip.
+    pose: T_base_tip [m], as in Solver.solve; one for each tip, in the frame that was asked for.
     dt: time step [s].
     scene: the arm stays, with status `in_collision`, where it would collide at the end of its move;
         the way there is not looked at.
@@ -145,7 +157,8 @@ Raises:
   add_property(tracker, "q", [](const Tracker& self) { return to_array(self.q()); });
   add_property(tracker, "reached", [](const Tracker& self) { return to_array(self.reached()); });
   def_repr(tracker);
-  def_pickle(tracker, fn<&tracker_state>, "solver, q, closest, reached, last, speed",
+  def_pickle(tracker, fn<&tracker_state>,
+             "solver, q, closest, reached, last, speed, task, tasks, in_frame_of",
              fn<&tracker_from_state>);
 }
 
@@ -170,8 +183,8 @@ void bind_path(py::module_& m, py::class_<Solver>& cls) {
       fn<&solve_path>);
 
   bind_tracker(m);
-  def(cls, "tracker", "start, *, closest=None", fn<&make_tracker>,
-      "Tracker(self, start, closest=closest).");
+  def(cls, "tracker", "start, *, closest=None, task=None, tasks=None, in_frame_of=None",
+      fn<&make_tracker>, "Tracker(self, start, ...).");
 }
 
 }  // namespace iksel::python

@@ -35,7 +35,7 @@ py::object Closest::show(const std::optional<PoseWeights>& weights) {
 namespace {
 
 /// What a position alone stands for, if it is the same task for all tips; else null.
-const Task* common_task(const Solver& solver, const AnswerCriteria& criteria) {
+const Task* common_task(const Solver& solver, const TargetCriteria& criteria) {
   if (criteria.tasks.empty()) return &task_of(solver, criteria);
   for (const Task& task : criteria.tasks) {
     if (task != criteria.tasks.front()) return nullptr;
@@ -46,7 +46,7 @@ const Task* common_task(const Solver& solver, const AnswerCriteria& criteria) {
 }  // namespace
 
 std::vector<Pose> as_targets(const Solver& solver, py::handle poses,
-                             const AnswerCriteria& criteria) {
+                             const TargetCriteria& criteria) {
   const int tips = solver.robot().tips();
   if (tips == 1) return {as_pose(poses, "pose", common_task(solver, criteria))};
   if (is_doubles(poses)) {
@@ -59,7 +59,7 @@ std::vector<Pose> as_targets(const Solver& solver, py::handle poses,
   return to_poses(as_poses(poses, "pose", common_task(solver, criteria)));
 }
 
-DoubleArray as_rows(const Solver& solver, py::handle poses, const AnswerCriteria& criteria) {
+DoubleArray as_rows(const Solver& solver, py::handle poses, const TargetCriteria& criteria) {
   const int tips = solver.robot().tips();
   if (tips == 1) return as_poses(poses, "poses", common_task(solver, criteria));
   const DoubleArray array = as_doubles(poses, "poses");

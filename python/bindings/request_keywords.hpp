@@ -49,14 +49,14 @@ struct FromPython<std::vector<int>> {
 SolveRequest read_request(const Solver& solver, const Given& given, const char* except = "");
 
 /// The task of a request, or else the solver's.
-inline const Task& task_of(const Solver& solver, const AnswerCriteria& criteria) {
+inline const Task& task_of(const Solver& solver, const TargetCriteria& criteria) {
   return criteria.task ? *criteria.task : solver.options().task;
 }
 
 /// The pose of the one tip, or one for each.
 std::vector<Pose> as_targets(const Solver& solver, py::handle poses,
-                             const AnswerCriteria& criteria);
+                             const TargetCriteria& criteria);
 /// Poses of many targets, one after the other: those of all tips at the first, at the second, ...
-DoubleArray as_rows(const Solver& solver, py::handle poses, const AnswerCriteria& criteria);
+DoubleArray as_rows(const Solver& solver, py::handle poses, const TargetCriteria& criteria);
 
 }  // namespace iksel::python

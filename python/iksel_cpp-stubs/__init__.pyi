@@ -2443,9 +2443,9 @@ class Solver:
         Raises:
             InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, a number out of range.
         """
-    def tracker(self, start: numpy.typing.ArrayLike, *, closest: bool | numpy.typing.ArrayLike | None = None) -> Tracker:
+    def tracker(self, start: numpy.typing.ArrayLike, *, closest: bool | numpy.typing.ArrayLike | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, tasks: collections.abc.Sequence[Task | collections.abc.Mapping[str, typing.Any]] | None = None, in_frame_of: collections.abc.Sequence[int | None] | None = None) -> Tracker:
         """
-        Tracker(self, start, closest=closest).
+        Tracker(self, start, ...).
         """
     @property
     def calibration_deviation(self) -> tuple[float, float]:
@@ -2605,7 +2605,7 @@ class Tracker:
     """
     Follows a stream of poses: each answer continues from the last, within the velocity limits. Not to be used from two threads at once; allocates nothing after construction.
     """
-    def __init__(self, solver: Solver, start: numpy.typing.ArrayLike, *, closest: bool | numpy.typing.ArrayLike | None = None) -> None:
+    def __init__(self, solver: Solver, start: numpy.typing.ArrayLike, *, closest: bool | numpy.typing.ArrayLike | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, tasks: collections.abc.Sequence[Task | collections.abc.Mapping[str, typing.Any]] | None = None, in_frame_of: collections.abc.Sequence[int | None] | None = None) -> None:
         """
         Begins where the arm is.
 
@@ -2618,9 +2618,12 @@ class Tracker:
                 with the target on the side that it left from. The tool is at most three times as fast
                 as the target, both measured by the weights; a target at rest counts as fast as it last
                 was.
+            task, tasks, in_frame_of: what of the poses has to be reached, and in the frame of which other
+                tip they are, as in Solver.solve.
 
         Raises:
-            InvalidArgumentError: wrong shape or dtype, or a number that is not finite.
+            InvalidArgumentError: wrong shape or dtype, a number that is not finite, or tasks or frames
+                that do not fit the tips.
         """
     def __repr__(self) -> str:
         ...
@@ -2629,7 +2632,7 @@ class Tracker:
         Moves on towards a pose, by no more than each joint can in the time step.
 
         Args:
-            pose: T_base_tip [m], as in Solver.solve; one for each tip.
+            pose: T_base_tip [m], as in Solver.solve; one for each tip, in the frame that was asked for.
             dt: time step [s].
             scene: the arm stays, with status `in_collision`, where it would collide at the end of its move;
                 the way there is not looked at.

@@ -339,6 +339,30 @@ TEST(Closest, TheToolIsAtMostThreeTimesAsFastAsTheTarget) {
   }
 }
 
+TEST(Closest, WhatATaskLeavesFreeHoldsNoTrackerBack) {
+  const Robot& robot = iksel_test::robot("ur5e");
+  const Solver& solver = iksel_test::solver("ur5e");
+  iksel::TargetCriteria criteria;
+  criteria.task = iksel::Task::position_only();
+  const Eigen::MatrixXd q = robot.random_configurations(iksel_test::cases(20, 6), 11);
+  Eigen::Index alike = 0;
+  for (Eigen::Index i = 0; i < q.rows(); ++i) {
+    iksel::Tracker one(solver, q.row(i), PoseWeights(), criteria);
+    iksel::Tracker other = one;
+    Excursion excursion(robot.fk(one.q()));
+    for (int step = 0; step < 500; ++step) {
+      excursion.move(step);
+      Pose turning = excursion.target;
+      turning.rotate(Eigen::AngleAxisd(0.1 * step, Eigen::Vector3d::UnitZ()));
+      static_cast<void>(one.track(excursion.target, Excursion::kDt));
+      static_cast<void>(other.track(turning, Excursion::kDt));
+    }
+    alike += (one.q() - other.q()).norm() < 1e-6;
+  }
+  // At the edge rounding may choose the side.
+  EXPECT_GE(10 * alike, 8 * q.rows());
+}
+
 TEST(Closest, TrackerComesBackOnTheSideThatItLeft) {
   // Stretched out, an elbow may bend to both sides: it does to the one that it had before, whatever
   // side the arm has in the middle of its limits.

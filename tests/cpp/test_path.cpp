@@ -8,6 +8,7 @@
 
 #include "base/random.hpp"
 #include "robots.hpp"
+#include "trees.hpp"
 
 namespace {
 
@@ -212,6 +213,45 @@ TEST(Path, BeginsAtTheTurnFromWhichItCanEnd) {
   PathOptions options;
   options.dt = 0.1;
   expect_path(solver, poses, options, solver.solve_path(poses, options));
+}
+
+TEST(Path, WhatIsKnownToGoInTimeAndWithoutAJumpDoes) {
+  // Straight on in joint space, so that the poses can be followed; a redundant arm that goes its
+  // own way may end at limits, and has to find another.
+  constexpr int kWaypoints = 150;
+  const int n = iksel_test::cases(20, 8);
+  const iksel::Robot& panda = iksel_test::robot("panda");
+  for (const iksel::Robot& robot : {panda, iksel_test::two_armed(panda)}) {
+    const Solver solver(robot);
+    const iksel::Matrix ends =
+        robot.random_configurations(static_cast<std::size_t>(2 * n), iksel_test::seed());
+    double move = 0;
+    double known = 0;
+    int failed = 0;
+    for (int i = 0; i < n; ++i) {
+      const JointVector from = ends.row(2 * i).transpose();
+      const JointVector step = (JointVector(ends.row(2 * i + 1).transpose()) - from) / kWaypoints;
+      std::vector<Pose> poses;
+      for (int w = 1; w <= kWaypoints; ++w) {
+        for (const Pose& pose : robot.tip_poses(from + w * step)) poses.push_back(pose);
+      }
+      for (const bool has_start : {false, true}) {
+        for (const bool is_timed : {false, true}) {
+          PathOptions options;
+          if (has_start) options.start = from;
+          if (is_timed)
+            options.dt = 2 * (step.array().abs() / robot.velocity_limit().array()).maxCoeff();
+          const PathResult path = solver.solve_path(poses, options);
+          failed += !path.success() || path.largest_step > 0.3;
+          if (!path.success()) continue;
+          move += path.move;
+          known += (kWaypoints - (has_start ? 0 : 1)) * step.norm();
+        }
+      }
+    }
+    EXPECT_LE(5 * failed, 4 * n) << robot.tips() << " tips, seed " << iksel_test::seed();
+    EXPECT_LE(move, known) << robot.tips() << " tips, seed " << iksel_test::seed();
+  }
 }
 
 TEST(Track, NeverFasterThanTheLimits) {

@@ -256,6 +256,79 @@ TEST(TipsLaws, TheTrackerFollowsBothHands) {
   EXPECT_GE(reached, 90);
 }
 
+TEST(TipsLaws, TheTrackerHoldsWhatTheHandsCarry) {
+  const Solver& solver = two_pandas();
+  const Robot& robot = solver.robot();
+  iksel::TargetCriteria criteria;
+  criteria.in_frame_of = {-1, 0};
+  const int n = iksel_test::cases(20, 6);
+  const iksel::Matrix q =
+      robot.random_configurations(static_cast<std::size_t>(n), iksel_test::seed());
+  int reached = 0;
+  for (int i = 0; i < n; ++i) {
+    for (const bool has_closest : {false, true}) {
+      std::optional<iksel::PoseWeights> closest;
+      if (has_closest) closest.emplace();
+      iksel::Tracker tracker(solver, joints_in(q, i), closest, criteria);
+      std::vector<Pose> targets = robot.tip_poses(joints_in(q, i));
+      targets[1] = targets[0].inverse() * targets[1];
+      for (int step = 0; step < 50; ++step) {
+        targets[0].translation().z() += 2e-4;
+        targets[0].rotate(Eigen::AngleAxisd(1e-3, Eigen::Vector3d::UnitX()));
+        if (!tracker.track(targets, 0.01).success()) continue;
+        ++reached;
+        EXPECT_LE(worst_error(robot, targets, tracker.q(), criteria.in_frame_of), 1.001e-6);
+      }
+    }
+  }
+  // Some meet limits.
+  EXPECT_GE(reached, 70 * n) << "of " << 100 * n << ", seed " << iksel_test::seed();
+}
+
+TEST(TipsLaws, TheTrackerFollowsATaskOfEachTip) {
+  const Solver& solver = two_pandas();
+  const Robot& robot = solver.robot();
+  const JointVector start = joints_in(robot.random_configurations(1, 7), 0);
+  std::vector<Pose> targets = robot.tip_poses(start);
+  iksel::TargetCriteria criteria;
+  criteria.tasks = {iksel::Task::position_only(), iksel::Task::pose()};
+  iksel::Tracker tracker(solver, start, std::nullopt, criteria);
+  // What is free is looked at nowhere.
+  targets[0].linear() = Eigen::Matrix3d::Identity();
+  int reached = 0;
+  for (int step = 0; step < 100; ++step) {
+    for (Pose& target : targets) target.translation().z() += 2e-4;
+    if (!tracker.track(targets, 0.01).success()) continue;
+    ++reached;
+    const std::vector<Pose> now = robot.tip_poses(tracker.q());
+    EXPECT_LE((now[0].translation() - targets[0].translation()).norm(), 1.001e-6);
+    EXPECT_LE(iksel::pose_error(targets[1], now[1]).norm(), 1.5e-6);
+  }
+  EXPECT_GE(reached, 90);
+}
+
+TEST(TipsLaws, ATrackerRefusesCriteriaThatDoNotFit) {
+  const Solver& solver = two_pandas();
+  const JointVector start = solver.robot().random_configurations(1, 7).row(0).transpose();
+  const auto expect_named = [&](const iksel::TargetCriteria& criteria, const std::string& name) {
+    try {
+      const iksel::Tracker tracker(solver, start, std::nullopt, criteria);
+      FAIL() << name;
+    } catch (const iksel::InvalidArgumentError& error) {
+      EXPECT_EQ(std::string(error.what()).find(name), 0U) << error.what();
+    }
+  };
+  iksel::Task bad;
+  bad.position_lower[0] = 1;
+  expect_named({{}, {iksel::Task::pose()}, {}}, "tasks");
+  expect_named({{}, std::vector<iksel::Task>(3), {}}, "tasks");
+  expect_named({{}, {}, {-1}}, "in_frame_of");
+  expect_named({{}, {}, {-1, 2}}, "in_frame_of[1]");
+  expect_named({{}, {}, {1, 0}}, "in_frame_of[0]");
+  EXPECT_THROW(iksel::Tracker(solver, start, std::nullopt, {bad, {}, {}}),
+               iksel::InvalidArgumentError);
+}
+
 TEST(TipsLaws, WhatIsAboutOneTipRefusesSeveral) {
   const Solver& solver = two_pandas();
   const Robot& robot = solver.robot();

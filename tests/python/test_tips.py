@@ -337,6 +337,41 @@ def test_hands_carry_to_the_tolerance(name) -> None:
     assert apart((moved.q[1:] + moved.q[:-1]) / 2) <= moved.largest_step**2
 
 
+def test_a_tracker_keeps_what_hands_carry_as_its_pickle_does(solver) -> None:
+    robot = solver.robot
+    q = robot.random_configurations(1, SEED)[0]
+    left, right = robot.fk(q)
+    between = np.linalg.inv(left) @ right
+    tasks = [iksel.Task.position_only(), {}]
+    tracker = solver.tracker(q, tasks=tasks, in_frame_of=[None, 0])
+    twin = pickle.loads(pickle.dumps(tracker))
+    for _ in range(20):
+        left[2, 3] += 2e-4
+        result = tracker.track([left, between], 0.01)
+        assert result.success
+        first, second = robot.fk(tracker.q)
+        np.testing.assert_allclose(first[:3, 3], left[:3, 3], atol=2e-6)
+        np.testing.assert_allclose(np.linalg.inv(first) @ second, between, atol=3e-6)
+        assert twin.track([left, between], 0.01).success
+        np.testing.assert_array_equal(twin.q, tracker.q)
+
+
+@pytest.mark.parametrize(
+    ("criteria", "name"),
+    [
+        ({"tasks": [{}]}, "tasks: expected one for each of 2 tips"),
+        ({"in_frame_of": [None]}, "in_frame_of: expected one for each of 2 tips"),
+        ({"in_frame_of": [None, 2]}, r"in_frame_of\[1\]: 2 is not in"),
+        ({"in_frame_of": [1, 0]}, r"in_frame_of\[0\]: .* by way of others"),
+        ({"task": 3}, "task: expected"),
+    ],
+)
+def test_a_tracker_names_criteria_that_do_not_fit(solver, criteria, name) -> None:
+    for make in (solver.tracker, lambda *a, **k: iksel.Tracker(solver, *a, **k)):
+        with pytest.raises((iksel.InvalidArgumentError, TypeError), match=name):
+            make(np.zeros(solver.robot.dof), **criteria)
+
+
 def test_a_tracker_and_its_pickle_follow_both_hands(solver) -> None:
     robot = solver.robot
     q = robot.random_configurations(1, SEED)[0]

@@ -49,8 +49,24 @@ struct IKSEL_EXPORT PoseWeights {
   void validate() const;
 };
 
+/// What of a pose has to be reached, and in which frame it is given.
+struct IKSEL_EXPORT TargetCriteria {
+  /// What of the pose has to be reached, of several tips of each; what is not given here is as the
+  /// solver's options say.
+  std::optional<Task> task;
+  /// Of several tips, one for each in the place of `task`. Empty: `task` holds for all.
+  std::vector<Task> tasks;
+  /// Of several tips, for each the number of the tip in whose frame, that of its TCP, its pose is
+  /// given; -1: in the base frame, as all are if this is empty. So two hands keep what they carry
+  /// between them. No tip may follow itself by way of others.
+  std::vector<int> in_frame_of;
+
+  /// Throws InvalidArgumentError naming the first field that does not fit so many tips.
+  void validate(int tips) const;
+};
+
 /// What is asked of every answer, whatever it is asked for: of solve, solve_all, solve_path, ...
-struct IKSEL_EXPORT AnswerCriteria {
+struct IKSEL_EXPORT AnswerCriteria : TargetCriteria {
   /// Factor on each joint's part of a move, >= 0 and not all 0 (so that radians and metres can be
   /// compared); empty: all 1.
   JointVector weights;
@@ -69,16 +85,6 @@ struct IKSEL_EXPORT AnswerCriteria {
   /// all are refused. Of a batch it is asked about the first answers of up to 256 targets at once,
   /// of a path about one waypoint's. Empty: takes all.
   Filter filter;
-
-  /// What of the pose has to be reached, of several tips of each; what is not given here is as the
-  /// solver's options say.
-  std::optional<Task> task;
-  /// Of several tips, one for each in the place of `task`. Empty: `task` holds for all.
-  std::vector<Task> tasks;
-  /// Of several tips, for each the number of the tip in whose frame, that of its TCP, its pose is
-  /// given; -1: in the base frame, as all are if this is empty. So two hands keep what they carry
-  /// between them. No tip may follow itself by way of others.
-  std::vector<int> in_frame_of;
 
   /// Throws InvalidArgumentError naming the first field that does not fit `dof` joints and so many
   /// tips.
@@ -161,8 +167,8 @@ struct IKSEL_EXPORT SolveAllOptions {
 };
 
 /// How solve_path chooses among the solutions of each waypoint: the path with the least sum of the
-/// moves is taken, each measured by the weights and the norm. The scene is not held against the
-/// moves between waypoints.
+/// moves is taken, by the weights and the norm; of a redundant arm one without jumps if it is
+/// found, made shorter. The scene is not held against the moves between waypoints.
 struct IKSEL_EXPORT PathOptions : AnswerCriteria {
   /// Where the arm is one time step before the first waypoint [rad or m]; may lie outside the
   /// limits. Empty: the path may begin anywhere; of its periodic images, the one that begins

@@ -18,7 +18,7 @@ class Goal;
 
 /// What a Tracker remembers of its targets.
 struct TargetStream {
-  std::vector<StoredPose> last;  ///< T_base_tip of each tip; empty: where the tools are
+  std::vector<StoredPose> last;  ///< the pose of each tip; empty: where the tools are
   double speed = 0;              ///< when it last moved, by the weights [1/s]; 0: it never did
 };
 
@@ -32,11 +32,13 @@ class IKSEL_EXPORT Tracker {
 
   /// `start` is where the arm is, as measured: it may lie outside the limits, and the way back
   /// inside is then part of the first moves. Throws InvalidArgumentError if it has not dof finite
-  /// elements. `closest`: what is done where a pose
-  /// cannot be reached from where the arm is (track). `reached` is where it last reached its pose;
-  /// empty: at `start`. `stream`: of a tracker that goes on.
+  /// elements, or about criteria that do not fit. `closest`: what is done where a pose
+  /// cannot be reached from where the arm is (track). `criteria`: what of the poses has to be
+  /// reached, as of solve. `reached` is where it last reached its pose; empty: at `start`.
+  /// `stream`: of a tracker that goes on.
   Tracker(const Solver& solver, const JointVector& start,
           const std::optional<PoseWeights>& closest = std::nullopt,
+          const TargetCriteria& criteria = {},
           const std::optional<JointVector>& reached = std::nullopt,
           const TargetStream& stream = {});
 
@@ -65,8 +67,14 @@ class IKSEL_EXPORT Tracker {
   [[nodiscard]] const TargetStream& stream() const { return stream_; }
   /// What is done at poses that cannot be reached.
   [[nodiscard]] const std::optional<PoseWeights>& closest() const { return closest_; }
+  /// What of the poses has to be reached, and in which frame they are.
+  [[nodiscard]] const TargetCriteria& criteria() const { return criteria_; }
 
  private:
+  /// Where a tip is, in the frame of its poses.
+  [[nodiscard]] Pose seen(int tip, const JointVector& q) const;
+  /// What moves of a tip count, without what its task leaves free.
+  [[nodiscard]] Eigen::Matrix<double, 6, 1> weights_of(int tip) const;
   /// Of a target for each tip.
   [[nodiscard]] Result follow(const Pose* targets, double dt, const Scene* scene);
   [[nodiscard]] Result approach(const Goal& goal, double dt);
@@ -80,6 +88,7 @@ class IKSEL_EXPORT Tracker {
   Solver solver_;
   JointVector q_;
   std::optional<PoseWeights> closest_;
+  TargetCriteria criteria_;
   JointVector reached_;
   TargetStream stream_;
   bool is_at_edge_ = false;  ///< where it is nearest to a pose that cannot be reached

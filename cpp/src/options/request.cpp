@@ -43,6 +43,24 @@ bool SolveRequest::has_requirements() const {
          prove;
 }
 
+void TargetCriteria::validate(int tips) const {
+  if (task) task->validate();
+  for (const Task& each : tasks) each.validate();
+  const auto check_count = [&](const char* name, std::size_t count) {
+    if (count == 0 || count == static_cast<std::size_t>(tips)) return;
+    throw InvalidArgumentError(std::string(name) + ": expected one for each of " +
+                               std::to_string(tips) + " tips, or none, got " +
+                               std::to_string(count));
+  };
+  check_count("tasks", tasks.size());
+  check_count("in_frame_of", in_frame_of.size());
+  for (std::size_t i = 0; i < in_frame_of.size(); ++i) {
+    if (in_frame_of[i] >= -1 && in_frame_of[i] < tips) continue;
+    throw_invalid("in_frame_of", static_cast<std::ptrdiff_t>(i),
+                  std::to_string(in_frame_of[i]) + " is not in -1 .. " + std::to_string(tips - 1));
+  }
+}
+
 void AnswerCriteria::validate(int dof, int tips) const {
   if (weights.size() != 0) {
     check_joints(weights, dof, "weights");
@@ -60,21 +78,7 @@ void AnswerCriteria::validate(int dof, int tips) const {
   if (exact && !scene) {
     throw InvalidArgumentError("exact: there is no scene of which it could judge");
   }
-  if (task) task->validate();
-  for (const Task& each : tasks) each.validate();
-  const auto check_count = [&](const char* name, std::size_t count) {
-    if (count == 0 || count == static_cast<std::size_t>(tips)) return;
-    throw InvalidArgumentError(std::string(name) + ": expected one for each of " +
-                               std::to_string(tips) + " tips, or none, got " +
-                               std::to_string(count));
-  };
-  check_count("tasks", tasks.size());
-  check_count("in_frame_of", in_frame_of.size());
-  for (std::size_t i = 0; i < in_frame_of.size(); ++i) {
-    if (in_frame_of[i] >= -1 && in_frame_of[i] < tips) continue;
-    throw_invalid("in_frame_of", static_cast<std::ptrdiff_t>(i),
-                  std::to_string(in_frame_of[i]) + " is not in -1 .. " + std::to_string(tips - 1));
-  }
+  TargetCriteria::validate(tips);
 }
 
 void SolveRequest::validate(int dof, int tips) const {

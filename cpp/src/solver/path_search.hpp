@@ -85,25 +85,6 @@ class PathSearch {
     });
   }
 
-  /// Configurations of the first waypoint that lie beside one of them on its arc.
-  void add_beside(const Goal& goal, const JointVector& start, Workspace::InLanes& lanes,
-                  Layer& layer) const {
-    constexpr double kSpacing = 0.02;
-    constexpr double kFarthest = 0.25;
-    const Pose Y = lanes.query.reduce(goal.target());
-    std::vector<double> q(start.data(), start.data() + start.size());
-    for (const Curve::Arc& arc : lanes.find_arcs(goal.target(), Y, kSpacing)) {
-      for (const Curve::Joints& point : arc.q) {
-        if (model_.joints.distance(point.data(), start, kFarthest) >= kFarthest) continue;
-        JointVector image = Eigen::Map<const Eigen::VectorXd>(point.data(), model_.dof);
-        model_.joints.wrap_nearest(start, 0, image);
-        q.insert(q.end(), image.data(), image.data() + model_.dof);
-      }
-    }
-    visit_refined(goal, Y, q, lanes,
-                  [&](std::size_t /*row*/, const JointVector& answer) { layer.add(answer); });
-  }
-
   /// The solutions found for the first waypoint of a path without a start, at all images; those
   /// nearest to the middle of the limits first, should there be too many.
   void add_first_solutions(const SolutionSet& found, Layer& layer) const {
@@ -139,8 +120,10 @@ class PathSearch {
   /// Why a waypoint has no candidate, where all were refused.
   [[nodiscard]] Status refusal() const { return screen_.refusal(); }
 
-  /// The cheapest way to each candidate; keeps the cheapest, and those only that can be reached.
-  void connect(const Layer* before, Layer& layer) {
+  /// The cheapest way to each candidate; keeps those only that can be reached, and of these the
+  /// cheapest. `at_last` it keeps all, and moves cost the squares of their lengths: then no jump is
+  /// cheaper than the long way about it.
+  void connect(const Layer* before, Layer& layer, bool at_last = false) {
     struct Edge {
       double cost;
       std::size_t parent;
@@ -151,10 +134,12 @@ class PathSearch {
       const JointVector q = layer.at(i);
       Edge best{before == nullptr ? tie_break(q) : kInfinity, 0, i};
       for (std::size_t k = 0; before != nullptr && k < before->size(); ++k) {
-        if (before->cost[k] >= best.cost) continue;
-        if (too_far(q.data(), before->q.data() + k * before->dof)) continue;
-        const JointVector difference = q - before->at(k);
-        const double cost = before->cost[k] + move_.length(difference);
+        if (before->cost[k] >= best.cost) break;
+        const double left = best.cost - before->cost[k];
+        const double* from = before->q.data() + k * before->dof;
+        if (is_too_far(from, q.data(), at_last ? std::sqrt(left) : left)) continue;
+        const double length = move_.length(q - before->at(k));
+        const double cost = before->cost[k] + (at_last ? length * length : length);
         if (cost < best.cost) best = {cost, k, i};
       }
       if (best.cost < kInfinity) edges.push_back(best);
@@ -163,7 +148,7 @@ class PathSearch {
                      [](const Edge& a, const Edge& b) { return a.cost < b.cost; });
     // Without a start all candidates of the first waypoint are needed.
     const std::size_t most = std::max(static_cast<std::size_t>(options_.candidates), first_layer_);
-    if (before != nullptr && edges.size() > most) edges.resize(most);
+    if (before != nullptr && !at_last && edges.size() > most) edges.resize(most);
     if (before == nullptr) first_layer_ = edges.size();
     Layer kept{layer.dof, {}, {}, {}};
     for (const Edge& edge : edges) {
@@ -173,6 +158,16 @@ class PathSearch {
       kept.parent.push_back(edge.parent);
     }
     layer = std::move(kept);
+  }
+
+  /// Whether a joint has to move farther than it can, most often the first already; or so far that
+  /// the whole move has that length.
+  [[nodiscard]] bool is_too_far(const double* a, const double* b, double length = kInfinity) const {
+    for (int j = 0; j < model_.dof; ++j) {
+      const double move = std::abs(a[j] - b[j]);
+      if (move > longest_[j] || move * move_.weights()[j] >= length) return true;
+    }
+    return false;
   }
 
   /// Walks back from the cheapest end.
@@ -211,14 +206,6 @@ class PathSearch {
     for (std::size_t row = 0; row < seeds.count(); ++row) {
       if (answers.at(row).success()) found(row, answers.at(row).q);
     }
-  }
-
-  /// Whether a joint has to move farther than it can, most often the first already.
-  [[nodiscard]] bool too_far(const double* a, const double* b) const {
-    for (int j = 0; j < model_.dof; ++j) {
-      if (std::abs(a[j] - b[j]) > longest_[j]) return true;
-    }
-    return false;
   }
 
   void add_nearest_images(const JointVector& solution, const Layer& before, Layer& layer) const {

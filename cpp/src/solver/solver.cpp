@@ -124,18 +124,16 @@ std::vector<Pose> Solver::Impl::check_targets(const std::vector<Pose>& T_base_ti
   return targets;
 }
 
-TaskSpace Solver::Impl::task_of(const AnswerCriteria& criteria) const {
-  if (!criteria.tasks.empty()) return tasks_of(criteria).front();
-  if (!criteria.task) return task;
-  return {*criteria.task, options.position_tolerance, options.rotation_tolerance};
+TaskSpace Solver::Impl::task_of(const TargetCriteria& criteria, int tip) const {
+  const auto& [common, each, in_frame_of] = criteria;
+  if (each.empty() && !common) return task;
+  return {each.empty() ? *common : each[static_cast<std::size_t>(tip)], options.position_tolerance,
+          options.rotation_tolerance};
 }
 
-std::vector<TaskSpace> Solver::Impl::tasks_of(const AnswerCriteria& criteria) const {
+std::vector<TaskSpace> Solver::Impl::tasks_of(const TargetCriteria& criteria) const {
   std::vector<TaskSpace> tasks;
-  for (const Task& each : criteria.tasks) {
-    tasks.emplace_back(each, options.position_tolerance, options.rotation_tolerance);
-  }
-  if (tasks.empty()) tasks.assign(static_cast<std::size_t>(robot.tips()), task_of(criteria));
+  for (int tip = 0; tip < robot.tips(); ++tip) tasks.push_back(task_of(criteria, tip));
   return tasks;
 }
 

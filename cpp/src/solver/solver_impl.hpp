@@ -42,13 +42,13 @@ struct Solver::Impl {
   std::size_t check_rows(std::size_t poses) const;
   /// The nearest rigid poses. Throws InvalidArgumentError unless there is one for each tip.
   [[nodiscard]] std::vector<Pose> check_targets(const std::vector<Pose>& T_base_tip) const;
-  /// The task of the one tip, or of each: that of the call, or the options'.
-  [[nodiscard]] TaskSpace task_of(const AnswerCriteria& criteria) const;
-  [[nodiscard]] std::vector<TaskSpace> tasks_of(const AnswerCriteria& criteria) const;
+  /// The task of a tip, or of each: that of the call, or the options'.
+  [[nodiscard]] TaskSpace task_of(const TargetCriteria& criteria, int tip = 0) const;
+  [[nodiscard]] std::vector<TaskSpace> tasks_of(const TargetCriteria& criteria) const;
 
   /// Calls `use` with the goal of those targets, one for each tip; `scene` may be null.
   template <typename Use>
-  auto with_goal(const Pose* targets, const AnswerCriteria& criteria, const Scene* scene,
+  auto with_goal(const Pose* targets, const TargetCriteria& criteria, const Scene* scene,
                  const Use& use) const {
     if (const TipsModel* several = robot.several()) {
       const TipsGoal all(*several, tasks_of(criteria), {targets, targets + robot.tips()},

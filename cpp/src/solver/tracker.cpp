@@ -37,11 +37,12 @@ double distance(const Pose& a, const Pose& b, const Vector6& weights) {
 }  // namespace
 
 Tracker::Tracker(const Solver& solver, const JointVector& start,
-                 const std::optional<PoseWeights>& closest,
+                 const std::optional<PoseWeights>& closest, const TargetCriteria& criteria,
                  const std::optional<JointVector>& reached, const TargetStream& stream)
     : solver_(solver),
       q_(start),
       closest_(closest),
+      criteria_(criteria),
       reached_(reached ? *reached : start),
       stream_(stream),
       is_at_edge_(closest && reached_ != start) {
@@ -52,6 +53,10 @@ Tracker::Tracker(const Solver& solver, const JointVector& start,
     solver.impl_->angles.check(*q, name);
   }
   if (closest) closest->validate();
+  criteria.validate(robot.tips());
+  // Throws if tips follow one another in a circle.
+  const std::vector<Pose> anywhere(static_cast<std::size_t>(robot.tips()), Pose::Identity());
+  solver.impl_->with_goal(anywhere.data(), criteria, nullptr, [](const Goal&) {});
   if (!stream.last.empty()) solver.impl_->check_tips(stream.last.size());
   for (const StoredPose& last : stream.last) check_pose(Pose(last));
   if (!(stream.speed >= 0) || !std::isfinite(stream.speed)) {
@@ -59,16 +64,25 @@ Tracker::Tracker(const Solver& solver, const JointVector& start,
   }
 }
 
-double Tracker::tool_way(const JointVector& from, const JointVector& to) const {
-  const Vector6 weights = to_vector(*closest_, solver_.impl_->rotation_weight());
+Pose Tracker::seen(int tip, const JointVector& q) const {
   const Robot& robot = solver_.robot();
+  const auto pose = [&](int i) {
+    return Pose(robot.chain(i).model().fk(picked(q, robot.joints_of(i)).data()));
+  };
+  const int frame =
+      criteria_.in_frame_of.empty() ? -1 : criteria_.in_frame_of[static_cast<std::size_t>(tip)];
+  return frame < 0 ? pose(tip) : Pose(pose(frame).inverse() * pose(tip));
+}
+
+Vector6 Tracker::weights_of(int tip) const {
+  const Vector6 weights = to_vector(*closest_, solver_.impl_->rotation_weight());
+  return solver_.impl_->task_of(criteria_, tip).lower().array().isInf().select(0, weights);
+}
+
+double Tracker::tool_way(const JointVector& from, const JointVector& to) const {
   double most = 0;
-  for (int i = 0; i < robot.tips(); ++i) {
-    const ChainModel& chain = robot.chain(i).model();
-    const auto pose = [&](const JointVector& q) {
-      return chain.fk(picked(q, robot.joints_of(i)).data());
-    };
-    most = std::max(most, distance(pose(from), pose(to), weights));
+  for (int i = 0; i < solver_.robot().tips(); ++i) {
+    most = std::max(most, distance(seen(i, from), seen(i, to), weights_of(i)));
   }
   return most;
 }
@@ -85,15 +99,14 @@ double Tracker::part_for_tool(const JointVector& move, double part, double dt) c
 }
 
 void Tracker::stream_on(const Pose* targets, double dt) {
-  const Robot& robot = solver_.robot();
-  const Vector6 weights = to_vector(*closest_, solver_.impl_->rotation_weight());
+  const int tips = solver_.robot().tips();
   const bool is_first = stream_.last.empty();
-  if (is_first) stream_.last.resize(static_cast<std::size_t>(robot.tips()));
+  if (is_first) stream_.last.resize(static_cast<std::size_t>(tips));
   double way = 0;
-  for (int i = 0; i < robot.tips(); ++i) {
+  for (int i = 0; i < tips; ++i) {
     StoredPose& last = stream_.last[static_cast<std::size_t>(i)];
-    if (is_first) last = robot.chain(i).model().fk(picked(q_, robot.joints_of(i)).data());
-    way = std::max(way, distance(Pose(last), targets[i], weights));
+    if (is_first) last = seen(i, q_);
+    way = std::max(way, distance(Pose(last), targets[i], weights_of(i)));
     last = targets[i];
   }
   if (way > 0) stream_.speed = way / dt;
@@ -115,7 +128,7 @@ Result Tracker::follow(const Pose* targets, double dt, const Scene* scene) {
   }
   if (scene != nullptr) scene->check_fits(solver_.robot());
   if (closest_) stream_on(targets, dt);
-  return solver_.impl_->with_goal(targets, {}, scene,
+  return solver_.impl_->with_goal(targets, criteria_, scene,
                                   [&](const Goal& goal) { return approach(goal, dt); });
 }
 

@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from bench.arms import Arm
+    from bench.chain import Array
     from bench.targets import Targets
 
 ROBOTS = (

@@ -108,10 +108,9 @@ def moved(poses: Array, off: float, seed: int) -> Array:
     ways *= random.uniform(0.0, off, (2, len(poses), 1)) / np.linalg.norm(
         ways, axis=2, keepdims=True
     )
-    out = poses.copy()
+    out = poses @ iksel.pose_from_rotation_vector(np.zeros(3), ways[1])
     out[:, :3, 3] += ways[0]
-    out[:, :3, :3] @= iksel.pose_from_rotation_vector(np.zeros(3), ways[1])[:, :3, :3]
-    return out
+    return np.asarray(out)
 
 
 def lost_of_random(

@@ -80,6 +80,8 @@ struct Workspace {
       if (ends && ends->rules_out(T_base_tcp)) return Proof::closed_form;
       return sweep->find_between(Y) ? Proof::none : sweep->proof_of_none();
     }
+    /// Whether the ends of arcs tell in closed form that there are none.
+    [[nodiscard]] bool has_closed_ends() const { return ends && ends->are_closed(); }
     /// All branches of a goal of that task; null if it cannot be solved in closed form at once.
     [[nodiscard]] Enumeration* branches_of(const TaskSpace& task);
 

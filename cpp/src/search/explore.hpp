@@ -77,7 +77,7 @@ Explored explore_any(const Parts& parts, const Pose& Y, bool at_samples = true) 
     return is_found(parts.move_inside(
         count, [&](int i) { return &q[static_cast<std::size_t>(i) * kCurveJoints]; }));
   };
-  if (lanes.ends && lanes.ends->are_closed()) {
+  if (lanes.has_closed_ends()) {
     ArcEnds& ends = *lanes.ends;
     bool is_none = true;
     for (std::size_t i = 0; i < ends.places(); ++i) {

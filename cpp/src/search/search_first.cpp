@@ -17,7 +17,7 @@ constexpr int kBeforeSamples = 2;
 bool search_leaf(const FirstSearch& parts, bool is_screened, RowSeeds& near, GivenSeeds& given) {
   Workspace::InLanes& lanes = *parts.workspace.lanes;
   const bool is_quick = parts.answers.effort() == Effort::quick;
-  const bool are_known = is_quick || lanes.roots || (lanes.ends && lanes.ends->are_closed());
+  const bool are_known = is_quick || lanes.roots || lanes.has_closed_ends();
   const int from_leaf = is_screened ? kBeforeSamples : are_known ? kBeforeRoots : lanes::kBlock;
   if (lanes.sweep || lanes.roots) {
     lanes.refiner.begin(parts.goal.task(), lanes.sweep ? kBeforeSweep : kBeforeBranches,

@@ -133,6 +133,7 @@ TaskSpace Solver::Impl::task_of(const TargetCriteria& criteria, int tip) const {
 
 std::vector<TaskSpace> Solver::Impl::tasks_of(const TargetCriteria& criteria) const {
   std::vector<TaskSpace> tasks;
+  tasks.reserve(static_cast<std::size_t>(robot.tips()));
   for (int tip = 0; tip < robot.tips(); ++tip) tasks.push_back(task_of(criteria, tip));
   return tasks;
 }

@@ -343,6 +343,69 @@ def test_poses_that_are_rounded_beside_a_singularity_are_reached(
     assert iksel.Solver(arm.robot).solve_batch(poses).success.all()
 
 
+@pytest.mark.parametrize(
+    ("build", "number", "q"),
+    [
+        (
+            "right_angles_6",
+            424242070,
+            (
+                -1.2068953330600374,
+                -1.2861729726055289,
+                -3.1226538929929335,
+                -3.046965895745958,
+                0.989913952064803,
+                1.6895729844050331,
+            ),
+        ),
+        (
+            "right_angles_6",
+            424242101,
+            (
+                -1.518253584133932,
+                1.5152035627729141,
+                -2.220211603559133,
+                -0.42658818759072137,
+                0.1484992178632255,
+                0.04401694617815988,
+            ),
+        ),
+        (
+            "right_angles_7",
+            424242201,
+            (
+                -0.8295415347009234,
+                -2.4507753910333854,
+                -2.9138934692671334,
+                -2.2683989798779574,
+                -1.5953662658740606,
+                0.6356694458970731,
+                -3.083610436672422,
+            ),
+        ),
+        (
+            "middle_sphere",
+            424242087,
+            (
+                0.6988295464665707,
+                -2.207685649579545,
+                -0.00507581439741811,
+                -2.188188459644312,
+                -1.0444632152174422,
+                3.648330412471153,
+            ),
+        ),
+    ],
+)
+def test_poses_that_had_been_lost_are_found(
+    build: str, number: int, q: tuple[float, ...]
+) -> None:
+    """The loop's determinant is flat at many roots; or the database leads nowhere."""
+    arm = random_arms.random_arm(build, number)
+    assert arm.robot.within_limits(np.array(q))
+    assert iksel.Solver(arm.robot).solve(arm.robot.fk(np.array(q))).success
+
+
 def test_solutions_where_rounding_hides_many_roots_are_found() -> None:
     """The determinant of the loop is flat at 0, and by rounding nowhere 0."""
     arm = random_arms.random_arm("right_angles_6", 53029)

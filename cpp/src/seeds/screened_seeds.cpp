@@ -73,8 +73,9 @@ bool ScreenedSeeds::take_block() {
 }
 
 void ScreenedSeeds::screen_one_pack() {
+  const bool is_random = ++packs_ % kRandomEvery == 0;
   while (!screen_.is_full() && work_.take()) {
-    if (rank_ < last_rank_ || take_block()) {
+    if (!is_random && (rank_ < last_rank_ || take_block())) {
       const int entry = block_->order[rank_++];
       screen_.add([&](int j) { return block_->q[j][entry]; });
     } else {

@@ -128,15 +128,16 @@ IKSEL_INLINE T most_sign_changes(const T (&b)[6], const T& margin) {
   return changes;
 }
 
-/// Whether the parabola through three values turns between them and has its roots, real or not, no
-/// farther from there than `apart` steps.
+/// Whether the parabola through three values turns between them and comes to 0 there, or has its
+/// roots no farther from there than `apart` steps: where real ones are near, and the values do not
+/// change their sign, the function is flatter.
 template <typename T>
 IKSEL_INLINE auto all_but_touches(const T& before, const T& at, const T& after, const T& apart) {
   const T slope = T(0.5) * (after - before);
   const T bend = after - T(2.0) * at + before;
   const T bend2 = bend * bend;
   return (at * bend > T(0.0)) & (slope * slope <= T(0.25) * bend2) &
-         (abs(at * bend - T(0.5) * slope * slope) <= T(0.5) * apart * apart * bend2);
+         (at * bend - T(0.5) * slope * slope <= T(0.5) * apart * apart * bend2);
 }
 
 /// For each of `n` cells between two of the evenly spaced values and the next, how many roots there

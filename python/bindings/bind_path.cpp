@@ -101,11 +101,8 @@ Tracker tracker_from_state(const Solver& solver, const ArrayLike& q, const Close
                            const std::optional<Task>& task, const std::vector<Task>& tasks,
                            const std::vector<int>& in_frame_of) {
   const int dof = solver.robot().dof();
-  TargetStream stream;
-  for (const Pose& each : to_poses(as_poses(last, "pickled Tracker, last"))) {
-    stream.last.emplace_back(each);
-  }
-  stream.speed = speed;
+  const std::vector<Pose> targets = to_poses(as_poses(last, "pickled Tracker, last"));
+  const TargetStream stream{{targets.begin(), targets.end()}, speed};
   return Tracker(solver, as_joints(q, dof, "pickled Tracker, q"), closest,
                  {task, tasks, in_frame_of}, as_joints(reached, dof, "pickled Tracker, reached"),
                  stream);
@@ -113,14 +110,9 @@ Tracker tracker_from_state(const Solver& solver, const ArrayLike& q, const Close
 
 void bind_tracker(py::module_& m) {
   auto tracker = bind_class<Tracker>(m, "Tracker");
-  def_init(
-      tracker, "solver, start, *, closest=None, task=None, tasks=None, in_frame_of=None",
-      [](const Solver& solver, const ArrayLike& start, const Closest& closest,
-         const std::optional<Task>& task, const std::optional<std::vector<Task>>& tasks,
-         const std::optional<std::vector<int>>& in_frame_of) {
-        return make_tracker(solver, start, closest, task, tasks, in_frame_of);
-      },
-      R"(Begins where the arm is.
+  def_init(tracker, "solver, start, *, closest=None, task=None, tasks=None, in_frame_of=None",
+           fn<&make_tracker>,
+           R"(Begins where the arm is.
 
 Args:
     solver: what solves.

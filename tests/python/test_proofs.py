@@ -78,3 +78,41 @@ def test_what_only_the_whole_pose_denies_is_not_denied_to_a_task(name: str) -> N
         pose[:3, :3] = pose[:3, :3] @ [[c, -s, 0], [s, c, 0], [0, 0, 1]]
         result = solver.solve(pose, task=iksel.Task.free_spin("z"), prove=True)
         assert result, result.proof
+
+
+@pytest.mark.parametrize("name", ["irb120", "vs060"])
+def test_images_at_limits_belong_to_all_that_are_proven(name: str) -> None:
+    """They lie outside by rounding as often as not."""
+    robot = iksel.load_robot(name)
+    solver = iksel.Solver(robot)
+    wide = np.flatnonzero(robot.upper - robot.lower >= 2 * np.pi)
+    draw = np.random.default_rng(SEED)
+    for q in robot.random_configurations(200, SEED):
+        ends = np.where(draw.random(robot.dof) < 0.5, robot.lower, robot.upper)
+        q[wide] = ends[wide]
+        pose = robot.fk(q)
+        every = solver.solve_all(pose, whole_turns=True)
+        assert np.abs(every.q - q).max(axis=1).min() < 1e-6, f"{SEED}: {q!r}"
+        only = lambda given, q=q: np.abs(given - q).max(axis=1) < 1e-6  # noqa: E731
+        assert solver.solve(pose, filter=only), f"{SEED}: {q!r}"
+
+
+def test_more_images_than_are_looked_at_are_not_proven_away() -> None:
+    """Three joints of 63 turns each, and one without end."""
+    zero = [0.0] * 3
+    shape = ([0.1, 0.4, 0.3], [np.pi / 2, 0.0, 0.0], [0.3, 0.0, 0.0])
+    wide = iksel.Robot.from_dh(*shape, zero, lower=[-199.5] * 3, upper=[199.5] * 3)
+    q = np.array([-190.3, -191.2, 180.4])
+    for robot, at in ((wide, q), (iksel.Robot.from_dh(*shape, zero), q)):
+        assert robot.structure.kind == iksel.StructureKind.closed_form
+        solver = iksel.Solver(robot)
+        pose = robot.fk(at)
+        only = lambda given, q=at: np.abs(given - q).max(axis=1) < 0.1  # noqa: E731
+        assert solver.solve(pose, near=at, filter=only)
+        assert not solver.solve(pose, filter=only).proven
+        assert not solver.solve_batch(pose[None], filter=only)[0].proven
+    solver = iksel.Solver(wide)
+    assert not solver.solve_all(wide.fk(q), 1_000_000, whole_turns=True).proven
+    assert not solver.solve_all(
+        wide.fk(q), filter=lambda given: given[:, 0] > 300
+    ).proven

@@ -130,8 +130,9 @@ class JointSpace : public LimitSet {
   std::vector<JointVector> images;
 
  private:
-  /// first_image and next_image, whatever the sums are.
-  void lowest_image(JointVector& q) const;
+  /// Of a periodic joint. An image that rounding leaves outside is held to the limit.
+  [[nodiscard]] double lowest_image(int joint, double value) const;
+  /// next_image, whatever the sums are.
   bool next_combination(JointVector& q) const;
   [[nodiscard]] JointVector draw(Random& random) const;
   /// Of the joints that turn in sums the images nearest by `length` that lie inside by up to

@@ -153,6 +153,7 @@ bool AnswerSelector::select_image(double best, JointVector& q) {
       std::copy_n(image.data(), dof, images.data() + count * dof);
       if (++count == kChunk) flush();
     } while (--left > 0 && model_.joints.next_image(image));
+    leaves_out_ = leaves_out_ || left == 0 || !model_.joints.upper.allFinite();
   }
   flush();
   return any;

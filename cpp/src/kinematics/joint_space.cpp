@@ -13,8 +13,8 @@ JointSpace::JointSpace(int dof)
 
 namespace {
 
-/// What rounding leaves of a whole turn from one limit to the other, and of an answer there [rad].
-constexpr double kRounding = 1e-9;
+/// So far an answer at a limit may be off, and so its image at the other [rad].
+constexpr double kRounding = 1e-6;
 
 /// Calls visit(q, beyond) with q at each combination of images of the joints that turn in sums, and
 /// how far sums, by what a joint would have to move, and these joints lie outside there.
@@ -147,17 +147,15 @@ double JointSpace::lowest_image(int joint, double value) const {
   const double low = ends ? lower[joint] - kRounding : -kPi;
   double image = value - kTwoPi * std::floor((value - low) / kTwoPi);
   if (image < low) image += kTwoPi;
-  if (image > upper[joint] + kRounding) return value;
-  return std::min(std::max(image, lower[joint]), upper[joint]);
+  return image > upper[joint] + kRounding ? value : image;
 }
 
 bool JointSpace::next_combination(JointVector& q) const {
   for (int j = 0; j < dof(); ++j) {
     // A joint without limits has no end of images; one stands for all.
     if (!is_periodic(j) || !std::isfinite(upper[j])) continue;
-    const double next = q[j] + kTwoPi;
-    if (next <= upper[j] + kRounding) {
-      q[j] = std::min(next, upper[j]);
+    if (q[j] + kTwoPi <= upper[j] + kRounding) {
+      q[j] += kTwoPi;
       return true;
     }
     q[j] = lowest_image(j, q[j]);

@@ -67,7 +67,7 @@ class JointSpace : public LimitSet {
   bool wrap_nearest(const JointVector& near, double slack, const Length& length,
                     JointVector& q) const;
   /// Brings each periodic joint to its first image inside the limits, or into [-pi, pi) if there
-  /// are none.
+  /// are none. Images that lie outside by rounding count: clamp() holds them to the limits.
   void first_image(JointVector& q) const;
   /// Moves to the next combination of images inside the limits; false after the last, which leaves
   /// q at the first. Starts from first_image.

@@ -118,7 +118,8 @@ std::vector<Image> images_of(const JointSpace& joints, const SolutionSet& found,
     }
     joints.first_image(q);
     do {
-      images.push_back({q, ranking.cost(q), i});
+      const JointVector image = joints.clamp(q);
+      images.push_back({image, ranking.cost(image), i});
     } while (images.size() < kMostImages && joints.next_image(q));
   }
   return images;

@@ -52,7 +52,11 @@ inline std::filesystem::path as_path(py::handle value, const char* name) {
   if (!py::isinstance<py::str>(value) && !py::hasattr(value, "__fspath__")) {
     throw_wrong_type(name, "a path", value);
   }
-  return py::cast<std::filesystem::path>(value);
+  try {
+    return py::cast<std::filesystem::path>(value);
+  } catch (const py::cast_error&) {  // a null character, or what __fspath__ gives
+    throw_wrong_type(name, "a path", value);
+  }
 }
 
 /// Specialised for all that is an argument: text() is its type in signatures; convert() throws

@@ -31,6 +31,8 @@ try:
 except ImportError as _error:
     from iksel._base.missing import explain
 
+    if isinstance(_error.__cause__, KeyboardInterrupt):
+        raise _error.__cause__ from None
     raise ImportError(explain(str(_error)), name="iksel_cpp") from _error
 
 from iksel_cpp import (

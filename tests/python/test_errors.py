@@ -37,6 +37,14 @@ def test_missing_files_are_named(tmp_path: Path) -> None:
         refuse(path, re.escape(str(path)))
 
 
+def test_paths_that_no_file_can_have_are_named() -> None:
+    wrong = iksel.InvalidArgumentError
+    refuse("a\0.urdf", r"path_or_xml: expected a path, got 'a\\x00.urdf'", wrong)
+    refuse(Path("a\0.urdf"), "path_or_xml: expected a path", wrong)
+    with pytest.raises(wrong, match="path: expected a path"):
+        iksel.Database.load("a\0.iksel")
+
+
 @pytest.mark.parametrize("given", [None, 3, ["a.urdf"]])
 def test_what_is_neither_path_nor_text_is_refused(given: object) -> None:
     with pytest.raises((iksel.InvalidArgumentError, TypeError)):

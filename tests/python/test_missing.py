@@ -62,3 +62,17 @@ def test_importing_iksel_says_it(tmp_path: Path, library: str) -> None:
     assert done.returncode == 1
     assert f"ImportError: iksel needs the shared library {library}" in done.stderr
     assert "apt-get install" in done.stderr
+
+
+def test_an_interrupt_while_it_is_imported_is_one(tmp_path: Path) -> None:
+    """The extension module makes an ImportError of it, as all do."""
+    failing = "try: raise KeyboardInterrupt\nexcept BaseException as e: {}\n".format(
+        "raise ImportError('initialization failed') from e"
+    )
+    (tmp_path / "iksel_cpp.py").write_text(failing)
+    source = Path(iksel.__file__).parents[1]
+    program = f"import sys; sys.path[:0] = {[str(tmp_path), str(source)]}; import iksel"
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=False
+    )
+    assert done.stderr.rstrip().endswith("KeyboardInterrupt")

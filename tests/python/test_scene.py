@@ -221,7 +221,12 @@ def test_attached_objects_move_with_their_link(arm, spheres) -> None:
     assert scene.attached == {"cup": "l6"}
     target = arm.fk(q)
     message = iksel.Solver(arm).diagnose(target, scene=scene).message
-    assert "object 'cup' touches box 'shelf' by" in message
+    assert "object 'cup' touches box 'shelf' by 20 mm:" in message
+    scene.add_box("board", [0.5, 0.5, 0.02], [0, 0, sum(LENGTHS) + 0.22 - 5e-10])
+    exact = iksel.SolverOptions(position_tolerance=1e-11, rotation_tolerance=1e-11)
+    message = iksel.Solver(arm, exact).diagnose(target, scene=scene).message
+    assert "object 'cup' touches box 'board':" in message  # by no more than rounding
+    scene.remove("board")
     folded = np.array([0, 1.5, 2.6, 0, 2.0, 0])
     touched = {c.other for c in scene.contacts(folded) if c.link == "cup"}
     touched |= {c.link for c in scene.contacts(folded) if c.other == "cup"}

@@ -362,6 +362,7 @@ def test_a_tracker_keeps_what_hands_carry_as_its_pickle_does(solver) -> None:
         ({"tasks": [{}]}, "tasks: expected one for each of 2 tips"),
         ({"in_frame_of": [None]}, "in_frame_of: expected one for each of 2 tips"),
         ({"in_frame_of": [None, 2]}, r"in_frame_of\[1\]: 2 is not in"),
+        ({"in_frame_of": [0, None]}, r"in_frame_of\[0\]: .* or is the tip itself"),
         ({"in_frame_of": [1, 0]}, r"in_frame_of\[0\]: .* by way of others"),
         ({"task": 3}, "task: expected"),
     ],
@@ -370,6 +371,9 @@ def test_a_tracker_names_criteria_that_do_not_fit(solver, criteria, name) -> Non
     for make in (solver.tracker, lambda *a, **k: iksel.Tracker(solver, *a, **k)):
         with pytest.raises((iksel.InvalidArgumentError, TypeError), match=name):
             make(np.zeros(solver.robot.dof), **criteria)
+    alone = solver.chain_solver(0)
+    with pytest.raises(iksel.InvalidArgumentError, match="in_frame_of"):
+        alone.tracker(np.zeros(alone.robot.dof), in_frame_of=[0])
 
 
 def test_a_tracker_and_its_pickle_follow_both_hands(solver) -> None:

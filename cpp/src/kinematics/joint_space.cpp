@@ -13,6 +13,9 @@ JointSpace::JointSpace(int dof)
 
 namespace {
 
+/// So far an answer at a limit may be off, and so its image at the other [rad].
+constexpr double kRounding = 1e-6;
+
 /// Calls visit(q, beyond) with q at each combination of images of the joints that turn in sums, and
 /// how far sums, by what a joint would have to move, and these joints lie outside there.
 template <typename Visit>
@@ -121,7 +124,9 @@ bool JointSpace::wrap_nearest(const JointVector& near, double slack, const Lengt
 }
 
 void JointSpace::first_image(JointVector& q) const {
-  lowest_image(q);
+  for (int j = 0; j < dof(); ++j) {
+    if (is_periodic(j)) q[j] = lowest_image(j, q[j]);
+  }
   // Of the combinations, the first that holds the sums.
   if (!contains_sums(q.data())) next_image(q);
 }
@@ -137,26 +142,23 @@ bool JointSpace::next_image(JointVector& q) const {
   return false;
 }
 
-void JointSpace::lowest_image(JointVector& q) const {
-  for (int j = 0; j < dof(); ++j) {
-    if (!is_periodic(j)) continue;
-    const double low = std::isfinite(lower[j]) ? lower[j] : -kPi;
-    double value = q[j] - kTwoPi * std::floor((q[j] - low) / kTwoPi);
-    if (value < low) value += kTwoPi;
-    if (value <= upper[j]) q[j] = value;
-  }
+double JointSpace::lowest_image(int joint, double value) const {
+  const bool ends = std::isfinite(upper[joint]);
+  const double low = ends ? lower[joint] - kRounding : -kPi;
+  double image = value - kTwoPi * std::floor((value - low) / kTwoPi);
+  if (image < low) image += kTwoPi;
+  return image > upper[joint] + kRounding ? value : image;
 }
 
 bool JointSpace::next_combination(JointVector& q) const {
   for (int j = 0; j < dof(); ++j) {
     // A joint without limits has no end of images; one stands for all.
     if (!is_periodic(j) || !std::isfinite(upper[j])) continue;
-    if (q[j] + kTwoPi <= upper[j]) {
+    if (q[j] + kTwoPi <= upper[j] + kRounding) {
       q[j] += kTwoPi;
       return true;
     }
-    q[j] -= kTwoPi * std::floor((q[j] - lower[j]) / kTwoPi);
-    if (q[j] < lower[j]) q[j] += kTwoPi;
+    q[j] = lowest_image(j, q[j]);
   }
   return false;
 }

@@ -67,7 +67,7 @@ class JointSpace : public LimitSet {
   bool wrap_nearest(const JointVector& near, double slack, const Length& length,
                     JointVector& q) const;
   /// Brings each periodic joint to its first image inside the limits, or into [-pi, pi) if there
-  /// are none.
+  /// are none. Images that lie outside by rounding count: clamp() holds them to the limits.
   void first_image(JointVector& q) const;
   /// Moves to the next combination of images inside the limits; false after the last, which leaves
   /// q at the first. Starts from first_image.
@@ -130,8 +130,9 @@ class JointSpace : public LimitSet {
   std::vector<JointVector> images;
 
  private:
-  /// first_image and next_image, whatever the sums are.
-  void lowest_image(JointVector& q) const;
+  /// Of a periodic joint. An image that rounding leaves outside is held to the limit.
+  [[nodiscard]] double lowest_image(int joint, double value) const;
+  /// next_image, whatever the sums are.
   bool next_combination(JointVector& q) const;
   [[nodiscard]] JointVector draw(Random& random) const;
   /// Of the joints that turn in sums the images nearest by `length` that lie inside by up to

@@ -55,9 +55,11 @@ void TargetCriteria::validate(int tips) const {
   check_count("tasks", tasks.size());
   check_count("in_frame_of", in_frame_of.size());
   for (std::size_t i = 0; i < in_frame_of.size(); ++i) {
-    if (in_frame_of[i] >= -1 && in_frame_of[i] < tips) continue;
-    throw_invalid("in_frame_of", static_cast<std::ptrdiff_t>(i),
-                  std::to_string(in_frame_of[i]) + " is not in -1 .. " + std::to_string(tips - 1));
+    const auto tip = static_cast<int>(i);
+    if (in_frame_of[i] >= -1 && in_frame_of[i] < tips && in_frame_of[i] != tip) continue;
+    throw_invalid("in_frame_of", tip,
+                  std::to_string(in_frame_of[i]) + " is not in -1 .. " + std::to_string(tips - 1) +
+                      ", or is the tip itself");
   }
 }
 

@@ -26,6 +26,8 @@ class AnswerSelector {
   [[nodiscard]] bool wants_all() const { return ranks_ && !goal_.is_redundant(); }
   /// The best of what passed of a search; false if nothing did.
   bool select(const Collector& search, JointVector& q);
+  /// Whether what was refused may have images that nobody was asked about: there are too many.
+  [[nodiscard]] bool leaves_out() const { return leaves_out_; }
   /// Steps along self-motions so far.
   [[nodiscard]] int steps() const { return steps_; }
 
@@ -65,6 +67,7 @@ class AnswerSelector {
   int replacements_ = 0;  ///< of solutions that were screened
   std::size_t first_kept_ = 0;
   int steps_ = 0;
+  bool leaves_out_ = false;
 };
 
 }  // namespace iksel

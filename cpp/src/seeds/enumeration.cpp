@@ -11,6 +11,8 @@ namespace {
 
 /// A target is taken to be off by so many tolerances, to be on the safe side.
 constexpr double kMargin = 4;
+/// Farther than this nothing that is but nearly so moves a branch [rad].
+constexpr double kFarthest = 0.01;
 
 }  // namespace
 
@@ -50,6 +52,7 @@ void Enumeration::find(const Pose& Y, bool wants_all) {
   certain_but_for_limits_ = is_nominal_;
   may_be_singular_ = false;
   for (int lane = 0; lane < kMost; ++lane) take(Y, lane, wants_all);
+  for (int lane = 0; chain_.is_almost() && lane < kMost; ++lane) take_turned(Y, lane);
 }
 
 void Enumeration::copy_joints(int lane, double* q) const {
@@ -70,19 +73,38 @@ void Enumeration::take(const Pose& Y, int lane, bool wants_all) {
   bool is_sure = bound < lanes::kVague && pack_.worst[lane] >= 0;
   if (beyond > 0 || (wants_all && !is_sure)) is_sure = is_regular(lane, bound);
   if (is_sure && beyond > bound) return;
-  if (is_sure && beyond > 0 && is_nominal_ && !chain_.is_completed()) {
-    const Pose T_base_tcp = to_pose(model_.kernel.base) * Y * to_pose(model_.kernel.tip);
-    if (is_beyond_limits(model_, T_base_tcp, Eigen::Map<const Eigen::VectorXd>(q.data(), 6),
-                         position_tolerance_, rotation_tolerance_)) {
-      return;
-    }
-  }
+  if (is_sure && beyond > 0 && is_nominal_ && is_beyond(Y, q)) return;
   certain_ = certain_ && is_sure && !(beyond > 0);
   certain_but_for_limits_ = certain_but_for_limits_ && is_sure;
   may_be_singular_ = may_be_singular_ || !is_sure;
   // Where a square is below 0, its two roots are taken to be the same.
   if (pack_.least[lane] < 0 && has_taken(q)) return;
   ++size_;
+}
+
+void Enumeration::take_turned(const Pose& Y, int lane) {
+  if (is_ruled_out(pack_, lane)) return;
+  Joints q{};
+  copy_joints(lane, q.data());
+  const JointSpace& joints = model_.joints;
+  for (int j = 0; j < model_.dof; ++j) {
+    const auto i = static_cast<std::size_t>(j);
+    if (joints.is_slide(j) || joints.is_periodic(j)) continue;
+    const double turned = q[i] + std::copysign(kTwoPi, joints.middle()[j] - q[i]);
+    if (std::max(joints.lower[j] - turned, turned - joints.upper[j]) > kFarthest) continue;
+    next() = q;
+    next()[i] = turned;
+    if (is_beyond(Y, next())) continue;
+    certain_ = false;
+    ++size_;
+  }
+}
+
+bool Enumeration::is_beyond(const Pose& Y, const Joints& q) const {
+  if (chain_.is_completed()) return false;
+  const Pose T_base_tcp = to_pose(model_.kernel.base) * Y * to_pose(model_.kernel.tip);
+  return is_beyond_limits(model_, T_base_tcp, Eigen::Map<const Eigen::VectorXd>(q.data(), 6),
+                          position_tolerance_, rotation_tolerance_);
 }
 
 bool Enumeration::has_taken(const Joints& q) const {
@@ -95,7 +117,6 @@ bool Enumeration::has_taken(const Joints& q) const {
 }
 
 bool Enumeration::is_regular(int lane, double& bound) {
-  constexpr double kFarthest = 0.01;
   const lanes::ClosedForm& form = chain_.form;
   if (!is_measured_) kernels_.measure_regularity(form, pack_, regularity_);
   is_measured_ = true;

@@ -8,7 +8,6 @@
 #include <array>
 #include <cstdint>
 
-#include "seeds/least_cost.hpp"
 #include "seeds/nearest_on_curve.hpp"
 
 namespace iksel {
@@ -174,28 +173,21 @@ bool NearestOnCurve::may_lead_to_shorter(double cost, const MoveBounds::Way& way
 
 void NearestOnCurve::add_swing(const BranchPoint& a, const BranchPoint& b) {
   const BranchPoint nearest = bounds().nearest_on_swing(a, branches_.turns(a, b));
-  if (!(nearest.inside < best())) return;
-  SweptJoints found{nearest.inside, {}};
-  branches_.copy_joints(nearest, found.q.data());
-  found_.add(found);
+  if (nearest.inside < best()) add(nearest);
 }
 
 void NearestOnCurve::follow(const BranchSpan& span, int node, const MoveBounds::Way& way) {
-  SweptJoints best{kInfinity, {}};
-  const auto value = [&](double v) { return std::min(std::max(v, span.lower), span.upper); };
-  const auto take = [&](int lane, double) { branches_.copy_joints(lane, best.q.data()); };
   const double width = span.spacing();
   const Bracket bracket{span.branch, span.value(node), width,
                         kNarrowings, kFinest * width,  !takes_largest_};
-  best.value = minimize(
-      branches_, bracket, value, [&](int lane) { return cost(lane); }, kRefused, take,
+  add_least(
+      bracket, [&](double v) { return std::min(std::max(v, span.lower), span.upper); },
       [&](double so_far, int round) {
         // Each round looks at less than a quarter of the way.
         const double part_of_way = 1.0 / (1 << 2 * round);
         return round > 0 &&
                !may_lead_to_shorter(so_far, {part_of_way * way.move, part_of_way * way.largest});
       });
-  if (best.value < kRefused) found_.add(best);
 }
 
 }  // namespace iksel

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "base/angle.hpp"
-#include "seeds/least_cost.hpp"
 
 namespace iksel {
 
@@ -171,17 +170,20 @@ bool NearestOnCurve::may_be_shorter(const LeastPlace& least) const {
 }
 
 void NearestOnCurve::follow(const LeastPlace& least) {
-  SweptJoints best{kInfinity, {}};
-  const auto value = [&](double place) { return branches_.clamp(place); };
-  const auto take = [&](int lane, double) { branches_.copy_joints(lane, best.q.data()); };
   const Bracket bracket{least.branch, places_.value(least.place), places_.step,
                         kNarrowings,  kFinest * places_.step,     !takes_largest_};
-  best.value = minimize(
-      branches_, bracket, value, [&](int lane) { return cost(lane); }, kRefused, take,
-      [&](double so_far, int round) { return is_hopeless(so_far, round); });
   // The sample itself may be all there is.
-  if (least.value < best.value) best = {least.value, joints(sample(least.place, least.branch))};
-  if (best.value < kRefused) found_.add(best);
+  add_least(
+      bracket, [&](double place) { return branches_.clamp(place); },
+      [&](double so_far, int round) { return is_hopeless(so_far, round); },
+      point(sample(least.place, least.branch)));
+}
+
+void NearestOnCurve::add(const BranchPoint& point) {
+  if (cost(point) >= kRefused + kCorner) return;
+  SweptJoints found{point.inside, {}};
+  branches_.copy_joints(point, found.q.data());
+  found_.add(found);
 }
 
 bool NearestOnCurve::is_hopeless(double so_far, int round) const {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "goal/joint_move.hpp"
+#include "seeds/least_cost.hpp"
 #include "seeds/least_places.hpp"
 #include "seeds/move_bounds.hpp"
 #include "seeds/swept_branches.hpp"
@@ -52,8 +53,12 @@ class NearestOnCurve {
   static constexpr std::size_t kMost = 8;
   /// What is no answer counts more than any move, and the more the farther it is from one.
   static constexpr double kRefused = 1e9;
+  static constexpr BranchPoint kNone{{}, 0, 0, kInfinity, 0};
   /// The move to where the curve ends may be so much shorter than at the sample before.
   static constexpr double kSteep = 0.3;
+  /// So far from an answer is what a search ends at beside a point that is all there is of the
+  /// curve [mixed units].
+  static constexpr double kCorner = 1e-5;
   /// Rounds of eight values in which a least is looked for, and to which part of a sample's
   /// distance from the next.
   static constexpr int kNarrowings = 9;
@@ -71,7 +76,6 @@ class NearestOnCurve {
   /// the bits of places.
   static constexpr std::uint64_t kFirstLanes = 0x0101010101010101;
   static constexpr std::uint64_t kLastLanes = kFirstLanes << (kCount - 1);
-  using Joints = std::array<double, SweptBranches::kDof>;
 
   /// Every branch at kCount samples of the swept joint beside each other.
   struct SamplePack {
@@ -140,11 +144,6 @@ class NearestOnCurve {
     const SamplePack& pack = packs_[static_cast<std::size_t>(at / kCount)];
     return {pack.branch[branch], at % kCount, places_.value(at)};
   }
-  [[nodiscard]] Joints joints(const Sample& sample) const {
-    Joints q;
-    branches_.copy_joints(sample.value, sample.row.q, sample.lane, q.data());
-    return q;
-  }
   [[nodiscard]] MoveBounds bounds() const { return MoveBounds(branches_.move_form()); }
   [[nodiscard]] BranchPoint point(const Sample& sample) const {
     return branches_.point(sample.value, sample.row, sample.lane);
@@ -160,6 +159,19 @@ class NearestOnCurve {
   /// Whether there may be a shorter move than the best so far beside a sample.
   [[nodiscard]] bool may_be_shorter(const LeastPlace& least) const;
   void follow(const LeastPlace& least);
+  /// Adds the least of a bracket (minimize in least_cost.hpp), or `best` if that is less.
+  template <typename Value, typename IsEnough>
+  void add_least(const Bracket& bracket, const Value& value, const IsEnough& is_enough,
+                 const BranchPoint& best = kNone) {
+    BranchPoint least = kNone;
+    const auto take = [&](int lane, double) { least = branches_.point(lane); };
+    minimize(
+        branches_, bracket, value, [&](int lane) { return cost(lane); }, kRefused, take, is_enough);
+    add(cost(best) < cost(least) ? best : least);
+  }
+  /// Adds a point, if it is an answer or all but: where two joints are at limits that let neither
+  /// move on, it may be all there is of the curve.
+  void add(const BranchPoint& point);
   /// Finds the samples at which a branch costs less than at those beside.
   void find_least_places();
   void look_between_samples();

@@ -111,7 +111,7 @@ class PathSearch {
       JointVector q = found.at(i);
       model_.joints.first_image(q);
       do {
-        layer.add(q);
+        layer.add(model_.joints.clamp(q));
       } while (layer.size() < kMostImages && model_.joints.next_image(q));
     }
   }

@@ -118,7 +118,8 @@ std::vector<Image> images_of(const JointSpace& joints, const SolutionSet& found,
     }
     joints.first_image(q);
     do {
-      images.push_back({q, ranking.cost(q), i});
+      const JointVector image = joints.clamp(q);
+      images.push_back({image, ranking.cost(image), i});
     } while (images.size() < kMostImages && joints.next_image(q));
   }
   return images;
@@ -208,13 +209,14 @@ Solutions Solver::Impl::solve_all(const Goal& goal, const SolveAllOptions& all,
   const bool with_images =
       all.whole_turns || request.filter || request.objective.kind == Objective::Kind::custom;
   std::vector<Image> images = images_of(goal.joints(), found, screen, with_images, ranking);
+  bool are_left_out = images.size() >= kMostImages;
   apply_filter(screen, robot.dof(), images);
   images.erase(std::remove_if(images.begin(), images.end(),
                               [](const Image& image) { return std::isinf(image.cost); }),
                images.end());
   std::sort(images.begin(), images.end(), cheaper);
   if (!all.whole_turns) take_first_of_each(found.size(), images);
-  const bool are_left_out = take_best(goal.joints(), most, goal.is_redundant(), images);
+  are_left_out |= take_best(goal.joints(), most, goal.is_redundant(), images);
   if (are_left_out) solutions.proof = Proof::none;
 
   solutions.all.reserve(images.size());

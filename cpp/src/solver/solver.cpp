@@ -183,6 +183,7 @@ Result Solver::Impl::find_answer(const Goal& goal, const SolveRequest& request,
   JointVector q;
   if (result.success() && !(selector.select(search, q) && goal.check(q, result))) {
     result.status = screen.refusal();
+    if (selector.leaves_out()) result.proof = Proof::none;
   }
   if (result.success()) {
     if (request.objective.is_set()) {

@@ -66,12 +66,15 @@ class JointSpace : public LimitSet {
   using Length = FunctionRef<double(const JointVector&)>;
   bool wrap_nearest(const JointVector& near, double slack, const Length& length,
                     JointVector& q) const;
-  /// Brings each periodic joint to its first image inside the limits, or into [-pi, pi) if there
-  /// are none.
-  void first_image(JointVector& q) const;
-  /// Moves to the next combination of images inside the limits; false after the last, which leaves
-  /// q at the first. Starts from first_image.
-  bool next_image(JointVector& q) const;
+  /// Calls use(image) with each combination of the joints' images inside the limits, from the
+  /// lowest on, as long as it returns true; of joints without limits in [-pi, pi).
+  template <typename Use>
+  void visit_images(JointVector q, const Use& use) const {
+    lowest_image(q);
+    do {
+      if (contains_sums(q.data()) && !use(q)) return;
+    } while (next_combination(q));
+  }
 
   /// By how much a joint's values differ, whole turns counting nothing where it is periodic.
   [[nodiscard]] double difference(int joint, double from, double to) const {
@@ -130,7 +133,8 @@ class JointSpace : public LimitSet {
   std::vector<JointVector> images;
 
  private:
-  /// first_image and next_image, whatever the sums are.
+  /// The first and the next combination of images inside the joints' own limits, whatever the sums
+  /// are; false after the last, which leaves q at the first.
   void lowest_image(JointVector& q) const;
   bool next_combination(JointVector& q) const;
   [[nodiscard]] JointVector draw(Random& random) const;

@@ -88,11 +88,16 @@ class SolutionRanking {
   JointVector from_;
 };
 
+/// The joint values of all, one after the other.
+std::vector<double> joint_values(const std::vector<Image>& images) {
+  std::vector<double> q;
+  for (const Image& image : images) q.insert(q.end(), image.q.begin(), image.q.end());
+  return q;
+}
+
 /// Keeps `count` that lie far from each other, the first among them.
 void keep_apart(const JointSpace& joints, std::size_t count, std::vector<Image>& images) {
-  std::vector<double> q;
-  q.reserve(images.size() * static_cast<std::size_t>(joints.dof()));
-  for (const Image& image : images) q.insert(q.end(), image.q.begin(), image.q.end());
+  const std::vector<double> q = joint_values(images);
   std::vector<Image> kept;
   kept.reserve(count);
   for (const std::size_t i : farthest_first(joints, q.data(), images.size(), count)) {
@@ -111,28 +116,25 @@ std::vector<Image> images_of(const JointSpace& joints, const SolutionSet& found,
   if (found.size() > 0) screen.find_free(found.q(0), found.size(), free.get());
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (!free[i]) continue;
-    JointVector q = found.at(i);
-    if (!with_images) {
+    const auto add = [&](const JointVector& q) {
       images.push_back({q, ranking.cost(q), i});
-      continue;
+      return images.size() < kMostImages;
+    };
+    if (with_images) {
+      joints.visit_images(found.at(i), add);
+    } else {
+      add(found.at(i));
     }
-    joints.first_image(q);
-    do {
-      images.push_back({q, ranking.cost(q), i});
-    } while (images.size() < kMostImages && joints.next_image(q));
   }
   return images;
 }
 
 /// Takes out what the filter refuses.
-void apply_filter(Screen& screen, int dof, std::vector<Image>& images) {
+void apply_filter(Screen& screen, std::vector<Image>& images) {
   if (!screen.has_filter() || images.empty()) return;
-  std::vector<double> q;
-  q.reserve(images.size() * static_cast<std::size_t>(dof));
-  for (const Image& image : images) q.insert(q.end(), image.q.data(), image.q.data() + dof);
-  const std::unique_ptr<bool[]> keep(new bool[images.size()]());
+  const std::unique_ptr<bool[]> keep(new bool[images.size()]);
   std::fill_n(keep.get(), images.size(), true);
-  screen.ask_filter(q.data(), images.size(), keep.get());
+  screen.ask_filter(joint_values(images).data(), images.size(), keep.get());
   std::size_t kept = 0;
   for (std::size_t i = 0; i < images.size(); ++i) {
     if (!keep[i]) continue;
@@ -208,7 +210,7 @@ Solutions Solver::Impl::solve_all(const Goal& goal, const SolveAllOptions& all,
   const bool with_images =
       all.whole_turns || request.filter || request.objective.kind == Objective::Kind::custom;
   std::vector<Image> images = images_of(goal.joints(), found, screen, with_images, ranking);
-  apply_filter(screen, robot.dof(), images);
+  apply_filter(screen, images);
   images.erase(std::remove_if(images.begin(), images.end(),
                               [](const Image& image) { return std::isinf(image.cost); }),
                images.end());

@@ -40,7 +40,9 @@ Status search_layer(const Solver::Impl& solver, const Goal& goal, const Layer* b
                       solver.options.max_attempts, workspace.collected);
   solver.collect(collector, workspace);
   if (before != nullptr) {
-    search.add_solutions(found, *before, layer);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      search.add_nearest_images(found.at(i), *before, layer);
+    }
   } else {
     search.add_first_solutions(found, layer);
   }

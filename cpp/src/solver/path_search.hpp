@@ -133,11 +133,26 @@ class PathSearch {
     }
   }
 
-  /// The solutions found from the database, each at the images nearest to where the path may come
-  /// from.
-  void add_solutions(const SolutionSet& found, const Layer& before, Layer& layer) const {
-    for (std::size_t i = 0; i < found.size(); ++i) {
-      add_nearest_images(found.at(i), before, layer);
+  /// A solution at the images nearest to where the path may come from.
+  void add_nearest_images(const JointVector& solution, const Layer& before, Layer& layer) const {
+    if (!has_images_) {
+      add(solution, layer);
+      return;
+    }
+    JointVector q = solution;
+    // Many that the path may come from have the same nearest image.
+    std::set<std::vector<long>> known;
+    std::vector<long> turns(static_cast<std::size_t>(model_.dof));
+    for (const PathCandidate& from : before) {
+      model_.joints.wrap_nearest(from.q, 0, q);
+      for (std::size_t j = 0; j < turns.size(); ++j) {
+        const auto joint = static_cast<Eigen::Index>(j);
+        turns[j] = std::lround((q[joint] - solution[joint]) / kTwoPi);
+      }
+      if (!known.insert(turns).second) continue;
+      // From the database at a later waypoint, at most.
+      if (layer.size() >= 2 * kMostImages) return;
+      add(q, layer);
     }
   }
 
@@ -160,7 +175,10 @@ class PathSearch {
   /// cheaper than the long way about it.
   void connect(const Layer* before, Layer& layer, bool at_last = false) {
     for (auto& [q, cost, parent] : layer) {
-      cost = before == nullptr ? tie_break(q) : kInfinity;
+      // A path that begins anywhere costs the same at all its images: of those, the one that begins
+      // nearest to the middle of the limits. Small beside all costs, and large beside their
+      // rounding.
+      cost = before == nullptr ? 1e-9 * (q - middle_).norm() : kInfinity;
       parent = 0;
       for (std::size_t k = 0; before != nullptr && k < before->size(); ++k) {
         const PathCandidate& from = (*before)[k];
@@ -220,38 +238,9 @@ class PathSearch {
   }
 
  private:
-  void add_nearest_images(const JointVector& solution, const Layer& before, Layer& layer) const {
-    if (!has_images_) {
-      add(solution, layer);
-      return;
-    }
-    JointVector q = solution;
-    // Many that the path may come from have the same nearest image.
-    std::set<std::vector<long>> known;
-    std::vector<long> turns(static_cast<std::size_t>(model_.dof));
-    for (const PathCandidate& from : before) {
-      model_.joints.wrap_nearest(from.q, 0, q);
-      for (std::size_t j = 0; j < turns.size(); ++j) {
-        const auto joint = static_cast<Eigen::Index>(j);
-        turns[j] = std::lround((q[joint] - solution[joint]) / kTwoPi);
-      }
-      if (!known.insert(turns).second) continue;
-      // From the database at a later waypoint, at most.
-      if (layer.size() >= 2 * kMostImages) return;
-      add(q, layer);
-    }
-  }
-
   /// Images at the first waypoint, at most: those of sixteen solutions, of seven joints that have
   /// two images each.
   static constexpr std::size_t kMostImages = 2048;
-
-  /// A path that begins anywhere costs the same at all its images: of those, the one that begins
-  /// nearest to the middle of the limits. Small beside all costs, and large beside their rounding.
-  [[nodiscard]] double tie_break(const JointVector& q) const {
-    constexpr double kPart = 1e-9;
-    return kPart * (q - middle_).norm();
-  }
 
   static SolveRequest make_request(const PathOptions& options) {
     SolveRequest request;

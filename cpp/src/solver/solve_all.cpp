@@ -144,12 +144,6 @@ void apply_filter(Screen& screen, std::vector<Image>& images) {
   images.resize(kept);
 }
 
-/// How many solutions to look for on a self-motion: what is refused is replaced by others.
-int spread_for(int most, bool is_screened) {
-  const int spread = std::min(most, kMostSpread);
-  return is_screened ? static_cast<int>(kChoice) * spread : spread;
-}
-
 /// Of the images of each solution, in order, the first.
 void take_first_of_each(std::size_t solutions, std::vector<Image>& images) {
   std::vector<bool> seen(solutions);
@@ -198,8 +192,10 @@ Solutions Solver::Impl::solve_all(const Goal& goal, const SolveAllOptions& all,
     return goal.is_redundant() && found.size() >= std::max<std::size_t>(kChoice * most, 64);
   };
   Screen screen(request, robot.dof());
-  const int spread = goal.is_redundant() ? spread_for(all.max, screen.is_set()) : 0;
-  const Collector::Aim aim{all.min_distance, true, spread};
+  // What is refused on a self-motion is replaced by others.
+  const int for_each = screen.is_set() ? static_cast<int>(kChoice) : 1;
+  const int spread = for_each * std::min(all.max, kMostSpread);
+  const Collector::Aim aim{all.min_distance, true, goal.is_redundant() ? spread : 0};
   Collector search(robot.all(), goal, request, aim, is_satisfied, options.max_attempts,
                    workspace.collected);
   collect(search, workspace);

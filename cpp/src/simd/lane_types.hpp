@@ -168,8 +168,8 @@ struct SceneRoom;
 /// Iterations of packs of one width.
 struct PackKernels {
   int lanes;
-  /// Iterates a pack, until a lane of the mask `watched` arrives or the iterations are used up;
-  /// and for a task, which is null for full poses.
+  /// Iterates a pack, until a lane of the mask `watched` arrives or the iterations are used up.
+  /// `task` is null for full poses.
   PackResult (*advance)(const LaneChain& chain, const LaneOptions& options, const LaneTask* task,
                         unsigned watched, int iterations, LanePack& pack);
   decltype(advance) advance_task;

@@ -19,8 +19,6 @@ namespace {
 
 /// Solutions of a redundant arm from which the asked for are spread: so many for each.
 constexpr std::size_t kChoice = 4;
-/// Solutions spread over a self-motion, at most: as many as a set can hold.
-constexpr int kMostSpread = static_cast<int>(SolutionSet::kMost / kChoice);
 
 /// A solution, or one of its periodic images.
 struct Image {
@@ -192,9 +190,9 @@ Solutions Solver::Impl::solve_all(const Goal& goal, const SolveAllOptions& all,
     return goal.is_redundant() && found.size() >= std::max<std::size_t>(kChoice * most, 64);
   };
   Screen screen(request, robot.dof());
-  // What is refused on a self-motion is replaced by others.
-  const int for_each = screen.is_set() ? static_cast<int>(kChoice) : 1;
-  const int spread = for_each * std::min(all.max, kMostSpread);
+  // Over a self-motion; what is refused is replaced by others, no more than a set can hold.
+  const std::size_t for_each = screen.is_set() ? kChoice : 1;
+  const auto spread = static_cast<int>(for_each * std::min(most, SolutionSet::kMost / kChoice));
   const Collector::Aim aim{all.min_distance, true, goal.is_redundant() ? spread : 0};
   Collector search(robot.all(), goal, request, aim, is_satisfied, options.max_attempts,
                    workspace.collected);

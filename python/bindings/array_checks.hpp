@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <initializer_list>
 #include <string>
 #include <utility>
 #include <vector>
@@ -82,6 +83,18 @@ inline bool is_doubles(py::handle value) {
 inline DoubleArray as_doubles(py::handle value, const char* name) {
   if (is_doubles(value)) return py::reinterpret_borrow<DoubleArray>(value);
   return convert_to_doubles(value, name);
+}
+
+/// An array of that shape, where -1 is any extent. Throws InvalidArgumentError.
+inline DoubleArray as_shaped(py::handle value, const char* name,
+                             std::initializer_list<py::ssize_t> shape, const char* expected) {
+  DoubleArray array = as_doubles(value, name);
+  const auto fits = [](py::ssize_t wanted, py::ssize_t got) { return wanted < 0 || wanted == got; };
+  const py::ssize_t* got = array.shape();
+  if (!std::equal(shape.begin(), shape.end(), got, got + array.ndim(), fits)) {
+    throw_wrong_shape(name, expected, array);
+  }
+  return array;
 }
 
 inline void check_finite(const double* values, int dof, const std::string& name) {
@@ -205,11 +218,10 @@ inline py::array_t<double> to_array(const Matrix& matrix) {
 }
 
 /// (rows, dof) of joint values.
-template <class Rows, class Get>
-py::array_t<double> stack_joints(const Rows& rows, int dof, const Get& get) {
+inline py::array_t<double> stack_joints(const std::vector<JointVector>& rows, int dof) {
   py::array_t<double> array({static_cast<py::ssize_t>(rows.size()), py::ssize_t{dof}});
   double* out = array.mutable_data();
-  for (const auto& row : rows) out = std::copy_n(get(row).data(), dof, out);
+  for (const JointVector& row : rows) out = std::copy_n(row.data(), dof, out);
   return array;
 }
 

@@ -67,8 +67,7 @@ template <>
 struct FromPython<std::vector<double>> {
   static std::string text() { return ArrayLike::kText; }
   static std::vector<double> convert(py::handle value, const char* name) {
-    const DoubleArray array = as_doubles(value, name);
-    if (array.ndim() != 1) throw_wrong_shape(name, "an (N,) array", array);
+    const DoubleArray array = as_shaped(value, name, {-1}, "an (N,) array");
     return {array.data(), array.data() + array.size()};
   }
   static py::array_t<double> show(const std::vector<double>& value) { return to_array(value); }
@@ -98,9 +97,7 @@ struct FromPython<std::vector<JointVector>> {
     return rows;
   }
   static py::array_t<double> show(const std::vector<JointVector>& rows) {
-    return stack_joints(
-        rows, rows.empty() ? 0 : static_cast<int>(rows.front().size()),
-        [](const JointVector& q) -> const auto& { return q; });
+    return stack_joints(rows, rows.empty() ? 0 : static_cast<int>(rows.front().size()));
   }
 };
 
@@ -108,8 +105,7 @@ template <>
 struct FromPython<Eigen::Vector3d> {
   static std::string text() { return ArrayLike::kText; }
   static Eigen::Vector3d convert(py::handle value, const char* name) {
-    const DoubleArray array = as_doubles(value, name);
-    if (array.ndim() != 1 || array.shape(0) != 3) throw_wrong_shape(name, "a (3,) array", array);
+    const DoubleArray array = as_shaped(value, name, {3}, "a (3,) array");
     return {array.at(0), array.at(1), array.at(2)};
   }
   static py::array_t<double> show(const Eigen::Vector3d& value) {

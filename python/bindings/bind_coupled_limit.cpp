@@ -37,7 +37,6 @@ void bind_coupled_limit(py::module_& m) {
 Raises:
     InvalidArgumentError: not names and numbers. What is wrong with the limit of a robot, it says
         when that is loaded.)");
-  def_repr(cls);
   def(cls, "__str__", "", fn<&limit_text>);
   def_equal(cls);
 }

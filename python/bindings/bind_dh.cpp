@@ -26,8 +26,7 @@ void check_rows(std::size_t got, std::size_t rows, const char* name) {
 /// Sets a field of each row from a column of the table. Gives the numbers.
 std::vector<double> set_column(const ArrayLike& value, const char* name, double DhJoint::*field,
                                std::vector<DhJoint>& rows) {
-  const DoubleArray column = as_doubles(value, name);
-  if (column.ndim() != 1) throw_wrong_shape(name, "an (N,) array, a number for each joint", column);
+  const DoubleArray column = as_shaped(value, name, {-1}, "an (N,) array, a number for each joint");
   const std::vector<double> numbers(column.data(), column.data() + column.size());
   check_rows(numbers.size(), rows.size(), name);
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i].*field = numbers[i];
@@ -53,10 +52,7 @@ Robot from_dh(const ArrayLike& a, const ArrayLike& alpha, const ArrayLike& d, co
               const std::optional<Names>& names, const std::optional<Pose>& base,
               const std::optional<Pose>& tcp, const std::string& name) {
   DhTable table;
-  const DoubleArray first = as_doubles(a, "a");
-  if (first.ndim() != 1) {
-    throw_wrong_shape("a", "an (N,) array, a number for each joint", first);
-  }
+  const DoubleArray first = as_shaped(a, "a", {-1}, "an (N,) array, a number for each joint");
   table.joints.resize(static_cast<std::size_t>(first.size()));
   auto& rows = table.joints;
   if (types) {
@@ -85,7 +81,7 @@ Robot from_dh(const ArrayLike& a, const ArrayLike& alpha, const ArrayLike& d, co
 }  // namespace
 
 void bind_dh(py::module_& m, py::class_<Robot>& robot) {
-  bind_enum<DhConvention>(m);
+  bind_enums<DhConvention>(m);
   const DhTable defaults;
   const std::string convention = std::string("'") + enum_name(defaults.convention) + "'";
   def_static(

@@ -38,14 +38,12 @@ struct FieldTable<Diagnosis> : HeaderTable<Diagnosis> {
 };
 
 void bind_diagnosis(py::module_& m) {
-  bind_enum<Cause>(m);
+  bind_enums<Cause>(m);
   auto cls = bind_fields<Diagnosis>(m, "Solver.diagnose");
-  add_property(
-      cls, "proven", [](const Diagnosis& self) { return is_proven(self.proof); }, kProven);
+  def_proven(cls);
   add_property(cls, "unreachable_tip",
                [](const Diagnosis& self) { return optional_index(self.unreachable_tip); });
   def(cls, "__bool__", "", [](const Diagnosis& self) { return self.q_is_solution; });
-  def_repr(cls);
 }
 
 }  // namespace iksel::python

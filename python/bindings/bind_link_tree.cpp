@@ -54,8 +54,7 @@ LinkTree tree_from_state(const std::string& robot_name, const std::string& root,
 void bind_link_tree(py::module_& m) {
   def(m, "mend_xml", "data, link=''",
       [](const py::bytes& data, const std::string& link) { return mend_xml(data, link); });
-  auto joint = bind_fields<LinkTreeJoint>(m, "LinkTree.from_urdf(path_or_xml).joints");
-  def_repr(joint);
+  bind_fields<LinkTreeJoint>(m, "LinkTree.from_urdf(path_or_xml).joints");
   auto tree = bind_class<LinkTree>(m, "LinkTree", "LinkTree.from_urdf(path_or_xml)");
   def_static(tree, "from_urdf", "path_or_xml, link=None", fn<&tree_from_urdf>,
              R"(Reads the tree of a URDF.

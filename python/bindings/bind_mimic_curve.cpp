@@ -78,7 +78,6 @@ Raises:
     InvalidArgumentError: 8,192 gaps are not enough, as where slope is not function's derivative;
         or a function gives no finite number.)");
   add_property(cls, "slopes", &slopes_of);
-  def_repr(cls);
   def_equal(cls);
 }
 

@@ -53,7 +53,7 @@ Objective custom(const CostCallable& cost, const std::optional<CostCallable>& gr
 }  // namespace
 
 void bind_objective(py::module_& m) {
-  bind_enum<Objective::Kind>(m);
+  bind_enums<Objective::Kind>(m);
   auto cls = bind_class<Objective>(
       m, "Objective",
       "Objective.near_posture(posture), far_from_limits(), most_manipulable() or custom(cost)");

@@ -70,9 +70,4 @@ void bind_obstacles(py::class_<Scene>& cls) {
               "[m].\n"));
 }
 
-void bind_obstacle(py::module_& m) {
-  auto cls = bind_fields<Obstacle>(m, "Scene.obstacles");
-  def_repr(cls);
-}
-
 }  // namespace iksel::python

@@ -51,15 +51,8 @@ py::object ValueOf<Strategy>::to_plain(const Strategy& value) {
 }
 
 void bind_options(py::module_& m) {
-  bind_enum<Sampling>(m);
-  bind_enum<Scale>(m);
-  bind_enum<KeyScheme>(m);
-  bind_enum<RotationKey>(m);
-  bind_enum<Ranking>(m);
-  bind_enum<RotationDifference>(m);
-  bind_enum<Iteration>(m);
-  bind_enum<Reselection>(m);
-  bind_enum<GrowthStop>(m);
+  bind_enums<Sampling, Scale, KeyScheme, RotationKey, Ranking, RotationDifference, Iteration,
+             Reselection, GrowthStop>(m);
 
   auto database = bind_keyword_class<DatabaseOptions>(m, /*writable=*/true);
   def_static(database, "paper", "year=2025", fn<&DatabaseOptions::paper>);

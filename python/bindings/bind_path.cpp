@@ -9,10 +9,7 @@ namespace iksel::python {
 struct PyPath : PathResult {
   int dof = 0;
 
-  [[nodiscard]] py::array_t<double> rows() const {
-    return stack_joints(
-        q, dof, [](const JointVector& each) -> const auto& { return each; });
-  }
+  [[nodiscard]] py::array_t<double> rows() const { return stack_joints(q, dof); }
 };
 
 template <>
@@ -58,7 +55,7 @@ PyPath solve_path(const Solver& self, py::handle poses, const Given& given) {
 
 void bind_path_result(py::module_& m) {
   auto cls = bind_fields<PyPath>(m, "Solver.solve_path");
-  add_property(cls, "success", [](const PyPath& self) { return self.success(); });
+  def_success(cls);
   add_property(cls, "q", &PyPath::rows);
   add_property(cls, "first_unreachable",
                [](const PyPath& self) { return optional_index(self.first_unreachable); });
@@ -66,8 +63,6 @@ void bind_path_result(py::module_& m) {
                [](const PyPath& self) { return optional_index(self.largest_step_joint); });
   add_property(cls, "largest_step_waypoint",
                [](const PyPath& self) { return optional_index(self.largest_step_waypoint); });
-  def(cls, "__bool__", "", [](const PyPath& self) { return self.success(); });
-  def_repr(cls);
 }
 
 using Closest = std::optional<PoseWeights>;

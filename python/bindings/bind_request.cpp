@@ -12,8 +12,9 @@ struct PySolutions : Solutions {
   [[nodiscard]] py::ssize_t size() const { return static_cast<py::ssize_t>(all.size()); }
 
   [[nodiscard]] py::array_t<double> q() const {
-    return stack_joints(
-        all, dof, [](const Result& each) -> const auto& { return each.q; });
+    std::vector<JointVector> rows;
+    for (const Result& each : all) rows.push_back(each.q);
+    return stack_joints(rows, dof);
   }
 
   template <double Result::*kMember>
@@ -103,11 +104,8 @@ Diagnosis diagnose(const Solver& self, py::handle pose, const Given& given) {
 void bind_solutions(py::module_& m) {
   using S = PySolutions;
   auto cls = bind_fields<S>(m, "Solver.solve_all");
-  add_property(cls, "success", [](const S& self) { return self.success(); });
-  add_property(
-      cls, "proven", [](const S& self) { return is_proven(self.proof); },
-      "Whether these are certainly all: `proof` is `reach`, `closed_form`, `intervals` or "
-      "`target`.");
+  def_success(cls);
+  def_proven(cls, "these are certainly all");
   add_property(cls, "q", &S::q, "Joint values [rad or m], (n, dof).");
   add_property(cls, "position_error", &S::column<&Result::position_error>,
                "Distances to the target [m], (n,).");
@@ -120,8 +118,6 @@ void bind_solutions(py::module_& m) {
   def(cls, "__len__", "", fn<&S::size>);
   def(cls, "__getitem__", "i", fn<&S::row>);
   def_iter<PyResult>(cls);
-  def(cls, "__bool__", "", [](const S& self) { return self.success(); });
-  def_repr(cls);
   def_page(cls);
 }
 

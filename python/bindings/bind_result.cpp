@@ -100,14 +100,11 @@ py::object row_or_rows(const PyBatchResult& self, const py::object& i) {
 
 void bind_single(py::module_& m) {
   auto cls = bind_fields<PyResult>(m, "Solver.solve");
-  add_property(cls, "success", [](const PyResult& self) { return self.success(); });
+  def_success(cls);
   add_property(cls, "unreachable_tip",
                [](const PyResult& self) { return optional_index(self.unreachable_tip); });
-  add_property(
-      cls, "proven", [](const PyResult& self) { return is_proven(self.proof); }, kProven);
+  def_proven(cls);
   add_property(cls, "q", &PyResult::joints);
-  def(cls, "__bool__", "", [](const PyResult& self) { return self.success(); });
-  def_repr(cls);
   def_page(cls);
 }
 
@@ -124,15 +121,13 @@ void bind_batch(py::module_& m) {
                "iksel_cpp.BatchResult"});
   def_iter<PyResult>(cls);
   def(cls, "__bool__", "", fn<&refuse_truth>);
-  def_repr(cls);
   def_page(cls);
 }
 
 }  // namespace
 
 void bind_result(py::module_& m) {
-  bind_enum<Status>(m);
-  bind_enum<Proof>(m);
+  bind_enums<Status, Proof>(m);
   bind_single(m);
   bind_batch(m);
 }

@@ -13,10 +13,7 @@ template <>
 struct FromPython<Limits> {
   static std::string text() { return ArrayLike::kText; }
   static Limits convert(py::handle value, const char* name) {
-    const DoubleArray array = as_doubles(value, name);
-    if (array.ndim() != 1 || array.shape(0) != 2) {
-      throw_wrong_shape(name, "two numbers, (lower, upper)", array);
-    }
+    const DoubleArray array = as_shaped(value, name, {2}, "two numbers, (lower, upper)");
     return {array.at(0), array.at(1)};
   }
 };
@@ -184,8 +181,7 @@ py::array_t<double> random_configurations(const Robot& self, std::size_t n,
 }  // namespace
 
 void bind_robot(py::module_& m) {
-  bind_enum<JointType>(m);
-  bind_enum<Kinematics>(m);
+  bind_enums<JointType, Kinematics>(m);
 
   auto cls =
       bind_class<Robot>(m, "Robot", "iksel.load_robot(name) or Robot.from_urdf(path_or_xml)");

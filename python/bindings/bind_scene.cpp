@@ -102,9 +102,8 @@ Scene scene_from_state(const Robot& robot, const RobotSpheres& spheres,
 
 void bind_scene(py::module_& m) {
   bind_robot_spheres(m);
-  auto contact = bind_fields<Contact>(m, "Scene.contacts");
-  def_repr(contact);
-  bind_obstacle(m);
+  bind_fields<Contact>(m, "Scene.contacts");
+  bind_fields<Obstacle>(m, "Scene.obstacles");
   auto cls = bind_class<Scene>(m, "Scene");
   def_init(cls, "robot, spheres, other_joints=None", fn<&make_scene>,
            R"(Begins with the robot alone.

@@ -21,8 +21,7 @@ CandidateArrays to_arrays(const Candidates& candidates, int dof) {
   py::array_t<std::int64_t> indices(n);
   std::copy(candidates.indices.begin(), candidates.indices.end(), indices.mutable_data());
   return {indices, to_array(candidates.distances), to_array(candidates.adjustments),
-          stack_joints(
-              candidates.q, dof, [](const JointVector& q) -> const auto& { return q; })};
+          stack_joints(candidates.q, dof)};
 }
 
 CandidateArrays candidates(Selector& self, const Pose& T_base_tip,

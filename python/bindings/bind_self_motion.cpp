@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bindings.hpp"
+#include "py_batch.hpp"
 
 namespace iksel::python {
 
@@ -40,8 +41,7 @@ namespace {
 
 SelfMotionArc arc_at(const SelfMotion& self, py::ssize_t i) {
   const auto n = static_cast<py::ssize_t>(self.arcs.size());
-  if (i < -n || i >= n) throw py::index_error("arc index out of range");
-  return self.arcs[static_cast<std::size_t>(i < 0 ? i + n : i)];
+  return self.arcs[static_cast<std::size_t>(as_row(i, n, "arc"))];
 }
 
 SelfMotion self_motion(const Solver& self, const Pose& target, double spacing) {
@@ -57,26 +57,21 @@ void bind_arc(py::module_& m) {
     return RowIterator<py::array_t<double>>(
         py::iter(FromPython<std::vector<JointVector>>::show(self.q)));
   });
-  def_repr(cls);
 }
 
 }  // namespace
 
 void bind_self_motion(py::module_& m, py::class_<Solver>& solver) {
   using M = SelfMotion;
-  bind_enum<ArcEnd>(m);
-  auto end = bind_fields<SelfMotionEnd>(m, "Solver.self_motion");
-  def_repr(end);
+  bind_enums<ArcEnd>(m);
+  bind_fields<SelfMotionEnd>(m, "Solver.self_motion");
   bind_arc(m);
   auto cls = bind_fields<M>(m, "Solver.self_motion");
-  add_property(cls, "success", &M::success);
-  add_property(
-      cls, "proven", [](const M& self) { return is_proven(self.proof); }, kProven);
+  def_success(cls);
+  def_proven(cls);
   def(cls, "__len__", "", [](const M& self) { return self.arcs.size(); });
   def(cls, "__getitem__", "i", fn<&arc_at>);
   def_iter<SelfMotionArc>(cls);
-  def(cls, "__bool__", "", fn<&M::success>);
-  def_repr(cls);
   def(solver, "self_motion", "pose, spacing=0.1", fn<&self_motion>,
       R"(All solutions of a redundant arm at once: the arcs of its self-motion inside the limits.
 

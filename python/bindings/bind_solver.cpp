@@ -189,8 +189,7 @@ target's solutions, within the same tolerances. The request holds for each targe
 }  // namespace
 
 void bind_solver(py::module_& m) {
-  bind_enum<MoveNorm>(m);
-  bind_enum<SolutionOrder>(m);
+  bind_enums<MoveNorm, SolutionOrder>(m);
 
   auto cls = bind_class<Solver>(m, "Solver");
   bind_construction(cls);

@@ -7,9 +7,8 @@ template <>
 struct FieldTable<Structure> : HeaderTable<Structure> {};
 
 void bind_structure(py::module_& m) {
-  bind_enum<StructureKind>(m);
-  auto cls = bind_fields<Structure>(m, "Robot.structure");
-  def_repr(cls);
+  bind_enums<StructureKind>(m);
+  bind_fields<Structure>(m, "Robot.structure");
 }
 
 }  // namespace iksel::python

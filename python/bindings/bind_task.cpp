@@ -4,8 +4,7 @@
 namespace iksel::python {
 
 void bind_task(py::module_& m) {
-  bind_enum<TaskFrame>(m);
-  bind_enum<Axis>(m);
+  bind_enums<TaskFrame, Axis>(m);
   auto cls = bind_keyword_class<Task>(m, /*writable=*/false);
   def_static(cls, "pose", "", fn<&Task::pose>);
   def_static(cls, "position_only", "", fn<&Task::position_only>);

@@ -89,7 +89,6 @@ py::handle& enum_class() {
   return cls;
 }
 
-/// Makes the Python enum; to come before any function that takes or returns it.
 template <class E>
 void bind_enum(py::module_& m) {
   // Statuses and proofs stand as numbers in batch results, and compare with them.
@@ -100,6 +99,12 @@ void bind_enum(py::module_& m) {
   binding.finalize();
   enum_class<E>() = py::object(m.attr(EnumTable<E>::kName)).release();
   show_names(py::reinterpret_borrow<py::object>(enum_class<E>()));
+}
+
+/// Makes Python's enums; to come before any function that takes or returns them.
+template <class... Enums>
+void bind_enums(py::module_& m) {
+  (bind_enum<Enums>(m), ...);
 }
 
 }  // namespace iksel::python

@@ -200,7 +200,7 @@ Struct from_state(const py::object& state) {
   return self;
 }
 
-/// Read-only attributes and pickling.
+/// Read-only attributes, repr as iksel._base.show has it, and pickling.
 template <class Struct>
 py::class_<Struct> bind_fields(py::module_& m, const char* how, bool writable = false) {
   const StructType& type = struct_type<Struct>();
@@ -211,6 +211,7 @@ py::class_<Struct> bind_fields(py::module_& m, const char* how, bool writable = 
   def_init(
       cls, "state", [](const py::object& state) { return from_state<Struct>(state); }, "",
       "__setstate__");
+  def_repr(cls);
   return cls;
 }
 

@@ -28,23 +28,25 @@ struct PyResult : Result {
 
 /// Whether it leaves no doubt that there is no answer, or no other.
 inline bool is_proven(Proof proof) {
-  switch (proof) {
-    case Proof::reach:
-    case Proof::target:
-    case Proof::closed_form:
-    case Proof::intervals:
-      return true;
-    case Proof::sweep:
-    case Proof::none:
-    case Proof::answer:
-      return false;
-  }
-  return false;
+  return proof == Proof::reach || proof == Proof::target || proof == Proof::closed_form ||
+         proof == Proof::intervals;
 }
 
-constexpr const char* kProven =
-    "Whether there is certainly no answer: `proof` is `reach`, `closed_form`, `intervals` or "
-    "`target`.";
+/// What is asked of all that may be proven.
+template <class Class>
+void def_proven(py::class_<Class>& cls, const std::string& what = "there is certainly no answer") {
+  const std::string doc =
+      "Whether " + what + ": `proof` is `reach`, `closed_form`, `intervals` or `target`.";
+  add_property(
+      cls, "proven", [](const Class& self) { return is_proven(self.proof); }, doc.c_str());
+}
+
+/// What is asked of all that may be solved.
+template <class Class>
+void def_success(py::class_<Class>& cls) {
+  add_property(cls, "success", [](const Class& self) { return self.success(); });
+  def(cls, "__bool__", "", [](const Class& self) { return self.success(); });
+}
 
 /// What __iter__ gives of that which has __getitem__ of an int.
 template <class Item>

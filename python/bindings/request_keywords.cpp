@@ -13,10 +13,8 @@ std::optional<PoseWeights> Closest::convert(py::handle value, const char* name) 
   if (value.is_none() || value.ptr() == Py_False) return std::nullopt;
   PoseWeights weights;
   if (value.ptr() == Py_True) return weights;
-  const DoubleArray six = as_doubles(value, name);
-  if (six.ndim() != 1 || six.shape(0) != 6) {
-    throw_wrong_shape(name, "True or six weights, of position and rotation", six);
-  }
+  const DoubleArray six =
+      as_shaped(value, name, {6}, "True or six weights, of position and rotation");
   weights.rotation.emplace();
   std::copy_n(six.data(), 3, weights.position.begin());
   std::copy_n(six.data() + 3, 3, weights.rotation->begin());
@@ -62,10 +60,8 @@ std::vector<Pose> as_targets(const Solver& solver, py::handle poses,
 DoubleArray as_rows(const Solver& solver, py::handle poses, const TargetCriteria& criteria) {
   const int tips = solver.robot().tips();
   if (tips == 1) return as_poses(poses, "poses", common_task(solver, criteria));
-  const DoubleArray array = as_doubles(poses, "poses");
-  if (array.ndim() != 4 || array.shape(1) != tips || array.shape(2) != 4 || array.shape(3) != 4) {
-    throw_wrong_shape("poses", "an (N, " + std::to_string(tips) + ", 4, 4) array", array);
-  }
+  const std::string expected = "an (N, " + std::to_string(tips) + ", 4, 4) array";
+  const DoubleArray array = as_shaped(poses, "poses", {-1, tips, 4, 4}, expected.c_str());
   const std::vector<py::ssize_t> shape = {array.shape(0) * tips, 4, 4};
   return py::array(array).reshape(shape);
 }

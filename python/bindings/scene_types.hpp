@@ -12,10 +12,7 @@ template <>
 struct FromPython<PointCloud> {
   static std::string text() { return ArrayLike::kText; }
   static PointCloud convert(py::handle value, const char* name) {
-    const DoubleArray array = as_doubles(value, name);
-    if (array.ndim() != 2 || array.shape(1) != 3) {
-      throw_wrong_shape(name, "an (N, 3) array", array);
-    }
+    const DoubleArray array = as_shaped(value, name, {-1, 3}, "an (N, 3) array");
     return Eigen::Map<const PointCloud>(array.data(), array.shape(0), 3);
   }
 };
@@ -51,10 +48,8 @@ template <>
 struct FromPython<std::vector<Sphere>> {
   static std::string text() { return ArrayLike::kText; }
   static std::vector<Sphere> convert(py::handle value, const char* name) {
-    const DoubleArray array = as_doubles(value, name);
-    if (array.ndim() != 2 || array.shape(1) != 4) {
-      throw_wrong_shape(name, "an (N, 4) array, rows of centre and radius", array);
-    }
+    const DoubleArray array =
+        as_shaped(value, name, {-1, 4}, "an (N, 4) array, rows of centre and radius");
     std::vector<Sphere> spheres;
     for (py::ssize_t i = 0; i < array.shape(0); ++i) {
       const double* row = array.data(i);
@@ -119,7 +114,6 @@ struct FromPython<Place> {
 // Parts of a module with scenes.
 
 void bind_robot_spheres(py::module_& m);
-void bind_obstacle(py::module_& m);
 /// The methods that add obstacles.
 void bind_obstacles(py::class_<Scene>& scene);
 

@@ -169,12 +169,11 @@ TEST(CoupledLimits, ImagesAreThoseInside) {
     for (const JointVector& each : images(joints, q)) wanted.insert(key(each));
     std::set<std::vector<long>> found;
     std::size_t count = 0;
-    joints.first_image(q);
-    do {
-      EXPECT_TRUE(is_inside(joints, q)) << "seed " << iksel_test::seed() << ", case " << i;
-      found.insert(key(q));
-      ++count;
-    } while (joints.next_image(q));
+    joints.visit_images(q, [&](const JointVector& image) {
+      EXPECT_TRUE(is_inside(joints, image)) << "seed " << iksel_test::seed() << ", case " << i;
+      found.insert(key(image));
+      return ++count > 0;
+    });
     ASSERT_EQ(found, wanted) << "seed " << iksel_test::seed() << ", case " << i;
     ASSERT_EQ(count, found.size());
   }

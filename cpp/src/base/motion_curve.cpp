@@ -58,15 +58,11 @@ MotionCurve::MotionCurve(std::vector<double> q, std::vector<double> values,
   if (slopes_.empty()) slopes_ = spline_slopes(q_, values_);
 }
 
-std::size_t MotionCurve::gap_of(double q) const {
-  const auto next = std::upper_bound(q_.begin() + 1, q_.end() - 1, q);
-  return static_cast<std::size_t>(next - q_.begin()) - 1;
-}
-
 MotionCurve::Point MotionCurve::at(double q) const {
   if (!(q > q_.front())) return {values_[0] + slopes_[0] * (q - q_[0]), slopes_[0]};
   if (q >= q_.back()) return {values_.back() + slopes_.back() * (q - q_.back()), slopes_.back()};
-  const std::size_t i = gap_of(q);
+  const auto next = std::upper_bound(q_.begin() + 1, q_.end() - 1, q);
+  const std::size_t i = static_cast<std::size_t>(next - q_.begin()) - 1;
   const double h = q_[i + 1] - q_[i];
   const double t = (q - q_[i]) / h;
   const double rise = values_[i + 1] - values_[i];

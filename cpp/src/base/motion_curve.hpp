@@ -34,10 +34,14 @@ class MotionCurve {
   [[nodiscard]] const std::vector<double>& slopes() const { return slopes_; }
 
  private:
-  /// The gap that q lies in: its first point.
-  [[nodiscard]] std::size_t gap_of(double q) const;
-
   std::vector<double> q_, values_, slopes_;
+};
+
+/// How a joint follows a degree of freedom, as motion_of says.
+struct Following {
+  double multiplier = 1.0;
+  double offset = 0.0;
+  std::shared_ptr<const MotionCurve> curve;  ///< null: a straight line
 };
 
 /// The value of a joint by the degree of freedom that moves it: multiplier * f(q) + offset, where f

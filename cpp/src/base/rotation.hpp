@@ -28,6 +28,13 @@ inline Eigen::Isometry3d compose(const Eigen::Isometry3d& A, const Eigen::Isomet
   return out;
 }
 
+/// K with K x = v x x.
+inline Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d K;
+  K << 0, -v[2], v[1], v[2], 0, -v[0], -v[1], v[0], 0;
+  return K;
+}
+
 /// Rotation vector of R, length in [0, pi] [rad]. By way of the quaternion, which keeps full
 /// precision at both ends of the range.
 inline Eigen::Vector3d to_rotation_vector(const Eigen::Matrix3d& R) {

@@ -63,28 +63,18 @@ std::vector<Pose> make_targets(const Robot& robot, KdlChain& kdl, std::size_t co
   return targets;
 }
 
-/// Memory of other work, which takes the place of all else in the processor's caches when it is
-/// touched.
-class OtherWork {
- public:
-  explicit OtherWork(std::size_t bytes) : memory_(bytes) {}
-  void touch() {
-    // A byte of each cache line.
-    for (std::size_t i = 0; i < memory_.size(); i += 64) ++memory_[i];
-  }
-
- private:
-  std::vector<unsigned char> memory_;
-};
-
-/// Solves one target after another, and adds up what they took. Returns each call's time [us].
+/// Solves one target after another, and adds up what they took. Before each, so many bytes of other
+/// memory are touched, which take the place of all else in the processor's caches. Returns each
+/// call's time [us].
 std::vector<double> solve_targets(const Solver& solver, const std::vector<Pose>& targets,
-                                  KdlChain& kdl, OtherWork other, Pace& pace, Evaluation& out) {
+                                  KdlChain& kdl, std::size_t touched, Pace& pace, Evaluation& out) {
+  std::vector<unsigned char> other(touched);
   std::vector<double> times(targets.size());
   double attempts = 0;
   double iterations = 0;
   for (std::size_t i = 0; i < targets.size(); ++i) {
-    other.touch();
+    // A byte of each cache line.
+    for (std::size_t byte = 0; byte < other.size(); byte += 64) ++other[byte];
     // The clock's own code is no part of a solve.
     static_cast<void>(Clock::now());
     const auto start = Clock::now();
@@ -176,7 +166,7 @@ Evaluation evaluate(const Solver& solver, std::size_t targets, std::uint64_t see
     static_cast<void>(solver.solve(poses[i]));
     pace(0);
   }
-  std::vector<double> times = solve_targets(solver, poses, *kdl, OtherWork(touched), pace, out);
+  std::vector<double> times = solve_targets(solver, poses, *kdl, touched, pace, out);
   out.kdl_fk_jac_us = 0.5 * (kdl_before + time_kdl_fk_jacobian(robot));
   summarize(std::move(times), out);
   if (stages) time_stages(solver, poses, pace, out);

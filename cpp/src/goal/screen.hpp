@@ -53,7 +53,8 @@ class Screen {
   void find_free(const double* q, std::size_t count, bool* free) const {
     if (scene_) {
       scene_->find_free(q, count, free);
-      ask_exact(q, count, free);
+      // About what is free by the scene's spheres there is no doubt.
+      if (exact_) ask(exact_, q, count, false, free);
     } else {
       std::fill_n(free, count, true);
     }
@@ -82,10 +83,6 @@ class Screen {
   }
 
  private:
-  /// About what is free by the scene's spheres there is no doubt.
-  void ask_exact(const double* q, std::size_t count, bool* free) const {
-    if (exact_) ask(exact_, q, count, false, free);
-  }
   /// Asks about those whose flag is `of`, and sets it to the answer.
   void ask(const Filter& whom, const double* q, std::size_t count, bool of, bool* flag) const {
     std::vector<double> asked;

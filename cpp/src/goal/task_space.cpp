@@ -25,12 +25,6 @@ int odd_axis(const Task& task) {
   return above >= below ? order[2] : order[0];
 }
 
-Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d M;
-  M << 0, -v[2], v[1], v[2], 0, -v[0], -v[1], v[0], 0;
-  return M;
-}
-
 /// Inverse of the left Jacobian of SO(3): w' = J^-1 omega for the rotation vector w of E.
 Eigen::Matrix3d inverse_left_jacobian(const Eigen::Vector3d& w) {
   const double angle = w.norm();

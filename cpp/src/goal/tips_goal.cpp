@@ -54,36 +54,33 @@ int TipsGoal::first_out_of_reach() const {
   return -1;
 }
 
-Pose TipsGoal::seen_pose(int tip, const JointVector& q) const {
-  const int frame = frame_of(tip);
-  return frame < 0 ? pose_of(tip, q) : pose_of(frame, q).inverse() * pose_of(tip, q);
-}
-
-Pose TipsGoal::pose_of(int tip, const JointVector& q, JacobianMatrix& J) const {
-  const auto& [chain, joints] = model_.tip(tip).chain;
+Pose TipsGoal::pose_of(int tip, const JointVector& q, JacobianMatrix* J) const {
+  const ChainPart& chain = model_.tip(tip).chain;
+  if (J == nullptr) return chain.fk(q);
   Pose pose;
   Jacobian of_chain;
-  chain.model().fk_jacobian(picked(q, joints).data(), pose, of_chain);
-  J.setZero(6, model_.dof);
-  put_columns(of_chain, joints, J);
+  chain.model().fk_jacobian(picked(q, chain.joints).data(), pose, of_chain);
+  J->setZero(6, model_.dof);
+  put_columns(of_chain, chain.joints, *J);
   return pose;
 }
 
-Pose TipsGoal::seen_pose(int tip, const JointVector& q, JacobianMatrix& J) const {
-  Pose pose = pose_of(tip, q, J);
+Pose TipsGoal::seen_pose(int tip, const JointVector& q, JacobianMatrix* J) const {
+  const Pose pose = pose_of(tip, q, J);
   const int frame = frame_of(tip);
   if (frame < 0) return pose;
-  // What the other tip's twists do to this one's place as seen from there; then in its axes.
   JacobianMatrix of_frame;
-  const Pose from = pose_of(frame, q, of_frame);
+  const Pose from = pose_of(frame, q, J != nullptr ? &of_frame : nullptr);
+  if (J == nullptr) return from.inverse() * pose;
+  // What the other tip's twists do to this one's place as seen from there; then in its axes.
   const Eigen::Vector3d lever = pose.translation() - from.translation();
-  for (Eigen::Index j = 0; j < J.cols(); ++j) {
+  for (Eigen::Index j = 0; j < J->cols(); ++j) {
     of_frame.col(j).head<3>() += of_frame.col(j).tail<3>().cross(lever);
   }
-  J -= of_frame;
+  *J -= of_frame;
   const Eigen::Matrix3d to_frame = from.linear().transpose();
-  J.topRows<3>() = to_frame * J.topRows<3>();
-  J.bottomRows<3>() = to_frame * J.bottomRows<3>();
+  J->topRows<3>() = to_frame * J->topRows<3>();
+  J->bottomRows<3>() = to_frame * J->bottomRows<3>();
   return from.inverse() * pose;
 }
 
@@ -109,7 +106,7 @@ void TipsGoal::linearize(const JointVector& q, bool exact, Linear& at) const {
   for (int i = 0; i < count(); ++i) {
     Goal::Linear of_tip;
     JacobianMatrix J;
-    const Pose pose = seen_pose(i, q, J);
+    const Pose pose = seen_pose(i, q, &J);
     of_tip.J = J;
     Goal(model_.tip(i).chain.model(), task(i), target(i)).linearize(pose, exact, of_tip);
     at.J.middleRows<6>(6 * i) = of_tip.J;

@@ -48,16 +48,11 @@ class TipsGoal {
   [[nodiscard]] bool is_reached(const Linear::Vector& missing, double part) const;
 
  private:
-  /// T_base_tcp of a tip at q.
-  [[nodiscard]] Pose pose_of(int tip, const JointVector& q) const {
-    return model_.tip(tip).chain.fk(q);
-  }
-  /// The same, and its Jacobian over all joints.
-  Pose pose_of(int tip, const JointVector& q, JacobianMatrix& J) const;
-  /// The pose that the tip's target is compared with.
-  [[nodiscard]] Pose seen_pose(int tip, const JointVector& q) const;
-  /// The same, and its Jacobian over all joints, in the axes of the frame that it is seen from.
-  Pose seen_pose(int tip, const JointVector& q, JacobianMatrix& J) const;
+  /// T_base_tcp of a tip at q, and its Jacobian over all joints, if that is not null.
+  Pose pose_of(int tip, const JointVector& q, JacobianMatrix* J = nullptr) const;
+  /// As pose_of, of the pose that the tip's target is compared with, in the axes of the frame that
+  /// it is seen from.
+  Pose seen_pose(int tip, const JointVector& q, JacobianMatrix* J = nullptr) const;
 
   const TipsModel& model_;
   std::vector<TaskSpace> tasks_;

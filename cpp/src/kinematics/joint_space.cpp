@@ -19,7 +19,7 @@ constexpr double kRounding = 1e-6;
 /// Calls visit(q, beyond) with q at each combination of images of the joints that turn in sums, and
 /// how far sums, by what a joint would have to move, and these joints lie outside there.
 template <typename Visit>
-void visit_images(const JointSpace& joints, const JointVector& from, const Visit& visit) {
+void visit_turned(const JointSpace& joints, const JointVector& from, const Visit& visit) {
   const JointVector middle = joints.middle();
   JointVector q = from;
   for (const JointVector& turns : joints.images) {
@@ -45,7 +45,7 @@ bool JointSpace::leaves(const double* q, const double* step) const {
   }
   if (sums.empty()) return false;
   bool leaves = true;
-  visit_images(*this, end,
+  visit_turned(*this, end,
                [&](const JointVector& /*at*/, double beyond) { leaves = leaves && beyond > 0; });
   return leaves;
 }
@@ -62,7 +62,7 @@ void JointSpace::choose_images(double slack, const Length& length, JointVector& 
   const JointVector from = q;
   double least_beyond = kInfinity;
   double shortest = kInfinity;
-  visit_images(*this, from, [&](const JointVector& at, double beyond) {
+  visit_turned(*this, from, [&](const JointVector& at, double beyond) {
     const double outside = beyond > slack ? beyond : 0.0;
     const double way = length(at);
     if (outside > least_beyond || (outside == least_beyond && way >= shortest)) return;
@@ -121,25 +121,6 @@ bool JointSpace::wrap_nearest(const JointVector& near, double slack, const Lengt
   const JointVector image = q;
   q = clamp(image);
   return held || q != image;
-}
-
-void JointSpace::first_image(JointVector& q) const {
-  for (int j = 0; j < dof(); ++j) {
-    if (is_periodic(j)) q[j] = lowest_image(j, q[j]);
-  }
-  // Of the combinations, the first that holds the sums.
-  if (!contains_sums(q.data())) next_image(q);
-}
-
-bool JointSpace::next_image(JointVector& q) const {
-  while (next_combination(q)) {
-    if (contains_sums(q.data())) return true;
-  }
-  if (!contains_sums(q.data())) {
-    while (next_combination(q) && !contains_sums(q.data())) {
-    }
-  }
-  return false;
 }
 
 double JointSpace::lowest_image(int joint, double value) const {

@@ -66,12 +66,18 @@ class JointSpace : public LimitSet {
   using Length = FunctionRef<double(const JointVector&)>;
   bool wrap_nearest(const JointVector& near, double slack, const Length& length,
                     JointVector& q) const;
-  /// Brings each periodic joint to its first image inside the limits, or into [-pi, pi) if there
-  /// are none. Images that lie outside by rounding count: clamp() holds them to the limits.
-  void first_image(JointVector& q) const;
-  /// Moves to the next combination of images inside the limits; false after the last, which leaves
-  /// q at the first. Starts from first_image.
-  bool next_image(JointVector& q) const;
+  /// Calls use(image) with each combination of the joints' images inside the limits, from the
+  /// lowest on, as long as it returns true; of joints without limits in [-pi, pi). Images that lie
+  /// outside by rounding are held to the limits.
+  template <typename Use>
+  void visit_images(JointVector q, const Use& use) const {
+    for (int j = 0; j < dof(); ++j) {
+      if (is_periodic(j)) q[j] = lowest_image(j, q[j]);
+    }
+    do {
+      if (contains_sums(q.data()) && !use(clamp(q))) return;
+    } while (next_combination(q));
+  }
 
   /// By how much a joint's values differ, whole turns counting nothing where it is periodic.
   [[nodiscard]] double difference(int joint, double from, double to) const {
@@ -130,9 +136,10 @@ class JointSpace : public LimitSet {
   std::vector<JointVector> images;
 
  private:
-  /// Of a periodic joint. An image that rounding leaves outside is held to the limit.
+  /// Of a periodic joint, if it has one inside its limits.
   [[nodiscard]] double lowest_image(int joint, double value) const;
-  /// next_image, whatever the sums are.
+  /// The next combination of images inside the joints' own limits, whatever the sums are; false
+  /// after the last, which leaves q at the first.
   bool next_combination(JointVector& q) const;
   [[nodiscard]] JointVector draw(Random& random) const;
   /// Of the joints that turn in sums the images nearest by `length` that lie inside by up to

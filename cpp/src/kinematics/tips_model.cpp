@@ -184,10 +184,6 @@ void TipsModel::find_shared() {
   }
 }
 
-bool TipsModel::is_shared(int joint) const {
-  return std::binary_search(shared.begin(), shared.end(), joint);
-}
-
 std::vector<int> TipsModel::places_of(const Robot& part) const {
   std::vector<int> places;
   for (const std::string& each : part.joint_names()) {
@@ -211,7 +207,9 @@ RobotOptions TipsModel::options_between(const std::string& base, const std::stri
 void TipsModel::split(Tip& tip) const {
   const std::vector<ChainJoint>& chain = tip.chain.model().spec.joints;
   const auto is_of_stem = [&](const ChainJoint& joint) {
-    return !joint.fixed && is_shared(tip.chain.joints[static_cast<std::size_t>(joint.variable)]);
+    return !joint.fixed &&
+           std::binary_search(shared.begin(), shared.end(),
+                              tip.chain.joints[static_cast<std::size_t>(joint.variable)]);
   };
   const auto is_of_arm = [&](const ChainJoint& joint) {
     return !joint.fixed && !is_of_stem(joint);

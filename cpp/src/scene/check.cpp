@@ -36,17 +36,13 @@ Pose frame_of(const lanes::SceneRoom& room, int body) {
   return Pose(Eigen::Map<const Eigen::Matrix4d>(room.frame + lanes::kFrameNumbers * body));
 }
 
-lanes::SceneBall ball_of(const lanes::SceneNode& node, int k) {
-  return {{node.x[k], node.y[k], node.z[k]}, node.radius[k]};
-}
-
 /// Whether a ball below a node touches; `found` is then it. `may` tells it of balls around others.
 template <class May, class Touches>
 bool find_touching(const lanes::SceneView& view, int at, const May& may, const Touches& touches,
                    lanes::SceneBall& found) {
   const lanes::SceneNode& node = view.node[at];
   for (int k = 0; k < node.count; ++k) {
-    const lanes::SceneBall ball = ball_of(node, k);
+    const lanes::SceneBall ball{{node.x[k], node.y[k], node.z[k]}, node.radius[k]};
     if (node.is_leaf) {
       if (!touches(ball)) continue;
       found = ball;

@@ -83,9 +83,8 @@ Obstacle Obstacle::capsule(double radius, double length, const Pose& T_base_obst
 
 Obstacle Obstacle::cylinder(double radius, double length, const Pose& T_base_obstacle,
                             double margin) {
-  Obstacle obstacle = make_obstacle(Shape::cylinder, T_base_obstacle, margin);
-  obstacle.radius = radius;
-  obstacle.length = length;
+  Obstacle obstacle = capsule(radius, length, T_base_obstacle, margin);
+  obstacle.shape = Shape::cylinder;
   return obstacle;
 }
 

@@ -19,12 +19,6 @@ void Scene::Data::check_name(const std::string& name, bool is_obstacle) const {
   throw InvalidArgumentError("name: '" + name + "' is " + what + " already");
 }
 
-const std::shared_ptr<const PointGrid>& Scene::Data::grid_of(const Obstacle& cloud) {
-  auto& grid = grids_[cloud.points];
-  if (!grid) grid = std::make_shared<const PointGrid>(*cloud.points);
-  return grid;
-}
-
 void Scene::Data::add(const Obstacle& obstacle) {
   const Pose pose(obstacle.pose);
   const Eigen::Matrix3d R = pose.linear();
@@ -57,10 +51,12 @@ void Scene::Data::add(const Obstacle& obstacle) {
       planes_.push_back(plane);
       break;
     }
-    case Obstacle::Shape::points:
-      clouds_.push_back(
-          {grid_of(obstacle), StoredPose(pose.inverse()), obstacle.radius + obstacle.margin});
+    case Obstacle::Shape::points: {
+      auto& grid = grids_[obstacle.points];
+      if (!grid) grid = std::make_shared<const PointGrid>(*obstacle.points);
+      clouds_.push_back({grid, StoredPose(pose.inverse()), obstacle.radius + obstacle.margin});
       break;
+    }
   }
 }
 

@@ -78,7 +78,6 @@ struct Scene::Data {
  private:
   void add(const Obstacle& obstacle);
   void show_obstacles(lanes::SceneView& view) const;
-  [[nodiscard]] const std::shared_ptr<const PointGrid>& grid_of(const Obstacle& cloud);
   /// The clearance of what a view shows from the points, with the bodies where they are in `room`;
   /// infinite where nothing touches one.
   double clearance_of_points(const lanes::SceneView& view, const lanes::SceneRoom& room,

@@ -145,15 +145,14 @@ bool AnswerSelector::select_image(double best, JointVector& q) {
   for (std::size_t i = 0; i < found_.size(); ++i) {
     // Whole turns change nothing about a collision.
     if (!free_[i]) continue;
-    JointVector next = found_.at(i);
-    model_.joints.first_image(next);
     std::size_t left = kMostImages / found_.size();
-    do {
-      const JointVector image = model_.joints.clamp(next);
-      if (!(cost_of(image) < best) || !goal_.is_solution(image)) continue;
-      std::copy_n(image.data(), dof, images.data() + count * dof);
-      if (++count == kChunk) flush();
-    } while (--left > 0 && model_.joints.next_image(next));
+    model_.joints.visit_images(found_.at(i), [&](const JointVector& image) {
+      if (cost_of(image) < best && goal_.is_solution(image)) {
+        std::copy_n(image.data(), dof, images.data() + count * dof);
+        if (++count == kChunk) flush();
+      }
+      return --left > 0;
+    });
     leaves_out_ = leaves_out_ || left == 0 || !model_.joints.upper.allFinite();
   }
   flush();

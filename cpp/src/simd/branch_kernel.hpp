@@ -98,6 +98,35 @@ IKSEL_INLINE void solve_three_parallel(const ClosedForm& form, const BranchTarge
   is_enough(form, 3, out);
 }
 
+/// Solves the two branches that differ in the last sign only, the two of `last`, or one, until
+/// their quality, which begins as `quality`, is enough: take(i, branch).
+template <typename T, typename Q, int kCount, typename Take>
+IKSEL_INLINE void solve_signs(const ClosedForm& form, const BranchTarget<T>& target,
+                              const T (&side)[2], const double (&last)[kCount], const Q& quality,
+                              const Take& take) {
+  Branch<T, Q> arm;
+  arm.quality = quality;
+  const bool has_wrist = form.closure != Closure::three_parallel;
+  WristTarget<T> wrist;
+  if (has_wrist) {
+    place_wrist(form, target.w, {side[0], side[1], T(1.0)}, arm);
+    if (arm.quality.is_over) {
+      for (int i = 0; i < kCount; ++i) take(i, arm);
+      return;
+    }
+    wrist = behind_arm(form, target, arm);
+  }
+  for (int i = 0; i < kCount; ++i) {
+    Branch<T, Q> branch = arm;
+    if (has_wrist) {
+      turn_wrist(form, wrist, T(last[i]), branch);
+    } else {
+      solve_three_parallel(form, target, {side[0], side[1], T(last[i])}, branch);
+    }
+    take(i, branch);
+  }
+}
+
 /// The joint values, and how far they are outside of their limits.
 template <typename T, typename Q>
 IKSEL_INLINE void store_branch(const ClosedForm& form, const Branch<T, Q>& branch, int first,
@@ -197,16 +226,6 @@ void solve_closed(const ClosedForm& form, BranchPack& pack) {
     finish_arm(form, arm, first, pack);
     if (kShares) finish_arm(form, arm, first + kHalf, pack);
   }
-}
-
-template <typename T>
-void solve_branches(const ClosedForm& form, BranchPack& pack) {
-  solve_closed<T, /*kOfOneTarget=*/false>(form, pack);
-}
-
-template <typename T>
-void solve_inside(const ClosedForm& form, BranchPack& pack) {
-  solve_closed<T, /*kOfOneTarget=*/true>(form, pack);
 }
 
 /// Of any form, without `best` and `worst`; `error` is the least that it may be.

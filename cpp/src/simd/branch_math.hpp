@@ -144,32 +144,31 @@ struct Definiteness {
   }
 };
 
-/// One of the two angles with a cos(t) + b sin(t) = rest. Where there is none, about the nearest:
-/// cosine and sine are then more than 1 together, and what is made of them means nothing.
+/// One of the two angles with a cos(t) + b sin(t) = rest, where a^2 + b^2 = r2 = 1 / inverse. Where
+/// there is none, about the nearest: cosine and sine are then more than 1 together, and what is
+/// made of them means nothing.
+template <typename T, typename Q>
+IKSEL_INLINE Angle<T> solve_angle(const T& a, const T& b, const T& r2, const T& inverse,
+                                  const T& rest, const T& sign, Q& quality) {
+  const T square = r2 - rest * rest;
+  const T root = sqrt(max(square, T(0.0)));
+  quality.take_root(square, abs(rest), root);
+  const T cosine = rest * inverse;
+  const T sine = sign * root * inverse;
+  return angle_of(a * cosine - b * sine, b * cosine + a * sine);
+}
 template <typename T, typename Q>
 IKSEL_INLINE Angle<T> solve_angle(const T& a, const T& b, const T& rest, const T& sign,
                                   Q& quality) {
   const T r2 = a * a + b * b;
-  const T square = r2 - rest * rest;
-  const T root = sqrt(max(square, T(0.0)));
-  quality.take_root(square, abs(rest), root);
-  const T inverse = T(1.0) / max(r2, T(1e-30));
-  const T cosine = rest * inverse;
-  const T sine = sign * root * inverse;
-  return angle_of(a * cosine - b * sine, b * cosine + a * sine);
+  return solve_angle(a, b, r2, T(1.0) / max(r2, T(1e-30)), rest, sign, quality);
 }
 
 /// One of the two angles with x . R(k, t) y = rest.
 template <typename T, typename Q>
 IKSEL_INLINE Angle<T> solve_angle(const Turned& turned, const T& rest, const T& sign, Q& quality) {
-  const T left = rest - T(turned.c);
-  const T square = T(turned.r2) - left * left;
-  const T root = sqrt(max(square, T(0.0)));
-  quality.take_root(square, abs(left), root);
-  const T cosine = left * T(turned.inverse);
-  const T sine = sign * root * T(turned.inverse);
-  return angle_of(T(turned.a) * cosine - T(turned.b) * sine,
-                  T(turned.b) * cosine + T(turned.a) * sine);
+  return solve_angle(T(turned.a), T(turned.b), T(turned.r2), T(turned.inverse), rest - T(turned.c),
+                     sign, quality);
 }
 
 /// The angle with cosine c and sine s times the product of two lengths, mostly equal ones.

@@ -73,36 +73,20 @@ template <typename T>
 IKSEL_INLINE void enclose_signs(const ClosedForm& form, const BranchTarget<Enclosed<T>>& target,
                                 const Enclosed<T>& held, const Enclosed<T> (&side)[2],
                                 T (&room)[2]) {
-  EnclosedBranch<T> arm;
   if (form.closure == Closure::sweep_4 || form.closure == Closure::sweep_6) {
+    EnclosedBranch<T> branch;
     Enclosed<T> residual;
-    solve_residual(form, target, held, {side[0], side[1], Enclosed<T>(1.0)}, arm, residual);
-    if (!arm.quality.is_over) {
-      arm.quality.take(residual.reach() - abs(residual.value()));
-      for (int j = 3; j < 6; ++j) is_enough(form, j, arm);  // the held one once more
+    solve_residual(form, target, held, {side[0], side[1], Enclosed<T>(1.0)}, branch, residual);
+    if (!branch.quality.is_over) {
+      branch.quality.take(residual.reach() - abs(residual.value()));
+      for (int j = 3; j < 6; ++j) is_enough(form, j, branch);  // the held one once more
     }
-    room[0] = arm.quality.room;
+    room[0] = branch.quality.room;
     room[1] = T(-1.0);
     return;
   }
-  const bool has_wrist = form.closure != Closure::three_parallel;
-  WristTarget<Enclosed<T>> wrist;
-  if (has_wrist) {
-    place_wrist(form, target.w, {side[0], side[1], Enclosed<T>(1.0)}, arm);
-    room[0] = room[1] = arm.quality.room;
-    if (arm.quality.is_over) return;
-    wrist = behind_arm(form, target, arm);
-  }
-  for (int i = 0; i < 2; ++i) {
-    EnclosedBranch<T> branch = arm;
-    const Enclosed<T> last(i == 0 ? 1.0 : -1.0);
-    if (has_wrist) {
-      turn_wrist(form, wrist, last, branch);
-    } else {
-      solve_three_parallel(form, target, {side[0], side[1], last}, branch);
-    }
-    room[i] = branch.quality.room;
-  }
+  solve_signs(form, target, side, {1.0, -1.0}, Presence<T>(),
+              [&](int i, const EnclosedBranch<T>& branch) { room[i] = branch.quality.room; });
 }
 
 /// Ranges of the held joint, pack.held +- half; `room` below 0 where no branch of a lane's first

@@ -92,12 +92,6 @@ struct PackResult {
   int iterations;  ///< of the whole pack
 };
 
-/// Iterates a pack, until a lane of the mask `watched` arrives or the iterations are used up.
-/// `task` is null for full poses.
-using Advance = PackResult (*)(const LaneChain& chain, const LaneOptions& options,
-                               const LaneTask* task, unsigned watched, int iterations,
-                               LanePack& pack);
-
 /// Iterates all lanes of a pack so often: seeds that are mostly going to fail need no precision.
 using AdvanceRoughly = void (*)(const LaneChainOf<float>& chain, const LaneOptions& options,
                                 int iterations, RoughPack& pack);
@@ -157,87 +151,28 @@ struct SeedPack {
   unsigned char order[kBlock];  ///< best score first
 };
 
-using PrepareSeeds = void (*)(const SeedChain& chain, const SeedTarget& target, const float* block,
-                              SeedPack& out);
-
-/// Blocks of configurations of n joints, kBlock values of each joint one after the other and so
-/// many numbers from block to block, from one more: lowers their `nearest` to the distance in the
-/// joint where that is largest [rad or m]. `per_turn`: 1 / 2 pi for joints whose whole turns change
-/// nothing, else 0.
-using AddKnown = void (*)(int n, const float* per_turn, const float* from, const float* q,
-                          int blocks, std::ptrdiff_t stride, float* nearest);
-
-/// Index of the largest of `count` numbers, a multiple of kBlock; of equals the first.
-using FindLargest = int (*)(int count, const float* numbers);
-
 struct ClosedForm;
 struct BranchPack;
-/// The angles of all lanes of a pack (branch_types.hpp); solve_inside, of all branches of one
-/// target, says no more of those outside the limits than that they are there; find_branches says
-/// less of how certain they are.
-using SolveBranches = void (*)(const ClosedForm& form, BranchPack& pack);
+struct BranchRow;
 struct Regularity;
-using MeasureRegularity = void (*)(const ClosedForm& form, const BranchPack& pack, Regularity& out);
-/// How far branches are from being answers, at kWidth angles of the held joint (sweep_kernel.hpp).
-using RateBranches = void (*)(const ClosedForm& form, const BranchPack& pack, double bound,
-                              double (&off)[kWidth][kWidth]);
-using RateBranch = void (*)(const ClosedForm& form, const BranchPack& pack, double bound,
-                            double (&off)[kWidth]);
-/// Where branches of two signs, and of each third one, may be inside the limits for some target
-/// within ClosedForm::error of the pack's first: `room` below 0 where there are none in pack.held
-/// +- half of the held joint [rad or m] (enclosure_kernel.hpp).
-using EncloseBranches = void (*)(const ClosedForm& form, const BranchPack& pack, double half,
-                                 double (&room)[2][kWidth]);
-
 struct MoveForm;
 struct MovePack;
-struct BranchRow;
-/// How far all lanes of a pack are away (move_kernel.hpp).
-using MeasureMoves = void (*)(const MoveForm& form, const BranchPack& pack, MovePack& out);
-/// All branches at kWidth values of the held joint, and how far they are away; unless that is more
-/// than `most`, or they are more than `bound` from being answers (nearest_kernel.hpp).
-using MeasureBranches = void (*)(const ClosedForm& form, const MoveForm& move,
-                                 const BranchPack& pack, double bound, double most,
-                                 BranchRow (&rows)[kWidth]);
-
 struct ResidualForm;
-/// The residuals of `n` angles, a multiple of kWidth (residual_kernel.hpp). Returns the least of
-/// what they are divided by.
-using FindResiduals = double (*)(const ResidualForm& form, const double* angles, int n,
-                                 double* residuals);
 struct LoopForm;
 struct LoopTarget;
 struct TrigonometricPolynomial;
-/// The determinants of six equations at `n` angles, a multiple of kWidth (loop_determinant.hpp).
-using FindDeterminants = void (*)(const LoopTarget& target, const double* angles, int n,
-                                  double* values);
-using EvaluatePolynomial = void (*)(const TrigonometricPolynomial& polynomial, const double* angles,
-                                    int n, double* values);
-/// C = A B, by columns; so many rows of A and C, a multiple of kWidth.
-using Multiply = void (*)(const double* A, int rows, const double* B, int inner, int columns,
-                          double* C);
-/// The other joints' angles, at kWidth roots.
-using CloseLoops = void (*)(const LoopForm& form, const LoopTarget& target,
-                            const ClosedForm& limits, BranchPack& pack);
-/// The number of roots between values beside each other: 0, 1, or 2 if that is not certain.
-using CountRoots = void (*)(const double* values, int n, double apart, double* counts);
-
 struct CurvePack;
-/// The tangents of curves where the lanes stand, and a step of each along its curve; returns the
-/// lanes that went (curve_kernel.hpp).
-using OrientCurves = void (*)(const LaneChain& chain, CurvePack& pack);
-using FollowCurves = unsigned (*)(const LaneChain& chain, CurvePack& pack);
-
 struct SceneView;
 struct SceneRoom;
-/// The clearance of a configuration (scene_types.hpp).
-using FindClearance = double (*)(const SceneView& scene, const double* q, SceneRoom& room);
 
 /// Iterations of packs of one width.
 struct PackKernels {
   int lanes;
-  Advance advance;
-  Advance advance_task;
+  /// Iterates a pack, until a lane of the mask `watched` arrives or the iterations are used up.
+  /// `task` is null for full poses.
+  PackResult (*advance)(const LaneChain& chain, const LaneOptions& options, const LaneTask* task,
+                        unsigned watched, int iterations, LanePack& pack);
+  decltype(advance) advance_task;
 };
 
 /// The kernels of one instruction set.
@@ -248,27 +183,63 @@ struct LaneKernels {
   PackKernels narrow, wide;
   AdvanceRoughly advance_roughly;
   Approach approach;
-  PrepareSeeds prepare;
-  AddKnown add_known;
-  FindLargest find_largest;
-  SolveBranches solve_branches;
-  SolveBranches solve_inside;
-  SolveBranches find_branches;
-  MeasureRegularity measure_regularity;
-  RateBranches rate_branches;
-  RateBranch rate_branch;
-  EncloseBranches enclose_branches;
-  MeasureMoves measure_moves;
-  MeasureBranches measure_branches;
-  FindResiduals find_residuals;
-  CountRoots count_roots;
-  FindClearance find_clearance;
-  FindDeterminants find_determinants;
-  EvaluatePolynomial evaluate_polynomial;
-  CloseLoops close_loops;
-  Multiply multiply;
-  OrientCurves orient_curves;
-  FollowCurves follow_curves;
+  void (*prepare)(const SeedChain& chain, const SeedTarget& target, const float* block,
+                  SeedPack& out);
+  /// Blocks of configurations of n joints, kBlock values of each joint one after the other and so
+  /// many numbers from block to block, from one more: lowers their `nearest` to the distance in the
+  /// joint where that is largest [rad or m]. `per_turn`: 1 / 2 pi for joints whose whole turns
+  /// change nothing, else 0.
+  void (*add_known)(int n, const float* per_turn, const float* from, const float* q, int blocks,
+                    std::ptrdiff_t stride, float* nearest);
+  /// Index of the largest of `count` numbers, a multiple of kBlock; of equals the first.
+  int (*find_largest)(int count, const float* numbers);
+
+  /// The angles of all lanes of a pack (branch_types.hpp); solve_inside, of all branches of one
+  /// target, says no more of those outside the limits than that they are there; find_branches says
+  /// less of how certain they are.
+  void (*solve_branches)(const ClosedForm& form, BranchPack& pack);
+  decltype(solve_branches) solve_inside;
+  decltype(solve_branches) find_branches;
+  void (*measure_regularity)(const ClosedForm& form, const BranchPack& pack, Regularity& out);
+  /// How far branches are from being answers, at kWidth angles of the held joint
+  /// (sweep_kernel.hpp).
+  void (*rate_branches)(const ClosedForm& form, const BranchPack& pack, double bound,
+                        double (&off)[kWidth][kWidth]);
+  void (*rate_branch)(const ClosedForm& form, const BranchPack& pack, double bound,
+                      double (&off)[kWidth]);
+  /// Where branches of two signs, and of each third one, may be inside the limits for some target
+  /// within ClosedForm::error of the pack's first: `room` below 0 where there are none in pack.held
+  /// +- half of the held joint [rad or m] (enclosure_kernel.hpp).
+  void (*enclose_branches)(const ClosedForm& form, const BranchPack& pack, double half,
+                           double (&room)[2][kWidth]);
+  /// How far all lanes of a pack are away (move_kernel.hpp).
+  void (*measure_moves)(const MoveForm& form, const BranchPack& pack, MovePack& out);
+  /// All branches at kWidth values of the held joint, and how far they are away; unless that is
+  /// more than `most`, or they are more than `bound` from being answers (nearest_kernel.hpp).
+  void (*measure_branches)(const ClosedForm& form, const MoveForm& move, const BranchPack& pack,
+                           double bound, double most, BranchRow (&rows)[kWidth]);
+
+  /// The residuals of `n` angles, a multiple of kWidth (residual_kernel.hpp). Returns the least of
+  /// what they are divided by.
+  double (*find_residuals)(const ResidualForm& form, const double* angles, int n,
+                           double* residuals);
+  /// The number of roots between values beside each other: 0, 1, or 2 if that is not certain.
+  void (*count_roots)(const double* values, int n, double apart, double* counts);
+  /// The clearance of a configuration (scene_types.hpp).
+  double (*find_clearance)(const SceneView& scene, const double* q, SceneRoom& room);
+  /// The determinants of six equations at `n` angles, a multiple of kWidth (loop_determinant.hpp).
+  void (*find_determinants)(const LoopTarget& target, const double* angles, int n, double* values);
+  void (*evaluate_polynomial)(const TrigonometricPolynomial& polynomial, const double* angles,
+                              int n, double* values);
+  /// The other joints' angles, at kWidth roots.
+  void (*close_loops)(const LoopForm& form, const LoopTarget& target, const ClosedForm& limits,
+                      BranchPack& pack);
+  /// C = A B, by columns; so many rows of A and C, a multiple of kWidth.
+  void (*multiply)(const double* A, int rows, const double* B, int inner, int columns, double* C);
+  /// The tangents of curves where the lanes stand, and a step of each along its curve; returns the
+  /// lanes that went (curve_kernel.hpp).
+  void (*orient_curves)(const LaneChain& chain, CurvePack& pack);
+  unsigned (*follow_curves)(const LaneChain& chain, CurvePack& pack);
 };
 
 }  // namespace iksel::lanes

@@ -85,7 +85,7 @@ void measure_branches(const ClosedForm& form, const MoveForm& move, const Branch
         Lanes<T>::store(found.least, row.least + first);
         store_moves(move, found.loose, inside, beyond, found.least, first, row.moves);
       };
-      solve_signs(form, target, {pack.sign[0][lane], pack.sign[1][lane]},
+      solve_signs(form, target, {T(pack.sign[0][lane]), T(pack.sign[1][lane])},
                   {pack.sign[2][lane], pack.sign[2][other]}, prospect, take);
     }
   }

@@ -7,21 +7,24 @@
 
 namespace iksel::lanes {
 
+template <typename T>
+IKSEL_INLINE Vec<T> difference(const Vec<T>& a, const Vec<T>& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
 /// Of two balls whose radii together are `reach`.
 template <typename T>
 IKSEL_INLINE T clearance(const Vec<T>& a, const Vec<T>& b, const T& reach) {
-  const Vec<T> d{a.x - b.x, a.y - b.y, a.z - b.z};
+  const Vec<T> d = difference(a, b);
   return dot(d, d) - reach * reach;
 }
 
 /// Whether no ball is so near to a shape that it need be looked at closer.
 template <typename T>
 IKSEL_INLINE bool is_far(const SceneBlock& block, const Vec<T>& c, const T& radius) {
-  const T x = c.x - T(block.centre[0]);
-  const T y = c.y - T(block.centre[1]);
-  const T z = c.z - T(block.centre[2]);
+  const Vec<T> d = difference(c, constant<T>(block.centre));
   const T reach = radius + T(block.around);
-  return !any(x * x + y * y + z * z <= reach * reach);
+  return !any(dot(d, d) <= reach * reach);
 }
 
 template <typename Shape, typename T>
@@ -31,13 +34,10 @@ IKSEL_INLINE bool is_far(const Shape& /*shape*/, const Vec<T>& /*c*/, const T& /
 
 template <typename T>
 IKSEL_INLINE T clearance(const SceneBlock& block, const Vec<T>& c, const T& radius) {
-  const T x = c.x - T(block.centre[0]);
-  const T y = c.y - T(block.centre[1]);
-  const T z = c.z - T(block.centre[2]);
+  const Vec<T> d = difference(c, constant<T>(block.centre));
   T square(0.0);
   for (int i = 0; i < 3; ++i) {
-    const double(&a)[3] = block.axis[i];
-    const T along = x * T(a[0]) + y * T(a[1]) + z * T(a[2]);
+    const T along = dot(d, constant<T>(block.axis[i]));
     const T outside = max(abs(along) - T(block.half[i]), T(0.0));
     square = square + outside * outside;
   }
@@ -47,12 +47,9 @@ IKSEL_INLINE T clearance(const SceneBlock& block, const Vec<T>& c, const T& radi
 
 template <typename T>
 IKSEL_INLINE T clearance(const SceneCylinder& cylinder, const Vec<T>& c, const T& radius) {
-  const T x = c.x - T(cylinder.centre[0]);
-  const T y = c.y - T(cylinder.centre[1]);
-  const T z = c.z - T(cylinder.centre[2]);
-  const double(&a)[3] = cylinder.axis;
-  const T along = x * T(a[0]) + y * T(a[1]) + z * T(a[2]);
-  const T across2 = max(x * x + y * y + z * z - along * along, T(0.0));
+  const Vec<T> d = difference(c, constant<T>(cylinder.centre));
+  const T along = dot(d, constant<T>(cylinder.axis));
+  const T across2 = max(dot(d, d) - along * along, T(0.0));
   const T beside = max(sqrt(across2) - T(cylinder.radius), T(0.0));
   const T above = max(abs(along) - T(cylinder.half), T(0.0));
   const T reach = radius + T(cylinder.margin);
@@ -61,8 +58,7 @@ IKSEL_INLINE T clearance(const SceneCylinder& cylinder, const Vec<T>& c, const T
 
 template <typename T>
 IKSEL_INLINE T clearance(const ScenePlane& plane, const Vec<T>& c, const T& radius) {
-  const double(&n)[3] = plane.normal;
-  return c.x * T(n[0]) + c.y * T(n[1]) + c.z * T(n[2]) - (T(plane.offset) + radius);
+  return dot(c, constant<T>(plane.normal)) - (T(plane.offset) + radius);
 }
 
 }  // namespace iksel::lanes

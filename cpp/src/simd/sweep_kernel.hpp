@@ -94,36 +94,6 @@ IKSEL_INLINE BranchTarget<T> held_target(const ClosedForm& form, const BranchPac
   return target;
 }
 
-/// Solves the two branches that differ in the last sign only, the two of `last`, or one, until
-/// their quality, which begins as `quality`, is enough: take(i, branch).
-template <typename T, typename Q, int kCount, typename Take>
-IKSEL_INLINE void solve_signs(const ClosedForm& form, const BranchTarget<T>& target,
-                              const double (&sign)[2], const double (&last)[kCount],
-                              const Q& quality, const Take& take) {
-  Branch<T, Q> arm;
-  arm.quality = quality;
-  const T side[2] = {T(sign[0]), T(sign[1])};
-  const bool has_wrist = form.closure != Closure::three_parallel;
-  WristTarget<T> wrist;
-  if (has_wrist) {
-    place_wrist(form, target.w, {side[0], side[1], T(1.0)}, arm);
-    if (arm.quality.is_over) {
-      for (int i = 0; i < kCount; ++i) take(i, arm);
-      return;
-    }
-    wrist = behind_arm(form, target, arm);
-  }
-  for (int i = 0; i < kCount; ++i) {
-    Branch<T, Q> branch = arm;
-    if (has_wrist) {
-      turn_wrist(form, wrist, T(last[i]), branch);
-    } else {
-      solve_three_parallel(form, target, {side[0], side[1], T(last[i])}, branch);
-    }
-    take(i, branch);
-  }
-}
-
 /// How far such branches are off.
 template <typename T, int kCount>
 IKSEL_INLINE void rate_signs(const ClosedForm& form, const BranchTarget<T>& target, const T& held,
@@ -132,7 +102,7 @@ IKSEL_INLINE void rate_signs(const ClosedForm& form, const BranchTarget<T>& targ
   Prospect<T> prospect;
   prospect.bound = bound;
   solve_signs(
-      form, target, sign, last,
+      form, target, {T(sign[0]), T(sign[1])}, last,
       prospect, [&](int i, RatedBranch<T>& branch) __attribute__((always_inline)) {
         add_sums(form, held, branch);
         Lanes<T>::store(branch.quality.off(), off[i]);

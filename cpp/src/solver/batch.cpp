@@ -37,11 +37,11 @@ void write_row(const Result& result, std::size_t row, int dof, const BatchView& 
   if (out.proof != nullptr) out.proof[row] = static_cast<std::uint8_t>(result.proof);
 }
 
-/// A row that has no pose.
-Result no_pose() {
-  Result result;
-  result.status = Status::invalid_pose;
-  return result;
+/// Throws InvalidArgumentError about what a row is wanted near to.
+void check_near(const Solver::Impl& solver, const JointVector& near, std::size_t row) {
+  const std::string name = "near[" + std::to_string(row) + "]";
+  check_joints(near, solver.robot.dof(), name.c_str());
+  solver.angles.check(near, name.c_str());
 }
 
 /// A request for many targets, each with its own `near` perhaps.
@@ -151,8 +151,8 @@ class Batch {
     bare.exact = nullptr;
     bare.filter = nullptr;
     if (near_(first) == nullptr && !bare.has_requirements()) {
-      const auto keep = [&](std::size_t i, const Result& result) { answers[i - first] = result; };
-      solve_plain(first, last, workspace, keep);
+      solve_plain(first, last, workspace,
+                  [&](std::size_t i, const Result& result) { answers[i - first] = result; });
     } else {
       for (std::size_t i = first; i < last; ++i) {
         answers[i - first] = solve_one(i, bare, workspace);
@@ -195,7 +195,9 @@ void Solver::Impl::solve_rows(std::size_t count, const PoseAt& pose_at, const So
                               const Near& near_of, int threads, const OnRow& on_row,
                               const Progress& progress) const {
   const BatchTargets<PoseAt> targets(count, robot.tips(), pose_at, request.on_invalid_pose);
-  for (const std::size_t row : targets.invalid_rows()) on_row(row, no_pose());
+  Result no_pose;
+  no_pose.status = Status::invalid_pose;
+  for (const std::size_t row : targets.invalid_rows()) on_row(row, no_pose);
   const auto on_result = [&](std::size_t i, const Result& result) {
     on_row(targets.row_of(i), result);
   };
@@ -218,11 +220,7 @@ std::vector<Result> Solver::solve_batch(const std::vector<Pose>& T_base_tip,
                                std::to_string(count) + (impl_->tips ? " targets" : " poses") +
                                ", got " + std::to_string(near.size()));
   }
-  for (std::size_t i = 0; i < near.size(); ++i) {
-    const std::string name = "near[" + std::to_string(i) + "]";
-    check_joints(near[i], robot().dof(), name.c_str());
-    impl_->angles.check(near[i], name.c_str());
-  }
+  for (std::size_t i = 0; i < near.size(); ++i) check_near(*impl_, near[i], i);
   std::vector<Result> results(count);
   impl_->solve_rows(
       count, [&](std::size_t i) -> const Pose& { return T_base_tip[i]; }, request,
@@ -241,10 +239,7 @@ void Solver::solve_batch(const double* T_base_tip, std::size_t count, const Solv
     return near == nullptr ? nullptr : near + row * static_cast<std::size_t>(dof);
   };
   for (std::size_t row = 0; near != nullptr && row < count; ++row) {
-    const JointVector q = Eigen::Map<const Eigen::VectorXd>(near_of(row), dof);
-    const std::string name = "near[" + std::to_string(row) + "]";
-    check_joints(q, dof, name.c_str());
-    impl_->angles.check(q, name.c_str());
+    check_near(*impl_, Eigen::Map<const Eigen::VectorXd>(near_of(row), dof), row);
   }
   impl_->solve_rows(
       count, [&](std::size_t i) { return to_pose(T_base_tip + 16 * i); }, request, near_of, threads,

@@ -18,25 +18,21 @@
 namespace iksel {
 namespace {
 
-/// Work that a diagnosis may spend where a solve gave up.
-constexpr int kPatientAttempts = 512;
-constexpr int kPatientIterations = 200;
-
+/// With the work that a diagnosis may spend where a solve gave up.
 SolverOptions generous(SolverOptions options) {
   Lanes lanes;
   lanes.neighbours = neighbours_of(options.strategy);
   options.strategy = lanes;
-  options.max_attempts = std::max(options.max_attempts, kPatientAttempts);
-  options.max_iterations = std::max(options.max_iterations, kPatientIterations);
+  options.max_attempts = std::max(options.max_attempts, 512);
+  options.max_iterations = std::max(options.max_iterations, 200);
   return options;
 }
 
 /// The position's part of a task.
 Task position_of(Task task) {
-  for (std::size_t i = 0; i < 3; ++i) {
-    task.rotation_lower[i] = -kInfinity;
-    task.rotation_upper[i] = kInfinity;
-  }
+  const Task position = Task::position_only();
+  task.rotation_lower = position.rotation_lower;
+  task.rotation_upper = position.rotation_upper;
   return task;
 }
 

@@ -24,7 +24,6 @@ std::string obstacle_text(const Scene& scene, const std::string& name) {
 
 /// "link 'a' touches box 'b' by 12 mm, link 'c' touches link 'd' by 3 mm"
 std::string contacts_text(const Scene& scene, const std::vector<Contact>& contacts) {
-  constexpr int kDigits = 3;
   /// Less deep than this it is rounding [m].
   constexpr double kShallow = 1e-9;
   std::string list;
@@ -34,7 +33,7 @@ std::string contacts_text(const Scene& scene, const std::vector<Contact>& contac
     list +=
         contact.is_obstacle ? obstacle_text(scene, contact.other) : body_text(scene, contact.other);
     if (contact.depth > kShallow) {
-      list += " by " + number_text(1e3 * contact.depth, kDigits) + " mm";
+      list += " by " + number_text(1e3 * contact.depth, 3) + " mm";
     }
   }
   return list;

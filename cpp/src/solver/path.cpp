@@ -19,9 +19,9 @@ Status search_layer(const Solver::Impl& solver, const Goal& goal, const Layer* b
   if (before != nullptr && !search.add_continuations(goal, *before, layer) && goal.is_redundant()) {
     // Another way on from the cheapest, past what its iteration met, may be short.
     SolveRequest nearest = search.request();
-    nearest.near = before->at(0);
+    nearest.near = before->front().q;
     const Result result = solver.find_answer(goal, nearest, workspace, nullptr);
-    if (result.success()) layer.add(result.q);
+    if (result.success()) add(result.q, layer);
   }
   if (goal.tips() != nullptr && layer.size() >= kEnoughForTips) {
     search.screen(layer);
@@ -34,16 +34,21 @@ Status search_layer(const Solver::Impl& solver, const Goal& goal, const Layer* b
   const auto candidates = static_cast<std::size_t>(path.candidates);
   const std::size_t most = goal.is_redundant() ? candidates : std::max(candidates, kBranches);
   const auto is_satisfied = [&](const Collector&) { return found.size() >= most; };
-  const Collector::Aim aim{kSameSolution, true, goal.is_redundant() ? path.candidates : 0};
+  // Solutions of the database that differ by less in every joint are one.
+  const Collector::Aim aim{20 * kSameCandidate, true, goal.is_redundant() ? path.candidates : 0};
   Collector collector(solver.robot.all(), goal, search.request(), aim, is_satisfied,
                       solver.options.max_attempts, workspace.collected);
   solver.collect(collector, workspace);
   if (before != nullptr) {
-    search.add_solutions(found, *before, layer);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      search.add_nearest_images(found.at(i), *before, layer);
+    }
   } else {
     search.add_first_solutions(found, layer);
   }
-  layer.keep_if([&](std::size_t i) { return goal.is_solution(layer.at(i)); });
+  layer.erase(std::remove_if(layer.begin(), layer.end(),
+                             [&](const PathCandidate& each) { return !goal.is_solution(each.q); }),
+              layer.end());
   const bool any = layer.size() > 0;
   search.screen(layer);
   const bool kept = layer.size() > 0;
@@ -73,9 +78,8 @@ class PathPlan {
         workspace_(workspace),
         search_(solver.robot.all(), path, speeds),
         makes_up_(speeds == Speeds::made_up_for),
-        start_(empty_layer()),
         count_(targets.size() / static_cast<std::size_t>(solver.robot.tips())) {
-    if (path.start) start_ = {start_.dof, {path.start->begin(), path.start->end()}, {0.0}, {0}};
+    if (path.start) add(*path.start, start_);
     is_swept_ = !solver.tips && solver.task_of(path).is_full_pose() && workspace.lanes &&
                 workspace.lanes->sweep;
     layers_.reserve(count_);
@@ -85,7 +89,7 @@ class PathPlan {
     PathResult result;
     result.status = Status::solved;
     for (std::size_t w = 0; w < count_ && result.success(); ++w) {
-      Layer layer = empty_layer();
+      Layer layer;
       result.status = with_goal(w, [&](const Goal& goal) {
         is_redundant_ = goal.is_redundant();
         return add_layer(goal, w, layer);
@@ -111,9 +115,6 @@ class PathPlan {
   }
 
  private:
-  [[nodiscard]] Layer empty_layer() const {
-    return {static_cast<std::size_t>(solver_.robot.dof()), {}, {}, {}};
-  }
   /// Where the path comes from; null at its beginning if that may be anywhere.
   [[nodiscard]] const Layer* before(std::size_t w, const std::vector<Layer>& layers) const {
     return w > 0 ? &layers[w - 1] : path_.start ? &start_ : nullptr;
@@ -149,11 +150,11 @@ class PathPlan {
   void continue_back() {
     Layer from = layers_.back();
     const auto most = static_cast<std::size_t>(path_.candidates);
-    if (from.size() > most) from.q.resize(most * from.dof);
+    if (from.size() > most) from.resize(most);
     for (std::size_t w = count_ - 1; w-- > 0;) {
-      Layer next = empty_layer();
+      Layer next;
       add_next(from, w, next);
-      for (std::size_t i = 0; i < next.size(); ++i) layers_[w].add(next.at(i));
+      for (const PathCandidate& each : next) add(each.q, layers_[w]);
       from = next.size() > 0 ? std::move(next) : layers_[w];
     }
     for (std::size_t w = 0; w < count_; ++w) {
@@ -175,8 +176,8 @@ class PathPlan {
       std::vector<Layer> layers;
       layers.reserve(count_);
       for (std::size_t w = 0; w < count_; ++w) {
-        Layer layer = empty_layer();
-        layer.add(result.q[w]);
+        Layer layer;
+        add(result.q[w], layer);
         add_next(halfway(result.q, w), w, layer);
         search_.connect(before(w, layers), layer, makes_up_);
         layers.push_back(std::move(layer));
@@ -194,14 +195,14 @@ class PathPlan {
   /// end anywhere both are on the one side.
   [[nodiscard]] Layer halfway(const std::vector<JointVector>& q, std::size_t w) const {
     const auto last = static_cast<std::ptrdiff_t>(count_) - 1;
-    Layer layer = empty_layer();
+    Layer layer;
     for (std::ptrdiff_t stride = 1; stride <= last; stride *= 2) {
       const auto at = [&](std::ptrdiff_t i) {
         return q[static_cast<std::size_t>(i < 0 ? -i : i > last ? 2 * last - i : i)];
       };
       const std::ptrdiff_t a = static_cast<std::ptrdiff_t>(w) - stride;
       if (path_.start && a < -1) break;
-      layer.add((path_.start && a < 0 ? *path_.start : at(a)) / 2 + at(a + 2 * stride) / 2);
+      add((path_.start && a < 0 ? *path_.start : at(a)) / 2 + at(a + 2 * stride) / 2, layer);
     }
     return layer;
   }

@@ -16,12 +16,37 @@
 #include "refine/self_motion.hpp"
 #include "search/context.hpp"
 #include "search/row_answers.hpp"
-#include "solver/path_layer.hpp"
 
 namespace iksel {
 
-/// Solutions of the database nearer than this in every joint are one [rad or m].
-inline constexpr double kSameSolution = 20 * kSameCandidate;
+/// Candidates nearer than this in every joint are one [rad or m].
+inline constexpr double kSameCandidate = 1e-4;
+
+/// A configuration that a path may pass at a waypoint, and the cheapest way to it.
+struct PathCandidate {
+  JointVector q;
+  double cost;
+  std::size_t parent;  ///< index in the layer before
+};
+
+/// The candidates of one waypoint.
+using Layer = std::vector<PathCandidate>;
+
+/// Adds a candidate unless it is there; periodic images are candidates of their own.
+inline void add(const JointVector& q, Layer& layer) {
+  const auto is_near = [](double a, double b) { return std::abs(a - b) < kSameCandidate; };
+  const bool is_known = std::any_of(layer.begin(), layer.end(), [&](const PathCandidate& known) {
+    return std::equal(q.begin(), q.end(), known.q.begin(), is_near);
+  });
+  if (!is_known) layer.push_back({q, 0, 0});
+}
+
+/// The joint values of all candidates, one after the other.
+inline std::vector<double> joint_values(const Layer& layer) {
+  std::vector<double> q;
+  for (const PathCandidate& each : layer) q.insert(q.end(), each.q.begin(), each.q.end());
+  return q;
+}
 
 /// Whether a step that is too fast is none, or is one, to be made slower at last.
 enum class Speeds { kept, made_up_for };
@@ -60,8 +85,7 @@ class PathSearch {
     std::vector<JointVector> origins;
     std::vector<JointVector> moves;
     bool leads_on = false;
-    for (std::size_t i = 0; i < before.size(); ++i) {
-      const JointVector from = before.at(i);
+    for (const auto& [from, cost, parent] : before) {
       std::size_t same = 0;
       while (same < origins.size() && model_.joints.distance(origins[same], from, kCopy) >= kCopy) {
         ++same;
@@ -74,8 +98,8 @@ class PathSearch {
       }
       const JointVector q = from + moves[same];
       if (!model_.joints.contains(q.data())) continue;
-      layer.add(q);
-      leads_on = leads_on || i == 0;
+      add(q, layer);
+      leads_on = leads_on || &from == &before.front().q;
     }
     return leads_on;
   }
@@ -87,16 +111,24 @@ class PathSearch {
     /// Every so many samples of the sweep are looked at.
     constexpr int kStride = Sweep::kSamples / 8;
     const Pose Y = lanes.query.reduce(goal.target());
-    std::vector<double> q = before.q;
+    constexpr Patience kNext{8, kStepsToNext};
+    std::vector<double> q = joint_values(before);
     const int first = static_cast<int>(waypoint % kStride);
     if (with_others) lanes.sweep->add_samples(Y, first, kStride, q);
-    visit_refined(goal, Y, q, lanes, [&](std::size_t row, const JointVector& answer) {
+    const auto dof = static_cast<std::size_t>(model_.dof);
+    Work work(0);
+    RowSeeds seeds(q.data(), q.size() / dof, dof, /*are_answers=*/false, work);
+    const RowAnswers answers =
+        refine_rows(seeds, model_.joints, goal, Y, kNext, lanes.refiner, work);
+    for (std::size_t row = 0; row < seeds.count(); ++row) {
+      const Result& answer = answers.at(row);
+      if (!answer.success()) continue;
       if (row < before.size()) {
-        layer.add(answer);
+        add(answer.q, layer);
       } else {
-        add_nearest_images(answer, before, layer);
+        add_nearest_images(answer.q, before, layer);
       }
-    });
+    }
   }
 
   /// The solutions found for the first waypoint of a path without a start, at all images; those
@@ -105,22 +137,36 @@ class PathSearch {
     for (std::size_t i = 0; i < found.size(); ++i) {
       JointVector q = found.at(i);
       model_.joints.wrap_nearest(middle_, 0, q);
-      layer.add(q);
+      add(q, layer);
     }
     for (std::size_t i = 0; i < found.size(); ++i) {
-      JointVector q = found.at(i);
-      model_.joints.first_image(q);
-      do {
-        layer.add(model_.joints.clamp(q));
-      } while (layer.size() < kMostImages && model_.joints.next_image(q));
+      model_.joints.visit_images(found.at(i), [&](const JointVector& image) {
+        add(image, layer);
+        return layer.size() < kMostImages;
+      });
     }
   }
 
-  /// The solutions found from the database, each at the images nearest to where the path may come
-  /// from.
-  void add_solutions(const SolutionSet& found, const Layer& before, Layer& layer) const {
-    for (std::size_t i = 0; i < found.size(); ++i) {
-      add_nearest_images(found.at(i), before, layer);
+  /// A solution at the images nearest to where the path may come from.
+  void add_nearest_images(const JointVector& solution, const Layer& before, Layer& layer) const {
+    if (!has_images_) {
+      add(solution, layer);
+      return;
+    }
+    JointVector q = solution;
+    // Many that the path may come from have the same nearest image.
+    std::set<std::vector<long>> known;
+    std::vector<long> turns(static_cast<std::size_t>(model_.dof));
+    for (const PathCandidate& from : before) {
+      model_.joints.wrap_nearest(from.q, 0, q);
+      for (std::size_t j = 0; j < turns.size(); ++j) {
+        const auto joint = static_cast<Eigen::Index>(j);
+        turns[j] = std::lround((q[joint] - solution[joint]) / kTwoPi);
+      }
+      if (!known.insert(turns).second) continue;
+      // From the database at a later waypoint, at most.
+      if (layer.size() >= 2 * kMostImages) return;
+      add(q, layer);
     }
   }
 
@@ -128,8 +174,12 @@ class PathSearch {
   void screen(Layer& layer) {
     if (!screen_.is_set() || layer.size() == 0) return;
     const std::unique_ptr<bool[]> keep(new bool[layer.size()]());
-    screen_.apply(layer.q.data(), layer.size(), keep.get());
-    layer.keep_if([&](std::size_t i) { return keep[i]; });
+    screen_.apply(joint_values(layer).data(), layer.size(), keep.get());
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < layer.size(); ++i) {
+      if (keep[i]) layer[kept++] = layer[i];
+    }
+    layer.resize(kept);
   }
   /// Why a waypoint has no candidate, where all were refused.
   [[nodiscard]] Status refusal() const { return screen_.refusal(); }
@@ -138,45 +188,40 @@ class PathSearch {
   /// cheapest. `at_last` it keeps all, and moves cost the squares of their lengths: then no jump is
   /// cheaper than the long way about it.
   void connect(const Layer* before, Layer& layer, bool at_last = false) {
-    struct Edge {
-      double cost;
-      std::size_t parent;
-      std::size_t index;
-    };
-    std::vector<Edge> edges;
-    for (std::size_t i = 0; i < layer.size(); ++i) {
-      const JointVector q = layer.at(i);
-      Edge best{before == nullptr ? tie_break(q) : kInfinity, 0, i};
+    for (auto& [q, cost, parent] : layer) {
+      // A path that begins anywhere costs the same at all its images: of those, the one that begins
+      // nearest to the middle of the limits. Small beside all costs, and large beside their
+      // rounding.
+      cost = before == nullptr ? 1e-9 * (q - middle_).norm() : kInfinity;
+      parent = 0;
       for (std::size_t k = 0; before != nullptr && k < before->size(); ++k) {
-        if (before->cost[k] >= best.cost) break;
-        const double left = best.cost - before->cost[k];
-        const double* from = before->q.data() + k * before->dof;
-        if (is_too_far(from, q.data(), at_last ? std::sqrt(left) : left)) continue;
-        const double length = move_.length(q - before->at(k));
-        const double cost = before->cost[k] + (at_last ? length * length : length);
-        if (cost < best.cost) best = {cost, k, i};
+        const PathCandidate& from = (*before)[k];
+        if (from.cost >= cost) break;
+        const double left = cost - from.cost;
+        if (is_too_far(from.q, q, at_last ? std::sqrt(left) : left)) continue;
+        const double length = move_.length(q - from.q);
+        const double by_way_of_it = from.cost + (at_last ? length * length : length);
+        if (by_way_of_it >= cost) continue;
+        cost = by_way_of_it;
+        parent = k;
       }
-      if (best.cost < kInfinity) edges.push_back(best);
     }
-    std::stable_sort(edges.begin(), edges.end(),
-                     [](const Edge& a, const Edge& b) { return a.cost < b.cost; });
+    layer.erase(std::remove_if(layer.begin(), layer.end(),
+                               [](const PathCandidate& each) { return !(each.cost < kInfinity); }),
+                layer.end());
+    std::stable_sort(
+        layer.begin(), layer.end(),
+        [](const PathCandidate& a, const PathCandidate& b) { return a.cost < b.cost; });
     // Without a start all candidates of the first waypoint are needed.
     const std::size_t most = std::max(static_cast<std::size_t>(options_.candidates), first_layer_);
-    if (before != nullptr && !at_last && edges.size() > most) edges.resize(most);
-    if (before == nullptr) first_layer_ = edges.size();
-    Layer kept{layer.dof, {}, {}, {}};
-    for (const Edge& edge : edges) {
-      const JointVector q = layer.at(edge.index);
-      kept.q.insert(kept.q.end(), q.data(), q.data() + model_.dof);
-      kept.cost.push_back(edge.cost);
-      kept.parent.push_back(edge.parent);
-    }
-    layer = std::move(kept);
+    if (before != nullptr && !at_last && layer.size() > most) layer.resize(most);
+    if (before == nullptr) first_layer_ = layer.size();
   }
 
   /// Whether a joint has to move farther than it can, most often the first already; or so far that
   /// the whole move has that length.
-  [[nodiscard]] bool is_too_far(const double* a, const double* b, double length = kInfinity) const {
+  [[nodiscard]] bool is_too_far(const JointVector& a, const JointVector& b,
+                                double length = kInfinity) const {
     for (int j = 0; j < model_.dof; ++j) {
       const double move = std::abs(a[j] - b[j]);
       const bool is_too_fast = speeds_ == Speeds::kept && move > longest_[j];
@@ -200,8 +245,8 @@ class PathSearch {
     result.q.resize(layers.size());
     std::size_t i = 0;
     for (std::size_t w = layers.size(); w-- > 0;) {
-      result.q[w] = layers[w].at(i);
-      i = layers[w].parent[i];
+      result.q[w] = layers[w][i].q;
+      i = layers[w][i].parent;
     }
     for (std::size_t w = options_.start ? 0 : 1; w < result.q.size(); ++w) {
       const JointVector step = result.q[w] - (w == 0 ? *options_.start : result.q[w - 1]);
@@ -216,54 +261,9 @@ class PathSearch {
   }
 
  private:
-  /// Refines rows of seeds; calls `found(row, q)` with each that leads to a solution.
-  template <typename Found>
-  void visit_refined(const Goal& goal, const Pose& Y, const std::vector<double>& q,
-                     Workspace::InLanes& lanes, const Found& found) const {
-    constexpr Patience kNext{8, kStepsToNext};
-    const auto dof = static_cast<std::size_t>(model_.dof);
-    Work work(0);
-    RowSeeds seeds(q.data(), q.size() / dof, dof, /*are_answers=*/false, work);
-    const RowAnswers answers =
-        refine_rows(seeds, model_.joints, goal, Y, kNext, lanes.refiner, work);
-    for (std::size_t row = 0; row < seeds.count(); ++row) {
-      if (answers.at(row).success()) found(row, answers.at(row).q);
-    }
-  }
-
-  void add_nearest_images(const JointVector& solution, const Layer& before, Layer& layer) const {
-    if (!has_images_) {
-      layer.add(solution);
-      return;
-    }
-    JointVector q = solution;
-    // Many that the path may come from have the same nearest image.
-    std::set<std::vector<long>> known;
-    std::vector<long> turns(before.dof);
-    for (std::size_t k = 0; k < before.size(); ++k) {
-      model_.joints.wrap_nearest(before.at(k), 0, q);
-      for (std::size_t j = 0; j < turns.size(); ++j) {
-        const auto joint = static_cast<Eigen::Index>(j);
-        turns[j] = std::lround((q[joint] - solution[joint]) / kTwoPi);
-      }
-      if (!known.insert(turns).second) continue;
-      if (layer.size() >= kMostCandidates) return;
-      layer.add(q);
-    }
-  }
-
   /// Images at the first waypoint, at most: those of sixteen solutions, of seven joints that have
   /// two images each.
   static constexpr std::size_t kMostImages = 2048;
-  /// Candidates from the database at a later waypoint, at most.
-  static constexpr std::size_t kMostCandidates = 2 * kMostImages;
-
-  /// A path that begins anywhere costs the same at all its images: of those, the one that begins
-  /// nearest to the middle of the limits. Small beside all costs, and large beside their rounding.
-  [[nodiscard]] double tie_break(const JointVector& q) const {
-    constexpr double kPart = 1e-9;
-    return kPart * (q - middle_).norm();
-  }
 
   static SolveRequest make_request(const PathOptions& options) {
     SolveRequest request;

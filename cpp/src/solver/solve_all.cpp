@@ -19,8 +19,6 @@ namespace {
 
 /// Solutions of a redundant arm from which the asked for are spread: so many for each.
 constexpr std::size_t kChoice = 4;
-/// Solutions spread over a self-motion, at most: as many as a set can hold.
-constexpr int kMostSpread = static_cast<int>(SolutionSet::kMost / kChoice);
 
 /// A solution, or one of its periodic images.
 struct Image {
@@ -88,11 +86,16 @@ class SolutionRanking {
   JointVector from_;
 };
 
+/// The joint values of all, one after the other.
+std::vector<double> joint_values(const std::vector<Image>& images) {
+  std::vector<double> q;
+  for (const Image& image : images) q.insert(q.end(), image.q.begin(), image.q.end());
+  return q;
+}
+
 /// Keeps `count` that lie far from each other, the first among them.
 void keep_apart(const JointSpace& joints, std::size_t count, std::vector<Image>& images) {
-  std::vector<double> q;
-  q.reserve(images.size() * static_cast<std::size_t>(joints.dof()));
-  for (const Image& image : images) q.insert(q.end(), image.q.begin(), image.q.end());
+  const std::vector<double> q = joint_values(images);
   std::vector<Image> kept;
   kept.reserve(count);
   for (const std::size_t i : farthest_first(joints, q.data(), images.size(), count)) {
@@ -111,29 +114,25 @@ std::vector<Image> images_of(const JointSpace& joints, const SolutionSet& found,
   if (found.size() > 0) screen.find_free(found.q(0), found.size(), free.get());
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (!free[i]) continue;
-    JointVector q = found.at(i);
-    if (!with_images) {
+    const auto add = [&](const JointVector& q) {
       images.push_back({q, ranking.cost(q), i});
-      continue;
+      return images.size() < kMostImages;
+    };
+    if (with_images) {
+      joints.visit_images(found.at(i), add);
+    } else {
+      add(found.at(i));
     }
-    joints.first_image(q);
-    do {
-      const JointVector image = joints.clamp(q);
-      images.push_back({image, ranking.cost(image), i});
-    } while (images.size() < kMostImages && joints.next_image(q));
   }
   return images;
 }
 
 /// Takes out what the filter refuses.
-void apply_filter(Screen& screen, int dof, std::vector<Image>& images) {
+void apply_filter(Screen& screen, std::vector<Image>& images) {
   if (!screen.has_filter() || images.empty()) return;
-  std::vector<double> q;
-  q.reserve(images.size() * static_cast<std::size_t>(dof));
-  for (const Image& image : images) q.insert(q.end(), image.q.data(), image.q.data() + dof);
-  const std::unique_ptr<bool[]> keep(new bool[images.size()]());
+  const std::unique_ptr<bool[]> keep(new bool[images.size()]);
   std::fill_n(keep.get(), images.size(), true);
-  screen.ask_filter(q.data(), images.size(), keep.get());
+  screen.ask_filter(joint_values(images).data(), images.size(), keep.get());
   std::size_t kept = 0;
   for (std::size_t i = 0; i < images.size(); ++i) {
     if (!keep[i]) continue;
@@ -141,12 +140,6 @@ void apply_filter(Screen& screen, int dof, std::vector<Image>& images) {
     ++kept;
   }
   images.resize(kept);
-}
-
-/// How many solutions to look for on a self-motion: what is refused is replaced by others.
-int spread_for(int most, bool is_screened) {
-  const int spread = std::min(most, kMostSpread);
-  return is_screened ? static_cast<int>(kChoice) * spread : spread;
 }
 
 /// Of the images of each solution, in order, the first.
@@ -197,8 +190,10 @@ Solutions Solver::Impl::solve_all(const Goal& goal, const SolveAllOptions& all,
     return goal.is_redundant() && found.size() >= std::max<std::size_t>(kChoice * most, 64);
   };
   Screen screen(request, robot.dof());
-  const int spread = goal.is_redundant() ? spread_for(all.max, screen.is_set()) : 0;
-  const Collector::Aim aim{all.min_distance, true, spread};
+  // Over a self-motion; what is refused is replaced by others, no more than a set can hold.
+  const std::size_t for_each = screen.is_set() ? kChoice : 1;
+  const auto spread = static_cast<int>(for_each * std::min(most, SolutionSet::kMost / kChoice));
+  const Collector::Aim aim{all.min_distance, true, goal.is_redundant() ? spread : 0};
   Collector search(robot.all(), goal, request, aim, is_satisfied, options.max_attempts,
                    workspace.collected);
   collect(search, workspace);
@@ -210,7 +205,7 @@ Solutions Solver::Impl::solve_all(const Goal& goal, const SolveAllOptions& all,
       all.whole_turns || request.filter || request.objective.kind == Objective::Kind::custom;
   std::vector<Image> images = images_of(goal.joints(), found, screen, with_images, ranking);
   bool are_left_out = images.size() >= kMostImages;
-  apply_filter(screen, robot.dof(), images);
+  apply_filter(screen, images);
   images.erase(std::remove_if(images.begin(), images.end(),
                               [](const Image& image) { return std::isinf(image.cost); }),
                images.end());

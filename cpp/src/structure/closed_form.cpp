@@ -30,10 +30,6 @@ lanes::Turned turned(const Vector3d& x, const Vector3d& k, const Vector3d& y) {
   return {a, b, c, r2, 1 / std::max(r2, 1e-30)};
 }
 
-lanes::LimitArc limit_arc(double middle, double reach) {
-  return {reach < kPi, std::cos(middle), std::sin(middle), std::cos(reach), std::sin(reach)};
-}
-
 lanes::ClosedForm make_form(Closure closure, const ScrewAxes& axes, double unit) {
   const auto& h = axes.h;
   const auto way = [&](std::size_t j) { return Vector3d((axes.p[j + 1] - axes.p[j]) / unit); };
@@ -133,7 +129,10 @@ void ClosedFormChain::use_limits(const ChainModel& model) {
       form.middle[i] = ends ? 0.5 * (model.joints.lower[j] + model.joints.upper[j]) : 0;
       form.reach[i] = ends ? 0.5 * (model.joints.upper[j] - model.joints.lower[j]) : kPi;
     }
-    form.arc[i] = limit_arc(form.middle[i] + form.offset[i], form.reach[i]);
+    const double middle = form.middle[i] + form.offset[i];
+    const double reach = form.reach[i];
+    form.arc[i] = {reach < kPi, std::cos(middle), std::sin(middle), std::cos(reach),
+                   std::sin(reach)};
   }
   use_sums(model);
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/constants.hpp"
+#include "base/rotation.hpp"
 #include "structure/axis_pattern.hpp"
 #include "structure/closed_form.hpp"
 
@@ -41,12 +42,6 @@ Eigen::Matrix<double, kInvariant + 1, 1> features(const Vector3d& p, const Vecto
   return x;
 }
 
-Matrix3d skew(const Vector3d& t) {
-  Matrix3d K;
-  K << 0, -t[2], t[1], t[2], 0, -t[0], -t[1], t[0], 0;
-  return K;
-}
-
 /// Features behind a motion, without the 1, of those before it.
 Eigen::Matrix<double, kInvariant, kInvariant + 1> moved(const Pose& motion) {
   constexpr int kP = 0, kP2 = 3, kL = 4, kAlong = 7, kMoment = 8, kN = 11, kOne = 14;
@@ -64,9 +59,9 @@ Eigen::Matrix<double, kInvariant, kInvariant + 1> moved(const Pose& motion) {
   out(kAlong, kAlong) = 1;
   out.block<1, 3>(kAlong, kL) = row;
   out.block<3, 3>(kMoment, kMoment) = R;
-  out.block<3, 3>(kMoment, kL) = skew(t) * R;
+  out.block<3, 3>(kMoment, kL) = cross_matrix(t) * R;
   out.block<3, 3>(kN, kN) = R;
-  out.block<3, 3>(kN, kMoment) = -2 * skew(t) * R;
+  out.block<3, 3>(kN, kMoment) = -2 * cross_matrix(t) * R;
   out.block<3, 3>(kN, kL) = t.squaredNorm() * R - 2 * t * row;
   out.block<3, 1>(kN, kAlong) = -2 * t;
   return out;

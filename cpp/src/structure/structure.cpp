@@ -2,7 +2,8 @@
 #include "iksel/structure.hpp"
 
 #include <algorithm>
-#include <initializer_list>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "structure/closed_form.hpp"
@@ -12,56 +13,36 @@ namespace {
 
 using lanes::Closure;
 
-/// How axes of the form lie that are joints of the chain.
-class AxesText {
- public:
-  explicit AxesText(const ClosedFormChain& chain) : chain_(chain) {}
-
-  /// "axes 2 and 3 are parallel", counted from 1 along the chain; of more than one such clause the
-  /// first says "axes".
-  AxesText& add(std::initializer_list<int> axes, const char* how) {
-    std::vector<int> joints;
-    for (const int i : axes) joints.push_back(chain_.joints[i] + 1);
-    std::sort(joints.begin(), joints.end());
-    if (joints.back() > chain_.dof) return *this;
-    text_ += text_.empty() ? "axes " : ", ";
-    for (std::size_t k = 0; k < joints.size(); ++k) {
-      if (k > 0) text_ += k + 1 < joints.size() ? ", " : " and ";
-      text_ += std::to_string(joints[k]);
-    }
-    text_ += how;
-    return *this;
-  }
-  [[nodiscard]] const std::string& text() const { return text_; }
-
- private:
-  const ClosedFormChain& chain_;
-  std::string text_;
-};
-
+/// "axes 2 and 3 are parallel, 4, 5 and 6 meet", counted from 1 along the chain.
 std::string describe_axes(const ClosedFormChain& chain) {
   constexpr const char* kMeet = " meet";
   constexpr const char* kParallel = " are parallel";
-  AxesText text(chain);
-  switch (chain.form.closure) {
-    case Closure::three_parallel:
-      return text.add({1, 2, 3}, kParallel).add({4, 5}, kMeet).text();
-    case Closure::parallel_23:
-      return text.add({3, 4, 5}, kMeet).add({1, 2}, kParallel).text();
-    case Closure::parallel_12:
-      return text.add({3, 4, 5}, kMeet).add({0, 1}, kParallel).text();
-    case Closure::intersect_12:
-      return text.add({3, 4, 5}, kMeet).add({0, 1}, kMeet).text();
-    case Closure::intersect_23:
-      return text.add({3, 4, 5}, kMeet).add({1, 2}, kMeet).text();
-    case Closure::sweep_4:
-      return text.add({1, 2}, kParallel).add({4, 5}, kMeet).text();
-    case Closure::sweep_6:
-      return text.add({1, 2}, kParallel).add({3, 4}, kMeet).text();
-    case Closure::loop:
-      break;
+  // Axes of the form, counted from 0.
+  using Clauses = std::vector<std::pair<std::vector<int>, const char*>>;
+  const std::map<Closure, Clauses> all = {
+      {Closure::three_parallel, {{{1, 2, 3}, kParallel}, {{4, 5}, kMeet}}},
+      {Closure::parallel_23, {{{3, 4, 5}, kMeet}, {{1, 2}, kParallel}}},
+      {Closure::parallel_12, {{{3, 4, 5}, kMeet}, {{0, 1}, kParallel}}},
+      {Closure::intersect_12, {{{3, 4, 5}, kMeet}, {{0, 1}, kMeet}}},
+      {Closure::intersect_23, {{{3, 4, 5}, kMeet}, {{1, 2}, kMeet}}},
+      {Closure::sweep_4, {{{1, 2}, kParallel}, {{4, 5}, kMeet}}},
+      {Closure::sweep_6, {{{1, 2}, kParallel}, {{3, 4}, kMeet}}},
+  };
+  std::string text;
+  for (const auto& [axes, how] : all.at(chain.form.closure)) {
+    std::vector<int> joints;
+    for (const int i : axes) joints.push_back(chain.joints[i] + 1);
+    std::sort(joints.begin(), joints.end());
+    // Those that complete the chain are no joints.
+    if (joints.back() > chain.dof) continue;
+    text += text.empty() ? "axes " : ", ";
+    for (std::size_t k = 0; k < joints.size(); ++k) {
+      if (k > 0) text += k + 1 < joints.size() ? ", " : " and ";
+      text += std::to_string(joints[k]);
+    }
+    text += how;
   }
-  return {};
+  return text;
 }
 
 }  // namespace

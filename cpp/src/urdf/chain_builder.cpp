@@ -161,9 +161,7 @@ class ChainReader {
     if (upwards) segment.axis = -segment.axis;
 
     const Motion motion = resolve_mimic(model_, curves_, joint);
-    segment.multiplier = motion.multiplier;
-    segment.offset = motion.offset;
-    segment.curve = motion.curve;
+    static_cast<Following&>(segment) = motion;
     const auto locked = options_.locked_joints.find(motion.source->name);
     const auto own_lock = options_.locked_joints.find(joint.name);
     if (own_lock != options_.locked_joints.end()) {

@@ -15,7 +15,7 @@ namespace iksel {
 /// One joint on the way from base to tip: first the constant transform `before`, then the motion by
 /// motion_of(joint, q[variable]) (base/motion_curve.hpp) about or along `axis`, then `after`. A
 /// fixed or locked joint has the constant transforms only.
-struct ChainJoint {
+struct ChainJoint : Following {
   std::string name;
   Eigen::Isometry3d before = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d after = Eigen::Isometry3d::Identity();
@@ -25,9 +25,6 @@ struct ChainJoint {
   double locked_at = 0;    ///< then the joint's value [rad or m]
   bool prismatic = false;
   int variable = -1;  ///< -1: fixed
-  double multiplier = 1.0;
-  double offset = 0.0;
-  std::shared_ptr<const MotionCurve> curve;  ///< null: a straight line
 
   /// Whether limits may name it: one that moves, or would.
   [[nodiscard]] bool has_value() const { return !fixed || is_locked; }

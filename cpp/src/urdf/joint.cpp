@@ -40,11 +40,6 @@ bool turns_freely(const urdf::Joint& joint) {
          lower == -kInfinity && upper == kInfinity;
 }
 
-void set_limits(ChainVariable& variable, double lower, double upper) {
-  variable.lower = variable.soft_lower = lower;
-  variable.upper = variable.soft_upper = upper;
-}
-
 /// The degree of freedom that a joint is by its URDF, with infinite limits where it has none.
 ChainVariable read_variable(const urdf::Joint& joint, const RobotOptions& options) {
   ChainVariable variable;
@@ -52,7 +47,8 @@ ChainVariable read_variable(const urdf::Joint& joint, const RobotOptions& option
   const double velocity = joint.limits ? joint.limits->velocity : 0;
   variable.velocity = velocity > 0 ? infinite_if_huge(velocity) : kInfinity;
   const auto [lower, upper] = limits_of(joint);
-  set_limits(variable, lower, upper);
+  variable.lower = variable.soft_lower = lower;
+  variable.upper = variable.soft_upper = upper;
   if (turns_freely(joint)) {
     // Safety limits of continuous joints are placeholders in practice (0, 0).
     variable.type = JointType::continuous;
@@ -111,7 +107,7 @@ Eigen::Vector3d axis_of(const urdf::Joint& joint) {
 
 Motion resolve_mimic(const urdf::ModelInterface& model, const CheckedCurves& curves,
                      const urdf::Joint& joint) {
-  Motion motion{&joint, 1.0, 0.0, nullptr};
+  Motion motion{{}, &joint};
   for (std::size_t steps = 0;; ++steps) {
     const auto curve = curves.find(motion.source->name);
     if (curve != curves.end()) {
@@ -130,8 +126,9 @@ Motion resolve_mimic(const urdf::ModelInterface& model, const CheckedCurves& cur
     if (steps > model.joints_.size()) {
       throw UrdfError("joint '" + joint.name + "' mimics itself through a circle of joints");
     }
-    motion = {it->second.get(), motion.multiplier * mimic.multiplier,
-              motion.offset + motion.multiplier * mimic.offset, nullptr};
+    motion.source = it->second.get();
+    motion.offset += motion.multiplier * mimic.offset;
+    motion.multiplier *= mimic.multiplier;
   }
   for (const double number : {motion.multiplier, motion.offset}) {
     if (std::abs(number) <= kMaxCoordinate) continue;

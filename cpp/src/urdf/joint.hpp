@@ -22,11 +22,8 @@ Eigen::Isometry3d origin_of(const urdf::Joint& joint);
 Eigen::Vector3d axis_of(const urdf::Joint& joint);
 
 /// What moves a joint: `source`'s value q, as motion_of says (base/motion_curve.hpp).
-struct Motion {
+struct Motion : Following {
   const urdf::Joint* source;
-  double multiplier;
-  double offset;
-  std::shared_ptr<const MotionCurve> curve;
 };
 
 /// Through any number of mimic tags, and a curve in the place of the last. Throws UnknownNameError

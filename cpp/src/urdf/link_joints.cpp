@@ -21,9 +21,7 @@ LinkJoint make_link_joint(const urdf::ModelInterface& model, const CheckedCurves
   out.axis = axis_of(joint);
   const Motion motion = resolve_mimic(model, curves, joint);
   out.source = motion.source->name;
-  out.multiplier = motion.multiplier;
-  out.offset = motion.offset;
-  out.curve = motion.curve;
+  static_cast<Following&>(out) = motion;
   return out;
 }
 

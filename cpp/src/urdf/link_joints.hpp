@@ -14,7 +14,7 @@ namespace iksel {
 
 /// The joint that carries a link. Its pose in the parent link is `origin`, then the motion about or
 /// along `axis` by its value, which is motion_of (base/motion_curve.hpp) that of `source`.
-struct LinkJoint {
+struct LinkJoint : Following {
   std::string name;  ///< empty: the root link, which nothing carries
   int parent = -1;   ///< index of the link that it is on
   Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();
@@ -22,9 +22,6 @@ struct LinkJoint {
   bool moves = false;  ///< revolute, continuous or prismatic
   bool prismatic = false;
   std::string source;  ///< the joint that it follows in the end, or itself
-  double multiplier = 1.0;
-  double offset = 0.0;
-  std::shared_ptr<const MotionCurve> curve;  ///< null: a straight line
 };
 
 /// One for each link, in the order of LinkTree::links, where parents come first. Throws UrdfError

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <exception>
 #include <fstream>
+#include <map>
 #include <mutex>
 #include <string>
 #include <system_error>
@@ -154,22 +155,12 @@ std::vector<std::string> joint_names_of(const urdf::ModelInterface& model) {
 }
 
 const char* joint_type_name(int type) {
-  switch (type) {
-    case urdf::Joint::REVOLUTE:
-      return "revolute";
-    case urdf::Joint::CONTINUOUS:
-      return "continuous";
-    case urdf::Joint::PRISMATIC:
-      return "prismatic";
-    case urdf::Joint::FIXED:
-      return "fixed";
-    case urdf::Joint::FLOATING:
-      return "floating";
-    case urdf::Joint::PLANAR:
-      return "planar";
-    default:
-      return "of an unknown type";
-  }
+  static const std::map<int, const char*> kNames = {
+      {urdf::Joint::REVOLUTE, "revolute"},   {urdf::Joint::CONTINUOUS, "continuous"},
+      {urdf::Joint::PRISMATIC, "prismatic"}, {urdf::Joint::FIXED, "fixed"},
+      {urdf::Joint::FLOATING, "floating"},   {urdf::Joint::PLANAR, "planar"}};
+  const auto found = kNames.find(type);
+  return found == kNames.end() ? "of an unknown type" : found->second;
 }
 
 void throw_if_xacro(const std::string& xml, const std::string& reason) {

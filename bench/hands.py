@@ -20,7 +20,7 @@ from bench.whole_body.brute import RESTARTS, VALUES
 from bench.whole_body.carried import JUMP, WAYPOINTS, carried
 from bench.whole_body.free import free
 from bench.whole_body.nearest import STARTS, nearest
-from bench.whole_body.pairs import nearest_of_pairs, paths_of_pairs
+from bench.whole_body.pairs import IN_TIME, nearest_of_pairs, paths_of_pairs
 from bench.whole_body.robots import load_body
 
 if TYPE_CHECKING:
@@ -154,17 +154,20 @@ def _paths(rows: Rows) -> str:
 
 
 def _known(rows: Rows) -> str:
-    head = ["robot", "paths", "end before", "jumps", "length to known", "s each"]
+    head = ["robot", "paths", "end before", "too fast", "jumps"]
+    head += ["length to known", "s each"]
     lines = [
         [
             name,
-            *(f"{row[k]:,}" for k in ("paths", "ended", "jumps")),
+            *(f"{row[k]:,}" for k in ("paths", "ended", "late", "jumps")),
             *(f"{row[k]:.3f}" for k in ("length", "s_each")),
         ]
         for name, row in rows.items()
     ]
     return (
         f"Paths of {WAYPOINTS} waypoints along motions that are straight in joint "
-        "space, from anywhere and from their beginning: none needs to end, or to jump."
+        "space, from anywhere and from their beginning: none needs to end, or to jump. "
+        f"*Too fast*: what is called so of those that have {IN_TIME:g} times what the "
+        "motion takes by the limits of speed, half as many.\n"
         f"\n\n{table(head, lines)}"
     )

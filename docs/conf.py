@@ -68,7 +68,7 @@ nitpick_ignore_regex = [
         r"ChainModel|Data|DatabaseData|Impl|Names|StoredPose::Identity|RobotModel|TipsModel",
     ),
     (r"py:.*", r"(collections|enum|np|npt|numpy|os|pathlib|types|typing)\..*"),
-    (r"py:class", r"ArrayLike|Any|Callable|Float|Int|Literal|Mapping|Sequence"),
+    (r"py:class", r"ArrayLike|Any|Callable|Filter|Float|Int|Literal|Mapping|Sequence"),
     (r"py:class", r"iksel(\.\w+)*\._.*|(Bool|Float|Int)Array|Arrays|Origin|Packages"),
     (r"py:class", r"Placed|PoseLike|QuaternionOrder|Source|StrPath"),
     (r"py:exc", r"NoCMakeFilesError"),

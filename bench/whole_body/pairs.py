@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 EACH = 10
 """Moves of a pair."""
+IN_TIME = 1.5
+"""So many times what a motion takes by the limits of speed."""
 
 
 def random_pair(seed: int) -> Body:
@@ -67,9 +69,10 @@ def paths_of_pairs(count: int, seed: int) -> dict[str, Any]:
     """Paths of known motions, straight on in joint space, one of each pair.
 
     From anywhere, and from where the motion begins; jumps are needless, and so is
-    an end before the end.
+    an end before the end, with time enough as without any limit of it.
     """
-    row: dict[str, Any] = dict.fromkeys(("paths", "ended", "jumps", "wrong"), 0)
+    counts = ("paths", "ended", "late", "jumps", "wrong")
+    row: dict[str, Any] = dict.fromkeys(counts, 0)
     spent, length = [], []
     for k in range(count):
         body = random_pair(1000 * seed + k)
@@ -87,6 +90,8 @@ def paths_of_pairs(count: int, seed: int) -> dict[str, Any]:
                 row["jumps"] += result.largest_step > JUMP
                 row["wrong"] += not body.right(poses, result.q).all()
                 length.append(result.move / (step * (WAYPOINTS - 1)))
+        dt = IN_TIME * np.max(np.abs(q[1] - q[0]) / body.robot.velocity_limit)
+        row["late"] += not solver.solve_path(poses, start=q[0], dt=dt)
     return row | {"length": float(np.mean(length)), "s_each": float(np.mean(spent))}
 
 

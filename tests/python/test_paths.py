@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where paths without a start begin."""
+"""Where paths without a start begin, and what is reached in time."""
 
 from __future__ import annotations
 
@@ -78,3 +78,22 @@ def test_limits_without_a_turn_to_spare_change_nothing(made) -> None:
         path = solver.solve_path(poses)
         assert path.success
         assert all(map(solver.robot.within_limits, path.q))
+
+
+@pytest.mark.parametrize("name", ["panda", "iiwa14"])
+def test_a_known_motion_is_followed_in_time(made, name) -> None:
+    # The cheapest way there was too fast in 7 and 2 of these.
+    solver = made.solver(name)
+    robot = solver.robot
+    for k in range(20):
+        rng = np.random.default_rng((7, k))
+        begin, end = robot.random_configurations(2, int(rng.integers(1 << 30)))
+        q = np.linspace(begin, end, 200)
+        dt = 1.5 * np.max(np.abs(q[1] - q[0]) / robot.velocity_limit)
+        path = solver.solve_path(robot.fk(q), start=begin, dt=dt)
+        assert path.success, f"motion {k}"
+        steps = np.abs(np.diff(path.q, axis=0, prepend=begin[None]))
+        assert (steps <= robot.velocity_limit * dt * (1 + 1e-8)).all(), f"motion {k}"
+        # Its length is by the request's own measure.
+        lengths = np.linalg.norm(np.diff(path.q, axis=0, prepend=begin[None]), axis=1)
+        assert path.move == pytest.approx(lengths.sum()), f"motion {k}"

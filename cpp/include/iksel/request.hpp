@@ -168,7 +168,8 @@ struct IKSEL_EXPORT SolveAllOptions {
 
 /// How solve_path chooses among the solutions of each waypoint: the path with the least sum of the
 /// moves is taken, by the weights and the norm; of a redundant arm one without jumps if it is
-/// found, made shorter. The scene is not held against the moves between waypoints.
+/// found, made shorter, or with more even steps where it would be too fast. The scene is not held
+/// against the moves between waypoints.
 struct IKSEL_EXPORT PathOptions : AnswerCriteria {
   /// Where the arm is one time step before the first waypoint [rad or m]; may lie outside the
   /// limits. Empty: the path may begin anywhere; of its periodic images, the one that begins

@@ -16,7 +16,8 @@ class JointMove {
       : weights_(criteria.weights.size() == 0 ? JointVector(JointVector::Ones(dof))
                                               : criteria.weights),
         norm_(criteria.norm) {}
-  explicit JointMove(JointVector weights) : weights_(std::move(weights)), norm_(MoveNorm::two) {}
+  explicit JointMove(JointVector weights, MoveNorm norm = MoveNorm::two)
+      : weights_(std::move(weights)), norm_(norm) {}
 
   [[nodiscard]] double length(const JointVector& difference) const {
     const auto weighted = weights_.cwiseProduct(difference);

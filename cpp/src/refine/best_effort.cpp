@@ -48,18 +48,16 @@ bool descend_into_tolerances(const ChainModel& model, const Goal& goal, JointVec
     int steps = 0;
     // A position counts in metres, a rotation as many as the weight says.
     const Remainder remainder(goal, weights_of(weight * position_tolerance / rotation_tolerance));
-    descend_from_seed(model, remainder, kSteps, q, steps);
+    // An answer would have come to less than this.
+    const double most = 0.5 * (1 + weight * weight) * position_tolerance * position_tolerance;
+    if (!(descend_from_seed(model, remainder, kSteps, q, steps) < most)) return false;
     Result answer;
     if (goal.check(q, answer)) return true;
     double position = 0;
     double rotation = 0;
     goal.measure(q, position, rotation);
-    position /= position_tolerance;
-    rotation /= rotation_tolerance;
-    // An answer would have come to less than this.
-    const double weight2 = weight * weight;
-    if (!(position * position + weight2 * rotation * rotation < 1 + weight2)) return false;
-    (rotation > position ? least : largest) = 0.5 * (least + largest);
+    const bool is_turned = rotation / rotation_tolerance > position / position_tolerance;
+    (is_turned ? least : largest) = 0.5 * (least + largest);
   }
   return false;
 }

@@ -50,6 +50,8 @@ struct Workspace {
   CollectorMemory collected;
   /// Where descents to what is closest ended.
   std::vector<LocalMinimum> minima;
+  /// Which of some solutions beside limits were moved inside.
+  std::vector<int> tried;
 
   /// One of two ways to search of one tip: lanes, if the options, the chain and the database allow
   /// it.

@@ -71,12 +71,13 @@ class PathPlan {
  public:
   /// All must outlive this.
   PathPlan(const Solver::Impl& solver, const std::vector<Pose>& targets, const PathOptions& path,
-           Workspace& workspace)
+           Speeds speeds, Workspace& workspace)
       : solver_(solver),
         targets_(targets),
         path_(path),
         workspace_(workspace),
-        search_(solver.robot.all(), path),
+        search_(solver.robot.all(), path, speeds),
+        makes_up_(speeds == Speeds::made_up_for),
         count_(targets.size() / static_cast<std::size_t>(solver.robot.tips())) {
     if (path.start) add(*path.start, start_);
     is_swept_ = !solver.tips && solver.task_of(path).is_full_pose() && workspace.lanes &&
@@ -104,19 +105,13 @@ class PathPlan {
     if (has_ways) continue_back();
     search_.trace(layers_, result);
     if (has_ways) shorten(result);
+    if (makes_up_ && !search_.is_in_time(result.q)) result.status = Status::too_fast;
     return result;
   }
 
   /// Whether the arm could go otherwise to a waypoint that it cannot reach in time.
   [[nodiscard]] bool has_other_ways(const PathResult& result) const {
     return result.status == Status::too_fast && is_redundant_ && result.first_unreachable > 0;
-  }
-  /// Whether no step is too fast.
-  [[nodiscard]] bool is_in_time(const std::vector<JointVector>& q) const {
-    for (std::size_t w = path_.start ? 0 : 1; w < q.size(); ++w) {
-      if (search_.is_too_far(w > 0 ? q[w - 1] : *path_.start, q[w])) return false;
-    }
-    return true;
   }
 
  private:
@@ -168,29 +163,31 @@ class PathPlan {
   }
 
   /// Puts waypoints halfway between those on either side, the next or farther ones, where that
-  /// makes the path shorter: jumps become steps, and what drifted comes back.
+  /// makes the path shorter: jumps become steps, and what drifted comes back; or slower, till no
+  /// step is too fast.
   void shorten(PathResult& result) {
     // A round that makes less of it is the last. With 0.97 random pairs of arms moved 1.032 times
     // as far as a known motion, with 0.99 1.009, with 0.997 0.996 times in a quarter more of the
     // time; 4 rounds did 1.018 (python -m bench hands pairs --near 0 --paths 20 --seed 2).
-    constexpr int kRounds = 16;
+    constexpr int kRounds = 32;
     constexpr double kWorthwhile = 0.99;
     for (int round = 0; round < kRounds; ++round) {
+      if (makes_up_ && search_.is_in_time(result.q)) return;
       std::vector<Layer> layers;
       layers.reserve(count_);
       for (std::size_t w = 0; w < count_; ++w) {
         Layer layer;
         add(result.q[w], layer);
         add_next(halfway(result.q, w), w, layer);
-        search_.connect(before(w, layers), layer);
+        search_.connect(before(w, layers), layer, makes_up_);
         layers.push_back(std::move(layer));
       }
       PathResult other;
       other.status = Status::solved;
       search_.trace(layers, other);
       const double last = result.move;
-      if (other.move < last) result = std::move(other);
-      if (!(result.move < kWorthwhile * last)) return;
+      if (makes_up_ || other.move < last) result = std::move(other);
+      if (!makes_up_ && !(result.move < kWorthwhile * last)) return;
     }
   }
 
@@ -215,6 +212,7 @@ class PathPlan {
   const PathOptions& path_;
   Workspace& workspace_;
   PathSearch search_;
+  bool makes_up_;
   Layer start_;
   std::size_t count_;
   bool is_swept_;
@@ -226,15 +224,12 @@ class PathPlan {
 
 PathResult Solver::Impl::solve_path(const std::vector<Pose>& targets, const PathOptions& path,
                                     Workspace& workspace) const {
-  PathPlan plan(*this, targets, path, workspace);
+  PathPlan plan(*this, targets, path, Speeds::kept, workspace);
   PathResult result = plan.solve();
   if (!plan.has_other_ways(result)) return result;
-  // What can be reached in time so far ends here. The whole way, which is made short only then, may
-  // need no haste.
-  PathOptions untimed = path;
-  untimed.dt = 0;
-  PathResult whole = PathPlan(*this, targets, untimed, workspace).solve();
-  return whole.success() && plan.is_in_time(whole.q) ? whole : result;
+  // What can be reached in time so far ends here. The whole way may need no haste.
+  PathResult whole = PathPlan(*this, targets, path, Speeds::made_up_for, workspace).solve();
+  return whole.success() ? whole : result;
 }
 
 PathResult Solver::solve_path(const std::vector<Pose>& T_base_tip,

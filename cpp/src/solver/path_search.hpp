@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Paths as shortest paths: a layer of candidates per waypoint, the cost of an edge is the move
-// between its ends, and edges that are too fast are none.
+// between its ends, and edges that are too fast are none, or are made slower at last.
 #pragma once
 
 #include <algorithm>
@@ -48,15 +48,29 @@ inline std::vector<double> joint_values(const Layer& layer) {
   return q;
 }
 
+/// Whether a step that is too fast is none, or is one, to be made slower at last.
+enum class Speeds { kept, made_up_for };
+
+/// Weights by which a step of length 1 is as long as the time allows, in the max norm. Joints that
+/// may take any count as the fastest of the others.
+inline JointVector weights_of_time(const JointVector& longest) {
+  double most = 0;
+  for (const double step : longest) most = std::isfinite(step) ? std::max(most, step) : most;
+  return longest.cwiseMin(most).cwiseInverse();
+}
+
 class PathSearch {
  public:
-  PathSearch(const RobotModel& model, const PathOptions& options)
+  PathSearch(const RobotModel& model, const PathOptions& options, Speeds speeds)
       : model_(model),
         options_(options),
         request_(make_request(options)),
         screen_(options, model.dof),
-        move_(model.dof, request_),
         longest_(model.joints.longest_moves(options.dt)),
+        speeds_(speeds),
+        asked_(model.dof, request_),
+        move_(speeds == Speeds::kept ? asked_
+                                     : JointMove(weights_of_time(longest_), MoveNorm::max)),
         middle_(model.joints.middle()) {
     for (int j = 0; j < model.dof; ++j) has_images_ = has_images_ || model.joints.is_periodic(j);
   }
@@ -210,9 +224,19 @@ class PathSearch {
                                 double length = kInfinity) const {
     for (int j = 0; j < model_.dof; ++j) {
       const double move = std::abs(a[j] - b[j]);
-      if (move > longest_[j] || move * move_.weights()[j] >= length) return true;
+      const bool is_too_fast = speeds_ == Speeds::kept && move > longest_[j];
+      if (is_too_fast || move * move_.weights()[j] >= length) return true;
     }
     return false;
+  }
+
+  /// Whether no step of a path is too fast.
+  [[nodiscard]] bool is_in_time(const std::vector<JointVector>& q) const {
+    for (std::size_t w = options_.start ? 0 : 1; w < q.size(); ++w) {
+      const JointVector step = q[w] - (w == 0 ? *options_.start : q[w - 1]);
+      if ((step.array().abs() > longest_.array()).any()) return false;
+    }
+    return true;
   }
 
   /// Walks back from the cheapest end.
@@ -224,10 +248,9 @@ class PathSearch {
       result.q[w] = layers[w][i].q;
       i = layers[w][i].parent;
     }
-    const bool from_start = options_.start.has_value();
-    for (std::size_t w = from_start ? 0 : 1; w < result.q.size(); ++w) {
+    for (std::size_t w = options_.start ? 0 : 1; w < result.q.size(); ++w) {
       const JointVector step = result.q[w] - (w == 0 ? *options_.start : result.q[w - 1]);
-      result.move += move_.length(step);
+      result.move += asked_.length(step);
       int joint = 0;
       const double largest = step.cwiseAbs().maxCoeff(&joint);
       if (result.largest_step_joint >= 0 && largest <= result.largest_step) continue;
@@ -255,8 +278,10 @@ class PathSearch {
   const PathOptions& options_;
   SolveRequest request_;
   Screen screen_;
-  JointMove move_;
   JointVector longest_;
+  Speeds speeds_;
+  JointMove asked_;
+  JointMove move_;  ///< by which edges cost
   JointVector middle_;
   bool has_images_ = false;
   /// Candidates of the first waypoint, if the path has no start.

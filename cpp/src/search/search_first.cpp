@@ -61,7 +61,7 @@ Explored explore_free_curve(const FirstSearch& parts, const Pose& Y) {
     return Explored::done(Proof::target);
   }
   FreeSamples samples(*lanes.sweep, *parts.goal.scene(), Y, lanes.samples, parts.work);
-  if (parts.refine(samples, Width::narrow)) return Explored::done();
+  if (parts.refine(Width::narrow, samples)) return Explored::done();
   if (!samples.has_any()) return Explored::doubtful();
   parts.answers.refuse();
   return Explored::done(Proof::sweep);

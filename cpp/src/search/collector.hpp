@@ -119,11 +119,7 @@ class Collector : public SearchState {
   /// Whether all there is has most likely been found: many seeds in a row led to nothing new; or
   /// fewer, and the signs of det J, of which a single solution more would leave one over, cancel.
   [[nodiscard]] bool is_likely_complete() const;
-  /// Solutions that seeds are to be taken far from: none where all are followed.
-  [[nodiscard]] std::size_t known() const { return basin_radius_ > 0 ? found_.size() : 0; }
   [[nodiscard]] const double* solution(std::size_t i) const { return found_.q(i); }
-  /// Seeds nearer to a solution need not be tried [rad or m]; 0: all are.
-  [[nodiscard]] double basin_radius() const { return basin_radius_; }
 
   /// Says whether the nearest that was found is the least move already.
   void settle(bool is_settled) { is_settled_ = is_settled; }

@@ -17,10 +17,7 @@ bool search_leaf(const FirstSearch& parts, RowSeeds& near, GivenSeeds& given) {
   const bool is_quick = parts.answers.effort() == Effort::quick;
   const bool are_known = lanes.sweep || lanes.roots;
   const int from_leaf = is_quick || are_known ? kFromLeaf : lanes::kBlock;
-  if (are_known) {
-    lanes.refiner.begin(parts.goal.task(), lanes.sweep ? kBeforeSweep : kBeforeBranches,
-                        Width::narrow);
-  }
+  if (are_known) lanes.refiner.begin(parts.goal.task(), kBeforeFamilies, Width::narrow);
   LeafSeeds leaf(lanes.query, from_leaf, parts.work);
   return parts.run(lanes.refiner, near, given, leaf);
 }

@@ -27,7 +27,6 @@ Explored explore_branches(const Parts& parts, BranchList& branches, Proof kind, 
   EnumeratedSeeds enumerated(branches, Y, answers.wants_more(), parts.work);
   answers.look_for_partners(false);
   if (parts.refine(Width::narrow, near, given, enumerated)) return Explored::done();
-  if (branches.may_be_singular()) answers.converge_from_near();
   const bool is_satisfied_inside =
       !answers.has_any() &&
       parts.move_inside(branches.size(), [&](int i) { return branches.q(i); });

@@ -131,7 +131,6 @@ Outcome iterate(const IterationContext& context, JointVector& q, int& steps) {
     last_position = now.position;
     last_rotation = now.rotation;
     if (step == context.max_iterations) return outcome;
-    if (step >= context.patience && now.at.missing.squaredNorm() > kFarOff2) return outcome;
 
     if (scheme.iteration != Iteration::lm) {
       clamp_error(now.at.missing, now.position, now.rotation, scheme);

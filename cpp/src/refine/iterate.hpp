@@ -7,8 +7,6 @@
 // leaves something of the pose open does not say where the tip link is to be, and steps at the TCP.
 #pragma once
 
-#include <limits>
-
 #include "base/random.hpp"
 #include "goal/goal.hpp"
 #include "iksel/options.hpp"
@@ -36,8 +34,6 @@ struct IterationContext {
   KdlChain* kdl;
   /// Source of restarts.
   Random& random;
-  /// An attempt that is still far off after so many steps is given up.
-  int patience = std::numeric_limits<int>::max();
 };
 
 /// Iterates q, in place, from the seed it holds. `steps` counts the steps taken. Never throws.

@@ -17,21 +17,13 @@ void SchemeRefiner::begin(const Goal& goal, Random& random) {
   goal_ = &goal;
   random_ = &random;
   if (goal.is_full_pose()) tip_target_ = goal.tip_target();
-  attempts_ = 0;
   left_limits_ = false;
 }
 
 int SchemeRefiner::advance(unsigned /*busy*/) {
-  // Of a task's seeds few that are far off after so many steps arrive; where many have failed,
-  // those few count.
-  constexpr int kTaskPatience = 8;
-  constexpr int kHastyAttempts = 32;
   KdlChain* kdl = goal_->is_full_pose() ? kdl_tip_.get() : kdl_tcp_.get();
-  IterationContext context{model_, scheme_, max_iterations_, *goal_, tip_target_, kdl, *random_};
-  if (!goal_->is_full_pose() && scheme_.iteration == Iteration::lm &&
-      attempts_++ < kHastyAttempts) {
-    context.patience = kTaskPatience;
-  }
+  const IterationContext context{model_,      scheme_, max_iterations_, *goal_,
+                                 tip_target_, kdl,     *random_};
   int steps = 0;
   outcome_ = iterate(context, q_, steps);
   left_limits_ = left_limits_ || outcome_ == Outcome::outside_limits;

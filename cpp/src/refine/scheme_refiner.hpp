@@ -44,7 +44,6 @@ class SchemeRefiner {
   const Goal* goal_ = nullptr;
   Pose tip_target_ = Pose::Identity();
   Random* random_ = nullptr;
-  int attempts_ = 0;
   JointVector q_;
   Outcome outcome_ = Outcome::failed;
   bool left_limits_ = false;

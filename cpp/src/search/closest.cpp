@@ -117,10 +117,8 @@ void descend_from_screen(const RobotModel& model, const Goal& goal, const Vector
   }
   result.attempts += ClosestScreen::moved();
   if (!is_almost_reached || !goal.is_full_pose() || !lanes.sweep) return;
-  if (!lanes.sweep->find(lanes.query.reduce(goal.target()))) {
-    lanes.sweep->visit_nearest(kSweptDescents,
-                               [&](const JointVector& seed) { minima.descend(seed); });
-  }
+  lanes.sweep->visit_nearest(lanes.query.reduce(goal.target()), kSweptDescents,
+                             [&](const JointVector& seed) { minima.descend(seed); });
 }
 
 }  // namespace

@@ -19,9 +19,6 @@ constexpr double kBasinRadius = 0.2;
 /// an arm whose limits cut into its branches lost one in a pose of 170, with 128 in one of 300,
 /// with 160 in one of 700 (bench/README.md).
 constexpr int kStagnation = 160;
-/// The same where the signs of det J cancel. In 10,000 poses of a UR10e, 15 solutions of 71,798
-/// were lost with 14, 7 with 20, and 1 with 28 as with 40.
-constexpr int kStagnationBalanced = 28;
 /// The same after all branches in closed form. What 400 seeds find besides are no solutions of
 /// their own, but points of a curve that is one to within the tolerances (bench/README.md).
 constexpr int kStagnationEnumerated = 8;
@@ -60,7 +57,6 @@ Collector::Collector(const RobotModel& model, const Goal& goal, const SolveReque
       // What a filter has been asked about stays as it is.
       counts_moves_(nearest_to_ && !screens_answers(request)),
       comes_in_pairs_(goal.is_full_pose() && model.dof <= 6),
-      signs_cancel_(goal.is_full_pose() && jacobian_signs_cancel(goal.model())),
       basin_radius_(goal.is_full_pose() && model.dof <= 6 ? kBasinRadius : 0.0) {
   found_.clear();
   partners_.clear();
@@ -194,7 +190,6 @@ bool Collector::is_singular(const JointVector& q) const {
 void Collector::look_for_partner(const Jacobian& J, const JointVector& q) {
   // Of a pair that counts as one, the other may lie on the side of a limit where `near` is.
   FoldPartner partner = find_fold_partner(J, q, request_.near ? 0.0 : aim_.min_distance);
-  jacobian_signs_ += partner.jacobian_sign;
   if (partner.paired && partners_.size() < partners_.capacity()) {
     partners_.push_back(std::move(partner.other));
   }
@@ -214,10 +209,7 @@ bool Collector::pop_partner(JointVector& q) const {
 }
 
 bool Collector::is_likely_complete() const {
-  const bool balanced = signs_cancel_ && jacobian_signs_ == 0;
-  const int limit = has_all_branches_ ? kStagnationEnumerated
-                    : balanced        ? kStagnationBalanced
-                                      : kStagnation;
+  const int limit = has_all_branches_ ? kStagnationEnumerated : kStagnation;
   return solutions_ > 0 && work.attempts - last_new_ >= limit;
 }
 

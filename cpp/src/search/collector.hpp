@@ -116,14 +116,9 @@ class Collector : public SearchState {
   [[nodiscard]] int spread() const { return aim_.spread; }
   [[nodiscard]] double min_distance() const { return aim_.min_distance; }
   [[nodiscard]] bool is_complete() const { return aim_.until_complete && is_likely_complete(); }
-  /// Whether all there is has most likely been found: many seeds in a row led to nothing new; or
-  /// fewer, and the signs of det J, of which a single solution more would leave one over, cancel.
+  /// Whether all there is has most likely been found: many seeds in a row led to nothing new.
   [[nodiscard]] bool is_likely_complete() const;
-  /// Solutions that seeds are to be taken far from: none where all are followed.
-  [[nodiscard]] std::size_t known() const { return basin_radius_ > 0 ? found_.size() : 0; }
   [[nodiscard]] const double* solution(std::size_t i) const { return found_.q(i); }
-  /// Seeds nearer to a solution need not be tried [rad or m]; 0: all are.
-  [[nodiscard]] double basin_radius() const { return basin_radius_; }
 
   /// Says whether the nearest that was found is the least move already.
   void settle(bool is_settled) { is_settled_ = is_settled; }
@@ -167,7 +162,6 @@ class Collector : public SearchState {
   bool counts_moves_;
   bool comes_in_pairs_;
   bool looks_for_partners_ = true;
-  bool signs_cancel_;
   bool has_all_branches_ = false;
   bool are_surfaces_ = false;
   bool has_converged_ = false;  ///< from `near`
@@ -177,7 +171,6 @@ class Collector : public SearchState {
   std::size_t paired_ = 0;  ///< of what was found, partners of so many were looked for
   int solutions_ = 0;       ///< those that the set had no room for included
   int last_new_ = 0;        ///< seeds tried until the last new solution
-  int jacobian_signs_ = 0;  ///< sum of the solutions' signs of det J
 };
 
 }  // namespace iksel

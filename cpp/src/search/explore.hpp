@@ -25,10 +25,8 @@ Explored explore_branches(const Parts& parts, BranchList& branches, Proof kind, 
                           GivenSeeds& given, const Pose& Y) {
   auto& answers = parts.answers;
   EnumeratedSeeds enumerated(branches, Y, answers.wants_more(), parts.work);
-  SeedSequence seeds(3, near, given, enumerated);
   answers.look_for_partners(false);
-  if (parts.refine(seeds, Width::narrow)) return Explored::done();
-  if (branches.may_be_singular()) answers.converge_from_near();
+  if (parts.refine(Width::narrow, near, given, enumerated)) return Explored::done();
   const bool is_satisfied_inside =
       !answers.has_any() &&
       parts.move_inside(branches.size(), [&](int i) { return branches.q(i); });

@@ -4,7 +4,6 @@
 #include "search/explore.hpp"
 #include "seeds/free_samples.hpp"
 #include "seeds/nearest_on_arcs.hpp"
-#include "seeds/nearest_on_curve_seeds.hpp"
 
 namespace iksel {
 namespace {
@@ -45,6 +44,23 @@ Explored explore_spread(const AllSearch& parts, const Pose& Y) {
   return answers.has_any() ? Explored::done() : explore_any(parts, Y, /*at_samples=*/false);
 }
 
+/// Refines the least moves to the curve, the nearest first, until one leads to such an answer.
+void refine_nearest(const AllSearch& parts, NearestOnCurve& curve) {
+  Collector& answers = parts.answers;
+  const double known = answers.least_move();
+  curve.find_between(known);
+  parts.work.lap(&StageTimes::query);
+  bool has_led_to_answer = false;
+  for (std::size_t i = 0; i < curve.size() && !has_led_to_answer; ++i) {
+    // One beside a limit may be beyond it once it is refined, and a whole turn away.
+    constexpr double kLost = 0.01;
+    parts.refine_rows(curve.q(i), 1, /*are_answers=*/true, Width::narrow);
+    const double move = answers.least_move();
+    has_led_to_answer = move < known && move < curve.move(0) + kLost;
+  }
+  answers.settle(curve.is_settled() && has_led_to_answer);
+}
+
 /// The solution nearest to `near`, or to the objective's posture.
 Explored explore_nearest(const AllSearch& parts, const Pose& Y) {
   // Where `near` itself leads bounds the others. Of 1,000 poses of `near` itself, the samples of
@@ -63,9 +79,7 @@ Explored explore_nearest(const AllSearch& parts, const Pose& Y) {
     const Explored any = explore_any(parts, Y, /*at_samples=*/false);
     if (any.is_done && !answers.has_any()) return any;
   }
-  NearestOnCurveSeeds nearest(curve, answers, parts.work);
-  parts.refine(nearest, Width::narrow);
-  answers.settle(curve.is_settled() && nearest.has_led_to_answer());
+  refine_nearest(parts, curve);
   if (answers.has_any()) return Explored::done();
   return is_seen ? explore_any(parts, Y) : Explored::doubtful();
 }

@@ -57,7 +57,6 @@ class FirstAnswer : public SearchState {
   [[nodiscard]] bool wants_more() const { return false; }
   void look_for_partners(bool /*look*/) {}
   void set_all_branches_tried() {}
-  void converge_from_near() {}
 
  private:
   bool wraps_;

@@ -14,11 +14,9 @@ inline constexpr int kMostIterations = std::numeric_limits<int>::max();
 inline constexpr int kStalled = 2;
 /// Where any answer will do.
 inline constexpr Patience kFirst{8, kMostIterations};
-/// The same before a sweep, which finds what a slow seed would have: of 8 million reachable targets
-/// of four arms none was lost, and a pose without an answer waits less.
-inline constexpr Patience kBeforeSweep{5, kMostIterations, 0, kStalled};
-/// And before other enumerations.
-inline constexpr Patience kBeforeBranches{8, kMostIterations, 0, kStalled};
+/// The same before branches, roots or a sweep, which find what a slow seed would have: of 8 million
+/// reachable targets of four arms none was lost, and a pose without an answer waits less.
+inline constexpr Patience kBeforeFamilies{5, kMostIterations, 0, kStalled};
 /// Where a seed more or less does not matter: solutions arrive after 4 iterations in the mean, and
 /// what is far off after 6 costs more than what it finds.
 inline constexpr Patience kAll{6, kMostIterations, 2};

@@ -20,7 +20,7 @@ bool search_by_scheme(const Parts& parts) {
     SelectedSeeds selected(selection, parts.goal.tip_target(), parts.work);
     parts.run(refiner, near, given, selected);
   } else {
-    task_samples.begin(parts.answers.wants_more() ? TaskSamples::kMany : TaskSamples::kFew);
+    task_samples.begin();
     AllowedSeeds allowed(task_samples, parts.model.joints, parts.goal, random, parts.work);
     parts.run(refiner, near, given, allowed);
   }

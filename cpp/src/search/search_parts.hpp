@@ -15,7 +15,7 @@
 #include "search/search.hpp"
 #include "seeds/beyond_limits.hpp"
 #include "seeds/row_seeds.hpp"
-#include "seeds/seed_sequence.hpp"
+#include "seeds/seed_ranking.hpp"
 
 namespace iksel {
 
@@ -53,15 +53,15 @@ struct SearchParts {
   /// From what the request gives, and then from other sources, if they are asked for.
   template <typename Refiner, typename... Others>
   bool run(Refiner& refiner, RowSeeds& near, GivenSeeds& given, Others&... others) const {
-    SeedSequence seeds(request.database_seeds ? 2 + sizeof...(others) : 2, near, given, others...);
-    return search(refiner, seeds, answers, work);
+    return search_in_turn(refiner, near, given) ||
+           (request.database_seeds && search_in_turn(refiner, others...));
   }
-  /// In lanes, from seeds that all but are answers.
-  template <typename Seeds>
-  bool refine(Seeds& seeds, Width width) const {
+  /// In lanes, from seeds that all but are answers, one source after the other.
+  template <typename... Sources>
+  bool refine(Width width, Sources&... sources) const {
     LaneRefiner& refiner = workspace.lanes->refiner;
     refiner.begin(goal.task(), kNearAnswer, width);
-    const bool is_satisfied = search(refiner, seeds, answers, work);
+    const bool is_satisfied = search_in_turn(refiner, sources...);
     refiner.begin(goal.task(), kFirst, Width::narrow);
     work.lap(&StageTimes::iterate);
     return is_satisfied;
@@ -69,7 +69,7 @@ struct SearchParts {
   /// The same of rows of joint values.
   bool refine_rows(const double* q, std::size_t count, bool are_answers, Width width) const {
     RowSeeds seeds(q, count, static_cast<std::size_t>(model.dof), are_answers, work);
-    return refine(seeds, width);
+    return refine(width, seeds);
   }
   /// From solutions that lie beside limits to answers inside, as move_inside_limits() does.
   /// `joints(i)`: the i-th of them. Of those that all but meet, as double roots do and arcs at an
@@ -96,6 +96,12 @@ struct SearchParts {
     }
     work.lap(&StageTimes::iterate);
     return is_satisfied;
+  }
+
+ private:
+  template <typename Refiner, typename... Sources>
+  bool search_in_turn(Refiner& refiner, Sources&... sources) const {
+    return (search(refiner, sources, answers, work) || ...);
   }
 };
 

@@ -28,8 +28,6 @@ class BranchList {
   /// The same but for those so close to a limit, and away from singularities: such a one is a
   /// solution, or there is none beside it.
   [[nodiscard]] bool is_certain_but_for_limits() const { return certain_but_for_limits_; }
-  /// Whether the arm may be singular at one of these.
-  [[nodiscard]] bool may_be_singular() const { return may_be_singular_; }
   /// Whether each solution is near to one of these, if they are not certain either.
   [[nodiscard]] bool has_all() const { return has_all_; }
   /// Whether each stands for many solutions.
@@ -49,7 +47,6 @@ class BranchList {
   bool has_families_ = false;
   bool certain_ = false;
   bool certain_but_for_limits_ = false;
-  bool may_be_singular_ = false;
 };
 
 /// These as a source of seeds.

@@ -46,7 +46,6 @@ void Curve::begin(const Pose& Y, double longest_step) {
 }
 
 void Curve::finish_arcs(double spacing) {
-  drop_points();
   for (Arc& arc : arcs_) thin_out(arc, spacing);
 }
 
@@ -142,26 +141,6 @@ void Curve::spread(std::size_t count, double least, std::vector<double>& q) cons
     // Rounding may have left out the end.
     if (!arc.is_closed() && left < 0.5 * step) add(arc.q.back());
   }
-}
-
-void Curve::drop_points() {
-  constexpr double kSame = 1e-3;
-  const auto is_point = [&](const Arc& arc) {
-    return joints_.distance(arc.q.front(), arc.q.back()) < kSame && arc.q.size() <= 2;
-  };
-  if (std::none_of(arcs_.begin(), arcs_.end(), is_point)) return;
-  const auto is_part_of_another = [&](const Arc& arc) {
-    return is_point(arc) && std::any_of(arcs_.begin(), arcs_.end(), [&](const Arc& other) {
-             return &other != &arc && !is_point(other) &&
-                    (joints_.distance(arc.q.front(), other.q.front()) < kSame ||
-                     joints_.distance(arc.q.front(), other.q.back()) < kSame);
-           });
-  };
-  std::vector<Arc> kept;
-  for (Arc& arc : arcs_) {
-    if (!is_part_of_another(arc)) kept.push_back(arc);
-  }
-  arcs_ = std::move(kept);
 }
 
 void Curve::thin_out(Arc& arc, double spacing) const {

@@ -105,8 +105,6 @@ class Curve {
   /// Ends a walk at a limit.
   void leave(Walk& walk, const Joints& q, const SelfMotionEnd& at);
 
-  /// Leaves out arcs that are but a point of another.
-  void drop_points();
   void thin_out(Arc& arc, double spacing) const;
 
   const JointSpace& joints_;

@@ -46,7 +46,7 @@ CurveWalker::Joints CurveWalker::Step::at(double part) const {
   return q;
 }
 
-CurveWalker::Exit CurveWalker::exit(const Step& step) {
+CurveWalker::Exit CurveWalker::exit(const Step& step) const {
   Exit first{2, {}, nullptr};
   for (const Limit& limit : limits_) look_at_limit(limit, step, first);
   return first;
@@ -54,8 +54,6 @@ CurveWalker::Exit CurveWalker::exit(const Step& step) {
 
 void CurveWalker::look_at_limit(const Limit& limit, const Step& step, Exit& first) {
   constexpr int kHalvings = 40;
-  /// What a cubic may be off by [rad or m].
-  constexpr double kDoubtful = 2e-3;
   const Cubic value{limit.value(step.from.q.data()),
                     step.way * limit.value(step.from.tangent.data()), limit.value(step.to.q.data()),
                     step.way * limit.value(step.to.tangent.data())};
@@ -69,12 +67,6 @@ void CurveWalker::look_at_limit(const Limit& limit, const Step& step, Exit& firs
     double outside = i < count ? turns[static_cast<std::size_t>(i)] : 1;
     const double at = value(outside);
     if (limit.beyond(at) <= kAtLimit) continue;
-    const bool is_doubtful = limit.beyond(at) < kDoubtful;
-    if (is_doubtful) {
-      Place on_curve{step.at(outside), {}};
-      correct(on_curve);
-      if (limit.beyond(limit.value(on_curve.q.data())) <= kAtLimit) continue;
-    }
     const bool at_upper = at > limit.upper;
     double inside = i > 0 ? turns[static_cast<std::size_t>(i - 1)] : 0;
     for (int halving = 0; halving < kHalvings; ++halving) {

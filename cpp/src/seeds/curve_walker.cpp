@@ -59,11 +59,6 @@ void CurveWalker::orient(Place* places, std::size_t count) {
   }
 }
 
-void CurveWalker::correct(Place& place) {
-  constexpr int kRounds = 2;
-  for (int round = 0; round < kRounds; ++round) orient(&place, 1);
-}
-
 void CurveWalker::start(int lane, bool is_reversed) {
   constexpr double kFirstStep = 0.05;
   const Place& at = at_[static_cast<std::size_t>(lane)];

@@ -50,10 +50,8 @@ class CurveWalker {
   /// Brings places nearer to their curves, on them but for rounding where they are near, and finds
   /// the tangents there, oriented.
   void orient(Place* places, std::size_t count);
-  /// The same of one place, twice.
-  void correct(Place& place);
   /// Where a step leaves the limits first.
-  [[nodiscard]] Exit exit(const Step& step);
+  [[nodiscard]] Exit exit(const Step& step) const;
   /// That place, on the curve and at the limit but for rounding.
   [[nodiscard]] Place leave(const Step& step, const Exit& exit);
 
@@ -73,7 +71,7 @@ class CurveWalker {
   /// After a step.
   [[nodiscard]] Place place(int lane) const;
   /// Where one of a step's values leaves a limit, if that is before `first`.
-  void look_at_limit(const Limit& limit, const Step& step, Exit& first);
+  static void look_at_limit(const Limit& limit, const Step& step, Exit& first);
 
   lanes::LaneChain chain_;
   const lanes::LaneKernels& kernels_;

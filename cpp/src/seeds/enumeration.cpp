@@ -50,7 +50,6 @@ void Enumeration::find(const Pose& Y, bool wants_all) {
   is_measured_ = false;
   certain_ = is_nominal_;
   certain_but_for_limits_ = is_nominal_;
-  may_be_singular_ = false;
   for (int lane = 0; lane < kMost; ++lane) take(Y, lane, wants_all);
   for (int lane = 0; chain_.is_almost() && lane < kMost; ++lane) take_turned(Y, lane);
 }
@@ -76,7 +75,6 @@ void Enumeration::take(const Pose& Y, int lane, bool wants_all) {
   if (is_sure && beyond > 0 && is_nominal_ && is_beyond(Y, q)) return;
   certain_ = certain_ && is_sure && !(beyond > 0);
   certain_but_for_limits_ = certain_but_for_limits_ && is_sure;
-  may_be_singular_ = may_be_singular_ || !is_sure;
   // Where a square is below 0, its two roots are taken to be the same.
   if (pack_.least[lane] < 0 && has_taken(q)) return;
   ++size_;

@@ -8,15 +8,6 @@
 #include "simd/kernels.hpp"
 
 namespace iksel {
-namespace {
-
-void fill_per_turn(const JointSpace& joints, float* per_turn) {
-  for (int j = 0; j < joints.dof(); ++j) {
-    per_turn[j] = joints.is_periodic(j) ? static_cast<float>(1 / kTwoPi) : 0;
-  }
-}
-
-}  // namespace
 
 std::vector<std::size_t> farthest_first(const JointSpace& joints, const double* q, std::size_t all,
                                         std::size_t count, double least) {
@@ -36,7 +27,9 @@ std::vector<std::size_t> farthest_first(const JointSpace& joints, const double* 
   std::vector<float> nearest(blocks * lanes::kBlock, -1);
   std::fill_n(nearest.begin(), all, std::numeric_limits<float>::max());
   float per_turn[lanes::kMaxJoints];
-  fill_per_turn(joints, per_turn);
+  for (int j = 0; j < joints.dof(); ++j) {
+    per_turn[j] = joints.is_periodic(j) ? static_cast<float>(1 / kTwoPi) : 0;
+  }
   float from[lanes::kMaxJoints];
   const lanes::LaneKernels& kernels = lanes::choose_kernels();
   std::vector<std::size_t> chosen;
@@ -54,11 +47,6 @@ std::vector<std::size_t> farthest_first(const JointSpace& joints, const double* 
     if (nearest[last] < static_cast<float>(least)) break;
   }
   return chosen;
-}
-
-FarthestFirstQueue::FarthestFirstQueue(const JointSpace& joints, const lanes::LaneKernels& kernels)
-    : dof_(joints.dof()), kernels_(kernels) {
-  fill_per_turn(joints, per_turn_);
 }
 
 }  // namespace iksel

@@ -52,7 +52,6 @@ FoldPartner find_fold_partner(const Jacobian& J, const JointVector& q, double ne
     }
     trace += A[j][j];
   }
-  if (dof == kPoseJoints) result.jacobian_sign = determinant(columns) < 0 ? -1 : 1;
   for (int j = dof; j < kPoseJoints; ++j) A[j][j] = 1;
   const SymmetricFactors<double> factors(A, 1e-12 * trace);
   // Inverse iteration, which goes to the direction of the least singular value; the start is of no
@@ -72,14 +71,6 @@ FoldPartner find_fold_partner(const Jacobian& J, const JointVector& q, double ne
   result.paired = std::abs(t) <= kFarthest && std::abs(t) * v.cwiseAbs().maxCoeff() >= nearest;
   if (result.paired) result.other = q + t * v.head(dof);
   return result;
-}
-
-bool jacobian_signs_cancel(const ChainModel& model) {
-  if (model.dof != 6 || !model.joints.sums.empty()) return false;
-  for (int j = 0; j < model.dof; ++j) {
-    if (!model.joints.is_periodic(j)) return false;
-  }
-  return true;
 }
 
 }  // namespace iksel

@@ -8,8 +8,6 @@ namespace iksel {
 
 /// Around a solution of a chain with at most 6 joints.
 struct FoldPartner {
-  /// Sign of det J; 0 for fewer than 6 joints.
-  int jacobian_sign = 0;
   /// Whether the other solution of a pair that meets at a near singularity can be seen, and about
   /// where it is. Along the joint direction v of the least singular value, u its direction of
   /// motion, the TCP moves by u (sigma t + kappa t^2 / 2): it is back at t = -2 sigma / kappa.
@@ -20,11 +18,5 @@ struct FoldPartner {
 /// `J` is the Jacobian at the solution q. `nearest`: a pair nearer than this in every joint counts
 /// as one solution.
 FoldPartner find_fold_partner(const Jacobian& J, const JointVector& q, double nearest);
-
-/// True if the signs of det J over all solutions of a pose add up to zero: 6 joints that all turn
-/// without an end. Such configurations form a torus, and the degree of a map from a compact
-/// manifold to one that is not, as the poses are not, is zero (Milnor, Topology from the
-/// Differentiable Viewpoint, section 5).
-bool jacobian_signs_cancel(const ChainModel& model);
 
 }  // namespace iksel

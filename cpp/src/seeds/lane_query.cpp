@@ -8,8 +8,7 @@ namespace iksel {
 
 LaneQuery::LaneQuery(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
                      int neighbours, const lanes::LaneKernels& kernels)
-    : queue(model.joints, kernels),
-      data_(data),
+    : data_(data),
       kernels_(kernels),
       base_inverse_(to_pose(model.kernel.base).inverse()),
       tcp_inverse_(Pose(model.tcp_inverse) * to_pose(model.kernel.flange).inverse()),

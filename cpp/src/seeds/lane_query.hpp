@@ -12,10 +12,12 @@
 #include "database/key.hpp"
 #include "goal/goal.hpp"
 #include "kinematics/chain_model.hpp"
-#include "seeds/farthest_first.hpp"
 #include "simd/kernels.hpp"
 
 namespace iksel {
+
+/// Blocks whose seeds are iterated together, so that lanes find work.
+inline constexpr int kBlocksAtOnce = 4;
 
 class LaneQuery {
  public:
@@ -45,16 +47,16 @@ class LaneQuery {
   /// For AllowedSeeds: a leaf, and then the nearest block of samples that was not taken yet.
   static constexpr int kPerPose = lanes::kBlock;
   bool find(const Goal& goal, const Pose& allowed, bool is_first);
-  /// Starts a lane at the seed of packs[0] of that rank.
+  /// Starts a lane at the seed of a pack of that rank.
   template <typename Refiner>
-  void load(int rank, Refiner& refiner, int lane) const {
-    const int entry = packs[0].order[rank];
-    refiner.load(lane, [&](int j) { return static_cast<double>(packs[0].q[j][entry]); });
+  void load(int rank, Refiner& refiner, int lane, int pack = 0) const {
+    const lanes::SeedPack& seeds = packs[pack];
+    const int entry = seeds.order[rank];
+    refiner.load(lane, [&](int j) { return static_cast<double>(seeds.q[j][entry]); });
   }
 
   /// The seeds.
   lanes::SeedPack packs[kBlocksAtOnce] = {};
-  FarthestFirstQueue queue;
 
  private:
   void prepare(const float* block, lanes::SeedPack& seeds) const {

@@ -34,7 +34,6 @@ double minimize(Branches& branches, const Bracket& bracket, const Value& value, 
   double width = bracket.width;
   // A guess is looked at closely; where it fails, the bracket is that of before.
   bool guessed = false;
-  bool at_end = false;
   double at = middle;
   double behind = width;
   for (int round = 0; round < bracket.rounds && width > bracket.finest; ++round) {
@@ -53,7 +52,7 @@ double minimize(Branches& branches, const Bracket& bracket, const Value& value, 
       found(best, place(best));
       middle = at = place(best);
     }
-    if (guessed && !(here == least && (is_inside || at_end))) {
+    if (guessed && !(here == least && is_inside)) {
       // The guess was wrong.
       middle = at;
       width = behind;
@@ -62,17 +61,9 @@ double minimize(Branches& branches, const Bracket& bracket, const Value& value, 
     }
     width = behind = spacing;
     guessed = false;
-    if (!is_inside) continue;
+    if (!is_inside || !bracket.is_smooth) continue;
     const double left = costs[static_cast<std::size_t>(best - 1)];
     const double right = costs[static_cast<std::size_t>(best + 1)];
-    if ((left < no_cost) != (right < no_cost) && here < no_cost) {
-      // Where the branch ends, most often: between the best and what is none.
-      width = 0.5 * spacing;
-      middle += left < no_cost ? width : -width;
-      guessed = at_end = true;
-      continue;
-    }
-    if (!bracket.is_smooth) continue;
     const double curvature = left - 2 * here + right;
     if (!(left < no_cost && right < no_cost && curvature > 0)) continue;
     // What is left to be gained is not worth another round.
@@ -81,7 +72,6 @@ double minimize(Branches& branches, const Bracket& bracket, const Value& value, 
     middle += 0.5 * (left - right) / curvature * spacing;
     width = 0.2 * spacing;
     guessed = true;
-    at_end = false;
   }
   return least;
 }

@@ -117,7 +117,6 @@ void RootSweep::find(const Pose& Y, bool wants_all) {
   certain_ = concludes_ && roots_.is_complete() && is_clear;
   is_at_limit_ = false;
   is_delicate_ = chain_.loop != nullptr;
-  may_be_singular_ = !is_clear;
   size_ = 0;
   // Each root has a lane, or by the first one or two of the three signs two or four: two to this
   // power.
@@ -137,10 +136,7 @@ void RootSweep::find(const Pose& Y, bool wants_all) {
       take(Y, roots_[first + (lane >> lanes_power)], static_cast<int>(lane));
     }
   }
-  if (wants_all && certain_ && is_delicate_ && has_singular()) {
-    may_be_singular_ = true;
-    certain_ = false;
-  }
+  if (wants_all && certain_ && is_delicate_ && has_singular()) certain_ = false;
   certain_but_for_limits_ = certain_;
   // At a limit, what the tolerances allow decides.
   certain_ = certain_ && !is_at_limit_;
@@ -237,7 +233,6 @@ void RootSweep::take(const Pose& Y, const RootFinder::Root& root, int lane) {
     is_at_limit_ = true;
     if (!is_sure) certain_ = false;
   }
-  may_be_singular_ = may_be_singular_ || is_free || is_vague;
   is_delicate_ = is_delicate_ || is_vague || !(at->error[lane] < kDelicate);
   ++size_;
 }

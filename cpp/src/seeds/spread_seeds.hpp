@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Seeds that spread over all solutions: through the database block by block, always the seed
-// farthest from what was found first, then at random; and before them the partners predicted from
-// solutions that were found.
+// Seeds that spread over all solutions: through the database some blocks at a time, the best seed
+// of each first, then at random; and before them the partners predicted from solutions that were
+// found.
 #pragma once
 
 #include <algorithm>
@@ -14,8 +14,7 @@
 
 namespace iksel {
 
-/// `Known` has what was found: pop_partner(q), wants_more(), is_complete(), known(), their
-/// number, solution(i), and basin_radius(), within which seeds need not be tried.
+/// `Known` has what was found: pop_partner(q), wants_more() and is_complete().
 template <typename Known>
 class SpreadSeeds {
  public:
@@ -33,11 +32,8 @@ class SpreadSeeds {
     if (at_random_) return true;
     // One alone at first where any answer will do: it may have one.
     const std::size_t most = given == 0 && !known_.wants_more() ? 1 : kBlocksAtOnce;
-    const auto count =
-        static_cast<int>(query_.next_blocks(std::min(most, query_.near_blocks() - given)));
-    query_.queue.reset(query_.packs, count);
-    added_ = 0;
-    left_ = count * lanes::kBlock;
+    blocks_ = static_cast<int>(query_.next_blocks(std::min(most, query_.near_blocks() - given)));
+    left_ = blocks_ * lanes::kBlock;
     return true;
   }
 
@@ -50,21 +46,14 @@ class SpreadSeeds {
       refiner.follow(lane);
       return true;
     }
-    while (!known_.is_complete()) {
-      if (left_ == 0 || !work_.take()) return false;
-      --left_;
-      if (at_random_) {
-        load_random(joints_, random_, refiner, lane);
-        return true;
-      }
-      for (; added_ < known_.known(); ++added_) query_.queue.add_known(known_.solution(added_));
-      float distance = 0;
-      const int k = query_.queue.pop(distance);
-      if (distance < known_.basin_radius()) continue;
-      refiner.load(lane, [&](int j) { return query_.queue.q(j, k); });
-      return true;
+    if (known_.is_complete() || left_ == 0 || !work_.take()) return false;
+    const int at = blocks_ * lanes::kBlock - left_--;
+    if (at_random_) {
+      load_random(joints_, random_, refiner, lane);
+    } else {
+      query_.load(at / blocks_, refiner, lane, at % blocks_);
     }
-    return false;
+    return true;
   }
 
  private:
@@ -73,7 +62,7 @@ class SpreadSeeds {
   const Known& known_;
   Work& work_;
   Random random_;
-  std::size_t added_ = 0;
+  int blocks_ = 0;
   int left_ = 0;
   bool at_random_ = false;
 };

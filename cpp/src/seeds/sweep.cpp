@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace iksel {
 
@@ -25,17 +24,16 @@ Sweep::Sweep(const ChainModel& model, const ClosedFormChain& chain, bool is_nomi
 }
 
 bool Sweep::find_at_samples(const Pose& Y) {
+  // Few, far from each other: what these do not find, the pieces do.
+  constexpr int kEvery = 4;
   set_target(Y);
   found_.clear();
-  for (int pack = 0; pack < kPacks; ++pack) {
-    // Far from each other first, so that an answer is soon found.
-    constexpr int kStride = 5;
-    static_assert(std::gcd(kStride, kPacks) == 1, "each pack once");
-    const int first = pack * kStride % kPacks * SweptBranches::kCount;
-    SweptBranches::Row* rows = &rows_[static_cast<std::size_t>(first)];
-    branches_.rate([&](int i) { return places_.value(first + i); }, kNear, rows);
+  for (int first = 0; first < kSamples; first += kEvery * SweptBranches::kCount) {
+    const auto value = [&](int i) { return places_.value(first + kEvery * i); };
+    SweptBranches::Row rows[SweptBranches::kCount];
+    branches_.rate(value, kNear, rows);
     for (int i = 0; i < SweptBranches::kCount; ++i) {
-      if (take_answer(first + i)) return true;
+      if (take_answer(rows[i], value(i))) return true;
     }
   }
   return false;
@@ -129,7 +127,10 @@ Proof Sweep::proof_of_none() const {
   return least_ > close_ ? Proof::sweep : Proof::none;
 }
 
-void Sweep::visit_nearest(std::size_t most, FunctionRef<void(const JointVector&)> visit) {
+void Sweep::visit_nearest(const Pose& Y, std::size_t most,
+                          FunctionRef<void(const JointVector&)> visit) {
+  std::vector<double> answers;
+  add_samples(Y, 0, 1, answers);
   JointVector q(kCurveJoints);
   nearest_.find(places_, rows_, kNear);
   for (const LeastPlace& near : nearest_) {
@@ -140,10 +141,9 @@ void Sweep::visit_nearest(std::size_t most, FunctionRef<void(const JointVector&)
   }
 }
 
-bool Sweep::take_answer(int place) {
-  const SweptBranches::Row& off = rows_[static_cast<std::size_t>(place)];
+bool Sweep::take_answer(const SweptBranches::Row& off, double value) {
   if (least_of(off) > 0) return false;
-  branches_.solve_all(places_.value(place));
+  branches_.solve_all(value);
   for (int branch = 0; branch < SweptBranches::kCount; ++branch) {
     if (off[static_cast<std::size_t>(branch)] <= 0 && take(branch)) return true;
   }

@@ -26,7 +26,7 @@ class Sweep {
   /// Looks for an answer to Y (reduction.hpp), at the samples, and between them. True if there is
   /// one.
   bool find(const Pose& Y) { return find_at_samples(Y) || find_between(Y); }
-  /// The first part of it.
+  /// The first part of it, at some of the samples.
   bool find_at_samples(const Pose& Y);
   /// The second part: in each piece of the range that may have one.
   bool find_between(const Pose& Y);
@@ -40,9 +40,9 @@ class Sweep {
   /// Adds the branches inside the limits at every `stride`-th sample from `first` on, seven joint
   /// values each [rad].
   void add_samples(const Pose& Y, int first, int stride, std::vector<double>& q);
-  /// Where there is no answer at the samples: visits the joint values of the branches that came
+  /// Where there is no answer at the samples: visits the joint values of the branches that come
   /// nearest to one there, inside the limits or not.
-  void visit_nearest(std::size_t most, FunctionRef<void(const JointVector&)> visit);
+  void visit_nearest(const Pose& Y, std::size_t most, FunctionRef<void(const JointVector&)> visit);
   /// A branch at a sample of the swept joint.
   struct Sample {
     int place, branch;
@@ -71,7 +71,6 @@ class Sweep {
   static constexpr double kSpacingBeside = 2.0 / (SweptBranches::kCount + 2);
 
  private:
-  static constexpr int kPacks = kSamples / SweptBranches::kCount;
   /// Branches that are followed between samples, at most. With 16, of which merged ones take four
   /// each or eight, one of 4.8 million reachable targets was lost.
   static constexpr std::size_t kFollowed = 32;
@@ -87,8 +86,8 @@ class Sweep {
     int branch;
   };
 
-  /// Whether one of a sample's branches is an answer; it becomes what is found.
-  bool take_answer(int place);
+  /// Whether a branch at a value, where they are `off` an answer, is one; it becomes what is found.
+  bool take_answer(const SweptBranches::Row& off, double value);
   /// Whether what was solved last is an answer in a lane; it becomes what is found.
   bool take(int lane);
   /// Looks at so many places in each piece that is open; true if there is an answer.

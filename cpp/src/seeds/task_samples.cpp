@@ -12,15 +12,14 @@ TaskSamples::TaskSamples(const ChainModel& model, const DatabaseData& data, Sele
   tried_.reserve(data.size);
 }
 
-void TaskSamples::begin(std::size_t neighbours) {
-  neighbours_ = neighbours;
+void TaskSamples::begin() {
   for (const std::uint32_t sample : tried_) is_tried_[sample] = false;
   tried_.clear();
 }
 
 bool TaskSamples::find(const Goal& goal, const Pose& allowed, bool /*is_first*/) {
   const std::size_t count =
-      selection_.nearest_seeds(allowed * Pose(model_.tcp_inverse), neighbours_ + tried_.size());
+      selection_.nearest_seeds(allowed * Pose(model_.tcp_inverse), kNeighbours + tried_.size());
   found_ = count;
   double least = kInfinity;
   for (std::size_t i = 0; i < count; ++i) {

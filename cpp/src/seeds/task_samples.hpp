@@ -14,15 +14,14 @@ namespace iksel {
 class TaskSamples {
  public:
   static constexpr int kPerPose = 1;
-  /// Samples looked at: few where any answer will do, many to find answers that differ.
-  static constexpr std::size_t kFew = 4;
-  static constexpr std::size_t kMany = 16;
+  /// Samples looked at.
+  static constexpr std::size_t kNeighbours = 4;
 
   /// All must outlive this.
   TaskSamples(const ChainModel& model, const DatabaseData& data, Selection& selection);
 
   /// Before a search.
-  void begin(std::size_t neighbours);
+  void begin();
   bool find(const Goal& goal, const Pose& allowed, bool is_first);
   template <typename Refiner>
   void load(int /*rank*/, Refiner& refiner, int lane) const {
@@ -33,7 +32,6 @@ class TaskSamples {
   const ChainModel& model_;
   const DatabaseData& data_;
   Selection& selection_;
-  std::size_t neighbours_ = kMany;
   std::size_t found_ = 0;
   /// Whether a sample of the database was a seed already, and which were.
   std::vector<bool> is_tried_;

@@ -66,7 +66,7 @@ Pose TipsGoal::pose_of(int tip, const JointVector& q, JacobianMatrix* J) const {
 }
 
 Pose TipsGoal::seen_pose(int tip, const JointVector& q, JacobianMatrix* J) const {
-  const Pose pose = pose_of(tip, q, J);
+  Pose pose = pose_of(tip, q, J);
   const int frame = frame_of(tip);
   if (frame < 0) return pose;
   JacobianMatrix of_frame;

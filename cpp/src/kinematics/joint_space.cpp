@@ -14,7 +14,7 @@ JointSpace::JointSpace(int dof)
 namespace {
 
 /// So far an answer at a limit may be off, and so its image at the other [rad].
-constexpr double kRounding = 1e-6;
+constexpr double kOffLimit = 1e-6;
 
 /// Calls visit(q, beyond) with q at each combination of images of the joints that turn in sums, and
 /// how far sums, by what a joint would have to move, and these joints lie outside there.
@@ -125,17 +125,17 @@ bool JointSpace::wrap_nearest(const JointVector& near, double slack, const Lengt
 
 double JointSpace::lowest_image(int joint, double value) const {
   const bool ends = std::isfinite(upper[joint]);
-  const double low = ends ? lower[joint] - kRounding : -kPi;
+  const double low = ends ? lower[joint] - kOffLimit : -kPi;
   double image = value - kTwoPi * std::floor((value - low) / kTwoPi);
   if (image < low) image += kTwoPi;
-  return image > upper[joint] + kRounding ? value : image;
+  return image > upper[joint] + kOffLimit ? value : image;
 }
 
 bool JointSpace::next_combination(JointVector& q) const {
   for (int j = 0; j < dof(); ++j) {
     // A joint without limits has no end of images; one stands for all.
     if (!is_periodic(j) || !std::isfinite(upper[j])) continue;
-    if (q[j] + kTwoPi <= upper[j] + kRounding) {
+    if (q[j] + kTwoPi <= upper[j] + kOffLimit) {
       q[j] += kTwoPi;
       return true;
     }

@@ -12,7 +12,7 @@ namespace {
 /// A target is taken to be off by so many tolerances, to be on the safe side.
 constexpr double kMargin = 4;
 /// Farther than this nothing that is but nearly so moves a branch [rad].
-constexpr double kFarthest = 0.01;
+constexpr double kFarthestOff = 0.01;
 
 }  // namespace
 
@@ -89,7 +89,7 @@ void Enumeration::take_turned(const Pose& Y, int lane) {
     const auto i = static_cast<std::size_t>(j);
     if (joints.is_slide(j) || joints.is_periodic(j)) continue;
     const double turned = q[i] + std::copysign(kTwoPi, joints.middle()[j] - q[i]);
-    if (std::max(joints.lower[j] - turned, turned - joints.upper[j]) > kFarthest) continue;
+    if (std::max(joints.lower[j] - turned, turned - joints.upper[j]) > kFarthestOff) continue;
     next() = q;
     next()[i] = turned;
     if (is_beyond(Y, next())) continue;
@@ -120,7 +120,7 @@ bool Enumeration::is_regular(int lane, double& bound) {
   is_measured_ = true;
   if (!(regularity_.off[lane] <= form.error / kMargin)) return false;
   const double moved = form.error * regularity_.inverse_norm[lane];
-  if (!(moved < kFarthest)) return false;
+  if (!(moved < kFarthestOff)) return false;
   bound = moved;
   return true;
 }

@@ -26,7 +26,7 @@ Status search_layer(const Solver::Impl& solver, const Goal& goal, const Layer* b
   if (goal.tips() != nullptr && layer.size() >= kEnoughForTips) {
     search.screen(layer);
     search.connect(before, layer);
-    if (layer.size() > 0) return Status::solved;
+    if (!layer.empty()) return Status::solved;
   }
   const SolutionSet& found = workspace.collected.found;
   // Of an arm that is not redundant all, which are few but where axes line up.
@@ -49,9 +49,9 @@ Status search_layer(const Solver::Impl& solver, const Goal& goal, const Layer* b
   layer.erase(std::remove_if(layer.begin(), layer.end(),
                              [&](const PathCandidate& each) { return !goal.is_solution(each.q); }),
               layer.end());
-  const bool any = layer.size() > 0;
+  const bool any = !layer.empty();
   search.screen(layer);
-  const bool kept = layer.size() > 0;
+  const bool kept = !layer.empty();
   search.connect(before, layer);
   return kept                                   ? Status::too_fast
          : any                                  ? search.refusal()
@@ -126,10 +126,10 @@ class PathPlan {
       search_.add_on_curve(goal, *before, w, /*with_others=*/true, *workspace_.lanes, layer);
       search_.screen(layer);
       search_.connect(before, layer);
-      if (layer.size() > 0) return Status::solved;
+      if (!layer.empty()) return Status::solved;
     }
     const Status status = search_layer(solver_, goal, before, path_, search_, workspace_, layer);
-    return layer.size() > 0 ? Status::solved : status;
+    return layer.empty() ? status : Status::solved;
   }
 
   /// Adds what configurations lead to at that waypoint.
@@ -155,7 +155,7 @@ class PathPlan {
       Layer next;
       add_next(from, w, next);
       for (const PathCandidate& each : next) add(each.q, layers_[w]);
-      from = next.size() > 0 ? std::move(next) : layers_[w];
+      from = next.empty() ? layers_[w] : std::move(next);
     }
     for (std::size_t w = 0; w < count_; ++w) {
       search_.connect(before(w, layers_), layers_[w], /*at_last=*/true);

@@ -172,7 +172,7 @@ class PathSearch {
 
   /// Leaves only what the scene and the filter let through.
   void screen(Layer& layer) {
-    if (!screen_.is_set() || layer.size() == 0) return;
+    if (!screen_.is_set() || layer.empty()) return;
     const std::unique_ptr<bool[]> keep(new bool[layer.size()]());
     screen_.apply(joint_values(layer).data(), layer.size(), keep.get());
     std::size_t kept = 0;

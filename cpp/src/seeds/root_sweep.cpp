@@ -36,8 +36,11 @@ constexpr double kTolerancesFarthestApart = 4;
 constexpr double kFaint = 0.001;
 
 /// Where neighbouring values of a loop's determinant are less than so many times its noise, or one
-/// is at which it turns, there may be roots or none.
-constexpr double kAboveNoise = 30;
+/// is at which it turns, there may be roots or none; elsewhere they are known to within this part
+/// of a cell. With 30 two reachable targets of 50 million had been lost, 1,000 and more cost
+/// nothing (python -m bench lost --random 500 --targets 100000 --seed 620260000 --builds
+/// right_angles_6).
+constexpr double kAboveNoise = 10000;
 /// By how much a loop may stay open at a root of its determinant, which is known but to its noise.
 constexpr double kOpen = 0.02;
 /// And by how many tolerances, if what is concluded is to be certain. This and the next three:

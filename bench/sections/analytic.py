@@ -45,6 +45,7 @@ def text(view: View) -> str:
         _conditions(view),
         table(HEADER, _rows(view)),
         NOTES,
+        _ahead(view),
         _refused(view),
         _settings(view),
     ]
@@ -189,6 +190,39 @@ def _counted(ways: dict[str, Any], what: str) -> str:
         # Of many branches a target: the count of targets would say nothing.
         parts = [part.split(" of ", maxsplit=1)[0] for part in parts]
     return "; ".join(parts) or "0"
+
+
+def _ahead(view: View) -> str:
+    """Where a solver takes less than IKSel in the mean, and what it leaves out."""
+    lines = []
+    for robot in view.robots("asked"):
+        ours = _asked(view, robot, OURS)
+        for name in ENUMERATORS:
+            for way, theirs in _asked(view, robot, name).items():
+                least = ours.get(way, {}).get("us")
+                if not theirs["us"] or not least or theirs["us"][0] >= least[0]:
+                    continue
+                notes = [
+                    f"{theirs[k]:,} {k}" for k in ("missed", "longer") if theirs.get(k)
+                ]
+                if way == "every":
+                    notes.append(
+                        f"branches {_branches(theirs)} to {_branches(ours[way])}"
+                    )
+                share = f"{theirs['us'][0] / least[0]:.2f} of IKSel's mean"
+                tail = f" ({', '.join(notes)})" if notes else ""
+                lines.append(f"- `{robot}`, {WORDS[way]}: {name} {share}{tail}")
+    if not lines:
+        return "IKSel's means are the least of each arm."
+    return "\n".join(["Where IKSel's mean is not the least of an arm:", "", *lines])
+
+
+def _asked(view: View, robot: str, name: str) -> dict[str, Any]:
+    """Figures of an arm and a solver by way."""
+    ways: dict[str, Any] = {}
+    for kind in KINDS:
+        ways |= _ways(view.get(asked_cell(robot, name, kind, view.size)) or {})
+    return ways
 
 
 def _refused(view: View) -> str:

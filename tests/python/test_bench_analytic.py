@@ -250,6 +250,7 @@ class TestCommand:
                 "cells": [
                     cell("IKSel", {"one": figures | {"missed": 3}}),
                     cell("opw", {"unsupported": refused}),
+                    cell("ssik", {"one": figures | {"us": [1.0, 0.9], "missed": 2}}),
                 ],
             }
         )
@@ -260,6 +261,7 @@ class TestCommand:
         assert "| all, frankik | not installed |" in text
         assert "- opw: `ur3`: 6R only; it is none" in text
         assert "one 3 of 20" in text
+        assert "- `ur3`, one: ssik 0.50 of IKSel's mean (2 missed)\n" in text
         assert analytic.wrong(view) == ["ur3, uniform, one: 3 missed"]
 
     @pytest.mark.parametrize(("noes", "shown"), [(3, " of 3"), (20, "")])

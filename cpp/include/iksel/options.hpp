@@ -49,7 +49,7 @@ struct IKSEL_EXPORT DatabaseOptions {
   Scale scale = Scale::medium;
   /// Number of samples unless `sampling` is grid; 0 takes the grid's count at `scale`.
   std::size_t samples = 2'000;
-  /// What of a pose the key holds; a chain with mimic joints has a full key always.
+  /// What of a pose the key holds.
   KeyScheme key_scheme = KeyScheme::reduced;
   /// How a full key writes a rotation.
   RotationKey rotation_key = RotationKey::rotation_vector;
@@ -117,8 +117,7 @@ enum class GrowthStop {
 
 /// Seeds in SIMD lanes, many at once, by Levenberg-Marquardt with the limits inside the step: the
 /// recommended strategy. Where the chain has a closed form (find_structure), seeds come from that
-/// first. Over a database with a full key, and for chains with mimic joints, which lanes cannot
-/// solve, the same scheme takes one seed at a time.
+/// first. Over a database with a full key the same scheme takes one seed at a time.
 struct IKSEL_EXPORT Lanes {
   /// Samples nearest to the target that are all tried, before the better half of the others and
   /// seeds at random.

@@ -50,7 +50,8 @@ class SampleMaker {
     JointVector q(model_.dof);
     for (int j = 0; j < model_.dof; ++j) {
       const bool left_out = data_.reduction && data_.reduction->leaves_out(j);
-      q[j] = left_out ? -model_.kernel.joints[static_cast<std::size_t>(j)].offset : *sample++;
+      const auto& joints = model_.kernel.joints;
+      q[j] = left_out ? -(j == 0 ? joints.front() : joints.back()).offset : *sample++;
     }
     return q;
   }
@@ -131,7 +132,6 @@ class DatabaseBuilder {
   /// them is asked for.
   SampleSpace describe() {
     data_.options = options_;
-    if (!is_simple(model_)) data_.options.key_scheme = KeyScheme::full;
     data_.dof = model_.dof;
     data_.chain_hash = model_.hash;
     data_.weight = rotation_weight(options_, model_.reach);

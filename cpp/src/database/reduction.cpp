@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "database/reduction.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/constants.hpp"
@@ -10,7 +11,15 @@ namespace {
 
 using lanes::Side;
 
-Side side_of(const KernelJoint& joint) {
+/// Of the first joint or the last, if a variable moves it and no other.
+Side side_of(const ChainModel& model, const KernelJoint& joint, int variable) {
+  const auto& joints = model.kernel.joints;
+  const bool is_alone = std::count_if(joints.begin(), joints.end(), [&](const KernelJoint& each) {
+                          return each.variable == variable;
+                        }) == 1;
+  if (joint.variable != variable || !is_alone || joint.multiplier != 1 || joint.curve) {
+    return Side::none;
+  }
   return joint.prismatic ? Side::translation : Side::rotation;
 }
 
@@ -27,13 +36,13 @@ lanes::SeedChain make_seed_chain(const ChainModel& model, const Reduction& reduc
   seeds.outside_weight = 1000.0F;
   seeds.weight2 = static_cast<float>(p.weight * p.weight);
   seeds.offset_first = static_cast<float>(chain.joint[0].offset);
-  seeds.offset_last = static_cast<float>(chain.joint[chain.n - 1].offset);
+  seeds.offset_last = static_cast<float>(chain.joint[chain.joints - 1].offset);
   for (int j = 0; j < chain.n; ++j) {
-    const lanes::LaneJoint& joint = chain.joint[j];
-    seeds.lower[j] = static_cast<float>(joint.lower);
-    seeds.upper[j] = static_cast<float>(joint.upper);
-    seeds.middle[j] = static_cast<float>(0.5 * (joint.lower + joint.upper));
-    seeds.wraps[j] = !joint.prismatic;
+    const lanes::LaneVariable& variable = chain.variable[j];
+    seeds.lower[j] = static_cast<float>(variable.lower);
+    seeds.upper[j] = static_cast<float>(variable.upper);
+    seeds.middle[j] = static_cast<float>(0.5 * (variable.lower + variable.upper));
+    seeds.wraps[j] = !model.joints.is_slide(j);
   }
   return seeds;
 }
@@ -56,9 +65,9 @@ Reduction Reduction::of(const ChainModel& model, double weight) {
   p.base_inverse = to_pose(model.kernel.base).inverse();
   p.flange_inverse = to_pose(model.kernel.flange).inverse();
   // At least one joint must be left to sample.
-  if (is_simple(model) && model.dof >= 3) {
-    p.left = side_of(model.kernel.joints.front());
-    p.right = side_of(model.kernel.joints.back());
+  if (model.dof >= 3) {
+    p.left = side_of(model, model.kernel.joints.front(), 0);
+    p.right = side_of(model, model.kernel.joints.back(), model.dof - 1);
     // Two slides mix: the foot moves along neither coordinate then.
     if (p.left == Side::translation && p.right == Side::translation) p.right = Side::none;
   }
@@ -87,7 +96,7 @@ Pose Reduction::without_outer_joints(const Pose& Y, const lanes::LaneChain& chai
   };
   const int last = p_.dof - 1;
   return undo(p_.left, q[0] + chain.joint[0].offset) * Y *
-         undo(p_.right, q[last] + chain.joint[last].offset);
+         undo(p_.right, q[last] + chain.joint[chain.joints - 1].offset);
 }
 
 void Reduction::make_key(const Pose& Y, double* key) const {

@@ -102,8 +102,8 @@ void LaneRefiner::set_task(int lane, const Pose& T_base_tcp) {
 
 void LaneRefiner::load_seed(int lane, const double* q) {
   load(lane, [&](int j) {
-    const lanes::LaneJoint& joint = chain_.joint[j];
-    return joint.limited ? std::min(std::max(q[j], joint.lower), joint.upper) : q[j];
+    const lanes::LaneVariable& variable = chain_.variable[j];
+    return variable.limited ? std::min(std::max(q[j], variable.lower), variable.upper) : q[j];
   });
 }
 

@@ -11,10 +11,8 @@ namespace iksel {
 
 namespace {
 
-bool solves_in_lanes(const ChainModel& model, const DatabaseData& data,
-                     const SolverOptions& options) {
-  return std::holds_alternative<Lanes>(options.strategy) && data.reduction != nullptr &&
-         is_simple(model);
+bool solves_in_lanes(const DatabaseData& data, const SolverOptions& options) {
+  return std::holds_alternative<Lanes>(options.strategy) && data.reduction != nullptr;
 }
 
 /// Those of the nominal chain that tell which solutions lie inside the model's limits.
@@ -37,8 +35,8 @@ Workspace::InLanes::InLanes(const ChainModel& model, const ChainModel& nominal,
                             const lanes::LaneKernels& kernels)
     : refiner(model, options, kernels),
       query(model, nominal, data, neighbours_of(options.strategy), kernels),
-      screen(model, options, kernels),
-      closest(model, options.seed, kernels) {
+      screen(model, options, kernels) {
+  if (is_simple(model)) closest.emplace(model, options.seed, kernels);
   const bool is_nominal = &model == &nominal;
   const double position = options.position_tolerance;
   const double rotation = options.rotation_tolerance;
@@ -92,7 +90,7 @@ Workspace::Workspace(const ChainModel& model, const ChainModel& nominal, const D
       collected(model) {
   minima.reserve(kRandomDescents + 1);
   collected.coaxial.emplace(model);
-  if (solves_in_lanes(model, data, options)) {
+  if (solves_in_lanes(data, options)) {
     lanes = std::make_unique<InLanes>(model, nominal, data, options, closed_forms, trials, kernels);
   } else {
     one_at_a_time = std::make_unique<OneAtATime>(model, nominal, data, options, scheme);
@@ -113,13 +111,14 @@ WorkspacePool::WorkspacePool(const Robot& robot, const Robot& nominal, const Dat
       database_(&database),
       options_(options),
       closed_forms_(closed_forms_of(robot.model(), nominal.model())),
-      solves_in_lanes_(iksel::solves_in_lanes(robot.model(), database.data(), options)),
+      solves_in_lanes_(iksel::solves_in_lanes(database.data(), options)),
       damaged_(database.data().storage.damaged) {
   if (solves_in_lanes_ && &robot.model() == &nominal.model()) {
     held_arms_ = Held::arms_of(robot.model());
   }
   const auto& chain = closed_forms_.pose;
   has_curve_ = solves_in_lanes_ && !chain && robot.dof() == kCurveJoints &&
+               is_simple(robot.model()) &&
                !is_singular_everywhere(robot.model());
   if (solves_in_lanes_ && (has_arcs() || has_curve_)) locked_arms_ = LockedArms::of(robot.model());
   if (solves_in_lanes_ && chain && !chain->is_completed()) {

@@ -79,8 +79,8 @@ void ClosestScreen::use_length(const Vector6& squares) {
     for (int i = 0; i < 3; ++i) to.p[i] = from.p[i] * shrink;
     if (!from.prismatic) continue;
     to.offset = from.offset * shrink;
-    to.lower = from.lower * shrink;
-    to.upper = from.upper * shrink;
+    chain_.variable[j].lower = metric_chain_.variable[j].lower * shrink;
+    chain_.variable[j].upper = metric_chain_.variable[j].upper * shrink;
   }
 }
 

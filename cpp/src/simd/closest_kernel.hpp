@@ -168,15 +168,15 @@ IKSEL_INLINE void step_to_closest(const LaneChainOf<float>& chain, const Closest
   Vec<T> turned[kMaxJoints];
 #pragma GCC unroll 8
   for (int j = 0; j < n; ++j) {
-    const auto& joint = chain.joint[j];
-    const JointEffect<T> effect = find_effect(joint.prismatic, at, target, J[j]);
+    const auto& variable = chain.variable[j];
+    const JointEffect<T> effect = find_effect(chain.joint[j].prismatic, at, target, J[j]);
     moved[j] = effect.moved;
     turned[j] = effect.turned;
     scale[j] = effect.scale;
     free[j] = T(1.0F);
-    if (joint.limited) {
-      const auto leaves = ((q[j] <= T(joint.lower)) & (effect.slope > T(0.0F))) |
-                          ((q[j] >= T(joint.upper)) & (effect.slope < T(0.0F)));
+    if (variable.limited) {
+      const auto leaves = ((q[j] <= T(variable.lower)) & (effect.slope > T(0.0F))) |
+                          ((q[j] >= T(variable.upper)) & (effect.slope < T(0.0F)));
       free[j] = select(leaves, T(0.0F), T(1.0F));
     }
     step[j] = T(0.0F) - effect.slope * free[j];
@@ -221,9 +221,9 @@ void approach_of(const LaneChainOf<float>& chain, const ClosestTarget& target, i
       step_to_closest(chain, target, at, damping, n, q, J, step);
       damping = select(better, max(damping * T(0.2F), T(1e-6F)), min(damping * T(16.0F), T(1e3F)));
       for (int j = 0; j < n; ++j) {
-        const auto& joint = chain.joint[j];
+        const auto& variable = chain.variable[j];
         q[j] = select(better, q[j] + step[j], best_q[j]);
-        if (joint.limited) q[j] = min(max(q[j], T(joint.lower)), T(joint.upper));
+        if (variable.limited) q[j] = min(max(q[j], T(variable.lower)), T(variable.upper));
       }
       if (chain.sums > 0) hold_sums(chain, q);
     }

@@ -6,6 +6,7 @@
 namespace iksel {
 
 static_assert(lanes::kMostSums == kMaxCoupledLimits);
+static_assert(lanes::kMaxMoving == kMaxMovingJoints);
 
 bool is_simple(const ChainModel& model) {
   if (model.kernel.joints.size() != static_cast<std::size_t>(model.dof)) return false;
@@ -22,17 +23,23 @@ template <typename Number>
 lanes::LaneChainOf<Number> make_chain(const ChainModel& model) {
   const auto number = [](double x) { return static_cast<Number>(x); };
   lanes::LaneChainOf<Number> chain{};
-  chain.n = model.dof;
-  for (int j = 0; j < model.dof; ++j) {
-    const KernelJoint& from = model.kernel.joints[static_cast<std::size_t>(j)];
-    auto& to = chain.joint[j];
+  for (const KernelJoint& from : model.kernel.joints) {
+    auto& to = chain.joint[chain.joints++];
     for (int i = 0; i < 3; ++i) to.p[i] = number(from.p[i]);
     to.cos_alpha = number(from.cos_alpha);
     to.sin_alpha = number(from.sin_alpha);
     to.cos_turn = number(from.cos_turn);
     to.sin_turn = number(from.sin_turn);
+    to.multiplier = number(from.multiplier);
     to.offset = number(from.offset);
+    to.curve = from.curve.get();
+    to.variable = from.variable;
     to.prismatic = from.prismatic;
+  }
+  chain.n = model.dof;
+  chain.is_simple = is_simple(model);
+  for (int j = 0; j < model.dof; ++j) {
+    auto& to = chain.variable[j];
     const bool continuous = model.joints.type(j) == JointType::continuous;
     // A principal angle just off its interval is still the same angle.
     const double lower = continuous ? -kPi - 1e-9 : model.joints.lower[j];
@@ -40,8 +47,8 @@ lanes::LaneChainOf<Number> make_chain(const ChainModel& model) {
     to.lower = number(lower);
     to.upper = number(upper);
     // Whole turns of a joint may change a sum that is limited.
-    to.limited =
-        from.prismatic || (!continuous && upper - lower < 2 * kPi) || model.joints.turns_in_sum(j);
+    to.limited = model.joints.is_slide(j) || (!continuous && upper - lower < 2 * kPi) ||
+                 model.joints.turns_in_sum(j);
   }
   for (const Limit& from : model.joints.sums) {
     // Beside a bound by less than this a lane stands at it; held to it, it does.

@@ -13,7 +13,7 @@ inline double full_pose_row(const Pose& Y, int row) { return Y(row % 3, (row / 3
 /// True if the degrees of freedom are the joints, one to one: no mimic joints.
 bool is_simple(const ChainModel& model);
 
-/// The part between the frames of the first and the last joint of a simple chain.
+/// The part between the frames of the first and the last joint.
 lanes::LaneChain make_lane_chain(const ChainModel& model);
 /// The same in single precision.
 lanes::LaneChainOf<float> make_rough_chain(const ChainModel& model);

@@ -23,8 +23,8 @@ inline void turn(T (&u)[3], T (&v)[3], const C& c, const C& s) {
   }
 }
 
-/// Frames of the chain's n joints at q: J has each joint's origin and axis, `f` the last one's
-/// frame.
+/// Frames of the chain's first n joints, which have the values q: J has each joint's origin and
+/// axis, `f` the last one's frame.
 template <typename T>
 IKSEL_INLINE void place_joints(const LaneChainOf<NumberOf<T>>& chain, const T* q, T (*J)[6],
                                LaneFrame<T>& f, int n) {
@@ -35,8 +35,8 @@ IKSEL_INLINE void place_joints(const LaneChainOf<NumberOf<T>>& chain, const T* q
     f.p[i] = T(0.0);
   }
   // The joints' sines first: they do not depend on each other, and the frames need the registers.
-  T sine[kMaxJoints];
-  T cosine[kMaxJoints];
+  T sine[kMaxMoving];
+  T cosine[kMaxMoving];
   for (int j = 0; j < n; ++j) sincos(q[j] + T(chain.joint[j].offset), sine[j], cosine[j]);
 #pragma GCC unroll 10
   for (int j = 0; j < n; ++j) {
@@ -80,6 +80,48 @@ IKSEL_INLINE void make_twist(const Joint& joint, const T* point, T (&column)[6])
       const int b = (i + 2) % 3;
       column[i] = axis[a] * r[b] - axis[b] * r[a];
     }
+  }
+}
+
+/// The same of all joints where some follow others, and how fast they move with their variables q.
+template <typename T>
+[[gnu::noinline]] void place_following_joints(const LaneChainOf<NumberOf<T>>& chain, const T* q,
+                                              T (*J)[6], T* slope, LaneFrame<T>& f) {
+  T value[kMaxMoving];
+  for (int k = 0; k < chain.joints; ++k) {
+    const auto& joint = chain.joint[k];
+    slope[k] = T(joint.multiplier);
+    value[k] = slope[k] * q[joint.variable];
+    if (joint.curve == nullptr) continue;
+    NumberOf<T> values[Lanes<T>::kCount];
+    NumberOf<T> slopes[Lanes<T>::kCount];
+    Lanes<T>::store(q[joint.variable], values);
+    for (int lane = 0; lane < Lanes<T>::kCount; ++lane) {
+      const MotionCurve::Point point = joint.curve->at(static_cast<double>(values[lane]));
+      values[lane] = static_cast<NumberOf<T>>(point.value);
+      slopes[lane] = static_cast<NumberOf<T>>(point.slope);
+    }
+    value[k] = T(joint.multiplier) * Lanes<T>::load(values);
+    slope[k] = T(joint.multiplier) * Lanes<T>::load(slopes);
+  }
+  place_joints(chain, value, J, f, chain.joints);
+}
+
+/// From the origins and axes of all joints to the twists by which their variables move a point.
+template <typename T>
+[[gnu::noinline]] void gather_twists(const LaneChainOf<NumberOf<T>>& chain, const T* slope,
+                                     const T* point, T (*J)[6]) {
+  T sum[kMaxJoints][6];
+  for (int j = 0; j < chain.n; ++j) {
+    for (T& each : sum[j]) each = T(0.0);
+  }
+  for (int k = 0; k < chain.joints; ++k) {
+    make_twist(chain.joint[k], point, J[k]);
+    T(&to)[6] = sum[chain.joint[k].variable];
+    for (int i = 0; i < 6; ++i) to[i] = to[i] + slope[k] * J[k][i];
+  }
+  for (int j = 0; j < chain.n; ++j) {
+    for (int i = 0; i < 6; ++i) J[j][i] = sum[j][i];
   }
 }
 

@@ -23,22 +23,22 @@
 
 namespace iksel::lanes {
 
-/// From origins and axes to the columns of the goal's Jacobian, without what would leave limits
-/// that a lane stands at.
-template <typename T, typename Goal>
+/// From origins and axes of a simple chain's joints, or twists of variables, to the columns of the
+/// goal's Jacobian, without what would leave limits that a lane stands at.
+template <bool kIsSimple, typename T, typename Goal>
 IKSEL_INLINE void make_columns(const LaneChainOf<NumberOf<T>>& chain, const T* q, const Goal& goal,
                                const LaneFrame<T>& f, const T (&e)[6], T (*J)[6]) {
   const int n = chain.n;
   const T* point = goal.point(f);
 #pragma GCC unroll 10
   for (int j = 0; j < n; ++j) {
-    const auto& joint = chain.joint[j];
+    const auto& variable = chain.variable[j];
     T(&column)[6] = J[j];
-    make_twist(joint, point, column);
+    if (kIsSimple) make_twist(chain.joint[j], point, column);
     goal.to_rows(column);
-    if (joint.limited) {
-      const auto low = q[j] <= T(joint.lower);
-      const auto high = q[j] >= T(joint.upper);
+    if (variable.limited) {
+      const auto low = q[j] <= T(variable.lower);
+      const auto high = q[j] >= T(variable.upper);
       if (any(low | high)) {
         T gradient = column[0] * e[0];
         for (int i = 1; i < 6; ++i) gradient = gradient + column[i] * e[i];
@@ -66,15 +66,15 @@ IKSEL_INLINE T move_joints(const LaneChainOf<NumberOf<T>>& chain, const T (*J)[6
     for (int i = 1; i < 6; ++i) dq = dq + J[j][i] * y[i];
     dq2 = dq2 + dq * dq;
     q[j] = q[j] + dq;
-    const auto& joint = chain.joint[j];
-    if (joint.limited) q[j] = min(max(q[j], T(joint.lower)), T(joint.upper));
+    const auto& variable = chain.variable[j];
+    if (variable.limited) q[j] = min(max(q[j], T(variable.lower)), T(variable.upper));
   }
   if (chain.sums > 0) hold_sums(chain, q);
   return dq2;
 }
 
 /// Iterates the lanes of a pack from `first` on.
-template <typename T, typename Goal, typename Pack>
+template <bool kIsSimple, typename T, typename Goal, typename Pack>
 IKSEL_INLINE PackResult iterate(const LaneChainOf<NumberOf<T>>& chain, const LaneOptions& options,
                                 Goal& goal, unsigned watched, int iterations, int first,
                                 Pack& pack) {
@@ -83,15 +83,21 @@ IKSEL_INLINE PackResult iterate(const LaneChainOf<NumberOf<T>>& chain, const Lan
   for (int j = 0; j < n; ++j) q[j] = Lanes<T>::load(pack.q[j] + first);
 
   for (int iteration = 1;; ++iteration) {
-    T J[kMaxJoints][6];
+    T J[kMaxMoving][6];
+    T slope[kMaxMoving];
     LaneFrame<T> frame;
-    place_joints(chain, q, J, frame, chain.n);
+    if (kIsSimple) {
+      place_joints(chain, q, J, frame, n);
+    } else {
+      place_following_joints(chain, q, J, slope, frame);
+    }
     T e[6];
     goal.measure(frame, e);
+    if (!kIsSimple) gather_twists(chain, slope, goal.point(frame), J);
     const T ep2 = e[0] * e[0] + e[1] * e[1] + e[2] * e[2];
     const T er2 = e[3] * e[3] + e[4] * e[4] + e[5] * e[5];
     const T e2 = ep2 + er2;
-    make_columns(chain, q, goal, frame, e, J);
+    make_columns<kIsSimple>(chain, q, goal, frame, e, J);
     // dq = J^T (J J^T + lambda I)^-1 e.
     T A[6][6];
     multiply_rows<0, 3>(n, J, A);
@@ -119,20 +125,36 @@ IKSEL_INLINE PackResult iterate(const LaneChainOf<NumberOf<T>>& chain, const Lan
 
 /// One for any number of joints: made for a known number it was no faster on AVX-512, AVX2 or SSE2.
 /// Nothing to be inlined: GCC 12 then keeps a tenth less of it in registers.
+template <bool kIsSimple, typename T, typename Goal>
+[[gnu::noinline]] PackResult advance_of(const LaneChain& chain, const LaneOptions& options,
+                                        const LaneTask* task, unsigned watched, int iterations,
+                                        LanePack& pack) {
+  Goal goal(pack, task);
+  return iterate<kIsSimple, T>(chain, options, goal, watched, iterations, 0, pack);
+}
+
 template <typename T, typename Goal>
 PackResult advance(const LaneChain& chain, const LaneOptions& options, const LaneTask* task,
                    unsigned watched, int iterations, LanePack& pack) {
-  Goal goal(pack, task);
-  return iterate<T>(chain, options, goal, watched, iterations, 0, pack);
+  const auto of = chain.is_simple ? advance_of<true, T, Goal> : advance_of<false, T, Goal>;
+  return of(chain, options, task, watched, iterations, pack);
+}
+
+template <bool kIsSimple, typename T>
+[[gnu::noinline]] void advance_roughly_of(const LaneChainOf<float>& chain,
+                                          const LaneOptions& options, int iterations,
+                                          RoughPack& pack) {
+  FullPose<T, RoughPack> goal(pack, nullptr);
+  for (int first = 0; first < kBlock; first += Lanes<T>::kCount) {
+    iterate<kIsSimple, T>(chain, options, goal, 0, iterations, first, pack);
+  }
 }
 
 template <typename T>
 void advance_roughly(const LaneChainOf<float>& chain, const LaneOptions& options, int iterations,
                      RoughPack& pack) {
-  FullPose<T, RoughPack> goal(pack, nullptr);
-  for (int first = 0; first < kBlock; first += Lanes<T>::kCount) {
-    iterate<T>(chain, options, goal, 0, iterations, first, pack);
-  }
+  const auto of = chain.is_simple ? advance_roughly_of<true, T> : advance_roughly_of<false, T>;
+  of(chain, options, iterations, pack);
 }
 
 template <typename T>

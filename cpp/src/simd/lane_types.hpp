@@ -5,9 +5,13 @@
 
 #include <cstddef>
 
+#include "base/motion_curve.hpp"
+
 namespace iksel::lanes {
 
+/// Most degrees of freedom, and most joints that they move.
 inline constexpr int kMaxJoints = 32;
+inline constexpr int kMaxMoving = 64;
 /// Most sums of joint values that are limited.
 inline constexpr int kMostSums = 8;
 /// Most lanes of a pack.
@@ -17,18 +21,25 @@ inline constexpr int kWidth = 8;
 inline constexpr int kBlock = 16;
 inline constexpr float kEntries[kBlock] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
-/// A joint of a chain whose degrees of freedom are its joints, one to one.
+/// A joint that moves, as a KernelJoint.
 template <typename Number>
 struct LaneJointOf {
   Number p[3];
   Number cos_alpha, sin_alpha;
   Number cos_turn, sin_turn;
-  Number offset;
-  Number lower, upper;
-  bool limited;  ///< false: a whole turn or more of range, wrapped at the end
+  Number multiplier, offset;
+  const MotionCurve* curve;  ///< null: a straight line
+  int variable;
   bool prismatic;
 };
-using LaneJoint = LaneJointOf<double>;
+
+/// A degree of freedom.
+template <typename Number>
+struct LaneVariableOf {
+  Number lower, upper;
+  bool limited;  ///< false: a whole turn or more of range, wrapped at the end
+};
+using LaneVariable = LaneVariableOf<double>;
 
 /// A limit of a sum of joint values: lower <= c . q <= upper.
 template <typename Number>
@@ -42,8 +53,11 @@ struct LaneSumOf {
 /// The chain between the frames of its first and last joint.
 template <typename Number>
 struct LaneChainOf {
-  int n;
-  LaneJointOf<Number> joint[kMaxJoints];
+  int n;           ///< degrees of freedom
+  int joints;      ///< that they move
+  bool is_simple;  ///< they are these, one to one
+  LaneVariableOf<Number> variable[kMaxJoints];
+  LaneJointOf<Number> joint[kMaxMoving];
   int sums;
   LaneSumOf<Number> sum[kMostSums];
 };

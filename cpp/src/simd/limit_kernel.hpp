@@ -79,18 +79,18 @@ template <typename T>
       T free[kMaxJoints];
       T norm2 = T(0.0);
       for (int j = 0; j < chain.n; ++j) {
-        const auto& joint = chain.joint[j];
+        const auto& variable = chain.variable[j];
         const T down = excess * T(row.c[j]);
-        const auto stays = ((q[j] <= T(joint.lower)) & (down > T(0.0))) |
-                           ((q[j] >= T(joint.upper)) & (down < T(0.0)));
+        const auto stays = ((q[j] <= T(variable.lower)) & (down > T(0.0))) |
+                           ((q[j] >= T(variable.upper)) & (down < T(0.0)));
         free[j] = select(stays, T(0.0), T(row.c[j]));
         norm2 = norm2 + free[j] * free[j];
       }
       const T part = excess / max(norm2, T(row.least_norm2));
       for (int j = 0; j < chain.n; ++j) {
         if (row.c[j] == 0) continue;
-        const auto& joint = chain.joint[j];
-        q[j] = min(max(q[j] - part * free[j], T(joint.lower)), T(joint.upper));
+        const auto& variable = chain.variable[j];
+        q[j] = min(max(q[j] - part * free[j], T(variable.lower)), T(variable.upper));
       }
     }
   }
@@ -120,9 +120,9 @@ template <typename T>
         gradient = gradient + J[j][i] * e[i];
         column2 = column2 + J[j][i] * J[j][i];
       }
-      const auto& joint = chain.joint[j];
+      const auto& variable = chain.variable[j];
       const auto is_held =
-          (column2 <= T(0.0)) & ((q[j] <= T(joint.lower)) | (q[j] >= T(joint.upper)));
+          (column2 <= T(0.0)) & ((q[j] <= T(variable.lower)) | (q[j] >= T(variable.upper)));
       normal[r][j] = select(is_held, T(0.0), T(row.c[j]));
       slope = slope + gradient * T(row.c[j]);
       size2 = size2 + normal[r][j] * normal[r][j];

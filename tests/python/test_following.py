@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Joints that follow others by mimic tags: such arms are searched, in lanes as all are."""
+
+from __future__ import annotations
+
+import os
+
+import numpy as np
+import pytest
+from following_arms import following_arm
+
+import iksel
+
+SEED = int(os.environ.get("IKSEL_TEST_SEED", "7"))
+ARMS = int(os.environ.get("IKSEL_TEST_CASES", "20"))
+POSES = 300
+NEAR = 10
+SAME_MOVE = 0.01
+
+ARMS_THAT_LOST = (71, 139, 250, 290, 350, 352)
+"""One of these poses each, while they were solved one seed at a time."""
+
+
+@pytest.mark.parametrize("seed", [*ARMS_THAT_LOST, *range(1000 * SEED, 1000 * SEED + ARMS)])
+def test_what_can_be_reached_is_found(seed: int) -> None:
+    robot = following_arm(seed)
+    if robot is None:
+        pytest.skip("limits leave nothing")
+    q = robot.random_configurations(POSES, seed=seed)
+    poses = robot.fk(q)
+    solver = iksel.Solver(robot)
+    batch = solver.solve_batch(poses)
+    assert batch.success.all()
+    assert robot.within_limits(batch.q).all()
+    np.testing.assert_allclose(robot.fk(batch.q), poses, atol=2.5e-6)
+    rng = np.random.default_rng(seed)
+    lower, upper = robot.lower, robot.upper
+    for pose, known in zip(poses[:NEAR], q[:NEAR], strict=True):
+        assert solver.solve(pose)
+        assert len(solver.solve_all(pose)) > 0
+        near = np.clip(known + 0.1 * rng.normal(size=robot.dof), lower, upper)
+        result = solver.solve(pose, near=near)
+        assert result.move <= np.linalg.norm(near - known) + SAME_MOVE
+
+
+def test_a_telescope_is_one_joint_of_many() -> None:
+    """A column that lifts, and five stages of an arm that slide out by the same."""
+    stages = "".join(
+        f"""<link name="stage{i}"/><joint name="slide{i}" type="prismatic">
+        <parent link="{f"stage{i - 1}" if i else "column"}"/><child link="stage{i}"/>
+        <origin xyz="0 0 0.03"/><axis xyz="0 1 0"/>
+        <limit lower="0" upper="0.1" effort="1" velocity="1"/>
+        {'<mimic joint="slide0"/>' if i else ""}</joint>"""
+        for i in range(5)
+    )
+    robot = iksel.Robot.from_urdf(
+        f"""<robot name="telescope"><link name="base"/><link name="column"/>
+        <joint name="lift" type="prismatic"><parent link="base"/><child link="column"/>
+        <axis xyz="0 0 1"/><limit lower="0" upper="1" effort="1" velocity="1"/></joint>
+        {stages}<link name="wrist"/><link name="hand"/>
+        <joint name="yaw" type="revolute"><parent link="stage4"/><child link="wrist"/>
+        <axis xyz="0 0 1"/><limit lower="-2" upper="4" effort="1" velocity="1"/></joint>
+        <joint name="pitch" type="revolute"><parent link="wrist"/><child link="hand"/>
+        <origin xyz="0 0.1 0"/><axis xyz="1 0 0"/>
+        <limit lower="-1.5" upper="0.5" effort="1" velocity="1"/></joint></robot>""",
+        tip_link="hand",
+    )
+    assert robot.joint_names == ["lift", "slide0", "yaw", "pitch"]
+    q = robot.random_configurations(500, seed=SEED)
+    solver = iksel.Solver(robot)
+    assert solver.database.options.key_scheme == iksel.KeyScheme.reduced
+    batch = solver.solve_batch(robot.fk(q))
+    assert batch.success.all()
+    np.testing.assert_allclose(batch.q, q, atol=1e-4)

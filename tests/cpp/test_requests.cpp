@@ -30,6 +30,24 @@ TEST(Deadline, EndsTheSearch) {
   EXPECT_TRUE(solver.solve(target, request).success());
 }
 
+TEST(Deadline, IsNoReasonWhereThereProvablyIsNoAnswer) {
+  const Solver& solver = iksel_test::solver("iiwa14");
+  const auto q = solver.robot().random_configurations(100, iksel_test::seed());
+  int proven = 0;
+  for (int i = 0; i + 1 < 100; ++i) {
+    Pose target = solver.robot().fk(JointVector(q.row(i)));
+    target.translation() = solver.robot().fk(JointVector(q.row(i + 1))).translation();
+    SolveRequest request;
+    request.near = JointVector(q.row(i));
+    request.deadline = 1e-9;
+    const Result result = solver.solve(target, request);
+    if (result.success() || result.proof == iksel::Proof::none) continue;
+    ++proven;
+    EXPECT_NE(result.status, Status::out_of_time) << "target " << i;
+  }
+  EXPECT_GT(proven, 0);
+}
+
 TEST(Requests, SameInputSameBits) {
   for (const char* name : {"ur3", "panda"}) {
     const Solver& solver = iksel_test::solver(name);

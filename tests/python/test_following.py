@@ -21,7 +21,9 @@ ARMS_THAT_LOST = (71, 139, 250, 290, 350, 352)
 """One of these poses each, while they were solved one seed at a time."""
 
 
-@pytest.mark.parametrize("seed", [*ARMS_THAT_LOST, *range(1000 * SEED, 1000 * SEED + ARMS)])
+@pytest.mark.parametrize(
+    "seed", [*ARMS_THAT_LOST, *range(1000 * SEED, 1000 * SEED + ARMS)]
+)
 def test_what_can_be_reached_is_found(seed: int) -> None:
     robot = following_arm(seed)
     if robot is None:

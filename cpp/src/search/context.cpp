@@ -118,8 +118,7 @@ WorkspacePool::WorkspacePool(const Robot& robot, const Robot& nominal, const Dat
   }
   const auto& chain = closed_forms_.pose;
   has_curve_ = solves_in_lanes_ && !chain && robot.dof() == kCurveJoints &&
-               is_simple(robot.model()) &&
-               !is_singular_everywhere(robot.model());
+               is_simple(robot.model()) && !is_singular_everywhere(robot.model());
   if (solves_in_lanes_ && (has_arcs() || has_curve_)) locked_arms_ = LockedArms::of(robot.model());
   if (solves_in_lanes_ && chain && !chain->is_completed()) {
     const bool proves =

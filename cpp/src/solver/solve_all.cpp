@@ -230,7 +230,8 @@ Solutions Solver::Impl::solve_all(const Goal& goal, const SolveAllOptions& all,
   }
   if (solutions.all.empty()) {
     if (solutions.status == Status::solved) solutions.status = screen.refusal();
-    if (search.is_out_of_time()) solutions.status = Status::out_of_time;
+    const bool is_open = search.is_out_of_time() && solutions.proof == Proof::none;
+    if (is_open) solutions.status = Status::out_of_time;
   } else if (solutions.proof == Proof::none) {
     solutions.proof = Proof::answer;
   }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Joints that follow others by mimic tags: such arms are searched, in lanes as all are."""
+"""Joints that follow others by mimic tags: such arms are searched, in lanes as all."""
 
 from __future__ import annotations
 

@@ -23,6 +23,12 @@ Explored explore_spread(const AllSearch& parts, const Pose& Y) {
   std::vector<double>& q = lanes.samples.q;
   const auto wanted = static_cast<std::size_t>(answers.spread());
   const double least = 1.01 * answers.min_distance();
+  if (parts.request.scene) {
+    // Of what lies all over it none may be free where few are. None of these is refused, so that
+    // half as many leave as much of a choice.
+    FreeSamples free(*lanes.sweep, *parts.request.scene, Y, lanes.samples, parts.work, wanted / 2);
+    if (parts.refine(Width::wide, free) || free.has_most()) return Explored::done();
+  }
   lanes.sweep->find_spread(Y, wanted, least, q);
   parts.work.lap(&StageTimes::query);
   std::vector<double> few;

@@ -15,8 +15,8 @@ constexpr std::size_t kMostPeaks = 24;
 }  // namespace
 
 FreeSamples::FreeSamples(Sweep& sweep, const Scene& scene, const Pose& Y, Memory& memory,
-                         Work& work)
-    : sweep_(sweep), scene_(scene), to_(memory), work_(work) {
+                         Work& work, std::size_t most)
+    : sweep_(sweep), scene_(scene), to_(memory), work_(work), most_(most) {
   look_.is_target_clear = true;
   to_.q.clear();
   to_.samples.clear();
@@ -29,7 +29,7 @@ FreeSamples::FreeSamples(Sweep& sweep, const Scene& scene, const Pose& Y, Memory
 bool FreeSamples::next_stage() {
   free_count_ = 0;
   next_ = 0;
-  while (free_count_ == 0 && (at_ < rows() || add_rows())) screen_pack();
+  while (free_count_ == 0 && !has_most() && (at_ < rows() || add_rows())) screen_pack();
   work_.lap(&StageTimes::query);
   return free_count_ > 0;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -38,8 +39,10 @@ class FreeSamples {
     std::vector<Place> places;
   };
 
-  /// All must outlive this. Nothing may touch that is where it is in all solutions.
-  FreeSamples(Sweep& sweep, const Scene& scene, const Pose& Y, Memory& memory, Work& work);
+  /// About so many at `most`. All must outlive this. Nothing may touch that is where it is in all
+  /// solutions.
+  FreeSamples(Sweep& sweep, const Scene& scene, const Pose& Y, Memory& memory, Work& work,
+              std::size_t most = std::numeric_limits<std::size_t>::max());
 
   /// The samples of the sweep, those far from each other first; where none is free, between the
   /// samples beside those that overlap least; towards where branches leave the limits; and where
@@ -49,12 +52,15 @@ class FreeSamples {
   template <typename Refiner>
   bool load(Refiner& refiner, int lane) {
     if (next_ == free_count_) return false;
+    ++given_;
     work_.take_on_top();
     refiner.load_answer(lane, row(free_[next_++]));
     return true;
   }
   /// Whether the arm can reach the target at all inside the limits, as far as was seen.
   [[nodiscard]] bool has_any() const { return has_any_; }
+  /// Whether as many as are wanted were given.
+  [[nodiscard]] bool has_most() const { return given_ >= most_; }
 
  private:
   [[nodiscard]] std::size_t rows() const { return to_.q.size() / kCurveJoints; }
@@ -82,6 +88,8 @@ class FreeSamples {
   SceneLook look_;
   Memory& to_;
   Work& work_;
+  std::size_t most_;
+  std::size_t given_ = 0;
   std::size_t at_ = 0;      ///< row to be looked at next
   int part_ = 0;            ///< of the samples
   std::size_t place_ = 0;   ///< that is looked beside next

@@ -81,26 +81,29 @@ PyResult track(Tracker& self, const PoseLike& pose, double dt, const std::option
 }
 
 py::dict tracker_state(const Tracker& self) {
-  const auto& [last, speed] = self.stream();
+  const TrackerState& state = self.state();
   const auto& [task, tasks, in_frame_of] = self.criteria();
   py::list frames;
   for (const int frame : in_frame_of) frames.append(optional_index(frame));
   return py::dict("solver"_a = self.solver(), "q"_a = to_array(self.q()),
                   "closest"_a = FromPython<Closest>::show(self.closest()),
-                  "reached"_a = to_array(self.reached()), "last"_a = to_stack(last),
-                  "speed"_a = speed, "task"_a = task, "tasks"_a = tasks, "in_frame_of"_a = frames);
+                  "reached"_a = to_array(*state.reached), "velocity"_a = to_array(state.velocity),
+                  "last"_a = to_stack(state.last), "speed"_a = state.speed, "task"_a = task,
+                  "tasks"_a = tasks, "in_frame_of"_a = frames);
 }
 
 Tracker tracker_from_state(const Solver& solver, const ArrayLike& q, const Closest& closest,
-                           const ArrayLike& reached, const PoseLike& last, double speed,
-                           const std::optional<Task>& task, const std::vector<Task>& tasks,
-                           const std::vector<int>& in_frame_of) {
+                           const ArrayLike& reached, const ArrayLike& velocity,
+                           const PoseLike& last, double speed, const std::optional<Task>& task,
+                           const std::vector<Task>& tasks, const std::vector<int>& in_frame_of) {
   const int dof = solver.robot().dof();
   const std::vector<Pose> targets = to_poses(as_poses(last, "pickled Tracker, last"));
-  const TargetStream stream{{targets.begin(), targets.end()}, speed};
+  const TrackerState state{as_joints(reached, dof, "pickled Tracker, reached"),
+                           as_joints(velocity, dof, "pickled Tracker, velocity"),
+                           {targets.begin(), targets.end()},
+                           speed};
   return Tracker(solver, as_joints(q, dof, "pickled Tracker, q"), closest,
-                 {task, tasks, in_frame_of}, as_joints(reached, dof, "pickled Tracker, reached"),
-                 stream);
+                 {task, tasks, in_frame_of}, state);
 }
 
 void bind_tracker(py::module_& m) {
@@ -145,7 +148,7 @@ Raises:
   add_property(tracker, "reached", [](const Tracker& self) { return to_array(self.reached()); });
   def_repr(tracker);
   def_pickle(tracker, fn<&tracker_state>,
-             "solver, q, closest, reached, last, speed, task, tasks, in_frame_of",
+             "solver, q, closest, reached, velocity, last, speed, task, tasks, in_frame_of",
              fn<&tracker_from_state>);
 }
 

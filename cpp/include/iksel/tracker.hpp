@@ -16,10 +16,13 @@ namespace iksel {
 
 class Goal;
 
-/// What a Tracker remembers of its targets.
-struct TargetStream {
-  std::vector<StoredPose> last;  ///< the pose of each tip; empty: where the tools are
-  double speed = 0;              ///< when it last moved, by the weights [1/s]; 0: it never did
+/// What a Tracker remembers of the steps before.
+struct TrackerState {
+  /// Where the arm was when it last reached its pose, or began; none: where it is [rad or m].
+  std::optional<JointVector> reached;
+  JointVector velocity;          ///< of its joints in the last step [rad/s or m/s]; empty: 0
+  std::vector<StoredPose> last;  ///< the last target of each tip; empty: where the tools are
+  double speed = 0;  ///< of the targets when they last moved, by the weights [1/s]; 0: never
 };
 
 /// Follows a stream of poses: each answer continues from the last, within the velocity limits. Not
@@ -34,23 +37,21 @@ class IKSEL_EXPORT Tracker {
   /// inside is then part of the first moves. Throws InvalidArgumentError if it has not dof finite
   /// elements, or about criteria that do not fit. `closest`: what is done where a pose
   /// cannot be reached from where the arm is (track). `criteria`: what of the poses has to be
-  /// reached, as of solve. `reached` is where it last reached its pose; empty: at `start`.
-  /// `stream`: of a tracker that goes on.
+  /// reached, as of solve. `state`: of a tracker that goes on.
   Tracker(const Solver& solver, const JointVector& start,
           const std::optional<PoseWeights>& closest = std::nullopt,
-          const TargetCriteria& criteria = {},
-          const std::optional<JointVector>& reached = std::nullopt,
-          const TargetStream& stream = {});
+          const TargetCriteria& criteria = {}, const TrackerState& state = {});
 
-  /// Moves on towards the pose, by no more than each joint can in `dt` seconds. Status `solved`:
-  /// there. `too_fast`: the arm needs more time, and went as far on the straight way in joint space
-  /// as it could, or as its tool may (kFastestTool). `closest`, only if that is asked for: the pose
-  /// cannot be reached from here, and the arm went downhill to where it is nearest, by the weights;
-  /// with the target it comes back on the side that it left from. Any other: there is no
-  /// continuation from here, and the arm stays. `move` is the length of the move in joint space. In
-  /// a scene the arm also stays, with status `in_collision`, where it would collide at the end of
-  /// its move; the way there is not looked at. Throws InvalidArgumentError if the pose is not
-  /// rigid, dt is not above 0, or the scene is of another chain.
+  /// Moves on towards the pose, by no more than each joint can in `dt` seconds; through a
+  /// singularity, where solutions meet, straight on. Status `solved`: there. `too_fast`: the arm
+  /// needs more time, and went as far on the straight way in joint space as it could, or as its
+  /// tool may (kFastestTool). `closest`, only if that is asked for: the pose cannot be reached from
+  /// here, and the arm went downhill to where it is nearest, by the weights; with the target it
+  /// comes back on the side that it left from. Any other: there is no continuation from here, and
+  /// the arm stays. `move` is the length of the move in joint space. In a scene the arm also stays,
+  /// with status `in_collision`, where it would collide at the end of its move; the way there is
+  /// not looked at. Throws InvalidArgumentError if the pose is not rigid, dt is not above 0, or the
+  /// scene is of another chain.
   [[nodiscard]] Result track(const Pose& T_base_tip, double dt, const Scene* scene = nullptr);
   /// The same of several tips, a pose for each; what is said of the tool holds for the fastest.
   [[nodiscard]] Result track(const std::vector<Pose>& T_base_tip, double dt,
@@ -60,11 +61,11 @@ class IKSEL_EXPORT Tracker {
   [[nodiscard]] const JointVector& q() const { return q_; }
   /// Where the arm was when it last reached its pose, or began; from the edge of the workspace it
   /// comes back on that side [rad or m].
-  [[nodiscard]] const JointVector& reached() const { return reached_; }
+  [[nodiscard]] const JointVector& reached() const { return *state_.reached; }
   /// What solves.
   [[nodiscard]] const Solver& solver() const { return solver_; }
-  /// What it remembers of the targets.
-  [[nodiscard]] const TargetStream& stream() const { return stream_; }
+  /// What it remembers.
+  [[nodiscard]] const TrackerState& state() const { return state_; }
   /// What is done at poses that cannot be reached.
   [[nodiscard]] const std::optional<PoseWeights>& closest() const { return closest_; }
   /// What of the poses has to be reached, and in which frame they are.
@@ -78,6 +79,8 @@ class IKSEL_EXPORT Tracker {
   /// Of a target for each tip.
   [[nodiscard]] Result follow(const Pose* targets, double dt, const Scene* scene);
   [[nodiscard]] Result approach(const Goal& goal, double dt);
+  /// From where the arm is to the solution that continues its way; false if there is none.
+  [[nodiscard]] bool continue_to(const Goal& goal, double dt, JointVector& q, int& steps) const;
   /// How far the tools are apart at two configurations, by the weights.
   [[nodiscard]] double tool_way(const JointVector& from, const JointVector& to) const;
   /// Remembers targets, and how fast they are.
@@ -89,8 +92,7 @@ class IKSEL_EXPORT Tracker {
   JointVector q_;
   std::optional<PoseWeights> closest_;
   TargetCriteria criteria_;
-  JointVector reached_;
-  TargetStream stream_;
+  TrackerState state_;
   bool is_at_edge_ = false;  ///< where it is nearest to a pose that cannot be reached
 };
 

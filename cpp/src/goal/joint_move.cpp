@@ -6,6 +6,12 @@
 
 namespace iksel {
 
+JointVector weights_of_time(const JointVector& longest) {
+  double most = 0;
+  for (const double step : longest) most = std::isfinite(step) ? std::max(most, step) : most;
+  return longest.cwiseMin(most).cwiseInverse();
+}
+
 std::optional<NearestTo> find_nearest_to(int dof, const SolveRequest& request) {
   // Of the largest weight. The joints with weight give way by its square only, which does not
   // matter: the others move by some radians.

@@ -31,6 +31,10 @@ class JointMove {
   MoveNorm norm_;
 };
 
+/// Weights by which a step of length 1 is as long as the time allows, in the max norm. Joints that
+/// may take any count as the fastest of the others.
+JointVector weights_of_time(const JointVector& longest);
+
 /// A configuration, and how far others are from it.
 struct NearestTo {
   JointVector from;

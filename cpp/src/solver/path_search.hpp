@@ -51,14 +51,6 @@ inline std::vector<double> joint_values(const Layer& layer) {
 /// Whether a step that is too fast is none, or is one, to be made slower at last.
 enum class Speeds { kept, made_up_for };
 
-/// Weights by which a step of length 1 is as long as the time allows, in the max norm. Joints that
-/// may take any count as the fastest of the others.
-inline JointVector weights_of_time(const JointVector& longest) {
-  double most = 0;
-  for (const double step : longest) most = std::isfinite(step) ? std::max(most, step) : most;
-  return longest.cwiseMin(most).cwiseInverse();
-}
-
 class PathSearch {
  public:
   PathSearch(const RobotModel& model, const PathOptions& options, Speeds speeds)

@@ -19,26 +19,27 @@ bool is_simple(const ChainModel& model) {
 namespace {
 
 template <typename Number>
-lanes::LaneChainOf<Number> make_chain(const ChainModel& model) {
+lanes::LaneChainOf<Number> make_chain(const ChainModel& model, double unit) {
   const auto number = [](double x) { return static_cast<Number>(x); };
   lanes::LaneChainOf<Number> chain{};
   chain.n = model.dof;
   for (int j = 0; j < model.dof; ++j) {
     const KernelJoint& from = model.kernel.joints[static_cast<std::size_t>(j)];
     auto& to = chain.joint[j];
-    for (int i = 0; i < 3; ++i) to.p[i] = number(from.p[i]);
+    for (int i = 0; i < 3; ++i) to.p[i] = number(from.p[i] / unit);
     to.cos_alpha = number(from.cos_alpha);
     to.sin_alpha = number(from.sin_alpha);
     to.cos_turn = number(from.cos_turn);
     to.sin_turn = number(from.sin_turn);
-    to.offset = number(from.offset);
+    const double unit_of_motion = from.prismatic ? unit : 1;
+    to.offset = number(from.offset / unit_of_motion);
     to.prismatic = from.prismatic;
     const bool continuous = model.joints.type(j) == JointType::continuous;
     // A principal angle just off its interval is still the same angle.
     const double lower = continuous ? -kPi - 1e-9 : model.joints.lower[j];
     const double upper = continuous ? kPi + 1e-9 : model.joints.upper[j];
-    to.lower = number(lower);
-    to.upper = number(upper);
+    to.lower = number(lower / unit_of_motion);
+    to.upper = number(upper / unit_of_motion);
     // Whole turns of a joint may change a sum that is limited.
     to.limited =
         from.prismatic || (!continuous && upper - lower < 2 * kPi) || model.joints.turns_in_sum(j);
@@ -47,22 +48,29 @@ lanes::LaneChainOf<Number> make_chain(const ChainModel& model) {
     // Beside a bound by less than this a lane stands at it; held to it, it does.
     constexpr Number kBeside = sizeof(Number) == sizeof(float) ? Number(1e-5) : Number(1e-9);
     lanes::LaneSumOf<Number>& to = chain.sum[chain.sums++];
-    for (int j = 0; j < chain.n; ++j) to.c[j] = number(from.c[j]);
+    double norm2 = 0;
+    for (int j = 0; j < chain.n; ++j) {
+      const double c = from.c[j] * (chain.joint[j].prismatic ? unit : 1);
+      to.c[j] = number(c);
+      norm2 += c * c;
+    }
     to.lower = number(from.held_at(false));
     to.upper = number(from.held_at(true));
     to.low = to.lower + kBeside * number(from.size);
     to.high = to.upper - kBeside * number(from.size);
-    to.least_norm2 = number(1e-12 * from.c.squaredNorm());
+    to.least_norm2 = number(1e-12 * norm2);
   }
   return chain;
 }
 
 }  // namespace
 
-lanes::LaneChain make_lane_chain(const ChainModel& model) { return make_chain<double>(model); }
+lanes::LaneChain make_lane_chain(const ChainModel& model, double unit) {
+  return make_chain<double>(model, unit);
+}
 
-lanes::LaneChainOf<float> make_rough_chain(const ChainModel& model) {
-  return make_chain<float>(model);
+lanes::LaneChainOf<float> make_rough_chain(const ChainModel& model, double unit) {
+  return make_chain<float>(model, unit);
 }
 
 }  // namespace iksel

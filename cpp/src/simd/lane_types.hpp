@@ -39,7 +39,8 @@ struct LaneSumOf {
   Number least_norm2;   ///< far below that of its coefficients
 };
 
-/// The chain between the frames of its first and last joint.
+/// The chain between the frames of its first and last joint. Its maker chooses the unit of lengths,
+/// which all has to be in that is iterated with it.
 template <typename Number>
 struct LaneChainOf {
   int n;

@@ -45,6 +45,19 @@ class Sketch:
     tool_xyz: tuple[float, float, float]
     tool_rpy: tuple[float, float, float]
 
+    def scaled(self, factor: float) -> Sketch:
+        """The arm so many times as large."""
+
+        def larger(joint: Joint) -> Joint:
+            xyz = _three(factor * np.array(joint.xyz))
+            if joint.kind != "prismatic":
+                return replace(joint, xyz=xyz)
+            lower, upper = float(factor * joint.lower), float(factor * joint.upper)
+            return replace(joint, xyz=xyz, lower=lower, upper=upper)
+
+        tool = _three(factor * np.array(self.tool_xyz))
+        return Sketch(tuple(map(larger, self.joints)), tool, self.tool_rpy)
+
     def urdf(self, write: Callable[[float], str] = repr) -> str:
         """Its URDF; `write` says how a length or an angle of an origin is written."""
 

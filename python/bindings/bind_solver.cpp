@@ -28,6 +28,7 @@ Solver make_solver(const Robot& robot, const std::optional<SolverOptions>& given
   options.validate();
   CalibrationDeviation bound = Solver::kMaxCalibrationDeviation;
   if (max_deviation) bound = {(*max_deviation)[0], (*max_deviation)[1]};
+  bound.validate();
   // Built here and not by Solver, so that Ctrl-C ends a long build.
   const GilRelease release;
   if (robot.tips() > 1) {

@@ -169,8 +169,8 @@ TEST(Steps, LmNeverLeavesTheLimits) {
       at[1] = i % 2 == 0 ? robot.lower()[1] : robot.upper()[1];
       const Vector6 e = 5 * random_error(random);
       const JacobianMatrix J = robot.jacobian(at);
-      const JointVector goal = at + iksel::lm_step(robot.model().joints, at, J, e,
-                                                   1e-3 * e.squaredNorm(), /*wraps=*/true);
+      const JointVector goal = at + iksel::lm_step(robot.model().joints, robot.model().unit, at, J,
+                                                   e, 1e-3 * e.squaredNorm(), /*wraps=*/true);
       for (int j = 0; j < robot.dof(); ++j) {
         if (robot.model().joints.is_periodic(j)) continue;
         EXPECT_GE(goal[j], robot.lower()[j] - 1e-12);

@@ -130,3 +130,21 @@ def test_the_largest_robot_is_computed_to_the_default_tolerance() -> None:
     distance, angle = iksel.pose_error(made.fk(q), made.fk(q, "kdl"))
     assert distance.max() < 1e-6
     assert angle.max() < 1e-6
+
+
+@pytest.mark.parametrize("far", [1e9, 1e155, 1e300, 1.7e308])
+@pytest.mark.parametrize("task", [None, iksel.Task.position_only()])
+def test_how_far_a_target_is_beyond_reach_is_a_number(
+    far: float, task: iksel.Task | None
+) -> None:
+    solver = iksel.Solver(iksel.load_robot("ur3"))
+    pose = np.eye(4)
+    pose[:2, 3] = far
+    why = solver.diagnose(pose, task=task)
+    assert why.cause == iksel.Cause.out_of_reach
+    # Of the farthest not even the length is a double.
+    length = min(2**0.5 * far, np.finfo(float).max)
+    assert why.beyond_reach == pytest.approx(length, rel=1e-6)
+    assert "inf" not in why.message
+    closest = solver.solve(pose, task=task, closest=True)
+    assert closest.position_error == pytest.approx(length, rel=1e-6)

@@ -357,6 +357,12 @@ def test_a_calibrated_arm_uses_the_nominal_database(made) -> None:
             nominal=nominal,
             max_calibration_deviation=(1e-6, 1e-6),
         )
+    for wrong in ((-1.0, 0.1), (0.05, -1e-9), (np.nan, 0.1), (0.05, np.nan)):
+        with pytest.raises(
+            iksel.InvalidArgumentError,
+            match=r"^option max_calibration_deviation: (-|nan).* is not in 0 \.\. inf$",
+        ):
+            iksel.Solver(robot, nominal=nominal, max_calibration_deviation=wrong)
 
 
 # Command line

@@ -22,9 +22,12 @@ class ArmSearch;
 
 /// The largest difference between the tip links' poses of a calibrated chain and its nominal one at
 /// the same joint values.
-struct CalibrationDeviation {
+struct IKSEL_EXPORT CalibrationDeviation {
   double position = 0;  ///< [m]
   double rotation = 0;  ///< [rad]
+
+  /// Throws InvalidArgumentError unless both can bound a deviation.
+  void validate() const;
 };
 
 /// That of `robot` from `nominal` over `samples` configurations uniform inside the limits; tools

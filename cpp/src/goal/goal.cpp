@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/constants.hpp"
+#include "base/plain_vector.hpp"
 #include "iksel/pose.hpp"
 #include "scene/scene_data.hpp"
 
@@ -54,7 +55,10 @@ bool Goal::is_out_of_reach() const {
   if (tips_ != nullptr) return tips_->first_out_of_reach() >= 0;
   const double distance = is_full_pose() ? (target_.translation() - model_.reach_centre).norm()
                                          : task_.distance_from(target_, model_.reach_centre);
-  return distance > model_.reach_of_tcp() + task_.position_tolerance();
+  // What rounding leaves of a stretched arm's length, which is more than the tolerance of a huge
+  // one.
+  constexpr double kRounding = 1e-13;
+  return distance > (1 + kRounding) * model_.reach_of_tcp() + task_.position_tolerance();
 }
 
 void Goal::measure(const JointVector& q, double& position, double& rotation,
@@ -132,7 +136,8 @@ void measure_error(const Pose& target, const Frame& f, double& position_error,
     trace += f.x[i] * target(i, 0) + f.y[i] * target(i, 1) + f.z[i] * target(i, 2);
   }
   const double sine = std::sqrt(sine2);
-  position_error = std::sqrt(square);
+  position_error =
+      square < kInfinity ? std::sqrt(square) : length_of(target.translation() - to_vector(f.p));
   // asin by its series where that is exact to the last digit; it also spares an arc tangent.
   const bool small = sine < 1e-4 && trace > 1;
   rotation_error = small ? sine * (1 + sine2 / 6) : std::atan2(sine, 0.5 * (trace - 1));

@@ -31,6 +31,8 @@ class Goal {
   /// Of several tips, what each has to reach; null if there is one.
   [[nodiscard]] const TipsGoal* tips() const { return tips_; }
   [[nodiscard]] const JointSpace& joints() const { return robot_.joints; }
+  /// Of lengths, while joints are brought to the goal [m].
+  [[nodiscard]] double unit() const { return robot_.unit; }
   /// Whether there is one tip, of which the whole pose is asked for.
   [[nodiscard]] bool is_full_pose() const { return tips_ == nullptr && task_.is_full_pose(); }
 

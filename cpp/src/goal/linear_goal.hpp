@@ -20,6 +20,15 @@ struct LinearGoal {
   Vector lower, upper;
   Vector missing;  ///< from the deviation to the bounds
 
+  /// Counts lengths, the first three of each six rows, in that unit [m].
+  void to_unit(double unit) {
+    for (Eigen::Index row = 0; row < J.rows(); row += 6) {
+      J.template middleRows<3>(row) /= unit;
+      for (Vector* each : {&deviation, &lower, &upper, &missing}) {
+        each->template segment<3>(row) /= unit;
+      }
+    }
+  }
   [[nodiscard]] bool is_fixed(Eigen::Index row) const { return lower[row] == upper[row]; }
 };
 

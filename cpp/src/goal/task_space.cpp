@@ -144,7 +144,7 @@ Pose TaskSpace::pose_at(const Pose& target, const Vector6& d) const {
 void TaskSpace::measure(const Pose& target, const Pose& pose, double& position,
                         double& rotation) const {
   const Vector6 out = outside(deviation(target, pose));
-  position = out.head<3>().norm();
+  position = length_of(out.head<3>());
   rotation = out.tail<3>().norm();
 }
 

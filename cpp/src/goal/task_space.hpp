@@ -9,14 +9,25 @@
 // least rotation S is taken off.
 #pragma once
 
+#include <algorithm>
+#include <limits>
+
+#include "base/constants.hpp"
 #include "base/pseudo_inverse.hpp"
 #include "iksel/task.hpp"
 #include "iksel/types.hpp"
 
 namespace iksel {
 
-/// Squared error that counts as far off while a seed is iterated [mixed units].
+/// Squared error that counts as far off while a seed is iterated [rad and units].
 inline constexpr double kFarOff2 = 1e-4;
+
+/// |v|, of a target that is so far away that squares overflow too; of one farther still the largest
+/// double.
+inline double length_of(const Eigen::Vector3d& v) {
+  const double length = v.norm();
+  return length < kInfinity ? length : std::min(v.stableNorm(), std::numeric_limits<double>::max());
+}
 
 /// A task as the iterations use it.
 class TaskSpace {

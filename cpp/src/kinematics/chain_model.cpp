@@ -244,6 +244,8 @@ void ChainModel::measure_reach() {
     }
   }
   reach += Eigen::Vector3d::Map(kernel.flange.p).norm();
+  // Of 32, so that the reach is between 0.35 and 11.3 units.
+  unit = reach > 0 ? std::exp2(5 * std::round(std::log2(reach / 2) / 5)) : 1;
 }
 
 Pose ChainModel::fk(const double* q) const { return to_pose(forward(kernel, q)); }
@@ -265,9 +267,17 @@ Jacobians ChainModel::jacobians(const double* q) const {
   return J;
 }
 
+void ChainModel::to_unit(Jacobian& jacobian) const {
+  jacobian.topRows<3>() /= unit;
+  for (int j = 0; j < dof; ++j) {
+    if (joints.is_slide(j)) jacobian.col(j) *= unit;
+  }
+}
+
 bool ChainModel::is_almost_singular(const double* q) const {
   Jacobian J;
   fk_jacobian(q, J);
+  to_unit(J);
   return iksel::is_almost_singular(J);
 }
 

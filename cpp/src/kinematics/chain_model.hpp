@@ -38,6 +38,8 @@ class ChainModel final : public RobotModel {
   void fk_jacobian(const double* q, Pose& pose, Jacobian& jacobian, bool with_tool = true) const;
   /// Jacobian of the TCP, whose frame is returned.
   Frame fk_jacobian(const double* q, Jacobian& jacobian, bool with_tool = true) const;
+  /// Brings a Jacobian's lengths, and what slides move, to the unit.
+  void to_unit(Jacobian& jacobian) const;
   /// Whether the arm is singular at q, or almost (base/pseudo_inverse.hpp).
   [[nodiscard]] bool is_almost_singular(const double* q) const;
 

@@ -40,6 +40,9 @@ class RobotModel {
   std::vector<std::vector<int>> joints_of_tip;
   /// The joints that move more than one tip, ascending.
   std::vector<int> shared;
+  /// What iterations count lengths in [m]: then an arm of any size is as one of about a metre. A
+  /// power of two, so that nothing is rounded, and 1 for arms of the usual size.
+  double unit = 1;
   std::uint64_t hash = 0;
   /// Shared by all copies, which have the same URDF and locked joints.
   std::shared_ptr<LinkPoseCache> link_poses = std::make_shared<LinkPoseCache>();

@@ -52,6 +52,7 @@ TipsModel::TipsModel(const std::string& urdf_in, const RobotOptions& options_in)
   tip_links = options.tip_links;
   options.tcps.resize(tip_links.size(), StoredPose::Identity());
   Hash64 hasher;
+  unit = 0;
   for (std::size_t i = 0; i < tip_links.size(); ++i) {
     RobotOptions of_chain = options_between(options.base_link, tip_links[i]);
     of_chain.tcp = options.tcps[i];
@@ -60,6 +61,7 @@ TipsModel::TipsModel(const std::string& urdf_in, const RobotOptions& options_in)
     joints_of_tip.push_back(add_joints(chain.model()));
     tips.push_back({{chain, joints_of_tip.back()}, std::nullopt, std::nullopt});
     hasher.add(chain.chain_hash());
+    unit = std::max(unit, chain.model().unit);
   }
   const ChainModel& first = tips.front().chain.model();
   urdf = first.urdf;

@@ -46,7 +46,8 @@ JointVector make_step(const IterationContext& context, const JointVector& q,
     case Iteration::lm:
       break;
   }
-  return lm_step(context.model.joints, q, J, e, scheme.damping * squared_error, scheme.whole_turns);
+  return lm_step(context.model.joints, context.model.unit, q, J, e, scheme.damping * squared_error,
+                 scheme.whole_turns);
 }
 
 /// What follows a step besides adding it.
@@ -132,7 +133,9 @@ Outcome iterate(const IterationContext& context, JointVector& q, int& steps) {
     last_rotation = now.rotation;
     if (step == context.max_iterations) return outcome;
 
-    if (scheme.iteration != Iteration::lm) {
+    if (scheme.iteration == Iteration::lm) {
+      now.at.to_unit(model.unit);
+    } else {
       clamp_error(now.at.missing, now.position, now.rotation, scheme);
     }
     const JointVector adjustment = adjust(context, q, now.at);

@@ -10,19 +10,20 @@ namespace {
 /// `options` solve in lanes.
 lanes::LaneOptions make_lane_options(const ChainModel& model, const SolverOptions& options) {
   lanes::LaneOptions lanes{};
-  const double position = options.position_tolerance;
+  const double position = options.position_tolerance / model.unit;
   const double rotation = options.rotation_tolerance;
   const Frame& tip = model.kernel.tip;
   lanes.damping = std::get<Lanes>(options.strategy).damping;
   lanes.least_damping = 1e-18;
   // |error at the TCP| <= |position error| + lever * |rotation error|, and the square of a sum of
   // two is at most twice the sum of their squares.
-  lanes.lever2 = tip.p[0] * tip.p[0] + tip.p[1] * tip.p[1] + tip.p[2] * tip.p[2];
+  const double lever[3] = {tip.p[0] / model.unit, tip.p[1] / model.unit, tip.p[2] / model.unit};
+  lanes.lever2 = lever[0] * lever[0] + lever[1] * lever[1] + lever[2] * lever[2];
   lanes.position2 = 0.5 * position * position;
   lanes.rotation2 = 0.998 * rotation * rotation;
   // The error after a Newton step is about half the second derivative of FK times the squared step;
   // that derivative is at most the reach for positions and 1 for rotations, and mostly less.
-  lanes.last_step2 = std::min(position / std::max(model.reach, 1e-3), rotation);
+  lanes.last_step2 = std::min(position / std::max(model.reach / model.unit, 1e-3), rotation);
   lanes.last_error2 = 16 * lanes.last_step2;
   return lanes;
 }
@@ -37,7 +38,9 @@ LaneRefiner::LaneRefiner(const ChainModel& model, const SolverOptions& options,
       joints_(model.joints),
       base_inverse_(to_pose(model.kernel.base).inverse()),
       tip_(to_pose(model.kernel.tip)),
-      chain_(make_lane_chain(model)),
+      unit_(model.unit),
+      units_(model, unit_),
+      chain_(make_lane_chain(model, unit_)),
       options_(make_lane_options(model, options)),
       task_options_(options_),
       pack_{} {
@@ -57,13 +60,14 @@ void LaneRefiner::begin(const TaskSpace& task, const Patience& patience, Width w
 
 void LaneRefiner::make_task(const TaskSpace& task) {
   for (int i = 0; i < 6; ++i) {
-    lane_task_.lower[i] = task.aim_lower()[i];
-    lane_task_.upper[i] = task.aim_upper()[i];
+    const double unit = i < 3 ? unit_ : 1;
+    lane_task_.lower[i] = task.aim_lower()[i] / unit;
+    lane_task_.upper[i] = task.aim_upper()[i] / unit;
     lane_task_.fixed[i] = task.lower()[i] == task.upper()[i];
     lane_task_.open[i] = task.lower()[i] == -kInfinity && task.upper()[i] == kInfinity;
   }
   lane_task_.twist = task.twist_axis();
-  for (int i = 0; i < 3; ++i) lane_task_.tcp[i] = tip_(i, 3);
+  for (int i = 0; i < 3; ++i) lane_task_.tcp[i] = tip_(i, 3) / unit_;
 }
 
 template <typename Write>
@@ -74,20 +78,20 @@ void LaneRefiner::make_rows(const Pose& T_base_tcp, const Write& write) const {
   const Pose X = base_inverse_ * T_base_tcp;
   const bool in_tool = task_->task().frame == TaskFrame::tool;
   const Eigen::Matrix3d W = (in_tool ? X : base_inverse_).linear();
-  for (int i = 0; i < 3; ++i) write(i, X(i, 3));
+  for (int i = 0; i < 3; ++i) write(i, X(i, 3) / unit_);
   write_columns(3, W);
   write_columns(12, tip_.linear() * X.linear().transpose() * W);
 }
 
 void LaneRefiner::set_pose(const Pose& Y) {
   for (int row = 0; row < lanes::kFullPoseRows; ++row) {
-    std::fill_n(pack_.target[row], lanes::kWidth, full_pose_row(Y, row));
+    std::fill_n(pack_.target[row], lanes::kWidth, full_pose_row(Y, row, unit_));
   }
 }
 
 void LaneRefiner::set_pose(int lane, const Pose& Y) {
   for (int row = 0; row < lanes::kFullPoseRows; ++row) {
-    pack_.target[row][lane] = full_pose_row(Y, row);
+    pack_.target[row][lane] = full_pose_row(Y, row, unit_);
   }
 }
 
@@ -103,7 +107,9 @@ void LaneRefiner::set_task(int lane, const Pose& T_base_tcp) {
 void LaneRefiner::load_seed(int lane, const double* q) {
   load(lane, [&](int j) {
     const lanes::LaneVariable& variable = chain_.variable[j];
-    return variable.limited ? std::min(std::max(q[j], variable.lower), variable.upper) : q[j];
+    return variable.limited ? std::min(std::max(q[j], units_.from_lane(j, variable.lower)),
+                                       units_.from_lane(j, variable.upper))
+                            : q[j];
   });
 }
 
@@ -112,7 +118,7 @@ void LaneRefiner::hold_sums(int lane) {
   if (joints_.contains_sums(seed.data())) return;
   joints_.wrap(seed.data());
   seed = joints_.clamp(seed);
-  for (int j = 0; j < chain_.n; ++j) pack_.q[j][lane] = seed[j];
+  for (int j = 0; j < chain_.n; ++j) pack_.q[j][lane] = units_.to_lane(j, seed[j]);
 }
 
 int LaneRefiner::advance(unsigned busy) {

@@ -9,6 +9,7 @@
 #include "iksel/options.hpp"
 #include "kinematics/chain_model.hpp"
 #include "simd/kernels.hpp"
+#include "simd/lane_chain.hpp"
 
 namespace iksel {
 
@@ -47,7 +48,9 @@ class LaneRefiner {
   /// Starts a lane at `value(joint)`, inside the limits.
   template <typename Value>
   void load(int lane, const Value& value) {
-    for (int j = 0; j < chain_.n; ++j) pack_.q[j][lane] = value(j);
+    for (int j = 0; j < chain_.n; ++j) {
+      pack_.q[j][lane] = units_.to_lane(j, value(j));
+    }
     if (chain_.sums > 0) hold_sums(lane);
     there_ &= ~(1U << static_cast<unsigned>(lane));  // of a search that ended before advance()
     pack_.error2[lane] = kInfinity;                  // not measured yet
@@ -96,13 +99,14 @@ class LaneRefiner {
   /// The joint values of a lane.
   struct Column {
     const double (&rows)[lanes::kMaxJoints][lanes::kWidth];
+    const JointUnits& units;
     int lane;
-    double operator[](int joint) const { return rows[joint][lane]; }
+    double operator[](int joint) const { return units.from_lane(joint, rows[joint][lane]); }
   };
-  [[nodiscard]] Column at(int lane) const { return {pack_.q, lane}; }
+  [[nodiscard]] Column at(int lane) const { return {pack_.q, units_, lane}; }
   [[nodiscard]] JointVector q(int lane) const {
     JointVector q(chain_.n);
-    for (int j = 0; j < chain_.n; ++j) q[j] = pack_.q[j][lane];
+    for (int j = 0; j < chain_.n; ++j) q[j] = at(lane)[j];
     return q;
   }
 
@@ -121,6 +125,8 @@ class LaneRefiner {
   int max_iterations_;
   const JointSpace& joints_;
   Pose base_inverse_, tip_;  ///< of the kernel chain; the tip is the TCP
+  double unit_;              ///< of all lengths that lanes work on [m]
+  JointUnits units_;
   lanes::LaneChain chain_;
   lanes::LaneOptions options_, task_options_;
   const TaskSpace* task_ = nullptr;  ///< null: full poses

@@ -32,10 +32,10 @@ JointVector damped_solve(const Matrix& J, double lambda, const Vector& e) {
 }
 
 /// J^T (J J^T + damping I)^-1 e, without what would leave limits that q stands at, and the step cut
-/// off at the limits. `wraps`: joints that turn on and on are brought inside at the end, and are
-/// not held.
+/// off at the limits. J and e count lengths in the unit, q and the step do not. `wraps`: joints
+/// that turn on and on are brought inside at the end, and are not held.
 template <typename Matrix, typename Vector>
-JointVector lm_step(const JointSpace& joints, const JointVector& q, const Matrix& J,
+JointVector lm_step(const JointSpace& joints, double unit, const JointVector& q, const Matrix& J,
                     const Vector& e, double damping, bool wraps) {
   const auto is_held = [&](int i) { return !(wraps && joints.winds(i)); };
   JointVector pull(joints.dof());
@@ -46,9 +46,13 @@ JointVector lm_step(const JointSpace& joints, const JointVector& q, const Matrix
     if (at.free[i] == 0) active.col(i).setZero();
   }
   if (at.across.cols() > 0) active -= Matrix((active * at.across) * at.across.transpose());
+  for (int i = 0; i < joints.dof(); ++i) {
+    if (joints.is_slide(i)) active.col(i) *= unit;
+  }
   // The floor keeps the solve regular where the error is zero in double precision.
   JointVector step = damped_solve(active, damping + 1e-18, e);
   for (int i = 0; i < joints.dof(); ++i) {
+    if (joints.is_slide(i)) step[i] *= unit;
     if (!is_held(i)) continue;
     const double goal = std::min(std::max(q[i] + step[i], joints.lower[i]), joints.upper[i]);
     step[i] = goal - q[i];

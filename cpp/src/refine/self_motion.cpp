@@ -24,9 +24,10 @@ bool converge_rows(const Goal& goal, int most, double aim, bool wraps, JointVect
       return joints.contains(q.data());
     }
     if (step == most) return false;
+    at.to_unit(goal.unit());
     const double damped_by = damping * at.missing.squaredNorm();
     const JointVector adjustment = step_into_bounds(at, [&](const auto& rows, const auto& asked) {
-      return lm_step(joints, q, rows, asked, damped_by, wraps);
+      return lm_step(joints, goal.unit(), q, rows, asked, damped_by, wraps);
     });
     ++steps;
     if (!adjustment.allFinite()) return false;

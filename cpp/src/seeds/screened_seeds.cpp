@@ -3,22 +3,22 @@
 
 #include <algorithm>
 
-#include "simd/lane_chain.hpp"
-
 namespace iksel {
 
 SeedScreen::SeedScreen(const ChainModel& model, const SolverOptions& options,
                        const lanes::LaneKernels& kernels)
-    : chain_(make_rough_chain(model)),
+    : unit_(model.unit),
+      units_(model, unit_),
+      chain_(make_rough_chain(model, unit_)),
       advance_(kernels.advance_roughly),
-      iterations_(model.reach > kLongest ? 0 : std::min(kIterations, options.max_iterations)) {
+      iterations_(std::min(kIterations, options.max_iterations)) {
   options_.damping = std::get<Lanes>(options.strategy).damping;
   options_.least_damping = 1e-6;
 }
 
 void SeedScreen::begin(const Pose& Y) {
   for (int row = 0; row < lanes::kFullPoseRows; ++row) {
-    pack_.target[row] = static_cast<float>(full_pose_row(Y, row));
+    pack_.target[row] = static_cast<float>(full_pose_row(Y, row, unit_));
   }
   filled_ = 0;
 }
@@ -37,7 +37,8 @@ int SeedScreen::run() {
 }
 
 void SeedScreen::copy(int place, double* q) const {
-  for (int j = 0; j < chain_.n; ++j) q[j] = static_cast<double>(pack_.q[j][place]);
+  for (int j = 0; j < chain_.n; ++j)
+    q[j] = units_.from_lane(j, static_cast<double>(pack_.q[j][place]));
 }
 
 ScreenedSeeds::ScreenedSeeds(LaneQuery& query, SeedScreen& screen, const Pose& Y,

@@ -13,6 +13,7 @@
 #include "seeds/lane_query.hpp"
 #include "seeds/row_seeds.hpp"
 #include "simd/kernels.hpp"
+#include "simd/lane_chain.hpp"
 
 namespace iksel {
 
@@ -28,7 +29,9 @@ class SeedScreen {
   /// Takes a seed: value(joint), inside the limits.
   template <typename Value>
   void add(const Value& value) {
-    for (int j = 0; j < chain_.n; ++j) pack_.q[j][filled_] = static_cast<float>(value(j));
+    for (int j = 0; j < chain_.n; ++j) {
+      pack_.q[j][filled_] = units_.to_lane(j, static_cast<float>(value(j)));
+    }
     ++filled_;
   }
   /// Iterates what was added, and empties the places for more. Returns the iterations.
@@ -39,12 +42,12 @@ class SeedScreen {
   void copy(int place, double* q) const;
 
  private:
-  /// What few seeds that fail come down to, and most that do not: squared error [mixed units].
+  /// What few seeds that fail come down to, and most that do not: squared error [rad and units].
   static constexpr float kNear2 = 1e-3F;
   static constexpr int kIterations = 7;
-  /// Longer chains are too long for single precision [m].
-  static constexpr double kLongest = 100;
 
+  double unit_;  ///< of all lengths that lanes work on [m]
+  JointUnits units_;
   lanes::LaneChainOf<float> chain_;
   lanes::LaneOptions options_{};
   lanes::AdvanceRoughly advance_;

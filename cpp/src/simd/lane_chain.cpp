@@ -20,18 +20,21 @@ bool is_simple(const ChainModel& model) {
 namespace {
 
 template <typename Number>
-lanes::LaneChainOf<Number> make_chain(const ChainModel& model) {
+lanes::LaneChainOf<Number> make_chain(const ChainModel& model, double unit) {
   const auto number = [](double x) { return static_cast<Number>(x); };
+  const auto unit_of = [&](int variable) { return model.joints.is_slide(variable) ? unit : 1.0; };
   lanes::LaneChainOf<Number> chain{};
   for (const KernelJoint& from : model.kernel.joints) {
     auto& to = chain.joint[chain.joints++];
-    for (int i = 0; i < 3; ++i) to.p[i] = number(from.p[i]);
+    for (int i = 0; i < 3; ++i) to.p[i] = number(from.p[i] / unit);
     to.cos_alpha = number(from.cos_alpha);
     to.sin_alpha = number(from.sin_alpha);
     to.cos_turn = number(from.cos_turn);
     to.sin_turn = number(from.sin_turn);
-    to.multiplier = number(from.multiplier);
-    to.offset = number(from.offset);
+    const double unit_of_motion = from.prismatic ? unit : 1;
+    to.multiplier = number(from.multiplier / unit_of_motion);
+    to.unit = number(unit_of(from.variable));
+    to.offset = number(from.offset / unit_of_motion);
     to.curve = from.curve.get();
     to.variable = from.variable;
     to.prismatic = from.prismatic;
@@ -44,8 +47,8 @@ lanes::LaneChainOf<Number> make_chain(const ChainModel& model) {
     // A principal angle just off its interval is still the same angle.
     const double lower = continuous ? -kPi - 1e-9 : model.joints.lower[j];
     const double upper = continuous ? kPi + 1e-9 : model.joints.upper[j];
-    to.lower = number(lower);
-    to.upper = number(upper);
+    to.lower = number(lower / unit_of(j));
+    to.upper = number(upper / unit_of(j));
     // Whole turns of a joint may change a sum that is limited.
     to.limited = model.joints.is_slide(j) || (!continuous && upper - lower < 2 * kPi) ||
                  model.joints.turns_in_sum(j);
@@ -54,22 +57,29 @@ lanes::LaneChainOf<Number> make_chain(const ChainModel& model) {
     // Beside a bound by less than this a lane stands at it; held to it, it does.
     constexpr Number kBeside = sizeof(Number) == sizeof(float) ? Number(1e-5) : Number(1e-9);
     lanes::LaneSumOf<Number>& to = chain.sum[chain.sums++];
-    for (int j = 0; j < chain.n; ++j) to.c[j] = number(from.c[j]);
+    double norm2 = 0;
+    for (int j = 0; j < chain.n; ++j) {
+      const double c = from.c[j] * unit_of(j);
+      to.c[j] = number(c);
+      norm2 += c * c;
+    }
     to.lower = number(from.held_at(false));
     to.upper = number(from.held_at(true));
     to.low = to.lower + kBeside * number(from.size);
     to.high = to.upper - kBeside * number(from.size);
-    to.least_norm2 = number(1e-12 * from.c.squaredNorm());
+    to.least_norm2 = number(1e-12 * norm2);
   }
   return chain;
 }
 
 }  // namespace
 
-lanes::LaneChain make_lane_chain(const ChainModel& model) { return make_chain<double>(model); }
+lanes::LaneChain make_lane_chain(const ChainModel& model, double unit) {
+  return make_chain<double>(model, unit);
+}
 
-lanes::LaneChainOf<float> make_rough_chain(const ChainModel& model) {
-  return make_chain<float>(model);
+lanes::LaneChainOf<float> make_rough_chain(const ChainModel& model, double unit) {
+  return make_chain<float>(model, unit);
 }
 
 }  // namespace iksel

@@ -90,19 +90,19 @@ template <typename T>
   T value[kMaxMoving];
   for (int k = 0; k < chain.joints; ++k) {
     const auto& joint = chain.joint[k];
-    slope[k] = T(joint.multiplier);
+    slope[k] = T(joint.multiplier * joint.unit);
     value[k] = slope[k] * q[joint.variable];
     if (joint.curve == nullptr) continue;
     NumberOf<T> values[Lanes<T>::kCount];
     NumberOf<T> slopes[Lanes<T>::kCount];
-    Lanes<T>::store(q[joint.variable], values);
+    Lanes<T>::store(q[joint.variable] * T(joint.unit), values);
     for (int lane = 0; lane < Lanes<T>::kCount; ++lane) {
       const MotionCurve::Point point = joint.curve->at(static_cast<double>(values[lane]));
       values[lane] = static_cast<NumberOf<T>>(point.value);
       slopes[lane] = static_cast<NumberOf<T>>(point.slope);
     }
     value[k] = T(joint.multiplier) * Lanes<T>::load(values);
-    slope[k] = T(joint.multiplier) * Lanes<T>::load(slopes);
+    slope[k] = T(joint.multiplier * joint.unit) * Lanes<T>::load(slopes);
   }
   place_joints(chain, value, J, f, chain.joints);
 }

@@ -28,6 +28,7 @@ struct LaneJointOf {
   Number cos_alpha, sin_alpha;
   Number cos_turn, sin_turn;
   Number multiplier, offset;
+  Number unit;               ///< that its variable is counted in [rad or m]
   const MotionCurve* curve;  ///< null: a straight line
   int variable;
   bool prismatic;
@@ -50,7 +51,8 @@ struct LaneSumOf {
   Number least_norm2;   ///< far below that of its coefficients
 };
 
-/// The chain between the frames of its first and last joint.
+/// The chain between the frames of its first and last joint. Its maker chooses the unit of lengths,
+/// which all has to be in that is iterated with it.
 template <typename Number>
 struct LaneChainOf {
   int n;           ///< degrees of freedom

@@ -29,15 +29,25 @@ CalibrationDeviation measure_calibration_deviation(const Robot& robot, const Rob
   return deviation;
 }
 
+void CalibrationDeviation::validate() const {
+  for (const double part : {position, rotation}) {
+    // Written so that NaN fails.
+    if (part >= 0) continue;
+    throw InvalidArgumentError("option max_calibration_deviation: " + number_text(part) +
+                               " is not in 0 .. inf");
+  }
+}
+
 Solver::Solver(const Robot& robot, const SolverOptions& options, const Database& database,
                const Robot& nominal, const CalibrationDeviation& bound) {
   options.validate();
+  bound.validate();
   if (robot.dof() != nominal.dof()) {
     throw DatabaseMismatchError("robot '" + robot.name() + "' has " + std::to_string(robot.dof()) +
                                 " joints, its nominal chain " + std::to_string(nominal.dof()));
   }
   const CalibrationDeviation deviation = measure_calibration_deviation(robot, nominal);
-  // Written so that NaN is beyond.
+  // Written so that a robot's NaN is beyond.
   if (!(deviation.position <= bound.position && deviation.rotation <= bound.rotation)) {
     MessageStream text;
     text << "robot '" << robot.name() << "' deviates by " << deviation.position << " m and "

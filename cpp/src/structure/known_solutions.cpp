@@ -63,6 +63,7 @@ void visit_configurations(const ChainModel& model, const Visit& visit) {
   for (int i = 0; i < kConfigurations; ++i) {
     model.joints.sample(random, q);
     model.fk_jacobian(q.data(), pose, J);
+    model.to_unit(J);
     visit(q, pose, J);
   }
 }

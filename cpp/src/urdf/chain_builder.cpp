@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
 #include <utility>
 
@@ -197,17 +198,17 @@ class ChainReader {
   }
 
   int variable_of(const urdf::Joint& source) {
-    for (std::size_t i = 0; i < spec_.variables.size(); ++i) {
-      if (spec_.variables[i].name == source.name) return static_cast<int>(i);
-    }
-    spec_.variables.push_back(make_variable(source, options_));
-    return static_cast<int>(spec_.variables.size()) - 1;
+    const auto [place, is_new] =
+        places_.try_emplace(&source, static_cast<int>(spec_.variables.size()));
+    if (is_new) spec_.variables.push_back(make_variable(source, options_));
+    return place->second;
   }
 
   const urdf::ModelInterface& model_;
   RobotOptions& options_;
   CheckedCurves curves_;
   ChainSpec spec_;
+  std::map<const urdf::Joint*, int> places_;  ///< of joints among the variables
 };
 
 }  // namespace

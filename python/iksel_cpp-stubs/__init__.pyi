@@ -991,7 +991,7 @@ class Lanes:
 
         Args:
             neighbours: Samples nearest to the target that are all tried, before the better half of the others and seeds at random.
-            damping: Factor on |e|^2, which is added to the diagonal of J J^T [mixed units].
+            damping: Factor on |e|^2, which is added to the diagonal of J J^T [mixed units; lengths in metres, of arms that reach less than 0.35 m or more than 11 m in a power of 32 of them].
 
         Raises:
             SignatureError: a keyword that is no field.
@@ -1005,7 +1005,7 @@ class Lanes:
 
         Args:
             neighbours: Samples nearest to the target that are all tried, before the better half of the others and seeds at random.
-            damping: Factor on |e|^2, which is added to the diagonal of J J^T [mixed units].
+            damping: Factor on |e|^2, which is added to the diagonal of J J^T [mixed units; lengths in metres, of arms that reach less than 0.35 m or more than 11 m in a power of 32 of them].
 
         Raises:
             SignatureError: a keyword that is no field.
@@ -1022,7 +1022,7 @@ class Lanes:
     @property
     def damping(self) -> float:
         """
-        Factor on |e|^2, which is added to the diagonal of J J^T [mixed units].
+        Factor on |e|^2, which is added to the diagonal of J J^T [mixed units; lengths in metres, of arms that reach less than 0.35 m or more than 11 m in a power of 32 of them].
         """
     @property
     def neighbours(self) -> int:
@@ -1216,7 +1216,7 @@ class SolverOptions:
         Fields that are not given keep their default.
 
         Args:
-            position_tolerance: An answer's position is at most this far from the target's [m].
+            position_tolerance: An answer's position is at most this far from the target's [m]. Below about 1e-15 of what the arm reaches a double cannot tell: poses may not be found then, which proves nothing.
             rotation_tolerance: An answer's rotation vector error is at most this long [rad].
             task: What of a pose has to be reached: all of it, or a box with free axes.
             max_attempts: Seeds tried at most: 1 + the number of re-selections (#ReA). Given seeds come on top.
@@ -1236,7 +1236,7 @@ class SolverOptions:
         A copy in which the given fields have another value.
 
         Args:
-            position_tolerance: An answer's position is at most this far from the target's [m].
+            position_tolerance: An answer's position is at most this far from the target's [m]. Below about 1e-15 of what the arm reaches a double cannot tell: poses may not be found then, which proves nothing.
             rotation_tolerance: An answer's rotation vector error is at most this long [rad].
             task: What of a pose has to be reached: all of it, or a box with free axes.
             max_attempts: Seeds tried at most: 1 + the number of re-selections (#ReA). Given seeds come on top.
@@ -1284,7 +1284,7 @@ class SolverOptions:
     @property
     def position_tolerance(self) -> float:
         """
-        An answer's position is at most this far from the target's [m].
+        An answer's position is at most this far from the target's [m]. Below about 1e-15 of what the arm reaches a double cannot tell: poses may not be found then, which proves nothing.
         """
     @position_tolerance.setter
     def position_tolerance(self, value: float) -> None:

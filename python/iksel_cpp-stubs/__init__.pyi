@@ -836,7 +836,7 @@ class DatabaseOptions:
             sampling: How the samples are spread over the limits.
             scale: Counts of a grid; for the other samplings only if `samples` is 0.
             samples: Number of samples unless `sampling` is grid; 0 takes the grid's count at `scale`.
-            key_scheme: What of a pose the key holds; a chain with mimic joints has a full key always.
+            key_scheme: What of a pose the key holds.
             rotation_key: How a full key writes a rotation.
             rotation_weight: Length that one unit of the key's rotation part counts as in the tree's distance [m]; 0: a quarter of the reach.
             pinv_cutoff: Singular values below this part of the largest are cut off in the pseudo-inverses.
@@ -860,7 +860,7 @@ class DatabaseOptions:
             sampling: How the samples are spread over the limits.
             scale: Counts of a grid; for the other samplings only if `samples` is 0.
             samples: Number of samples unless `sampling` is grid; 0 takes the grid's count at `scale`.
-            key_scheme: What of a pose the key holds; a chain with mimic joints has a full key always.
+            key_scheme: What of a pose the key holds.
             rotation_key: How a full key writes a rotation.
             rotation_weight: Length that one unit of the key's rotation part counts as in the tree's distance [m]; 0: a quarter of the reach.
             pinv_cutoff: Singular values below this part of the largest are cut off in the pseudo-inverses.
@@ -893,7 +893,7 @@ class DatabaseOptions:
     @property
     def key_scheme(self) -> KeyScheme:
         """
-        What of a pose the key holds; a chain with mimic joints has a full key always.
+        What of a pose the key holds.
         """
     @key_scheme.setter
     def key_scheme(self, value: KeyScheme | str) -> None:
@@ -980,7 +980,7 @@ class DatabaseOptions:
         ...
 class Lanes:
     """
-    Seeds in SIMD lanes, many at once, by Levenberg-Marquardt with the limits inside the step: the recommended strategy. Where the chain has a closed form (Robot.structure), seeds come from that first. Over a database with a full key, and for chains with mimic joints, which lanes cannot solve, the same scheme takes one seed at a time.
+    Seeds in SIMD lanes, many at once, by Levenberg-Marquardt with the limits inside the step: the recommended strategy. Where the chain has a closed form (Robot.structure), seeds come from that first. Over a database with a full key the same scheme takes one seed at a time.
     """
     __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
     def __eq__(self, other: object) -> bool:

@@ -22,6 +22,7 @@ struct LinearGoal {
 
   /// Counts lengths, the first three of each six rows, in that unit [m].
   void to_unit(double unit) {
+    if (unit == 1) return;
     for (Eigen::Index row = 0; row < J.rows(); row += 6) {
       J.template middleRows<3>(row) /= unit;
       for (Vector* each : {&deviation, &lower, &upper, &missing}) {

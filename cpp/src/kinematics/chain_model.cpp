@@ -268,6 +268,7 @@ Jacobians ChainModel::jacobians(const double* q) const {
 }
 
 void ChainModel::to_unit(Jacobian& jacobian) const {
+  if (unit == 1) return;
   jacobian.topRows<3>() /= unit;
   for (int j = 0; j < dof; ++j) {
     if (joints.is_slide(j)) jacobian.col(j) *= unit;

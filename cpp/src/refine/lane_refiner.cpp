@@ -38,9 +38,9 @@ LaneRefiner::LaneRefiner(const ChainModel& model, const SolverOptions& options,
       joints_(model.joints),
       base_inverse_(to_pose(model.kernel.base).inverse()),
       tip_(to_pose(model.kernel.tip)),
-      unit_(model.unit),
-      units_(model, unit_),
-      chain_(make_lane_chain(model, unit_)),
+      per_metre_(1 / model.unit),
+      units_(model, model.unit),
+      chain_(make_lane_chain(model, model.unit)),
       options_(make_lane_options(model, options)),
       task_options_(options_),
       pack_{} {
@@ -60,14 +60,14 @@ void LaneRefiner::begin(const TaskSpace& task, const Patience& patience, Width w
 
 void LaneRefiner::make_task(const TaskSpace& task) {
   for (int i = 0; i < 6; ++i) {
-    const double unit = i < 3 ? unit_ : 1;
-    lane_task_.lower[i] = task.aim_lower()[i] / unit;
-    lane_task_.upper[i] = task.aim_upper()[i] / unit;
+    const double in_unit = i < 3 ? per_metre_ : 1;
+    lane_task_.lower[i] = task.aim_lower()[i] * in_unit;
+    lane_task_.upper[i] = task.aim_upper()[i] * in_unit;
     lane_task_.fixed[i] = task.lower()[i] == task.upper()[i];
     lane_task_.open[i] = task.lower()[i] == -kInfinity && task.upper()[i] == kInfinity;
   }
   lane_task_.twist = task.twist_axis();
-  for (int i = 0; i < 3; ++i) lane_task_.tcp[i] = tip_(i, 3) / unit_;
+  for (int i = 0; i < 3; ++i) lane_task_.tcp[i] = tip_(i, 3) * per_metre_;
 }
 
 template <typename Write>
@@ -78,20 +78,20 @@ void LaneRefiner::make_rows(const Pose& T_base_tcp, const Write& write) const {
   const Pose X = base_inverse_ * T_base_tcp;
   const bool in_tool = task_->task().frame == TaskFrame::tool;
   const Eigen::Matrix3d W = (in_tool ? X : base_inverse_).linear();
-  for (int i = 0; i < 3; ++i) write(i, X(i, 3) / unit_);
+  for (int i = 0; i < 3; ++i) write(i, X(i, 3) * per_metre_);
   write_columns(3, W);
   write_columns(12, tip_.linear() * X.linear().transpose() * W);
 }
 
 void LaneRefiner::set_pose(const Pose& Y) {
   for (int row = 0; row < lanes::kFullPoseRows; ++row) {
-    std::fill_n(pack_.target[row], lanes::kWidth, full_pose_row(Y, row, unit_));
+    std::fill_n(pack_.target[row], lanes::kWidth, full_pose_row(Y, row, per_metre_));
   }
 }
 
 void LaneRefiner::set_pose(int lane, const Pose& Y) {
   for (int row = 0; row < lanes::kFullPoseRows; ++row) {
-    pack_.target[row][lane] = full_pose_row(Y, row, unit_);
+    pack_.target[row][lane] = full_pose_row(Y, row, per_metre_);
   }
 }
 

@@ -125,7 +125,7 @@ class LaneRefiner {
   int max_iterations_;
   const JointSpace& joints_;
   Pose base_inverse_, tip_;  ///< of the kernel chain; the tip is the TCP
-  double unit_;              ///< of all lengths that lanes work on [m]
+  double per_metre_;         ///< of the unit of all lengths that lanes work on
   JointUnits units_;
   lanes::LaneChain chain_;
   lanes::LaneOptions options_, task_options_;

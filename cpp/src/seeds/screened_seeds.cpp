@@ -7,9 +7,9 @@ namespace iksel {
 
 SeedScreen::SeedScreen(const ChainModel& model, const SolverOptions& options,
                        const lanes::LaneKernels& kernels)
-    : unit_(model.unit),
-      units_(model, unit_),
-      chain_(make_rough_chain(model, unit_)),
+    : per_metre_(1 / model.unit),
+      units_(model, model.unit),
+      chain_(make_rough_chain(model, model.unit)),
       advance_(kernels.advance_roughly),
       iterations_(std::min(kIterations, options.max_iterations)) {
   options_.damping = std::get<Lanes>(options.strategy).damping;
@@ -18,7 +18,7 @@ SeedScreen::SeedScreen(const ChainModel& model, const SolverOptions& options,
 
 void SeedScreen::begin(const Pose& Y) {
   for (int row = 0; row < lanes::kFullPoseRows; ++row) {
-    pack_.target[row] = static_cast<float>(full_pose_row(Y, row, unit_));
+    pack_.target[row] = static_cast<float>(full_pose_row(Y, row, per_metre_));
   }
   filled_ = 0;
 }

@@ -46,7 +46,7 @@ class SeedScreen {
   static constexpr float kNear2 = 1e-3F;
   static constexpr int kIterations = 7;
 
-  double unit_;  ///< of all lengths that lanes work on [m]
+  double per_metre_;  ///< of the unit of all lengths that lanes work on
   JointUnits units_;
   lanes::LaneChainOf<float> chain_;
   lanes::LaneOptions options_{};

@@ -7,11 +7,11 @@
 
 namespace iksel {
 
-/// The `row`-th number of Y (reduction.hpp) as packs have it: its position, in that unit, then its
-/// columns.
-inline double full_pose_row(const Pose& Y, int row, double unit = 1) {
+/// The `row`-th number of Y (reduction.hpp) as packs have it: its position, in a unit of which a
+/// metre has so many, then its columns.
+inline double full_pose_row(const Pose& Y, int row, double per_metre = 1) {
   const double number = Y(row % 3, (row / 3 + 3) % 4);
-  return row < 3 ? number / unit : number;
+  return row < 3 ? number * per_metre : number;
 }
 
 /// True if the degrees of freedom are the joints, one to one: no mimic joints.

@@ -136,8 +136,8 @@ Result Tracker::follow(const Pose* targets, double dt, const Scene* scene) {
   if (scene != nullptr) scene->check_fits(solver_.robot());
   if (closest_) stream_on(targets, dt);
   const JointVector before = q_;
-  Result result = solver_.impl_->with_goal(
-      targets, criteria_, scene, [&](const Goal& goal) { return approach(goal, dt); });
+  Result result = solver_.impl_->with_goal(targets, criteria_, scene,
+                                           [&](const Goal& goal) { return approach(goal, dt); });
   state_.velocity = (q_ - before) / dt;
   return result;
 }

@@ -17,6 +17,15 @@ from bench.random_arms import BUILDS, sketch
 FACTORS = (1.0, -1.0, 0.5, -0.5, 2.0)
 
 
+def with_follower(
+    urdf: str, follower: int, leader: int, factor: float, offset: float = 0.0
+) -> str:
+    """The URDF of a random arm, a joint of which follows another by a mimic tag."""
+    tag = f'<mimic joint="j{leader}" multiplier="{factor}" offset="{offset}"/>'
+    joint = rf'(<joint name="j{follower}".*?)</joint>'
+    return re.sub(joint, rf"\1{tag}</joint>", urdf)
+
+
 def following_arm(seed: int) -> iksel.Robot | None:
     """An arm of some build, one or two of whose joints follow others.
 
@@ -31,10 +40,7 @@ def following_arm(seed: int) -> iksel.Robot | None:
         follower, leader = order[2 * i : 2 * i + 2]
         factor = rng.uniform(-2, 2) if rng.random() < 0.2 else rng.choice(FACTORS)
         offset = rng.uniform(-1, 1) if rng.random() < 0.5 else 0.0
-        tag = f'<mimic joint="j{leader}" multiplier="{factor}" offset="{offset}"/>'
-        urdf = re.sub(
-            rf'(<joint name="j{follower}".*?)</joint>', rf"\1{tag}</joint>", urdf
-        )
+        urdf = with_follower(urdf, follower, leader, factor, offset)
     try:
         return iksel.Robot.from_urdf(urdf, "l0", "tip")
     except iksel.UrdfError:

@@ -77,7 +77,9 @@ def test_every_pose_is_solved(robot: iksel.Robot, solver: iksel.Solver) -> None:
     assert results.success.all()
     assert robot.within_limits(results.q).all()
     np.testing.assert_allclose(robot.fk(results.q), targets, atol=2e-6)
-    assert all(solver.solve(target) for target in targets[:50])
+    q = [solver.solve(target).q for target in targets[:50]]
+    assert robot.within_limits(q).all()
+    np.testing.assert_allclose(robot.fk(q), targets[:50], atol=2e-6)
 
 
 def test_near_a_configuration_is_that_configuration(

@@ -237,7 +237,7 @@ TEST(Loops, CloseWhereTheyWereMade) {
         limits.offset[j] = model.kernel.joints[static_cast<std::size_t>((swept + j) % 6)].offset;
       }
       std::fill_n(pack.held, lanes::kWidth, q[swept] + limits.offset[0]);
-      kernels.close_loops(loop.form(), target, limits, pack);
+      kernels.close_loops(loop.form(), target, limits, /*are_pairs=*/false, pack);
       for (int j = 0; j < 6; ++j) {
         EXPECT_LT(std::abs(std::remainder(pack.q[j][0] - q[(swept + j) % 6], kTwoPi)), 1e-5)
             << "joint " << j << " from " << swept << ", seed " << iksel_test::seed() << ", " << i;
@@ -271,7 +271,7 @@ TEST(Loops, CloseBothWays) {
     }
     std::fill_n(pack.held, lanes::kWidth, q[0] + limits.offset[0]);
     for (int lane = 0; lane < lanes::kWidth; ++lane) pack.sign[0][lane] = lane % 2 == 0 ? 1 : -1;
-    kernels.close_loops(loop.form(), of_target, limits, pack);
+    kernels.close_loops(loop.form(), of_target, limits, /*are_pairs=*/false, pack);
     double nearest = 10;
     for (int lane = 0; lane < 2; ++lane) {
       JointVector other(6);
@@ -283,6 +283,67 @@ TEST(Loops, CloseBothWays) {
     EXPECT_LT(nearest, 1e-5) << "seed " << iksel_test::seed() << ", " << i;
     EXPECT_GT(std::abs(pack.q[5][0] - pack.q[5][1]), 1e-6);
   }
+}
+
+/// The twist that takes one pose to another, which is near, to first order.
+Eigen::Matrix<double, 6, 1> twist_to(const Pose& from, const Pose& to) {
+  const Eigen::AngleAxisd turn(to.linear() * from.linear().transpose());
+  Eigen::Matrix<double, 6, 1> twist;
+  twist << to.translation() - from.translation(), turn.angle() * turn.axis();
+  return twist;
+}
+
+/// Moves the target of which a and b are solutions to where they share the angle of a joint, by
+/// Newton's method; false where that fails.
+bool share_angle(const Robot& robot, int joint, JointVector& a, JointVector& b) {
+  for (int step = 0; step < 40; ++step) {
+    const double apart = std::remainder(a[joint] - b[joint], kTwoPi);
+    if (std::abs(apart) < 1e-11) return iksel_test::distance(robot, a, b) > 0.1;
+    const Eigen::MatrixXd by_a = robot.jacobian(a).inverse();
+    const Eigen::MatrixXd by_b = robot.jacobian(b).inverse();
+    const Eigen::VectorXd slope = (by_a.row(joint) - by_b.row(joint)).transpose();
+    Eigen::VectorXd twist = -apart / slope.squaredNorm() * slope;
+    twist *= std::min(1.0, 0.1 / twist.norm());
+    a += by_a * twist;
+    b += by_b * twist;
+    const Pose target = robot.fk(a);
+    for (int i = 0; i < 8; ++i) {
+      b += robot.jacobian(b).inverse() * twist_to(robot.fk(b), target);
+    }
+    if (!(twist_to(robot.fk(b), target).norm() < 1e-9)) return false;
+  }
+  return false;
+}
+
+/// Two solutions that share the angle of the joint that is swept, or all but do, are both found.
+TEST(Loops, FindTwoThatShareAnAngle) {
+  int tried = 0;
+  int missed = 0;
+  for (int i = 0; i < iksel_test::cases(100); ++i) {
+    Dice dice(iksel_test::seed() * 1000 + static_cast<std::uint64_t>(i));
+    const Robot robot =
+        iksel_test::make_robot(AxisMaker(dice).make(Pair::none, 0), dice, /*limit=*/kTwoPi);
+    RootSweep sweep = sweep_of(robot);
+    JointVector a(6);
+    for (int j = 0; j < 6; ++j) a[j] = dice.uniform(-3, 3);
+    find(sweep, robot, robot.fk(a));
+    if (sweep.size() < 2) continue;
+    JointVector b = Eigen::Map<const Eigen::Matrix<double, 6, 1>>(sweep.q(0));
+    if (iksel_test::distance(robot, a, b) < 0.1) {
+      b = Eigen::Map<const Eigen::Matrix<double, 6, 1>>(sweep.q(1));
+    }
+    const int swept = iksel::find_residual(robot.model())->held;
+    if (!share_angle(robot, swept, a, b)) continue;
+    for (const double away : {0.0, 1e-9, 1e-7, 1e-5, 1e-3}) {
+      JointVector q = a;
+      for (int j = 0; j < 6; ++j) q[j] += away * dice.uniform(-1, 1);
+      find(sweep, robot, robot.fk(q));
+      ++tried;
+      if (!holds(sweep, robot, q, 0.3) || !holds(sweep, robot, b, 0.3)) ++missed;
+    }
+  }
+  EXPECT_GT(tried, 20);
+  EXPECT_LE(missed, tried / 50) << "of " << tried << ", seed " << iksel_test::seed();
 }
 
 /// Of this pose, two solutions share the angle of the joint that is swept.

@@ -29,6 +29,8 @@ class RootSweep final : public BranchList {
   /// whether rounding leaves enough of it to conclude from.
   bool find_product_roots(const Pose& Y);
   bool find_loop_roots(const Pose& Y);
+  /// What is at these roots; `are_pairs`: at each are two solutions of a loop, or none.
+  void take_all(const Pose& Y, std::size_t begin, std::size_t end, bool are_pairs);
   void take(const Pose& Y, const RootFinder::Root& root, int lane);
   /// Beside a root of the product where the residual of a lane's branch is 0: where the branch only
   /// just is, both grow as the root of what that angle is off. The lane of crossing_ that is

@@ -249,7 +249,7 @@ struct LaneKernels {
                               int n, double* values);
   /// The other joints' angles, at kWidth roots.
   void (*close_loops)(const LoopForm& form, const LoopTarget& target, const ClosedForm& limits,
-                      BranchPack& pack);
+                      bool are_pairs, BranchPack& pack);
   /// C = A B, by columns; so many rows of A and C, a multiple of kWidth.
   void (*multiply)(const double* A, int rows, const double* B, int inner, int columns, double* C);
   /// The tangents of curves where the lanes stand, and a step of each along its curve; returns the

@@ -9,12 +9,23 @@ namespace iksel::lanes {
 
 inline constexpr int kProducts = 2 * kEquations;
 
-/// What triangular ones take to nearly 0, by two steps of inverse iteration: the products with c^3,
-/// s^3, c^2 s and c s^2.
+/// Triangular products as one matrix m, by columns.
 template <typename T>
-IKSEL_INLINE void find_null_vector(const Products<T>& products, T (&x)[kProducts]) {
-  // As one triangular matrix, by columns.
+struct NullSpace {
   T m[kProducts][kProducts];
+  T inverse[kProducts];  ///< of the diagonal, as far as it is not 0
+
+  IKSEL_INLINE explicit NullSpace(const Products<T>& products);
+  /// A step of inverse iteration, by (m^T m)^-1.
+  IKSEL_INLINE void iterate(T (&x)[kProducts]) const;
+  /// What m takes to nearly 0: the products with c^3, s^3, c^2 s and c s^2.
+  IKSEL_INLINE void find_first(T (&x)[kProducts]) const;
+  /// And that across x.
+  IKSEL_INLINE void find_second(const T (&x)[kProducts], T (&y)[kProducts]) const;
+};
+
+template <typename T>
+IKSEL_INLINE NullSpace<T>::NullSpace(const Products<T>& products) {
   for (int i = 0; i < kAlone; ++i) {
     for (int k = 0; k < kAlone; ++k) {
       m[k][i] = products.half[0][k][i];
@@ -29,26 +40,72 @@ IKSEL_INLINE void find_null_vector(const Products<T>& products, T (&x)[kProducts
   for (int k = 0; k < kEquations; ++k) {
     for (int i = 0; i <= k; ++i) m[kEquations + k][kEquations + i] = products.rest[k][i];
   }
-  T inverse[kProducts];
   for (int k = 0; k < kProducts; ++k) {
     const T size = max(abs(m[k][k]), T(1e-16) * abs(m[0][0]) + T(1e-200));
     inverse[k] = select(m[k][k] < T(0.0), T(-1.0), T(1.0)) / size;
-    x[k] = T(1.0);
   }
-  for (int step = 0; step < 2; ++step) {
-    for (int k = 0; k < kProducts; ++k) {
-      for (int i = 0; i < k; ++i) x[k] = x[k] - m[k][i] * x[i];
-      x[k] = x[k] * inverse[k];
-    }
-    T square = T(0.0);
-    for (int k = kProducts; k-- > 0;) {
-      for (int j = k + 1; j < kProducts; ++j) x[k] = x[k] - m[j][k] * x[j];
-      x[k] = x[k] * inverse[k];
-      square = square + x[k] * x[k];
-    }
-    const T scale = T(1.0) / sqrt(square);
-    for (int k = 0; k < kProducts; ++k) x[k] = x[k] * scale;
+}
+
+template <typename T>
+IKSEL_INLINE void NullSpace<T>::iterate(T (&x)[kProducts]) const {
+  for (int k = 0; k < kProducts; ++k) {
+    for (int i = 0; i < k; ++i) x[k] = x[k] - m[k][i] * x[i];
+    x[k] = x[k] * inverse[k];
   }
+  T square = T(0.0);
+  for (int k = kProducts; k-- > 0;) {
+    for (int j = k + 1; j < kProducts; ++j) x[k] = x[k] - m[j][k] * x[j];
+    x[k] = x[k] * inverse[k];
+    square = square + x[k] * x[k];
+  }
+  const T scale = T(1.0) / sqrt(square);
+  for (int k = 0; k < kProducts; ++k) x[k] = x[k] * scale;
+}
+
+template <typename T>
+IKSEL_INLINE void NullSpace<T>::find_first(T (&x)[kProducts]) const {
+  for (T& component : x) component = T(1.0);
+  for (int step = 0; step < 2; ++step) iterate(x);
+}
+
+template <typename T>
+IKSEL_INLINE void NullSpace<T>::find_second(const T (&x)[kProducts], T (&y)[kProducts]) const {
+  for (int k = 0; k < kProducts; ++k) y[k] = T(k % 2 == 0 ? 1.0 : -1.0);
+  for (int step = 0; step < 3; ++step) {
+    T share = T(0.0);
+    for (int k = 0; k < kProducts; ++k) share = share + x[k] * y[k];
+    for (int k = 0; k < kProducts; ++k) y[k] = y[k] - share * x[k];
+    if (step < 2) iterate(y);
+  }
+}
+
+/// By how much cosines and sines of e are off, bilinear in x and y: 0 where both are those of one
+/// angle.
+template <typename T>
+IKSEL_INLINE T off_circle(const T (&x)[kProducts], const T (&y)[kProducts]) {
+  T off = T(0.0);
+  for (int k = 0; k < kProducts; k += 3) {
+    off = off + x[k + 1] * y[k + 1] + x[k + 2] * y[k + 2] - x[k] * y[k];
+  }
+  return off;
+}
+
+/// Of two solutions that share the angle of c, or all but do, products are any of a plane: turns x
+/// to one of them, `sign` tells which.
+template <typename T>
+IKSEL_INLINE void take_one_of_pair(const NullSpace<T>& space, const T& sign, T (&x)[kProducts]) {
+  T y[kProducts];
+  space.find_second(x, y);
+  // off_circle(a x + b y) = 0.
+  const T xx = off_circle(x, x);
+  const T xy = off_circle(x, y);
+  const T yy = off_circle(y, y);
+  const T root = sqrt(max(xy * xy - xx * yy, T(0.0)));
+  const T sum = T(0.0) - xy - select(xy < T(0.0), T(0.0) - root, root);
+  const auto is_first = sign > T(0.0);
+  const T a = select(is_first, sum, yy);
+  const T b = select(is_first, xx, sum);
+  for (int k = 0; k < kProducts; ++k) x[k] = a * x[k] + b * y[k];
 }
 
 /// Angles d and e of a null vector.
@@ -170,10 +227,11 @@ IKSEL_INLINE void turn_back(const LoopForm& form, const T& sign, Moving<T>& from
 }
 
 /// All six joints at the angles of c that the pack holds, and by how much the loop stays open
-/// there: `residual`, in radians and units together.
+/// there: `residual`, in radians and units together. `are_pairs`: where two solutions all but share
+/// an angle; the second of the signs tells them apart, or the first, if it does not tell two ways.
 template <typename T>
 void close_loops(const LoopForm& form, const LoopTarget& target, const ClosedForm& limits,
-                 BranchPack& pack) {
+                 bool are_pairs, BranchPack& pack) {
   for (int first = 0; first < kWidth; first += Lanes<T>::kCount) {
     Branch<T, Definiteness<T>> out;
     sincos(Lanes<T>::load(pack.held + first), out.q[0].s, out.q[0].c);
@@ -182,7 +240,11 @@ void close_loops(const LoopForm& form, const LoopTarget& target, const ClosedFor
     fill_products(target, out.q[0], m[0]);
     make_triangular(m, determinant);
     T x[kProducts];
-    find_null_vector<T>(m[0], x);
+    const NullSpace<T> space(m[0]);
+    space.find_first(x);
+    if (are_pairs) {
+      take_one_of_pair(space, Lanes<T>::load(pack.sign[form.has_two_ways()] + first), x);
+    }
     read_products(x, out);
     Moving<T> moving{constant<T>(form.p[3]), constant<T>(form.h[3]), constant<T>(form.across)};
     for (int j = 2; j >= 0; --j) {

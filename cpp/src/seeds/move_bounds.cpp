@@ -68,8 +68,9 @@ bool MoveBounds::may_be_shorter(const Gap& gap, double best) const {
     return std::abs(to.least - from.least);
   });
   if (!may_be_between(a.least, b.least, rise)) return false;
-  // What joints a loop opens to, its ends do not tell.
-  if (!a.exists() && !b.exists()) return true;
+  // What joints a loop opens to, its ends do not tell, nor the only point that is on it.
+  const auto may_be = [](const BranchPoint* point) { return point == nullptr || point->exists(); };
+  if (may_be(gap.before) + may_be(&a) + may_be(&b) + may_be(gap.behind) < 2) return true;
   // A joint turns as far beyond two points as from one point to the next (python -m bench moves),
   // and where the branch ends as the root of how far that exists.
   const double at_end = std::sqrt(std::max(a.least, b.least));

@@ -138,7 +138,10 @@ bool NearestOnCurve::look_into(const BranchSpan& span, int depth) {
     const MoveBounds::Way& behind = ways[std::min(i, ways.size() - 1)];
     const MoveBounds::Way widest{std::max(before.move, behind.move),
                                  std::max(before.largest, behind.largest)};
-    if (may_lead_to_shorter(cost(nodes[i]), widest)) follow(span, static_cast<int>(i), widest);
+    // Where there is none, what is beside nodes is looked into.
+    if (nodes[i].exists() && may_lead_to_shorter(cost(nodes[i]), widest)) {
+      follow(span, static_cast<int>(i), widest);
+    }
   }
   bool any =
       std::any_of(nodes.begin(), nodes.end(), [](const auto& node) { return node.exists(); });

@@ -129,8 +129,8 @@ Proof Sweep::proof_of_none() const {
 
 void Sweep::visit_nearest(const Pose& Y, std::size_t most,
                           FunctionRef<void(const JointVector&)> visit) {
-  std::vector<double> answers;
-  add_samples(Y, 0, 1, answers);
+  set_target(Y);
+  rate_samples();
   JointVector q(kCurveJoints);
   nearest_.find(places_, rows_, kNear);
   for (const LeastPlace& near : nearest_) {
@@ -138,6 +138,13 @@ void Sweep::visit_nearest(const Pose& Y, std::size_t most,
     branches_.solve_all(places_.value(near.place));
     branches_.copy_joints(near.branch, q.data());
     visit(q);
+  }
+}
+
+void Sweep::rate_samples() {
+  for (int first = 0; first < places_.count; first += SweptBranches::kCount) {
+    branches_.rate([&](int i) { return places_.value(first + i); }, kNear,
+                   &rows_[static_cast<std::size_t>(first)]);
   }
 }
 

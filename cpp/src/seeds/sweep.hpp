@@ -86,6 +86,8 @@ class Sweep {
     int branch;
   };
 
+  /// Rates all branches at all places, as many as fill packs.
+  void rate_samples();
   /// Whether a branch at a value, where they are `off` an answer, is one; it becomes what is found.
   bool take_answer(const SweptBranches::Row& off, double value);
   /// Whether what was solved last is an answer in a lane; it becomes what is found.

@@ -18,12 +18,8 @@ class Sweep::Spread {
 
   /// Looks at so many samples; how many branches are inside the limits there.
   int find_runs(int samples) {
-    const Places places = sweep_.branches_.places(samples);
-    sweep_.places_ = places;
-    for (int i = 0; i < samples; i += SweptBranches::kCount) {
-      sweep_.branches_.rate([&](int k) { return places.value(i + k); }, kNear,
-                            &sweep_.rows_[static_cast<std::size_t>(i)]);
-    }
+    sweep_.places_ = sweep_.branches_.places(samples);
+    sweep_.rate_samples();
     runs_.clear();
     int inside = 0;
     for (int branch = 0; branch < SweptBranches::kCount; ++branch) {

@@ -156,7 +156,7 @@ struct MovePack {
 /// A branch at kWidth values of the held joint. Where it is known to lie too far away before all is
 /// known of it, `inside` is not less than kFarAway, joints that are not known yet are kUnknown, and
 /// `least`, `loose` and `off` are of what was known by then, the last two at least so much. What
-/// joints that may be any beside are away, they count less (Prospect::most_that_counts).
+/// joints that may be any beside are away, they count less (NearProspect).
 inline constexpr double kFarAway = 1e30;
 inline constexpr double kUnknown = __builtin_nan("");
 struct BranchRow {

@@ -9,8 +9,9 @@
 
 namespace iksel::lanes {
 
-/// As kSteepness, of samples beside each other; measured by `python -m bench moves`.
-inline constexpr double kSwingSteepness = 6;
+/// As kSteepness, but of what angles are divided by itself: from one sample to the next they turn
+/// far before its root is small. Measured by `python -m bench moves`.
+inline constexpr double kSwingSteepness = 36;
 
 /// Whether a branch may be near to an answer that is not far away, by the joints found so far.
 template <typename T>
@@ -24,6 +25,11 @@ struct NearProspect : Prospect<T> {
   /// As BranchRow has them, of these lanes.
   std::uint64_t below = 0, above = 0;
 
+  [[nodiscard]] IKSEL_INLINE T most_that_counts() const {
+    const T all(1e30);
+    const auto changes = this->divisor < T(1 / kSwingSteepness);
+    return any(changes) ? select(changes, T(kSwingSteepness) * this->divisor, all) : all;
+  }
   [[nodiscard]] IKSEL_INLINE bool is_open() const {
     return any(min(this->room(), T(most) - loose) >= T(0.0));
   }
@@ -34,7 +40,7 @@ IKSEL_INLINE bool is_enough(const ClosedForm& form, int j, Branch<T, NearProspec
   NearProspect<T>& prospect = branch.quality;
   const T q = joint_value(form, j, branch.q[j]);
   prospect.q[j] = q;
-  const T most = prospect.most_that_counts(kSwingSteepness);
+  const T most = prospect.most_that_counts();
   add_way(*prospect.move, j, min(loose_move(*prospect.move, j, q), most), prospect.loose);
   const T past = min(beyond_limits(form, j, q), most);
   prospect.beyond = max(prospect.beyond, past);

@@ -38,11 +38,11 @@ struct Prospect {
   }
   /// How far the joint whose angle is known now may be away from something, limits or where it was,
   /// and still count as that far.
-  [[nodiscard]] IKSEL_INLINE T most_that_counts(double steepness) const {
+  [[nodiscard]] IKSEL_INLINE T most_that_counts() const {
     const T all(1e30);
-    const auto changes = divisor < T(1 / (steepness * steepness));
+    const auto changes = divisor < T(1 / (kSteepness * kSteepness));
     if (!any(changes)) return all;
-    const T steep = T(steepness) * sqrt(max(divisor, T(0.0)));
+    const T steep = T(kSteepness) * sqrt(max(divisor, T(0.0)));
     return select(changes, select(divisor < T(kAnyAngle), T(0.0), steep), all);
   }
   /// Whether it may be in some lane.
@@ -67,7 +67,7 @@ IKSEL_INLINE bool is_enough(const ClosedForm& form, int j, Branch<T, Prospect<T>
   const LimitArc& arc = form.arc[j];
   if (arc.ends) {
     const T sine = sine_beyond(arc, branch.q[j]);
-    prospect.beyond = max(prospect.beyond, min(sine, prospect.most_that_counts(kSteepness)));
+    prospect.beyond = max(prospect.beyond, min(sine, prospect.most_that_counts()));
   }
   prospect.is_over = !prospect.is_open();
   return prospect.is_over;

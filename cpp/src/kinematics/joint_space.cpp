@@ -9,6 +9,7 @@ JointSpace::JointSpace(int dof)
     : LimitSet(dof),
       names(static_cast<std::size_t>(dof)),
       types(static_cast<std::size_t>(dof)),
+      repeats(static_cast<std::size_t>(dof), true),
       velocity(dof) {}
 
 namespace {
@@ -74,7 +75,7 @@ void JointSpace::choose_images(double slack, const Length& length, JointVector& 
 
 void JointSpace::wrap(double* q) const {
   for (int j = 0; j < dof(); ++j) {
-    if (is_slide(j)) continue;
+    if (!repeats[static_cast<std::size_t>(j)]) continue;
     if (type(j) == JointType::continuous) {
       // Any value is allowed; a principal one is what users expect.
       if (std::abs(q[j]) > kPi) q[j] = without_turns(q[j]);
@@ -103,7 +104,7 @@ bool JointSpace::wrap_nearest(const JointVector& near, double slack, const Lengt
                               JointVector& q) const {
   bool held = false;
   for (int j = 0; j < dof(); ++j) {
-    if (!is_periodic(j) || turns_in_sum(j)) continue;
+    if (!winds(j)) continue;
     const double low = lower[j] - slack;
     const double high = upper[j] + slack;
     double value = q[j];

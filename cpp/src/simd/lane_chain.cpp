@@ -49,9 +49,7 @@ lanes::LaneChainOf<Number> make_chain(const ChainModel& model, double unit) {
     const double upper = continuous ? kPi + 1e-9 : model.joints.upper[j];
     to.lower = number(units.to_lane(j, lower));
     to.upper = number(units.to_lane(j, upper));
-    // Whole turns of a joint may change a sum that is limited.
-    to.limited = model.joints.is_slide(j) || (!continuous && upper - lower < 2 * kPi) ||
-                 model.joints.turns_in_sum(j);
+    to.limited = !continuous && !model.joints.winds(j);
   }
   for (const Limit& from : model.joints.sums) {
     // Beside a bound by less than this a lane stands at it; held to it, it does.

@@ -106,6 +106,12 @@ class JointSpace : public LimitSet {
     return largest;
   }
 
+  /// Whether they differ by less in every joint.
+  template <typename A, typename B>
+  [[nodiscard]] bool are_near(const A& a, const B& b, double within) const {
+    return distance(a, b, within) < within;
+  }
+
   /// The farthest that each joint may move in a time step by its velocity limit; infinite where
   /// dt is 0.
   [[nodiscard]] JointVector longest_moves(double dt) const;

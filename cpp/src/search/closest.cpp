@@ -109,7 +109,7 @@ void descend_from_screen(const RobotModel& model, const Goal& goal, const Vector
     if (minima.only_best_counts() && expected > screen.remainder(0) + kRounding) continue;
     const JointVector seed = screen.q(i);
     const bool is_known = std::any_of(tried, tried + count, [&](const JointVector& other) {
-      return model.joints.distance(seed, other, kSameSeed) < kSameSeed;
+      return model.joints.are_near(seed, other, kSameSeed);
     });
     if (is_known) continue;
     tried[count++] = seed;

@@ -117,7 +117,7 @@ bool Sweep::is_found(const double* q) const {
   // Where branches meet, all lead to the same place.
   constexpr double kSame = 1e-3;
   for (std::size_t i = 0; i < found_.size(); i += kCurveJoints) {
-    if (joints_.distance(&found_[i], q, kSame) < kSame) return true;
+    if (joints_.are_near(&found_[i], q, kSame)) return true;
   }
   return false;
 }

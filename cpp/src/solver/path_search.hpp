@@ -81,9 +81,7 @@ class PathSearch {
     bool leads_on = false;
     for (const auto& [from, cost, parent] : before) {
       std::size_t same = 0;
-      while (same < origins.size() && model_.joints.distance(origins[same], from, kCopy) >= kCopy) {
-        ++same;
-      }
+      while (same < origins.size() && !model_.joints.are_near(origins[same], from, kCopy)) ++same;
       if (same == origins.size()) {
         JointVector q = from;
         if (!converge(goal, kStepsToNext, q)) continue;

@@ -24,7 +24,8 @@ Sweep::Sweep(const ChainModel& model, const ClosedFormChain& chain, bool is_nomi
 }
 
 bool Sweep::find_at_samples(const Pose& Y) {
-  // Few, far from each other: what these do not find, the pieces do.
+  // Few, far from each other: what these do not find, the pieces do. With all of them random arms
+  // wait up to a sixth longer where there is no answer, and the others no shorter in the mean.
   constexpr int kEvery = 4;
   set_target(Y);
   found_.clear();

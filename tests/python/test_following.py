@@ -20,6 +20,9 @@ SAME_MOVE = 0.01
 ARMS_THAT_LOST = (71, 139, 250, 290, 350, 352)
 """One of these poses each, while they were solved one seed at a time."""
 
+TURNING_LEADERS = (18, 20, 35, 48, 57)
+"""Followers stand elsewhere after a whole turn of these leaders inside their limits."""
+
 
 @pytest.mark.parametrize(
     "seed", [*ARMS_THAT_LOST, *range(1000 * SEED, 1000 * SEED + ARMS)]
@@ -43,6 +46,26 @@ def test_what_can_be_reached_is_found(seed: int) -> None:
         near = np.clip(known + 0.1 * rng.normal(size=robot.dof), lower, upper)
         result = solver.solve(pose, near=near)
         assert result.move <= np.linalg.norm(near - known) + SAME_MOVE
+
+
+@pytest.mark.parametrize("seed", TURNING_LEADERS)
+def test_what_is_closest_is_as_close_as_from_many_seeds(seed: int) -> None:
+    robot = following_arm(seed)
+    assert robot is not None
+    poses = robot.fk(robot.random_configurations(40, seed=seed))
+    targets = poses[:20]
+    targets[:, :3, 3] *= 1.5
+    targets[:, :3, :3] = poses[20:, :3, :3]
+    solver = iksel.Solver(robot)
+    seeds = robot.random_configurations(48, seed=seed + 1)
+
+    def measure(result: iksel.Result) -> float:
+        return float(np.hypot(result.position_error, result.rotation_error))
+
+    for target in targets:
+        found = solver.solve(target, closest=np.ones(6))
+        from_seeds = solver.solve(target, closest=np.ones(6), seeds=seeds)
+        assert measure(found) <= 1.01 * measure(from_seeds)
 
 
 def test_a_telescope_is_one_joint_of_many() -> None:

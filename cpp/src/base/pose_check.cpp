@@ -56,9 +56,8 @@ Rigidity rigidity_of(const Pose& pose) {
 void make_rigid(Pose& pose) {
   // Newton-Schulz to the polar factor (Higham 2008, section 8.3): the deviation is squared by each
   // step, 1e-3 -> 1e-6 -> 1e-12 -> below rounding.
-  constexpr int kSteps = 3;
   Eigen::Matrix3d R = pose.linear();
-  for (int step = 0; step < kSteps; ++step) {
+  for (int step = 0; step < 3; ++step) {
     const Eigen::Matrix3d correction = 1.5 * Eigen::Matrix3d::Identity() - 0.5 * R.transpose() * R;
     R = (R * correction).eval();
   }
@@ -109,8 +108,7 @@ Pose orthonormalized(const Pose& pose, const char* name) {
     throw_invalid(name, -1, "the matrix in place of the rotation is singular");
   }
   if (X.determinant() < 0) throw_invalid(name, -1, "det R is negative (a reflection)");
-  constexpr int kSteps = 30;
-  for (int step = 0; step < kSteps && deviation_of(X) > kRigidTolerance; ++step) {
+  for (int step = 0; step < 30 && deviation_of(X) > kRigidTolerance; ++step) {
     const Eigen::Matrix3d inverse = X.inverse().transpose();
     const double scale = std::sqrt(inverse.norm() / X.norm());
     X = (0.5 * (scale * X + inverse / scale)).eval();

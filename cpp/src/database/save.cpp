@@ -75,8 +75,7 @@ bool give_name(const Descriptor& file, const fs::path& name) {
 
 /// A file of a new name, which is written to `name`; none if it cannot be made.
 Descriptor open_named(const fs::path& folder, fs::path& name) {
-  constexpr int kTries = 16;
-  for (int i = 0; i < kTries; ++i) {
+  for (int tries = 0; tries < 16; ++tries) {
     name = folder / temporary_name();
     Descriptor file(::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
     if (file.get() < 0 && errno == EEXIST) continue;

@@ -112,6 +112,11 @@ ChainModel::ChainModel(std::string urdf_xml, const RobotOptions& options_in)
     soft_lower[i] = variable.soft_lower;
     soft_upper[i] = variable.soft_upper;
   }
+  for (const ChainJoint& joint : spec.joints) {
+    const bool turns = !joint.prismatic && !joint.curve;
+    const bool repeats = turns && std::rint(joint.multiplier) == joint.multiplier;
+    if (!joint.fixed && !repeats) joints.repeats[joint.variable] = false;
+  }
   add_coupled_limits(options.coupled_limits, spec, joints);
   flatten();
   measure_reach();

@@ -9,11 +9,13 @@ JointSpace::JointSpace(int dof)
     : LimitSet(dof),
       names(static_cast<std::size_t>(dof)),
       types(static_cast<std::size_t>(dof)),
+      repeats(static_cast<std::size_t>(dof), true),
       velocity(dof) {}
 
 namespace {
 
-/// So far an answer at a limit may be off, and so its image at the other [rad].
+/// So far an answer at a limit may be off, by the default tolerance, and so its image at the other
+/// [rad].
 constexpr double kOffLimit = 1e-6;
 
 /// Calls visit(q, beyond) with q at each combination of images of the joints that turn in sums, and
@@ -74,7 +76,7 @@ void JointSpace::choose_images(double slack, const Length& length, JointVector& 
 
 void JointSpace::wrap(double* q) const {
   for (int j = 0; j < dof(); ++j) {
-    if (is_slide(j)) continue;
+    if (!repeats[static_cast<std::size_t>(j)]) continue;
     if (type(j) == JointType::continuous) {
       // Any value is allowed; a principal one is what users expect.
       if (std::abs(q[j]) > kPi) q[j] = without_turns(q[j]);
@@ -103,7 +105,7 @@ bool JointSpace::wrap_nearest(const JointVector& near, double slack, const Lengt
                               JointVector& q) const {
   bool held = false;
   for (int j = 0; j < dof(); ++j) {
-    if (!is_periodic(j) || turns_in_sum(j)) continue;
+    if (!winds(j)) continue;
     const double low = lower[j] - slack;
     const double high = upper[j] + slack;
     double value = q[j];
@@ -147,8 +149,7 @@ bool JointSpace::next_combination(JointVector& q) const {
 JointVector JointSpace::longest_moves(double dt) const {
   if (dt == 0) return JointVector::Constant(dof(), kInfinity);
   // A little more, so that a joint may run at its limit in spite of rounding.
-  constexpr double kSlack = 1e-9;
-  return velocity * (dt * (1 + kSlack));
+  return velocity * (dt * (1 + 1e-9));
 }
 
 JointVector JointSpace::draw(Random& random) const {
@@ -159,9 +160,8 @@ JointVector JointSpace::draw(Random& random) const {
   }
   // Where so little of the box lies inside: from there one joint after the other, uniform between
   // where the others let it be (Gibbs sampling).
-  constexpr int kSweeps = 32;
   q = interior;
-  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+  for (int sweep = 0; sweep < 32; ++sweep) {
     for (int j = 0; j < dof(); ++j) {
       double low = sample_lower(j);
       double high = sample_upper(j);

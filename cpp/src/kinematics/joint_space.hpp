@@ -33,7 +33,7 @@ class JointSpace : public LimitSet {
   [[nodiscard]] bool is_slide(int joint) const { return type(joint) == JointType::prismatic; }
   /// True where a whole turn of the joint leads to the same pose, and may lie inside the limits.
   [[nodiscard]] bool is_periodic(int joint) const {
-    return !is_slide(joint) && !(upper[joint] - lower[joint] < kTwoPi);
+    return repeats[static_cast<std::size_t>(joint)] && !(upper[joint] - lower[joint] < kTwoPi);
   }
 
   /// Whether a joint may turn on and on in a search, to be wrapped at the end.
@@ -106,6 +106,12 @@ class JointSpace : public LimitSet {
     return largest;
   }
 
+  /// Whether they differ by less in every joint.
+  template <typename A, typename B>
+  [[nodiscard]] bool are_near(const A& a, const B& b, double within) const {
+    return distance(a, b, within) < within;
+  }
+
   /// The farthest that each joint may move in a time step by its velocity limit; infinite where
   /// dt is 0.
   [[nodiscard]] JointVector longest_moves(double dt) const;
@@ -129,7 +135,8 @@ class JointSpace : public LimitSet {
 
   std::vector<std::string> names;
   std::vector<JointType> types;
-  JointVector velocity;  ///< [rad/s or m/s]
+  std::vector<bool> repeats;  ///< whether a whole turn of a joint leads to the same pose
+  JointVector velocity;       ///< [rad/s or m/s]
   /// Joints that turn in a sum that is limited, and their images together, each as whole turns on
   /// top of those nearest to the middle of the limits: numbers at these joints, 0 at the others.
   std::vector<int> turning;

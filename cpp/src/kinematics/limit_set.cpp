@@ -70,8 +70,7 @@ bool hold_row(const LimitSet& limits, const Limit& row, JointVector& q) {
 
 void LimitSet::hold_sums(JointVector& q) const {
   // Onto one after the other leads to where all hold, if slowly where they meet at a small angle.
-  constexpr int kRounds = 32;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < 32; ++round) {
     bool moved = false;
     for (const Limit& row : sums) moved = hold_row(*this, row, q) || moved;
     if (!moved) return;

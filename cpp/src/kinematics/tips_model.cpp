@@ -33,6 +33,7 @@ void append_joint(const ChainModel& from, int j, RobotModel& to) {
   const Eigen::Index n = to.dof++;
   to.joints.names.push_back(from.joints.name(j));
   to.joints.types.push_back(from.joints.type(j));
+  to.joints.repeats.push_back(from.joints.repeats[static_cast<std::size_t>(j)]);
   const auto append = [&](const JointVector& source, JointVector& values) {
     values.conservativeResize(n + 1);
     values[n] = source[j];
@@ -168,6 +169,9 @@ std::vector<int> TipsModel::add_joints(const ChainModel& model) {
     // A joint that follows this one on another chain may narrow its limits there.
     joints.lower[place] = std::max(joints.lower[place], chain.lower[j]);
     joints.upper[place] = std::min(joints.upper[place], chain.upper[j]);
+    if (!chain.repeats[static_cast<std::size_t>(j)]) {
+      joints.repeats[static_cast<std::size_t>(place)] = false;
+    }
     if (joints.lower[place] > joints.upper[place]) {
       throw UrdfError("joint '" + chain.name(j) +
                       "': the joints that follow it on the chains to several tips leave it no "

@@ -21,10 +21,9 @@ BestEffort::BestEffort(const RobotModel& model, const Goal& goal, double weight)
     : model_(model), remainder_(goal, weights_of(weight)) {}
 
 JointVector BestEffort::from(const JointVector& seed) {
-  constexpr int kSteps = 200;
   JointVector q = seed;
   int steps = 0;
-  const double left = descend_from_seed(model_, remainder_, kSteps, q, steps);
+  const double left = descend_from_seed(model_, remainder_, /*most=*/200, q, steps);
   if (left < least_) {
     least_ = left;
     q_ = q;

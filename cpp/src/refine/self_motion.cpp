@@ -87,11 +87,10 @@ int descend_self_motion(const Goal& goal, const JointCost& cost, int most, Joint
 
 int descend_to_near(const Goal& goal, const JointMove& move, const JointVector& near,
                     JointVector& q) {
-  constexpr int kSteps = 20;
   int steps = 0;
   const auto descend = [&](double power) {
     const MoveCost cost(move.weights(), near, power);
-    steps += descend_self_motion(goal, JointCost(cost), kSteps, q);
+    steps += descend_self_motion(goal, JointCost(cost), /*most=*/20, q);
   };
   descend(2);
   if (move.norm() == MoveNorm::two) return steps;

@@ -13,7 +13,6 @@ namespace iksel {
 /// the farthest, ever smaller: Badoiu and Clarkson, "Smaller core-sets for balls", 2003).
 inline Sphere ball_around(const std::vector<Sphere>& spheres) {
   if (spheres.size() == 1) return spheres.front();
-  constexpr int kSteps = 200;
   const auto reach = [](const Eigen::Vector3d& from, const Sphere& to) {
     return (to.centre - from).norm() + to.radius;
   };
@@ -23,7 +22,7 @@ inline Sphere ball_around(const std::vector<Sphere>& spheres) {
       return reach(ball.centre, a) < reach(ball.centre, b);
     });
   };
-  for (int i = 1; i <= kSteps; ++i) {
+  for (int i = 1; i <= 200; ++i) {
     const Sphere far = farthest();
     const Eigen::Vector3d way = far.centre - ball.centre;
     const double distance = way.norm();

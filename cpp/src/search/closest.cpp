@@ -96,7 +96,7 @@ class Minima {
 /// The seeds of the screen that are worth it.
 void descend_from_screen(const RobotModel& model, const Goal& goal, const Vector6& weights,
                          Workspace::InLanes& lanes, Minima& minima, Result& result) {
-  ClosestScreen& screen = *lanes.closest;
+  ClosestScreen& screen = lanes.closest;
   screen.find(goal, weights, lanes.query);
   const bool is_almost_reached = screen.remainder(0) < kAlmost;
   const int most = is_almost_reached ? kAlmostDescents : kScreenedDescents;
@@ -109,7 +109,7 @@ void descend_from_screen(const RobotModel& model, const Goal& goal, const Vector
     if (minima.only_best_counts() && expected > screen.remainder(0) + kRounding) continue;
     const JointVector seed = screen.q(i);
     const bool is_known = std::any_of(tried, tried + count, [&](const JointVector& other) {
-      return model.joints.distance(seed, other, kSameSeed) < kSameSeed;
+      return model.joints.are_near(seed, other, kSameSeed);
     });
     if (is_known) continue;
     tried[count++] = seed;
@@ -149,7 +149,7 @@ void give_closest(const RobotModel& model, const SolverOptions& options, const G
   if (request.near) minima.descend(*request.near);
   const auto given = std::min(request.seeds.size(), static_cast<std::size_t>(options.max_attempts));
   for (std::size_t i = 0; i < given; ++i) minima.descend(request.seeds[i]);
-  if (request.database_seeds && workspace.lanes && workspace.lanes->closest) {
+  if (request.database_seeds && workspace.lanes) {
     descend_from_screen(model, goal, weights, *workspace.lanes, minima, result);
   } else if (request.database_seeds) {
     Random random(options.seed);

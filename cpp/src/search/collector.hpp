@@ -133,6 +133,10 @@ class Collector : public SearchState {
   /// What it came to, without any of the answers.
   [[nodiscard]] const Result& result() const { return result_; }
   [[nodiscard]] bool is_out_of_time() const { return is_out_of_time_; }
+  /// Why there is no answer, where that would be `found`: unproven, a want of time comes before it.
+  [[nodiscard]] Status reason(Status found, Proof proof) const {
+    return is_out_of_time_ && proof == Proof::none ? Status::out_of_time : found;
+  }
 
  private:
   [[nodiscard]] double move_of(const JointVector& q) const {

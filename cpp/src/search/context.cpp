@@ -35,8 +35,8 @@ Workspace::InLanes::InLanes(const ChainModel& model, const ChainModel& nominal,
                             const lanes::LaneKernels& kernels)
     : refiner(model, options, kernels),
       query(model, nominal, data, neighbours_of(options.strategy), kernels),
-      screen(model, options, kernels) {
-  if (is_simple(model)) closest.emplace(model, options.seed, kernels);
+      screen(model, options, kernels),
+      closest(model, options.seed, kernels) {
   const bool is_nominal = &model == &nominal;
   const double position = options.position_tolerance;
   const double rotation = options.rotation_tolerance;

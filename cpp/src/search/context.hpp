@@ -63,8 +63,7 @@ struct Workspace {
     LaneRefiner refiner;
     LaneQuery query;
     SeedScreen screen;
-    /// Only of chains without joints that follow others.
-    std::optional<ClosestScreen> closest;
+    ClosestScreen closest;
     /// The arcs of the self-motion, for a target and its Y (reduction.hpp).
     const std::vector<Curve::Arc>& find_arcs(const Pose& T_base_tcp, const Pose& Y,
                                              double spacing) {

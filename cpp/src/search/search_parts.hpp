@@ -82,14 +82,12 @@ struct SearchParts {
     std::vector<int>& tried = workspace.tried;
     tried.clear();
     for (int i = 0; i < count && !is_satisfied && answers.should_continue(); ++i) {
-      JointVector q = Eigen::Map<const Eigen::VectorXd>(joints(i), model.dof);
       const bool is_tried = std::any_of(tried.begin(), tried.end(), [&](int before) {
-        return (Eigen::Map<const Eigen::VectorXd>(joints(before), model.dof) - q)
-                   .cwiseAbs()
-                   .maxCoeff() < kMeet;
+        return model.joints.are_near(joints(before), joints(i), kMeet);
       });
       if (is_tried) continue;
       tried.push_back(i);
+      JointVector q = Eigen::Map<const Eigen::VectorXd>(joints(i), model.dof);
       work.take_on_top();
       if (!move_inside_limits(model, goal, q)) continue;
       is_satisfied = answers.offer(0, q) == Verdict::stop;

@@ -39,7 +39,7 @@ class SolutionSet {
   /// the place of the first of them. True if there were none.
   bool add(const Result& solution, double cost, double min_distance) {
     const auto is_near = [&](std::size_t i) {
-      return model_.joints.distance(q(i), solution.q, min_distance) < min_distance;
+      return model_.joints.are_near(q(i), solution.q, min_distance);
     };
     std::size_t place = size_;
     for (std::size_t i = 0; i < size_; ++i) {
@@ -65,11 +65,8 @@ class SolutionSet {
   /// True if q lies within `radius` of a solution in every joint.
   template <typename Q>
   [[nodiscard]] bool is_near_known(const Q& q, double radius) const {
-    const double* known = q_.data();
-    for (std::size_t i = 0; i < size_; ++i, known += model_.dof) {
-      int j = 0;
-      while (j < model_.dof && std::abs(model_.joints.difference(j, known[j], q[j])) < radius) ++j;
-      if (j == model_.dof) return true;
+    for (std::size_t i = 0; i < size_; ++i) {
+      if (model_.joints.are_near(this->q(i), q, radius)) return true;
     }
     return false;
   }

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "base/constants.hpp"
-#include "simd/lane_chain.hpp"
 
 namespace iksel {
 namespace {
@@ -42,8 +41,8 @@ ClosestScreen::ClosestScreen(const ChainModel& model, std::uint64_t seed,
       approach_(kernels.approach),
       base_inverse_(to_pose(model.kernel.base).inverse()),
       last_to_tcp_(to_pose(model.kernel.flange) * Pose(model.tcp)),
-      metric_chain_(make_rough_chain(model)),
-      chain_(metric_chain_),
+      units_(model, length_),
+      chain_(make_rough_chain(model, length_)),
       seed_(seed) {
   const auto pack = static_cast<std::size_t>(model.dof * lanes::kBlock);
   random_.resize(kRandomPacks * pack);
@@ -72,16 +71,8 @@ void ClosestScreen::use_length(const Vector6& squares) {
   const double length = counts ? std::clamp(rotation / position, kLeast, kMost) : 1.0;
   if (length == length_) return;
   length_ = length;
-  const auto shrink = static_cast<float>(1 / length_);
-  for (int j = 0; j < chain_.n; ++j) {
-    const auto& from = metric_chain_.joint[j];
-    auto& to = chain_.joint[j];
-    for (int i = 0; i < 3; ++i) to.p[i] = from.p[i] * shrink;
-    if (!from.prismatic) continue;
-    to.offset = from.offset * shrink;
-    chain_.variable[j].lower = metric_chain_.variable[j].lower * shrink;
-    chain_.variable[j].upper = metric_chain_.variable[j].upper * shrink;
-  }
+  units_ = JointUnits(model_, length);
+  chain_ = make_rough_chain(model_, length);
 }
 
 void ClosestScreen::add_target(const Pose& allowed, const Goal& goal, const Vector6& squares) {
@@ -117,10 +108,10 @@ int ClosestScreen::load_seeds(LaneQuery& query) {
   int packs = 0;
   const auto load = [&](const auto& values) {
     for (int j = 0; j < chain_.n; ++j) {
-      const float scale = chain_.joint[j].prismatic ? static_cast<float>(1 / length_) : 1.0F;
       const float* from = values(j);
       float* to = row(packs_, packs, j);
-      for (int place = 0; place < lanes::kBlock; ++place) to[place] = scale * from[place];
+      std::transform(from, from + lanes::kBlock, to,
+                     [&](float value) { return units_.to_lane(j, value); });
     }
     ++packs;
   };
@@ -205,8 +196,8 @@ void ClosestScreen::find(const Goal& goal, const Vector6& weights, LaneQuery& qu
 JointVector ClosestScreen::q(int i) const {
   JointVector q(chain_.n);
   for (int j = 0; j < chain_.n; ++j) {
-    const auto value = static_cast<double>(packs_[static_cast<std::size_t>(j * lanes::kBlock + i)]);
-    q[j] = chain_.joint[j].prismatic ? value * length_ : value;
+    const float value = packs_[static_cast<std::size_t>(j * lanes::kBlock + i)];
+    q[j] = units_.from_lane(j, static_cast<double>(value));
   }
   model_.joints.wrap(q.data());
   return model_.joints.clamp(q);

@@ -10,6 +10,7 @@
 #include "kinematics/chain_model.hpp"
 #include "seeds/lane_query.hpp"
 #include "simd/kernels.hpp"
+#include "simd/lane_chain.hpp"
 
 namespace iksel {
 
@@ -63,10 +64,10 @@ class ClosestScreen {
   const ChainModel& model_;
   lanes::Approach approach_;
   Pose base_inverse_, last_to_tcp_;
-  lanes::LaneChainOf<float> metric_chain_;  ///< [m]
-  lanes::LaneChainOf<float> chain_;         ///< [length_]
+  double length_ = 1;  ///< [m]
+  JointUnits units_;   ///< of length_
+  lanes::LaneChainOf<float> chain_;
   std::uint64_t seed_;
-  double length_ = 1;                                         ///< [m]
   std::vector<float> random_;                                 ///< packs of joint values [rad or m]
   std::vector<float> packs_, kept_;                           ///< [rad or length_]
   std::vector<lanes::ClosestTarget> targets_, kept_targets_;  ///< of each pack

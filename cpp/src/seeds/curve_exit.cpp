@@ -53,7 +53,6 @@ CurveWalker::Exit CurveWalker::exit(const Step& step) const {
 }
 
 void CurveWalker::look_at_limit(const Limit& limit, const Step& step, Exit& first) {
-  constexpr int kHalvings = 40;
   const Cubic value{limit.value(step.from.q.data()),
                     step.way * limit.value(step.from.tangent.data()), limit.value(step.to.q.data()),
                     step.way * limit.value(step.to.tangent.data())};
@@ -69,7 +68,7 @@ void CurveWalker::look_at_limit(const Limit& limit, const Step& step, Exit& firs
     if (limit.beyond(at) <= kAtLimit) continue;
     const bool at_upper = at > limit.upper;
     double inside = i > 0 ? turns[static_cast<std::size_t>(i - 1)] : 0;
-    for (int halving = 0; halving < kHalvings; ++halving) {
+    for (int halving = 0; halving < 40; ++halving) {
       const double middle = 0.5 * (inside + outside);
       const bool is_out = at_upper ? value(middle) > limit.upper : value(middle) < limit.lower;
       (is_out ? outside : inside) = middle;
@@ -81,12 +80,11 @@ void CurveWalker::look_at_limit(const Limit& limit, const Step& step, Exit& firs
 }
 
 CurveWalker::Place CurveWalker::leave(const Step& step, const Exit& exit) {
-  constexpr int kRounds = 3;
   /// Where a curve runs along the limit, it is left as it is.
   constexpr double kAlong = 0.05;
   Place at{step.at(exit.part), {}};
   const double value = exit.at.at_upper ? exit.limit->upper : exit.limit->lower;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < 3; ++round) {
     orient(&at, 1);
     const double slope = exit.limit->value(at.tangent.data());
     if (!(std::abs(slope) > kAlong)) break;

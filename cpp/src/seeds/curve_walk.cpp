@@ -187,7 +187,7 @@ bool Curve::is_on_arc(const Joints& q) const {
   const double far = 1.2 * std::min(walker_.longest(), spacing_) + 0.1;
   for (const Arc& arc : arcs_) {
     for (std::size_t i = 1; i < arc.q.size(); ++i) {
-      if (joints_.distance(arc.q[i - 1], q, far) >= far) continue;
+      if (!joints_.are_near(arc.q[i - 1], q, far)) continue;
       const auto [along, way2, rest2] = beside(arc.q[i - 1], arc.q[i], q);
       const double part = std::min(std::max(along, 0.0), way2);
       if (rest2 - (2 * along - part) * part / std::max(way2, 1e-12) < kBeside2) return true;

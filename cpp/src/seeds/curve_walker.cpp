@@ -42,16 +42,16 @@ bool CurveWalker::is_inside(const Joints& q) const {
 }
 
 void CurveWalker::orient(Place* places, std::size_t count) {
-  for (std::size_t first = 0; first < count; first += kLanes) {
-    const std::size_t used = std::min<std::size_t>(kLanes, count - first);
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+  for (std::size_t first = 0; first < count; first += lanes::kWidth) {
+    const std::size_t used = std::min<std::size_t>(lanes::kWidth, count - first);
+    for (std::size_t lane = 0; lane < lanes::kWidth; ++lane) {
       const Joints& q = places[first + std::min(lane, used - 1)].q;
-      for (std::size_t j = 0; j < kDof; ++j) probe_.q[j][lane] = q[j];
+      for (std::size_t j = 0; j < kCurveJoints; ++j) probe_.q[j][lane] = q[j];
     }
     kernels_.orient_curves(chain_, probe_);
     for (std::size_t lane = 0; lane < used; ++lane) {
       Place& place = places[first + lane];
-      for (std::size_t j = 0; j < kDof; ++j) {
+      for (std::size_t j = 0; j < kCurveJoints; ++j) {
         place.q[j] = probe_.q[j][lane];
         place.tangent[j] = probe_.tangent[j][lane];
       }
@@ -62,7 +62,7 @@ void CurveWalker::orient(Place* places, std::size_t count) {
 void CurveWalker::start(int lane, bool is_reversed) {
   constexpr double kFirstStep = 0.05;
   const Place& at = at_[static_cast<std::size_t>(lane)];
-  for (std::size_t j = 0; j < kDof; ++j) {
+  for (std::size_t j = 0; j < kCurveJoints; ++j) {
     pack_.q[j][lane] = at.q[j];
     pack_.tangent[j][lane] = at.tangent[j];
   }
@@ -72,7 +72,7 @@ void CurveWalker::start(int lane, bool is_reversed) {
 
 CurveWalker::Place CurveWalker::place(int lane) const {
   Place at;
-  for (std::size_t j = 0; j < kDof; ++j) {
+  for (std::size_t j = 0; j < kCurveJoints; ++j) {
     at.q[j] = pack_.q[j][lane];
     at.tangent[j] = pack_.tangent[j][lane];
   }
@@ -81,7 +81,7 @@ CurveWalker::Place CurveWalker::place(int lane) const {
 
 void CurveWalker::turn_to(int lane, const Joints& image) {
   at_[static_cast<std::size_t>(lane)].q = image;
-  for (std::size_t j = 0; j < kDof; ++j) pack_.q[j][lane] = image[j];
+  for (std::size_t j = 0; j < kCurveJoints; ++j) pack_.q[j][lane] = image[j];
 }
 
 }  // namespace iksel

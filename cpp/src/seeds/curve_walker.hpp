@@ -16,8 +16,7 @@ namespace iksel {
 
 class CurveWalker {
  public:
-  static constexpr int kDof = lanes::kCurveJoints;
-  using Joints = std::array<double, kDof>;
+  using Joints = std::array<double, kCurveJoints>;
   /// A configuration on a curve, and a unit vector along it.
   struct Place {
     Joints q, tangent;
@@ -65,8 +64,6 @@ class CurveWalker {
   void turn_to(int lane, const Joints& image);
 
  private:
-  static constexpr int kLanes = lanes::kWidth;
-
   void start(int lane, bool is_reversed);
   /// After a step.
   [[nodiscard]] Place place(int lane) const;
@@ -77,7 +74,7 @@ class CurveWalker {
   const lanes::LaneKernels& kernels_;
   std::vector<Limit> limits_;
   lanes::CurvePack pack_{}, probe_{};
-  std::array<Place, kLanes> at_{};  ///< where each lane is
+  std::array<Place, lanes::kWidth> at_{};  ///< where each lane is
 };
 
 double way_between(const CurveWalker::Joints& a, const CurveWalker::Joints& b);
@@ -94,12 +91,12 @@ void CurveWalker::follow(Walks& walks) {
     if (is_busy) start(lane, is_reversed);
     return is_busy;
   };
-  for (int lane = 0; lane < kLanes; ++lane) {
+  for (int lane = 0; lane < lanes::kWidth; ++lane) {
     if (load(lane)) busy |= bit(lane);
   }
   while (busy != 0) {
     const unsigned went = kernels_.follow_curves(chain_, pack_);
-    for (int lane = 0; lane < kLanes; ++lane) {
+    for (int lane = 0; lane < lanes::kWidth; ++lane) {
       if ((busy & bit(lane)) == 0) continue;
       if ((went & bit(lane)) != 0) {
         Place& at = at_[static_cast<std::size_t>(lane)];

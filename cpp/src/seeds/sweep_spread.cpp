@@ -147,7 +147,7 @@ class Sweep::Spread {
     constexpr double kWide = 0.7;  // [rad or m]
     constexpr double kSteep = 4;   // as against the swept joint
     const double wide = std::max(kWide, kSteep * sweep_.places_.step * (gap.to - gap.from));
-    return joints_.distance(from, to, wide) >= wide;
+    return !joints_.are_near(from, to, wide);
   }
 
   Sweep& sweep_;

@@ -154,36 +154,66 @@ IKSEL_INLINE void solve_downhill(int n, const T* scale, T (*H)[kMaxJoints], T* x
   }
 }
 
-/// The step of Newton's method from q, of n joints, at most `kLongest` in each. `J` has their
-/// origins and axes.
-template <typename T>
+/// C's derivatives by the variables, of the second ones the lower half, and what these are damped
+/// by. `J` has the origins and axes of so many joints. They are the variables, or if they follow
+/// these, their axes are as long as they move with them.
+template <bool kFollow, typename T>
+IKSEL_INLINE void differentiate(const LaneChainOf<float>& chain, const ClosestTarget& target,
+                                const Remaining<T>& at, int joints, const T (*J)[6], T* slope,
+                                T* scale, T (*H)[kMaxJoints]) {
+  for (int j = 0; kFollow && j < chain.n; ++j) {
+    slope[j] = scale[j] = T(0.0F);
+    for (int i = 0; i <= j; ++i) H[j][i] = T(0.0F);
+  }
+  Vec<T> moved[kMaxMoving];
+  Vec<T> turned[kMaxMoving];
+#pragma GCC unroll 8
+  for (int k = 0; k < joints; ++k) {
+    const JointEffect<T> effect = find_effect(chain.joint[k].prismatic, at, target, J[k]);
+    moved[k] = effect.moved;
+    turned[k] = effect.turned;
+    const auto with = [&](int i) { return dot(effect.L, moved[i]) + dot(effect.z, turned[i]); };
+    if constexpr (!kFollow) {
+      slope[k] = effect.slope;
+      scale[k] = effect.scale;
+#pragma GCC unroll 8
+      for (int i = 0; i <= k; ++i) H[k][i] = with(i);
+    } else {
+      const int b = chain.joint[k].variable;
+      slope[b] = slope[b] + effect.slope;
+      scale[b] = scale[b] + effect.scale;
+      for (int i = 0; i <= k; ++i) {
+        const int a = chain.joint[i].variable;
+        T& entry = a < b ? H[b][a] : H[a][b];
+        entry = entry + T(a == b && i < k ? 2.0F : 1.0F) * with(i);
+      }
+    }
+  }
+}
+
+/// The step of Newton's method from q, of n variables, at most `kLongest` in each. `J` as above.
+template <bool kFollow, typename T>
 IKSEL_INLINE void step_to_closest(const LaneChainOf<float>& chain, const ClosestTarget& target,
                                   const Remaining<T>& at, const T& damping, int n, const T* q,
                                   const T (*J)[6], T* step) {
   constexpr float kLongest = 0.5F;
   T H[kMaxJoints][kMaxJoints];
-  T free[kMaxJoints];
+  T slope[kMaxJoints];
   T scale[kMaxJoints];
-  Vec<T> moved[kMaxJoints];
-  Vec<T> turned[kMaxJoints];
+  differentiate<kFollow>(chain, target, at, kFollow ? chain.joints : n, J, slope, scale, H);
+  T free[kMaxJoints];
 #pragma GCC unroll 8
   for (int j = 0; j < n; ++j) {
     const auto& variable = chain.variable[j];
-    const JointEffect<T> effect = find_effect(chain.joint[j].prismatic, at, target, J[j]);
-    moved[j] = effect.moved;
-    turned[j] = effect.turned;
-    scale[j] = effect.scale;
     free[j] = T(1.0F);
     if (variable.limited) {
-      const auto leaves = ((q[j] <= T(variable.lower)) & (effect.slope > T(0.0F))) |
-                          ((q[j] >= T(variable.upper)) & (effect.slope < T(0.0F)));
+      const auto leaves = ((q[j] <= T(variable.lower)) & (slope[j] > T(0.0F))) |
+                          ((q[j] >= T(variable.upper)) & (slope[j] < T(0.0F)));
       free[j] = select(leaves, T(0.0F), T(1.0F));
     }
-    step[j] = T(0.0F) - effect.slope * free[j];
+    step[j] = T(0.0F) - slope[j] * free[j];
 #pragma GCC unroll 8
-    for (int i = 0; i <= j; ++i) {
-      H[j][i] = (dot(effect.L, moved[i]) + dot(effect.z, turned[i])) * free[i] * free[j];
-    }
+    for (int i = 0; i <= j; ++i) H[j][i] = H[j][i] * free[i] * free[j];
     H[j][j] = H[j][j] + (T(1.0F) - free[j]) + damping * scale[j] + T(1e-9F);
   }
   solve_downhill(n, scale, H, step);
@@ -195,8 +225,8 @@ IKSEL_INLINE void step_to_closest(const LaneChainOf<float>& chain, const Closest
   for (int j = 0; j < n; ++j) step[j] = step[j] * part;
 }
 
-/// `approach` for chains of so many joints; of any number, if that is 0.
-template <int kCount, typename T>
+/// `approach` for chains of so many variables; of any number, if that is 0.
+template <int kCount, bool kFollow, typename T>
 void approach_of(const LaneChainOf<float>& chain, const ClosestTarget& target, int iterations,
                  float* seeds, float* remainder) {
   const int n = kCount > 0 ? kCount : chain.n;
@@ -207,9 +237,17 @@ void approach_of(const LaneChainOf<float>& chain, const ClosestTarget& target, i
     T best = T(1e30F);
     T damping = T(1e-2F);
     for (int iteration = 0;; ++iteration) {
-      T J[kMaxJoints][6];
+      T J[kMaxMoving][6];
       LaneFrame<T> frame;
-      place_joints(chain, q, J, frame, n);
+      if constexpr (!kFollow) {
+        place_joints(chain, q, J, frame, n);
+      } else {
+        T speed[kMaxMoving];
+        place_following_joints(chain, q, J, speed, frame);
+        for (int k = 0; k < chain.joints; ++k) {
+          for (int i = 3; i < 6; ++i) J[k][i] = J[k][i] * speed[k];
+        }
+      }
       Remaining<T> at;
       measure_remaining(frame, target, at);
       // A lane that got worse goes back, and tries again from there with a shorter step.
@@ -218,7 +256,7 @@ void approach_of(const LaneChainOf<float>& chain, const ClosestTarget& target, i
       for (int j = 0; j < n; ++j) best_q[j] = select(better, q[j], best_q[j]);
       if (iteration == iterations) break;
       T step[kMaxJoints];
-      step_to_closest(chain, target, at, damping, n, q, J, step);
+      step_to_closest<kFollow>(chain, target, at, damping, n, q, J, step);
       damping = select(better, max(damping * T(0.2F), T(1e-6F)), min(damping * T(16.0F), T(1e3F)));
       for (int j = 0; j < n; ++j) {
         const auto& variable = chain.variable[j];
@@ -235,13 +273,14 @@ void approach_of(const LaneChainOf<float>& chain, const ClosestTarget& target, i
 template <typename T>
 void approach(const LaneChainOf<float>& chain, const ClosestTarget& target, int iterations,
               float* seeds, float* remainder) {
+  if (!chain.is_simple) return approach_of<0, true, T>(chain, target, iterations, seeds, remainder);
   switch (chain.n) {
     case 6:
-      return approach_of<6, T>(chain, target, iterations, seeds, remainder);
+      return approach_of<6, false, T>(chain, target, iterations, seeds, remainder);
     case 7:
-      return approach_of<7, T>(chain, target, iterations, seeds, remainder);
+      return approach_of<7, false, T>(chain, target, iterations, seeds, remainder);
     default:
-      return approach_of<0, T>(chain, target, iterations, seeds, remainder);
+      return approach_of<0, false, T>(chain, target, iterations, seeds, remainder);
   }
 }
 

@@ -22,7 +22,7 @@ namespace {
 template <typename Number>
 lanes::LaneChainOf<Number> make_chain(const ChainModel& model, double unit) {
   const auto number = [](double x) { return static_cast<Number>(x); };
-  const auto unit_of = [&](int variable) { return model.joints.is_slide(variable) ? unit : 1.0; };
+  const JointUnits units(model, unit);
   lanes::LaneChainOf<Number> chain{};
   for (const KernelJoint& from : model.kernel.joints) {
     auto& to = chain.joint[chain.joints++];
@@ -33,7 +33,7 @@ lanes::LaneChainOf<Number> make_chain(const ChainModel& model, double unit) {
     to.sin_turn = number(from.sin_turn);
     const double unit_of_motion = from.prismatic ? unit : 1;
     to.multiplier = number(from.multiplier / unit_of_motion);
-    to.unit = number(unit_of(from.variable));
+    to.unit = number(units.from_lane(from.variable, 1.0));
     to.offset = number(from.offset / unit_of_motion);
     to.curve = from.curve.get();
     to.variable = from.variable;
@@ -47,11 +47,9 @@ lanes::LaneChainOf<Number> make_chain(const ChainModel& model, double unit) {
     // A principal angle just off its interval is still the same angle.
     const double lower = continuous ? -kPi - 1e-9 : model.joints.lower[j];
     const double upper = continuous ? kPi + 1e-9 : model.joints.upper[j];
-    to.lower = number(lower / unit_of(j));
-    to.upper = number(upper / unit_of(j));
-    // Whole turns of a joint may change a sum that is limited.
-    to.limited = model.joints.is_slide(j) || (!continuous && upper - lower < 2 * kPi) ||
-                 model.joints.turns_in_sum(j);
+    to.lower = number(units.to_lane(j, lower));
+    to.upper = number(units.to_lane(j, upper));
+    to.limited = !continuous && !model.joints.winds(j);
   }
   for (const Limit& from : model.joints.sums) {
     // Beside a bound by less than this a lane stands at it; held to it, it does.
@@ -59,7 +57,7 @@ lanes::LaneChainOf<Number> make_chain(const ChainModel& model, double unit) {
     lanes::LaneSumOf<Number>& to = chain.sum[chain.sums++];
     double norm2 = 0;
     for (int j = 0; j < chain.n; ++j) {
-      const double c = from.c[j] * unit_of(j);
+      const double c = units.from_lane(j, from.c[j]);
       to.c[j] = number(c);
       norm2 += c * c;
     }

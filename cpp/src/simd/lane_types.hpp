@@ -136,8 +136,7 @@ enum class Side : int { none, rotation, translation };
 /// Samples in blocks, lane by lane: row r of a block is kBlock numbers. Rows: position (3), columns
 /// x (3), y (3), z (3) of the sample's pose seen from the first joint, its n joint values, of which
 /// those left out are not read, and its n x 6 pseudo-inverse row by row.
-inline constexpr int kPoseRows = 12;
-constexpr int block_rows(int n) { return kPoseRows + 7 * n; }
+constexpr int block_rows(int n) { return kFullPoseRows + 7 * n; }
 
 /// What seeds are prepared with.
 struct SeedChain {

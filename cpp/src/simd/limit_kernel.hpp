@@ -69,8 +69,7 @@ IKSEL_INLINE T sum_of(const LaneChainOf<NumberOf<T>>& chain, int row, const T* q
 template <typename T>
 [[gnu::noinline]] void hold_sums(const LaneChainOf<NumberOf<T>>& chain, T* q) {
   // After one the joints that were in the way stand at their limits.
-  constexpr int kRounds = 3;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < 3; ++round) {
     for (int r = 0; r < chain.sums; ++r) {
       const auto& row = chain.sum[r];
       const T sum = sum_of(chain, r, q);

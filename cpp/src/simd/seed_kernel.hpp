@@ -151,7 +151,7 @@ IKSEL_INLINE T take_first_step(const SeedChain& chain, const float* block, const
   T dq[kMaxJoints];
   T dq2 = T(0.0F);
   for (int j = 0; j < n; ++j) {
-    const int at = kPoseRows + n + 6 * j;
+    const int at = kFullPoseRows + n + 6 * j;
     dq[j] = row(at) * e[0];
     for (int r = 1; r < 6; ++r) dq[j] = dq[j] + row(at + r) * e[r];
     dq2 = dq2 + dq[j] * dq[j];
@@ -160,7 +160,7 @@ IKSEL_INLINE T take_first_step(const SeedChain& chain, const float* block, const
   const T shorten = min(T(1.0F), T(chain.longest_step) / sqrt(max(dq2, T(1e-20F))));
   T outside = T(0.0F);
   for (int j = 0; j < n; ++j) {
-    T q = row(kPoseRows + j);
+    T q = row(kFullPoseRows + j);
     if (j == 0 && chain.left != Side::none) q = left.first;
     if (j == right && chain.right != Side::none) q = left.last;
     q = q + dq[j] * shorten;

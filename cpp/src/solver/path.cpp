@@ -77,7 +77,6 @@ class PathPlan {
         path_(path),
         workspace_(workspace),
         search_(solver.robot.all(), path, speeds),
-        makes_up_(speeds == Speeds::made_up_for),
         count_(targets.size() / static_cast<std::size_t>(solver.robot.tips())) {
     if (path.start) add(*path.start, start_);
     is_swept_ = !solver.tips && solver.task_of(path).is_full_pose() && workspace.lanes &&
@@ -105,7 +104,6 @@ class PathPlan {
     if (has_ways) continue_back();
     search_.trace(layers_, result);
     if (has_ways) shorten(result);
-    if (makes_up_ && !search_.is_in_time(result.q)) result.status = Status::too_fast;
     return result;
   }
 
@@ -171,23 +169,24 @@ class PathPlan {
     // time; 4 rounds did 1.018 (python -m bench hands pairs --near 0 --paths 20 --seed 2).
     constexpr int kRounds = 32;
     constexpr double kWorthwhile = 0.99;
+    const bool makes_up = search_.makes_up();
     for (int round = 0; round < kRounds; ++round) {
-      if (makes_up_ && search_.is_in_time(result.q)) return;
+      if (makes_up && result.success()) return;
       std::vector<Layer> layers;
       layers.reserve(count_);
       for (std::size_t w = 0; w < count_; ++w) {
         Layer layer;
         add(result.q[w], layer);
         add_next(halfway(result.q, w), w, layer);
-        search_.connect(before(w, layers), layer, makes_up_);
+        search_.connect(before(w, layers), layer, makes_up);
         layers.push_back(std::move(layer));
       }
       PathResult other;
       other.status = Status::solved;
       search_.trace(layers, other);
       const double last = result.move;
-      if (makes_up_ || other.move < last) result = std::move(other);
-      if (!makes_up_ && !(result.move < kWorthwhile * last)) return;
+      if (makes_up || other.move < last) result = std::move(other);
+      if (!makes_up && !(result.move < kWorthwhile * last)) return;
     }
   }
 
@@ -212,7 +211,6 @@ class PathPlan {
   const PathOptions& path_;
   Workspace& workspace_;
   PathSearch search_;
-  bool makes_up_;
   Layer start_;
   std::size_t count_;
   bool is_swept_;

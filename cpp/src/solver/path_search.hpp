@@ -68,6 +68,8 @@ class PathSearch {
   }
 
   [[nodiscard]] const SolveRequest& request() const { return request_; }
+  /// Whether steps may be too fast until the last.
+  [[nodiscard]] bool makes_up() const { return speeds_ == Speeds::made_up_for; }
 
   /// What the candidates of the layer before lead to at the next waypoint. Returns whether the
   /// cheapest of them leads anywhere.
@@ -79,9 +81,7 @@ class PathSearch {
     bool leads_on = false;
     for (const auto& [from, cost, parent] : before) {
       std::size_t same = 0;
-      while (same < origins.size() && model_.joints.distance(origins[same], from, kCopy) >= kCopy) {
-        ++same;
-      }
+      while (same < origins.size() && !model_.joints.are_near(origins[same], from, kCopy)) ++same;
       if (same == origins.size()) {
         JointVector q = from;
         if (!converge(goal, kStepsToNext, q)) continue;
@@ -210,28 +210,7 @@ class PathSearch {
     if (before == nullptr) first_layer_ = layer.size();
   }
 
-  /// Whether a joint has to move farther than it can, most often the first already; or so far that
-  /// the whole move has that length.
-  [[nodiscard]] bool is_too_far(const JointVector& a, const JointVector& b,
-                                double length = kInfinity) const {
-    for (int j = 0; j < model_.dof; ++j) {
-      const double move = std::abs(a[j] - b[j]);
-      const bool is_too_fast = speeds_ == Speeds::kept && move > longest_[j];
-      if (is_too_fast || move * move_.weights()[j] >= length) return true;
-    }
-    return false;
-  }
-
-  /// Whether no step of a path is too fast.
-  [[nodiscard]] bool is_in_time(const std::vector<JointVector>& q) const {
-    for (std::size_t w = options_.start ? 0 : 1; w < q.size(); ++w) {
-      const JointVector step = q[w] - (w == 0 ? *options_.start : q[w - 1]);
-      if ((step.array().abs() > longest_.array()).any()) return false;
-    }
-    return true;
-  }
-
-  /// Walks back from the cheapest end.
+  /// Walks back from the cheapest end, and says if a step is too fast still.
   void trace(const std::vector<Layer>& layers, PathResult& result) const {
     if (layers.empty()) return;
     result.q.resize(layers.size());
@@ -243,6 +222,8 @@ class PathSearch {
     for (std::size_t w = options_.start ? 0 : 1; w < result.q.size(); ++w) {
       const JointVector step = result.q[w] - (w == 0 ? *options_.start : result.q[w - 1]);
       result.move += asked_.length(step);
+      const bool is_too_fast = (step.array().abs() > longest_.array()).any();
+      if (makes_up() && is_too_fast) result.status = Status::too_fast;
       int joint = 0;
       const double largest = step.cwiseAbs().maxCoeff(&joint);
       if (result.largest_step_joint >= 0 && largest <= result.largest_step) continue;
@@ -253,6 +234,17 @@ class PathSearch {
   }
 
  private:
+  /// Whether a joint has to move farther than it can, most often the first already; or so far that
+  /// the whole move has that length.
+  [[nodiscard]] bool is_too_far(const JointVector& a, const JointVector& b, double length) const {
+    for (int j = 0; j < model_.dof; ++j) {
+      const double move = std::abs(a[j] - b[j]);
+      const bool is_too_fast = !makes_up() && move > longest_[j];
+      if (is_too_fast || move * move_.weights()[j] >= length) return true;
+    }
+    return false;
+  }
+
   /// Images at the first waypoint, at most: those of sixteen solutions, of seven joints that have
   /// two images each.
   static constexpr std::size_t kMostImages = 2048;

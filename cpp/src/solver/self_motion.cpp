@@ -109,8 +109,7 @@ void Solver::Impl::check_self_motion(double spacing) const {
                                " is solved one seed at a time, by strategy Paper or over a "
                                "database of full keys; it takes strategy Lanes and reduced keys");
   }
-  constexpr double kLeast = 1e-4;
-  if (!(spacing >= kLeast && spacing <= kPi)) {
+  if (!(spacing >= 1e-4 && spacing <= kPi)) {
     throw InvalidArgumentError("spacing: " + number_text(spacing) + " is not in [0.0001, pi]");
   }
 }

@@ -230,8 +230,7 @@ Solutions Solver::Impl::solve_all(const Goal& goal, const SolveAllOptions& all,
   }
   if (solutions.all.empty()) {
     if (solutions.status == Status::solved) solutions.status = screen.refusal();
-    const bool is_open = search.is_out_of_time() && solutions.proof == Proof::none;
-    if (is_open) solutions.status = Status::out_of_time;
+    solutions.status = search.reason(solutions.status, solutions.proof);
   } else if (solutions.proof == Proof::none) {
     solutions.proof = Proof::answer;
   }

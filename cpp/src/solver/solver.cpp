@@ -189,8 +189,8 @@ Result Solver::Impl::find_answer(const Goal& goal, const SolveRequest& request,
       result.cost = ObjectiveCost(robot.all(), request.objective).value(q);
     }
     if (request.near) result.move = JointMove(robot.dof(), request).length(q - *request.near);
-  } else if (search.is_out_of_time() && result.proof == Proof::none) {
-    result.status = Status::out_of_time;
+  } else {
+    result.status = search.reason(result.status, result.proof);
   }
   result.iterations += selector.steps();
   return result;

@@ -35,8 +35,7 @@ std::array<NamedTask, 10> named_tasks() {
 bool fits(const Robot& robot, const Task& task) {
   if (robot.dof() < task.constrained_axes()) return false;
   const TaskSpace space(task, 0, 0);
-  constexpr std::size_t kConfigurations = 10;
-  const Matrix q = robot.random_configurations(kConfigurations, 1);
+  const Matrix q = robot.random_configurations(10, 1);
   for (Eigen::Index row = 0; row < q.rows(); ++row) {
     JacobianMatrix J = robot.jacobian(q.row(row));
     const Pose pose = robot.fk(q.row(row));

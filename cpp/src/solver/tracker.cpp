@@ -149,8 +149,8 @@ bool Tracker::continue_to(const Goal& goal, double dt, JointVector& q, int& step
   const JointVector move = dt * state_.velocity;
   const JointVector ahead = q + move;
   const bool is_reached = converge(goal, kStepsToNext, q, steps);
-  // Redundant arms would go on along their self-motions.
-  if (is_at_edge_ || goal.is_redundant()) return is_reached;
+  // Redundant arms would go on along their self-motions; one that stood starts where it was.
+  if (is_at_edge_ || goal.is_redundant() || move.isZero(0)) return is_reached;
   const double aside = is_reached ? (q - ahead).norm() : kInfinity;
   if (!(aside > kAside * move.norm())) return is_reached;
   JointVector straight = solver_.robot().all().joints.clamp(ahead);

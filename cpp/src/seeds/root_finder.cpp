@@ -51,10 +51,6 @@ void RootFinder::find(const Residual& residual, double faint) {
   }
   polish(residual);
   add_faint(faint);
-  const auto end = roots_.begin() + static_cast<std::ptrdiff_t>(size_);
-  const auto is_vague = [](const Root& root) { return root.is_vague; };
-  vague_size_ =
-      static_cast<std::size_t>(std::partition(roots_.begin(), end, is_vague) - roots_.begin());
 }
 
 void RootFinder::add_faint(double most) {

@@ -39,8 +39,6 @@ class RootFinder {
   /// Where it turns and is at most `faint`, there is a vague root too.
   void find(const Residual& residual, double faint);
   [[nodiscard]] std::size_t size() const { return size_; }
-  /// The first of them are vague.
-  [[nodiscard]] std::size_t vague_size() const { return vague_size_; }
   [[nodiscard]] const Root& operator[](std::size_t i) const { return roots_[i]; }
   /// Of the larger of the residuals at both ends of a cell, the least.
   [[nodiscard]] double faintest() const;
@@ -83,7 +81,7 @@ class RootFinder {
   std::array<Bracket, kMost> brackets_{};
   std::size_t brackets_size_ = 0;
   std::array<Root, kMost> roots_{};
-  std::size_t size_ = 0, vague_size_ = 0;
+  std::size_t size_ = 0;
   bool is_complete_ = false;
 };
 

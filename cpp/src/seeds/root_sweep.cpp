@@ -2,6 +2,7 @@
 #include "seeds/root_sweep.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/constants.hpp"
@@ -121,25 +122,29 @@ void RootSweep::find(const Pose& Y, bool wants_all) {
   is_at_limit_ = false;
   is_delicate_ = chain_.loop != nullptr;
   size_ = 0;
-  const std::size_t pairs = chain_.loop ? roots_.vague_size() : 0;
-  take_all(Y, 0, pairs, /*are_pairs=*/true);
-  take_all(Y, pairs, roots_.size(), /*are_pairs=*/false);
+  if (chain_.loop) take_all(Y, /*are_pairs=*/true);
+  take_all(Y, /*are_pairs=*/false);
   if (wants_all && certain_ && is_delicate_ && has_singular()) certain_ = false;
   certain_but_for_limits_ = certain_;
   // At a limit, what the tolerances allow decides.
   certain_ = certain_ && !is_at_limit_;
 }
 
-void RootSweep::take_all(const Pose& Y, std::size_t begin, std::size_t end, bool are_pairs) {
+void RootSweep::take_all(const Pose& Y, bool are_pairs) {
+  std::array<const RootFinder::Root*, RootFinder::kMost> roots{};
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < roots_.size(); ++i) {
+    if (!chain_.loop || roots_[i].is_vague == are_pairs) roots[count++] = &roots_[i];
+  }
   // Each root has a lane, or by the first one or two of the three signs two or four: two to this
   // power.
   const unsigned lanes_power =
       chain_.loop ? unsigned{chain_.loop->form().has_two_ways()} + unsigned{are_pairs} : 2;
   const std::size_t at_once = static_cast<std::size_t>(lanes::kWidth) >> lanes_power;
-  for (std::size_t first = begin; first < end; first += at_once) {
-    const std::size_t n = std::min(at_once, end - first) << lanes_power;
+  for (std::size_t first = 0; first < count; first += at_once) {
+    const std::size_t n = std::min(at_once, count - first) << lanes_power;
     for (std::size_t lane = 0; lane < lanes::kWidth; ++lane) {
-      pack_.held[lane] = roots_[first + (std::min(lane, n - 1) >> lanes_power)].angle;
+      pack_.held[lane] = roots[first + (std::min(lane, n - 1) >> lanes_power)]->angle;
     }
     if (chain_.loop) {
       kernels_.close_loops(chain_.loop->form(), loop_, chain_.form, are_pairs, pack_);
@@ -147,7 +152,7 @@ void RootSweep::take_all(const Pose& Y, std::size_t begin, std::size_t end, bool
       kernels_.find_branches(chain_.form, pack_);
     }
     for (std::size_t lane = 0; lane < n; ++lane) {
-      take(Y, roots_[first + (lane >> lanes_power)], static_cast<int>(lane));
+      take(Y, *roots[first + (lane >> lanes_power)], static_cast<int>(lane));
     }
   }
 }

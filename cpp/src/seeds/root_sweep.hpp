@@ -29,8 +29,9 @@ class RootSweep final : public BranchList {
   /// whether rounding leaves enough of it to conclude from.
   bool find_product_roots(const Pose& Y);
   bool find_loop_roots(const Pose& Y);
-  /// What is at these roots; `are_pairs`: at each are two solutions of a loop, or none.
-  void take_all(const Pose& Y, std::size_t begin, std::size_t end, bool are_pairs);
+  /// What is at the roots; of a loop, at those that are vague, where two solutions are or none, or
+  /// at the others.
+  void take_all(const Pose& Y, bool are_pairs);
   void take(const Pose& Y, const RootFinder::Root& root, int lane);
   /// Beside a root of the product where the residual of a lane's branch is 0: where the branch only
   /// just is, both grow as the root of what that angle is off. The lane of crossing_ that is

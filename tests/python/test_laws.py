@@ -419,12 +419,41 @@ def test_poses_that_are_rounded_beside_a_singularity_are_reached(
                 3.648330412471153,
             ),
         ),
+        (
+            "general",
+            291126236,
+            (
+                -2.0593540913231396,
+                -0.18491277470452427,
+                -1.0366581466006015,
+                -2.6493390415554674,
+                0.7506123771708015,
+                0.8738758397268781,
+            ),
+        ),
+        (
+            "wrist_offset",
+            1929113738,
+            (
+                0.9313392026746976,
+                0.08306723467099797,
+                -0.5626452342014852,
+                -2.4849754102130674,
+                -1.651900844250655,
+                -2.1443153216063333,
+                1.4550751234210626,
+            ),
+        ),
     ],
 )
 def test_poses_that_had_been_lost_are_found(
     build: str, number: int, q: tuple[float, ...]
 ) -> None:
-    """The loop's determinant is flat at many roots; or the database leads nowhere."""
+    """Why: the loop's determinant is flat at many roots, or the database leads nowhere.
+
+    Of the general arm two solutions share an angle; of the last what limits leave of an
+    arc is shorter than what a sweep looked at.
+    """
     arm = random_arms.random_arm(build, number)
     assert arm.robot.within_limits(np.array(q))
     assert iksel.Solver(arm.robot).solve(arm.robot.fk(np.array(q))).success

@@ -125,7 +125,9 @@ bool Sweep::is_found(const double* q) const {
 
 Proof Sweep::proof_of_none() const {
   if (is_nominal_ && enclosure_.open().empty()) return Proof::intervals;
-  return least_ > close_ ? Proof::sweep : Proof::none;
+  // In pieces longer than what lies between samples it was not looked closely.
+  const bool is_close = 2 * enclosure_.half() < places_.step;
+  return is_close && least_ > close_ ? Proof::sweep : Proof::none;
 }
 
 void Sweep::visit_nearest(const Pose& Y, std::size_t most,

@@ -285,14 +285,6 @@ TEST(Loops, CloseBothWays) {
   }
 }
 
-/// The twist that takes one pose to another, which is near, to first order.
-Eigen::Matrix<double, 6, 1> twist_to(const Pose& from, const Pose& to) {
-  const Eigen::AngleAxisd turn(to.linear() * from.linear().transpose());
-  Eigen::Matrix<double, 6, 1> twist;
-  twist << to.translation() - from.translation(), turn.angle() * turn.axis();
-  return twist;
-}
-
 /// Moves the target of which a and b are solutions to where they share the angle of a joint, by
 /// Newton's method; false where that fails.
 bool share_angle(const Robot& robot, int joint, JointVector& a, JointVector& b) {
@@ -308,9 +300,9 @@ bool share_angle(const Robot& robot, int joint, JointVector& a, JointVector& b) 
     b += by_b * twist;
     const Pose target = robot.fk(a);
     for (int i = 0; i < 8; ++i) {
-      b += robot.jacobian(b).inverse() * twist_to(robot.fk(b), target);
+      b += robot.jacobian(b).inverse() * iksel::pose_error(target, robot.fk(b));
     }
-    if (!(twist_to(robot.fk(b), target).norm() < 1e-9)) return false;
+    if (!(iksel::pose_error(target, robot.fk(b)).norm() < 1e-9)) return false;
   }
   return false;
 }

@@ -523,7 +523,7 @@ def test_no_answer_lies_off_the_arcs(build: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("build", "number", "pose"),
+    "case",
     [
         # Joints swing between two samples: the wrist is all but straight.
         *(("srs", 1020, i) for i in (7, 92)),
@@ -554,36 +554,18 @@ def test_no_answer_lies_off_the_arcs(build: str) -> None:
         # Of the loop, only one sample is on it.
         *(("shoulder_offset", 610057, 156), ("shoulder_elbow_offset", 610025, 163)),
         *(("shoulder_offset", 630040, 147), ("shoulder_elbow_offset", 630054, 13)),
-    ],
-)
-def test_near_is_no_longer_than_along_the_arcs(
-    build: str, number: int, pose: int
-) -> None:
-    check_near_along_the_arcs(build, number, pose)
-
-
-@pytest.mark.parametrize(
-    ("build", "number", "pose"),
-    [
+        *(("wrist_offset", 620042, 95, 0.15), ("shoulder_offset", 640021, 53, 0.15)),
         # The elbow is all but straight: from sample to sample joints turn farther than
         # the move is long.
-        *(("wrist_offset", 620053, 40), ("srs", 640054, 83)),
-        ("shoulder_elbow_offset", 640043, 127),
-        # Of the loop, only one sample is on it.
-        *(("wrist_offset", 620042, 95), ("shoulder_offset", 640021, 53)),
+        *(("wrist_offset", 620053, 40, 0.15), ("srs", 640054, 83, 0.15)),
+        ("shoulder_elbow_offset", 640043, 127, 0.15),
     ],
 )
-def test_near_beside_an_answer_is_no_longer_than_along_the_arcs(
-    build: str, number: int, pose: int
-) -> None:
-    check_near_along_the_arcs(build, number, pose, beside=0.15)
-
-
-def check_near_along_the_arcs(
-    build: str, number: int, pose: int, beside: float | None = None
-) -> None:
+def test_near_is_no_longer_than_along_the_arcs(case: tuple[Any, ...]) -> None:
+    """A case: build, numbers of arm and pose, how far beside an answer it starts."""
+    build, number, pose, *beside = case
     robot = random_arms.random_arm(build, number).robot
-    poses, starts = moves.poses_and_starts(robot, 200, number, beside)
+    poses, starts = moves.poses_and_starts(robot, 200, number, *beside)
     solver = iksel.Solver(robot)
     shortest = moves.along_arcs(solver, poses[pose], starts[pose])
     found = solver.solve(poses[pose], near=starts[pose])

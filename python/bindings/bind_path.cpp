@@ -69,10 +69,12 @@ using Closest = std::optional<PoseWeights>;
 
 Tracker make_tracker(const Solver& solver, const ArrayLike& start, const Closest& closest,
                      const std::optional<Task>& task, const std::optional<std::vector<Task>>& tasks,
-                     const std::optional<std::vector<int>>& in_frame_of) {
+                     const std::optional<std::vector<int>>& in_frame_of,
+                     const std::optional<Objective>& objective) {
   return Tracker(
       solver, as_joints(start, solver.robot().dof(), "start"), closest,
-      {task, tasks.value_or(std::vector<Task>{}), in_frame_of.value_or(std::vector<int>{})});
+      {task, tasks.value_or(std::vector<Task>{}), in_frame_of.value_or(std::vector<int>{})},
+      objective.value_or(Objective{}));
 }
 
 PyResult track(Tracker& self, const PoseLike& pose, double dt, const std::optional<Scene>& scene) {
@@ -89,13 +91,14 @@ py::dict tracker_state(const Tracker& self) {
                   "closest"_a = FromPython<Closest>::show(self.closest()),
                   "reached"_a = to_array(*state.reached), "velocity"_a = to_array(state.velocity),
                   "last"_a = to_stack(state.last), "speed"_a = state.speed, "task"_a = task,
-                  "tasks"_a = tasks, "in_frame_of"_a = frames);
+                  "tasks"_a = tasks, "in_frame_of"_a = frames, "objective"_a = self.objective());
 }
 
 Tracker tracker_from_state(const Solver& solver, const ArrayLike& q, const Closest& closest,
                            const ArrayLike& reached, const ArrayLike& velocity,
                            const PoseLike& last, double speed, const std::optional<Task>& task,
-                           const std::vector<Task>& tasks, const std::vector<int>& in_frame_of) {
+                           const std::vector<Task>& tasks, const std::vector<int>& in_frame_of,
+                           const Objective& objective) {
   const int dof = solver.robot().dof();
   const std::vector<Pose> targets = to_poses(as_poses(last, "pickled Tracker, last"));
   const TrackerState state{as_joints(reached, dof, "pickled Tracker, reached"),
@@ -103,12 +106,14 @@ Tracker tracker_from_state(const Solver& solver, const ArrayLike& q, const Close
                            {targets.begin(), targets.end()},
                            speed};
   return Tracker(solver, as_joints(q, dof, "pickled Tracker, q"), closest,
-                 {task, tasks, in_frame_of}, state);
+                 {task, tasks, in_frame_of}, objective, state);
 }
 
 void bind_tracker(py::module_& m) {
   auto tracker = bind_class<Tracker>(m, "Tracker");
-  def_init(tracker, "solver, start, *, closest=None, task=None, tasks=None, in_frame_of=None",
+  def_init(tracker,
+           "solver, start, *, closest=None, task=None, tasks=None, in_frame_of=None, "
+           "objective=None",
            fn<&make_tracker>,
            R"(Begins where the arm is.
 
@@ -123,10 +128,12 @@ Args:
         was.
     task, tasks, in_frame_of: what of the poses has to be reached, and in the frame of which other
         tip they are, as in Solver.solve.
+    objective: an Objective; an arm that its poses leave free moves to where it is least, as fast
+        as the poses leave it, and in half a second if it went on as it begins.
 
 Raises:
-    InvalidArgumentError: wrong shape or dtype, a number that is not finite, or tasks or frames
-        that do not fit the tips.)");
+    InvalidArgumentError: wrong shape or dtype, a number that is not finite, or tasks, frames or
+        an objective that do not fit the robot.)");
   def(tracker, "track", "pose, dt, scene=None", fn<&track>,
       R"(Moves on towards a pose, by no more than each joint can in the time step.
 
@@ -147,9 +154,10 @@ Raises:
   add_property(tracker, "q", [](const Tracker& self) { return to_array(self.q()); });
   add_property(tracker, "reached", [](const Tracker& self) { return to_array(self.reached()); });
   def_repr(tracker);
-  def_pickle(tracker, fn<&tracker_state>,
-             "solver, q, closest, reached, velocity, last, speed, task, tasks, in_frame_of",
-             fn<&tracker_from_state>);
+  def_pickle(
+      tracker, fn<&tracker_state>,
+      "solver, q, closest, reached, velocity, last, speed, task, tasks, in_frame_of, objective",
+      fn<&tracker_from_state>);
 }
 
 }  // namespace
@@ -173,7 +181,8 @@ void bind_path(py::module_& m, py::class_<Solver>& cls) {
       fn<&solve_path>);
 
   bind_tracker(m);
-  def(cls, "tracker", "start, *, closest=None, task=None, tasks=None, in_frame_of=None",
+  def(cls, "tracker",
+      "start, *, closest=None, task=None, tasks=None, in_frame_of=None, objective=None",
       fn<&make_tracker>, "Tracker(self, start, ...).");
 }
 

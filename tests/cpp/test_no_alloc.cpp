@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstddef>
 #include <iksel/iksel.hpp>
+#include <optional>
 
 #include "closed_chains.hpp"
 #include "robots.hpp"
@@ -124,7 +125,8 @@ TEST(NoAllocation, NearFilteredAndTracking) {
     iksel::SolveRequest filtered;
     filtered.filter =
         iksel::filter_each(robot.dof(), [](const iksel::JointVector& at) { return at[0] > at[1]; });
-    iksel::Tracker tracker(solver, q.row(0).transpose());
+    iksel::Tracker tracker(solver, q.row(0).transpose(), std::nullopt, {},
+                           iksel::Objective::far_from_limits());
 
     allocations = 0;
     watching = true;

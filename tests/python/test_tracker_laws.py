@@ -13,7 +13,8 @@ import iksel
 
 pytest.importorskip("bench", reason="the benchmarks are in the repository only")
 
-from bench.random_arms import SIX, random_arm
+from bench.random_arms import SEVEN, SIX, random_arm
+from bench.whole_body.robots import load_body
 
 SEED = int(os.environ.get("IKSEL_TEST_SEED", "0"))
 ARMS = int(os.environ.get("IKSEL_TEST_CASES", "20"))
@@ -65,3 +66,88 @@ def test_what_it_remembers_is_pickled() -> None:
     for pose in poses[399:500]:
         np.testing.assert_array_equal(copy.track(pose, DT).q, tracker.track(pose, DT).q)
     np.testing.assert_allclose(tracker.q, q[499], atol=1e-3)
+
+
+def far_cost(robot: iksel.Robot, q: np.ndarray) -> tuple[float, np.ndarray]:
+    """Of iksel.Objective.far_from_limits, by its definition, and its gradient."""
+    limited = np.isfinite(robot.upper - robot.lower)
+    span = (robot.upper - robot.lower)[limited]
+    x = (q - robot.lower)[limited] / span
+    slope = np.zeros(robot.dof)
+    slope[limited] = 0.25 * (1 / (1 - x) ** 2 - 1 / x**2) / span
+    return float(np.sum(0.25 / x + 0.25 / (1 - x))), slope
+
+
+@pytest.mark.parametrize("build", SEVEN)
+def test_where_its_poses_leave_it_free_it_moves_to_the_least_cost(build: str) -> None:
+    """At a pose that stays its cost falls until no way along it makes it less."""
+    far = iksel.Objective.far_from_limits()
+    unfinished = 0
+    for seed in range(100 * SEED, 100 * SEED + ARMS):
+        robot = random_arm(build, seed).robot
+        (q,) = robot.random_configurations(1, seed=seed)
+        tracker = iksel.Solver(robot).tracker(q, objective=far)
+        pose = robot.fk(q)
+        costs = [far_cost(robot, q)[0]]
+        for _ in range(2000):
+            before = tracker.q
+            assert tracker.track(pose, DT), seed
+            moved = np.abs(tracker.q - before)
+            assert np.all(moved <= robot.velocity_limit * DT * (1 + 1e-9)), seed
+            costs.append(far_cost(robot, tracker.q)[0])
+        assert np.all(np.diff(costs) <= 1e-9), seed
+        slope = far_cost(robot, tracker.q)[1]
+        free = np.linalg.svd(robot.jacobian(tracker.q))[2][6:]
+        unfinished += np.linalg.norm(free @ slope) > 0.01 * costs[-1]
+    # Beside a singularity or a limit the way is long or narrow.
+    assert unfinished <= 1 + ARMS // 5
+
+
+def test_an_objective_changes_nothing_where_nothing_is_free() -> None:
+    robot = random_arm("general", 18).robot
+    q = motion(robot, 18)[:300]
+    solver = iksel.Solver(robot)
+    plain = solver.tracker(q[0])
+    far = solver.tracker(q[0], objective=iksel.Objective.far_from_limits())
+    for pose in robot.fk(q[1:]):
+        np.testing.assert_array_equal(far.track(pose, DT).q, plain.track(pose, DT).q)
+
+
+def test_two_arms_move_to_a_least_cost_of_both() -> None:
+    robot = load_body("two_pandas").robot
+    (q, rest) = robot.random_configurations(2, seed=3)
+    tracker = iksel.Solver(robot).tracker(
+        q, objective=iksel.Objective.near_posture(rest)
+    )
+    poses = robot.fk(q)
+    for _ in range(500):
+        assert tracker.track(poses, DT)
+    assert np.linalg.norm(tracker.q - rest) < 0.95 * np.linalg.norm(q - rest)
+    np.testing.assert_allclose(robot.fk(tracker.q), poses, atol=1e-4)
+
+
+def test_its_objective_is_checked_and_pickled() -> None:
+    robot = iksel.load_robot("panda")
+    solver = iksel.Solver(robot)
+    (q, rest) = robot.random_configurations(2, seed=1)
+    with pytest.raises(iksel.InvalidArgumentError, match="posture"):
+        solver.tracker(q, objective=iksel.Objective.near_posture(rest[:6]))
+    tracker = solver.tracker(q, objective=iksel.Objective.near_posture(rest))
+    pose = robot.fk(q)
+    tracker.track(pose, DT)
+    copy = pickle.loads(pickle.dumps(tracker))
+    np.testing.assert_array_equal(copy.track(pose, DT).q, tracker.track(pose, DT).q)
+    assert np.linalg.norm(tracker.q - rest) < np.linalg.norm(q - rest)
+
+
+def test_what_a_custom_objective_throws_leaves_the_arm_where_it_is() -> None:
+    robot = iksel.load_robot("panda")
+    (q,) = robot.random_configurations(1, seed=1)
+
+    def cost(q: np.ndarray) -> float:
+        raise KeyError("lost")
+
+    tracker = iksel.Solver(robot).tracker(q, objective=iksel.Objective.custom(cost))
+    with pytest.raises(KeyError, match="lost"):
+        tracker.track(robot.fk(q), DT)
+    np.testing.assert_array_equal(tracker.q, q)

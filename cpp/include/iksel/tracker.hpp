@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "iksel/export.hpp"
+#include "iksel/objective.hpp"
 #include "iksel/request.hpp"
 #include "iksel/result.hpp"
 #include "iksel/scene.hpp"
@@ -32,15 +33,19 @@ class IKSEL_EXPORT Tracker {
   /// The tool is at most so many times as fast as the target, where `closest` is asked for: both
   /// are measured by its weights, and a target at rest counts as fast as it last was.
   static constexpr double kFastestTool = 3;
+  /// In this time an arm would be where its objective is least, if it went on as it begins [s].
+  static constexpr double kObjectiveTime = 0.5;
 
   /// `start` is where the arm is, as measured: it may lie outside the limits, and the way back
   /// inside is then part of the first moves. Throws InvalidArgumentError if it has not dof finite
   /// elements, or about criteria that do not fit. `closest`: what is done where a pose
   /// cannot be reached from where the arm is (track). `criteria`: what of the poses has to be
-  /// reached, as of solve. `state`: of a tracker that goes on.
+  /// reached, as of solve. `objective`: an arm that its poses leave free moves to where this is
+  /// least, as fast as the poses leave it. `state`: of a tracker that goes on.
   Tracker(const Solver& solver, const JointVector& start,
           const std::optional<PoseWeights>& closest = std::nullopt,
-          const TargetCriteria& criteria = {}, const TrackerState& state = {});
+          const TargetCriteria& criteria = {}, const Objective& objective = {},
+          const TrackerState& state = {});
 
   /// Moves on towards the pose, by no more than each joint can in `dt` seconds; through a
   /// singularity, where solutions meet, straight on. Status `solved`: there. `too_fast`: the arm
@@ -70,6 +75,8 @@ class IKSEL_EXPORT Tracker {
   [[nodiscard]] const std::optional<PoseWeights>& closest() const { return closest_; }
   /// What of the poses has to be reached, and in which frame they are.
   [[nodiscard]] const TargetCriteria& criteria() const { return criteria_; }
+  /// Towards what it moves where the poses leave the arm free.
+  [[nodiscard]] const Objective& objective() const { return objective_; }
 
  private:
   /// Where a tip is, in the frame of its poses.
@@ -81,6 +88,9 @@ class IKSEL_EXPORT Tracker {
   [[nodiscard]] Result approach(const Goal& goal, double dt);
   /// From where the arm is to the solution that continues its way; false if there is none.
   [[nodiscard]] bool continue_to(const Goal& goal, double dt, JointVector& q, int& steps) const;
+  /// Moves `end`, where the arm can be in time, along the self-motion towards the objective.
+  void improve(const Goal& goal, const JointVector& longest, double dt, JointVector& end,
+               int& steps) const;
   /// How far the tools are apart at two configurations, by the weights.
   [[nodiscard]] double tool_way(const JointVector& from, const JointVector& to) const;
   /// Remembers targets, and how fast they are.
@@ -92,6 +102,7 @@ class IKSEL_EXPORT Tracker {
   JointVector q_;
   std::optional<PoseWeights> closest_;
   TargetCriteria criteria_;
+  Objective objective_;
   TrackerState state_;
   bool is_at_edge_ = false;  ///< where it is nearest to a pose that cannot be reached
 };

@@ -6,6 +6,7 @@
 
 #include "base/message_text.hpp"
 #include "base/pose_check.hpp"
+#include "goal/objective_cost.hpp"
 #include "iksel/error.hpp"
 #include "iksel/pose.hpp"
 #include "kinematics/tips_model.hpp"
@@ -47,8 +48,13 @@ double distance(const Pose& a, const Pose& b, const Vector6& weights) {
 
 Tracker::Tracker(const Solver& solver, const JointVector& start,
                  const std::optional<PoseWeights>& closest, const TargetCriteria& criteria,
-                 const TrackerState& state)
-    : solver_(solver), q_(start), closest_(closest), criteria_(criteria), state_(state) {
+                 const Objective& objective, const TrackerState& state)
+    : solver_(solver),
+      q_(start),
+      closest_(closest),
+      criteria_(criteria),
+      objective_(objective),
+      state_(state) {
   if (!state_.reached) state_.reached = start;
   is_at_edge_ = closest && state_.reached != start;
   const Robot& robot = solver.robot();
@@ -61,6 +67,7 @@ Tracker::Tracker(const Solver& solver, const JointVector& start,
   }
   if (closest) closest->validate();
   criteria.validate(robot.tips());
+  objective.validate(robot.dof());
   // Throws if tips follow one another in a circle.
   const std::vector<Pose> anywhere(static_cast<std::size_t>(robot.tips()), Pose::Identity());
   solver.impl_->with_goal(anywhere.data(), criteria, nullptr, [](const Goal&) {});
@@ -159,6 +166,31 @@ bool Tracker::continue_to(const Goal& goal, double dt, JointVector& q, int& step
   return true;
 }
 
+void Tracker::improve(const Goal& goal, const JointVector& longest, double dt, JointVector& end,
+                      int& steps) const {
+  const RobotModel& model = solver_.robot().all();
+  const ObjectiveCost cost(model, objective_);
+  JointVector better = end;
+  steps += descend_self_motion(goal, JointCost(cost), /*most=*/1, better);
+  const JointVector way = better - end;
+  const JointVector room = longest - (end - q_).cwiseAbs();
+  double part = std::min(1.0, dt / kObjectiveTime);
+  for (Eigen::Index j = 0; j < way.size(); ++j) {
+    if (part * std::abs(way[j]) > room[j]) part = room[j] / std::abs(way[j]);
+  }
+  // The way is straight, the self-motion is not.
+  constexpr int kHalvings = 3;
+  for (int halving = 0; halving <= kHalvings && part > 0; ++halving, part /= 2) {
+    JointVector next = end + part * way;
+    if (!converge(goal, kStepsToNext, next, steps) || part_in_time(next - q_, longest) < 1 ||
+        !(cost.value(next) < cost.value(end))) {
+      continue;
+    }
+    end = next;
+    return;
+  }
+}
+
 Result Tracker::approach(const Goal& goal, double dt) {
   const RobotModel& model = solver_.robot().all();
   Result result;
@@ -182,6 +214,9 @@ Result Tracker::approach(const Goal& goal, double dt) {
     const double of_other = part_in_time(other - q_, longest);
     if (of_other > part) end = other;
     part = std::max(part, of_other);
+  }
+  if (part == 1 && is_reached && goal.is_redundant() && objective_.is_set()) {
+    improve(goal, longest, dt, end, result.iterations);
   }
   const JointVector move = end - q_;
   if (closest_ && state_.speed > 0) part = part_for_tool(move, part, dt);

@@ -90,21 +90,23 @@ py::dict tracker_state(const Tracker& self) {
   return py::dict("solver"_a = self.solver(), "q"_a = to_array(self.q()),
                   "closest"_a = FromPython<Closest>::show(self.closest()),
                   "reached"_a = to_array(*state.reached), "velocity"_a = to_array(state.velocity),
-                  "last"_a = to_stack(state.last), "speed"_a = state.speed, "task"_a = task,
-                  "tasks"_a = tasks, "in_frame_of"_a = frames, "objective"_a = self.objective());
+                  "last"_a = to_stack(state.last), "speed"_a = state.speed,
+                  "is_at_edge"_a = state.is_at_edge, "task"_a = task, "tasks"_a = tasks,
+                  "in_frame_of"_a = frames, "objective"_a = self.objective());
 }
 
 Tracker tracker_from_state(const Solver& solver, const ArrayLike& q, const Closest& closest,
                            const ArrayLike& reached, const ArrayLike& velocity,
-                           const PoseLike& last, double speed, const std::optional<Task>& task,
-                           const std::vector<Task>& tasks, const std::vector<int>& in_frame_of,
-                           const Objective& objective) {
+                           const PoseLike& last, double speed, bool is_at_edge,
+                           const std::optional<Task>& task, const std::vector<Task>& tasks,
+                           const std::vector<int>& in_frame_of, const Objective& objective) {
   const int dof = solver.robot().dof();
   const std::vector<Pose> targets = to_poses(as_poses(last, "pickled Tracker, last"));
   const TrackerState state{as_joints(reached, dof, "pickled Tracker, reached"),
                            as_joints(velocity, dof, "pickled Tracker, velocity"),
                            {targets.begin(), targets.end()},
-                           speed};
+                           speed,
+                           is_at_edge};
   return Tracker(solver, as_joints(q, dof, "pickled Tracker, q"), closest,
                  {task, tasks, in_frame_of}, objective, state);
 }
@@ -154,10 +156,10 @@ Raises:
   add_property(tracker, "q", [](const Tracker& self) { return to_array(self.q()); });
   add_property(tracker, "reached", [](const Tracker& self) { return to_array(self.reached()); });
   def_repr(tracker);
-  def_pickle(
-      tracker, fn<&tracker_state>,
-      "solver, q, closest, reached, velocity, last, speed, task, tasks, in_frame_of, objective",
-      fn<&tracker_from_state>);
+  def_pickle(tracker, fn<&tracker_state>,
+             "solver, q, closest, reached, velocity, last, speed, is_at_edge, task, tasks, "
+             "in_frame_of, objective",
+             fn<&tracker_from_state>);
 }
 
 }  // namespace

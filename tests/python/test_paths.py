@@ -8,6 +8,8 @@ import itertools
 import numpy as np
 import pytest
 
+import iksel
+
 SEED = 61
 
 
@@ -97,3 +99,29 @@ def test_a_known_motion_is_followed_in_time(made, name) -> None:
         # Its length is by the request's own measure.
         lengths = np.linalg.norm(np.diff(path.q, axis=0, prepend=begin[None]), axis=1)
         assert path.move == pytest.approx(lengths.sum()), f"motion {k}"
+
+
+@pytest.mark.parametrize("build", ["srs", "rail"])
+def test_few_candidates_do_not_make_it_too_fast(build) -> None:
+    """Made shorter, a path keeps what it passed, however few candidates there are."""
+    arms = pytest.importorskip("bench.random_arms")
+    for seed in (16, 50, 82, 154):
+        robot = arms.random_arm(build, seed).robot
+        solver = iksel.Solver(robot)
+        begin, end = robot.random_configurations(2, seed=seed)
+        rng = np.random.default_rng(seed)
+        q = begin + 0.3 * np.linspace(0, 1, 24)[1:, None] * (end - begin)
+        q = np.clip(q + 0.01 * rng.normal(size=q.shape), robot.lower, robot.upper)
+        poses = robot.fk(q)
+        for candidates in (1, 2, 3):
+            dt = 1.0
+            for share in (0.97, 1.0001) * 3:
+                path = solver.solve_path(
+                    poses, start=begin, dt=dt, candidates=candidates
+                )
+                if not path:
+                    continue
+                speeds = np.abs(np.diff(path.q, axis=0, prepend=begin[None]))
+                times = (speeds / robot.velocity_limit).max()
+                assert times <= dt * (1 + 1e-9), (seed, candidates)
+                dt = share * times

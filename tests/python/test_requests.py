@@ -81,6 +81,20 @@ def test_filter_gets_many_and_decides(made, cases) -> None:
     assert {dof for _, dof in shapes} == {6}
 
 
+def test_a_filter_may_give_a_list_and_is_never_asked_about_none(made, cases) -> None:
+    solver = made.solver("irb120")
+    counts = []
+
+    def far_away(q):
+        counts.append(len(q))
+        return [bool(abs(each[0]) > 0.5) for each in q]
+
+    q = solver.robot.random_configurations(2 * cases, seed=SEED)
+    for near, target in zip(q[::2], solver.robot.fk(q[1::2]), strict=True):
+        solver.solve(target, near=near, filter=far_away)
+    assert min(counts) > 0
+
+
 def test_filter_that_refuses_all(made) -> None:
     solver = made.solver("ur3")
     target = solver.robot.fk(np.full(6, 0.7))

@@ -90,6 +90,17 @@ def test_the_batch_is_the_loop(solver, targets) -> None:
         assert solver.robot.within_limits(one.q)
 
 
+def test_nearest_by_an_objective_is_as_near_as_by_near(solver, targets) -> None:
+    """Which are two ways to ask for the same."""
+    other = solver.robot.random_configurations(10, 2)
+    for pose, near in zip(targets[::5], other, strict=True):
+        posture = iksel.Objective.near_posture(near)
+        by_objective = solver.solve(pose, objective=posture)
+        asked = solver.solve(pose, near=near)
+        lengths = [np.linalg.norm(each.q - near) for each in (by_objective, asked)]
+        assert lengths[0] == pytest.approx(lengths[1], abs=1e-3)
+
+
 def test_near_may_be_one_for_all_or_one_each(solver, targets) -> None:
     q = solver.robot.random_configurations(50, SEED)
     each = solver.solve_batch(targets[:5], near=q[:5])

@@ -113,6 +113,22 @@ def test_an_objective_changes_nothing_where_nothing_is_free() -> None:
         np.testing.assert_array_equal(far.track(pose, DT).q, plain.track(pose, DT).q)
 
 
+def test_a_copy_that_is_late_goes_on_as_its_own_would() -> None:
+    """It is where it last reached its pose no more, but at no edge either."""
+    robot = random_arm("general", 3).robot
+    (start, end) = robot.random_configurations(2, seed=3)
+    way = np.linspace(start, end, 100)
+    tracker = iksel.Solver(robot).tracker(start, closest=True)
+    late = 0
+    for pose in robot.fk(way[1:]):
+        copy = pickle.loads(pickle.dumps(tracker))
+        result = tracker.track(pose, DT)
+        late += result.status is iksel.Status.too_fast
+        copy.track(pose, DT)
+        np.testing.assert_array_equal(copy.q, tracker.q)
+    assert late > 10
+
+
 def test_two_arms_move_to_a_least_cost_of_both() -> None:
     robot = load_body("two_pandas").robot
     (q, rest) = robot.random_configurations(2, seed=3)

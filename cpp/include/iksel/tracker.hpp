@@ -23,7 +23,8 @@ struct TrackerState {
   std::optional<JointVector> reached;
   JointVector velocity;          ///< of its joints in the last step [rad/s or m/s]; empty: 0
   std::vector<StoredPose> last;  ///< the last target of each tip; empty: where the tools are
-  double speed = 0;  ///< of the targets when they last moved, by the weights [1/s]; 0: never
+  double speed = 0;         ///< of the targets when they last moved, by the weights [1/s]; 0: never
+  bool is_at_edge = false;  ///< where it is nearest to a pose that cannot be reached
 };
 
 /// Follows a stream of poses: each answer continues from the last, within the velocity limits. Not
@@ -104,7 +105,6 @@ class IKSEL_EXPORT Tracker {
   TargetCriteria criteria_;
   Objective objective_;
   TrackerState state_;
-  bool is_at_edge_ = false;  ///< where it is nearest to a pose that cannot be reached
 };
 
 }  // namespace iksel

@@ -130,6 +130,7 @@ void time_stages(const Solver& solver, const std::vector<Pose>& targets, Pace& p
 }  // namespace
 
 double time_kdl_fk_jacobian(const Robot& robot, std::size_t calls) {
+  if (calls == 0) throw InvalidArgumentError("calls: at least 1 is needed");
   const std::unique_ptr<KdlChain> kdl = robot.model().make_kdl();
   constexpr std::size_t kDistinct = 256;
   const Eigen::MatrixXd q = robot.random_configurations(kDistinct, 0);

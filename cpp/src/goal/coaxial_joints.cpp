@@ -63,7 +63,8 @@ void CoaxialJoints::bring_nearest(const JointVector& near, const JointMove& move
 
 void CoaxialJoints::share(const Group& group, double sum, const JointVector& near,
                           const JointMove& move, JointVector& q) const {
-  constexpr double kLeastWeight2 = 1e-9;
+  constexpr double kLeast = 1e-6;  // as of MoveCost
+  const double least = kLeast * move.weights().maxCoeff();
   // Those that reach a limit stay there, and the others share the rest.
   std::array<bool, kMaxDof> stays{};
   double rest = sum;
@@ -72,7 +73,8 @@ void CoaxialJoints::share(const Group& group, double sum, const JointVector& nea
     return q[j] == wanted;
   };
   const auto yields = [&](int j) {
-    return 1 / std::max(move.weights()[j] * move.weights()[j], kLeastWeight2);
+    const double weight = std::max(move.weights()[j], least);
+    return 1 / (weight * weight);
   };
   for (int j = group.first; j <= group.last(); ++j) {
     turn_to(j, near[j]);

@@ -62,13 +62,6 @@ class Screen {
   /// Asks the filter about those that are still kept.
   void ask_filter(const double* q, std::size_t count, bool* keep) {
     if (!filter_) return;
-    if (std::all_of(keep, keep + count, [](bool kept) { return kept; })) {
-      // As they lie, without memory for others.
-      filter_(q, count, keep);
-      filter_refused_ =
-          filter_refused_ || !std::all_of(keep, keep + count, [](bool b) { return b; });
-      return;
-    }
     const auto kept = std::count(keep, keep + count, true);
     ask(filter_, q, count, true, keep);
     filter_refused_ = filter_refused_ || std::count(keep, keep + count, true) < kept;
@@ -85,6 +78,11 @@ class Screen {
  private:
   /// Asks about those whose flag is `of`, and sets it to the answer.
   void ask(const Filter& whom, const double* q, std::size_t count, bool of, bool* flag) const {
+    if (std::all_of(flag, flag + count, [of](bool each) { return each == of; })) {
+      // As they lie, without memory for others; about none nobody is asked.
+      if (count > 0) whom(q, count, flag);
+      return;
+    }
     std::vector<double> asked;
     for (std::size_t i = 0; i < count; ++i) {
       if (flag[i] == of) asked.insert(asked.end(), q + i * dof_, q + (i + 1) * dof_);

@@ -135,7 +135,10 @@ Vector6 to_vector(const PoseWeights& weights, double rotation) {
 
 void set_closest(const Goal& goal, const JointVector& q, Result& result) {
   // What searches have missed.
-  if (goal.check(q, result)) return;
+  if (goal.check(q, result)) {
+    result.unreachable_tip = -1;
+    return;
+  }
   result.status = Status::closest;
   result.q = q;
   goal.measure(q, result.position_error, result.rotation_error);

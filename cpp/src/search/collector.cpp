@@ -92,7 +92,6 @@ bool Collector::keep(const Result& answer) {
   const double cost = counts_moves_ ? move_of(answer.q) : 0.0;
   if (!found_.add(answer, cost, aim_.min_distance)) return false;
   result_.status = Status::solved;
-  ++solutions_;
   last_new_ = work.attempts;
   return true;
 }
@@ -149,7 +148,8 @@ void Collector::wrap_near(const JointVector& near, Result& answer) const {
   // a whole turn away.
   const bool is_held = wrap(goal_.task().rotation_tolerance());
   // Whole turns round, and so measured again.
-  if (image == found || goal_.check(image, answer)) {
+  const bool is_answer = image == found || goal_.check(image, answer);
+  if (is_answer) {
     if ((image - near).cwiseAbs().maxCoeff() <= kPi || !wrap(kBesideLimit)) return;
   } else if (!is_held) {
     return;
@@ -160,6 +160,7 @@ void Collector::wrap_near(const JointVector& near, Result& answer) const {
       (image - held).cwiseAbs().maxCoeff() < 2 * kBesideLimit && goal_.check(image, answer)) {
     return;
   }
+  if (is_answer) return;
   wrap(0);
   goal_.check(image, answer);
 }
@@ -210,7 +211,7 @@ bool Collector::pop_partner(JointVector& q) const {
 
 bool Collector::is_likely_complete() const {
   const int limit = has_all_branches_ ? kStagnationEnumerated : kStagnation;
-  return solutions_ > 0 && work.attempts - last_new_ >= limit;
+  return has_any() && work.attempts - last_new_ >= limit;
 }
 
 }  // namespace iksel

@@ -66,7 +66,7 @@ class Collector : public SearchState {
 
   /// The next predicted partner, if there is one.
   bool pop_partner(JointVector& q) const;
-  [[nodiscard]] bool has_any() const { return solutions_ > 0; }
+  [[nodiscard]] bool has_any() const { return found_.size() > 0; }
   [[nodiscard]] std::size_t count() const { return found_.size(); }
   /// Whether partners of solutions are to be looked for: not while branches are tried, which are
   /// all as a rule. Where they were not, those of what was found meanwhile are.
@@ -173,7 +173,6 @@ class Collector : public SearchState {
   bool is_out_of_time_ = false;
   double basin_radius_;
   std::size_t paired_ = 0;  ///< of what was found, partners of so many were looked for
-  int solutions_ = 0;       ///< those that the set had no room for included
   int last_new_ = 0;        ///< seeds tried until the last new solution
 };
 

@@ -69,7 +69,7 @@ template <typename Answers>
 Proof search_for(const SolverOptions& options, Answers& answers, Workspace& workspace,
                  StageTimes* times) {
   if (answers.goal().is_out_of_reach()) {
-    answers.put_out_of_reach();
+    answers.put_unreachable(-1, Status::out_of_reach);
     return Proof::reach;
   }
   answers.work.begin_laps(times);

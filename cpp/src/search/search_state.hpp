@@ -32,8 +32,7 @@ class SearchState {
   void leave_limits() {
     if (result_.status == Status::not_converged) result_.status = Status::outside_limits;
   }
-  void put_out_of_reach() { result_.status = Status::out_of_reach; }
-  /// Of several tips: that one cannot reach its target by itself.
+  /// No answer can be found; of several tips: as that one cannot reach its target by itself.
   void put_unreachable(int tip, Status status) {
     result_.unreachable_tip = tip;
     if (!result_.success()) result_.status = status;

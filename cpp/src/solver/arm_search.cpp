@@ -2,6 +2,7 @@
 #include "solver/arm_search.hpp"
 
 #include "base/rotation.hpp"
+#include "goal/joint_move.hpp"
 #include "solver/solver_impl.hpp"
 #include "solver/tips_search.hpp"
 
@@ -9,13 +10,12 @@ namespace iksel {
 namespace {
 
 /// What is asked of the joints of one part of the robot.
-SolveRequest request_for(const ChainPart& part, const SolveRequest& request) {
+SolveRequest request_for(const ChainPart& part, const std::optional<NearestTo>& nearest_to) {
   SolveRequest out;
-  out.norm = request.norm;
-  if (!request.near) return out;
-  out.near = picked(*request.near, part.joints);
-  if (request.weights.size() == 0) return out;
-  const JointVector weights = picked(request.weights, part.joints);
+  if (!nearest_to) return out;
+  out.norm = nearest_to->move.norm();
+  out.near = picked(nearest_to->from, part.joints);
+  const JointVector weights = picked(nearest_to->move.weights(), part.joints);
   if (weights.maxCoeff() > 0) out.weights = weights;
   return out;
 }
@@ -28,12 +28,13 @@ ArmSearch::ArmSearch(const TipsGoal& goal, const std::vector<TipSolvers>& solver
       solvers_(solvers),
       random_(seed),
       may_collide_(static_cast<bool>(request.exact)) {
+  const std::optional<NearestTo> nearest_to = find_nearest_to(goal.model().dof, request);
   for (int i = 0; i < goal.count(); ++i) {
     const Tip& tip = goal.model().tip(i);
     const Task& task = goal.task(i).task();
     const bool draws = tip.stem && is_along_frame(i) && goal.frame_of(i) < 0;
     draws_pose_.push_back(draws);
-    SolveRequest of_arm = tip.arm ? request_for(*tip.arm, request) : SolveRequest{};
+    SolveRequest of_arm = tip.arm ? request_for(*tip.arm, nearest_to) : SolveRequest{};
     of_arm.task = draws ? Task::pose() : task;
     of_arm_.push_back(of_arm);
   }

@@ -25,7 +25,7 @@ Status search_layer(const Solver::Impl& solver, const Goal& goal, const Layer* b
   }
   if (goal.tips() != nullptr && layer.size() >= kEnoughForTips) {
     search.screen(layer);
-    search.connect(before, layer);
+    search.connect_best(before, layer);
     if (!layer.empty()) return Status::solved;
   }
   const SolutionSet& found = workspace.collected.found;
@@ -52,7 +52,7 @@ Status search_layer(const Solver::Impl& solver, const Goal& goal, const Layer* b
   const bool any = !layer.empty();
   search.screen(layer);
   const bool kept = !layer.empty();
-  search.connect(before, layer);
+  search.connect_best(before, layer);
   return kept                                   ? Status::too_fast
          : any                                  ? search.refusal()
          : collector.status() == Status::solved ? Status::not_converged
@@ -123,7 +123,7 @@ class PathPlan {
     if (before != nullptr && is_swept_) {
       search_.add_on_curve(goal, *before, w, /*with_others=*/true, *workspace_.lanes, layer);
       search_.screen(layer);
-      search_.connect(before, layer);
+      search_.connect_best(before, layer);
       if (!layer.empty()) return Status::solved;
     }
     const Status status = search_layer(solver_, goal, before, path_, search_, workspace_, layer);
@@ -179,6 +179,7 @@ class PathPlan {
         add(result.q[w], layer);
         add_next(halfway(result.q, w), w, layer);
         search_.connect(before(w, layers), layer, makes_up);
+        // What the path passed is in it: none is empty.
         layers.push_back(std::move(layer));
       }
       PathResult other;

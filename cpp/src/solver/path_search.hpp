@@ -176,10 +176,10 @@ class PathSearch {
   /// Why a waypoint has no candidate, where all were refused.
   [[nodiscard]] Status refusal() const { return screen_.refusal(); }
 
-  /// The cheapest way to each candidate; keeps those only that can be reached, and of these the
-  /// cheapest. `at_last` it keeps all, and moves cost the squares of their lengths: then no jump is
-  /// cheaper than the long way about it.
-  void connect(const Layer* before, Layer& layer, bool at_last = false) {
+  /// The cheapest way to each candidate; keeps those only that can be reached, the cheapest first.
+  /// `at_last` moves cost the squares of their lengths: then no jump is cheaper than the long way
+  /// about it.
+  void connect(const Layer* before, Layer& layer, bool at_last = false) const {
     for (auto& [q, cost, parent] : layer) {
       // A path that begins anywhere costs the same at all its images: of those, the one that begins
       // nearest to the middle of the limits. Small beside all costs, and large beside their
@@ -204,10 +204,15 @@ class PathSearch {
     std::stable_sort(
         layer.begin(), layer.end(),
         [](const PathCandidate& a, const PathCandidate& b) { return a.cost < b.cost; });
+  }
+
+  /// The same, and keeps the cheapest only.
+  void connect_best(const Layer* before, Layer& layer) {
+    connect(before, layer);
     // Without a start all candidates of the first waypoint are needed.
-    const std::size_t most = std::max(static_cast<std::size_t>(options_.candidates), first_layer_);
-    if (before != nullptr && !at_last && layer.size() > most) layer.resize(most);
     if (before == nullptr) first_layer_ = layer.size();
+    const std::size_t most = std::max(static_cast<std::size_t>(options_.candidates), first_layer_);
+    if (layer.size() > most) layer.resize(most);
   }
 
   /// Walks back from the cheapest end, and says if a step is too fast still.

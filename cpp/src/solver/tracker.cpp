@@ -56,7 +56,6 @@ Tracker::Tracker(const Solver& solver, const JointVector& start,
       objective_(objective),
       state_(state) {
   if (!state_.reached) state_.reached = start;
-  is_at_edge_ = closest && state_.reached != start;
   const Robot& robot = solver.robot();
   if (state_.velocity.size() == 0) state_.velocity = JointVector::Zero(robot.dof());
   check_joints(state_.velocity, robot.dof(), "velocity");
@@ -157,7 +156,7 @@ bool Tracker::continue_to(const Goal& goal, double dt, JointVector& q, int& step
   const JointVector ahead = q + move;
   const bool is_reached = converge(goal, kStepsToNext, q, steps);
   // Redundant arms would go on along their self-motions; one that stood starts where it was.
-  if (is_at_edge_ || goal.is_redundant() || move.isZero(0)) return is_reached;
+  if (state_.is_at_edge || goal.is_redundant() || move.isZero(0)) return is_reached;
   const double aside = is_reached ? (q - ahead).norm() : kInfinity;
   if (!(aside > kAside * move.norm())) return is_reached;
   JointVector straight = solver_.robot().all().joints.clamp(ahead);
@@ -194,7 +193,7 @@ void Tracker::improve(const Goal& goal, const JointVector& longest, double dt, J
 Result Tracker::approach(const Goal& goal, double dt) {
   const RobotModel& model = solver_.robot().all();
   Result result;
-  const JointVector from = model.joints.clamp(is_at_edge_ ? lean(q_, reached()) : q_);
+  const JointVector from = model.joints.clamp(state_.is_at_edge ? lean(q_, reached()) : q_);
   JointVector end = from;
   result.attempts = 1;
   const bool is_reached = continue_to(goal, dt, end, result.iterations);
@@ -236,7 +235,7 @@ Result Tracker::approach(const Goal& goal, double dt) {
     return refused;
   }
   q_ = end;
-  is_at_edge_ = result.status == Status::closest;
+  state_.is_at_edge = result.status == Status::closest;
   if (result.success()) state_.reached = q_;
   result.move = part * move.norm();
   return result;

@@ -99,7 +99,7 @@ void query(benchmark::State& state) {
   const Problem& p = problem(state.range(0));
   const iksel::Solver& s = solver(state.range(0), true);
   const auto& paper = std::get<iksel::Paper>(s.options().strategy);
-  iksel::Selection selection(p.robot.model(), p.robot.model(), s.database().data(), paper);
+  iksel::Selection selection(&p.robot.model(), &p.robot.model(), s.database().data(), paper);
   std::size_t i = 0;
   for (auto _ : state) selection.query(p.targets[i++ % kTargets]);
 }
@@ -109,7 +109,7 @@ void query_and_rank(benchmark::State& state) {
   const Problem& p = problem(state.range(0));
   const iksel::Solver& s = solver(state.range(0), true);
   const auto& paper = std::get<iksel::Paper>(s.options().strategy);
-  iksel::Selection selection(p.robot.model(), p.robot.model(), s.database().data(), paper);
+  iksel::Selection selection(&p.robot.model(), &p.robot.model(), s.database().data(), paper);
   std::size_t i = 0;
   for (auto _ : state) {
     selection.query(p.targets[i++ % kTargets]);

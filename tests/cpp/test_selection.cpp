@@ -58,7 +58,7 @@ std::vector<std::size_t> reference_order(const Bench& s, const iksel::Pose& targ
 }
 
 std::vector<JointVector> seeds(const Bench& s, const iksel::Pose& target, int attempts) {
-  iksel::Selection selection(s.robot.model(), s.robot.model(), s.database.data(), s.paper);
+  iksel::Selection selection(&s.robot.model(), &s.robot.model(), s.database.data(), s.paper);
   selection.query(target);
   selection.rank();
   std::vector<JointVector> out;

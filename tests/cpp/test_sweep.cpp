@@ -175,12 +175,12 @@ TEST_P(Sweeps, BranchesAreRatedAsTheyAreSolved) {
   int less = 0;
   for (const Pose& target : iksel_test::random_targets(robot(), iksel_test::cases(100))) {
     branches.set_target(iksel_test::reduced(robot(), target));
-    const iksel::Places places = branches.places(iksel::SweptBranches::kCount);
-    std::array<iksel::SweptBranches::Row, iksel::SweptBranches::kCount> rows;
+    const iksel::Places places = branches.places(iksel::lanes::kWidth);
+    std::array<iksel::SweptBranches::Row, iksel::lanes::kWidth> rows;
     branches.rate([&](int i) { return places.value(i); }, kBound, rows.data());
     for (int place = 0; place < places.count; ++place) {
       branches.solve_all(places.value(place));
-      for (int branch = 0; branch < iksel::SweptBranches::kCount; ++branch) {
+      for (int branch = 0; branch < iksel::lanes::kWidth; ++branch) {
         // Beside where it ends, rounding decides.
         if (branches.least(branch) < 1e-6) continue;
         const double off = branches.off(branch);
@@ -195,7 +195,7 @@ TEST_P(Sweeps, BranchesAreRatedAsTheyAreSolved) {
           less += rated < sine - 1e-9;
           ++near;
         }
-        double one[iksel::SweptBranches::kCount];
+        double one[iksel::lanes::kWidth];
         iksel::SweptBranches again = branches;
         again.rate_one(
             branch, [&](int) { return places.value(place); }, kBound, one);
@@ -220,7 +220,7 @@ bool may_swing(const Robot& robot, const iksel::SweptBranches& branches, int bra
 /// What is measured of all branches at once leaves out only what lies far away.
 TEST_P(Sweeps, BranchesAreMeasuredAsTheyAreSolved) {
   constexpr double kBound = 0.3;
-  constexpr int kCount = iksel::SweptBranches::kCount;
+  constexpr int kCount = iksel::lanes::kWidth;
   iksel::SweptBranches branches(robot().model(), *iksel::find_closed_form(robot().model()),
                                 iksel::lanes::choose_kernels());
   const auto targets = iksel_test::random_targets(robot(), iksel_test::cases(100));

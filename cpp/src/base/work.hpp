@@ -32,7 +32,10 @@ class Work {
   /// One that was counted before.
   bool take_counted() { return true; }
   /// Counts a guess at a solution by another one, which is no seed.
-  void take_guess() { ++guesses_; }
+  bool take_guess() {
+    ++guesses_;
+    return true;
+  }
   [[nodiscard]] int all_attempts() const { return attempts + guesses_; }
 
   /// From now on, the time between laps is added to the stages of a solve; `times` may be null.

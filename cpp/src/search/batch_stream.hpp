@@ -3,10 +3,12 @@
 // as it is through with one. These are both the seeds and the answers of a search.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
 #include "goal/goal.hpp"
+#include "refine/lane_refiner.hpp"
 #include "search/search.hpp"
 #include "seeds/lane_query.hpp"
 
@@ -14,6 +16,50 @@ namespace iksel {
 
 /// Numbers of the targets of a part of a batch: those that a stage is to solve, or has left.
 using TargetList = std::vector<std::size_t>;
+
+/// What BatchStream gives its targets to start from.
+class LeafLanes {
+ public:
+  LeafLanes(LaneQuery& query, int max_attempts)
+      : query_(query), most_(std::min(kSeeds, max_attempts)) {}
+
+  /// The lane's target from now on. Y (reduction.hpp) is that of the pose nearest to it that the
+  /// task allows.
+  void begin(LaneRefiner& refiner, int lane, const Goal& goal, const Pose& Y) {
+    if (goal.is_full_pose()) {
+      refiner.set_pose(lane, Y);
+    } else {
+      refiner.set_task(lane, goal.target());
+    }
+    lanes_[lane] = {Y, 0};
+  }
+  /// Starts the lane at the target's next seed; false if there are no more.
+  bool load(LaneRefiner& refiner, int lane) {
+    Lane& in = lanes_[lane];
+    if (in.seeds == most_) return false;
+    query_.set_target(in.Y);
+    query_.prepare_leaf();
+    query_.load(in.seeds++, refiner, lane);
+    return true;
+  }
+  [[nodiscard]] int attempts(int lane) const { return lanes_[lane].seeds; }
+  /// The lane's seed has arrived where there is no answer.
+  void refuse(int /*lane*/) {}
+  /// What it proves that none of a target's seeds is an answer.
+  [[nodiscard]] Proof proof(int /*lane*/) const { return Proof::none; }
+
+ private:
+  /// Seeds that a target is given before it is left.
+  static constexpr int kSeeds = 2;
+
+  struct Lane {
+    Pose Y;
+    int seeds;
+  };
+  LaneQuery& query_;
+  int most_;
+  Lane lanes_[lanes::kWidth];
+};
 
 /// `Seeds` are LeafLanes, or BranchLanes, which refine by themselves; `target(i)` gives T_base_tcp
 /// of target i; `on_result(i, result)` is told of each that was solved, or is proven to have no

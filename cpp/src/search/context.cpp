@@ -79,7 +79,7 @@ Workspace::OneAtATime::OneAtATime(const ChainModel& model, const ChainModel& nom
                                   const DatabaseData& data, const SolverOptions& options,
                                   const Paper& scheme)
     : refiner(model, scheme, options.max_iterations),
-      selection(model, nominal, data, scheme),
+      selection(&model, &nominal, data, scheme),
       task_samples(model, data, selection) {}
 
 Workspace::Workspace(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,

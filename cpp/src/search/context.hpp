@@ -64,17 +64,12 @@ struct Workspace {
     LaneQuery query;
     SeedScreen screen;
     ClosestScreen closest;
-    /// The arcs of the self-motion, for a target and its Y (reduction.hpp).
-    const std::vector<Curve::Arc>& find_arcs(const Pose& T_base_tcp, const Pose& Y,
-                                             double spacing) {
-      curve->find(T_base_tcp, Y, ends ? &*ends : nullptr, *sweep, spacing);
-      return curve->arcs();
-    }
-    /// The same where no joint is swept: what is known of it are its ends and so many solutions.
+    /// The arcs of the self-motion, for a target and its Y (reduction.hpp); where no joint is
+    /// swept, what is known of it are its ends and so many solutions.
     const std::vector<Curve::Arc>& find_arcs(const Pose& T_base_tcp, const Pose& Y, double spacing,
-                                             const double* known, std::size_t count) {
-      curve->find(T_base_tcp, Y, ends ? &*ends : nullptr, known, count, spacing);
-      return curve->arcs();
+                                             const double* known = nullptr, std::size_t count = 0) {
+      return curve->find(T_base_tcp, Y, ends ? &*ends : nullptr, sweep ? &*sweep : nullptr, known,
+                         count, spacing);
     }
     /// The proof that a self-motion has no configuration inside the limits, for the same; none if
     /// one is found between the samples, or in doubt.

@@ -32,22 +32,26 @@ Explored explore_branches(const Parts& parts, BranchList& branches, Proof kind, 
       parts.move_inside(branches.size(), [&](int i) { return branches.q(i); });
   if (is_satisfied_inside) return Explored::done();
   // Branches of which none could be refined to the tolerances prove nothing.
-  const bool are_known = enumerated.is_certain() ? enumerated.is_empty() || answers.has_any()
-                                                 : enumerated.is_certain_but_for_limits();
-  const bool is_through = are_known && (enumerated.is_empty() || !branches.has_families());
+  const bool is_empty = branches.size() == 0;
+  const bool is_certain = enumerated.was_tried() && branches.is_certain();
+  const bool are_known = is_certain
+                             ? is_empty || answers.has_any()
+                             : enumerated.was_tried() && branches.is_certain_but_for_limits();
+  const bool is_through = are_known && (is_empty || !branches.has_families());
   // Of full poses, as the roots are.
   if (kind == Proof::sweep && parts.request.prove && !answers.has_any() &&
       parts.workspace.lanes->enclosure && parts.workspace.lanes->enclosure->rules_out(Y)) {
     return Explored::done(Proof::intervals);
   }
-  if (is_through) return Explored::done(enumerated.is_certain() ? kind : Proof::none);
+  if (is_through) return Explored::done(is_certain ? kind : Proof::none);
+  const bool has_all = enumerated.was_tried() && branches.has_all();
   if (kind == Proof::sweep) {
     parts.work.leave(kBesideRoots);
-  } else if (enumerated.has_all() && !answers.wants_more()) {
+  } else if (has_all && !answers.wants_more()) {
     parts.work.leave(kBesideBranches);
   }
   answers.look_for_partners(true);
-  if (enumerated.has_all()) answers.set_all_branches_tried();
+  if (has_all) answers.set_all_branches_tried();
   return Explored::doubtful();
 }
 

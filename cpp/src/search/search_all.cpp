@@ -1,10 +1,64 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // All answers to a full pose that are wanted, in lanes.
 #include "search/explore.hpp"
-#include "seeds/spread_seeds.hpp"
+#include "seeds/random_seeds.hpp"
 
 namespace iksel {
 namespace {
+
+/// Seeds that spread over all solutions: through the database some blocks at a time, the best seed
+/// of each first, then at random; and before them the partners predicted from solutions that were
+/// found.
+class SpreadSeeds {
+ public:
+  SpreadSeeds(LaneQuery& query, const JointSpace& joints, std::uint64_t seed,
+              const Collector& known, Work& work)
+      : query_(query), joints_(joints), known_(known), work_(work), random_(seed) {
+    query.begin_blocks();
+  }
+
+  bool next_stage() {
+    if (!work_.has_left()) return false;
+    left_ = kBlocksAtOnce * lanes::kBlock;
+    const std::size_t given = query_.blocks_given();
+    at_random_ = given == query_.near_blocks();
+    if (at_random_) return true;
+    // One alone at first where any answer will do: it may have one.
+    const std::size_t most = given == 0 && !known_.wants_more() ? 1 : kBlocksAtOnce;
+    blocks_ = static_cast<int>(query_.next_blocks(std::min(most, query_.near_blocks() - given)));
+    left_ = blocks_ * lanes::kBlock;
+    return true;
+  }
+
+  template <typename Refiner>
+  bool load(Refiner& refiner, int lane) {
+    JointVector partner;
+    if (known_.pop_partner(partner)) {
+      work_.take_guess();
+      refiner.load_seed(lane, partner.data());
+      refiner.follow(lane);
+      return true;
+    }
+    if (known_.is_complete() || left_ == 0 || !work_.take()) return false;
+    const int at = blocks_ * lanes::kBlock - left_--;
+    if (at_random_) {
+      load_random(joints_, random_, refiner, lane);
+    } else {
+      query_.load(at / blocks_, refiner, lane, at % blocks_);
+    }
+    return true;
+  }
+
+ private:
+  LaneQuery& query_;
+  const JointSpace& joints_;
+  const Collector& known_;
+  Work& work_;
+  Random random_;
+  int blocks_ = 0;
+  int left_ = 0;
+  bool at_random_ = false;
+};
 
 /// From the whole database, and before it from around what the nearest is wanted to.
 void search_widely(const AllSearch& parts) {
@@ -13,7 +67,11 @@ void search_widely(const AllSearch& parts) {
   lanes.refiner.begin(parts.goal.task(), kAll, Width::wide);
   if (parts.model.dof > kCurveJoints && answers.ranks_by_move() &&
       !parts.request.objective.is_set()) {
-    NearbySeeds nearby(answers.nearest_to().from, parts.options.seed, parts.work);
+    constexpr int kNearby = 64;
+    const std::vector<double> q =
+        sample_around(answers.nearest_to().from, parts.options.seed, kNearby);
+    RowSeeds nearby(q.data(), kNearby, answers.nearest_to().from.size(), /*are_answers=*/false,
+                    parts.work, &Work::take_guess);
     if (search(lanes.refiner, nearby, answers, parts.work)) return;
   }
   SpreadSeeds spread(lanes.query, parts.model.joints, parts.options.seed, answers, parts.work);

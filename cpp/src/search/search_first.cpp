@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A first answer to a full pose, in lanes.
 #include "search/explore.hpp"
-#include "seeds/leaf_seeds.hpp"
 
 namespace iksel {
 namespace {
@@ -10,6 +9,36 @@ namespace {
 /// million reachable targets of swept arms none is lost (python -m bench lost --random 25 --targets
 /// 50000 --seed 900 --builds srs elbow_offset wrist_offset shoulder_offset shoulder_elbow_offset).
 constexpr int kFromLeaf = 4;
+
+/// The samples of the leaf that the target falls into, best first.
+class LeafSeeds {
+ public:
+  /// `most`: of the best of them.
+  LeafSeeds(LaneQuery& query, int most, Work& work) : query_(query), most_(most), work_(work) {}
+
+  bool next_stage() {
+    work_.lap(&StageTimes::iterate);
+    if (done_) return false;
+    done_ = true;
+    query_.prepare_leaf();
+    work_.lap(&StageTimes::rank);
+    return true;
+  }
+
+  template <typename Refiner>
+  bool load(Refiner& refiner, int lane) {
+    if (rank_ == most_ || !work_.take()) return false;
+    query_.load(rank_++, refiner, lane);
+    return true;
+  }
+
+ private:
+  LaneQuery& query_;
+  int most_;
+  Work& work_;
+  bool done_ = false;
+  int rank_ = 0;
+};
 
 /// The nearest leaf of the database. Returns whether the answers want no more.
 bool search_leaf(const FirstSearch& parts, RowSeeds& near, GivenSeeds& given) {

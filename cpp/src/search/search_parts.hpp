@@ -43,7 +43,8 @@ struct SearchParts {
   [[nodiscard]] RowSeeds near_seed() const {
     return {request.near ? &*request.near : nullptr, work};
   }
-  [[nodiscard]] GivenSeeds given_seeds(int per_stage, FunctionRef<bool()> should_continue) const {
+  [[nodiscard]] GivenSeeds given_seeds(std::size_t per_stage,
+                                       FunctionRef<bool()> should_continue) const {
     return {workspace.given, goal, request.seeds, options.max_attempts, per_stage,
             should_continue, work};
   }

@@ -65,20 +65,10 @@ class EnumeratedSeeds : public RowSeeds {
     return true;
   }
 
-  /// Whether there are certainly no solutions but these, and each was tried.
-  [[nodiscard]] bool is_certain() const { return branches_.is_certain() && was_tried(); }
-  /// As of the branches, and each was tried.
-  [[nodiscard]] bool is_certain_but_for_limits() const {
-    return branches_.is_certain_but_for_limits() && was_tried();
-  }
-  /// Whether each solution is near to one of these, and each was tried.
-  [[nodiscard]] bool has_all() const { return branches_.has_all() && was_tried(); }
-  /// Whether there are none.
-  [[nodiscard]] bool is_empty() const { return branches_.size() == 0; }
-
- private:
+  /// Whether each branch was tried.
   [[nodiscard]] bool was_tried() const { return done_ && is_through(); }
 
+ private:
   BranchList& branches_;
   const Pose& Y_;
   bool wants_all_;

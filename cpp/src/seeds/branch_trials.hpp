@@ -57,7 +57,6 @@ class BranchTrials {
   BranchTrials(const ChainModel& model, const ClosedFormChain& chain, const DatabaseData& data,
                const TaskSpace& task, const lanes::LaneKernels& kernels);
 
-  [[nodiscard]] bool is_empty() const { return trials_.empty(); }
   /// What is tried of a pose, best first.
   struct Range {
     const BranchTrial* next;

@@ -9,14 +9,13 @@
 namespace iksel {
 namespace {
 
-/// How far all seeds go, and then packs of the best that are left: these once more at the end,
-/// which shows whether they have come to rest.
-constexpr int kFirstIterations = 5;
+/// How far seeds go, all at first, and how many packs of the best of them are left: these once more
+/// at the end, which shows whether they have come to rest.
 struct ScreenRound {
-  int packs;
   int iterations;
+  int packs;
 };
-constexpr ScreenRound kScreenRounds[] = {{3, 12}, {1, 12}, {1, 4}};
+constexpr ScreenRound kScreenRounds[] = {{5, 3}, {12, 1}, {12, 1}, {4, 1}};
 
 /// The weights of the axes whose trace has the squares of rotations about them to second order:
 /// 1 - E_xx is half the sum of the other two's.
@@ -62,13 +61,11 @@ ClosestScreen::ClosestScreen(const ChainModel& model, std::uint64_t seed,
 }
 
 void ClosestScreen::use_length(const Vector6& squares) {
-  // Beyond, single precision has nothing left of the smaller one.
-  constexpr double kLeast = 1e-3;
-  constexpr double kMost = 1e3;
   const double position = std::sqrt(squares.head<3>().maxCoeff());
   const double rotation = std::sqrt(squares.tail<3>().maxCoeff());
   const bool counts = position > 0 && rotation > 0;
-  const double length = counts ? std::clamp(rotation / position, kLeast, kMost) : 1.0;
+  // Beyond, single precision has nothing left of the smaller one.
+  const double length = counts ? std::clamp(rotation / position, 1e-3, 1e3) : 1.0;
   if (length == length_) return;
   length_ = length;
   units_ = JointUnits(model_, length);
@@ -182,15 +179,11 @@ void ClosestScreen::find(const Goal& goal, const Vector6& weights, LaneQuery& qu
   }
   seeds_.assign(static_cast<std::size_t>(packs * lanes::kBlock),
                 {static_cast<float>(kInfinity), 0, 0});
-  int iterations = kFirstIterations;
   for (const ScreenRound& round : kScreenRounds) {
-    move(packs, iterations);
-    keep(round.packs);
+    move(packs, round.iterations);
     packs = round.packs;
-    iterations = round.iterations;
+    keep(packs);
   }
-  move(packs, iterations);
-  keep(packs);
 }
 
 JointVector ClosestScreen::q(int i) const {

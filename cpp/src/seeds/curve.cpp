@@ -12,41 +12,22 @@ constexpr double kLongest = 0.25;
 
 }  // namespace
 
-void Curve::find(const Pose& T_base_tcp, const Pose& Y, ArcEnds* ends, Sweep& sweep,
-                 double spacing) {
-  spacing_ = kInfinity;
-  // What the way back to the curve adds to a step is a twentieth of it at most.
-  begin(Y, 0.95 * spacing);
-  find_samples(Y, sweep);
-  if (ends != nullptr) find_ends(T_base_tcp, *ends);
-  follow_from_ends();
-  follow_from_samples(sweep);
-  finish_arcs(spacing);
-}
-
-void Curve::find(const Pose& T_base_tcp, const Pose& Y, ArcEnds* ends, const double* known,
-                 std::size_t count, double spacing) {
-  spacing_ = spacing;
-  begin(Y, kLongest);
-  if (ends != nullptr) find_ends(T_base_tcp, *ends);
-  follow_from_ends();
-  for (std::size_t i = 0; i < count; ++i) {
-    Joints from;
-    std::copy_n(known + i * kCurveJoints, kCurveJoints, from.begin());
-    follow_both_ways(from);
-  }
-  finish_arcs(spacing);
-}
-
-void Curve::begin(const Pose& Y, double longest_step) {
+const std::vector<Curve::Arc>& Curve::find(const Pose& T_base_tcp, const Pose& Y, ArcEnds* ends,
+                                           Sweep* sweep, const double* known, std::size_t count,
+                                           double spacing) {
   arcs_.clear();
   ends_.clear();
   samples_.clear();
-  walker_.set_target(Y, std::min(longest_step, kLongest));
-}
-
-void Curve::finish_arcs(double spacing) {
+  spacing_ = sweep != nullptr ? kInfinity : spacing;
+  // What the way back to the curve adds to a step is a twentieth of it at most.
+  walker_.set_target(Y, sweep != nullptr ? std::min(0.95 * spacing, kLongest) : kLongest);
+  if (sweep != nullptr) find_samples(Y, *sweep);
+  if (ends != nullptr) find_ends(T_base_tcp, *ends);
+  follow_from_ends();
+  if (sweep != nullptr) follow_from_samples(*sweep);
+  for (std::size_t i = 0; i < count; ++i) follow_both_ways(known + i * kCurveJoints);
   for (Arc& arc : arcs_) thin_out(arc, spacing);
+  return arcs_;
 }
 
 void Curve::find_samples(const Pose& Y, Sweep& sweep) {
@@ -61,12 +42,6 @@ void Curve::find_samples(const Pose& Y, Sweep& sweep) {
     while (place <= static_cast<std::size_t>(samples_[i].place)) first_sample_[place++] = i;
   }
   while (place < first_sample_.size()) first_sample_[place++] = samples_.size();
-}
-
-Curve::Joints Curve::sample(std::size_t i) const {
-  Joints q;
-  std::copy_n(&sampled_q_[i * kCurveJoints], kCurveJoints, q.begin());
-  return q;
 }
 
 void Curve::find_ends(const Pose& T_base_tcp, ArcEnds& ends) {

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "seeds/arc_ends.hpp"
@@ -33,14 +34,12 @@ class Curve {
   Curve(const ChainModel& model, const lanes::LaneKernels& kernels)
       : joints_(model.joints), walker_(model, kernels) {}
 
-  /// Finds the arcs for a target, Y as in reduction.hpp; with points so near to each other that no
-  /// joint moves farther than `spacing` between them [rad]. `ends` may be null.
-  void find(const Pose& T_base_tcp, const Pose& Y, ArcEnds* ends, Sweep& sweep, double spacing);
-  /// The same where no joint can be swept: the arcs that have an end, and those through
-  /// configurations that are known, seven joint values each.
-  void find(const Pose& T_base_tcp, const Pose& Y, ArcEnds* ends, const double* known,
-            std::size_t count, double spacing);
-  [[nodiscard]] const std::vector<Arc>& arcs() const { return arcs_; }
+  /// The arcs for a target, Y as in reduction.hpp; with points so near to each other that no joint
+  /// moves farther than `spacing` between them [rad]. `ends` may be null, and so may `sweep` where
+  /// no joint can be swept: then those that have an end, and those through `count` configurations
+  /// that are known, seven joint values each.
+  const std::vector<Arc>& find(const Pose& T_base_tcp, const Pose& Y, ArcEnds* ends, Sweep* sweep,
+                               const double* known, std::size_t count, double spacing);
   /// About so many places evenly along these arcs, on straight lines between their points, and both
   /// ends of each; no nearer to each other along the arc than `least` [rad]. Seven joint values
   /// each.
@@ -58,31 +57,24 @@ class Curve {
     bool leads_in, leads_out;  ///< whether it leads inside, and whether it comes from there
     bool is_taken;             ///< an arc begins or ends there
   };
-  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
   /// From an end or a sample along a curve.
   struct Walk {
     std::vector<Joints> q;
-    Joints tangent;       ///< where it begins, the way that it goes
+    Joints tangent;       ///< where it begins, oriented
     SelfMotionEnd begin;  ///< a fold: it begins at a sample
     bool is_reversed;     ///< against the orientation
-    /// Of the walk, once it has ended; kNone if that is part of another.
-    std::size_t arc = kNone;
+    /// Of the walk, once it has ended, unless that is part of another.
+    std::optional<std::size_t> arc;
   };
-  class Walks;
 
-  void begin(const Pose& Y, double longest_step);
-  void finish_arcs(double spacing);
   void find_samples(const Pose& Y, Sweep& sweep);
   void find_ends(const Pose& T_base_tcp, ArcEnds& ends);
-  [[nodiscard]] Joints sample(std::size_t i) const;
 
   // curve_walk.cpp
-  static Walk walk_from(const Joints& q, const Place& on_curve, const SelfMotionEnd& at,
-                        bool is_reversed);
   void follow_from_ends();
   void follow_from_samples(Sweep& sweep);
   /// From between two ends, or on a curve without any, unless that is known.
-  void follow_both_ways(const Joints& from);
+  void follow_both_ways(const double* from);
   void follow(std::vector<Walk>& walks);
   /// Adds points of a step, up to a part of it, where points are to be nearer than steps are long.
   void add_between(Walk& walk, const Step& step, double end) const;
@@ -100,8 +92,6 @@ class Curve {
   void mark_samples(const Joints& from, const Joints& to);
   void finish(Walk& walk, const SelfMotionEnd& end);
   [[nodiscard]] bool is_on_arc(const Joints& q) const;
-  /// Goes on at another image, if that lies inside the limits.
-  bool turn_round(Walk& walk, int lane, const Joints& next);
   /// Ends a walk at a limit.
   void leave(Walk& walk, const Joints& q, const SelfMotionEnd& at);
 

@@ -7,11 +7,6 @@
 
 namespace iksel {
 
-Curve::Walk Curve::walk_from(const Joints& q, const Place& on_curve, const SelfMotionEnd& at,
-                             bool is_reversed) {
-  return {{q}, (is_reversed ? on_curve.reversed() : on_curve).tangent, at, is_reversed};
-}
-
 void Curve::follow_from_ends() {
   std::vector<Walk> walks;
   for (const bool is_reversed : {false, true}) {
@@ -20,7 +15,7 @@ void Curve::follow_from_ends() {
     for (End& end : ends_) {
       if (end.is_taken || !(is_reversed ? end.leads_out : end.leads_in)) continue;
       if (is_reversed || !end.leads_out) end.is_taken = true;
-      walks.push_back(walk_from(end.q, end.on_curve, end.at, is_reversed));
+      walks.push_back({{end.q}, end.on_curve.tangent, end.at, is_reversed, {}});
     }
     follow(walks);
   }
@@ -28,63 +23,45 @@ void Curve::follow_from_ends() {
 
 void Curve::follow_from_samples(Sweep& sweep) {
   for (std::size_t i = 0; i < samples_.size(); ++i) {
-    if (!is_known_[i]) follow_both_ways(sample(i));
+    if (!is_known_[i]) follow_both_ways(&sampled_q_[i * kCurveJoints]);
   }
-  sweep.visit_between([&](const double* q, int /*branch*/) {
-    Joints between;
-    std::copy_n(q, kCurveJoints, between.begin());
-    follow_both_ways(between);
-  });
+  sweep.visit_between([&](const double* q, int /*branch*/) { follow_both_ways(q); });
 }
 
-void Curve::follow_both_ways(const Joints& from) {
-  if (is_on_arc(from)) return;
-  Place at{from, {}};
+void Curve::follow_both_ways(const double* from) {
+  Place at{};
+  std::copy_n(from, kCurveJoints, at.q.begin());
+  if (is_on_arc(at.q)) return;
   walker_.orient(&at, 1);
-  std::vector<Walk> forwards{walk_from(at.q, at, {ArcEnd::fold}, false)};
+  std::vector<Walk> forwards{{{at.q}, at.tangent, {ArcEnd::fold}, false, {}}};
   follow(forwards);
-  const std::size_t ahead = forwards[0].arc;
-  if (ahead == kNone || arcs_[ahead].is_closed()) return;
-  std::vector<Walk> backwards{walk_from(at.q, at, {ArcEnd::fold}, true)};
+  const auto ahead = forwards[0].arc;
+  if (!ahead || arcs_[*ahead].is_closed()) return;
+  std::vector<Walk> backwards{{{at.q}, at.tangent, {ArcEnd::fold}, true, {}}};
   follow(backwards);
-  const std::size_t behind = backwards[0].arc;
-  if (behind == kNone) return;
-  Arc& whole = arcs_[behind];
-  const Arc& rest = arcs_[ahead];
+  if (!backwards[0].arc) return;
+  Arc& whole = arcs_[*backwards[0].arc];
+  const Arc& rest = arcs_[*ahead];
   whole.q.insert(whole.q.end(), rest.q.begin() + 1, rest.q.end());
   whole.end = rest.end;
-  std::swap(arcs_[ahead], whole);
+  std::swap(arcs_[*ahead], whole);
   arcs_.pop_back();
 }
 
-/// As many walks at a time as there are lanes.
-class Curve::Walks {
- public:
-  Walks(Curve& curve, std::vector<Walk>& walks) : curve_(curve), walks_(walks) {}
-
-  bool begin(int lane, Place& from, bool& is_reversed) {
-    if (next_ == walks_.size()) return false;
-    const Walk& walk = walks_[next_];
-    from = {walk.q.front(), walk.tangent};
-    is_reversed = walk.is_reversed;
-    of_[static_cast<std::size_t>(lane)] = next_++;
-    return true;
-  }
-  bool advance(int lane, const Step& step) { return curve_.advance(at(lane), lane, step); }
-  void stop(int lane) { curve_.finish(at(lane), {ArcEnd::fold}); }
-
- private:
-  Walk& at(int lane) { return walks_[of_[static_cast<std::size_t>(lane)]]; }
-
-  Curve& curve_;
-  std::vector<Walk>& walks_;
-  std::size_t next_ = 0;
-  std::array<std::size_t, lanes::kWidth> of_{};  ///< which walk a lane follows
-};
-
 void Curve::follow(std::vector<Walk>& walks) {
-  Walks in_lanes(*this, walks);
-  walker_.follow(in_lanes);
+  std::size_t next = 0;
+  std::array<Walk*, lanes::kWidth> in_lane{};
+  const auto walk = [&](int lane) -> Walk*& { return in_lane[static_cast<std::size_t>(lane)]; };
+  walker_.follow(
+      [&](int lane, Place& from, bool& is_reversed) {
+        if (next == walks.size()) return false;
+        walk(lane) = &walks[next++];
+        from = {walk(lane)->q.front(), walk(lane)->tangent};
+        is_reversed = walk(lane)->is_reversed;
+        return true;
+      },
+      [&](int lane, const Step& step) { return advance(*walk(lane), lane, step); },
+      [&](int lane) { finish(*walk(lane), {ArcEnd::fold}); });
 }
 
 void Curve::add_between(Walk& walk, const Step& step, double end) const {
@@ -98,7 +75,13 @@ bool Curve::advance(Walk& walk, int lane, const Step& step) {
   const Joints& next = step.to.q;
   const CurveWalker::Exit exit = walker_.exit(step);
   if (exit.part <= 1) {
-    if (turn_round(walk, lane, next)) return true;
+    // It goes on at another image, if that lies inside the limits.
+    Joints image = next;
+    if (joints_.wrap_sums(image.data()) && walker_.is_inside(image)) {
+      walker_.turn_to(lane, image);
+      walk.q.push_back(image);
+      return true;
+    }
     const Joints q = step.at(exit.part);
     mark_samples(last, q);
     add_between(walk, step, exit.part);
@@ -186,22 +169,14 @@ bool Curve::is_on_arc(const Joints& q) const {
   /// What is farther from where a step begins is not beside it [rad and m].
   const double far = 1.2 * std::min(walker_.longest(), spacing_) + 0.1;
   for (const Arc& arc : arcs_) {
-    for (std::size_t i = 1; i < arc.q.size(); ++i) {
+    for (std::size_t i = 1; i < arc.q.size() + (arc.is_closed() ? 1 : 0); ++i) {
       if (!joints_.are_near(arc.q[i - 1], q, far)) continue;
-      const auto [along, way2, rest2] = beside(arc.q[i - 1], arc.q[i], q);
+      const auto [along, way2, rest2] = beside(arc.q[i - 1], arc.q[i % arc.q.size()], q);
       const double part = std::min(std::max(along, 0.0), way2);
       if (rest2 - (2 * along - part) * part / std::max(way2, 1e-12) < kBeside2) return true;
     }
   }
   return false;
-}
-
-bool Curve::turn_round(Walk& walk, int lane, const Joints& next) {
-  Joints image = next;
-  if (!joints_.wrap_sums(image.data()) || !walker_.is_inside(image)) return false;
-  walker_.turn_to(lane, image);
-  walk.q.push_back(image);
-  return true;
 }
 
 void Curve::leave(Walk& walk, const Joints& q, const SelfMotionEnd& at) {
@@ -217,15 +192,10 @@ void Curve::leave(Walk& walk, const Joints& q, const SelfMotionEnd& at) {
     nearest = away;
     end = &each;
   }
-  if (end == nullptr) {
-    walk.q.push_back(q);
-    finish(walk, at);
-    return;
-  }
   // Of two that come to one end, one has gone over where the curve is outside of a limit.
-  if (end->is_taken) return;
-  walk.q.push_back(end->q);
-  end->is_taken = true;
+  if (end != nullptr && end->is_taken) return;
+  walk.q.push_back(end != nullptr ? end->q : q);
+  if (end != nullptr) end->is_taken = true;
   finish(walk, at);
 }
 

@@ -76,7 +76,11 @@ void Enumeration::take(const Pose& Y, int lane, bool wants_all) {
   certain_ = certain_ && is_sure && !(beyond > 0);
   certain_but_for_limits_ = certain_but_for_limits_ && is_sure;
   // Where a square is below 0, its two roots are taken to be the same.
-  if (pack_.least[lane] < 0 && has_taken(q)) return;
+  const auto is_same = [&](const Joints& other) {
+    constexpr double kSame = 1e-12;
+    return model_.joints.are_near(q, other, kSame);
+  };
+  if (pack_.least[lane] < 0 && std::any_of(q_.begin(), q_.begin() + size_, is_same)) return;
   ++size_;
 }
 
@@ -103,15 +107,6 @@ bool Enumeration::is_beyond(const Pose& Y, const Joints& q) const {
   const Pose T_base_tcp = to_pose(model_.kernel.base) * Y * to_pose(model_.kernel.tip);
   return is_beyond_limits(model_, T_base_tcp, Eigen::Map<const Eigen::VectorXd>(q.data(), 6),
                           position_tolerance_, rotation_tolerance_);
-}
-
-bool Enumeration::has_taken(const Joints& q) const {
-  constexpr double kSame = 1e-12;
-  const auto is_same = [&](const Joints& other) {
-    return std::equal(q.begin(), q.begin() + model_.dof, other.begin(),
-                      [](double a, double b) { return std::abs(a - b) < kSame; });
-  };
-  return std::any_of(q_.begin(), q_.begin() + size_, is_same);
 }
 
 bool Enumeration::is_regular(int lane, double& bound) {

@@ -42,8 +42,6 @@ class Enumeration final : public BranchList {
   void take_turned(const Pose& Y, int lane);
   /// Whether the arm's solution beside q is certainly no answer (beyond_limits.hpp).
   [[nodiscard]] bool is_beyond(const Pose& Y, const Joints& q) const;
-  /// Whether q is one of those taken so far.
-  [[nodiscard]] bool has_taken(const Joints& q) const;
   /// Whether a lane's branch reaches the target far enough from singularities to tell by how much
   /// the tolerances may move it [rad].
   bool is_regular(int lane, double& bound);

@@ -16,22 +16,23 @@ constexpr std::size_t kMostPeaks = 24;
 
 FreeSamples::FreeSamples(Sweep& sweep, const Scene& scene, const Pose& Y, Memory& memory,
                          Work& work, std::size_t most)
-    : sweep_(sweep), scene_(scene), to_(memory), work_(work), most_(most) {
+    : RowSeeds(work, &Work::take_on_top), sweep_(sweep), scene_(scene), to_(memory), most_(most) {
   look_.is_target_clear = true;
   to_.q.clear();
   to_.samples.clear();
   to_.overlaps.clear();
   to_.places.clear();
-  to_.clearance.assign(Sweep::kSamples * SweptBranches::kCount, kInfinity);
+  to_.clearance.assign(Sweep::kSamples * lanes::kWidth, kInfinity);
   sweep_.set_target(Y);
 }
 
 bool FreeSamples::next_stage() {
-  free_count_ = 0;
-  next_ = 0;
-  while (free_count_ == 0 && !has_most() && (at_ < rows() || add_rows())) screen_pack();
+  std::size_t count = 0;
+  while (count == 0 && !has_most() && (at_ < rows() || add_rows())) count = screen_pack();
+  given_ += count;
+  give(free_.data(), count, kCurveJoints, /*are_answers=*/true);
   work_.lap(&StageTimes::query);
-  return free_count_ > 0;
+  return count > 0;
 }
 
 bool FreeSamples::add_rows() {
@@ -127,12 +128,13 @@ void FreeSamples::find_peaks_and_ends() {
   }
 }
 
-void FreeSamples::screen_pack() {
-  const std::size_t count = std::min<std::size_t>(SweptBranches::kCount, rows() - at_);
+std::size_t FreeSamples::screen_pack() {
+  std::size_t free = 0;
+  const std::size_t count = std::min<std::size_t>(lanes::kWidth, rows() - at_);
   for (std::size_t i = at_; i < at_ + count; ++i) {
     const double above = scene_.data().find_clearance(row(i), look_);
     if (above > 0) {
-      free_[free_count_++] = i;
+      std::copy_n(row(i), kCurveJoints, &free_[kCurveJoints * free++]);
     } else if (i < to_.samples.size()) {
       Place& overlap = to_.overlaps.emplace_back();
       overlap.kind = Place::Kind::overlap;
@@ -147,6 +149,7 @@ void FreeSamples::screen_pack() {
     }
   }
   at_ += count;
+  return free;
 }
 
 bool find_nearest_free(const std::vector<Curve::Arc>& arcs, const Scene& scene,
@@ -164,21 +167,17 @@ bool find_nearest_free(const std::vector<Curve::Arc>& arcs, const Scene& scene,
   std::sort(points.begin(), points.end(),
             [](const auto& a, const auto& b) { return a.first < b.first; });
   q.clear();
-  for (std::size_t i = 0; i < points.size() && q.size() < most * kCurveJoints;
-       i += SweptBranches::kCount) {
-    const std::size_t count = std::min<std::size_t>(SweptBranches::kCount, points.size() - i);
-    std::array<double, SweptBranches::kCount * kCurveJoints> rows{};
+  for (const auto& point : points) q.insert(q.end(), point.second.begin(), point.second.end());
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < points.size() && kept < most; i += lanes::kWidth) {
+    const std::size_t count = std::min<std::size_t>(lanes::kWidth, points.size() - i);
+    bool free[lanes::kWidth] = {};
+    scene.find_free(&q[i * kCurveJoints], count, free);
     for (std::size_t k = 0; k < count; ++k) {
-      std::copy_n(points[i + k].second.data(), kCurveJoints, &rows[k * kCurveJoints]);
-    }
-    std::array<bool, SweptBranches::kCount> free{};
-    scene.find_free(rows.data(), count, free.data());
-    for (std::size_t k = 0; k < count; ++k) {
-      if (!free[k]) continue;
-      const double* row = &rows[k * kCurveJoints];
-      q.insert(q.end(), row, row + kCurveJoints);
+      if (free[k]) std::copy_n(&q[(i + k) * kCurveJoints], kCurveJoints, &q[kCurveJoints * kept++]);
     }
   }
+  q.resize(kept * kCurveJoints);
   return !points.empty();
 }
 

@@ -11,11 +11,12 @@
 #include "goal/joint_move.hpp"
 #include "scene/scene_data.hpp"
 #include "seeds/curve.hpp"
+#include "seeds/row_seeds.hpp"
 #include "seeds/sweep.hpp"
 
 namespace iksel {
 
-class FreeSamples {
+class FreeSamples : public RowSeeds {
  public:
   /// A place of a branch that is not free, or beside which it is looked.
   struct Place {
@@ -49,14 +50,6 @@ class FreeSamples {
   /// they are inside these only between samples.
   bool next_stage();
 
-  template <typename Refiner>
-  bool load(Refiner& refiner, int lane) {
-    if (next_ == free_count_) return false;
-    ++given_;
-    work_.take_on_top();
-    refiner.load_answer(lane, row(free_[next_++]));
-    return true;
-  }
   /// Whether the arm can reach the target at all inside the limits, as far as was seen.
   [[nodiscard]] bool has_any() const { return has_any_; }
   /// Whether as many as are wanted were given.
@@ -74,20 +67,19 @@ class FreeSamples {
   [[nodiscard]] bool is_peak(const Place& overlap) const;
   void find_peaks_and_ends();
   [[nodiscard]] double& clearance(int place, int branch) const {
-    return to_.clearance[static_cast<std::size_t>(place) * SweptBranches::kCount +
+    return to_.clearance[static_cast<std::size_t>(place) * lanes::kWidth +
                          static_cast<std::size_t>(branch)];
   }
   [[nodiscard]] bool exists(int place, int branch) const {
     return clearance(place, branch) < kInfinity;
   }
-  /// Looks at the next rows, as many as there are lanes.
-  void screen_pack();
+  /// Looks at the next rows, as many as there are lanes. Returns how many are free.
+  std::size_t screen_pack();
 
   Sweep& sweep_;
   const Scene& scene_;
   SceneLook look_;
   Memory& to_;
-  Work& work_;
   std::size_t most_;
   std::size_t given_ = 0;
   std::size_t at_ = 0;      ///< row to be looked at next
@@ -98,9 +90,7 @@ class FreeSamples {
   /// What overlaps least of the last peak and what is beside it.
   std::optional<Place> beside_;
   bool has_any_ = false;
-  std::array<std::size_t, SweptBranches::kCount> free_{};
-  std::size_t free_count_ = 0;
-  std::size_t next_ = 0;
+  std::array<double, lanes::kWidth * kCurveJoints> free_{};
 };
 
 /// Of the points on the arcs that are free the `most` nearest to `near`, row by row. False if there

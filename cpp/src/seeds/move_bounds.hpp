@@ -22,6 +22,8 @@ struct BranchPoint {
   double off;     ///< how far it is from being an answer [mixed units]
 
   [[nodiscard]] bool exists() const { return least >= 0; }
+  /// Whether not all joints are known, as some are far from an answer, or that far to be moved.
+  [[nodiscard]] bool is_far() const { return inside >= lanes::kFarAway; }
   /// Whether a limit keeps its joints from the images that are nearest.
   [[nodiscard]] bool is_blocked() const {
     constexpr double kRounding = 1e-6;

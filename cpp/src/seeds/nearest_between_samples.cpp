@@ -31,9 +31,9 @@ std::uint64_t NearestOnCurve::find_loops(int branch) const {
   // How far it is from being at the samples, at two before and one behind.
   std::array<double, kSamples + 3> far;
   for (int place = 0; place < kSamples; ++place) {
-    const SamplePack& pack = packs_[static_cast<std::size_t>(place / kCount)];
+    const SamplePack& pack = packs_[static_cast<std::size_t>(place / lanes::kWidth)];
     far[static_cast<std::size_t>(place + 2)] =
-        pack.is_solved ? pack.branch[branch].least[place % kCount] : lanes::kUnknown;
+        pack.is_solved ? pack.branch[branch].least[place % lanes::kWidth] : lanes::kUnknown;
   }
   far[0] = places_.turns ? far[kSamples] : lanes::kUnknown;
   far[1] = places_.turns ? far[kSamples + 1] : lanes::kUnknown;
@@ -57,35 +57,39 @@ std::uint64_t NearestOnCurve::find_loops(int branch) const {
 
 template <typename Places>
 void NearestOnCurve::visit_gaps(const Places& places_of) {
-  std::array<std::uint64_t, kCount> places;
+  std::array<std::uint64_t, lanes::kWidth> places;
   std::uint64_t all = 0;
-  for (std::size_t i = 0; i < kCount; ++i) all |= places[i] = places_of(i);
+  for (std::size_t i = 0; i < lanes::kWidth; ++i) all |= places[i] = places_of(i);
   for (; all != 0; all &= all - 1) {
     const int place = __builtin_ctzll(all);
     // How far they are from being, where branches were looked for and are not: those that differ in
     // what there is none of are equally far.
-    std::array<double, kCount> missing{};
+    std::array<double, lanes::kWidth> missing{};
     auto end = missing.begin();
-    for (int branch = 0; branch < kCount; ++branch) {
+    for (int branch = 0; branch < lanes::kWidth; ++branch) {
       if ((places[static_cast<std::size_t>(branch)] >> place & 1U) == 0) continue;
-      const double a = least(place - 1, branch);
-      const double b = least(place, branch);
+      const double a = point(place - 1, branch).least;
+      const double b = point(place, branch).least;
       if (std::find(missing.begin(), end, a + b) != end) continue;
-      if (!look_before(place, branch) && std::max(a, b) < 0) *end++ = a + b;
+      const double value = places_.value(place);
+      const bool is_farther = least_move(value) - margin_of_step() > best();
+      if (is_farther || !may_hide_shorter(place, branch)) continue;
+      const bool any = look_into({branch, value - places_.step, value}, kDeepest);
+      if (!any && std::max(a, b) < 0) *end++ = a + b;
     }
   }
 }
 
 std::uint64_t NearestOnCurve::find_staying(int branch) const {
   std::uint64_t all = 0;
-  for (int pack = 0; pack < kPacks; ++pack) {
+  for (int pack = 0; pack < static_cast<int>(packs_.size()); ++pack) {
     const SamplePack& here = packs_[static_cast<std::size_t>(pack)];
     if (!here.is_solved) continue;
     const lanes::BranchRow& row = here.branch[branch];
-    const int next_pack = places_.find((pack + 1) * kCount) / kCount;
+    const int next_pack = places_.find((pack + 1) * lanes::kWidth) / lanes::kWidth;
     const SamplePack& next = packs_[static_cast<std::size_t>(next_pack)];
     const auto stay = [&](std::uint64_t bits, std::uint64_t next_bits) {
-      return bits & ((bits >> 1 & ~kLastLanes) | (next_bits & kFirstLanes) << (kCount - 1));
+      return bits & ((bits >> 1 & ~kLastLanes) | (next_bits & kFirstLanes) << (lanes::kWidth - 1));
     };
     const bool is_next = next.is_solved;
     std::uint64_t bits = stay(row.below, is_next ? next.branch[branch].below : 0) |
@@ -93,42 +97,33 @@ std::uint64_t NearestOnCurve::find_staying(int branch) const {
     bits |= bits >> 32;
     bits |= bits >> 16;
     bits |= bits >> 8;
-    all |= (bits & 0xff) << (pack * kCount);
+    all |= (bits & 0xff) << (pack * lanes::kWidth);
   }
   return all;
-}
-
-bool NearestOnCurve::look_before(int place, int branch) {
-  const double value = places_.value(place);
-  if (least_move(value) - margin_of_step() > best() || !may_hide_shorter(place, branch))
-    return true;
-  return look_into({branch, value - places_.step, value}, kDeepest);
 }
 
 bool NearestOnCurve::may_hide_shorter(int place, int branch) const {
   // How much more than the swept one other joints turn from one sample to the next.
   constexpr double kSteeper = 4;
-  const Sample before = sample(place - 1, branch);
-  const Sample here = sample(place, branch);
-  const BranchPoint a = point(before);
-  const BranchPoint b = point(here);
+  const BranchPoint a = point(place - 1, branch);
+  const BranchPoint b = point(place, branch);
   if (!a.exists() || !b.exists()) {
     std::array<BranchPoint, 2> beside;
     const auto known = [&](int at, std::size_t i) {
-      return is_known(at) ? &(beside[i] = point(sample(at, branch))) : nullptr;
+      return is_known(at) ? &(beside[i] = point(at, branch)) : nullptr;
     };
     return bounds().may_be_shorter({known(place - 2, 0), a, b, known(place + 1, 1)}, best());
   }
-  if (before.is_far() || here.is_far()) return bounds().joints_may_be_shorter(a, b, best());
+  if (a.is_far() || b.is_far()) return bounds().joints_may_be_shorter(a, b, best());
   return bounds().may_hide_shorter(a, b, bounds().way(a, b), kSteeper * places_.step, best());
 }
 
 bool NearestOnCurve::look_into(const BranchSpan& span, int depth) {
   branches_.solve_one(span.branch, [&](int lane) { return span.value(lane); });
-  std::array<BranchPoint, kCount> nodes;
+  std::array<BranchPoint, lanes::kWidth> nodes;
   for (std::size_t i = 0; i < nodes.size(); ++i) nodes[i] = branches_.point(static_cast<int>(i));
   // From each node to the next.
-  std::array<MoveBounds::Way, kCount - 1> ways;
+  std::array<MoveBounds::Way, lanes::kWidth - 1> ways;
   for (std::size_t i = 0; i < ways.size(); ++i) ways[i] = bounds().way(nodes[i], nodes[i + 1]);
 
   for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -156,7 +151,8 @@ bool NearestOnCurve::look_into(const BranchSpan& span, int depth) {
                                          best());
     if (!may_hide) continue;
     if (ways[i].is_swing()) {
-      add_swing(a, b);
+      const BranchPoint nearest = bounds().nearest_on_swing(a, branches_.turns(a, b));
+      if (nearest.inside < best()) add(nearest);
       continue;
     }
     if (depth == 0 || spans_left_ == 0) continue;
@@ -174,23 +170,13 @@ bool NearestOnCurve::may_lead_to_shorter(double cost, const MoveBounds::Way& way
   return cost < best() || cost - way.move < best() - kGain;
 }
 
-void NearestOnCurve::add_swing(const BranchPoint& a, const BranchPoint& b) {
-  const BranchPoint nearest = bounds().nearest_on_swing(a, branches_.turns(a, b));
-  if (nearest.inside < best()) add(nearest);
-}
-
 void NearestOnCurve::follow(const BranchSpan& span, int node, const MoveBounds::Way& way) {
-  const double width = span.spacing();
-  const Bracket bracket{span.branch, span.value(node), width,
-                        kNarrowings, kFinest * width,  !takes_largest_};
-  add_least(
-      bracket, [&](double v) { return std::min(std::max(v, span.lower), span.upper); },
-      [&](double so_far, int round) {
-        // Each round looks at less than a quarter of the way.
-        const double part_of_way = 1.0 / (1 << 2 * round);
-        return round > 0 &&
-               !may_lead_to_shorter(so_far, {part_of_way * way.move, part_of_way * way.largest});
-      });
+  add_least(span, span.value(node), span.spacing(), kNone, [&](double so_far, int round) {
+    // Each round looks at less than a quarter of the way.
+    const double part_of_way = 1.0 / (1 << 2 * round);
+    return round > 0 &&
+           !may_lead_to_shorter(so_far, {part_of_way * way.move, part_of_way * way.largest});
+  });
 }
 
 }  // namespace iksel

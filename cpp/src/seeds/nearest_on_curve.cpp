@@ -13,19 +13,17 @@ NearestOnCurve::NearestOnCurve(const ChainModel& model, const ClosedFormChain& c
     : branches_(model, chain, kernels),
       places_(branches_.places(kSamples)),
       is_nominal_(is_nominal),
-      packs_(kPacks) {}
+      packs_(kSamples / lanes::kWidth) {}
 
 double NearestOnCurve::least_move(double value) const {
-  const auto i = static_cast<std::size_t>(branches_.joint());
-  double d = value - near_[i];
-  if (places_.turns) d = without_turns(d);
-  return weight_[i] * std::abs(d);
+  const double d = value - near_;
+  return weight_ * std::abs(places_.turns ? without_turns(d) : d);
 }
 
 bool NearestOnCurve::find_at_samples(const Pose& Y, const JointVector& near, const JointMove& move,
                                      double known) {
-  std::copy_n(near.data(), SweptBranches::kDof, near_.begin());
-  std::copy_n(move.weights().data(), SweptBranches::kDof, weight_.begin());
+  near_ = near[branches_.joint()];
+  weight_ = move.weights()[branches_.joint()];
   takes_largest_ = move.norm() == MoveNorm::max;
   branches_.measure_moves_from(near, move);
   branches_.set_target(Y);
@@ -41,8 +39,18 @@ bool NearestOnCurve::find_at_samples(const Pose& Y, const JointVector& near, con
 void NearestOnCurve::find_between(double known) {
   if (stays_) return;
   known_move_ = known;
-  find_least_places();
-  for (const LeastPlace& least : least_) {
+  Least<LeastPlace, 2 * kMost> places;
+  for (int branch = 0; branch < lanes::kWidth; ++branch) {
+    std::uint64_t left = exist_[static_cast<std::size_t>(branch)];
+    for (; left != 0; left &= left - 1) {
+      const int place = __builtin_ctzll(left);
+      const double here = cost(place, branch);
+      if (here > kRefused + kNear) continue;
+      if (here > cost(place - 1, branch) || here > cost(place + 1, branch)) continue;
+      places.add({here, place, branch});
+    }
+  }
+  for (const LeastPlace& least : places) {
     if (may_be_shorter(least)) follow(least);
   }
   look_between_samples();
@@ -51,7 +59,7 @@ void NearestOnCurve::find_between(double known) {
 bool NearestOnCurve::prefers_staying(const JointMove& move) const {
   constexpr double kFar = 1e4;
   const double own = move.weights()[branches_.joint()];
-  for (int j = 0; j < SweptBranches::kDof; ++j) {
+  for (int j = 0; j < kCurveJoints; ++j) {
     if (j != branches_.joint() && kFar * move.weights()[j] > own) return false;
   }
   return move.norm() == MoveNorm::two;
@@ -60,15 +68,12 @@ bool NearestOnCurve::prefers_staying(const JointMove& move) const {
 void NearestOnCurve::stay() {
   // What is an answer but for rounding is one when it is refined [mixed units].
   constexpr double kRounding = 1e-6;
-  double value = near_[static_cast<std::size_t>(branches_.joint())];
+  double value = near_;
   if (places_.turns) value -= kTwoPi * std::floor((value - places_.lower) / kTwoPi);
   if (branches_.clamp(value) != value) return;
   branches_.solve_all(value);
-  for (int lane = 0; lane < SweptBranches::kCount; ++lane) {
-    if (branches_.off(lane) > kRounding) continue;
-    SweptJoints found{branches_.moves().inside[lane], {}};
-    branches_.copy_joints(lane, found.q.data());
-    found_.add(found);
+  for (int lane = 0; lane < lanes::kWidth; ++lane) {
+    if (branches_.off(lane) <= kRounding) add(branches_.point(lane));
   }
 }
 
@@ -79,14 +84,14 @@ double NearestOnCurve::look_around() {
   none_.fill(0);
   within_.fill(0);
   double best = std::min(known_move_, kRefused);
-  const double from = near_[static_cast<std::size_t>(branches_.joint())] - places_.lower;
+  const double from = near_ - places_.lower;
   const double start = places_.turns ? from - kTwoPi * std::floor(from / kTwoPi) : from;
   const double last = places_.count - 1;
   const int nearest = static_cast<int>(std::min(std::max(start / places_.step, 0.0), last));
-  best = std::min(best, solve_pack(nearest / kCount, best));
+  best = std::min(best, solve_pack(nearest / lanes::kWidth, best));
   // Between these are the samples that are solved.
-  int below = nearest / kCount * kCount - 1;
-  int above = below + kCount + 1;
+  int below = nearest / lanes::kWidth * lanes::kWidth - 1;
+  int above = below + lanes::kWidth + 1;
   while (above - below <= kSamples) {
     const int low = places_.find(below);
     const int high = places_.find(above);
@@ -94,11 +99,11 @@ double NearestOnCurve::look_around() {
     const double to_high = high < 0 ? kInfinity : least_move(places_.value(high));
     // Beside a sample that is farther away than the best move is long, there is nothing shorter.
     if (std::min(to_low, to_high) - margin_of_step() > best) return best;
-    best = std::min(best, solve_pack((to_low <= to_high ? low : high) / kCount, best));
+    best = std::min(best, solve_pack((to_low <= to_high ? low : high) / lanes::kWidth, best));
     if (to_low <= to_high) {
-      below -= kCount;
+      below -= lanes::kWidth;
     } else {
-      above += kCount;
+      above += lanes::kWidth;
     }
   }
   return best;
@@ -107,40 +112,25 @@ double NearestOnCurve::look_around() {
 double NearestOnCurve::solve_pack(int pack, double best) {
   SamplePack& samples = packs_[static_cast<std::size_t>(pack)];
   samples.is_solved = true;
-  const int first = pack * kCount;
+  const int first = pack * lanes::kWidth;
   const double most = best + kFarther;
   branches_.measure([&](int i) { return places_.value(first + i); }, kNear, most, samples.branch);
-  for (std::size_t branch = 0; branch < kCount; ++branch) {
+  for (std::size_t branch = 0; branch < lanes::kWidth; ++branch) {
     const lanes::BranchRow& row = samples.branch[branch];
     within_[branch] |= row.within << first;
-    for (int i = 0; i < kCount; ++i) {
-      const Sample at{row, i, 0};
+    for (int i = 0; i < lanes::kWidth; ++i) {
       const std::uint64_t bit = std::uint64_t{1} << (first + i);
-      if (at.is_none()) {
+      if (row.least[i] < 0) {
         none_[branch] |= bit;
-      } else if (at.is_far()) {
+      } else if (row.moves.inside[i] >= lanes::kFarAway) {
         far_[branch] |= bit;
       } else {
         exist_[branch] |= bit;
-        best = std::min(best, cost(row.moves, i));
+        best = std::min(best, cost(row.moves.inside[i], row.moves.off[i]));
       }
     }
   }
   return best;
-}
-
-void NearestOnCurve::find_least_places() {
-  least_.clear();
-  for (int branch = 0; branch < kCount; ++branch) {
-    std::uint64_t left = exist_[static_cast<std::size_t>(branch)];
-    for (; left != 0; left &= left - 1) {
-      const int place = __builtin_ctzll(left);
-      const double here = cost(place, branch);
-      if (here > kRefused + kNear) continue;
-      if (here > cost(place - 1, branch) || here > cost(place + 1, branch)) continue;
-      least_.add({here, place, branch});
-    }
-  }
 }
 
 bool NearestOnCurve::may_be_shorter(const LeastPlace& least) const {
@@ -151,7 +141,7 @@ bool NearestOnCurve::may_be_shorter(const LeastPlace& least) const {
     double loose = kInfinity;
     for (const int side : {-1, 0, 1}) {
       if (!is_known(least.place + side)) continue;
-      loose = std::min(loose, sample(least.place + side, least.branch).loose());
+      loose = std::min(loose, point(least.place + side, least.branch).loose);
     }
     return loose - kSteep < best;
   }
@@ -162,7 +152,7 @@ bool NearestOnCurve::may_be_shorter(const LeastPlace& least) const {
   for (const int side : {-1, 1}) {
     const int beside = places_.find(least.place + side);
     if (beside < 0) continue;
-    const bool is_far = is_known(beside) && sample(beside, least.branch).is_far();
+    const bool is_far = is_known(beside) && point(beside, least.branch).is_far();
     const double before = is_far ? best + kFarther : cost(beside, least.branch);
     change = std::max(change, before < kRefused ? before - least.value : kAtEnd);
   }
@@ -170,13 +160,17 @@ bool NearestOnCurve::may_be_shorter(const LeastPlace& least) const {
 }
 
 void NearestOnCurve::follow(const LeastPlace& least) {
-  const Bracket bracket{least.branch, places_.value(least.place), places_.step,
-                        kNarrowings,  kFinest * places_.step,     !takes_largest_};
+  // What is left to be gained after a round, and after two.
+  constexpr double kLittle[] = {0.2, 0.03};
+  // How far what leads to an answer may still be from one after a round, two and three.
+  constexpr std::array<double, 3> kFarOff{0.2, 0.1, 0.05};
   // The sample itself may be all there is.
-  add_least(
-      bracket, [&](double place) { return branches_.clamp(place); },
-      [&](double so_far, int round) { return is_hopeless(so_far, round); },
-      point(sample(least.place, least.branch)));
+  add_least({least.branch, -kInfinity, kInfinity}, places_.value(least.place), places_.step,
+            point(least.place, least.branch), [&](double so_far, int round) {
+              if (round < 1 || best() == kInfinity) return false;
+              if (so_far < kRefused) return so_far - kLittle[std::min(round, 2) - 1] > best();
+              return so_far - kRefused > kFarOff[static_cast<std::size_t>(std::min(round, 3) - 1)];
+            });
 }
 
 void NearestOnCurve::add(const BranchPoint& point) {
@@ -186,16 +180,58 @@ void NearestOnCurve::add(const BranchPoint& point) {
   found_.add(found);
 }
 
-bool NearestOnCurve::is_hopeless(double so_far, int round) const {
-  // What is left to be gained after a round, and after two.
-  constexpr double kLittle[] = {0.2, 0.03};
-  // How far what leads to an answer may still be from one after a round, two and three.
-  constexpr std::array<double, 3> kFarOff{0.2, 0.1, 0.05};
-  if (round < 1 || best() == kInfinity) return false;
-  if (so_far >= kRefused) {
-    return so_far - kRefused > kFarOff[static_cast<std::size_t>(std::min(round, 3) - 1)];
+void NearestOnCurve::add_least(const BranchSpan& span, double middle, double width,
+                               const BranchPoint& best, FunctionRef<bool(double, int)> is_enough) {
+  // What is left to be gained is not worth another round.
+  constexpr double kGain = 1e-8;
+  BranchPoint nearest = kNone;
+  double least = kInfinity;
+  // A guess is looked at closely; where it fails, the bracket is that of before.
+  bool guessed = false;
+  double at = middle;
+  double behind = width;
+  const double finest = kFinest * width;
+  for (int round = 0; round < kNarrowings && width > finest; ++round) {
+    if (is_enough(least, round)) break;
+    const double spacing = 2 * width / (lanes::kWidth + 1);
+    const auto place = [&](int lane) { return middle - width + spacing * (lane + 1); };
+    branches_.solve_one(span.branch, [&](int lane) {
+      return branches_.clamp(std::min(std::max(place(lane), span.lower), span.upper));
+    });
+    SweptBranches::Row costs;
+    for (int lane = 0; lane < lanes::kWidth; ++lane) {
+      costs[static_cast<std::size_t>(lane)] = cost(branches_.point(lane));
+    }
+    const auto best_lane =
+        static_cast<int>(std::min_element(costs.begin(), costs.end()) - costs.begin());
+    const double here = costs[static_cast<std::size_t>(best_lane)];
+    const bool is_inside = best_lane > 0 && best_lane < lanes::kWidth - 1;
+    if (here < least) {
+      least = here;
+      nearest = branches_.point(best_lane);
+      middle = at = place(best_lane);
+    }
+    if (guessed && !(here == least && is_inside)) {
+      // The guess was wrong.
+      middle = at;
+      width = behind;
+      guessed = false;
+      continue;
+    }
+    width = behind = spacing;
+    guessed = false;
+    if (!is_inside || takes_largest_) continue;
+    // The cost is smooth but for where the branch ends: a parabola then tells where it is least.
+    const double left = costs[static_cast<std::size_t>(best_lane - 1)];
+    const double right = costs[static_cast<std::size_t>(best_lane + 1)];
+    const double curvature = left - 2 * here + right;
+    if (!(left < kRefused && right < kRefused && curvature > 0)) continue;
+    if ((left - right) * (left - right) <= 8 * kGain * curvature * here) break;
+    middle += 0.5 * (left - right) / curvature * spacing;
+    width = 0.2 * spacing;
+    guessed = true;
   }
-  return so_far - kLittle[std::min(round, 2) - 1] > best();
+  add(cost(best) < cost(nearest) ? best : nearest);
 }
 
 }  // namespace iksel

@@ -8,9 +8,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/function_ref.hpp"
+#include "base/least.hpp"
 #include "goal/joint_move.hpp"
-#include "seeds/least_cost.hpp"
-#include "seeds/least_places.hpp"
 #include "seeds/move_bounds.hpp"
 #include "seeds/swept_branches.hpp"
 
@@ -49,7 +49,6 @@ class NearestOnCurve {
 
   /// As many as bits of a word.
   static constexpr int kSamples = 64;
-  static constexpr int kPacks = kSamples / lanes::kWidth;
   static constexpr std::size_t kMost = 8;
   /// What is no answer counts more than any move, and the more the farther it is from one.
   static constexpr double kRefused = 1e9;
@@ -71,46 +70,24 @@ class NearestOnCurve {
   static constexpr double kNear = 0.2;
   /// Nor is there anything beside samples that are so much farther away than what is known [rad].
   static constexpr double kFarther = 0.1;
-  static constexpr int kCount = SweptBranches::kCount;
   /// The first and last lane of each byte: of a joint in what BranchRow has of limits, of a pack in
   /// the bits of places.
   static constexpr std::uint64_t kFirstLanes = 0x0101010101010101;
-  static constexpr std::uint64_t kLastLanes = kFirstLanes << (kCount - 1);
+  static constexpr std::uint64_t kLastLanes = kFirstLanes << (lanes::kWidth - 1);
 
-  /// Every branch at kCount samples of the swept joint beside each other.
+  /// Every branch at lanes::kWidth samples of the swept joint beside each other.
   struct SamplePack {
     bool is_solved = false;
-    lanes::BranchRow branch[kCount];
-  };
-
-  /// A branch at a sample of the swept joint.
-  struct Sample {
-    const lanes::BranchRow& row;
-    int lane;
-    double value;  ///< of the swept joint
-
-    /// Whether it is known not to be.
-    [[nodiscard]] bool is_none() const { return row.least[lane] < 0; }
-    /// Whether not all joints are known, as some are far from an answer, or that far from `near`.
-    [[nodiscard]] bool is_far() const { return row.moves.inside[lane] >= lanes::kFarAway; }
-    /// The move to it by its joints' nearest images, inside the limits or not; at least so much.
-    [[nodiscard]] double loose() const { return row.moves.loose[lane]; }
+    lanes::BranchRow branch[lanes::kWidth];
   };
 
   /// A move, or more than kRefused where that is so far from an answer.
   [[nodiscard]] static double cost(double inside, double off) {
     return off > 0 ? kRefused + off : inside;
   }
-  /// The move to what a lane holds, or more than kRefused.
-  [[nodiscard]] static double cost(const lanes::MovePack& moves, int lane) {
-    return cost(moves.inside[lane], moves.off[lane]);
-  }
-  [[nodiscard]] double cost(int lane) const { return cost(branches_.moves(), lane); }
   /// Of a branch at a sample; infinite where it is not known to be.
   [[nodiscard]] double cost(int place, int branch) const {
-    if (!exists(place, branch)) return kInfinity;
-    const Sample at = sample(place, branch);
-    return cost(at.row.moves, at.lane);
+    return exists(place, branch) ? cost(point(place, branch)) : kInfinity;
   }
   [[nodiscard]] static double cost(const BranchPoint& point) {
     return cost(point.inside, point.off);
@@ -118,9 +95,7 @@ class NearestOnCurve {
   /// At least how long the move is to any answer at a value of the swept joint; and how much less
   /// that may be one sample nearer.
   [[nodiscard]] double least_move(double value) const;
-  [[nodiscard]] double margin_of_step() const {
-    return weight_[static_cast<std::size_t>(branches_.joint())] * places_.step;
-  }
+  [[nodiscard]] double margin_of_step() const { return weight_ * places_.step; }
   /// The shortest move so far; infinite if there is none.
   [[nodiscard]] double best() const {
     return found_.size() > 0 ? std::min(found_[0].value, known_move_) : known_move_;
@@ -136,22 +111,15 @@ class NearestOnCurve {
   /// Whether a sample was solved; places count by whole turns of the swept joint.
   [[nodiscard]] bool is_known(int place) const {
     const int at = places_.find(place);
-    return at >= 0 && packs_[static_cast<std::size_t>(at / kCount)].is_solved;
+    return at >= 0 && packs_[static_cast<std::size_t>(at / lanes::kWidth)].is_solved;
   }
-  /// Of one that was.
-  [[nodiscard]] Sample sample(int place, int branch) const {
+  /// A branch at one that was.
+  [[nodiscard]] BranchPoint point(int place, int branch) const {
     const int at = places_.find(place);
-    const SamplePack& pack = packs_[static_cast<std::size_t>(at / kCount)];
-    return {pack.branch[branch], at % kCount, places_.value(at)};
+    const SamplePack& pack = packs_[static_cast<std::size_t>(at / lanes::kWidth)];
+    return branches_.point(places_.value(at), pack.branch[branch], at % lanes::kWidth);
   }
   [[nodiscard]] MoveBounds bounds() const { return MoveBounds(branches_.move_form()); }
-  [[nodiscard]] BranchPoint point(const Sample& sample) const {
-    return branches_.point(sample.value, sample.row, sample.lane);
-  }
-  [[nodiscard]] double least(int place, int branch) const {
-    const Sample at = sample(place, branch);
-    return at.row.least[at.lane];
-  }
   [[nodiscard]] bool exists(int place, int branch) const {
     const int at = places_.find(place);
     return at >= 0 && (exist_[static_cast<std::size_t>(branch)] >> at & 1U) != 0;
@@ -159,34 +127,30 @@ class NearestOnCurve {
   /// Whether there may be a shorter move than the best so far beside a sample.
   [[nodiscard]] bool may_be_shorter(const LeastPlace& least) const;
   void follow(const LeastPlace& least);
-  /// Adds the least of a bracket (minimize in least_cost.hpp), or `best` if that is less.
-  template <typename Value, typename IsEnough>
-  void add_least(const Bracket& bracket, const Value& value, const IsEnough& is_enough,
-                 const BranchPoint& best = kNone) {
-    BranchPoint least = kNone;
-    const auto take = [&](int lane, double) { least = branches_.point(lane); };
-    minimize(
-        branches_, bracket, value, [&](int lane) { return cost(lane); }, kRefused, take, is_enough);
-    add(cost(best) < cost(least) ? best : least);
-  }
+  /// Values of the swept joint between which a branch is looked into, at lanes::kWidth nodes.
+  struct BranchSpan {
+    int branch;
+    double lower, upper;  ///< [rad or m]
+
+    [[nodiscard]] double spacing() const { return (upper - lower) / (lanes::kWidth - 1); }
+    [[nodiscard]] double value(int node) const { return lower + spacing() * node; }
+  };
+  /// Adds the least of a branch up to `width` to both sides of a value, inside the span, or `best`
+  /// if that is less. It is looked for at lanes::kWidth values a round, each round around the least
+  /// so far; the search ends early where `is_enough(cost, round)`.
+  void add_least(const BranchSpan& span, double middle, double width, const BranchPoint& best,
+                 FunctionRef<bool(double, int)> is_enough);
   /// Adds a point, if it is an answer or all but: where two joints are at limits that let neither
   /// move on, it may be all there is of the curve.
   void add(const BranchPoint& point);
-  /// Finds the samples at which a branch costs less than at those beside.
-  void find_least_places();
   void look_between_samples();
   /// Looks before those places of each branch, given as bits by places_of(branch).
   template <typename Places>
   void visit_gaps(const Places& places_of);
-  /// Between a sample and the one before; false if the branch was looked for there and is not.
-  bool look_before(int place, int branch);
   /// Whether there may be a shorter move than the best so far there that the samples do not tell
   /// of.
   [[nodiscard]] bool may_hide_shorter(int place, int branch) const;
-  /// Bits of the places before these, or behind.
-  [[nodiscard]] std::uint64_t before(std::uint64_t places) const {
-    return places >> 1 | (places_.turns ? places << (kSamples - 1) : 0);
-  }
+  /// Bits of the places behind these.
   [[nodiscard]] std::uint64_t behind(std::uint64_t places) const {
     return places << 1 | (places_.turns ? places >> (kSamples - 1) : 0);
   }
@@ -194,21 +158,9 @@ class NearestOnCurve {
   [[nodiscard]] std::uint64_t find_loops(int branch) const;
   /// The samples from which to the next a joint stays beyond the same limit, as bits.
   [[nodiscard]] std::uint64_t find_staying(int branch) const;
-  /// Whether a search that came so far after some rounds need not go on.
-  [[nodiscard]] bool is_hopeless(double so_far, int round) const;
-  /// Values of the swept joint between which a branch is looked into, at kCount nodes.
-  struct BranchSpan {
-    int branch;
-    double lower, upper;  ///< [rad or m]
-
-    [[nodiscard]] double spacing() const { return (upper - lower) / (kCount - 1); }
-    [[nodiscard]] double value(int node) const { return lower + spacing() * node; }
-  };
   /// Looks for the least moves in a span, at its nodes, and between these where there may be
   /// shorter ones that they do not tell of, down to so many levels.
   bool look_into(const BranchSpan& span, int depth);
-  /// Adds the nearest between two points between which joints swing.
-  void add_swing(const BranchPoint& a, const BranchPoint& b);
   /// Looks for the least move around a node of a span, as far as those beside it, which are up to
   /// `way` away.
   void follow(const BranchSpan& span, int node, const MoveBounds::Way& way);
@@ -220,18 +172,17 @@ class NearestOnCurve {
   bool is_nominal_;
 
   // Of the last search.
-  std::array<double, SweptBranches::kDof> near_{}, weight_{};
+  double near_ = 0, weight_ = 0;  ///< of the swept joint
   /// The samples at which all joints of a branch are known, at which it is far, and at which it is
   /// not, as bits.
-  std::array<std::uint64_t, kCount> exist_{}, far_{}, none_{};
+  std::array<std::uint64_t, lanes::kWidth> exist_{}, far_{}, none_{};
   /// Those at which by the joints known it may be near enough.
-  std::array<std::uint64_t, kCount> within_{};
+  std::array<std::uint64_t, lanes::kWidth> within_{};
   double known_move_ = 0;
   bool takes_largest_ = false;
   bool stays_ = false;  ///< all that matters is found at one value of the swept joint
   int spans_left_ = 0;
   std::vector<SamplePack> packs_;
-  LeastPlaces<2 * kMost> least_;
   Least<SweptJoints, kMost> found_;
 };
 

@@ -16,8 +16,9 @@ class RowSeeds {
  public:
   /// `count` rows of `dof` joint values at q, each as near to an answer as its maker can tell
   /// (`are_answers`), or only a seed. They come on top of those that `work` allows.
-  RowSeeds(const double* q, std::size_t count, std::size_t dof, bool are_answers, Work& work)
-      : RowSeeds(work, &Work::take_on_top) {
+  RowSeeds(const double* q, std::size_t count, std::size_t dof, bool are_answers, Work& work,
+           bool (Work::*take)() = &Work::take_on_top)
+      : RowSeeds(work, take) {
     give(q, count, dof, are_answers);
   }
   /// A seed that may be null: there is none then.

@@ -23,22 +23,17 @@ void SeedScreen::begin(const Pose& Y) {
   filled_ = 0;
 }
 
-int SeedScreen::run() {
-  const int filled = filled_;
-  filled_ = 0;
-  near_ = 0;
+int SeedScreen::run(double (*rows)[lanes::kMaxJoints], std::size_t& count) {
   if (iterations_ > 0) advance_(chain_, options_, iterations_, pack_);
-  for (int place = 0; place < filled; ++place) {
-    if (iterations_ == 0 || pack_.error2[place] < kNear2) {
-      near_ |= 1U << static_cast<unsigned>(place);
+  for (int place = 0; place < filled_; ++place) {
+    if (iterations_ > 0 && !(pack_.error2[place] < kNear2)) continue;
+    double* q = rows[count++];
+    for (int j = 0; j < chain_.n; ++j) {
+      q[j] = units_.from_lane(j, static_cast<double>(pack_.q[j][place]));
     }
   }
+  filled_ = 0;
   return iterations_;
-}
-
-void SeedScreen::copy(int place, double* q) const {
-  for (int j = 0; j < chain_.n; ++j)
-    q[j] = units_.from_lane(j, static_cast<double>(pack_.q[j][place]));
 }
 
 ScreenedSeeds::ScreenedSeeds(LaneQuery& query, SeedScreen& screen, const Pose& Y,
@@ -56,7 +51,7 @@ bool ScreenedSeeds::next_stage() {
   work_.lap(&StageTimes::iterate);
   if (!work_.has_left()) return false;
   near_count_ = 0;
-  for (int pack = 0; pack < kPacks && work_.has_left(); ++pack) screen_one_pack();
+  for (int pack = 1; pack <= kPacks && work_.has_left(); ++pack) screen_one_pack(pack == kPacks);
   give(near_[0], near_count_, lanes::kMaxJoints, /*are_answers=*/false);
   work_.lap(&StageTimes::rank);
   return true;
@@ -73,8 +68,7 @@ bool ScreenedSeeds::take_block() {
   return true;
 }
 
-void ScreenedSeeds::screen_one_pack() {
-  const bool is_random = ++packs_ % kRandomEvery == 0;
+void ScreenedSeeds::screen_one_pack(bool is_random) {
   while (!screen_.is_full() && work_.take()) {
     if (!is_random && (rank_ < last_rank_ || take_block())) {
       const int entry = block_->order[rank_++];
@@ -85,12 +79,7 @@ void ScreenedSeeds::screen_one_pack() {
       screen_.add([&](int j) { return q[j]; });
     }
   }
-  work_.iterations += screen_.run();
-  for (int place = 0; place < lanes::kBlock; ++place) {
-    if ((screen_.near() >> static_cast<unsigned>(place) & 1U) != 0) {
-      screen_.copy(place, near_[near_count_++]);
-    }
-  }
+  work_.iterations += screen_.run(near_, near_count_);
 }
 
 }  // namespace iksel

@@ -34,12 +34,9 @@ class SeedScreen {
     }
     ++filled_;
   }
-  /// Iterates what was added, and empties the places for more. Returns the iterations.
-  int run();
-  /// Seeds of the last run() that came near, as bits.
-  [[nodiscard]] unsigned near() const { return near_; }
-  /// Joint values of one of them; good until others are added.
-  void copy(int place, double* q) const;
+  /// Iterates what was added, and empties the places for more: adds the joint values of those that
+  /// came near to rows from `count` on. Returns the iterations.
+  int run(double (*rows)[lanes::kMaxJoints], std::size_t& count);
 
  private:
   /// What few seeds that fail come down to, and most that do not: squared error [rad and units].
@@ -54,7 +51,6 @@ class SeedScreen {
   int iterations_;
   lanes::RoughPack pack_{};
   int filled_ = 0;
-  unsigned near_ = 0;
 };
 
 class ScreenedSeeds : public RowSeeds {
@@ -67,15 +63,14 @@ class ScreenedSeeds : public RowSeeds {
   bool next_stage();
 
  private:
-  /// Packs of a stage: what is near of these fills the lanes.
+  /// Packs of a stage: what is near of these fills the lanes. The last is at random, should the
+  /// database's samples lead nowhere: of 50 million reachable targets of arms that are searched 27
+  /// had been lost, with none but after the whole database, and 7 are, all of one arm (python -m
+  /// bench lost --random 250 --targets 100000 --seed 424242000 --builds right_angles_6
+  /// right_angles_7).
   static constexpr int kPacks = 4;
-  /// One pack of so many is at random, should the database's samples lead nowhere: of 50 million
-  /// reachable targets of arms that are searched 27 had been lost, with none but after the whole
-  /// database, and 7 are, all of one arm (python -m bench lost --random 250 --targets 100000 --seed
-  /// 424242000 --builds right_angles_6 right_angles_7).
-  static constexpr int kRandomEvery = 4;
 
-  void screen_one_pack();
+  void screen_one_pack(bool is_random);
   /// Goes on to the next block; false if there are no more.
   bool take_block();
 
@@ -89,7 +84,6 @@ class ScreenedSeeds : public RowSeeds {
   int last_rank_ = 0;     ///< and how many of it are tried
   double near_[kPacks * lanes::kBlock][lanes::kMaxJoints];
   std::size_t near_count_ = 0;
-  int packs_ = 0;
 };
 
 }  // namespace iksel

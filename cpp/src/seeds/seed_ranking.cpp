@@ -11,18 +11,15 @@ namespace iksel {
 SeedRanking::SeedRanking(const RobotModel& model, const Paper& scheme, double cutoff)
     : model_(model), scheme_(scheme), cutoff_(cutoff), queue_(model.dof, scheme, kRoom) {}
 
-bool SeedRanking::rank(const Goal& goal, const std::vector<JointVector>& seeds,
+void SeedRanking::rank(const Goal& goal, const std::vector<JointVector>& seeds,
                        FunctionRef<bool()> should_continue) {
-  /// Seeds between two questions: a fraction of a millisecond.
-  constexpr std::size_t kStage = 16;
   seeds_ = &seeds;
   queue_.clear(seeds.size());
   for (std::size_t i = 0; i < seeds.size(); ++i) {
-    if (i % kStage == 0 && !should_continue()) return false;
+    if (!should_continue()) return;
     queue_.push(rank_one(i, goal));
   }
   queue_.sort(seeds.size());
-  return true;
 }
 
 Vector6 SeedRanking::error_of(const JointVector& q, const Goal& goal, JacobianMatrix& J) const {
@@ -54,7 +51,14 @@ Candidate SeedRanking::rank_one(std::size_t index, const Goal& goal) const {
   const JointVector& q = (*seeds_)[index];
   Candidate ranked{0, static_cast<std::uint32_t>(index), 0, false};
   if (seeds_->size() == 1) return ranked;
-  if (goal.tips() != nullptr) return rank_for_tips(ranked, goal);
+  if (goal.tips() != nullptr) {
+    // Small beside what is missing of a pose of interest, and enough where the robot is singular.
+    constexpr double kDamping = 1e-6;
+    TipsGoal::Linear at;
+    goal.linearize(q, /*exact=*/false, at);
+    ranked.score = damped_solve(at.J, kDamping, at.missing).squaredNorm();
+    return ranked;
+  }
   JacobianMatrix J;
   const Vector6 e = error_of(q, goal, J);
   ranked.score = e.squaredNorm();
@@ -62,16 +66,6 @@ Candidate SeedRanking::rank_one(std::size_t index, const Goal& goal) const {
   const JointVector adjustment = TruncatedSvd(J, cutoff_).solve(e);
   if (scheme_.ranking == Ranking::joint_adjustment) ranked.score = adjustment.squaredNorm();
   ranked.leaves_limits = scheme_.limit_aware && model_.joints.leaves(q.data(), adjustment.data());
-  return ranked;
-}
-
-Candidate SeedRanking::rank_for_tips(Candidate ranked, const Goal& goal) const {
-  // Small beside what is missing of a pose of interest, and enough where the robot is singular.
-  constexpr double kDamping = 1e-6;
-  const JointVector& q = (*seeds_)[ranked.index];
-  TipsGoal::Linear at;
-  goal.linearize(q, /*exact=*/false, at);
-  ranked.score = damped_solve(at.J, kDamping, at.missing).squaredNorm();
   return ranked;
 }
 

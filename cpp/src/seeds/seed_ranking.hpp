@@ -12,6 +12,7 @@
 #include "iksel/options.hpp"
 #include "kinematics/chain_model.hpp"
 #include "seeds/candidate_queue.hpp"
+#include "seeds/row_seeds.hpp"
 
 namespace iksel {
 
@@ -24,8 +25,8 @@ class SeedRanking {
   SeedRanking(const RobotModel& model, const Paper& scheme, double cutoff);
 
   /// Puts `seeds`, which must outlive their use, in order: n log n for n of them. Asks
-  /// `should_continue` every few; false if that said no, and there are no seeds then.
-  bool rank(const Goal& goal, const std::vector<JointVector>& seeds,
+  /// `should_continue` before each; there are none if that says no.
+  void rank(const Goal& goal, const std::vector<JointVector>& seeds,
             FunctionRef<bool()> should_continue);
 
   /// The seed of the next attempt; null when there is none left.
@@ -35,8 +36,6 @@ class SeedRanking {
 
  private:
   [[nodiscard]] Candidate rank_one(std::size_t index, const Goal& goal) const;
-  /// The same of several tips.
-  [[nodiscard]] Candidate rank_for_tips(Candidate ranked, const Goal& goal) const;
   /// The error to be reduced, and the Jacobian J of what reduces it.
   Vector6 error_of(const JointVector& q, const Goal& goal, JacobianMatrix& J) const;
 
@@ -49,43 +48,34 @@ class SeedRanking {
 
 /// These as a source of seeds. They come on top of max_attempts, which bounds how many of them are
 /// tried.
-class GivenSeeds {
+class GivenSeeds : public RowSeeds {
  public:
-  /// A stage has `per_stage` seeds. `should_continue` is asked while they are ranked.
+  /// A stage has `per_stage` seeds, kBlock at most. `should_continue` is asked while they are
+  /// ranked.
   GivenSeeds(SeedRanking& ranking, const Goal& goal, const std::vector<JointVector>& seeds,
-             int most, int per_stage, FunctionRef<bool()> should_continue, Work& work)
-      : ranking_(ranking),
+             int most, std::size_t per_stage, FunctionRef<bool()> should_continue, Work& work)
+      : RowSeeds(work, &Work::take_on_top),
+        ranking_(ranking),
         goal_(goal),
         seeds_(seeds),
         left_(most),
         per_stage_(per_stage),
-        should_continue_(should_continue),
-        work_(work) {}
+        should_continue_(should_continue) {}
 
   bool next_stage() {
-    left_in_stage_ = std::min(left_, per_stage_);
-    left_ -= left_in_stage_;
-    if (seeds_.empty() || left_in_stage_ == 0 || is_empty_) return false;
-    if (!ranked_) {
-      // Interrupted by the deadline, the stage is empty, and the search then ends.
-      ranking_.rank(goal_, seeds_, should_continue_);
-      ranked_ = true;
+    if (seeds_.empty()) return false;
+    // Interrupted by the deadline, there are none, and the search then ends.
+    if (!ranked_) ranking_.rank(goal_, seeds_, should_continue_);
+    ranked_ = true;
+    const auto dof = static_cast<std::size_t>(seeds_[0].size());
+    std::size_t count = 0;
+    for (; count < per_stage_ && left_ > 0; ++count, --left_) {
+      const double* seed = ranking_.next();
+      if (seed == nullptr) break;
+      std::copy_n(seed, dof, rows_ + count * dof);
     }
-    return true;
-  }
-
-  template <typename Refiner>
-  bool load(Refiner& refiner, int lane) {
-    if (left_in_stage_ == 0) return false;
-    --left_in_stage_;
-    const double* seed = ranking_.next();
-    if (seed == nullptr) {
-      is_empty_ = true;
-      return false;
-    }
-    work_.take_on_top();
-    refiner.load_seed(lane, seed);
-    return true;
+    give(rows_, count, dof, /*are_answers=*/false);
+    return count > 0;
   }
 
  private:
@@ -93,12 +83,10 @@ class GivenSeeds {
   const Goal& goal_;
   const std::vector<JointVector>& seeds_;
   int left_;
-  int per_stage_;
+  std::size_t per_stage_;
   FunctionRef<bool()> should_continue_;
-  Work& work_;
   bool ranked_ = false;
-  bool is_empty_ = false;
-  int left_in_stage_ = 0;
+  double rows_[lanes::kBlock * kMaxDof];
 };
 
 }  // namespace iksel

@@ -19,13 +19,10 @@ namespace iksel {
 /// Picks seeds for one target. Memory is taken at construction, none later.
 class Selection {
  public:
-  /// `nominal` is the chain that the data belongs to; `model` may differ from it a little.
-  Selection(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
-            const Paper& scheme)
-      : Selection(&model, &nominal, data, scheme) {}
-  /// Without a chain: for a full key, and a scheme that asks for no limits.
-  Selection(const DatabaseData& data, const Paper& scheme)
-      : Selection(nullptr, nullptr, data, scheme) {}
+  /// `nominal` is the chain that the data belongs to; `model` may differ from it a little. Both may
+  /// be null for a full key, and a scheme that asks for no limits.
+  Selection(const ChainModel* model, const ChainModel* nominal, const DatabaseData& data,
+            const Paper& scheme);
 
   /// From now on there is room for that many neighbours.
   void make_room(std::size_t k) { neighbours_.resize(std::min(k, data_.size)); }
@@ -64,8 +61,6 @@ class Selection {
   [[nodiscard]] const double* seed_of(const Candidate& candidate) const;
 
  private:
-  Selection(const ChainModel* model, const ChainModel* nominal, const DatabaseData& data,
-            const Paper& scheme);
   /// Keeps those within the threshold of Eq. (3).
   void drop_far_neighbours();
   void score(Candidate& candidate) const;

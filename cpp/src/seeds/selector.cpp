@@ -17,7 +17,7 @@ struct Selector::Impl {
       : database(database_in),
         given(scheme_in),
         scheme(scheme_in),
-        selection(database.data(), scheme) {}
+        selection(nullptr, nullptr, database.data(), scheme) {}
 
   /// The neighbours of the last target, ranked.
   Candidates rank(Ranking ranking) {

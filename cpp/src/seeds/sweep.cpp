@@ -5,6 +5,16 @@
 #include <cmath>
 
 namespace iksel {
+namespace {
+
+/// The least of all branches.
+double least_of(const SweptBranches::Row& row) {
+  double least = row[0];
+  for (const double value : row) least = std::min(least, value);
+  return least;
+}
+
+}  // namespace
 
 Sweep::Sweep(const ChainModel& model, const ClosedFormChain& chain, bool is_nominal,
              double position_tolerance, double rotation_tolerance,
@@ -16,7 +26,7 @@ Sweep::Sweep(const ChainModel& model, const ClosedFormChain& chain, bool is_nomi
       is_nominal_(is_nominal),
       rows_(kSamples) {
   // Memory is taken here, and none while solving: two branches of each open piece are looked at.
-  looked_.reserve(2 * kPlaces * enclosure_.open().capacity());
+  looked_.reserve(2 * lanes::kWidth * enclosure_.open().capacity());
   found_.reserve(kFollowed * kCurveJoints);
   const double tolerance = std::max(position_tolerance / chain.unit, rotation_tolerance);
   if (!concludes_from_branches(is_nominal, tolerance)) return;
@@ -29,11 +39,11 @@ bool Sweep::find_at_samples(const Pose& Y) {
   constexpr int kEvery = 4;
   set_target(Y);
   found_.clear();
-  for (int first = 0; first < kSamples; first += kEvery * SweptBranches::kCount) {
+  for (int first = 0; first < kSamples; first += kEvery * lanes::kWidth) {
     const auto value = [&](int i) { return places_.value(first + kEvery * i); };
-    SweptBranches::Row rows[SweptBranches::kCount];
+    SweptBranches::Row rows[lanes::kWidth];
     branches_.rate(value, kNear, rows);
-    for (int i = 0; i < SweptBranches::kCount; ++i) {
+    for (int i = 0; i < lanes::kWidth; ++i) {
       if (take_answer(rows[i], value(i))) return true;
     }
   }
@@ -46,7 +56,7 @@ bool Sweep::find_between(const Pose& Y) {
   for (enclosure_.begin(Y);; enclosure_.halve()) {
     enclosure_.close();
     // Longer pieces have samples in them.
-    if (enclosure_.is_through()) return look_in_pieces(kPlaces) || follow_nearest();
+    if (enclosure_.is_through()) return look_in_pieces(lanes::kWidth) || follow_nearest();
     if (2 * enclosure_.half() < places_.step && look_in_pieces(1)) return true;
   }
 }
@@ -66,12 +76,12 @@ bool Sweep::look_in_pieces(int places) {
   std::size_t count = 0;
   for (std::size_t first = 0; first < looked_.size(); first += count) {
     const int branch = looked_[first].branch;
-    const std::size_t most = std::min<std::size_t>(SweptBranches::kCount, looked_.size() - first);
+    const std::size_t most = std::min<std::size_t>(lanes::kWidth, looked_.size() - first);
     for (count = 1; count < most && looked_[first + count].branch == branch;) ++count;
     const auto value = [&](int lane) {
       return looked_[first + std::min(static_cast<std::size_t>(lane), count - 1)].at;
     };
-    double off[SweptBranches::kCount];
+    double off[lanes::kWidth];
     if (rate(branch, value, off)) return true;
     for (std::size_t lane = 0; lane < count; ++lane) looked_[first + lane].value = off[lane];
   }
@@ -79,13 +89,13 @@ bool Sweep::look_in_pieces(int places) {
 }
 
 template <typename Value>
-bool Sweep::rate(int branch, const Value& value, double (&off)[SweptBranches::kCount]) {
+bool Sweep::rate(int branch, const Value& value, double (&off)[lanes::kWidth]) {
   // No angle is off by more.
   constexpr double kAnyAngle = 10;
   branches_.rate_one(branch, value, kNear, off);
-  if (*std::min_element(off, off + SweptBranches::kCount) > 0) return false;
+  if (*std::min_element(off, off + lanes::kWidth) > 0) return false;
   branches_.solve_one(branch, value);
-  for (int lane = 0; lane < SweptBranches::kCount; ++lane) {
+  for (int lane = 0; lane < lanes::kWidth; ++lane) {
     if (off[lane] > 0) continue;
     if (take(lane)) return true;
     off[lane] = branches_.off(lane) - kAnyAngle;
@@ -135,7 +145,7 @@ void Sweep::visit_nearest(const Pose& Y, std::size_t most,
   set_target(Y);
   rate_samples();
   JointVector q(kCurveJoints);
-  nearest_.find(places_, rows_, kNear);
+  find_nearest(-kInfinity);
   for (const LeastPlace& near : nearest_) {
     if (most-- == 0) return;
     branches_.solve_all(places_.value(near.place));
@@ -144,8 +154,31 @@ void Sweep::visit_nearest(const Pose& Y, std::size_t most,
   }
 }
 
+void Sweep::find_nearest(double beyond) {
+  SweptBranches::Row none;
+  none.fill(kInfinity);
+  const auto row = [&](int place) -> const SweptBranches::Row& {
+    const int at = places_.find(place);
+    return at < 0 ? none : rows_[static_cast<std::size_t>(at)];
+  };
+  nearest_.clear();
+  for (int place = 0; place < places_.count; ++place) {
+    const SweptBranches::Row& here = row(place);
+    if (least_of(here) > kNear) continue;
+    const SweptBranches::Row& before = row(place - 1);
+    const SweptBranches::Row& behind = row(place + 1);
+    for (std::size_t i = 0; i < here.size(); ++i) {
+      // Of conditions one by one few could be foreseen.
+      const double least = std::min(kNear, std::min(before[i], behind[i]));
+      if (here[i] <= least && here[i] > beyond) {
+        nearest_.add({here[i], place, static_cast<int>(i)});
+      }
+    }
+  }
+}
+
 void Sweep::rate_samples() {
-  for (int first = 0; first < places_.count; first += SweptBranches::kCount) {
+  for (int first = 0; first < places_.count; first += lanes::kWidth) {
     branches_.rate([&](int i) { return places_.value(first + i); }, kNear,
                    &rows_[static_cast<std::size_t>(first)]);
   }
@@ -154,7 +187,7 @@ void Sweep::rate_samples() {
 bool Sweep::take_answer(const SweptBranches::Row& off, double value) {
   if (least_of(off) > 0) return false;
   branches_.solve_all(value);
-  for (int branch = 0; branch < SweptBranches::kCount; ++branch) {
+  for (int branch = 0; branch < lanes::kWidth; ++branch) {
     if (off[static_cast<std::size_t>(branch)] <= 0 && take(branch)) return true;
   }
   return false;
@@ -165,24 +198,20 @@ bool Sweep::take(int lane) {
   // would do.
   constexpr double kRounding = 1e-9;
   if (branches_.off(lane) > kRounding) return false;
-  branches_.copy_inside(lane, q_.data());
-  found_.assign(q_.begin(), q_.end());
+  branches_.copy_joints(lane, q_.data());
+  const JointVector inside =
+      joints_.clamp(Eigen::Map<const Eigen::VectorXd>(q_.data(), kCurveJoints));
+  found_.assign(inside.begin(), inside.end());
   return true;
-}
-
-void Sweep::add_samples(const Pose& Y, int first, int stride, std::vector<double>& q) {
-  std::vector<Sample> samples;
-  set_target(Y);
-  add_samples(first, stride, q, samples);
 }
 
 void Sweep::add_samples(int first, int stride, std::vector<double>& q,
                         std::vector<Sample>& samples) {
   // Eight places are rated in the time in which two or three are solved.
   const int count = (kSamples - first + stride - 1) / stride;
-  SweptBranches::Row rows[SweptBranches::kCount];
+  SweptBranches::Row rows[lanes::kWidth];
   for (int i = 0; i < count; ++i) {
-    const int lane_of_row = i % SweptBranches::kCount;
+    const int lane_of_row = i % lanes::kWidth;
     const auto place_of = [&](int k) { return first + stride * std::min(k, count - 1); };
     if (lane_of_row == 0) {
       branches_.rate([&](int k) { return places_.value(place_of(i + k)); }, kNear, rows);
@@ -192,7 +221,7 @@ void Sweep::add_samples(int first, int stride, std::vector<double>& q,
     rows_[static_cast<std::size_t>(place)] = off;
     if (least_of(off) > 0) continue;
     branches_.solve_all(places_.value(place));
-    for (int lane = 0; lane < SweptBranches::kCount; ++lane) {
+    for (int lane = 0; lane < lanes::kWidth; ++lane) {
       if (branches_.off(lane) > 0) continue;
       branches_.copy_joints(lane, q_.data());
       q.insert(q.end(), q_.begin(), q_.end());
@@ -206,11 +235,11 @@ void Sweep::add_end(const Sample& inside, bool up, std::vector<double>& q) {
   double from = places_.value(inside.place);
   double to = from + (up ? places_.step : -places_.step);
   for (int round = 0; round < kRounds; ++round) {
-    const double step = (to - from) / (SweptBranches::kCount + 1);
+    const double step = (to - from) / (lanes::kWidth + 1);
     const auto value = [&](int lane) { return branches_.clamp(from + step * (lane + 1)); };
     branches_.solve_one(inside.branch, value);
     int count = 0;
-    while (count < SweptBranches::kCount && branches_.off(count) <= 0) ++count;
+    while (count < lanes::kWidth && branches_.off(count) <= 0) ++count;
     if (count > 0) {
       branches_.copy_joints(count - 1, q_.data());
       q.insert(q.end(), q_.begin(), q_.end());
@@ -221,7 +250,7 @@ void Sweep::add_end(const Sample& inside, bool up, std::vector<double>& q) {
 }
 
 void Sweep::visit_between(FunctionRef<void(const double* q, int branch)> visit) {
-  nearest_.find(places_, rows_, kNear, 0);
+  find_nearest(0);
   for (const LeastPlace& near : nearest_) {
     Place place{near.value, places_.value(near.place), near.branch};
     if (follow(place, places_.step)) visit(q_.data(), near.branch);
@@ -230,14 +259,14 @@ void Sweep::visit_between(FunctionRef<void(const double* q, int branch)> visit) 
 
 void Sweep::add_beside(const double* from, int branch, double part, std::vector<double>& q) {
   // Without the middle and the ends, which are samples.
-  constexpr double kHalf = (SweptBranches::kCount + 2) / 2.0;
+  constexpr double kHalf = (lanes::kWidth + 2) / 2.0;
   const double middle = from[branches_.joint()];
   const double spacing = part * kSpacingBeside * places_.step;
   branches_.solve_one(branch, [&](int lane) {
-    const int place = lane < SweptBranches::kCount / 2 ? lane + 1 : lane + 2;
+    const int place = lane < lanes::kWidth / 2 ? lane + 1 : lane + 2;
     return branches_.clamp(middle + spacing * (place - kHalf));
   });
-  for (int lane = 0; lane < SweptBranches::kCount; ++lane) {
+  for (int lane = 0; lane < lanes::kWidth; ++lane) {
     if (branches_.off(lane) > 0) continue;
     branches_.copy_joints(lane, q_.data());
     q.insert(q.end(), q_.begin(), q_.end());
@@ -251,14 +280,14 @@ bool Sweep::follow(Place& place, double width) {
   constexpr std::array<double, 4> kHopeless{kInfinity, 0.2, 0.1, 0.05};
   for (std::size_t round = 0; width > kFinest; ++round) {
     if (place.value > kHopeless[std::min<std::size_t>(round, 3)]) break;
-    const double spacing = 2 * width / (SweptBranches::kCount + 1);
+    const double spacing = 2 * width / (lanes::kWidth + 1);
     const double first = place.at - width + spacing;
     const auto at = [&](auto lane) {
       return branches_.clamp(first + spacing * static_cast<double>(lane));
     };
-    double off[SweptBranches::kCount];
+    double off[lanes::kWidth];
     if (rate(place.branch, at, off)) return true;
-    const auto best = std::min_element(off, off + SweptBranches::kCount) - off;
+    const auto best = std::min_element(off, off + lanes::kWidth) - off;
     if (off[best] < place.value) place = {off[best], at(best), place.branch};
     width = spacing;
   }

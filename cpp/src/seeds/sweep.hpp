@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "base/function_ref.hpp"
+#include "base/least.hpp"
+#include "iksel/result.hpp"
 #include "seeds/branch_enclosure.hpp"
-#include "seeds/least_places.hpp"
 #include "seeds/swept_branches.hpp"
 
 namespace iksel {
@@ -37,9 +38,6 @@ class Sweep {
   [[nodiscard]] Proof proof_of_none() const;
   /// Whether the chain is the model's own: no answer is far from what may be found.
   [[nodiscard]] bool is_nominal() const { return is_nominal_; }
-  /// Adds the branches inside the limits at every `stride`-th sample from `first` on, seven joint
-  /// values each [rad].
-  void add_samples(const Pose& Y, int first, int stride, std::vector<double>& q);
   /// Where there is no answer at the samples: visits the joint values of the branches that come
   /// nearest to one there, inside the limits or not.
   void visit_nearest(const Pose& Y, std::size_t most, FunctionRef<void(const JointVector&)> visit);
@@ -47,7 +45,8 @@ class Sweep {
   struct Sample {
     int place, branch;
   };
-  /// The same, for the target as it is set, and which they are.
+  /// Adds the branches inside the limits at every `stride`-th sample from `first` on, for the
+  /// target as it is set, seven joint values each [rad]; and which they are.
   void add_samples(int first, int stride, std::vector<double>& q, std::vector<Sample>& samples);
   /// Up to `count` branches inside the limits, at samples and between them, that lie far from each
   /// other and no nearer than `least`; seven joint values each [rad].
@@ -68,7 +67,7 @@ class Sweep {
   /// a part of the way to the samples beside.
   void add_beside(const double* from, int branch, double part, std::vector<double>& q);
   /// How far from each other they are, as a part of that way.
-  static constexpr double kSpacingBeside = 2.0 / (SweptBranches::kCount + 2);
+  static constexpr double kSpacingBeside = 2.0 / (lanes::kWidth + 2);
 
  private:
   /// Branches that are followed between samples, at most. With 16, of which merged ones take four
@@ -76,9 +75,6 @@ class Sweep {
   static constexpr std::size_t kFollowed = 32;
   /// And such only as come so near to an answer at a sample [mixed units].
   static constexpr double kNear = 0.3;
-
-  /// Places that are looked at in a piece that stays open.
-  static constexpr int kPlaces = SweptBranches::kCount;
 
   /// How far from an answer a branch is, at a value of the swept joint [mixed units; rad or m].
   struct Place {
@@ -88,6 +84,9 @@ class Sweep {
 
   /// Rates all branches at all places, as many as fill packs.
   void rate_samples();
+  /// Finds where branches come nearer to an answer than at the samples beside: within kNear of one,
+  /// and farther than `beyond`.
+  void find_nearest(double beyond);
   /// Whether a branch at a value, where they are `off` an answer, is one; it becomes what is found.
   bool take_answer(const SweptBranches::Row& off, double value);
   /// Whether what was solved last is an answer in a lane; it becomes what is found.
@@ -104,7 +103,7 @@ class Sweep {
   /// How far from an answer a branch is, at value(lane), in off[lane]: where limits say nothing, as
   /// an angle may be any, below 0. True if one is an answer.
   template <typename Value>
-  bool rate(int branch, const Value& value, double (&off)[SweptBranches::kCount]);
+  bool rate(int branch, const Value& value, double (&off)[lanes::kWidth]);
 
   const JointSpace& joints_;
   // sweep_spread.cpp
@@ -120,7 +119,7 @@ class Sweep {
   /// How far each branch of a sample is from being an answer [mixed units].
   std::vector<SweptBranches::Row> rows_;
   /// Where a branch comes nearer to an answer than at the samples beside.
-  LeastPlaces<kFollowed> nearest_;
+  Least<LeastPlace, kFollowed> nearest_;
   std::vector<Place> looked_;
   double apart_ = 0;  ///< how far these are from each other [rad or m]
   double least_ = 0;  ///< how far the nearest of these was from being an answer

@@ -22,7 +22,7 @@ class Sweep::Spread {
     sweep_.rate_samples();
     runs_.clear();
     int inside = 0;
-    for (int branch = 0; branch < SweptBranches::kCount; ++branch) {
+    for (int branch = 0; branch < lanes::kWidth; ++branch) {
       bool goes_on = false;
       for (int i = 0; i < samples; ++i) {
         const SweptBranches::Row& row = sweep_.rows_[static_cast<std::size_t>(i)];
@@ -55,8 +55,7 @@ class Sweep::Spread {
     sweep_.visit_between([&](const double* q, int branch) {
       q_.insert(q_.end(), q, q + kCurveJoints);
       const double place = (q[sweep_.joint()] - places.lower) / places.step;
-      add(branch, SweptBranches::kCount,
-          [&](int i) { return place - 0.5 + i / (SweptBranches::kCount - 1.0); });
+      add(branch, lanes::kWidth, [&](int i) { return place - 0.5 + i / (lanes::kWidth - 1.0); });
     });
   }
 
@@ -68,8 +67,8 @@ class Sweep::Spread {
     for (int round = 0; round < kRounds && !gaps_.empty(); ++round) {
       for (const Gap& gap : std::exchange(gaps_, {})) {
         // With its ends, from which the next may still be far.
-        const double step = (gap.to - gap.from) / (SweptBranches::kCount - 1);
-        add(gap.branch, SweptBranches::kCount, [&](int i) { return gap.from + step * i; });
+        const double step = (gap.to - gap.from) / (lanes::kWidth - 1);
+        add(gap.branch, lanes::kWidth, [&](int i) { return gap.from + step * i; });
       }
       solve_places();
     }
@@ -115,8 +114,8 @@ class Sweep::Spread {
   void solve_places() {
     std::array<double, kCurveJoints> before{};
     bool was_inside = false;
-    for (std::size_t i = 0; i < spots_.size(); i += SweptBranches::kCount) {
-      const std::size_t lanes = std::min<std::size_t>(SweptBranches::kCount, spots_.size() - i);
+    for (std::size_t i = 0; i < spots_.size(); i += lanes::kWidth) {
+      const std::size_t lanes = std::min<std::size_t>(lanes::kWidth, spots_.size() - i);
       const auto spot = [&](int lane) -> const Spot& {
         return spots_[i + std::min(static_cast<std::size_t>(lane), lanes - 1)];
       };

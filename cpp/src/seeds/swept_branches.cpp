@@ -54,9 +54,8 @@ void SweptBranches::bound_slide() {
 }
 
 void SweptBranches::solve_all(double value) {
-  std::fill_n(all_.held, kCount, value + offset_);
-  find_branches(all_);
-  measure_moves();
+  std::fill_n(all_.held, lanes::kWidth, value + offset_);
+  solve(all_);
 }
 
 void SweptBranches::measure_moves_from(const JointVector& near, const JointMove& move) {
@@ -65,9 +64,9 @@ void SweptBranches::measure_moves_from(const JointVector& near, const JointMove&
   // An image at a limit may lie beyond it once it is refined.
   form.margin = 1e-5;
   form.takes_largest = move.norm() == MoveNorm::max;
-  for (int i = 0; i < kDof; ++i) {
-    const int j = i == kDof - 1 ? chain_.held : chain_.joints[i];
-    const double offset = i == kDof - 1 ? offset_ : 0;
+  for (int i = 0; i < kCurveJoints; ++i) {
+    const int j = i == kCurveJoints - 1 ? chain_.held : chain_.joints[i];
+    const double offset = i == kCurveJoints - 1 ? offset_ : 0;
     form.from[i] = near[j] + offset;
     form.weight[i] = move.weights()[j];
     form.turns[i] = !joints_.is_slide(j);
@@ -80,30 +79,27 @@ void SweptBranches::measure_moves_from(const JointVector& near, const JointMove&
 }
 
 void SweptBranches::rate(double bound, Row* rows) {
-  double off[kCount][kCount];
+  double off[lanes::kWidth][lanes::kWidth];
   kernels_.rate_branches(chain_.form, all_, bound, off);
-  for (std::size_t branch = 0; branch < kCount; ++branch) {
-    for (std::size_t i = 0; i < kCount; ++i) rows[i][branch] = off[branch][i];
+  for (std::size_t branch = 0; branch < lanes::kWidth; ++branch) {
+    for (std::size_t i = 0; i < lanes::kWidth; ++i) rows[i][branch] = off[branch][i];
   }
 }
 
-void SweptBranches::find_branches(lanes::BranchPack& pack) {
+void SweptBranches::solve(lanes::BranchPack& pack) {
   kernels_.find_branches(chain_.form, pack);
   last_ = &pack;
-}
-
-void SweptBranches::measure_moves() {
-  if (measures_moves_) kernels_.measure_moves(move_form_, *last_, moves_);
+  if (measures_moves_) kernels_.measure_moves(move_form_, pack, moves_);
 }
 
 MoveBounds::Joints SweptBranches::turns(const BranchPoint& from, const BranchPoint& to) const {
   const lanes::ClosedForm& form = chain_.form;
   // Along the chain: the swept joint, which is a point's last, comes first.
-  const auto index = [](int i) { return static_cast<std::size_t>(i < 0 ? kDof - 1 : i); };
+  const auto index = [](int i) { return static_cast<std::size_t>(i < 0 ? kCurveJoints - 1 : i); };
   MoveBounds::Joints turns{};
-  int swings[kDof];
+  int swings[kCurveJoints];
   int count = 0;
-  for (int i = -1; i < kDof - 1; ++i) {
+  for (int i = -1; i < kCurveJoints - 1; ++i) {
     const std::size_t at = index(i);
     const double d = to.q[at] - from.q[at];
     turns[at] = move_form_.turns[at] ? without_turns(d) : d;

@@ -35,9 +35,7 @@ struct Places {
 
 class SweptBranches {
  public:
-  static constexpr int kCount = lanes::kWidth;
-  static constexpr int kDof = kCurveJoints;
-  using Row = std::array<double, kCount>;
+  using Row = std::array<double, lanes::kWidth>;
 
   /// `chain` has a joint that is held: the one to be swept; limits are the model's.
   SweptBranches(const ChainModel& model, const ClosedFormChain& chain,
@@ -63,14 +61,15 @@ class SweptBranches {
   /// where that is more than `bound`, some number above it [rad, mixed units].
   template <typename Values>
   void rate(const Values& values, double bound, Row* rows) {
-    for (int i = 0; i < kCount; ++i) all_.held[i] = values(i) + offset_;
+    for (int i = 0; i < lanes::kWidth; ++i) all_.held[i] = values(i) + offset_;
     rate(bound, rows);
   }
   /// Every branch at values(i) of the swept joint, and the moves to it, in rows[branch]; unless
   /// that is more than `most`, or it is more than `bound` from being an answer [rad, mixed units].
   template <typename Values>
-  void measure(const Values& values, double bound, double most, lanes::BranchRow (&rows)[kCount]) {
-    for (int i = 0; i < kCount; ++i) all_.held[i] = values(i) + offset_;
+  void measure(const Values& values, double bound, double most,
+               lanes::BranchRow (&rows)[lanes::kWidth]) {
+    for (int i = 0; i < lanes::kWidth; ++i) all_.held[i] = values(i) + offset_;
     kernels_.measure_branches(chain_.form, move_form_, all_, bound, most, rows);
   }
   /// Solves one branch at value(lane) in each lane [rad].
@@ -82,13 +81,12 @@ class SweptBranches {
   template <typename Branch, typename Value>
   void solve_each(const Branch& branch, const Value& value) {
     hold_each(branch, value);
-    find_branches(one_);
-    measure_moves();
+    solve(one_);
   }
   /// How far one branch is from being an answer at value(lane), in off[lane], as rate().
   template <typename Value>
-  void rate_one(int branch, const Value& value, double bound, double (&off)[kCount]) {
-    hold_one(branch, value);
+  void rate_one(int branch, const Value& value, double bound, double (&off)[lanes::kWidth]) {
+    hold_each([=](int /*lane*/) { return branch; }, value);
     kernels_.rate_branch(chain_.form, one_, bound, off);
   }
 
@@ -123,7 +121,8 @@ class SweptBranches {
   /// All seven joint values, by whole turns inside the limits where they can be [rad].
   void copy_joints(int lane, double* q) const { copy_joints(value(lane), last_->q, lane, q); }
   /// The same of a value of the swept joint, and a lane of six others.
-  void copy_joints(double swept, const double (&others)[6][kCount], int lane, double* q) const {
+  void copy_joints(double swept, const double (&others)[6][lanes::kWidth], int lane,
+                   double* q) const {
     if (turns_ && swept < lower_) swept += kTwoPi;
     if (turns_ && swept > upper_) swept -= kTwoPi;
     q[chain_.held] = swept;
@@ -133,36 +132,24 @@ class SweptBranches {
 
   /// The same of a point.
   void copy_joints(const BranchPoint& point, double* q) const {
-    double others[6][kCount];
+    double others[6][lanes::kWidth];
     for (std::size_t i = 0; i < 6; ++i) others[i][0] = point.q[i];
     copy_joints(point.q[6] - offset_, others, 0, q);
   }
 
-  /// Those of an answer: inside the limits, where rounding may have left them outside.
-  void copy_inside(int lane, double* q) const {
-    copy_joints(lane, q);
-    const JointVector inside = joints_.clamp(Eigen::Map<const Eigen::VectorXd>(q, kDof));
-    std::copy_n(inside.data(), kDof, q);
-  }
-
  private:
   void bound_slide();
-  template <typename Value>
-  void hold_one(int branch, const Value& value) {
-    hold_each([=](int /*lane*/) { return branch; }, value);
-  }
   template <typename Branch, typename Value>
   void hold_each(const Branch& branch, const Value& value) {
-    for (int lane = 0; lane < kCount; ++lane) {
+    for (int lane = 0; lane < lanes::kWidth; ++lane) {
       for (int s = 0; s < 3; ++s) one_.sign[s][lane] = all_.sign[s][branch(lane)];
       one_.held[lane] = value(lane) + offset_;
     }
   }
-  /// Of which moves are then measured, if they are.
-  void find_branches(lanes::BranchPack& pack);
-  void measure_moves();
+  /// Moves are measured too, if they are to be.
+  void solve(lanes::BranchPack& pack);
   void rate(double bound, Row* rows);
-  [[nodiscard]] static BranchPoint make_point(double held, const double (&q)[6][kCount],
+  [[nodiscard]] static BranchPoint make_point(double held, const double (&q)[6][lanes::kWidth],
                                               double least, const lanes::MovePack& moves,
                                               int lane) {
     return {{q[0][lane], q[1][lane], q[2][lane], q[3][lane], q[4][lane], q[5][lane], held},
@@ -185,10 +172,16 @@ class SweptBranches {
   lanes::MovePack moves_{};
 };
 
+/// Where a branch has a value that is less than at the places beside.
+struct LeastPlace {
+  double value;
+  int place, branch;
+};
+
 /// Seven joint values, and how far they are from what was looked for.
 struct SweptJoints {
   double value;
-  std::array<double, SweptBranches::kDof> q;
+  std::array<double, kCurveJoints> q;
 };
 
 }  // namespace iksel

@@ -12,12 +12,11 @@ TaskSamples::TaskSamples(const ChainModel& model, const DatabaseData& data, Sele
   tried_.reserve(data.size);
 }
 
-void TaskSamples::begin() {
-  for (const std::uint32_t sample : tried_) is_tried_[sample] = false;
-  tried_.clear();
-}
-
-bool TaskSamples::find(const Goal& goal, const Pose& allowed, bool /*is_first*/) {
+bool TaskSamples::find(const Goal& goal, const Pose& allowed, bool is_first) {
+  if (is_first) {
+    for (const std::uint32_t sample : tried_) is_tried_[sample] = false;
+    tried_.clear();
+  }
   const std::size_t count =
       selection_.nearest_seeds(allowed * Pose(model_.tcp_inverse), kNeighbours + tried_.size());
   found_ = count;

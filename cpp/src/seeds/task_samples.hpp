@@ -21,8 +21,6 @@ class TaskSamples {
   /// All must outlive this.
   TaskSamples(const ChainModel& model, const DatabaseData& data, Selection& selection);
 
-  /// Before a search.
-  void begin();
   bool find(const Goal& goal, const Pose& allowed, bool is_first);
   template <typename Refiner>
   void load(int /*rank*/, Refiner& refiner, int lane) const {

@@ -13,7 +13,6 @@
 #include "goal/screen.hpp"
 #include "iksel/error.hpp"
 #include "search/batch_stream.hpp"
-#include "seeds/leaf_seeds.hpp"
 #include "solver/batch_targets.hpp"
 #include "solver/solver_impl.hpp"
 #include "solver/tips_search.hpp"

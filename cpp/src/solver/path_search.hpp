@@ -106,7 +106,11 @@ class PathSearch {
     constexpr Patience kNext{8, kStepsToNext};
     std::vector<double> q = joint_values(before);
     const int first = static_cast<int>(waypoint % kStride);
-    if (with_others) lanes.sweep->add_samples(Y, first, kStride, q);
+    if (with_others) {
+      std::vector<Sweep::Sample> samples;
+      lanes.sweep->set_target(Y);
+      lanes.sweep->add_samples(first, kStride, q, samples);
+    }
     const auto dof = static_cast<std::size_t>(model_.dof);
     Work work(0);
     RowSeeds seeds(q.data(), q.size() / dof, dof, /*are_answers=*/false, work);

@@ -111,7 +111,10 @@ Proof TipsSearch::search_for(Answers& answers, const Collector* collector,
     proof = of_chains.proof();
   }
   if (is_enough() && !ArmSeeds::knows_nearest(arms, collector)) {
-    NearbySeeds nearby(collector->nearest_to().from, options_.seed, work, kNearbySeeds);
+    const std::vector<double> q =
+        sample_around(collector->nearest_to().from, options_.seed, kNearbySeeds);
+    RowSeeds nearby(q.data(), kNearbySeeds, q.size() / kNearbySeeds, /*are_answers=*/false, work,
+                    &Work::take_guess);
     search(refiner, nearby, answers, work);
   }
   return proof;

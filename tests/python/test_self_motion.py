@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import itertools
 import pickle
 
 import numpy as np
@@ -50,6 +51,26 @@ def test_ends_name_a_joint_at_its_limit(solver) -> None:
                 limit = robot.upper if end.at_upper else robot.lower
                 assert q[end.joint] == pytest.approx(limit[end.joint], abs=1e-5)
                 assert f"joint {end.joint + 1} at its" in repr(end)
+
+
+def test_no_loop_is_given_twice(made) -> None:
+    """Also where a place that a sweep finds lies on the piece that closes a loop."""
+    solver = made.solver("xarm7")
+    q = solver.robot.random_configurations(4000, 5)
+    for pose in solver.robot.fk(q[[2770, 3008, 3218, 3307, 3653, *range(50)]]):
+        loops = [
+            arc.q for arc in solver.self_motion(pose, spacing=0.3) if arc.is_closed
+        ]
+        for first, second in itertools.combinations(loops, 2):
+            pieces = wrapped(np.roll(first, -1, axis=0) - first)
+            away = wrapped(second[0] - first)
+            place = (away * pieces).sum(axis=1) / (pieces**2).sum(axis=1)
+            off = away - np.clip(place, 0, 1)[:, None] * pieces
+            assert np.linalg.norm(off, axis=1).min() > 0.02
+
+
+def wrapped(angles: np.ndarray) -> np.ndarray:
+    return (angles + np.pi) % (2 * np.pi) - np.pi
 
 
 def test_only_an_arm_with_an_elbow_has_its_angle(made) -> None:

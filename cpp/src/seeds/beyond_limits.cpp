@@ -13,9 +13,6 @@
 namespace iksel {
 namespace {
 
-/// Farthest that joints may move for the first order to tell [rad or m].
-constexpr double kFarthestStep = 0.01;
-
 /// Joints i and j turn about one axis, by `side` 1 the same way round: brings both inside their
 /// limits by what the one turns for the other, and by whole turns, if that can be.
 void share_turn(const JointSpace& joints, int i, int j, double side, JointVector& q) {
@@ -44,13 +41,13 @@ void share_turns(const ChainModel& model, JointVector& q) {
   /// Twists that differ by less are of one axis [m, rad].
   constexpr double kInLine = 1e-3;
   const JointVector violations = model.joints.violations(q);
-  if (!(violations.maxCoeff() > kFarthestStep)) return;
+  if (!(violations.maxCoeff() > kFirstOrder)) return;
   Pose pose;
   Jacobian J;
   model.fk_jacobian(q.data(), pose, J);
   for (int i = 0; i < model.dof; ++i) {
     for (int j = i + 1; j < model.dof; ++j) {
-      if (!(std::max(violations[i], violations[j]) > kFarthestStep)) continue;
+      if (!(std::max(violations[i], violations[j]) > kFirstOrder)) continue;
       if (model.joints.is_slide(i) || model.joints.is_slide(j)) continue;
       const double side = J.col(i).tail<3>().dot(J.col(j).tail<3>()) > 0 ? 1 : -1;
       if ((J.col(i) - side * J.col(j)).norm() > kInLine) continue;
@@ -78,7 +75,7 @@ bool is_beyond_limits(const ChainModel& model, const Pose& T_base_tcp, JointVect
     inverse = inverse_of(J);
     step = inverse * pose_error(T_base_tcp, pose);
     // Written so that NaN tells nothing.
-    if (!(step.cwiseAbs().maxCoeff() < kFarthestStep)) return false;
+    if (!(step.cwiseAbs().maxCoeff() < kFirstOrder)) return false;
     q += step;
     if (step.cwiseAbs().maxCoeff() < kSmall) break;
   }
@@ -88,7 +85,7 @@ bool is_beyond_limits(const ChainModel& model, const Pose& T_base_tcp, JointVect
       (kMargin * rotation_tolerance + off) * inverse.rightCols<3>().rowwise().norm();
   // Farther, the second order is more than the tolerances.
   const double farthest = std::sqrt(2 * std::min(position_tolerance, rotation_tolerance));
-  if (!(moved.maxCoeff() < std::min(kFarthestStep, farthest))) return false;
+  if (!(moved.maxCoeff() < std::min(kFirstOrder, farthest))) return false;
   const JointVector violations = model.joints.violations(q);
   bool is_beyond = false;
   for (int j = 0; j < model.dof; ++j) {

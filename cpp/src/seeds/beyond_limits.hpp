@@ -6,6 +6,9 @@
 
 namespace iksel {
 
+/// Farthest that joints may move for the first order to tell [rad or m].
+inline constexpr double kFirstOrder = 0.01;
+
 /// Whether the solution next to q, of six joints, certainly lies outside the joints' own limits,
 /// and with it whatever the tolerances [m, rad] allow around it. False where the arm is so close to
 /// a singularity that it cannot be told. With `and_partner`, whether the solution with which it

@@ -19,8 +19,6 @@ constexpr double kLeastPiece = 1e-7;
 constexpr std::size_t kMany = 128;
 constexpr double kMostLeft = 0.8;
 constexpr std::size_t kMostPieces = 512;
-/// Pieces overlap by this part, so that rounding leaves no gap between them.
-constexpr double kOverlap = 1e-12;
 /// What axes that lie off where the form has them may do to the target, by their deviation, which
 /// counts each twice: it turns what is behind it back and forth, and moves it by as much at a lever
 /// of 1.
@@ -70,7 +68,8 @@ void BranchEnclosure::close() {
       for (int i = 0; i < 2; ++i) pack_.sign[i][lane] = branch_sign(piece.arm, i);
     }
     double room[2][kWidth];
-    kernels_.enclose_branches(chain_.form, pack_, half_ * (1 + kOverlap), room);
+    // What rounding leaves between two pieces solves a target beside this one, within form.error.
+    kernels_.enclose_branches(chain_.form, pack_, half_, room);
     for (std::size_t lane = 0; lane < count; ++lane) {
       Piece piece = open_[first + lane];
       for (std::size_t i = 0; i < 2; ++i) piece.with[i] = piece.with[i] && !(room[i][lane] < 0);

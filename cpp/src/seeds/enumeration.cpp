@@ -11,8 +11,6 @@ namespace {
 
 /// A target is taken to be off by so many tolerances, to be on the safe side.
 constexpr double kMargin = 4;
-/// Farther than this nothing that is but nearly so moves a branch [rad].
-constexpr double kFarthestOff = 0.01;
 
 }  // namespace
 
@@ -50,8 +48,8 @@ void Enumeration::find(const Pose& Y, bool wants_all) {
   is_measured_ = false;
   certain_ = is_nominal_;
   certain_but_for_limits_ = is_nominal_;
-  for (int lane = 0; lane < kMost; ++lane) take(Y, lane, wants_all);
-  for (int lane = 0; chain_.is_almost() && lane < kMost; ++lane) take_turned(Y, lane);
+  for (int lane = 0; lane < lanes::kWidth; ++lane) take(Y, lane, wants_all);
+  for (int lane = 0; chain_.is_almost() && lane < lanes::kWidth; ++lane) take_turned(Y, lane);
 }
 
 void Enumeration::copy_joints(int lane, double* q) const {
@@ -93,7 +91,7 @@ void Enumeration::take_turned(const Pose& Y, int lane) {
     const auto i = static_cast<std::size_t>(j);
     if (joints.is_slide(j) || joints.is_periodic(j)) continue;
     const double turned = q[i] + std::copysign(kTwoPi, joints.middle()[j] - q[i]);
-    if (std::max(joints.lower[j] - turned, turned - joints.upper[j]) > kFarthestOff) continue;
+    if (std::max(joints.lower[j] - turned, turned - joints.upper[j]) > kFirstOrder) continue;
     next() = q;
     next()[i] = turned;
     if (is_beyond(Y, next())) continue;
@@ -115,7 +113,7 @@ bool Enumeration::is_regular(int lane, double& bound) {
   is_measured_ = true;
   if (!(regularity_.off[lane] <= form.error / kMargin)) return false;
   const double moved = form.error * regularity_.inverse_norm[lane];
-  if (!(moved < kFarthestOff)) return false;
+  if (!(moved < kFirstOrder)) return false;
   bound = moved;
   return true;
 }

@@ -13,8 +13,6 @@ namespace iksel {
 /// what the tolerances allow could make a difference.
 class Enumeration final : public BranchList {
  public:
-  static constexpr int kMost = lanes::kWidth;
-
   /// `chain` is the nominal chain's; `is_nominal`: that of `model`, whose limits count. Tolerances
   /// are the solver's [m, rad].
   Enumeration(const ChainModel& model, const ClosedFormChain& chain, bool is_nominal,

@@ -4,8 +4,6 @@
 namespace iksel {
 namespace {
 
-/// What is shorter by less is not looked for [rad].
-constexpr double kTooLittle = 1e-3;
 /// Of what turns so far it is not known which way round [rad].
 constexpr double kEitherWay = 2.5;
 

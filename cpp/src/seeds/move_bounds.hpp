@@ -39,6 +39,8 @@ class MoveBounds {
 
   explicit MoveBounds(const lanes::MoveForm& form) : form_(form) {}
 
+  /// What is shorter by less is not looked for [rad].
+  static constexpr double kTooLittle = 1e-3;
   /// What turns by no more takes no part in a swing, and what stands still turns by less [rad].
   static constexpr double kStill = 0.1;
   static constexpr double kStanding = 1e-4;

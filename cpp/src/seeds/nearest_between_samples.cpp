@@ -164,10 +164,9 @@ bool NearestOnCurve::look_into(const BranchSpan& span, int depth) {
 }
 
 bool NearestOnCurve::may_lead_to_shorter(double cost, const MoveBounds::Way& way) const {
-  // Nothing is begun for less; but what is the best so far is followed to its end [rad].
-  constexpr double kGain = 1e-3;
+  // What is the best so far is followed to its end.
   if (cost >= kRefused) return cost - kRefused < way.largest;
-  return cost < best() || cost - way.move < best() - kGain;
+  return cost < best() || cost - way.move < best() - MoveBounds::kTooLittle;
 }
 
 void NearestOnCurve::follow(const BranchSpan& span, int node, const MoveBounds::Way& way) {

@@ -162,14 +162,12 @@ bool NearestOnCurve::may_be_shorter(const LeastPlace& least) const {
 void NearestOnCurve::follow(const LeastPlace& least) {
   // What is left to be gained after a round, and after two.
   constexpr double kLittle[] = {0.2, 0.03};
-  // How far what leads to an answer may still be from one after a round, two and three.
-  constexpr std::array<double, 3> kFarOff{0.2, 0.1, 0.05};
   // The sample itself may be all there is.
   add_least({least.branch, -kInfinity, kInfinity}, places_.value(least.place), places_.step,
             point(least.place, least.branch), [&](double so_far, int round) {
               if (round < 1 || best() == kInfinity) return false;
               if (so_far < kRefused) return so_far - kLittle[std::min(round, 2) - 1] > best();
-              return so_far - kRefused > kFarOff[static_cast<std::size_t>(std::min(round, 3) - 1)];
+              return so_far - kRefused > most_off(round);
             });
 }
 

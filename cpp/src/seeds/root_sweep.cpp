@@ -16,19 +16,23 @@ namespace {
 /// enough: one reachable target of a million of gen3_6dof, whose pi is rounded, had been lost.
 constexpr double kBesideAxis = 1000;
 
-/// What the axes lie off moves roots that all but meet another pair so many times farther apart: of
-/// four million reachable targets of gen3_6dof three had been lost.
-constexpr double kFartherApart = 8;
-/// And so many times, but only what is then as near to an answer as a single root: of 100,000
-/// targets near singularities two had been lost, where four roots all but meet.
-constexpr double kFarthestApart = 32;
+/// So many times farther apart than those of a residual that changes as fast as the target roots
+/// that all but meet are moved: by the tolerances, and by what the axes lie off.
+struct Apart {
+  double by_tolerances, by_axes;
 
-/// The tolerances move roots that all but meet so many times farther apart than they would those of
-/// a residual that changes as fast as the target; and so many times, as above: of a million poses
-/// of twenty random arms, off by up to 0.7 of the tolerances, 144 had been lost (python -m bench
+  /// How far apart they may be [rad].
+  [[nodiscard]] double of(double tolerance, double deviation) const {
+    return 2 * std::sqrt(by_tolerances * by_tolerances * tolerance + by_axes * by_axes * deviation);
+  }
+};
+/// Of four million reachable targets of gen3_6dof, whose axes lie off, three had been lost; of a
+/// million poses of twenty random arms, off by up to 0.7 of the tolerances, 144 (python -m bench
 /// lost --random 20 --targets 50000 --off 0.7 --seed 4000 --builds offset_wrist).
-constexpr double kTolerancesApart = 2;
-constexpr double kTolerancesFarthestApart = 4;
+constexpr Apart kFarther{2, 8};
+/// But here only what is as near to an answer as a single root: of 100,000 targets of gen3_6dof
+/// near singularities two had been lost, where four roots all but meet.
+constexpr Apart kFarthest{4, 32};
 
 /// Where a product over all branches turns and is no more than this many times the square of what
 /// all but double roots are off, there may be roots that are farther apart: elbow and wrist are
@@ -44,11 +48,9 @@ constexpr double kFaint = 0.001;
 constexpr double kAboveNoise = 10000;
 /// By how much a loop may stay open at a root of its determinant, which is known but to its noise.
 constexpr double kOpen = 0.02;
-/// And by how many tolerances, if what is concluded is to be certain. This and the next three:
+/// And by how many tolerances, if what is concluded is to be certain. This and the next two:
 /// python -m bench laws general middle_sphere right_angles_6 --arms 200 --poses 100.
 constexpr double kClosed = 4;
-/// So far beyond a limit no tolerance counts, but where any angle would do [rad].
-constexpr double kFarBeyond = 0.01;
 /// Where an angle may be off by more than this, any would do [rad].
 constexpr double kFreely = 0.1;
 /// Where none is off by more than this, and no root is double, the arm is not singular [rad].
@@ -58,8 +60,6 @@ constexpr double kDelicate = 1e-3;
 /// times the tolerances, what they lie off counts as nothing.
 constexpr double kPrecision = 5e-10;
 constexpr double kShare = 0.1;
-
-constexpr double square(double x) { return x * x; }
 
 RootFinder make_finder(const ChainModel& model, int joint, double vague, double precision,
                        const lanes::LaneKernels& kernels) {
@@ -79,13 +79,10 @@ RootSweep::RootSweep(const ChainModel& model, const ClosedFormChain& chain, bool
       kernels_(kernels),
       tolerance_(tolerance),
       concludes_(concludes_from_branches(is_nominal, tolerance)),
-      vague_(2 * std::sqrt(tolerance + chain.deviation)),
-      farther_(2 * std::sqrt(square(kTolerancesApart) * tolerance +
-                             square(kFartherApart) * chain.deviation)),
+      vague_(Apart{1, 1}.of(tolerance, chain.deviation)),
+      farther_(kFarther.of(tolerance, chain.deviation)),
       vague_divisor_(std::pow(kBesideAxis * (tolerance + chain.deviation), 2)),
-      roots_(make_finder(model, chain.held,
-                         2 * std::sqrt(square(kTolerancesFarthestApart) * tolerance +
-                                       square(kFarthestApart) * chain.deviation),
+      roots_(make_finder(model, chain.held, kFarthest.of(tolerance, chain.deviation),
                          std::max(kPrecision, kShare * chain.deviation), kernels)),
       polynomial_(kernels) {
   are_answers_ = is_nominal && chain.deviation <= kShare * tolerance;
@@ -225,7 +222,7 @@ void RootSweep::take(const Pose& Y, const RootFinder::Root& root, int lane) {
   const double beyond = at->beyond[lane];
   const bool is_free = beyond > 0 && !(at->error[lane] < std::max(beyond, kFreely));
   const bool is_sure = is_closed && !is_free && !only_just_is;
-  const bool is_far = beyond > std::max(slack, kFarBeyond);
+  const bool is_far = beyond > std::max(slack, kFirstOrder);
   if (is_far && is_sure) return;
   if (size_ == kRoom) {
     certain_ = false;

@@ -147,7 +147,7 @@ JointVector joints_of(const Enumeration& branches, int lane) {
 JointVector find_nearest(const ChainModel& model, const Goal& goal, const Enumeration& branches) {
   JointVector nearest;
   double least = kInfinity;
-  for (int lane = 0; lane < Enumeration::kMost; ++lane) {
+  for (int lane = 0; lane < lanes::kWidth; ++lane) {
     if (branches.pack().best[lane] < 0) continue;
     const JointVector q = joints_of(branches, lane);
     double position = 0;
@@ -164,7 +164,7 @@ JointVector find_nearest(const ChainModel& model, const Goal& goal, const Enumer
 /// Of the branches that there are not, the one that gets farthest.
 MissingAngle find_missing(const Enumeration& branches) {
   MissingAngle farthest;
-  for (int lane = 0; lane < Enumeration::kMost; ++lane) {
+  for (int lane = 0; lane < lanes::kWidth; ++lane) {
     const MissingAngle missing = find_missing_angle(branches.chain(), branches.pack(), lane);
     if (missing.found < 0) continue;
     if (missing.found > farthest.found ||
@@ -224,7 +224,7 @@ std::optional<BranchReasons> explain_branches(const ChainModel& model, const Goa
     what = describe_elbow(model, chain, missing.span);
   }
   out.message = kCertainly + ("whatever the limits, " + what) + ": move the target, or turn it";
-  for (int lane = 0; lane < Enumeration::kMost; ++lane) {
+  for (int lane = 0; lane < lanes::kWidth; ++lane) {
     const JointVector q = joints_of(branches, lane);
     if (q.allFinite()) reasons.seeds.push_back(q);
   }

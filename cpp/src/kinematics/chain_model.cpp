@@ -140,11 +140,13 @@ std::shared_ptr<const ChainModel> ChainModel::without_limits() const {
   wide.turning.clear();
   wide.images.clear();
   for (int i = 0; i < dof; ++i) {
-    // A curve is known between its ends only.
-    if (moves_by_a_curve(*this, i)) continue;
+    // A curve is known between its ends only; and where turns move a slide, or a slide turns a
+    // joint, lengths and angles may be bounded by what the limits are.
+    const bool is_bounded = moves_any(i, [&](const KernelJoint& joint) {
+      return joint.curve != nullptr || joint.prismatic != joints.is_slide(i);
+    });
+    if (is_bounded) continue;
     if (joints.is_slide(i)) {
-      // Angles may be bounded by what the limits are.
-      if (turns_a_joint(*this, i)) continue;
       const double range = joints.upper[i] - joints.lower[i];
       wide.lower[i] = joints.lower[i] - range;
       wide.upper[i] = joints.upper[i] + range;
@@ -156,20 +158,6 @@ std::shared_ptr<const ChainModel> ChainModel::without_limits() const {
   }
   copy->measure_reach();
   return copy;
-}
-
-bool turns_a_joint(const ChainModel& model, int variable) {
-  return std::any_of(model.kernel.joints.begin(), model.kernel.joints.end(),
-                     [variable](const KernelJoint& joint) {
-                       return joint.variable == variable && !joint.prismatic;
-                     });
-}
-
-bool moves_by_a_curve(const ChainModel& model, int variable) {
-  return std::any_of(model.kernel.joints.begin(), model.kernel.joints.end(),
-                     [variable](const KernelJoint& joint) {
-                       return joint.variable == variable && joint.curve != nullptr;
-                     });
 }
 
 std::unique_ptr<KdlChain> ChainModel::make_kdl(const Pose& T_tip_end) const {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -24,7 +25,7 @@ class ChainModel final : public RobotModel {
   [[nodiscard]] std::shared_ptr<const ChainModel> with_tcp(const Pose& T_tip_tcp) const;
 
   /// The same chain with joints that turn freely and slides that reach farther, but for what curves
-  /// are of.
+  /// are of, and for joints by which others slide that turn, or turn that slide.
   [[nodiscard]] std::shared_ptr<const ChainModel> without_limits() const;
 
   /// KDL's chain to the TCP, or to another frame behind the tip link.
@@ -40,6 +41,13 @@ class ChainModel final : public RobotModel {
   Frame fk_jacobian(const double* q, Jacobian& jacobian, bool with_tool = true) const;
   /// Brings a Jacobian's lengths, and what slides move, to the unit.
   void to_unit(Jacobian& jacobian) const;
+  /// Whether the variable moves a joint, its own or one that follows it, that is such.
+  template <typename IsSuch>
+  [[nodiscard]] bool moves_any(int variable, const IsSuch& is_such) const {
+    return std::any_of(kernel.joints.begin(), kernel.joints.end(), [&](const KernelJoint& joint) {
+      return joint.variable == variable && is_such(joint);
+    });
+  }
   /// Whether the arm is singular at q, or almost (base/pseudo_inverse.hpp).
   [[nodiscard]] bool is_almost_singular(const double* q) const;
 
@@ -60,12 +68,6 @@ class ChainModel final : public RobotModel {
   void measure_reach();
   [[nodiscard]] std::uint64_t compute_hash() const;
 };
-
-/// Whether the variable, be it a slide, turns a joint: its own, or one that follows it.
-bool turns_a_joint(const ChainModel& model, int variable);
-
-/// Whether a joint follows the variable by a curve.
-bool moves_by_a_curve(const ChainModel& model, int variable);
 
 /// Frame of the kernel as a pose.
 Pose to_pose(const Frame& frame);

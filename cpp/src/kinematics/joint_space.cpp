@@ -55,7 +55,9 @@ bool JointSpace::leaves(const double* q, const double* step) const {
 JointVector JointSpace::turned_to_middle(JointVector q) const {
   const JointVector to = middle();
   for (int j = 0; j < dof(); ++j) {
-    if (!is_slide(j)) q[j] += kTwoPi * std::round((to[j] - q[j]) / kTwoPi);
+    if (repeats[static_cast<std::size_t>(j)]) {
+      q[j] += kTwoPi * std::round((to[j] - q[j]) / kTwoPi);
+    }
   }
   return q;
 }

@@ -43,8 +43,8 @@ class JointSpace : public LimitSet {
   [[nodiscard]] bool turns_in_sum(int joint) const {
     return !turning.empty() && std::find(turning.begin(), turning.end(), joint) != turning.end();
   }
-  /// Each joint that turns at the whole turn nearest to the middle of its limits, where it violates
-  /// them least.
+  /// Each joint of which whole turns lead to the same pose at that nearest to the middle of its
+  /// limits, where it violates them least.
   [[nodiscard]] JointVector turned_to_middle(JointVector q) const;
   /// Whether q + step lies outside; a periodic joint never does, as it can be wrapped.
   [[nodiscard]] bool leaves(const double* q, const double* step) const;

@@ -22,9 +22,9 @@ void check_size(const std::string& joint, const std::string& what, double value,
                   " (lengths are metres, angles radians)");
 }
 
-/// Largest value that the motion of a joint takes.
+/// Largest value that the motion of a joint takes. A slide goes on where a turn begins again.
 double largest_motion(const ChainJoint& joint, const ChainVariable& variable) {
-  const bool free = variable.type == JointType::continuous;
+  const bool free = variable.type == JointType::continuous && !joint.prismatic;
   const auto of = motion_between(joint, free ? -kPi : variable.lower, free ? kPi : variable.upper);
   return std::max(std::abs(of.lower), std::abs(of.upper));
 }

@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 
+#include "base/constants.hpp"
 #include "base/message_text.hpp"
 #include "iksel/error.hpp"
 #include "iksel/pose.hpp"
@@ -39,12 +40,15 @@ void check_row(const DhJoint& row, std::ptrdiff_t i) {
       throw_invalid("joints", i, "a, alpha, d or theta is " + number_text(number));
     }
   }
-  if (std::isfinite(row.lower) != std::isfinite(row.upper)) {
+  if (!(row.velocity >= 0)) {
+    throw_invalid("joints", i, "velocity is " + number_text(row.velocity) + ", not 0 or more");
+  }
+  const bool is_limited = std::isfinite(row.lower) && std::isfinite(row.upper);
+  if (!is_limited && !(row.lower == -kInfinity && row.upper == kInfinity)) {
     throw_invalid("joints", i,
                   "limits " + number_text(row.lower) + " to " + number_text(row.upper) +
                       ": give both, or none");
   }
-  const bool is_limited = std::isfinite(row.lower);
   if (row.type == JointType::prismatic && !is_limited) {
     throw_invalid("joints", i, "a prismatic joint needs limits: give lower and upper [m]");
   }

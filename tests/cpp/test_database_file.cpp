@@ -214,6 +214,14 @@ TEST_F(DatabaseFile, SamplesThatAreNotFiniteAreRefused) {
   }
 }
 
+TEST_F(DatabaseFile, OlderFilesMayHaveAnOptionThatWasNotRead) {
+  std::string old = make(60).to_bytes();
+  const std::uint64_t cvt_updates = 5;
+  std::memcpy(&old[64], &cvt_updates, sizeof cvt_updates);
+  sign(old);
+  EXPECT_EQ(Database::from_bytes(old).options().cvt_updates, DatabaseOptions{}.cvt_updates);
+}
+
 TEST_F(DatabaseFile, SignedHeadersOfAnyContentAreRefusedOrServe) {
   const Robot& robot = iksel_test::robot("cvr038");
   const iksel::Pose target = robot.fk(robot.random_configurations(1, 1).row(0));

@@ -98,6 +98,10 @@ DatabaseData describe(const Header& header) {
   for_each_number(header, data, [](const auto& field, auto& value) {
     value = static_cast<std::decay_t<decltype(value)>>(field);
   });
+  // Older files may have any number where it was not read.
+  if (data.options.sampling != Sampling::cvt) {
+    data.options.cvt_updates = DatabaseOptions{}.cvt_updates;
+  }
   if (data.options.key_scheme == KeyScheme::reduced) {
     Reduction::Parameters p;
     p.left = static_cast<lanes::Side>(header.left);

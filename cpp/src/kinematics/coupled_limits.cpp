@@ -57,17 +57,19 @@ std::vector<std::string> names_in(const ChainSpec& spec) {
 /// Adds a joint's part of a sum; returns what of it does not change.
 double add_joint(const CoupledLimit& limit, std::size_t index, const std::string& name,
                  double coefficient, const ChainSpec& spec, const JointSpace& joints, Limit& row) {
+  const auto refuse_endless = [&](int variable) {
+    if (joints.type(variable) != JointType::continuous) return;
+    refuse(limit, index,
+           "joint '" + name +
+               "' turns without limits, so that whole turns would take its sum "
+               "anywhere: make it revolute, with limits");
+  };
   const auto joint =
       std::find_if(spec.joints.begin(), spec.joints.end(),
                    [&](const ChainJoint& each) { return each.name == name && each.has_value(); });
   if (joint != spec.joints.end()) {
     if (joint->is_locked) return coefficient * joint->locked_at;
-    if (joints.type(joint->variable) == JointType::continuous) {
-      refuse(limit, index,
-             "joint '" + name +
-                 "' turns without limits, so that whole turns would take its sum "
-                 "anywhere: make it revolute, with limits");
-    }
+    refuse_endless(joint->variable);
     if (joint->curve) {
       refuse(limit, index,
              "joint '" + name + "' follows '" + joints.name(joint->variable) +
@@ -79,6 +81,7 @@ double add_joint(const CoupledLimit& limit, std::size_t index, const std::string
   // What a mimic joint of the chain follows need not be on it.
   for (int j = 0; j < joints.dof(); ++j) {
     if (joints.name(j) != name) continue;
+    refuse_endless(j);
     row.c[j] += coefficient;
     return 0;
   }

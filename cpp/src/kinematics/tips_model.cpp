@@ -172,10 +172,10 @@ std::vector<int> TipsModel::add_joints(const ChainModel& model) {
     if (!chain.repeats[static_cast<std::size_t>(j)]) {
       joints.repeats[static_cast<std::size_t>(place)] = false;
     }
-    if (joints.lower[place] > joints.upper[place]) {
+    if (joints.lower[place] >= joints.upper[place]) {
       throw UrdfError("joint '" + chain.name(j) +
-                      "': the joints that follow it on the chains to several tips leave it no "
-                      "value between its limits");
+                      "': the joints that follow it on the chains to several tips leave nothing "
+                      "between its limits");
     }
   }
   return places;

@@ -171,7 +171,7 @@ void ClosedFormChain::use_sums(const ChainModel& model) {
   form.sums = sums.get();
 }
 
-bool ClosedFormChain::tells_inside(const LimitSet& limits) const {
+bool ClosedFormChain::tells_inside(const JointSpace& limits) const {
   return std::none_of(limits.sums.begin(), limits.sums.end(), [&](const Limit& sum) {
     for (int j = 0; j < limits.dof(); ++j) {
       if (sum.c[j] != 0 && turns_freely(j)) return true;

@@ -57,7 +57,7 @@ struct ClosedFormChain {
   [[nodiscard]] bool turns_freely(int joint) const { return (free >> joint & 1U) != 0; }
   /// Whether branches tell which solutions lie inside limits: not where a joint turns as it likes
   /// in a sum.
-  [[nodiscard]] bool tells_inside(const LimitSet& limits) const;
+  [[nodiscard]] bool tells_inside(const JointSpace& limits) const;
   /// By how much the form's target may be off within the tolerances of a pose [m, rad] [rad,
   /// units].
   [[nodiscard]] double tolerance_of_target(const ChainModel& model, double position,

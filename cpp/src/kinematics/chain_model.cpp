@@ -96,21 +96,10 @@ ChainModel::ChainModel(std::string urdf_xml, const RobotOptions& options_in)
   name = spec.robot_name;
   link_names = spec.link_names;
   tip_links = {options.tip_link};
-  dof = static_cast<int>(spec.variables.size());
-  for (auto& all = joints_of_tip.emplace_back(); static_cast<int>(all.size()) < dof;) {
-    all.push_back(static_cast<int>(all.size()));
-  }
-  joints = JointSpace(dof);
-  for (JointVector* v : {&soft_lower, &soft_upper}) v->resize(dof);
-  for (int i = 0; i < dof; ++i) {
-    const ChainVariable& variable = spec.variables[i];
-    joints.names[i] = variable.name;
-    joints.types[i] = variable.type;
-    joints.lower[i] = variable.lower;
-    joints.upper[i] = variable.upper;
-    joints.velocity[i] = variable.velocity;
-    soft_lower[i] = variable.soft_lower;
-    soft_upper[i] = variable.soft_upper;
+  joints_of_tip.emplace_back();
+  for (const ChainVariable& variable : spec.variables) {
+    joints_of_tip.front().push_back(dof);
+    add_joint(variable, /*repeats=*/true);
   }
   for (const ChainJoint& joint : spec.joints) {
     const bool turns = !joint.prismatic && !joint.curve;

@@ -28,23 +28,6 @@ std::string link_behind(const LinkTree& tree, const std::string& joint,
   return downwards ? at->child_link : at->parent_link;
 }
 
-/// Appends joint j of `from`.
-void append_joint(const ChainModel& from, int j, RobotModel& to) {
-  const Eigen::Index n = to.dof++;
-  to.joints.names.push_back(from.joints.name(j));
-  to.joints.types.push_back(from.joints.type(j));
-  to.joints.repeats.push_back(from.joints.repeats[static_cast<std::size_t>(j)]);
-  const auto append = [&](const JointVector& source, JointVector& values) {
-    values.conservativeResize(n + 1);
-    values[n] = source[j];
-  };
-  append(from.joints.lower, to.joints.lower);
-  append(from.joints.upper, to.joints.upper);
-  append(from.joints.velocity, to.joints.velocity);
-  append(from.soft_lower, to.soft_lower);
-  append(from.soft_upper, to.soft_upper);
-}
-
 }  // namespace
 
 TipsModel::TipsModel(const std::string& urdf_in, const RobotOptions& options_in)
@@ -163,7 +146,8 @@ std::vector<int> TipsModel::add_joints(const ChainModel& model) {
                         list_names(options.tip_links) + " have more than " +
                         std::to_string(kMaxDof) + " movable joints together");
       }
-      append_joint(model, j, *this);
+      const auto i = static_cast<std::size_t>(j);
+      add_joint(model.spec.variables[i], chain.repeats[i]);
       continue;
     }
     // A joint that follows this one on another chain may narrow its limits there.

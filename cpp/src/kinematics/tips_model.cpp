@@ -7,29 +7,9 @@
 #include "base/hash.hpp"
 #include "base/message_text.hpp"
 #include "iksel/error.hpp"
-#include "iksel/link_tree.hpp"
 #include "kinematics/coupled_limits.hpp"
 
 namespace iksel {
-namespace {
-
-/// The link that a joint leads to on the way to the tip: its child, or where the way goes up from
-/// the base its parent.
-std::string link_behind(const LinkTree& tree, const std::string& joint,
-                        const std::vector<ChainJoint>& chain, std::size_t index) {
-  const auto find = [&](const std::string& name) {
-    return std::find_if(tree.joints.begin(), tree.joints.end(),
-                        [&](const LinkTreeJoint& each) { return each.name == name; });
-  };
-  const auto at = find(joint);
-  // The next joint hangs on the link behind this one.
-  const auto next = find(chain[index + 1].name);
-  const bool downwards = at->child_link == next->parent_link || at->child_link == next->child_link;
-  return downwards ? at->child_link : at->parent_link;
-}
-
-}  // namespace
-
 TipsModel::TipsModel(const std::string& urdf_in, const RobotOptions& options_in)
     : RobotModel(urdf_in, options_in) {
   check_options();
@@ -212,10 +192,8 @@ void TipsModel::split(Tip& tip) const {
   if (first_own == chain.end() || std::any_of(first_own, chain.end(), is_of_stem)) return;
   auto last = first_own;
   while (!is_of_stem(*last)) --last;
-  const std::string link = link_behind(LinkTree::from_urdf_string(urdf), last->name, chain,
-                                       static_cast<std::size_t>(last - chain.begin()));
-  const Robot stem = Robot::from_urdf_string(urdf, options_between(options.base_link, link));
-  RobotOptions of_arm = options_between(link, tip.chain.robot.tip_link());
+  const Robot stem = Robot::from_urdf_string(urdf, options_between(options.base_link, last->link));
+  RobotOptions of_arm = options_between(last->link, tip.chain.robot.tip_link());
   of_arm.tcp = tip.chain.robot.tcp();
   const Robot arm = Robot::from_urdf_string(urdf, of_arm);
   tip.stem = ChainPart{coupled(stem), places_of(stem)};

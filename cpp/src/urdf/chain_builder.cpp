@@ -136,6 +136,7 @@ class ChainReader {
   void add_joint(const urdf::Joint& joint, bool upwards) {
     ChainJoint segment;
     segment.name = joint.name;
+    segment.link = upwards ? joint.parent_link_name : joint.child_link_name;
     const Eigen::Isometry3d origin = origin_of(joint);
     // Parent -> child is origin * motion(q); the way up is its inverse, motion(-q) * origin^-1.
     (upwards ? segment.after : segment.before) = upwards ? origin.inverse() : origin;

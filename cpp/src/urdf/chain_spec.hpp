@@ -17,6 +17,7 @@ namespace iksel {
 /// fixed or locked joint has the constant transforms only.
 struct ChainJoint : Following {
   std::string name;
+  std::string link;  ///< that it leads to on the way to the tip
   Eigen::Isometry3d before = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d after = Eigen::Isometry3d::Identity();
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();

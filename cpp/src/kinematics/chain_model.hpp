@@ -69,6 +69,13 @@ class ChainModel final : public RobotModel {
   [[nodiscard]] std::uint64_t compute_hash() const;
 };
 
+/// Adds the limits to `joints`, whose own are set. Mimic joints become their sources, locked ones
+/// constants. Throws InvalidArgumentError, naming the limit and what is wrong with it: no number, a
+/// joint that turns without limits, nothing between its ends, or no configuration inside of all;
+/// UnknownNameError for a name that is no joint of the chain.
+void add_coupled_limits(const std::vector<CoupledLimit>& limits, const ChainSpec& spec,
+                        JointSpace& joints);
+
 /// Frame of the kernel as a pose.
 Pose to_pose(const Frame& frame);
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kinematics/coupled_limits.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 #include "base/message_text.hpp"
 #include "iksel/error.hpp"
+#include "kinematics/chain_model.hpp"
 
 namespace iksel {
 namespace {

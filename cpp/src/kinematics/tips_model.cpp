@@ -7,9 +7,9 @@
 #include "base/hash.hpp"
 #include "base/message_text.hpp"
 #include "iksel/error.hpp"
-#include "kinematics/coupled_limits.hpp"
 
 namespace iksel {
+
 TipsModel::TipsModel(const std::string& urdf_in, const RobotOptions& options_in)
     : RobotModel(urdf_in, options_in) {
   check_options();

@@ -78,8 +78,7 @@ double add_joint(const CoupledLimit& limit, std::size_t index, const std::string
     return coefficient * joint->offset;
   }
   // What a mimic joint of the chain follows need not be on it.
-  for (int j = 0; j < joints.dof(); ++j) {
-    if (joints.name(j) != name) continue;
+  if (const int j = joints.find(name); j >= 0) {
     refuse_endless(j);
     row.c[j] += coefficient;
     return 0;

@@ -70,6 +70,11 @@ class JointSpace {
   [[nodiscard]] const std::string& name(int joint) const {
     return names[static_cast<std::size_t>(joint)];
   }
+  /// The joint of a name; -1 if there is none.
+  [[nodiscard]] int find(const std::string& wanted) const {
+    const auto at = std::find(names.begin(), names.end(), wanted);
+    return at == names.end() ? -1 : static_cast<int>(at - names.begin());
+  }
   [[nodiscard]] bool is_slide(int joint) const { return type(joint) == JointType::prismatic; }
   /// True where a whole turn of the joint leads to the same pose, and may lie inside the limits.
   [[nodiscard]] bool is_periodic(int joint) const {

@@ -69,8 +69,7 @@ void TipsModel::couple_joints() {
 Robot TipsModel::coupled(const Robot& part) const {
   const ChainModel& model = part.model();
   const auto has = [&](const std::string& wanted) {
-    const auto& names = model.joints.names;
-    return std::find(names.begin(), names.end(), wanted) != names.end() ||
+    return model.joints.find(wanted) >= 0 ||
            std::any_of(model.spec.joints.begin(), model.spec.joints.end(), [&](const auto& joint) {
              return joint.name == wanted && joint.has_value();
            });
@@ -117,10 +116,9 @@ std::vector<int> TipsModel::add_joints(const ChainModel& model) {
   const JointSpace& chain = model.joints;
   std::vector<int> places;
   for (int j = 0; j < model.dof; ++j) {
-    const auto known = std::find(joints.names.begin(), joints.names.end(), chain.name(j));
-    const int place = static_cast<int>(known - joints.names.begin());
-    places.push_back(place);
-    if (known == joints.names.end()) {
+    const int place = joints.find(chain.name(j));
+    places.push_back(place < 0 ? dof : place);
+    if (place < 0) {
       if (dof == kMaxDof) {
         throw UrdfError("the chains from '" + options.base_link + "' to " +
                         list_names(options.tip_links) + " have more than " +
@@ -156,10 +154,7 @@ void TipsModel::find_shared() {
 
 std::vector<int> TipsModel::places_of(const Robot& part) const {
   std::vector<int> places;
-  for (const std::string& each : part.joint_names()) {
-    places.push_back(static_cast<int>(std::find(joints.names.begin(), joints.names.end(), each) -
-                                      joints.names.begin()));
-  }
+  for (const std::string& each : part.joint_names()) places.push_back(joints.find(each));
   return places;
 }
 

@@ -12,7 +12,7 @@
 #include "iksel/error.hpp"
 #include "kinematics/chain_model.hpp"
 #include "kinematics/tips_model.hpp"
-#include "urdf/dh.hpp"
+#include "urdf/urdf_text.hpp"
 #include "urdf/parse.hpp"
 
 namespace iksel {

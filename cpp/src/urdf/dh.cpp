@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "urdf/dh.hpp"
-
 #include <Eigen/Geometry>
 #include <cmath>
 #include <cstddef>
@@ -11,7 +9,7 @@
 #include "base/message_text.hpp"
 #include "iksel/error.hpp"
 #include "iksel/pose.hpp"
-#include "urdf/xml.hpp"
+#include "urdf/urdf_text.hpp"
 
 namespace iksel {
 namespace {

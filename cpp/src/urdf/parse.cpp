@@ -15,7 +15,6 @@
 
 #include "iksel/error.hpp"
 #include "urdf/urdf_text.hpp"
-#include "urdf/urdf_tree.hpp"
 
 namespace iksel {
 namespace {

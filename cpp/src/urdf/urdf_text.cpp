@@ -11,7 +11,6 @@
 #include "base/message_text.hpp"
 #include "iksel/error.hpp"
 #include "iksel/urdf_text.hpp"
-#include "urdf/urdf_tree.hpp"
 
 namespace iksel {
 namespace {

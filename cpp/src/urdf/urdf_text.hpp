@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The text of a URDF before urdfdom sees it: what is mended in it, and what is left out because
-// kinematics do not need it.
+// The text of a URDF before urdfdom sees it: what is mended in it, which of its links hang together,
+// and what is left out because kinematics do not need it.
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "iksel/dh.hpp"
 #include "urdf/xml.hpp"
 
 namespace iksel {
@@ -22,7 +24,17 @@ std::string kinematic_text(const XmlElement& robot);
 /// What to do about a document that is no URDF, by the name of its root; empty for <robot>.
 std::string explain_root(const std::string& name);
 
+/// Leaves the tree with `links` in the URDF and takes the others out.
+///
+/// Throws UrdfError where a link is the child of two joints, of which urdfdom keeps the last; where
+/// joints close a circle, which urdfdom walks for ever and loses as memory; where two links are of
+/// different trees; and where there are several trees and none of the links.
+void keep_one_tree(XmlElement& robot, const std::vector<std::string>& links);
+
 /// The first sign that a document is xacro which has to be expanded; empty if there is none.
 std::string find_xacro(const XmlElement& root);
+
+/// The URDF of a table of Denavit and Hartenberg's parameters. Throws InvalidArgumentError naming a bad number, name or limit.
+std::string urdf_of_dh(const DhTable& table);
 
 }  // namespace iksel

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "urdf/urdf_tree.hpp"
-
 #include <algorithm>
 #include <map>
 #include <set>
@@ -8,6 +6,7 @@
 
 #include "base/message_text.hpp"
 #include "iksel/error.hpp"
+#include "urdf/urdf_text.hpp"
 
 namespace iksel {
 namespace {

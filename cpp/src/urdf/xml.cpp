@@ -8,7 +8,6 @@
 #include <set>
 
 #include "iksel/error.hpp"
-#include "urdf/encoding.hpp"
 
 namespace iksel {
 namespace {

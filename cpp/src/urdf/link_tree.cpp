@@ -2,7 +2,6 @@
 #include "iksel/link_tree.hpp"
 
 #include <map>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -43,29 +42,21 @@ LinkTree LinkTree::from_urdf_string(const std::string& xml, const std::string& l
 LinkTree make_link_tree(const urdf::ModelInterface& model) {
   LinkTree tree;
   tree.robot_name = model.getName();
-  struct Visit {
-    const urdf::Link* link;
-    int moving_joints;
-  };
-  std::vector<Visit> next{{model.getRoot().get(), 0}};
-  std::set<const urdf::Link*> seen{model.getRoot().get()};
+  // Links, and how many joints that move are above them.
+  std::vector<std::pair<const urdf::Link*, int>> next{{model.getRoot().get(), 0}};
   while (!next.empty()) {
-    const auto [link, above] = next.back();
+    auto [link, moving] = next.back();
     next.pop_back();
-    int moving = above;
-    if (const auto& joint = link->parent_joint; joint && link->getParent()) {
+    if (const auto& joint = link->parent_joint) {
       if (joint->type != urdf::Joint::FIXED) ++moving;
       tree.joints.push_back(
           {joint->name, joint_type_name(joint->type), joint->parent_link_name, link->name});
     }
     tree.links.push_back(link->name);
     if (link->child_links.empty()) tree.tips.push_back({link->name, moving});
-    for (std::size_t i = link->child_links.size(); i-- > 0;) {
-      // urdfdom takes the last of several parents, and keeps the link with each of them.
-      const urdf::Link* child = link->child_links[i].get();
-      if (child->getParent().get() == link && seen.insert(child).second) {
-        next.push_back({child, moving});
-      }
+    const auto& children = link->child_links;
+    for (auto child = children.rbegin(); child != children.rend(); ++child) {
+      next.emplace_back(child->get(), moving);
     }
   }
   return tree;

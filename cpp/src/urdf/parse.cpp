@@ -88,12 +88,14 @@ std::string find_remedies(const std::string& messages) {
 
 /// The root element of a URDF; throws UrdfError where it is none.
 XmlElement read_robot(const std::string& xml) {
-  const std::string other = explain_root(xml_root_name(xml));
-  std::string reason = other;
+  std::string name;
+  std::string reason;
   try {
-    XmlElement root = parse_xml(xml);
-    if (other.empty()) return root;
+    XmlElement root = parse_xml(xml, &name);
+    reason = explain_root(name);
+    if (reason.empty()) return root;
   } catch (const UrdfError& error) {
+    const std::string other = explain_root(name);
     reason = error.what() + find_remedies(error.what()) + (other.empty() ? "" : "; " + other);
   }
   throw UrdfError("URDF does not parse: " + reason);

@@ -31,10 +31,8 @@ struct XmlElement {
 ///
 /// Throws UrdfError, which begins with the line, where tags are not closed, values have no quotes
 /// or anything else leaves open what is meant, and for text that would take all memory.
-XmlElement parse_xml(const std::string& bytes);
-
-/// Name of the first element; empty where there is none.
-std::string xml_root_name(const std::string& bytes);
+/// The name of the first element is written to `root_name`, also where it throws later.
+XmlElement parse_xml(const std::string& bytes, std::string* root_name = nullptr);
 
 /// Text as it stands in an element or an attribute.
 std::string escape_xml(const std::string& text);

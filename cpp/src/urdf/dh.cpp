@@ -7,6 +7,7 @@
 
 #include "base/constants.hpp"
 #include "base/message_text.hpp"
+#include "base/rotation.hpp"
 #include "iksel/error.hpp"
 #include "iksel/pose.hpp"
 #include "urdf/urdf_text.hpp"
@@ -14,21 +15,13 @@
 namespace iksel {
 namespace {
 
-/// So that numbers are read back as the same.
-constexpr int kDigits = 17;
-
-std::string words(const Eigen::Vector3d& v) {
-  return number_text(v.x(), kDigits) + " " + number_text(v.y(), kDigits) + " " +
-         number_text(v.z(), kDigits);
-}
-
 /// A joint, and the link that it carries. `inside`: further elements.
 std::string joint_element(const std::string& name, const char* type, const std::string& parent,
                           const std::string& child, const Eigen::Vector3d& xyz,
                           const Eigen::Vector3d& rpy, const std::string& inside = "") {
   return "  <link name=\"" + child + "\"/>\n  <joint name=\"" + escape_xml(name) + "\" type=\"" +
          type + "\">\n    <parent link=\"" + parent + "\"/>\n    <child link=\"" + child +
-         "\"/>\n    <origin xyz=\"" + words(xyz) + "\" rpy=\"" + words(rpy) + "\"/>\n" + inside +
+         "\"/>\n    <origin xyz=\"" + exact_text(xyz) + "\" rpy=\"" + exact_text(rpy) + "\"/>\n" + inside +
          "  </joint>\n";
 }
 
@@ -62,11 +55,11 @@ std::string moving(const DhJoint& row, const std::string& name, const std::strin
   const bool is_limited = std::isfinite(row.lower);
   const char* type = slides ? "prismatic" : is_limited ? "revolute" : "continuous";
   std::string inside = "    <axis xyz=\"0 0 1\"/>\n    <limit effort=\"0\" velocity=\"" +
-                       number_text(std::isfinite(row.velocity) ? row.velocity : 0.0, kDigits) +
+                       exact_text(std::isfinite(row.velocity) ? row.velocity : 0.0) +
                        "\"";
   if (is_limited) {
-    inside += " lower=\"" + number_text(row.lower, kDigits) + "\" upper=\"" +
-              number_text(row.upper, kDigits) + "\"";
+    inside += " lower=\"" + exact_text(row.lower) + "\" upper=\"" +
+              exact_text(row.upper) + "\"";
   }
   return joint_element(name, type, parent, child, {0, 0, row.d}, {0, 0, row.theta},
                        inside + "/>\n");
@@ -77,13 +70,6 @@ std::string fixed(const std::string& parent, const std::string& child, const Eig
   return joint_element(child + "_fixed", "fixed", parent, child, xyz, rpy);
 }
 
-/// Roll, pitch and yaw of R = Rz(yaw) Ry(pitch) Rx(roll).
-Eigen::Vector3d rpy_of(const Eigen::Matrix3d& R) {
-  const double roll = std::atan2(R(2, 1), R(2, 2));
-  const Eigen::Matrix3d S = R * Eigen::AngleAxisd(-roll, Eigen::Vector3d::UnitX());
-  return {roll, std::atan2(-S(2, 0), S(2, 2)), std::atan2(-S(0, 1), S(1, 1))};
-}
-
 }  // namespace
 
 std::string urdf_of_dh(const DhTable& table) {
@@ -91,7 +77,7 @@ std::string urdf_of_dh(const DhTable& table) {
   const Pose base = check_pose(table.T_base_link0, "base");
   std::string text = "<robot name=\"" + escape_xml(table.robot_name) +
                      "\">\n  <link name=\"base\"/>\n" +
-                     fixed("base", "link0", base.translation(), rpy_of(base.linear()));
+                     fixed("base", "link0", base.translation(), to_roll_pitch_yaw(base.linear()));
   std::set<std::string> names;
   for (std::size_t i = 0; i < table.joints.size(); ++i) {
     const DhJoint& row = table.joints[i];

@@ -3,13 +3,22 @@
 // and what is left out because kinematics do not need it.
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 #include <vector>
 
+#include "base/message_text.hpp"
 #include "iksel/dh.hpp"
 #include "urdf/xml.hpp"
 
 namespace iksel {
+
+/// A number that is read back as the same.
+inline std::string exact_text(double number) { return number_text(number, 17); }
+
+inline std::string exact_text(const Eigen::Vector3d& v) {
+  return exact_text(v.x()) + " " + exact_text(v.y()) + " " + exact_text(v.z());
+}
 
 /// Writes orientations by `quat_xyzw`, which are URDF's from version 1.1 on, as `rpy`. Such ones of
 /// older files, or beside an rpy, stay as they are.

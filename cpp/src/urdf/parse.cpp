@@ -12,6 +12,7 @@
 #include <mutex>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include "iksel/error.hpp"
 #include "urdf/urdf_text.hpp"
@@ -60,12 +61,7 @@ std::string one_line(std::string text) {
 }
 
 /// What urdfdom says, which is only what it met, and what to do about it.
-struct Remedy {
-  const char* message;
-  const char* remedy;
-};
-
-constexpr Remedy kRemedies[] = {
+constexpr std::pair<const char*, const char*> kRemedies[] = {
     {"unnamed joint found", "give each <joint> a name"},
     {"is not unique", "give each a name of its own"},
     {"No link elements found", "it needs a <link> for each body"},
@@ -80,8 +76,8 @@ constexpr Remedy kRemedies[] = {
 /// The remedies for messages, or nothing.
 std::string find_remedies(const std::string& messages) {
   std::string text;
-  for (const Remedy& entry : kRemedies) {
-    if (messages.find(entry.message) != std::string::npos) text += std::string("; ") + entry.remedy;
+  for (const auto& [message, remedy] : kRemedies) {
+    if (messages.find(message) != std::string::npos) text += std::string("; ") + remedy;
   }
   return text;
 }

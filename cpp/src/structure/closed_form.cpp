@@ -7,10 +7,6 @@
 #include "base/constants.hpp"
 #include "base/plain_vector.hpp"
 #include "simd/lane_chain.hpp"
-#include "structure/axis_pattern.hpp"
-#include "structure/completed_axes.hpp"
-#include "structure/find_loop.hpp"
-#include "structure/known_solutions.hpp"
 
 namespace iksel {
 namespace {

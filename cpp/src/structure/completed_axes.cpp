@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "structure/completed_axes.hpp"
-
 #include <optional>
+
+#include "structure/closed_form.hpp"
 
 namespace iksel {
 namespace {

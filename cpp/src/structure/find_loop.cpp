@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "structure/find_loop.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 #include "base/constants.hpp"
 #include "base/random.hpp"
 #include "simd/kernels.hpp"
-#include "structure/loop_polynomial.hpp"
+#include "structure/closed_form.hpp"
 
 namespace iksel {
 namespace {

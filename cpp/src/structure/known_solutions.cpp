@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "structure/known_solutions.hpp"
-
 #include <Eigen/LU>
 #include <cmath>
 
@@ -8,6 +6,7 @@
 #include "base/pseudo_inverse.hpp"
 #include "base/random.hpp"
 #include "simd/kernels.hpp"
+#include "structure/closed_form.hpp"
 
 namespace iksel {
 namespace {

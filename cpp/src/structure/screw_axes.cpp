@@ -18,28 +18,17 @@ constexpr double kClearlyNot = 1e-3;
 }  // namespace
 
 ScrewAxes ScrewAxes::of(const ChainModel& model) {
+  KernelChain chain = model.kernel;
+  chain.base = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}};
+  double q[kMaxDof];
+  for (const KernelJoint& joint : chain.joints) q[joint.variable] = -joint.offset;
+  JointAxes at;
   ScrewAxes axes;
-  Pose frame = Pose::Identity();
-  bool first = true;
-  for (const KernelJoint& joint : model.kernel.joints) {
-    if (!first) {
-      Pose step = Pose::Identity();
-      step.translation() << joint.p[0], joint.p[1], joint.p[2];
-      step.linear() << 1, 0, 0, 0, joint.cos_alpha, -joint.sin_alpha, 0, joint.sin_alpha,
-          joint.cos_alpha;
-      frame = frame * step;
-    }
-    first = false;
-    if (joint.prismatic) {
-      Pose turn = Pose::Identity();
-      turn.linear() << joint.cos_turn, -joint.sin_turn, 0, joint.sin_turn, joint.cos_turn, 0, 0, 0,
-          1;
-      frame = frame * turn;
-    }
-    axes.h.emplace_back(frame.linear().col(2));
-    axes.p.emplace_back(frame.translation());
+  axes.end = to_pose(forward_to_last_joint(chain, q, &at));
+  for (std::size_t k = 0; k < chain.joints.size(); ++k) {
+    axes.h.emplace_back(at.axis[k]);
+    axes.p.emplace_back(at.origin[k]);
   }
-  axes.end = frame;
   return axes;
 }
 

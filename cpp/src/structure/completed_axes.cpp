@@ -82,7 +82,6 @@ class Completion {
       places.emplace_back(chain_.p[last] + reach_ * chain_.h[last].unitOrthogonal());
       return places;
     }
-    constexpr double kClearlyNotParallel = 1e-3;
     if (chain_.angle(last - 1, last) > kClearlyNotParallel) {
       places.push_back(chain_.middle(last - 1, last));
     }

@@ -7,15 +7,9 @@
 #include "structure/closed_form.hpp"
 
 namespace iksel {
-namespace {
 
 using Eigen::Vector3d;
 using lanes::Closure;
-
-/// Axes at a smaller angle are neither parallel nor can it be said where they meet [rad].
-constexpr double kClearlyNot = 1e-3;
-
-}  // namespace
 
 ScrewAxes ScrewAxes::of(const ChainModel& model) {
   KernelChain chain = model.kernel;
@@ -63,7 +57,7 @@ bool AxisPattern::is_on(const Vector3d& point, std::size_t i) const {
 }
 
 bool AxisPattern::meet(std::size_t i, std::size_t j) const {
-  return axes_.angle(i, j) > kClearlyNot && is_on(axes_.middle(i, j), j);
+  return axes_.angle(i, j) > kClearlyNotParallel && is_on(axes_.middle(i, j), j);
 }
 
 bool AxisPattern::three_meet(std::size_t i) const {

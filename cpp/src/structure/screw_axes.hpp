@@ -12,6 +12,9 @@
 
 namespace iksel {
 
+/// Axes at a smaller angle are neither parallel nor can it be said where they meet [rad].
+inline constexpr double kClearlyNotParallel = 1e-3;
+
 /// Seen from the first joint's frame, or the other way round from the last one's. Angles are the
 /// kernel's, q + offset, and so are ways of slides.
 struct ScrewAxes {

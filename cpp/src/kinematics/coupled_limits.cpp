@@ -9,9 +9,7 @@
 namespace iksel {
 namespace {
 
-/// Part of the numbers of a sum that rounding may take it off by, and more.
-constexpr double kSumRounding = 1e-12;
-/// Less than this between its ends, in parts of those numbers, is no room to search in.
+/// Less than this between the ends of a sum, in parts of its numbers, is no room to search in.
 constexpr double kLeastRoom = 1e-6;
 
 [[noreturn]] void refuse(const CoupledLimit& limit, std::size_t index, const std::string& what) {
@@ -102,7 +100,7 @@ void narrow_to_joints(const CoupledLimit& limit, std::size_t index, const JointS
     most += std::max(a, b);
     numbers += std::max(std::abs(a), std::abs(b));
   }
-  row.rounding = kSumRounding * numbers;
+  row.rounding = 1e-12 * numbers;  // what rounding may take the sum off by, and more
   const double lower = std::max(row.lower, least - 2 * row.rounding);
   const double upper = std::min(row.upper, most + 2 * row.rounding);
   if (!(upper - lower > kLeastRoom * numbers)) {

@@ -110,8 +110,6 @@ void JointSpace::hold_sums(JointVector& q) const {
 }
 
 void JointSpace::add_active_sums(const JointVector& q, JointVector& pull, ActiveLimits& at) const {
-  /// Rows nearly along others, as far as their free joints go, hold nothing more.
-  constexpr double kAlong = 1e-6;
   auto& across = at.across;
   across.resize(dof(), 0);
   for (const Limit& row : sums) {
@@ -124,7 +122,8 @@ void JointSpace::add_active_sums(const JointVector& q, JointVector& pull, Active
     JointVector normal = row.c.cwiseProduct(at.free);
     normal -= JointVector(across * (across.transpose() * normal));
     const double length = normal.norm();
-    if (!(length > kAlong * row.c.norm())) continue;
+    // Rows nearly along others, as far as their free joints go, hold nothing more.
+    if (!(length > 1e-6 * row.c.norm())) continue;
     normal /= length;
     pull -= normal.dot(pull) * normal;
     across.conservativeResize(Eigen::NoChange, across.cols() + 1);
@@ -275,12 +274,11 @@ JointVector JointSpace::draw(Random& random) const {
 }
 
 Matrix JointSpace::samples(std::size_t n, std::uint64_t seed, const Progress& progress) const {
-  constexpr std::size_t kRowsBetweenTellings = 1024;
   Matrix q(static_cast<Eigen::Index>(n), dof());
   Random random(seed);
   Pace pace(progress, n);
   for (std::size_t row = 0; row < n; ++row) {
-    if (row % kRowsBetweenTellings == 0) pace(row);
+    if (row % 1024 == 0) pace(row);  // the clock takes as long as a row
     sample(random, q.row(static_cast<Eigen::Index>(row)));
   }
   return q;

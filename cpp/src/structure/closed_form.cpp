@@ -14,9 +14,6 @@ namespace {
 using Eigen::Vector3d;
 using lanes::Closure;
 
-/// How far a locked axis may be off zero without being outside: what rounding leaves [rad].
-constexpr double kLocked = 1e-9;
-
 /// x . R(k, t) y.
 lanes::Turned turned(const Vector3d& x, const Vector3d& k, const Vector3d& y) {
   const double c = k.dot(x) * k.dot(y);
@@ -118,7 +115,8 @@ void ClosedFormChain::use_limits(const ChainModel& model) {
     if (j >= dof || turns_freely(j)) {
       form.offset[i] = 0;
       form.middle[i] = 0;
-      form.reach[i] = turns_freely(j) ? kPi : kLocked;
+      // A locked axis is held to what axes may be off.
+      form.reach[i] = turns_freely(j) ? kPi : kStructureTolerance;
     } else {
       const bool ends = model.joints.type(j) != JointType::continuous;
       form.offset[i] = model.kernel.joints[static_cast<std::size_t>(j)].offset;

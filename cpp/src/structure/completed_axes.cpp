@@ -67,8 +67,7 @@ class Completion {
   static void append_across(ScrewAxes& axes, const Vector3d& point) {
     const std::size_t n = axes.h.size();
     const Vector3d across = axes.h[n - 1].cross(axes.h[n - 2]);
-    constexpr double kParallel = 0.1;
-    axes.h.push_back(across.norm() > kParallel ? Vector3d(across.normalized())
+    axes.h.push_back(across.norm() > 0.1 ? Vector3d(across.normalized())
                                                : axes.h[n - 1].unitOrthogonal());
     axes.p.push_back(point);
   }

@@ -109,12 +109,10 @@ std::string read_urdf_file(const std::filesystem::path& path) {
     throw UrdfError("cannot open URDF file '" + path.string() +
                     "': " + std::generic_category().message(errno));
   }
-  // Devices never end.
-  constexpr std::size_t kMost = 256U << 20U;
   std::string text;
   for (char c = 0; file.get(c);) {
     text += c;
-    if (text.size() > kMost) {
+    if (text.size() > 256U << 20U) {  // devices never end
       throw UrdfError("URDF file '" + path.string() + "' is larger than 256 MiB");
     }
   }

@@ -45,10 +45,10 @@ std::optional<char32_t> entity(std::string_view inside) {
 }
 
 std::string resolve_entities(std::string_view raw) {
-  constexpr std::size_t kLongest = 10;  // &#x10FFFF;
   std::string text;
   for (std::size_t at = 0; at < raw.size();) {
-    const std::size_t end = raw[at] == '&' ? raw.substr(0, at + kLongest).find(';', at) : kNowhere;
+    // The longest is as &#x10FFFF;
+    const std::size_t end = raw[at] == '&' ? raw.substr(0, at + 10).find(';', at) : kNowhere;
     const auto c = end == kNowhere ? std::nullopt : entity(raw.substr(at + 1, end - at - 1));
     if (c) {
       append_utf8(text, *c);

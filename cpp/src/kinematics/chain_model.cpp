@@ -258,11 +258,6 @@ Frame ChainModel::fk_jacobian(const double* q, Jacobian& jacobian, bool with_too
   return forward_jacobian(kernel, end, dof, q, jacobian.data());
 }
 
-void ChainModel::fk_jacobian(const double* q, Pose& pose, Jacobian& jacobian,
-                             bool with_tool) const {
-  pose = to_pose(fk_jacobian(q, jacobian, with_tool));
-}
-
 Jacobians ChainModel::jacobians(const double* q) const {
   Jacobian J;
   fk_jacobian(q, J);

@@ -35,9 +35,7 @@ class ChainModel final : public RobotModel {
   [[nodiscard]] Pose fk(const double* q) const;
   /// The same as a frame, with fused multiply-adds where the processor has them.
   [[nodiscard]] Frame fk_frame(const double* q) const;
-  /// Pose and Jacobian of the TCP, or of the tip link if not `with_tool`.
-  void fk_jacobian(const double* q, Pose& pose, Jacobian& jacobian, bool with_tool = true) const;
-  /// Jacobian of the TCP, whose frame is returned.
+  /// Jacobian of the TCP, or of the tip link if not `with_tool`, whose frame is returned.
   Frame fk_jacobian(const double* q, Jacobian& jacobian, bool with_tool = true) const;
   /// Brings a Jacobian's lengths, and what slides move, to the unit.
   void to_unit(Jacobian& jacobian) const;

@@ -246,7 +246,7 @@ JointVector JointSpace::longest_moves(double dt) const {
   return velocity * (dt * (1 + 1e-9));
 }
 
-JointVector JointSpace::draw(Random& random) const {
+JointVector JointSpace::sample(Random& random) const {
   JointVector q(dof());
   for (int draw = 0; draw <= kMostDraws; ++draw) {
     for (int j = 0; j < dof(); ++j) q[j] = random.uniform(sample_lower(j), sample_upper(j));
@@ -279,7 +279,7 @@ Matrix JointSpace::samples(std::size_t n, std::uint64_t seed, const Progress& pr
   Pace pace(progress, n);
   for (std::size_t row = 0; row < n; ++row) {
     if (row % 1024 == 0) pace(row);  // the clock takes as long as a row
-    sample(random, q.row(static_cast<Eigen::Index>(row)));
+    q.row(static_cast<Eigen::Index>(row)) = sample(random).transpose();
   }
   return q;
 }

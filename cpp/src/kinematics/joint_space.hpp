@@ -210,13 +210,8 @@ class JointSpace {
   [[nodiscard]] double sample_upper(int joint) const {
     return type(joint) == JointType::continuous ? kPi : upper[joint];
   }
-  /// Writes a configuration uniform in that range, and inside the limits, to q[0], q[1], ...
-  template <typename Q>
-  void sample(Random& random, Q&& q) const {
-    const JointVector drawn = draw(random);
-    for (int j = 0; j < dof(); ++j) q[j] = drawn[j];
-  }
-
+  /// A configuration uniform in that range, and inside the limits.
+  [[nodiscard]] JointVector sample(Random& random) const;
   /// n of them, one per row.
   [[nodiscard]] Matrix samples(std::size_t n, std::uint64_t seed, const Progress& progress) const;
 
@@ -239,7 +234,6 @@ class JointSpace {
   /// The next combination of images inside the joints' own limits, whatever the sums are; false
   /// after the last, which leaves q at the first.
   bool next_combination(JointVector& q) const;
-  [[nodiscard]] JointVector draw(Random& random) const;
   /// Of the joints that turn in sums the images nearest by `length` that lie inside by up to
   /// `slack`; where there are none, those that lie outside least.
   void choose_images(double slack, const Length& length, JointVector& q) const;

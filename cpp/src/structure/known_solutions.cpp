@@ -50,12 +50,10 @@ double part_of_self_motion(const Jacobian& J, int joint) {
 template <typename Visit>
 void visit_configurations(const ChainModel& model, const Visit& visit) {
   Random random(kDrawSeed);
-  JointVector q(model.dof);
-  Pose pose;
   Jacobian J;
   for (int i = 0; i < kConfigurations; ++i) {
-    model.joints.sample(random, q);
-    model.fk_jacobian(q.data(), pose, J);
+    const JointVector q = model.joints.sample(random);
+    const Pose pose = to_pose(model.fk_jacobian(q.data(), J));
     model.to_unit(J);
     visit(q, pose, J);
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/function_ref.hpp"
+#include "iksel/result.hpp"
 #include "seeds/branch_enclosure.hpp"
 #include "seeds/least_places.hpp"
 #include "seeds/swept_branches.hpp"

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "goal/goal.hpp"
 #include "iksel/diagnosis.hpp"
 #include "seeds/enumeration.hpp"
 

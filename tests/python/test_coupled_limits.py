@@ -448,7 +448,9 @@ def test_nor_where_only_what_follows_them_is_on_the_chain(name: str) -> None:
     xml = robot(
         link("base", "aside", "elbow", "hand"),
         joint("source", "base", "aside", **free),
-        joint("follower", "base", "elbow", **free | {"inside": mimic("source", "", "")}),
+        joint(
+            "follower", "base", "elbow", **free | {"inside": mimic("source", "", "")}
+        ),
         joint("last", "elbow", "hand", axis="0 1 0"),
     )
     limit = iksel.CoupledLimit({name: 1, "last": 1}, -1, 1)

@@ -66,8 +66,8 @@ def test_pinocchio_agrees() -> None:
             order.append(joint.idx_v)
         pinocchio.computeJointJacobians(model, data, values)
         pinocchio.updateFramePlacements(model, data)
-        for tip, link in enumerate(robot.tip_links):
-            frame = model.getFrameId(link)
+        for tip, name in enumerate(robot.tip_links):
+            frame = model.getFrameId(name)
             there = data.oMf[frame].homogeneous
             np.testing.assert_allclose(there, poses[tip], atol=1e-12)
             world = pinocchio.ReferenceFrame.LOCAL_WORLD_ALIGNED

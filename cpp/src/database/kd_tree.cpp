@@ -72,7 +72,8 @@ class NanoflannTree final : public KdTree {
  public:
   NanoflannTree(const double* data, std::size_t count, int dimension)
       : points_{data, count, dimension},
-        tree_(dimension, points_, nanoflann::KDTreeSingleIndexAdaptorParams(/*leaf_max_size=*/16)) {}
+        tree_(dimension, points_, nanoflann::KDTreeSingleIndexAdaptorParams(/*leaf_max_size=*/16)) {
+  }
 
   std::size_t nearest(const double* point, std::size_t k, Neighbour* out) const override {
     HeapResult result(out, std::min(k, points_.count));

@@ -217,7 +217,7 @@ class JointSpace {
 
   std::vector<std::string> names;
   std::vector<JointType> types;
-  JointVector lower, upper;  ///< of joints [rad or m]; infinite for continuous ones
+  JointVector lower, upper;   ///< of joints [rad or m]; infinite for continuous ones
   std::vector<bool> repeats;  ///< whether a whole turn of a joint leads to the same pose
   JointVector velocity;       ///< [rad/s or m/s]
   std::vector<Limit> sums;

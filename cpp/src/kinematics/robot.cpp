@@ -12,8 +12,8 @@
 #include "iksel/error.hpp"
 #include "kinematics/chain_model.hpp"
 #include "kinematics/tips_model.hpp"
-#include "urdf/urdf_text.hpp"
 #include "urdf/parse.hpp"
+#include "urdf/urdf_text.hpp"
 
 namespace iksel {
 

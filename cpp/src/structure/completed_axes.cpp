@@ -68,7 +68,7 @@ class Completion {
     const std::size_t n = axes.h.size();
     const Vector3d across = axes.h[n - 1].cross(axes.h[n - 2]);
     axes.h.push_back(across.norm() > 0.1 ? Vector3d(across.normalized())
-                                               : axes.h[n - 1].unitOrthogonal());
+                                         : axes.h[n - 1].unitOrthogonal());
     axes.p.push_back(point);
   }
 

@@ -21,8 +21,8 @@ std::string joint_element(const std::string& name, const char* type, const std::
                           const Eigen::Vector3d& rpy, const std::string& inside = "") {
   return "  <link name=\"" + child + "\"/>\n  <joint name=\"" + escape_xml(name) + "\" type=\"" +
          type + "\">\n    <parent link=\"" + parent + "\"/>\n    <child link=\"" + child +
-         "\"/>\n    <origin xyz=\"" + exact_text(xyz) + "\" rpy=\"" + exact_text(rpy) + "\"/>\n" + inside +
-         "  </joint>\n";
+         "\"/>\n    <origin xyz=\"" + exact_text(xyz) + "\" rpy=\"" + exact_text(rpy) + "\"/>\n" +
+         inside + "  </joint>\n";
 }
 
 void check_row(const DhJoint& row, std::ptrdiff_t i) {
@@ -55,11 +55,9 @@ std::string moving(const DhJoint& row, const std::string& name, const std::strin
   const bool is_limited = std::isfinite(row.lower);
   const char* type = slides ? "prismatic" : is_limited ? "revolute" : "continuous";
   std::string inside = "    <axis xyz=\"0 0 1\"/>\n    <limit effort=\"0\" velocity=\"" +
-                       exact_text(std::isfinite(row.velocity) ? row.velocity : 0.0) +
-                       "\"";
+                       exact_text(std::isfinite(row.velocity) ? row.velocity : 0.0) + "\"";
   if (is_limited) {
-    inside += " lower=\"" + exact_text(row.lower) + "\" upper=\"" +
-              exact_text(row.upper) + "\"";
+    inside += " lower=\"" + exact_text(row.lower) + "\" upper=\"" + exact_text(row.upper) + "\"";
   }
   return joint_element(name, type, parent, child, {0, 0, row.d}, {0, 0, row.theta},
                        inside + "/>\n");

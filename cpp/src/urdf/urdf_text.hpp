@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The text of a URDF before urdfdom sees it: what is mended in it, which of its links hang together,
-// and what is left out because kinematics do not need it.
+// The text of a URDF before urdfdom sees it: what is mended in it, which of its links hang
+// together, and what is left out because kinematics do not need it.
 #pragma once
 
 #include <Eigen/Core>
@@ -43,7 +43,8 @@ void keep_one_tree(XmlElement& robot, const std::vector<std::string>& links);
 /// The first sign that a document is xacro which has to be expanded; empty if there is none.
 std::string find_xacro(const XmlElement& root);
 
-/// The URDF of a table of Denavit and Hartenberg's parameters. Throws InvalidArgumentError naming a bad number, name or limit.
+/// The URDF of a table of Denavit and Hartenberg's parameters. Throws InvalidArgumentError naming a
+/// bad number, name or limit.
 std::string urdf_of_dh(const DhTable& table);
 
 }  // namespace iksel

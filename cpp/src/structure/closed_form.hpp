@@ -106,8 +106,6 @@ std::optional<ClosedFormChain> find_closed_form(const ChainModel& model,
 /// What gives a residual for each angle of one of six joints, whose roots are the solutions.
 std::optional<ClosedFormChain> find_residual(const ChainModel& model);
 
-// What these look into.
-
 /// The axes of a chain of fewer than six joints, or of a task that leaves rotations free, completed
 /// to six: by axes behind the last joint that are locked at zero, where joints are missing, or that
 /// turn as they like, where the task does not ask for a rotation.

@@ -23,11 +23,8 @@ struct XmlElement {
   [[nodiscard]] const XmlElement* child(std::string_view child_name) const;
 };
 
-/// Reads the bytes of an XML file.
-///
-/// Left out are comments, processing instructions and a DOCTYPE, whose entities are not expanded:
-/// an & that begins none of XML's own stands for itself. A default namespace is left out, and
-/// prefixes that nothing binds are bound. Tabs and line breaks in values are spaces.
+/// Reads the bytes of an XML file, with what mend_xml (iksel/urdf_text.hpp) mends and leaves out.
+/// Tabs and line breaks in values are spaces.
 ///
 /// Throws UrdfError, which begins with the line, where tags are not closed, values have no quotes
 /// or anything else leaves open what is meant, and for text that would take all memory.

@@ -199,7 +199,7 @@ bool JointSpace::wrap_nearest(const JointVector& near, double slack, const Lengt
                               JointVector& q) const {
   bool held = false;
   for (int j = 0; j < dof(); ++j) {
-    if (!winds(j)) continue;
+    if (!is_periodic(j) || turns_in_sum(j)) continue;
     const double low = lower[j] - slack;
     const double high = upper[j] + slack;
     double value = q[j];

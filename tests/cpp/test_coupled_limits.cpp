@@ -100,9 +100,7 @@ TEST(CoupledLimits, WhatIsInsideIsSaid) {
       const JointVector q = draw(joints, random, 0.2);
       ASSERT_EQ(joints.contains(q.data()), is_inside(joints, q)) << "seed " << iksel_test::seed();
       inside += is_inside(joints, q) ? 1 : 0;
-      JointVector sample(joints.dof());
-      joints.sample(random, sample);
-      ASSERT_TRUE(is_inside(joints, sample)) << "seed " << iksel_test::seed();
+      ASSERT_TRUE(is_inside(joints, joints.sample(random))) << "seed " << iksel_test::seed();
     }
     EXPECT_GT(inside, 0);
     EXPECT_TRUE(is_inside(joints, joints.interior, -0.05));
@@ -114,10 +112,7 @@ TEST(CoupledLimits, HeldIsInsideAndNotFar) {
   const JointSpace& joints = robot.model().joints;
   Random random(iksel_test::seed());
   std::vector<JointVector> others;
-  for (int i = 0; i < 3000; ++i) {
-    others.emplace_back(joints.dof());
-    joints.sample(random, others.back());
-  }
+  for (int i = 0; i < 3000; ++i) others.push_back(joints.sample(random));
   for (int i = 0; i < iksel_test::cases(500); ++i) {
     const JointVector q = draw(joints, random, 0.5);
     const JointVector held = joints.clamp(q);
@@ -163,8 +158,7 @@ TEST(CoupledLimits, ImagesAreThoseInside) {
     return rounded;
   };
   for (int i = 0; i < iksel_test::cases(300); ++i) {
-    JointVector q(joints.dof());
-    joints.sample(random, q);
+    JointVector q = joints.sample(random);
     std::set<std::vector<long>> wanted;
     for (const JointVector& each : images(joints, q)) wanted.insert(key(each));
     std::set<std::vector<long>> found;
@@ -186,8 +180,7 @@ TEST(CoupledLimits, TheNearestImageIsFound) {
   const JointVector weights = JointVector::LinSpaced(joints.dof(), 0.5, 3.0);
   const auto length = [&](const JointVector& d) { return d.cwiseProduct(weights).norm(); };
   for (int i = 0; i < iksel_test::cases(300); ++i) {
-    JointVector q(joints.dof());
-    joints.sample(random, q);
+    JointVector q = joints.sample(random);
     const JointVector near = draw(joints, random, 0);
     double least = iksel::kInfinity;
     for (const JointVector& each : images(joints, q)) {
@@ -204,8 +197,7 @@ TEST(CoupledLimits, WrappingFindsAnImageInside) {
   const JointSpace& joints = robot.model().joints;
   Random random(iksel_test::seed());
   for (int i = 0; i < iksel_test::cases(500); ++i) {
-    JointVector q(joints.dof());
-    joints.sample(random, q);
+    JointVector q = joints.sample(random);
     for (int j = 0; j < joints.dof(); ++j) q[j] += kTwoPi * std::floor(random.uniform(-2, 3));
     joints.wrap(q.data());
     // Rounding of whole turns may take a joint off its limit.

@@ -214,6 +214,14 @@ TEST_F(DatabaseFile, SamplesThatAreNotFiniteAreRefused) {
   }
 }
 
+TEST_F(DatabaseFile, OlderFilesMayHaveAnOptionThatWasNotRead) {
+  std::string old = make(60).to_bytes();
+  const std::uint64_t cvt_updates = 5;
+  std::memcpy(&old[64], &cvt_updates, sizeof cvt_updates);
+  sign(old);
+  EXPECT_EQ(Database::from_bytes(old).options().cvt_updates, DatabaseOptions{}.cvt_updates);
+}
+
 TEST_F(DatabaseFile, SignedHeadersOfAnyContentAreRefusedOrServe) {
   const Robot& robot = iksel_test::robot("cvr038");
   const iksel::Pose target = robot.fk(robot.random_configurations(1, 1).row(0));
@@ -418,34 +426,32 @@ TEST_F(DatabaseFile, OtherBusErrorsGoToTheHandlerBefore) {
 TEST_F(DatabaseFile, KilledSavesLeaveADatabaseAndNoFiles) {
   const Database databases[] = {make(500), make(700)};
   const std::string contents[] = {databases[0].to_bytes(), databases[1].to_bytes()};
-  const auto save = [&](int i, bool nameless) {
-    iksel::write_file(path("d.iksel"), databases[i % 2].data().storage, nameless);
+  const auto save = [&](int i) {
+    iksel::write_file(path("d.iksel"), databases[i % 2].data().storage);
   };
   iksel::Random random(iksel_test::seed());
-  for (const bool nameless : {true, false}) {
-    save(0, nameless);
-    int changed = 0;
-    const int kills = iksel_test::cases(30, 20);
-    for (int kill = 0; kill < kills; ++kill) {
-      const pid_t child = ::fork();
-      ASSERT_GE(child, 0);
-      if (child == 0) {
-        for (int i = kill + 1;; ++i) save(i, nameless);
-      }
-      ::usleep(static_cast<useconds_t>(random.next() % 10000));
-      ASSERT_EQ(::kill(child, SIGKILL), 0);
-      int status = 0;
-      ASSERT_EQ(::waitpid(child, &status, 0), child);
-      ASSERT_TRUE(WIFSIGNALED(status)) << "the child ended by itself";
-      const std::string now = read(path("d.iksel"));
-      ASSERT_TRUE(now == contents[0] || now == contents[1]) << "kill " << kill;
-      ASSERT_LE(files(), 2U) << "kill " << kill;
-      changed += now != contents[kill % 2];
+  save(0);
+  int changed = 0;
+  const int kills = iksel_test::cases(30, 20);
+  for (int kill = 0; kill < kills; ++kill) {
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      for (int i = kill + 1;; ++i) save(i);
     }
-    EXPECT_GT(changed, 0) << "no child saved anything";
-    save(0, nameless);
-    EXPECT_EQ(files(), 1U);
+    ::usleep(static_cast<useconds_t>(random.next() % 10000));
+    ASSERT_EQ(::kill(child, SIGKILL), 0);
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    ASSERT_TRUE(WIFSIGNALED(status)) << "the child ended by itself";
+    const std::string now = read(path("d.iksel"));
+    ASSERT_TRUE(now == contents[0] || now == contents[1]) << "kill " << kill;
+    ASSERT_LE(files(), 2U) << "kill " << kill;
+    changed += now != contents[kill % 2];
   }
+  EXPECT_GT(changed, 0) << "no child saved anything";
+  save(0);
+  EXPECT_EQ(files(), 1U);
 }
 
 TEST_F(DatabaseFile, OnlyAbandonedFilesOfOursAreRemoved) {
@@ -465,32 +471,30 @@ TEST_F(DatabaseFile, OnlyAbandonedFilesOfOursAreRemoved) {
 
 TEST_F(DatabaseFile, SavesAtOnceDoNotDisturbEachOther) {
   const Database databases[] = {make(300), make(400), make(500)};
-  for (const bool nameless : {true, false}) {
-    std::vector<pid_t> children;
-    for (const Database& database : databases) {
-      const pid_t child = ::fork();
-      ASSERT_GE(child, 0);
-      if (child == 0) {
-        try {
-          for (int i = 0; i < 20; ++i) {
-            iksel::write_file(path("d.iksel"), database.data().storage, nameless);
-          }
-        } catch (const std::exception& error) {
-          std::fputs(error.what(), stderr);
-          ::_exit(1);
+  std::vector<pid_t> children;
+  for (const Database& database : databases) {
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      try {
+        for (int i = 0; i < 20; ++i) {
+          iksel::write_file(path("d.iksel"), database.data().storage);
         }
-        ::_exit(0);
+      } catch (const std::exception& error) {
+        std::fputs(error.what(), stderr);
+        ::_exit(1);
       }
-      children.push_back(child);
+      ::_exit(0);
     }
-    for (const pid_t child : children) {
-      int status = 0;
-      ASSERT_EQ(::waitpid(child, &status, 0), child);
-      EXPECT_EQ(status, 0);
-    }
-    EXPECT_NO_THROW((void)Database::load(path("d.iksel")));
-    EXPECT_EQ(files(), 1U);
+    children.push_back(child);
   }
+  for (const pid_t child : children) {
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    EXPECT_EQ(status, 0);
+  }
+  EXPECT_NO_THROW((void)Database::load(path("d.iksel")));
+  EXPECT_EQ(files(), 1U);
 }
 
 }  // namespace

@@ -218,7 +218,7 @@ bool reference_attempt(const Robot& robot, const Rules& rules, const iksel::Pape
     const bool stands_still = std::abs(step.sum()) < paper.min_step;
     if (stands_still && !restarts) return false;
     if (!stands_still) q += step;
-    if (restarts && (stands_still || !joints.contains(q.data()))) joints.sample(random, q);
+    if (restarts && (stands_still || !joints.contains(q.data()))) q = joints.sample(random);
   }
 }
 

@@ -163,7 +163,7 @@ INSTANTIATE_TEST_SUITE_P(All, Kinds,
 TEST(Reduction, FallsBackSideBySide) {
   const auto sides = [](const char* kinds) {
     const Reduction r = Reduction::of(make_robot(kinds).model(), 1);
-    return std::pair(r.left(), r.right());
+    return std::pair(r.left, r.right);
   };
   EXPECT_EQ(sides("rrrrrr"), std::pair(Side::rotation, Side::rotation));
   EXPECT_EQ(sides("prrrrp"), std::pair(Side::translation, Side::none));

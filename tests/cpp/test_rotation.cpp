@@ -49,7 +49,9 @@ TEST(Rotation, RollPitchYawGivesTheMatrixBack) {
   for (int i = 0; i < 5000; ++i) {
     Eigen::Vector3d rpy(random.uniform(-kPi, kPi), random.uniform(-kPi / 2, kPi / 2),
                         random.uniform(-kPi, kPi));
+    // Where roll and yaw turn about one axis, and nearly so.
     if (i % 10 == 0) rpy[1] = kPi / 2;
+    if (i % 10 == 1) rpy[1] = kPi / 2 - std::pow(10.0, random.uniform(-15, -3));
     const auto matrix = [](const Eigen::Vector3d& a) -> Eigen::Matrix3d {
       return (Eigen::AngleAxisd(a[2], Eigen::Vector3d::UnitZ()) *
               Eigen::AngleAxisd(a[1], Eigen::Vector3d::UnitY()) *

@@ -62,7 +62,7 @@ DatabaseOptions small(Sampling sampling) {
   options.sampling = sampling;
   options.samples = 3000;
   options.scale = Scale::small;
-  options.cvt_updates = 20'000;
+  if (sampling == Sampling::cvt) options.cvt_updates = 20'000;
   if (sampling == Sampling::kmeans) options.kmeans_pool = 10'000;
   options.seed = 7;
   options.key_scheme = iksel::KeyScheme::full;
@@ -128,8 +128,8 @@ TEST(Cvt, CoversBetterThanRandomSamples) {
   DatabaseOptions options = small(Sampling::cvt);
   options.cvt_updates = 100'000;
   const double cvt = covering(robot, Database::build(robot, options));
-  options.sampling = Sampling::random;
-  EXPECT_LT(cvt, 0.97 * covering(robot, Database::build(robot, options)));
+  const Database random = Database::build(robot, small(Sampling::random));
+  EXPECT_LT(cvt, 0.97 * covering(robot, random));
 }
 
 /// Joint values of all samples, in lexicographic order.
@@ -263,6 +263,9 @@ TEST(Build, RefusesOptionsOutOfRange) {
   options.sampling = Sampling::kmeans;
   EXPECT_NO_THROW(Database::build(robot, options));
   options.kmeans_pool = 0;
+  EXPECT_THROW(Database::build(robot, options), iksel::InvalidArgumentError);
+  options = {};
+  options.cvt_updates = 5;  // nor this
   EXPECT_THROW(Database::build(robot, options), iksel::InvalidArgumentError);
   EXPECT_THROW((void)DatabaseOptions::paper(2024), iksel::InvalidArgumentError);
 }

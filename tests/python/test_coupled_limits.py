@@ -21,6 +21,7 @@ from linkage_arms import (
     sums,
 )
 from trees import two_arms_on_torso
+from urdf_text import joint, link, mimic, robot
 
 import iksel
 from iksel._base.limits import violated_limits
@@ -439,6 +440,22 @@ def test_joints_that_turn_without_limits_are_refused() -> None:
     limit = iksel.CoupledLimit({name: 1}, 0, 1)
     with pytest.raises(iksel.InvalidArgumentError, match="turns without limits"):
         iksel.load_robot("gen3_6dof", coupled_limits=[limit])
+
+
+@pytest.mark.parametrize("name", ["source", "follower"])
+def test_nor_where_only_what_follows_them_is_on_the_chain(name: str) -> None:
+    free = {"kind": "continuous", "inside": ""}
+    xml = robot(
+        link("base", "aside", "elbow", "hand"),
+        joint("source", "base", "aside", **free),
+        joint(
+            "follower", "base", "elbow", **free | {"inside": mimic("source", "", "")}
+        ),
+        joint("last", "elbow", "hand", axis="0 1 0"),
+    )
+    limit = iksel.CoupledLimit({name: 1, "last": 1}, -1, 1)
+    with pytest.raises(iksel.InvalidArgumentError, match="turns without limits"):
+        iksel.Robot.from_urdf(xml, "base", "hand", coupled_limits=[limit])
 
 
 def test_limits_show_what_they_are() -> None:

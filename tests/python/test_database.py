@@ -19,14 +19,12 @@ import iksel
 
 SAMPLINGS = [kind.name for kind in iksel.Sampling]
 KEYS = [kind.name for kind in iksel.RotationKey]
-SMALL = iksel.DatabaseOptions(
-    samples=300, cvt_updates=3000, scale="small", key_scheme="full"
-)
+SMALL = iksel.DatabaseOptions(samples=300, scale="small", key_scheme="full")
+WORK = {"kmeans": {"kmeans_pool": 3000}, "cvt": {"cvt_updates": 3000}}
 
 
 def small(sampling: str, **changes: int) -> iksel.DatabaseOptions:
-    pool = {"kmeans_pool": 3000} if sampling == "kmeans" else {}
-    return SMALL.replace(sampling=sampling, **pool, **changes)
+    return SMALL.replace(sampling=sampling, **WORK.get(sampling, {}), **changes)
 
 
 def arrays(database: iksel.Database) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -229,9 +227,7 @@ def test_built_in_another_process_has_the_same_bits(database, tmp_path: Path) ->
         import sys
         import iksel
 
-        options = iksel.DatabaseOptions(
-            samples=300, cvt_updates=3000, scale="small", key_scheme="full"
-        )
+        options = iksel.DatabaseOptions(samples=300, scale="small", key_scheme="full")
         iksel.Database.build(iksel.load_robot("ur3"), options).save(sys.argv[1])
     """
     run_python(program, path)

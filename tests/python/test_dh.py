@@ -134,6 +134,12 @@ REFUSED = {
     "theta: expected an array of real numbers": {"theta": ["0"] * 6},
     r"joints\[2\]: a, alpha, d or theta is nan": {"d": [0, 0, np.nan, 0, 0, 0]},
     r"joints\[0\]: limits -1 to inf: give both, or none": {"lower": [-1] * 6},
+    r"joints\[0\]: limits nan to nan: give both, or none": {
+        "lower": [np.nan] * 6,
+        "upper": [np.nan] * 6,
+    },
+    r"joints\[1\]: velocity is nan": {"velocity": [1, np.nan, 1, 1, 1, 1]},
+    r"joints\[3\]: velocity is -1": {"velocity": [1, 1, 1, -1, 1, 1]},
     r"joints\[1\]: a prismatic joint needs limits": {
         "types": ["revolute", "prismatic"] + ["revolute"] * 4
     },

@@ -8,6 +8,7 @@ import os
 import numpy as np
 import pytest
 from following_arms import following_arm
+from urdf_text import joint, limits, link, mimic, robot
 
 import iksel
 
@@ -97,3 +98,51 @@ def test_a_telescope_is_one_joint_of_many() -> None:
     batch = solver.solve_batch(robot.fk(q))
     assert batch.success.all()
     np.testing.assert_allclose(batch.q, q, atol=1e-4)
+
+
+def leading_arm(own: str, follower: str, kind: str) -> iksel.Robot:
+    """Six joints, of which another follows the first."""
+    names = [f"l{i}" for i in range(8)]
+    parts = [
+        link(*names),
+        joint("leader", "l0", "l1", inside=own),
+        joint("follower", "l1", "l2", kind=kind, inside=follower),
+    ]
+    for i, axis in enumerate(("0 1 0", "0 1 0", "1 0 0", "0 1 0", "0 0 1")):
+        place = {"axis": axis, "xyz": "0.05 0 0.3", "inside": limits(-2, 2)}
+        parts.append(joint(f"j{i}", f"l{i + 2}", f"l{i + 3}", **place))
+    return iksel.Robot.from_urdf(robot(*parts), "l0", "l7")
+
+
+def diagnoses(arm: iksel.Robot, count: int) -> list[tuple[np.ndarray, iksel.Diagnosis]]:
+    """Those of targets that a joint reaches beyond its limits, where none is inside."""
+    solver = iksel.Solver(arm)
+    rng = np.random.default_rng(SEED)
+    found = []
+    for q in arm.random_configurations(count, seed=SEED):
+        q[rng.integers(1, arm.dof)] = 2 + rng.uniform(0.2, 0.6)
+        target = arm.fk(q)
+        if not solver.solve(target):
+            found.append((target, solver.diagnose(target)))
+    assert len(found) > 3
+    return found
+
+
+def test_a_diagnosis_has_a_branch_where_whole_turns_count() -> None:
+    half = mimic("leader", 'multiplier="0.5"', limits(-9, 9))
+    arm = leading_arm(limits(0.5, 5.5), half, "revolute")
+    branches = 0
+    for target, diagnosis in diagnoses(arm, 40):
+        if diagnosis.branch is None:
+            continue
+        branches += 1
+        np.testing.assert_allclose(arm.fk(diagnosis.branch), target, atol=1e-5)
+    assert branches > 3
+
+
+@pytest.mark.parametrize(("kind", "factor"), [("prismatic", 0.01), ("revolute", 1)])
+def test_limits_are_the_cause_also_where_turns_move_a_slide(kind, factor) -> None:
+    follower = mimic("leader", f'multiplier="{factor}"', limits(-2, 2))
+    arm = leading_arm(limits(-2, 2), follower, kind)
+    for _, diagnosis in diagnoses(arm, 12):
+        assert diagnosis.cause is iksel.Cause.joint_limits

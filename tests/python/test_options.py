@@ -123,12 +123,14 @@ def test_every_field_makes_a_difference(cls):
         else:
             enum = type(getattr(cls(), name))
             other = next(member.name for member in enum if member.name != value)
-        # Only a full key has a choice of rotation_key, only kmeans a pool.
+        # Only a full key has a choice of rotation_key, kmeans a pool, cvt updates.
         base = cls()
         if name == "rotation_key":
             base = cls(key_scheme="full")
         elif name.startswith("kmeans"):
             base = cls(sampling="kmeans")
+        elif name == "cvt_updates":
+            base = cls(sampling="cvt")
         options = base.replace(**{name: other})
         assert options != base
         assert options.replace(**{name: value}) == base
@@ -229,3 +231,9 @@ def test_solver_keeps_its_own_options(robot, solver):
         core.Solver(robot, options)
     with pytest.raises(core.InvalidArgumentError, match="max_iterations"):
         options.validate()
+
+
+def test_updates_that_no_sampling_makes_are_refused():
+    with pytest.raises(core.InvalidArgumentError, match="cvt_updates: only read by"):
+        core.DatabaseOptions(cvt_updates=5)
+    assert core.DatabaseOptions(sampling="cvt", cvt_updates=5).cvt_updates == 5

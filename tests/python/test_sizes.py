@@ -7,7 +7,7 @@ import itertools
 
 import numpy as np
 import pytest
-from urdf_text import arm, joint, link, mimic, robot
+from urdf_text import arm, joint, limits, link, mimic, robot
 
 import iksel
 
@@ -15,10 +15,6 @@ BOUND = 1e8
 """Largest length [m] and joint value [rad or m], as the documentation has it."""
 
 BEYOND = ("1e160", "-1e9", "1.1e8", "1e308", "inf", "nan")
-
-
-def limits(lower: str, upper: str) -> str:
-    return f'<limit lower="{lower}" upper="{upper}" velocity="1" effort="1"/>'
 
 
 def refuse(xml: str, match: str, error=iksel.UrdfError, **settings: object) -> str:
@@ -88,6 +84,15 @@ def test_mimics_are_measured(extra: str) -> None:
     refuse(
         arm(inside=mimic(extra=extra)), "second|movable", locked_joints={"first": 1e7}
     )
+
+
+def test_slides_that_follow_without_end_are_refused() -> None:
+    rack = joint(
+        "rack", "base", "slide", kind="prismatic", inside=mimic("pinion", "", "")
+    )
+    pinion = joint("pinion", "slide", "hand", kind="continuous", inside="")
+    xml = robot(link("base", "slide", "hand"), rack, pinion)
+    refuse(xml, "'rack'.*largest value is inf m")
 
 
 def test_axes_are_measured() -> None:

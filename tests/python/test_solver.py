@@ -220,11 +220,10 @@ def test_every_option_changes_the_answers_and_keeps_them_right(
 @pytest.mark.parametrize("sampling", [kind.name for kind in iksel.Sampling])
 @pytest.mark.parametrize("key", [kind.name for kind in iksel.RotationKey])
 def test_every_database_gives_answers(made, sampling: str, key: str) -> None:
-    few = iksel.DatabaseOptions(
-        samples=2000, scale="small", cvt_updates=5000, key_scheme="full"
-    )
-    pool = {"kmeans_pool": 5000} if sampling == "kmeans" else {}
-    database = few.replace(sampling=sampling, rotation_key=key, **pool)
+    few = iksel.DatabaseOptions(samples=2000, scale="small", key_scheme="full")
+    work = {"kmeans": {"kmeans_pool": 5000}, "cvt": {"cvt_updates": 5000}}
+    own = work.get(sampling, {})
+    database = few.replace(sampling=sampling, rotation_key=key, **own)
     solver = iksel.Solver(made.robot("cvr038"), iksel.SolverOptions(database=database))
     poses = targets(solver.robot, 50, 5)
     assert check_answers(solver, poses, solver.solve_batch(poses)) >= 0.9

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from trees import two_armed, two_arms_on_torso
 from tubes import URDF
+from urdf_text import joint, limits, link, mimic, robot
 
 import iksel
 import iksel.exact
@@ -65,8 +66,8 @@ def test_pinocchio_agrees() -> None:
             order.append(joint.idx_v)
         pinocchio.computeJointJacobians(model, data, values)
         pinocchio.updateFramePlacements(model, data)
-        for tip, link in enumerate(robot.tip_links):
-            frame = model.getFrameId(link)
+        for tip, name in enumerate(robot.tip_links):
+            frame = model.getFrameId(name)
             there = data.oMf[frame].homogeneous
             np.testing.assert_allclose(there, poses[tip], atol=1e-12)
             world = pinocchio.ReferenceFrame.LOCAL_WORLD_ALIGNED
@@ -445,3 +446,16 @@ def test_a_scene_knows_all_arms() -> None:
     assert diagnosis.cause in (iksel.Cause.none, iksel.Cause.collision)
     path = solver.solve_path(np.stack([poses[0]] * 3), start=q[free][0], scene=scene)
     assert path
+
+
+def test_a_shared_joint_needs_room_between_its_limits() -> None:
+    """Of what follows it, one bounds it from below, the other from above."""
+    parts = [link("base", "chest", "left", "right", "left_hand", "right_hand")]
+    parts.append(joint("torso", "base", "chest"))
+    for side, low, high in (("left", 0, 1), ("right", -1, 0)):
+        follower = mimic("torso", "", limits(low, high))
+        parts.append(joint(f"{side}_mount", "chest", side, inside=follower))
+        parts.append(joint(f"{side}_joint", side, f"{side}_hand", axis="0 1 0"))
+    tips = ["left_hand", "right_hand"]
+    with pytest.raises(iksel.UrdfError, match="'torso'.*nothing between its limits"):
+        iksel.Robot.from_urdf(robot(*parts), tip_links=tips)

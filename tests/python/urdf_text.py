@@ -47,8 +47,16 @@ def arm(middle: str = "", **changes: str) -> str:
     )
 
 
-def mimic(source: str = "first", extra: str = 'multiplier="-2" offset="0.1"') -> str:
-    return f'{LIMIT}<mimic joint="{source}" {extra}/>'
+def limits(lower: object, upper: object) -> str:
+    return f'<limit lower="{lower}" upper="{upper}" velocity="1" effort="1"/>'
+
+
+def mimic(
+    source: str = "first",
+    extra: str = 'multiplier="-2" offset="0.1"',
+    limit: str = LIMIT,
+) -> str:
+    return f'{limit}<mimic joint="{source}" {extra}/>'
 
 
 def random_tree(rng: np.random.Generator, links: int, solid: str = "") -> str:

@@ -55,10 +55,10 @@ inline Eigen::Matrix3d from_rotation_vector(const Eigen::Vector3d& w) {
 
 /// Roll, pitch, yaw [rad] with R = Rz(yaw) Ry(pitch) Rx(roll), pitch in [-pi/2, pi/2].
 inline Eigen::Vector3d to_roll_pitch_yaw(const Eigen::Matrix3d& R) {
-  const double cosine = std::hypot(R(0, 0), R(1, 0));
-  const double pitch = std::atan2(-R(2, 0), cosine);
-  if (cosine < 1e-12) return {std::atan2(-R(1, 2), R(1, 1)), pitch, 0.0};
-  return {std::atan2(R(2, 1), R(2, 2)), pitch, std::atan2(R(1, 0), R(0, 0))};
+  // Where roll and yaw turn about one axis, any roll will do, with what it leaves of R.
+  const double roll = std::atan2(R(2, 1), R(2, 2));
+  const Eigen::Matrix3d S = R * Eigen::AngleAxisd(-roll, Eigen::Vector3d::UnitX());
+  return {roll, std::atan2(-S(2, 0), S(2, 2)), std::atan2(-S(0, 1), S(1, 1))};
 }
 
 }  // namespace iksel

@@ -30,9 +30,6 @@ void check_samples(const double* first, std::size_t count, const ChainModel& mod
       number_text(model.reach) + " m");
 }
 
-/// Samples that a thread takes at a time.
-constexpr std::size_t kSamplesPerChunk = 512;
-
 /// What the samples of one database are made with, by one thread.
 class SampleMaker {
  public:
@@ -184,7 +181,7 @@ class DatabaseBuilder {
             for (std::size_t i = begin; i < end; ++i) work(maker, i);
           };
     };
-    parallel_for(data_.size, kSamplesPerChunk, resolve_threads(options_.threads), make_worker,
+    parallel_for(data_.size, /*chunk=*/512, resolve_threads(options_.threads), make_worker,
                  on_progress);
   }
 

@@ -84,7 +84,7 @@ Pose Database::pose(std::size_t i) const {
   pose.linear() = from_rotation_vector(Eigen::Map<const Eigen::Vector3d>(x + 3));
   data_->check_intact();
   if (data_->reduction) {
-    const Reduction::Parameters& p = data_->reduction->parameters();
+    const Reduction& p = *data_->reduction;
     return Pose(p.base_inverse).inverse() * pose * Pose(p.flange_inverse).inverse();
   }
   return pose;

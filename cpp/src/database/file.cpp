@@ -98,8 +98,12 @@ DatabaseData describe(const Header& header) {
   for_each_number(header, data, [](const auto& field, auto& value) {
     value = static_cast<std::decay_t<decltype(value)>>(field);
   });
+  // Older files may have any number where it was not read.
+  if (data.options.sampling != Sampling::cvt) {
+    data.options.cvt_updates = DatabaseOptions{}.cvt_updates;
+  }
   if (data.options.key_scheme == KeyScheme::reduced) {
-    Reduction::Parameters p;
+    Reduction p;
     p.left = static_cast<lanes::Side>(header.left);
     p.right = static_cast<lanes::Side>(header.right);
     p.dof = data.dof;
@@ -186,7 +190,7 @@ void write_header(const DatabaseData& data, unsigned char* storage, std::size_t 
     field = static_cast<std::decay_t<decltype(field)>>(value);
   });
   if (data.reduction) {
-    const Reduction::Parameters& p = data.reduction->parameters();
+    const Reduction& p = *data.reduction;
     header.left = static_cast<std::uint32_t>(p.left);
     header.right = static_cast<std::uint32_t>(p.right);
     Eigen::Map<PoseNumbers>(header.base_inverse) = p.base_inverse.affine();

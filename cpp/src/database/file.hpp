@@ -30,8 +30,7 @@ Storage read_file(const std::filesystem::path& path);
 Storage map_file(const std::filesystem::path& path);
 
 /// Writes a file beside `path`, syncs and renames; first removes what saves that were killed left
-/// in the folder. A file without a name, where the system has such, leaves nothing when killed;
-/// tests can do without it.
-void write_file(const std::filesystem::path& path, const Storage& storage, bool nameless = true);
+/// in the folder.
+void write_file(const std::filesystem::path& path, const Storage& storage);
 
 }  // namespace iksel

@@ -9,8 +9,6 @@
 namespace iksel {
 namespace {
 
-constexpr std::size_t kLeafSize = 16;
-
 /// nanoflann's view of the points.
 struct Points {
   const double* data;
@@ -74,7 +72,8 @@ class NanoflannTree final : public KdTree {
  public:
   NanoflannTree(const double* data, std::size_t count, int dimension)
       : points_{data, count, dimension},
-        tree_(dimension, points_, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafSize)) {}
+        tree_(dimension, points_, nanoflann::KDTreeSingleIndexAdaptorParams(/*leaf_max_size=*/16)) {
+  }
 
   std::size_t nearest(const double* point, std::size_t k, Neighbour* out) const override {
     HeapResult result(out, std::min(k, points_.count));

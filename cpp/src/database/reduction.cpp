@@ -27,14 +27,13 @@ Side side_of(const ChainModel& model, const KernelJoint& joint, int variable) {
 
 lanes::SeedChain make_seed_chain(const ChainModel& model, const Reduction& reduction) {
   const lanes::LaneChain chain = make_lane_chain(model);
-  const Reduction::Parameters& p = reduction.parameters();
   lanes::SeedChain seeds{};
   seeds.n = chain.n;
-  seeds.left = p.left;
-  seeds.right = p.right;
+  seeds.left = reduction.left;
+  seeds.right = reduction.right;
   seeds.longest_step = 1.0F;
   seeds.outside_weight = 1000.0F;
-  seeds.weight2 = static_cast<float>(p.weight * p.weight);
+  seeds.weight2 = static_cast<float>(reduction.weight * reduction.weight);
   seeds.offset_first = static_cast<float>(chain.joint[0].offset);
   seeds.offset_last = static_cast<float>(chain.joint[chain.joints - 1].offset);
   for (int j = 0; j < chain.n; ++j) {
@@ -59,31 +58,31 @@ lanes::SeedTarget make_seed_target(const Pose& Y) {
 }
 
 Reduction Reduction::of(const ChainModel& model, double weight) {
-  Parameters p;
-  p.dof = model.dof;
-  p.weight = weight;
-  p.base_inverse = to_pose(model.kernel.base).inverse();
-  p.flange_inverse = to_pose(model.kernel.flange).inverse();
+  Reduction out;
+  out.dof = model.dof;
+  out.weight = weight;
+  out.base_inverse = to_pose(model.kernel.base).inverse();
+  out.flange_inverse = to_pose(model.kernel.flange).inverse();
   // At least one joint must be left to sample.
   if (model.dof >= 3) {
-    p.left = side_of(model, model.kernel.joints.front(), 0);
-    p.right = side_of(model, model.kernel.joints.back(), model.dof - 1);
+    out.left = side_of(model, model.kernel.joints.front(), 0);
+    out.right = side_of(model, model.kernel.joints.back(), model.dof - 1);
     // Two slides mix: the foot moves along neither coordinate then.
-    if (p.left == Side::translation && p.right == Side::translation) p.right = Side::none;
+    if (out.left == Side::translation && out.right == Side::translation) out.right = Side::none;
   }
-  return Reduction(p);
+  return out;
 }
 
 int Reduction::key_dimension() const {
-  return (p_.left == Side::none ? 3 : 2) + (p_.right == Side::rotation ? 3 : 6);
+  return (left == Side::none ? 3 : 2) + (right == Side::rotation ? 3 : 6);
 }
 
 bool Reduction::leaves_out(int joint) const {
-  return (joint == 0 && p_.left != Side::none) || (joint == p_.dof - 1 && p_.right != Side::none);
+  return (joint == 0 && left != Side::none) || (joint == dof - 1 && right != Side::none);
 }
 
 Pose Reduction::reduce(const Pose& T_base_tip) const {
-  return Pose(p_.base_inverse) * T_base_tip * Pose(p_.flange_inverse);
+  return Pose(base_inverse) * T_base_tip * Pose(flange_inverse);
 }
 
 Pose Reduction::without_outer_joints(const Pose& Y, const lanes::LaneChain& chain,
@@ -94,39 +93,39 @@ Pose Reduction::without_outer_joints(const Pose& Y, const lanes::LaneChain& chai
     if (side == Side::translation) T.translation().z() = -motion;
     return T;
   };
-  const int last = p_.dof - 1;
-  return undo(p_.left, q[0] + chain.joint[0].offset) * Y *
-         undo(p_.right, q[last] + chain.joint[chain.joints - 1].offset);
+  const int last = dof - 1;
+  return undo(left, q[0] + chain.joint[0].offset) * Y *
+         undo(right, q[last] + chain.joint[chain.joints - 1].offset);
 }
 
 void Reduction::make_key(const Pose& Y, double* key) const {
   const Eigen::Matrix3d R = Y.linear();
   const Eigen::Vector3d axis = R.col(2);
   Eigen::Vector3d point = Y.translation();
-  if (p_.right == Side::translation) point -= point.dot(axis) * axis;
+  if (right == Side::translation) point -= point.dot(axis) * axis;
   double c = 1;
   double s = 0;
   const double rho = std::sqrt(point[0] * point[0] + point[1] * point[1]);
-  if (p_.left == Side::rotation && rho > 1e-12) {
+  if (left == Side::rotation && rho > 1e-12) {
     c = point[0] / rho;
     s = point[1] / rho;
   }
   int k = 0;
   const auto push_axis = [&](const Eigen::Vector3d& v) {
-    key[k++] = p_.weight * (c * v[0] + s * v[1]);
-    key[k++] = p_.weight * (c * v[1] - s * v[0]);
-    key[k++] = p_.weight * v[2];
+    key[k++] = weight * (c * v[0] + s * v[1]);
+    key[k++] = weight * (c * v[1] - s * v[0]);
+    key[k++] = weight * v[2];
   };
-  if (p_.left == Side::rotation) {
+  if (left == Side::rotation) {
     key[k++] = rho;
     key[k++] = point[2];
   } else {
     key[k++] = point[0];
     key[k++] = point[1];
-    if (p_.left == Side::none) key[k++] = point[2];
+    if (left == Side::none) key[k++] = point[2];
   }
   push_axis(axis);
-  if (p_.right != Side::rotation) push_axis(R.col(0));
+  if (right != Side::rotation) push_axis(R.col(0));
 }
 
 }  // namespace iksel

@@ -15,24 +15,17 @@
 
 namespace iksel {
 
-class Reduction {
- public:
-  /// All that a reduction is, as a file keeps it.
-  struct Parameters {
-    lanes::Side left = lanes::Side::none;
-    lanes::Side right = lanes::Side::none;
-    int dof = 0;
-    double weight = 0;  ///< length that a unit of the axes counts in the key [m]
-    StoredPose base_inverse = StoredPose::Identity();
-    StoredPose flange_inverse = StoredPose::Identity();
-  };
-  explicit Reduction(const Parameters& parameters) : p_(parameters) {}
+struct Reduction {
+  lanes::Side left = lanes::Side::none;
+  lanes::Side right = lanes::Side::none;
+  int dof = 0;
+  double weight = 0;  ///< length that a unit of the axes counts in the key [m]
+  StoredPose base_inverse = StoredPose::Identity();
+  StoredPose flange_inverse = StoredPose::Identity();
+
   /// Leaves out both sides of the chain as far as that can be.
   static Reduction of(const ChainModel& model, double weight);
-  [[nodiscard]] const Parameters& parameters() const { return p_; }
 
-  [[nodiscard]] lanes::Side left() const { return p_.left; }
-  [[nodiscard]] lanes::Side right() const { return p_.right; }
   [[nodiscard]] int key_dimension() const;
   /// True if the joint is left out of the samples, which have it where its motion is zero.
   [[nodiscard]] bool leaves_out(int joint) const;
@@ -43,9 +36,6 @@ class Reduction {
   /// Y with the motions of the left-out joints at q taken off, as the samples have it.
   [[nodiscard]] Pose without_outer_joints(const Pose& Y, const lanes::LaneChain& chain,
                                           const double* q) const;
-
- private:
-  Parameters p_;
 };
 
 /// The joints of a simple chain as seeds are prepared for them.

@@ -12,9 +12,6 @@
 namespace iksel {
 namespace {
 
-/// Samples per leaf that the depth of the tree aims at.
-constexpr std::size_t kPerLeaf = 4;
-
 /// The coordinate in which the keys of some samples spread widest.
 template <typename Iterator>
 std::size_t widest_coordinate(const DatabaseData& data, Iterator begin, Iterator end) {
@@ -113,7 +110,8 @@ void SampleBlocks::measure(const double* key, float* distance2) const {
 
 LeafIndex::LeafIndex(const DatabaseData& data)
     : block_size_(static_cast<std::size_t>(lanes::block_rows(data.dof) * lanes::kBlock)) {
-  while ((data.size >> static_cast<unsigned>(depth_ + 1)) >= kPerLeaf) ++depth_;
+  // So deep that four samples are left for a leaf, or a few more.
+  while ((data.size >> static_cast<unsigned>(depth_ + 1)) >= 4) ++depth_;
   std::vector<std::uint32_t> order(data.size);
   std::iota(order.begin(), order.end(), 0U);
   const std::vector<std::size_t> bounds = split(data, order);

@@ -29,11 +29,6 @@ std::string temporary_name(unsigned first, unsigned second) {
   return name;
 }
 
-std::string temporary_name() {
-  std::random_device random;
-  return temporary_name(random(), random());
-}
-
 bool is_temporary_name(const std::string& name) {
   unsigned first = 0;
   unsigned second = 0;
@@ -57,26 +52,11 @@ void remove_abandoned(const fs::path& folder) {
   }
 }
 
-/// A file without a name, which goes with its process; none where the system has no such.
-Descriptor open_nameless(const fs::path& folder) {
-#ifdef O_TMPFILE
-  Descriptor file(::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666));
-  if (file.get() >= 0) lock(file);
-  return file;
-#else
-  return Descriptor();
-#endif
-}
-
-bool give_name(const Descriptor& file, const fs::path& name) {
-  const std::string link = "/proc/self/fd/" + std::to_string(file.get());
-  return ::linkat(AT_FDCWD, link.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0;
-}
-
 /// A file of a new name, which is written to `name`; none if it cannot be made.
 Descriptor open_named(const fs::path& folder, fs::path& name) {
+  std::random_device random;
   for (int tries = 0; tries < 16; ++tries) {
-    name = folder / temporary_name();
+    name = folder / temporary_name(random(), random());
     Descriptor file(::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
     if (file.get() < 0 && errno == EEXIST) continue;
     if (file.get() < 0) return file;
@@ -104,7 +84,7 @@ bool write_all(const Descriptor& file, const Storage& storage) {
 
 }  // namespace
 
-void write_file(const fs::path& path, const Storage& storage, bool nameless) {
+void write_file(const fs::path& path, const Storage& storage) {
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   fs::path name;
   const auto fail = [&](const char* act) {
@@ -118,22 +98,11 @@ void write_file(const fs::path& path, const Storage& storage, bool nameless) {
     throw_io("write", path, "it is no regular file");
   }
   remove_abandoned(folder);
-  Descriptor file;
-  if (nameless) file = open_nameless(folder);
-  if (file.get() >= 0) {
-    if (!write_all(file, storage)) fail("write");
-    name = folder / temporary_name();
-    // Fails without /proc, and by bad luck with the name.
-    if (!give_name(file, name)) file = Descriptor();
-  }
-  if (file.get() < 0) {
-    name.clear();
-    fs::path made;
-    file = open_named(folder, made);
-    if (file.get() < 0) fail("write");
-    name = made;
-    if (!write_all(file, storage)) fail("write");
-  }
+  fs::path made;
+  const Descriptor file = open_named(folder, made);
+  if (file.get() < 0) fail("write");
+  name = made;
+  if (!write_all(file, storage)) fail("write");
   if (::rename(name.c_str(), path.c_str()) != 0) fail("replace");
 }
 

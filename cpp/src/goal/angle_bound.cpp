@@ -43,7 +43,9 @@ AngleBound::AngleBound(const Robot& robot, const SolverOptions& options)
     const double largest = find_largest(chain, options);
     for (int j = 0; j < chain.dof; ++j) {
       double& of_joint = largest_[robot.joints_of(tip)[static_cast<std::size_t>(j)]];
-      if (turns_a_joint(chain, j)) of_joint = std::min(of_joint, largest);
+      const bool turns =
+          chain.moves_any(j, [](const KernelJoint& joint) { return !joint.prismatic; });
+      if (turns) of_joint = std::min(of_joint, largest);
     }
   }
   const auto finite = [](double limit) { return std::isfinite(limit) ? limit : 0.0; };

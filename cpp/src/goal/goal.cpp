@@ -75,9 +75,8 @@ void Goal::measure(const JointVector& q, double& position, double& rotation,
 }
 
 void Goal::linearize(const JointVector& q, bool exact, Linear& at) const {
-  Pose pose;
   Jacobian of_pose;
-  model_.fk_jacobian(q.data(), pose, of_pose);
+  const Pose pose = to_pose(model_.fk_jacobian(q.data(), of_pose));
   at.J = of_pose;
   linearize(pose, exact, at);
 }

@@ -11,7 +11,6 @@
 #include "iksel/error.hpp"
 #include "iksel/pose.hpp"
 #include "iksel/urdf_text.hpp"
-#include "kinematics/coupled_limits.hpp"
 
 namespace iksel {
 namespace {
@@ -79,6 +78,20 @@ Pose check_tool(const Pose& T_tip_tcp) {
                              too_large_text(distance, "m from the tip link's"));
 }
 
+#if defined(__x86_64__)
+/// Chains of products and sums are what forward kinematics waits for, and a fused one takes half
+/// the time. All is inlined here, for what is called from here would be compiled without.
+__attribute__((target("avx2,fma"), flatten)) Frame forward_fused(const KernelChain& chain,
+                                                                 const double* q) {
+  return forward(chain, q);
+}
+
+bool can_fuse() {
+  static const bool kCan = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  return kCan;
+}
+#endif
+
 }  // namespace
 
 Pose to_pose(const Frame& f) {
@@ -96,21 +109,10 @@ ChainModel::ChainModel(std::string urdf_xml, const RobotOptions& options_in)
   name = spec.robot_name;
   link_names = spec.link_names;
   tip_links = {options.tip_link};
-  dof = static_cast<int>(spec.variables.size());
-  for (auto& all = joints_of_tip.emplace_back(); static_cast<int>(all.size()) < dof;) {
-    all.push_back(static_cast<int>(all.size()));
-  }
-  joints = JointSpace(dof);
-  for (JointVector* v : {&soft_lower, &soft_upper}) v->resize(dof);
-  for (int i = 0; i < dof; ++i) {
-    const ChainVariable& variable = spec.variables[i];
-    joints.names[i] = variable.name;
-    joints.types[i] = variable.type;
-    joints.lower[i] = variable.lower;
-    joints.upper[i] = variable.upper;
-    joints.velocity[i] = variable.velocity;
-    soft_lower[i] = variable.soft_lower;
-    soft_upper[i] = variable.soft_upper;
+  joints_of_tip.emplace_back();
+  for (const ChainVariable& variable : spec.variables) {
+    joints_of_tip.front().push_back(dof);
+    add_joint(variable, /*repeats=*/true);
   }
   for (const ChainJoint& joint : spec.joints) {
     const bool turns = !joint.prismatic && !joint.curve;
@@ -140,11 +142,13 @@ std::shared_ptr<const ChainModel> ChainModel::without_limits() const {
   wide.turning.clear();
   wide.images.clear();
   for (int i = 0; i < dof; ++i) {
-    // A curve is known between its ends only.
-    if (moves_by_a_curve(*this, i)) continue;
+    // A curve is known between its ends only; and where turns move a slide, or a slide turns a
+    // joint, lengths and angles may be bounded by what the limits are.
+    const bool is_bounded = moves_any(i, [&](const KernelJoint& joint) {
+      return joint.curve != nullptr || joint.prismatic != joints.is_slide(i);
+    });
+    if (is_bounded) continue;
     if (joints.is_slide(i)) {
-      // Angles may be bounded by what the limits are.
-      if (turns_a_joint(*this, i)) continue;
       const double range = joints.upper[i] - joints.lower[i];
       wide.lower[i] = joints.lower[i] - range;
       wide.upper[i] = joints.upper[i] + range;
@@ -156,20 +160,6 @@ std::shared_ptr<const ChainModel> ChainModel::without_limits() const {
   }
   copy->measure_reach();
   return copy;
-}
-
-bool turns_a_joint(const ChainModel& model, int variable) {
-  return std::any_of(model.kernel.joints.begin(), model.kernel.joints.end(),
-                     [variable](const KernelJoint& joint) {
-                       return joint.variable == variable && !joint.prismatic;
-                     });
-}
-
-bool moves_by_a_curve(const ChainModel& model, int variable) {
-  return std::any_of(model.kernel.joints.begin(), model.kernel.joints.end(),
-                     [variable](const KernelJoint& joint) {
-                       return joint.variable == variable && joint.curve != nullptr;
-                     });
 }
 
 std::unique_ptr<KdlChain> ChainModel::make_kdl(const Pose& T_tip_end) const {
@@ -255,15 +245,17 @@ void ChainModel::measure_reach() {
 
 Pose ChainModel::fk(const double* q) const { return to_pose(forward(kernel, q)); }
 
+Frame ChainModel::fk_frame(const double* q) const {
+#if defined(__x86_64__)
+  if (can_fuse()) return forward_fused(kernel, q);
+#endif
+  return forward(kernel, q);
+}
+
 Frame ChainModel::fk_jacobian(const double* q, Jacobian& jacobian, bool with_tool) const {
   jacobian.resize(6, dof);
   const Frame& end = with_tool ? kernel.tip : kernel.flange;
   return forward_jacobian(kernel, end, dof, q, jacobian.data());
-}
-
-void ChainModel::fk_jacobian(const double* q, Pose& pose, Jacobian& jacobian,
-                             bool with_tool) const {
-  pose = to_pose(fk_jacobian(q, jacobian, with_tool));
 }
 
 Jacobians ChainModel::jacobians(const double* q) const {

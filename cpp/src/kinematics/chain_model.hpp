@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -24,7 +25,7 @@ class ChainModel final : public RobotModel {
   [[nodiscard]] std::shared_ptr<const ChainModel> with_tcp(const Pose& T_tip_tcp) const;
 
   /// The same chain with joints that turn freely and slides that reach farther, but for what curves
-  /// are of.
+  /// are of, and for joints by which others slide that turn, or turn that slide.
   [[nodiscard]] std::shared_ptr<const ChainModel> without_limits() const;
 
   /// KDL's chain to the TCP, or to another frame behind the tip link.
@@ -34,12 +35,17 @@ class ChainModel final : public RobotModel {
   [[nodiscard]] Pose fk(const double* q) const;
   /// The same as a frame, with fused multiply-adds where the processor has them.
   [[nodiscard]] Frame fk_frame(const double* q) const;
-  /// Pose and Jacobian of the TCP, or of the tip link if not `with_tool`.
-  void fk_jacobian(const double* q, Pose& pose, Jacobian& jacobian, bool with_tool = true) const;
-  /// Jacobian of the TCP, whose frame is returned.
+  /// Jacobian of the TCP, or of the tip link if not `with_tool`, whose frame is returned.
   Frame fk_jacobian(const double* q, Jacobian& jacobian, bool with_tool = true) const;
   /// Brings a Jacobian's lengths, and what slides move, to the unit.
   void to_unit(Jacobian& jacobian) const;
+  /// Whether the variable moves a joint, its own or one that follows it, that is such.
+  template <typename IsSuch>
+  [[nodiscard]] bool moves_any(int variable, const IsSuch& is_such) const {
+    return std::any_of(kernel.joints.begin(), kernel.joints.end(), [&](const KernelJoint& joint) {
+      return joint.variable == variable && is_such(joint);
+    });
+  }
   /// Whether the arm is singular at q, or almost (base/pseudo_inverse.hpp).
   [[nodiscard]] bool is_almost_singular(const double* q) const;
 
@@ -61,11 +67,12 @@ class ChainModel final : public RobotModel {
   [[nodiscard]] std::uint64_t compute_hash() const;
 };
 
-/// Whether the variable, be it a slide, turns a joint: its own, or one that follows it.
-bool turns_a_joint(const ChainModel& model, int variable);
-
-/// Whether a joint follows the variable by a curve.
-bool moves_by_a_curve(const ChainModel& model, int variable);
+/// Adds the limits to `joints`, whose own are set. Mimic joints become their sources, locked ones
+/// constants. Throws InvalidArgumentError, naming the limit and what is wrong with it: no number, a
+/// joint that turns without limits, nothing between its ends, or no configuration inside of all;
+/// UnknownNameError for a name that is no joint of the chain.
+void add_coupled_limits(const std::vector<CoupledLimit>& limits, const ChainSpec& spec,
+                        JointSpace& joints);
 
 /// Frame of the kernel as a pose.
 Pose to_pose(const Frame& frame);

@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kinematics/coupled_limits.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 #include "base/message_text.hpp"
 #include "iksel/error.hpp"
+#include "kinematics/chain_model.hpp"
 
 namespace iksel {
 namespace {
 
-/// Part of the numbers of a sum that rounding may take it off by, and more.
-constexpr double kSumRounding = 1e-12;
-/// Less than this between its ends, in parts of those numbers, is no room to search in.
+/// Less than this between the ends of a sum, in parts of its numbers, is no room to search in.
 constexpr double kLeastRoom = 1e-6;
 
 [[noreturn]] void refuse(const CoupledLimit& limit, std::size_t index, const std::string& what) {
@@ -57,17 +54,19 @@ std::vector<std::string> names_in(const ChainSpec& spec) {
 /// Adds a joint's part of a sum; returns what of it does not change.
 double add_joint(const CoupledLimit& limit, std::size_t index, const std::string& name,
                  double coefficient, const ChainSpec& spec, const JointSpace& joints, Limit& row) {
+  const auto refuse_endless = [&](int variable) {
+    if (joints.type(variable) != JointType::continuous) return;
+    refuse(limit, index,
+           "joint '" + name +
+               "' turns without limits, so that whole turns would take its sum "
+               "anywhere: make it revolute, with limits");
+  };
   const auto joint =
       std::find_if(spec.joints.begin(), spec.joints.end(),
                    [&](const ChainJoint& each) { return each.name == name && each.has_value(); });
   if (joint != spec.joints.end()) {
     if (joint->is_locked) return coefficient * joint->locked_at;
-    if (joints.type(joint->variable) == JointType::continuous) {
-      refuse(limit, index,
-             "joint '" + name +
-                 "' turns without limits, so that whole turns would take its sum "
-                 "anywhere: make it revolute, with limits");
-    }
+    refuse_endless(joint->variable);
     if (joint->curve) {
       refuse(limit, index,
              "joint '" + name + "' follows '" + joints.name(joint->variable) +
@@ -77,8 +76,8 @@ double add_joint(const CoupledLimit& limit, std::size_t index, const std::string
     return coefficient * joint->offset;
   }
   // What a mimic joint of the chain follows need not be on it.
-  for (int j = 0; j < joints.dof(); ++j) {
-    if (joints.name(j) != name) continue;
+  if (const int j = joints.find(name); j >= 0) {
+    refuse_endless(j);
     row.c[j] += coefficient;
     return 0;
   }
@@ -101,7 +100,7 @@ void narrow_to_joints(const CoupledLimit& limit, std::size_t index, const JointS
     most += std::max(a, b);
     numbers += std::max(std::abs(a), std::abs(b));
   }
-  row.rounding = kSumRounding * numbers;
+  row.rounding = 1e-12 * numbers;  // what rounding may take the sum off by, and more
   const double lower = std::max(row.lower, least - 2 * row.rounding);
   const double upper = std::min(row.upper, most + 2 * row.rounding);
   if (!(upper - lower > kLeastRoom * numbers)) {

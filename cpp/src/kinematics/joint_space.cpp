@@ -5,13 +5,6 @@
 
 namespace iksel {
 
-JointSpace::JointSpace(int dof)
-    : LimitSet(dof),
-      names(static_cast<std::size_t>(dof)),
-      types(static_cast<std::size_t>(dof)),
-      repeats(static_cast<std::size_t>(dof), true),
-      velocity(dof) {}
-
 namespace {
 
 /// So far an answer at a limit may be off, by the default tolerance, and so its image at the other
@@ -37,7 +30,106 @@ void visit_turned(const JointSpace& joints, const JointVector& from, const Visit
   }
 }
 
+/// Moves q along a row's coefficients until its sum lies inside, with the joints that come to their
+/// limits on the way left there. True if it moved.
+bool hold_row(const JointSpace& limits, const Limit& row, JointVector& q) {
+  bool moved = false;
+  // Each round but the last brings a joint to its limit.
+  for (int round = 0; round <= limits.dof(); ++round) {
+    const double sum = row.value(q.data());
+    if (row.beyond(sum) <= 0) return moved;
+    const double excess = sum - row.held_at(/*at_upper=*/sum > row.upper);
+    double norm2 = 0;
+    for (int j = 0; j < limits.dof(); ++j) {
+      const bool goes_up = excess * row.c[j] < 0;
+      const bool is_free = goes_up ? q[j] < limits.upper[j] : q[j] > limits.lower[j];
+      if (is_free) norm2 += row.c[j] * row.c[j];
+    }
+    if (norm2 == 0) return moved;
+    q = (q - excess / norm2 * row.c).cwiseMax(limits.lower).cwiseMin(limits.upper);
+    moved = true;
+  }
+  return moved;
+}
+
 }  // namespace
+
+double Limit::sum(const double* q) const {
+  double total = 0;
+  for (Eigen::Index j = 0; j < c.size(); ++j) total += c[j] * q[j];
+  return total;
+}
+
+bool contain(const std::vector<Limit>& limits, const double* q) {
+  // Written so that NaN is outside.
+  return std::all_of(limits.begin(), limits.end(),
+                     [&](const Limit& limit) { return limit.beyond(limit.value(q)) <= 0; });
+}
+
+Limit JointSpace::limit(int joint, int coupled_limit) const {
+  Limit found{};
+  visit_limits([&](const Limit& each) {
+    if (each.joint == joint && each.coupled_limit == coupled_limit) found = each;
+  });
+  return found;
+}
+
+bool JointSpace::contains(const double* q) const {
+  for (int j = 0; j < dof(); ++j) {
+    // Written so that NaN is outside.
+    if (!(q[j] >= lower[j] && q[j] <= upper[j])) return false;
+  }
+  return sums.empty() || contains_sums(q);
+}
+
+JointVector JointSpace::middle() const {
+  JointVector middle(dof());
+  for (int j = 0; j < dof(); ++j) {
+    const double m = (lower[j] + upper[j]) / 2;
+    middle[j] = std::isfinite(m) ? m : 0.0;
+  }
+  return middle;
+}
+
+void JointSpace::hold_sums(JointVector& q) const {
+  // Onto one after the other leads to where all hold, if slowly where they meet at a small angle.
+  for (int round = 0; round < 32; ++round) {
+    bool moved = false;
+    for (const Limit& row : sums) moved = hold_row(*this, row, q) || moved;
+    if (!moved) return;
+  }
+  // What is left, on the way to what lies inside.
+  double part = 1;
+  for (const Limit& row : sums) {
+    const double from = row.value(interior.data());
+    const double to = row.value(q.data());
+    if (row.beyond(to) <= 0) continue;
+    part = std::min(part, (row.held_at(/*at_upper=*/to > row.upper) - from) / (to - from));
+  }
+  if (part < 1) q = interior + part * (q - interior);
+}
+
+void JointSpace::add_active_sums(const JointVector& q, JointVector& pull, ActiveLimits& at) const {
+  auto& across = at.across;
+  across.resize(dof(), 0);
+  for (const Limit& row : sums) {
+    const double sum = row.value(q.data());
+    const double beside = 1e3 * row.rounding;
+    const double slope = row.c.dot(pull);
+    const bool leaves =
+        (slope > 0 && sum >= row.upper - beside) || (slope < 0 && sum <= row.lower + beside);
+    if (!leaves) continue;
+    JointVector normal = row.c.cwiseProduct(at.free);
+    normal -= JointVector(across * (across.transpose() * normal));
+    const double length = normal.norm();
+    // Rows nearly along others, as far as their free joints go, hold nothing more.
+    if (!(length > 1e-6 * row.c.norm())) continue;
+    normal /= length;
+    pull -= normal.dot(pull) * normal;
+    across.conservativeResize(Eigen::NoChange, across.cols() + 1);
+    across.col(across.cols() - 1) = normal;
+  }
+}
 
 bool JointSpace::leaves(const double* q, const double* step) const {
   JointVector end(dof());
@@ -55,7 +147,9 @@ bool JointSpace::leaves(const double* q, const double* step) const {
 JointVector JointSpace::turned_to_middle(JointVector q) const {
   const JointVector to = middle();
   for (int j = 0; j < dof(); ++j) {
-    if (!is_slide(j)) q[j] += kTwoPi * std::round((to[j] - q[j]) / kTwoPi);
+    if (repeats[static_cast<std::size_t>(j)]) {
+      q[j] += kTwoPi * std::round((to[j] - q[j]) / kTwoPi);
+    }
   }
   return q;
 }
@@ -105,7 +199,7 @@ bool JointSpace::wrap_nearest(const JointVector& near, double slack, const Lengt
                               JointVector& q) const {
   bool held = false;
   for (int j = 0; j < dof(); ++j) {
-    if (!winds(j)) continue;
+    if (!is_periodic(j) || turns_in_sum(j)) continue;
     const double low = lower[j] - slack;
     const double high = upper[j] + slack;
     double value = q[j];
@@ -152,7 +246,7 @@ JointVector JointSpace::longest_moves(double dt) const {
   return velocity * (dt * (1 + 1e-9));
 }
 
-JointVector JointSpace::draw(Random& random) const {
+JointVector JointSpace::sample(Random& random) const {
   JointVector q(dof());
   for (int draw = 0; draw <= kMostDraws; ++draw) {
     for (int j = 0; j < dof(); ++j) q[j] = random.uniform(sample_lower(j), sample_upper(j));
@@ -180,13 +274,12 @@ JointVector JointSpace::draw(Random& random) const {
 }
 
 Matrix JointSpace::samples(std::size_t n, std::uint64_t seed, const Progress& progress) const {
-  constexpr std::size_t kRowsBetweenTellings = 1024;
   Matrix q(static_cast<Eigen::Index>(n), dof());
   Random random(seed);
   Pace pace(progress, n);
   for (std::size_t row = 0; row < n; ++row) {
-    if (row % kRowsBetweenTellings == 0) pace(row);
-    sample(random, q.row(static_cast<Eigen::Index>(row)));
+    if (row % 1024 == 0) pace(row);  // the clock takes as long as a row
+    q.row(static_cast<Eigen::Index>(row)) = sample(random).transpose();
   }
   return q;
 }

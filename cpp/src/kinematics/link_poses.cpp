@@ -17,9 +17,7 @@ using Values = std::map<std::string, double>;
 int variable_of(const LinkJoint& joint, const RobotModel& model) {
   const Values& locked = model.options.locked_joints;
   if (!joint.moves || locked.count(joint.name) || locked.count(joint.source)) return -1;
-  const auto& names = model.joints.names;
-  const auto at = std::find(names.begin(), names.end(), joint.source);
-  return at == names.end() ? -1 : static_cast<int>(at - names.begin());
+  return model.joints.find(joint.source);
 }
 
 void check_other_joints(const RobotModel& model, const std::vector<LinkJoint>& joints,

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "iksel/types.hpp"
-#include "urdf/link_joints.hpp"
+#include "urdf/chain_spec.hpp"
 
 namespace iksel {
 

@@ -12,8 +12,8 @@
 #include "iksel/error.hpp"
 #include "kinematics/chain_model.hpp"
 #include "kinematics/tips_model.hpp"
-#include "urdf/dh.hpp"
 #include "urdf/parse.hpp"
+#include "urdf/urdf_text.hpp"
 
 namespace iksel {
 
@@ -172,8 +172,7 @@ Matrix Robot::inverse_jacobian(const JointVector& q, double damping) const {
     throw InvalidArgumentError("damping: " + number_text(damping) + " is not 0 or more");
   }
   const JacobianMatrix J = jacobian(q);
-  constexpr double kCutoff = 1e-9;
-  if (damping == 0) return TruncatedSvd(J, kCutoff).inverse();
+  if (damping == 0) return TruncatedSvd(J, /*cutoff=*/1e-9).inverse();
   return damped_inverse(J, damping * damping);
 }
 

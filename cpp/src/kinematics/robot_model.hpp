@@ -11,6 +11,7 @@
 #include "iksel/robot_options.hpp"
 #include "kinematics/joint_space.hpp"
 #include "kinematics/link_poses.hpp"
+#include "urdf/chain_spec.hpp"
 
 namespace iksel {
 
@@ -48,6 +49,22 @@ class RobotModel {
   std::shared_ptr<LinkPoseCache> link_poses = std::make_shared<LinkPoseCache>();
 
  protected:
+  void add_joint(const ChainVariable& variable, bool repeats) {
+    joints.names.push_back(variable.name);
+    joints.types.push_back(variable.type);
+    joints.repeats.push_back(repeats);
+    const auto append = [this](JointVector& values, double value) {
+      values.conservativeResize(dof + 1);
+      values[dof] = value;
+    };
+    append(joints.lower, variable.lower);
+    append(joints.upper, variable.upper);
+    append(joints.velocity, variable.velocity);
+    append(soft_lower, variable.soft_lower);
+    append(soft_upper, variable.soft_upper);
+    ++dof;
+  }
+
   RobotModel(const RobotModel&) = default;
   RobotModel(RobotModel&&) = default;
   RobotModel& operator=(const RobotModel&) = default;

@@ -7,45 +7,8 @@
 #include "base/hash.hpp"
 #include "base/message_text.hpp"
 #include "iksel/error.hpp"
-#include "iksel/link_tree.hpp"
-#include "kinematics/coupled_limits.hpp"
 
 namespace iksel {
-namespace {
-
-/// The link that a joint leads to on the way to the tip: its child, or where the way goes up from
-/// the base its parent.
-std::string link_behind(const LinkTree& tree, const std::string& joint,
-                        const std::vector<ChainJoint>& chain, std::size_t index) {
-  const auto find = [&](const std::string& name) {
-    return std::find_if(tree.joints.begin(), tree.joints.end(),
-                        [&](const LinkTreeJoint& each) { return each.name == name; });
-  };
-  const auto at = find(joint);
-  // The next joint hangs on the link behind this one.
-  const auto next = find(chain[index + 1].name);
-  const bool downwards = at->child_link == next->parent_link || at->child_link == next->child_link;
-  return downwards ? at->child_link : at->parent_link;
-}
-
-/// Appends joint j of `from`.
-void append_joint(const ChainModel& from, int j, RobotModel& to) {
-  const Eigen::Index n = to.dof++;
-  to.joints.names.push_back(from.joints.name(j));
-  to.joints.types.push_back(from.joints.type(j));
-  to.joints.repeats.push_back(from.joints.repeats[static_cast<std::size_t>(j)]);
-  const auto append = [&](const JointVector& source, JointVector& values) {
-    values.conservativeResize(n + 1);
-    values[n] = source[j];
-  };
-  append(from.joints.lower, to.joints.lower);
-  append(from.joints.upper, to.joints.upper);
-  append(from.joints.velocity, to.joints.velocity);
-  append(from.soft_lower, to.soft_lower);
-  append(from.soft_upper, to.soft_upper);
-}
-
-}  // namespace
 
 TipsModel::TipsModel(const std::string& urdf_in, const RobotOptions& options_in)
     : RobotModel(urdf_in, options_in) {
@@ -106,8 +69,7 @@ void TipsModel::couple_joints() {
 Robot TipsModel::coupled(const Robot& part) const {
   const ChainModel& model = part.model();
   const auto has = [&](const std::string& wanted) {
-    const auto& names = model.joints.names;
-    return std::find(names.begin(), names.end(), wanted) != names.end() ||
+    return model.joints.find(wanted) >= 0 ||
            std::any_of(model.spec.joints.begin(), model.spec.joints.end(), [&](const auto& joint) {
              return joint.name == wanted && joint.has_value();
            });
@@ -154,16 +116,16 @@ std::vector<int> TipsModel::add_joints(const ChainModel& model) {
   const JointSpace& chain = model.joints;
   std::vector<int> places;
   for (int j = 0; j < model.dof; ++j) {
-    const auto known = std::find(joints.names.begin(), joints.names.end(), chain.name(j));
-    const int place = static_cast<int>(known - joints.names.begin());
-    places.push_back(place);
-    if (known == joints.names.end()) {
+    const int place = joints.find(chain.name(j));
+    places.push_back(place < 0 ? dof : place);
+    if (place < 0) {
       if (dof == kMaxDof) {
         throw UrdfError("the chains from '" + options.base_link + "' to " +
                         list_names(options.tip_links) + " have more than " +
                         std::to_string(kMaxDof) + " movable joints together");
       }
-      append_joint(model, j, *this);
+      const auto i = static_cast<std::size_t>(j);
+      add_joint(model.spec.variables[i], chain.repeats[i]);
       continue;
     }
     // A joint that follows this one on another chain may narrow its limits there.
@@ -172,10 +134,10 @@ std::vector<int> TipsModel::add_joints(const ChainModel& model) {
     if (!chain.repeats[static_cast<std::size_t>(j)]) {
       joints.repeats[static_cast<std::size_t>(place)] = false;
     }
-    if (joints.lower[place] > joints.upper[place]) {
+    if (joints.lower[place] >= joints.upper[place]) {
       throw UrdfError("joint '" + chain.name(j) +
-                      "': the joints that follow it on the chains to several tips leave it no "
-                      "value between its limits");
+                      "': the joints that follow it on the chains to several tips leave nothing "
+                      "between its limits");
     }
   }
   return places;
@@ -192,10 +154,7 @@ void TipsModel::find_shared() {
 
 std::vector<int> TipsModel::places_of(const Robot& part) const {
   std::vector<int> places;
-  for (const std::string& each : part.joint_names()) {
-    places.push_back(static_cast<int>(std::find(joints.names.begin(), joints.names.end(), each) -
-                                      joints.names.begin()));
-  }
+  for (const std::string& each : part.joint_names()) places.push_back(joints.find(each));
   return places;
 }
 
@@ -228,10 +187,8 @@ void TipsModel::split(Tip& tip) const {
   if (first_own == chain.end() || std::any_of(first_own, chain.end(), is_of_stem)) return;
   auto last = first_own;
   while (!is_of_stem(*last)) --last;
-  const std::string link = link_behind(LinkTree::from_urdf_string(urdf), last->name, chain,
-                                       static_cast<std::size_t>(last - chain.begin()));
-  const Robot stem = Robot::from_urdf_string(urdf, options_between(options.base_link, link));
-  RobotOptions of_arm = options_between(link, tip.chain.robot.tip_link());
+  const Robot stem = Robot::from_urdf_string(urdf, options_between(options.base_link, last->link));
+  RobotOptions of_arm = options_between(last->link, tip.chain.robot.tip_link());
   of_arm.tcp = tip.chain.robot.tcp();
   const Robot arm = Robot::from_urdf_string(urdf, of_arm);
   tip.stem = ChainPart{coupled(stem), places_of(stem)};

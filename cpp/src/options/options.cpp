@@ -145,6 +145,8 @@ void DatabaseOptions::validate() const {
   check_range<std::size_t>("kmeans_pool", kmeans_pool, 1, 1'000'000'000U);
   check_range("kmeans_rounds", kmeans_rounds, 0, 1'000'000);
   const DatabaseOptions standard;
+  check_read("cvt_updates", sampling == Sampling::cvt, cvt_updates, standard.cvt_updates,
+             "by sampling 'cvt'");
   const bool is_kmeans = sampling == Sampling::kmeans;
   check_read("kmeans_pool", is_kmeans, kmeans_pool, standard.kmeans_pool, "by sampling 'kmeans'");
   check_read("kmeans_rounds", is_kmeans, kmeans_rounds, standard.kmeans_rounds,

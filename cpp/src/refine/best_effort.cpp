@@ -63,12 +63,8 @@ bool descend_into_tolerances(const ChainModel& model, const Goal& goal, JointVec
 
 std::vector<JointVector> BestEffort::from_anywhere(int n, std::uint64_t seed) {
   Random random(seed);
-  JointVector q(model_.dof);
   std::vector<JointVector> ends;
-  for (int i = 0; i < n; ++i) {
-    model_.joints.sample(random, q);
-    ends.push_back(from(q));
-  }
+  for (int i = 0; i < n; ++i) ends.push_back(from(model_.joints.sample(random)));
   return ends;
 }
 

@@ -53,7 +53,7 @@ JointVector make_step(const IterationContext& context, const JointVector& q,
 /// What follows a step besides adding it.
 void after_step(const IterationContext& context, JointVector& q) {
   if (context.scheme.iteration == Iteration::pinv_rr && !context.model.joints.contains(q.data())) {
-    context.model.joints.sample(context.random, q);
+    q = context.model.joints.sample(context.random);
   } else if (context.scheme.iteration == Iteration::cwln) {
     for (int i = 0; i < context.model.dof; ++i) {
       if (!context.model.joints.is_slide(i)) {
@@ -81,7 +81,7 @@ Standing evaluate(const IterationContext& context, const JointVector& q) {
     at.J = context.kdl->jacobian(q);
   } else {
     Jacobian J;
-    context.model.fk_jacobian(q.data(), pose, J, at_tcp);
+    pose = to_pose(context.model.fk_jacobian(q.data(), J, at_tcp));
     at.J = J;
   }
   if (goal.is_full_pose()) {
@@ -143,7 +143,7 @@ Outcome iterate(const IterationContext& context, JointVector& q, int& steps) {
     if (!adjustment.allFinite()) return outcome;
     if (small_step_stop && std::abs(adjustment.sum()) < scheme.min_step) {
       if (scheme.iteration != Iteration::pinv_rr) return outcome;
-      model.joints.sample(context.random, q);
+      q = model.joints.sample(context.random);
       continue;
     }
     q += adjustment;

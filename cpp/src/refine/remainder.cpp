@@ -101,9 +101,8 @@ double Remainder::value(const JointVector& q, JointVector& gradient, JointVector
     if (second != nullptr) *second = difference_gradients(*this, q, gradient);
     return here;
   }
-  Pose pose;
   Jacobian of_pose;
-  model_.fk_jacobian(q.data(), pose, of_pose);
+  const Pose pose = to_pose(model_.fk_jacobian(q.data(), of_pose));
   const JacobianMatrix J = of_pose;
   const AtPose here = at(pose);
   gradient = J.transpose() * here.pull;

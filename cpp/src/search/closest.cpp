@@ -156,11 +156,7 @@ void give_closest(const RobotModel& model, const SolverOptions& options, const G
     descend_from_screen(model, goal, weights, *workspace.lanes, minima, result);
   } else if (request.database_seeds) {
     Random random(options.seed);
-    JointVector seed(model.dof);
-    for (int i = 0; i < kRandomDescents; ++i) {
-      model.joints.sample(random, seed);
-      minima.descend(seed);
-    }
+    for (int i = 0; i < kRandomDescents; ++i) minima.descend(model.joints.sample(random));
   }
   Screen screen(request, model.dof);
   for (const LocalMinimum& minimum : minima.sorted()) {

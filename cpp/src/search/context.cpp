@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "options/strategy.hpp"
-#include "structure/known_solutions.hpp"
+#include "structure/closed_form.hpp"
 
 namespace iksel {
 

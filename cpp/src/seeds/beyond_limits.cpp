@@ -42,9 +42,8 @@ void share_turns(const ChainModel& model, JointVector& q) {
   constexpr double kInLine = 1e-3;
   const JointVector violations = model.joints.violations(q);
   if (!(violations.maxCoeff() > kFirstOrder)) return;
-  Pose pose;
   Jacobian J;
-  model.fk_jacobian(q.data(), pose, J);
+  model.fk_jacobian(q.data(), J);
   for (int i = 0; i < model.dof; ++i) {
     for (int j = i + 1; j < model.dof; ++j) {
       if (!(std::max(violations[i], violations[j]) > kFirstOrder)) continue;
@@ -66,12 +65,11 @@ bool is_beyond_limits(const ChainModel& model, const Pose& T_base_tcp, JointVect
   constexpr double kSmall = 3e-4;
   constexpr int kSteps = 3;
   if (model.dof != 6) return false;
-  Pose pose;
   Jacobian J;
   Matrix6 inverse;
   Vector6 step;
   for (int i = 0; i < kSteps; ++i) {
-    model.fk_jacobian(q.data(), pose, J);
+    const Pose pose = to_pose(model.fk_jacobian(q.data(), J));
     inverse = inverse_of(J);
     step = inverse * pose_error(T_base_tcp, pose);
     // Written so that NaN tells nothing.

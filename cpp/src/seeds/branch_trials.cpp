@@ -72,10 +72,9 @@ std::vector<BranchTrials::Example> BranchTrials::make_examples(
   const Pose base_inverse = to_pose(model.kernel.base).inverse();
   const Pose flange_inverse = to_pose(model.kernel.flange).inverse();
   Random random(1);
-  JointVector q(model.dof);
   std::vector<Example> examples;
   for (std::size_t i = 0; i < kPerCell << static_cast<unsigned>(levels_); ++i) {
-    model.joints.sample(random, q);
+    JointVector q = model.joints.sample(random);
     const Pose target = to_pose(model.fk_frame(q.data()));
     const Goal goal(model, task, target);
     Example example;

@@ -51,10 +51,9 @@ ClosestScreen::ClosestScreen(const ChainModel& model, std::uint64_t seed,
   kept_targets_.reserve(kPacks);
   seeds_.reserve(kPacks * lanes::kBlock);
   Random random(seed);
-  double q[kMaxDof];
   for (int i = 0; i < kRandomPacks; ++i) {
     for (int place = 0; place < lanes::kBlock; ++place) {
-      model.joints.sample(random, q);
+      const JointVector q = model.joints.sample(random);
       for (int j = 0; j < model.dof; ++j) row(random_, i, j)[place] = static_cast<float>(q[j]);
     }
   }

@@ -13,9 +13,7 @@ namespace iksel {
 /// Starts a lane at random.
 template <typename Refiner>
 void load_random(const JointSpace& joints, Random& random, Refiner& refiner, int lane) {
-  double q[kMaxDof];
-  joints.sample(random, q);
-  refiner.load_seed(lane, q);
+  refiner.load_seed(lane, joints.sample(random).data());
 }
 
 /// `count` rows around a configuration: what is nearest to it, of solutions with many joints to

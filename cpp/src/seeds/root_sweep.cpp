@@ -7,7 +7,7 @@
 
 #include "base/constants.hpp"
 #include "seeds/beyond_limits.hpp"
-#include "structure/residual_form.hpp"
+#include "simd/residual_types.hpp"
 
 namespace iksel {
 namespace {

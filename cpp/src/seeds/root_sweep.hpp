@@ -8,7 +8,6 @@
 #include "seeds/root_finder.hpp"
 #include "simd/branch_types.hpp"
 #include "structure/closed_form.hpp"
-#include "structure/loop_polynomial.hpp"
 
 namespace iksel {
 

@@ -74,8 +74,7 @@ void ScreenedSeeds::screen_one_pack(bool is_random) {
       const int entry = block_->order[rank_++];
       screen_.add([&](int j) { return block_->q[j][entry]; });
     } else {
-      double q[kMaxDof];
-      joints_.sample(random_, q);
+      const JointVector q = joints_.sample(random_);
       screen_.add([&](int j) { return q[j]; });
     }
   }

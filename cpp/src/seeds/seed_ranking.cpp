@@ -25,10 +25,9 @@ void SeedRanking::rank(const Goal& goal, const std::vector<JointVector>& seeds,
 Vector6 SeedRanking::error_of(const JointVector& q, const Goal& goal, JacobianMatrix& J) const {
   const TaskSpace& task = goal.task();
   Vector6 e;
-  Pose pose;
   Jacobian of_pose;
   if (!task.is_full_pose()) {
-    goal.model().fk_jacobian(q.data(), pose, of_pose);
+    const Pose pose = to_pose(goal.model().fk_jacobian(q.data(), of_pose));
     J = of_pose;
     e = -task.outside(task.deviation(goal.target(), pose, J));
     for (int i = 0; i < 6; ++i) {
@@ -37,7 +36,7 @@ Vector6 SeedRanking::error_of(const JointVector& q, const Goal& goal, JacobianMa
     return e;
   }
   const Pose tip_target = goal.tip_target();
-  goal.model().fk_jacobian(q.data(), pose, of_pose, false);
+  const Pose pose = to_pose(goal.model().fk_jacobian(q.data(), of_pose, /*with_tool=*/false));
   J = of_pose;
   e.head<3>() = tip_target.translation() - pose.translation();
   e.tail<3>() = scheme_.rotation_difference == RotationDifference::geodesic

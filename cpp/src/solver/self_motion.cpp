@@ -37,9 +37,8 @@ void hold_to_limit(const ChainModel& model, const Goal& goal, const SelfMotionEn
   };
   for (int step = 0; !follow(); ++step) {
     if (step == kSteps) return;
-    Pose pose;
     Jacobian of_pose;
-    model.fk_jacobian(held.data(), pose, of_pose);
+    const Pose pose = to_pose(model.fk_jacobian(held.data(), of_pose));
     Matrix6 J;
     const auto column = [&](int j) { return j < follows ? j : j - 1; };
     for (int j = 0; j < model.dof; ++j) {

@@ -26,7 +26,7 @@ std::string hex(std::uint64_t value) {
 bool reduction_fits(const ChainModel& model, const DatabaseData& data) {
   if (!data.reduction) return true;
   const Reduction expected = Reduction::of(model, data.weight);
-  return data.reduction->left() == expected.left() && data.reduction->right() == expected.right();
+  return data.reduction->left == expected.left && data.reduction->right == expected.right;
 }
 
 /// The database, if it is fit for the robot.

@@ -252,8 +252,7 @@ bool ChainSeeds::next_stage() {
   const int lead = index_ % goal_.count();
   const bool at_random = is_quick || index_ >= goal_.count();
   ++index_;
-  q_.resize(goal_.model().dof);
-  goal_.model().joints.sample(random_, q_);
+  q_ = goal_.model().joints.sample(random_);
   const Result of_chain = arms_.solve_chain(lead, effort_, at_random, q_);
   // What is seen from another tip depends on where that is.
   if (!of_chain.success() && !at_random && goal_.frame_of(lead) < 0) {

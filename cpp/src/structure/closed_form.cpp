@@ -7,19 +7,12 @@
 #include "base/constants.hpp"
 #include "base/plain_vector.hpp"
 #include "simd/lane_chain.hpp"
-#include "structure/axis_pattern.hpp"
-#include "structure/completed_axes.hpp"
-#include "structure/find_loop.hpp"
-#include "structure/known_solutions.hpp"
 
 namespace iksel {
 namespace {
 
 using Eigen::Vector3d;
 using lanes::Closure;
-
-/// How far a locked axis may be off zero without being outside: what rounding leaves [rad].
-constexpr double kLocked = 1e-9;
 
 /// x . R(k, t) y.
 lanes::Turned turned(const Vector3d& x, const Vector3d& k, const Vector3d& y) {
@@ -122,7 +115,8 @@ void ClosedFormChain::use_limits(const ChainModel& model) {
     if (j >= dof || turns_freely(j)) {
       form.offset[i] = 0;
       form.middle[i] = 0;
-      form.reach[i] = turns_freely(j) ? kPi : kLocked;
+      // A locked axis is held to what axes may be off.
+      form.reach[i] = turns_freely(j) ? kPi : kStructureTolerance;
     } else {
       const bool ends = model.joints.type(j) != JointType::continuous;
       form.offset[i] = model.kernel.joints[static_cast<std::size_t>(j)].offset;
@@ -171,7 +165,7 @@ void ClosedFormChain::use_sums(const ChainModel& model) {
   form.sums = sums.get();
 }
 
-bool ClosedFormChain::tells_inside(const LimitSet& limits) const {
+bool ClosedFormChain::tells_inside(const JointSpace& limits) const {
   return std::none_of(limits.sums.begin(), limits.sums.end(), [&](const Limit& sum) {
     for (int j = 0; j < limits.dof(); ++j) {
       if (sum.c[j] != 0 && turns_freely(j)) return true;

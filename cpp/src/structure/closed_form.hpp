@@ -27,7 +27,7 @@ inline constexpr double kAlmostTolerance = 2e-4;
 
 /// Six consecutive joints of a chain, seen from either end; before them there may be one that is
 /// held, be it a slide. A chain of fewer joints, or one for a task that leaves rotations free, is
-/// completed (completed_axes.hpp).
+/// completed (complete_axes).
 struct ClosedFormChain {
   /// `joints[i]` is the chain's joint that the form counts as its i-th; from `dof` on, what
   /// completes it.
@@ -57,7 +57,7 @@ struct ClosedFormChain {
   [[nodiscard]] bool turns_freely(int joint) const { return (free >> joint & 1U) != 0; }
   /// Whether branches tell which solutions lie inside limits: not where a joint turns as it likes
   /// in a sum.
-  [[nodiscard]] bool tells_inside(const LimitSet& limits) const;
+  [[nodiscard]] bool tells_inside(const JointSpace& limits) const;
   /// By how much the form's target may be off within the tolerances of a pose [m, rad] [rad,
   /// units].
   [[nodiscard]] double tolerance_of_target(const ChainModel& model, double position,
@@ -105,6 +105,45 @@ std::optional<ClosedFormChain> find_closed_form(const ChainModel& model,
 
 /// What gives a residual for each angle of one of six joints, whose roots are the solutions.
 std::optional<ClosedFormChain> find_residual(const ChainModel& model);
+
+/// The axes of a chain of fewer than six joints, or of a task that leaves rotations free, completed
+/// to six: by axes behind the last joint that are locked at zero, where joints are missing, or that
+/// turn as they like, where the task does not ask for a rotation.
+struct CompletedAxes {
+  ScrewAxes axes;
+  /// Bit j: axis j turns as it likes: one behind the last joint, or a joint of which the task does
+  /// not feel the angle.
+  unsigned free = 0;
+};
+
+/// The ways in which the axes of a chain, whose joints all turn, can be completed for a task; none
+/// if they can't. `tolerance`: as of ClosedFormChain [rad, units of the reach].
+std::vector<CompletedAxes> complete_axes(const ChainModel& model, const Task& task,
+                                         double tolerance);
+
+/// The six joints in the order of the loop (loop_equations.hpp) from the one that is swept on, as
+/// seen from the end from which solutions are told apart the best by that joint's angle; nothing if
+/// there is none from which they are: where the axes lie so that several solutions share each of
+/// its angles, or that the equations lose more than they may. `model` has six joints that turn.
+std::optional<ClosedFormChain> find_loop(const ChainModel& model);
+
+/// Whether the branches of poses of random configurations have these among them: not where the axes
+/// lie so that solutions come in families, of which the form has some, or that it divides by 0. Of
+/// a chain with a joint that is held, at its own value; and that joint has to move along the
+/// self-motion. For full poses.
+bool finds_known_solutions(const ChainModel& model, ClosedFormChain chain);
+
+/// Whether a joint of seven moves along the self-motion anywhere: where it does not, its value is
+/// fixed by the pose, and the six others are singular wherever it is held.
+bool takes_part_in_self_motion(const ChainModel& model, int joint);
+
+/// Whether six joints move the tip in five directions at most, wherever they are: solutions are
+/// then no points, and residuals have no roots but for rounding.
+bool is_singular_everywhere(const ChainModel& model);
+
+/// The residual of a chain whose closure is sweep_4 or sweep_6, by the angle of one of its joints,
+/// for the target of a pack.
+lanes::ResidualForm make_residual(const ClosedFormChain& chain, const lanes::BranchPack& pack);
 
 /// A chain's closed forms: for whole poses, and for each of the other tasks that have one.
 struct ClosedForms {

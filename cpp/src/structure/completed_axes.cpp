@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "structure/completed_axes.hpp"
-
 #include <optional>
+
+#include "structure/closed_form.hpp"
 
 namespace iksel {
 namespace {
@@ -67,9 +67,8 @@ class Completion {
   static void append_across(ScrewAxes& axes, const Vector3d& point) {
     const std::size_t n = axes.h.size();
     const Vector3d across = axes.h[n - 1].cross(axes.h[n - 2]);
-    constexpr double kParallel = 0.1;
-    axes.h.push_back(across.norm() > kParallel ? Vector3d(across.normalized())
-                                               : axes.h[n - 1].unitOrthogonal());
+    axes.h.push_back(across.norm() > 0.1 ? Vector3d(across.normalized())
+                                         : axes.h[n - 1].unitOrthogonal());
     axes.p.push_back(point);
   }
 
@@ -82,7 +81,6 @@ class Completion {
       places.emplace_back(chain_.p[last] + reach_ * chain_.h[last].unitOrthogonal());
       return places;
     }
-    constexpr double kClearlyNotParallel = 1e-3;
     if (chain_.angle(last - 1, last) > kClearlyNotParallel) {
       places.push_back(chain_.middle(last - 1, last));
     }

@@ -13,7 +13,6 @@ namespace iksel {
 using Eigen::Vector3d;
 
 std::optional<Elbow> Elbow::of(const ChainModel& model) {
-  constexpr double kParallel = 1e-3;
   if (model.dof != kCurveJoints || !is_simple(model)) return std::nullopt;
   for (const KernelJoint& joint : model.kernel.joints) {
     if (joint.prismatic) return std::nullopt;
@@ -21,26 +20,20 @@ std::optional<Elbow> Elbow::of(const ChainModel& model) {
   Elbow elbow;
   elbow.axes_ = ScrewAxes::of(model);
   const ScrewAxes& axes = elbow.axes_;
-  // Whether three axes from one on go through a point, up to a tolerance [in units of the reach].
-  const auto meet_in = [&](const Vector3d& point, std::size_t i, double tolerance) {
-    const double most = tolerance * model.reach;
-    return axes.distance(i, point) <= most && axes.distance(i + 1, point) <= most &&
-           axes.distance(i + 2, point) <= most;
+  // Whether the three axes of shoulder and wrist meet in one point each.
+  const auto do_meet = [&](double tolerance) {
+    const AxisPattern pattern(axes, model.reach, tolerance);
+    return pattern.three_meet(0) && pattern.three_meet(4);
   };
-  // Where they meet.
-  const auto centre = [&](std::size_t i, Vector3d& point) {
-    if (axes.angle(i, i + 1) <= kParallel || axes.angle(i + 1, i + 2) <= kParallel) return false;
-    point = axes.middle(i, i + 1);
-    return meet_in(point, i, kSweptTolerance);
-  };
-  if (!centre(0, elbow.shoulder_) || !centre(4, elbow.wrist_)) return std::nullopt;
+  if (!do_meet(kSweptTolerance)) return std::nullopt;
+  elbow.shoulder_ = axes.middle(0, 1);
+  elbow.wrist_ = axes.middle(4, 5);
   elbow.elbow_ = axes.p[3] + axes.h[3] * axes.h[3].dot(elbow.shoulder_ - axes.p[3]);
-  const auto is_spherical = [&](const Vector3d& point, std::size_t i) {
-    return meet_in(point, i, kStructureTolerance) &&
-           std::abs(axes.h[i].dot(axes.h[i + 1])) <= kStructureTolerance &&
-           std::abs(axes.h[i + 1].dot(axes.h[i + 2])) <= kStructureTolerance;
-  };
-  elbow.goes_round_ = is_spherical(elbow.shoulder_, 0) && is_spherical(elbow.wrist_, 4);
+  elbow.goes_round_ = do_meet(kStructureTolerance);
+  for (const std::size_t i : {0, 1, 4, 5}) {
+    const bool is_right = std::abs(axes.h[i].dot(axes.h[i + 1])) <= kStructureTolerance;
+    elbow.goes_round_ = elbow.goes_round_ && is_right;
+  }
   for (std::size_t j = 0; j < 4; ++j) elbow.offset_[j] = model.kernel.joints[j].offset;
   return elbow;
 }

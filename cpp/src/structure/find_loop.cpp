@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "structure/find_loop.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 #include "base/constants.hpp"
 #include "base/random.hpp"
 #include "simd/kernels.hpp"
-#include "structure/loop_polynomial.hpp"
+#include "structure/closed_form.hpp"
 
 namespace iksel {
 namespace {
@@ -28,8 +26,6 @@ Pose end_at(const ScrewAxes& axes, const double (&angles)[kPoseJoints]) {
 double tell_apart(const LoopEquations& loop, const ScrewAxes& axes, int swept) {
   constexpr int kSolutions = 16;
   constexpr std::uint64_t kSeed = 6;
-  constexpr double kLeastNoise = 1e-16;
-  constexpr double kLeast = 1e-30;
   LoopPolynomial determinant(lanes::choose_kernels());
   Random random(kSeed);
   double sum = 0;
@@ -40,8 +36,8 @@ double tell_apart(const LoopEquations& loop, const ScrewAxes& axes, int swept) {
     loop.set_target(end_at(axes, angles), target);
     determinant.find(target);
     const double slope = std::abs(determinant.slope(angles[swept]));
-    const double noise = std::max(determinant.noise(), kLeastNoise * determinant.size());
-    sum += std::log(std::max(slope / noise, kLeast));
+    const double noise = std::max(determinant.noise(), 1e-16 * determinant.size());
+    sum += std::log(std::max(slope / noise, 1e-30));  // finite
   }
   return std::exp(sum / kSolutions);
 }
@@ -49,10 +45,8 @@ double tell_apart(const LoopEquations& loop, const ScrewAxes& axes, int swept) {
 }  // namespace
 
 std::optional<ClosedFormChain> find_loop(const ChainModel& model) {
-  // Roots that are known worse are no seeds to rely on [1/rad].
-  constexpr double kDistinct = 1e6;
   const ScrewAxes forward = ScrewAxes::of(model);
-  double best = kDistinct;
+  double best = 1e6;  // roots that are known worse are no seeds to rely on [1/rad]
   std::optional<ClosedFormChain> found;
   for (const bool reversed : {false, true}) {
     const ScrewAxes axes = reversed ? forward.reversed() : forward;

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "structure/known_solutions.hpp"
-
 #include <Eigen/LU>
 #include <cmath>
 
@@ -8,18 +6,13 @@
 #include "base/pseudo_inverse.hpp"
 #include "base/random.hpp"
 #include "simd/kernels.hpp"
+#include "structure/closed_form.hpp"
 
 namespace iksel {
 namespace {
 
 constexpr int kConfigurations = 24;
-constexpr int kEnough = kConfigurations * 3 / 4;
 constexpr std::uint64_t kDrawSeed = 8;
-/// How far a branch may be from the configuration that it is [rad]: near singularities rounding
-/// counts more.
-constexpr double kSameSolution = 1e-4;
-/// What the axes lie off may count so many times.
-constexpr double kMagnified = 30;
 /// Of a self-motion's direction, the least that a swept joint has of it: where it has less, the
 /// others turn so fast beside it that samples see little of them (python -m bench laws).
 constexpr double kLeastPart = 0.02;
@@ -57,12 +50,10 @@ double part_of_self_motion(const Jacobian& J, int joint) {
 template <typename Visit>
 void visit_configurations(const ChainModel& model, const Visit& visit) {
   Random random(kDrawSeed);
-  JointVector q(model.dof);
-  Pose pose;
   Jacobian J;
   for (int i = 0; i < kConfigurations; ++i) {
-    model.joints.sample(random, q);
-    model.fk_jacobian(q.data(), pose, J);
+    const JointVector q = model.joints.sample(random);
+    const Pose pose = to_pose(model.fk_jacobian(q.data(), J));
     model.to_unit(J);
     visit(q, pose, J);
   }
@@ -71,21 +62,19 @@ void visit_configurations(const ChainModel& model, const Visit& visit) {
 }  // namespace
 
 bool takes_part_in_self_motion(const ChainModel& model, int joint) {
-  constexpr double kRounding = 1e-6;
   bool takes_part = false;
   visit_configurations(model, [&](const JointVector&, const Pose&, const Jacobian& J) {
-    takes_part = takes_part || part_of_self_motion(J, joint) > kRounding;
+    takes_part = takes_part || part_of_self_motion(J, joint) > 1e-6;  // rounding
   });
   return takes_part;
 }
 
 bool is_singular_everywhere(const ChainModel& model) {
-  // With files that are rounded, and so that the tolerances move no joint by more than 0.01 rad.
-  constexpr double kRounding = 1e-4;
   bool is_singular = true;
   visit_configurations(model, [&](const JointVector&, const Pose&, const Jacobian& J) {
     const auto sigma = singular_values(J);
-    is_singular = is_singular && !(sigma[5] > kRounding * sigma[0]);
+    // With files that are rounded, and so that the tolerances move no joint by more than 0.01 rad.
+    is_singular = is_singular && !(sigma[5] > 1e-4 * sigma[0]);
   });
   return is_singular;
 }
@@ -95,7 +84,9 @@ bool finds_known_solutions(const ChainModel& model, ClosedFormChain chain) {
   const lanes::LaneKernels& kernels = lanes::choose_kernels();
   const Pose base_inverse = to_pose(model.kernel.base).inverse();
   const Pose tip_inverse = to_pose(model.kernel.tip).inverse();
-  const double most = kSameSolution + kMagnified * chain.deviation;
+  // How far a branch may be from the configuration that it is [rad]: near singularities rounding
+  // counts more, and what the axes lie off many times.
+  const double most = 1e-4 + 30 * chain.deviation;
   lanes::BranchPack pack = all_branches();
   int found = 0;
   visit_configurations(model, [&](const JointVector& q, const Pose& pose, const Jacobian& J) {
@@ -110,7 +101,7 @@ bool finds_known_solutions(const ChainModel& model, ClosedFormChain chain) {
     const bool moves = model.dof <= 6 || part_of_self_motion(J, chain.held) > kLeastPart;
     if (lane < lanes::kWidth && moves) ++found;
   });
-  return found >= kEnough;
+  return found >= kConfigurations * 3 / 4;
 }
 
 }  // namespace iksel

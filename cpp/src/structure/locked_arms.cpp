@@ -6,7 +6,6 @@
 
 #include "base/constants.hpp"
 #include "simd/lane_chain.hpp"
-#include "structure/known_solutions.hpp"
 
 namespace iksel {
 namespace {

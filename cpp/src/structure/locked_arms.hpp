@@ -26,8 +26,8 @@ struct LockedArm {
 struct LockedArms {
   std::vector<LockedArm> arms;
   /// Whether the elbow goes round, no sum is limited, and each joint with limits can be locked and
-  /// is solved exactly in closed form: whether there are
-  /// solutions is then known in closed form, by these and the crossing.
+  /// is solved exactly in closed form: whether there are solutions is then known, by these and the
+  /// crossing.
   bool are_closed = false;
   /// Closed curves of solutions, which have no ends, meet the plane of the elbow, and there the
   /// first joint is known. As the elbow goes round, shoulder and wrist turn about a line by a whole

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "structure/residual_form.hpp"
-
+#include "simd/residual_types.hpp"
+#include "structure/closed_form.hpp"
 namespace iksel {
 namespace {
 

@@ -22,9 +22,9 @@ void check_size(const std::string& joint, const std::string& what, double value,
                   " (lengths are metres, angles radians)");
 }
 
-/// Largest value that the motion of a joint takes.
+/// Largest value that the motion of a joint takes. A slide goes on where a turn begins again.
 double largest_motion(const ChainJoint& joint, const ChainVariable& variable) {
-  const bool free = variable.type == JointType::continuous;
+  const bool free = variable.type == JointType::continuous && !joint.prismatic;
   const auto of = motion_between(joint, free ? -kPi : variable.lower, free ? kPi : variable.upper);
   return std::max(std::abs(of.lower), std::abs(of.upper));
 }
@@ -84,15 +84,12 @@ class ChainReader {
     // Up from the base to the first link that is also above the tip, then down to the tip.
     const auto base_up = path_to_root(find_link(options_.base_link, "base"));
     const auto tip_up = path_to_root(find_link(options_.tip_link, "tip"));
-    std::size_t common_base = base_up.size();
-    std::size_t common_tip = tip_up.size();
-    while (common_base > 0 && common_tip > 0 &&
-           base_up[common_base - 1] == tip_up[common_tip - 1]) {
-      --common_base;
-      --common_tip;
-    }
-    for (std::size_t i = 0; i < common_base; ++i) add_joint(*base_up[i]->parent_joint, true);
-    for (std::size_t i = common_tip; i-- > 0;) add_joint(*tip_up[i]->parent_joint, false);
+    const auto parted =
+        std::mismatch(base_up.rbegin(), base_up.rend(), tip_up.rbegin(), tip_up.rend());
+    std::for_each(base_up.begin(), parted.first.base(),
+                  [&](const urdf::Link* link) { add_joint(*link->parent_joint, true); });
+    std::for_each(parted.second, tip_up.rend(),
+                  [&](const urdf::Link* link) { add_joint(*link->parent_joint, false); });
 
     for (const ChainVariable& variable : spec_.variables) check_limits(variable);
     const std::string chain =
@@ -136,6 +133,7 @@ class ChainReader {
   void add_joint(const urdf::Joint& joint, bool upwards) {
     ChainJoint segment;
     segment.name = joint.name;
+    segment.link = upwards ? joint.parent_link_name : joint.child_link_name;
     const Eigen::Isometry3d origin = origin_of(joint);
     // Parent -> child is origin * motion(q); the way up is its inverse, motion(-q) * origin^-1.
     (upwards ? segment.after : segment.before) = upwards ? origin.inverse() : origin;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the URDF says of a chain, joint by joint, before any kinematics is made of it.
+// What the URDF says of a chain, and of the links beside it, joint by joint, before any kinematics
+// is made of it.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -17,6 +18,7 @@ namespace iksel {
 /// fixed or locked joint has the constant transforms only.
 struct ChainJoint : Following {
   std::string name;
+  std::string link;  ///< that it leads to on the way to the tip
   Eigen::Isometry3d before = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d after = Eigen::Isometry3d::Identity();
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
@@ -57,7 +59,24 @@ struct ChainSpec {
   std::vector<ChainVariable> variables;
 };
 
+/// The joint that carries a link. Its pose in the parent link is `origin`, then the motion about or
+/// along `axis` by its value, which is motion_of (base/motion_curve.hpp) that of `source`.
+struct LinkJoint : Following {
+  std::string name;  ///< empty: the root link, which nothing carries
+  int parent = -1;   ///< index of the link that it is on
+  Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
+  bool moves = false;  ///< revolute, continuous or prismatic
+  bool prismatic = false;
+  std::string source;  ///< the joint that it follows in the end, or itself
+};
+
 /// Reads the chain that `options` choose; fills in their base and tip link where they are empty.
 ChainSpec read_chain(const std::string& urdf_xml, RobotOptions& options);
+
+/// One for each link, in the order of LinkTree::links, where parents come first. Throws UrdfError
+/// or UnknownNameError.
+std::vector<LinkJoint> read_link_joints(const std::string& urdf_xml,
+                                        const std::vector<MimicCurve>& mimic_curves);
 
 }  // namespace iksel

@@ -1,27 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "urdf/dh.hpp"
-
 #include <Eigen/Geometry>
 #include <cmath>
 #include <cstddef>
 #include <set>
 #include <string>
 
+#include "base/constants.hpp"
 #include "base/message_text.hpp"
+#include "base/rotation.hpp"
 #include "iksel/error.hpp"
 #include "iksel/pose.hpp"
-#include "urdf/xml.hpp"
+#include "urdf/urdf_text.hpp"
 
 namespace iksel {
 namespace {
-
-/// So that numbers are read back as the same.
-constexpr int kDigits = 17;
-
-std::string words(const Eigen::Vector3d& v) {
-  return number_text(v.x(), kDigits) + " " + number_text(v.y(), kDigits) + " " +
-         number_text(v.z(), kDigits);
-}
 
 /// A joint, and the link that it carries. `inside`: further elements.
 std::string joint_element(const std::string& name, const char* type, const std::string& parent,
@@ -29,8 +21,8 @@ std::string joint_element(const std::string& name, const char* type, const std::
                           const Eigen::Vector3d& rpy, const std::string& inside = "") {
   return "  <link name=\"" + child + "\"/>\n  <joint name=\"" + escape_xml(name) + "\" type=\"" +
          type + "\">\n    <parent link=\"" + parent + "\"/>\n    <child link=\"" + child +
-         "\"/>\n    <origin xyz=\"" + words(xyz) + "\" rpy=\"" + words(rpy) + "\"/>\n" + inside +
-         "  </joint>\n";
+         "\"/>\n    <origin xyz=\"" + exact_text(xyz) + "\" rpy=\"" + exact_text(rpy) + "\"/>\n" +
+         inside + "  </joint>\n";
 }
 
 void check_row(const DhJoint& row, std::ptrdiff_t i) {
@@ -39,12 +31,15 @@ void check_row(const DhJoint& row, std::ptrdiff_t i) {
       throw_invalid("joints", i, "a, alpha, d or theta is " + number_text(number));
     }
   }
-  if (std::isfinite(row.lower) != std::isfinite(row.upper)) {
+  if (!(row.velocity >= 0)) {
+    throw_invalid("joints", i, "velocity is " + number_text(row.velocity) + ", not 0 or more");
+  }
+  const bool is_limited = std::isfinite(row.lower) && std::isfinite(row.upper);
+  if (!is_limited && !(row.lower == -kInfinity && row.upper == kInfinity)) {
     throw_invalid("joints", i,
                   "limits " + number_text(row.lower) + " to " + number_text(row.upper) +
                       ": give both, or none");
   }
-  const bool is_limited = std::isfinite(row.lower);
   if (row.type == JointType::prismatic && !is_limited) {
     throw_invalid("joints", i, "a prismatic joint needs limits: give lower and upper [m]");
   }
@@ -60,11 +55,9 @@ std::string moving(const DhJoint& row, const std::string& name, const std::strin
   const bool is_limited = std::isfinite(row.lower);
   const char* type = slides ? "prismatic" : is_limited ? "revolute" : "continuous";
   std::string inside = "    <axis xyz=\"0 0 1\"/>\n    <limit effort=\"0\" velocity=\"" +
-                       number_text(std::isfinite(row.velocity) ? row.velocity : 0.0, kDigits) +
-                       "\"";
+                       exact_text(std::isfinite(row.velocity) ? row.velocity : 0.0) + "\"";
   if (is_limited) {
-    inside += " lower=\"" + number_text(row.lower, kDigits) + "\" upper=\"" +
-              number_text(row.upper, kDigits) + "\"";
+    inside += " lower=\"" + exact_text(row.lower) + "\" upper=\"" + exact_text(row.upper) + "\"";
   }
   return joint_element(name, type, parent, child, {0, 0, row.d}, {0, 0, row.theta},
                        inside + "/>\n");
@@ -75,13 +68,6 @@ std::string fixed(const std::string& parent, const std::string& child, const Eig
   return joint_element(child + "_fixed", "fixed", parent, child, xyz, rpy);
 }
 
-/// Roll, pitch and yaw of R = Rz(yaw) Ry(pitch) Rx(roll).
-Eigen::Vector3d rpy_of(const Eigen::Matrix3d& R) {
-  const double roll = std::atan2(R(2, 1), R(2, 2));
-  const Eigen::Matrix3d S = R * Eigen::AngleAxisd(-roll, Eigen::Vector3d::UnitX());
-  return {roll, std::atan2(-S(2, 0), S(2, 2)), std::atan2(-S(0, 1), S(1, 1))};
-}
-
 }  // namespace
 
 std::string urdf_of_dh(const DhTable& table) {
@@ -89,7 +75,7 @@ std::string urdf_of_dh(const DhTable& table) {
   const Pose base = check_pose(table.T_base_link0, "base");
   std::string text = "<robot name=\"" + escape_xml(table.robot_name) +
                      "\">\n  <link name=\"base\"/>\n" +
-                     fixed("base", "link0", base.translation(), rpy_of(base.linear()));
+                     fixed("base", "link0", base.translation(), to_roll_pitch_yaw(base.linear()));
   std::set<std::string> names;
   for (std::size_t i = 0; i < table.joints.size(); ++i) {
     const DhJoint& row = table.joints[i];

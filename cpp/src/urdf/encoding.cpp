@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "urdf/encoding.hpp"
-
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
+
+#include "urdf/xml.hpp"
 
 namespace iksel {
 namespace {
@@ -87,20 +87,11 @@ bool is_xml_character(char32_t c) {
 }
 
 void append_utf8(std::string& text, char32_t c) {
-  const auto append = [&](char32_t byte) { text += static_cast<char>(byte); };
-  if (c < 0x80) return append(c);
-  if (c < 0x800) {
-    append(0xC0U | c >> 6U);
-  } else {
-    if (c < 0x10000) {
-      append(0xE0U | c >> 12U);
-    } else {
-      append(0xF0U | c >> 18U);
-      append(0x80U | (c >> 12U & 0x3FU));
-    }
-    append(0x80U | (c >> 6U & 0x3FU));
-  }
-  append(0x80U | (c & 0x3FU));
+  const unsigned more = c < 0x80 ? 0 : c < 0x800 ? 1 : c < 0x10000 ? 2 : 3;
+  // The first byte begins with as many ones as there are bytes, but for a single one.
+  const unsigned ones = more == 0 ? 0 : 0xFF00U >> (more + 1);
+  text += static_cast<char>(ones | c >> 6 * more);
+  for (unsigned i = more; i-- > 0;) text += static_cast<char>(0x80U | (c >> 6 * i & 0x3FU));
 }
 
 std::string to_utf8(const std::string& bytes) {

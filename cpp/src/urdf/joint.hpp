@@ -8,10 +8,15 @@
 #include <urdf_model/model.h>
 
 #include <Eigen/Geometry>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
 
+#include "base/motion_curve.hpp"
+#include "iksel/mimic_curve.hpp"
 #include "iksel/robot_options.hpp"
 #include "urdf/chain_spec.hpp"
-#include "urdf/mimic_curves.hpp"
 
 namespace iksel {
 
@@ -20,6 +25,18 @@ Eigen::Isometry3d origin_of(const urdf::Joint& joint);
 
 /// Unit vector about or along which the joint moves. Throws UrdfError if it has no direction.
 Eigen::Vector3d axis_of(const urdf::Joint& joint);
+
+/// What a joint follows, and how.
+struct CheckedCurve {
+  const urdf::Joint* source;
+  std::shared_ptr<const MotionCurve> curve;
+};
+using CheckedCurves = std::map<std::string, CheckedCurve>;
+
+/// By the name of the joint that follows. Throws InvalidArgumentError or UnknownNameError that
+/// names the curve.
+CheckedCurves check_mimic_curves(const urdf::ModelInterface& model,
+                                 const std::vector<MimicCurve>& curves);
 
 /// What moves a joint: `source`'s value q, as motion_of says (base/motion_curve.hpp).
 struct Motion : Following {
@@ -40,6 +57,11 @@ ChainVariable make_variable(const urdf::Joint& joint, const RobotOptions& option
 /// curve by which it does. Throws UrdfError where a curve leaves nothing, or several pieces.
 void narrow_by_follower(const urdf::Joint& follower, const Motion& motion,
                         const RobotOptions& options, ChainVariable& variable);
+
+/// Narrows `lower` and `upper`, values of the joint that is followed, to where the curve stays
+/// between `least` and `most`, up to rounding. False if that is more than one piece, or none.
+bool narrow_to_values(const MotionCurve& curve, double least, double most, double& lower,
+                      double& upper);
 
 /// Throws UrdfError unless the limits are finite with lower < upper, or the joint is continuous.
 void check_limits(const ChainVariable& variable);

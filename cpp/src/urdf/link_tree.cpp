@@ -1,14 +1,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "iksel/link_tree.hpp"
 
-#include <set>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "urdf/chain_spec.hpp"
+#include "urdf/joint.hpp"
 #include "urdf/parse.hpp"
 
 namespace iksel {
+namespace {
+
+LinkJoint make_link_joint(const urdf::ModelInterface& model, const CheckedCurves& curves,
+                          const urdf::Joint& joint) {
+  LinkJoint out;
+  out.name = out.source = joint.name;
+  out.origin = origin_of(joint);
+  out.prismatic = joint.type == urdf::Joint::PRISMATIC;
+  out.moves =
+      out.prismatic || joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::CONTINUOUS;
+  if (!out.moves) return out;
+  out.axis = axis_of(joint);
+  const Motion motion = resolve_mimic(model, curves, joint);
+  out.source = motion.source->name;
+  static_cast<Following&>(out) = motion;
+  return out;
+}
+
+}  // namespace
 
 LinkTree LinkTree::from_urdf_file(const std::filesystem::path& path, const std::string& link) {
   return read_with_path(path, [&](const std::string& xml) { return from_urdf_string(xml, link); });
@@ -21,29 +42,21 @@ LinkTree LinkTree::from_urdf_string(const std::string& xml, const std::string& l
 LinkTree make_link_tree(const urdf::ModelInterface& model) {
   LinkTree tree;
   tree.robot_name = model.getName();
-  struct Visit {
-    const urdf::Link* link;
-    int moving_joints;
-  };
-  std::vector<Visit> next{{model.getRoot().get(), 0}};
-  std::set<const urdf::Link*> seen{model.getRoot().get()};
+  // Links, and how many joints that move are above them.
+  std::vector<std::pair<const urdf::Link*, int>> next{{model.getRoot().get(), 0}};
   while (!next.empty()) {
-    const auto [link, above] = next.back();
+    auto [link, moving] = next.back();
     next.pop_back();
-    int moving = above;
-    if (const auto& joint = link->parent_joint; joint && link->getParent()) {
+    if (const auto& joint = link->parent_joint) {
       if (joint->type != urdf::Joint::FIXED) ++moving;
       tree.joints.push_back(
           {joint->name, joint_type_name(joint->type), joint->parent_link_name, link->name});
     }
     tree.links.push_back(link->name);
     if (link->child_links.empty()) tree.tips.push_back({link->name, moving});
-    for (std::size_t i = link->child_links.size(); i-- > 0;) {
-      // urdfdom takes the last of several parents, and keeps the link with each of them.
-      const urdf::Link* child = link->child_links[i].get();
-      if (child->getParent().get() == link && seen.insert(child).second) {
-        next.push_back({child, moving});
-      }
+    const auto& children = link->child_links;
+    for (auto child = children.rbegin(); child != children.rend(); ++child) {
+      next.emplace_back(child->get(), moving);
     }
   }
   return tree;
@@ -60,6 +73,25 @@ std::string LinkTree::draw() const {
     open.push_back(joint.child_link);
   }
   return text;
+}
+
+std::vector<LinkJoint> read_link_joints(const std::string& urdf_xml,
+                                        const std::vector<MimicCurve>& mimic_curves) {
+  const auto model = parse_urdf(urdf_xml);
+  const CheckedCurves curves = check_mimic_curves(*model, mimic_curves);
+  std::map<std::string, int> index;
+  std::vector<LinkJoint> joints;
+  for (const std::string& name : make_link_tree(*model).links) {
+    const urdf::Link& link = *model->links_.at(name);
+    LinkJoint joint;
+    if (!joints.empty()) {
+      joint = make_link_joint(*model, curves, *link.parent_joint);
+      joint.parent = index.at(link.parent_joint->parent_link_name);
+    }
+    index[name] = static_cast<int>(joints.size());
+    joints.push_back(joint);
+  }
+  return joints;
 }
 
 }  // namespace iksel

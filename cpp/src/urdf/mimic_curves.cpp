@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "urdf/mimic_curves.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -8,15 +6,13 @@
 #include "base/constants.hpp"
 #include "base/message_text.hpp"
 #include "iksel/error.hpp"
+#include "urdf/joint.hpp"
 #include "urdf/parse.hpp"
 
 namespace iksel {
 namespace {
 
 constexpr std::size_t kMostPoints = 100'000;
-/// Farthest that a sampled curve may lie from its function [rad or m], and its slope.
-constexpr double kSampledValue = 1e-10;
-constexpr double kSampledSlope = 1e-6;
 
 std::string text_of(const MimicCurve& curve) {
   return "(joint '" + curve.joint + "' follows '" + curve.follows + "')";
@@ -181,7 +177,7 @@ MimicCurve MimicCurve::sampled(const std::string& joint, const std::string& foll
       off = std::max(off, std::abs(point.value - value));
       off_slope = std::max(off_slope, std::abs(point.slope - slope));
     }
-    if (off <= kSampledValue && off_slope <= kSampledSlope) return curve;
+    if (off <= 1e-10 && off_slope <= 1e-6) return curve;  // [rad or m], and a slope
   }
   throw InvalidArgumentError(culprit + ": with " + std::to_string(kMostGaps) +
                              " gaps the curve is still " + number_text(off) +

@@ -12,10 +12,10 @@
 #include <mutex>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include "iksel/error.hpp"
 #include "urdf/urdf_text.hpp"
-#include "urdf/urdf_tree.hpp"
 
 namespace iksel {
 namespace {
@@ -61,12 +61,7 @@ std::string one_line(std::string text) {
 }
 
 /// What urdfdom says, which is only what it met, and what to do about it.
-struct Remedy {
-  const char* message;
-  const char* remedy;
-};
-
-constexpr Remedy kRemedies[] = {
+constexpr std::pair<const char*, const char*> kRemedies[] = {
     {"unnamed joint found", "give each <joint> a name"},
     {"is not unique", "give each a name of its own"},
     {"No link elements found", "it needs a <link> for each body"},
@@ -81,20 +76,22 @@ constexpr Remedy kRemedies[] = {
 /// The remedies for messages, or nothing.
 std::string find_remedies(const std::string& messages) {
   std::string text;
-  for (const Remedy& entry : kRemedies) {
-    if (messages.find(entry.message) != std::string::npos) text += std::string("; ") + entry.remedy;
+  for (const auto& [message, remedy] : kRemedies) {
+    if (messages.find(message) != std::string::npos) text += std::string("; ") + remedy;
   }
   return text;
 }
 
 /// The root element of a URDF; throws UrdfError where it is none.
 XmlElement read_robot(const std::string& xml) {
-  const std::string other = explain_root(xml_root_name(xml));
-  std::string reason = other;
+  std::string name;
+  std::string reason;
   try {
-    XmlElement root = parse_xml(xml);
-    if (other.empty()) return root;
+    XmlElement root = parse_xml(xml, &name);
+    reason = explain_root(name);
+    if (reason.empty()) return root;
   } catch (const UrdfError& error) {
+    const std::string other = explain_root(name);
     reason = error.what() + find_remedies(error.what()) + (other.empty() ? "" : "; " + other);
   }
   throw UrdfError("URDF does not parse: " + reason);
@@ -112,12 +109,10 @@ std::string read_urdf_file(const std::filesystem::path& path) {
     throw UrdfError("cannot open URDF file '" + path.string() +
                     "': " + std::generic_category().message(errno));
   }
-  // Devices never end.
-  constexpr std::size_t kMost = 256U << 20U;
   std::string text;
   for (char c = 0; file.get(c);) {
     text += c;
-    if (text.size() > kMost) {
+    if (text.size() > 256U << 20U) {  // devices never end
       throw UrdfError("URDF file '" + path.string() + "' is larger than 256 MiB");
     }
   }

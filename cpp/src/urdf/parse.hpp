@@ -17,7 +17,7 @@ namespace iksel {
 std::string read_urdf_file(const std::filesystem::path& path);
 
 /// Parses the bytes of a URDF by urdfdom, whose console messages become the text of the UrdfError.
-/// Of several trees of links that with `links` is left, see keep_one_tree (urdf/urdf_tree.hpp).
+/// Of several trees of links that with `links` is left, see keep_one_tree (urdf/urdf_text.hpp).
 urdf::ModelInterfaceSharedPtr parse_urdf(const std::string& xml,
                                          const std::vector<std::string>& links = {});
 

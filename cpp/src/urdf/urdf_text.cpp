@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "base/message_text.hpp"
+#include "base/rotation.hpp"
 #include "iksel/error.hpp"
 #include "iksel/urdf_text.hpp"
-#include "urdf/urdf_tree.hpp"
 
 namespace iksel {
 namespace {
@@ -37,19 +37,12 @@ const std::vector<Part>& joint_parts() {
   return kParts;
 }
 
-/// The words of a text.
-std::vector<std::string> words_of(const std::string& text) {
-  std::istringstream in(text);
-  in.imbue(std::locale::classic());
-  std::vector<std::string> words;
-  for (std::string word; in >> word;) words.push_back(word);
-  return words;
-}
-
 /// Numbers as urdfdom reads them, with one space between them.
 std::string plain_numbers(const std::string& text) {
+  std::istringstream in(text);
+  in.imbue(std::locale::classic());
   std::string plain;
-  for (const std::string& word : words_of(text)) plain += (plain.empty() ? "" : " ") + word;
+  for (std::string word; in >> word;) plain += (plain.empty() ? "" : " ") + word;
   return plain;
 }
 
@@ -124,14 +117,7 @@ std::string rpy_of(const std::string& quaternion) {
   std::string more;
   if (!(in >> turn.x() >> turn.y() >> turn.z() >> turn.w()) || in >> more) return "";
   if (!(turn.norm() > 1e-9 && turn.norm() < 1e9)) return "";
-  const Eigen::Matrix3d R = turn.normalized().toRotationMatrix();
-  // Where roll and yaw turn about one axis, any yaw will do, with the roll that belongs to it.
-  const double yaw = std::atan2(R(1, 0), R(0, 0));
-  const double s = std::sin(yaw);
-  const double c = std::cos(yaw);
-  const double pitch = std::atan2(-R(2, 0), c * R(0, 0) + s * R(1, 0));
-  const double roll = std::atan2(s * R(0, 2) - c * R(1, 2), c * R(1, 1) - s * R(0, 1));
-  return number_text(roll, 17) + " " + number_text(pitch, 17) + " " + number_text(yaw, 17);
+  return exact_text(to_roll_pitch_yaw(turn.normalized().toRotationMatrix()));
 }
 
 void replace_quaternions_in(XmlElement& element) {

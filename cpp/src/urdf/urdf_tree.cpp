@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "urdf/urdf_tree.hpp"
-
 #include <algorithm>
 #include <map>
 #include <set>
@@ -8,6 +6,7 @@
 
 #include "base/message_text.hpp"
 #include "iksel/error.hpp"
+#include "urdf/urdf_text.hpp"
 
 namespace iksel {
 namespace {
@@ -82,12 +81,13 @@ void keep_one_tree(XmlElement& robot, const std::vector<std::string>& links) {
     return found == roots.end() ? name : found->second;
   };
   std::vector<std::string> all;  // roots, in the order of the file
+  std::set<std::string> known;   // the same, to look them up
   const std::string* kept = nullptr;
   for (const XmlElement& element : robot.children) {
     if (element.name != "link") continue;
     const std::string name = value_of(&element, "name");
     const std::string root = root_of(name);
-    if (std::find(all.begin(), all.end(), root) == all.end()) all.push_back(root);
+    if (known.insert(root).second) all.push_back(root);
     const auto meant = std::find(links.begin(), links.end(), name);
     if (meant == links.end()) continue;
     if (kept != nullptr && root_of(*kept) != root) {

@@ -8,7 +8,6 @@
 #include <set>
 
 #include "iksel/error.hpp"
-#include "urdf/encoding.hpp"
 
 namespace iksel {
 namespace {
@@ -46,10 +45,10 @@ std::optional<char32_t> entity(std::string_view inside) {
 }
 
 std::string resolve_entities(std::string_view raw) {
-  constexpr std::size_t kLongest = 10;  // &#x10FFFF;
   std::string text;
   for (std::size_t at = 0; at < raw.size();) {
-    const std::size_t end = raw[at] == '&' ? raw.substr(0, at + kLongest).find(';', at) : kNowhere;
+    // The longest is as &#x10FFFF;
+    const std::size_t end = raw[at] == '&' ? raw.substr(0, at + 10).find(';', at) : kNowhere;
     const auto c = end == kNowhere ? std::nullopt : entity(raw.substr(at + 1, end - at - 1));
     if (c) {
       append_utf8(text, *c);
@@ -63,12 +62,8 @@ std::string resolve_entities(std::string_view raw) {
 
 class XmlReader {
  public:
-  explicit XmlReader(const std::string& bytes) : text_(to_utf8(bytes)) {}
-
-  std::string read_root_name() {
-    skip_text();
-    return is_at('<') ? read_name() : "";
-  }
+  XmlReader(const std::string& bytes, std::string* root_name)
+      : text_(to_utf8(bytes)), root_name_(root_name) {}
 
   XmlElement read_document() {
     skip_text();
@@ -218,6 +213,7 @@ class XmlReader {
     if (is_at("</")) fail(begin, "a closing tag, and nothing is open");
     XmlElement element;
     element.name = read_name();
+    if (elements_ == 0 && root_name_ != nullptr) *root_name_ = element.name;
     if (element.name.compare(0, 6, "xmlns:") == 0) element.name[5] = '_';
     if (++elements_ > kMaxElements) fail(begin, "more than a million elements");
     while (true) {
@@ -276,6 +272,7 @@ class XmlReader {
   }
 
   const std::string text_;
+  std::string* root_name_;
   std::size_t at_ = 0;
   int depth_ = 0;
   std::size_t elements_ = 0;
@@ -284,14 +281,8 @@ class XmlReader {
 
 }  // namespace
 
-XmlElement parse_xml(const std::string& bytes) { return XmlReader(bytes).read_document(); }
-
-std::string xml_root_name(const std::string& bytes) {
-  try {
-    return XmlReader(bytes).read_root_name();
-  } catch (const UrdfError&) {
-    return "";
-  }
+XmlElement parse_xml(const std::string& bytes, std::string* root_name) {
+  return XmlReader(bytes, root_name).read_document();
 }
 
 }  // namespace iksel

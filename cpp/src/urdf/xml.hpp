@@ -23,23 +23,29 @@ struct XmlElement {
   [[nodiscard]] const XmlElement* child(std::string_view child_name) const;
 };
 
-/// Reads the bytes of an XML file.
-///
-/// Left out are comments, processing instructions and a DOCTYPE, whose entities are not expanded:
-/// an & that begins none of XML's own stands for itself. A default namespace is left out, and
-/// prefixes that nothing binds are bound. Tabs and line breaks in values are spaces.
+/// Reads the bytes of an XML file, with what mend_xml (iksel/urdf_text.hpp) mends and leaves out.
+/// Tabs and line breaks in values are spaces.
 ///
 /// Throws UrdfError, which begins with the line, where tags are not closed, values have no quotes
 /// or anything else leaves open what is meant, and for text that would take all memory.
-XmlElement parse_xml(const std::string& bytes);
-
-/// Name of the first element; empty where there is none.
-std::string xml_root_name(const std::string& bytes);
+/// The name of the first element is written to `root_name`, also where it throws later.
+XmlElement parse_xml(const std::string& bytes, std::string* root_name = nullptr);
 
 /// Text as it stands in an element or an attribute.
 std::string escape_xml(const std::string& text);
 
 /// Text of the document, in UTF-8.
 std::string write_xml(const XmlElement& root);
+
+/// Whether XML text may hold the character.
+bool is_xml_character(char32_t c);
+
+/// Appends the character to UTF-8 text.
+void append_utf8(std::string& text, char32_t c);
+
+/// The bytes of a file as UTF-8 text that XML may hold, without a byte order mark. They may be
+/// UTF-8, UTF-16 or UTF-32; bytes that are none of these, as in authors' names, are taken for
+/// Latin-1. Control characters become question marks.
+std::string to_utf8(const std::string& bytes);
 
 }  // namespace iksel

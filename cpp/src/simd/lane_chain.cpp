@@ -5,6 +5,7 @@
 
 namespace iksel {
 
+static_assert(lanes::kMaxJoints == kMaxDof);
 static_assert(lanes::kMostSums == kMaxCoupledLimits);
 static_assert(lanes::kMaxMoving == kMaxMovingJoints);
 

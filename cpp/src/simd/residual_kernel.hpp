@@ -107,10 +107,7 @@ double find_residuals(const ResidualForm& form, const double* angles, int n, dou
   double lanes[kWidth];
   Lanes<T>::store(least, lanes);
   double all = lanes[0];
-  // By hand: a function of one lane belongs to another instruction set.
-  for (int i = 1; i < Lanes<T>::kCount; ++i) {
-    if (lanes[i] < all) all = lanes[i];
-  }
+  for (int i = 1; i < Lanes<T>::kCount; ++i) all = min(all, lanes[i]);
   return all;
 }
 

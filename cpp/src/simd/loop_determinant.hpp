@@ -156,7 +156,6 @@ IKSEL_INLINE void multiply_columns(const double* A, int rows, const double* B, i
   }
 }
 
-/// C = A B, as Multiply says.
 template <typename T>
 void multiply(const double* A, int rows, const double* B, int inner, int columns, double* C) {
   int k = 0;

@@ -18,13 +18,12 @@ class SceneCheck {
   using Kind = SceneCulprit::Kind;
 
   SceneCheck(const SceneView& scene, const SceneRoom& room, const double* q)
-      : scene_(scene), room_(room), bodies_(scene, room) {
-    bodies_.place_bodies(q);
-  }
+      : scene_(scene), room_(room), bodies_(scene, room), are_placed_(bodies_.place_bodies(q)) {}
 
   /// Returns the clearance. Begins with the culprit, which is that of this configuration afterwards
   /// if it collides.
   double find(SceneCulprit& culprit) {
+    if (!are_placed_) return 0;
     bool touches = touches_again(culprit);
     if (!touches) {
       bodies_.place_links();
@@ -270,6 +269,7 @@ class SceneCheck {
   const SceneView& scene_;
   const SceneRoom& room_;
   SceneBodies<T> bodies_;
+  bool are_placed_;
   double clearance_ = 1;
   /// What was found to touch (SceneCulprit).
   int leaf_ = 0, ball_ = 0, other_ = 0;

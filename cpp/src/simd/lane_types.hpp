@@ -150,11 +150,12 @@ struct SeedChain {
   bool wraps[kMaxJoints];  ///< turns, so that whole turns change nothing
 };
 
-/// Pose of the last joint's frame to reach, seen from the first one's: columns x, y, z and
-/// position.
-struct SeedTarget {
-  float x[3], y[3], z[3], p[3];
+/// A full pose to reach.
+template <typename N>
+struct SeedTargetOf {
+  N target[kFullPoseRows];
 };
+using SeedTarget = SeedTargetOf<float>;
 
 /// Seeds made from a block.
 struct SeedPack {

@@ -106,7 +106,8 @@ void ArmShape::add(const std::string& name, const Place& place,
   std::vector<Sphere> placed = spheres;
   for (Sphere& sphere : placed) sphere.centre = place.T_body_link * sphere.centre;
   names_.push_back(name);
-  table_.add(place.body, std::move(placed));
+  table_.add(place.body, placed);
+  spheres_.push_back(std::move(placed));
 }
 
 void ArmShape::attach(const std::string& name, const AttachedObject& object) {
@@ -137,27 +138,18 @@ int ArmShape::find(const std::string& name) const {
   return at == names_.end() ? -1 : static_cast<int>(at - names_.begin());
 }
 
-std::vector<Eigen::Vector3d> ArmShape::centres(const double* q) const {
-  std::vector<Pose> frame{Pose::Identity()};
-  for (std::size_t i = 1; i < bodies_.size(); ++i) {
-    const lanes::SceneBody& body = bodies_[i];
-    const double motion = motion_of(body, q[body.variable]);
-    Pose moved = frame_of(body);
-    if (body.prismatic) {
-      moved.translate(motion * Eigen::Vector3d::UnitZ());
-    } else {
-      moved.rotate(Eigen::AngleAxisd(motion, Eigen::Vector3d::UnitZ()));
-    }
-    frame.push_back(frame[static_cast<std::size_t>(body.parent)] * moved);
+std::vector<std::vector<Sphere>> ArmShape::spheres_at(const std::vector<Pose>& T_base_link) const {
+  std::vector<Pose> frame(bodies_.size());
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    const Place& place = places_[i];
+    frame[static_cast<std::size_t>(place.body)] = T_base_link[i] * place.T_body_link.inverse();
   }
-  std::vector<Eigen::Vector3d> centres(balls().size());
-  for (const lanes::SceneLink& link : links()) {
-    for (int b = link.first; b < link.first + link.count; ++b) {
-      const auto k = static_cast<std::size_t>(b);
-      centres[k] = frame[static_cast<std::size_t>(link.body)] * to_vector(balls()[k].centre);
-    }
+  std::vector<std::vector<Sphere>> placed = spheres_;
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    const Pose& body = frame[static_cast<std::size_t>(links()[i].body)];
+    for (Sphere& sphere : placed[i]) sphere.centre = body * sphere.centre;
   }
-  return centres;
+  return placed;
 }
 
 void ArmShape::show(lanes::SceneView& view) const {

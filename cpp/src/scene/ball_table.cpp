@@ -75,12 +75,9 @@ void BallTable::fill(int node, Spheres& spheres, int first, int last) {
 int BallTable::add(int body, Spheres spheres) {
   const std::size_t root = nodes_.size();
   nodes_.emplace_back();
-  const auto count = static_cast<int>(spheres.size());
   const lanes::SceneBall around = to_ball(ball_around(spheres));
-  fill(static_cast<int>(root), spheres, 0, count);
-  const int first = static_cast<int>(balls_.size());
-  for (const Sphere& sphere : spheres) balls_.push_back(to_ball(sphere));
-  links_.push_back({body, first, count, static_cast<int>(root), around});
+  fill(static_cast<int>(root), spheres, 0, static_cast<int>(spheres.size()));
+  links_.push_back({body, static_cast<int>(root), around});
   const std::size_t link = links_.size() - 1;
   if (runs_.empty() || runs_.back().body != body)
     runs_.push_back({body, static_cast<int>(link), 0});
@@ -90,15 +87,6 @@ int BallTable::add(int body, Spheres spheres) {
     around_[i][link] = i < 3 ? around.centre[i] : around.radius;
   }
   return static_cast<int>(link);
-}
-
-Spheres BallTable::spheres_of(const lanes::SceneLink& link) const {
-  Spheres spheres;
-  for (int b = link.first; b < link.first + link.count; ++b) {
-    const lanes::SceneBall& ball = balls_[static_cast<std::size_t>(b)];
-    spheres.push_back({to_vector(ball.centre), ball.radius});
-  }
-  return spheres;
 }
 
 void BallTable::show(lanes::SceneView& view) const {

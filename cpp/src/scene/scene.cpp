@@ -224,7 +224,7 @@ void Scene::find_free(const double* q, std::size_t count, bool* free) const {
 
 std::vector<Contact> Scene::contacts(const JointVector& q) const {
   check_joints(q, data_->robot.dof(), "q");
-  return data_->contacts(q.data());
+  return data_->contacts(q);
 }
 
 void Scene::check_fits(const Robot& robot) const {

@@ -37,9 +37,9 @@ struct SceneNode {
   bool is_leaf;
 };
 
-/// Balls `first` to `first + count - 1` are a link's, in the tree that hangs from node `root`.
+/// Its balls are in the tree that hangs from node `root`.
 struct SceneLink {
-  int body, first, count, root;
+  int body, root;
   SceneBall around;  ///< around them all
 };
 

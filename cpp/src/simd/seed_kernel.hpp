@@ -29,8 +29,8 @@ struct LeftOut {
 
 /// The left side: the first joint's value that brings the sample nearest to the target.
 template <typename T>
-IKSEL_INLINE void set_first(const SeedChain& chain, const SeedTarget& seed_target, LaneFrame<T>& sample,
-                            LeftOut<T>& out) {
+IKSEL_INLINE void set_first(const SeedChain& chain, const SeedTarget& seed_target,
+                            LaneFrame<T>& sample, LeftOut<T>& out) {
   const float* const target = seed_target.target;
   const auto& z = sample.z;
   auto& p = sample.p;

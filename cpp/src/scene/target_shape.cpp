@@ -47,7 +47,8 @@ TargetShape::TargetShape(const ArmShape& arm)
 
 TargetShape::Part TargetShape::seen_from_base(const ArmShape& arm, std::size_t link) const {
   Part part{0, arm.spheres(link)};
-  for (int b = arm.links()[link].body; b > 0; b = arm.bodies()[static_cast<std::size_t>(b)].parent) {
+  for (int b = arm.links()[link].body; b > 0;
+       b = arm.bodies()[static_cast<std::size_t>(b)].parent) {
     const lanes::SceneBody& body = arm.bodies()[static_cast<std::size_t>(b)];
     if (body.prismatic) return {};
     const Pose frame = frame_of(body);

@@ -62,6 +62,18 @@ struct LaneChainOf {
   LaneJointOf<Number> joint[kMaxMoving];
   int sums;
   LaneSumOf<Number> sum[kMostSums];
+  /// Of each variable [rad or m], and their inverses.
+  double unit[kMaxJoints], per_unit[kMaxJoints];
+
+  /// A joint value in metres or radians, as the chain counts it, and back.
+  template <typename Value>
+  [[nodiscard]] Value to_lane(int j, Value value) const {
+    return value * static_cast<Value>(per_unit[j]);
+  }
+  template <typename Value>
+  [[nodiscard]] Value from_lane(int j, Value value) const {
+    return value * static_cast<Value>(unit[j]);
+  }
 };
 using LaneChain = LaneChainOf<double>;
 
@@ -108,10 +120,6 @@ struct PackResult {
   int iterations;  ///< of the whole pack
 };
 
-/// Iterates all lanes of a pack so often: seeds that are mostly going to fail need no precision.
-using AdvanceRoughly = void (*)(const LaneChainOf<float>& chain, const LaneOptions& options,
-                                int iterations, RoughPack& pack);
-
 /// A pose to come near to, and what is missing of it counts (closest_kernel.hpp). In the first
 /// joint's frame.
 struct ClosestTarget {
@@ -124,11 +132,6 @@ struct ClosestTarget {
   float rotation2;  ///< the rotation's squared weight
   float tcp[3];     ///< seen from the last joint
 };
-
-/// Moves kBlock seeds so often towards where the least is missing. Of each joint kBlock values in q
-/// follow each other; `remainder` becomes what is missing where they then are.
-using Approach = void (*)(const LaneChainOf<float>& chain, const ClosestTarget& target,
-                          int iterations, float* q, float* remainder);
 
 /// How a side of the chain is left out of the samples (reduction.hpp).
 enum class Side : int { none, rotation, translation };
@@ -197,8 +200,13 @@ struct LaneKernels {
   /// Lanes iterate in lockstep. `narrow` takes the least time for an iteration, which is what the
   /// first answer for one pose waits for; `wide` the least for each lane.
   PackKernels narrow, wide;
-  AdvanceRoughly advance_roughly;
-  Approach approach;
+  /// Iterates all lanes of a pack so often: seeds that are mostly going to fail need no precision.
+  void (*advance_roughly)(const LaneChainOf<float>& chain, const LaneOptions& options,
+                          int iterations, RoughPack& pack);
+  /// Moves kBlock seeds so often towards where the least is missing. Of each joint kBlock values in
+  /// q follow each other; `remainder` becomes what is missing where they then are.
+  void (*approach)(const LaneChainOf<float>& chain, const ClosestTarget& target, int iterations,
+                   float* q, float* remainder);
   void (*prepare)(const SeedChain& chain, const SeedTarget& target, const float* block,
                   SeedPack& out);
   /// Blocks of configurations of n joints, kBlock values of each joint one after the other and so

@@ -4,15 +4,10 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "scene/bounding_ball.hpp"
-
 namespace iksel {
 namespace {
 
 using Spheres = std::vector<Sphere>;
-
-/// Balls of a leaf, at most, and about as many nodes below a node.
-constexpr int kFan = lanes::kWidth;
 
 lanes::SceneBall to_ball(const Sphere& sphere) {
   lanes::SceneBall ball{{}, sphere.radius};
@@ -20,10 +15,35 @@ lanes::SceneBall to_ball(const Sphere& sphere) {
   return ball;
 }
 
+/// A ball around the spheres, of which there is one at least: close to the smallest (steps towards
+/// the farthest, ever smaller: Badoiu and Clarkson, "Smaller core-sets for balls", 2003).
+Sphere ball_around(const Spheres& spheres) {
+  if (spheres.size() == 1) return spheres.front();
+  const auto reach = [](const Eigen::Vector3d& from, const Sphere& to) {
+    return (to.centre - from).norm() + to.radius;
+  };
+  Sphere ball{spheres.front().centre, 0};
+  const auto farthest = [&] {
+    return *std::max_element(spheres.begin(), spheres.end(), [&](const auto& a, const auto& b) {
+      return reach(ball.centre, a) < reach(ball.centre, b);
+    });
+  };
+  for (int i = 1; i <= 200; ++i) {
+    const Sphere far = farthest();
+    const Eigen::Vector3d way = far.centre - ball.centre;
+    const double distance = way.norm();
+    // Towards the point of that sphere that is farthest away.
+    if (distance > 0) ball.centre += way * ((1 + far.radius / distance) / (i + 1));
+  }
+  // Rounding included.
+  ball.radius = reach(ball.centre, farthest()) * (1 + 1e-12);
+  return ball;
+}
+
 /// Orders spheres `first` to `last - 1` into parts that lie close together, by halves across the
 /// longest extent; `ends` gets where each part ends.
 void part(Spheres& spheres, int first, int last, int parts, std::vector<int>& ends) {
-  if (parts == 1 || last - first <= kFan) {
+  if (parts == 1 || last - first <= lanes::kWidth) {
     ends.push_back(last);
     return;
   }
@@ -48,11 +68,11 @@ void part(Spheres& spheres, int first, int last, int parts, std::vector<int>& en
 
 void BallTable::fill(int node, Spheres& spheres, int first, int last) {
   std::vector<int> ends;
-  const bool is_leaf = last - first <= kFan;
+  const bool is_leaf = last - first <= lanes::kWidth;
   if (is_leaf) {
     for (int i = first; i < last; ++i) ends.push_back(i + 1);
   } else {
-    part(spheres, first, last, kFan, ends);
+    part(spheres, first, last, lanes::kWidth, ends);
   }
   const auto count = static_cast<int>(ends.size());
   const int below = is_leaf ? first : static_cast<int>(nodes_.size());

@@ -9,7 +9,6 @@
 
 #include "iksel/self_motion.hpp"
 #include "kinematics/chain_model.hpp"
-#include "simd/curve_types.hpp"
 #include "simd/kernels.hpp"
 
 namespace iksel {

@@ -9,7 +9,6 @@
 #pragma once
 
 #include "base/symmetric.hpp"
-#include "simd/curve_types.hpp"
 #include "simd/lane_frames.hpp"
 #include "simd/lane_goal.hpp"
 #include "simd/lane_math.hpp"

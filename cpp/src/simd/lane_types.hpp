@@ -5,6 +5,7 @@
 
 #include <cstddef>
 
+#include "base/constants.hpp"
 #include "base/motion_curve.hpp"
 
 namespace iksel::lanes {
@@ -114,6 +115,18 @@ struct RoughPack {
   alignas(64) float error2[kBlock];
 };
 
+/// Where the lanes of a pack stand on self-motions of seven joints, and all reach that full pose.
+struct CurvePack {
+  double target[kFullPoseRows];
+  alignas(64) double q[kCurveJoints][kWidth];
+  /// Unit vectors along the curves, the way that each lane goes.
+  alignas(64) double tangent[kCurveJoints][kWidth];
+  /// 1 where tangents are oriented that way, else -1.
+  alignas(64) double side[kWidth];
+  alignas(64) double step[kWidth];  ///< length of the next step [rad and m]
+  double longest;                   ///< what it may become
+};
+
 /// How an advance ended.
 struct PackResult {
   unsigned done;   ///< bit l: lane l arrived, as far as the step tells
@@ -180,7 +193,6 @@ struct ResidualForm;
 struct LoopForm;
 struct LoopTarget;
 struct TrigonometricPolynomial;
-struct CurvePack;
 struct SceneView;
 struct SceneRoom;
 

@@ -12,8 +12,8 @@
 //   k0^2 W N + k0 Y Re(z) + |m|^2 Y^2 / 4 - Im(z)^2 = 0.
 #pragma once
 
+#include "simd/branch_types.hpp"
 #include "simd/lane_math.hpp"
-#include "simd/residual_types.hpp"
 
 namespace iksel::lanes {
 

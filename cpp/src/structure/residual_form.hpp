@@ -2,7 +2,6 @@
 // The residual of a chain by the angle of one of its joints, for a target.
 #pragma once
 
-#include "simd/residual_types.hpp"
 #include "structure/closed_form.hpp"
 
 namespace iksel {

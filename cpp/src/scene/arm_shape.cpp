@@ -43,7 +43,10 @@ ArmShape::ArmShape(const Robot& robot, const RobotSpheres& spheres,
                          [&](const LinkPoses& links) { make_bodies(robot, links); });
   tip_body_ = place_of(robot.tip_links().front()).body;
   T_body_tip_ = place_of(robot.tip_links().front()).T_body_link;
-  for (const auto& [name, of_link] : spheres.links) check_link(name, "spheres");
+  for (const auto& [name, of_link] : spheres.links) {
+    if (std::find(link_names_.begin(), link_names_.end(), name) != link_names_.end()) continue;
+    throw_unknown_name("spheres: the URDF has no link '" + name + "'", name, link_names_);
+  }
   // What is on one body stands together: the kernel places it in lanes.
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body) {
     for (const auto& [name, of_link] : spheres.links) {
@@ -111,7 +114,6 @@ void ArmShape::add(const std::string& name, const Place& place,
 }
 
 void ArmShape::attach(const std::string& name, const AttachedObject& object) {
-  check_link(object.link, "link");
   add(name, place_of(object.link), object.spheres);
   const int added = static_cast<int>(links().size()) - 1;
   for (int i = 0; i < added; ++i) {
@@ -120,12 +122,6 @@ void ArmShape::attach(const std::string& name, const AttachedObject& object) {
                      object.may_touch.end();
     if (!may && links()[k].body != links().back().body) pairs_.add({i, added});
   }
-}
-
-void ArmShape::check_link(const std::string& link, const char* argument) const {
-  if (std::find(link_names_.begin(), link_names_.end(), link) != link_names_.end()) return;
-  throw_unknown_name(std::string(argument) + ": the URDF has no link '" + link + "'", link,
-                     link_names_);
 }
 
 const ArmShape::Place& ArmShape::place_of(const std::string& link) const {

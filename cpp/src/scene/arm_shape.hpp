@@ -28,11 +28,9 @@ class ArmShape {
   ArmShape(const Robot& robot, const RobotSpheres& spheres,
            const std::map<std::string, double>& other_joints);
 
-  /// Adds an object, which touches all links and objects but those named and those that move with
-  /// it. Throws UnknownNameError.
+  /// Adds an object of a link that there is; it touches all links and objects but those named and
+  /// those that move with it.
   void attach(const std::string& name, const AttachedObject& object);
-  /// Throws UnknownNameError about a link that the URDF lacks.
-  void check_link(const std::string& link, const char* argument) const;
 
   /// Sets what of a view belongs to the arm; it holds as long as this is not changed.
   void show(lanes::SceneView& view) const;

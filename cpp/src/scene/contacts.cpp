@@ -43,13 +43,13 @@ double signed_distance(const Obstacle& obstacle, const PointGrid* grid,
 
 }  // namespace
 
-void Scene::Data::add_contacts(std::size_t link, const std::vector<Sphere>& spheres,
+void Scene::Data::add_contacts(std::size_t link, const std::vector<Sphere>& placed,
                                std::vector<Contact>& found) const {
   for (const auto& [name, obstacle] : obstacles) {
     const auto grid = grids_.find(obstacle.points);
     const PointGrid* points = grid == grids_.end() ? nullptr : grid->second.get();
     double depth = -kInfinity;
-    for (const Sphere& sphere : spheres) {
+    for (const Sphere& sphere : placed) {
       const double distance = signed_distance(obstacle, points, sphere.centre);
       depth = std::max(depth, sphere.radius + obstacle.margin - distance);
     }
@@ -57,14 +57,14 @@ void Scene::Data::add_contacts(std::size_t link, const std::vector<Sphere>& sphe
   }
 }
 
-void Scene::Data::add_pair_contacts(const std::vector<std::vector<Sphere>>& spheres,
+void Scene::Data::add_pair_contacts(const std::vector<std::vector<Sphere>>& placed,
                                     std::vector<Contact>& found) const {
   for (const lanes::ScenePair& pair : arm_.pairs()) {
     const auto a = static_cast<std::size_t>(pair.a);
     const auto b = static_cast<std::size_t>(pair.b);
     double depth = -kInfinity;
-    for (const Sphere& one : spheres[a]) {
-      for (const Sphere& other : spheres[b]) {
+    for (const Sphere& one : placed[a]) {
+      for (const Sphere& other : placed[b]) {
         const double distance = (one.centre - other.centre).norm();
         depth = std::max(depth, one.radius + other.radius - distance);
       }
@@ -74,12 +74,12 @@ void Scene::Data::add_pair_contacts(const std::vector<std::vector<Sphere>>& sphe
 }
 
 std::vector<Contact> Scene::Data::contacts(const JointVector& q) const {
-  const auto spheres = arm_.spheres_at(robot.link_poses(q, other_joints));
+  const auto placed = arm_.spheres_at(robot.link_poses(q, other_joints));
   std::vector<Contact> found;
-  for (std::size_t link = 0; link < spheres.size(); ++link) {
-    if (arm_.links()[link].body != 0) add_contacts(link, spheres[link], found);
+  for (std::size_t link = 0; link < placed.size(); ++link) {
+    if (arm_.links()[link].body != 0) add_contacts(link, placed[link], found);
   }
-  add_pair_contacts(spheres, found);
+  add_pair_contacts(placed, found);
   std::stable_sort(found.begin(), found.end(),
                    [](const Contact& a, const Contact& b) { return a.depth > b.depth; });
   return found;

@@ -215,7 +215,9 @@ void Scene::remove(const std::string& name) {
 
 bool Scene::is_free(const JointVector& q) const {
   check_joints(q, data_->robot.dof(), "q");
-  return data_->is_free(q.data());
+  bool free = false;
+  find_free(q.data(), 1, &free);
+  return free;
 }
 
 void Scene::find_free(const double* q, std::size_t count, bool* free) const {

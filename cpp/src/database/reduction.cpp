@@ -32,8 +32,6 @@ lanes::SeedChain make_seed_chain(const ChainModel& model, const Reduction& reduc
   seeds.n = chain.n;
   seeds.left = p.left;
   seeds.right = p.right;
-  seeds.longest_step = 1.0F;
-  seeds.outside_weight = 1000.0F;
   seeds.weight2 = static_cast<float>(p.weight * p.weight);
   seeds.offset_first = static_cast<float>(chain.joint[0].offset);
   seeds.offset_last = static_cast<float>(chain.joint[chain.joints - 1].offset);

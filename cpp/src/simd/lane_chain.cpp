@@ -7,7 +7,6 @@ namespace iksel {
 
 static_assert(lanes::kMaxJoints == kMaxDof);
 static_assert(lanes::kMostSums == kMaxCoupledLimits);
-static_assert(lanes::kMaxMoving == kMaxMovingJoints);
 
 bool is_simple(const ChainModel& model) {
   if (model.kernel.joints.size() != static_cast<std::size_t>(model.dof)) return false;

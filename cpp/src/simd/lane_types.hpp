@@ -10,9 +10,8 @@
 
 namespace iksel::lanes {
 
-/// Most degrees of freedom, and most joints that they move.
+/// Most degrees of freedom.
 inline constexpr int kMaxJoints = 32;
-inline constexpr int kMaxMoving = 64;
 /// Most sums of joint values that are limited.
 inline constexpr int kMostSums = 8;
 /// Most lanes of a pack.
@@ -20,7 +19,6 @@ inline constexpr int kWidth = 8;
 /// Samples that a leaf or a stage of neighbours hands over at a time; a multiple of every pack's
 /// single-precision lanes.
 inline constexpr int kBlock = 16;
-inline constexpr float kEntries[kBlock] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
 /// A joint that moves, as a KernelJoint.
 template <typename Number>
@@ -60,7 +58,7 @@ struct LaneChainOf {
   int joints;      ///< that they move
   bool is_simple;  ///< they are these, one to one
   LaneVariableOf<Number> variable[kMaxJoints];
-  LaneJointOf<Number> joint[kMaxMoving];
+  LaneJointOf<Number> joint[kMaxMovingJoints];
   int sums;
   LaneSumOf<Number> sum[kMostSums];
   /// Of each variable [rad or m], and their inverses.
@@ -158,9 +156,7 @@ constexpr int block_rows(int n) { return kFullPoseRows + 7 * n; }
 struct SeedChain {
   int n;
   Side left, right;
-  float weight2;         ///< squared rotation weight of the key [m^2]
-  float longest_step;    ///< length of the first step at most [rad or m]
-  float outside_weight;  ///< of the squared way by which the first step left the limits
+  float weight2;  ///< squared rotation weight of the key [m^2]
   float offset_first, offset_last;
   float lower[kMaxJoints], upper[kMaxJoints], middle[kMaxJoints];
   bool wraps[kMaxJoints];  ///< turns, so that whole turns change nothing

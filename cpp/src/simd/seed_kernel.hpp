@@ -135,8 +135,9 @@ IKSEL_INLINE T take_first_step(const SeedChain& chain, const float* block, const
     for (int r = 1; r < 6; ++r) dq[j] = dq[j] + row(at + r) * e[r];
     dq2 = dq2 + dq[j] * dq[j];
   }
-  // Far from the sample its pseudo-inverse is no guide: only so long a step in its direction.
-  const T shorten = min(T(1.0F), T(chain.longest_step) / sqrt(max(dq2, T(1e-20F))));
+  // Far from the sample its pseudo-inverse is no guide: only so long a step in its direction [rad
+  // or m].
+  const T shorten = min(T(1.0F), T(1.0F) / sqrt(max(dq2, T(1e-20F))));
   T outside = T(0.0F);
   for (int j = 0; j < n; ++j) {
     T q = row(kFullPoseRows + j);
@@ -148,21 +149,24 @@ IKSEL_INLINE T take_first_step(const SeedChain& chain, const float* block, const
     outside = outside + (q - inside) * (q - inside);
     L::store(inside, out.q[j] + offset);
   }
-  return dq2 + T(chain.outside_weight) * outside;
+  // Whose first step leaves the limits is rarely saved.
+  return dq2 + T(1000.0F) * outside;
 }
 
 /// Puts the seeds in order. The rank of a seed is how many others are better; of equals the first.
 template <typename T, int kVectors>
 IKSEL_INLINE void rank_seeds(const T (&score)[kVectors], SeedPack& out) {
   using L = Lanes<T>;
+  float entries[kBlock];
+  for (int entry = 0; entry < kBlock; ++entry) entries[entry] = static_cast<float>(entry);
   T rank[kVectors];
   for (int v = 0; v < kVectors; ++v) rank[v] = T(0.0F);
   for (int other = 0; other < kBlock; ++other) {
     const T theirs(out.score[other]);
     for (int v = 0; v < kVectors; ++v) {
-      const auto better = (theirs < score[v]) |
-                          ((theirs == score[v]) &
-                           (T(static_cast<float>(other)) < L::load(kEntries + v * L::kCount)));
+      const auto better =
+          (theirs < score[v]) | ((theirs == score[v]) &
+                                 (T(static_cast<float>(other)) < L::load(entries + v * L::kCount)));
       rank[v] = rank[v] + select(better, T(1.0F), T(0.0F));
     }
   }
